@@ -1,0 +1,17 @@
+#!/usr/bin/env bash
+# Installs the Debian packages of packages.txt that are missing: install_packages.sh run|test.
+set -euo pipefail
+purpose=${1:?usage: install_packages.sh run|test}
+list="$(dirname "$0")/../packages.txt"
+missing=()
+while read -r name use _; do
+  case "$name" in ''|'#'*) continue ;; esac
+  [ "${use:-}" = test ] && [ "$purpose" != test ] && continue
+  [ "$(dpkg-query -W -f='${db:Status-Status}' "$name" 2>/dev/null)" = installed ] || missing+=("$name")
+done <"$list"
+[ ${#missing[@]} -eq 0 ] && exit 0
+as_root=()
+[ "$(id -u)" -eq 0 ] || as_root=(sudo)
+echo "installing: ${missing[*]}" >&2
+"${as_root[@]}" apt-get update -qq
+DEBIAN_FRONTEND=noninteractive "${as_root[@]}" apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null

@@ -1,0 +1,28 @@
+# Flags every target of the project shares. No -march: kernels choose their instruction set at run
+# time. -fcx-limited-range: std::complex products and quotients without the slow library routine
+# for infinities; NaN still propagates.
+add_library(modcal_flags INTERFACE)
+target_include_directories(modcal_flags INTERFACE ${PROJECT_SOURCE_DIR})
+target_compile_options(
+  modcal_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual
+                         -Wcast-align -Wformat=2 -fcx-limited-range)
+if(MODCAL_WERROR)
+  target_compile_options(modcal_flags INTERFACE -Werror)
+endif()
+if(MODCAL_SANITIZE)
+  target_compile_options(modcal_flags INTERFACE -fsanitize=${MODCAL_SANITIZE} -fno-omit-frame-pointer
+                                                -fno-sanitize-recover=all)
+  target_link_options(modcal_flags INTERFACE -fsanitize=${MODCAL_SANITIZE})
+endif()
+if(MODCAL_TIDY)
+  set(CMAKE_CXX_CLANG_TIDY clang-tidy)
+endif()
+
+# modcal_library(model SOURCES a.cpp b.cpp LINK fmt::fmt) makes the static library modcal_model with
+# the alias modcal::model.
+function(modcal_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK;PRIVATE_LINK" ${ARGN})
+  add_library(modcal_${name} STATIC ${ARG_SOURCES})
+  add_library(modcal::${name} ALIAS modcal_${name})
+  target_link_libraries(modcal_${name} PUBLIC modcal_flags ${ARG_LINK} PRIVATE ${ARG_PRIVATE_LINK})
+endfunction()

@@ -1,0 +1,46 @@
+// Discrete Fourier transform of real sequences: the only door to FFTW.
+//
+// Convention of the whole project (paper's sign): X(ω) = ∫ x(t) exp(−iωt) dt. The discrete spectrum
+// is the unscaled sum X_k = Σ_j x_j exp(−2πi jk/K), k = 0 … K/2, at ω_k = 2π k f_s/K; multiply by
+// 1/f_s for an estimate of X(ω_k).
+#pragma once
+
+#include <complex>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace modcal {
+
+using Complex = std::complex<double>;
+
+/// Transform pair for one length; cheap to copy, safe to use from several threads at once.
+class RealFft {
+ public:
+  /// Plans for `length` ≥ 1 samples; plans are shared between objects of one length. The planner
+  /// estimates (FFTW_ESTIMATE), so that every run has the same bits.
+  explicit RealFft(std::size_t length);
+
+  std::size_t length() const { return length_; }
+  std::size_t bins() const { return length_ / 2 + 1; }
+
+  /// X_k = Σ_j x_j exp(−2πi jk/K). samples: K, spectrum: K/2 + 1.
+  void forward(std::span<const double> samples, std::span<Complex> spectrum) const;
+  /// x_j = (1/K) Σ_k X_k exp(+2πi jk/K), the spectrum being that of a real sequence (the imaginary
+  /// parts of X_0 and, for even K, of X_{K/2} are ignored). Overwrites `spectrum`.
+  void inverse(std::span<Complex> spectrum, std::span<double> samples) const;
+
+  std::vector<Complex> forward(std::span<const double> samples) const;
+  std::vector<double> inverse(std::vector<Complex> spectrum) const;
+
+ private:
+  struct Plans;
+  std::size_t length_;
+  const Plans* plans_;
+};
+
+/// Multiplicity of bin k of a real sequence's half spectrum: 1 for k = 0 and (even K) k = K/2, else
+/// 2; Parseval: Σ_j x_j² = (1/K) Σ_k multiplicity_k |X_k|².
+double bin_multiplicity(std::size_t k, std::size_t length);
+
+}  // namespace modcal
