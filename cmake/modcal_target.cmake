@@ -5,7 +5,8 @@ add_library(modcal_flags INTERFACE)
 target_include_directories(modcal_flags INTERFACE ${PROJECT_SOURCE_DIR})
 target_compile_options(
   modcal_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual
-                         -Wcast-align -Wformat=2 -fcx-limited-range)
+                         -Wcast-align -Wformat=2
+                         -Wno-missing-field-initializers -fcx-limited-range)
 if(MODCAL_WERROR)
   target_compile_options(modcal_flags INTERFACE -Werror)
 endif()

@@ -1,0 +1,66 @@
+#include "libsim/dynamics/contact_modes.hpp"
+
+#include <cmath>
+#include <numeric>
+
+#include "libsim/base/error.hpp"
+#include "libsim/model/transfer.hpp"
+
+namespace modcal {
+namespace {
+
+constexpr double kNodeTolerance = 1e-13;
+
+void require_matching(const ModalState& initial, std::size_t modes) {
+  for (const std::vector<double>* part : {&initial.displacement, &initial.velocity}) {
+    MODCAL_REQUIRE(part->empty() || part->size() == modes,
+                   "the initial state has {} modal values for {} modes", part->size(), modes);
+  }
+}
+
+double value_or_zero(const std::vector<double>& values, std::size_t index) {
+  return values.empty() ? 0.0 : values[index];
+}
+
+}  // namespace
+
+double ContactModes::effective_mass() const {
+  return 1.0 / std::accumulate(drive.begin(), drive.end(), 0.0);
+}
+
+ContactModes contact_modes(const ModalBasis& basis, double contact, const ModalState& initial) {
+  require_matching(initial, basis.size());
+  const std::vector<double> shape = basis.shape_at(contact);
+  const std::vector<double> left = reaction_gains(basis, End::kLeft);
+  const std::vector<double> right = reaction_gains(basis, End::kRight);
+  ContactModes modes;
+  for (std::size_t n = 0; n < basis.size(); ++n) {
+    const double phi = shape[n];
+    if (std::abs(phi) <= kNodeTolerance) {
+      MODCAL_REQUIRE(value_or_zero(initial.displacement, n) == 0.0 &&
+                         value_or_zero(initial.velocity, n) == 0.0,
+                     "mode {} has a node at the contact: the contact model cannot carry its "
+                     "initial motion; move the contact point or set it to 0",
+                     n + 1);
+      continue;
+    }
+    const double decay = basis.zeta[n] * basis.omega[n];
+    const double damped = basis.omega[n] * std::sqrt(1.0 - basis.zeta[n] * basis.zeta[n]);
+    const double q = value_or_zero(initial.displacement, n);
+    const double p = value_or_zero(initial.velocity, n);
+    modes.pole.emplace_back(-decay, damped);
+    modes.drive.push_back(phi * phi / basis.mass[n]);
+    modes.quadrature.push_back(decay / damped);
+    modes.compliance.push_back(1.0 / damped);
+    modes.left_gain.push_back(left[n] / (phi * damped));
+    modes.right_gain.push_back(right[n] / (phi * damped));
+    modes.initial.emplace_back(phi * (p + decay * q), phi * damped * q);
+  }
+  MODCAL_REQUIRE(modes.size() > 0,
+                 "every mode has a node at the contact point {:g} m: nothing "
+                 "can move; move the bow",
+                 contact);
+  return modes;
+}
+
+}  // namespace modcal

@@ -1,0 +1,150 @@
+#include "libsim/dynamics/simulators/fixed_step.hpp"
+
+#include <cmath>
+
+#include "libsim/base/error.hpp"
+#include "libsim/dynamics/contact_rule.hpp"
+
+namespace modcal {
+namespace {
+
+SchemeWeights scheme_weights(const ContactModes& modes, double time_step, WeightsOfPole weights) {
+  SchemeWeights result;
+  for (const std::complex<double> pole : modes.pole) {
+    const ModeWeights mode = weights(pole, time_step);
+    result.propagate.push_back(mode.propagate);
+    result.older.push_back(mode.older);
+    result.newer.push_back(mode.newer);
+  }
+  return result;
+}
+
+ContactParameters contact_parameters(const Scene& scene, const FrictionLaw& friction,
+                                     double effective_mass) {
+  const Adherence adherence = friction.adherence();
+  const bool near_critical = std::isnan(adherence.damping);
+  return {.bow_velocity = scene.bow.velocity,
+          .static_limit = friction.static_limit(scene.bow.normal_force),
+          .stiffness = adherence.stiffness,
+          .damping = near_critical ? 2.0 * std::sqrt(adherence.stiffness * effective_mass)
+                                   : adherence.damping};
+}
+
+// One step with the force solved for needs a single solution of v = v_free + b F(v).
+void require_unique_sliding(const SlidingLaw& law, double response, double time_step) {
+  const double fall = std::visit([](const auto& l) { return l.steepest_fall(); }, law);
+  MODCAL_REQUIRE(
+      fall * response < 1.0,
+      "time step {:g} s is too long for this friction law: its force falls by {:g} N per "
+      "m/s, which needs a step below about {:g} s",
+      time_step, fall, time_step / (fall * response));
+}
+
+Signal named(std::string quantity, std::string unit, double rate, bool wanted, std::size_t count) {
+  return {std::move(quantity), std::move(unit), rate, std::vector<double>(wanted ? count : 0)};
+}
+
+double* target_of(Signal& signal) {
+  return signal.samples.empty() ? nullptr : signal.samples.data();
+}
+
+void store_first(Signal& signal, double value) {
+  if (!signal.samples.empty()) signal.samples[0] = value;
+}
+
+struct InitialMotion {
+  double displacement = 0.0, velocity = 0.0, left = 0.0, right = 0.0;
+};
+
+InitialMotion initial_motion(const ContactModes& modes) {
+  InitialMotion motion;
+  for (std::size_t n = 0; n < modes.size(); ++n) {
+    const std::complex<double> z = modes.initial[n];
+    motion.displacement += modes.compliance[n] * z.imag();
+    motion.velocity += z.real() - modes.quadrature[n] * z.imag();
+    motion.left += modes.left_gain[n] * z.imag();
+    motion.right += modes.right_gain[n] * z.imag();
+  }
+  return motion;
+}
+
+double initial_force(const StepLoop& loop) {
+  return std::visit(
+      [&loop](const auto& law) {
+        return ContactRule(loop.contact, law, loop.time_step, loop.initial_displacement,
+                           loop.initial_velocity)
+            .initial_force();
+      },
+      loop.law);
+}
+
+Simulation empty_simulation(std::size_t count, double rate, const OutputRequest& outputs) {
+  Simulation result;
+  result.displacement = named("y", "m", rate, outputs.displacement, count);
+  result.velocity = named("v", "m/s", rate, outputs.velocity, count);
+  result.force = named("f_c", "N", rate, outputs.force, count);
+  result.left_reaction = named("R1", "N", rate, outputs.left_reaction, count);
+  result.right_reaction = named("R2", "N", rate, outputs.right_reaction, count);
+  return result;
+}
+
+void store_initial(Simulation& result, const InitialMotion& motion, double force) {
+  store_first(result.displacement, motion.displacement);
+  store_first(result.velocity, motion.velocity);
+  store_first(result.force, force);
+  store_first(result.left_reaction, motion.left);
+  store_first(result.right_reaction, motion.right);
+}
+
+}  // namespace
+
+Simulation simulate_fixed_step(const Scene& scene, double sample_rate, const OutputRequest& outputs,
+                               double wanted_time_step, ForceTiming timing,
+                               WeightsOfPole weights_of_pole) {
+  const StepPlan plan = plan_steps(wanted_time_step, sample_rate);
+  const std::size_t count = sample_count(scene.duration, sample_rate);
+  const ModalBasis basis = make_modal_basis(scene.string);
+  const ContactModes modes = contact_modes(basis, scene.bow.position, scene.initial);
+  const auto friction = scene.friction.make();
+  const InitialMotion motion = initial_motion(modes);
+
+  StepLoop loop{.timing = timing,
+                .time_step = plan.time_step,
+                .steps_per_sample = plan.steps_per_sample,
+                .samples = count,
+                .contact = contact_parameters(scene, *friction, modes.effective_mass()),
+                .law = friction->sliding(scene.bow.normal_force),
+                .initial_displacement = motion.displacement,
+                .initial_velocity = motion.velocity,
+                .targets = {}};
+  const double first_force = initial_force(loop);
+  // The explicit scheme has no force before t = 0; the implicit one starts with that of t = 0.
+  StepCoefficients coefficients =
+      make_step_coefficients(modes, scheme_weights(modes, plan.time_step, weights_of_pole),
+                             timing == ForceTiming::kImplicit ? first_force : 0.0);
+  if (timing == ForceTiming::kImplicit) {
+    require_unique_sliding(loop.law, coefficients.direct_response.velocity, plan.time_step);
+  }
+
+  Simulation result = empty_simulation(count, sample_rate, outputs);
+  store_initial(result, motion, first_force);
+  loop.targets = {.displacement = target_of(result.displacement),
+                  .velocity = target_of(result.velocity),
+                  .force = target_of(result.force),
+                  .left_reaction = target_of(result.left_reaction),
+                  .right_reaction = target_of(result.right_reaction)};
+  const LoopCounts counts = run_step_loop(loop, coefficients);
+
+  if (counts.first_bad_sample < count) {
+    result = empty_simulation(0, sample_rate, {});
+    result.diverged_at = static_cast<double>(counts.first_bad_sample) / sample_rate;
+  }
+  result.time_step = plan.time_step;
+  result.steps = (count - 1) * plan.steps_per_sample;
+  result.attachments = counts.attachments;
+  result.releases = counts.releases;
+  result.modes_moved = modes.size();
+  return result;
+}
+
+}  // namespace modcal

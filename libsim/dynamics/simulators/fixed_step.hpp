@@ -1,0 +1,21 @@
+// What the fixed-step simulators share: from scene and one-step weights to sampled signals.
+#pragma once
+
+#include <functional>
+
+#include "libsim/dynamics/simulator.hpp"
+#include "libsim/dynamics/step_loop.hpp"
+
+namespace modcal {
+
+/// One-step weights r, d₀, d₁ of a mode with pole λ [1/s] for the step h [s].
+struct ModeWeights {
+  std::complex<double> propagate, older, newer;
+};
+using WeightsOfPole = ModeWeights (*)(std::complex<double> pole, double time_step);
+
+Simulation simulate_fixed_step(const Scene& scene, double sample_rate, const OutputRequest& outputs,
+                               double wanted_time_step, ForceTiming timing,
+                               WeightsOfPole weights_of_pole);
+
+}  // namespace modcal

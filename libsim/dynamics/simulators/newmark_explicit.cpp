@@ -1,0 +1,31 @@
+#include "libsim/dynamics/simulators/newmark_explicit.hpp"
+
+#include "libsim/dynamics/simulators/fixed_step.hpp"
+
+namespace modcal {
+namespace {
+
+ModeWeights trapezoidal_weights(std::complex<double> pole, double time_step) {
+  const std::complex<double> half = 0.5 * time_step * pole;
+  const std::complex<double> weight = 0.5 * time_step / (1.0 - half);
+  return {.propagate = (1.0 + half) / (1.0 - half), .older = weight, .newer = weight};
+}
+
+}  // namespace
+
+void NewmarkExplicit::Options::visit(OptionVisitor& visitor) {
+  visitor.number({.key = "time_step",
+                  .meaning = "largest time step; the next smaller one that divides the sampling "
+                             "period is taken",
+                  .unit = "s",
+                  .range = Range::positive()},
+                 time_step);
+}
+
+Simulation NewmarkExplicit::run(const Scene& scene, double sample_rate,
+                                const OutputRequest& outputs) const {
+  return simulate_fixed_step(scene, sample_rate, outputs, options_.time_step,
+                             ForceTiming::kPreviousStep, trapezoidal_weights);
+}
+
+}  // namespace modcal

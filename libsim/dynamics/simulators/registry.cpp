@@ -1,0 +1,19 @@
+#include <array>
+
+#include "libsim/dynamics/simulators/modal_exact.hpp"
+#include "libsim/dynamics/simulators/newmark_explicit.hpp"
+
+namespace modcal {
+
+Registry<Simulator> Simulator::registry() {
+  static constexpr std::array kTable = {
+      entry_of<Simulator, ModalExact>(
+          "modal_exact", "exact modal propagator, first-order hold, implicit friction"),
+      entry_of<Simulator, NewmarkExplicit>(
+          "newmark_explicit",
+          "the paper's scheme: average acceleration, force of the previous step"),
+  };
+  return kTable;
+}
+
+}  // namespace modcal
