@@ -1,0 +1,42 @@
+#include <array>
+
+#include "libinverse/discrepancy.hpp"
+#include "libinverse/fixed_parameter.hpp"
+#include "libinverse/generalized_cross_validation.hpp"
+#include "libinverse/l_curve.hpp"
+#include "libinverse/minimal_product.hpp"
+#include "libinverse/no_regularization.hpp"
+#include "libinverse/predictive_risk.hpp"
+#include "libinverse/tikhonov.hpp"
+#include "libinverse/water_level.hpp"
+#include "libinverse/water_level_clip.hpp"
+
+namespace modcal {
+
+Registry<Regularizer> Regularizer::registry() {
+  static constexpr std::array kTable = {
+      entry_of<Regularizer, NoRegularization>("none", "direct inversion"),
+      entry_of<Regularizer, Tikhonov>("tikhonov", "Tikhonov regularization of order 0"),
+      entry_of<Regularizer, WaterLevel>("water_level",
+                                        "water level that zeroes: nothing is inverted below it"),
+      entry_of<Regularizer, WaterLevelClip>(
+          "water_level_clip", "water level that clips: |H| is raised to it, its phase kept"),
+  };
+  return kTable;
+}
+
+Registry<ParameterChoice> ParameterChoice::registry() {
+  static constexpr std::array kTable = {
+      entry_of<ParameterChoice, Discrepancy>("discrepancy", "residual as large as the known noise"),
+      entry_of<ParameterChoice, FixedParameter>("fixed", "a parameter given by the user"),
+      entry_of<ParameterChoice, GeneralizedCrossValidation>("gcv", "generalized cross validation"),
+      entry_of<ParameterChoice, LCurve>("l_curve", "largest curvature of the L-curve"),
+      entry_of<ParameterChoice, MinimalProduct>(
+          "minimal_product", "interior local minimum of residual norm times solution norm"),
+      entry_of<ParameterChoice, PredictiveRisk>(
+          "upre", "unbiased predictive risk estimate with known noise"),
+  };
+  return kTable;
+}
+
+}  // namespace modcal

@@ -1,0 +1,51 @@
+// Regularizers: filter factors between the data and the unregularized solution.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "libinverse/spectral_system.hpp"
+#include "libsim/base/registry.hpp"
+
+namespace modcal {
+
+/// A regularized solution seen from outside, as a function of the parameter.
+struct CurvePoint {
+  double parameter = 0.0;      ///< in the unit of the singular values
+  double residual_norm = 0.0;  ///< ‖b − A x‖ in the unit of the data
+  double solution_norm = 0.0;  ///< ‖x‖ or ‖dx/dt‖, see Measure
+  double freedom = 0.0;        ///< effective degrees of freedom, Σ multiplicity_i φ_i
+  double criterion = 0.0;      ///< what the parameter choice looks at; NaN where it is not defined
+};
+
+/// Regularized solution x = Σ_i φ(σ_i; λ) (u_iᵀb/σ_i) v_i with filter factors φ in [0, 1] that rise
+/// with σ and fall with the parameter λ > 0 (Hansen, 1998, section 4.2).
+class Regularizer {
+ public:
+  static constexpr std::string_view kKind = "regularizer";
+  static Registry<Regularizer> registry();
+
+  virtual ~Regularizer() = default;
+  /// False where there is nothing to choose: the filter factors do not depend on the parameter.
+  virtual bool has_parameter() const { return true; }
+
+  /// kept_i = φ(σ_i; λ), 0 where σ_i = 0, and, unless that span is empty, lost_i = 1 − φ(σ_i; λ)
+  /// without cancellation. sigma, kept: n. Throws InvalidInput unless λ is finite and ≥ 0.
+  void filter_factors(std::span<const double> sigma, double parameter, std::span<double> kept,
+                      std::span<double> lost = {}) const;
+
+  /// Residual norm, solution norm and degrees of freedom for every parameter; the criterion is left
+  /// NaN. Throws InvalidInput unless the parameters are finite, ≥ 0 and do not fall.
+  void trace(const SpectralSystem& system, std::span<const double> parameters,
+             std::span<CurvePoint> curve) const;
+
+ private:
+  virtual void do_filter_factors(std::span<const double> sigma, double parameter,
+                                 std::span<double> kept, std::span<double> lost) const = 0;
+  /// Fills the squared norms. Unless a regularizer knows a cheaper way, one pass over the
+  /// components per parameter.
+  virtual void do_trace_squares(const SpectralSystem& system, std::span<const double> parameters,
+                                std::span<CurvePoint> curve) const;
+};
+
+}  // namespace modcal

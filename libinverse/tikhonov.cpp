@@ -1,0 +1,26 @@
+#include "libinverse/tikhonov.hpp"
+
+#include "libinverse/filter_terms.hpp"
+
+namespace modcal {
+
+void Tikhonov::do_filter_factors(std::span<const double> sigma, double parameter,
+                                 std::span<double> kept, std::span<double> lost) const {
+  // Ratios rather than σ²/(σ² + λ²), and each factor by its own quotient: nothing cancels, and an
+  // overflow of a ratio gives the limit 0.
+  for (std::size_t i = 0; i < sigma.size(); ++i) {
+    const double ratio = parameter / sigma[i];
+    kept[i] = sigma[i] > 0.0 ? 1.0 / (1.0 + ratio * ratio) : 0.0;
+  }
+  for (std::size_t i = 0; i < lost.size(); ++i) {
+    const double ratio = sigma[i] / parameter;
+    lost[i] = sigma[i] > 0.0 ? 1.0 / (1.0 + ratio * ratio) : 1.0;
+  }
+}
+
+void Tikhonov::do_trace_squares(const SpectralSystem& system, std::span<const double> parameters,
+                                std::span<CurvePoint> curve) const {
+  sum_filtered(*this, compacted_terms_of(system), parameters, curve);
+}
+
+}  // namespace modcal
