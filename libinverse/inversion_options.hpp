@@ -1,0 +1,35 @@
+// The inversion as a user describes it.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "libinverse/one_sided_inversion.hpp"
+
+namespace modcal {
+
+/// Section "inversion" of an experiment: how reactions are turned into a force.
+struct InversionOptions {
+  std::string estimator = "one_sided";
+  Choice<Regularizer> regularizer{"water_level"};
+  Choice<ParameterChoice> parameter_choice{"minimal_product"};
+
+  void visit(OptionVisitor& visitor);
+};
+
+/// The plug-ins of an InversionOptions, made once and shared by all inversions.
+class InversionRecipe {
+ public:
+  /// Throws InvalidInput where an option is out of range.
+  explicit InversionRecipe(const InversionOptions& options);
+  InversionMethod method(InversionOutputs outputs = {},
+                         double noise_rms = std::numeric_limits<double>::quiet_NaN()) const {
+    return {*regularizer_, *parameter_choice_, outputs, noise_rms};
+  }
+
+ private:
+  std::shared_ptr<const Regularizer> regularizer_;
+  std::shared_ptr<const ParameterChoice> parameter_choice_;
+};
+
+}  // namespace modcal

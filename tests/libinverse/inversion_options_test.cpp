@@ -1,0 +1,35 @@
+#include "libinverse/inversion_options.hpp"
+
+#include <gtest/gtest.h>
+
+#include "libsim/base/error.hpp"
+
+namespace modcal {
+namespace {
+
+TEST(InversionOptions, AreThePapersUnlessToldOtherwise) {
+  const InversionOptions options;
+  EXPECT_EQ(options.regularizer.selected(), "water_level");
+  EXPECT_EQ(options.parameter_choice.selected(), "minimal_product");
+}
+
+TEST(InversionOptions, MakeTheMethodTheyName) {
+  InversionOptions options;
+  EXPECT_TRUE(InversionRecipe(options).method().regularizer.has_parameter());
+  options.regularizer.select("none");
+  const InversionRecipe recipe(options);
+  const InversionMethod method = recipe.method({.force = false, .velocity = true}, 0.25);
+  EXPECT_FALSE(method.regularizer.has_parameter());
+  EXPECT_FALSE(method.outputs.force);
+  EXPECT_TRUE(method.outputs.velocity);
+  EXPECT_EQ(method.noise_rms, 0.25);
+}
+
+TEST(InversionOptions, RefuseAnUnknownEstimator) {
+  InversionOptions options;
+  options.estimator = "psychic";
+  EXPECT_THROW(InversionRecipe{options}, InvalidInput);
+}
+
+}  // namespace
+}  // namespace modcal
