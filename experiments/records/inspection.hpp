@@ -1,0 +1,55 @@
+// What a recorded file holds, for people, for programs, and as the start of an experiment.
+#pragma once
+
+#include <filesystem>
+#include <limits>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "experiments/records/levels.hpp"
+#include "experiments/records/record_options.hpp"
+
+namespace modcal {
+
+struct InspectionOptions {
+  std::string format = "auto";
+  double sample_rate = std::numeric_limits<double>::quiet_NaN();  ///< [Hz]; NaN: from the file
+};
+
+struct ChannelInspection {
+  std::string name;
+  std::string unit;  ///< of the levels; "full scale" where the file states none for audio samples
+  Levels levels;
+  Clipping clipping;
+  double noise_rms;  ///< white_noise_rms
+};
+
+struct InspectionReport {
+  std::string file;
+  std::string format;
+  double sample_rate;  ///< [Hz]; NaN: not known
+  std::string rate_source;
+  double time_jitter;  ///< [s]; NaN: no time column to check
+  std::size_t frames;
+  std::vector<ChannelInspection> channels;
+  std::vector<std::string> problems;  ///< what a run would refuse, with file, line and column
+  std::size_t problem_count;
+  std::vector<std::string> warnings;
+  RecordOptions record;  ///< a proposal: the channels by their names or their order
+};
+
+/// Reads the whole file and measures every channel; errors in its rows are listed, not thrown.
+/// Throws InvalidInput where the file cannot be read at all.
+InspectionReport inspect(const std::filesystem::path& path, const InspectionOptions& options = {});
+
+/// For a terminal; ends with the stanza.
+std::string text(const InspectionReport& report);
+/// Numbers that are not known are null.
+nlohmann::ordered_json json(const InspectionReport& report);
+/// The beginning of an experiment's YAML file of kind invert: the `record:` section as proposed,
+/// and the string and the bow with the numbers left empty that only the user knows (the reader asks
+/// for them).
+std::string stanza(const InspectionReport& report);
+
+}  // namespace modcal

@@ -1,0 +1,93 @@
+#include "experiments/records/option_stanza.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace modcal {
+namespace {
+
+/// YAML's double-quoted form is JSON's.
+std::string yaml_string(const std::string& text) { return nlohmann::json(text).dump(); }
+
+std::string number_text(const OptionInfo& info, double value) {
+  if (std::isnan(value)) return std::string(info.word);
+  return info.unit == "1" ? fmt::format("{}", value) : fmt::format("{} {}", value, info.unit);
+}
+
+}  // namespace
+
+void OptionStanza::line(const OptionInfo& info, const std::string& value) {
+  const std::string entry = fmt::format("{}{}:{}{}", std::string(2 * level_, ' '), info.key,
+                                        value.empty() ? "" : " ", value);
+  yaml_ += fmt::format(
+      "{:<32}  # {}{}\n", entry, info.meaning,
+      info.required && value.empty() ? fmt::format(" [{}]: fill in", info.unit) : std::string());
+}
+
+void OptionStanza::number(const OptionInfo& info, double& value) {
+  line(info, number_text(info, value));
+}
+
+void OptionStanza::numbers(const OptionInfo& info, std::vector<double>& values) {
+  std::vector<std::string> texts;
+  for (const double value : values) texts.push_back(number_text(info, value));
+  line(info, fmt::format("[{}]", fmt::join(texts, ", ")));
+}
+
+void OptionStanza::integer(const OptionInfo& info, std::int64_t& value) {
+  line(info, fmt::format("{}", value));
+}
+
+void OptionStanza::integers(const OptionInfo& info, std::vector<std::int64_t>& values) {
+  line(info, fmt::format("[{}]", fmt::join(values, ", ")));
+}
+
+void OptionStanza::flag(const OptionInfo& info, bool& value) {
+  line(info, value ? "true" : "false");
+}
+
+void OptionStanza::text(const OptionInfo& info, std::string& value) {
+  line(info, info.choices.empty() ? yaml_string(value) : value);
+}
+
+void OptionStanza::texts(const OptionInfo& info, std::vector<std::string>& values) {
+  std::vector<std::string> items;
+  for (const std::string& value : values) items.push_back(yaml_string(value));
+  line(info, fmt::format("[{}]", fmt::join(items, ", ")));
+}
+
+void OptionStanza::plugin(const OptionInfo& info, PluginSlot& slot) {
+  line(info, {});
+  ++level_;
+  line({.key = "type", .meaning = slot.summary(slot.selected())}, std::string(slot.selected()));
+  slot.visit_options(*this);
+  --level_;
+}
+
+void OptionStanza::group(const OptionInfo& info, const VisitMembers& visit_members) {
+  line(info, {});
+  ++level_;
+  visit_members(*this);
+  --level_;
+}
+
+void OptionStanza::optional_group(const OptionInfo& info, bool& present,
+                                  const VisitMembers& visit_members) {
+  if (present) group(info, visit_members);
+}
+
+void OptionStanza::list(const OptionInfo& info, ListSlot& slot) {
+  line(info, slot.size() == 0 ? "[]" : "");
+  for (std::size_t i = 0; i < slot.size(); ++i) {
+    const std::size_t start = yaml_.size();
+    level_ += 2;
+    slot.visit_item(i, *this);
+    level_ -= 2;
+    if (yaml_.size() > start) yaml_[start + 2 * level_ + 2] = '-';
+  }
+}
+
+}  // namespace modcal

@@ -1,0 +1,38 @@
+// Writes an options struct as YAML to paste and edit.
+#pragma once
+
+#include <string>
+
+#include "libsim/base/options.hpp"
+
+namespace modcal {
+
+/// Visitor that writes `key: value  # meaning [unit]`, one option a line, indented by two blanks a
+/// level. Optional groups that are absent are left out. A number without a value (NaN, no word)
+/// stays empty: the reader asks for it.
+class OptionStanza final : public OptionVisitor {
+ public:
+  explicit OptionStanza(std::size_t level = 0) : level_(level) {}
+  const std::string& yaml() const { return yaml_; }
+
+  void number(const OptionInfo& info, double& value) override;
+  void numbers(const OptionInfo& info, std::vector<double>& values) override;
+  void integer(const OptionInfo& info, std::int64_t& value) override;
+  void integers(const OptionInfo& info, std::vector<std::int64_t>& values) override;
+  void flag(const OptionInfo& info, bool& value) override;
+  void text(const OptionInfo& info, std::string& value) override;
+  void texts(const OptionInfo& info, std::vector<std::string>& values) override;
+  void plugin(const OptionInfo& info, PluginSlot& slot) override;
+  void group(const OptionInfo& info, const VisitMembers& visit_members) override;
+  void optional_group(const OptionInfo& info, bool& present,
+                      const VisitMembers& visit_members) override;
+  void list(const OptionInfo& info, ListSlot& slot) override;
+
+ private:
+  void line(const OptionInfo& info, const std::string& value);
+
+  std::size_t level_;
+  std::string yaml_;
+};
+
+}  // namespace modcal

@@ -1,0 +1,169 @@
+#include "experiments/records/inspection.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "experiments/records/csv_writer.hpp"
+#include "experiments/records/recorded_signals.hpp"
+#include "experiments/records/wav_writer.hpp"
+#include "libsim/base/random.hpp"
+#include "tests/experiments/records/record_folder.hpp"
+
+namespace modcal {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+class Inspect : public RecordFolder {};
+
+constexpr double kRate = 51200.0;
+
+std::vector<double> noisy_sine(double amplitude, double noise, double offset, std::size_t size) {
+  std::vector<double> samples(size);
+  fill_standard_normal(StreamKey(7), samples);
+  for (std::size_t i = 0; i < size; ++i) {
+    const double phase = 2 * std::numbers::pi * 440.3 * static_cast<double>(i) / kRate;
+    samples[i] = offset + noise * samples[i] + amplitude * std::sin(phase);
+  }
+  return samples;
+}
+
+// The band holds n = 0.35 K/2 exponentially distributed powers. Their median has the relative
+// standard deviation 1/(ln 2 √n); a Hann window correlates powers of neighbors by 4/9 and of next
+// neighbors by 1/36, which raises the variance by 1 + 2 (4/9 + 1/36) = 1.94. The rms value has half
+// of it. Five of these.
+double noise_tolerance(std::size_t size) {
+  const double bins = 0.35 * static_cast<double>(size) / 2.0;
+  return 5.0 * 0.5 * std::sqrt(1.94 / bins) / std::numbers::ln2;
+}
+
+TEST_F(Inspect, MeasuresTheNoiseOfANoisySine) {
+  for (const std::size_t size : {std::size_t{51200}, std::size_t{10007}}) {
+    for (const double noise : {0.0, 1e-4, 0.05}) {
+      const double estimate = white_noise_rms(noisy_sine(1.0, noise, 3.0, size));
+      // Beside the noise: the sine's leakage, (bins away)^-3 ~ 1e-9 of its amplitude.
+      EXPECT_NEAR(estimate, noise, noise_tolerance(size) * noise + 1e-9) << size;
+    }
+  }
+}
+
+TEST_F(Inspect, ReportsLevelsOfEveryChannel) {
+  const std::vector<Signal> signals{{"R2", "N", kRate, noisy_sine(1.0, 0.05, 0.25, 51200)},
+                                    {"R1", "N", kRate, noisy_sine(0.5, 0.0, 0.0, 51200)}};
+  write_csv(path("r.csv"), signals);
+  const InspectionReport report = inspect(path("r.csv"));
+  EXPECT_EQ(report.sample_rate, kRate);
+  EXPECT_EQ(report.frames, 51200u);
+  EXPECT_THAT(report.problems, IsEmpty());
+  ASSERT_EQ(report.channels.size(), 2u);
+  const Levels& levels = report.channels[0].levels;
+  // 440.3 periods: the last 0.3 shift mean and power by up to 1/(2π 440) = 4e-4; noise: the mean
+  // by 5·0.05/√51200 = 1.1e-3.
+  EXPECT_NEAR(levels.mean, 0.25, 1.5e-3);
+  EXPECT_NEAR(levels.std, std::sqrt(0.5 + 0.05 * 0.05), 1.5e-3);
+  EXPECT_NEAR(levels.rms, std::hypot(levels.mean, levels.std), 1e-12);
+  EXPECT_GT(levels.peak, 1.25);
+  EXPECT_EQ(report.channels[0].clipping.runs, 0u);
+  EXPECT_NEAR(report.channels[0].noise_rms, 0.05, 0.05 * noise_tolerance(51200));
+  EXPECT_EQ(report.record.left.channel, "R1");
+  EXPECT_EQ(report.record.right.channel, "R2");
+  EXPECT_THAT(text(report), HasSubstr("2 channels, 51200 samples at 51200 Hz"));
+  EXPECT_THAT(text(report), HasSubstr("noise is taken to be white"));
+  const auto object = json(report);
+  EXPECT_EQ(object["channels"][1]["name"], "R1");
+  EXPECT_EQ(object["samples"], 51200);
+}
+
+TEST_F(Inspect, FindsClipping) {
+  std::vector<double> samples = noisy_sine(1.0, 0.0, 0.0, 5120);
+  std::size_t beyond = 0;
+  for (double& value : samples) {
+    if (std::abs(value) >= 0.9) ++beyond;
+    value = std::clamp(value, -0.9, 0.9);
+  }
+  const Clipping clipping = find_clipping(samples);
+  // 0.1 s of 440.3 Hz: 44 crests and 44 troughs, all longer than three samples.
+  EXPECT_EQ(clipping.runs, 88u);
+  EXPECT_EQ(clipping.samples, beyond);
+  EXPECT_EQ(find_clipping(noisy_sine(1.0, 1e-3, 0.0, 5120)).runs, 0u);
+  EXPECT_EQ(find_clipping(std::vector<double>(100, 1.0)).runs, 0u);
+  EXPECT_EQ(find_clipping({}).runs, 0u);
+}
+
+TEST_F(Inspect, ListsWhatARunWouldRefuse) {
+  const auto file = write("r.csv", "t,R1 [N],R2 [N]\n0,1,2\n1,nan,3\n2,x,1\n");
+  const InspectionReport report = inspect(file);
+  EXPECT_EQ(report.problem_count, 2u);
+  EXPECT_EQ(report.channels[0].levels.not_finite, 2u);
+  EXPECT_EQ(report.channels[0].levels.first_not_finite, 1u);
+  EXPECT_THAT(text(report), HasSubstr("A run would refuse this file:"));
+  EXPECT_THAT(text(report), HasSubstr("2 samples are no numbers, first sample 1"));
+  EXPECT_TRUE(json(report)["channels"][0]["noise_rms"].is_null());
+}
+
+TEST_F(Inspect, ReportsOneSampleWithoutAKnownRate) {
+  const InspectionReport report = inspect(write("r.csv", "t,R1 [N]\n0,2\n"));
+  EXPECT_TRUE(std::isnan(report.sample_rate));
+  EXPECT_EQ(report.channels[0].levels.peak, 2.0);
+  EXPECT_THAT(text(report), HasSubstr("1 channel, 1 samples at unknown Hz"));
+  EXPECT_TRUE(json(report)["sample_rate"].is_null());
+}
+
+TEST_F(Inspect, ShowsNonUniformSampling) {
+  const InspectionReport report =
+      inspect(write("r.csv", "t,R1 [N]\n0.00,1\n0.10,2\n0.20,3\n0.50,1\n0.60,0\n"));
+  EXPECT_THAT(report.problems, ElementsAre(HasSubstr("r.csv:5: sample 3: a gap of 0.3 s")));
+}
+
+TEST_F(Inspect, ScalesWavChannelsThatStateTheirScale) {
+  const std::vector<Signal> signals{{"R1", "N", kRate, {2.0, -4.0}}};
+  write_wav(path("r.wav"), signals, {.samples = WavSamples::kPcm24, .full_scale = 8.0});
+  const InspectionReport report = inspect(path("r.wav"));
+  EXPECT_EQ(report.channels[0].levels.peak, 4.0);
+  EXPECT_EQ(report.channels[0].unit, "N");
+  EXPECT_EQ(report.format, "WAV (Microsoft), Signed 24 bit PCM");
+}
+
+TEST_F(Inspect, ProposesAnExperiment) {
+  const auto file = write("a: \"b\" #1.csv", "t,a [V],f_c [N],- b: #2 [mN]\n0,1,2,3\n1,1,2,3\n");
+  const YAML::Node yaml = YAML::Load(stanza(inspect(file)));
+  const YAML::Node record = yaml["record"];
+  EXPECT_EQ(yaml["kind"].as<std::string>(), "invert");
+  EXPECT_EQ(record["file"].as<std::string>(), file.string());
+  EXPECT_EQ(record["format"].as<std::string>(), "auto");
+  EXPECT_EQ(record["left"]["channel"].as<std::string>(), "a");
+  EXPECT_EQ(record["left"]["calibration"].as<std::string>(), "1 N");  // volts: to be filled in
+  EXPECT_EQ(record["right"]["channel"].as<std::string>(), "- b: #2");
+  EXPECT_EQ(record["right"]["calibration"].as<std::string>(), "file");
+  EXPECT_EQ(record["reference"]["channel"].as<std::string>(), "f_c");
+  EXPECT_EQ(record["stop"].as<std::string>(), "end");
+  EXPECT_TRUE(yaml["string"]["length"].IsNull());  // only the user knows
+  EXPECT_EQ(yaml["string"]["damping"]["type"].as<std::string>(), "constant");
+  EXPECT_TRUE(yaml["bow"]["position"].IsNull());
+}
+
+TEST_F(Inspect, ProposesOneReactionWhereOnlyOneIsNamed) {
+  const auto file = write("r.csv", "t,R2 [N],other [N]\n0,1,1\n1,2,2\n");
+  const YAML::Node record = YAML::Load(stanza(inspect(file)))["record"];
+  EXPECT_FALSE(record["left"].IsDefined());
+  EXPECT_EQ(record["right"]["channel"].as<std::string>(), "R2");
+}
+
+TEST_F(Inspect, ProposalLoadsAsItStands) {
+  const std::vector<Signal> signals{{"x", "mN", kRate, {1.0, 2.0, 4.0}},
+                                    {"y", "N", kRate, {3.0, 4.0, 5.0}}};
+  write_csv(path("r.csv"), signals);
+  const RecordedSignals loaded = load_record(inspect(path("r.csv")).record, "");
+  EXPECT_THAT(loaded.left->samples, ElementsAre(1e-3, 2e-3, 4e-3));
+  EXPECT_EQ(loaded.right->samples, signals[1].samples);
+}
+
+}  // namespace
+}  // namespace modcal
