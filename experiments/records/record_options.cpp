@@ -8,17 +8,13 @@ void RecordedForceOptions::visit(OptionVisitor& visitor) {
                 .required = true},
                channel);
   visitor.number({.key = "calibration",
-                  .meaning = "force per recorded 1: per unit of the column's heading (CSV) or per "
-                             "full scale (WAV); \"file\": the file states a unit of force; a "
-                             "negative number turns the sign",
+                  .meaning = "force per unit of the column (CSV) or per full scale (WAV), negative "
+                             "to turn the sign; \"file\": the file states a unit of force",
                   .unit = "N",
                   .word = "file"},
                  calibration);
   visitor.number(
-      {.key = "delay",
-       .meaning = "time by which this channel lags behind the others; it is shifted back "
-                  "by this much",
-       .unit = "s"},
+      {.key = "delay", .meaning = "lag behind the other channels; it is shifted back", .unit = "s"},
       delay);
 }
 
