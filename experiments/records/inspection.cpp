@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <optional>
 
 #include "experiments/records/csv_reader.hpp"
 #include "experiments/records/recorded_signals.hpp"
 #include "experiments/records/unit_scale.hpp"
 #include "experiments/records/wav_reader.hpp"
+#include "libsim/base/error.hpp"
 
 namespace modcal {
 namespace {
@@ -91,6 +91,18 @@ RecordOptions propose(const std::filesystem::path& path, const InspectionOptions
   return record;
 }
 
+void ask_for_calibrations(InspectionReport& report) {
+  const auto ask = [&](bool present, std::string_view role, const RecordedForceOptions& force) {
+    if (!present || std::isnan(force.calibration)) return;
+    report.warnings.push_back(
+        fmt::format("{}: channel {} states no force; fill in record.{}.calibration", report.file,
+                    force.channel, role));
+  };
+  ask(report.record.has_left, "left", report.record.left);
+  ask(report.record.has_right, "right", report.record.right);
+  ask(report.record.has_reference, "reference", report.record.reference);
+}
+
 }  // namespace
 
 InspectionReport inspect(const std::filesystem::path& path, const InspectionOptions& options) {
@@ -111,6 +123,7 @@ InspectionReport inspect(const std::filesystem::path& path, const InspectionOpti
     channel = {};
   }
   report.record = propose(path, options, report.channels);
+  ask_for_calibrations(report);
   return report;
 }
 

@@ -133,7 +133,9 @@ TEST_F(Inspect, ScalesWavChannelsThatStateTheirScale) {
 
 TEST_F(Inspect, ProposesAnExperiment) {
   const auto file = write("a: \"b\" #1.csv", "t,a [V],f_c [N],- b: #2 [mN]\n0,1,2,3\n1,1,2,3\n");
-  const YAML::Node yaml = YAML::Load(stanza(inspect(file)));
+  const InspectionReport report = inspect(file);
+  EXPECT_THAT(report.warnings, ElementsAre(HasSubstr("fill in record.left.calibration")));
+  const YAML::Node yaml = YAML::Load(stanza(report));
   const YAML::Node record = yaml["record"];
   EXPECT_EQ(yaml["kind"].as<std::string>(), "invert");
   EXPECT_EQ(record["file"].as<std::string>(), file.string());
