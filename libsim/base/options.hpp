@@ -77,6 +77,23 @@ class ListSlot {
   virtual void visit_item(std::size_t index, OptionVisitor& visitor) = 0;
 };
 
+/// One axis of a sweep: the dotted path of an option and the values it takes, as written.
+struct SweepAxis {
+  std::string path;
+  std::vector<std::string> values;
+};
+
+/// The cells of a sweep: copies of the experiment's options, each read with its own values.
+class SweepSlot {
+ public:
+  virtual ~SweepSlot() = default;
+  virtual const std::vector<SweepAxis>& axes() const = 0;
+  /// Takes the axes and makes one cell per combination; the last axis varies fastest.
+  virtual void set_axes(std::vector<SweepAxis> axes) = 0;
+  virtual std::size_t cells() const = 0;
+  virtual void visit_cell(std::size_t index, OptionVisitor& visitor) = 0;
+};
+
 class OptionVisitor {
  public:
   using VisitMembers = std::function<void(OptionVisitor&)>;
@@ -95,6 +112,7 @@ class OptionVisitor {
   virtual void optional_group(const OptionInfo& info, bool& present,
                               const VisitMembers& visit_members) = 0;
   virtual void list(const OptionInfo& info, ListSlot& slot) = 0;
+  virtual void sweep(const OptionInfo& info, SweepSlot& slot) = 0;
 
   /// A group whose type has a visit() of its own.
   template <typename Options>

@@ -11,9 +11,12 @@ namespace {
 
 using Philox = r123::Philox4x64;
 
-// Mixing by the same bijection that makes the numbers: two keys differ unless their inputs do.
-std::uint64_t mix(std::uint64_t state, std::uint64_t input) {
-  const Philox::ctr_type counter = {{state, input, 0x6d6f6463616cULL, 0}};
+enum class Kind : std::uint64_t { kNumber, kLetter, kEndOfWord };
+
+// Mixing by the function that makes the numbers; letters, ends of words and numbers are kept apart.
+std::uint64_t mix(std::uint64_t state, std::uint64_t input, Kind kind) {
+  const Philox::ctr_type counter = {
+      {state, input, 0x6d6f6463616cULL, static_cast<std::uint64_t>(kind)}};
   const Philox::key_type key = {{0, 0}};
   return Philox{}(counter, key)[0];
 }
@@ -33,20 +36,20 @@ void fill_pairs(const StreamKey& key, std::span<double> out, Transform transform
 
 }  // namespace
 
-StreamKey::StreamKey(std::uint64_t seed) : value_(mix(0, seed)) {}
+StreamKey::StreamKey(std::uint64_t seed) : value_(mix(0, seed, Kind::kNumber)) {}
 
 StreamKey StreamKey::with(std::string_view word) const {
   StreamKey result = *this;
   for (const char letter : word) {
-    result.value_ = mix(result.value_, static_cast<unsigned char>(letter));
+    result.value_ = mix(result.value_, static_cast<unsigned char>(letter), Kind::kLetter);
   }
-  result.value_ = mix(result.value_, 256 + word.size());
+  result.value_ = mix(result.value_, word.size(), Kind::kEndOfWord);
   return result;
 }
 
 StreamKey StreamKey::with(std::uint64_t number) const {
   StreamKey result = *this;
-  result.value_ = mix(value_, number);
+  result.value_ = mix(value_, number, Kind::kNumber);
   return result;
 }
 

@@ -28,6 +28,8 @@ double ContactModes::effective_mass() const {
   return 1.0 / std::accumulate(drive.begin(), drive.end(), 0.0);
 }
 
+bool is_node(double shape) { return std::abs(shape) <= kNodeTolerance; }
+
 ContactModes contact_modes(const ModalBasis& basis, double contact, const ModalState& initial) {
   require_matching(initial, basis.size());
   const std::vector<double> shape = basis.shape_at(contact);
@@ -36,7 +38,7 @@ ContactModes contact_modes(const ModalBasis& basis, double contact, const ModalS
   ContactModes modes;
   for (std::size_t n = 0; n < basis.size(); ++n) {
     const double phi = shape[n];
-    if (std::abs(phi) <= kNodeTolerance) {
+    if (is_node(phi)) {
       MODCAL_REQUIRE(value_or_zero(initial.displacement, n) == 0.0 &&
                          value_or_zero(initial.velocity, n) == 0.0,
                      "mode {} has a node at the contact: the contact model cannot carry its "

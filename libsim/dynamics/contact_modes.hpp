@@ -29,6 +29,9 @@ struct ContactModes {
   double effective_mass() const;
 };
 
+/// Whether a mode with this shape at the contact has a node there but for rounding.
+bool is_node(double shape);
+
 ContactModes contact_modes(const ModalBasis& basis, double contact, const ModalState& initial);
 
 }  // namespace modcal

@@ -15,6 +15,14 @@ namespace modcal {
 struct RealFft::Plans {
   fftw_plan forward = nullptr;
   fftw_plan inverse = nullptr;
+
+  Plans() = default;
+  Plans(const Plans&) = delete;
+  Plans& operator=(const Plans&) = delete;
+  ~Plans() {
+    fftw_destroy_plan(forward);
+    fftw_destroy_plan(inverse);
+  }
 };
 
 namespace {
