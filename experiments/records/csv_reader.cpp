@@ -5,10 +5,10 @@
 #include <cmath>
 #include <optional>
 
+#include "experiments/config/units.hpp"
 #include "experiments/records/csv_grammar.hpp"
 #include "experiments/records/csv_number.hpp"
 #include "experiments/records/time_axis.hpp"
-#include "experiments/records/unit_scale.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {

@@ -4,9 +4,9 @@
 #include <cctype>
 #include <cmath>
 
+#include "experiments/config/units.hpp"
 #include "experiments/records/csv_reader.hpp"
 #include "experiments/records/recorded_signals.hpp"
-#include "experiments/records/unit_scale.hpp"
 #include "experiments/records/wav_reader.hpp"
 #include "libsim/base/error.hpp"
 

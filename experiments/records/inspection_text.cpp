@@ -2,8 +2,8 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "experiments/config/resolved.hpp"
 #include "experiments/records/inspection.hpp"
-#include "experiments/records/option_stanza.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/dynamics/scene.hpp"
 #include "libsim/model/string_model.hpp"
@@ -120,7 +120,7 @@ std::string stanza(const InspectionReport& report) {
   RecordOptions record = report.record;
   StringModel string;
   Bow bow;
-  OptionStanza writer;
+  ResolvedWriter writer;
   writer.section({.key = "record", .meaning = "recorded forces"}, record);
   writer.section({.key = "string", .meaning = "the string"}, string);
   writer.section({.key = "bow", .meaning = "where the force acts"}, bow);

@@ -4,10 +4,10 @@
 #include <cctype>
 #include <cmath>
 
+#include "experiments/config/units.hpp"
 #include "experiments/records/csv_reader.hpp"
 #include "experiments/records/levels.hpp"
 #include "experiments/records/time_shift.hpp"
-#include "experiments/records/unit_scale.hpp"
 #include "experiments/records/wav_reader.hpp"
 #include "libsim/base/error.hpp"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <charconv>
 
-#include "experiments/records/nearest_name.hpp"
+#include "experiments/config/nearest_name.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {

@@ -1,4 +1,4 @@
-#include "experiments/records/unit_scale.hpp"
+#include "experiments/config/units.hpp"
 
 #include <udunits2.h>
 
@@ -57,6 +57,11 @@ Converter converter(std::string_view unit, std::string_view si_unit) {
 bool is_unit_of(std::string_view unit, std::string_view si_unit) {
   const std::lock_guard lock(library_mutex());
   return converter(unit, si_unit) != nullptr;
+}
+
+bool is_unit(std::string_view unit) {
+  const std::lock_guard lock(library_mutex());
+  return parse(unit) != nullptr;
 }
 
 double to_si(double value, std::string_view unit, std::string_view si_unit) {

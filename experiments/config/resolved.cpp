@@ -1,4 +1,4 @@
-#include "experiments/records/option_stanza.hpp"
+#include "experiments/config/resolved.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -19,7 +19,7 @@ std::string number_text(const OptionInfo& info, double value) {
 
 }  // namespace
 
-void OptionStanza::line(const OptionInfo& info, const std::string& value) {
+void ResolvedWriter::line(const OptionInfo& info, const std::string& value) {
   const std::string entry = fmt::format("{}{}:{}{}", std::string(2 * level_, ' '), info.key,
                                         value.empty() ? "" : " ", value);
   yaml_ += fmt::format(
@@ -27,39 +27,39 @@ void OptionStanza::line(const OptionInfo& info, const std::string& value) {
       info.required && value.empty() ? fmt::format(" [{}]: fill in", info.unit) : std::string());
 }
 
-void OptionStanza::number(const OptionInfo& info, double& value) {
+void ResolvedWriter::number(const OptionInfo& info, double& value) {
   line(info, number_text(info, value));
 }
 
-void OptionStanza::numbers(const OptionInfo& info, std::vector<double>& values) {
+void ResolvedWriter::numbers(const OptionInfo& info, std::vector<double>& values) {
   std::vector<std::string> texts;
   for (const double value : values) texts.push_back(number_text(info, value));
   line(info, fmt::format("[{}]", fmt::join(texts, ", ")));
 }
 
-void OptionStanza::integer(const OptionInfo& info, std::int64_t& value) {
+void ResolvedWriter::integer(const OptionInfo& info, std::int64_t& value) {
   line(info, fmt::format("{}", value));
 }
 
-void OptionStanza::integers(const OptionInfo& info, std::vector<std::int64_t>& values) {
+void ResolvedWriter::integers(const OptionInfo& info, std::vector<std::int64_t>& values) {
   line(info, fmt::format("[{}]", fmt::join(values, ", ")));
 }
 
-void OptionStanza::flag(const OptionInfo& info, bool& value) {
+void ResolvedWriter::flag(const OptionInfo& info, bool& value) {
   line(info, value ? "true" : "false");
 }
 
-void OptionStanza::text(const OptionInfo& info, std::string& value) {
+void ResolvedWriter::text(const OptionInfo& info, std::string& value) {
   line(info, info.choices.empty() ? yaml_string(value) : value);
 }
 
-void OptionStanza::texts(const OptionInfo& info, std::vector<std::string>& values) {
+void ResolvedWriter::texts(const OptionInfo& info, std::vector<std::string>& values) {
   std::vector<std::string> items;
   for (const std::string& value : values) items.push_back(yaml_string(value));
   line(info, fmt::format("[{}]", fmt::join(items, ", ")));
 }
 
-void OptionStanza::plugin(const OptionInfo& info, PluginSlot& slot) {
+void ResolvedWriter::plugin(const OptionInfo& info, PluginSlot& slot) {
   line(info, {});
   ++level_;
   line({.key = "type", .meaning = slot.summary(slot.selected())}, std::string(slot.selected()));
@@ -67,19 +67,19 @@ void OptionStanza::plugin(const OptionInfo& info, PluginSlot& slot) {
   --level_;
 }
 
-void OptionStanza::group(const OptionInfo& info, const VisitMembers& visit_members) {
+void ResolvedWriter::group(const OptionInfo& info, const VisitMembers& visit_members) {
   line(info, {});
   ++level_;
   visit_members(*this);
   --level_;
 }
 
-void OptionStanza::optional_group(const OptionInfo& info, bool& present,
-                                  const VisitMembers& visit_members) {
+void ResolvedWriter::optional_group(const OptionInfo& info, bool& present,
+                                    const VisitMembers& visit_members) {
   if (present) group(info, visit_members);
 }
 
-void OptionStanza::list(const OptionInfo& info, ListSlot& slot) {
+void ResolvedWriter::list(const OptionInfo& info, ListSlot& slot) {
   line(info, slot.size() == 0 ? "[]" : "");
   for (std::size_t i = 0; i < slot.size(); ++i) {
     const std::size_t start = yaml_.size();
@@ -88,6 +88,19 @@ void OptionStanza::list(const OptionInfo& info, ListSlot& slot) {
     level_ -= 2;
     if (yaml_.size() > start) yaml_[start + 2 * level_ + 2] = '-';
   }
+}
+
+void ResolvedWriter::sweep(const OptionInfo& info, SweepSlot& slot) {
+  if (slot.axes().empty()) return;
+  line(info, {});
+  ++level_;
+  line({.key = "product", .meaning = "every combination of the values"}, {});
+  ++level_;
+  for (const SweepAxis& axis : slot.axes()) {
+    line({.key = axis.path, .meaning = "values"},
+         fmt::format("[{}]", fmt::join(axis.values, ", ")));
+  }
+  level_ -= 2;
 }
 
 }  // namespace modcal

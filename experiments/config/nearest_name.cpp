@@ -1,4 +1,4 @@
-#include "experiments/records/nearest_name.hpp"
+#include "experiments/config/nearest_name.hpp"
 
 #include <algorithm>
 #include <cctype>

@@ -10,9 +10,9 @@ namespace modcal {
 /// Visitor that writes `key: value  # meaning [unit]`, one option a line, indented by two blanks a
 /// level. Optional groups that are absent are left out. A number without a value (NaN, no word)
 /// stays empty: the reader asks for it.
-class OptionStanza final : public OptionVisitor {
+class ResolvedWriter final : public OptionVisitor {
  public:
-  explicit OptionStanza(std::size_t level = 0) : level_(level) {}
+  explicit ResolvedWriter(std::size_t level = 0) : level_(level) {}
   const std::string& yaml() const { return yaml_; }
 
   void number(const OptionInfo& info, double& value) override;
@@ -27,6 +27,7 @@ class OptionStanza final : public OptionVisitor {
   void optional_group(const OptionInfo& info, bool& present,
                       const VisitMembers& visit_members) override;
   void list(const OptionInfo& info, ListSlot& slot) override;
+  void sweep(const OptionInfo& info, SweepSlot& slot) override;
 
  private:
   void line(const OptionInfo& info, const std::string& value);

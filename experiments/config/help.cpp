@@ -1,0 +1,240 @@
+#include "experiments/config/help.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+
+namespace modcal {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+class Describer final : public OptionVisitor {
+ public:
+  Json entries = Json::array();
+
+  void number(const OptionInfo& info, double& value) override {
+    Json& entry = add(info, "number");
+    entry["unit"] = info.unit;
+    entry["range"] = info.range.text();
+    if (!info.required) {
+      entry["default"] =
+          std::isnan(value) && !info.word.empty() ? Json(info.word) : number_or_null(value);
+    }
+  }
+  void numbers(const OptionInfo& info, std::vector<double>& values) override {
+    Json& entry = add(info, "list of numbers");
+    entry["unit"] = info.unit;
+    entry["range"] = info.range.text();
+    if (!info.required) entry["default"] = values;
+  }
+  void integer(const OptionInfo& info, std::int64_t& value) override {
+    Json& entry = add(info, "whole number");
+    entry["range"] = info.range.text();
+    if (!info.required) entry["default"] = value;
+  }
+  void integers(const OptionInfo& info, std::vector<std::int64_t>& values) override {
+    Json& entry = add(info, "list of whole numbers");
+    if (!info.required) entry["default"] = values;
+  }
+  void flag(const OptionInfo& info, bool& value) override {
+    add(info, "true or false")["default"] = value;
+  }
+  void text(const OptionInfo& info, std::string& value) override {
+    Json& entry = add(info, "text");
+    if (!info.choices.empty()) entry["choices"] = info.choices;
+    if (!info.required) entry["default"] = value;
+  }
+  void texts(const OptionInfo& info, std::vector<std::string>& values) override {
+    Json& entry = add(info, "list of texts");
+    if (!info.choices.empty()) entry["choices"] = info.choices;
+    if (!info.required) entry["default"] = values;
+  }
+  void plugin(const OptionInfo& info, PluginSlot& slot) override {
+    Json& entry = add(info, "plug-in");
+    entry["kind"] = slot.kind();
+    entry["choices"] = slot.names();
+    if (!slot.selected().empty()) entry["default"] = slot.selected();
+  }
+  void group(const OptionInfo& info, const VisitMembers& visit_members) override {
+    Describer inner;
+    visit_members(inner);
+    add(info, "section")["options"] = inner.entries;
+  }
+  void optional_group(const OptionInfo& info, bool& /*present*/,
+                      const VisitMembers& visit_members) override {
+    Describer inner;
+    visit_members(inner);
+    add(info, "optional section")["options"] = inner.entries;
+  }
+  void list(const OptionInfo& info, ListSlot& slot) override {
+    Describer inner;
+    slot.resize(1);
+    slot.visit_item(0, inner);
+    slot.resize(0);
+    add(info, "list of sections")["options"] = inner.entries;
+  }
+  void sweep(const OptionInfo& info, SweepSlot& /*slot*/) override { add(info, "sweep"); }
+
+ private:
+  Json& add(const OptionInfo& info, std::string_view type) {
+    Json entry = {{"key", info.key}, {"type", type}, {"meaning", info.meaning}};
+    if (info.required) entry["required"] = true;
+    if (!info.word.empty()) entry["word"] = info.word;
+    entries.push_back(std::move(entry));
+    return entries.back();
+  }
+};
+
+class SchemaWriter final : public OptionVisitor {
+ public:
+  Json properties = Json::object();
+  Json required = Json::array();
+
+  Json schema() const {
+    Json result = {{"type", "object"}, {"properties", properties}, {"additionalProperties", false}};
+    if (!required.empty()) result["required"] = required;
+    return result;
+  }
+  void number(const OptionInfo& info, double&) override { add(info, number_schema(info)); }
+  void numbers(const OptionInfo& info, std::vector<double>&) override {
+    add(info, one_or_many(number_schema(info)));
+  }
+  void integer(const OptionInfo& info, std::int64_t&) override {
+    add(info, bounded({{"type", "integer"}}, info.range));
+  }
+  void integers(const OptionInfo& info, std::vector<std::int64_t>&) override {
+    add(info, one_or_many(bounded({{"type", "integer"}}, info.range)));
+  }
+  void flag(const OptionInfo& info, bool&) override { add(info, {{"type", "boolean"}}); }
+  void text(const OptionInfo& info, std::string&) override { add(info, text_schema(info)); }
+  void texts(const OptionInfo& info, std::vector<std::string>&) override {
+    add(info, one_or_many(text_schema(info)));
+  }
+  void plugin(const OptionInfo& info, PluginSlot& slot) override {
+    Json variants = Json::array();
+    variants.push_back({{"enum", slot.names()}});
+    const std::string selected(slot.selected());
+    for (const std::string_view name : slot.names()) {
+      slot.select(name);
+      SchemaWriter inner;
+      slot.visit_options(inner);
+      inner.properties["type"] = {{"const", name}};
+      inner.required.push_back("type");
+      Json variant = inner.schema();
+      variant["description"] = slot.summary(name);
+      variants.push_back(std::move(variant));
+    }
+    if (!selected.empty()) slot.select(selected);
+    add(info, {{"anyOf", std::move(variants)}});
+  }
+  void group(const OptionInfo& info, const VisitMembers& visit_members) override {
+    SchemaWriter inner;
+    visit_members(inner);
+    add(info, inner.schema());
+  }
+  void optional_group(const OptionInfo& info, bool&, const VisitMembers& visit_members) override {
+    group(info, visit_members);
+  }
+  void list(const OptionInfo& info, ListSlot& slot) override {
+    SchemaWriter inner;
+    slot.resize(1);
+    slot.visit_item(0, inner);
+    slot.resize(0);
+    add(info, {{"type", "array"}, {"items", inner.schema()}});
+  }
+  void sweep(const OptionInfo& info, SweepSlot&) override {
+    const Json values = {{"type", "array"}, {"minItems", 1}};
+    const Json product = {
+        {"type", "object"}, {"additionalProperties", values}, {"minProperties", 1}};
+    add(info, {{"type", "object"},
+               {"properties", {{"product", product}}},
+               {"required", {"product"}},
+               {"additionalProperties", false}});
+  }
+
+ private:
+  static Json bounded(Json schema, const Range& range) {
+    if (std::isfinite(range.lowest)) {
+      schema[range.lowest_allowed ? "minimum" : "exclusiveMinimum"] = range.lowest;
+    }
+    if (std::isfinite(range.highest)) {
+      schema[range.highest_allowed ? "maximum" : "exclusiveMaximum"] = range.highest;
+    }
+    return schema;
+  }
+  static Json number_schema(const OptionInfo& info) {
+    const Json with_unit = {{"type", "string"},
+                            {"pattern", "^[-+]?[0-9.]+([eE][-+]?[0-9]+)? *\\S*"}};
+    Json schema = {{"anyOf", {bounded({{"type", "number"}}, info.range), with_unit}}};
+    if (!info.word.empty()) schema["anyOf"].push_back({{"const", info.word}});
+    return schema;
+  }
+  static Json text_schema(const OptionInfo& info) {
+    if (info.choices.empty()) return {{"type", {"string", "number"}}};
+    return {{"enum", info.choices}};
+  }
+  static Json one_or_many(const Json& item) {
+    return {{"anyOf", {item, {{"type", "array"}, {"items", item}}}}};
+  }
+  void add(const OptionInfo& info, Json schema) {
+    schema["description"] = info.unit == "1" ? std::string(info.meaning)
+                                             : fmt::format("{} [{}]", info.meaning, info.unit);
+    properties[std::string(info.key)] = std::move(schema);
+    if (info.required) required.push_back(info.key);
+  }
+};
+
+std::string plain(const Json& value) {
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+void append_text(const Json& options, std::size_t level, std::string& text) {
+  for (const Json& option : options) {
+    std::string line =
+        fmt::format("{}{}", std::string(2 * level, ' '), option["key"].get<std::string>());
+    const std::string type = option["type"].get<std::string>();
+    std::string details = type;
+    if (option.contains("unit") && option["unit"] != "1")
+      details += " [" + plain(option["unit"]) + "]";
+    if (option.contains("range") && option["range"] != "any finite number") {
+      details += " " + plain(option["range"]);
+    }
+    if (option.contains("choices")) {
+      details +=
+          fmt::format(": {}", fmt::join(option["choices"].get<std::vector<std::string>>(), ", "));
+    }
+    if (option.contains("word")) details += " or " + plain(option["word"]);
+    if (option.contains("required")) details += "; required";
+    if (option.contains("default") && !option["default"].is_null()) {
+      details += "; default " + plain(option["default"]);
+    }
+    text += fmt::format("{:<26} {}\n{:<26} {}\n", line, plain(option["meaning"]), "", details);
+    if (option.contains("options")) append_text(option["options"], level + 1, text);
+  }
+}
+
+}  // namespace
+
+nlohmann::ordered_json describe_options(const std::function<void(OptionVisitor&)>& visit) {
+  Describer describer;
+  visit(describer);
+  return describer.entries;
+}
+
+std::string help_text(const nlohmann::ordered_json& options) {
+  std::string text;
+  append_text(options, 0, text);
+  return text;
+}
+
+nlohmann::ordered_json options_schema(const std::function<void(OptionVisitor&)>& visit) {
+  SchemaWriter writer;
+  visit(writer);
+  return writer.schema();
+}
+
+}  // namespace modcal

@@ -1,0 +1,70 @@
+// Fills options from a YAML map, strictly: every key must be known, every required one be there,
+// every value be of its kind, unit and range. All mistakes are collected, none is thrown.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "experiments/config/document.hpp"
+#include "libsim/base/options.hpp"
+
+namespace modcal {
+
+class YamlReader final : public OptionVisitor {
+ public:
+  /// Reads from the map `node`; mistakes are appended to `mistakes`.
+  YamlReader(const YamlNode& node, std::vector<Mistake>& mistakes);
+
+  void number(const OptionInfo& info, double& value) override;
+  void numbers(const OptionInfo& info, std::vector<double>& values) override;
+  void integer(const OptionInfo& info, std::int64_t& value) override;
+  void integers(const OptionInfo& info, std::vector<std::int64_t>& values) override;
+  void flag(const OptionInfo& info, bool& value) override;
+  void text(const OptionInfo& info, std::string& value) override;
+  void texts(const OptionInfo& info, std::vector<std::string>& values) override;
+  void plugin(const OptionInfo& info, PluginSlot& slot) override;
+  void group(const OptionInfo& info, const VisitMembers& visit_members) override;
+  void optional_group(const OptionInfo& info, bool& present,
+                      const VisitMembers& visit_members) override;
+  void list(const OptionInfo& info, ListSlot& slot) override;
+  /// "product: {path: [values]}": every cell is read from this reader's map with its values put in.
+  void sweep(const OptionInfo& info, SweepSlot& slot) override;
+
+  /// A key that is read elsewhere.
+  void allow(std::string_view key) { seen_.emplace_back(key); }
+  /// Keys that another reader of the same map has read or was told of.
+  void allow_all_known(const YamlReader& other) {
+    seen_.insert(seen_.end(), other.seen_.begin(), other.seen_.end());
+  }
+  /// Reports the keys that nobody asked for.
+  void finish();
+
+ private:
+  const YamlNode* take(const OptionInfo& info);
+  void read_members(const YamlNode& node, const VisitMembers& visit_members);
+  void mistake(const YamlNode& node, std::string text);
+  bool read_number(const OptionInfo& info, const YamlNode& node, double& value);
+  bool read_integer(const OptionInfo& info, const YamlNode& node, std::int64_t& value);
+  bool read_text(const OptionInfo& info, const YamlNode& node, std::string& value);
+  void select(const OptionInfo& info, const YamlNode& name, PluginSlot& slot);
+  std::vector<SweepAxis> read_axes(const YamlNode& product);
+  void read_cells(const YamlNode& product, SweepSlot& slot);
+  template <typename Value, typename Read>
+  void read_list(const OptionInfo& info, std::vector<Value>& values, Read read);
+
+  const YamlNode& node_;
+  std::vector<Mistake>& mistakes_;
+  std::vector<std::string> seen_;
+};
+
+/// Reads a whole map with one visit and reports unknown keys; `allowed`: keys read elsewhere.
+void read_options(const YamlNode& node, const std::function<void(OptionVisitor&)>& visit,
+                  std::vector<Mistake>& mistakes, const std::vector<std::string>& allowed = {});
+
+/// ", did you mean …?" or the list of names.
+std::string suggestion(std::string_view text, const std::vector<std::string>& names);
+
+}  // namespace modcal
