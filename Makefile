@@ -19,7 +19,7 @@ test: packages-test
 	@ctest --preset $(PRESET) --parallel $$(nproc)
 
 format:
-	@git ls-files -co --exclude-standard | grep -E '\.(cpp|hpp)$$' | xargs clang-format -i
+	@git ls-files -co --exclude-standard -- '*.cpp' '*.hpp' | xargs ls 2>/dev/null | xargs clang-format -i
 
 clean:
 	@cmake -E rm -rf build
