@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
-# Installs the Debian packages of packages.txt that are missing: install_packages.sh run|test.
+# Installs the Debian packages of packages.txt that are missing: those without a mark, and those
+# marked with the purpose given: install_packages.sh [test|develop].
 set -euo pipefail
-purpose=${1:?usage: install_packages.sh run|test}
+purpose=${1:-}
 list="$(dirname "$0")/../packages.txt"
 missing=()
 while read -r name use _; do
   case "$name" in ''|'#'*) continue ;; esac
-  [ "${use:-}" = test ] && [ "$purpose" != test ] && continue
+  [ -n "${use:-}" ] && [ "$use" != "$purpose" ] && continue
   [ "$(dpkg-query -W -f='${db:Status-Status}' "$name" 2>/dev/null)" = installed ] || missing+=("$name")
 done <"$list"
 [ ${#missing[@]} -eq 0 ] && exit 0
