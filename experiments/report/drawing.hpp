@@ -1,0 +1,44 @@
+// A figure as it is drawn: clipped to its axes, thinned to the pixels of a page, and with what was
+// left out counted. The HTML page and the gnuplot scripts draw this; the CSV files hold everything.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "experiments/report/figure.hpp"
+
+namespace modcal::report {
+
+struct DrawnSeries {
+  const Series* source = nullptr;
+  std::vector<double> x = {};
+  std::vector<double> y = {};    ///< NaN: gap
+  std::vector<double> low = {};  ///< empty where the series has no spread
+  std::vector<double> high = {};
+  bool has_values() const;
+};
+
+struct DrawnPanel {
+  const Panel* source = nullptr;
+  std::array<double, 2> x_window{0.0, 1.0};  ///< the axis' range, or data and markers
+  /// The axis' range, or data and markers with a margin.
+  std::array<double, 2> y_window{0.0, 1.0};
+  /// A range or a marker asks for y_window, not the data alone: zooming in x keeps it.
+  bool y_fixed = false;
+  std::vector<DrawnSeries> series = {};
+  bool has_values() const;
+};
+
+struct DrawnFigure {
+  const Figure* source = nullptr;
+  std::vector<DrawnPanel> panels = {};
+  /// Sentences for the caption: values left out on logarithmic axes, gaps, thinned series.
+  std::vector<std::string> notes = {};
+};
+
+/// `columns` ≥ 1: pixels of a panel's width that long series are thinned to. Throws InvalidInput as
+/// check_figure() does. The result points into `figure`.
+DrawnFigure draw_figure(const Figure& figure, std::size_t columns);
+
+}  // namespace modcal::report

@@ -1,0 +1,20 @@
+# Writes OUTPUT, a C++ file that defines the strings of page_assets.hpp, from the files in the list
+# ASSETS of "name=path", separated by commas.
+set(code "#include \"experiments/report/page_assets.hpp\"\n\nnamespace modcal::report {\n\n")
+string(REPLACE "," ";" ASSETS "${ASSETS}")
+foreach(asset IN LISTS ASSETS)
+  string(REGEX MATCH "^([^=]+)=(.+)$" _ "${asset}")
+  set(name ${CMAKE_MATCH_1})
+  file(READ "${CMAKE_MATCH_2}" text)
+  # Source maps are looked up on the network by developer tools.
+  string(REGEX REPLACE "//# sourceMappingURL=[^\n]*" "" text "${text}")
+  string(REGEX REPLACE "/\\*# sourceMappingURL=[^*]*\\*/" "" text "${text}")
+  string(FIND "${text}" "</script" end_of_script)
+  string(FIND "${text}" ")asset\"" end_of_literal)
+  if(NOT end_of_script EQUAL -1 OR NOT end_of_literal EQUAL -1)
+    message(FATAL_ERROR "${CMAKE_MATCH_2} holds text that cannot be embedded")
+  endif()
+  string(APPEND code "const std::string_view ${name} = R\"asset(${text})asset\";\n\n")
+endforeach()
+string(APPEND code "}  // namespace modcal::report\n")
+file(WRITE "${OUTPUT}" "${code}")

@@ -1,0 +1,92 @@
+// What a figure shows, as plain data: the HTML page, the gnuplot scripts and the CSV files are
+// written from it.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace modcal::report {
+
+/// Meaning of a colour (and of a point's shape): the palette is that of Okabe and Ito (2008), which
+/// colour-blind readers can tell apart; kReference is the ink of the page.
+enum class ColorRole {
+  kReference,
+  kFirst,
+  kSecond,
+  kThird,
+  kFourth,
+  kFifth,
+  kSixth,
+  kMuted,
+};
+constexpr std::size_t kColorRoles = 8;
+
+enum class SeriesStyle { kLine, kPoints, kLineWithPoints, kDotted };
+
+/// Samples (x_i, y_i) in the units of the panel's axes. A NaN in y is a gap. The line joins the
+/// samples in their order; x need not grow.
+struct Series {
+  std::string label = {};
+  std::vector<double> x = {};
+  std::vector<double> y = {};
+  /// Ends of the spread about y, both empty or as long as y: a band about a line, bars at points.
+  std::vector<double> y_low = {};
+  std::vector<double> y_high = {};
+  SeriesStyle style = SeriesStyle::kLine;
+  ColorRole color = ColorRole::kFirst;
+};
+
+struct Axis {
+  std::string label = {};
+  /// Unit as printed in brackets; "1" or empty: a pure number, no brackets.
+  std::string unit = {};
+  bool logarithmic = false;
+  /// Shown interval {lowest, highest}; without it, what the data span.
+  std::optional<std::array<double, 2>> range = {};
+
+  /// "label [unit]".
+  std::string text() const;
+};
+
+/// A dotted line across the panel at one value of an axis.
+struct Marker {
+  enum class Direction { kVertical, kHorizontal };
+  Direction direction = Direction::kVertical;
+  double value = 0.0;
+  std::string label = {};
+  ColorRole color = ColorRole::kReference;
+};
+
+struct Panel {
+  std::string title = {};
+  Axis x = {};
+  Axis y = {};
+  std::vector<Series> series = {};
+  std::vector<Marker> markers = {};
+};
+
+/// Panels in reading order on a grid of `columns` columns.
+struct Figure {
+  std::string id = {};  ///< name of its files and anchor of its place in the page: [A-Za-z0-9_-]+
+  std::string title = {};
+  std::string caption = {};
+  std::size_t columns = 1;
+  std::vector<Panel> panels = {};
+  std::string command = {};  ///< what regenerates its numbers
+};
+
+/// Throws InvalidInput where lengths differ, a range is empty or not finite, a logarithmic range is
+/// not positive, a marker is not finite, the grid has no column, there is no panel or the id cannot
+/// be a file name.
+void check_figure(const Figure& figure);
+
+/// All panels show the same labels in the same styles and colours: one legend serves the figure.
+bool has_shared_legend(const Figure& figure);
+
+/// True for [A-Za-z0-9_-]+.
+bool is_file_stem(std::string_view id);
+
+}  // namespace modcal::report

@@ -1,0 +1,212 @@
+#include "experiments/report/gnuplot_script.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "experiments/report/palette.hpp"
+
+namespace modcal::report {
+namespace {
+
+// Sizes of a sheet of panels [in].
+struct Sheet {
+  std::size_t columns, rows;
+  double width, height, legend;
+
+  explicit Sheet(const Figure& figure)
+      : columns(std::min(figure.columns, figure.panels.size())),
+        rows((figure.panels.size() + columns - 1) / columns),
+        legend(has_shared_legend(figure) ? 0.3 : 0.0) {
+    const double panel_width = columns == 1 ? 6.4 : columns == 2 ? 4.4 : 3.3;
+    const double panel_height = columns == 1 ? 3.4 : 2.2;
+    width = panel_width * static_cast<double>(columns);
+    height = panel_height * static_cast<double>(rows) + legend;
+  }
+
+  std::string layout() const {
+    constexpr double kLeft = 1.0, kRight = 0.2, kTop = 0.32, kBottom = 0.55;
+    return fmt::format(
+        "set multiplot layout {},{} rowsfirst margins screen {:.4f},{:.4f},{:.4f},{:.4f} "
+        "spacing screen {:.4f},{:.4f}\n",
+        rows, columns, kLeft / width, 1.0 - kRight / width, kBottom / height,
+        1.0 - (kTop + legend) / height, (kLeft + kRight) / width, (kTop + kBottom) / height);
+  }
+};
+
+// Distance of four to six tics over the window: 1, 2 or 5 times a power of ten.
+double tic_step(const std::array<double, 2>& window) {
+  const double least = (window[1] - window[0]) / 6.5;
+  const double decade = std::pow(10.0, std::floor(std::log10(least)));
+  for (const double multiple : {1.0, 2.0, 5.0}) {
+    if (multiple * decade >= least) return multiple * decade;
+  }
+  return 10.0 * decade;
+}
+
+std::string axis_settings(char name, const Axis& axis, const std::array<double, 2>& window) {
+  std::string text = fmt::format("set {}label {} noenhanced offset {}\n", name,
+                                 gnuplot_quoted(axis.text()), name == 'x' ? "0,0.5" : "0.5,0");
+  text += axis.logarithmic
+              ? fmt::format("set logscale {0}; set format {0} '10^{{%L}}'; set {0}tics autofreq\n",
+                            name)
+              : fmt::format("unset logscale {0}; set format {0} '%h'; set {0}tics {1:.10g}\n", name,
+                            tic_step(window));
+  return text + fmt::format("set {}range [{:.10g}:{:.10g}]\n", name, window[0], window[1]);
+}
+
+// Share of the window's width at which a value stands.
+double place_in(const std::array<double, 2>& window, double value, bool logarithmic) {
+  const auto place = [&](double x) { return logarithmic ? std::log(x) : x; };
+  return (place(value) - place(window[0])) / (place(window[1]) - place(window[0]));
+}
+
+std::string marker_commands(const DrawnPanel& drawn) {
+  std::string text;
+  for (const Marker& marker : drawn.source->markers) {
+    const bool vertical = marker.direction == Marker::Direction::kVertical;
+    const std::string_view color = ink_of(marker.color).light;
+    const auto at = [&](const char* share) {
+      return vertical ? fmt::format("first {:.10g}, graph {}", marker.value, share)
+                      : fmt::format("graph {}, first {:.10g}", share, marker.value);
+    };
+    text += fmt::format("set arrow from {} to {} nohead dashtype 3 linecolor rgb '{}'\n", at("0"),
+                        at("1"), color);
+    if (marker.label.empty()) continue;
+    const bool on_the_right =
+        !vertical || place_in(drawn.x_window, marker.value, drawn.source->x.logarithmic) > 0.6;
+    text += fmt::format("set label {} at {} {} offset {} noenhanced textcolor rgb '{}' front\n",
+                        gnuplot_quoted(marker.label), at(vertical ? "0.94" : "0.99"),
+                        on_the_right ? "right" : "left",
+                        vertical ? (on_the_right ? "-0.5,0" : "0.5,0") : "0,0.6", color);
+  }
+  return text;
+}
+
+// Plot elements of one series, the data being block `index`.
+std::vector<std::string> elements_of(const Figure& figure, const DrawnSeries& drawn,
+                                     std::size_t index, bool titled) {
+  const Series& series = *drawn.source;
+  const Ink& ink = ink_of(series.color);
+  const std::string data = fmt::format("'{}.dat' index {}", figure.id, index);
+  const std::string title = titled && !series.label.empty()
+                                ? "title " + gnuplot_quoted(series.label) + " noenhanced"
+                                : "notitle";
+  const bool points = series.style == SeriesStyle::kPoints;
+  std::vector<std::string> elements;
+  if (!drawn.low.empty() && points) {
+    elements.push_back(fmt::format(
+        "{} using 1:2:3:4 with yerrorbars pointtype {} pointsize 0.01 linecolor rgb '{}' notitle",
+        data, ink.gnuplot_point, ink.light));
+  } else if (!drawn.low.empty()) {
+    elements.push_back(
+        fmt::format("{} using 1:3:4 with filledcurves fillstyle transparent solid 0.2 noborder "
+                    "fillcolor rgb '{}' notitle",
+                    data, ink.light));
+  }
+  const std::string_view kind = points                                         ? "points"
+                                : series.style == SeriesStyle::kLineWithPoints ? "linespoints"
+                                                                               : "lines";
+  std::string look = fmt::format("linecolor rgb '{}'", ink.light);
+  if (kind != "lines") look += fmt::format(" pointtype {} pointsize 0.5", ink.gnuplot_point);
+  if (kind != "points") look += " linewidth 1.3";
+  if (series.style == SeriesStyle::kDotted) look += " dashtype 3";
+  elements.push_back(fmt::format("{} using 1:2 with {} {} {}", data, kind, look, title));
+  return elements;
+}
+
+std::string panel_commands(const DrawnFigure& figure, std::size_t place, std::size_t& index) {
+  const DrawnPanel& drawn = figure.panels[place];
+  const Panel& panel = *drawn.source;
+  const bool shared = has_shared_legend(*figure.source);
+  std::string text = "unset arrow; unset label\n";
+  text += fmt::format("set label {} at graph 0, graph 1 left offset 0,0.6 noenhanced\n",
+                      gnuplot_quoted(panel.title));
+  text += axis_settings('x', panel.x, drawn.x_window);
+  text += axis_settings('y', panel.y, drawn.y_window);
+  text += shared ? "set key at screen 0.5, screen 0.995 center top horizontal samplen 2\n"
+                 : "set key at graph 1, graph 1.02 right bottom horizontal samplen 1.5\n";
+  text += marker_commands(drawn);
+  if (!drawn.has_values()) {
+    // gnuplot refuses to plot nothing: a line along the frame, fully transparent.
+    return text + fmt::format(
+                      "set label 'no data' at graph 0.5, graph 0.5 center\n"
+                      "plot {:.10g} linecolor rgb '#ff000000' notitle\n",
+                      drawn.y_window[0]);
+  }
+  std::vector<std::string> elements;
+  for (const DrawnSeries& series : drawn.series) {
+    if (!series.has_values()) continue;
+    const bool titled = !shared || place == 0;
+    for (auto& element : elements_of(*figure.source, series, index, titled)) {
+      elements.push_back(std::move(element));
+    }
+    ++index;
+  }
+  return text + fmt::format("plot {}\n", fmt::join(elements, ", \\\n     "));
+}
+
+}  // namespace
+
+std::string gnuplot_script(const DrawnFigure& figure) {
+  const Sheet sheet(*figure.source);
+  const std::string& id = figure.source->id;
+  std::string text = fmt::format(
+      "# {0}.svg and {0}.pdf: run \"gnuplot {0}.gp\" in this folder; the data are in {0}.dat.\n"
+      "reset\n"
+      "if (!exists(\"suffix\")) suffix = ''\n"
+      "set encoding utf8\n"
+      "set style line 100 linecolor rgb '#d9d9d9' linewidth 0.5\n",
+      id);
+  for (const std::string_view format : {"svg", "pdf"}) {
+    text += format == "svg" ? fmt::format(
+                                  "set terminal svg size {:.0f},{:.0f} dynamic enhanced "
+                                  "font 'DejaVu Sans,11' background rgb 'white'\n",
+                                  96 * sheet.width, 96 * sheet.height)
+                            : fmt::format(
+                                  "set terminal pdfcairo size {:.2f}in,{:.2f}in enhanced "
+                                  "fontscale 1 font 'DejaVu Sans,7.5'\n",
+                                  sheet.width, sheet.height);
+    text += fmt::format("set output '{}.{}'.suffix\n", id, format);
+    text += "set grid linestyle 100\n";
+    text += "set border 3 linewidth 0.8\nset tics out nomirror scale 0.6\n";
+    text += sheet.layout();
+    std::size_t index = 0;
+    for (std::size_t i = 0; i < figure.panels.size(); ++i) {
+      text += panel_commands(figure, i, index);
+    }
+    text += "unset multiplot\nunset output\n";
+  }
+  return text;
+}
+
+std::string gnuplot_data(const DrawnFigure& figure) {
+  std::string text;
+  const auto number = [](double value) {
+    return std::isnan(value) ? std::string("NaN") : fmt::format("{:.9g}", value);
+  };
+  for (const DrawnPanel& panel : figure.panels) {
+    for (const DrawnSeries& drawn : panel.series) {
+      if (!drawn.has_values()) continue;
+      if (!text.empty()) text += "\n\n";
+      for (std::size_t i = 0; i < drawn.x.size(); ++i) {
+        text += number(drawn.x[i]) + ' ' + number(drawn.y[i]);
+        if (!drawn.low.empty()) text += ' ' + number(drawn.low[i]) + ' ' + number(drawn.high[i]);
+        text += '\n';
+      }
+    }
+  }
+  return text;
+}
+
+std::string gnuplot_quoted(std::string_view text) {
+  std::string quoted = "'";
+  for (const char c : text) {
+    if (c == '\'') quoted += '\'';
+    quoted += c == '\n' || c == '\r' ? ' ' : c;
+  }
+  return quoted + "'";
+}
+
+}  // namespace modcal::report

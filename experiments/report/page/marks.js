@@ -1,0 +1,124 @@
+// What dygraphs is told to paint: colours, points, bars, curves that turn back, marker lines.
+function color(name) {
+  return getComputedStyle(root).getPropertyValue('--' + name).trim();
+}
+
+function polygon(c, x, y, radius, turn, corners) {
+  for (var i = 0; i < corners; i++) {
+    var angle = turn + 2 * Math.PI * i / corners;
+    c.lineTo(x + radius * Math.cos(angle), y + radius * Math.sin(angle));
+  }
+  c.closePath();
+}
+
+function outline(c, shape, x, y, r) {
+  if (shape === 'square' || shape === 'open_square') c.rect(x - r, y - r, 2 * r, 2 * r);
+  else if (shape === 'triangle') polygon(c, x, y, 1.3 * r, -Math.PI / 2, 3);
+  else if (shape === 'inverted_triangle') polygon(c, x, y, 1.3 * r, Math.PI / 2, 3);
+  else if (shape === 'diamond') polygon(c, x, y, 1.3 * r, 0, 4);
+  else c.arc(x, y, r, 0, 2 * Math.PI);
+}
+
+function point_of(shape) {
+  return function (chart, name, c, x, y, paint, r) {
+    c.beginPath();
+    c.fillStyle = c.strokeStyle = paint;
+    c.lineWidth = 1.3;
+    outline(c, shape, x, y, r);
+    if (shape.indexOf('open') === 0) c.stroke(); else c.fill();
+  };
+}
+
+function draw_bars(e) {
+  var c = e.drawingContext;
+  c.save();
+  c.strokeStyle = e.color;
+  c.lineWidth = 1.2;
+  c.beginPath();
+  e.points.forEach(function (p) {
+    if (!isFinite(p.canvasy)) return;
+    var ends = [p.y_top, p.y_bottom].map(function (v) { return e.plotArea.y + v * e.plotArea.h; });
+    c.moveTo(p.canvasx, ends[0]);
+    c.lineTo(p.canvasx, ends[1]);
+    ends.forEach(function (y) { c.moveTo(p.canvasx - 3, y); c.lineTo(p.canvasx + 3, y); });
+  });
+  c.stroke();
+  c.restore();
+}
+
+// Line through the samples in their own order, for curves whose x turns back.
+function path_plotter(s) {
+  return function (e) {
+    if (!e.points.length) return;
+    var c = e.drawingContext;
+    var first = e.points[0].idx;
+    var down = false;
+    c.beginPath();
+    s.path.forEach(function (place) {
+      var p = e.points[s.rows[place] - first];
+      if (!p || !isFinite(p.canvasy)) { down = false; return; }
+      if (down) c.lineTo(p.canvasx, p.canvasy); else c.moveTo(p.canvasx, p.canvasy);
+      down = true;
+    });
+    c.stroke();
+  };
+}
+
+function plotter_of(s, bars) {
+  var list = [Dygraph.Plotters.linePlotter];
+  if (s.path) {
+    list = s.style === 'line_with_points' ? [path_plotter(s), points_only] : [path_plotter(s)];
+  }
+  if (bars && s.low) list.unshift(s.style === 'points' ? draw_bars : Dygraph.Plotters.errorPlotter);
+  return function (e) {
+    e.drawingContext.lineJoin = 'round';  // mitred peaks overshoot
+    list.forEach(function (plotter) { plotter(e); });
+  };
+}
+
+function points_only(e) {
+  var draw = e.dygraph.getOption('drawPointCallback', e.setName);
+  var size = e.dygraph.getOption('pointSize', e.setName);
+  e.points.forEach(function (p) {
+    if (isFinite(p.canvasy)) {
+      draw(e.dygraph, e.setName, e.drawingContext, p.canvasx, p.canvasy, e.color, size);
+    }
+  });
+}
+
+function series_options(s, bars, dense) {
+  var points = s.style === 'points' || s.style === 'line_with_points';
+  return {
+    strokeWidth: s.style === 'points' ? 0 : 1.4,
+    strokePattern: s.style === 'dotted' ? [2, 3] : null,
+    drawPoints: points,
+    pointSize: dense ? 1.6 : 3.2,
+    drawPointCallback: point_of(s.shape),
+    drawHighlightPointCallback: point_of(s.shape),
+    plotter: plotter_of(s, bars)
+  };
+}
+
+function draw_markers(panel) {
+  return function (c, area, chart) {
+    c.save();
+    c.setLineDash([2, 3]);
+    c.font = '11px system-ui, sans-serif';
+    panel.markers.forEach(function (m) {
+      var share = m.vertical ? chart.toPercentXCoord(m.value) : chart.toPercentYCoord(m.value);
+      if (!(share >= 0 && share <= 1)) return;
+      c.strokeStyle = c.fillStyle = color(m.ink);
+      var x = area.x + share * area.w;
+      var y = area.y + share * area.h;
+      c.beginPath();
+      c.moveTo(m.vertical ? x : area.x, m.vertical ? area.y : y);
+      c.lineTo(m.vertical ? x : area.x + area.w, m.vertical ? area.y + area.h : y);
+      c.stroke();
+      var left = m.vertical && share <= 0.6;
+      c.textAlign = left ? 'left' : 'right';
+      c.fillText(m.label, m.vertical ? x + (left ? 5 : -5) : area.x + area.w - 5,
+                 m.vertical ? area.y + 12 : y - 5);
+    });
+    c.restore();
+  };
+}

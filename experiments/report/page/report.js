@@ -1,0 +1,246 @@
+// Draws the charts of a report with dygraphs: one chart per .chart element, the charts of a figure
+// linked. window.__modcal_ready is the number of drawn charts once all of them are there.
+var charts = [];
+
+function escaped(text) {
+  var span = document.createElement('span');
+  span.textContent = text;
+  return span.innerHTML;
+}
+
+function span_of(text, ink) {
+  var span = document.createElement('span');
+  span.textContent = text;
+  if (ink) span.className = 'ink-' + ink;
+  return span;
+}
+
+// Writes the values at x into the panel's head.
+function show_values(item, x) {
+  var panel = item.panel;
+  item.values.textContent = '';
+  if (x === null) return;
+  item.values.appendChild(span_of(panel.x.label + ' ' + shown(x, 6) + ' ' + panel.x.unit));
+  item.series.forEach(function (s) {
+    var i = nearest(s.x, x);
+    var text = shown(s.y[i], 5);
+    if (s.low) text += ' (' + shown(s.low[i], 4) + ' \u2026 ' + shown(s.high[i], 4) + ')';
+    var named = s.label ? s.label + ' ' : '';
+    item.values.appendChild(span_of(named + text + ' ' + panel.y.unit, s.ink));
+  });
+}
+
+// Puts the cursor of one chart at x, for the keyboard and for linked charts.
+function select(item, x) {
+  item.row = nearest(item.xs, x);
+  item.chart.setSelection(item.row);
+  show_values(item, item.xs[item.row]);
+}
+
+function deselect(item) {
+  item.chart.clearSelection();
+  show_values(item, null);
+}
+
+function linked(item) {
+  return charts.filter(function (other) {
+    return other !== item && other.figure === item.figure && other.link === item.link;
+  });
+}
+
+function reset(item) {
+  [item].concat(linked(item)).forEach(function (each) {
+    each.chart.updateOptions({dateWindow: each.panel.x.window, valueRange: each.panel.y.window});
+  });
+}
+
+function differ(range, start) {
+  var span = Math.abs(start[1] - start[0]);
+  return Math.abs(range[0] - start[0]) > 1e-9 * span || Math.abs(range[1] - start[1]) > 1e-9 * span;
+}
+
+function zoomed(item) {
+  var start = item.panel.y.window;
+  return differ(item.chart.xAxisRange(), item.panel.x.window) ||
+      (start ? differ(item.chart.yAxisRange(), start) : item.chart.isZoomed('y'));
+}
+
+function update_reset_button(figure) {
+  figure.querySelector('.reset').hidden = !charts.some(function (item) {
+    return item.figure === figure && zoomed(item);
+  });
+}
+
+function zoom(item, factor) {
+  var range = item.chart.xAxisRange();
+  var log = item.panel.x.log;
+  var ends = log ? range.map(Math.log) : range;
+  var center = item.row === undefined ? (ends[0] + ends[1]) / 2
+      : (log ? Math.log(item.xs[item.row]) : item.xs[item.row]);
+  var window_ = ends.map(function (v) { return center + factor * (v - center); });
+  item.chart.updateOptions({dateWindow: log ? window_.map(Math.exp) : window_});
+}
+
+function on_key(item, event) {
+  var row = item.row === undefined ? nearest(item.xs, item.chart.xAxisRange()[0]) : item.row;
+  var step = event.shiftKey ? 10 : 1;
+  var go = function (to) {
+    select(item, item.xs[Math.min(Math.max(to, 0), item.xs.length - 1)]);
+    linked(item).forEach(function (other) { select(other, item.xs[item.row]); });
+  };
+  var actions = {
+    ArrowLeft: function () { go(row - step); },
+    ArrowRight: function () { go(row + step); },
+    '+': function () { zoom(item, 0.5); },
+    '-': function () { zoom(item, 2); },
+    '0': function () { reset(item); },
+    Escape: function () { deselect(item); linked(item).forEach(deselect); }
+  };
+  var action = actions[event.key];
+  if (!action || event.ctrlKey || event.metaKey || event.altKey) return;
+  event.preventDefault();
+  action();
+}
+
+function looks(series) {
+  return {
+    colors: series.map(function (s) { return color(s.ink); }),
+    axisLineColor: color('line'),
+    gridLineColor: color('grid')
+  };
+}
+
+function read_series(panel) {
+  return panel.series.map(function (s) {
+    return {label: s.label, style: s.style, ink: s.ink, shape: s.shape, x: numbers(s.x), y: numbers(s.y),
+            low: numbers(s.low), high: numbers(s.high), path: numbers(s.path), rows: []};
+  });
+}
+
+function axis_options(axis, pixels, width) {
+  return {
+    logscale: axis.log, ticker: ticks, pixelsPerLabel: pixels, axisLabelWidth: width,
+    axisLabelFormatter: function (v) { return shown(v, 6); }
+  };
+}
+
+function chart_options(item, bars) {
+  var panel = item.panel;
+  var per_series = {};
+  item.series.forEach(function (s, k) {
+    per_series['s' + k] = series_options(s, bars, s.x.length > 200);
+  });
+  return {
+    labels: ['x'].concat(Object.keys(per_series)),
+    series: per_series,
+    customBars: bars,
+    connectSeparatedPoints: true,
+    legend: 'never',
+    xlabel: escaped(panel.x.text),
+    ylabel: escaped(panel.y.text),
+    axes: {x: axis_options(panel.x, 52, 48), y: axis_options(panel.y, 28, 62)},
+    dateWindow: panel.x.window,
+    valueRange: panel.y.window,
+    yRangePad: panel.y.window ? 0 : 8,
+    fillAlpha: 0.2,
+    axisLabelFontSize: 12,
+    xLabelHeight: 18,
+    yLabelWidth: 18,
+    rightGap: 24,
+    highlightCircleSize: 3.5,
+    underlayCallback: draw_markers(panel),
+    interactionModel: Object.assign({}, Dygraph.defaultInteractionModel,
+                                    {dblclick: function () { reset(item); }}),
+    drawCallback: function (chart, initial) { if (!initial) update_reset_button(item.figure); },
+    highlightCallback: function (event, x, points, row) {
+      item.row = row;
+      show_values(item, x);
+      linked(item).forEach(function (other) { select(other, x); });
+    },
+    unhighlightCallback: function () {
+      show_values(item, null);
+      linked(item).forEach(deselect);
+    }
+  };
+}
+
+function draw(element) {
+  var figure = element.closest('figure');
+  var source = data.figures.find(function (f) { return f.id === figure.id; });
+  var panel = source.panels[Number(element.dataset.panel)];
+  var series = read_series(panel);
+  var bars = series.some(function (s) { return s.low !== null; });
+  var table = rows(series, bars);
+  var item = {
+    figure: figure, panel: panel, series: series,
+    values: element.parentNode.querySelector('.values'),
+    xs: table.map(function (row) { return row[0]; }),
+    link: JSON.stringify([panel.x.text, panel.x.log, panel.x.window])
+  };
+  item.chart = new Dygraph(element, table, Object.assign(looks(series), chart_options(item, bars)));
+  element.addEventListener('keydown', function (event) { on_key(item, event); });
+  charts.push(item);
+}
+
+// One zoom for all charts of a figure over the same x.
+function link_zoom(figure) {
+  var groups = {};
+  charts.forEach(function (item) {
+    if (item.figure !== figure) return;
+    (groups[item.link] = groups[item.link] || []).push(item.chart);
+  });
+  Object.keys(groups).forEach(function (key) {
+    if (groups[key].length > 1) {
+      Dygraph.synchronize(groups[key], {selection: false, zoom: true, range: false});
+    }
+  });
+  figure.querySelector('.reset').addEventListener('click', function () {
+    charts.forEach(function (item) {
+      if (item.figure === figure) reset(item);
+    });
+  });
+}
+
+function repaint() {
+  charts.forEach(function (item) { item.chart.updateOptions(looks(item.series)); });
+}
+
+var waiting = Array.prototype.slice.call(document.querySelectorAll('.chart'));
+
+function finish() {
+  document.querySelectorAll('figure').forEach(link_zoom);
+  window.__modcal_ready = charts.length;
+  root.dataset.charts = String(charts.length);
+}
+
+// A chart that cannot be drawn says so, is reported on the console and leaves the others alone.
+function draw_safely(element) {
+  try {
+    draw(element);
+  } catch (error) {
+    element.textContent = 'This chart could not be drawn: ' + error.message;
+    setTimeout(function () { throw error; }, 0);
+  }
+}
+
+// In slices, from the top of the page: it can be read and scrolled while the rest is drawn.
+function draw_waiting(until) {
+  while (waiting.length && performance.now() < until) draw_safely(waiting.shift());
+  if (waiting.length) {
+    setTimeout(function () { draw_waiting(performance.now() + 30); }, 0);
+  } else if (window.__modcal_ready === null) {
+    finish();
+  }
+}
+
+window.matchMedia('(prefers-color-scheme: dark)').addEventListener('change', repaint);
+window.addEventListener('beforeprint', function () {
+  draw_waiting(Infinity);
+  root.classList.add('printing');
+  repaint();
+});
+window.addEventListener('afterprint', function () {
+  root.classList.remove('printing');
+  repaint();
+});
+draw_waiting(performance.now() + 60);

@@ -1,0 +1,65 @@
+// Tables of a report: shown in the page, written as CSV and as JSON rows.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace modcal::report {
+
+enum class Highlight { kNone, kPass, kFail };
+
+/// One value; std::monostate: there is none (an empty cell).
+struct Cell {
+  using Value = std::variant<std::monostate, bool, std::int64_t, double, std::string>;
+
+  Cell() = default;
+  Cell(double number, Highlight mark = Highlight::kNone) : value(number), highlight(mark) {}
+  Cell(std::string text, Highlight mark = Highlight::kNone)
+      : value(std::move(text)), highlight(mark) {}
+  Cell(const char* text, Highlight mark = Highlight::kNone)
+      : value(std::string(text)), highlight(mark) {}
+  Cell(bool flag, Highlight mark = Highlight::kNone) : value(flag), highlight(mark) {}
+  template <typename Integer>
+  requires(std::is_integral_v<Integer> && !std::is_same_v<Integer, bool>)
+      Cell(Integer number, Highlight mark = Highlight::kNone)
+      : value(static_cast<std::int64_t>(number)), highlight(mark) {}
+
+  Value value = {};
+  Highlight highlight = Highlight::kNone;
+};
+
+struct Column {
+  std::string key = {};           ///< name in CSV and JSON
+  std::string name = {};          ///< heading in the page; empty: the key
+  std::string unit = {};          ///< "1" or empty: none
+  std::string format = "{:.4g}";  ///< of floating-point numbers in the page (std::format syntax)
+};
+
+struct Table {
+  std::string id = {};  ///< name of its files: [A-Za-z0-9_-]+
+  std::string title = {};
+  std::string caption = {};
+  std::vector<Column> columns = {};
+  std::vector<std::vector<Cell>> rows = {};
+  std::string command = {};  ///< what regenerates its numbers
+};
+
+/// Throws InvalidInput where a row has not one cell per column, a key is empty or used twice, a
+/// format cannot print a number or the id cannot be a file name.
+void check_table(const Table& table);
+
+/// What the page shows: numbers by the column's format, "NaN" for a NaN, "–" for no value.
+std::string cell_text(const Cell& cell, const Column& column);
+
+/// Heading line of "key [unit]", then one line a row; numbers with all their digits, "nan" for a
+/// NaN, an empty field for no value (RFC 4180 quoting).
+std::string table_csv(const Table& table);
+
+/// Array with one object per row, {"key": value, …}; null for a NaN or no value.
+std::string table_json(const Table& table);
+
+}  // namespace modcal::report

@@ -1,0 +1,157 @@
+#include "experiments/report/write_report.hpp"
+
+#include <array>
+#include <future>
+#include <set>
+#include <system_error>
+
+#include "experiments/report/atomic_file.hpp"
+#include "experiments/report/chart_data.hpp"
+#include "experiments/report/drawing.hpp"
+#include "experiments/report/figure_csv.hpp"
+#include "experiments/report/gnuplot.hpp"
+#include "experiments/report/html_page.hpp"
+#include "libsim/base/error.hpp"
+
+namespace modcal::report {
+namespace {
+
+namespace fs = std::filesystem;
+
+// What gnuplot reads and writes, per figure.
+constexpr std::array kDrawnFiles = {".dat", ".gp", ".svg", ".pdf"};
+
+template <typename Item>
+std::vector<const Item*> items_of(const Report& report) {
+  std::vector<const Item*> items;
+  for (const Section& section : report.sections) {
+    for (const Block& block : section.blocks) {
+      if (const auto* item = std::get_if<Item>(&block)) items.push_back(item);
+    }
+  }
+  return items;
+}
+
+void check(const std::vector<const Figure*>& figures, const std::vector<const Table*>& tables) {
+  std::set<std::string> ids;
+  const auto check_id = [&ids](const std::string& id) {
+    MODCAL_REQUIRE(ids.insert(id).second, "two figures or tables are called \"{}\"", id);
+  };
+  for (const Figure* figure : figures) {
+    check_figure(*figure);
+    check_id(figure->id);
+  }
+  for (const Table* table : tables) {
+    check_table(*table);
+    check_id(table->id);
+  }
+}
+
+struct DrawnFigures {
+  std::vector<DrawnFigure> figures;
+  std::string data;  ///< chart_data_json() of them
+};
+
+// Figures thinned to as many pixel columns as a page under 2 MB can hold.
+DrawnFigures draw_all(const std::vector<const Figure*>& figures) {
+  constexpr std::size_t kLargestData =
+      1'600'000;  // bytes; 0.2 MB of scripts and the text go beside
+  DrawnFigures drawn;
+  for (const std::size_t columns : {1000u, 500u, 250u, 120u, 60u}) {
+    drawn.figures.clear();
+    for (const Figure* figure : figures) drawn.figures.push_back(draw_figure(*figure, columns));
+    drawn.data = chart_data_json(drawn.figures);
+    if (drawn.data.size() <= kLargestData) break;
+  }
+  return drawn;
+}
+
+// Remembers what has been written, by its name relative to the report's folder.
+class ReportFolder {
+ public:
+  ReportFolder(fs::path root, bool has_figures) : root_(std::move(root)) {
+    std::error_code error;
+    const fs::path folder = has_figures ? figures() : root_;
+    fs::create_directories(folder, error);
+    MODCAL_REQUIRE(!error, "the folder {} cannot be made: {}", folder.string(), error.message());
+  }
+  void write(const std::string& name, std::string_view content) {
+    write_file_atomically(root_ / name, content);
+    names_.push_back(name);
+  }
+  void note_if_there(const std::string& name) {
+    if (fs::exists(root_ / name)) names_.push_back(name);
+  }
+  fs::path figures() const { return root_ / kFigures; }
+  const std::vector<std::string>& names() const { return names_; }
+  const fs::path& root() const { return root_; }
+
+  static constexpr const char* kFigures = "figures";
+
+ private:
+  fs::path root_;
+  std::vector<std::string> names_;
+};
+
+// Files of an earlier report must not be taken for those of this one.
+void remove_drawn_files(const std::vector<DrawnFigure>& figures, const fs::path& directory) {
+  for (const DrawnFigure& figure : figures) {
+    for (const char* extension : kDrawnFiles) {
+      const fs::path file = directory / (figure.source->id + extension);
+      std::error_code error;
+      fs::remove(file, error);
+      MODCAL_REQUIRE(!error, "{} cannot be replaced: {}", file.string(), error.message());
+    }
+  }
+}
+
+void write_tables(const std::vector<const Table*>& tables, ReportFolder& folder) {
+  for (const Table* table : tables) {
+    folder.write(table->id + ".csv", table_csv(*table));
+    folder.write(table->id + ".json", table_json(*table));
+  }
+}
+
+std::string figure_file(const std::string& id, const char* extension) {
+  return std::string(ReportFolder::kFigures) + "/" + id + extension;
+}
+
+}  // namespace
+
+WrittenReport write_report(const Report& report, const fs::path& directory,
+                           const WriteOptions& options) {
+  const auto figures = items_of<Figure>(report);
+  const auto tables = items_of<Table>(report);
+  check(figures, tables);
+  const auto [drawn, data] = draw_all(figures);
+
+  ReportFolder folder(directory, !figures.empty());
+  remove_drawn_files(drawn, folder.figures());
+  std::future<std::string> drawing;
+  if (options.vector_figures) {
+    drawing = std::async(std::launch::async, draw_with_gnuplot, std::span(drawn), folder.figures(),
+                         options.gnuplot);
+  }
+  write_tables(tables, folder);
+  for (const Figure* figure : figures) {
+    folder.write(figure_file(figure->id, ".csv"), figure_csv(*figure));
+  }
+
+  PageLinks links;
+  links.figures = ReportFolder::kFigures;
+  if (drawing.valid()) links.warning = drawing.get();
+  for (const Figure* figure : figures) {
+    for (const char* extension : kDrawnFiles) {
+      folder.note_if_there(figure_file(figure->id, extension));
+    }
+  }
+  links.files = {folder.names().begin(), folder.names().end()};
+  folder.write("report.html", html_page(report, drawn, data, links));
+
+  WrittenReport written{
+      .page = folder.root() / "report.html", .files = {}, .warning = links.warning};
+  for (const std::string& name : folder.names()) written.files.push_back(folder.root() / name);
+  return written;
+}
+
+}  // namespace modcal::report

@@ -1,0 +1,91 @@
+#!/usr/bin/env bash
+# check_report.sh WRITE_SAMPLE: opens the sample report in headless Chromium from file:// and checks
+# that every chart is drawn without an error, and that cursor, zoom and reset act on linked charts.
+# Exit code 77: there is no browser.
+set -euo pipefail
+write_sample=$1
+browser=$(command -v chromium || command -v chromium-browser || true)
+if [ -z "$browser" ]; then
+  echo "no chromium: the page is not looked at (install the packages marked test in packages.txt)"
+  exit 77
+fi
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+"$write_sample" "$folder/out" >/dev/null
+page=$folder/out/report.html
+
+# The report itself, followed by a script that uses it and writes what it saw into the root element.
+probe=$folder/out/probe.html
+cp "$page" "$probe"
+cat >>"$probe" <<'JS'
+<script>
+(function probe() {
+  if (window.__modcal_ready === null) { setTimeout(probe, 20); return; }
+  var seen = document.documentElement.dataset;
+  var panels = document.querySelectorAll('#fig8 .chart');
+  var other = document.querySelector('#noise .chart');
+  var picture = function (chart) { return chart.querySelector('canvas').toDataURL(); };
+  var press = function (key) {
+    panels[0].dispatchEvent(new KeyboardEvent('keydown', {key: key, bubbles: true}));
+  };
+  var values = function (chart) { return chart.parentNode.querySelector('.values').textContent; };
+  seen.painted = Array.prototype.filter.call(document.querySelectorAll('.chart'), function (chart) {
+    var canvas = chart.querySelector('canvas');
+    var pixels = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data;
+    for (var i = 0, painted = 0; i < pixels.length; i += 4) {
+      if (pixels[i + 3] > 200 && Math.max(pixels[i], pixels[i + 1], pixels[i + 2]) -
+          Math.min(pixels[i], pixels[i + 1], pixels[i + 2]) > 60) painted++;
+    }
+    return painted > 50;
+  }).length;
+  var start = [picture(panels[0]), picture(panels[3]), picture(other)];
+  press('ArrowRight');
+  press('ArrowRight');
+  seen.cursor = values(panels[0]);
+  seen.linkedCursor = values(panels[3]);
+  seen.otherCursor = values(other);
+  press('+');
+  seen.zoomed = [picture(panels[0]) !== start[0], picture(panels[3]) !== start[1],
+                 picture(other) !== start[2],
+                 document.querySelector('#fig8 .reset').hidden].join();
+  document.querySelector('#fig8 .reset').click();
+  press('Escape');
+  seen.reset = [picture(panels[0]) === start[0], picture(panels[3]) === start[1],
+                document.querySelector('#fig8 .reset').hidden, values(panels[3])].join();
+  window.dispatchEvent(new Event('beforeprint'));
+  window.dispatchEvent(new Event('afterprint'));
+  seen.printed = picture(panels[0]) === start[0];
+})();
+</script>
+JS
+
+browse() {
+  "$browser" --headless --no-sandbox --disable-gpu --disable-quic --no-first-run \
+    --disable-background-networking --disable-component-update --disable-sync \
+    --user-data-dir="$folder/profile$RANDOM" --enable-logging=stderr --virtual-time-budget=10000 \
+    --window-size=1400,1000 --dump-dom "file://$1" 2>"$folder/log"
+}
+failures=0
+expect() {  # expect WHAT ACTUAL EXPECTED
+  if [ "$2" != "$3" ]; then
+    echo "$1: \"$2\" instead of \"$3\""
+    failures=$((failures + 1))
+  fi
+}
+seen() { grep -o "<html [^>]*>" <<<"$dom" | grep -o " data-$1=\"[^\"]*\"" | cut -d'"' -f2; }
+
+dom=$(browse "$probe")
+charts=$(grep -o '<div class="chart"' "$page" | wc -l)
+expect "charts in the page" "$charts" 25
+expect "charts drawn" "$(seen charts)" "$charts"
+expect "charts with a curve" "$(seen painted)" "$charts"
+expect "errors" "$(seen errors)" 0
+expect "console" "$(grep CONSOLE "$folder/log" || true)" ""
+expect "cursor" "$(seen cursor | cut -c1-12)" "t 0.780039 s"
+expect "linked cursor" "$(seen linked-cursor | cut -c1-12)" "t 0.780039 s"
+expect "cursor in another figure" "$(seen other-cursor)" ""
+expect "zoom (own, linked, other figure, reset button hidden)" "$(seen zoomed)" "true,true,false,false"
+expect "reset (own, linked, button hidden, values)" "$(seen reset)" "true,true,true,"
+expect "printing restores the picture" "$(seen printed)" true
+[ "$failures" -eq 0 ] || { sed -n 1,20p "$folder/log"; exit 1; }
+echo "$charts charts drawn, linked and reset without an error"
