@@ -1,0 +1,102 @@
+#include "libcalib/calibration.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libsim/base/error.hpp"
+
+namespace modcal {
+namespace {
+
+struct Names {
+  std::vector<std::string> free;
+  std::vector<std::string> blind;
+};
+
+Names split_names(const CalibrationOptions& options, const std::vector<bool>& excited) {
+  Names names;
+  names.free = options.parameters.names(excited.size());
+  for (std::size_t i = 0; i < excited.size(); ++i) {
+    if (excited[i]) continue;
+    const std::string name = fmt::format("f_{}", i + 1);
+    if (std::erase(names.free, name) > 0) names.blind.push_back(name);
+  }
+  MODCAL_REQUIRE(!names.free.empty(),
+                 "every parameter asked for is the frequency of a mode the contact does not excite "
+                 "({}): nothing can be calibrated",
+                 fmt::join(names.blind, ", "));
+  return names;
+}
+
+std::vector<CalibratedParameter> report_parameters(const std::vector<Variable>& variables,
+                                                   const std::vector<double>& x) {
+  std::vector<CalibratedParameter> result;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const Variable& variable = variables[i];
+    result.push_back({.name = variable.name,
+                      .unit = variable.unit,
+                      .initial = variable.initial,
+                      .final = x[i],
+                      .at_bound = x[i] <= variable.lower || x[i] >= variable.upper});
+  }
+  return result;
+}
+
+std::vector<CalibratedMode> report_modes(const ParameterSet& parameters, const ModelPoint& model,
+                                         const std::vector<bool>& excited) {
+  const ModelPoint& initial = parameters.initial();
+  const std::vector<double> shape = initial.basis.shape_at(initial.contact);
+  std::vector<CalibratedMode> modes(excited.size());
+  for (std::size_t i = 0; i < modes.size(); ++i) {
+    modes[i] = {.number = i + 1,
+                .initial_frequency = initial.basis.frequency(i),
+                .frequency = model.basis.frequency(i),
+                .shape = shape[i],
+                .excited = excited[i]};
+  }
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    if (parameters[i].kind == ParameterKind::kFrequency) modes[parameters[i].mode].searched = true;
+  }
+  return modes;
+}
+
+}  // namespace
+
+void CalibrationOptions::visit(OptionVisitor& visitor) {
+  visitor.section({.key = "parameters", .meaning = "what is free", .required = true}, parameters);
+  visitor.plugin({.key = "objective", .meaning = "what is minimized"}, objective);
+  visitor.plugin({.key = "optimizer", .meaning = "how it is minimized"}, optimizer);
+  visitor.section({.key = "budget", .meaning = "what the search may spend"}, budget);
+  visitor.number({.key = "excitation_threshold",
+                  .meaning = "modes with a smaller |phi_n(x_c)| are blind and keep their frequency",
+                  .unit = "1",
+                  .range = Range::closed(0.0, 1.0)},
+                 excitation_threshold);
+}
+
+std::vector<bool> excited_modes(const ModelPoint& point, double threshold) {
+  std::vector<bool> excited;
+  for (const double shape : point.basis.shape_at(point.contact)) {
+    excited.push_back(std::abs(shape) >= threshold);
+  }
+  return excited;
+}
+
+CalibrationResult calibrate(const ModelPoint& initial, const CalibrationData& data,
+                            const CalibrationOptions& options, SecondsClock clock) {
+  const std::vector<bool> excited = excited_modes(initial, options.excitation_threshold);
+  Names names = split_names(options, excited);
+  const ParameterSet parameters(initial, names.free, options.parameters.ranges);
+  const auto function = options.objective.make()->bind(data, parameters);
+  const std::vector<Variable> variables = parameters.variables();
+  CalibrationResult result;
+  result.search =
+      options.optimizer.make()->minimize(*function, variables, options.budget, std::move(clock));
+  result.blind = std::move(names.blind);
+  result.model = parameters.model(result.search.x);
+  result.parameters = report_parameters(variables, result.search.x);
+  result.modes = report_modes(parameters, result.model, excited);
+  return result;
+}
+
+}  // namespace modcal

@@ -1,0 +1,67 @@
+// Calibration of the modal model: from an initial model and reactions to a refined model.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "libcalib/budget.hpp"
+#include "libcalib/calibration_data.hpp"
+#include "libcalib/objective.hpp"
+#include "libcalib/optimization_result.hpp"
+#include "libcalib/optimizer.hpp"
+#include "libcalib/parameters.hpp"
+
+namespace modcal {
+
+/// Section "calibration" of an experiment.
+struct CalibrationOptions {
+  ParameterOptions parameters;
+  Choice<Objective> objective{"spectral_peak"};
+  Choice<Optimizer> optimizer{"mode_by_mode"};
+  Budget budget;
+  /// Modes with |φ_n(x_c)| below this are blind: nothing in the reactions tells their frequency
+  /// [1].
+  double excitation_threshold = 0.1;
+  void visit(OptionVisitor& visitor);
+};
+
+struct CalibratedParameter {
+  std::string name;
+  std::string unit;
+  double initial = 0.0;
+  double final = 0.0;
+  bool at_bound = false;  ///< the search ended on a bound: the optimum may lie beyond
+};
+
+/// One mode before and after.
+struct CalibratedMode {
+  std::size_t number = 0;          ///< n
+  double initial_frequency = 0.0;  ///< [Hz]
+  double frequency = 0.0;          ///< [Hz]
+  double shape = 0.0;              ///< φ_n at the initial contact
+  bool excited = false;            ///< |φ_n| ≥ the threshold
+  bool searched = false;           ///< its frequency was a free parameter of its own
+};
+
+struct CalibrationResult {
+  std::vector<CalibratedParameter> parameters;  ///< those searched; scans name them by index
+  std::vector<CalibratedMode> modes;            ///< all modes of the model
+  /// Names of parameters that were asked for and not searched: frequencies of blind modes. They
+  /// keep their initial values.
+  std::vector<std::string> blind;
+  ModelPoint model;  ///< refined
+  OptimizationResult search;
+};
+
+/// Marks the modes with |φ_n(x_c)| ≥ threshold.
+std::vector<bool> excited_modes(const ModelPoint& point, double threshold);
+
+/// Minimizes the objective over the parameters asked for, save the frequencies of blind modes.
+/// Throws InvalidInput where objective, optimizer, data and parameters do not fit together, before
+/// the first evaluation.
+CalibrationResult calibrate(const ModelPoint& initial, const CalibrationData& data,
+                            const CalibrationOptions& options,
+                            SecondsClock clock = steady_seconds());
+
+}  // namespace modcal

@@ -1,0 +1,48 @@
+// What a calibration is fitted to.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "libsim/model/transfer.hpp"
+
+namespace modcal {
+
+/// Spectra of the reactions at the two ends, either of which may be missing.
+struct CalibrationData {
+  /// DFT of each reaction in the convention of libsim/signal/fft.hpp, K/2 + 1 bins [N]; empty where
+  /// the reaction was not measured. Index: End.
+  std::array<std::vector<Complex>, 2> reactions;
+  std::size_t samples = 0;   ///< record length K
+  double sample_rate = 0.0;  ///< f_s [Hz]
+
+  /// Data of two records of one length [N]; an empty span is a missing reaction. Throws
+  /// InvalidInput where nothing is left, lengths differ, or a sample is not finite.
+  static CalibrationData of_records(std::span<const double> left, std::span<const double> right,
+                                    double sample_rate);
+
+  FrequencyGrid grid() const { return FrequencyGrid::of_record(samples, sample_rate); }
+  bool has(End end) const { return !reaction(end).empty(); }
+  bool has_both() const { return has(End::kLeft) && has(End::kRight); }
+  const std::vector<Complex>& reaction(End end) const {
+    return reactions[static_cast<std::size_t>(end)];
+  }
+  /// Throws InvalidInput unless there is a reaction and every one present has K/2 + 1 finite bins.
+  void require_valid() const;
+};
+
+/// Bins k of a half spectrum, first ≤ k < last.
+struct BinRange {
+  std::size_t first = 0;
+  std::size_t last = 0;
+
+  std::size_t size() const { return last - first; }
+  bool operator==(const BinRange&) const = default;
+};
+
+/// Bins k ≥ 1 of the grid with low ≤ ω_k ≤ high [rad/s]; may be empty.
+BinRange bins_between(const FrequencyGrid& grid, double low, double high);
+
+}  // namespace modcal

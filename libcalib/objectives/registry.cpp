@@ -1,0 +1,21 @@
+#include <array>
+
+#include "libcalib/objectives/contact_location.hpp"
+#include "libcalib/objectives/force_mismatch.hpp"
+#include "libcalib/objectives/spectral_peak.hpp"
+
+namespace modcal {
+
+Registry<Objective> Objective::registry() {
+  static constexpr std::array kTable = {
+      entry_of<Objective, ContactLocation>(
+          "contact_location", "relative difference of the two identified force waveforms"),
+      entry_of<Objective, ForceMismatch>("force_mismatch",
+                                         "least squares of the two identified force spectra"),
+      entry_of<Objective, SpectralPeak>("spectral_peak",
+                                        "the paper's integral of the force spectrum over a band"),
+  };
+  return kTable;
+}
+
+}  // namespace modcal

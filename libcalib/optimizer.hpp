@@ -1,0 +1,38 @@
+// Optimizers: how an objective is minimized.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "libcalib/evaluator.hpp"
+#include "libsim/base/registry.hpp"
+
+namespace modcal {
+
+class Optimizer {
+ public:
+  static constexpr std::string_view kKind = "optimizer";
+  static Registry<Optimizer> registry();
+
+  virtual ~Optimizer() = default;
+  virtual std::string_view name() const = 0;
+  /// What the objective must be able to compute.
+  virtual Capabilities needs() const { return {}; }
+
+  /// Why this optimizer cannot minimize the objective, with a remedy; empty where it can.
+  std::string explain_unsatisfied(const ObjectiveFunction& function) const;
+
+  /// Minimizes the function within the bounds of the variables, from their initial values. Throws
+  /// InvalidInput where explain_unsatisfied() has something to say, before the first evaluation,
+  /// and what the objective throws.
+  OptimizationResult minimize(const ObjectiveFunction& function,
+                              std::span<const Variable> variables, const Budget& budget,
+                              SecondsClock clock = steady_seconds()) const;
+
+ private:
+  /// Searches through the evaluator and says why it ended.
+  virtual StopReason search(Evaluator& evaluator) const = 0;
+};
+
+}  // namespace modcal

@@ -1,0 +1,104 @@
+#include "libcalib/optimizers/ceres_optimizer.hpp"
+
+#include <ceres/ceres.h>
+
+#include <limits>
+
+#include "libsim/base/error.hpp"
+
+namespace modcal {
+namespace {
+
+// All residuals as one block of one parameter block.
+class Residuals final : public ceres::CostFunction {
+ public:
+  explicit Residuals(Evaluator& evaluator) : evaluator_(evaluator) {
+    set_num_residuals(static_cast<int>(evaluator.residual_count()));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(evaluator.dimension()));
+  }
+  bool Evaluate(const double* const* parameters, double* residuals,
+                double** jacobians) const override {
+    return evaluator_.try_evaluate(
+        {parameters[0], evaluator_.dimension()},
+        {.residuals = residuals, .jacobian = jacobians ? jacobians[0] : nullptr});
+  }
+
+ private:
+  Evaluator& evaluator_;
+};
+
+// After a refusal Ceres would try shorter steps: ends the iteration instead.
+class EndWithTheEvaluator final : public ceres::IterationCallback {
+ public:
+  explicit EndWithTheEvaluator(const Evaluator& evaluator) : evaluator_(evaluator) {}
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& /*summary*/) override {
+    return evaluator_.stopped() ? ceres::SOLVER_ABORT : ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  const Evaluator& evaluator_;
+};
+
+// Ceres tells its three kinds of convergence apart in a message only: the tolerances decide.
+StopReason reason_of(const ceres::Solver::Summary& summary) {
+  if (summary.termination_type != ceres::CONVERGENCE) return StopReason::kNoProgress;
+  if (summary.message.starts_with("Function tolerance")) return StopReason::kSmallDecrease;
+  if (summary.message.starts_with("Parameter tolerance")) return StopReason::kSmallStep;
+  return StopReason::kConverged;
+}
+
+}  // namespace
+
+void CeresOptimizer::Options::visit(OptionVisitor& visitor) {
+  visitor.text({.key = "strategy",
+                .meaning = "trust-region strategy",
+                .choices = {"levenberg_marquardt", "dogleg"}},
+               strategy);
+  const auto tolerance = [&visitor](std::string_view key, std::string_view meaning, double& value) {
+    visitor.number({.key = key, .meaning = meaning, .unit = "1", .range = Range::non_negative()},
+                   value);
+  };
+  tolerance("gradient_tolerance", "largest entry of the scaled gradient at an optimum",
+            gradient_tolerance);
+  tolerance("step_tolerance", "smallest step, relative to the scaled variables", step_tolerance);
+  tolerance("value_tolerance", "smallest decrease, relative to the value", value_tolerance);
+  visitor.number({.key = "initial_radius",
+                  .meaning = "first radius of the trust region, in scaled variables",
+                  .unit = "1",
+                  .range = Range::positive()},
+                 initial_radius);
+}
+
+CeresOptimizer::CeresOptimizer(const Options& options) : options_(options) {
+  MODCAL_REQUIRE(options.strategy == "levenberg_marquardt" || options.strategy == "dogleg",
+                 "unknown strategy \"{}\": levenberg_marquardt and dogleg are available",
+                 options.strategy);
+}
+
+StopReason CeresOptimizer::search(Evaluator& evaluator) const {
+  ceres::Problem problem;
+  std::vector<double> z = evaluator.start();
+  problem.AddResidualBlock(new Residuals(evaluator), nullptr, z.data());
+  for (std::size_t i = 0; i < z.size(); ++i) {
+    problem.SetParameterLowerBound(z.data(), static_cast<int>(i), evaluator.lower()[i]);
+    problem.SetParameterUpperBound(z.data(), static_cast<int>(i), evaluator.upper()[i]);
+  }
+  EndWithTheEvaluator end_with_the_evaluator(evaluator);
+  ceres::Solver::Options settings;
+  settings.trust_region_strategy_type =
+      options_.strategy == "dogleg" ? ceres::DOGLEG : ceres::LEVENBERG_MARQUARDT;
+  settings.linear_solver_type = ceres::DENSE_QR;
+  settings.gradient_tolerance = options_.gradient_tolerance;
+  settings.parameter_tolerance = options_.step_tolerance;
+  settings.function_tolerance = options_.value_tolerance;
+  settings.initial_trust_region_radius = options_.initial_radius;
+  settings.max_num_iterations = std::numeric_limits<int>::max();  // the evaluator's budget decides
+  settings.num_threads = 1;
+  settings.logging_type = ceres::SILENT;
+  settings.callbacks = {&end_with_the_evaluator};
+  ceres::Solver::Summary summary;
+  ceres::Solve(settings, &problem, &summary);
+  return reason_of(summary);
+}
+
+}  // namespace modcal

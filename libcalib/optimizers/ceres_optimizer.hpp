@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+
+#include "libcalib/optimizer.hpp"
+
+namespace modcal {
+
+/// Trust-region least squares of Ceres Solver (Agarwal, Mierle and others): Levenberg–Marquardt or
+/// dogleg on the residuals, within the bounds. Prints nothing.
+class CeresOptimizer final : public Optimizer {
+ public:
+  struct Options {
+    std::string strategy = "levenberg_marquardt";
+    double gradient_tolerance = 1e-12;  ///< of the scaled gradient's largest entry
+    double step_tolerance = 1e-10;      ///< relative to the scaled variables [1]
+    double value_tolerance = 1e-14;     ///< relative to the value [1]
+    double initial_radius = 1e4;        ///< of the trust region, scaled variables [1]
+    void visit(OptionVisitor& visitor);
+  };
+  /// Throws InvalidInput for an unknown strategy.
+  explicit CeresOptimizer(const Options& options);
+  std::string_view name() const override { return "ceres"; }
+  Capabilities needs() const override { return {.least_squares = true}; }
+
+ private:
+  StopReason search(Evaluator& evaluator) const override;
+
+  Options options_;
+};
+
+}  // namespace modcal

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+
+#include "libcalib/optimizer.hpp"
+
+namespace modcal {
+
+/// Systematic search of one variable after the other: evenly spaced candidates around its current
+/// value, a move to the best of them, and the whole repeated (Debut, Delaune and Antunes, 2010,
+/// section 6: 50 candidates within ±3 %, 10 loops). Each loop starts from the configuration the
+/// last one left, so that ranges follow the current values. A best candidate at the end of the
+/// range is taken like any other: the next loop looks further.
+class ModeByMode final : public Optimizer {
+ public:
+  struct Options {
+    std::int64_t candidates = 50;
+    double half_range = 0.03;  ///< relative to the current value [1]
+    std::int64_t loops = 10;
+    void visit(OptionVisitor& visitor);
+  };
+  explicit ModeByMode(const Options& options);
+  std::string_view name() const override { return "mode_by_mode"; }
+
+ private:
+  /// Keeps the scans of the first and of the last completed loop. Ends early where a loop moves
+  /// nothing. Throws InvalidInput where a variable starts at 0 and so has no relative range.
+  StopReason search(Evaluator& evaluator) const override;
+  CoordinateScan search_variable(Evaluator& evaluator, std::size_t i, std::int64_t loop) const;
+
+  Options options_;
+};
+
+}  // namespace modcal

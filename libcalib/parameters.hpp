@@ -1,0 +1,100 @@
+// The unknowns of a calibration and their binding to the modal model.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "libcalib/variable.hpp"
+#include "libsim/base/options.hpp"
+#include "libsim/model/modal_basis.hpp"
+
+namespace modcal {
+
+/// The model as far as a calibration changes it.
+struct ModelPoint {
+  ModalBasis basis;
+  double contact = std::numeric_limits<double>::quiet_NaN();  ///< x_c [m]
+};
+
+enum class ParameterKind { kFrequency, kFundamental, kInharmonicity, kContact };
+
+struct Parameter {
+  Variable variable;
+  ParameterKind kind = ParameterKind::kFrequency;
+  std::size_t mode = 0;  ///< index of the mode, for kFrequency
+};
+
+/// How far parameters may go from their initial values.
+struct ParameterRanges {
+  double frequency = 0.06;      ///< f_n and f0: share of the initial value [1]
+  double inharmonicity = 1e-3;  ///< B: from 0 to the initial value plus this [1]
+  double contact = 5e-3;        ///< x_c: distance [m], kept inside the string
+  void visit(OptionVisitor& visitor);
+};
+
+/// dω_n/dx of one mode for one parameter, in rad/s per unit of the parameter.
+struct FrequencySlope {
+  std::size_t mode = 0;
+  double slope = 0.0;
+};
+
+/// Subset of {f_1 … f_N}, {f0, B}, x_c with names "f_3", "f0", "B", "x_c", bounds and scales, bound
+/// to an initial model. Where f0 or B is free, the modes without a free frequency of their own
+/// follow f_n = n f0 √(1 + B n²), started from the law fitted to the initial frequencies. The
+/// tension is left alone: it scales H_r of both ends alike and cannot be told from the force.
+class ParameterSet {
+ public:
+  /// Names in any order, without repetition. Throws InvalidInput for an unknown or repeated name, a
+  /// mode outside the model, an empty set, a range that is not positive, a contact at an end.
+  ParameterSet(ModelPoint initial, std::span<const std::string> names,
+               const ParameterRanges& ranges = {});
+
+  std::size_t size() const { return parameters_.size(); }
+  const Parameter& operator[](std::size_t i) const { return parameters_[i]; }
+  std::vector<Variable> variables() const;
+  const ModelPoint& initial() const { return initial_; }
+  bool has(ParameterKind kind) const;
+  bool law_is_free() const {
+    return has(ParameterKind::kFundamental) || has(ParameterKind::kInharmonicity);
+  }
+  /// Initial values.
+  std::vector<double> start() const;
+
+  /// The model at the parameters x (`size()` values in user units).
+  ModelPoint model(std::span<const double> x) const;
+  /// The modes whose ω_n depends on parameter i, with dω_n/dx_i at x; empty for x_c.
+  std::vector<FrequencySlope> frequency_slopes(std::span<const double> x, std::size_t i) const;
+
+ private:
+  struct Law {
+    double fundamental = 0.0;
+    double inharmonicity = 0.0;
+  };
+  Parameter parameter(const std::string& name, const ParameterRanges& ranges) const;
+  Law law_at(std::span<const double> x) const;
+
+  ModelPoint initial_;
+  std::vector<Parameter> parameters_;
+  Law law_;                    // initial law; used where f0 or B is free
+  std::vector<bool> follows_;  // per mode: ω_n comes from the law
+};
+
+/// Section "parameters" of a calibration.
+struct ParameterOptions {
+  std::string frequencies = "none";  ///< none, all, listed
+  std::vector<std::int64_t> modes;   ///< mode numbers, with frequencies: listed
+  bool law = false;                  ///< f0 and B
+  bool contact = false;              ///< x_c
+  ParameterRanges ranges;
+  void visit(OptionVisitor& visitor);
+  /// Names for a model of N modes. Throws InvalidInput where modes are listed but not asked for, or
+  /// nothing is free.
+  std::vector<std::string> names(std::size_t modes_of_model) const;
+};
+
+}  // namespace modcal
