@@ -183,7 +183,7 @@ std::filesystem::path YamlDocument::folder() const {
   return std::filesystem::path(file).parent_path();
 }
 
-YamlDocument parse_yaml(std::string source, std::string file) {
+YamlDocument parse_yaml(const std::string& source, std::string file) {
   YamlDocument document;
   document.file = std::move(file);
   document.lines = split_lines(source);

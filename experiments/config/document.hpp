@@ -59,7 +59,7 @@ struct YamlDocument {
 /// an empty file and a top level that is no map are mistakes; a syntax error is one, too.
 /// Throws InvalidInput where the file cannot be read.
 YamlDocument read_yaml_file(const std::filesystem::path& path);
-YamlDocument parse_yaml(std::string source, std::string file);
+YamlDocument parse_yaml(const std::string& source, std::string file);
 
 /// Replaces the value at a dotted path ("scene.bow.normal_force") by `value`, adding maps on the
 /// way; a mistake at `path_position` where a path leads through something that is no map.

@@ -5,7 +5,6 @@
 #include "experiments/config/resolved.hpp"
 #include "experiments/records/inspection.hpp"
 #include "libsim/base/error.hpp"
-#include "libsim/dynamics/scene.hpp"
 #include "libsim/model/string_model.hpp"
 
 namespace modcal {
@@ -119,7 +118,7 @@ ordered_json json(const InspectionReport& report) {
 std::string stanza(const InspectionReport& report) {
   RecordOptions record = report.record;
   StringModel string;
-  Bow bow;
+  ContactOptions bow;
   ResolvedWriter writer;
   writer.section({.key = "record", .meaning = "recorded forces"}, record);
   writer.section({.key = "string", .meaning = "the string"}, string);

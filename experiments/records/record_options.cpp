@@ -54,4 +54,13 @@ void RecordOptions::visit(OptionVisitor& visitor) {
                  stop);
 }
 
+void ContactOptions::visit(OptionVisitor& visitor) {
+  visitor.number({.key = "position",
+                  .meaning = "contact point x_c, from the end x = 0",
+                  .unit = "m",
+                  .range = Range::positive(),
+                  .required = true},
+                 position);
+}
+
 }  // namespace modcal

@@ -33,4 +33,10 @@ struct RecordOptions {
   void visit(OptionVisitor& visitor);
 };
 
+/// The `bow:` section of an experiment on a record: where the force acts.
+struct ContactOptions {
+  double position = std::numeric_limits<double>::quiet_NaN();  ///< x_c [m]
+  void visit(OptionVisitor& visitor);
+};
+
 }  // namespace modcal
