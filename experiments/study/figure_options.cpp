@@ -17,11 +17,11 @@ void TimeWindow::visit(OptionVisitor& visitor) {
 void FigureOptions::visit(OptionVisitor& visitor) {
   visitor.text({.key = "id", .meaning = "name of the figure's files", .required = true}, id);
   visitor.text({.key = "title", .meaning = "title; empty: that of the experiment"}, title);
-  visitor.text({.key = "content",
-                .meaning = "what is drawn",
-                .choices = {"waveforms", "spectra", "parameter_curves", "objectives",
-                            "frequency_errors"}},
-               content);
+  visitor.text(
+      {.key = "content",
+       .meaning = "what is drawn",
+       .choices = {"waveforms", "spectra", "parameter_curves", "objectives", "frequency_errors"}},
+      content);
   visitor.texts({.key = "quantities",
                  .meaning = "rows of waveforms and spectra",
                  .choices = {"y", "v", "f_c", "R1", "R2"}},

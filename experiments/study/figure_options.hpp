@@ -18,7 +18,8 @@ struct TimeWindow {
   void visit(OptionVisitor& visitor);
 };
 
-/// One figure: what it shows and of which part. Rows are quantities × windows, columns the two ends.
+/// One figure: what it shows and of which part. Rows are quantities × windows, columns the two
+/// ends.
 struct FigureOptions {
   std::string id;
   std::string title;

@@ -17,8 +17,7 @@ void ModelErrorOptions::visit(OptionVisitor& visitor) {
                   .unit = "1",
                   .range = Range::at_least(-1.0)},
                  damping);
-  visitor.number(
-      {.key = "contact", .meaning = "error of the contact point", .unit = "m"}, contact);
+  visitor.number({.key = "contact", .meaning = "error of the contact point", .unit = "m"}, contact);
 }
 
 AssumedModel with_errors(const ModalBasis& truth, double contact, const ModelErrorOptions& errors,

@@ -7,8 +7,8 @@
 
 namespace modcal {
 
-/// Largest relative error of the modal frequencies (uniform, independent in every mode, both signs),
-/// relative error of all damping ratios, and error of the contact point [m].
+/// Largest relative error of the modal frequencies (uniform, independent in every mode, both
+/// signs), relative error of all damping ratios, and error of the contact point [m].
 struct ModelErrorOptions {
   double frequencies = 0.0;
   double damping = 0.0;

@@ -8,11 +8,12 @@
 namespace modcal {
 
 void ScoreOptions::visit(OptionVisitor& visitor) {
-  visitor.numbers({.key = "windows",
-                   .meaning = "starts of the windows in which forces are compared",
-                   .unit = "s",
-                   .range = Range::non_negative()},
-                  windows);
+  visitor.numbers(
+      {.key = "windows",
+       .meaning = "starts of the windows in which forces are compared; none: the whole record",
+       .unit = "s",
+       .range = Range::non_negative()},
+      windows);
   visitor.number({.key = "periods",
                   .meaning = "length of a window in periods of the fundamental",
                   .unit = "1",
@@ -25,6 +26,10 @@ std::vector<WindowScore> score_windows(const Signal& identified, const Signal& t
   const double rate = truth.sample_rate;
   const auto length = static_cast<std::size_t>(std::round(options.periods / fundamental * rate));
   std::vector<WindowScore> scores;
+  if (options.windows.empty()) {
+    scores.push_back({0.0, correlation(identified.samples, truth.samples),
+                      relative_rms_error(identified.samples, truth.samples)});
+  }
   for (const double start : options.windows) {
     const auto first = static_cast<std::size_t>(std::round(start * rate));
     MODCAL_REQUIRE(length >= 2 && first + length <= truth.size(),

@@ -12,8 +12,8 @@ namespace modcal {
 
 /// Windows over which an identified force is compared with the true one.
 struct ScoreOptions {
-  std::vector<double> windows = {0.78};  ///< starts [s]
-  double periods = 2.0;                  ///< length in periods of the fundamental
+  std::vector<double> windows;  ///< starts [s]; none: the whole record at once
+  double periods = 2.0;         ///< length in periods of the fundamental
   void visit(OptionVisitor& visitor);
 };
 

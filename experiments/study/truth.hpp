@@ -25,11 +25,14 @@ struct TruthOptions {
   Choice<Simulator> simulator{"newmark_explicit"};
 };
 
+/// Equal for equal truths: scene, simulator, rate and outputs, bit for bit.
+std::string truth_key(TruthOptions options, double sample_rate, const OutputRequest& outputs);
+
 /// Simulates, or waits for the thread that is simulating the same truth.
 class TruthCache {
  public:
   /// Throws InvalidInput where the scene cannot be simulated or the simulation diverges.
-  std::shared_ptr<const Truth> get(TruthOptions options, double sample_rate,
+  std::shared_ptr<const Truth> get(const TruthOptions& options, double sample_rate,
                                    const OutputRequest& outputs);
   /// Simulations done so far.
   std::size_t simulated() const;

@@ -1,0 +1,45 @@
+#include "experiments/kinds/calibrate_experiment.hpp"
+
+#include "experiments/kinds/invert_experiment.hpp"
+#include "experiments/kinds/lint.hpp"
+#include "experiments/kinds/scene_plan.hpp"
+
+namespace modcal {
+
+std::vector<Finding> CalibrateExperiment::lint() const {
+  std::vector<Finding> findings = lint_inversion(options_.inversion);
+  append(findings,
+         lint_figures(options_.inversion.figures, {"waveforms", "spectra", "parameter_curves",
+                                                   "objectives", "frequency_errors"}));
+  const CalibrationOptions& calibration = options_.calibration;
+  lint_making(
+      "calibration.objective", [&] { calibration.objective.make(); }, findings);
+  lint_making(
+      "calibration.optimizer", [&] { calibration.optimizer.make(); }, findings);
+  lint_making(
+      "calibration.budget", [&] { calibration.budget.require_valid(); }, findings);
+  const auto modes = static_cast<std::size_t>(options_.inversion.observation.string_model().modes);
+  lint_making(
+      "calibration.parameters", [&] { calibration.parameters.names(modes); }, findings);
+  return findings;
+}
+
+std::vector<std::string> CalibrateExperiment::plan() const {
+  std::vector<std::string> lines;
+  const ObservationOptions& observation = options_.inversion.observation;
+  if (observation.has_scene) {
+    lines = plan_scene(observation.truth.scene, observation.measurement.sample_rate, 1);
+  } else {
+    lines.push_back("record: " + observation.record.file);
+  }
+  const auto modes = static_cast<std::size_t>(observation.string_model().modes);
+  const CalibrationOptions& calibration = options_.calibration;
+  lines.push_back(
+      fmt::format("calibration: {} parameters asked for, objective {}, optimizer {}, at "
+                  "most {} evaluations",
+                  calibration.parameters.names(modes).size(), calibration.objective.selected(),
+                  calibration.optimizer.selected(), calibration.budget.evaluations));
+  return lines;
+}
+
+}  // namespace modcal

@@ -1,0 +1,23 @@
+#pragma once
+
+#include "experiments/experiment.hpp"
+#include "experiments/kinds/calibrate_study.hpp"
+
+namespace modcal {
+
+/// Kind "calibrate": refine the modal model, then identify force and motion with it.
+class CalibrateExperiment final : public Experiment {
+ public:
+  using Options = CalibrateOptions;
+  explicit CalibrateExperiment(Options options) : options_(std::move(options)) {}
+  std::vector<Finding> lint() const override;
+  std::vector<std::string> plan() const override;
+  StudyResult run(const StudyContext& context) const override {
+    return calibrate_study(options_, context);
+  }
+
+ private:
+  Options options_;
+};
+
+}  // namespace modcal

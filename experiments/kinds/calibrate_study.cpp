@@ -1,0 +1,164 @@
+#include "experiments/kinds/calibrate_study.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libsim/signal/statistics.hpp"
+
+namespace modcal {
+
+void CalibrateOptions::visit(OptionVisitor& visitor) {
+  inversion.visit(visitor);
+  visitor.section({.key = "calibration",
+                   .meaning = "what is refined, by which objective and optimizer",
+                   .required = true},
+                  calibration);
+  visitor.flag({.key = "fill_blind_modes",
+                .meaning = "give blind modes the frequencies of the stiff-string law fitted to the "
+                           "others"},
+               fill_blind_modes);
+}
+
+namespace {
+
+std::vector<double> frequencies_of(const ModalBasis& basis) {
+  std::vector<double> frequencies(basis.size());
+  for (std::size_t n = 0; n < basis.size(); ++n) frequencies[n] = basis.frequency(n);
+  return frequencies;
+}
+
+CalibrationData calibration_data(const Observation& observation) {
+  const auto samples = [&observation](End end) -> std::span<const double> {
+    const auto& reaction = observation.reaction(end);
+    return reaction ? std::span<const double>(reaction->samples) : std::span<const double>();
+  };
+  return CalibrationData::of_records(samples(End::kLeft), samples(End::kRight),
+                                     observation.sample_rate);
+}
+
+void fill_blind(CalibrationOutcome& outcome) {
+  std::vector<bool> excited;
+  std::vector<double> weights;
+  for (const CalibratedMode& mode : outcome.result.modes) {
+    excited.push_back(mode.excited);
+    weights.push_back(mode.excited ? 1.0 : 0.0);
+  }
+  const std::vector<double> refined = frequencies_of(outcome.refined.basis);
+  outcome.law = fit_stiff_string(refined, weights);
+  outcome.refined.basis =
+      with_frequencies(outcome.refined.basis, fill_unexcited_modes(refined, excited, *outcome.law));
+}
+
+void add_summary(const CalibrationOutcome& outcome, StudyResult& result) {
+  const OptimizationResult& search = outcome.result.search;
+  result.summary += fmt::format(
+      "{} evaluations, {} loops, {:.3f} s; objective {:.6g} -> {:.6g}; {}\n", search.evaluations,
+      search.loops, search.seconds, search.initial_value, search.value, explain(search.stop));
+  if (!outcome.true_frequencies.empty()) {
+    result.summary += fmt::format("median relative frequency error of the excited modes: {:.3g}\n",
+                                  median_relative_error(outcome));
+  }
+  for (const CalibratedParameter& parameter : outcome.result.parameters) {
+    if (parameter.name.starts_with("f_")) continue;
+    result.summary += fmt::format("{}: {:.8g} -> {:.8g} {}\n", parameter.name, parameter.initial,
+                                  parameter.final, parameter.unit);
+  }
+  if (outcome.law) {
+    result.summary += fmt::format("stiff-string law: f0 = {:.6g} Hz, B = {:.4g}\n",
+                                  outcome.law->fundamental, outcome.law->inharmonicity);
+  }
+}
+
+void add_calibration_warnings(const CalibrationOutcome& outcome, StudyResult& result) {
+  std::vector<std::string> bound;
+  for (const CalibratedParameter& parameter : outcome.result.parameters) {
+    if (parameter.at_bound) bound.push_back(parameter.name);
+  }
+  const auto warn = [&result](std::string text) {
+    result.summary += "warning: " + text + "\n";
+    result.blocks.emplace_back(report::Text{std::move(text), report::Text::Kind::kWarning});
+  };
+  if (!bound.empty()) {
+    warn(fmt::format("{} ended on a bound: the optimum may lie beyond", fmt::join(bound, ", ")));
+  }
+  if (!outcome.result.blind.empty()) {
+    warn(fmt::format("{} cannot be seen from this contact point and {}",
+                     fmt::join(outcome.result.blind, ", "),
+                     outcome.law ? "come from the stiff-string law" : "keep their initial values"));
+  }
+  const StopReason stop = outcome.result.search.stop;
+  if (stop == StopReason::kNotFinite || stop == StopReason::kNoProgress ||
+      stop == StopReason::kNotRun) {
+    warn("the search failed: " + std::string(explain(stop)));
+    result.failed_tasks = 1;
+    result.status = report::Status::kFailed;
+  }
+}
+
+}  // namespace
+
+double median_relative_error(const CalibrationOutcome& outcome) {
+  std::vector<double> errors;
+  for (const CalibratedMode& mode : outcome.result.modes) {
+    if (!mode.excited || outcome.true_frequencies.empty()) continue;
+    const double truth = outcome.true_frequencies[mode.number - 1];
+    errors.push_back(std::abs(mode.frequency / truth - 1.0));
+  }
+  return quantile(std::move(errors), 0.5);
+}
+
+CalibrationOutcome calibrate_observation(const CalibrateOptions& options,
+                                         const Observation& observation) {
+  CalibrationOutcome outcome;
+  outcome.initial =
+      with_errors(observation.basis, observation.contact, options.inversion.model_error,
+                  options.inversion.key().with("model error"));
+  outcome.result = calibrate({outcome.initial.basis, outcome.initial.contact},
+                             calibration_data(observation), options.calibration);
+  outcome.refined = {outcome.result.model.basis, outcome.result.model.contact};
+  if (observation.truth) outcome.true_frequencies = frequencies_of(observation.basis);
+  if (options.fill_blind_modes) fill_blind(outcome);
+  return outcome;
+}
+
+StudyResult calibrate_study(const CalibrateOptions& options, const StudyContext& context) {
+  const InvertOptions& inversion = options.inversion;
+  const Observation observation = observe(inversion.observation, truth_outputs(inversion.figures),
+                                          context.work.truths, inversion.key(), context.folder);
+  const CalibrationOutcome outcome = calibrate_observation(options, observation);
+  context.throw_if_interrupted();
+  const PreparedInversions inversions(outcome.refined, observation.samples(),
+                                      observation.sample_rate);
+  const InversionRecipe recipe(inversion.inversion);
+  const auto sides =
+      identify(observation, inversions, recipe,
+               inversion_outputs(inversion.figures, inversion.write_signals), &inversion.score);
+
+  StudyResult result;
+  add_summary(outcome, result);
+  add_calibration_warnings(outcome, result);
+  add_warnings(observation, sides, result);
+  for (const FigureOptions& figure : inversion.figures) {
+    report::Figure drawn;
+    if (figure.content == "objectives") {
+      drawn = objective_figure(figure, outcome);
+    } else if (figure.content == "frequency_errors") {
+      drawn = frequency_error_figure(figure, outcome);
+    } else {
+      continue;
+    }
+    drawn.command = context.command;
+    result.blocks.emplace_back(std::move(drawn));
+  }
+  add_identification_figures(inversion.figures, observation, sides, context.command, result);
+  result.blocks.emplace_back(search_table(outcome, context.command));
+  result.blocks.emplace_back(mode_table(outcome, context.command));
+  result.blocks.emplace_back(identification_table(sides, context.command));
+  result.files.emplace_back("calibration.json", calibration_json(outcome));
+  if (inversion.write_signals) {
+    result.signal_files.push_back(identified_signals(observation, sides));
+  }
+  return result;
+}
+
+}  // namespace modcal

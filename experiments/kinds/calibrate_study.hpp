@@ -1,0 +1,49 @@
+// Kind "calibrate": refine the modal model by an objective, then identify with it.
+#pragma once
+
+#include <optional>
+
+#include "experiments/kinds/invert_study.hpp"
+#include "libcalib/calibration.hpp"
+#include "libcalib/stiff_string_fit.hpp"
+
+namespace modcal {
+
+struct CalibrateOptions {
+  InvertOptions inversion;
+  CalibrationOptions calibration;
+  /// Give blind modes the frequencies of the stiff-string law fitted to the others (paper, eq. 18
+  /// and section 7.1).
+  bool fill_blind_modes = false;
+  void visit(OptionVisitor& visitor);
+};
+
+/// A calibration together with what it is judged by.
+struct CalibrationOutcome {
+  AssumedModel initial;
+  AssumedModel refined;
+  CalibrationResult result;
+  std::optional<StiffStringFit> law;     ///< where blind modes were filled
+  std::vector<double> true_frequencies;  ///< [Hz]; empty for a record
+};
+
+CalibrationOutcome calibrate_observation(const CalibrateOptions& options,
+                                         const Observation& observation);
+
+StudyResult calibrate_study(const CalibrateOptions& options, const StudyContext& context);
+
+/// calibration.json.
+std::string calibration_json(const CalibrationOutcome& outcome);
+report::Table mode_table(const CalibrationOutcome& outcome, const std::string& command);
+report::Table search_table(const CalibrationOutcome& outcome, const std::string& command);
+/// Objective over the candidates of the first modes, initial, chosen and true value marked (paper,
+/// figs. 13 and 20).
+report::Figure objective_figure(const FigureOptions& options, const CalibrationOutcome& outcome);
+/// Absolute and relative error of the frequencies and the mode shape at the contact (paper, fig.
+/// 14).
+report::Figure frequency_error_figure(const FigureOptions& options,
+                                      const CalibrationOutcome& outcome);
+/// Median of |f_n − true|/true over the modes that were searched; NaN without a truth.
+double median_relative_error(const CalibrationOutcome& outcome);
+
+}  // namespace modcal

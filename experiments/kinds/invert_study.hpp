@@ -1,0 +1,45 @@
+// Kind "invert": contact force and motion from the reactions of a simulated or recorded string.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "experiments/study/figure_options.hpp"
+#include "experiments/study/study.hpp"
+
+namespace modcal {
+
+struct InvertOptions {
+  ObservationOptions observation;
+  ModelErrorOptions model_error;
+  InversionOptions inversion;
+  ScoreOptions score;
+  std::vector<FigureOptions> figures;
+  std::int64_t seed = 1;
+  bool write_signals = false;
+  void visit(OptionVisitor& visitor);
+  StreamKey key() const { return StreamKey(static_cast<std::uint64_t>(seed)); }
+};
+
+StudyResult invert_study(const InvertOptions& options, const StudyContext& context);
+
+/// Signals of the truth that the figures and scores need.
+OutputRequest truth_outputs(const std::vector<FigureOptions>& figures);
+/// What an inversion has to compute for them.
+InversionOutputs inversion_outputs(const std::vector<FigureOptions>& figures, bool all);
+/// One row a side and window: parameter, share of bins kept, correlation, relative rms error.
+report::Table identification_table(const std::vector<SideIdentification>& sides,
+                                   const std::string& command);
+/// Draws the waveforms, spectra and parameter curves among the figures asked for.
+void add_identification_figures(const std::vector<FigureOptions>& figures,
+                                const Observation& observation,
+                                const std::vector<SideIdentification>& sides,
+                                const std::string& command, StudyResult& result);
+/// identified.csv: every identified signal.
+SignalFile identified_signals(const Observation& observation,
+                              const std::vector<SideIdentification>& sides);
+/// Warnings of the observation and of parameter choices that had to settle for a stand-in.
+void add_warnings(const Observation& observation, const std::vector<SideIdentification>& sides,
+                  StudyResult& result);
+
+}  // namespace modcal

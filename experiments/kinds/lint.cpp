@@ -1,0 +1,135 @@
+#include "experiments/kinds/lint.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+namespace modcal {
+
+bool is_known(const StringModel& string) {
+  return std::isfinite(string.length) && std::isfinite(string.linear_density) &&
+         std::isfinite(string.fundamental);
+}
+
+namespace {
+
+void lint_string(const std::string& path, const StringModel& string, double position,
+                 const std::string& bow_path, std::vector<Finding>& findings) {
+  if (!is_known(string)) return;
+  if (position >= string.length) {
+    findings.push_back({bow_path + ".position",
+                        fmt::format("contact point {:g} m is outside the string of {:g} m: it must "
+                                    "lie between its ends",
+                                    position, string.length)});
+  }
+  lint_making(
+      path, [&] { make_modal_basis(string); }, findings);
+}
+
+void lint_rate(const StringModel& string, double sample_rate, const std::string& string_path,
+               std::vector<Finding>& findings) {
+  if (!is_known(string)) return;
+  const auto top_mode = static_cast<std::size_t>(string.modes);
+  const double top = stiff_string_frequency(string.fundamental, string.inharmonicity, top_mode);
+  if (top < 0.5 * sample_rate) return;
+  const auto most = std::floor(0.5 * sample_rate / string.fundamental);
+  findings.push_back(
+      {string_path + ".modes",
+       fmt::format("mode {} at {:.6g} Hz is not below half the sample rate, {:.6g} Hz: use at most "
+                   "about {:g} modes or a higher measurement.sample_rate",
+                   string.modes, top, 0.5 * sample_rate, most)});
+}
+
+void lint_decay(const Scene& scene, std::vector<Finding>& findings) {
+  if (!is_known(scene.string)) return;
+  std::vector<double> zeta;
+  try {
+    zeta = make_modal_basis(scene.string).zeta;
+  } catch (const InvalidInput&) {
+    return;  // reported with the string
+  }
+  const double decay_time = 1.0 / (2.0 * std::numbers::pi * scene.string.fundamental * zeta[0]);
+  if (scene.duration >= 0.5 * decay_time) return;
+  findings.push_back(
+      {"scene.duration",
+       fmt::format("the record of {:g} s is short against the decay time of the first mode, {:.3g} "
+                   "s: its transform wraps what still rings at the end",
+                   scene.duration, decay_time),
+       false});
+}
+
+}  // namespace
+
+void append(std::vector<Finding>& all, std::vector<Finding> more) {
+  all.insert(all.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+}
+
+std::vector<Finding> lint_scene(const Scene& scene, const Choice<Simulator>& simulator,
+                                const Measurement& measurement) {
+  std::vector<Finding> findings;
+  lint_string("scene.string", scene.string, scene.bow.position, "scene.bow", findings);
+  lint_rate(scene.string, measurement.sample_rate, "scene.string", findings);
+  lint_making(
+      "scene.friction", [&] { scene.friction.make(); }, findings);
+  lint_making(
+      "simulator", [&] { simulator.make(); }, findings);
+  lint_making(
+      "scene.duration", [&] { sample_count(scene.duration, measurement.sample_rate); }, findings);
+  lint_decay(scene, findings);
+  return findings;
+}
+
+std::vector<Finding> lint_observation(const ObservationOptions& options) {
+  std::vector<Finding> findings;
+  lint_making(
+      options.has_record ? "record" : "scene", [&] { options.require_one_source(); }, findings);
+  if (!findings.empty()) return findings;
+  if (options.has_scene) {
+    return lint_scene(options.truth.scene, options.truth.simulator, options.measurement);
+  }
+  lint_string("string", options.string, options.contact.position, "bow", findings);
+  return findings;
+}
+
+std::vector<Finding> lint_scores(const ScoreOptions& score, const ObservationOptions& options) {
+  std::vector<Finding> findings;
+  if (!options.has_scene || !is_known(options.truth.scene.string)) return findings;
+  const double duration = options.truth.scene.duration;
+  const double length = score.periods / options.truth.scene.string.fundamental;
+  for (const double start : score.windows) {
+    if (start + length <= duration) continue;
+    findings.push_back(
+        {"score.windows", fmt::format("the window from {:g} s over {:g} periods ends at {:.4g} s, "
+                                      "after the record of {:g} s",
+                                      start, score.periods, start + length, duration)});
+  }
+  return findings;
+}
+
+std::vector<Finding> lint_figures(const std::vector<FigureOptions>& figures,
+                                  const std::vector<std::string_view>& contents) {
+  std::vector<Finding> findings;
+  std::set<std::string> ids;
+  for (const FigureOptions& figure : figures) {
+    if (!report::is_file_stem(figure.id)) {
+      findings.push_back(
+          {"figures", fmt::format("\"{}\" cannot name a figure's files: use letters, "
+                                  "digits, - and _",
+                                  figure.id)});
+    }
+    if (!ids.insert(figure.id).second) {
+      findings.push_back({"figures", fmt::format("two figures have the id \"{}\"", figure.id)});
+    }
+    if (figure.quantities.empty()) {
+      findings.push_back({"figures", fmt::format("figure {} has no quantities", figure.id)});
+    }
+    if (std::find(contents.begin(), contents.end(), figure.content) == contents.end()) {
+      findings.push_back({"figures", fmt::format("figure {}: this kind of experiment has no {}",
+                                                 figure.id, figure.content)});
+    }
+  }
+  return findings;
+}
+
+}  // namespace modcal

@@ -1,0 +1,37 @@
+// Physics lint: what no single option shows.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/experiment.hpp"
+#include "experiments/study/figure_options.hpp"
+#include "experiments/study/observation.hpp"
+
+namespace modcal {
+
+/// Whether the numbers that a string needs have been read: nothing follows from wrong ones.
+bool is_known(const StringModel& string);
+
+/// Nyquist against the highest mode, contact inside the string, record length against the decay.
+std::vector<Finding> lint_scene(const Scene& scene, const Choice<Simulator>& simulator,
+                                const Measurement& measurement);
+/// The same for what an experiment inverts; that exactly one source is stated.
+std::vector<Finding> lint_observation(const ObservationOptions& options);
+/// Score windows inside the record.
+std::vector<Finding> lint_scores(const ScoreOptions& score, const ObservationOptions& options);
+/// Ids used twice, contents that this kind of experiment does not have.
+std::vector<Finding> lint_figures(const std::vector<FigureOptions>& figures,
+                                  const std::vector<std::string_view>& contents);
+/// A finding at `path` where `make` throws InvalidInput.
+template <typename Make>
+void lint_making(const std::string& path, Make make, std::vector<Finding>& findings) {
+  try {
+    make();
+  } catch (const InvalidInput& error) {
+    findings.push_back({path, error.what(), true});
+  }
+}
+void append(std::vector<Finding>& all, std::vector<Finding> more);
+
+}  // namespace modcal

@@ -1,0 +1,120 @@
+#include "experiments/loader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "experiments/config/reader.hpp"
+#include "experiments/config/resolved.hpp"
+#include "libsim/base/error.hpp"
+
+namespace modcal {
+namespace {
+
+// Position of the deepest existing part of a dotted path.
+SourcePosition position_of_path(const YamlNode& root, std::string_view path) {
+  const YamlNode* node = &root;
+  SourcePosition position = root.position;
+  while (!path.empty()) {
+    const std::size_t dot = path.find('.');
+    node = node->find(path.substr(0, dot));
+    if (node == nullptr) break;
+    position = node->position;
+    if (dot == std::string_view::npos) break;
+    path.remove_prefix(dot + 1);
+  }
+  return position;
+}
+
+bool choose_kind(LoadedExperiment& loaded) {
+  const YamlNode* kind = loaded.document.root.find("kind");
+  std::vector<std::string> names;
+  for (const std::string_view name : loaded.choice.names()) names.emplace_back(name);
+  if (kind == nullptr) {
+    loaded.mistakes.push_back(
+        {loaded.document.root.position, "missing key \"kind\"" + suggestion("", names)});
+    return false;
+  }
+  if (std::find(names.begin(), names.end(), kind->text) == names.end()) {
+    loaded.mistakes.push_back({kind->position, fmt::format("unknown kind \"{}\"{}", kind->text,
+                                                           suggestion(kind->text, names))});
+    return false;
+  }
+  loaded.kind = kind->text;
+  loaded.choice.select(kind->text);
+  return true;
+}
+
+void visit_head(OptionVisitor& visitor, LoadedExperiment& loaded) {
+  visitor.text({.key = "title", .meaning = "title of the report"}, loaded.title);
+  visitor.text({.key = "description", .meaning = "what the experiment is for"}, loaded.description);
+}
+
+bool is_known_mistake(const std::vector<Mistake>& mistakes, const SourcePosition& position) {
+  return std::any_of(mistakes.begin(), mistakes.end(), [&](const Mistake& mistake) {
+    return mistake.position.line == position.line && mistake.position.column == position.column &&
+           mistake.position.origin == position.origin;
+  });
+}
+
+// Lints even where options are wrong, so that one look shows every mistake; what only follows from
+// a wrong option is left out by the lint itself.
+void make_and_lint(LoadedExperiment& loaded) {
+  const YamlNode& root = loaded.document.root;
+  const bool had_errors = loaded.has_errors();
+  try {
+    auto experiment = loaded.choice.make();
+    for (const Finding& finding : experiment->lint()) {
+      const SourcePosition position = position_of_path(root, finding.path);
+      if (had_errors && is_known_mistake(loaded.mistakes, position)) continue;
+      loaded.mistakes.push_back({position, finding.text, !finding.is_error});
+    }
+    if (!loaded.has_errors()) loaded.experiment = std::move(experiment);
+  } catch (const InvalidInput& error) {
+    if (!had_errors) loaded.mistakes.push_back({root.position, error.what()});
+  }
+}
+
+}  // namespace
+
+bool LoadedExperiment::has_errors() const {
+  return std::any_of(mistakes.begin(), mistakes.end(),
+                     [](const Mistake& mistake) { return !mistake.warning; });
+}
+
+std::string LoadedExperiment::resolved() const {
+  LoadedExperiment copy = *this;
+  ResolvedWriter writer;
+  std::string kind_name = kind;
+  writer.text({.key = "kind", .meaning = "kind of experiment", .choices = {kind_name}}, kind_name);
+  visit_head(writer, copy);
+  copy.choice.visit_options(writer);
+  return writer.yaml();
+}
+
+LoadedExperiment load_experiment(YamlDocument document) {
+  LoadedExperiment loaded;
+  loaded.document = std::move(document);
+  loaded.mistakes = loaded.document.mistakes;
+  if (loaded.document.root.kind != YamlNode::Kind::kMap) return loaded;
+  if (!choose_kind(loaded)) return loaded;
+  read_options(loaded.document.root,
+               [&loaded](OptionVisitor& visitor) {
+                 visit_head(visitor, loaded);
+                 loaded.choice.visit_options(visitor);
+               },
+               loaded.mistakes, {"kind"});
+  make_and_lint(loaded);
+  return loaded;
+}
+
+LoadedExperiment load_experiment(const std::filesystem::path& file,
+                                 const std::vector<std::string>& assignments) {
+  YamlDocument document = read_yaml_file(file);
+  for (std::size_t i = 0; i < assignments.size(); ++i) {
+    apply_assignment(document, assignments[i], i + 1);
+  }
+  return load_experiment(std::move(document));
+}
+
+}  // namespace modcal

@@ -1,0 +1,25 @@
+#include <array>
+
+#include "experiments/experiment.hpp"
+#include "experiments/kinds/calibrate_experiment.hpp"
+#include "experiments/kinds/invert_experiment.hpp"
+#include "experiments/kinds/simulate_experiment.hpp"
+#include "experiments/kinds/sweep_experiment.hpp"
+
+namespace modcal {
+
+Registry<Experiment> Experiment::registry() {
+  static constexpr std::array kTable = {
+      entry_of<Experiment, CalibrateExperiment>(
+          "calibrate", "refine the modal model, then identify force and motion with it"),
+      entry_of<Experiment, InvertExperiment>(
+          "invert", "contact force and motion from simulated or recorded reactions"),
+      entry_of<Experiment, SimulateExperiment>("simulate",
+                                               "a bowed string, its signals and figures"),
+      entry_of<Experiment, SweepExperiment>(
+          "sweep", "the same inversion over axes of settings, summed up in a table"),
+  };
+  return kTable;
+}
+
+}  // namespace modcal

@@ -1,0 +1,101 @@
+#include "experiments/study/observation.hpp"
+
+#include "experiments/records/recorded_signals.hpp"
+#include "libsim/base/error.hpp"
+#include "libsim/signal/statistics.hpp"
+
+namespace modcal {
+
+void ObservationOptions::visit(OptionVisitor& visitor) {
+  visitor.optional_group({.key = "scene", .meaning = "simulated truth: string, bow, friction"},
+                         has_scene, [this](OptionVisitor& inner) { truth.scene.visit(inner); });
+  visitor.plugin({.key = "simulator", .meaning = "how the scene is simulated"}, truth.simulator);
+  visitor.section(
+      {.key = "measurement", .meaning = "sampling and noise of the simulated reactions"},
+      measurement);
+  visitor.optional_group({.key = "record", .meaning = "recorded reactions, in place of a scene"},
+                         has_record, [this](OptionVisitor& inner) { record.visit(inner); });
+  visitor.optional_group({.key = "string", .meaning = "the string of a record"}, has_string,
+                         [this](OptionVisitor& inner) { string.visit(inner); });
+  visitor.optional_group({.key = "bow", .meaning = "the bow of a record"}, has_bow,
+                         [this](OptionVisitor& inner) { contact.visit(inner); });
+}
+
+void ObservationOptions::require_one_source() const {
+  MODCAL_REQUIRE(has_scene || has_record,
+                 "nothing to invert: state a scene (simulated) or a record (a file)");
+  MODCAL_REQUIRE(!(has_scene && has_record), "both a scene and a record are stated: keep one");
+  MODCAL_REQUIRE(!has_record || (has_string && has_bow),
+                 "a record needs the string that was played (string:) and the contact point "
+                 "(bow: {{position: ...}})");
+  MODCAL_REQUIRE(!has_scene || (!has_string && !has_bow),
+                 "string: and bow: at the top level belong to a record; a scene has its own");
+}
+
+std::size_t Observation::samples() const {
+  for (const auto& signal : reactions) {
+    if (signal) return signal->size();
+  }
+  return 0;
+}
+
+std::string_view label_of(End end) { return end == End::kLeft ? "x = 0" : "x = L"; }
+
+int side_number(End end) { return end == End::kLeft ? 1 : 2; }
+
+namespace {
+
+Observation observe_scene(const ObservationOptions& options, OutputRequest outputs,
+                          TruthCache& cache, const StreamKey& key) {
+  outputs.left_reaction = true;
+  outputs.right_reaction = true;
+  Observation observation;
+  observation.sample_rate = options.measurement.sample_rate;
+  observation.truth = cache.get(options.truth, observation.sample_rate, outputs);
+  const Truth& truth = *observation.truth;
+  observation.basis = truth.basis;
+  observation.contact = truth.contact;
+  observation.noise_level = options.measurement.noise_level;
+  const StreamKey noise = key.with("measurement noise");
+  observation.reactions[0] =
+      measure(truth.simulation.left_reaction, options.measurement, noise.with("R1"));
+  observation.reactions[1] =
+      measure(truth.simulation.right_reaction, options.measurement, noise.with("R2"));
+  if (outputs.force) observation.reference = truth.simulation.force;
+  return observation;
+}
+
+Observation observe_record(const ObservationOptions& options, const std::filesystem::path& folder) {
+  RecordedSignals record = load_record(options.record, folder);
+  Observation observation;
+  observation.sample_rate = record.sample_rate;
+  observation.basis = make_modal_basis(options.string);
+  observation.contact = options.contact.position;
+  observation.reactions[0] = std::move(record.left);
+  observation.reactions[1] = std::move(record.right);
+  observation.reference = std::move(record.reference);
+  observation.warnings = std::move(record.warnings);
+  for (auto& reaction : observation.reactions) {
+    if (reaction && options.measurement.remove_mean) remove_mean(reaction->samples);
+  }
+  return observation;
+}
+
+}  // namespace
+
+Observation observe(const ObservationOptions& options, const OutputRequest& truth_outputs,
+                    TruthCache& cache, const StreamKey& key, const std::filesystem::path& folder) {
+  options.require_one_source();
+  Observation observation = options.has_scene ? observe_scene(options, truth_outputs, cache, key)
+                                              : observe_record(options, folder);
+  observation.fundamental = options.string_model().fundamental;
+  const double top = observation.basis.frequency(observation.basis.size() - 1);
+  MODCAL_REQUIRE(
+      top < 0.5 * observation.sample_rate,
+      "the highest mode ({:g} Hz) is not below half the sample rate ({:g} Hz): use fewer "
+      "modes or a higher rate",
+      top, observation.sample_rate);
+  return observation;
+}
+
+}  // namespace modcal

@@ -1,0 +1,65 @@
+// What an experiment inverts: a simulated or a recorded pair of reactions.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiments/records/record_options.hpp"
+#include "experiments/study/truth.hpp"
+#include "libsim/base/random.hpp"
+#include "libsim/model/transfer.hpp"
+#include "libsim/signal/measurement.hpp"
+
+namespace modcal {
+
+/// Where the reactions come from: `scene` with `simulator` and `measurement`, or `record` with the
+/// `string` that was played and the `bow` position x_c.
+struct ObservationOptions {
+  bool has_scene = false;
+  TruthOptions truth;
+  Measurement measurement;
+  bool has_record = false;
+  RecordOptions record;
+  bool has_string = false;
+  StringModel string;
+  bool has_bow = false;
+  ContactOptions contact;
+  void visit(OptionVisitor& visitor);
+
+  const StringModel& string_model() const { return has_scene ? truth.scene.string : string; }
+  double contact_point() const { return has_scene ? truth.scene.bow.position : contact.position; }
+  /// Throws InvalidInput unless exactly one source is stated completely.
+  void require_one_source() const;
+};
+
+/// Reactions as measured, and the truth as far as it is known.
+struct Observation {
+  double sample_rate = 0.0;
+  std::optional<Signal> reactions[2];  ///< index by End
+  ModalBasis basis;                    ///< the model without errors put in
+  double contact = 0.0;                ///< x_c [m]
+  double fundamental = 0.0;            ///< f₀ [Hz]
+  double noise_level = 0.0;            ///< as stated for a simulated measurement
+  std::shared_ptr<const Truth> truth;  ///< null for a record
+  std::optional<Signal> reference;  ///< true or recorded contact force, means removed with the rest
+  std::vector<std::string> warnings;
+
+  const std::optional<Signal>& reaction(End end) const { return reactions[static_cast<int>(end)]; }
+  std::size_t samples() const;
+};
+
+/// Simulates (through the cache) or reads, and measures with noise drawn from `key`.
+/// `folder`: where a relative record path starts.
+Observation observe(const ObservationOptions& options, const OutputRequest& truth_outputs,
+                    TruthCache& cache, const StreamKey& key, const std::filesystem::path& folder);
+
+/// "x = 0" or "x = L".
+std::string_view label_of(End end);
+/// 1 for x = 0, 2 for x = L: the paper's superscripts.
+int side_number(End end);
+inline constexpr End kEnds[] = {End::kLeft, End::kRight};
+
+}  // namespace modcal

@@ -1,0 +1,54 @@
+// What a kind of experiment gets and gives, apart from files, terminals and signals of the system.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "experiments/report/report.hpp"
+#include "experiments/study/identification.hpp"
+#include "experiments/study/truth.hpp"
+#include "libsim/base/error.hpp"
+
+namespace modcal {
+
+/// Truths and prepared inversions, shared by all experiments of one process.
+struct SharedWork {
+  TruthCache truths;
+  InversionCache inversions;
+};
+
+struct StudyContext {
+  SharedWork& work;
+  std::filesystem::path folder;  ///< where relative paths of the experiment start
+  std::string command;           ///< what makes the results again
+  std::function<void(double)> progress = [](double) {};  ///< share done, from any thread
+  std::function<bool()> interrupted = [] { return false; };
+
+  void throw_if_interrupted() const {
+    if (interrupted()) throw Interrupted();
+  }
+};
+
+/// Signals to be written as a record file, "csv" or "wav".
+struct SignalFile {
+  std::string name;
+  std::vector<Signal> signals;
+  double full_scale = 1.0;  ///< of a sound file: what 1.0 stands for, in the signals' units
+};
+
+struct StudyResult {
+  std::vector<report::Block> blocks;                       ///< the section of the report
+  std::vector<std::pair<std::string, std::string>> files;  ///< name and content
+  std::vector<SignalFile> signal_files;
+  std::string summary;  ///< for standard output
+  report::Status status = report::Status::kOk;
+  std::size_t failed_tasks = 0;
+  /// Accepted figures that were missed, one sentence each.
+  std::vector<std::string> missed;
+};
+
+}  // namespace modcal

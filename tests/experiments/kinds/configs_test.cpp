@@ -1,0 +1,102 @@
+// Every file of configs/ loads, lints without a finding and runs; the paper's figures of merit
+// hold.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "experiments/loader.hpp"
+#include "experiments/study/study.hpp"
+
+namespace modcal {
+namespace {
+
+std::vector<std::string> config_files() {
+  std::vector<std::string> files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(MODCAL_CONFIGS)) {
+    if (entry.path().extension() == ".yaml") files.push_back(entry.path().string());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+StudyResult run(const LoadedExperiment& loaded) {
+  SharedWork work;
+  return loaded.experiment->run(
+      {.work = work, .folder = loaded.document.folder(), .command = "test"});
+}
+
+std::string messages(const LoadedExperiment& loaded) {
+  return format_mistakes(loaded.document, loaded.mistakes);
+}
+
+class Configs : public testing::TestWithParam<std::string> {};
+
+TEST_P(Configs, RunsSmall) {
+  const LoadedExperiment full = load_experiment(GetParam());
+  ASSERT_EQ(messages(full), "");
+  // Coarser steps and, in a sweep, one value on each axis.
+  YamlDocument document = read_yaml_file(GetParam());
+  apply_assignment(document, "simulator.time_step=4 us", 1);
+  if (YamlNode* sweep = document.root.find("sweep")) {
+    for (YamlNode::Member& axis : sweep->find("product")->members) axis.value.items.resize(1);
+  }
+  const LoadedExperiment small = load_experiment(std::move(document));
+  ASSERT_EQ(messages(small), "");
+  const StudyResult result = run(small);
+  EXPECT_EQ(result.status, report::Status::kOk);
+  EXPECT_FALSE(result.blocks.empty());
+  EXPECT_FALSE(result.summary.empty());
+}
+
+TEST_P(Configs, ResolvedReadsBackToItself) {
+  const LoadedExperiment loaded = load_experiment(GetParam());
+  ASSERT_NE(loaded.experiment, nullptr);
+  const std::string resolved = loaded.resolved();
+  const LoadedExperiment again = load_experiment(parse_yaml(resolved, GetParam()));
+  EXPECT_EQ(messages(again), "");
+  EXPECT_EQ(again.resolved(), resolved);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Configs, testing::ValuesIn(config_files()),
+                         [](const testing::TestParamInfo<std::string>& parameter) {
+                           const std::filesystem::path path(parameter.param);
+                           return path.parent_path().filename().string() + "_" +
+                                  path.stem().string();
+                         });
+
+TEST(PaperTable1, MeetsItsAcceptance) {
+  const LoadedExperiment loaded =
+      load_experiment(std::string(MODCAL_CONFIGS) + "/paper/table1.yaml");
+  ASSERT_NE(loaded.experiment, nullptr);
+  const StudyResult result = run(loaded);
+  EXPECT_THAT(result.missed, testing::IsEmpty());
+  EXPECT_EQ(result.failed_tasks, 0u);
+}
+
+TEST(PaperFigure14, RefinesTheExcitedModesToTwoPerMille) {
+  const LoadedExperiment loaded =
+      load_experiment(std::string(MODCAL_CONFIGS) + "/paper/fig14.yaml");
+  ASSERT_NE(loaded.experiment, nullptr);
+  const StudyResult result = run(loaded);
+  const auto file = std::find_if(result.files.begin(), result.files.end(),
+                                 [](const auto& f) { return f.first == "calibration.json"; });
+  ASSERT_NE(file, result.files.end());
+  const auto document = nlohmann::json::parse(file->second);
+  ASSERT_EQ(document["modes"].size(), 50u);
+  std::vector<double> errors;
+  for (const auto& mode : document["modes"]) {
+    if (!mode["excited"].get<bool>()) continue;
+    errors.push_back(std::abs(mode["f_hz"].get<double>() / mode["f_true_hz"].get<double>() - 1.0));
+  }
+  EXPECT_EQ(errors.size(), 46u);
+  std::nth_element(errors.begin(), errors.begin() + 23, errors.end());
+  EXPECT_LE(errors[23], 2e-3);
+  EXPECT_EQ(document["loops"], 10);
+}
+
+}  // namespace
+}  // namespace modcal

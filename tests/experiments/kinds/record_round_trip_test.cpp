@@ -1,0 +1,130 @@
+// A simulated record written to a file and inverted from it gives what inverting the simulation
+// gives.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "experiments/kinds/invert_study.hpp"
+#include "experiments/kinds/simulate_study.hpp"
+#include "experiments/loader.hpp"
+#include "experiments/records/csv_writer.hpp"
+#include "experiments/records/inspection.hpp"
+#include "experiments/records/wav_writer.hpp"
+
+namespace modcal {
+namespace {
+
+class RecordRoundTrip : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::temp_directory_path() /
+              (std::string("modcal_round_trip_") +
+               testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  LoadedExperiment load(const std::string& yaml) const {
+    LoadedExperiment loaded =
+        load_experiment(parse_yaml(yaml, (folder_ / "experiment.yaml").string()));
+    EXPECT_EQ(format_mistakes(loaded.document, loaded.mistakes), "");
+    return loaded;
+  }
+  StudyResult run(const std::string& yaml) {
+    const LoadedExperiment loaded = load(yaml);
+    if (!loaded.experiment) return {};
+    return loaded.experiment->run({.work = work_, .folder = folder_, .command = "test"});
+  }
+  void write_record() {
+    const StudyResult simulated = run(kScene + R"(
+kind: simulate
+measurement: {sample_rate: 51.2 kHz, noise_level: 1 %, remove_mean: true}
+outputs: [f_c, R1, R2]
+files: [csv, wav]
+seed: 3
+)");
+    ASSERT_EQ(simulated.signal_files.size(), 2u);
+    write_csv(folder_ / "signals.csv", simulated.signal_files[0].signals);
+    write_wav(folder_ / "signals.wav", simulated.signal_files[1].signals,
+              {.samples = WavSamples::kDouble, .full_scale = 1.0});
+  }
+  static std::string record(const std::string& file) {
+    return R"(
+kind: invert
+record: {file: )" +
+           file + R"(, left: {channel: R1}, right: {channel: R2}, reference: {channel: f_c}}
+string: {length: 0.33 m, linear_density: 3.1e-3 kg/m, fundamental: 196 Hz, modes: 50}
+bow: {position: 30 mm}
+write_signals: true
+)";
+  }
+
+  const std::string kScene = R"(
+scene:
+  string: {length: 0.33 m, linear_density: 3.1e-3 kg/m, fundamental: 196 Hz, modes: 50}
+  bow: {position: 30 mm}
+  duration: 0.42 s
+simulator: modal_exact
+)";
+  std::filesystem::path folder_;
+  SharedWork work_;
+};
+
+TEST_F(RecordRoundTrip, CsvAndSoundFileGiveTheBitsOfTheSimulation) {
+  write_record();
+  const StudyResult direct = run(kScene + R"(
+kind: invert
+measurement: {sample_rate: 51.2 kHz, noise_level: 1 %, remove_mean: true}
+seed: 3
+write_signals: true
+)");
+  ASSERT_EQ(direct.signal_files.size(), 1u);
+  for (const char* file : {"signals.csv", "signals.wav"}) {
+    const StudyResult from_file = run(record(file));
+    ASSERT_EQ(from_file.signal_files.size(), 1u) << file;
+    const auto& expected = direct.signal_files[0].signals;
+    const auto& actual = from_file.signal_files[0].signals;
+    ASSERT_EQ(actual.size(), expected.size());
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      ASSERT_EQ(actual[i].size(), expected[i].size());
+      double scale = 0.0, difference = 0.0;
+      for (std::size_t k = 0; k < expected[i].size(); ++k) {
+        scale = std::max(scale, std::abs(expected[i].samples[k]));
+        difference = std::max(difference, std::abs(actual[i].samples[k] - expected[i].samples[k]));
+      }
+      // The record's mean is removed twice, which moves samples by their rounding.
+      EXPECT_LE(difference, 1e-9 * scale) << expected[i].quantity;
+    }
+    EXPECT_NE(from_file.summary.find("R = "), std::string::npos);  // scored by the reference
+  }
+}
+
+TEST_F(RecordRoundTrip, ACalibrationRunsOnARecord) {
+  write_record();
+  std::string yaml = record("signals.csv");
+  yaml.replace(yaml.find("invert"), 6, "calibrate");
+  const StudyResult result = run(yaml + R"(
+model_error: {frequencies: 1 %}
+calibration: {parameters: {frequencies: all}, objective: spectral_peak, optimizer: {type: mode_by_mode, loops: 2}}
+)");
+  ASSERT_FALSE(result.files.empty());
+  EXPECT_EQ(result.files[0].first, "calibration.json");
+  EXPECT_NE(result.files[0].second.find("\"f_true_hz\": null"), std::string::npos);
+}
+
+TEST_F(RecordRoundTrip, TheInspectedStanzaAsksForTheStringAndNothingElse) {
+  write_record();
+  const InspectionReport report = inspect(folder_ / "signals.csv");
+  LoadedExperiment loaded =
+      load_experiment(parse_yaml(stanza(report), (folder_ / "mine.yaml").string()));
+  EXPECT_TRUE(loaded.has_errors());
+  for (const Mistake& mistake : loaded.mistakes) {
+    EXPECT_NE(mistake.text.find("there is no value"), std::string::npos) << mistake.text;
+  }
+  EXPECT_EQ(loaded.kind, "invert");
+}
+
+}  // namespace
+}  // namespace modcal
