@@ -1,0 +1,29 @@
+# Writes build_info.hpp where it has changed: run at every build, so that the commit is the one built.
+execute_process(COMMAND git -C "${SOURCE_DIR}" rev-parse --short=12 HEAD OUTPUT_VARIABLE COMMIT
+                OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+execute_process(COMMAND git -C "${SOURCE_DIR}" status --porcelain --untracked-files=no
+                OUTPUT_VARIABLE CHANGES OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+if(NOT COMMIT)
+  set(COMMIT "unknown")
+endif()
+if(CHANGES)
+  set(DIRTY "true")
+else()
+  set(DIRTY "false")
+endif()
+file(CONFIGURE OUTPUT "${OUTPUT}" @ONLY CONTENT [[#pragma once
+
+namespace modcal {
+
+inline constexpr char kBuildVersion[] = "@VERSION@";
+inline constexpr char kBuildCommit[] = "@COMMIT@";
+inline constexpr bool kBuildDirty = @DIRTY@;
+inline constexpr char kBuildCompiler[] = "@COMPILER@";
+inline constexpr char kBuildType[] = "@BUILD_TYPE@";
+inline constexpr char kBuildFftw[] = "@FFTW@";
+inline constexpr char kBuildNlopt[] = "@NLOPT@";
+inline constexpr char kBuildCeres[] = "@CERES@";
+inline constexpr char kBuildConfigs[] = "@SOURCE_DIR@/configs";
+
+}  // namespace modcal
+]])

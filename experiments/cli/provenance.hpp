@@ -1,0 +1,16 @@
+// Where results come from: version, commit, compiler, libraries, machine, command, time.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "experiments/report/report.hpp"
+
+namespace modcal {
+
+std::string version_text();
+nlohmann::ordered_json provenance_json(const std::string& command);
+std::vector<report::ProvenanceLine> provenance_lines(const std::string& command);
+
+}  // namespace modcal

@@ -1,0 +1,74 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "experiments/cli/command.hpp"
+#include "experiments/cli/runner.hpp"
+
+namespace modcal {
+namespace {
+
+struct RunArguments {
+  std::string file;
+  std::string out;
+  std::vector<std::string> assignments;
+  int threads = 0;
+  bool json = false;
+};
+
+// Single-quoted for a shell where anything could be special.
+std::string shell_word(const std::string& text) {
+  const std::string_view harmless =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-/=+:,%";
+  if (!text.empty() && text.find_first_not_of(harmless) == std::string::npos) return text;
+  std::string quoted = "'";
+  for (const char letter : text) {
+    if (letter == '\'') {
+      quoted += "'\\''";
+    } else {
+      quoted += letter;
+    }
+  }
+  return quoted + "'";
+}
+
+std::string command_of(const RunArguments& arguments, const std::string& out) {
+  std::string command = "modcal run " + shell_word(arguments.file) + " --out " + shell_word(out);
+  for (const std::string& assignment : arguments.assignments) {
+    command += " --set " + shell_word(assignment);
+  }
+  if (arguments.threads > 0) command += fmt::format(" --threads {}", arguments.threads);
+  return command;
+}
+
+ExitCode run(const RunArguments& arguments) {
+  const LoadedExperiment loaded = load_experiment(arguments.file, arguments.assignments);
+  fmt::print(stderr, "{}", format_mistakes(loaded.document, loaded.mistakes));
+  if (loaded.has_errors()) return ExitCode::kInvalidInput;
+  const std::string out =
+      arguments.out.empty()
+          ? (std::filesystem::path("out") / std::filesystem::path(arguments.file).stem()).string()
+          : arguments.out;
+  return run_one(loaded, {.out = out,
+                          .threads = arguments.threads,
+                          .json = arguments.json,
+                          .command = command_of(arguments, out)});
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app, const Chosen& chosen) {
+  CLI::App* command = app.add_subcommand("run", "Run an experiment");
+  auto arguments = std::make_shared<RunArguments>();
+  command->add_option("file", arguments->file, "YAML file")->required();
+  command->add_option("--out", arguments->out,
+                      "folder of the results; default out/<name of the file>");
+  command->add_option("--set", arguments->assignments, "key.path=value, overrides the file")
+      ->allow_extra_args(false);
+  command->add_option("--threads", arguments->threads, "number of threads; default all")
+      ->check(CLI::Range(1, 4096));
+  command->add_flag("--json", arguments->json, "summary as JSON");
+  command->callback([=] { chosen([=] { return run(*arguments); }); });
+}
+
+}  // namespace modcal
