@@ -1,25 +1,40 @@
 # Every target can be the first one run on a fresh Debian 12 (root or sudo).
 PRESET ?= release
 
-.PHONY: reproduce test bench stress format tidy clean build packages packages-test
+.PHONY: reproduce test bench format tidy clean build packages packages-test packages-develop
 
 build: packages
 	@cmake --preset $(PRESET) >/dev/null
-	@cmake --build --preset $(PRESET)
+	@cmake --build --preset $(PRESET) --target modcal
 
 packages:
-	@cmake/install_packages.sh run
+	@cmake/install_packages.sh
 
 packages-test:
 	@cmake/install_packages.sh test
+
+packages-develop:
+	@cmake/install_packages.sh develop
+
+reproduce: build
+	@build/$(PRESET)/modcal reproduce table1
 
 test: packages-test
 	@cmake --preset $(PRESET) -DMODCAL_WERROR=ON >/dev/null
 	@cmake --build --preset $(PRESET)
 	@ctest --preset $(PRESET) --parallel $$(nproc)
 
-format:
+bench: packages
+	@cmake --preset $(PRESET) >/dev/null
+	@cmake --build --preset $(PRESET)
+	@benchmarks/run.sh build/$(PRESET)
+
+format: packages-develop
 	@git ls-files -co --exclude-standard -- '*.cpp' '*.hpp' | xargs ls 2>/dev/null | xargs clang-format -i
+
+tidy: packages packages-develop
+	@cmake --preset tidy >/dev/null
+	@cmake --build --preset tidy
 
 clean:
 	@cmake -E rm -rf build
