@@ -36,8 +36,10 @@ struct Simulation {
   std::size_t attachments = 0;  ///< changes from sliding to sticking
   std::size_t releases = 0;     ///< changes from sticking to sliding
   std::size_t modes_moved = 0;  ///< modes that the contact force reaches
-  /// Time at which the state stopped being finite [s]; such a result holds no signals.
+  /// Time at which the simulation could not go on [s]; such a result holds no signals.
   std::optional<double> diverged_at;
+  /// Why it could not; empty otherwise.
+  std::string explanation;
 };
 
 /// Number of samples of a record: duration·f_s rounded to the nearest, at t = 0, 1/f_s, …

@@ -4,6 +4,7 @@
 
 #include "libsim/base/error.hpp"
 #include "libsim/dynamics/contact_rule.hpp"
+#include "libsim/dynamics/simulators/scene_setup.hpp"
 
 namespace modcal {
 namespace {
@@ -19,17 +20,6 @@ SchemeWeights scheme_weights(const ContactModes& modes, double time_step, Weight
   return result;
 }
 
-ContactParameters contact_parameters(const Scene& scene, const FrictionLaw& friction,
-                                     double effective_mass) {
-  const Adherence adherence = friction.adherence();
-  const bool near_critical = std::isnan(adherence.damping);
-  return {.bow_velocity = scene.bow.velocity,
-          .static_limit = friction.static_limit(scene.bow.normal_force),
-          .stiffness = adherence.stiffness,
-          .damping = near_critical ? 2.0 * std::sqrt(adherence.stiffness * effective_mass)
-                                   : adherence.damping};
-}
-
 // One step with the force solved for needs a single solution of v = v_free + b F(v).
 void require_unique_sliding(const SlidingLaw& law, double response, double time_step) {
   const double fall = std::visit([](const auto& l) { return l.steepest_fall(); }, law);
@@ -38,14 +28,6 @@ void require_unique_sliding(const SlidingLaw& law, double response, double time_
       "time step {:g} s is too long for this friction law: its force falls by {:g} N per "
       "m/s, which needs a step below about {:g} s",
       time_step, fall, time_step / (fall * response));
-}
-
-Signal named(std::string quantity, std::string unit, double rate, bool wanted, std::size_t count) {
-  return {std::move(quantity), std::move(unit), rate, std::vector<double>(wanted ? count : 0)};
-}
-
-double* target_of(Signal& signal) {
-  return signal.samples.empty() ? nullptr : signal.samples.data();
 }
 
 void store_first(Signal& signal, double value) {
@@ -76,16 +58,6 @@ double initial_force(const StepLoop& loop) {
             .initial_force();
       },
       loop.law);
-}
-
-Simulation empty_simulation(std::size_t count, double rate, const OutputRequest& outputs) {
-  Simulation result;
-  result.displacement = named("y", "m", rate, outputs.displacement, count);
-  result.velocity = named("v", "m/s", rate, outputs.velocity, count);
-  result.force = named("f_c", "N", rate, outputs.force, count);
-  result.left_reaction = named("R1", "N", rate, outputs.left_reaction, count);
-  result.right_reaction = named("R2", "N", rate, outputs.right_reaction, count);
-  return result;
 }
 
 void store_initial(Simulation& result, const InitialMotion& motion, double force) {
@@ -128,16 +100,13 @@ Simulation simulate_fixed_step(const Scene& scene, double sample_rate, const Out
 
   Simulation result = empty_simulation(count, sample_rate, outputs);
   store_initial(result, motion, first_force);
-  loop.targets = {.displacement = target_of(result.displacement),
-                  .velocity = target_of(result.velocity),
-                  .force = target_of(result.force),
-                  .left_reaction = target_of(result.left_reaction),
-                  .right_reaction = target_of(result.right_reaction)};
+  loop.targets = targets_of(result);
   const LoopCounts counts = run_step_loop(loop, coefficients);
 
   if (counts.first_bad_sample < count) {
     result = empty_simulation(0, sample_rate, {});
     result.diverged_at = static_cast<double>(counts.first_bad_sample) / sample_rate;
+    result.explanation = "the motion is not a finite number";
   }
   result.time_step = plan.time_step;
   result.steps = (count - 1) * plan.steps_per_sample;

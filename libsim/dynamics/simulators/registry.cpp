@@ -1,5 +1,6 @@
 #include <array>
 
+#include "libsim/dynamics/simulators/modal_event.hpp"
 #include "libsim/dynamics/simulators/modal_exact.hpp"
 #include "libsim/dynamics/simulators/newmark_explicit.hpp"
 
@@ -7,6 +8,8 @@ namespace modcal {
 
 Registry<Simulator> Simulator::registry() {
   static constexpr std::array kTable = {
+      entry_of<Simulator, ModalEvent>(
+          "modal_event", "exact adherence, collocated sliding, switches located inside the step"),
       entry_of<Simulator, ModalExact>(
           "modal_exact", "exact modal propagator, first-order hold, implicit friction"),
       entry_of<Simulator, NewmarkExplicit>(

@@ -1,0 +1,154 @@
+#include "libsim/dynamics/event/closed_loop.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libsim/dynamics/event/secular_roots.hpp"
+
+namespace modcal::event {
+namespace {
+
+using Complex = std::complex<double>;
+
+constexpr double kWorstCondition = 1e8;
+
+// What one root contributes: 1/((μ − λ_n)(μ − λ̄_n)) for every mode and sums over them.
+struct RootColumn {
+  std::vector<Complex> inverse;
+  Complex biorthogonal = 0.0;  // l·r = −2 dσ/dμ with r of unit force
+  double condition = 0.0;      // |l||r|/|l·r| in the energy norm, Z/√d
+};
+
+RootColumn root_column(std::span<const OpenLoopMode> modes, double stiffness, double damping,
+                       const SecularRoot& root) {
+  RootColumn column;
+  double left = 0.0, right = 0.0;
+  for (const OpenLoopMode& mode : modes) {
+    const Complex from = root.minus(mode.pole);
+    const Complex mirrored = root.minus(std::conj(mode.pole));
+    const Complex gain = (stiffness + damping * mode.pole) / Complex(0.0, mode.pole.imag());
+    column.inverse.push_back(1.0 / (from * mirrored));
+    column.biorthogonal +=
+        mode.drive * (gain / (from * from) + std::conj(gain) / (mirrored * mirrored));
+    const double both = 1.0 / std::norm(from) + 1.0 / std::norm(mirrored);
+    left += mode.drive * std::norm(gain) * both;
+    right += mode.drive * both;
+  }
+  column.condition = std::sqrt(left) * std::sqrt(right) / std::abs(column.biorthogonal);
+  return column;
+}
+
+std::vector<OpenLoopMode> open_loop(const ContactModes& modes) {
+  std::vector<OpenLoopMode> result;
+  for (std::size_t n = 0; n < modes.size(); ++n) result.push_back({modes.pole[n], modes.drive[n]});
+  return result;
+}
+
+// Response of Σ gain Im Z to a slow force: gain d ω_d/ω² and −gain d ω_d 2ζω/ω⁴.
+QuasiStatic quasi_static(const ContactModes& modes, const std::vector<double>& gain) {
+  QuasiStatic result;
+  for (std::size_t n = 0; n < modes.size(); ++n) {
+    const double square = std::norm(modes.pole[n]);
+    const double value = gain[n] * modes.drive[n] * modes.pole[n].imag() / square;
+    result.value += value;
+    result.rate += value * 2.0 * modes.pole[n].real() / square;
+  }
+  return result;
+}
+
+void size_maps(const ContactModes& modes, ClosedLoop& loop) {
+  const std::size_t n = loop.modes, m = loop.roots;
+  for (PoleMap* map : {&loop.to_closed, &loop.to_open}) {
+    const bool closing = map == &loop.to_closed;
+    const std::size_t inputs = closing ? n : m, outputs = closing ? m : n;
+    map->a = map->b = PlanarVector(inputs);
+    map->p = map->q = PlanarVector(outputs);
+    map->matrix = PlanarRows(inputs, outputs);
+    map->scratch_a.resize(padded_size(inputs));
+    map->scratch_b.resize(padded_size(inputs));
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    const Complex pole = modes.pole[i];
+    const Complex gain = (loop.stiffness + loop.damping * pole) / Complex(0.0, pole.imag());
+    loop.to_closed.a.set(i, 2.0 * gain);
+    loop.to_closed.b.set(i, 2.0 * gain * std::conj(pole));
+    loop.to_open.p.set(i, modes.drive[i]);
+    loop.to_open.q.set(i, -modes.drive[i] * pole);
+  }
+}
+
+void fill_root(const ContactModes& modes, std::span<const OpenLoopMode> open, std::size_t j,
+               const SecularRoot& root, const RootColumn& column, ClosedLoop& loop) {
+  const Complex mu = root.value();
+  loop.pole.set(j, mu);
+  loop.largest_pole = std::max(loop.largest_pole, std::abs(mu));
+  loop.to_closed.p.set(j, mu);
+  loop.to_closed.q.set(j, -1.0);
+  loop.to_open.a.set(j, std::conj(mu));
+  loop.to_open.b.set(j, 1.0);
+  const Complex scale = (root.is_real() ? 1.0 : 2.0) / column.biorthogonal;
+  Complex left = 0.0, right = 0.0;
+  for (std::size_t n = 0; n < open.size(); ++n) {
+    loop.to_closed.matrix.set(n, j, scale * column.inverse[n]);
+    const Complex pole = open[n].pole;
+    const Complex pair = -root.minus(pole) * (pole - std::conj(mu));
+    loop.to_open.matrix.set(j, n, 1.0 / pair);
+    const double weight = open[n].drive * pole.imag();
+    left += modes.left_gain[n] * weight * column.inverse[n];
+    right += modes.right_gain[n] * weight * column.inverse[n];
+  }
+  loop.observed.set(ClosedLoop::kVelocity, j, -mu / (loop.stiffness + loop.damping * mu));
+  loop.observed.set(ClosedLoop::kLeft, j, left);
+  loop.observed.set(ClosedLoop::kRight, j, right);
+}
+
+void fill_particular(const ContactModes& modes, ClosedLoop& loop) {
+  loop.open_constant = loop.open_ramp = PlanarVector(loop.modes);
+  loop.constant = loop.ramp = PlanarVector(loop.roots);
+  for (std::size_t n = 0; n < loop.modes; ++n) {
+    loop.open_constant.set(n, -modes.drive[n] / modes.pole[n]);
+    loop.open_ramp.set(n, -modes.drive[n] / (modes.pole[n] * modes.pole[n]));
+  }
+  apply(loop.to_closed, loop.modes, loop.open_constant, loop.constant);
+  apply(loop.to_closed, loop.modes, loop.open_ramp, loop.ramp);
+  loop.displacement = quasi_static(modes, modes.compliance);
+  loop.left = quasi_static(modes, modes.left_gain);
+  loop.right = quasi_static(modes, modes.right_gain);
+}
+
+}  // namespace
+
+double ClosedLoop::force_rate(double bow_velocity) const {
+  return stiffness * bow_velocity / (1.0 + stiffness * displacement.value);
+}
+
+double ClosedLoop::force_offset(double bow_velocity, double rest_point) const {
+  const double rate = force_rate(bow_velocity);
+  return (stiffness * (rest_point - displacement.rate * rate) +
+          damping * (bow_velocity - displacement.value * rate)) /
+         (1.0 + stiffness * displacement.value);
+}
+
+std::optional<ClosedLoop> make_closed_loop(const ContactModes& modes, double stiffness,
+                                           double damping) {
+  const std::vector<OpenLoopMode> open = open_loop(modes);
+  const auto roots = secular_roots(open, stiffness, damping);
+  if (!roots) return std::nullopt;
+  ClosedLoop loop;
+  loop.modes = modes.size();
+  loop.roots = roots->size();
+  loop.stiffness = stiffness;
+  loop.damping = damping;
+  loop.pole = PlanarVector(loop.roots);
+  loop.observed = PlanarRows(ClosedLoop::kRows, loop.roots);
+  size_maps(modes, loop);
+  for (std::size_t j = 0; j < loop.roots; ++j) {
+    const RootColumn column = root_column(open, stiffness, damping, (*roots)[j]);
+    if (!(column.condition < kWorstCondition)) return std::nullopt;
+    fill_root(modes, open, j, (*roots)[j], column, loop);
+  }
+  fill_particular(modes, loop);
+  return loop;
+}
+
+}  // namespace modcal::event

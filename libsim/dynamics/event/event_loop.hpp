@@ -1,0 +1,60 @@
+// Event-driven stepping of the bowed string: stretches of sliding and of adherence, joined at
+// switches located inside the step.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "libsim/dynamics/event/closed_loop.hpp"
+#include "libsim/dynamics/step_loop.hpp"
+
+namespace modcal::event {
+
+/// State of the adherence spring at the instant of attachment.
+enum class AttachRule {
+  kLiteral,     ///< y_c = 0: the force starts at 0 (Debut, Delaune and Antunes, 2010, eq. 8)
+  kContinuous,  ///< y_c = −f/K_a: the force continues from the sliding limit
+};
+
+/// String and contact at one instant.
+struct EventState {
+  PlanarVector modes;  ///< Z
+  bool sticking = false;
+  double elongation = 0.0;  ///< y_c of the adherence spring [m], while sticking
+  double side = -1.0;       ///< sgn v_c, while sliding
+};
+
+/// Hysteresis: adherence ends only at |f| = μ_S F_N, sliding only at v_c = 0; between these limits
+/// the state stays what it is. A released string slides with the sign of its v_c; at v_c = 0
+/// against the force that held it.
+struct EventLoop {
+  ContactParameters contact;
+  SlidingLaw law;
+  AttachRule attach = AttachRule::kLiteral;
+  int nodes = 5;              ///< Lobatto nodes of a sliding step, 2 … 5: order 2(nodes − 1)
+  double slope_number = 0.7;  ///< κ, largest |g'| h/m_eff of a sliding step
+  double grid_step = 0.0;     ///< longest step [s]
+  std::size_t steps_per_sample = 1;
+  std::size_t samples = 0;  ///< samples, that of the start included
+  SampleTargets targets;    ///< sample j is taken after j·steps_per_sample grid steps
+};
+
+struct EventCounts {
+  std::size_t attachments = 0;
+  std::size_t releases = 0;
+  /// Releases at which the string already moved against the slip that the force asked for.
+  std::size_t wrong_sign_releases = 0;
+  std::size_t steps = 0;
+  /// Why the run stopped early, and when [s].
+  std::optional<std::string> failure;
+  double failed_at = 0.0;
+};
+
+/// The state with the given modes: sticking with an unstretched spring where v_c = 0.
+EventState initial_state(const ContactModes& modes, double bow_velocity);
+
+/// Advances the state over all samples. Throws InvalidInput where the contact cannot be computed
+/// at all: a double root of the closed loop, or a root that turns by more than 1e4 rad in a step.
+EventCounts run_event_loop(const EventLoop& loop, const ContactModes& modes, EventState& state);
+
+}  // namespace modcal::event

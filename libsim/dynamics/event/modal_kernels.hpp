@@ -1,0 +1,72 @@
+// Vector kernels of the event-driven integrator: sums and updates over all modes. No allocation, no
+// I/O; the instruction set is chosen at run time. Every vector is padded with zeros.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "libsim/base/aligned_vector.hpp"
+
+namespace modcal::event {
+
+/// Tables of `count` planar rows of one length behind each other.
+struct PlanarRows {
+  std::size_t count = 0;
+  std::size_t size = 0;
+  AlignedVector data;
+
+  PlanarRows() = default;
+  PlanarRows(std::size_t rows, std::size_t columns)
+      : count(rows), size(padded_size(columns)), data(2 * rows * size) {}
+  double* re(std::size_t row) { return data.data() + 2 * row * size; }
+  double* im(std::size_t row) { return re(row) + size; }
+  const double* re(std::size_t row) const { return data.data() + 2 * row * size; }
+  const double* im(std::size_t row) const { return re(row) + size; }
+  void set(std::size_t row, std::size_t column, std::complex<double> value) {
+    re(row)[column] = value.real();
+    im(row)[column] = value.imag();
+  }
+};
+
+/// Re Σ w and Re Σ μ w.
+struct SumAndRate {
+  double sum = 0.0;
+  double rate = 0.0;
+};
+
+/// out = factor ∘ state; returns the sums of the new state.
+SumAndRate advance(const PlanarVector& factor, const PlanarVector& pole, const PlanarVector& state,
+                   PlanarVector& out);
+
+/// out = e^{pole·time} ∘ state for any time; |pole·time| ≤ 1e4. Returns the sums of the new state.
+SumAndRate advance_by(double time, const PlanarVector& pole, const PlanarVector& state,
+                      PlanarVector& out);
+
+/// out[r] = Re Σ_n rows[r][n] state[n].
+void real_products(const PlanarRows& rows, const PlanarVector& state, std::span<double> out);
+
+/// Σ weight (|Re state| + |Im state|) ≥ Σ weight |state|.
+double weighted_size(const AlignedVector& weight, const PlanarVector& state);
+
+/// state ← factor ∘ state + Σ_j forces[j] response[j].
+void advance_driven(const PlanarVector& factor, const PlanarRows& response,
+                    std::span<const double> forces, PlanarVector& state);
+
+/// state ← e^{x} ∘ state + drive ∘ Σ_k weights[k] φ_{k+1}(x), x = pole·time, |x| ≤ `largest`,
+/// φ_0 = e^x, φ_k = (φ_{k−1} − 1/(k−1)!)/x: the highest by its Taylor series, the others by the
+/// downward recursion φ_k = x φ_{k+1} + 1/k!, both stable for |x| up to about 2.
+void advance_driven_by(double time, double largest, const PlanarVector& pole,
+                       const AlignedVector& drive, std::span<const double> weights,
+                       PlanarVector& state);
+
+/// Real-linear map between complex vectors whose matrix is a product of poles' differences:
+/// out_j = p_j Σ_n A_n M_nj + q_j Σ_n B_n M_nj with A = Re(a ∘ in), B = Re(b ∘ in).
+struct PoleMap {
+  PlanarVector a, b;
+  PlanarRows matrix;  ///< one row an input
+  PlanarVector p, q;
+  AlignedVector scratch_a, scratch_b;  ///< A and B of the running call
+};
+void apply(PoleMap& map, std::size_t inputs, const PlanarVector& in, PlanarVector& out);
+
+}  // namespace modcal::event

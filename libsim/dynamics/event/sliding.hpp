@@ -1,0 +1,219 @@
+// The sliding string: collocation steps, and the instant at which the bow catches it.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "libsim/dynamics/event/collocation.hpp"
+#include "libsim/dynamics/event/first_crossing.hpp"
+
+namespace modcal::event {
+
+/// One stretch of sliding with sign side = sgn(v_c), f = −side·g(side·v_c). Position x in [0, 1]
+/// counts grid steps; steps are dyadic parts of one, a first one of any length leads to the next
+/// dyadic point.
+template <typename Law>
+class Sliding {
+ public:
+  /// `slope_number` κ: the steps h keep |g'(u)| h/m_eff ≤ κ at their start and ≤ 2κ at every node,
+  /// where the friction equation has one solution.
+  Sliding(SlidingModel& model, const Law& law, double bow_velocity, double slope_number)
+      : model_(model), law_(law), bow_velocity_(bow_velocity), slope_number_(slope_number) {}
+
+  /// Starts with the sliding speed u = side·v_c ≥ 0.
+  void start(double side, double speed) {
+    side_ = side;
+    set_speed(std::max(speed, 0.0));
+    refinement_ = 0;
+  }
+
+  enum class Outcome {
+    kAdvanced,
+    kRefined,   ///< nothing moved; the next step is shorter
+    kAttached,  ///< v_c = 0 there
+    kFailed,    ///< no step is short enough
+  };
+  struct Advance {
+    double position;
+    Outcome outcome;
+  };
+  /// Advances `state` from x by one step at most.
+  Advance advance(double x, PlanarVector& state) {
+    const int level = wanted_level() + refinement_;
+    if (level > kDeepestLevel) return {x, Outcome::kFailed};
+    const double parts = std::ldexp(1.0, level);
+    double end = (std::floor(x * parts) + 1.0) / parts;
+    if ((end - x) * parts < 1e-9) end += 1.0 / parts;  // x is that point but for rounding
+    const bool on_grid = (end - x) * parts == 1.0;
+    if (on_grid && speed_ > 0.0) {
+      const auto result = grid_step(model_.table(level), end, state);
+      if (result) return *result;
+    }
+    return any_step(x, end, state);
+  }
+
+  double side() const { return side_; }
+  double speed() const { return speed_; }
+  double force() const { return -side_ * friction_; }
+
+ private:
+  static constexpr int kDeepestLevel = 44;
+
+  void set_speed(double speed) {
+    speed_ = speed;
+    const auto point = law_.at(speed);
+    friction_ = point.force;
+    slope_ = point.slope;
+  }
+
+  int wanted_level() const {
+    int level = model_.first_level();
+    double number = -slope_ * std::ldexp(model_.grid_step(), -level) / model_.effective_mass();
+    for (; number > slope_number_ && level <= kDeepestLevel; number *= 0.5) ++level;
+    return level;
+  }
+
+  NodeValues start_values() const {
+    NodeValues values;
+    values.speed[0] = speed_;
+    values.friction[0] = friction_;
+    values.slope[0] = slope_;
+    return values;
+  }
+
+  bool steep(const NodeValues& values, double step) const {
+    double steepest = 0.0;
+    for (int i = 0; i < nodes(); ++i) steepest = std::max(steepest, -values.slope[i]);
+    return steepest * step > 2.0 * slope_number_ * model_.effective_mass();
+  }
+
+  void accept(const NodeValues& values) {
+    const int last = nodes() - 1;
+    speed_ = values.speed[last];
+    friction_ = values.friction[last];
+    slope_ = values.slope[last];
+    refinement_ = 0;
+  }
+
+  Advance refined(double x) {
+    ++refinement_;
+    return {x, Outcome::kRefined};
+  }
+
+  // Power coefficients in θ of the contact force.
+  NodeVector force_powers(const NodeValues& values) const {
+    NodeVector powers{};
+    for (int j = 0; j < nodes(); ++j) {
+      for (int k = 0; k < nodes(); ++k) {
+        powers[k] -= side_ * values.friction[j] * model_.rule().power[j][k];
+      }
+    }
+    return powers;
+  }
+
+  // A dyadic step from the tables. Nothing where it may hold a switch: the series decide then.
+  std::optional<Advance> grid_step(const SlidingTable& table, double end, PlanarVector& state) {
+    NodeVector free{};
+    const auto unknowns = static_cast<std::size_t>(nodes() - 1);
+    real_products(table.rows, state, std::span(free).subspan(1, unknowns));
+    for (int i = 1; i < nodes(); ++i) free[i] = side_ * (free[i] - bow_velocity_);
+    NodeValues values = start_values();
+    if (!solve_nodes(law_, nodes(), table.coupling, free, values) || steep(values, table.step)) {
+      return refined(end - table.step / model_.grid_step());
+    }
+    if (!stays_sliding(table, values, state)) return std::nullopt;
+    NodeVector force{};
+    for (int j = 0; j < nodes(); ++j) force[j] = -side_ * values.friction[j];
+    advance_driven(table.factor, table.response, std::span(force).first(unknowns + 1), state);
+    accept(values);
+    return Advance{end, Outcome::kAdvanced};
+  }
+
+  // Bézier hull of the interpolated speed beyond its interpolation error: u > 0 throughout.
+  bool stays_sliding(const SlidingTable& table, const NodeValues& values,
+                     const PlanarVector& state) const {
+    double lowest = HUGE_VAL;
+    for (int i = 0; i < nodes(); ++i) {
+      double control = 0.0;
+      for (int j = 0; j < nodes(); ++j) {
+        control += model_.rule().bernstein[i][j] * values.speed[j];
+      }
+      lowest = std::min(lowest, control);
+    }
+    if (!(lowest > 0.0)) return false;
+    const NodeVector force = force_powers(values);
+    double remainder = table.free_remainder * model_.free_derivative_bound(state);
+    for (int k = 0; k < nodes(); ++k) remainder += table.forced_remainder[k] * std::abs(force[k]);
+    return lowest > remainder;
+  }
+
+  // A step of any length. A switch is found by repeating the whole step with the length at which
+  // the last one crossed v_c = 0: the step that is kept ends there and nothing is interpolated.
+  Advance any_step(double x, double end, PlanarVector& state) {
+    constexpr int kMaxTrials = 20;
+    // Beyond its end the step's own series is good for a last correction of this share.
+    constexpr double kLastCorrection = 1e-6;
+    Series free;
+    model_.free_series(state, free);
+    double length = end - x;
+    const double series_length = model_.series_step() / model_.grid_step();
+    for (int trial = 0; trial < kMaxTrials; ++trial) {
+      if (length < 1e-15) return {x, Outcome::kAttached};
+      const double ratio = length / series_length;
+      NodeValues values = start_values();
+      if (!solve_any(free, ratio, values) || steep(values, length * model_.grid_step())) {
+        return refined(x);
+      }
+      const NodeVector force = force_powers(values);
+      const auto theta =
+          first_crossing(speed_series(free, ratio, force), trial == 0 ? 1.0 : 1.1, speed_ == 0.0);
+      if (!theta) {
+        model_.advance_any(ratio, 1.0, force, state);
+        accept(values);
+        return {trial == 0 ? end : x + length, Outcome::kAdvanced};
+      }
+      if (std::abs(*theta - 1.0) <= kLastCorrection) {
+        model_.advance_any(ratio, *theta, force, state);
+        return {x + *theta * length, Outcome::kAttached};
+      }
+      length *= *theta;
+    }
+    return refined(x);
+  }
+
+  bool solve_any(const Series& free_velocity, double ratio, NodeValues& values) const {
+    NodeVector free{}, velocity{};
+    for (std::size_t p = kSeriesTerms; p-- > 0;) {
+      for (int i = 1; i < nodes(); ++i) {
+        velocity[i] = velocity[i] * (ratio * model_.rule().node[i]) + free_velocity[p];
+      }
+    }
+    for (int i = 1; i < nodes(); ++i) free[i] = side_ * (velocity[i] - bow_velocity_);
+    return solve_nodes(law_, nodes(), model_.coupling(ratio), free, values);
+  }
+
+  // u(θ) of a step, θ = 1 at its end.
+  Series speed_series(const Series& free_velocity, double ratio, const NodeVector& force) const {
+    Series speed{};
+    double scale = 1.0;
+    for (std::size_t p = 0; p < kSeriesTerms; ++p) {
+      speed[p] = free_velocity[p] * scale;
+      scale *= ratio;
+    }
+    model_.add_forced_series(ratio, force, speed);
+    for (double& c : speed) c *= side_;
+    speed[0] = speed_;
+    return speed;
+  }
+
+  int nodes() const { return model_.rule().nodes; }
+
+  SlidingModel& model_;
+  Law law_;
+  double bow_velocity_, slope_number_;
+  double side_ = -1.0;
+  double speed_ = 0.0, friction_ = 0.0, slope_ = 0.0;
+  int refinement_ = 0;
+};
+
+}  // namespace modcal::event

@@ -1,0 +1,185 @@
+#include "libsim/dynamics/event/sticking.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "libsim/dynamics/event/first_crossing.hpp"
+
+namespace modcal::event {
+namespace {
+
+using Complex = std::complex<double>;
+
+// Largest |μ|h of a power series of 25 terms: 1.6²⁵/25! = 8e-21 of its size is left out.
+constexpr double kSeriesPhase = 1.6;
+// Force this close to the limit (relative) at the attachment is the limit: the continuous rule.
+constexpr double kAtLimit = 1e-12;
+
+PlanarVector exponentials(const PlanarVector& pole, std::size_t count, double time) {
+  PlanarVector result(count);
+  for (std::size_t j = 0; j < count; ++j) result.set(j, std::exp(pole.at(j) * time));
+  return result;
+}
+
+}  // namespace
+
+Sticking::Sticking(ClosedLoop loop, double bow_velocity, double static_limit, double longest_step)
+    : loop_(std::move(loop)),
+      bow_velocity_(bow_velocity),
+      limit_(static_limit),
+      longest_step_(longest_step),
+      series_step_(longest_step),
+      series_(kTerms, loop_.roots),
+      fourth_power_(padded_size(loop_.roots)),
+      state_(loop_.roots),
+      trial_(loop_.roots) {
+  while (series_step_ * loop_.largest_pole > kSeriesPhase) series_step_ *= 0.5;
+  step_factor_ = exponentials(loop_.pole, loop_.roots, longest_step_);
+  series_factor_ = exponentials(loop_.pole, loop_.roots, series_step_);
+  for (std::size_t j = 0; j < loop_.roots; ++j) {
+    const Complex x = loop_.pole.at(j) * series_step_;
+    Complex term = 1.0;
+    for (std::size_t p = 0; p < kTerms; ++p) {
+      series_.set(p, j, term);
+      term *= x / static_cast<double>(p + 1);
+    }
+    fourth_power_[j] = std::pow(std::abs(loop_.pole.at(j)), 4.0);
+  }
+}
+
+void Sticking::attach(const PlanarVector& open_state, double displacement, double elongation) {
+  rest_point_ = displacement - elongation;
+  force_rate_ = loop_.force_rate(bow_velocity_);
+  force_offset_ = loop_.force_offset(bow_velocity_, rest_point_);
+  apply(loop_.to_closed, loop_.modes, open_state, state_);
+  SumAndRate sums;
+  for (std::size_t j = 0; j < loop_.roots; ++j) {
+    state_.re[j] -= force_offset_ * loop_.constant.re[j] + force_rate_ * loop_.ramp.re[j];
+    state_.im[j] -= force_offset_ * loop_.constant.im[j] + force_rate_ * loop_.ramp.im[j];
+    sums.sum += state_.re[j];
+    sums.rate += loop_.pole.re[j] * state_.re[j] - loop_.pole.im[j] * state_.im[j];
+  }
+  accept(0.0, sums);
+  fourth_derivative_ = weighted_size(fourth_power_, state_);
+  bound_is_fresh_ = true;
+  starts_at_limit_ = 0;
+  if (std::abs(force_) >= (1.0 - kAtLimit) * limit_) starts_at_limit_ = force_ > 0.0 ? 1 : -1;
+}
+
+void Sticking::detach(double tau, PlanarVector& open_state) {
+  apply(loop_.to_open, loop_.roots, state_, open_state);
+  const double value = particular(tau);
+  for (std::size_t n = 0; n < loop_.modes; ++n) {
+    open_state.re[n] += value * loop_.open_constant.re[n] + force_rate_ * loop_.open_ramp.re[n];
+    open_state.im[n] += value * loop_.open_constant.im[n] + force_rate_ * loop_.open_ramp.im[n];
+  }
+}
+
+void Sticking::accept(double tau, const SumAndRate& sums) {
+  force_ = particular(tau) + sums.sum;
+  rate_ = force_rate_ + sums.rate;
+}
+
+void Sticking::propagate(double time, SumAndRate& sums) {
+  if (time == longest_step_) {
+    sums = event::advance(step_factor_, loop_.pole, state_, trial_);
+  } else if (time == series_step_) {
+    sums = event::advance(series_factor_, loop_.pole, state_, trial_);
+  } else {
+    sums = advance_by(time, loop_.pole, state_, trial_);
+  }
+}
+
+bool Sticking::hull_inside(double time, double end_force, double end_rate, double bound) const {
+  const double second = force_ + time / 3.0 * rate_;
+  const double third = end_force - time / 3.0 * end_rate;
+  const double square = time * time;
+  const double remainder = square * square / 384.0 * bound;
+  const double highest = std::max({force_, second, third, end_force}) + remainder;
+  const double lowest = std::min({force_, second, third, end_force}) - remainder;
+  return highest < limit_ && lowest > -limit_;
+}
+
+bool Sticking::certified(double time, double end_force, double end_rate) {
+  if (starts_at_limit_ != 0) return false;
+  // |w_j| only falls while the string sticks, so that an older bound holds too.
+  if (hull_inside(time, end_force, end_rate, fourth_derivative_)) return true;
+  if (bound_is_fresh_) return false;
+  fourth_derivative_ = weighted_size(fourth_power_, state_);
+  bound_is_fresh_ = true;
+  return hull_inside(time, end_force, end_rate, fourth_derivative_);
+}
+
+std::optional<double> Sticking::crossing(double tau, double time) {
+  std::array<double, kTerms> force, below, above;
+  real_products(series_, state_, force);
+  const double ratio = time / series_step_;
+  double scale = 1.0;
+  for (double& c : force) {
+    c *= scale;
+    scale *= ratio;
+  }
+  force[0] += particular(tau);
+  force[1] += force_rate_ * time;
+  for (std::size_t p = 0; p < kTerms; ++p) {
+    below[p] = -force[p];
+    above[p] = force[p];
+  }
+  below[0] += limit_;
+  above[0] += limit_;
+  const auto upper = first_crossing(below, 1.0, starts_at_limit_ > 0);
+  const auto lower = first_crossing(above, upper.value_or(1.0), starts_at_limit_ < 0);
+  return lower ? lower : upper;
+}
+
+Sticking::Advance Sticking::advance(double tau, double time) {
+  SumAndRate sums;
+  propagate(time, sums);
+  const double end_force = particular(tau + time) + sums.sum;
+  if (!certified(time, end_force, force_rate_ + sums.rate)) {
+    // A longer stretch than the series can tell is cut; the caller asks again for the rest.
+    if (time > series_step_ * (1.0 + 1e-9)) {
+      time = series_step_;
+      propagate(time, sums);
+      if (certified(time, particular(tau + time) + sums.sum, force_rate_ + sums.rate)) {
+        std::swap(state_, trial_);
+        accept(tau + time, sums);
+        bound_is_fresh_ = false;
+        return {time, false};
+      }
+    }
+    if (const auto theta = crossing(tau, time)) {
+      const double until = *theta * time;
+      sums = advance_by(until, loop_.pole, state_, trial_);
+      std::swap(state_, trial_);
+      accept(tau + until, sums);
+      return {until, true};
+    }
+  }
+  std::swap(state_, trial_);
+  accept(tau + time, sums);
+  bound_is_fresh_ = false;
+  starts_at_limit_ = 0;
+  return {time, false};
+}
+
+Motion Sticking::observe(double tau, MotionRequest wanted) const {
+  Motion motion;
+  motion.force = force_;
+  std::array<double, ClosedLoop::kRows> row{};
+  std::size_t rows = wanted.contact ? std::size_t{ClosedLoop::kLeft} : 0;
+  if (wanted.reactions) rows = ClosedLoop::kRows;
+  real_products(loop_.observed, state_, std::span(row).first(rows));
+  const double value = particular(tau);
+  motion.velocity = row[ClosedLoop::kVelocity] + loop_.displacement.value * force_rate_;
+  motion.left = row[ClosedLoop::kLeft] + loop_.left.value * value + loop_.left.rate * force_rate_;
+  motion.right =
+      row[ClosedLoop::kRight] + loop_.right.value * value + loop_.right.rate * force_rate_;
+  const double slip = motion.velocity - bow_velocity_;
+  motion.displacement =
+      rest_point_ + bow_velocity_ * tau - (force_ + loop_.damping * slip) / loop_.stiffness;
+  return motion;
+}
+
+}  // namespace modcal::event

@@ -1,0 +1,63 @@
+// The string held by the bow: advanced exactly, with a certificate that it was not let go in
+// between.
+#pragma once
+
+#include <optional>
+
+#include "libsim/dynamics/event/closed_loop.hpp"
+#include "libsim/dynamics/event/motion.hpp"
+
+namespace modcal::event {
+
+/// One stretch of adherence. Time τ [s] runs from the attachment.
+class Sticking {
+ public:
+  /// `longest_step` [s]: no call of advance() asks for more.
+  Sticking(ClosedLoop loop, double bow_velocity, double static_limit, double longest_step);
+
+  /// Starts from the open-loop state Z with the contact at y [m] and its spring stretched by
+  /// `elongation` [m].
+  void attach(const PlanarVector& open_state, double displacement, double elongation);
+  /// Open-loop state Z at τ.
+  void detach(double tau, PlanarVector& open_state);
+
+  struct Advance {
+    double time = 0.0;      ///< how far it went [s], at most the time asked for
+    bool released = false;  ///< |f| reached the limit there
+  };
+  /// Advances from τ by at most `time`. Either no event happens on the stretch (Bézier hull of the
+  /// cubic Hermite interpolant of f plus its remainder h⁴/384 Σ|μ_j|⁴|w_j| inside the limits), or
+  /// the first crossing of the power series of f is located to rounding; where the series does not
+  /// converge fast, a shorter stretch is taken.
+  Advance advance(double tau, double time);
+
+  double force() const { return force_; }
+  double rest_point() const { return rest_point_; }
+  Motion observe(double tau, MotionRequest wanted) const;
+
+ private:
+  static constexpr std::size_t kTerms = 25;
+
+  double particular(double tau) const { return force_offset_ + force_rate_ * tau; }
+  void propagate(double time, SumAndRate& sums);
+  bool certified(double time, double end_force, double end_rate);
+  bool hull_inside(double time, double end_force, double end_rate, double bound) const;
+  std::optional<double> crossing(double tau, double time);
+  void accept(double tau, const SumAndRate& sums);
+
+  ClosedLoop loop_;
+  double bow_velocity_, limit_, longest_step_, series_step_;
+  std::size_t halvings_ = 0;  // series_step_ = longest_step_/2^halvings_
+  PlanarVector step_factor_, series_factor_;
+  PlanarRows series_;           // (μ·series_step)^p/p!
+  AlignedVector fourth_power_;  // |μ|⁴
+  PlanarVector state_, trial_;
+  double rest_point_ = 0.0, force_offset_ = 0.0, force_rate_ = 0.0;
+  double force_ = 0.0, rate_ = 0.0;
+  double fourth_derivative_ = 0.0;
+  bool bound_is_fresh_ = false;
+  // Just attached with the force at one of its limits (+1, −1): that root is no release.
+  int starts_at_limit_ = 0;
+};
+
+}  // namespace modcal::event

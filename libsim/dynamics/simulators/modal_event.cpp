@@ -1,0 +1,84 @@
+#include "libsim/dynamics/simulators/modal_event.hpp"
+
+#include <cmath>
+
+#include "libsim/base/error.hpp"
+#include "libsim/dynamics/event/event_loop.hpp"
+#include "libsim/dynamics/simulators/scene_setup.hpp"
+
+namespace modcal {
+
+void ModalEvent::Options::visit(OptionVisitor& visitor) {
+  visitor.integer({.key = "nodes",
+                   .meaning = "Lobatto nodes of a sliding step: order 2(nodes - 1)",
+                   .range = Range::closed(2, 5)},
+                  nodes);
+  visitor.number({.key = "max_step",
+                  .meaning = "longest step; the next smaller one that divides the sampling period "
+                             "is taken",
+                  .unit = "s",
+                  .range = Range::positive(),
+                  .word = "sampling_period"},
+                 max_step);
+  visitor.number({.key = "slope_number",
+                  .meaning = "largest fall of the friction force with the speed, times the step, "
+                             "over the effective mass, of a sliding step",
+                  .unit = "1",
+                  .range = Range::positive()},
+                 slope_number);
+  visitor.text({.key = "attach",
+                .meaning = "adherence spring at attachment: literal (unstretched: the force starts "
+                           "at 0) or continuous (the force goes on from the sliding limit)",
+                .choices = {"literal", "continuous"}},
+               attach);
+}
+
+ModalEvent::ModalEvent(const Options& options) : options_(options) {
+  MODCAL_REQUIRE(options.nodes >= 2 && options.nodes <= 5,
+                 "{} collocation nodes: there are rules of 2 to 5", options.nodes);
+  MODCAL_REQUIRE(options.slope_number > 0.0 && options.slope_number <= 1.0,
+                 "slope number {:g} must be in (0, 1]: above 1 the friction equation of a step may "
+                 "have several solutions",
+                 options.slope_number);
+  MODCAL_REQUIRE(options.attach == "literal" || options.attach == "continuous",
+                 "unknown attachment rule \"{}\": literal or continuous", options.attach);
+}
+
+Simulation ModalEvent::run(const Scene& scene, double sample_rate,
+                           const OutputRequest& outputs) const {
+  const double wanted = std::isnan(options_.max_step) ? 1.0 / sample_rate : options_.max_step;
+  const StepPlan plan = plan_steps(wanted, sample_rate);
+  const std::size_t count = sample_count(scene.duration, sample_rate);
+  const ContactModes modes =
+      contact_modes(make_modal_basis(scene.string), scene.bow.position, scene.initial);
+  const auto friction = scene.friction.make();
+
+  Simulation result = empty_simulation(count, sample_rate, outputs);
+  const event::EventLoop loop{
+      .contact = contact_parameters(scene, *friction, modes.effective_mass()),
+      .law = friction->sliding(scene.bow.normal_force),
+      .attach = options_.attach == "continuous" ? event::AttachRule::kContinuous
+                                                : event::AttachRule::kLiteral,
+      .nodes = static_cast<int>(options_.nodes),
+      .slope_number = options_.slope_number,
+      .grid_step = plan.time_step,
+      .steps_per_sample = plan.steps_per_sample,
+      .samples = count,
+      .targets = targets_of(result)};
+  event::EventState state = event::initial_state(modes, scene.bow.velocity);
+  const event::EventCounts counts = event::run_event_loop(loop, modes, state);
+
+  if (counts.failure) {
+    result = empty_simulation(0, sample_rate, {});
+    result.diverged_at = counts.failed_at;
+    result.explanation = *counts.failure;
+  }
+  result.time_step = plan.time_step;
+  result.steps = counts.steps;
+  result.attachments = counts.attachments;
+  result.releases = counts.releases;
+  result.modes_moved = modes.size();
+  return result;
+}
+
+}  // namespace modcal

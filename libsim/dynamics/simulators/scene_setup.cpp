@@ -1,0 +1,47 @@
+#include "libsim/dynamics/simulators/scene_setup.hpp"
+
+#include <cmath>
+
+namespace modcal {
+namespace {
+
+Signal named(std::string quantity, std::string unit, double rate, bool wanted, std::size_t count) {
+  return {std::move(quantity), std::move(unit), rate, std::vector<double>(wanted ? count : 0)};
+}
+
+double* target_of(Signal& signal) {
+  return signal.samples.empty() ? nullptr : signal.samples.data();
+}
+
+}  // namespace
+
+ContactParameters contact_parameters(const Scene& scene, const FrictionLaw& friction,
+                                     double effective_mass) {
+  const Adherence adherence = friction.adherence();
+  const bool near_critical = std::isnan(adherence.damping);
+  return {.bow_velocity = scene.bow.velocity,
+          .static_limit = friction.static_limit(scene.bow.normal_force),
+          .stiffness = adherence.stiffness,
+          .damping = near_critical ? 2.0 * std::sqrt(adherence.stiffness * effective_mass)
+                                   : adherence.damping};
+}
+
+Simulation empty_simulation(std::size_t count, double rate, const OutputRequest& outputs) {
+  Simulation result;
+  result.displacement = named("y", "m", rate, outputs.displacement, count);
+  result.velocity = named("v", "m/s", rate, outputs.velocity, count);
+  result.force = named("f_c", "N", rate, outputs.force, count);
+  result.left_reaction = named("R1", "N", rate, outputs.left_reaction, count);
+  result.right_reaction = named("R2", "N", rate, outputs.right_reaction, count);
+  return result;
+}
+
+SampleTargets targets_of(Simulation& result) {
+  return {.displacement = target_of(result.displacement),
+          .velocity = target_of(result.velocity),
+          .force = target_of(result.force),
+          .left_reaction = target_of(result.left_reaction),
+          .right_reaction = target_of(result.right_reaction)};
+}
+
+}  // namespace modcal
