@@ -23,37 +23,36 @@ struct NodeValues {
   NodeVector slope{};     ///< g'(u_i) [N s/m]
 };
 
-/// Solves A x = b of order `size` in place by elimination; the matrix is I + (small), so that its
-/// diagonal serves as pivots. False where a pivot vanishes.
-inline bool solve_small(std::array<NodeVector, kMaxNodes>& a, NodeVector& b, int size) {
-  for (int k = 0; k < size; ++k) {
+/// Solves A x = b in place by elimination; A is I + (small), so that its diagonal serves as pivots.
+/// False where a pivot vanishes.
+template <int kSize>
+bool solve_small(double (&a)[kSize][kSize], double (&b)[kSize]) {
+  for (int k = 0; k < kSize; ++k) {
     if (!(std::abs(a[k][k]) > 1e-12)) return false;
     const double inverse = 1.0 / a[k][k];
-    for (int i = k + 1; i < size; ++i) {
+    a[k][k] = inverse;
+    for (int i = k + 1; i < kSize; ++i) {
       const double factor = a[i][k] * inverse;
-      for (int j = k + 1; j < size; ++j) a[i][j] -= factor * a[k][j];
+      for (int j = k + 1; j < kSize; ++j) a[i][j] -= factor * a[k][j];
       b[i] -= factor * b[k];
     }
   }
-  for (int k = size; k-- > 0;) {
-    for (int j = k + 1; j < size; ++j) b[k] -= a[k][j] * b[j];
-    b[k] /= a[k][k];
+  for (int k = kSize; k-- > 0;) {
+    for (int j = k + 1; j < kSize; ++j) b[k] -= a[k][j] * b[j];
+    b[k] *= a[k][k];
   }
   return true;
 }
 
-/// Solves u_i = free_i − Σ_j coupling_ij g(u_j) for the nodes 2…s by Newton's method; node 1 is
-/// given in `values`. True when every equation holds to rounding.
-template <typename Law>
-bool solve_nodes(const Law& law, int nodes, const NodeMatrix& coupling, const NodeVector& free,
-                 NodeValues& values) {
+template <int kNodes, typename Law>
+bool solve_nodes_of(const Law& law, const NodeMatrix& coupling, const NodeVector& free,
+                    NodeValues& values) {
   constexpr int kMaxIterations = 25;
   constexpr double kTight = 1e-15, kAcceptable = 1e-13;
-  const int unknowns = nodes - 1;
-  NodeVector scale{};
-  for (int i = 1; i < nodes; ++i) {
+  double scale[kNodes];
+  for (int i = 1; i < kNodes; ++i) {
     double sum = 0.0, size = 0.0;
-    for (int j = 0; j < nodes; ++j) {
+    for (int j = 0; j < kNodes; ++j) {
       sum += coupling[i][j];
       size += std::abs(coupling[i][j]);
     }
@@ -62,32 +61,52 @@ bool solve_nodes(const Law& law, int nodes, const NodeMatrix& coupling, const No
   }
   double previous = HUGE_VAL;
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
-    for (int i = 1; i < nodes; ++i) {
+    for (int i = 1; i < kNodes; ++i) {
       const auto point = continued(law, values.speed[i]);
       values.friction[i] = point.force;
       values.slope[i] = point.slope;
     }
-    NodeVector residual{};
+    double residual[kNodes - 1];
     double worst = 0.0;
-    for (int i = 1; i < nodes; ++i) {
+    for (int i = 1; i < kNodes; ++i) {
       double sum = values.speed[i] - free[i];
-      for (int j = 0; j < nodes; ++j) sum += coupling[i][j] * values.friction[j];
+      for (int j = 0; j < kNodes; ++j) sum += coupling[i][j] * values.friction[j];
       residual[i - 1] = sum;
-      worst = std::max(worst, std::abs(sum) / scale[i]);
+      // Below the tight bound nothing is left to compare: one test of the common case.
+      if (!(std::abs(sum) <= kTight * scale[i])) {
+        worst = std::max(worst, std::isfinite(sum) ? std::abs(sum) / scale[i] : HUGE_VAL);
+      }
     }
-    if (worst <= kTight || (worst <= kAcceptable && worst >= 0.5 * previous)) return true;
-    if (!(worst < HUGE_VAL)) return false;
+    if (worst == 0.0 || (worst <= kAcceptable && worst >= 0.5 * previous)) return true;
+    if (worst == HUGE_VAL) return false;
     previous = worst;
-    std::array<NodeVector, kMaxNodes> jacobian;
-    for (int i = 0; i < unknowns; ++i) {
-      for (int j = 0; j < unknowns; ++j) {
+    double jacobian[kNodes - 1][kNodes - 1];
+    for (int i = 0; i + 1 < kNodes; ++i) {
+      for (int j = 0; j + 1 < kNodes; ++j) {
         jacobian[i][j] = coupling[i + 1][j + 1] * values.slope[j + 1] + (i == j ? 1.0 : 0.0);
       }
     }
-    if (!solve_small(jacobian, residual, unknowns)) return false;
-    for (int i = 1; i < nodes; ++i) values.speed[i] -= residual[i - 1];
+    if (!solve_small(jacobian, residual)) return false;
+    for (int i = 1; i < kNodes; ++i) values.speed[i] -= residual[i - 1];
   }
   return false;
+}
+
+/// Solves u_i = free_i − Σ_j coupling_ij g(u_j) for the nodes 2…s by Newton's method; node 1 is
+/// given in `values`. True when every equation holds to rounding.
+template <typename Law>
+bool solve_nodes(const Law& law, int nodes, const NodeMatrix& coupling, const NodeVector& free,
+                 NodeValues& values) {
+  switch (nodes) {
+    case 2:
+      return solve_nodes_of<2>(law, coupling, free, values);
+    case 3:
+      return solve_nodes_of<3>(law, coupling, free, values);
+    case 4:
+      return solve_nodes_of<4>(law, coupling, free, values);
+    default:
+      return solve_nodes_of<5>(law, coupling, free, values);
+  }
 }
 
 }  // namespace modcal::event

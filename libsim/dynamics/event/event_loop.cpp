@@ -47,7 +47,7 @@ class Run {
     // A bow that cannot carry any force is not there: no contact, no switches.
     if (loop.contact.static_limit > 0.0) {
       sticking_.emplace(closed_loop_for(loop, modes), loop.contact.bow_velocity,
-                        loop.contact.static_limit, loop.grid_step);
+                        loop.contact.static_limit, loop.grid_step, wanted_);
     }
   }
 
@@ -56,7 +56,7 @@ class Run {
     store(0, 0.0);
     for (std::size_t sample = 1; sample < loop_.samples && !counts_.failure; ++sample) {
       for (std::size_t i = 0; i < loop_.steps_per_sample && !counts_.failure; ++i) {
-        grid_step();
+        grid_step(i + 1 == loop_.steps_per_sample);
         ++step_;
       }
       if (!counts_.failure) store(sample, 0.0);
@@ -87,7 +87,7 @@ class Run {
     state_.elongation = displacement - sticking_->rest_point() - loop_.contact.bow_velocity * tau;
   }
 
-  void grid_step() {
+  void grid_step(bool sampled) {
     if (!sticking_) {
       model_.advance_free(state_.modes);
       ++counts_.steps;
@@ -97,7 +97,7 @@ class Run {
     int switches = 0;
     for (int parts = 0; x < 1.0; ++parts) {
       const std::size_t before = counts_.attachments + counts_.releases;
-      x = state_.sticking ? stick(x) : slide(x);
+      x = state_.sticking ? stick(x, sampled) : slide(x);
       if (counts_.failure) return;
       ++counts_.steps;
       switches += static_cast<int>(counts_.attachments + counts_.releases - before);
@@ -114,13 +114,13 @@ class Run {
     }
   }
 
-  double stick(double x) {
-    const auto result = sticking_->advance(elapsed(x), (1.0 - x) * loop_.grid_step);
+  double stick(double x, bool sampled) {
+    const double remaining = (1.0 - x) * loop_.grid_step;
+    const auto result = sticking_->advance(elapsed(x), remaining, sampled);
     if (!std::isfinite(sticking_->force())) {
       fail(x, "the contact force is not a finite number");
       return x;
     }
-    const double remaining = (1.0 - x) * loop_.grid_step;
     const double reached = result.time >= remaining ? 1.0 : x + result.time / loop_.grid_step;
     if (result.released) release(reached);
     return reached;
@@ -180,7 +180,7 @@ class Run {
   void store(std::size_t sample, double x) {
     Motion motion;
     if (state_.sticking && sticking_) {
-      motion = sticking_->observe(elapsed(x), wanted_);
+      motion = sticking_->observe(elapsed(x));
     } else {
       motion = model_.observe(state_.modes, wanted_);
       if (sticking_) motion.force = sliding_.force();

@@ -1,13 +1,15 @@
 #include "libsim/dynamics/event/modal_kernels.hpp"
 
+#include <cassert>
 #include <cmath>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "libsim/dynamics/event/modal_kernels.cpp"
-// clang-format off: the order is Highway's
-#include <hwy/contrib/math/math-inl.h>
+// Highway asks for this order.
+// clang-format off
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
+#include <hwy/contrib/math/math-inl.h>
 // clang-format on
 
 HWY_BEFORE_NAMESPACE();
@@ -33,10 +35,14 @@ HWY_INLINE ComplexVec Times(ComplexVec a, ComplexVec b) {
           hn::MulAdd(a.re, b.im, hn::Mul(a.im, b.re))};
 }
 
-SumAndRate Advance(const PlanarVector& factor, const PlanarVector& pole, const PlanarVector& state,
-                   PlanarVector& out) {
+template <std::size_t kRows>
+HWY_INLINE SumAndRate AdvanceSeen(const PlanarVector& factor, const PlanarVector& pole,
+                                  const PlanarVector& state, const PlanarRows& rows, double* seen,
+                                  PlanarVector& out) {
   const Tag d;
   Vec sum = hn::Zero(d), rate = hn::Zero(d);
+  Vec row[kRows + 1];
+  for (std::size_t r = 0; r < kRows; ++r) row[r] = hn::Zero(d);
   for (std::size_t i = 0; i < state.size(); i += hn::Lanes(d)) {
     const ComplexVec next =
         Times(LoadComplex(&factor.re[i], &factor.im[i]), LoadComplex(&state.re[i], &state.im[i]));
@@ -45,8 +51,26 @@ SumAndRate Advance(const PlanarVector& factor, const PlanarVector& pole, const P
     sum = hn::Add(sum, next.re);
     rate = hn::MulAdd(hn::Load(d, &pole.re[i]), next.re, rate);
     rate = hn::NegMulAdd(hn::Load(d, &pole.im[i]), next.im, rate);
+    for (std::size_t r = 0; r < kRows; ++r) {
+      row[r] = hn::MulAdd(hn::Load(d, rows.re(r) + i), next.re, row[r]);
+      row[r] = hn::NegMulAdd(hn::Load(d, rows.im(r) + i), next.im, row[r]);
+    }
   }
+  for (std::size_t r = 0; r < kRows; ++r) seen[r] = Total(row[r]);
   return {Total(sum), Total(rate)};
+}
+
+SumAndRate Advance(const PlanarVector& factor, const PlanarVector& pole, const PlanarVector& state,
+                   const PlanarRows& rows, std::span<double> seen, PlanarVector& out) {
+  switch (seen.size()) {
+    case 1:
+      return AdvanceSeen<1>(factor, pole, state, rows, seen.data(), out);
+    case 3:
+      return AdvanceSeen<3>(factor, pole, state, rows, seen.data(), out);
+    default:
+      assert(seen.empty());
+      return AdvanceSeen<0>(factor, pole, state, rows, nullptr, out);
+  }
 }
 
 SumAndRate AdvanceBy(double time, const PlanarVector& pole, const PlanarVector& state,
@@ -241,8 +265,8 @@ HWY_EXPORT(AdvanceDrivenFor);
 HWY_EXPORT(Apply);
 
 SumAndRate advance(const PlanarVector& factor, const PlanarVector& pole, const PlanarVector& state,
-                   PlanarVector& out) {
-  return HWY_DYNAMIC_DISPATCH(Advance)(factor, pole, state, out);
+                   PlanarVector& out, const PlanarRows& rows, std::span<double> seen) {
+  return HWY_DYNAMIC_DISPATCH(Advance)(factor, pole, state, rows, seen, out);
 }
 
 SumAndRate advance_by(double time, const PlanarVector& pole, const PlanarVector& state,

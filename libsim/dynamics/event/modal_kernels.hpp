@@ -34,9 +34,10 @@ struct SumAndRate {
   double rate = 0.0;
 };
 
-/// out = factor ∘ state; returns the sums of the new state.
+/// out = factor ∘ state; returns the sums of the new state and, in `seen`, Re Σ rows[r] out of the
+/// first 0, 1 or 3 rows.
 SumAndRate advance(const PlanarVector& factor, const PlanarVector& pole, const PlanarVector& state,
-                   PlanarVector& out);
+                   PlanarVector& out, const PlanarRows& rows = {}, std::span<double> seen = {});
 
 /// out = e^{pole·time} ∘ state for any time; |pole·time| ≤ 1e4. Returns the sums of the new state.
 SumAndRate advance_by(double time, const PlanarVector& pole, const PlanarVector& state,

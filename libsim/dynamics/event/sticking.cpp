@@ -24,7 +24,8 @@ PlanarVector exponentials(const PlanarVector& pole, std::size_t count, double ti
 
 }  // namespace
 
-Sticking::Sticking(ClosedLoop loop, double bow_velocity, double static_limit, double longest_step)
+Sticking::Sticking(ClosedLoop loop, double bow_velocity, double static_limit, double longest_step,
+                   MotionRequest wanted)
     : loop_(std::move(loop)),
       bow_velocity_(bow_velocity),
       limit_(static_limit),
@@ -33,7 +34,8 @@ Sticking::Sticking(ClosedLoop loop, double bow_velocity, double static_limit, do
       series_(kTerms, loop_.roots),
       fourth_power_(padded_size(loop_.roots)),
       state_(loop_.roots),
-      trial_(loop_.roots) {
+      trial_(loop_.roots),
+      wanted_(wanted) {
   while (series_step_ * loop_.largest_pole > kSeriesPhase) series_step_ *= 0.5;
   step_factor_ = exponentials(loop_.pole, loop_.roots, longest_step_);
   series_factor_ = exponentials(loop_.pole, loop_.roots, series_step_);
@@ -81,14 +83,20 @@ void Sticking::accept(double tau, const SumAndRate& sums) {
   rate_ = force_rate_ + sums.rate;
 }
 
-void Sticking::propagate(double time, SumAndRate& sums) {
+std::size_t Sticking::rows() const {
+  if (wanted_.reactions) return ClosedLoop::kRows;
+  return wanted_.contact ? std::size_t{ClosedLoop::kLeft} : 0;
+}
+
+SumAndRate Sticking::propagate(double time, bool observed) {
+  seen_is_valid_ = false;
   if (time == longest_step_) {
-    sums = event::advance(step_factor_, loop_.pole, state_, trial_);
-  } else if (time == series_step_) {
-    sums = event::advance(series_factor_, loop_.pole, state_, trial_);
-  } else {
-    sums = advance_by(time, loop_.pole, state_, trial_);
+    seen_is_valid_ = observed;
+    return event::advance(step_factor_, loop_.pole, state_, trial_, loop_.observed,
+                          std::span(seen_).first(observed ? rows() : 0));
   }
+  if (time == series_step_) return event::advance(series_factor_, loop_.pole, state_, trial_);
+  return advance_by(time, loop_.pole, state_, trial_);
 }
 
 bool Sticking::hull_inside(double time, double end_force, double end_rate, double bound) const {
@@ -112,65 +120,61 @@ bool Sticking::certified(double time, double end_force, double end_rate) {
 }
 
 std::optional<double> Sticking::crossing(double tau, double time) {
-  std::array<double, kTerms> force, below, above;
+  std::array<double, kTerms> force;
   real_products(series_, state_, force);
   const double ratio = time / series_step_;
-  double scale = 1.0;
+  double scale = 1.0, swing = 0.0;
   for (double& c : force) {
     c *= scale;
     scale *= ratio;
   }
   force[0] += particular(tau);
   force[1] += force_rate_ * time;
-  for (std::size_t p = 0; p < kTerms; ++p) {
-    below[p] = -force[p];
-    above[p] = force[p];
+  for (std::size_t p = 1; p < kTerms; ++p) swing += std::abs(force[p]);
+
+  std::optional<double> first;
+  for (const double sign : {1.0, -1.0}) {
+    const bool starts_there = starts_at_limit_ == static_cast<int>(sign);
+    if (!starts_there && sign * force[0] + swing < limit_) continue;
+    std::array<double, kTerms> margin;
+    for (std::size_t p = 0; p < kTerms; ++p) margin[p] = -sign * force[p];
+    margin[0] += limit_;
+    const auto found = first_crossing(margin, first.value_or(1.0), starts_there);
+    if (found) first = found;
   }
-  below[0] += limit_;
-  above[0] += limit_;
-  const auto upper = first_crossing(below, 1.0, starts_at_limit_ > 0);
-  const auto lower = first_crossing(above, upper.value_or(1.0), starts_at_limit_ < 0);
-  return lower ? lower : upper;
+  return first;
 }
 
-Sticking::Advance Sticking::advance(double tau, double time) {
-  SumAndRate sums;
-  propagate(time, sums);
-  const double end_force = particular(tau + time) + sums.sum;
-  if (!certified(time, end_force, force_rate_ + sums.rate)) {
+Sticking::Advance Sticking::advance(double tau, double time, bool observed) {
+  SumAndRate sums = propagate(time, observed);
+  bool safe = certified(time, particular(tau + time) + sums.sum, force_rate_ + sums.rate);
+  if (!safe && time > series_step_ * (1.0 + 1e-9)) {
     // A longer stretch than the series can tell is cut; the caller asks again for the rest.
-    if (time > series_step_ * (1.0 + 1e-9)) {
-      time = series_step_;
-      propagate(time, sums);
-      if (certified(time, particular(tau + time) + sums.sum, force_rate_ + sums.rate)) {
-        std::swap(state_, trial_);
-        accept(tau + time, sums);
-        bound_is_fresh_ = false;
-        return {time, false};
-      }
-    }
+    time = series_step_;
+    sums = propagate(time, false);
+    safe = certified(time, particular(tau + time) + sums.sum, force_rate_ + sums.rate);
+  }
+  Advance result{time, false};
+  if (!safe) {
     if (const auto theta = crossing(tau, time)) {
-      const double until = *theta * time;
-      sums = advance_by(until, loop_.pole, state_, trial_);
-      std::swap(state_, trial_);
-      accept(tau + until, sums);
-      return {until, true};
+      result = {*theta * time, true};
+      seen_is_valid_ = false;
+      sums = advance_by(result.time, loop_.pole, state_, trial_);
     }
   }
   std::swap(state_, trial_);
-  accept(tau + time, sums);
+  accept(tau + result.time, sums);
   bound_is_fresh_ = false;
   starts_at_limit_ = 0;
-  return {time, false};
+  return result;
 }
 
-Motion Sticking::observe(double tau, MotionRequest wanted) const {
+Motion Sticking::observe(double tau) {
   Motion motion;
   motion.force = force_;
-  std::array<double, ClosedLoop::kRows> row{};
-  std::size_t rows = wanted.contact ? std::size_t{ClosedLoop::kLeft} : 0;
-  if (wanted.reactions) rows = ClosedLoop::kRows;
-  real_products(loop_.observed, state_, std::span(row).first(rows));
+  if (!seen_is_valid_) real_products(loop_.observed, state_, std::span(seen_).first(rows()));
+  seen_is_valid_ = true;
+  const auto& row = seen_;
   const double value = particular(tau);
   motion.velocity = row[ClosedLoop::kVelocity] + loop_.displacement.value * force_rate_;
   motion.left = row[ClosedLoop::kLeft] + loop_.left.value * value + loop_.left.rate * force_rate_;

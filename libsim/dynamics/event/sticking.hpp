@@ -2,6 +2,7 @@
 // between.
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "libsim/dynamics/event/closed_loop.hpp"
@@ -13,7 +14,8 @@ namespace modcal::event {
 class Sticking {
  public:
   /// `longest_step` [s]: no call of advance() asks for more.
-  Sticking(ClosedLoop loop, double bow_velocity, double static_limit, double longest_step);
+  Sticking(ClosedLoop loop, double bow_velocity, double static_limit, double longest_step,
+           MotionRequest wanted);
 
   /// Starts from the open-loop state Z with the contact at y [m] and its spring stretched by
   /// `elongation` [m].
@@ -29,17 +31,19 @@ class Sticking {
   /// cubic Hermite interpolant of f plus its remainder h⁴/384 Σ|μ_j|⁴|w_j| inside the limits), or
   /// the first crossing of the power series of f is located to rounding; where the series does not
   /// converge fast, a shorter stretch is taken.
-  Advance advance(double tau, double time);
+  /// `observed`: observe() is called there, if no event comes first.
+  Advance advance(double tau, double time, bool observed);
 
   double force() const { return force_; }
   double rest_point() const { return rest_point_; }
-  Motion observe(double tau, MotionRequest wanted) const;
+  Motion observe(double tau);
 
  private:
   static constexpr std::size_t kTerms = 25;
 
   double particular(double tau) const { return force_offset_ + force_rate_ * tau; }
-  void propagate(double time, SumAndRate& sums);
+  std::size_t rows() const;
+  SumAndRate propagate(double time, bool observed);
   bool certified(double time, double end_force, double end_rate);
   bool hull_inside(double time, double end_force, double end_rate, double bound) const;
   std::optional<double> crossing(double tau, double time);
@@ -52,6 +56,9 @@ class Sticking {
   PlanarRows series_;           // (μ·series_step)^p/p!
   AlignedVector fourth_power_;  // |μ|⁴
   PlanarVector state_, trial_;
+  MotionRequest wanted_;
+  std::array<double, ClosedLoop::kRows> seen_{};  // the rows' values for the state, if known
+  bool seen_is_valid_ = false;
   double rest_point_ = 0.0, force_offset_ = 0.0, force_rate_ = 0.0;
   double force_ = 0.0, rate_ = 0.0;
   double fourth_derivative_ = 0.0;
