@@ -17,10 +17,14 @@ struct Contact {
   double stiffness, damping;
 };
 
-// Newton's term P'/P of the numerator P = Π (s − λ)(s − λ̄) · (1 + (K + C s) G(s)) at the root.
-Complex logarithmic_derivative(std::span<const OpenLoopMode> modes, Contact contact,
-                               const SecularRoot& root) {
-  const Complex s = root.value();
+// What Newton's method on the numerator P = Π (s − λ)(s − λ̄) · σ, σ = 1 + (K + C s) G(s), needs
+// at a root: P/P' = σ/(σ' + σ Σ 1/(s − pole)).
+struct SecularPoint {
+  Complex value, slope, pole_sum;
+};
+
+SecularPoint evaluate(std::span<const OpenLoopMode> modes, Contact contact,
+                      const SecularRoot& root) {
   Complex receptance = 0.0, slope = 0.0, poles = 0.0;
   for (const OpenLoopMode& mode : modes) {
     const Complex from = root.minus(mode.pole);
@@ -31,8 +35,22 @@ Complex logarithmic_derivative(std::span<const OpenLoopMode> modes, Contact cont
     slope -= mode.drive * inverse * sum;
     poles += sum;
   }
-  const Complex gain = contact.stiffness + contact.damping * s;
-  return (contact.damping * receptance + gain * slope) / (1.0 + gain * receptance) + poles;
+  const Complex gain = contact.stiffness + contact.damping * root.value();
+  return {1.0 + gain * receptance, contact.damping * receptance + gain * slope, poles};
+}
+
+// Aberth's step of root i: Newton's with the other roots divided out, no longer than |μ|.
+Complex aberth_step(const SecularPoint& point, bool mirrored, std::span<const SecularRoot> roots,
+                    std::size_t i) {
+  Complex sum = point.pole_sum;
+  for (std::size_t j = 0; j < roots.size(); ++j) {
+    if (j != i) sum -= 1.0 / roots[i].minus(roots[j]);
+    if (mirrored) sum -= 1.0 / roots[i].minus(roots[j].conjugate());
+  }
+  if (point.value == 0.0) return 0.0;
+  const Complex step = -point.value / (point.slope + point.value * sum);
+  const double size = std::abs(step), limit = std::abs(roots[i].value());
+  return size > limit ? step * (limit / size) : step;
 }
 
 // First-order root beside pole n: −(K + Cλ) d/(2iω_d) over the rest of the function there.
@@ -61,12 +79,7 @@ bool iterate(std::span<const OpenLoopMode> modes, Contact contact, bool mirrored
     bool all_frozen = true;
     for (std::size_t i = 0; i < roots.size(); ++i) {
       if (frozen[i]) continue;
-      Complex term = logarithmic_derivative(modes, contact, roots[i]);
-      for (std::size_t j = 0; j < roots.size(); ++j) {
-        if (j != i) term -= 1.0 / roots[i].minus(roots[j]);
-        if (mirrored) term -= 1.0 / roots[i].minus(roots[j].conjugate());
-      }
-      const Complex step = -1.0 / term;
+      const Complex step = aberth_step(evaluate(modes, contact, roots[i]), mirrored, roots, i);
       if (!std::isfinite(step.real()) || !std::isfinite(step.imag())) return false;
       roots[i].move(step);
       if (mirrored && roots[i].value().imag() <= 0.0) return false;
