@@ -1,0 +1,89 @@
+// Time of the simulators: nanoseconds a step of the fixed-step schemes beside what the same loads,
+// stores and multiply-adds take without the contact; milliseconds a simulated second of the
+// event-driven one.
+#include <benchmark/benchmark.h>
+
+#include "libsim/dynamics/simulators/modal_event.hpp"
+#include "libsim/dynamics/simulators/modal_exact.hpp"
+#include "libsim/dynamics/simulators/newmark_explicit.hpp"
+#include "tests/libsim/dynamics/paper_case.hpp"
+
+namespace modcal {
+namespace {
+
+constexpr double kRate = 51200.0;
+
+Scene scene_with(std::int64_t modes, double duration) {
+  Scene scene = paper_scene();
+  scene.string.modes = modes;
+  scene.duration = duration;
+  return scene;
+}
+
+// One item is one time step.
+template <typename Scheme>
+void fixed_step(benchmark::State& state) {
+  const Scene scene = scene_with(state.range(0), 0.1);
+  const Scheme scheme({.time_step = 1e-6});
+  std::size_t steps = 0;
+  for (auto _ : state) {
+    const Simulation run = scheme.simulate(scene, kRate, OutputRequest::all());
+    benchmark::DoNotOptimize(run.force.samples.data());
+    steps += run.steps;
+  }
+  state.SetItemsProcessed(static_cast<std::int64_t>(steps));
+  state.counters["ns_per_step"] = benchmark::Counter(
+      static_cast<double>(steps) * 1e-9, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+BENCHMARK_TEMPLATE(fixed_step, ModalExact)
+    ->Arg(20)
+    ->Arg(50)
+    ->Arg(200)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_TEMPLATE(fixed_step, NewmarkExplicit)
+    ->Arg(20)
+    ->Arg(50)
+    ->Arg(200)
+    ->Unit(benchmark::kMillisecond);
+
+// One iteration is one simulated second of the paper's case, all five outputs at 51.2 kHz.
+void event_second(benchmark::State& state) {
+  const Scene scene = scene_with(50, 1.0);
+  const ModalEvent scheme({.nodes = state.range(0)});
+  for (auto _ : state) {
+    const Simulation run = scheme.simulate(scene, kRate, OutputRequest::all());
+    benchmark::DoNotOptimize(run.force.samples.data());
+  }
+}
+BENCHMARK(event_second)->DenseRange(2, 5)->Unit(benchmark::kMillisecond);
+
+// Set-up alone: closed loop, tables, one sample.
+void event_set_up(benchmark::State& state) {
+  const Scene scene = scene_with(state.range(0), 1.5 / kRate);
+  const ModalEvent scheme({});
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(scheme.simulate(scene, kRate, OutputRequest::all()).steps);
+  }
+}
+BENCHMARK(event_set_up)->Arg(50)->Arg(200)->Arg(800)->Unit(benchmark::kMillisecond);
+
+// Growth with the number of modes, 20 ms of sound.
+void event_modes(benchmark::State& state) {
+  const Scene scene = scene_with(state.range(0), 0.02);
+  const ModalEvent scheme({});
+  for (auto _ : state) {
+    const Simulation run = scheme.simulate(scene, kRate, OutputRequest::all());
+    if (run.diverged_at) state.SkipWithError(run.explanation.c_str());
+  }
+  state.SetComplexityN(state.range(0));
+}
+BENCHMARK(event_modes)
+    ->RangeMultiplier(2)
+    ->Range(25, 800)
+    ->Unit(benchmark::kMillisecond)
+    ->Complexity();
+
+}  // namespace
+}  // namespace modcal
+
+BENCHMARK_MAIN();
