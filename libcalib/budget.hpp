@@ -21,7 +21,8 @@ struct Budget {
   void require_valid() const;
 };
 
-/// Clock in seconds; any origin.
+/// Clock in seconds; any origin. Read before every evaluation; what it throws (Interrupted, say)
+/// ends the search and comes out of it.
 using SecondsClock = std::function<double()>;
 SecondsClock steady_seconds();
 

@@ -79,7 +79,6 @@ void Evaluator::to_scaled(const ObjectiveOutputs& outputs) const {
 }
 
 void Evaluator::note(double value) {
-  if (result_.evaluations == 1) result_.initial_value = value;
   if (!(value < best_value_)) return;
   best_value_ = value;
   best_ = x_;
@@ -114,8 +113,12 @@ double Evaluator::value(std::span<const double> z) {
 
 bool Evaluator::try_evaluate(std::span<const double> z, const ObjectiveOutputs& outputs) noexcept {
   try {
-    evaluate(z, outputs);
-    return true;
+    double value = 0.0;
+    ObjectiveOutputs asked = outputs;
+    asked.value = outputs.value ? outputs.value : &value;
+    evaluate(z, asked);
+    if (std::isfinite(*asked.value)) return true;
+    stop_ = StopReason::kNotFinite;
   } catch (const Stopped&) {
   } catch (...) {
     error_ = std::current_exception();
@@ -123,9 +126,15 @@ bool Evaluator::try_evaluate(std::span<const double> z, const ObjectiveOutputs& 
   return false;
 }
 
+void Evaluator::begin() {
+  assert(result_.evaluations == 0);
+  // Not by the value returned: a target reached at once throws.
+  evaluate(start(), {.value = &result_.initial_value});
+}
+
 void Evaluator::open_scan() {
-  value(start());
-  position_ = x_;
+  position_.clear();
+  for (const Variable& variable : variables_) position_.push_back(variable.initial);
   scanner_ = function_.scanner(position_);
 }
 
@@ -140,6 +149,7 @@ void Evaluator::scan(std::size_t i, std::span<const double> candidates, std::spa
 }
 
 void Evaluator::move(std::size_t i, double x) {
+  moved_ = true;
   position_[i] = std::clamp(x, variables_[i].lower, variables_[i].upper);
   scanner_->move(i, position_[i]);
 }
@@ -148,10 +158,9 @@ OptimizationResult Evaluator::finish(StopReason reason) {
   if (error_) std::rethrow_exception(error_);
   if (scanner_) {
     // Nothing moved: the value is known, and the budget may not allow another evaluation.
-    const bool moved = position_ != x_;
     best_ = position_;
-    best_value_ = moved ? function_.value(position_) : result_.initial_value;
-    if (moved) result_.trace.push_back({++result_.evaluations, seconds(), best_value_});
+    best_value_ = moved_ ? function_.value(position_) : result_.initial_value;
+    if (moved_) result_.trace.push_back({++result_.evaluations, seconds(), best_value_});
   }
   result_.stop = stop_ == StopReason::kNotRun ? reason : stop_;
   if (best_.empty()) {

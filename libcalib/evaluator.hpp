@@ -37,18 +37,22 @@ class Evaluator {
   /// Evaluations the budget still allows.
   std::int64_t evaluations_left() const;
 
+  /// Evaluates at the initial point, which counts like any other and is the first to beat. Throws
+  /// like evaluate().
+  void begin();
   /// Evaluates at z; outputs in scaled variables. Throws Stopped where the search is over, and what
   /// the objective throws.
   void evaluate(std::span<const double> z, const ObjectiveOutputs& outputs);
   double value(std::span<const double> z);
-  /// The same for callbacks of libraries that exceptions must not cross: false where the search is
-  /// over; an exception is kept and thrown by finish().
+  /// The same for callbacks of libraries, which exceptions must not cross and infinite values
+  /// upset: false where the search is over, an infinite value included; an exception is kept and
+  /// thrown by finish().
   bool try_evaluate(std::span<const double> z, const ObjectiveOutputs& outputs) noexcept;
   bool stopped() const { return stop_ != StopReason::kNotRun || error_ != nullptr; }
 
-  /// Stepping along single variables, in user units: starts at the initial point, whose full value
-  /// is evaluated. The point it stands at is the search's answer, because values of parts cannot be
-  /// compared over variables. One evaluation of the budget is kept for the value of the answer.
+  /// Stepping along single variables, in user units, from the initial point and after begin(). The
+  /// point it stands at is the search's answer, because values of parts cannot be compared over
+  /// variables. One evaluation of the budget is kept for the value of the answer.
   void open_scan();
   /// Current point of the scan.
   std::span<const double> position() const { return position_; }
@@ -87,6 +91,7 @@ class Evaluator {
   std::exception_ptr error_;
   std::unique_ptr<CoordinateScanner> scanner_;
   std::vector<double> position_;
+  bool moved_ = false;
   OptimizationResult result_;
 };
 

@@ -39,8 +39,10 @@ OptimizationResult Optimizer::minimize(const ObjectiveFunction& function,
   const std::string mismatch = explain_unsatisfied(function);
   MODCAL_REQUIRE(mismatch.empty(), "{}", mismatch);
   Evaluator evaluator(function, variables, budget, std::move(clock));
+  require_feasible(evaluator);
   StopReason reason = StopReason::kNotRun;
   try {
+    evaluator.begin();
     reason = search(evaluator);
   } catch (const Evaluator::Stopped&) {
   }

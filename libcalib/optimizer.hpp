@@ -31,7 +31,10 @@ class Optimizer {
                               SecondsClock clock = steady_seconds()) const;
 
  private:
-  /// Searches through the evaluator and says why it ended.
+  /// Throws InvalidInput where the search cannot be made within the bounds or the budget; called
+  /// before the first evaluation.
+  virtual void require_feasible(const Evaluator& /*evaluator*/) const {}
+  /// Searches through the evaluator, which has evaluated the initial point, and says why it ended.
   virtual StopReason search(Evaluator& evaluator) const = 0;
 };
 

@@ -31,7 +31,7 @@ struct Parameter {
 
 /// How far parameters may go from their initial values.
 struct ParameterRanges {
-  double frequency = 0.06;      ///< f_n and f0: share of the initial value [1]
+  double frequency = 0.04;      ///< f_n and f0: share of the initial value [1]
   double inharmonicity = 1e-3;  ///< B: from 0 to the initial value plus this [1]
   double contact = 5e-3;        ///< x_c: distance [m], kept inside the string
   void visit(OptionVisitor& visitor);

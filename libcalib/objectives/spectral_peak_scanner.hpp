@@ -20,6 +20,8 @@ class SpectralPeakScanner final : public EvaluatingScanner {
   void refresh() override;
 
  private:
+  CandidateBand prepare_band(const TwoSidedTerm& term);
+
   const SpectralPeakFunction& function_;
   BinRange range_;
   std::vector<TwoSidedTerm> terms_;

@@ -36,6 +36,9 @@ void TwoSidedForceOptions::visit(OptionVisitor& visitor) {
                   .unit = "1",
                   .range = Range::non_negative()},
                  parameter);
+  visitor.flag({.key = "common_filter",
+                .meaning = "filter both forces alike, so that only the model makes a difference"},
+               common_filter);
   visitor.number({.key = "lowest_frequency",
                   .meaning = "lower end of the band compared; automatic: half the lowest mode's",
                   .unit = "Hz",
@@ -57,7 +60,8 @@ TwoSidedForce::TwoSidedForce(const CalibrationData& data, const ParameterSet& pa
       grid_(data.grid()),
       band_(band_of(grid_, parameters.initial().basis, options)),
       regularizer_(options.regularizer.make()),
-      parameter_(options.parameter) {
+      parameter_(options.parameter),
+      common_filter_(options.common_filter) {
   MODCAL_REQUIRE(data.has_both(),
                  "this objective compares the forces identified from the two ends: the {} reaction "
                  "is missing",
@@ -85,22 +89,18 @@ TwoSidedForce::State TwoSidedForce::at(std::span<const double> x, bool with_slop
     for (std::size_t i = 0; i < bins(); ++i) {
       state.transfer[r][i] = {sums.real[r][i], sums.imag[r][i]};
     }
-    identify(state, r, with_slopes);
+    filter(state, r, with_slopes);
   }
+  identify(state);
   return state;
 }
 
-void TwoSidedForce::identify(State& state, std::size_t r, bool with_slopes) const {
+void TwoSidedForce::filter(State& state, std::size_t r, bool with_slopes) const {
   const std::size_t n = bins();
   std::vector<double> sigma(n);
   for (std::size_t i = 0; i < n; ++i) sigma[i] = std::abs(state.transfer[r][i]);
   state.kept[r].resize(n);
   regularizer_->filter_factors(sigma, parameter_, state.kept[r]);
-  state.force[r].resize(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    state.force[r][i] =
-        sigma[i] > 0.0 ? state.kept[r][i] * reaction_[r][i] / state.transfer[r][i] : Complex(0.0);
-  }
   if (!with_slopes) return;
   constexpr double kStep = 1e-5;
   std::vector<double> shifted(n), above(n), below(n);
@@ -116,6 +116,18 @@ void TwoSidedForce::identify(State& state, std::size_t r, bool with_slopes) cons
     // A jump by the whole of φ is a step of a water level, whose slope elsewhere is 0.
     const bool step = std::abs(change) > 0.5;
     state.kept_slope[r][i] = step || sigma[i] == 0.0 ? 0.0 : change / (2.0 * kStep * sigma[i]);
+  }
+}
+
+void TwoSidedForce::identify(State& state) const {
+  for (std::size_t r = 0; r < 2; ++r) {
+    state.force[r].resize(bins());
+    for (std::size_t k = 0; k < bins(); ++k) {
+      const double kept = common_filter_ ? state.kept[0][k] * state.kept[1][k] : state.kept[r][k];
+      // φ(0) = 0: what H does not pass is not identified.
+      state.force[r][k] =
+          kept == 0.0 ? Complex(0.0) : kept * reaction_[r][k] / state.transfer[r][k];
+    }
   }
 }
 
@@ -138,21 +150,27 @@ void TwoSidedForce::transfer_slope(const State& state, std::size_t i, Pair& slop
   }
 }
 
-// With G = φ(|H|)/H, dF = R dG and dG = (dφ/d|H| Re(H* dH)/|H| − φ dH/H)/H.
+// dF_r = R_r (dΦ_r/H_r − Φ_r dH_r/H_r²) with dφ(|H|) = dφ/d|H| Re(H* dH)/|H|.
 void TwoSidedForce::force_slope(const State& state, std::size_t i, Pair& slope) const {
   assert(!state.kept_slope[0].empty());
   transfer_slope(state, i, slope);
-  for (std::size_t r = 0; r < 2; ++r) {
-    for (std::size_t k = 0; k < bins(); ++k) {
+  for (std::size_t k = 0; k < bins(); ++k) {
+    std::array<double, 2> change;
+    for (std::size_t r = 0; r < 2; ++r) {
       const Complex h = state.transfer[r][k];
       const double sigma = std::abs(h);
-      if (sigma == 0.0) {
-        slope[r][k] = 0.0;
-        continue;
-      }
-      const double sigma_slope = (std::conj(h) * slope[r][k]).real() / sigma;
-      slope[r][k] = reaction_[r][k] / h *
-                    (state.kept_slope[r][k] * sigma_slope - state.kept[r][k] * slope[r][k] / h);
+      const double sigma_slope = sigma > 0.0 ? (std::conj(h) * slope[r][k]).real() / sigma : 0.0;
+      change[r] = state.kept_slope[r][k] * sigma_slope;
+    }
+    const double left = state.kept[0][k];
+    const double right = state.kept[1][k];
+    const double common_change = left * change[1] + right * change[0];
+    for (std::size_t r = 0; r < 2; ++r) {
+      const double kept = common_filter_ ? left * right : state.kept[r][k];
+      const double kept_change = common_filter_ ? common_change : change[r];
+      const Complex h = state.transfer[r][k];
+      slope[r][k] =
+          kept == 0.0 ? Complex(0.0) : reaction_[r][k] / h * (kept_change - kept * slope[r][k] / h);
     }
   }
 }

@@ -2,6 +2,7 @@
 
 #include <ceres/ceres.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "libsim/base/error.hpp"
@@ -18,16 +19,24 @@ class Residuals final : public ceres::CostFunction {
   }
   bool Evaluate(const double* const* parameters, double* residuals,
                 double** jacobians) const override {
-    return evaluator_.try_evaluate(
-        {parameters[0], evaluator_.dimension()},
-        {.residuals = residuals, .jacobian = jacobians ? jacobians[0] : nullptr});
+    double* jacobian = jacobians ? jacobians[0] : nullptr;
+    const std::size_t n = evaluator_.dimension();
+    const std::size_t m = evaluator_.residual_count();
+    if (evaluator_.try_evaluate({parameters[0], n},
+                                {.residuals = residuals, .jacobian = jacobian})) {
+      return true;
+    }
+    // A failed evaluation makes Ceres retry and write to the error log: a flat, perfect fit ends it
+    // silently instead. Its result is not used.
+    std::fill_n(residuals, m, 0.0);
+    if (jacobian) std::fill_n(jacobian, m * n, 0.0);
+    return true;
   }
 
  private:
   Evaluator& evaluator_;
 };
 
-// After a refusal Ceres would try shorter steps: ends the iteration instead.
 class EndWithTheEvaluator final : public ceres::IterationCallback {
  public:
   explicit EndWithTheEvaluator(const Evaluator& evaluator) : evaluator_(evaluator) {}
@@ -39,7 +48,7 @@ class EndWithTheEvaluator final : public ceres::IterationCallback {
   const Evaluator& evaluator_;
 };
 
-// Ceres tells its three kinds of convergence apart in a message only: the tolerances decide.
+// Ceres tells its three kinds of convergence apart in its message only.
 StopReason reason_of(const ceres::Solver::Summary& summary) {
   if (summary.termination_type != ceres::CONVERGENCE) return StopReason::kNoProgress;
   if (summary.message.starts_with("Function tolerance")) return StopReason::kSmallDecrease;

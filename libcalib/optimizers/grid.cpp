@@ -20,13 +20,17 @@ Grid::Grid(const Options& options) : options_(options) {
                  options.points);
 }
 
-StopReason Grid::search(Evaluator& evaluator) const {
+void Grid::require_feasible(const Evaluator& evaluator) const {
   const double total =
       std::pow(static_cast<double>(options_.points), static_cast<double>(evaluator.dimension()));
-  MODCAL_REQUIRE(total <= static_cast<double>(evaluator.evaluations_left()),
+  MODCAL_REQUIRE(total < static_cast<double>(evaluator.evaluations_left()),
                  "a grid of {} points in each of {} variables has {:.3g} points, the budget allows "
-                 "{} evaluations: free fewer parameters, take fewer points, or another optimizer",
+                 "{} evaluations with that of the initial point: free fewer parameters, take fewer "
+                 "points, or another optimizer",
                  options_.points, evaluator.dimension(), total, evaluator.evaluations_left());
+}
+
+StopReason Grid::search(Evaluator& evaluator) const {
   if (evaluator.dimension() == 1) {
     search_line(evaluator);
   } else {

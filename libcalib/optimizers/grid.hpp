@@ -17,8 +17,9 @@ class Grid final : public Optimizer {
   std::string_view name() const override { return "grid"; }
 
  private:
-  /// With one variable the values are kept as a scan. Throws InvalidInput, before the first
-  /// evaluation, where the grid has more points than the budget.
+  /// The points and the initial point must fit into the budget.
+  void require_feasible(const Evaluator& evaluator) const override;
+  /// With one variable the values are kept as a scan.
   StopReason search(Evaluator& evaluator) const override;
   void search_line(Evaluator& evaluator) const;
   void search_box(Evaluator& evaluator) const;

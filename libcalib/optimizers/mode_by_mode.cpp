@@ -48,7 +48,7 @@ CoordinateScan ModeByMode::search_variable(Evaluator& evaluator, std::size_t i,
   return scan;
 }
 
-StopReason ModeByMode::search(Evaluator& evaluator) const {
+void ModeByMode::require_feasible(const Evaluator& evaluator) const {
   for (const Variable& variable : evaluator.variables()) {
     MODCAL_REQUIRE(
         variable.initial != 0.0,
@@ -56,6 +56,9 @@ StopReason ModeByMode::search(Evaluator& evaluator) const {
         "value or take another optimizer",
         variable.name);
   }
+}
+
+StopReason ModeByMode::search(Evaluator& evaluator) const {
   evaluator.open_scan();
   const std::size_t n = evaluator.dimension();
   std::vector<CoordinateScan>& kept = evaluator.recorded_scans();

@@ -23,8 +23,10 @@ class ModeByMode final : public Optimizer {
   std::string_view name() const override { return "mode_by_mode"; }
 
  private:
+  /// No variable may start at 0: it would have no relative range.
+  void require_feasible(const Evaluator& evaluator) const override;
   /// Keeps the scans of the first and of the last completed loop. Ends early where a loop moves
-  /// nothing. Throws InvalidInput where a variable starts at 0 and so has no relative range.
+  /// nothing.
   StopReason search(Evaluator& evaluator) const override;
   CoordinateScan search_variable(Evaluator& evaluator, std::size_t i, std::int64_t loop) const;
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <memory>
 #include <new>
 
@@ -13,9 +12,7 @@
 namespace modcal {
 namespace {
 
-constexpr std::array<std::string_view, 30> kAlgorithms = {"GD_STOGO",
-                                                          "GD_STOGO_RAND",
-                                                          "GN_AGS",
+constexpr std::array<std::string_view, 26> kAlgorithms = {"GN_AGS",
                                                           "GN_CRS2_LM",
                                                           "GN_DIRECT",
                                                           "GN_DIRECT_L",
@@ -25,8 +22,6 @@ constexpr std::array<std::string_view, 30> kAlgorithms = {"GD_STOGO",
                                                           "GN_DIRECT_NOSCAL",
                                                           "GN_ESCH",
                                                           "GN_ISRES",
-                                                          "GN_ORIG_DIRECT",
-                                                          "GN_ORIG_DIRECT_L",
                                                           "LD_CCSAQ",
                                                           "LD_LBFGS",
                                                           "LD_MMA",
@@ -52,22 +47,29 @@ using Handle = std::unique_ptr<nlopt_opt_s, Destroy>;
 struct Callback {
   Evaluator& evaluator;
   nlopt_opt optimizer;
+  double last_value = 0.0;
 };
 
 double evaluate(unsigned n, const double* z, double* gradient, void* data) {
   auto& callback = *static_cast<Callback*>(data);
-  double value = std::numeric_limits<double>::infinity();
-  if (!callback.evaluator.try_evaluate({z, n}, {.value = &value, .gradient = gradient})) {
-    nlopt_force_stop(callback.optimizer);
+  double value = 0.0;
+  if (callback.evaluator.try_evaluate({z, n}, {.value = &value, .gradient = gradient})) {
+    return callback.last_value = value;
   }
-  return value;
+  nlopt_force_stop(callback.optimizer);
+  // Some algorithms work on for a while: with an infinite value LN_NEWUOA_BOUND does so for
+  // seconds.
+  if (gradient) std::fill_n(gradient, n, 0.0);
+  return callback.last_value;
 }
 
 void require_ok(nlopt_result result, nlopt_opt optimizer) {
   if (result >= 0) return;
   if (result == NLOPT_OUT_OF_MEMORY) throw std::bad_alloc();
   const char* text = nlopt_get_errmsg(optimizer);
-  throw_invalid_input("NLopt refuses its settings: {}", text ? text : "no reason given");
+  throw_invalid_input("NLopt's {} refuses {} variables: {}; choose another algorithm",
+                      nlopt_algorithm_to_string(nlopt_get_algorithm(optimizer)),
+                      nlopt_get_dimension(optimizer), text ? text : "it gives no reason");
 }
 
 StopReason reason_of(nlopt_result result, nlopt_opt optimizer) {

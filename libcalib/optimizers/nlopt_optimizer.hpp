@@ -10,8 +10,9 @@ namespace modcal {
 
 /// An algorithm of NLopt that can minimize within bounds by itself (Johnson, The NLopt
 /// nonlinear-optimization package): all but LD_LBFGS_NOCEDAL, which is listed but not compiled,
-/// LN_NEWUOA, which leaves the bounds, and the AUGLAG and MLSL families, which need another
-/// optimizer inside.
+/// LN_NEWUOA, which leaves the bounds, GD_STOGO, which cannot be stopped from its callback,
+/// GN_ORIG_DIRECT, which crashes when stopped early, and the AUGLAG and MLSL families, which need
+/// another optimizer inside.
 /// Its own counts and limits are not used; its random generator is seeded for every run.
 class NloptOptimizer final : public Optimizer {
  public:

@@ -1,0 +1,90 @@
+#include "libcalib/parameters.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "libsim/base/error.hpp"
+#include "tests/libcalib/calibration_case.hpp"
+
+namespace modcal {
+namespace {
+
+using Names = std::vector<std::string>;
+
+TEST(ParameterSet, BindsEveryParameterToTheModel) {
+  const ModelPoint initial = with_frequency_errors(paper_truth(8), 0.02, 1);
+  const ParameterSet set(initial, Names{"x_c", "f_3"});
+  EXPECT_EQ(set.start(), (std::vector<double>{0.03, initial.basis.frequency(2)}));
+  const ModelPoint model = set.model(std::vector<double>{0.031, 600.0});
+  EXPECT_EQ(model.contact, 0.031);
+  EXPECT_DOUBLE_EQ(model.basis.frequency(2), 600.0);
+  EXPECT_EQ(model.basis.omega[3], initial.basis.omega[3]);
+}
+
+TEST(ParameterSet, ModesWithoutAFrequencyOfTheirOwnFollowAFreeLaw) {
+  const ParameterSet set(paper_truth(8, 1e-4), Names{"f_3", "f0", "B"});
+  EXPECT_NEAR(set[1].variable.initial, 196.0, 1e-9);
+  EXPECT_NEAR(set[2].variable.initial, 1e-4, 1e-12);
+  const ModelPoint model = set.model(std::vector<double>{590.0, 200.0, 2e-4});
+  EXPECT_DOUBLE_EQ(model.basis.frequency(2), 590.0);
+  EXPECT_DOUBLE_EQ(model.basis.frequency(7), 8 * 200.0 * std::sqrt(1.0 + 2e-4 * 64));
+}
+
+TEST(ParameterSet, FrequencySlopesAreThoseOfTheModel) {
+  const ParameterSet set(paper_truth(8, 1e-4), Names{"f_3", "f0", "B", "x_c"});
+  const std::vector<double> x = {590.0, 197.0, 2e-4, 0.03};
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double step = 1e-6 * x[i];
+    std::vector<double> above = x, below = x;
+    above[i] += step;
+    below[i] -= step;
+    const ModalBasis high = set.model(above).basis;
+    const ModalBasis low = set.model(below).basis;
+    std::vector<double> slopes(8, 0.0);
+    for (const auto& [mode, slope] : set.frequency_slopes(x, i)) slopes[mode] = slope;
+    for (std::size_t n = 0; n < 8; ++n) {
+      // Rounding of ω (1e-16 ω) over the step; the third derivative adds less.
+      const double expected = (high.omega[n] - low.omega[n]) / (2.0 * step);
+      EXPECT_NEAR(slopes[n], expected, 1e-15 * high.omega[n] / step + 1e-9 * std::abs(expected));
+    }
+  }
+}
+
+TEST(ParameterSet, BoundsHoldTheInitialValuesAndKeepTheContactInsideTheString) {
+  const ParameterSet set(paper_truth(8, 0.0, 0.002), Names{"f_1", "f0", "B", "x_c"});
+  for (const Variable& variable : set.variables()) {
+    EXPECT_LE(variable.lower, variable.initial) << variable.name;
+    EXPECT_LT(variable.initial, variable.upper) << variable.name;
+    EXPECT_GT(variable.scale, 0.0);
+  }
+  EXPECT_GT(set[3].variable.lower, 0.0);
+  EXPECT_EQ(set[3].variable.unit, "m");
+  EXPECT_DOUBLE_EQ(set[0].variable.upper, 196.0 * 1.04);
+  EXPECT_EQ(set[2].variable.lower, 0.0);
+}
+
+TEST(ParameterSet, RefusesWrongNamesAndRanges) {
+  const ModelPoint truth = paper_truth(8);
+  for (const Names& names : {Names{}, Names{"f_9"}, Names{"f_0"}, Names{"f_"}, Names{"f_1x"},
+                             Names{"g"}, Names{"x_c", "x_c"}}) {
+    EXPECT_THROW(ParameterSet(truth, names), InvalidInput) << testing::PrintToString(names);
+  }
+  EXPECT_THROW(ParameterSet(truth, Names{"f_1"}, {.frequency = 0.0}), InvalidInput);
+  EXPECT_THROW(ParameterSet(paper_truth(8, 0.0, 0.33), Names{"f_1"}), InvalidInput);
+  EXPECT_THROW(ParameterSet({truth.basis, std::nan("")}, Names{"f_1"}), InvalidInput);
+}
+
+TEST(ParameterOptions, NameWhatIsFree) {
+  ParameterOptions options{.frequencies = "all", .contact = true};
+  EXPECT_EQ(options.names(2), (Names{"f_1", "f_2", "x_c"}));
+  options = {.frequencies = "listed", .modes = {5, 3}, .law = true};
+  EXPECT_EQ(options.names(8), (Names{"f_5", "f_3", "f0", "B"}));
+  EXPECT_THROW(ParameterOptions{}.names(8), InvalidInput);
+  options = {.frequencies = "all", .modes = {5}};
+  EXPECT_THROW(options.names(8), InvalidInput);
+  options = {.frequencies = "listed"};
+  EXPECT_THROW(options.names(8), InvalidInput);
+}
+
+}  // namespace
+}  // namespace modcal
