@@ -70,6 +70,15 @@ void store_initial(Simulation& result, const InitialMotion& motion, double force
 
 }  // namespace
 
+void FixedStepOptions::visit(OptionVisitor& visitor) {
+  visitor.number({.key = "time_step",
+                  .meaning = "largest time step; the next smaller one that divides the sampling "
+                             "period is taken",
+                  .unit = "s",
+                  .range = Range::positive()},
+                 time_step);
+}
+
 Simulation simulate_fixed_step(const Scene& scene, double sample_rate, const OutputRequest& outputs,
                                double wanted_time_step, ForceTiming timing,
                                WeightsOfPole weights_of_pole) {

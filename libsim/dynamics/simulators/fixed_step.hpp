@@ -8,6 +8,11 @@
 
 namespace modcal {
 
+struct FixedStepOptions {
+  double time_step = 1e-6;  ///< wanted Δt [s]; the largest smaller one that divides 1/f_s is taken
+  void visit(OptionVisitor& visitor);
+};
+
 /// One-step weights r, d₀, d₁ of a mode with pole λ [1/s] for the step h [s].
 struct ModeWeights {
   std::complex<double> propagate, older, newer;

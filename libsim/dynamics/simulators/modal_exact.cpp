@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "libsim/dynamics/simulators/fixed_step.hpp"
-
 namespace modcal {
 namespace {
 
@@ -37,15 +35,6 @@ ModeWeights first_order_hold_weights(std::complex<double> pole, double time_step
 }
 
 }  // namespace
-
-void ModalExact::Options::visit(OptionVisitor& visitor) {
-  visitor.number({.key = "time_step",
-                  .meaning = "largest time step; the next smaller one that divides the sampling "
-                             "period is taken",
-                  .unit = "s",
-                  .range = Range::positive()},
-                 time_step);
-}
 
 Simulation ModalExact::run(const Scene& scene, double sample_rate,
                            const OutputRequest& outputs) const {

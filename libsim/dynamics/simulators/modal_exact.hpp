@@ -1,6 +1,6 @@
 #pragma once
 
-#include "libsim/dynamics/simulator.hpp"
+#include "libsim/dynamics/simulators/fixed_step.hpp"
 
 namespace modcal {
 
@@ -14,11 +14,7 @@ namespace modcal {
 /// long that the friction equation has several solutions.
 class ModalExact final : public Simulator {
  public:
-  struct Options {
-    double time_step =
-        1e-6;  ///< wanted Δt [s]; the largest smaller one that divides 1/f_s is taken
-    void visit(OptionVisitor& visitor);
-  };
+  using Options = FixedStepOptions;
   explicit ModalExact(const Options& options) : options_(options) {}
 
  private:

@@ -1,7 +1,5 @@
 #include "libsim/dynamics/simulators/newmark_explicit.hpp"
 
-#include "libsim/dynamics/simulators/fixed_step.hpp"
-
 namespace modcal {
 namespace {
 
@@ -12,15 +10,6 @@ ModeWeights trapezoidal_weights(std::complex<double> pole, double time_step) {
 }
 
 }  // namespace
-
-void NewmarkExplicit::Options::visit(OptionVisitor& visitor) {
-  visitor.number({.key = "time_step",
-                  .meaning = "largest time step; the next smaller one that divides the sampling "
-                             "period is taken",
-                  .unit = "s",
-                  .range = Range::positive()},
-                 time_step);
-}
 
 Simulation NewmarkExplicit::run(const Scene& scene, double sample_rate,
                                 const OutputRequest& outputs) const {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "libsim/dynamics/simulator.hpp"
+#include "libsim/dynamics/simulators/fixed_step.hpp"
 
 namespace modcal {
 
@@ -13,11 +13,7 @@ namespace modcal {
 /// switches on the time grid: at 1 µs its waveforms are not converged, its spectra and regime are.
 class NewmarkExplicit final : public Simulator {
  public:
-  struct Options {
-    double time_step =
-        1e-6;  ///< wanted Δt [s]; the largest smaller one that divides 1/f_s is taken
-    void visit(OptionVisitor& visitor);
-  };
+  using Options = FixedStepOptions;
   explicit NewmarkExplicit(const Options& options) : options_(options) {}
 
  private:

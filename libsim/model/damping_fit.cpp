@@ -1,4 +1,4 @@
-#include "libcalib/damping_fit.hpp"
+#include "libsim/model/damping_fit.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
