@@ -1,0 +1,20 @@
+#!/usr/bin/env bash
+# Measures what benchmarks/README.md states: run.sh BUILD_DIRECTORY. Medians of several repetitions.
+set -euo pipefail
+build=${1:?usage: run.sh BUILD_DIRECTORY}
+here=$(dirname "$0")
+out=$(mktemp -d)
+trap 'rm -rf "$out"' EXIT
+
+echo "machine: $(grep -m1 'model name' /proc/cpuinfo | cut -d: -f2 | xargs), $(nproc) threads, load $(cut -d' ' -f1 /proc/loadavg)"
+for kernel in simulator inversion spectral_peak; do
+  echo "== $kernel"
+  "$build/benchmarks/${kernel}_benchmark" --benchmark_repetitions=5 \
+    --benchmark_report_aggregates_only=true --benchmark_display_aggregates_only=true 2>/dev/null |
+    grep -E '_median|_cv|^Benchmark'
+done
+echo "== whole commands"
+for config in table1 fig14 fig10; do
+  "$here/whole_process.py" -- "$build/modcal" run "$here/../configs/paper/$config.yaml" --out "$out/$config"
+done
+"$here/whole_process.py" -n 3 -- "$build/modcal" reproduce paper --out "$out/paper"
