@@ -23,10 +23,10 @@ struct NodeValues {
   NodeVector slope{};     ///< g'(u_i) [N s/m]
 };
 
-/// Solves A x = b in place by elimination; A is I + (small), so that its diagonal serves as pivots.
-/// False where a pivot vanishes.
+/// x ← x − A⁻¹ b by elimination; A and b are overwritten. A is I + (small), so that its diagonal
+/// serves as pivots. False where a pivot vanishes.
 template <int kSize>
-bool solve_small(double (&a)[kSize][kSize], double (&b)[kSize]) {
+bool subtract_solution(double (&a)[kSize][kSize], double (&b)[kSize], double* x) {
   for (int k = 0; k < kSize; ++k) {
     if (!(std::abs(a[k][k]) > 1e-12)) return false;
     const double inverse = 1.0 / a[k][k];
@@ -40,8 +40,20 @@ bool solve_small(double (&a)[kSize][kSize], double (&b)[kSize]) {
   for (int k = kSize; k-- > 0;) {
     for (int j = k + 1; j < kSize; ++j) b[k] -= a[k][j] * b[j];
     b[k] *= a[k][k];
+    x[k] -= b[k];
   }
   return true;
+}
+
+// I + coupling·diag(slope), the Jacobian of the equations, with the slopes of nodes 2…s.
+template <int kNodes>
+void fill_jacobian(const NodeMatrix& coupling, const NodeVector& slope,
+                   double (&jacobian)[kNodes - 1][kNodes - 1]) {
+  for (int i = 0; i + 1 < kNodes; ++i) {
+    for (int j = 0; j + 1 < kNodes; ++j) {
+      jacobian[i][j] = coupling[i + 1][j + 1] * slope[j + 1] + (i == j ? 1.0 : 0.0);
+    }
+  }
 }
 
 template <int kNodes, typename Law>
@@ -81,13 +93,8 @@ bool solve_nodes_of(const Law& law, const NodeMatrix& coupling, const NodeVector
     if (worst == HUGE_VAL) return false;
     previous = worst;
     double jacobian[kNodes - 1][kNodes - 1];
-    for (int i = 0; i + 1 < kNodes; ++i) {
-      for (int j = 0; j + 1 < kNodes; ++j) {
-        jacobian[i][j] = coupling[i + 1][j + 1] * values.slope[j + 1] + (i == j ? 1.0 : 0.0);
-      }
-    }
-    if (!solve_small(jacobian, residual)) return false;
-    for (int i = 1; i < kNodes; ++i) values.speed[i] -= residual[i - 1];
+    fill_jacobian<kNodes>(coupling, values.slope, jacobian);
+    if (!subtract_solution(jacobian, residual, &values.speed[1])) return false;
   }
   return false;
 }

@@ -26,9 +26,38 @@ struct ComplexVec {
   Vec re, im;
 };
 
-HWY_INLINE ComplexVec LoadComplex(const double* re, const double* im) {
-  return {hn::Load(Tag(), re), hn::Load(Tag(), im)};
-}
+// The arrays of a planar vector, read once: a store through a pointer could otherwise change the
+// vector's own pointers, and every iteration would load them again.
+struct Source {
+  const double* re;
+  const double* im;
+  explicit Source(const PlanarVector& v) : re(v.re.data()), im(v.im.data()) {}
+  HWY_INLINE ComplexVec operator[](std::size_t i) const {
+    return {hn::Load(Tag(), re + i), hn::Load(Tag(), im + i)};
+  }
+};
+struct Target {
+  double* re;
+  double* im;
+  explicit Target(PlanarVector& v) : re(v.re.data()), im(v.im.data()) {}
+  HWY_INLINE void Set(std::size_t i, ComplexVec value) const {
+    hn::Store(value.re, Tag(), re + i);
+    hn::Store(value.im, Tag(), im + i);
+  }
+};
+// Row r of planar rows: re at 2 r size, im behind it.
+struct Rows {
+  const double* data;
+  std::size_t size;
+  explicit Rows(const PlanarRows& rows, std::size_t first = 0)
+      : data(rows.count > first ? rows.re(first) : nullptr), size(rows.size) {}
+  HWY_INLINE Vec Re(std::size_t row, std::size_t i) const {
+    return hn::Load(Tag(), data + 2 * row * size + i);
+  }
+  HWY_INLINE Vec Im(std::size_t row, std::size_t i) const {
+    return hn::Load(Tag(), data + (2 * row + 1) * size + i);
+  }
+};
 
 HWY_INLINE ComplexVec Times(ComplexVec a, ComplexVec b) {
   return {hn::NegMulAdd(a.im, b.im, hn::Mul(a.re, b.re)),
@@ -40,20 +69,22 @@ HWY_INLINE SumAndRate AdvanceSeen(const PlanarVector& factor, const PlanarVector
                                   const PlanarVector& state, const PlanarRows& rows, double* seen,
                                   PlanarVector& out) {
   const Tag d;
+  const Source factors(factor), poles(pole), states(state);
+  const Rows weights(rows);
+  const Target to(out);
+  const std::size_t size = state.size();
   Vec sum = hn::Zero(d), rate = hn::Zero(d);
   Vec row[kRows + 1];
   for (std::size_t r = 0; r < kRows; ++r) row[r] = hn::Zero(d);
-  for (std::size_t i = 0; i < state.size(); i += hn::Lanes(d)) {
-    const ComplexVec next =
-        Times(LoadComplex(&factor.re[i], &factor.im[i]), LoadComplex(&state.re[i], &state.im[i]));
-    hn::Store(next.re, d, &out.re[i]);
-    hn::Store(next.im, d, &out.im[i]);
+  for (std::size_t i = 0; i < size; i += hn::Lanes(d)) {
+    const ComplexVec next = Times(factors[i], states[i]);
+    to.Set(i, next);
+    const ComplexVec mu = poles[i];
     sum = hn::Add(sum, next.re);
-    rate = hn::MulAdd(hn::Load(d, &pole.re[i]), next.re, rate);
-    rate = hn::NegMulAdd(hn::Load(d, &pole.im[i]), next.im, rate);
+    rate = hn::NegMulAdd(mu.im, next.im, hn::MulAdd(mu.re, next.re, rate));
     for (std::size_t r = 0; r < kRows; ++r) {
-      row[r] = hn::MulAdd(hn::Load(d, rows.re(r) + i), next.re, row[r]);
-      row[r] = hn::NegMulAdd(hn::Load(d, rows.im(r) + i), next.im, row[r]);
+      row[r] = hn::MulAdd(weights.Re(r, i), next.re, row[r]);
+      row[r] = hn::NegMulAdd(weights.Im(r, i), next.im, row[r]);
     }
   }
   for (std::size_t r = 0; r < kRows; ++r) seen[r] = Total(row[r]);
@@ -76,20 +107,21 @@ SumAndRate Advance(const PlanarVector& factor, const PlanarVector& pole, const P
 SumAndRate AdvanceBy(double time, const PlanarVector& pole, const PlanarVector& state,
                      PlanarVector& out) {
   const Tag d;
+  const Source poles(pole), states(state);
+  const Target to(out);
+  const std::size_t size = state.size();
   const auto t = hn::Set(d, time);
   Vec sum = hn::Zero(d), rate = hn::Zero(d);
-  for (std::size_t i = 0; i < state.size(); i += hn::Lanes(d)) {
-    const ComplexVec mu = LoadComplex(&pole.re[i], &pole.im[i]);
+  for (std::size_t i = 0; i < size; i += hn::Lanes(d)) {
+    const ComplexVec mu = poles[i];
     const auto modulus = hn::Exp(d, hn::Mul(mu.re, t));
     const auto phase = hn::Mul(mu.im, t);
     const ComplexVec factor = {hn::Mul(modulus, hn::Cos(d, phase)),
                                hn::Mul(modulus, hn::Sin(d, phase))};
-    const ComplexVec next = Times(factor, LoadComplex(&state.re[i], &state.im[i]));
-    hn::Store(next.re, d, &out.re[i]);
-    hn::Store(next.im, d, &out.im[i]);
+    const ComplexVec next = Times(factor, states[i]);
+    to.Set(i, next);
     sum = hn::Add(sum, next.re);
-    rate = hn::MulAdd(mu.re, next.re, rate);
-    rate = hn::NegMulAdd(mu.im, next.im, rate);
+    rate = hn::NegMulAdd(mu.im, next.im, hn::MulAdd(mu.re, next.re, rate));
   }
   return {Total(sum), Total(rate)};
 }
@@ -99,13 +131,16 @@ template <std::size_t kRows>
 HWY_INLINE void ProductsOfRows(const PlanarRows& rows, std::size_t first, const PlanarVector& state,
                                double* out) {
   const Tag d;
+  const Source states(state);
+  const Rows weights(rows, first);
+  const std::size_t size = state.size();
   Vec sum[kRows];
   for (std::size_t r = 0; r < kRows; ++r) sum[r] = hn::Zero(d);
-  for (std::size_t i = 0; i < state.size(); i += hn::Lanes(d)) {
-    const ComplexVec z = LoadComplex(&state.re[i], &state.im[i]);
+  for (std::size_t i = 0; i < size; i += hn::Lanes(d)) {
+    const ComplexVec z = states[i];
     for (std::size_t r = 0; r < kRows; ++r) {
-      sum[r] = hn::MulAdd(hn::Load(d, rows.re(first + r) + i), z.re, sum[r]);
-      sum[r] = hn::NegMulAdd(hn::Load(d, rows.im(first + r) + i), z.im, sum[r]);
+      sum[r] = hn::MulAdd(weights.Re(r, i), z.re, sum[r]);
+      sum[r] = hn::NegMulAdd(weights.Im(r, i), z.im, sum[r]);
     }
   }
   for (std::size_t r = 0; r < kRows; ++r) out[r] = Total(sum[r]);
@@ -121,9 +156,11 @@ void RealProducts(const PlanarRows& rows, const PlanarVector& state, std::span<d
 
 double WeightedSize(const AlignedVector& weight, const PlanarVector& state) {
   const Tag d;
+  const Source states(state);
+  const std::size_t size = state.size();
   Vec sum = hn::Zero(d);
-  for (std::size_t i = 0; i < state.size(); i += hn::Lanes(d)) {
-    const ComplexVec z = LoadComplex(&state.re[i], &state.im[i]);
+  for (std::size_t i = 0; i < size; i += hn::Lanes(d)) {
+    const ComplexVec z = states[i];
     sum = hn::MulAdd(hn::Load(d, &weight[i]), hn::Add(hn::Abs(z.re), hn::Abs(z.im)), sum);
   }
   return Total(sum);
@@ -133,16 +170,19 @@ template <std::size_t kForces>
 HWY_INLINE void AdvanceDrivenBy(const PlanarVector& factor, const PlanarRows& response,
                                 const double* forces, PlanarVector& state) {
   const Tag d;
-  for (std::size_t i = 0; i < state.size(); i += hn::Lanes(d)) {
-    ComplexVec z =
-        Times(LoadComplex(&factor.re[i], &factor.im[i]), LoadComplex(&state.re[i], &state.im[i]));
+  const Source factors(factor), states(state);
+  const Rows responses(response);
+  const Target to(state);
+  const std::size_t size = state.size();
+  Vec force[kForces];
+  for (std::size_t j = 0; j < kForces; ++j) force[j] = hn::Set(d, forces[j]);
+  for (std::size_t i = 0; i < size; i += hn::Lanes(d)) {
+    ComplexVec z = Times(factors[i], states[i]);
     for (std::size_t j = 0; j < kForces; ++j) {
-      const auto force = hn::Set(d, forces[j]);
-      z.re = hn::MulAdd(hn::Load(d, response.re(j) + i), force, z.re);
-      z.im = hn::MulAdd(hn::Load(d, response.im(j) + i), force, z.im);
+      z.re = hn::MulAdd(responses.Re(j, i), force[j], z.re);
+      z.im = hn::MulAdd(responses.Im(j, i), force[j], z.im);
     }
-    hn::Store(z.re, d, &state.re[i]);
-    hn::Store(z.im, d, &state.im[i]);
+    to.Set(i, z);
   }
 }
 
@@ -182,9 +222,14 @@ void AdvanceDrivenFor(double time, double largest, const PlanarVector& pole,
     inverse_factorial[k] = inverse_factorial[k - 1] / static_cast<double>(k);
   }
   const auto t = hn::Set(d, time);
-  for (std::size_t i = 0; i < state.size(); i += hn::Lanes(d)) {
-    const ComplexVec x = {hn::Mul(hn::Load(d, &pole.re[i]), t),
-                          hn::Mul(hn::Load(d, &pole.im[i]), t)};
+  const Source poles(pole), states(state);
+  const Target to(state);
+  const std::size_t size = state.size();
+  const double* gains = drive.data();
+  const double* weight = weights.data();
+  for (std::size_t i = 0; i < size; i += hn::Lanes(d)) {
+    const ComplexVec mu = poles[i];
+    const ComplexVec x = {hn::Mul(mu.re, t), hn::Mul(mu.im, t)};
     ComplexVec phi = {hn::Set(d, coefficient[terms - 1]), hn::Zero(d)};
     for (int p = terms - 1; p-- > 0;) {
       phi = Times(phi, x);
@@ -192,16 +237,32 @@ void AdvanceDrivenFor(double time, double largest, const PlanarVector& pole,
     }
     ComplexVec forced = {hn::Zero(d), hn::Zero(d)};
     for (std::size_t k = order; k-- > 0;) {  // phi is φ_{k+1} here
-      const auto weight = hn::Set(d, weights[k]);
-      forced.re = hn::MulAdd(weight, phi.re, forced.re);
-      forced.im = hn::MulAdd(weight, phi.im, forced.im);
+      const auto w = hn::Set(d, weight[k]);
+      forced.re = hn::MulAdd(w, phi.re, forced.re);
+      forced.im = hn::MulAdd(w, phi.im, forced.im);
       phi = Times(phi, x);
       phi.re = hn::Add(phi.re, hn::Set(d, inverse_factorial[k]));
     }
-    const auto gain = hn::Load(d, &drive[i]);
-    const ComplexVec free = Times(phi, LoadComplex(&state.re[i], &state.im[i]));
-    hn::Store(hn::MulAdd(gain, forced.re, free.re), d, &state.re[i]);
-    hn::Store(hn::MulAdd(gain, forced.im, free.im), d, &state.im[i]);
+    const auto gain = hn::Load(d, gains + i);
+    const ComplexVec free = Times(phi, states[i]);
+    to.Set(i, {hn::MulAdd(gain, forced.re, free.re), hn::MulAdd(gain, forced.im, free.im)});
+  }
+}
+
+void Polynomials(std::span<const Octet> table, const std::array<double, 4>& x,
+                 std::array<Octet, 4>& out) {
+  const Tag d;
+  const std::size_t lanes = hn::Lanes(d);
+  for (std::size_t k = 0; k < kVectorPadding; k += lanes) {
+    Vec sum[4];
+    for (std::size_t i = 0; i < 4; ++i) sum[i] = hn::Zero(d);
+    for (std::size_t p = table.size(); p-- > 0;) {
+      const auto coefficient = hn::LoadU(d, table[p].data() + k);
+      for (std::size_t i = 0; i < 4; ++i) {
+        sum[i] = hn::MulAdd(sum[i], hn::Set(d, x[i]), coefficient);
+      }
+    }
+    for (std::size_t i = 0; i < 4; ++i) hn::StoreU(sum[i], d, out[i].data() + k);
   }
 }
 
@@ -211,29 +272,28 @@ HWY_INLINE void ApplyBlock(const PoleMap& map, std::size_t inputs, const double*
                            std::size_t first, PlanarVector& out) {
   const Tag d;
   const std::size_t lanes = hn::Lanes(d);
-  Vec a_re[kVectors], a_im[kVectors], b_re[kVectors], b_im[kVectors];
+  const Rows matrix(map.matrix);
+  ComplexVec of_a[kVectors], of_b[kVectors];
   for (std::size_t v = 0; v < kVectors; ++v) {
-    a_re[v] = a_im[v] = b_re[v] = b_im[v] = hn::Zero(d);
+    of_a[v] = of_b[v] = {hn::Zero(d), hn::Zero(d)};
   }
   for (std::size_t n = 0; n < inputs; ++n) {
     const auto a_n = hn::Set(d, a[n]);
     const auto b_n = hn::Set(d, b[n]);
     for (std::size_t v = 0; v < kVectors; ++v) {
-      const std::size_t i = first + v * lanes;
-      const auto re = hn::Load(d, map.matrix.re(n) + i);
-      const auto im = hn::Load(d, map.matrix.im(n) + i);
-      a_re[v] = hn::MulAdd(a_n, re, a_re[v]);
-      a_im[v] = hn::MulAdd(a_n, im, a_im[v]);
-      b_re[v] = hn::MulAdd(b_n, re, b_re[v]);
-      b_im[v] = hn::MulAdd(b_n, im, b_im[v]);
+      const auto re = matrix.Re(n, first + v * lanes);
+      const auto im = matrix.Im(n, first + v * lanes);
+      of_a[v] = {hn::MulAdd(a_n, re, of_a[v].re), hn::MulAdd(a_n, im, of_a[v].im)};
+      of_b[v] = {hn::MulAdd(b_n, re, of_b[v].re), hn::MulAdd(b_n, im, of_b[v].im)};
     }
   }
+  const Source p(map.p), q(map.q);
+  const Target to(out);
   for (std::size_t v = 0; v < kVectors; ++v) {
     const std::size_t i = first + v * lanes;
-    const ComplexVec p = Times(LoadComplex(&map.p.re[i], &map.p.im[i]), {a_re[v], a_im[v]});
-    const ComplexVec q = Times(LoadComplex(&map.q.re[i], &map.q.im[i]), {b_re[v], b_im[v]});
-    hn::Store(hn::Add(p.re, q.re), d, &out.re[i]);
-    hn::Store(hn::Add(p.im, q.im), d, &out.im[i]);
+    const ComplexVec left = Times(p[i], of_a[v]);
+    const ComplexVec right = Times(q[i], of_b[v]);
+    to.Set(i, {hn::Add(left.re, right.re), hn::Add(left.im, right.im)});
   }
 }
 
@@ -241,10 +301,11 @@ void Apply(const PoleMap& map, std::size_t inputs, const PlanarVector& in, doubl
            PlanarVector& out) {
   const Tag d;
   const std::size_t lanes = hn::Lanes(d);
+  const Source source(in), of_a(map.a), of_b(map.b);
   for (std::size_t i = 0; i < in.size(); i += lanes) {
-    const ComplexVec z = LoadComplex(&in.re[i], &in.im[i]);
-    hn::Store(Times(LoadComplex(&map.a.re[i], &map.a.im[i]), z).re, d, a + i);
-    hn::Store(Times(LoadComplex(&map.b.re[i], &map.b.im[i]), z).re, d, b + i);
+    const ComplexVec z = source[i];
+    hn::Store(Times(of_a[i], z).re, d, a + i);
+    hn::Store(Times(of_b[i], z).re, d, b + i);
   }
   std::size_t i = 0;
   for (; i + 3 * lanes <= out.size(); i += 3 * lanes) ApplyBlock<3>(map, inputs, a, b, i, out);
@@ -262,6 +323,7 @@ HWY_EXPORT(RealProducts);
 HWY_EXPORT(WeightedSize);
 HWY_EXPORT(AdvanceDriven);
 HWY_EXPORT(AdvanceDrivenFor);
+HWY_EXPORT(Polynomials);
 HWY_EXPORT(Apply);
 
 SumAndRate advance(const PlanarVector& factor, const PlanarVector& pole, const PlanarVector& state,
@@ -291,6 +353,11 @@ void advance_driven_by(double time, double largest, const PlanarVector& pole,
                        const AlignedVector& drive, std::span<const double> weights,
                        PlanarVector& state) {
   HWY_DYNAMIC_DISPATCH(AdvanceDrivenFor)(time, largest, pole, drive, weights, state);
+}
+
+void polynomials(std::span<const Octet> table, const std::array<double, 4>& x,
+                 std::array<Octet, 4>& out) {
+  HWY_DYNAMIC_DISPATCH(Polynomials)(table, x, out);
 }
 
 void apply(PoleMap& map, std::size_t inputs, const PlanarVector& in, PlanarVector& out) {

@@ -2,6 +2,8 @@
 // I/O; the instruction set is chosen at run time. Every vector is padded with zeros.
 #pragma once
 
+#include <array>
+#include <complex>
 #include <cstddef>
 #include <span>
 
@@ -59,6 +61,11 @@ void advance_driven(const PlanarVector& factor, const PlanarRows& response,
 void advance_driven_by(double time, double largest, const PlanarVector& pole,
                        const AlignedVector& drive, std::span<const double> weights,
                        PlanarVector& state);
+
+/// out[i][k] = Σ_p table[p][k] x_i^p, k < 8, i < 4.
+using Octet = std::array<double, kVectorPadding>;
+void polynomials(std::span<const Octet> table, const std::array<double, 4>& x,
+                 std::array<Octet, 4>& out);
 
 /// Real-linear map between complex vectors whose matrix is a product of poles' differences:
 /// out_j = p_j Σ_n A_n M_nj + q_j Σ_n B_n M_nj with A = Re(a ∘ in), B = Re(b ∘ in).

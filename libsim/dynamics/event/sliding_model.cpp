@@ -83,7 +83,7 @@ void SlidingModel::fill_series(const ContactModes& modes) {
   for (int k = 0; k < rule_.nodes; ++k) {
     double factor = 1.0 / (k + 1.0);  // k!/(p + k + 1)!
     for (std::size_t p = 0; p < kSeriesTerms; ++p) {
-      moment_[k][p] = factor * moments[p];
+      moment_[k][p] = moment_table_[p][k] = factor * moments[p];
       factor /= static_cast<double>(p) + k + 2.0;
     }
   }
@@ -95,21 +95,17 @@ void SlidingModel::free_series(const PlanarVector& state, Series& out) const {
 
 NodeMatrix SlidingModel::coupling(double ratio) const {
   const int nodes = rule_.nodes;
+  std::array<double, 4> x{};
+  for (int i = 1; i < nodes; ++i) x[i - 1] = ratio * rule_.node[i];
+  std::array<Octet, 4> sum;
+  polynomials(moment_table_, x, sum);
   NodeMatrix result{};
   for (int i = 1; i < nodes; ++i) {
-    const double x = ratio * rule_.node[i];
-    NodeVector response{};  // velocity at c_i due to θ^k
     double power = ratio * rule_.node[i];
-    std::array<double, kMaxNodes> sum{};
-    for (std::size_t p = kSeriesTerms; p-- > 0;) {
-      for (int k = 0; k < kMaxNodes; ++k) sum[k] = sum[k] * x + moment_[k][p];
-    }
     for (int k = 0; k < nodes; ++k) {
-      response[k] = power * sum[k];
+      const double response = power * sum[i - 1][k];  // velocity at c_i due to θ^k
       power *= rule_.node[i];
-    }
-    for (int j = 0; j < nodes; ++j) {
-      for (int k = 0; k < nodes; ++k) result[i][j] += rule_.power[j][k] * response[k];
+      for (int j = 0; j < nodes; ++j) result[i][j] += rule_.power[j][k] * response;
     }
   }
   return result;

@@ -77,6 +77,7 @@ class SlidingModel {
   PlanarRows series_;  // a (λ h₀)^p/p!
   // moment_[k][p] = k!/(p + k + 1)! Re Σ a d λ^p h₀^{p+1}: the velocity due to a force t^k.
   std::array<Series, kMaxNodes> moment_{};
+  std::array<Octet, kSeriesTerms> moment_table_{};  // the same, p first
   double largest_pole_ = 0.0;
   std::vector<std::unique_ptr<SlidingTable>> tables_;
   PlanarVector free_factor_;

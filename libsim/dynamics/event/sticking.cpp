@@ -100,12 +100,13 @@ SumAndRate Sticking::propagate(double time, bool observed) {
 }
 
 bool Sticking::hull_inside(double time, double end_force, double end_rate, double bound) const {
-  const double second = force_ + time / 3.0 * rate_;
-  const double third = end_force - time / 3.0 * end_rate;
+  const double part = time * (1.0 / 3.0);
+  const double second = force_ + part * rate_;
+  const double third = end_force - part * end_rate;
   const double square = time * time;
-  const double remainder = square * square / 384.0 * bound;
-  const double highest = std::max({force_, second, third, end_force}) + remainder;
-  const double lowest = std::min({force_, second, third, end_force}) - remainder;
+  const double remainder = square * square * (bound * (1.0 / 384.0));
+  const double highest = std::max(std::max(force_, second), std::max(third, end_force)) + remainder;
+  const double lowest = std::min(std::min(force_, second), std::min(third, end_force)) - remainder;
   return highest < limit_ && lowest > -limit_;
 }
 
