@@ -2,8 +2,9 @@
 """The paper's refinement of the modal frequencies as a NumPy user would write it.
 
 Same data and same algorithm as benchmarks/spectral_peak_benchmark.cpp: for each mode in turn 50
-candidates within 3 %, the integral of |F_1| + |F_2| over a band of 4 % about the current frequency,
-10 loops. Vectorized over candidates x bins; the sum of the other modes is kept and not recomputed.
+candidates within 3 % of the current frequency and 4 % of the initial one, the integral of
+|F_1| + |F_2| over a band of 4 % about the current frequency, 10 loops. Vectorized over
+candidates x bins; the sum of the other modes is kept and not recomputed.
 
     spectral_peak_benchmark --write_case=case.bin
     spectral_peak_search.py case.bin [repetitions]
@@ -16,6 +17,7 @@ import time
 import numpy as np
 
 HALF_BAND, HALF_RANGE, CANDIDATES, LOOPS = 0.04, 0.03, 50, 10
+BOUND = 0.04  # how far a frequency may move from its initial value, relative
 
 
 def read_case(path):
@@ -37,7 +39,8 @@ def read_case(path):
 
 def refine(case):
     spacing, zeta, residues = case["spacing"], case["zeta"], case["residues"]
-    frequency = case["initial"].copy()
+    initial = case["initial"]
+    frequency = initial.copy()
     bins = int(1.2 * 2 * np.pi * frequency[-1] / spacing)
     omega = spacing * np.arange(bins)
     magnitudes = case["magnitudes"][:, :bins]
@@ -57,7 +60,9 @@ def refine(case):
             w = omega[first:last]
             a = residues[:, n]
             rest = total[:, first:last] - a[:, None] * term(current, w)
-            candidates = np.linspace(current * (1 - HALF_RANGE), current * (1 + HALF_RANGE), CANDIDATES)
+            low = max(current * (1 - HALF_RANGE), initial[n] * (1 - BOUND))
+            high = min(current * (1 + HALF_RANGE), initial[n] * (1 + BOUND))
+            candidates = np.linspace(low, high, CANDIDATES)
             inverse = term(candidates[:, None], w)
             integral = 0
             for side in range(2):
