@@ -13,6 +13,9 @@ for kernel in simulator inversion spectral_peak; do
     --benchmark_report_aggregates_only=true --benchmark_display_aggregates_only=true 2>/dev/null |
     grep -E '_median|_cv|^Benchmark'
 done
+echo "== the spectral-peak search in NumPy, on the same data"
+"$build/benchmarks/spectral_peak_benchmark" --write_case="$out/case.bin"
+/usr/bin/python3 "$here/peers/spectral_peak_search.py" "$out/case.bin" 5
 echo "== whole commands"
 for config in table1 fig14 fig10; do
   "$here/whole_process.py" -- "$build/modcal" run "$here/../configs/paper/$config.yaml" --out "$out/$config"
