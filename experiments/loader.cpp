@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <regex>
 
 #include "experiments/config/reader.hpp"
 #include "experiments/config/resolved.hpp"
@@ -57,6 +58,12 @@ bool is_known_mistake(const std::vector<Mistake>& mistakes, const SourcePosition
   });
 }
 
+// A number prints as nan only where its option could not be read, which is a mistake already.
+bool is_consequence(const std::string& text) {
+  static const std::regex kNan("\\bnan\\b");
+  return std::regex_search(text, kNan);
+}
+
 // Lints even where options are wrong, so that one look shows every mistake; what only follows from
 // a wrong option is left out by the lint itself.
 void make_and_lint(LoadedExperiment& loaded) {
@@ -66,7 +73,10 @@ void make_and_lint(LoadedExperiment& loaded) {
     auto experiment = loaded.choice.make();
     for (const Finding& finding : experiment->lint()) {
       const SourcePosition position = position_of_path(root, finding.path);
-      if (had_errors && is_known_mistake(loaded.mistakes, position)) continue;
+      if (had_errors &&
+          (is_known_mistake(loaded.mistakes, position) || is_consequence(finding.text))) {
+        continue;
+      }
       loaded.mistakes.push_back({position, finding.text, !finding.is_error});
     }
     if (!loaded.has_errors()) loaded.experiment = std::move(experiment);

@@ -9,12 +9,12 @@
 
 namespace modcal {
 
-/// Place in a file or on the command line; line and column count from 1, 0: none.
+/// Place in a file or in an argument of the command line; line and column count from 1, the column
+/// in bytes.
 struct SourcePosition {
-  std::size_t line = 0;
-  std::size_t column = 0;
-  /// Stands in the place of file, line and column where a value comes from elsewhere
-  /// ("command line, --set 1").
+  std::size_t line = 1;
+  std::size_t column = 1;
+  /// "command line, --set 1"; empty: the file.
   std::string origin = {};
 };
 
@@ -24,8 +24,9 @@ struct YamlNode {
   struct Member;
   Kind kind = Kind::kScalar;
   SourcePosition position;
-  std::string text;     ///< of a scalar, as written without quotes
-  bool quoted = false;  ///< a quoted scalar is text, never a number
+  std::string text;      ///< of a scalar, as written without quotes
+  bool quoted = false;   ///< a quoted scalar is text, never a number
+  bool refused = false;  ///< stands for what is not supported: it is a mistake already
   std::vector<YamlNode> items;
   std::vector<Member> members;
 
@@ -49,20 +50,25 @@ struct Mistake {
 struct YamlDocument {
   std::string file;                ///< as named by the user
   std::vector<std::string> lines;  ///< of the source, for carets
+  /// Name and text of the arguments that have been applied, for carets.
+  std::vector<std::pair<std::string, std::string>> arguments;
   YamlNode root;
   std::vector<Mistake> mistakes;  ///< found while parsing
 
   std::filesystem::path folder() const;
 };
 
-/// Parses without interpreting. Duplicate keys, merge keys, anchors and aliases, several documents,
-/// an empty file and a top level that is no map are mistakes; a syntax error is one, too.
-/// Throws InvalidInput where the file cannot be read.
+/// Parses without interpreting. Duplicate keys, merge keys, anchors, aliases and tags, several
+/// documents, tabs in the indentation, bytes that are not UTF-8, an empty file and a top level that
+/// is no map are mistakes; a syntax error is one, too. Throws InvalidInput where the file cannot be
+/// read.
 YamlDocument read_yaml_file(const std::filesystem::path& path);
 YamlDocument parse_yaml(const std::string& source, std::string file);
 
-/// Replaces the value at a dotted path ("scene.bow.normal_force") by `value`, adding maps on the
-/// way; a mistake at `path_position` where a path leads through something that is no map.
+/// Replaces the value at a dotted path ("scene.bow.normal_force", "figures.0.id") by `value`,
+/// adding maps on the way; a plug-in given by its name alone becomes {type: name}. What is added
+/// stands at `path_position`, so that a reader reports a wrong path there and a wrong value at its
+/// own place.
 void set_value(YamlDocument& document, std::string_view path, YamlNode value,
                const SourcePosition& path_position);
 

@@ -135,9 +135,13 @@ class SchemaWriter final : public OptionVisitor {
     SchemaWriter inner;
     visit_members(inner);
     add(info, inner.schema());
+    // Without the section its required options would be missing.
+    if (!inner.required.empty() && !info.required) required.push_back(info.key);
   }
   void optional_group(const OptionInfo& info, bool&, const VisitMembers& visit_members) override {
-    group(info, visit_members);
+    SchemaWriter inner;
+    visit_members(inner);
+    add(info, inner.schema());
   }
   void list(const OptionInfo& info, ListSlot& slot) override {
     SchemaWriter inner;

@@ -42,13 +42,14 @@ YamlReader::YamlReader(const YamlNode& node, std::vector<Mistake>& mistakes)
     : node_(node), mistakes_(mistakes) {}
 
 void YamlReader::mistake(const YamlNode& node, std::string text) {
-  mistakes_.push_back({node.position, std::move(text)});
+  if (!node.refused) mistakes_.push_back({node.position, std::move(text)});
 }
 
 const YamlNode* YamlReader::take(const OptionInfo& info) {
   seen_.emplace_back(info.key);
   const YamlNode* value = node_.find(info.key);
   if (value == nullptr && info.required) {
+    missing_.emplace_back(info.key);
     mistake(node_, fmt::format("missing key \"{}\": {}{}", info.key, info.meaning,
                                info.unit == "1" ? std::string() : fmt::format(" [{}]", info.unit)));
   }
@@ -205,9 +206,21 @@ void YamlReader::read_members(const YamlNode& node, const VisitMembers& visit_me
   inner.finish();
 }
 
+void YamlReader::skip_section(const OptionInfo& info, const VisitMembers& visit_members) {
+  YamlNode nothing;
+  nothing.kind = YamlNode::Kind::kMap;
+  std::vector<Mistake> unused;
+  YamlReader inner(nothing, unused);
+  visit_members(inner);
+  if (inner.missing_.empty() || info.required) return;
+  missing_.emplace_back(info.key);
+  mistake(node_, fmt::format("missing key \"{}\": {}; it needs {}", info.key, info.meaning,
+                             fmt::join(inner.missing_, ", ")));
+}
+
 void YamlReader::group(const OptionInfo& info, const VisitMembers& visit_members) {
   const YamlNode* node = take(info);
-  if (node == nullptr) return;
+  if (node == nullptr) return skip_section(info, visit_members);
   if (node->kind != YamlNode::Kind::kMap) {
     mistake(*node,
             fmt::format("{} must be a map of keys and values, not {}", info.key, kind_name(*node)));
@@ -219,7 +232,8 @@ void YamlReader::group(const OptionInfo& info, const VisitMembers& visit_members
 void YamlReader::optional_group(const OptionInfo& info, bool& present,
                                 const VisitMembers& visit_members) {
   present = node_.find(info.key) != nullptr;
-  group(info, visit_members);
+  if (present) return group(info, visit_members);
+  take(info);
 }
 
 void YamlReader::select(const OptionInfo& info, const YamlNode& name, PluginSlot& slot) {
@@ -236,7 +250,9 @@ void YamlReader::select(const OptionInfo& info, const YamlNode& name, PluginSlot
 
 void YamlReader::plugin(const OptionInfo& info, PluginSlot& slot) {
   const YamlNode* node = take(info);
-  if (node == nullptr) return;
+  if (node == nullptr) {
+    return skip_section(info, [&slot](OptionVisitor& inner) { slot.visit_options(inner); });
+  }
   if (node->kind == YamlNode::Kind::kScalar) {
     const std::size_t before = mistakes_.size();
     select(info, *node, slot);

@@ -44,6 +44,8 @@ class YamlReader final : public OptionVisitor {
 
  private:
   const YamlNode* take(const OptionInfo& info);
+  /// Says what a section that is left out would have needed.
+  void skip_section(const OptionInfo& info, const VisitMembers& visit_members);
   void read_members(const YamlNode& node, const VisitMembers& visit_members);
   void mistake(const YamlNode& node, std::string text);
   bool read_number(const OptionInfo& info, const YamlNode& node, double& value);
@@ -58,6 +60,7 @@ class YamlReader final : public OptionVisitor {
   const YamlNode& node_;
   std::vector<Mistake>& mistakes_;
   std::vector<std::string> seen_;
+  std::vector<std::string> missing_;
 };
 
 /// Reads a whole map with one visit and reports unknown keys; `allowed`: keys read elsewhere.

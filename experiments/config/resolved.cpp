@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -15,6 +16,20 @@ std::string yaml_string(const std::string& text) { return nlohmann::json(text).d
 std::string number_text(const OptionInfo& info, double value) {
   if (std::isnan(value)) return std::string(info.word);
   return info.unit == "1" ? fmt::format("{}", value) : fmt::format("{} {}", value, info.unit);
+}
+
+// Numbers, units and words as they were written; what would not read back so, in quotes.
+std::vector<std::string> flow_items(const std::vector<std::string>& values) {
+  std::vector<std::string> items;
+  for (const std::string& value : values) {
+    const bool plain = !value.empty() && value != "null" && value != "~" &&
+                       value.find_first_of(",[]{}:#&*!|>'\"%@`\n") == std::string::npos;
+    const bool percent = !value.empty() && std::isdigit(static_cast<unsigned char>(value[0])) &&
+                         value.ends_with('%') &&
+                         value.find_first_of(",[]{}:#\n") == std::string::npos;
+    items.push_back(plain || percent ? value : yaml_string(value));
+  }
+  return items;
 }
 
 }  // namespace
@@ -60,6 +75,7 @@ void ResolvedWriter::texts(const OptionInfo& info, std::vector<std::string>& val
 }
 
 void ResolvedWriter::plugin(const OptionInfo& info, PluginSlot& slot) {
+  if (slot.selected().empty()) return;
   line(info, {});
   ++level_;
   line({.key = "type", .meaning = slot.summary(slot.selected())}, std::string(slot.selected()));
@@ -98,7 +114,7 @@ void ResolvedWriter::sweep(const OptionInfo& info, SweepSlot& slot) {
   ++level_;
   for (const SweepAxis& axis : slot.axes()) {
     line({.key = axis.path, .meaning = "values"},
-         fmt::format("[{}]", fmt::join(axis.values, ", ")));
+         fmt::format("[{}]", fmt::join(flow_items(axis.values), ", ")));
   }
   level_ -= 2;
 }
