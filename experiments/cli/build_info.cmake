@@ -11,7 +11,15 @@ if(CHANGES)
 else()
   set(DIRTY "false")
 endif()
+# LIBRARIES: name=version,name=version
+string(REPLACE "," ";" LIBRARIES "${LIBRARIES}")
+list(LENGTH LIBRARIES LIBRARY_COUNT)
+list(TRANSFORM LIBRARIES REPLACE "^(.*)=(.*)$" "{\"\\1\", \"\\2\"}")
+list(JOIN LIBRARIES ", " LIBRARY_TABLE)
 file(CONFIGURE OUTPUT "${OUTPUT}" @ONLY CONTENT [[#pragma once
+
+#include <array>
+#include <utility>
 
 namespace modcal {
 
@@ -20,9 +28,7 @@ inline constexpr char kBuildCommit[] = "@COMMIT@";
 inline constexpr bool kBuildDirty = @DIRTY@;
 inline constexpr char kBuildCompiler[] = "@COMPILER@";
 inline constexpr char kBuildType[] = "@BUILD_TYPE@";
-inline constexpr char kBuildFftw[] = "@FFTW@";
-inline constexpr char kBuildNlopt[] = "@NLOPT@";
-inline constexpr char kBuildCeres[] = "@CERES@";
+inline constexpr std::array<std::pair<const char*, const char*>, @LIBRARY_COUNT@> kBuildLibraries = {{@LIBRARY_TABLE@}};
 inline constexpr char kBuildConfigs[] = "@SOURCE_DIR@/configs";
 
 }  // namespace modcal

@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 
 #include "experiments/cli/command.hpp"
 #include "experiments/cli/interrupt.hpp"
 #include "experiments/cli/provenance.hpp"
+#include "experiments/config/reader.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -26,6 +28,16 @@ ExitCode act(const Action& action) {
   }
 }
 
+// CLI11 would say that a command is missing.
+bool is_unknown_command(const CLI::App& app, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return false;
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  if (std::find(names.begin(), names.end(), argv[1]) != names.end()) return false;
+  fmt::print(stderr, "error: unknown command \"{}\"{}\n", argv[1], suggestion(argv[1], names));
+  return true;
+}
+
 int main_of(int argc, char** argv) {
   CLI::App app(
       "modcal: calibrates the modal model of a bowed string and identifies the friction "
@@ -42,6 +54,7 @@ int main_of(int argc, char** argv) {
   add_schema_command(app, chosen);
   add_inspect_command(app, chosen);
   add_reproduce_command(app, chosen);
+  if (is_unknown_command(app, argc, argv)) return static_cast<int>(ExitCode::kUsage);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -3,11 +3,11 @@
 #include <fmt/chrono.h>
 #include <sys/utsname.h>
 
-#include <Eigen/Core>
 #include <fstream>
 #include <thread>
 
 #include "experiments/cli/build_info.hpp"
+#include "experiments/config/help.hpp"
 
 namespace modcal {
 namespace {
@@ -26,7 +26,44 @@ std::string system_name() {
                            : std::string("unknown");
 }
 
+nlohmann::ordered_json libraries() {
+  nlohmann::ordered_json result = nlohmann::ordered_json::object();
+  for (const auto& [name, version] : kBuildLibraries) result[name] = version;
+  return result;
+}
+
+void collect_seeds(const nlohmann::ordered_json& options, const std::string& prefix,
+                   nlohmann::ordered_json& seeds) {
+  for (const auto& option : options) {
+    const std::string key = option["key"].get<std::string>();
+    if ((key == "seed" || key == "seeds") && option.contains("default")) {
+      seeds[prefix + key] = option["default"];
+    }
+    if (option.contains("options")) collect_seeds(option["options"], prefix + key + ".", seeds);
+  }
+}
+
+void collect_swept_seeds(const YamlNode& root, nlohmann::ordered_json& seeds) {
+  const YamlNode* sweep = root.find("sweep");
+  const YamlNode* product = sweep != nullptr ? sweep->find("product") : nullptr;
+  if (product == nullptr) return;
+  for (const YamlNode::Member& axis : product->members) {
+    if (axis.key != "seed" && !axis.key.ends_with(".seed")) continue;
+    seeds[axis.key] = nlohmann::ordered_json::array();
+    for (const YamlNode& value : axis.value.items) seeds[axis.key].push_back(value.text);
+  }
+}
+
 }  // namespace
+
+nlohmann::ordered_json seeds_json(const LoadedExperiment& loaded) {
+  nlohmann::ordered_json seeds = nlohmann::ordered_json::object();
+  Choice<Experiment> choice = loaded.choice;
+  collect_seeds(describe_options([&](OptionVisitor& visitor) { choice.visit_options(visitor); }),
+                "", seeds);
+  collect_swept_seeds(loaded.document.root, seeds);
+  return seeds;
+}
 
 std::string version_text() {
   return fmt::format("modcal {} (commit {}{})", kBuildVersion, kBuildCommit,
@@ -40,13 +77,7 @@ nlohmann::ordered_json provenance_json(const std::string& command) {
           {"dirty", kBuildDirty},
           {"compiler", kBuildCompiler},
           {"build_type", kBuildType},
-          {"libraries",
-           {{"eigen", fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION,
-                                  EIGEN_MINOR_VERSION)},
-            {"fftw", kBuildFftw},
-            {"nlopt", kBuildNlopt},
-            {"ceres", kBuildCeres},
-            {"fmt", fmt::format("{}", FMT_VERSION)}}},
+          {"libraries", libraries()},
           {"processor", processor()},
           {"hardware_threads", std::thread::hardware_concurrency()},
           {"system", system_name()},

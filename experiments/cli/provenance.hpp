@@ -5,12 +5,15 @@
 #include <string>
 #include <vector>
 
+#include "experiments/loader.hpp"
 #include "experiments/report/report.hpp"
 
 namespace modcal {
 
 std::string version_text();
 nlohmann::ordered_json provenance_json(const std::string& command);
+/// The seeds of an experiment by their paths, a swept one as its list.
+nlohmann::ordered_json seeds_json(const LoadedExperiment& loaded);
 std::vector<report::ProvenanceLine> provenance_lines(const std::string& command);
 
 }  // namespace modcal

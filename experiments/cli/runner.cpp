@@ -99,6 +99,11 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 ExitCode run_one(const LoadedExperiment& loaded, const RunSettings& settings) {
   const auto start = std::chrono::steady_clock::now();
   const OutputDirectory out(settings.out);
+  // Before the work, so that an interrupted run says what it was.
+  out.write_text("resolved.yaml", resolved_text(loaded));
+  nlohmann::ordered_json provenance = provenance_json(settings.command);
+  provenance["seeds"] = seeds_json(loaded);
+  out.write_text("provenance.json", provenance.dump(2) + "\n");
   const auto limit = limit_threads(settings.threads);
   SharedWork work;
   StudyResult result;
@@ -107,8 +112,8 @@ ExitCode run_one(const LoadedExperiment& loaded, const RunSettings& settings) {
   } catch (const Interrupted&) {
     say_interrupted(settings);
   }
-  out.write_text("resolved.yaml", resolved_text(loaded));
-  out.write_text("provenance.json", provenance_json(settings.command).dump(2) + "\n");
+  // Work that does not poll ends by itself; what the user wanted to stop is not written either.
+  if (interrupted()) say_interrupted(settings);
   write_files(out, result);
   print_summary(result, settings, seconds_since(start));
   report::Report report;
