@@ -29,7 +29,7 @@ void lint_string(const std::string& path, const StringModel& string, double posi
 
 void lint_rate(const StringModel& string, double sample_rate, const std::string& string_path,
                std::vector<Finding>& findings) {
-  if (!is_known(string)) return;
+  if (!std::isfinite(string.fundamental)) return;
   const auto top_mode = static_cast<std::size_t>(string.modes);
   const double top = stiff_string_frequency(string.fundamental, string.inharmonicity, top_mode);
   if (top < 0.5 * sample_rate) return;
