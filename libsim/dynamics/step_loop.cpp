@@ -18,42 +18,124 @@ struct ContactSums {
   double displacement;
 };
 
-// P ← r (P + D u); returns Σ (Re P − κ Im P) and Σ Im P/ω_d of the new P.
-HWY_INLINE ContactSums AdvanceModes(StepCoefficients& c, double u) {
-  const hn::ScalableTag<double> d;
-  const std::size_t lanes = hn::Lanes(d);
-  const auto force = hn::Set(d, u);
-  auto velocity = hn::Zero(d);
-  auto displacement = hn::Zero(d);
-  double* HWY_RESTRICT state_re = c.state_re.data();
-  double* HWY_RESTRICT state_im = c.state_im.data();
-  for (std::size_t i = 0; i < c.state_re.size(); i += lanes) {
-    const auto re = hn::MulAdd(hn::LoadU(d, &c.deferred_re[i]), force, hn::LoadU(d, state_re + i));
-    const auto im = hn::MulAdd(hn::LoadU(d, &c.deferred_im[i]), force, hn::LoadU(d, state_im + i));
-    const auto r_re = hn::LoadU(d, &c.propagate_re[i]);
-    const auto r_im = hn::LoadU(d, &c.propagate_im[i]);
-    const auto new_re = hn::NegMulAdd(r_im, im, hn::Mul(r_re, re));
-    const auto new_im = hn::MulAdd(r_re, im, hn::Mul(r_im, re));
-    hn::StoreU(new_re, d, state_re + i);
-    hn::StoreU(new_im, d, state_im + i);
-    velocity = hn::NegMulAdd(hn::LoadU(d, &c.quadrature[i]), new_im, hn::Add(velocity, new_re));
-    displacement = hn::MulAdd(hn::LoadU(d, &c.compliance[i]), new_im, displacement);
+// At most 8 lanes, the padding of the coefficients.
+using Tag = hn::CappedTag<double, kVectorPadding>;
+
+// The arrays of the coefficients, read once: a store into the state could otherwise change the
+// vectors' own pointers, and every step would load them again.
+struct Arrays {
+  explicit Arrays(StepCoefficients& c)
+      : size(c.state_re.size()),
+        propagate_re(c.propagate_re.data()),
+        propagate_im(c.propagate_im.data()),
+        deferred_re(c.deferred_re.data()),
+        deferred_im(c.deferred_im.data()),
+        quadrature(c.quadrature.data()),
+        compliance(c.compliance.data()),
+        state_re(c.state_re.data()),
+        state_im(c.state_im.data()) {}
+  std::size_t size;
+  const double *propagate_re, *propagate_im, *deferred_re, *deferred_im, *quadrature, *compliance;
+  double *state_re, *state_im;
+};
+
+// One vector of modes of P ← r (P + D u), added to the sums of the contact.
+struct VectorSums {
+  hn::Vec<Tag> velocity, displacement;
+
+  HWY_INLINE ContactSums Total() const {
+    const Tag d;
+    return {hn::GetLane(hn::SumOfLanes(d, velocity)), hn::GetLane(hn::SumOfLanes(d, displacement))};
   }
-  return {hn::GetLane(hn::SumOfLanes(d, velocity)), hn::GetLane(hn::SumOfLanes(d, displacement))};
+};
+
+HWY_INLINE void AdvanceVector(const Arrays& c, std::size_t i, hn::Vec<Tag> force,
+                              hn::Vec<Tag>& state_re, hn::Vec<Tag>& state_im, VectorSums& sums) {
+  const Tag d;
+  const auto re = hn::MulAdd(hn::Load(d, c.deferred_re + i), force, state_re);
+  const auto im = hn::MulAdd(hn::Load(d, c.deferred_im + i), force, state_im);
+  const auto r_re = hn::Load(d, c.propagate_re + i);
+  const auto r_im = hn::Load(d, c.propagate_im + i);
+  state_re = hn::NegMulAdd(r_im, im, hn::Mul(r_re, re));
+  state_im = hn::MulAdd(r_re, im, hn::Mul(r_im, re));
+  sums.velocity =
+      hn::NegMulAdd(hn::Load(d, c.quadrature + i), state_im, hn::Add(sums.velocity, state_re));
+  sums.displacement = hn::MulAdd(hn::Load(d, c.compliance + i), state_im, sums.displacement);
 }
 
-HWY_INLINE double Dot(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-  return sum;
+// The state in memory: any number of modes.
+class StreamedModes {
+ public:
+  explicit StreamedModes(StepCoefficients& c) : c_(c) {}
+  // Σ (Re P − κ Im P) and Σ Im P/ω_d of the new P.
+  HWY_INLINE ContactSums Advance(double u) {
+    const Tag d;
+    const auto force = hn::Set(d, u);
+    VectorSums sums{hn::Zero(d), hn::Zero(d)};
+    for (std::size_t i = 0; i < c_.size; i += hn::Lanes(d)) {
+      auto re = hn::Load(d, c_.state_re + i);
+      auto im = hn::Load(d, c_.state_im + i);
+      AdvanceVector(c_, i, force, re, im, sums);
+      hn::Store(re, d, c_.state_re + i);
+      hn::Store(im, d, c_.state_im + i);
+    }
+    return sums.Total();
+  }
+  void Store() {}
+
+ private:
+  Arrays c_;
+};
+
+// The state in registers, 2 kVectors of the 32 that the widest instruction sets have.
+template <std::size_t kVectors>
+class ResidentModes {
+ public:
+  explicit ResidentModes(StepCoefficients& c) : c_(c) {
+    const Tag d;
+    for (std::size_t i = 0; i < kVectors; ++i) {
+      re_[i] = hn::Load(d, c_.state_re + i * hn::Lanes(d));
+      im_[i] = hn::Load(d, c_.state_im + i * hn::Lanes(d));
+    }
+  }
+  HWY_INLINE ContactSums Advance(double u) {
+    const Tag d;
+    const auto force = hn::Set(d, u);
+    VectorSums sums{hn::Zero(d), hn::Zero(d)};
+    for (std::size_t i = 0; i < kVectors; ++i) {
+      AdvanceVector(c_, i * hn::Lanes(d), force, re_[i], im_[i], sums);
+    }
+    return sums.Total();
+  }
+  void Store() {
+    const Tag d;
+    for (std::size_t i = 0; i < kVectors; ++i) {
+      hn::Store(re_[i], d, c_.state_re + i * hn::Lanes(d));
+      hn::Store(im_[i], d, c_.state_im + i * hn::Lanes(d));
+    }
+  }
+
+ private:
+  Arrays c_;
+  hn::Vec<Tag> re_[kVectors], im_[kVectors];
+};
+
+HWY_INLINE double Dot(const AlignedVector& a, const AlignedVector& b) {
+  const Tag d;
+  auto sum = hn::Zero(d);
+  for (std::size_t i = 0; i < a.size(); i += hn::Lanes(d)) {
+    sum = hn::MulAdd(hn::Load(d, a.data() + i), hn::Load(d, b.data() + i), sum);
+  }
+  return hn::GetLane(hn::SumOfLanes(d, sum));
 }
 
-template <ForceTiming kTiming, typename Law>
+template <ForceTiming kTiming, typename Modes, typename Law>
 LoopCounts Loop(const StepLoop& loop, const Law& law, StepCoefficients& c) {
   ContactRule<Law> rule(loop.contact, law, loop.time_step, loop.initial_displacement,
                         loop.initial_velocity);
   const StepCoefficients::Response deferred = c.deferred_response;
   const StepCoefficients::Response direct = c.direct_response;
+  rule.set_response(direct.velocity, direct.displacement);
   double force = rule.initial_force();
   double previous_force = 0.0;
   // Sums of P before the first step: r S_0, as the caller left it.
@@ -62,6 +144,7 @@ LoopCounts Loop(const StepLoop& loop, const Law& law, StepCoefficients& c) {
     sums.velocity += c.state_re[i] - c.quadrature[i] * c.state_im[i];
     sums.displacement += c.compliance[i] * c.state_im[i];
   }
+  Modes modes(c);
   std::uint64_t step = 0;
   LoopCounts counts;
   for (std::size_t sample = 1; sample < loop.samples; ++sample) {
@@ -72,7 +155,8 @@ LoopCounts Loop(const StepLoop& loop, const Law& law, StepCoefficients& c) {
       const double u = kImplicit ? force : previous_force;
       const double free_v = sums.velocity + deferred.velocity * u;
       const double free_y = sums.displacement + deferred.displacement * u;
-      if (inner == 1) {  // reactions need S of this step, which AdvanceModes overwrites
+      if (inner == 1) {
+        modes.Store();  // reactions need S of this step, which AdvanceModes overwrites
         if (loop.targets.left_reaction) {
           loop.targets.left_reaction[sample] = Dot(c.left_gain, c.state_im) + deferred.left * u;
         }
@@ -80,10 +164,10 @@ LoopCounts Loop(const StepLoop& loop, const Law& law, StepCoefficients& c) {
           loop.targets.right_reaction[sample] = Dot(c.right_gain, c.state_im) + deferred.right * u;
         }
       }
-      sums = AdvanceModes(c, u);
+      sums = modes.Advance(u);
       previous_force = force;
       if constexpr (kImplicit) {
-        force = rule.implicit_force(free_v, direct.velocity, free_y, direct.displacement, step);
+        force = rule.implicit_force(free_v, free_y, step);
         driving = force;
       } else {
         driving = force;
@@ -111,14 +195,41 @@ LoopCounts Loop(const StepLoop& loop, const Law& law, StepCoefficients& c) {
   return counts;
 }
 
-LoopCounts RunStepLoop(const StepLoop& loop, StepCoefficients& coefficients) {
+template <typename Modes>
+LoopCounts LoopOf(const StepLoop& loop, StepCoefficients& coefficients) {
   return std::visit(
       [&](const auto& law) {
         return loop.timing == ForceTiming::kImplicit
-                   ? Loop<ForceTiming::kImplicit>(loop, law, coefficients)
-                   : Loop<ForceTiming::kPreviousStep>(loop, law, coefficients);
+                   ? Loop<ForceTiming::kImplicit, Modes>(loop, law, coefficients)
+                   : Loop<ForceTiming::kPreviousStep, Modes>(loop, law, coefficients);
       },
       loop.law);
+}
+
+LoopCounts RunStepLoop(const StepLoop& loop, StepCoefficients& coefficients) {
+#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+  switch (coefficients.state_re.size() / kVectorPadding) {
+    case 1:
+      return LoopOf<ResidentModes<1>>(loop, coefficients);
+    case 2:
+      return LoopOf<ResidentModes<2>>(loop, coefficients);
+    case 3:
+      return LoopOf<ResidentModes<3>>(loop, coefficients);
+    case 4:
+      return LoopOf<ResidentModes<4>>(loop, coefficients);
+    case 5:
+      return LoopOf<ResidentModes<5>>(loop, coefficients);
+    case 6:
+      return LoopOf<ResidentModes<6>>(loop, coefficients);
+    case 7:
+      return LoopOf<ResidentModes<7>>(loop, coefficients);
+    case 8:
+      return LoopOf<ResidentModes<8>>(loop, coefficients);
+    default:
+      break;
+  }
+#endif
+  return LoopOf<StreamedModes>(loop, coefficients);
 }
 
 }  // namespace modcal::HWY_NAMESPACE
@@ -130,26 +241,24 @@ HWY_EXPORT(RunStepLoop);
 
 namespace {
 
-// Whole vectors of the widest instruction set in use (8 doubles), so that no kernel has a tail.
-constexpr std::size_t kPadding = 8;
-
-std::vector<double> padded(std::vector<double> values) {
-  values.resize((values.size() + kPadding - 1) / kPadding * kPadding, 0.0);
-  return values;
+AlignedVector padded(const std::vector<double>& values) {
+  AlignedVector result(values.begin(), values.end());
+  result.resize(padded_size(values.size()), 0.0);
+  return result;
 }
 
 using ComplexVector = std::vector<std::complex<double>>;
 
-std::vector<double> padded_real(const ComplexVector& values) {
+AlignedVector padded_real(const ComplexVector& values) {
   std::vector<double> parts;
   for (const auto& value : values) parts.push_back(value.real());
-  return padded(std::move(parts));
+  return padded(parts);
 }
 
-std::vector<double> padded_imag(const ComplexVector& values) {
+AlignedVector padded_imag(const ComplexVector& values) {
   std::vector<double> parts;
   for (const auto& value : values) parts.push_back(value.imag());
-  return padded(std::move(parts));
+  return padded(parts);
 }
 
 StepCoefficients::Response response_of(const ContactModes& modes, const ComplexVector& state) {

@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "libsim/base/aligned_vector.hpp"
 #include "libsim/dynamics/contact_modes.hpp"
 #include "libsim/dynamics/friction/sliding_laws.hpp"
 
@@ -25,10 +26,10 @@ enum class ForceTiming {
 
 /// One-step coefficients of every mode, padded with zeros to whole vectors.
 struct StepCoefficients {
-  std::vector<double> propagate_re, propagate_im;  ///< r
-  std::vector<double> deferred_re, deferred_im;    ///< D
-  std::vector<double> quadrature, compliance, left_gain, right_gain;
-  std::vector<double> state_re, state_im;  ///< P, overwritten by the loop
+  AlignedVector propagate_re, propagate_im;  ///< r
+  AlignedVector deferred_re, deferred_im;    ///< D
+  AlignedVector quadrature, compliance, left_gain, right_gain;
+  AlignedVector state_re, state_im;  ///< P, overwritten by the loop
   // Σ over modes: response of velocity, displacement and reactions to D and to d.
   struct Response {
     double velocity = 0.0, displacement = 0.0, left = 0.0, right = 0.0;

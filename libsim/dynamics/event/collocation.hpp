@@ -14,7 +14,7 @@ template <typename Law>
 typename Law::Point continued(const Law& law, double speed) {
   if (speed >= 0.0) return law.at(speed);
   const auto rest = law.at(0.0);
-  return {rest.force + rest.slope * speed, rest.slope};
+  return {rest.force + rest.slope * speed, rest.slope, 0.0};
 }
 
 struct NodeValues {

@@ -1,8 +1,9 @@
 // Sliding friction laws as plain values for the step loop: no virtual call, no allocation.
 #pragma once
 
-#include <cmath>
 #include <variant>
+
+#include "libsim/base/decaying_exp.hpp"
 
 namespace modcal {
 
@@ -14,12 +15,13 @@ struct ExponentialSliding {
   double decay = 0.0;          ///< C [s/m]
 
   struct Point {
-    double force;  ///< magnitude [N]
-    double slope;  ///< d force/du [N s/m]
+    double force;      ///< magnitude [N]
+    double slope;      ///< d force/du [N s/m]
+    double curvature;  ///< d² force/du² [N s²/m²]
   };
   Point at(double speed) const {
-    const double excess = force_drop * std::exp(-decay * speed);
-    return {dynamic_force + excess, -decay * excess};
+    const double excess = force_drop * decaying_exp(-decay * speed);
+    return {dynamic_force + excess, -decay * excess, decay * decay * excess};
   }
   /// Steepest fall of the force with speed, max_u −d force/du [N s/m].
   double steepest_fall() const { return decay * force_drop; }
