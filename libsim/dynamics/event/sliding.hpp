@@ -18,7 +18,11 @@ class Sliding {
   /// `slope_number` κ: the steps h keep |g'(u)| h/m_eff ≤ κ at their start and ≤ 2κ at every node,
   /// where the friction equation has one solution.
   Sliding(SlidingModel& model, const Law& law, double bow_velocity, double slope_number)
-      : model_(model), law_(law), bow_velocity_(bow_velocity), slope_number_(slope_number) {}
+      : model_(model),
+        law_(law),
+        any_law_(law),
+        bow_velocity_(bow_velocity),
+        slope_number_(slope_number) {}
 
   /// Starts with the sliding speed u = side·v_c ≥ 0.
   void start(double side, double speed) {
@@ -81,6 +85,15 @@ class Sliding {
     return values;
   }
 
+  // Speeds to start the solution from: as if the friction of node 1 lasted.
+  void guess(const NodeVector& free, const NodeMatrix& coupling, NodeValues& values) const {
+    for (int i = 1; i < nodes(); ++i) {
+      double sum = 0.0;
+      for (int j = 0; j < nodes(); ++j) sum += coupling[i][j];
+      values.speed[i] = free[i] - sum * friction_;
+    }
+  }
+
   bool steep(const NodeValues& values, double step) const {
     double steepest = 0.0;
     for (int i = 0; i < nodes(); ++i) steepest = std::max(steepest, -values.slope[i]);
@@ -118,7 +131,9 @@ class Sliding {
     real_products(table.rows, state, std::span(free).subspan(1, unknowns));
     for (int i = 1; i < nodes(); ++i) free[i] = side_ * (free[i] - bow_velocity_);
     NodeValues values = start_values();
-    if (!solve_nodes(law_, nodes(), table.coupling, free, values) || steep(values, table.step)) {
+    guess(free, table.coupling, values);
+    if (!solve_nodes(any_law_, nodes(), table.coupling, free, values) ||
+        steep(values, table.step)) {
       return refined(end - table.step / model_.grid_step());
     }
     if (!stays_sliding(table, values, state)) return std::nullopt;
@@ -189,7 +204,9 @@ class Sliding {
       }
     }
     for (int i = 1; i < nodes(); ++i) free[i] = side_ * (velocity[i] - bow_velocity_);
-    return solve_nodes(law_, nodes(), model_.coupling(ratio), free, values);
+    const NodeMatrix coupling = model_.coupling(ratio);
+    guess(free, coupling, values);
+    return solve_nodes(any_law_, nodes(), coupling, free, values);
   }
 
   // u(θ) of a step, θ = 1 at its end.
@@ -210,6 +227,7 @@ class Sliding {
 
   SlidingModel& model_;
   Law law_;
+  SlidingLaw any_law_;
   double bow_velocity_, slope_number_;
   double side_ = -1.0;
   double speed_ = 0.0, friction_ = 0.0, slope_ = 0.0;

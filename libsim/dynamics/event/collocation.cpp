@@ -1,0 +1,162 @@
+#include "libsim/dynamics/event/collocation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "libsim/dynamics/event/collocation.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace modcal::event::HWY_NAMESPACE {
+
+// The law continued below u = 0 by its tangent.
+template <typename Law>
+HWY_INLINE typename Law::Point Continued(const Law& law, double speed) {
+  // Without a branch, so that the nodes are computed side by side.
+  const double beyond = speed < 0.0 ? speed : 0.0;
+  auto point = law.at(speed - beyond);
+  point.force += point.slope * beyond;
+  return point;
+}
+
+// Elimination of column k and all later ones; A is I + (small), so that its diagonal serves as
+// pivots. Recursive, so that every index is a constant. False where a pivot vanishes.
+template <int k, int kSize>
+HWY_INLINE bool Eliminate(double (&a)[kSize][kSize], double (&b)[kSize]) {
+  const bool regular = std::abs(a[k][k]) > 1e-12;
+  const double inverse = 1.0 / a[k][k];
+  a[k][k] = inverse;
+  for (int i = k + 1; i < kSize; ++i) {
+    const double factor = a[i][k] * inverse;
+    for (int j = k + 1; j < kSize; ++j) a[i][j] -= factor * a[k][j];
+    b[i] -= factor * b[k];
+  }
+  if constexpr (k + 1 < kSize) return regular & Eliminate<k + 1>(a, b);
+  return regular;
+}
+
+// x ← x − A⁻¹ b from row k upwards; b becomes A⁻¹ b.
+template <int k, int kSize>
+HWY_INLINE void SubtractBack(const double (&a)[kSize][kSize], double (&b)[kSize],
+                             double (&x)[kSize]) {
+  for (int j = k + 1; j < kSize; ++j) b[k] -= a[k][j] * b[j];
+  b[k] *= a[k][k];
+  x[k] -= b[k];
+  if constexpr (k > 0) SubtractBack<k - 1>(a, b, x);
+}
+
+// The law at the unknown nodes 2…s.
+template <int kUnknowns>
+struct LawValues {
+  double force[kUnknowns], slope[kUnknowns], curvature[kUnknowns];
+
+  template <typename Law>
+  void evaluate(const Law& law, const double (&speed)[kUnknowns]) {
+    for (int i = 0; i < kUnknowns; ++i) {
+      const auto point = Continued(law, speed[i]);
+      force[i] = point.force;
+      slope[i] = point.slope;
+      curvature[i] = point.curvature;
+    }
+  }
+  // Carries the values over to speeds that differ by −step, by the law's parabola.
+  void shift(const double (&step)[kUnknowns]) {
+    for (int i = 0; i < kUnknowns; ++i) {
+      force[i] -= step[i] * (slope[i] - 0.5 * step[i] * curvature[i]);
+      slope[i] -= step[i] * curvature[i];
+    }
+  }
+};
+
+template <int kNodes, typename Law>
+bool SolveNodesOf(const Law& law, const NodeMatrix& coupling, const NodeVector& free,
+                  NodeValues& values) {
+  constexpr int kMaxIterations = 25, kUnknowns = kNodes - 1;
+  constexpr double kTight = 1e-15, kAcceptable = 1e-13;
+  double speed[kUnknowns], scale[kUnknowns], known[kUnknowns], size[kUnknowns];
+  for (int i = 0; i < kUnknowns; ++i) {
+    known[i] = free[i + 1] - coupling[i + 1][0] * values.friction[0];
+    size[i] = 0.0;
+    for (int j = 1; j < kNodes; ++j) size[i] += std::abs(coupling[i + 1][j]);
+    scale[i] = std::abs(free[i + 1]) + size[i] * values.friction[0];
+    speed[i] = values.speed[i + 1];
+  }
+  LawValues<kUnknowns> at;
+  double previous = HUGE_VAL;
+  bool solved = false;
+  for (int iteration = 0; iteration < kMaxIterations && !solved; ++iteration) {
+    at.evaluate(law, speed);
+    double step[kUnknowns];
+    double worst = 0.0;
+    for (int i = 0; i < kUnknowns; ++i) {
+      double sum = speed[i] - known[i];
+      for (int j = 0; j < kUnknowns; ++j) sum += coupling[i + 1][j + 1] * at.force[j];
+      step[i] = sum;
+      // Below the tight bound nothing is left to compare: one test of the common case.
+      if (!(std::abs(sum) <= kTight * scale[i])) {
+        worst = std::max(worst, std::isfinite(sum) ? std::abs(sum) / scale[i] : HUGE_VAL);
+      }
+    }
+    if (worst == 0.0 || (worst <= kAcceptable && worst >= 0.5 * previous)) break;
+    if (worst == HUGE_VAL) return false;
+    previous = worst;
+    double jacobian[kUnknowns][kUnknowns];
+    for (int i = 0; i < kUnknowns; ++i) {
+      for (int j = 0; j < kUnknowns; ++j) {
+        jacobian[i][j] = coupling[i + 1][j + 1] * at.slope[j] + (i == j ? 1.0 : 0.0);
+      }
+    }
+    if (!Eliminate<0>(jacobian, step)) return false;
+    SubtractBack<kUnknowns - 1>(jacobian, step, speed);
+    // The residual that this step leaves is ½ coupling g'' step²; where it is below the tight bound
+    // (and the parabola's own remainder with it) the law need not be computed again.
+    double bend = 0.0;
+    for (int j = 0; j < kUnknowns; ++j) {
+      bend = std::max(bend, 0.5 * std::abs(at.curvature[j]) * step[j] * step[j]);
+    }
+    solved = true;
+    for (int i = 0; i < kUnknowns; ++i) solved = solved && size[i] * bend <= kTight * scale[i];
+    if (solved) at.shift(step);
+    if (iteration + 1 == kMaxIterations && !solved) return false;
+  }
+  for (int i = 0; i < kUnknowns; ++i) {
+    values.speed[i + 1] = speed[i];
+    values.friction[i + 1] = at.force[i];
+    values.slope[i + 1] = at.slope[i];
+  }
+  return true;
+}
+
+bool SolveNodes(const SlidingLaw& any_law, int nodes, const NodeMatrix& coupling,
+                const NodeVector& free, NodeValues& values) {
+  return std::visit(
+      [&](const auto& law) {
+        switch (nodes) {
+          case 2:
+            return SolveNodesOf<2>(law, coupling, free, values);
+          case 3:
+            return SolveNodesOf<3>(law, coupling, free, values);
+          case 4:
+            return SolveNodesOf<4>(law, coupling, free, values);
+          default:
+            return SolveNodesOf<5>(law, coupling, free, values);
+        }
+      },
+      any_law);
+}
+
+}  // namespace modcal::event::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace modcal::event {
+HWY_EXPORT(SolveNodes);
+
+bool solve_nodes(const SlidingLaw& law, int nodes, const NodeMatrix& coupling,
+                 const NodeVector& free, NodeValues& values) {
+  return HWY_DYNAMIC_DISPATCH(SolveNodes)(law, nodes, coupling, free, values);
+}
+}  // namespace modcal::event
+#endif
