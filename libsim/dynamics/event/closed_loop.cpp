@@ -11,6 +11,7 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr double kWorstCondition = 1e8;
+constexpr double kWorstRoundTrip = 1e-7;
 
 // What one root contributes: 1/((μ − λ_n)(μ − λ̄_n)) for every mode and sums over them.
 struct RootColumn {
@@ -116,6 +117,23 @@ void fill_particular(const ContactModes& modes, ClosedLoop& loop) {
   loop.right = quasi_static(modes, modes.right_gain);
 }
 
+// Whether the coordinates are complete: a state that touches every mode comes back from them. Fails
+// where a root is wrong, missing or listed twice.
+bool is_complete(const ContactModes& modes, ClosedLoop& loop) {
+  PlanarVector state(loop.modes), coordinates(loop.roots), back(loop.modes);
+  double error = 0.0;
+  for (std::size_t n = 0; n < loop.modes; ++n) {
+    const double phase = 1.0 + 2.4 * static_cast<double>(n);
+    state.set(n, std::polar(std::sqrt(modes.drive[n]), phase));
+  }
+  apply(loop.to_closed, loop.modes, state, coordinates);
+  apply(loop.to_open, loop.roots, coordinates, back);
+  for (std::size_t n = 0; n < loop.modes; ++n) {
+    error += std::norm(back.at(n) - state.at(n)) / modes.drive[n];
+  }
+  return error <= kWorstRoundTrip * kWorstRoundTrip * static_cast<double>(loop.modes);
+}
+
 }  // namespace
 
 double ClosedLoop::force_rate(double bow_velocity) const {
@@ -147,6 +165,7 @@ std::optional<ClosedLoop> make_closed_loop(const ContactModes& modes, double sti
     if (!(column.condition < kWorstCondition)) return std::nullopt;
     fill_root(modes, open, j, (*roots)[j], column, loop);
   }
+  if (!is_complete(modes, loop)) return std::nullopt;
   fill_particular(modes, loop);
   return loop;
 }

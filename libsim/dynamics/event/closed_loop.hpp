@@ -41,7 +41,8 @@ struct ClosedLoop {
   double force_offset(double bow_velocity, double rest_point) const;
 };
 
-/// Nothing where two roots are so close that the coordinates lose more than 8 digits.
+/// Nothing where the roots are not found, or two are so close that the coordinates lose more than 8
+/// digits.
 std::optional<ClosedLoop> make_closed_loop(const ContactModes& modes, double stiffness,
                                            double damping);
 

@@ -10,7 +10,7 @@ using Complex = std::complex<double>;
 
 constexpr int kMaxSweeps = 200;
 // The iteration is cubic: a step below 1e-7 of the offset leaves an error below rounding.
-constexpr double kFrozenStep = 1e-7;
+constexpr double kFrozenStep = 1e-7, kFrozenNewton = 1e-5;
 constexpr double kRealPart = 1e-9;  // |Im μ| below this share of |μ| is rounding of a real root
 
 struct Contact {
@@ -39,18 +39,26 @@ SecularPoint evaluate(std::span<const OpenLoopMode> modes, Contact contact,
   return {1.0 + gain * receptance, contact.damping * receptance + gain * slope, poles};
 }
 
-// Aberth's step of root i: Newton's with the other roots divided out, no longer than |μ|.
-Complex aberth_step(const SecularPoint& point, bool mirrored, std::span<const SecularRoot> roots,
-                    std::size_t i) {
-  Complex sum = point.pole_sum;
+// Aberth's step of root i: Newton's with the other roots divided out, no longer than |μ|. It is
+// also short where another iterate is near by, so that Newton's own length tells convergence.
+struct Step {
+  Complex change;
+  double newton;
+};
+
+Step aberth_step(const SecularPoint& point, bool mirrored, std::span<const SecularRoot> roots,
+                 std::size_t i) {
+  if (point.value == 0.0) return {0.0, 0.0};
+  Complex others = 0.0;
   for (std::size_t j = 0; j < roots.size(); ++j) {
-    if (j != i) sum -= 1.0 / roots[i].minus(roots[j]);
-    if (mirrored) sum -= 1.0 / roots[i].minus(roots[j].conjugate());
+    if (j != i) others += 1.0 / roots[i].minus(roots[j]);
+    if (mirrored) others += 1.0 / roots[i].minus(roots[j].conjugate());
   }
-  if (point.value == 0.0) return 0.0;
-  const Complex step = -point.value / (point.slope + point.value * sum);
-  const double size = std::abs(step), limit = std::abs(roots[i].value());
-  return size > limit ? step * (limit / size) : step;
+  const Complex slope = point.slope + point.value * point.pole_sum;
+  Complex change = -point.value / (slope - point.value * others);
+  const double size = std::abs(change), limit = std::abs(roots[i].value());
+  if (size > limit) change *= limit / size;
+  return {change, std::abs(point.value / slope)};
 }
 
 // First-order root beside pole n: −(K + Cλ) d/(2iω_d) over the rest of the function there.
@@ -71,6 +79,34 @@ SecularRoot first_guess(std::span<const OpenLoopMode> modes, Contact contact, st
   return {pole, offset};
 }
 
+// The contact's own resonance, a root of m s² + C s + K = 0, m = 1/Σ d: where it lies far above the
+// string's modes, no pole is near it.
+Complex contact_resonance(std::span<const OpenLoopMode> modes, Contact contact) {
+  double inverse_mass = 0.0;
+  for (const OpenLoopMode& mode : modes) inverse_mass += mode.drive;
+  const double half = 0.5 * contact.damping * inverse_mass;
+  return -half + std::sqrt(Complex(half * half - contact.stiffness * inverse_mass, 0.0));
+}
+
+// A guess for every root with Im μ > 0: beside its pole each, but the last one at the contact's
+// resonance where that is higher. A little off every line of symmetry, on which iterates would
+// have to pass through each other.
+std::vector<SecularRoot> first_guesses(std::span<const OpenLoopMode> modes, Contact contact) {
+  std::vector<SecularRoot> guesses;
+  std::size_t highest = 0;
+  for (std::size_t n = 0; n < modes.size(); ++n) {
+    guesses.push_back(first_guess(modes, contact, n));
+    guesses.back().move(guesses.back().offset() * Complex(0.0, 0.03));
+    if (std::abs(modes[n].pole) > std::abs(modes[highest].pole)) highest = n;
+  }
+  const Complex resonance = contact_resonance(modes, contact);
+  const Complex top = modes[highest].pole;
+  if (resonance.imag() > 0.0 && std::abs(resonance) > 1.1 * std::abs(top)) {
+    guesses[highest] = SecularRoot(top, (resonance - top) * Complex(1.0, 0.01));
+  }
+  return guesses;
+}
+
 // One run of the iteration; `mirrored` keeps a conjugate beside every root.
 bool iterate(std::span<const OpenLoopMode> modes, Contact contact, bool mirrored,
              std::vector<SecularRoot>& roots) {
@@ -79,11 +115,13 @@ bool iterate(std::span<const OpenLoopMode> modes, Contact contact, bool mirrored
     bool all_frozen = true;
     for (std::size_t i = 0; i < roots.size(); ++i) {
       if (frozen[i]) continue;
-      const Complex step = aberth_step(evaluate(modes, contact, roots[i]), mirrored, roots, i);
-      if (!std::isfinite(step.real()) || !std::isfinite(step.imag())) return false;
-      roots[i].move(step);
+      const Step step = aberth_step(evaluate(modes, contact, roots[i]), mirrored, roots, i);
+      if (!std::isfinite(step.change.real()) || !std::isfinite(step.change.imag())) return false;
+      roots[i].move(step.change);
       if (mirrored && roots[i].value().imag() <= 0.0) return false;
-      frozen[i] = std::abs(step) <= kFrozenStep * std::abs(roots[i].offset());
+      const double offset = std::abs(roots[i].offset());
+      frozen[i] =
+          std::abs(step.change) <= kFrozenStep * offset && step.newton <= kFrozenNewton * offset;
       all_frozen = all_frozen && frozen[i];
     }
     if (all_frozen) return true;
@@ -147,8 +185,7 @@ SecularRoot SecularRoot::as_real() const {
 std::optional<std::vector<SecularRoot>> secular_roots(std::span<const OpenLoopMode> modes,
                                                       double stiffness, double damping) {
   const Contact contact{stiffness, damping};
-  std::vector<SecularRoot> guesses;
-  for (std::size_t n = 0; n < modes.size(); ++n) guesses.push_back(first_guess(modes, contact, n));
+  const std::vector<SecularRoot> guesses = first_guesses(modes, contact);
 
   // Pairs first: a quarter of the work. Pairs cannot turn into two different real roots, so
   // whatever fails there is repeated with every root on its own, from starts without symmetry.

@@ -84,6 +84,28 @@ TEST(SecularRoots, AreTheEigenvaluesOfTheHeldString) {
   }
 }
 
+// Poles and roots on the imaginary axis, one root far above all poles: iterates that start on the
+// axis cannot pass through each other. A root found twice would be a wrong motion, not a failure.
+TEST(SecularRoots, AreFoundWithoutAnyDamping) {
+  for (const std::int64_t count : {3, 50, 150}) {
+    for (const double position : {0.03, 0.0471}) {
+      for (const double stiffness : {1e2, 1e5, 1e7, 1e9}) {
+        for (const double damping : {0.0, 1e-3}) {
+          ContactModes modes = paper_modes(count, position);
+          for (Complex& pole : modes.pole) pole = {0.0, std::abs(pole)};
+          std::fill(modes.quadrature.begin(), modes.quadrature.end(), 0.0);
+          for (std::size_t n = 0; n < modes.size(); ++n) {
+            modes.compliance[n] = 1.0 / modes.pole[n].imag();
+          }
+          expect_the_eigenvalues(modes, stiffness, damping);
+          EXPECT_TRUE(make_closed_loop(modes, stiffness, damping).has_value())
+              << count << " modes, " << stiffness << " N/m, " << damping << " N s/m";
+        }
+      }
+    }
+  }
+}
+
 TEST(SecularRoots, FindRealRootsOfAnOverdampedContact) {
   const ContactModes modes = paper_modes(4);
   const double damping = 20.0 * critical_damping(modes, 1e5);
