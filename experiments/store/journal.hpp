@@ -1,0 +1,68 @@
+// Append-only journal of finished tasks: what a killed run leaves is what it had finished.
+//
+// One line a task, "checksum key task seconds outcome", where the checksum covers the rest of the
+// line. Every line stands for itself: a damaged one costs itself and nothing else.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace modcal {
+
+/// One finished task.
+struct JournalRecord {
+  std::string key;         ///< equal for tasks with equal outcomes, 32 hexadecimal digits
+  std::uint64_t task = 0;  ///< number in the list it was run from
+  double seconds = 0.0;    ///< time it took
+  std::string outcome;     ///< JSON on one line
+};
+
+/// A line that cannot be trusted.
+struct JournalDamage {
+  std::filesystem::path file;
+  std::size_t line = 0;    ///< counted from 1
+  std::size_t offset = 0;  ///< of its first byte
+  std::string reason;
+};
+
+/// "out/journal/shard-1-of-1: line 17 at byte 2345 is cut off; its task will be run again"
+std::string message_of(const JournalDamage& damage);
+
+struct JournalContents {
+  std::vector<JournalRecord> records;  ///< in the order of the files' names and lines
+  std::vector<JournalDamage> damages;
+};
+
+/// Reads one journal. Throws InvalidInput where it cannot be read or has another version's format.
+JournalContents read_journal(const std::filesystem::path& file);
+
+/// Reads every journal (*.journal) of a folder, by name; nothing where there is no such folder.
+JournalContents read_journals(const std::filesystem::path& folder);
+
+/// Appends records to one journal; several threads may use one writer, one process one journal.
+class JournalWriter {
+ public:
+  /// Opens or makes the file; a line that a killed run left unfinished is ended. `program` is
+  /// written down as the maker. Throws InvalidInput where the file cannot be written.
+  JournalWriter(std::filesystem::path file, std::string_view program);
+  ~JournalWriter();
+  JournalWriter(const JournalWriter&) = delete;
+  JournalWriter& operator=(const JournalWriter&) = delete;
+
+  /// Hands the record to the system in one write: it outlives the process from then on. Throws
+  /// InvalidInput where that fails (no space); the journal then ends with the record before.
+  void append(const JournalRecord& record);
+
+ private:
+  void write_line(std::string_view content);
+
+  std::filesystem::path file_;
+  int descriptor_ = -1;
+  std::mutex mutex_;
+};
+
+}  // namespace modcal
