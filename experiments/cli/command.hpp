@@ -22,5 +22,9 @@ void add_describe_command(CLI::App& app, const Chosen& chosen);
 void add_schema_command(CLI::App& app, const Chosen& chosen);
 void add_inspect_command(CLI::App& app, const Chosen& chosen);
 void add_reproduce_command(CLI::App& app, const Chosen& chosen);
+void add_status_command(CLI::App& app, const Chosen& chosen);
+void add_merge_command(CLI::App& app, const Chosen& chosen);
+void add_report_command(CLI::App& app, const Chosen& chosen);
+void add_replay_command(CLI::App& app, const Chosen& chosen);
 
 }  // namespace modcal

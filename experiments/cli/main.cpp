@@ -54,6 +54,10 @@ int main_of(int argc, char** argv) {
   add_schema_command(app, chosen);
   add_inspect_command(app, chosen);
   add_reproduce_command(app, chosen);
+  add_status_command(app, chosen);
+  add_merge_command(app, chosen);
+  add_report_command(app, chosen);
+  add_replay_command(app, chosen);
   if (is_unknown_command(app, argc, argv)) return static_cast<int>(ExitCode::kUsage);
   try {
     app.parse(argc, argv);

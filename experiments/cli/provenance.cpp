@@ -3,6 +3,7 @@
 #include <fmt/chrono.h>
 #include <sys/utsname.h>
 
+#include <filesystem>
 #include <fstream>
 #include <thread>
 
@@ -70,11 +71,20 @@ std::string version_text() {
                      kBuildDirty ? ", with local changes" : "");
 }
 
+std::string program_identity() {
+  std::string identity = fmt::format("modcal {} {}", kBuildVersion, kBuildCommit);
+  if (!kBuildDirty) return identity;
+  const std::filesystem::path self = "/proc/self/exe";
+  return identity + fmt::format(" {} {}", std::filesystem::file_size(self),
+                                std::filesystem::last_write_time(self).time_since_epoch().count());
+}
+
 nlohmann::ordered_json provenance_json(const std::string& command) {
   const std::time_t now = std::time(nullptr);
   return {{"version", kBuildVersion},
           {"commit", kBuildCommit},
           {"dirty", kBuildDirty},
+          {"program", program_identity()},
           {"compiler", kBuildCompiler},
           {"build_type", kBuildType},
           {"libraries", libraries()},

@@ -11,6 +11,9 @@
 namespace modcal {
 
 std::string version_text();
+/// Equal for programs that give equal results: version and commit, and for a program built from
+/// changed sources the file itself.
+std::string program_identity();
 nlohmann::ordered_json provenance_json(const std::string& command);
 /// The seeds of an experiment by their paths, a swept one as its list.
 nlohmann::ordered_json seeds_json(const LoadedExperiment& loaded);

@@ -4,6 +4,7 @@
 
 #include "experiments/cli/command.hpp"
 #include "experiments/cli/runner.hpp"
+#include "libsim/base/error.hpp"
 
 namespace modcal {
 namespace {
@@ -12,6 +13,7 @@ struct RunArguments {
   std::string file;
   std::string out;
   std::vector<std::string> assignments;
+  std::string shard = "1/1";
   int threads = 0;
   bool json = false;
 };
@@ -37,6 +39,7 @@ std::string command_of(const RunArguments& arguments, const std::string& out) {
   for (const std::string& assignment : arguments.assignments) {
     command += " --set " + shell_word(assignment);
   }
+  if (!parse_shard(arguments.shard).is_whole()) command += " --shard " + arguments.shard;
   if (arguments.threads > 0) command += fmt::format(" --threads {}", arguments.threads);
   return command;
 }
@@ -52,7 +55,8 @@ ExitCode run(const RunArguments& arguments) {
   return run_one(loaded, {.out = out,
                           .threads = arguments.threads,
                           .json = arguments.json,
-                          .command = command_of(arguments, out)});
+                          .command = command_of(arguments, out),
+                          .shard = parse_shard(arguments.shard)});
 }
 
 }  // namespace
@@ -65,6 +69,17 @@ void add_run_command(CLI::App& app, const Chosen& chosen) {
                       "folder of the results; default out/<name of the file>");
   command->add_option("--set", arguments->assignments, "key.path=value, overrides the file")
       ->allow_extra_args(false);
+  command
+      ->add_option("--shard", arguments->shard,
+                   "K/N: part K of N of the task list; every part may run elsewhere")
+      ->check([](const std::string& text) {
+        try {
+          parse_shard(text);
+          return std::string();
+        } catch (const InvalidInput& error) {
+          return std::string(error.what());
+        }
+      });
   command->add_option("--threads", arguments->threads, "number of threads; default all")
       ->check(CLI::Range(1, 4096));
   command->add_flag("--json", arguments->json, "summary as JSON");

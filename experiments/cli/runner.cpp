@@ -14,6 +14,7 @@
 #include "experiments/records/csv_writer.hpp"
 #include "experiments/records/wav_writer.hpp"
 #include "experiments/report/write_report.hpp"
+#include "experiments/task_experiment.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -26,15 +27,26 @@ std::optional<tbb::global_control> limit_threads(int threads) {
                                             static_cast<std::size_t>(threads));
 }
 
-StudyResult run_experiment(const LoadedExperiment& loaded, const std::string& command,
-                           SharedWork& work) {
-  Progress progress(loaded.title.empty() ? loaded.kind : loaded.title);
-  const StudyContext context{.work = work,
-                             .folder = loaded.document.folder(),
-                             .command = command,
-                             .progress = [&progress](double share) { progress.report(share); },
-                             .interrupted = [] { return interrupted(); }};
-  return loaded.experiment->run(context);
+std::string title_of(const LoadedExperiment& loaded) {
+  return loaded.title.empty() ? loaded.kind : loaded.title;
+}
+
+std::filesystem::path folder_of(const LoadedExperiment& loaded, const RunSettings& settings) {
+  const std::filesystem::path folder =
+      settings.folder.empty() ? loaded.document.folder() : settings.folder;
+  return folder.empty() ? "." : folder;
+}
+
+// Calls work(context) with the progress shown and Ctrl-C polled.
+template <typename Work>
+auto with_context(const LoadedExperiment& loaded, const std::filesystem::path& folder,
+                  const std::string& command, SharedWork& shared, const Work& work) {
+  Progress progress(title_of(loaded));
+  return work(StudyContext{.work = shared,
+                           .folder = folder,
+                           .command = command,
+                           .progress = [&progress](double share) { progress.report(share); },
+                           .interrupted = [] { return interrupted(); }});
 }
 
 void write_signal_file(const OutputDirectory& out, const SignalFile& file) {
@@ -51,12 +63,20 @@ void write_files(const OutputDirectory& out, const StudyResult& result) {
   for (const SignalFile& file : result.signal_files) write_signal_file(out, file);
 }
 
+// Counts of a list, "312 of 560 tasks done, 2 failed"; empty where the experiment is no list.
+std::string status_text(const LoadedExperiment& loaded, const StudyResult& result) {
+  const auto* list = dynamic_cast<const TaskExperiment*>(loaded.experiment.get());
+  if (list == nullptr) return {};
+  const std::size_t all = list->task_count();
+  std::string text = fmt::format("{} of {} tasks done", all - result.pending_tasks, all);
+  if (result.failed_tasks > 0) text += fmt::format(", {} failed", result.failed_tasks);
+  return text;
+}
+
 // Every default written out; reads back to the same experiment from the folder that is named.
-std::string resolved_text(const LoadedExperiment& loaded) {
-  const std::filesystem::path folder = loaded.document.folder();
+std::string resolved_text(const LoadedExperiment& loaded, const std::filesystem::path& folder) {
   return fmt::format("# {} with every default written out. Relative paths start at {}.\n{}",
-                     loaded.document.file, folder.empty() ? "." : folder.string(),
-                     loaded.resolved());
+                     loaded.document.file, folder.string(), loaded.resolved());
 }
 
 ExitCode exit_code_of(const StudyResult& result) {
@@ -72,8 +92,9 @@ void finish_report(report::Report report, const RunSettings& settings, const Out
   fmt::print(stderr, "report: {}\n", written.page.string());
 }
 
-[[noreturn]] void say_interrupted(const RunSettings& settings) {
-  fmt::print(stderr, "\ninterrupted; run again with:\n  {}\n", settings.command);
+[[noreturn]] void say_interrupted(const RunSettings& settings, bool has_store) {
+  fmt::print(stderr, "\ninterrupted; {} with:\n  {}\n",
+             has_store ? "what is finished is kept, go on" : "run again", settings.command);
   throw Interrupted();
 }
 
@@ -90,41 +111,74 @@ void print_summary(const StudyResult& result, const RunSettings& settings, doubl
   fmt::print("{}\n", summary.dump(2));
 }
 
+// Goes on where the store ends. A shard's result says how many tasks are left; nobody reads more.
+StudyResult run_list(const TaskExperiment& list, const StudyContext& context, RunStore& store,
+                     const Shard& shard) {
+  for (const JournalDamage& damage : store.finished().damages()) {
+    fmt::print(stderr, "warning: {}\n", message_of(damage));
+  }
+  return list.sum_up(run_tasks(list, context, &store, shard), context);
+}
+
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 }  // namespace
 
+ExitCode present(const LoadedExperiment& loaded, const StudyResult& result,
+                 const RunSettings& settings, double seconds) {
+  const OutputDirectory out(settings.out);
+  write_files(out, result);
+  print_summary(result, settings, seconds);
+  report::Report report;
+  report.title = title_of(loaded);
+  report.description = loaded.description;
+  report.status = result.status;
+  report.status_text = status_text(loaded, result);
+  report.sections.push_back({"Results", result.blocks});
+  finish_report(std::move(report), settings, out);
+  const ExitCode code = exit_code_of(result);
+  return code == ExitCode::kOk && !result.missed.empty() ? ExitCode::kAcceptanceMissed : code;
+}
+
 ExitCode run_one(const LoadedExperiment& loaded, const RunSettings& settings) {
   const auto start = std::chrono::steady_clock::now();
   const OutputDirectory out(settings.out);
+  const auto* list = dynamic_cast<const TaskExperiment*>(loaded.experiment.get());
+  MODCAL_REQUIRE(list != nullptr || settings.shard.is_whole(),
+                 "kind {} is no list of tasks and cannot be run in shards; leave out --shard",
+                 loaded.kind);
+  std::optional<RunStore> store;
+  if (list != nullptr) store.emplace(out.path(), settings.shard, program_identity());
+  const std::filesystem::path folder = folder_of(loaded, settings);
   // Before the work, so that an interrupted run says what it was.
-  out.write_text("resolved.yaml", resolved_text(loaded));
+  out.write_text("resolved.yaml", resolved_text(loaded, folder));
   nlohmann::ordered_json provenance = provenance_json(settings.command);
+  provenance["folder"] = std::filesystem::absolute(folder / "").lexically_normal().string();
   provenance["seeds"] = seeds_json(loaded);
   out.write_text("provenance.json", provenance.dump(2) + "\n");
   const auto limit = limit_threads(settings.threads);
   SharedWork work;
   StudyResult result;
   try {
-    result = run_experiment(loaded, settings.command, work);
+    result = with_context(loaded, folder, settings.command, work, [&](const StudyContext& context) {
+      return list != nullptr ? run_list(*list, context, *store, settings.shard)
+                             : loaded.experiment->run(context);
+    });
   } catch (const Interrupted&) {
-    say_interrupted(settings);
+    say_interrupted(settings, store.has_value());
   }
   // Work that does not poll ends by itself; what the user wanted to stop is not written either.
-  if (interrupted()) say_interrupted(settings);
-  write_files(out, result);
-  print_summary(result, settings, seconds_since(start));
-  report::Report report;
-  report.title = loaded.title.empty() ? loaded.kind : loaded.title;
-  report.description = loaded.description;
-  report.status = result.status;
-  report.sections.push_back({"Results", result.blocks});
-  finish_report(std::move(report), settings, out);
-  fmt::print(stderr, "{:.2f} s\n", seconds_since(start));
-  const ExitCode code = exit_code_of(result);
-  return code == ExitCode::kOk && !result.missed.empty() ? ExitCode::kAcceptanceMissed : code;
+  if (interrupted()) say_interrupted(settings, store.has_value());
+  const double seconds = seconds_since(start);
+  fmt::print(stderr, "{:.2f} s\n", seconds);
+  if (settings.shard.is_whole()) return present(loaded, result, settings, seconds);
+  fmt::print(
+      "shard {}: {} of {} tasks of the whole list are done; report with:\n  modcal report {}\n",
+      settings.shard.text(), list->task_count() - result.pending_tasks, list->task_count(),
+      settings.out.string());
+  return result.failed_tasks > 0 ? ExitCode::kSomeTasksFailed : ExitCode::kOk;
 }
 
 ExitCode run_together(const std::vector<LoadedExperiment>& experiments,
@@ -138,16 +192,18 @@ ExitCode run_together(const std::vector<LoadedExperiment>& experiments,
   ExitCode worst = ExitCode::kOk;
   bool missed = false;
   for (const LoadedExperiment& loaded : experiments) {
-    if (interrupted()) say_interrupted(settings);
+    if (interrupted()) say_interrupted(settings, false);
     const std::string name = std::filesystem::path(loaded.document.file).stem().string();
     const OutputDirectory folder(out.path() / name);
     StudyResult result;
     try {
-      result = run_experiment(loaded, fmt::format("modcal run {}", loaded.document.file), work);
+      result = with_context(
+          loaded, loaded.document.folder(), fmt::format("modcal run {}", loaded.document.file),
+          work, [&](const StudyContext& context) { return loaded.experiment->run(context); });
     } catch (const Interrupted&) {
-      say_interrupted(settings);
+      say_interrupted(settings, false);
     }
-    folder.write_text("resolved.yaml", resolved_text(loaded));
+    folder.write_text("resolved.yaml", resolved_text(loaded, folder_of(loaded, settings)));
     write_files(folder, result);
     fmt::print("== {}: {}\n{}", name, loaded.title, result.summary);
     for (report::Block& block : result.blocks) {

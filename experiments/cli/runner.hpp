@@ -7,6 +7,8 @@
 
 #include "experiments/cli/exit_code.hpp"
 #include "experiments/loader.hpp"
+#include "experiments/store/shard.hpp"
+#include "experiments/study/study.hpp"
 
 namespace modcal {
 
@@ -16,11 +18,20 @@ struct RunSettings {
   bool json = false;    ///< summary on stdout as JSON
   std::string command;  ///< the command line that makes the same results again
   std::string title;    ///< of the report; empty: the experiment's
+  Shard shard;          ///< part of the task list to run
+  /// Where relative paths of the experiment start; empty: the folder of its file.
+  std::filesystem::path folder;
 };
 
 /// One experiment, whose results stand in the folder itself: resolved.yaml, provenance.json, tables
-/// as CSV and JSON, figures, report.html.
+/// as CSV and JSON, figures, report.html. A list of tasks goes on where an earlier run with the
+/// same program ended; of a shard the tasks alone are run. Throws InvalidInput where another run
+/// works in the folder.
 ExitCode run_one(const LoadedExperiment& loaded, const RunSettings& settings);
+
+/// Writes files, summary and report of a result and gives the exit code that stands for it.
+ExitCode present(const LoadedExperiment& loaded, const StudyResult& result,
+                 const RunSettings& settings, double seconds);
 
 /// Several experiments in one report; each one's resolved.yaml and files stand in a folder of its
 /// name. Truths are shared.

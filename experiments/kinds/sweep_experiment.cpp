@@ -6,8 +6,22 @@
 #include "experiments/kinds/invert_experiment.hpp"
 #include "experiments/kinds/lint.hpp"
 #include "experiments/kinds/scene_plan.hpp"
+#include "experiments/study/fingerprint.hpp"
 
 namespace modcal {
+namespace {
+
+// What there is to see of one inversion.
+std::vector<FigureOptions> replay_figures() {
+  FigureOptions waveforms{.id = "waveforms", .title = "Identified motion and force"};
+  FigureOptions spectra{.id = "spectra", .title = "Spectra", .content = "spectra"};
+  spectra.quantities = {"f_c"};
+  FigureOptions curves{
+      .id = "parameter_curves", .title = "Parameter choice", .content = "parameter_curves"};
+  return {waveforms, spectra, curves};
+}
+
+}  // namespace
 
 void SweepExperimentOptions::visit(OptionVisitor& visitor) {
   base.visit(visitor);
@@ -30,22 +44,25 @@ void SweepExperimentOptions::set_axes(std::vector<SweepAxis> axes) {
   cell_options.assign(count, InvertOptions{});
 }
 
-std::vector<SweepCell> SweepExperiment::cells() const {
-  std::vector<SweepCell> cells;
-  for (std::size_t index = 0; index < options_.cell_options.size(); ++index) {
-    SweepCell cell;
-    cell.options = options_.cell_options[index];
-    cell.row_value = cell.options.observation.measurement.noise_level;
-    cell.axis_values.resize(options_.sweep_axes.size());
-    std::size_t rest = index;
-    for (std::size_t a = options_.sweep_axes.size(); a-- > 0;) {
-      const std::vector<std::string>& values = options_.sweep_axes[a].values;
-      cell.axis_values[a] = values[rest % values.size()];
-      rest /= values.size();
-    }
-    cells.push_back(std::move(cell));
+std::vector<std::string> SweepExperiment::axes() const {
+  std::vector<std::string> paths;
+  for (const SweepAxis& axis : options_.sweep_axes) paths.push_back(axis.path);
+  return paths;
+}
+
+std::vector<std::string> SweepExperiment::axis_values(std::size_t task) const {
+  std::vector<std::string> chosen(options_.sweep_axes.size());
+  for (std::size_t a = options_.sweep_axes.size(); a-- > 0;) {
+    const std::vector<std::string>& values = options_.sweep_axes[a].values;
+    chosen[a] = values[task % values.size()];
+    task /= values.size();
   }
-  return cells;
+  return chosen;
+}
+
+SweepCell SweepExperiment::cell(std::size_t task) const {
+  const InvertOptions& options = options_.cell_options[task];
+  return {options, axis_values(task), options.observation.measurement.noise_level};
 }
 
 std::vector<Finding> SweepExperiment::lint() const {
@@ -76,9 +93,9 @@ std::vector<std::string> SweepExperiment::plan() const {
   }
   lines.push_back(fmt::format("tasks: {}", options_.cell_options.size()));
   std::set<std::string> scenes;
-  for (const SweepCell& cell : cells()) {
-    scenes.insert(truth_key(cell.options.observation.truth,
-                            cell.options.observation.measurement.sample_rate, {.force = true}));
+  for (const InvertOptions& cell : options_.cell_options) {
+    scenes.insert(truth_key(cell.observation.truth, cell.observation.measurement.sample_rate,
+                            {.force = true}));
   }
   if (observation.has_scene) {
     for (std::string& line :
@@ -92,11 +109,41 @@ std::vector<std::string> SweepExperiment::plan() const {
   return lines;
 }
 
-StudyResult SweepExperiment::run(const StudyContext& context) const {
-  const std::vector<SweepCell> all = cells();
-  std::vector<std::string> axes;
-  for (const SweepAxis& axis : options_.sweep_axes) axes.push_back(axis.path);
-  return sum_up_sweep(options_.sweep, axes, all, run_cells(all, context), context);
+std::string SweepExperiment::fingerprint(std::size_t task,
+                                         const std::filesystem::path& folder) const {
+  InvertOptions options = options_.cell_options[task];
+  std::string text =
+      "sweep " + modcal::fingerprint([&](OptionVisitor& visitor) { options.visit(visitor); });
+  if (options.observation.has_record) {
+    text += record_fingerprint(folder / options.observation.record.file);
+  }
+  return text;
+}
+
+std::string SweepExperiment::run_task(std::size_t task, const StudyContext& context) const {
+  return outcome_text(run_cell(cell(task), context));
+}
+
+std::string SweepExperiment::failure_in(const std::string& outcome) const {
+  return read_outcome(outcome).failure;
+}
+
+StudyResult SweepExperiment::sum_up(const std::vector<std::optional<std::string>>& outcomes,
+                                    const StudyContext& context) const {
+  std::vector<SweepCell> cells;
+  std::vector<std::optional<TaskOutcome>> read(outcomes.size());
+  for (std::size_t task = 0; task < outcomes.size(); ++task) {
+    cells.push_back(cell(task));
+    if (outcomes[task]) read[task] = read_outcome(*outcomes[task]);
+  }
+  return sum_up_sweep(options_.sweep, axes(), cells, read, context);
+}
+
+StudyResult SweepExperiment::replay(std::size_t task, const StudyContext& context) const {
+  InvertOptions options = options_.cell_options[task];
+  options.write_signals = true;
+  options.figures = replay_figures();
+  return invert_study(options, context);
 }
 
 }  // namespace modcal

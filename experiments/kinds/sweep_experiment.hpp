@@ -1,7 +1,7 @@
 #pragma once
 
-#include "experiments/experiment.hpp"
 #include "experiments/kinds/sweep_study.hpp"
+#include "experiments/task_experiment.hpp"
 
 namespace modcal {
 
@@ -22,16 +22,25 @@ struct SweepExperimentOptions final : public SweepSlot {
 };
 
 /// Kind "sweep": the same inversion over axes of settings, summed up in a table.
-class SweepExperiment final : public Experiment {
+class SweepExperiment final : public TaskExperiment {
  public:
   using Options = SweepExperimentOptions;
   explicit SweepExperiment(Options options) : options_(std::move(options)) {}
   std::vector<Finding> lint() const override;
   std::vector<std::string> plan() const override;
-  StudyResult run(const StudyContext& context) const override;
+
+  std::size_t task_count() const override { return options_.cell_options.size(); }
+  std::vector<std::string> axes() const override;
+  std::vector<std::string> axis_values(std::size_t task) const override;
+  std::string fingerprint(std::size_t task, const std::filesystem::path& folder) const override;
+  std::string run_task(std::size_t task, const StudyContext& context) const override;
+  std::string failure_in(const std::string& outcome) const override;
+  StudyResult sum_up(const std::vector<std::optional<std::string>>& outcomes,
+                     const StudyContext& context) const override;
+  StudyResult replay(std::size_t task, const StudyContext& context) const override;
 
  private:
-  std::vector<SweepCell> cells() const;
+  SweepCell cell(std::size_t task) const;
   Options options_;
 };
 

@@ -1,14 +1,8 @@
 #include "experiments/kinds/sweep_study.hpp"
 
-#include <tbb/parallel_for.h>
-
-#include <atomic>
-
 #include "libsim/base/error.hpp"
 
 namespace modcal {
-namespace {
-
 TaskOutcome run_cell(const SweepCell& cell, const StudyContext& context) {
   const InvertOptions& options = cell.options;
   const StreamKey key = options.key();
@@ -30,21 +24,6 @@ TaskOutcome run_cell(const SweepCell& cell, const StudyContext& context) {
     outcome.failure = error.what();
   }
   return outcome;
-}
-
-}  // namespace
-
-std::vector<TaskOutcome> run_cells(const std::vector<SweepCell>& cells,
-                                   const StudyContext& context) {
-  std::vector<TaskOutcome> outcomes(cells.size());
-  std::atomic<std::size_t> done{0};
-  tbb::parallel_for(std::size_t{0}, cells.size(), [&](std::size_t i) {
-    if (context.interrupted()) return;
-    outcomes[i] = run_cell(cells[i], context);
-    context.progress(static_cast<double>(++done) / static_cast<double>(cells.size()));
-  });
-  context.throw_if_interrupted();
-  return outcomes;
 }
 
 }  // namespace modcal

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "experiments/kinds/invert_study.hpp"
+#include "experiments/kinds/sweep_outcome.hpp"
 
 namespace modcal {
 
@@ -33,22 +34,8 @@ struct SweepTableOptions {
   void visit(OptionVisitor& visitor);
 };
 
-/// Outcome of one task (cell) on one side.
-struct TaskScores {
-  End end = End::kLeft;
-  double parameter = 0.0;
-  ChoiceStatus status = ChoiceStatus::kNotComputed;
-  std::vector<WindowScore> scores;
-};
-
-struct TaskOutcome {
-  std::vector<TaskScores> sides;
-  std::string failure;  ///< why the task failed; empty: it did not
-};
-
-/// Runs every cell, over threads; the results stand in the order of the cells whatever the threads.
-std::vector<TaskOutcome> run_cells(const std::vector<SweepCell>& cells,
-                                   const StudyContext& context);
+/// Observes and inverts one cell; a failure is an outcome.
+TaskOutcome run_cell(const SweepCell& cell, const StudyContext& context);
 
 struct SweepOptions {
   SweepTableOptions table;
@@ -56,9 +43,10 @@ struct SweepOptions {
   ComparisonOptions comparison;
 };
 
-/// Table, figure and acceptance of finished cells.
+/// Table, figure and acceptance of the cells that are finished; nullopt: not run yet.
 StudyResult sum_up_sweep(const SweepOptions& options, const std::vector<std::string>& axes,
                          const std::vector<SweepCell>& cells,
-                         const std::vector<TaskOutcome>& outcomes, const StudyContext& context);
+                         const std::vector<std::optional<TaskOutcome>>& outcomes,
+                         const StudyContext& context);
 
 }  // namespace modcal

@@ -1,14 +1,9 @@
-#include <algorithm>
-#include <cmath>
-#include <fstream>
-#include <map>
-#include <nlohmann/json.hpp>
-#include <sstream>
+#include <fmt/format.h>
 
-#include "experiments/kinds/sweep_study.hpp"
-#include "experiments/records/csv_reader.hpp"
+#include <cmath>
+
+#include "experiments/kinds/sweep_rows.hpp"
 #include "libsim/base/error.hpp"
-#include "libsim/signal/statistics.hpp"
 
 namespace modcal {
 
@@ -47,121 +42,11 @@ void ComparisonOptions::visit(OptionVisitor& visitor) {
 
 namespace {
 
-struct PublishedRow {
-  double correlation[2];
-  double parameter[2];
-};
-
-using PublishedTable = std::map<double, PublishedRow>;  // by noise in percent
-
-PublishedTable read_published(const std::filesystem::path& path) {
-  const Recording file = read_csv(
-      path, {.columns = {"noise_percent", "R1", "epsilon1", "R2", "epsilon2"}, .sample_rate = 1.0});
-  PublishedTable rows;
-  for (std::size_t i = 0; i < file.frames(); ++i) {
-    const auto value = [&](std::size_t column) { return file.channels[column].samples[i]; };
-    rows[value(0)] = {{value(1), value(3)}, {value(2), value(4)}};
-  }
-  return rows;
-}
-
-// One row of the table: all draws of one noise level on one side.
-struct Group {
-  double noise_percent = 0.0;
-  int side = 0;
-  std::vector<double> correlation;
-  std::vector<double> rms_error;
-  std::vector<double> parameter;
-  std::size_t stand_ins = 0;
-  std::size_t failures = 0;
-};
-
-std::vector<Group> group_outcomes(const std::vector<SweepCell>& cells,
-                                  const std::vector<TaskOutcome>& outcomes) {
-  std::map<std::pair<int, double>, Group> groups;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    // Percent values are rounded to 1e-9 so that 0.03 and 3 % are one row.
-    const double percent = std::round(cells[i].row_value * 1e11) / 1e9;
-    const auto group_of = [&](int side) -> Group& {
-      Group& group = groups[{side, percent}];
-      group.noise_percent = percent;
-      group.side = side;
-      return group;
-    };
-    if (!outcomes[i].failure.empty()) {
-      for (const End end : kEnds) ++group_of(side_number(end)).failures;
-    }
-    for (const TaskScores& side : outcomes[i].sides) {
-      Group& group = group_of(side_number(side.end));
-      group.parameter.push_back(side.parameter);
-      if (side.status != ChoiceStatus::kChosen && side.status != ChoiceStatus::kGiven &&
-          side.status != ChoiceStatus::kNoParameter) {
-        ++group.stand_ins;
-      }
-      for (const WindowScore& score : side.scores) {
-        group.correlation.push_back(score.correlation);
-        group.rms_error.push_back(score.relative_rms_error);
-      }
-    }
-  }
-  std::vector<Group> result;
-  for (auto& [key, group] : groups) result.push_back(std::move(group));
-  return result;
-}
-
-struct Judgement {
-  std::size_t cells = 0, inside_band = 0, parameter_cells = 0;
-  double sum_difference = 0.0;
-  double mean_difference() const { return sum_difference / static_cast<double>(cells); }
-};
-
-struct SummedRow {
-  Group group;
-  double median, q10, q90, rms_median, parameter_median;
-  std::optional<double> published_correlation, published_parameter;
-};
-
-SummedRow sum_up(const Group& group, const PublishedTable& published) {
-  SummedRow row{group,
-                quantile(group.correlation, 0.5),
-                quantile(group.correlation, 0.1),
-                quantile(group.correlation, 0.9),
-                quantile(group.rms_error, 0.5),
-                quantile(group.parameter, 0.5),
-                {},
-                {}};
-  for (const auto& [percent, values] : published) {
-    if (std::abs(percent - group.noise_percent) > 1e-6) continue;
-    const auto side = static_cast<std::size_t>(group.side - 1);
-    row.published_correlation = values.correlation[side];
-    row.published_parameter = values.parameter[side];
-  }
-  return row;
-}
-
-Judgement judge(const std::vector<SummedRow>& rows, const ComparisonOptions& options) {
-  Judgement judgement;
-  for (const SummedRow& row : rows) {
-    if (!row.published_correlation || row.group.noise_percent < 100.0 * options.lowest_row)
-      continue;
-    ++judgement.cells;
-    judgement.sum_difference += std::abs(row.median - *row.published_correlation);
-    if (row.q10 <= *row.published_correlation && *row.published_correlation <= row.q90) {
-      ++judgement.inside_band;
-    }
-    const double ratio = row.parameter_median / *row.published_parameter;
-    if (ratio <= options.parameter_factor && ratio * options.parameter_factor >= 1.0) {
-      ++judgement.parameter_cells;
-    }
-  }
-  return judgement;
-}
-
 report::Cell optional_cell(const std::optional<double>& value) {
   return value ? report::Cell(*value) : report::Cell();
 }
 
-report::Table sweep_table(const std::string& name, const std::vector<SummedRow>& rows,
+report::Table sweep_table(const std::string& name, const std::vector<SweepRow>& rows,
                           const std::string& command) {
   report::Table table{
       .id = name,
@@ -182,17 +67,16 @@ report::Table sweep_table(const std::string& name, const std::vector<SummedRow>&
            {.key = "stand_ins", .name = "no interior minimum"},
            {.key = "failures"}},
       .command = command};
-  for (const SummedRow& row : rows) {
-    table.rows.push_back({row.group.noise_percent, row.group.side, row.median, row.q10, row.q90,
-                          row.rms_median, row.group.correlation.size(), row.parameter_median,
+  for (const SweepRow& row : rows) {
+    table.rows.push_back({row.noise_percent, row.side, row.median, row.q10, row.q90, row.rms_median,
+                          row.correlation.size(), row.parameter_median,
                           optional_cell(row.published_correlation),
-                          optional_cell(row.published_parameter), row.group.stand_ins,
-                          row.group.failures});
+                          optional_cell(row.published_parameter), row.stand_ins, row.failures});
   }
   return table;
 }
 
-report::Figure sweep_figure(const std::string& name, const std::vector<SummedRow>& rows,
+report::Figure sweep_figure(const std::string& name, const std::vector<SweepRow>& rows,
                             const std::string& command) {
   using report::ColorRole;
   report::Figure figure{.id = name + "_figure",
@@ -207,14 +91,14 @@ report::Figure sweep_figure(const std::string& name, const std::vector<SummedRow
     ours.color = side == 1 ? ColorRole::kFirst : ColorRole::kSecond;
     report::Series paper{
         .label = "paper", .style = report::SeriesStyle::kPoints, .color = ColorRole::kReference};
-    for (const SummedRow& row : rows) {
-      if (row.group.side != side) continue;
-      ours.x.push_back(row.group.noise_percent);
+    for (const SweepRow& row : rows) {
+      if (row.side != side) continue;
+      ours.x.push_back(row.noise_percent);
       ours.y.push_back(row.median);
       ours.y_low.push_back(row.q10);
       ours.y_high.push_back(row.q90);
       if (!row.published_correlation) continue;
-      paper.x.push_back(row.group.noise_percent);
+      paper.x.push_back(row.noise_percent);
       paper.y.push_back(*row.published_correlation);
     }
     report::Panel panel{.title = fmt::format("from R{}", side),
@@ -228,22 +112,26 @@ report::Figure sweep_figure(const std::string& name, const std::vector<SummedRow
 }
 
 report::Table task_table(const std::vector<std::string>& axes, const std::vector<SweepCell>& cells,
-                         const std::vector<TaskOutcome>& outcomes, const std::string& command) {
-  report::Table table{.id = "tasks", .title = "Tasks", .command = command};
+                         const std::vector<std::optional<TaskOutcome>>& outcomes,
+                         const std::string& command) {
+  report::Table table{
+      .id = "tasks", .title = "Tasks", .columns = {{.key = "task"}}, .command = command};
   for (const std::string& axis : axes) table.columns.push_back({.key = axis});
   for (const char* key :
        {"side", "epsilon", "choice", "window_start", "R", "relative_rms_error", "failure"}) {
     table.columns.push_back({.key = key});
   }
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    const std::vector<report::Cell> head(cells[i].axis_values.begin(), cells[i].axis_values.end());
-    if (!outcomes[i].failure.empty()) {
+    if (!outcomes[i]) continue;
+    std::vector<report::Cell> head = {i};
+    head.insert(head.end(), cells[i].axis_values.begin(), cells[i].axis_values.end());
+    if (!outcomes[i]->failure.empty()) {
       std::vector<report::Cell> row = head;
       row.resize(table.columns.size());
-      row.back() = outcomes[i].failure;
+      row.back() = outcomes[i]->failure;
       table.rows.push_back(std::move(row));
     }
-    for (const TaskScores& side : outcomes[i].sides) {
+    for (const TaskScores& side : outcomes[i]->sides) {
       for (const WindowScore& score : side.scores) {
         std::vector<report::Cell> row = head;
         row.insert(row.end(),
@@ -256,18 +144,18 @@ report::Table task_table(const std::vector<std::string>& axes, const std::vector
   return table;
 }
 
-std::string printed_table(const std::vector<SummedRow>& rows) {
+std::string printed_table(const std::vector<SweepRow>& rows) {
   std::string text =
       "noise %  side   R median [10 %, 90 %]   n   paper R   epsilon   paper epsilon\n";
   const auto optional_text = [](const std::optional<double>& value, int digits) {
     return value ? fmt::format("{:.{}f}", *value, digits) : std::string("-");
   };
-  for (const SummedRow& row : rows) {
+  for (const SweepRow& row : rows) {
     text += fmt::format(
         "{:7.3g}  {:4d}   {:5.2f}  [{:5.2f}, {:5.2f}]  {:3d}   {:>7}   {:7.3f}   {:>13}\n",
-        row.group.noise_percent, row.group.side, row.median, row.q10, row.q90,
-        row.group.correlation.size(), optional_text(row.published_correlation, 2),
-        row.parameter_median, optional_text(row.published_parameter, 3));
+        row.noise_percent, row.side, row.median, row.q10, row.q90, row.correlation.size(),
+        optional_text(row.published_correlation, 2), row.parameter_median,
+        optional_text(row.published_parameter, 3));
   }
   return text;
 }
@@ -295,30 +183,41 @@ void add_judgement(const Judgement& judgement, const ComparisonOptions& options,
        fmt::format("accepted from {}", options.parameter_cells));
 }
 
+void count_tasks(const std::vector<std::optional<TaskOutcome>>& outcomes, StudyResult& result) {
+  for (const std::optional<TaskOutcome>& outcome : outcomes) {
+    if (!outcome) {
+      ++result.pending_tasks;
+    } else if (!outcome->failure.empty()) {
+      ++result.failed_tasks;
+    }
+  }
+  const std::size_t finished = outcomes.size() - result.pending_tasks;
+  const bool nothing = finished > 0 && result.failed_tasks == finished;
+  result.status = nothing                   ? report::Status::kFailed
+                  : result.failed_tasks > 0 ? report::Status::kSomeFailed
+                                            : report::Status::kOk;
+}
+
 }  // namespace
 
 StudyResult sum_up_sweep(const SweepOptions& options, const std::vector<std::string>& axes,
                          const std::vector<SweepCell>& cells,
-                         const std::vector<TaskOutcome>& outcomes, const StudyContext& context) {
+                         const std::vector<std::optional<TaskOutcome>>& outcomes,
+                         const StudyContext& context) {
   PublishedTable published;
   if (options.has_comparison) {
     published = read_published(context.folder / options.comparison.table);
   }
-  std::vector<SummedRow> rows;
-  for (const Group& group : group_outcomes(cells, outcomes))
-    rows.push_back(sum_up(group, published));
+  const std::vector<SweepRow> rows = sweep_rows(cells, outcomes, published);
 
   StudyResult result;
-  for (const TaskOutcome& outcome : outcomes) {
-    if (!outcome.failure.empty()) ++result.failed_tasks;
-  }
-  result.status = result.failed_tasks == 0                ? report::Status::kOk
-                  : result.failed_tasks < outcomes.size() ? report::Status::kSomeFailed
-                                                          : report::Status::kFailed;
+  count_tasks(outcomes, result);
   result.summary = printed_table(rows);
   result.blocks.emplace_back(sweep_table(options.table.name, rows, context.command));
-  if (options.has_comparison)
+  // Figures of a part are no figures of the whole.
+  if (options.has_comparison && result.pending_tasks == 0) {
     add_judgement(judge(rows, options.comparison), options.comparison, result);
+  }
   result.blocks.emplace_back(sweep_figure(options.table.name, rows, context.command));
   result.files.emplace_back("tasks.csv",
                             report::table_csv(task_table(axes, cells, outcomes, context.command)));

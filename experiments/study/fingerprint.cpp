@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <system_error>
+
 namespace modcal {
 namespace {
 
@@ -63,6 +65,14 @@ std::string fingerprint(const std::function<void(OptionVisitor&)>& visit_options
   FingerprintWriter writer;
   visit_options(writer);
   return writer.line;
+}
+
+std::string record_fingerprint(const std::filesystem::path& file) {
+  std::error_code error;
+  const auto size = std::filesystem::file_size(file, error);
+  if (error) return " missing";
+  const auto changed = std::filesystem::last_write_time(file, error);
+  return fmt::format(" {} {}", size, changed.time_since_epoch().count());
 }
 
 }  // namespace modcal

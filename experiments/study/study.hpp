@@ -47,6 +47,7 @@ struct StudyResult {
   std::string summary;  ///< for standard output
   report::Status status = report::Status::kOk;
   std::size_t failed_tasks = 0;
+  std::size_t pending_tasks = 0;  ///< not run yet: the figures stand on the others
   /// Accepted figures that were missed, one sentence each.
   std::vector<std::string> missed;
 };

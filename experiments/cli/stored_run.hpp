@@ -1,0 +1,43 @@
+// A folder of results as a run left it, running or dead.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiments/loader.hpp"
+#include "experiments/task_experiment.hpp"
+
+namespace modcal {
+
+/// The experiment of a folder and what is finished of it. Nothing in the folder is touched.
+class StoredRun {
+ public:
+  /// Reads resolved.yaml, provenance.json and the journals. Throws InvalidInput where the folder
+  /// holds no run of a list of tasks.
+  explicit StoredRun(std::filesystem::path out);
+
+  const LoadedExperiment& loaded() const { return loaded_; }
+  const TaskExperiment& list() const { return *list_; }
+  const std::filesystem::path& out() const { return out_; }
+  /// Where relative paths of the experiment start.
+  const std::filesystem::path& folder() const { return folder_; }
+  /// The command that made the run, and makes it go on.
+  const std::string& command() const { return command_; }
+  /// Records by task; null: not finished.
+  const std::vector<const JournalRecord*>& records() const { return records_; }
+  const std::vector<JournalDamage>& damages() const { return finished_->damages(); }
+  std::vector<std::optional<std::string>> outcomes() const;
+
+ private:
+  std::filesystem::path out_;
+  LoadedExperiment loaded_;
+  const TaskExperiment* list_ = nullptr;
+  std::filesystem::path folder_;
+  std::string command_;
+  std::optional<FinishedTasks> finished_;
+  std::vector<const JournalRecord*> records_;
+};
+
+}  // namespace modcal

@@ -1,0 +1,85 @@
+#include "experiments/kinds/sweep_outcome.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "libsim/base/error.hpp"
+
+namespace modcal {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::array kStatuses = {ChoiceStatus::kNotComputed, ChoiceStatus::kChosen,
+                                  ChoiceStatus::kGiven,       ChoiceStatus::kNoParameter,
+                                  ChoiceStatus::kEdgeOfRange, ChoiceStatus::kNoInteriorMinimum,
+                                  ChoiceStatus::kNotReached};
+
+// JSON has no word for what is not finite: those are texts.
+json number_json(double value) {
+  if (std::isfinite(value)) return value;
+  return std::isnan(value) ? "nan" : value > 0.0 ? "inf" : "-inf";
+}
+
+double read_number(const json& value) {
+  return value.is_string() ? std::strtod(value.get<std::string>().c_str(), nullptr)
+                           : value.get<double>();
+}
+
+ChoiceStatus read_status(const std::string& name) {
+  for (const ChoiceStatus status : kStatuses) {
+    if (name_of(status) == name) return status;
+  }
+  throw InvalidInput("unknown status of a parameter choice: " + name);
+}
+
+json side_json(const TaskScores& side) {
+  json scores = json::array();
+  for (const WindowScore& score : side.scores) {
+    scores.push_back({number_json(score.start), number_json(score.correlation),
+                      number_json(score.relative_rms_error)});
+  }
+  return {{"end", side.end == End::kLeft ? "left" : "right"},
+          {"parameter", number_json(side.parameter)},
+          {"status", name_of(side.status)},
+          {"scores", std::move(scores)}};
+}
+
+TaskScores read_side(const json& value) {
+  TaskScores side;
+  side.end = value.at("end") == "left" ? End::kLeft : End::kRight;
+  side.parameter = read_number(value.at("parameter"));
+  side.status = read_status(value.at("status").get<std::string>());
+  for (const json& score : value.at("scores")) {
+    side.scores.push_back(
+        {read_number(score.at(0)), read_number(score.at(1)), read_number(score.at(2))});
+  }
+  return side;
+}
+
+}  // namespace
+
+std::string outcome_text(const TaskOutcome& outcome) {
+  if (!outcome.failure.empty()) return json{{"failure", outcome.failure}}.dump();
+  json sides = json::array();
+  for (const TaskScores& side : outcome.sides) sides.push_back(side_json(side));
+  return json{{"sides", std::move(sides)}}.dump();
+}
+
+TaskOutcome read_outcome(const std::string& text) {
+  try {
+    const json value = json::parse(text);
+    TaskOutcome outcome;
+    outcome.failure = value.value("failure", std::string());
+    if (outcome.failure.empty()) {
+      for (const json& side : value.at("sides")) outcome.sides.push_back(read_side(side));
+    }
+    return outcome;
+  } catch (const json::exception& error) {
+    throw InvalidInput(std::string("the stored outcome of a task cannot be read: ") + error.what());
+  }
+}
+
+}  // namespace modcal

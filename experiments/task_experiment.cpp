@@ -1,0 +1,70 @@
+#include "experiments/task_experiment.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+
+namespace modcal {
+namespace {
+
+using Outcomes = std::vector<std::optional<std::string>>;
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+struct PendingTask {
+  std::size_t task = 0;
+  std::string key;
+};
+
+// Fills in what the store holds and names what the shard has to run.
+std::vector<PendingTask> pending_tasks(const TaskExperiment& experiment,
+                                       const StudyContext& context, const RunStore* store,
+                                       const Shard& shard, Outcomes& outcomes) {
+  std::vector<PendingTask> pending;
+  for (std::size_t task = 0; task < outcomes.size(); ++task) {
+    std::string key;
+    if (store != nullptr) {
+      key = store->finished().key_of(experiment.fingerprint(task, context.folder));
+      if (const JournalRecord* record = store->finished().find(key)) {
+        outcomes[task] = record->outcome;
+        continue;
+      }
+    }
+    if (shard.holds(task)) pending.push_back({task, std::move(key)});
+  }
+  return pending;
+}
+
+}  // namespace
+
+Outcomes run_tasks(const TaskExperiment& experiment, const StudyContext& context, RunStore* store,
+                   const Shard& shard) {
+  Outcomes outcomes(experiment.task_count());
+  const std::vector<PendingTask> pending =
+      pending_tasks(experiment, context, store, shard, outcomes);
+  const auto all = static_cast<double>(shard.size(outcomes.size()));
+  std::atomic<std::size_t> left{pending.size()};
+  tbb::parallel_for(std::size_t{0}, pending.size(), [&](std::size_t i) {
+    if (context.interrupted()) return;
+    const auto start = std::chrono::steady_clock::now();
+    const PendingTask& next = pending[i];
+    std::string outcome = experiment.run_task(next.task, context);
+    if (store != nullptr) {
+      store->append({next.key, next.task, seconds_since(start), outcome});
+    }
+    outcomes[next.task] = std::move(outcome);
+    context.progress(1.0 - static_cast<double>(--left) / all);
+  });
+  context.throw_if_interrupted();
+  return outcomes;
+}
+
+StudyResult TaskExperiment::run(const StudyContext& context) const {
+  return sum_up(run_tasks(*this, context, nullptr, Shard{}), context);
+}
+
+}  // namespace modcal

@@ -1,0 +1,50 @@
+// An experiment that is a list of tasks: it can be stopped, resumed, split over machines and asked
+// for a single task again.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "experiments/experiment.hpp"
+#include "experiments/store/run_store.hpp"
+
+namespace modcal {
+
+class TaskExperiment : public Experiment {
+ public:
+  virtual std::size_t task_count() const = 0;
+  /// Paths of the options that differ between tasks.
+  virtual std::vector<std::string> axes() const = 0;
+  /// Their values in one task, as written in the file.
+  virtual std::vector<std::string> axis_values(std::size_t task) const = 0;
+  /// Text that is equal for tasks with equal outcomes and says everything an outcome depends on
+  /// but the program. `folder`: where relative paths start.
+  virtual std::string fingerprint(std::size_t task, const std::filesystem::path& folder) const = 0;
+
+  /// Outcome of one task as JSON on one line; a task that cannot be done has the reason in its
+  /// outcome. Safe to call from several threads.
+  virtual std::string run_task(std::size_t task, const StudyContext& context) const = 0;
+  /// The reason in an outcome why its task failed; empty where it did not.
+  virtual std::string failure_in(const std::string& outcome) const = 0;
+  /// Tables, figures and acceptance of the outcomes there are; nullopt: not run yet.
+  virtual StudyResult sum_up(const std::vector<std::optional<std::string>>& outcomes,
+                             const StudyContext& context) const = 0;
+  /// One task again, with everything drawn and written that can be.
+  virtual StudyResult replay(std::size_t task, const StudyContext& context) const = 0;
+
+  /// Runs every task over threads, without a store.
+  StudyResult run(const StudyContext& context) const final;
+};
+
+/// Outcomes of all tasks of the experiment that are finished once the shard's tasks are: those the
+/// store holds already are not run again, the others are put into it as they finish. The results
+/// stand in the order of the tasks whatever the threads. `store` may be null. Throws Interrupted
+/// where the context says so; what has finished by then is in the store.
+std::vector<std::optional<std::string>> run_tasks(const TaskExperiment& experiment,
+                                                  const StudyContext& context, RunStore* store,
+                                                  const Shard& shard);
+
+}  // namespace modcal

@@ -1,0 +1,196 @@
+// Lists of tasks from outside: killed, resumed, shared out, asked about.
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "tests/experiments/cli/program_run.hpp"
+
+namespace modcal {
+namespace {
+
+using nlohmann::json;
+using testing::content_of;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+constexpr std::string_view kSweep = R"(kind: sweep
+title: small sweep
+scene:
+  string: {length: 0.33 m, linear_density: 3.1e-3 kg/m, fundamental: 196 Hz, modes: 10}
+  bow: {position: 30 mm, velocity: 0.1 m/s, normal_force: 1 N}
+  friction: {type: coulomb_exponential, static: 0.4, dynamic: 0.2, decay: 5 s/m}
+  duration: 0.1 s
+simulator: {type: newmark_explicit, time_step: 4 us}
+measurement: {sample_rate: 12.5 kHz}
+inversion: {estimator: one_sided, regularizer: {type: water_level}, parameter_choice: {type: minimal_product}}
+score: {windows: [50 ms], periods: 2}
+sweep:
+  product:
+    scene.bow.normal_force: [0.98 N, 1 N]
+    measurement.noise_level: [0 %, 1 %, 2 %, 5 %]
+    seed: [1, 2, 3, 4, 5]
+)";
+constexpr int kTasks = 40;
+
+class Resume : public testing::ProgramTest {
+ protected:
+  Resume() { write("sweep.yaml", std::string(kSweep)); }
+
+  std::string tables_of(const std::string& out) const {
+    return content_of(folder() / out / "tasks.csv") + content_of(folder() / out / "table.csv") +
+           content_of(folder() / out / "table.json");
+  }
+  // What is left of "…: 40 of 40 tasks, digest 0123…".
+  std::string digest_of(const std::string& out) const {
+    const Outcome merged = modcal("merge " + out);
+    EXPECT_EQ(merged.code, 0) << merged.err;
+    return merged.out.substr(merged.out.find(':'));
+  }
+};
+
+TEST_F(Resume, GivesTheSameBytesAfterTwoHundredKills) {
+  ASSERT_EQ(modcal("run sweep.yaml --out whole").code, 0);
+  const std::string tables = tables_of("whole");
+  const std::string digest = digest_of("whole");
+  ASSERT_FALSE(tables.empty());
+  std::mt19937 random(1);
+  // From the first read of a file to the last write of a report.
+  std::uniform_real_distribution<double> seconds(0.001, 0.06);
+  int kills = 0;
+  for (int round = 0; kills < 200; ++round) {
+    const std::string out = "killed" + std::to_string(round);
+    for (int attempt = 0; attempt < 12 && kills < 200; ++attempt) {
+      const Outcome outcome =
+          shell("timeout -s KILL " + std::to_string(seconds(random)) +
+                " '" MODCAL_PROGRAM "' run sweep.yaml --threads 2 --out " + out);
+      if (outcome.code == 0) break;
+      ASSERT_EQ(outcome.code, 137) << outcome.err;
+      ++kills;
+    }
+    const Outcome resumed = modcal("run sweep.yaml --out " + out);
+    ASSERT_EQ(resumed.code, 0) << resumed.err;
+    ASSERT_EQ(tables_of(out), tables);
+    ASSERT_EQ(digest_of(out), digest);
+    std::filesystem::remove_all(folder() / out);
+  }
+}
+
+TEST_F(Resume, RepeatsNothingThatIsFinished) {
+  ASSERT_EQ(modcal("run sweep.yaml --out a").code, 0);
+  const std::string journal = content_of(folder() / "a/journal/shard-1-of-1.journal");
+  ASSERT_EQ(modcal("run sweep.yaml --out a").code, 0);
+  EXPECT_EQ(content_of(folder() / "a/journal/shard-1-of-1.journal"), journal);
+  // A changed list repeats what it has in common neither.
+  ASSERT_EQ(modcal("run sweep.yaml --out a --set sweep.product.seed='[5, 6]'").code, 0);
+  const std::string longer = content_of(folder() / "a/journal/shard-1-of-1.journal");
+  EXPECT_EQ(std::count(longer.begin(), longer.end(), '\n'),
+            std::count(journal.begin(), journal.end(), '\n') + 8);
+}
+
+TEST_F(Resume, ShardsGiveTheTableOfTheWhole) {
+  ASSERT_EQ(modcal("run sweep.yaml --out whole").code, 0);
+  for (int shard = 1; shard <= 7; ++shard) {
+    const Outcome outcome =
+        modcal("run sweep.yaml --out parts --shard " + std::to_string(shard) + "/7");
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr("modcal report parts"));
+    EXPECT_FALSE(std::filesystem::exists(folder() / "parts/report.html"));
+  }
+  ASSERT_EQ(modcal("report parts").code, 0);
+  EXPECT_EQ(tables_of("parts"), tables_of("whole"));
+  EXPECT_EQ(digest_of("parts"), digest_of("whole"));
+}
+
+TEST_F(Resume, SaysHowFarARunIsAndReportsWhatThereIs) {
+  ASSERT_EQ(modcal("run sweep.yaml --out part --shard 2/4").code, 0);
+  const Outcome status = modcal("status part --json");
+  ASSERT_EQ(status.code, 0) << status.err;
+  const json counts = json::parse(status.out);
+  EXPECT_EQ(counts["tasks"], kTasks);
+  EXPECT_EQ(counts["done"], kTasks / 4);
+  EXPECT_EQ(counts["pending"], kTasks - kTasks / 4);
+  EXPECT_EQ(counts["running"], false);
+  EXPECT_THAT(modcal("status part").out,
+              HasSubstr("go on with:\n  modcal run sweep.yaml --out part"));
+  ASSERT_EQ(modcal("report part").code, 0);
+  EXPECT_THAT(content_of(folder() / "part/report.html"), HasSubstr("10 of 40 tasks done"));
+}
+
+TEST_F(Resume, ReadsARunFromAnotherFolderThanItWasMadeIn) {
+  ASSERT_EQ(modcal("run sweep.yaml --out a").code, 0);
+  EXPECT_EQ(
+      shell("mkdir elsewhere && mv a elsewhere/b && cd elsewhere && '" MODCAL_PROGRAM "' report b")
+          .code,
+      0);
+}
+
+TEST_F(Resume, ReplaysOneTaskWithEverythingDrawn) {
+  ASSERT_EQ(modcal("run sweep.yaml --out a").code, 0);
+  const Outcome replayed = modcal("replay a 7");
+  ASSERT_EQ(replayed.code, 0) << replayed.err;
+  EXPECT_THAT(replayed.err, HasSubstr("measurement.noise_level: 1 %\nseed: 3\n"));
+  for (const char* name : {"report.html", "identified.csv", "identification.csv"}) {
+    EXPECT_TRUE(std::filesystem::exists(folder() / "a/replay/task-7" / name)) << name;
+  }
+  // The same scores as in the table of tasks.
+  const json rows = json::parse(content_of(folder() / "a/replay/task-7/identification.json"));
+  EXPECT_THAT(content_of(folder() / "a/tasks.csv"),
+              HasSubstr(rows[0]["correlation"].dump().substr(0, 12)));
+  const Outcome beyond = modcal("replay a 40");
+  EXPECT_EQ(beyond.code, 3);
+  EXPECT_THAT(beyond.err, HasSubstr("task 40 does not exist: a has the tasks 0 to 39"));
+}
+
+TEST_F(Resume, NamesADamagedLineAndRunsItsTaskAgain) {
+  ASSERT_EQ(modcal("run sweep.yaml --out a").code, 0);
+  const std::string tables = tables_of("a");
+  const std::filesystem::path file = folder() / "a/journal/shard-1-of-1.journal";
+  std::string journal = content_of(file);
+  journal[journal.size() / 2] ^= 1;
+  write("a/journal/shard-1-of-1.journal", journal);
+  EXPECT_THAT(modcal("status a").err, HasSubstr("does not match its checksum"));
+  const Outcome again = modcal("run sweep.yaml --out a");
+  ASSERT_EQ(again.code, 0);
+  EXPECT_THAT(again.err, HasSubstr("its task will be run again"));
+  EXPECT_EQ(tables_of("a"), tables);
+}
+
+TEST_F(Resume, RefusesFoldersWithoutARun) {
+  for (const char* command : {"status", "merge", "report", "replay"}) {
+    const Outcome outcome =
+        modcal(std::string(command) + " nowhere" + (command == std::string("replay") ? " 0" : ""));
+    EXPECT_EQ(outcome.code, 3) << command;
+    EXPECT_THAT(outcome.out, IsEmpty());
+    EXPECT_THAT(outcome.err, HasSubstr("nowhere holds no run"));
+  }
+}
+
+TEST_F(Resume, KeepsWhatIsFinishedWhereTheDiskIsFull) {
+  // The journal may grow to 8 kB (16 blocks): some of the tasks.
+  const Outcome full =
+      shell("trap '' XFSZ; ulimit -f 16; '" MODCAL_PROGRAM "' run sweep.yaml --threads 1 --out a");
+  EXPECT_EQ(full.code, 3);
+  EXPECT_THAT(full.err, HasSubstr("the journal cannot be written"));
+  EXPECT_THAT(full.err, HasSubstr("run the same command again"));
+  const json counts = json::parse(modcal("status a --json").out);
+  EXPECT_GT(counts["done"], 0);
+  EXPECT_LT(counts["done"], kTasks);
+  EXPECT_EQ(counts["damaged_lines"], 0);
+  ASSERT_EQ(modcal("run sweep.yaml --out a").code, 0);
+  ASSERT_EQ(modcal("run sweep.yaml --out whole").code, 0);
+  EXPECT_EQ(tables_of("a"), tables_of("whole"));
+}
+
+TEST_F(Resume, RefusesShardsOfWhatIsNoList) {
+  std::string text(kSweep);
+  text.replace(text.find("sweep"), 5, "invert");
+  write("invert.yaml", text.substr(0, text.find("sweep:\n")));
+  const Outcome outcome = modcal("run invert.yaml --out a --shard 1/2");
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("kind invert is no list of tasks"));
+  EXPECT_EQ(modcal("run sweep.yaml --out a --shard 3/2").code, 2);
+}
+
+}  // namespace
+}  // namespace modcal
