@@ -44,14 +44,20 @@ void collect_seeds(const nlohmann::ordered_json& options, const std::string& pre
   }
 }
 
-void collect_swept_seeds(const YamlNode& root, nlohmann::ordered_json& seeds) {
-  const YamlNode* sweep = root.find("sweep");
-  const YamlNode* product = sweep != nullptr ? sweep->find("product") : nullptr;
-  if (product == nullptr) return;
-  for (const YamlNode::Member& axis : product->members) {
+void add_seeds(const YamlNode& axes, nlohmann::ordered_json& seeds) {
+  for (const YamlNode::Member& axis : axes.members) {
     if (axis.key != "seed" && !axis.key.ends_with(".seed")) continue;
     seeds[axis.key] = nlohmann::ordered_json::array();
     for (const YamlNode& value : axis.value.items) seeds[axis.key].push_back(value.text);
+  }
+}
+
+void collect_swept_seeds(const YamlNode& root, nlohmann::ordered_json& seeds) {
+  const YamlNode* sweep = root.find("sweep");
+  if (sweep == nullptr) return;
+  if (const YamlNode* product = sweep->find("product")) add_seeds(*product, seeds);
+  if (const YamlNode* zip = sweep->find("zip")) {
+    for (const YamlNode& group : zip->items) add_seeds(group, seeds);
   }
 }
 

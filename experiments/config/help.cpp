@@ -152,11 +152,15 @@ class SchemaWriter final : public OptionVisitor {
   }
   void sweep(const OptionInfo& info, SweepSlot&) override {
     const Json values = {{"type", "array"}, {"minItems", 1}};
-    const Json product = {
-        {"type", "object"}, {"additionalProperties", values}, {"minProperties", 1}};
+    const Json axes = {{"type", "object"}, {"additionalProperties", values}, {"minProperties", 1}};
+    const Json points = {{"type", "array"}, {"items", {{"type", "object"}}}, {"minItems", 1}};
     add(info, {{"type", "object"},
-               {"properties", {{"product", product}}},
-               {"required", {"product"}},
+               {"properties",
+                {{"product", axes},
+                 {"zip", {{"type", "array"}, {"items", axes}, {"minItems", 1}}},
+                 {"exclude", points},
+                 {"include", points}}},
+               {"minProperties", 1},
                {"additionalProperties", false}});
   }
 

@@ -10,6 +10,7 @@
 
 #include "experiments/config/nearest_name.hpp"
 #include "experiments/config/scalar.hpp"
+#include "experiments/config/sweep_reader.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -296,37 +297,14 @@ void YamlReader::list(const OptionInfo& info, ListSlot& slot) {
   }
 }
 
-std::vector<SweepAxis> YamlReader::read_axes(const YamlNode& product) {
-  std::vector<SweepAxis> axes;
-  for (const YamlNode::Member& member : product.members) {
-    if (member.value.kind != YamlNode::Kind::kSequence || member.value.items.empty()) {
-      mistakes_.push_back({member.value.position,
-                           fmt::format("{} needs a list of values, at least one", member.key)});
-      continue;
-    }
-    SweepAxis axis{member.key, {}};
-    for (const YamlNode& item : member.value.items) {
-      if (item.kind != YamlNode::Kind::kScalar) {
-        mistake(item, fmt::format("values of {} must be single values", member.key));
-      }
-      axis.values.push_back(item.text);
-    }
-    axes.push_back(std::move(axis));
-  }
-  return axes;
-}
-
-void YamlReader::read_cells(const YamlNode& product, SweepSlot& slot) {
+void YamlReader::read_cells(const SweepTable& table, SweepSlot& slot) {
   std::vector<Mistake> found;
-  for (std::size_t cell = 0; cell < slot.cells(); ++cell) {
+  for (std::size_t cell = 0; cell < table.values.size(); ++cell) {
     YamlDocument variant;
     variant.root = node_;
-    std::size_t rest = cell;
-    for (std::size_t a = product.members.size(); a-- > 0;) {
-      const YamlNode::Member& axis = product.members[a];
-      const std::size_t count = axis.value.items.size();
-      set_value(variant, axis.key, axis.value.items[rest % count], axis.position);
-      rest /= count;
+    for (std::size_t i = 0; i < table.paths.size(); ++i) {
+      const YamlNode* value = table.values[cell][i];
+      if (value != nullptr) set_value(variant, table.paths[i], *value, table.places[i]);
     }
     found.insert(found.end(), variant.mistakes.begin(), variant.mistakes.end());
     YamlReader reader(variant.root, found);
@@ -347,22 +325,10 @@ void YamlReader::read_cells(const YamlNode& product, SweepSlot& slot) {
 void YamlReader::sweep(const OptionInfo& info, SweepSlot& slot) {
   const YamlNode* node = take(info);
   if (node == nullptr) return;
-  const YamlNode* product = node->find("product");
-  for (const YamlNode::Member& member : node->members) {
-    if (member.key == "product") continue;
-    mistakes_.push_back(
-        {member.position, fmt::format("unknown key \"{}\"; known: product", member.key)});
-  }
-  if (product == nullptr || product->kind != YamlNode::Kind::kMap || product->members.empty()) {
-    mistake(*node,
-            fmt::format("{} needs a product: a map of option paths and lists of values", info.key));
-    return;
-  }
-  const std::size_t before = mistakes_.size();
-  std::vector<SweepAxis> axes = read_axes(*product);
-  if (mistakes_.size() > before) return;
-  slot.set_axes(std::move(axes));
-  read_cells(*product, slot);
+  const SweepTable table = read_sweep(*node, info.key, mistakes_);
+  if (table.values.empty()) return;
+  slot.set_cells(table.plan, table.cells());
+  read_cells(table, slot);
 }
 
 void read_options(const YamlNode& node, const std::function<void(OptionVisitor&)>& visit,

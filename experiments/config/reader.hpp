@@ -13,6 +13,8 @@
 
 namespace modcal {
 
+struct SweepTable;
+
 class YamlReader final : public OptionVisitor {
  public:
   /// Reads from the map `node`; mistakes are appended to `mistakes`.
@@ -30,7 +32,8 @@ class YamlReader final : public OptionVisitor {
   void optional_group(const OptionInfo& info, bool& present,
                       const VisitMembers& visit_members) override;
   void list(const OptionInfo& info, ListSlot& slot) override;
-  /// "product: {path: [values]}": every cell is read from this reader's map with its values put in.
+  /// {product, zip, exclude, include}: every cell is read from this reader's map with its values
+  /// put in.
   void sweep(const OptionInfo& info, SweepSlot& slot) override;
 
   /// A key that is read elsewhere.
@@ -52,8 +55,7 @@ class YamlReader final : public OptionVisitor {
   bool read_integer(const OptionInfo& info, const YamlNode& node, std::int64_t& value);
   bool read_text(const OptionInfo& info, const YamlNode& node, std::string& value);
   void select(const OptionInfo& info, const YamlNode& name, PluginSlot& slot);
-  std::vector<SweepAxis> read_axes(const YamlNode& product);
-  void read_cells(const YamlNode& product, SweepSlot& slot);
+  void read_cells(const SweepTable& table, SweepSlot& slot);
   template <typename Value, typename Read>
   void read_list(const OptionInfo& info, std::vector<Value>& values, Read read);
 

@@ -3,33 +3,27 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <cctype>
 #include <cmath>
-#include <nlohmann/json.hpp>
+
+#include "experiments/config/flow_text.hpp"
 
 namespace modcal {
 namespace {
-
-/// YAML's double-quoted form is JSON's.
-std::string yaml_string(const std::string& text) { return nlohmann::json(text).dump(); }
 
 std::string number_text(const OptionInfo& info, double value) {
   if (std::isnan(value)) return std::string(info.word);
   return info.unit == "1" ? fmt::format("{}", value) : fmt::format("{} {}", value, info.unit);
 }
 
-// Numbers, units and words as they were written; what would not read back so, in quotes.
-std::vector<std::string> flow_items(const std::vector<std::string>& values) {
+std::string item_text(const std::string& value) {
+  const bool nested = value.starts_with('{') || value.starts_with('[');
+  return nested ? value : flow_scalar(value);
+}
+
+std::string axis_text(const SweepAxis& axis) {
   std::vector<std::string> items;
-  for (const std::string& value : values) {
-    const bool plain = !value.empty() && value != "null" && value != "~" &&
-                       value.find_first_of(",[]{}:#&*!|>'\"%@`\n") == std::string::npos;
-    const bool percent = !value.empty() && std::isdigit(static_cast<unsigned char>(value[0])) &&
-                         value.ends_with('%') &&
-                         value.find_first_of(",[]{}:#\n") == std::string::npos;
-    items.push_back(plain || percent ? value : yaml_string(value));
-  }
-  return items;
+  for (const std::string& value : axis.values) items.push_back(item_text(value));
+  return fmt::format("[{}]", fmt::join(items, ", "));
 }
 
 }  // namespace
@@ -107,16 +101,48 @@ void ResolvedWriter::list(const OptionInfo& info, ListSlot& slot) {
 }
 
 void ResolvedWriter::sweep(const OptionInfo& info, SweepSlot& slot) {
-  if (slot.axes().empty()) return;
-  line(info, {});
+  const SweepPlan& plan = slot.plan();
+  if (plan.product.empty() && plan.zip.empty() && plan.include.empty()) return;
+  line({.key = info.key, .meaning = info.meaning}, {});
   ++level_;
-  line({.key = "product", .meaning = "every combination of the values"}, {});
-  ++level_;
-  for (const SweepAxis& axis : slot.axes()) {
-    line({.key = axis.path, .meaning = "values"},
-         fmt::format("[{}]", fmt::join(flow_items(axis.values), ", ")));
+  if (!plan.product.empty()) {
+    line({.key = "product", .meaning = "every combination of the values"}, {});
+    ++level_;
+    for (const SweepAxis& axis : plan.product) {
+      line({.key = axis.path, .meaning = "values"}, axis_text(axis));
+    }
+    --level_;
   }
-  level_ -= 2;
+  if (!plan.zip.empty()) {
+    line({.key = "zip", .meaning = "values that vary together"}, {});
+    for (const std::vector<SweepAxis>& group : plan.zip) {
+      std::vector<std::pair<std::string, std::string>> members;
+      for (const SweepAxis& axis : group) members.emplace_back(axis.path, axis_text(axis));
+      item(members);
+    }
+  }
+  points("exclude", "cells left out", plan.exclude);
+  points("include", "cells added", plan.include);
+  --level_;
+}
+
+void ResolvedWriter::points(std::string_view key, std::string_view meaning,
+                            const std::vector<SweepPoint>& points) {
+  if (points.empty()) return;
+  line({.key = key, .meaning = meaning}, {});
+  for (const SweepPoint& point : points) {
+    std::vector<std::pair<std::string, std::string>> members;
+    for (const auto& [path, value] : point) members.emplace_back(path, item_text(value));
+    item(members);
+  }
+}
+
+void ResolvedWriter::item(const std::vector<std::pair<std::string, std::string>>& members) {
+  std::string_view indent = "- ";
+  for (const auto& [key, value] : members) {
+    yaml_ += fmt::format("{}{}{}: {}\n", std::string(2 * level_ + 2, ' '), indent, key, value);
+    indent = "  ";
+  }
 }
 
 }  // namespace modcal

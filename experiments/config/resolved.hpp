@@ -31,6 +31,10 @@ class ResolvedWriter final : public OptionVisitor {
 
  private:
   void line(const OptionInfo& info, const std::string& value);
+  // One item of a list of maps.
+  void item(const std::vector<std::pair<std::string, std::string>>& members);
+  void points(std::string_view key, std::string_view meaning,
+              const std::vector<SweepPoint>& points);
 
   std::size_t level_;
   std::string yaml_;

@@ -1,5 +1,7 @@
 #include "experiments/kinds/sweep_experiment.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <set>
 
@@ -21,6 +23,18 @@ std::vector<FigureOptions> replay_figures() {
   return {waveforms, spectra, curves};
 }
 
+void append_axes(const SweepPlan& plan, std::vector<std::string>& lines) {
+  for (const SweepAxis& axis : plan.product) {
+    lines.push_back(fmt::format("axis {}: {} values", axis.path, axis.values.size()));
+  }
+  for (const std::vector<SweepAxis>& group : plan.zip) {
+    std::vector<std::string> paths;
+    for (const SweepAxis& axis : group) paths.push_back(axis.path);
+    lines.push_back(fmt::format("axes {} together: {} values", fmt::join(paths, ", "),
+                                group.front().values.size()));
+  }
+}
+
 }  // namespace
 
 void SweepExperimentOptions::visit(OptionVisitor& visitor) {
@@ -31,37 +45,11 @@ void SweepExperimentOptions::visit(OptionVisitor& visitor) {
       sweep.has_comparison, [this](OptionVisitor& inner) { sweep.comparison.visit(inner); });
   // Last: every cell is read with the keys above known.
   visitor.sweep(
-      {.key = "sweep", .meaning = "axes: option paths and their values", .required = true}, *this);
-}
-
-void SweepExperimentOptions::set_axes(std::vector<SweepAxis> axes) {
-  sweep_axes = std::move(axes);
-  std::size_t count = 1;
-  for (const SweepAxis& axis : sweep_axes) {
-    count *= axis.values.size();
-    MODCAL_REQUIRE(count <= 1000000, "the sweep has more than a million cells");
-  }
-  cell_options.assign(count, InvertOptions{});
-}
-
-std::vector<std::string> SweepExperiment::axes() const {
-  std::vector<std::string> paths;
-  for (const SweepAxis& axis : options_.sweep_axes) paths.push_back(axis.path);
-  return paths;
-}
-
-std::vector<std::string> SweepExperiment::axis_values(std::size_t task) const {
-  std::vector<std::string> chosen(options_.sweep_axes.size());
-  for (std::size_t a = options_.sweep_axes.size(); a-- > 0;) {
-    const std::vector<std::string>& values = options_.sweep_axes[a].values;
-    chosen[a] = values[task % values.size()];
-    task /= values.size();
-  }
-  return chosen;
+      {.key = "sweep", .meaning = "axes: option paths and their values", .required = true}, cells);
 }
 
 SweepCell SweepExperiment::cell(std::size_t task) const {
-  const InvertOptions& options = options_.cell_options[task];
+  const InvertOptions& options = options_.cells[task];
   return {options, axis_values(task), options.observation.measurement.noise_level};
 }
 
@@ -77,7 +65,7 @@ std::vector<Finding> SweepExperiment::lint() const {
         {"figures", "a sweep draws its own figure: use kind invert for single ones"});
   }
   std::set<std::pair<std::string, std::string>> known;
-  for (const InvertOptions& cell : options_.cell_options) {
+  for (const InvertOptions& cell : options_.cells.all()) {
     for (Finding& finding : lint_inversion(cell)) {
       if (known.insert({finding.path, finding.text}).second) findings.push_back(std::move(finding));
     }
@@ -88,12 +76,10 @@ std::vector<Finding> SweepExperiment::lint() const {
 std::vector<std::string> SweepExperiment::plan() const {
   const ObservationOptions& observation = options_.base.observation;
   std::vector<std::string> lines;
-  for (const SweepAxis& axis : options_.sweep_axes) {
-    lines.push_back(fmt::format("axis {}: {} values", axis.path, axis.values.size()));
-  }
-  lines.push_back(fmt::format("tasks: {}", options_.cell_options.size()));
+  append_axes(options_.cells.plan(), lines);
+  lines.push_back(fmt::format("tasks: {}", options_.cells.size()));
   std::set<std::string> scenes;
-  for (const InvertOptions& cell : options_.cell_options) {
+  for (const InvertOptions& cell : options_.cells.all()) {
     scenes.insert(truth_key(cell.observation.truth, cell.observation.measurement.sample_rate,
                             {.force = true}));
   }
@@ -103,7 +89,7 @@ std::vector<std::string> SweepExperiment::plan() const {
       lines.push_back(std::move(line));
     }
     lines.push_back(fmt::format("skipped: {} simulations whose scene another task has",
-                                options_.cell_options.size() - scenes.size()));
+                                options_.cells.size() - scenes.size()));
   }
   lines.push_back("skipped: displacement and velocity at the contact, which no score reads");
   return lines;
@@ -111,7 +97,7 @@ std::vector<std::string> SweepExperiment::plan() const {
 
 std::string SweepExperiment::fingerprint(std::size_t task,
                                          const std::filesystem::path& folder) const {
-  InvertOptions options = options_.cell_options[task];
+  InvertOptions options = options_.cells[task];
   std::string text =
       "sweep " + modcal::fingerprint([&](OptionVisitor& visitor) { options.visit(visitor); });
   if (options.observation.has_record) {
@@ -140,7 +126,7 @@ StudyResult SweepExperiment::sum_up(const std::vector<std::optional<std::string>
 }
 
 StudyResult SweepExperiment::replay(std::size_t task, const StudyContext& context) const {
-  InvertOptions options = options_.cell_options[task];
+  InvertOptions options = options_.cells[task];
   options.write_signals = true;
   options.figures = replay_figures();
   return invert_study(options, context);

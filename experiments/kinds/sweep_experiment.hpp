@@ -1,24 +1,18 @@
 #pragma once
 
 #include "experiments/kinds/sweep_study.hpp"
+#include "experiments/kinds/swept_options.hpp"
 #include "experiments/task_experiment.hpp"
 
 namespace modcal {
 
 /// Options of kind "sweep": those of an inversion, the axes, the table.
-struct SweepExperimentOptions final : public SweepSlot {
+struct SweepExperimentOptions {
   InvertOptions base;
   SweepOptions sweep;
-  std::vector<SweepAxis> sweep_axes;
-  std::vector<InvertOptions> cell_options;
+  SweptOptions<InvertOptions> cells;
 
   void visit(OptionVisitor& visitor);
-  const std::vector<SweepAxis>& axes() const override { return sweep_axes; }
-  void set_axes(std::vector<SweepAxis> axes) override;
-  std::size_t cells() const override { return cell_options.size(); }
-  void visit_cell(std::size_t index, OptionVisitor& visitor) override {
-    cell_options[index].visit(visitor);
-  }
 };
 
 /// Kind "sweep": the same inversion over axes of settings, summed up in a table.
@@ -29,9 +23,11 @@ class SweepExperiment final : public TaskExperiment {
   std::vector<Finding> lint() const override;
   std::vector<std::string> plan() const override;
 
-  std::size_t task_count() const override { return options_.cell_options.size(); }
-  std::vector<std::string> axes() const override;
-  std::vector<std::string> axis_values(std::size_t task) const override;
+  std::size_t task_count() const override { return options_.cells.size(); }
+  std::vector<std::string> axes() const override { return options_.cells.paths(); }
+  std::vector<std::string> axis_values(std::size_t task) const override {
+    return options_.cells.values(task);
+  }
   std::string fingerprint(std::size_t task, const std::filesystem::path& folder) const override;
   std::string run_task(std::size_t task, const StudyContext& context) const override;
   std::string failure_in(const std::string& outcome) const override;

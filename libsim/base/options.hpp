@@ -11,6 +11,8 @@
 #include <string_view>
 #include <vector>
 
+#include "libsim/base/sweep.hpp"
+
 namespace modcal {
 
 /// Interval of allowed values, in the option's SI unit.
@@ -75,23 +77,6 @@ class ListSlot {
   virtual std::size_t size() const = 0;
   virtual void resize(std::size_t size) = 0;
   virtual void visit_item(std::size_t index, OptionVisitor& visitor) = 0;
-};
-
-/// One axis of a sweep: the dotted path of an option and the values it takes, as written.
-struct SweepAxis {
-  std::string path;
-  std::vector<std::string> values;
-};
-
-/// The cells of a sweep: copies of the experiment's options, each read with its own values.
-class SweepSlot {
- public:
-  virtual ~SweepSlot() = default;
-  virtual const std::vector<SweepAxis>& axes() const = 0;
-  /// Takes the axes and makes one cell per combination; the last axis varies fastest.
-  virtual void set_axes(std::vector<SweepAxis> axes) = 0;
-  virtual std::size_t cells() const = 0;
-  virtual void visit_cell(std::size_t index, OptionVisitor& visitor) = 0;
 };
 
 class OptionVisitor {
