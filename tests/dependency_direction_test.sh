@@ -15,12 +15,14 @@ violations() {
       name = $0; sub(/^[^:]*:[^:]*:/, "", name); sub(/^[^"<]*["<]/, "", name); sub(/[">].*$/, "", name)
       folder = file; sub(/\/.*/, "", folder)
       if (folder == "libsim") folder = file ~ /^libsim\/dynamics\// ? "dynamics" : "model"
+      if (file ~ /^libinverse\/model_based\//) folder = "identify"
       test = folder == "tests" || folder == "benchmarks"
 
       model = "^libsim/(base|signal|model)/"
       allowed["model"] = model
       allowed["dynamics"] = "^libsim/"
-      allowed["libinverse"] = model "|^libinverse/"
+      allowed["libinverse"] = model "|^libinverse/[^/]*$"
+      allowed["identify"] = "^(libsim|libinverse)/"
       allowed["libcalib"] = "^(libsim|libinverse|libcalib)/"
       allowed["experiments"] = "^(libsim|libinverse|libcalib|experiments)/"
       ours = name ~ /^(libsim|libinverse|libcalib|experiments|tests|benchmarks)\//
@@ -43,6 +45,9 @@ libsim/model/transfer.cpp "libinverse/problem.hpp"
 libsim/dynamics/planted.hpp "libcalib/evaluator.hpp"
 libinverse/planted.cpp "libsim/dynamics/scene.hpp"
 libinverse/planted.cpp "libcalib/evaluator.hpp"
+libinverse/planted.cpp "libinverse/model_based/planted.hpp"
+libsim/dynamics/planted.hpp "libinverse/model_based/planted.hpp"
+libinverse/model_based/planted.cpp "libcalib/evaluator.hpp"
 libcalib/planted.cpp "experiments/records/recording.hpp"
 experiments/records/recording.cpp "tests/experiments/records/record_folder.hpp"
 experiments/records/levels.cpp <fftw3.h>

@@ -1,0 +1,249 @@
+#include "libinverse/model_based/model_based_estimator.hpp"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+
+#include "libinverse/model_based/gain_search.hpp"
+#include "libinverse/model_based/innovation_fit.hpp"
+#include "libinverse/model_based/start_values.hpp"
+#include "libsim/signal/statistics.hpp"
+
+namespace modcal {
+
+using namespace observer;
+
+namespace {
+
+// Force noise of the gains over the static friction force: the first contracts from bad parameters,
+// the last trusts good ones.
+constexpr std::array kForceNoise = {0.075, 0.025, 0.0125, 0.0075, 0.0025};
+constexpr std::size_t kWide = 0, kMiddle = 1, kNarrow = 2;
+constexpr std::array<std::size_t, 4> kBeam = {0, 1, 3, 4};
+// A finite number of modes ripples ahead of the first wave: this share of the reaction's deviation
+// in the mean of the silent samples.
+constexpr double kRipple = 0.003;
+constexpr double kQuietNoise = 0.015;  // noise over signal below which a narrower gain pays
+
+class Estimation {
+ public:
+  Estimation(const ModelBasedOptions& options, ObservedRecord record,
+             const std::function<bool()>& interrupted)
+      : options_(options), record_(std::move(record)), interrupted_(interrupted) {
+    for (int r = 0; r < 2; ++r) {
+      const double noise = record_.noise[r] / std::sqrt(static_cast<double>(record_.silent[r]));
+      const double ripple = kRipple * standard_deviation(record_.reaction[r]);
+      offset_deviation_[r] = std::hypot(noise, ripple);
+    }
+  }
+
+  ModelBasedResult run() {
+    LinearEstimate linear = linear_estimate(record_);
+    if (bow_direction(linear) < 0.0) {
+      negate(record_);
+      for (auto* signal : {&linear.force, &linear.velocity}) {
+        for (double& value : *signal) value = -value;
+      }
+    }
+    const ContactPicture picture = picture_of(linear);
+    std::vector<double> force_noise(kForceNoise.begin(), kForceNoise.end());
+    for (double& q : force_noise) q *= picture.static_force;
+    Substeps substeps;
+    substeps.coarse = static_cast<std::size_t>(options_.substeps);
+    substeps.fine = 16;
+    runs_ = std::make_unique<ObserverRuns>(record_, force_noise, substeps);
+    ParameterSpace space = best_start(picture);
+    space = fitted(space, {kWide}, 8);
+    free_more(freed(), runs_->string().mode, space);
+    if (freed().any()) space = fitted(space, {kWide}, 8);
+    space = fitted(space, {kMiddle}, 8);
+    if (record_.noise[0] < kQuietNoise * standard_deviation(record_.reaction[0])) {
+      space = fitted(space, {kNarrow}, 6);
+    }
+    GainSchedule schedule;
+    for (std::int64_t round = 0; round < options_.rounds; ++round) {
+      schedule = search_gains(*runs_, space.start(), kBeam);
+      space = fitted(space, schedule, 4);
+    }
+    schedule = search_gains(*runs_, space.start(), kBeam);
+    return finish(space.start(), schedule, linear);
+  }
+
+ private:
+  FreedOptions freed() const {
+    return {.adherence_damping = options_.adherence_damping,
+            .law_shape = options_.law_shape,
+            .force_knots = static_cast<std::size_t>(options_.force_knots),
+            .velocity_knots = static_cast<std::size_t>(options_.velocity_knots),
+            .delay = options_.delay,
+            .gain = options_.gain,
+            .contact = options_.contact,
+            .frequencies = options_.frequencies};
+  }
+
+  ParameterSpace fitted(const ParameterSpace& space, const GainSchedule& schedule,
+                        std::size_t iterations) {
+    FitLimits limits;
+    limits.iterations = iterations;
+    limits.interrupted = interrupted_;
+    const FitOutcome outcome = fit_innovations(*runs_, space, schedule, limits);
+    run_count_ += outcome.runs;
+    return space.restarted_at(outcome.x);
+  }
+
+  // Decay and adherence stiffness are not seen in the linear estimate: a grid, each corner fitted
+  // for a moment on the first half.
+  ParameterSpace best_start(const ContactPicture& picture) {
+    const std::vector<FreeParameter> free =
+        basic_parameters(picture.static_force, offset_deviation_);
+    const double top = record_.basis.omega.back();
+    const double stiffness = runs_->string().effective_mass * top * top;
+    std::vector<ParameterSpace> starts;
+    for (const double decay : {3.0, 8.0}) {
+      for (const double stiff : {0.4, 4.0}) {
+        ObserverParameters p;
+        p.sliding.dynamic_force = picture.dynamic_force;
+        p.sliding.force_drop = picture.static_force - picture.dynamic_force;
+        p.sliding.decay = decay / picture.slip_speed;
+        p.bow_velocity = picture.bow_velocity;
+        p.stiffness = stiff * stiffness;
+        p.offset[0] = record_.offset[0];
+        p.offset[1] = record_.offset[1];
+        p.contact = record_.contact;
+        starts.emplace_back(p, free);
+      }
+    }
+    FitLimits limits;
+    limits.iterations = 3;
+    limits.samples = record_.samples() / 2;
+    limits.interrupted = interrupted_;
+    std::vector<FitOutcome> outcomes(starts.size());
+    std::vector<double> score(starts.size());
+    tbb::parallel_for(std::size_t{0}, starts.size(), [&](std::size_t i) {
+      outcomes[i] = fit_innovations(*runs_, starts[i], {kWide}, limits);
+      starts[i] = starts[i].restarted_at(outcomes[i].x);
+      score[i] = misfit(runs_->innovations(starts[i].start(), {kWide}, limits.samples));
+    });
+    for (const FitOutcome& outcome : outcomes) run_count_ += outcome.runs;
+    return starts[static_cast<std::size_t>(std::min_element(score.begin(), score.end()) -
+                                           score.begin())];
+  }
+
+  ModelBasedResult finish(const ObserverParameters& parameters, const GainSchedule& schedule,
+                          LinearEstimate& linear) {
+    ModelBasedResult result;
+    ObserverMotion motion;
+    result.misfit = misfit(runs_->identify(parameters, schedule, motion));
+    result.force = std::move(motion.force);
+    result.velocity = std::move(motion.velocity);
+    result.displacement = std::move(motion.displacement);
+    result.linear_force = std::move(linear.force);
+    result.parameters = parameters;
+    result.negated = record_.negated;
+    if (record_.negated) {
+      for (auto* signal :
+           {&result.force, &result.velocity, &result.displacement, &result.linear_force}) {
+        for (double& value : *signal) value = -value;
+      }
+    }
+    result.noise[0] = record_.raw_noise[0];
+    result.noise[1] = record_.raw_noise[1];
+    result.force_noise = runs_->force_noise();
+    result.gain_share.assign(result.force_noise.size(), 0.0);
+    for (const std::size_t gain : schedule) {
+      result.gain_share[gain] += 1.0 / static_cast<double>(schedule.size());
+    }
+    result.runs = run_count_;
+    result.static_part = static_recovery(result.force);
+    add_warnings(result);
+    return result;
+  }
+
+  // A steady force F lifts R₁ by −(1 − x_c/L) F and R₂ by −(x_c/L) F: both offsets measure it.
+  StaticRecovery static_recovery(const std::vector<double>& force) const {
+    const double xi = record_.contact / record_.basis.length;
+    const double share[2] = {1.0 - xi, xi};
+    double precision = 0.0;
+    for (int r = 0; r < 2; ++r) {
+      const double weight = share[r] / offset_deviation_[r];
+      precision += weight * weight;
+    }
+    return {mean(force), 1.0 / std::sqrt(precision)};
+  }
+
+  void add_warnings(ModelBasedResult& result) const {
+    if (!(result.misfit <= options_.misfit_limit)) {
+      result.warnings.push_back(fmt::format(
+          "innovation misfit J = {:.3g} is above {:g}: the model does not explain the reactions to "
+          "their noise; compare with the linear estimate, and free what may differ (force_knots, "
+          "velocity_knots, law_shape, delay, gain, contact, frequencies)",
+          result.misfit, options_.misfit_limit));
+    }
+    for (int r = 0; r < 2; ++r) {
+      const double level = std::abs(mean(std::span(record_.reaction[r]).first(record_.silent[r])) -
+                                    result.parameters.offset[r]);
+      if (level > 5.0 * offset_deviation_[r]) {
+        result.warnings.push_back(fmt::format(
+            "the fitted offset of the reaction at {} is {:.3g} N away from its level before the "
+            "first wave, {:.2g} standard deviations: the record may not start at rest",
+            r == 0 ? "x = 0" : "x = L", level, level / offset_deviation_[r]));
+      }
+    }
+  }
+
+  const ModelBasedOptions& options_;
+  ObservedRecord record_;
+  const std::function<bool()>& interrupted_;
+  double offset_deviation_[2] = {};
+  std::unique_ptr<ObserverRuns> runs_;
+  std::size_t run_count_ = 0;
+};
+
+}  // namespace
+
+void ModelBasedOptions::visit(OptionVisitor& visitor) {
+  visitor.integer({.key = "substeps",
+                   .meaning = "steps of the observer per sample",
+                   .range = Range::closed(1, 64)},
+                  substeps);
+  visitor.integer(
+      {.key = "rounds", .meaning = "rounds of gain search and fit", .range = Range::closed(0, 20)},
+      rounds);
+  visitor.flag(
+      {.key = "adherence_damping", .meaning = "fit the damping of adherence, else critical"},
+      adherence_damping);
+  visitor.flag({.key = "law_shape",
+                .meaning = "fit a second exponential and a viscous term of the friction law"},
+               law_shape);
+  visitor.integer({.key = "force_knots",
+                   .meaning = "knots of the normal force in time; 0: constant",
+                   .range = Range::closed(0, 200)},
+                  force_knots);
+  visitor.integer({.key = "velocity_knots",
+                   .meaning = "knots of the bow velocity in time; 0: constant",
+                   .range = Range::closed(0, 200)},
+                  velocity_knots);
+  visitor.flag({.key = "delay", .meaning = "fit the delay between the two sensors"}, delay);
+  visitor.flag({.key = "gain", .meaning = "fit the gain ratio of the two sensors"}, gain);
+  visitor.flag({.key = "contact", .meaning = "fit the contact point"}, contact);
+  visitor.flag({.key = "frequencies", .meaning = "fit every modal frequency"}, frequencies);
+  visitor.number({.key = "misfit_limit",
+                  .meaning = "innovation misfit J above which the result warns",
+                  .unit = "1",
+                  .range = Range::positive()},
+                 misfit_limit);
+}
+
+ModelBasedResult ModelBasedEstimator::estimate(const ModalBasis& basis, double contact,
+                                               double sample_rate, std::span<const double> left,
+                                               std::span<const double> right,
+                                               const std::function<bool()>& interrupted) const {
+  return Estimation(options_, observe_record(basis, contact, sample_rate, left, right), interrupted)
+      .run();
+}
+
+}  // namespace modcal

@@ -1,0 +1,74 @@
+// Model-based estimate of the contact force: an observer whose friction law is fitted.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "libinverse/model_based/parameter_space.hpp"
+#include "libsim/base/options.hpp"
+#include "libsim/model/modal_basis.hpp"
+
+namespace modcal {
+
+struct ModelBasedOptions {
+  std::int64_t substeps = 5;        ///< steps of the observer per sample while it is fitted
+  std::int64_t rounds = 3;          ///< of gain search and fit
+  bool adherence_damping = false;   ///< frees C_a, else 2√(K_a m_eff)
+  bool law_shape = false;           ///< frees a second exponential and a viscous term
+  std::int64_t force_knots = 0;     ///< of ln F_N(t); 0: constant
+  std::int64_t velocity_knots = 0;  ///< of v_bow(t); 0: constant
+  bool delay = false;               ///< frees the delay between the two sensors
+  bool gain = false;                ///< frees the gain ratio of the two sensors
+  bool contact = false;             ///< frees x_c
+  bool frequencies = false;         ///< frees every ω_n
+  double misfit_limit = 1.05;       ///< J above which the result warns
+  void visit(OptionVisitor& visitor);
+};
+
+/// How much of the static level of the force the data hold: the sensors lose it, and the samples
+/// before the first wave arrives are all that give it back.
+struct StaticRecovery {
+  double level = 0.0;  ///< mean of the estimated force [N]
+  /// Standard deviation of that level from the offsets' silent samples [N]: the fit cannot do
+  /// better unless the shape of the motion depends on the level.
+  double deviation = 0.0;
+};
+
+struct ModelBasedResult {
+  std::vector<double> force;         ///< f_c(t_k) [N], with its static level as far as recovered
+  std::vector<double> velocity;      ///< v(x_c, t_k) [m/s]
+  std::vector<double> displacement;  ///< y(x_c, t_k) [m]
+  std::vector<double> linear_force;  ///< the linear estimate it started from [N]
+  observer::ObserverParameters parameters;  ///< in the frame of a bow that moves forward
+  bool negated = false;                     ///< the bow moves in the negative direction
+  double noise[2] = {};                     ///< estimated standard deviation of R₁, R₂ [N]
+  double misfit = 0.0;  ///< J, mean Huber-ed (ν/s)²: 1 where model and noise are right
+  StaticRecovery static_part;
+  std::vector<double> gain_share;   ///< share of blocks served by each listed gain
+  std::vector<double> force_noise;  ///< the list of gains, q [N]
+  std::size_t runs = 0;             ///< observer runs taken
+  std::vector<std::string> warnings;
+};
+
+/// Nonlinear observer (string + friction law, corrected at every sample by a steady Kalman gain)
+/// whose parameters are fitted by prediction error, with a beam search over gains. Needs both
+/// reactions, of a record that starts at rest. It assumes a friction law of the exponential family:
+/// it stands beside a linear estimate, never in its place.
+class ModelBasedEstimator {
+ public:
+  explicit ModelBasedEstimator(ModelBasedOptions options) : options_(options) {}
+  /// Reactions [N] at x = 0 and x = L, contact x_c [m], sample_rate [Hz]. Throws InvalidInput as
+  /// observer::observe_record does, and Interrupted when `interrupted` says so.
+  ModelBasedResult estimate(
+      const ModalBasis& basis, double contact, double sample_rate, std::span<const double> left,
+      std::span<const double> right,
+      const std::function<bool()>& interrupted = [] { return false; }) const;
+
+ private:
+  ModelBasedOptions options_;
+};
+
+}  // namespace modcal

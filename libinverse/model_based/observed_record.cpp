@@ -1,0 +1,90 @@
+#include "libinverse/model_based/observed_record.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "libsim/base/error.hpp"
+#include "libsim/signal/fft.hpp"
+#include "libsim/signal/statistics.hpp"
+
+namespace modcal::observer {
+
+double noise_above(std::span<const double> samples, double sample_rate, double lowest) {
+  const std::size_t count = samples.size();
+  std::vector<double> windowed(samples.begin(), samples.end());
+  remove_mean(windowed);
+  double energy = 0.0;
+  for (std::size_t j = 0; j < count; ++j) {
+    const double turn = (static_cast<double>(j) + 0.5) / static_cast<double>(count);
+    const double window = 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * turn);
+    windowed[j] *= window;
+    energy += window * window;
+  }
+  const std::vector<Complex> spectrum = RealFft(count).forward(windowed);
+  const double spacing = sample_rate / static_cast<double>(count);
+  const auto first = static_cast<std::size_t>(std::ceil(lowest / spacing));
+  const auto last = static_cast<std::size_t>(0.49 * sample_rate / spacing);
+  MODCAL_REQUIRE(
+      last >= first + 8,
+      "the noise is read between {:g} Hz and {:g} Hz, above the highest mode: sampled at "
+      "{:g} Hz the record of {} samples has no such band; use fewer modes or a higher "
+      "rate",
+      lowest, 0.49 * sample_rate, sample_rate, count);
+  double power = 0.0;
+  for (std::size_t k = first; k < last; ++k) power += std::norm(spectrum[k]);
+  return std::sqrt(power / (static_cast<double>(last - first) * energy));
+}
+
+std::size_t silent_samples(const ModalBasis& basis, double contact, End end, double sample_rate) {
+  const double speed = 2.0 * basis.length * basis.frequency(0);
+  const double path = end == End::kLeft ? contact : basis.length - contact;
+  return static_cast<std::size_t>(std::max(0.0, std::floor(path / speed * sample_rate)));
+}
+
+ObservedRecord observe_record(const ModalBasis& basis, double contact, double sample_rate,
+                              std::span<const double> left, std::span<const double> right) {
+  MODCAL_REQUIRE(left.size() == right.size(),
+                 "the reactions have {} and {} samples: the observer needs both, equally long",
+                 left.size(), right.size());
+  const double periods = static_cast<double>(left.size()) / sample_rate * basis.frequency(0);
+  MODCAL_REQUIRE(periods >= 4.0,
+                 "the record of {} samples holds {:.3g} periods: the observer needs at least 4",
+                 left.size(), periods);
+  ObservedRecord record;
+  record.basis = basis;
+  record.contact = contact;
+  record.sample_rate = sample_rate;
+  const double top = basis.frequency(basis.size() - 1);
+  for (int r = 0; r < 2; ++r) {
+    const std::span<const double> samples = r == 0 ? left : right;
+    for (std::size_t j = 0; j < samples.size(); ++j) {
+      MODCAL_REQUIRE(std::isfinite(samples[j]),
+                     "sample {} of the reaction at {} is {:g}: cut the record before it or repair "
+                     "it",
+                     j, r == 0 ? "x = 0" : "x = L", samples[j]);
+    }
+    const double deviation = standard_deviation(samples);
+    MODCAL_REQUIRE(deviation > 0.0, "the reaction at {} is constant: nothing moved",
+                   r == 0 ? "x = 0" : "x = L");
+    record.reaction[r].assign(samples.begin(), samples.end());
+    record.raw_noise[r] = noise_above(samples, sample_rate, 1.22 * top);
+    record.noise[r] = std::max(record.raw_noise[r], kNoiseFloor * deviation);
+    record.silent[r] =
+        silent_samples(basis, contact, r == 0 ? End::kLeft : End::kRight, sample_rate);
+    // A contact closer to the end than one sample leaves nothing but the sample at t = 0.
+    record.silent[r] = std::clamp<std::size_t>(record.silent[r], 1, samples.size());
+    record.offset[r] = mean(samples.first(record.silent[r]));
+  }
+  return record;
+}
+
+void negate(ObservedRecord& record) {
+  record.negated = !record.negated;
+  for (int r = 0; r < 2; ++r) {
+    record.offset[r] = -record.offset[r];
+    for (double& value : record.reaction[r]) value = -value;
+  }
+}
+
+}  // namespace modcal::observer

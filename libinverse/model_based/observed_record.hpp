@@ -1,0 +1,50 @@
+// The two reactions as the observer uses them, with what they say by themselves about their noise
+// and their lost static levels.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "libsim/model/modal_basis.hpp"
+#include "libsim/model/transfer.hpp"
+
+namespace modcal::observer {
+
+struct ObservedRecord {
+  ModalBasis basis;
+  double contact = 0.0;      ///< x_c [m]
+  double sample_rate = 0.0;  ///< [Hz]
+  /// Reactions z₁, z₂ [N]; both negated where the bow moves in the negative direction.
+  std::vector<double> reaction[2];
+  double noise[2] = {};        ///< standard deviation s of a sample's noise, with its floor [N]
+  double raw_noise[2] = {};    ///< the same without floor [N]
+  double offset[2] = {};       ///< mean before the first wave arrives [N]
+  std::size_t silent[2] = {};  ///< samples before the first wave arrives
+  bool negated = false;
+
+  std::size_t samples() const { return reaction[0].size(); }
+};
+
+/// Share of a reaction's standard deviation below which its noise is not taken: the observer's gain
+/// would hold its own discretization for truth.
+inline constexpr double kNoiseFloor = 0.01;
+
+/// Standard deviation of white noise [N] from the part of a Hann-windowed spectrum between
+/// `lowest` [Hz], above the signal, and 0.98 of half the sample rate. Throws InvalidInput where
+/// that band holds fewer than 8 bins.
+double noise_above(std::span<const double> samples, double sample_rate, double lowest);
+
+/// Samples before a wave that leaves the contact at t = 0 reaches the end, speed c = 2 L f₁.
+std::size_t silent_samples(const ModalBasis& basis, double contact, End end, double sample_rate);
+
+/// Record that starts at rest. Noise from the band above 1.22 times the highest mode. Throws
+/// InvalidInput for reactions of different lengths, samples that are not finite and records shorter
+/// than four periods.
+ObservedRecord observe_record(const ModalBasis& basis, double contact, double sample_rate,
+                              std::span<const double> left, std::span<const double> right);
+
+/// The record with both reactions negated: a bow moving in the other direction.
+void negate(ObservedRecord& record);
+
+}  // namespace modcal::observer
