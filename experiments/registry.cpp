@@ -1,6 +1,7 @@
 #include <array>
 
 #include "experiments/experiment.hpp"
+#include "experiments/kinds/benchmark_experiment.hpp"
 #include "experiments/kinds/calibrate_experiment.hpp"
 #include "experiments/kinds/invert_experiment.hpp"
 #include "experiments/kinds/simulate_experiment.hpp"
@@ -10,6 +11,8 @@ namespace modcal {
 
 Registry<Experiment> Experiment::registry() {
   static constexpr std::array kTable = {
+      entry_of<Experiment, BenchmarkExperiment>(
+          "benchmark", "objectives and optimizers on the same truths, noise and starts"),
       entry_of<Experiment, CalibrateExperiment>(
           "calibrate", "refine the modal model, then identify force and motion with it"),
       entry_of<Experiment, InvertExperiment>(

@@ -9,7 +9,7 @@
 namespace modcal {
 namespace {
 
-using Outcomes = std::vector<std::optional<std::string>>;
+using Outcomes = std::vector<std::optional<FinishedTask>>;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -30,7 +30,7 @@ std::vector<PendingTask> pending_tasks(const TaskExperiment& experiment,
     if (store != nullptr) {
       key = store->finished().key_of(experiment.fingerprint(task, context.folder));
       if (const JournalRecord* record = store->finished().find(key)) {
-        outcomes[task] = record->outcome;
+        outcomes[task] = {record->outcome, record->seconds};
         continue;
       }
     }
@@ -52,11 +52,12 @@ Outcomes run_tasks(const TaskExperiment& experiment, const StudyContext& context
     if (context.interrupted()) return;
     const auto start = std::chrono::steady_clock::now();
     const PendingTask& next = pending[i];
-    std::string outcome = experiment.run_task(next.task, context);
+    FinishedTask finished{experiment.run_task(next.task, context), 0.0};
+    finished.seconds = seconds_since(start);
     if (store != nullptr) {
-      store->append({next.key, next.task, seconds_since(start), outcome});
+      store->append({next.key, next.task, finished.seconds, finished.outcome});
     }
-    outcomes[next.task] = std::move(outcome);
+    outcomes[next.task] = std::move(finished);
     context.progress(1.0 - static_cast<double>(--left) / all);
   });
   context.throw_if_interrupted();

@@ -13,6 +13,12 @@
 
 namespace modcal {
 
+/// What one task has left.
+struct FinishedTask {
+  std::string outcome;   ///< JSON on one line
+  double seconds = 0.0;  ///< time it took; the only part that differs between runs
+};
+
 class TaskExperiment : public Experiment {
  public:
   virtual std::size_t task_count() const = 0;
@@ -30,7 +36,7 @@ class TaskExperiment : public Experiment {
   /// The reason in an outcome why its task failed; empty where it did not.
   virtual std::string failure_in(const std::string& outcome) const = 0;
   /// Tables, figures and acceptance of the outcomes there are; nullopt: not run yet.
-  virtual StudyResult sum_up(const std::vector<std::optional<std::string>>& outcomes,
+  virtual StudyResult sum_up(const std::vector<std::optional<FinishedTask>>& outcomes,
                              const StudyContext& context) const = 0;
   /// One task again, with everything drawn and written that can be.
   virtual StudyResult replay(std::size_t task, const StudyContext& context) const = 0;
@@ -43,8 +49,8 @@ class TaskExperiment : public Experiment {
 /// store holds already are not run again, the others are put into it as they finish. The results
 /// stand in the order of the tasks whatever the threads. `store` may be null. Throws Interrupted
 /// where the context says so; what has finished by then is in the store.
-std::vector<std::optional<std::string>> run_tasks(const TaskExperiment& experiment,
-                                                  const StudyContext& context, RunStore* store,
-                                                  const Shard& shard);
+std::vector<std::optional<FinishedTask>> run_tasks(const TaskExperiment& experiment,
+                                                   const StudyContext& context, RunStore* store,
+                                                   const Shard& shard);
 
 }  // namespace modcal

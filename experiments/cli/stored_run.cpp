@@ -43,10 +43,11 @@ StoredRun::StoredRun(std::filesystem::path out) : out_(std::move(out)) {
   }
 }
 
-std::vector<std::optional<std::string>> StoredRun::outcomes() const {
-  std::vector<std::optional<std::string>> outcomes(records_.size());
+std::vector<std::optional<FinishedTask>> StoredRun::outcomes() const {
+  std::vector<std::optional<FinishedTask>> outcomes(records_.size());
   for (std::size_t task = 0; task < records_.size(); ++task) {
-    if (records_[task] != nullptr) outcomes[task] = records_[task]->outcome;
+    if (records_[task] == nullptr) continue;
+    outcomes[task] = {records_[task]->outcome, records_[task]->seconds};
   }
   return outcomes;
 }

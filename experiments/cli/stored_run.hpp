@@ -28,7 +28,7 @@ class StoredRun {
   /// Records by task; null: not finished.
   const std::vector<const JournalRecord*>& records() const { return records_; }
   const std::vector<JournalDamage>& damages() const { return finished_->damages(); }
-  std::vector<std::optional<std::string>> outcomes() const;
+  std::vector<std::optional<FinishedTask>> outcomes() const;
 
  private:
   std::filesystem::path out_;

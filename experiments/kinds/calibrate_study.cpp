@@ -107,14 +107,21 @@ double median_relative_error(const CalibrationOutcome& outcome) {
   return quantile(std::move(errors), 0.5);
 }
 
+SecondsClock polling_clock(const StudyContext& context) {
+  return [&context, clock = steady_seconds()] {
+    context.throw_if_interrupted();
+    return clock();
+  };
+}
+
 CalibrationOutcome calibrate_observation(const CalibrateOptions& options,
-                                         const Observation& observation) {
+                                         const Observation& observation, SecondsClock clock) {
   CalibrationOutcome outcome;
   outcome.initial =
       with_errors(observation.basis, observation.contact, options.inversion.model_error,
                   options.inversion.key().with("model error"));
   outcome.result = calibrate({outcome.initial.basis, outcome.initial.contact},
-                             calibration_data(observation), options.calibration);
+                             calibration_data(observation), options.calibration, std::move(clock));
   outcome.refined = {outcome.result.model.basis, outcome.result.model.contact};
   if (observation.truth) outcome.true_frequencies = frequencies_of(observation.basis);
   if (options.fill_blind_modes) fill_blind(outcome);
@@ -125,7 +132,8 @@ StudyResult calibrate_study(const CalibrateOptions& options, const StudyContext&
   const InvertOptions& inversion = options.inversion;
   const Observation observation = observe(inversion.observation, truth_outputs(inversion.figures),
                                           context.work.truths, inversion.key(), context.folder);
-  const CalibrationOutcome outcome = calibrate_observation(options, observation);
+  const CalibrationOutcome outcome =
+      calibrate_observation(options, observation, polling_clock(context));
   context.throw_if_interrupted();
   const PreparedInversions inversions(outcome.refined, observation.samples(),
                                       observation.sample_rate);

@@ -28,7 +28,11 @@ struct CalibrationOutcome {
 };
 
 CalibrationOutcome calibrate_observation(const CalibrateOptions& options,
-                                         const Observation& observation);
+                                         const Observation& observation,
+                                         SecondsClock clock = steady_seconds());
+
+/// Clock that ends a search with Interrupted where the context says so.
+SecondsClock polling_clock(const StudyContext& context);
 
 StudyResult calibrate_study(const CalibrateOptions& options, const StudyContext& context);
 

@@ -114,13 +114,13 @@ std::string SweepExperiment::failure_in(const std::string& outcome) const {
   return read_outcome(outcome).failure;
 }
 
-StudyResult SweepExperiment::sum_up(const std::vector<std::optional<std::string>>& outcomes,
+StudyResult SweepExperiment::sum_up(const std::vector<std::optional<FinishedTask>>& outcomes,
                                     const StudyContext& context) const {
   std::vector<SweepCell> cells;
   std::vector<std::optional<TaskOutcome>> read(outcomes.size());
   for (std::size_t task = 0; task < outcomes.size(); ++task) {
     cells.push_back(cell(task));
-    if (outcomes[task]) read[task] = read_outcome(*outcomes[task]);
+    if (outcomes[task]) read[task] = read_outcome(outcomes[task]->outcome);
   }
   return sum_up_sweep(options_.sweep, axes(), cells, read, context);
 }

@@ -31,7 +31,7 @@ class SweepExperiment final : public TaskExperiment {
   std::string fingerprint(std::size_t task, const std::filesystem::path& folder) const override;
   std::string run_task(std::size_t task, const StudyContext& context) const override;
   std::string failure_in(const std::string& outcome) const override;
-  StudyResult sum_up(const std::vector<std::optional<std::string>>& outcomes,
+  StudyResult sum_up(const std::vector<std::optional<FinishedTask>>& outcomes,
                      const StudyContext& context) const override;
   StudyResult replay(std::size_t task, const StudyContext& context) const override;
 

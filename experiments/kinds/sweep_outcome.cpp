@@ -1,10 +1,8 @@
 #include "experiments/kinds/sweep_outcome.hpp"
 
 #include <array>
-#include <cmath>
-#include <cstdlib>
-#include <nlohmann/json.hpp>
 
+#include "experiments/kinds/number_json.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -16,17 +14,6 @@ constexpr std::array kStatuses = {ChoiceStatus::kNotComputed, ChoiceStatus::kCho
                                   ChoiceStatus::kGiven,       ChoiceStatus::kNoParameter,
                                   ChoiceStatus::kEdgeOfRange, ChoiceStatus::kNoInteriorMinimum,
                                   ChoiceStatus::kNotReached};
-
-// JSON has no word for what is not finite: those are texts.
-json number_json(double value) {
-  if (std::isfinite(value)) return value;
-  return std::isnan(value) ? "nan" : value > 0.0 ? "inf" : "-inf";
-}
-
-double read_number(const json& value) {
-  return value.is_string() ? std::strtod(value.get<std::string>().c_str(), nullptr)
-                           : value.get<double>();
-}
 
 ChoiceStatus read_status(const std::string& name) {
   for (const ChoiceStatus status : kStatuses) {

@@ -28,11 +28,11 @@ class Squares final : public TaskExperiment {
     return std::to_string(task * task);
   }
   std::string failure_in(const std::string&) const override { return {}; }
-  StudyResult sum_up(const std::vector<std::optional<std::string>>& outcomes,
+  StudyResult sum_up(const std::vector<std::optional<FinishedTask>>& outcomes,
                      const StudyContext&) const override {
     StudyResult result;
     for (const auto& outcome : outcomes) {
-      result.summary += outcome.value_or("-") + " ";
+      result.summary += (outcome ? outcome->outcome : "-") + " ";
       if (!outcome) ++result.pending_tasks;
     }
     return result;
@@ -112,7 +112,7 @@ TEST_F(TaskList, LetsAnErrorOfATaskThrough) {
       return "{}";
     }
     std::string failure_in(const std::string&) const override { return {}; }
-    StudyResult sum_up(const std::vector<std::optional<std::string>>&,
+    StudyResult sum_up(const std::vector<std::optional<FinishedTask>>&,
                        const StudyContext&) const override {
       return {};
     }

@@ -40,9 +40,12 @@ TEST_P(Configs, RunsSmall) {
   ASSERT_EQ(messages(full), "");
   // Coarser steps and, in a sweep, one value on each axis.
   YamlDocument document = read_yaml_file(GetParam());
-  apply_assignment(document, "simulator.time_step=4 us", 1);
+  if (full.document.root.find("simulator")->find("type")->text != "modal_event") {
+    apply_assignment(document, "simulator.time_step=4 us", 1);
+  }
   if (YamlNode* sweep = document.root.find("sweep")) {
     for (YamlNode::Member& axis : sweep->find("product")->members) axis.value.items.resize(1);
+    std::erase_if(sweep->members, [](const auto& member) { return member.key != "product"; });
   }
   const LoadedExperiment small = load_experiment(std::move(document));
   ASSERT_EQ(messages(small), "");

@@ -1,0 +1,39 @@
+// What a benchmark shows: table, conclusion, figures.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/kinds/benchmark_summary.hpp"
+#include "experiments/report/report.hpp"
+
+namespace modcal {
+
+/// One row a method and condition.
+report::Table benchmark_table(const BenchmarkGrid& grid, const std::vector<BenchmarkCell>& cells,
+                              const std::string& command);
+/// Share of successes, one row a method, one column a condition.
+report::Table success_map(const BenchmarkGrid& grid, const std::vector<BenchmarkCell>& cells,
+                          const std::string& command);
+/// One sentence or two a condition: which methods to use, which fail and why.
+std::vector<std::string> conclusion(const BenchmarkGrid& grid,
+                                    const std::vector<BenchmarkCell>& cells);
+
+/// Frequency error against noise with the band from 10 % to 90 % of the draws. A panel an
+/// objective where methods differ in it.
+report::Figure error_figure(const BenchmarkGrid& grid, const std::vector<BenchmarkCell>& cells);
+/// Share of tasks solved against evaluations spent (data profile: Moré and Wild, 2009, with success
+/// judged on the truth).
+report::Figure data_profile(const BenchmarkGrid& grid);
+/// Share of problems solved within a factor of the evaluations of the fastest method (performance
+/// profile: Dolan and Moré, 2002).
+report::Figure performance_profile(const BenchmarkGrid& grid);
+/// Median error against median time, one point a method and condition.
+report::Figure work_precision_figure(const BenchmarkGrid& grid,
+                                     const std::vector<BenchmarkCell>& cells);
+/// Final errors of all draws in rising order (waterfall).
+report::Figure waterfall_figure(const BenchmarkGrid& grid);
+/// Best value so far above that at the truth, first draw of the middle condition.
+report::Figure trace_figure(const BenchmarkGrid& grid);
+
+}  // namespace modcal

@@ -1,0 +1,170 @@
+#include "experiments/kinds/benchmark_summary.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "libsim/base/random.hpp"
+#include "libsim/signal/statistics.hpp"
+
+namespace modcal {
+namespace {
+
+// Stands for an error without bound, finite so that quantiles between two of them exist.
+constexpr double kNoEstimate = 1e300;
+
+// What draws are compared by: worse than anything where there is no estimate.
+double loss_of(const BenchmarkOutcome& outcome) {
+  const bool none = !outcome.failure.empty() || !std::isfinite(outcome.frequency_error);
+  return none ? kNoEstimate : outcome.frequency_error;
+}
+
+using Losses = std::map<std::string, double>;  // by replicate
+
+// Log of the ratio of two medians; 0 where neither has an estimate.
+double log_ratio(std::vector<double> ours, std::vector<double> theirs) {
+  const double a = quantile(std::move(ours), 0.5);
+  const double b = quantile(std::move(theirs), 0.5);
+  if (a == b) return 0.0;
+  return std::log(a / b);
+}
+
+bool is_better(const Losses& ours, const Losses& theirs) {
+  std::vector<double> a, b;
+  for (const auto& [replicate, loss] : ours) {
+    const auto other = theirs.find(replicate);
+    if (other == theirs.end()) continue;
+    a.push_back(loss);
+    b.push_back(other->second);
+  }
+  // Two draws more or less decide nothing below five.
+  if (a.size() < 5) return false;
+  constexpr std::size_t kResamples = 1000;
+  std::vector<double> uniform(a.size());
+  std::vector<double> ratios;
+  for (std::size_t resample = 0; resample < kResamples; ++resample) {
+    fill_uniform(StreamKey(1).with("paired bootstrap").with(resample), uniform);
+    std::vector<double> drawn_a, drawn_b;
+    for (const double u : uniform) {
+      const auto i =
+          std::min(static_cast<std::size_t>(u * static_cast<double>(a.size())), a.size() - 1);
+      drawn_a.push_back(a[i]);
+      drawn_b.push_back(b[i]);
+    }
+    ratios.push_back(log_ratio(std::move(drawn_a), std::move(drawn_b)));
+  }
+  return quantile(std::move(ratios), 0.975) < 0.0;
+}
+
+void count_reasons(const std::vector<const BenchmarkTask*>& tasks, BenchmarkCell& cell) {
+  std::map<std::string, std::size_t> counts;
+  for (const BenchmarkTask* task : tasks) {
+    const std::string reason = reason_of(task->outcome);
+    if (!reason.empty()) ++counts[reason];
+  }
+  for (const auto& [reason, count] : counts) {
+    if (count <= cell.reason_count) continue;
+    cell.reason = reason;
+    cell.reason_count = count;
+  }
+}
+
+BenchmarkCell sum_up(const std::vector<const BenchmarkTask*>& tasks) {
+  BenchmarkCell cell{.n = tasks.size()};
+  std::vector<double> errors, contact_errors, correlations, evaluations, seconds;
+  for (const BenchmarkTask* task : tasks) {
+    seconds.push_back(task->seconds);
+    const BenchmarkOutcome& outcome = task->outcome;
+    if (!outcome.failure.empty()) {
+      ++cell.failures;
+      continue;
+    }
+    if (outcome.success) ++cell.successes;
+    errors.push_back(outcome.frequency_error);
+    contact_errors.push_back(outcome.contact_error);
+    correlations.push_back(outcome.correlation);
+    evaluations.push_back(static_cast<double>(outcome.evaluations));
+  }
+  cell.success = success_share(cell.successes, cell.n);
+  cell.error = quantile(errors, 0.5);
+  cell.error_q10 = quantile(errors, 0.1);
+  cell.error_q90 = quantile(errors, 0.9);
+  cell.contact_error = quantile(contact_errors, 0.5);
+  cell.correlation = quantile(correlations, 0.5);
+  cell.evaluations = quantile(evaluations, 0.5);
+  cell.seconds = quantile(seconds, 0.5);
+  count_reasons(tasks, cell);
+  return cell;
+}
+
+void rank(const std::vector<const Losses*>& losses, std::vector<BenchmarkCell*>& cells) {
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    cells[i]->rank = 1;
+    for (std::size_t j = 0; j < cells.size(); ++j) {
+      if (i != j && is_better(*losses[j], *losses[i])) ++cells[i]->rank;
+    }
+  }
+}
+
+}  // namespace
+
+SuccessShare success_share(std::size_t successes, std::size_t n) {
+  if (n == 0) return {0.0, 0.0, 1.0};
+  constexpr double kZ = 1.959963984540054;  // 97.5 % quantile of the normal distribution
+  const double count = static_cast<double>(n);
+  const double share = static_cast<double>(successes) / count;
+  const double scale = 1.0 / (1.0 + kZ * kZ / count);
+  const double center = (share + kZ * kZ / (2.0 * count)) * scale;
+  const double half =
+      kZ * scale * std::sqrt(share * (1.0 - share) / count + kZ * kZ / (4.0 * count * count));
+  return {share, std::max(0.0, center - half), std::min(1.0, center + half)};
+}
+
+std::vector<BenchmarkCell> benchmark_cells(const BenchmarkGrid& grid) {
+  std::map<std::pair<std::size_t, std::size_t>, std::vector<const BenchmarkTask*>> groups;
+  for (const BenchmarkTask& task : grid.tasks) {
+    groups[{task.condition, task.method}].push_back(&task);
+  }
+  std::vector<BenchmarkCell> cells;
+  std::vector<Losses> losses;
+  for (const auto& [key, tasks] : groups) {
+    cells.push_back(sum_up(tasks));
+    cells.back().condition = key.first;
+    cells.back().method = key.second;
+    losses.emplace_back();
+    for (const BenchmarkTask* task : tasks) {
+      losses.back()[task->replicate] = loss_of(task->outcome);
+    }
+  }
+  for (std::size_t condition = 0; condition < grid.conditions.size(); ++condition) {
+    std::vector<BenchmarkCell*> together;
+    std::vector<const Losses*> their_losses;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      if (cells[i].condition != condition) continue;
+      together.push_back(&cells[i]);
+      their_losses.push_back(&losses[i]);
+    }
+    rank(their_losses, together);
+  }
+  return cells;
+}
+
+std::string short_label(const std::string& value) {
+  std::string label;
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    const char letter = value[i];
+    if (letter == '{' || letter == '}' || letter == '"' || letter == '\'') continue;
+    if (letter == ',') continue;
+    if (letter == ':') {
+      // The key is dropped: what it says is in the value or in the experiment.
+      const std::size_t start = label.find_last_of(' ');
+      label.resize(start == std::string::npos ? 0 : start);
+      continue;
+    }
+    label += letter;
+  }
+  const std::size_t first = label.find_first_not_of(' ');
+  return first == std::string::npos ? std::string() : label.substr(first);
+}
+
+}  // namespace modcal

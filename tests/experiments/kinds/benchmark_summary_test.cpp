@@ -1,0 +1,144 @@
+#include "experiments/kinds/benchmark_summary.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "experiments/kinds/benchmark_report.hpp"
+#include "libsim/base/error.hpp"
+#include "libsim/base/random.hpp"
+
+namespace modcal {
+namespace {
+
+using ::testing::HasSubstr;
+
+BenchmarkTask task_of(std::size_t method, std::size_t replicate, double error, bool success) {
+  BenchmarkTask task{.method = method, .replicate = std::to_string(replicate)};
+  task.outcome.frequency_error = error;
+  task.outcome.success = success;
+  task.outcome.stop = StopReason::kSmallStep;
+  task.outcome.evaluations = 100 + static_cast<std::int64_t>(method);
+  task.outcome.value = success ? 1.0 : 3.0;
+  task.outcome.truth_value = 2.0;
+  task.outcome.trace = {{1, 4.0}, {50, task.outcome.value}};
+  return task;
+}
+
+// Methods whose errors are drawn about 1, `ratio` and 10, the last failing on every third draw.
+BenchmarkGrid grid_of(std::size_t draws, double ratio) {
+  BenchmarkGrid grid{
+      .methods = {"a", "b", "c"}, .conditions = {"noise 1 %"}, .noise_levels = {0.01}};
+  std::vector<double> normal(3 * draws);
+  fill_standard_normal(StreamKey(7), normal);
+  for (std::size_t i = 0; i < draws; ++i) {
+    grid.tasks.push_back(task_of(0, i, std::exp(0.3 * normal[3 * i]), true));
+    grid.tasks.push_back(task_of(1, i, ratio * std::exp(0.3 * normal[3 * i + 1]), true));
+    grid.tasks.push_back(task_of(2, i, 10.0 * std::exp(0.3 * normal[3 * i + 2]), false));
+    if (i % 3 == 0) grid.tasks.back().outcome = {.failure = "needs a gradient"};
+  }
+  return grid;
+}
+
+TEST(BenchmarkSummary, RanksMethodsThatDifferAndNoOthers) {
+  const std::vector<BenchmarkCell> apart = benchmark_cells(grid_of(20, 2.0));
+  ASSERT_EQ(apart.size(), 3u);
+  EXPECT_EQ(apart[0].rank, 1u);
+  EXPECT_EQ(apart[1].rank, 2u);
+  EXPECT_EQ(apart[2].rank, 3u);
+  const std::vector<BenchmarkCell> alike = benchmark_cells(grid_of(20, 1.0));
+  EXPECT_EQ(alike[0].rank, 1u);
+  EXPECT_EQ(alike[1].rank, 1u);
+  EXPECT_EQ(alike[2].rank, 3u);
+}
+
+TEST(BenchmarkSummary, ClaimsNoRankFromAFewDraws) {
+  for (const BenchmarkCell& cell : benchmark_cells(grid_of(4, 100.0))) EXPECT_EQ(cell.rank, 1u);
+}
+
+TEST(BenchmarkSummary, CountsFailuresAndTheirReasons) {
+  const BenchmarkCell cell = benchmark_cells(grid_of(20, 1.0))[2];
+  EXPECT_EQ(cell.n, 20u);
+  EXPECT_EQ(cell.failures, 7u);
+  EXPECT_EQ(cell.successes, 0u);
+  EXPECT_EQ(cell.reason_count, 13u);
+  EXPECT_EQ(cell.reason, "ended in a minimum above the value at the truth");
+}
+
+// Wilson's interval in closed form: 0 of n ends at z²/(n + z²), 5 of 10 at ½ ± z/(2√(n + z²)).
+TEST(BenchmarkSummary, GivesWilsonsIntervals) {
+  const double z = 1.959963984540054;
+  const SuccessShare none = success_share(0, 20);
+  EXPECT_EQ(none.low, 0.0);
+  EXPECT_NEAR(none.high, z * z / (20.0 + z * z), 1e-15);
+  const SuccessShare half = success_share(5, 10);
+  EXPECT_NEAR(half.high, 0.5 + 0.5 * z / std::sqrt(10.0 + z * z), 1e-15);
+  EXPECT_NEAR(half.low, 1.0 - half.high, 1e-15);
+  EXPECT_EQ(success_share(0, 0).high, 1.0);
+}
+
+TEST(BenchmarkSummary, ConcludesInWords) {
+  const BenchmarkGrid grid = grid_of(20, 1.0);
+  const std::vector<std::string> sentences = conclusion(grid, benchmark_cells(grid));
+  ASSERT_EQ(sentences.size(), 2u);
+  EXPECT_THAT(sentences[0], HasSubstr("At noise 1 %: use a (median error"));
+  EXPECT_THAT(sentences[0],
+              HasSubstr("20 of 20 right, 100 evaluations); not to be told apart from it: b"));
+  EXPECT_EQ(sentences[1],
+            "At noise 1 %: c fails on 20 of 20 draws; on 13 it ended in a minimum above the value "
+            "at the truth.");
+}
+
+TEST(BenchmarkSummary, DrawsProfilesThatEndAtTheShareSolved) {
+  const BenchmarkGrid grid = grid_of(10, 1.0);
+  for (const report::Figure& figure : {data_profile(grid), performance_profile(grid)}) {
+    report::check_figure(figure);
+    ASSERT_EQ(figure.panels[0].series.size(), 2u);  // the third method solves nothing
+    EXPECT_EQ(figure.panels[0].series[0].y.back(), 1.0);
+  }
+  EXPECT_EQ(performance_profile(grid).panels[0].series[0].x.front(), 1.0);
+  EXPECT_NEAR(performance_profile(grid).panels[0].series[1].x.front(), 1.01, 1e-12);
+}
+
+TEST(BenchmarkSummary, ShortensLabels) {
+  EXPECT_EQ(short_label("{type: nlopt, algorithm: LN_SBPLX}"), "nlopt LN_SBPLX");
+  EXPECT_EQ(short_label("grid"), "grid");
+  EXPECT_EQ(short_label("5 %"), "5 %");
+  EXPECT_EQ(short_label("[1, 2]"), "[1 2]");
+  EXPECT_EQ(short_label(""), "");
+}
+
+TEST(BenchmarkOutcome, ComesBackBitForBit) {
+  BenchmarkOutcome outcome{.stop = StopReason::kTimeBudget, .evaluations = 12};
+  outcome.value = 1.0 / 3.0;
+  outcome.truth_value = -std::numeric_limits<double>::infinity();
+  outcome.trace = {{1, std::nan("")}, {2, 0.1}};
+  const std::string text = outcome_text(outcome);
+  const BenchmarkOutcome again = read_benchmark_outcome(text);
+  EXPECT_EQ(again.stop, StopReason::kTimeBudget);
+  EXPECT_EQ(again.value, 1.0 / 3.0);
+  EXPECT_TRUE(std::isnan(again.correlation));
+  EXPECT_EQ(again.truth_value, -std::numeric_limits<double>::infinity());
+  EXPECT_EQ(outcome_text(again), text);
+  EXPECT_EQ(read_benchmark_outcome(outcome_text({.failure = "why"})).failure, "why");
+  for (const char* wrong : {"", "{}", "[]", R"({"stop": "tired"})"}) {
+    EXPECT_THROW(read_benchmark_outcome(wrong), InvalidInput) << wrong;
+  }
+}
+
+TEST(BenchmarkOutcome, TellsAWrongMinimumFromALocalOne) {
+  BenchmarkOutcome outcome{.stop = StopReason::kConverged};
+  outcome.value = 1.0;
+  outcome.truth_value = 2.0;
+  EXPECT_THAT(reason_of(outcome), HasSubstr("the objective's minimum lies elsewhere"));
+  outcome.value = 3.0;
+  EXPECT_THAT(reason_of(outcome), HasSubstr("ended in a minimum above"));
+  outcome.stop = StopReason::kEvaluationBudget;
+  EXPECT_THAT(reason_of(outcome), HasSubstr("cut by the budget"));
+  outcome.success = true;
+  EXPECT_EQ(reason_of(outcome), "");
+}
+
+}  // namespace
+}  // namespace modcal
