@@ -11,16 +11,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace modcal::event::HWY_NAMESPACE {
 
-// The law continued below u = 0 by its tangent.
-template <typename Law>
-HWY_INLINE typename Law::Point Continued(const Law& law, double speed) {
-  // Without a branch, so that the nodes are computed side by side.
-  const double beyond = speed < 0.0 ? speed : 0.0;
-  auto point = law.at(speed - beyond);
-  point.force += point.slope * beyond;
-  return point;
-}
-
 // Elimination of column k and all later ones; A is I + (small), so that its diagonal serves as
 // pivots. Recursive, so that every index is a constant. False where a pivot vanishes.
 template <int k, int kSize>
@@ -47,18 +37,41 @@ HWY_INLINE void SubtractBack(const double (&a)[kSize][kSize], double (&b)[kSize]
   if constexpr (k > 0) SubtractBack<k - 1>(a, b, x);
 }
 
-// The law at the unknown nodes 2…s.
+// The law at the unknown nodes 2…s, below u = 0 continued smoothly.
 template <int kUnknowns>
 struct LawValues {
-  double force[kUnknowns], slope[kUnknowns], curvature[kUnknowns];
+  // Whole vectors: the compiler then computes the nodes side by side.
+  static constexpr int kPadded = 4;
+  double force[kPadded], slope[kPadded], curvature[kPadded];
 
   template <typename Law>
   void evaluate(const Law& law, const double (&speed)[kUnknowns]) {
+    double sliding[kPadded] = {};
+    double lowest = 0.0;
     for (int i = 0; i < kUnknowns; ++i) {
-      const auto point = Continued(law, speed[i]);
+      sliding[i] = speed[i] < 0.0 ? 0.0 : speed[i];
+      lowest = speed[i] < lowest ? speed[i] : lowest;
+    }
+#pragma GCC unroll 1
+    for (int i = 0; i < kPadded; ++i) {
+      const auto point = law.at(sliding[i]);
       force[i] = point.force;
       slope[i] = point.slope;
       curvature[i] = point.curvature;
+    }
+    if (lowest < 0.0) continue_below(speed);
+  }
+  void continue_below(const double (&speed)[kUnknowns]) {
+    for (int i = 0; i < kUnknowns; ++i) {
+      if (!(speed[i] < 0.0)) continue;
+      // To where the slope has doubled by the parabola, by the tangent beyond.
+      const bool far = slope[i] < 0.0 && curvature[i] * speed[i] < slope[i];
+      const double bent = far ? slope[i] / curvature[i] : speed[i];
+      const double bend = curvature[i] * bent;
+      force[i] += bent * (slope[i] + 0.5 * bend);
+      slope[i] += bend;
+      force[i] += (speed[i] - bent) * slope[i];
+      if (far) curvature[i] = 0.0;
     }
   }
   // Carries the values over to speeds that differ by −step, by the law's parabola.

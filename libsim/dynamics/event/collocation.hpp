@@ -16,7 +16,8 @@ struct NodeValues {
 /// gives node 1 and the speeds to start from. True when every equation holds to rounding. Kernel:
 /// the instruction set is chosen at run time.
 ///
-/// Below u = 0 the law is continued by its tangent: only trial steps that end behind a switch get
+/// Below u = 0 the law is continued by its parabola as far as its slope doubles, by the tangent
+/// beyond: only trial steps that end behind a switch get
 /// there; the step that is kept ends at the switch.
 bool solve_nodes(const SlidingLaw& law, int nodes, const NodeMatrix& coupling,
                  const NodeVector& free, NodeValues& values);

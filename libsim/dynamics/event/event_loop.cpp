@@ -55,6 +55,10 @@ class Run {
     enter();
     store(0, 0.0);
     for (std::size_t sample = 1; sample < loop_.samples && !counts_.failure; ++sample) {
+      if (const std::size_t held = hold_block(sample); held > 0) {
+        sample += held - 1;
+        continue;
+      }
       for (std::size_t i = 0; i < loop_.steps_per_sample && !counts_.failure; ++i) {
         grid_step(i + 1 == loop_.steps_per_sample);
         ++step_;
@@ -112,6 +116,18 @@ class Run {
                                    loop_.grid_step, kMaxStepsPerGridStep));
       }
     }
+  }
+
+  // Samples that follow each other while the string sticks, some at once. Returns how many.
+  std::size_t hold_block(std::size_t sample) {
+    if (!state_.sticking || !sticking_ || loop_.steps_per_sample != 1) return 0;
+    if (loop_.samples - sample < Sticking::kBlock) return 0;
+    Sticking::Block motions;
+    const std::size_t held = sticking_->advance_block(elapsed(0.0), motions);
+    for (std::size_t k = 0; k < held; ++k) store(sample + k, motions[k]);
+    counts_.steps += held;
+    step_ += held;
+    return held;
   }
 
   double stick(double x, bool sampled) {
@@ -188,6 +204,10 @@ class Run {
     if (!std::isfinite(motion.velocity) || !std::isfinite(motion.force)) {
       return fail(x, "the motion is not a finite number");
     }
+    store(sample, motion);
+  }
+
+  void store(std::size_t sample, const Motion& motion) {
     const SampleTargets& to = loop_.targets;
     if (to.displacement) to.displacement[sample] = motion.displacement;
     if (to.velocity) to.velocity[sample] = motion.velocity;

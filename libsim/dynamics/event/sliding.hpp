@@ -29,6 +29,8 @@ class Sliding {
     side_ = side;
     set_speed(std::max(speed, 0.0));
     refinement_ = 0;
+    powers_ = {friction_};
+    last_length_ = 0.0;
   }
 
   enum class Outcome {
@@ -49,11 +51,13 @@ class Sliding {
     double end = (std::floor(x * parts) + 1.0) / parts;
     if ((end - x) * parts < 1e-9) end += 1.0 / parts;  // x is that point but for rounding
     const bool on_grid = (end - x) * parts == 1.0;
-    if (on_grid && speed_ > 0.0) {
-      const auto result = grid_step(model_.table(level), end, state);
+    NodeValues values = start_values();
+    const bool from_tables = on_grid && speed_ > 0.0;
+    if (from_tables) {
+      const auto result = grid_step(model_.table(level), end, state, values);
       if (result) return *result;
     }
-    return any_step(x, end, state);
+    return any_step(x, end, state, values, from_tables);
   }
 
   double side() const { return side_; }
@@ -85,12 +89,20 @@ class Sliding {
     return values;
   }
 
-  // Speeds to start the solution from: as if the friction of node 1 lasted.
-  void guess(const NodeVector& free, const NodeMatrix& coupling, NodeValues& values) const {
+  // Speeds to start the solution from: as if the friction at node i were the polynomial's at
+  // θ = from + scale·c_i.
+  void guess(const NodeVector& free, const NodeMatrix& coupling, const NodeVector& powers,
+             double from, double scale, NodeValues& values) const {
+    NodeVector friction{};
+    friction[0] = friction_;
+    for (int i = 1; i < nodes(); ++i) {
+      const double theta = from + scale * model_.rule().node[i];
+      for (int k = nodes(); k-- > 0;) friction[i] = friction[i] * theta + powers[k];
+    }
     for (int i = 1; i < nodes(); ++i) {
       double sum = 0.0;
-      for (int j = 0; j < nodes(); ++j) sum += coupling[i][j];
-      values.speed[i] = free[i] - sum * friction_;
+      for (int j = 0; j < nodes(); ++j) sum += coupling[i][j] * friction[j];
+      values.speed[i] = free[i] - sum;
     }
   }
 
@@ -100,12 +112,20 @@ class Sliding {
     return steepest * step > 2.0 * slope_number_ * model_.effective_mass();
   }
 
-  void accept(const NodeValues& values) {
+  // `length`: of the step, in grid steps.
+  void accept(const NodeValues& values, const NodeVector& powers, double length) {
     const int last = nodes() - 1;
     speed_ = values.speed[last];
     friction_ = values.friction[last];
     slope_ = values.slope[last];
+    powers_ = powers;
+    last_length_ = length;
     refinement_ = 0;
+  }
+
+  // Scale of a guess from the polynomial of the last step; none so far to go by: a constant.
+  double extrapolation(double length) const {
+    return last_length_ > 0.0 ? length / last_length_ : 0.0;
   }
 
   Advance refined(double x) {
@@ -113,39 +133,42 @@ class Sliding {
     return {x, Outcome::kRefined};
   }
 
-  // Power coefficients in θ of the contact force.
-  NodeVector force_powers(const NodeValues& values) const {
+  // Power coefficients in θ of the friction through the nodes.
+  NodeVector friction_powers(const NodeValues& values) const {
     NodeVector powers{};
     for (int j = 0; j < nodes(); ++j) {
       for (int k = 0; k < nodes(); ++k) {
-        powers[k] -= side_ * values.friction[j] * model_.rule().power[j][k];
+        powers[k] += values.friction[j] * model_.rule().power[j][k];
       }
     }
     return powers;
   }
 
-  // A dyadic step from the tables. Nothing where it may hold a switch: the series decide then.
-  std::optional<Advance> grid_step(const SlidingTable& table, double end, PlanarVector& state) {
+  // A dyadic step from the tables. Nothing where it may hold a switch: the series decide then, for
+  // which `values` holds the solution.
+  std::optional<Advance> grid_step(const SlidingTable& table, double end, PlanarVector& state,
+                                   NodeValues& values) {
     NodeVector free{};
     const auto unknowns = static_cast<std::size_t>(nodes() - 1);
     real_products(table.rows, state, std::span(free).subspan(1, unknowns));
     for (int i = 1; i < nodes(); ++i) free[i] = side_ * (free[i] - bow_velocity_);
-    NodeValues values = start_values();
-    guess(free, table.coupling, values);
+    const double length = table.step / model_.grid_step();
+    guess(free, table.coupling, powers_, 1.0, extrapolation(length), values);
     if (!solve_nodes(any_law_, nodes(), table.coupling, free, values) ||
         steep(values, table.step)) {
-      return refined(end - table.step / model_.grid_step());
+      return refined(end - length);
     }
-    if (!stays_sliding(table, values, state)) return std::nullopt;
+    const NodeVector powers = friction_powers(values);
+    if (!stays_sliding(table, values, powers, state)) return std::nullopt;
     NodeVector force{};
     for (int j = 0; j < nodes(); ++j) force[j] = -side_ * values.friction[j];
     advance_driven(table.factor, table.response, std::span(force).first(unknowns + 1), state);
-    accept(values);
+    accept(values, powers, length);
     return Advance{end, Outcome::kAdvanced};
   }
 
   // Bézier hull of the interpolated speed beyond its interpolation error: u > 0 throughout.
-  bool stays_sliding(const SlidingTable& table, const NodeValues& values,
+  bool stays_sliding(const SlidingTable& table, const NodeValues& values, const NodeVector& powers,
                      const PlanarVector& state) const {
     double lowest = HUGE_VAL;
     for (int i = 0; i < nodes(); ++i) {
@@ -156,35 +179,41 @@ class Sliding {
       lowest = std::min(lowest, control);
     }
     if (!(lowest > 0.0)) return false;
-    const NodeVector force = force_powers(values);
     double remainder = table.free_remainder * model_.free_derivative_bound(state);
-    for (int k = 0; k < nodes(); ++k) remainder += table.forced_remainder[k] * std::abs(force[k]);
+    for (int k = 0; k < nodes(); ++k) remainder += table.forced_remainder[k] * std::abs(powers[k]);
     return lowest > remainder;
   }
 
   // A step of any length. A switch is found by repeating the whole step with the length at which
   // the last one crossed v_c = 0: the step that is kept ends there and nothing is interpolated.
-  Advance any_step(double x, double end, PlanarVector& state) {
+  // `values`: the solution of the first trial where it is `solved`.
+  Advance any_step(double x, double end, PlanarVector& state, NodeValues values, bool solved) {
     constexpr int kMaxTrials = 20;
-    // Beyond its end the step's own series is good for a last correction of this share.
-    constexpr double kLastCorrection = 1e-6;
+    // The force polynomial errs by its distance from a node: a correction of the share ε adds ε² of
+    // what it errs between them.
+    constexpr double kLastCorrection = 1e-3;
     Series free;
     model_.free_series(state, free);
     double length = end - x;
     const double series_length = model_.series_step() / model_.grid_step();
+    NodeVector powers = powers_;
+    double from = 1.0, scale = extrapolation(length);
     for (int trial = 0; trial < kMaxTrials; ++trial) {
       if (length < 1e-15) return {x, Outcome::kAttached};
       const double ratio = length / series_length;
-      NodeValues values = start_values();
-      if (!solve_any(free, ratio, values) || steep(values, length * model_.grid_step())) {
+      if (!solved && (!solve_any(free, ratio, from, scale, powers, values) ||
+                      steep(values, length * model_.grid_step()))) {
         return refined(x);
       }
-      const NodeVector force = force_powers(values);
+      solved = false;
+      powers = friction_powers(values);
+      NodeVector force;
+      for (std::size_t k = 0; k < force.size(); ++k) force[k] = -side_ * powers[k];
       const auto theta =
           first_crossing(speed_series(free, ratio, force), trial == 0 ? 1.0 : 1.1, speed_ == 0.0);
       if (!theta) {
         model_.advance_any(ratio, 1.0, force, state);
-        accept(values);
+        accept(values, powers, length);
         return {trial == 0 ? end : x + length, Outcome::kAdvanced};
       }
       if (std::abs(*theta - 1.0) <= kLastCorrection) {
@@ -192,11 +221,14 @@ class Sliding {
         return {x + *theta * length, Outcome::kAttached};
       }
       length *= *theta;
+      from = 0.0;
+      scale = *theta;
     }
     return refined(x);
   }
 
-  bool solve_any(const Series& free_velocity, double ratio, NodeValues& values) const {
+  bool solve_any(const Series& free_velocity, double ratio, double from, double scale,
+                 const NodeVector& powers, NodeValues& values) const {
     NodeVector free{}, velocity{};
     for (std::size_t p = kSeriesTerms; p-- > 0;) {
       for (int i = 1; i < nodes(); ++i) {
@@ -205,7 +237,7 @@ class Sliding {
     }
     for (int i = 1; i < nodes(); ++i) free[i] = side_ * (velocity[i] - bow_velocity_);
     const NodeMatrix coupling = model_.coupling(ratio);
-    guess(free, coupling, values);
+    guess(free, coupling, powers, from, scale, values);
     return solve_nodes(any_law_, nodes(), coupling, free, values);
   }
 
@@ -231,6 +263,9 @@ class Sliding {
   double bow_velocity_, slope_number_;
   double side_ = -1.0;
   double speed_ = 0.0, friction_ = 0.0, slope_ = 0.0;
+  // Power coefficients of the friction on the last step, and its length in grid steps; none: 0.
+  NodeVector powers_{};
+  double last_length_ = 0.0;
   int refinement_ = 0;
 };
 

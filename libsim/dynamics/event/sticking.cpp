@@ -48,6 +48,24 @@ Sticking::Sticking(ClosedLoop loop, double bow_velocity, double static_limit, do
     }
     fourth_power_[j] = std::pow(std::abs(loop_.pole.at(j)), 4.0);
   }
+  fill_block();
+}
+
+void Sticking::fill_block() {
+  block_ = PlanarRows((kBlockVelocity + rows()) * kBlock, loop_.roots);
+  for (std::size_t k = 0; k < kBlock; ++k) {
+    block_factor_[k] =
+        exponentials(loop_.pole, loop_.roots, static_cast<double>(k + 1) * longest_step_);
+    for (std::size_t j = 0; j < loop_.roots; ++j) {
+      const Complex factor = block_factor_[k].at(j);
+      block_.set(kBlockForce * kBlock + k, j, factor);
+      block_.set(kBlockRate * kBlock + k, j, loop_.pole.at(j) * factor);
+      for (std::size_t r = 0; r < rows(); ++r) {
+        const Complex weight{loop_.observed.re(r)[j], loop_.observed.im(r)[j]};
+        block_.set((kBlockVelocity + r) * kBlock + k, j, weight * factor);
+      }
+    }
+  }
 }
 
 void Sticking::attach(const PlanarVector& open_state, double displacement, double elongation) {
@@ -63,10 +81,11 @@ void Sticking::attach(const PlanarVector& open_state, double displacement, doubl
     sums.rate += loop_.pole.re[j] * state_.re[j] - loop_.pole.im[j] * state_.im[j];
   }
   accept(0.0, sums);
-  fourth_derivative_ = weighted_size(fourth_power_, state_);
-  bound_is_fresh_ = true;
+  refresh_bound();
   starts_at_limit_ = 0;
-  if (std::abs(force_) >= (1.0 - kAtLimit) * limit_) starts_at_limit_ = force_ > 0.0 ? 1 : -1;
+  if (std::abs(force_.value) >= (1.0 - kAtLimit) * limit_) {
+    starts_at_limit_ = force_.value > 0.0 ? 1 : -1;
+  }
 }
 
 void Sticking::detach(double tau, PlanarVector& open_state) {
@@ -79,8 +98,7 @@ void Sticking::detach(double tau, PlanarVector& open_state) {
 }
 
 void Sticking::accept(double tau, const SumAndRate& sums) {
-  force_ = particular(tau) + sums.sum;
-  rate_ = force_rate_ + sums.rate;
+  force_ = {particular(tau) + sums.sum, force_rate_ + sums.rate};
 }
 
 std::size_t Sticking::rows() const {
@@ -99,25 +117,28 @@ SumAndRate Sticking::propagate(double time, bool observed) {
   return advance_by(time, loop_.pole, state_, trial_);
 }
 
-bool Sticking::hull_inside(double time, double end_force, double end_rate, double bound) const {
+bool Sticking::hull_inside(double time, ForceJet start, ForceJet end) const {
   const double part = time * (1.0 / 3.0);
-  const double second = force_ + part * rate_;
-  const double third = end_force - part * end_rate;
+  const double second = start.value + part * start.rate;
+  const double third = end.value - part * end.rate;
+  const double largest = std::max(std::max(std::abs(start.value), std::abs(second)),
+                                  std::max(std::abs(third), std::abs(end.value)));
   const double square = time * time;
-  const double remainder = square * square * (bound * (1.0 / 384.0));
-  const double highest = std::max(std::max(force_, second), std::max(third, end_force)) + remainder;
-  const double lowest = std::min(std::min(force_, second), std::min(third, end_force)) - remainder;
-  return highest < limit_ && lowest > -limit_;
+  return largest + square * square * (fourth_derivative_ * (1.0 / 384.0)) < limit_;
 }
 
-bool Sticking::certified(double time, double end_force, double end_rate) {
-  if (starts_at_limit_ != 0) return false;
-  // |w_j| only falls while the string sticks, so that an older bound holds too.
-  if (hull_inside(time, end_force, end_rate, fourth_derivative_)) return true;
-  if (bound_is_fresh_) return false;
+void Sticking::refresh_bound() {
   fourth_derivative_ = weighted_size(fourth_power_, state_);
   bound_is_fresh_ = true;
-  return hull_inside(time, end_force, end_rate, fourth_derivative_);
+}
+
+bool Sticking::certified(double time, ForceJet end) {
+  if (starts_at_limit_ != 0) return false;
+  // |w_j| only falls while the string sticks, so that an older bound holds too.
+  if (hull_inside(time, force_, end)) return true;
+  if (bound_is_fresh_) return false;
+  refresh_bound();
+  return hull_inside(time, force_, end);
 }
 
 std::optional<double> Sticking::crossing(double tau, double time) {
@@ -148,12 +169,12 @@ std::optional<double> Sticking::crossing(double tau, double time) {
 
 Sticking::Advance Sticking::advance(double tau, double time, bool observed) {
   SumAndRate sums = propagate(time, observed);
-  bool safe = certified(time, particular(tau + time) + sums.sum, force_rate_ + sums.rate);
+  bool safe = certified(time, {particular(tau + time) + sums.sum, force_rate_ + sums.rate});
   if (!safe && time > series_step_ * (1.0 + 1e-9)) {
     // A longer stretch than the series can tell is cut; the caller asks again for the rest.
     time = series_step_;
     sums = propagate(time, false);
-    safe = certified(time, particular(tau + time) + sums.sum, force_rate_ + sums.rate);
+    safe = certified(time, {particular(tau + time) + sums.sum, force_rate_ + sums.rate});
   }
   Advance result{time, false};
   if (!safe) {
@@ -170,21 +191,58 @@ Sticking::Advance Sticking::advance(double tau, double time, bool observed) {
   return result;
 }
 
-Motion Sticking::observe(double tau) {
-  Motion motion;
-  motion.force = force_;
-  if (!seen_is_valid_) real_products(loop_.observed, state_, std::span(seen_).first(rows()));
-  seen_is_valid_ = true;
-  const auto& row = seen_;
+std::size_t Sticking::certified_steps(const std::array<ForceJet, kBlock + 1>& force) const {
+  std::size_t steps = 0;
+  while (steps < kBlock && hull_inside(longest_step_, force[steps], force[steps + 1])) ++steps;
+  return steps;
+}
+
+std::size_t Sticking::advance_block(double tau, Block& motions) {
+  if (starts_at_limit_ != 0) return 0;
+  std::array<double, kBlockRows * kBlock> sums{};
+  real_products(block_, state_, std::span(sums).first(block_.count));
+  std::array<ForceJet, kBlock + 1> force{force_};
+  for (std::size_t k = 0; k < kBlock; ++k) {
+    const double time = tau + static_cast<double>(k + 1) * longest_step_;
+    force[k + 1] = {particular(time) + sums[kBlockForce * kBlock + k],
+                    force_rate_ + sums[kBlockRate * kBlock + k]};
+  }
+  std::size_t steps = certified_steps(force);
+  if (steps < kBlock && !bound_is_fresh_) {
+    refresh_bound();
+    steps = certified_steps(force);
+  }
+  if (steps == 0) return 0;
+  for (std::size_t k = 0; k < steps; ++k) {
+    const double* seen = &sums[kBlockVelocity * kBlock + k];
+    motions[k] = motion_at(tau + static_cast<double>(k + 1) * longest_step_, force[k + 1].value,
+                           {seen[0], seen[kBlock], seen[2 * kBlock]});
+  }
+  event::advance(block_factor_[steps - 1], loop_.pole, state_, state_);
+  force_ = force[steps];
+  bound_is_fresh_ = seen_is_valid_ = false;
+  return steps;
+}
+
+Motion Sticking::motion_at(double tau, double force,
+                           const std::array<double, ClosedLoop::kRows>& seen) const {
   const double value = particular(tau);
-  motion.velocity = row[ClosedLoop::kVelocity] + loop_.displacement.value * force_rate_;
-  motion.left = row[ClosedLoop::kLeft] + loop_.left.value * value + loop_.left.rate * force_rate_;
+  Motion motion;
+  motion.force = force;
+  motion.velocity = seen[ClosedLoop::kVelocity] + loop_.displacement.value * force_rate_;
+  motion.left = seen[ClosedLoop::kLeft] + loop_.left.value * value + loop_.left.rate * force_rate_;
   motion.right =
-      row[ClosedLoop::kRight] + loop_.right.value * value + loop_.right.rate * force_rate_;
+      seen[ClosedLoop::kRight] + loop_.right.value * value + loop_.right.rate * force_rate_;
   const double slip = motion.velocity - bow_velocity_;
   motion.displacement =
-      rest_point_ + bow_velocity_ * tau - (force_ + loop_.damping * slip) / loop_.stiffness;
+      rest_point_ + bow_velocity_ * tau - (force + loop_.damping * slip) / loop_.stiffness;
   return motion;
+}
+
+Motion Sticking::observe(double tau) {
+  if (!seen_is_valid_) real_products(loop_.observed, state_, std::span(seen_).first(rows()));
+  seen_is_valid_ = true;
+  return motion_at(tau, force_.value, seen_);
 }
 
 }  // namespace modcal::event

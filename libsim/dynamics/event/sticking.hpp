@@ -34,7 +34,14 @@ class Sticking {
   /// `observed`: observe() is called there, if no event comes first.
   Advance advance(double tau, double time, bool observed);
 
-  double force() const { return force_; }
+  /// Samples in a row, each a longest step after the one before.
+  static constexpr std::size_t kBlock = 4;
+  using Block = std::array<Motion, kBlock>;
+  /// Advances from τ by as many longest steps, at most kBlock, as are certified free of events, and
+  /// tells what happens at their ends. Possibly none: advance() decides then.
+  std::size_t advance_block(double tau, Block& motions);
+
+  double force() const { return force_.value; }
   double rest_point() const { return rest_point_; }
   Motion observe(double tau);
 
@@ -44,9 +51,18 @@ class Sticking {
   double particular(double tau) const { return force_offset_ + force_rate_ * tau; }
   std::size_t rows() const;
   SumAndRate propagate(double time, bool observed);
-  bool certified(double time, double end_force, double end_rate);
-  bool hull_inside(double time, double end_force, double end_rate, double bound) const;
+  struct ForceJet {
+    double value = 0.0;
+    double rate = 0.0;
+  };
+  bool certified(double time, ForceJet end);
+  bool hull_inside(double time, ForceJet start, ForceJet end) const;
+  void refresh_bound();
   std::optional<double> crossing(double tau, double time);
+  void fill_block();
+  std::size_t certified_steps(const std::array<ForceJet, kBlock + 1>& force) const;
+  Motion motion_at(double tau, double force,
+                   const std::array<double, ClosedLoop::kRows>& seen) const;
   void accept(double tau, const SumAndRate& sums);
 
   ClosedLoop loop_;
@@ -55,12 +71,21 @@ class Sticking {
   PlanarVector step_factor_, series_factor_;
   PlanarRows series_;           // (μ·series_step)^p/p!
   AlignedVector fourth_power_;  // |μ|⁴
+  // Rows of f, f', v, R₁, R₂ (as many as wanted) for the ends of the kBlock steps.
+  enum BlockRow : std::size_t {
+    kBlockForce,
+    kBlockRate,
+    kBlockVelocity,
+    kBlockRows = kBlockVelocity + std::size_t{ClosedLoop::kRows}
+  };
+  PlanarRows block_;
+  std::array<PlanarVector, kBlock> block_factor_;
   PlanarVector state_, trial_;
   MotionRequest wanted_;
   std::array<double, ClosedLoop::kRows> seen_{};  // the rows' values for the state, if known
   bool seen_is_valid_ = false;
   double rest_point_ = 0.0, force_offset_ = 0.0, force_rate_ = 0.0;
-  double force_ = 0.0, rate_ = 0.0;
+  ForceJet force_;
   double fourth_derivative_ = 0.0;
   bool bound_is_fresh_ = false;
   // Just attached with the force at one of its limits (+1, −1): that root is no release.
