@@ -45,14 +45,15 @@ std::vector<OpenLoopMode> open_loop(const ContactModes& modes) {
   return result;
 }
 
-// Response of Σ gain Im Z to a slow force: gain d ω_d/ω² and −gain d ω_d 2ζω/ω⁴.
+// Response of Σ gain Im Z to a slow force.
 QuasiStatic quasi_static(const ContactModes& modes, const std::vector<double>& gain) {
   QuasiStatic result;
   for (std::size_t n = 0; n < modes.size(); ++n) {
-    const double square = std::norm(modes.pole[n]);
-    const double value = gain[n] * modes.drive[n] * modes.pole[n].imag() / square;
-    result.value += value;
-    result.rate += value * 2.0 * modes.pole[n].real() / square;
+    const Complex inverse = 1.0 / modes.pole[n];
+    const Complex response = -gain[n] * modes.drive[n] * inverse;
+    result.value += response.imag();
+    result.rate += (response * inverse).imag();
+    result.curvature += (response * inverse * inverse).imag();
   }
   return result;
 }
@@ -104,14 +105,16 @@ void fill_root(const ContactModes& modes, std::span<const OpenLoopMode> open, st
 }
 
 void fill_particular(const ContactModes& modes, ClosedLoop& loop) {
-  loop.open_constant = loop.open_ramp = PlanarVector(loop.modes);
-  loop.constant = loop.ramp = PlanarVector(loop.roots);
-  for (std::size_t n = 0; n < loop.modes; ++n) {
-    loop.open_constant.set(n, -modes.drive[n] / modes.pole[n]);
-    loop.open_ramp.set(n, -modes.drive[n] / (modes.pole[n] * modes.pole[n]));
+  for (std::size_t k = 0; k < loop.open_slow.size(); ++k) {
+    loop.open_slow[k] = PlanarVector(loop.modes);
+    loop.closed_slow[k] = PlanarVector(loop.roots);
+    for (std::size_t n = 0; n < loop.modes; ++n) {
+      const Complex inverse = 1.0 / modes.pole[n];
+      const Complex before = k == 0 ? -modes.drive[n] : loop.open_slow[k - 1].at(n);
+      loop.open_slow[k].set(n, before * inverse);
+    }
+    apply(loop.to_closed, loop.modes, loop.open_slow[k], loop.closed_slow[k]);
   }
-  apply(loop.to_closed, loop.modes, loop.open_constant, loop.constant);
-  apply(loop.to_closed, loop.modes, loop.open_ramp, loop.ramp);
   loop.displacement = quasi_static(modes, modes.compliance);
   loop.left = quasi_static(modes, modes.left_gain);
   loop.right = quasi_static(modes, modes.right_gain);
@@ -136,15 +139,18 @@ bool is_complete(const ContactModes& modes, ClosedLoop& loop) {
 
 }  // namespace
 
-double ClosedLoop::force_rate(double bow_velocity) const {
-  return stiffness * bow_velocity / (1.0 + stiffness * displacement.value);
-}
-
-double ClosedLoop::force_offset(double bow_velocity, double rest_point) const {
-  const double rate = force_rate(bow_velocity);
-  return (stiffness * (rest_point - displacement.rate * rate) +
-          damping * (bow_velocity - displacement.value * rate)) /
-         (1.0 + stiffness * displacement.value);
+SlowForce ClosedLoop::slow_force(double bow_velocity, double bow_acceleration,
+                                 double rest_point) const {
+  const double inverse = 1.0 / (1.0 + stiffness * displacement.value);
+  const double second = stiffness * displacement.rate + damping * displacement.value;
+  const double third = stiffness * displacement.curvature + damping * displacement.rate;
+  SlowForce force;
+  force.curvature = inverse * stiffness * bow_acceleration;
+  force.rate =
+      inverse * (stiffness * bow_velocity + damping * bow_acceleration - second * force.curvature);
+  force.start = inverse * (stiffness * rest_point + damping * bow_velocity - second * force.rate -
+                           third * force.curvature);
+  return force;
 }
 
 std::optional<ClosedLoop> make_closed_loop(const ContactModes& modes, double stiffness,

@@ -45,19 +45,20 @@ struct LawValues {
   double force[kPadded], slope[kPadded], curvature[kPadded];
 
   template <typename Law>
-  void evaluate(const Law& law, const double (&speed)[kUnknowns]) {
-    double sliding[kPadded] = {};
+  void evaluate(const Law& law, const double (&speed)[kUnknowns], const double* load) {
+    double sliding[kPadded] = {}, factor[kPadded] = {};
     double lowest = 0.0;
     for (int i = 0; i < kUnknowns; ++i) {
+      factor[i] = load[i];
       sliding[i] = speed[i] < 0.0 ? 0.0 : speed[i];
       lowest = speed[i] < lowest ? speed[i] : lowest;
     }
 #pragma GCC unroll 1
     for (int i = 0; i < kPadded; ++i) {
       const auto point = law.at(sliding[i]);
-      force[i] = point.force;
-      slope[i] = point.slope;
-      curvature[i] = point.curvature;
+      force[i] = factor[i] * point.force;
+      slope[i] = factor[i] * point.slope;
+      curvature[i] = factor[i] * point.curvature;
     }
     if (lowest < 0.0) continue_below(speed);
   }
@@ -93,14 +94,20 @@ bool SolveNodesOf(const Law& law, const NodeMatrix& coupling, const NodeVector& 
     known[i] = free[i + 1] - coupling[i + 1][0] * values.friction[0];
     size[i] = 0.0;
     for (int j = 1; j < kNodes; ++j) size[i] += std::abs(coupling[i + 1][j]);
-    scale[i] = std::abs(free[i + 1]) + size[i] * values.friction[0];
+    scale[i] = std::abs(free[i + 1]);
     speed[i] = values.speed[i + 1];
   }
   LawValues<kUnknowns> at;
   double previous = HUGE_VAL;
   bool solved = false;
   for (int iteration = 0; iteration < kMaxIterations && !solved; ++iteration) {
-    at.evaluate(law, speed);
+    at.evaluate(law, speed, &values.load[1]);
+    if (iteration == 0) {
+      const double largest = *std::max_element(at.force, at.force + kUnknowns);
+      for (int i = 0; i < kUnknowns; ++i) {
+        scale[i] += size[i] * std::max(largest, values.friction[0]);
+      }
+    }
     double step[kUnknowns];
     double worst = 0.0;
     for (int i = 0; i < kUnknowns; ++i) {

@@ -8,13 +8,14 @@ namespace modcal::event {
 
 struct NodeValues {
   NodeVector speed{};     ///< u_i = side·v_c [m/s]
-  NodeVector friction{};  ///< g(u_i) [N]
-  NodeVector slope{};     ///< g'(u_i) [N s/m]
+  NodeVector load{};      ///< l_i ≥ 0, the factor of the law at the node
+  NodeVector friction{};  ///< l_i g(u_i) [N]
+  NodeVector slope{};     ///< l_i g'(u_i) [N s/m]
 };
 
-/// Solves u_i = free_i − Σ_j coupling_ij g(u_j) for the nodes 2…s by Newton's method; `values`
-/// gives node 1 and the speeds to start from. True when every equation holds to rounding. Kernel:
-/// the instruction set is chosen at run time.
+/// Solves u_i = free_i − Σ_j coupling_ij l_j g(u_j) for the nodes 2…s by Newton's method; `values`
+/// gives node 1, the loads and the speeds to start from. True when every equation holds to
+/// rounding. Kernel: the instruction set is chosen at run time.
 ///
 /// Below u = 0 the law is continued by its parabola as far as its slope doubles, by the tangent
 /// beyond: only trial steps that end behind a switch get

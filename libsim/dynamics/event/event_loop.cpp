@@ -17,6 +17,8 @@ constexpr int kMaxStepsPerGridStep = 1'000'000;
 constexpr double kMaxPhase = 1e4;
 // |v_c| below this share of the velocities at hand is zero.
 constexpr double kAtRest = 1e-14;
+// Positions in a grid step closer than this are one.
+constexpr double kSamePoint = 1e-13;
 
 ClosedLoop closed_loop_for(const EventLoop& loop, const ContactModes& modes) {
   const ContactParameters& contact = loop.contact;
@@ -33,27 +35,35 @@ ClosedLoop closed_loop_for(const EventLoop& loop, const ContactModes& modes) {
   return std::move(*closed);
 }
 
+std::vector<BowKnot> knots_of(const EventLoop& loop) {
+  if (!loop.bow.empty()) return loop.bow;
+  return {{.time = 0.0, .velocity = loop.contact.bow_velocity, .load = 1.0}};
+}
+
 template <typename Law>
 class Run {
  public:
   Run(const EventLoop& loop, const Law& law, const ContactModes& modes, EventState& state)
       : loop_(loop),
         state_(state),
+        path_(knots_of(loop), loop.grid_step),
+        stretch_(path_.stretches().data()),
+        last_stretch_(stretch_ + path_.stretches().size() - 1),
         wanted_{.contact = loop.targets.displacement || loop.targets.velocity,
                 .reactions = loop.targets.left_reaction || loop.targets.right_reaction},
         model_(modes, lobatto_rule(loop.nodes), loop.grid_step),
-        sliding_(model_, law, loop.contact.bow_velocity, loop.slope_number),
+        sliding_(model_, law, loop.slope_number),
         friction_at_rest_(law.at(0.0).force) {
     // A bow that cannot carry any force is not there: no contact, no switches.
     if (loop.contact.static_limit > 0.0) {
-      sticking_.emplace(closed_loop_for(loop, modes), loop.contact.bow_velocity,
-                        loop.contact.static_limit, loop.grid_step, wanted_);
+      sticking_.emplace(closed_loop_for(loop, modes), loop.contact.static_limit, loop.grid_step,
+                        wanted_);
     }
   }
 
   EventCounts run() {
     enter();
-    store(0, 0.0);
+    store(0);
     for (std::size_t sample = 1; sample < loop_.samples && !counts_.failure; ++sample) {
       if (const std::size_t held = hold_block(sample); held > 0) {
         sample += held - 1;
@@ -63,7 +73,7 @@ class Run {
         grid_step(i + 1 == loop_.steps_per_sample);
         ++step_;
       }
-      if (!counts_.failure) store(sample, 0.0);
+      if (!counts_.failure) store(sample);
     }
     leave();
     return counts_;
@@ -71,37 +81,80 @@ class Run {
 
  private:
   void enter() {
+    in_contact_ = sticking_ && !stretch_->drive.lifted();
+    if (!in_contact_) return;
     const Motion motion = model_.observe(state_.modes, {});
-    if (!sticking_) return;
+    const BowDrive drive = drive_at(0.0);
     if (state_.sticking) {
-      sticking_->attach(state_.modes, motion.displacement, state_.elongation);
-      mark_attachment(0.0);
+      sticking_->attach(drive, state_.modes, motion.displacement, state_.elongation);
+      mark_base(0.0);
     } else {
-      sliding_.start(state_.side, state_.side * (motion.velocity - loop_.contact.bow_velocity));
+      sliding_.start(state_.side, state_.side * (motion.velocity - drive.velocity), drive.load);
     }
   }
 
   void leave() {
-    if (!sticking_) return;
+    if (!in_contact_) return;
     state_.side = sliding_.side();
     if (!state_.sticking) return;
-    const double tau = elapsed(0.0);
+    const double tau = since_base(0.0);
     sticking_->detach(tau, state_.modes);
-    const double displacement = model_.observe(state_.modes, {}).displacement;
-    state_.elongation = displacement - sticking_->rest_point() - loop_.contact.bow_velocity * tau;
+    state_.elongation = sticking_->elongation(tau, model_.observe(state_.modes, {}).displacement);
+  }
+
+  // The bow's drive counted from x in the running grid step.
+  BowDrive drive_at(double x) const { return stretch_->drive.from(since(stretch_->start, x)); }
+  double since(GridPoint start, double x) const {
+    return (static_cast<double>(step_ - start.step) + (x - start.x)) * loop_.grid_step;
+  }
+
+  // Where the running grid step is cut by the next stretch; 1: not at all.
+  double cut() const {
+    if (stretch_ == last_stretch_) return 1.0;
+    const GridPoint next = (stretch_ + 1)->start;
+    return next.step == step_ ? next.x : 1.0;
+  }
+
+  void enter_stretch(double x) {
+    ++stretch_;
+    const bool contact = sticking_ && !stretch_->drive.lifted();
+    if (in_contact_ && contact && state_.sticking) {
+      sticking_->change_drive(since_base(x), stretch_->drive);
+      mark_base(x);
+    }
+    if (in_contact_ && !contact && state_.sticking) {
+      sticking_->detach(since_base(x), state_.modes);
+      state_.sticking = false;
+    }
+    if (!in_contact_ && contact) touch_down(x);
+    in_contact_ = contact;
+  }
+
+  // The bow comes back: it holds the string where both move alike, else the string slides.
+  void touch_down(double x) {
+    const Motion motion = model_.observe(state_.modes, {.reactions = false});
+    const BowDrive drive = stretch_->drive;
+    const double slip = motion.velocity - drive.velocity;
+    if (slip == 0.0) {
+      sticking_->attach(drive, state_.modes, motion.displacement, 0.0);
+      mark_base(x);
+      state_.sticking = true;
+    } else {
+      sliding_.start(slip < 0.0 ? -1.0 : 1.0, std::abs(slip), drive.load);
+    }
   }
 
   void grid_step(bool sampled) {
-    if (!sticking_) {
-      model_.advance_free(state_.modes);
-      ++counts_.steps;
-      return;
-    }
     double x = 0.0;
     int switches = 0;
     for (int parts = 0; x < 1.0; ++parts) {
+      const double last = cut();
+      if (last - x < kSamePoint) {
+        enter_stretch(x);
+        continue;
+      }
       const std::size_t before = counts_.attachments + counts_.releases;
-      x = state_.sticking ? stick(x, sampled) : slide(x);
+      x = part(x, last, sampled);
       if (counts_.failure) return;
       ++counts_.steps;
       switches += static_cast<int>(counts_.attachments + counts_.releases - before);
@@ -118,33 +171,47 @@ class Run {
     }
   }
 
+  // From x to `last` at most.
+  double part(double x, double last, bool sampled) {
+    if (in_contact_) return state_.sticking ? stick(x, last, sampled) : slide(x, last);
+    if (x == 0.0 && last == 1.0) {
+      model_.advance_free(state_.modes);
+    } else {
+      model_.advance_free_by((last - x) * loop_.grid_step, state_.modes);
+    }
+    return last;
+  }
+
   // Samples that follow each other while the string sticks, some at once. Returns how many.
   std::size_t hold_block(std::size_t sample) {
-    if (!state_.sticking || !sticking_ || loop_.steps_per_sample != 1) return 0;
+    if (!in_contact_ || !state_.sticking || loop_.steps_per_sample != 1) return 0;
     if (loop_.samples - sample < Sticking::kBlock) return 0;
+    if (stretch_ != last_stretch_ && (stretch_ + 1)->start.step < step_ + Sticking::kBlock) {
+      return 0;
+    }
     Sticking::Block motions;
-    const std::size_t held = sticking_->advance_block(elapsed(0.0), motions);
+    const std::size_t held = sticking_->advance_block(since_base(0.0), motions);
     for (std::size_t k = 0; k < held; ++k) store(sample + k, motions[k]);
     counts_.steps += held;
     step_ += held;
     return held;
   }
 
-  double stick(double x, bool sampled) {
-    const double remaining = (1.0 - x) * loop_.grid_step;
-    const auto result = sticking_->advance(elapsed(x), remaining, sampled);
+  double stick(double x, double last, bool sampled) {
+    const double remaining = (last - x) * loop_.grid_step;
+    const auto result = sticking_->advance(since_base(x), remaining, sampled && last == 1.0);
     if (!std::isfinite(sticking_->force())) {
       fail(x, "the contact force is not a finite number");
       return x;
     }
-    const double reached = result.time >= remaining ? 1.0 : x + result.time / loop_.grid_step;
-    if (result.released) release(reached);
+    const double reached = result.time >= remaining ? last : x + result.time / loop_.grid_step;
+    if (result.released != 0) release(reached, result.released);
     return reached;
   }
 
-  double slide(double x) {
+  double slide(double x, double last) {
     using Outcome = typename Sliding<Law>::Outcome;
-    const auto result = sliding_.advance(x, state_.modes);
+    const auto result = sliding_.advance(x, last, drive_at(x), state_.modes);
     if (result.outcome == Outcome::kFailed) {
       fail(x,
            "the friction equation has no solution on any step: the force falls too steeply with "
@@ -157,52 +224,49 @@ class Run {
 
   void attach(double x) {
     const double y = model_.observe(state_.modes, {.reactions = false}).displacement;
+    const BowDrive drive = drive_at(x);
     const bool continuous = loop_.attach == AttachRule::kContinuous;
-    const double force = -sliding_.side() * friction_at_rest_;
-    sticking_->attach(state_.modes, y, continuous ? -force / loop_.contact.stiffness : 0.0);
-    mark_attachment(x);
+    const double force = -sliding_.side() * friction_at_rest_ * drive.load;
+    sticking_->attach(drive, state_.modes, y, continuous ? -force / loop_.contact.stiffness : 0.0);
+    mark_base(x);
     state_.sticking = true;
     ++counts_.attachments;
   }
 
-  void release(double x) {
-    sticking_->detach(elapsed(x), state_.modes);
+  // `limit`: the sign of the force that adherence could not carry.
+  void release(double x, int limit) {
+    sticking_->detach(since_base(x), state_.modes);
     const double v = model_.observe(state_.modes, {.reactions = false}).velocity;
-    const double slip = v - loop_.contact.bow_velocity;
-    const double against_force = sticking_->force() > 0.0 ? -1.0 : 1.0;
-    const bool at_rest =
-        std::abs(slip) <= kAtRest * (std::abs(v) + std::abs(loop_.contact.bow_velocity));
+    const BowDrive drive = drive_at(x);
+    const double slip = v - drive.velocity;
+    const double against_force = -limit;
+    const bool at_rest = std::abs(slip) <= kAtRest * (std::abs(v) + std::abs(drive.velocity));
     const double side = at_rest ? against_force : slip < 0.0 ? -1.0 : 1.0;
     if (side != against_force) ++counts_.wrong_sign_releases;
-    sliding_.start(side, at_rest ? 0.0 : std::abs(slip));
+    sliding_.start(side, at_rest ? 0.0 : std::abs(slip), drive.load);
     state_.sticking = false;
     ++counts_.releases;
   }
 
-  void mark_attachment(double x) {
-    attach_step_ = step_;
-    attach_position_ = x;
-  }
-  // Time since the attachment [s], at x in the running grid step.
-  double elapsed(double x) const {
-    return (static_cast<double>(step_ - attach_step_) + (x - attach_position_)) * loop_.grid_step;
-  }
+  // τ = 0 of adherence.
+  void mark_base(double x) { base_ = {step_, x}; }
+  double since_base(double x) const { return since(base_, x); }
 
   void fail(double x, std::string reason) {
     counts_.failure = std::move(reason);
     counts_.failed_at = (static_cast<double>(step_) + x) * loop_.grid_step;
   }
 
-  void store(std::size_t sample, double x) {
+  void store(std::size_t sample) {
     Motion motion;
-    if (state_.sticking && sticking_) {
-      motion = sticking_->observe(elapsed(x));
+    if (state_.sticking && in_contact_) {
+      motion = sticking_->observe(since_base(0.0));
     } else {
       motion = model_.observe(state_.modes, wanted_);
-      if (sticking_) motion.force = sliding_.force();
+      if (in_contact_) motion.force = sliding_.force();
     }
     if (!std::isfinite(motion.velocity) || !std::isfinite(motion.force)) {
-      return fail(x, "the motion is not a finite number");
+      return fail(0.0, "the motion is not a finite number");
     }
     store(sample, motion);
   }
@@ -218,14 +282,18 @@ class Run {
 
   const EventLoop& loop_;
   EventState& state_;
+  BowPath path_;
+  const BowPath::Stretch* stretch_;  // the running one
+  const BowPath::Stretch* last_stretch_;
   MotionRequest wanted_;
   SlidingModel model_;
   Sliding<Law> sliding_;
   std::optional<Sticking> sticking_;
-  double friction_at_rest_;
+  double friction_at_rest_;  // at load 1
+  bool in_contact_ = false;
   EventCounts counts_;
-  std::uint64_t step_ = 0, attach_step_ = 0;
-  double attach_position_ = 0.0;
+  std::uint64_t step_ = 0;
+  GridPoint base_;
 };
 
 }  // namespace

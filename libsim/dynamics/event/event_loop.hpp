@@ -4,7 +4,9 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "libsim/dynamics/event/bow_path.hpp"
 #include "libsim/dynamics/event/closed_loop.hpp"
 #include "libsim/dynamics/step_loop.hpp"
 
@@ -27,9 +29,14 @@ struct EventState {
 /// Hysteresis: adherence ends only at |f| = μ_S F_N, sliding only at v_c = 0; between these limits
 /// the state stays what it is. A released string slides with the sign of its v_c; at v_c = 0
 /// against the force that held it.
+/// Where the load is 0 there is no contact: the string moves freely, and slides with the sign of
+/// its v_c when the load comes back.
 struct EventLoop {
   ContactParameters contact;
   SlidingLaw law;
+  /// Motion of the bow; empty: steady at contact.bow_velocity. Otherwise its velocity stands in the
+  /// place of that one, and law and contact.static_limit are those of load 1.
+  std::vector<BowKnot> bow;
   AttachRule attach = AttachRule::kLiteral;
   int nodes = 5;              ///< Lobatto nodes of a sliding step, 2 … 5: order 2(nodes − 1)
   double slope_number = 0.7;  ///< κ, largest |g'| h/m_eff of a sliding step

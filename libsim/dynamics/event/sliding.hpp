@@ -4,30 +4,30 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libsim/dynamics/event/bow_path.hpp"
 #include "libsim/dynamics/event/collocation.hpp"
 #include "libsim/dynamics/event/first_crossing.hpp"
 
 namespace modcal::event {
 
-/// One stretch of sliding with sign side = sgn(v_c), f = −side·g(side·v_c). Position x in [0, 1]
-/// counts grid steps; steps are dyadic parts of one, a first one of any length leads to the next
-/// dyadic point.
+/// One stretch of sliding with sign side = sgn(v_c), f = −side·load·g(side·v_c). Position x in
+/// [0, 1] counts grid steps; steps are dyadic parts of one, one of any length leads to the next
+/// dyadic point or to where the bow's drive changes.
 template <typename Law>
 class Sliding {
  public:
   /// `slope_number` κ: the steps h keep |g'(u)| h/m_eff ≤ κ at their start and ≤ 2κ at every node,
   /// where the friction equation has one solution.
-  Sliding(SlidingModel& model, const Law& law, double bow_velocity, double slope_number)
-      : model_(model),
-        law_(law),
-        any_law_(law),
-        bow_velocity_(bow_velocity),
-        slope_number_(slope_number) {}
+  Sliding(SlidingModel& model, const Law& law, double slope_number)
+      : model_(model), law_(law), any_law_(law), slope_number_(slope_number) {}
 
-  /// Starts with the sliding speed u = side·v_c ≥ 0.
-  void start(double side, double speed) {
+  /// Starts with the sliding speed u = side·v_c ≥ 0 under the given load.
+  void start(double side, double speed, double load) {
     side_ = side;
-    set_speed(std::max(speed, 0.0));
+    speed_ = std::max(speed, 0.0);
+    const auto point = law_.at(speed_);
+    friction_ = load * point.force;
+    slope_ = load * point.slope;
     refinement_ = 0;
     powers_ = {friction_};
     last_length_ = 0.0;
@@ -43,15 +43,17 @@ class Sliding {
     double position;
     Outcome outcome;
   };
-  /// Advances `state` from x by one step at most.
-  Advance advance(double x, PlanarVector& state) {
+  /// Advances `state` from x by one step at most, not beyond `last`; `drive` has its τ = 0 at x.
+  Advance advance(double x, double last, const BowDrive& drive, PlanarVector& state) {
+    drive_ = drive;
     const int level = wanted_level() + refinement_;
     if (level > kDeepestLevel) return {x, Outcome::kFailed};
     const double parts = std::ldexp(1.0, level);
     double end = (std::floor(x * parts) + 1.0) / parts;
     if ((end - x) * parts < 1e-9) end += 1.0 / parts;  // x is that point but for rounding
+    end = std::min(end, last);
     const bool on_grid = (end - x) * parts == 1.0;
-    NodeValues values = start_values();
+    NodeValues values = start_values((end - x) * model_.grid_step());
     const bool from_tables = on_grid && speed_ > 0.0;
     if (from_tables) {
       const auto result = grid_step(model_.table(level), end, state, values);
@@ -67,13 +69,6 @@ class Sliding {
  private:
   static constexpr int kDeepestLevel = 44;
 
-  void set_speed(double speed) {
-    speed_ = speed;
-    const auto point = law_.at(speed);
-    friction_ = point.force;
-    slope_ = point.slope;
-  }
-
   int wanted_level() const {
     int level = model_.first_level();
     double number = -slope_ * std::ldexp(model_.grid_step(), -level) / model_.effective_mass();
@@ -81,12 +76,23 @@ class Sliding {
     return level;
   }
 
-  NodeValues start_values() const {
+  // Node 1 and the loads of a step of the given length [s].
+  NodeValues start_values(double step) const {
     NodeValues values;
     values.speed[0] = speed_;
     values.friction[0] = friction_;
     values.slope[0] = slope_;
+    set_loads(step, values);
     return values;
+  }
+  void set_loads(double step, NodeValues& values) const {
+    for (int i = 0; i < nodes(); ++i) {
+      values.load[i] = drive_.load_at(step * model_.rule().node[i]);
+    }
+  }
+  // Sliding speed of a string with velocity v at a node.
+  double sliding_speed(double velocity, double step, int node) const {
+    return side_ * (velocity - drive_.velocity_at(step * model_.rule().node[node]));
   }
 
   // Speeds to start the solution from: as if the friction at node i were the polynomial's at
@@ -151,7 +157,7 @@ class Sliding {
     NodeVector free{};
     const auto unknowns = static_cast<std::size_t>(nodes() - 1);
     real_products(table.rows, state, std::span(free).subspan(1, unknowns));
-    for (int i = 1; i < nodes(); ++i) free[i] = side_ * (free[i] - bow_velocity_);
+    for (int i = 1; i < nodes(); ++i) free[i] = sliding_speed(free[i], table.step, i);
     const double length = table.step / model_.grid_step();
     guess(free, table.coupling, powers_, 1.0, extrapolation(length), values);
     if (!solve_nodes(any_law_, nodes(), table.coupling, free, values) ||
@@ -199,10 +205,11 @@ class Sliding {
     NodeVector powers = powers_;
     double from = 1.0, scale = extrapolation(length);
     for (int trial = 0; trial < kMaxTrials; ++trial) {
-      if (length < 1e-15) return {x, Outcome::kAttached};
-      const double ratio = length / series_length;
-      if (!solved && (!solve_any(free, ratio, from, scale, powers, values) ||
-                      steep(values, length * model_.grid_step()))) {
+      if (trial > 0 && length < 1e-15) return {x, Outcome::kAttached};
+      const double ratio = length / series_length, step = length * model_.grid_step();
+      set_loads(step, values);
+      if (!solved &&
+          (!solve_any(free, ratio, from, scale, powers, values) || steep(values, step))) {
         return refined(x);
       }
       solved = false;
@@ -235,7 +242,8 @@ class Sliding {
         velocity[i] = velocity[i] * (ratio * model_.rule().node[i]) + free_velocity[p];
       }
     }
-    for (int i = 1; i < nodes(); ++i) free[i] = side_ * (velocity[i] - bow_velocity_);
+    const double step = ratio * model_.series_step();
+    for (int i = 1; i < nodes(); ++i) free[i] = sliding_speed(velocity[i], step, i);
     const NodeMatrix coupling = model_.coupling(ratio);
     guess(free, coupling, powers, from, scale, values);
     return solve_nodes(any_law_, nodes(), coupling, free, values);
@@ -250,6 +258,7 @@ class Sliding {
       scale *= ratio;
     }
     model_.add_forced_series(ratio, force, speed);
+    speed[1] -= drive_.acceleration * ratio * model_.series_step();
     for (double& c : speed) c *= side_;
     speed[0] = speed_;
     return speed;
@@ -260,7 +269,8 @@ class Sliding {
   SlidingModel& model_;
   Law law_;
   SlidingLaw any_law_;
-  double bow_velocity_, slope_number_;
+  double slope_number_;
+  BowDrive drive_;  // from the start of the running step
   double side_ = -1.0;
   double speed_ = 0.0, friction_ = 0.0, slope_ = 0.0;
   // Power coefficients of the friction on the last step, and its length in grid steps; none: 0.

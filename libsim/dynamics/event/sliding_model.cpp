@@ -139,6 +139,10 @@ void SlidingModel::advance_free(PlanarVector& state) {
   event::advance(free_factor_, pole_, state, state);
 }
 
+void SlidingModel::advance_free_by(double time, PlanarVector& state) {
+  event::advance_by(time, pole_, state, state);
+}
+
 double SlidingModel::free_derivative_bound(const PlanarVector& state) const {
   return weighted_size(derivative_weight_, state);
 }

@@ -54,8 +54,9 @@ class SlidingModel {
   void add_forced_series(double ratio, const NodeVector& force, Series& out) const;
   /// Z at θh, h = ratio·series_step, under the same force.
   void advance_any(double ratio, double theta, const NodeVector& force, PlanarVector& state) const;
-  /// Z after a grid step without force.
+  /// Z after a grid step, or after any time [s] up to one, without force.
   void advance_free(PlanarVector& state);
+  void advance_free_by(double time, PlanarVector& state);
   /// Σ |a λ^s||Z|, within a factor √2.
   double free_derivative_bound(const PlanarVector& state) const;
   Motion observe(const PlanarVector& state, MotionRequest wanted) const;

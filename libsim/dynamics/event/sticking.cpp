@@ -24,10 +24,8 @@ PlanarVector exponentials(const PlanarVector& pole, std::size_t count, double ti
 
 }  // namespace
 
-Sticking::Sticking(ClosedLoop loop, double bow_velocity, double static_limit, double longest_step,
-                   MotionRequest wanted)
+Sticking::Sticking(ClosedLoop loop, double static_limit, double longest_step, MotionRequest wanted)
     : loop_(std::move(loop)),
-      bow_velocity_(bow_velocity),
       limit_(static_limit),
       longest_step_(longest_step),
       series_step_(longest_step),
@@ -68,37 +66,63 @@ void Sticking::fill_block() {
   }
 }
 
-void Sticking::attach(const PlanarVector& open_state, double displacement, double elongation) {
-  rest_point_ = displacement - elongation;
-  force_rate_ = loop_.force_rate(bow_velocity_);
-  force_offset_ = loop_.force_offset(bow_velocity_, rest_point_);
-  apply(loop_.to_closed, loop_.modes, open_state, state_);
+// Adds `factor` times the coordinates of the slow force at τ.
+void Sticking::add_slow(double factor, double tau) {
+  const std::array<double, 3> jet = {factor * slow_.value_at(tau), factor * slow_.rate_at(tau),
+                                     factor * slow_.curvature};
+  for (std::size_t k = 0; k < jet.size(); ++k) {
+    const PlanarVector& column = loop_.closed_slow[k];
+    for (std::size_t j = 0; j < loop_.roots; ++j) {
+      state_.re[j] += jet[k] * column.re[j];
+      state_.im[j] += jet[k] * column.im[j];
+    }
+  }
+}
+
+// Force and bounds at τ = 0 of the state at hand.
+void Sticking::restart() {
   SumAndRate sums;
   for (std::size_t j = 0; j < loop_.roots; ++j) {
-    state_.re[j] -= force_offset_ * loop_.constant.re[j] + force_rate_ * loop_.ramp.re[j];
-    state_.im[j] -= force_offset_ * loop_.constant.im[j] + force_rate_ * loop_.ramp.im[j];
     sums.sum += state_.re[j];
     sums.rate += loop_.pole.re[j] * state_.re[j] - loop_.pole.im[j] * state_.im[j];
   }
-  accept(0.0, sums);
+  force_ = jet_at(0.0, sums);
   refresh_bound();
-  starts_at_limit_ = 0;
-  if (std::abs(force_.value) >= (1.0 - kAtLimit) * limit_) {
-    starts_at_limit_ = force_.value > 0.0 ? 1 : -1;
-  }
+  seen_is_valid_ = false;
+}
+
+void Sticking::attach(const BowDrive& drive, const PlanarVector& open_state, double displacement,
+                      double elongation) {
+  drive_ = drive;
+  rest_point_ = displacement - elongation;
+  slow_ = loop_.slow_force(drive.velocity, drive.acceleration, rest_point_);
+  apply(loop_.to_closed, loop_.modes, open_state, state_);
+  add_slow(-1.0, 0.0);
+  restart();
+  const double at_limit = (1.0 - kAtLimit) * limit(0.0, 0.0).start;
+  starts_at_upper_ = force_.value >= at_limit;
+  starts_at_lower_ = -force_.value >= at_limit;
+}
+
+void Sticking::change_drive(double tau, const BowDrive& drive) {
+  add_slow(1.0, tau);
+  rest_point_ += drive_.travel(tau);
+  drive_ = drive;
+  slow_ = loop_.slow_force(drive.velocity, drive.acceleration, rest_point_);
+  add_slow(-1.0, 0.0);
+  restart();
 }
 
 void Sticking::detach(double tau, PlanarVector& open_state) {
   apply(loop_.to_open, loop_.roots, state_, open_state);
-  const double value = particular(tau);
-  for (std::size_t n = 0; n < loop_.modes; ++n) {
-    open_state.re[n] += value * loop_.open_constant.re[n] + force_rate_ * loop_.open_ramp.re[n];
-    open_state.im[n] += value * loop_.open_constant.im[n] + force_rate_ * loop_.open_ramp.im[n];
+  const std::array<double, 3> jet = {slow_.value_at(tau), slow_.rate_at(tau), slow_.curvature};
+  for (std::size_t k = 0; k < jet.size(); ++k) {
+    const PlanarVector& column = loop_.open_slow[k];
+    for (std::size_t n = 0; n < loop_.modes; ++n) {
+      open_state.re[n] += jet[k] * column.re[n];
+      open_state.im[n] += jet[k] * column.im[n];
+    }
   }
-}
-
-void Sticking::accept(double tau, const SumAndRate& sums) {
-  force_ = {particular(tau) + sums.sum, force_rate_ + sums.rate};
 }
 
 std::size_t Sticking::rows() const {
@@ -117,14 +141,18 @@ SumAndRate Sticking::propagate(double time, bool observed) {
   return advance_by(time, loop_.pole, state_, trial_);
 }
 
-bool Sticking::hull_inside(double time, ForceJet start, ForceJet end) const {
+bool Sticking::hull_inside(double tau, double time, ForceJet start, ForceJet end) const {
   const double part = time * (1.0 / 3.0);
   const double second = start.value + part * start.rate;
   const double third = end.value - part * end.rate;
-  const double largest = std::max(std::max(std::abs(start.value), std::abs(second)),
-                                  std::max(std::abs(third), std::abs(end.value)));
+  // The limit is linear: its own control points lie on it.
+  const Limit at = limit(tau, time);
+  const double fall = (at.end - at.start) * (1.0 / 3.0);
+  const double excess =
+      std::max(std::max(std::abs(start.value) - at.start, std::abs(second) - (at.start + fall)),
+               std::max(std::abs(third) - (at.end - fall), std::abs(end.value) - at.end));
   const double square = time * time;
-  return largest + square * square * (fourth_derivative_ * (1.0 / 384.0)) < limit_;
+  return excess + square * square * (fourth_derivative_ * (1.0 / 384.0)) < 0.0;
 }
 
 void Sticking::refresh_bound() {
@@ -132,16 +160,16 @@ void Sticking::refresh_bound() {
   bound_is_fresh_ = true;
 }
 
-bool Sticking::certified(double time, ForceJet end) {
-  if (starts_at_limit_ != 0) return false;
+bool Sticking::certified(double tau, double time, ForceJet end) {
+  if (starts_at_upper_ || starts_at_lower_) return false;
   // |w_j| only falls while the string sticks, so that an older bound holds too.
-  if (hull_inside(time, force_, end)) return true;
+  if (hull_inside(tau, time, force_, end)) return true;
   if (bound_is_fresh_) return false;
   refresh_bound();
-  return hull_inside(time, force_, end);
+  return hull_inside(tau, time, force_, end);
 }
 
-std::optional<double> Sticking::crossing(double tau, double time) {
+std::optional<Sticking::Advance> Sticking::crossing(double tau, double time) {
   std::array<double, kTerms> force;
   real_products(series_, state_, force);
   const double ratio = time / series_step_;
@@ -150,67 +178,77 @@ std::optional<double> Sticking::crossing(double tau, double time) {
     c *= scale;
     scale *= ratio;
   }
-  force[0] += particular(tau);
-  force[1] += force_rate_ * time;
+  force[0] += slow_.value_at(tau);
+  force[1] += slow_.rate_at(tau) * time;
+  force[2] += 0.5 * slow_.curvature * time * time;
   for (std::size_t p = 1; p < kTerms; ++p) swing += std::abs(force[p]);
 
+  const Limit at = limit(tau, time);
   std::optional<double> first;
-  for (const double sign : {1.0, -1.0}) {
-    const bool starts_there = starts_at_limit_ == static_cast<int>(sign);
-    if (!starts_there && sign * force[0] + swing < limit_) continue;
+  Advance result;
+  for (const int sign : {1, -1}) {
+    const bool starts_there = sign > 0 ? starts_at_upper_ : starts_at_lower_;
+    if (!starts_there && sign * force[0] + swing < std::min(at.start, at.end)) continue;
     std::array<double, kTerms> margin;
     for (std::size_t p = 0; p < kTerms; ++p) margin[p] = -sign * force[p];
-    margin[0] += limit_;
+    margin[0] += at.start;
+    margin[1] += at.end - at.start;
     const auto found = first_crossing(margin, first.value_or(1.0), starts_there);
-    if (found) first = found;
+    if (!found) continue;
+    first = found;
+    result = {*found * time, sign};
   }
-  return first;
+  if (!first) return std::nullopt;
+  return result;
 }
 
 Sticking::Advance Sticking::advance(double tau, double time, bool observed) {
   SumAndRate sums = propagate(time, observed);
-  bool safe = certified(time, {particular(tau + time) + sums.sum, force_rate_ + sums.rate});
+  bool safe = certified(tau, time, jet_at(tau + time, sums));
   if (!safe && time > series_step_ * (1.0 + 1e-9)) {
     // A longer stretch than the series can tell is cut; the caller asks again for the rest.
     time = series_step_;
     sums = propagate(time, false);
-    safe = certified(time, {particular(tau + time) + sums.sum, force_rate_ + sums.rate});
+    safe = certified(tau, time, jet_at(tau + time, sums));
   }
-  Advance result{time, false};
+  Advance result{time, 0};
   if (!safe) {
-    if (const auto theta = crossing(tau, time)) {
-      result = {*theta * time, true};
+    if (const auto release = crossing(tau, time)) {
+      result = *release;
       seen_is_valid_ = false;
       sums = advance_by(result.time, loop_.pole, state_, trial_);
     }
   }
   std::swap(state_, trial_);
-  accept(tau + result.time, sums);
+  force_ = jet_at(tau + result.time, sums);
   bound_is_fresh_ = false;
-  starts_at_limit_ = 0;
+  starts_at_upper_ = starts_at_lower_ = false;
   return result;
 }
 
-std::size_t Sticking::certified_steps(const std::array<ForceJet, kBlock + 1>& force) const {
+std::size_t Sticking::certified_steps(double tau,
+                                      const std::array<ForceJet, kBlock + 1>& force) const {
   std::size_t steps = 0;
-  while (steps < kBlock && hull_inside(longest_step_, force[steps], force[steps + 1])) ++steps;
+  while (steps < kBlock && hull_inside(tau + static_cast<double>(steps) * longest_step_,
+                                       longest_step_, force[steps], force[steps + 1])) {
+    ++steps;
+  }
   return steps;
 }
 
 std::size_t Sticking::advance_block(double tau, Block& motions) {
-  if (starts_at_limit_ != 0) return 0;
+  if (starts_at_upper_ || starts_at_lower_) return 0;
   std::array<double, kBlockRows * kBlock> sums{};
   real_products(block_, state_, std::span(sums).first(block_.count));
   std::array<ForceJet, kBlock + 1> force{force_};
   for (std::size_t k = 0; k < kBlock; ++k) {
-    const double time = tau + static_cast<double>(k + 1) * longest_step_;
-    force[k + 1] = {particular(time) + sums[kBlockForce * kBlock + k],
-                    force_rate_ + sums[kBlockRate * kBlock + k]};
+    force[k + 1] = jet_at(tau + static_cast<double>(k + 1) * longest_step_,
+                          {sums[kBlockForce * kBlock + k], sums[kBlockRate * kBlock + k]});
   }
-  std::size_t steps = certified_steps(force);
+  std::size_t steps = certified_steps(tau, force);
   if (steps < kBlock && !bound_is_fresh_) {
     refresh_bound();
-    steps = certified_steps(force);
+    steps = certified_steps(tau, force);
   }
   if (steps == 0) return 0;
   for (std::size_t k = 0; k < steps; ++k) {
@@ -226,16 +264,15 @@ std::size_t Sticking::advance_block(double tau, Block& motions) {
 
 Motion Sticking::motion_at(double tau, double force,
                            const std::array<double, ClosedLoop::kRows>& seen) const {
-  const double value = particular(tau);
   Motion motion;
   motion.force = force;
-  motion.velocity = seen[ClosedLoop::kVelocity] + loop_.displacement.value * force_rate_;
-  motion.left = seen[ClosedLoop::kLeft] + loop_.left.value * value + loop_.left.rate * force_rate_;
-  motion.right =
-      seen[ClosedLoop::kRight] + loop_.right.value * value + loop_.right.rate * force_rate_;
-  const double slip = motion.velocity - bow_velocity_;
+  motion.velocity = seen[ClosedLoop::kVelocity] + loop_.displacement.value * slow_.rate_at(tau) +
+                    loop_.displacement.rate * slow_.curvature;
+  motion.left = seen[ClosedLoop::kLeft] + loop_.left.at(slow_, tau);
+  motion.right = seen[ClosedLoop::kRight] + loop_.right.at(slow_, tau);
+  const double slip = motion.velocity - drive_.velocity_at(tau);
   motion.displacement =
-      rest_point_ + bow_velocity_ * tau - (force + loop_.damping * slip) / loop_.stiffness;
+      rest_point_ + drive_.travel(tau) - (force + loop_.damping * slip) / loop_.stiffness;
   return motion;
 }
 

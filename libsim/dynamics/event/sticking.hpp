@@ -5,27 +5,32 @@
 #include <array>
 #include <optional>
 
+#include "libsim/dynamics/event/bow_path.hpp"
 #include "libsim/dynamics/event/closed_loop.hpp"
 #include "libsim/dynamics/event/motion.hpp"
 
 namespace modcal::event {
 
-/// One stretch of adherence. Time τ [s] runs from the attachment.
+/// One stretch of adherence to a bow whose velocity and load are linear in time. τ [s] runs from
+/// the attachment or from the last change of the drive.
 class Sticking {
  public:
   /// `longest_step` [s]: no call of advance() asks for more.
-  Sticking(ClosedLoop loop, double bow_velocity, double static_limit, double longest_step,
-           MotionRequest wanted);
+  /// `static_limit` [N] at load 1.
+  Sticking(ClosedLoop loop, double static_limit, double longest_step, MotionRequest wanted);
 
   /// Starts from the open-loop state Z with the contact at y [m] and its spring stretched by
   /// `elongation` [m].
-  void attach(const PlanarVector& open_state, double displacement, double elongation);
+  void attach(const BowDrive& drive, const PlanarVector& open_state, double displacement,
+              double elongation);
+  /// The bow moves on differently from τ, which becomes τ = 0.
+  void change_drive(double tau, const BowDrive& drive);
   /// Open-loop state Z at τ.
   void detach(double tau, PlanarVector& open_state);
 
   struct Advance {
-    double time = 0.0;      ///< how far it went [s], at most the time asked for
-    bool released = false;  ///< |f| reached the limit there
+    double time = 0.0;  ///< how far it went [s], at most the time asked for
+    int released = 0;   ///< the sign of the limit that f reached there; 0: none
   };
   /// Advances from τ by at most `time`. Either no event happens on the stretch (Bézier hull of the
   /// cubic Hermite interpolant of f plus its remainder h⁴/384 Σ|μ_j|⁴|w_j| inside the limits), or
@@ -42,32 +47,43 @@ class Sticking {
   std::size_t advance_block(double tau, Block& motions);
 
   double force() const { return force_.value; }
-  double rest_point() const { return rest_point_; }
+  /// y_c at τ, the contact being at y [m].
+  double elongation(double tau, double displacement) const {
+    return displacement - rest_point_ - drive_.travel(tau);
+  }
   Motion observe(double tau);
 
  private:
   static constexpr std::size_t kTerms = 25;
 
-  double particular(double tau) const { return force_offset_ + force_rate_ * tau; }
-  std::size_t rows() const;
-  SumAndRate propagate(double time, bool observed);
   struct ForceJet {
     double value = 0.0;
     double rate = 0.0;
   };
-  bool certified(double time, ForceJet end);
-  bool hull_inside(double time, ForceJet start, ForceJet end) const;
+  struct Limit {
+    double start = 0.0, end = 0.0;
+  };
+  Limit limit(double tau, double time) const {
+    return {limit_ * drive_.load_at(tau), limit_ * drive_.load_at(tau + time)};
+  }
+  ForceJet jet_at(double tau, const SumAndRate& sums) const {
+    return {slow_.value_at(tau) + sums.sum, slow_.rate_at(tau) + sums.rate};
+  }
+  void add_slow(double factor, double tau);
+  void restart();
+  std::size_t rows() const;
+  SumAndRate propagate(double time, bool observed);
+  bool certified(double tau, double time, ForceJet end);
+  bool hull_inside(double tau, double time, ForceJet start, ForceJet end) const;
   void refresh_bound();
-  std::optional<double> crossing(double tau, double time);
+  std::optional<Advance> crossing(double tau, double time);
   void fill_block();
-  std::size_t certified_steps(const std::array<ForceJet, kBlock + 1>& force) const;
+  std::size_t certified_steps(double tau, const std::array<ForceJet, kBlock + 1>& force) const;
   Motion motion_at(double tau, double force,
                    const std::array<double, ClosedLoop::kRows>& seen) const;
-  void accept(double tau, const SumAndRate& sums);
 
   ClosedLoop loop_;
-  double bow_velocity_, limit_, longest_step_, series_step_;
-  std::size_t halvings_ = 0;  // series_step_ = longest_step_/2^halvings_
+  double limit_, longest_step_, series_step_;
   PlanarVector step_factor_, series_factor_;
   PlanarRows series_;           // (μ·series_step)^p/p!
   AlignedVector fourth_power_;  // |μ|⁴
@@ -84,12 +100,14 @@ class Sticking {
   MotionRequest wanted_;
   std::array<double, ClosedLoop::kRows> seen_{};  // the rows' values for the state, if known
   bool seen_is_valid_ = false;
-  double rest_point_ = 0.0, force_offset_ = 0.0, force_rate_ = 0.0;
+  BowDrive drive_;
+  double rest_point_ = 0.0;
+  SlowForce slow_;
   ForceJet force_;
   double fourth_derivative_ = 0.0;
   bool bound_is_fresh_ = false;
-  // Just attached with the force at one of its limits (+1, −1): that root is no release.
-  int starts_at_limit_ = 0;
+  // Just attached with the force at its upper, its lower limit: that root is no release.
+  bool starts_at_upper_ = false, starts_at_lower_ = false;
 };
 
 }  // namespace modcal::event

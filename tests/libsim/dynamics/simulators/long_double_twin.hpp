@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cmath>
+#include <functional>
 #include <vector>
 
 #include "libsim/model/modal_basis.hpp"
@@ -15,6 +16,14 @@ class LongDoubleTwin {
   using Real = long double;
   struct Bow {
     Real velocity, dynamic_force, force_drop, decay, stiffness, damping;
+    /// Functions of time that multiply velocity and forces, and ∫ of the first; none: steady.
+    std::function<Real(Real)> velocity_factor, load, travel_factor;
+
+    Real velocity_at(Real t) const {
+      return velocity_factor ? velocity * velocity_factor(t) : velocity;
+    }
+    Real travel(Real t) const { return travel_factor ? velocity * travel_factor(t) : velocity * t; }
+    Real load_at(Real t) const { return load ? load(t) : 1.0L; }
   };
 
   LongDoubleTwin(const ModalBasis& basis, double contact, const Bow& bow) : bow_(bow) {
@@ -31,6 +40,7 @@ class LongDoubleTwin {
   Real displacement() const { return sum(state_, 0); }
   Real velocity() const { return sum(state_, shape_.size()); }
   Real force() const { return force(state_, time_); }
+  Real load() const { return bow_.load_at(time_); }
   int switches() const { return switches_; }
 
   /// One step of length h with any switches inside it, located to 1e-19 of the step.
@@ -40,6 +50,9 @@ class LongDoubleTwin {
       if (!past_switch(next, time_ + h)) {
         state_ = std::move(next);
         time_ += h;
+        // A bow that comes back meets the string as it moves then.
+        if (bow_.load_at(time_) == 0.0L)
+          side_ = velocity() < bow_.velocity_at(time_) ? -1.0L : 1.0L;
         return;
       }
       Real low = 0.0L, high = h;
@@ -61,16 +74,20 @@ class LongDoubleTwin {
     return total;
   }
   Real force(const std::vector<Real>& x, Real t) const {
-    const Real slip = sum(x, shape_.size()) - bow_.velocity;
+    const Real slip = sum(x, shape_.size()) - bow_.velocity_at(t);
     if (!sticking_) {
-      return -side_ * (bow_.dynamic_force + bow_.force_drop * std::exp(-bow_.decay * side_ * slip));
+      const Real excess = bow_.force_drop * std::exp(-bow_.decay * side_ * slip);
+      return -side_ * bow_.load_at(t) * (bow_.dynamic_force + excess);
     }
-    const Real elongation = sum(x, 0) - y_attach_ - bow_.velocity * (t - t_attach_);
+    const Real elongation = sum(x, 0) - y_attach_ - (bow_.travel(t) - bow_.travel(t_attach_));
     return -bow_.stiffness * elongation - bow_.damping * slip;
   }
   bool past_switch(const std::vector<Real>& x, Real t) const {
-    if (sticking_) return std::abs(force(x, t)) > bow_.dynamic_force + bow_.force_drop;
-    return side_ * (sum(x, shape_.size()) - bow_.velocity) < 0.0L;
+    if (bow_.load_at(t) == 0.0L) return sticking_;
+    if (sticking_) {
+      return std::abs(force(x, t)) > bow_.load_at(t) * (bow_.dynamic_force + bow_.force_drop);
+    }
+    return side_ * (sum(x, shape_.size()) - bow_.velocity_at(t)) < 0.0L;
   }
   void switch_over() {
     ++switches_;
@@ -79,7 +96,7 @@ class LongDoubleTwin {
       y_attach_ = displacement();
       t_attach_ = time_;
     } else {
-      side_ = velocity() < bow_.velocity ? -1.0L : 1.0L;
+      side_ = velocity() < bow_.velocity_at(time_) ? -1.0L : 1.0L;
     }
   }
   std::vector<Real> rate(const std::vector<Real>& x, Real t) const {
