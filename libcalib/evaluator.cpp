@@ -14,6 +14,10 @@ void require_valid(const Variable& variable) {
                      std::isfinite(variable.lower) && std::isfinite(variable.upper),
                  "initial value {:g} {} of \"{}\" must lie in its finite bounds [{:g}, {:g}]",
                  variable.initial, variable.unit, variable.name, variable.lower, variable.upper);
+  MODCAL_REQUIRE(variable.lower < variable.upper,
+                 "\"{}\" has no room between its bounds {:g} and {:g} {}: leave it out of the free "
+                 "parameters or widen its range",
+                 variable.name, variable.lower, variable.upper, variable.unit);
   MODCAL_REQUIRE(variable.scale > 0.0 && std::isfinite(variable.scale),
                  "scale {:g} of \"{}\" must be > 0", variable.scale, variable.name);
 }
@@ -86,6 +90,18 @@ void Evaluator::note(double value) {
 }
 
 void Evaluator::evaluate(std::span<const double> z, const ObjectiveOutputs& outputs) {
+  const Capabilities known = function_.capabilities();
+  const bool gradient_missing = outputs.gradient && !known.gradient;
+  if (gradient_missing && known.least_squares) {
+    gradient_from_residuals(z, outputs);
+  } else if (gradient_missing || (outputs.jacobian && !known.least_squares)) {
+    evaluate_with_differences(z, outputs);
+  } else {
+    evaluate_given(z, outputs);
+  }
+}
+
+void Evaluator::evaluate_given(std::span<const double> z, const ObjectiveOutputs& outputs) {
   assert(z.size() == dimension());
   require_budget(1);
   if (!all_finite(z.data(), z.size())) stop(StopReason::kNotFinite);

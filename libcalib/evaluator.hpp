@@ -24,7 +24,8 @@ class Evaluator {
   struct Stopped {};
 
   /// Throws InvalidInput for an invalid budget and for variables whose bounds do not hold the
-  /// initial value or whose scale is not positive. function must outlive the evaluator.
+  /// initial value or leave no room, or whose scale is not positive. function must outlive the
+  /// evaluator.
   Evaluator(const ObjectiveFunction& function, std::span<const Variable> variables,
             const Budget& budget, SecondsClock clock = steady_seconds());
 
@@ -42,6 +43,11 @@ class Evaluator {
   void begin();
   /// Evaluates at z; outputs in scaled variables. Throws Stopped where the search is over, and what
   /// the objective throws.
+  ///
+  /// A gradient the objective does not give is Jᵀr where it has a Jacobian; else it and a Jacobian
+  /// are differences over h = ε^⅓ max(1, |z_i|), ε the machine's: central ones, wrong by h² times
+  /// a third derivative, or (−3 f(z) + 4 f(z ± h) − f(z ± 2h))/(±2h) where a bound is nearer than
+  /// h. They cost two evaluations a variable, which count like any other.
   void evaluate(std::span<const double> z, const ObjectiveOutputs& outputs);
   double value(std::span<const double> z);
   /// The same for callbacks of libraries, which exceptions must not cross and infinite values
@@ -70,12 +76,22 @@ class Evaluator {
   OptimizationResult finish(StopReason reason);
 
  private:
+  /// What the difference rule applies to: the value (one number) or the residuals.
+  using Sample = std::function<void(std::span<const double> z, double* numbers)>;
+
   [[noreturn]] void stop(StopReason reason);
   void require_budget(std::int64_t evaluations);
   double seconds() const { return clock_() - begin_; }
   void to_user(std::span<const double> z);
   void to_scaled(const ObjectiveOutputs& outputs) const;
   void note(double value);
+  /// Evaluates what the objective itself gives.
+  void evaluate_given(std::span<const double> z, const ObjectiveOutputs& outputs);
+  void evaluate_with_differences(std::span<const double> z, const ObjectiveOutputs& outputs);
+  void gradient_from_residuals(std::span<const double> z, const ObjectiveOutputs& outputs);
+  /// Slopes of `count` numbers, row-major count × n, from their values at z.
+  void difference(std::span<const double> z, const Sample& sample, std::span<const double> numbers,
+                  double* slopes);
 
   const ObjectiveFunction& function_;
   std::vector<Variable> variables_;

@@ -12,9 +12,10 @@ void ObjectiveFunction::evaluate(std::span<const double> x, const ObjectiveOutpu
   const Capabilities known = capabilities();
   MODCAL_REQUIRE(outputs.gradient == nullptr || known.gradient, "objective \"{}\" has no gradient",
                  name());
-  MODCAL_REQUIRE(
-      (outputs.residuals == nullptr && outputs.jacobian == nullptr) || known.least_squares,
-      "objective \"{}\" is no sum of squares: it has no residuals", name());
+  MODCAL_REQUIRE(outputs.residuals == nullptr || known.sum_of_squares(),
+                 "objective \"{}\" is no sum of squares: it has no residuals", name());
+  MODCAL_REQUIRE(outputs.jacobian == nullptr || known.least_squares,
+                 "objective \"{}\" has no Jacobian", name());
   do_evaluate(x, outputs);
 }
 

@@ -16,6 +16,10 @@ struct Capabilities {
   bool gradient = false;
   /// Residuals r with value = ½ ‖r‖², and their Jacobian.
   bool least_squares = false;
+  /// The residuals without their Jacobian.
+  bool residuals = false;
+
+  bool sum_of_squares() const { return least_squares || residuals; }
 };
 
 /// Where an evaluation writes. A null pointer means "not asked for".

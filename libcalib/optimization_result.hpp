@@ -34,6 +34,8 @@ struct OptimizationResult {
   double value = std::numeric_limits<double>::quiet_NaN();
   double initial_value = std::numeric_limits<double>::quiet_NaN();
   std::int64_t evaluations = 0;
+  /// How many of them went into slopes that the objective does not give.
+  std::int64_t difference_evaluations = 0;
   std::int64_t loops = 0;  ///< of a search that repeats itself over the variables
   double seconds = 0.0;
   std::vector<TracePoint> trace;

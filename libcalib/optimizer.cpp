@@ -5,8 +5,10 @@
 namespace modcal {
 namespace {
 
+// A gradient or a Jacobian that the objective does not give is formed by differences; residuals
+// cannot be made up.
 bool satisfied(const Capabilities& needs, const Capabilities& has) {
-  return (has.gradient || !needs.gradient) && (has.least_squares || !needs.least_squares);
+  return has.sum_of_squares() || !needs.sum_of_squares();
 }
 
 std::string optimizers_for(const Capabilities& has) {
@@ -25,12 +27,10 @@ std::string Optimizer::explain_unsatisfied(const ObjectiveFunction& function) co
   const Capabilities needed = needs();
   const Capabilities known = function.capabilities();
   if (satisfied(needed, known)) return {};
-  const bool residuals_missing = needed.least_squares && !known.least_squares;
   return fmt::format(
-      "optimizer \"{}\" needs {}, which objective \"{}\" does not have; with their default options "
-      "these optimizers can minimize it: {}",
-      name(), residuals_missing ? "residuals with their Jacobian" : "a gradient", function.name(),
-      optimizers_for(known));
+      "optimizer \"{}\" needs residuals, which objective \"{}\" does not have: it is no sum of "
+      "squares; with their default options these optimizers can minimize it: {}",
+      name(), function.name(), optimizers_for(known));
 }
 
 OptimizationResult Optimizer::minimize(const ObjectiveFunction& function,

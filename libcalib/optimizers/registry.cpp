@@ -2,6 +2,7 @@
 
 #include "libcalib/optimizers/ceres_optimizer.hpp"
 #include "libcalib/optimizers/grid.hpp"
+#include "libcalib/optimizers/gsl_optimizer.hpp"
 #include "libcalib/optimizers/mode_by_mode.hpp"
 #include "libcalib/optimizers/nlopt_optimizer.hpp"
 
@@ -11,6 +12,7 @@ Registry<Optimizer> Optimizer::registry() {
   static constexpr std::array kTable = {
       entry_of<Optimizer, CeresOptimizer>("ceres", "trust-region least squares of Ceres Solver"),
       entry_of<Optimizer, Grid>("grid", "every point of a regular grid, for few parameters"),
+      entry_of<Optimizer, GslOptimizer>("gsl", "an algorithm of the GNU Scientific Library"),
       entry_of<Optimizer, ModeByMode>(
           "mode_by_mode", "the paper's systematic search, one parameter after the other"),
       entry_of<Optimizer, NloptOptimizer>("nlopt", "an algorithm of NLopt, by its name"),

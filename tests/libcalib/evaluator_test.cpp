@@ -29,6 +29,41 @@ TEST(Evaluator, ScalesVariablesGradientAndJacobian) {
   EXPECT_EQ(jacobian[3], 1.0);
 }
 
+TEST(Evaluator, FormsMissingSlopesByDifferencesAndCountsThem) {
+  const Rosenbrock full;
+  const Without values(full, {});
+  const Point z = {-1.2, 1.0};
+  // The second variable sits on its bound.
+  Evaluator exact(full, box(0.0, 0.0, -2.0, 1.0), {});
+  Evaluator by_values(values, box(0.0, 0.0, -2.0, 1.0), {});
+  double expected[2], gradient[2];
+  exact.evaluate(z, {.gradient = expected});
+  full.calls = 0;
+  by_values.evaluate(z, {.gradient = gradient});
+  EXPECT_EQ(full.calls, 5);
+  const OptimizationResult result = by_values.finish(StopReason::kConverged);
+  EXPECT_EQ(result.evaluations, 5);
+  EXPECT_EQ(result.difference_evaluations, 4);
+  // h = 6.1e-6·1.2: h²/6 times the third derivative, 1200·1.2, is 1e-8; rounding ε·12/h is 5e-10.
+  EXPECT_NEAR(gradient[0], expected[0], 3e-8);
+  // Quadratic in y: the one-sided rule is exact but for rounding, 8·ε·12/h.
+  EXPECT_NEAR(gradient[1], expected[1], 1e-8);
+
+  const Without residuals(full, {.residuals = true});
+  Evaluator by_residuals(residuals, box(0.0, 0.0, -2.0, 1.0), {});
+  double jacobian[4], exact_jacobian[4], r[2];
+  exact.evaluate(z, {.residuals = r, .jacobian = exact_jacobian});
+  by_residuals.evaluate(z, {.gradient = gradient, .jacobian = jacobian});
+  for (int k = 0; k < 4; ++k) EXPECT_NEAR(jacobian[k], exact_jacobian[k], 1e-8);
+  EXPECT_NEAR(gradient[0], expected[0], 3e-8);
+
+  const Without no_gradient(full, {.least_squares = true});
+  Evaluator by_jacobian(no_gradient, box(0.0, 0.0, -2.0, 1.0), {});
+  by_jacobian.evaluate(z, {.gradient = gradient});
+  EXPECT_DOUBLE_EQ(gradient[0], expected[0]);
+  EXPECT_EQ(by_jacobian.finish(StopReason::kConverged).evaluations, 1);
+}
+
 TEST(Evaluator, PutsPointsOutsideTheBoxOntoIt) {
   const Quadratic quadratic;
   Evaluator evaluator(quadratic, box(0.0, 0.0, -1.0, 1.0), {});
@@ -151,6 +186,7 @@ TEST(Evaluator, RefusesWhatCannotBeSearched) {
   const Quadratic quadratic;
   EXPECT_THROW(Evaluator(quadratic, box(5.0, 0.0, -1.0, 1.0), {}), InvalidInput);
   EXPECT_THROW(Evaluator(quadratic, box(0.0, 0.0, -1.0, 1.0, 0.0), {}), InvalidInput);
+  EXPECT_THROW(Evaluator(quadratic, box(1.0, 1.0, 1.0, 1.0), {}), InvalidInput);
   EXPECT_THROW(Evaluator(quadratic, box(0.0, 0.0, -1.0, 1.0), {.evaluations = 0}), InvalidInput);
   EXPECT_THROW(Evaluator(quadratic, box(0.0, 0.0, -1.0, 1.0), {.seconds = 0.0}), InvalidInput);
   const auto one = box(0.0, 0.0, -1.0, 1.0);

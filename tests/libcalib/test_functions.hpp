@@ -61,6 +61,104 @@ class Rosenbrock final : public LeastSquaresProblem {
   }
 };
 
+/// Powell's (1970) badly scaled function, minimum 0 at (1.098159e-5, 9.106147) (Moré, Garbow and
+/// Hillstrom, 1981, problem 3).
+class PowellBadlyScaled final : public LeastSquaresProblem {
+  std::array<double, 2> residuals(double x, double y) const override {
+    return {1e4 * x * y - 1.0, std::exp(-x) + std::exp(-y) - 1.0001};
+  }
+  std::array<double, 4> jacobian(double x, double y) const override {
+    return {1e4 * y, 1e4 * x, -std::exp(-x), -std::exp(-y)};
+  }
+};
+
+/// Powell's (1962) singular function, minimum 0 at the origin, where its Hessian is singular.
+class PowellSingular final : public ObjectiveFunction {
+ public:
+  std::string_view name() const override { return "powell_singular"; }
+  std::size_t dimension() const override { return 4; }
+  std::size_t residual_count() const override { return 4; }
+  Capabilities capabilities() const override { return {.gradient = true, .least_squares = true}; }
+
+ private:
+  void do_evaluate(std::span<const double> x, const ObjectiveOutputs& outputs) const override {
+    const double a = x[1] - 2.0 * x[2];
+    const double b = x[0] - x[3];
+    const double root5 = std::sqrt(5.0), root10 = std::sqrt(10.0);
+    const std::array<double, 4> r = {x[0] + 10.0 * x[1], root5 * (x[2] - x[3]), a * a,
+                                     root10 * b * b};
+    const std::array<double, 16> j = {1.0,      10.0, 0.0,
+                                      0.0,  //
+                                      0.0,      0.0,  root5,
+                                      -root5,   0.0,  2.0 * a,
+                                      -4.0 * a, 0.0,  2.0 * root10 * b,
+                                      0.0,      0.0,  -2.0 * root10 * b};
+    if (outputs.value) *outputs.value = 0.0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (outputs.value) *outputs.value += 0.5 * r[i] * r[i];
+      if (outputs.residuals) outputs.residuals[i] = r[i];
+      if (outputs.gradient) outputs.gradient[i] = 0.0;
+      for (std::size_t k = 0; outputs.gradient && k < 4; ++k) {
+        outputs.gradient[i] += j[4 * k + i] * r[k];
+      }
+    }
+    if (outputs.jacobian) std::copy(j.begin(), j.end(), outputs.jacobian);
+  }
+};
+
+/// Sum of two damped sinusoids A_k exp(−d_k t) sin(ω_k t + φ_k) sampled 200 times over 2 s, fitted
+/// in (ω_1, d_1, ω_2, d_2); minimum 0 at the truth below.
+class DampedSinusoids final : public ObjectiveFunction {
+ public:
+  static constexpr std::array<double, 4> kTruth = {12.0, 0.8, 19.0, 1.5};
+  std::string_view name() const override { return "damped_sinusoids"; }
+  std::size_t dimension() const override { return 4; }
+  std::size_t residual_count() const override { return 200; }
+  Capabilities capabilities() const override { return {.gradient = true, .least_squares = true}; }
+
+ private:
+  static double term(std::span<const double> x, std::size_t k, double t, double quarter) {
+    const double amplitude = k == 0 ? 1.0 : 0.7;
+    return amplitude * std::exp(-x[2 * k + 1] * t) *
+           std::sin(x[2 * k] * t + 0.4 + 0.5 * std::numbers::pi * quarter);
+  }
+  void do_evaluate(std::span<const double> x, const ObjectiveOutputs& outputs) const override {
+    double value = 0.0;
+    if (outputs.gradient) std::fill_n(outputs.gradient, 4, 0.0);
+    for (std::size_t j = 0; j < 200; ++j) {
+      const double t = 0.01 * static_cast<double>(j);
+      double r = 0.0;
+      for (std::size_t k = 0; k < 2; ++k) r += term(x, k, t, 0.0) - term(kTruth, k, t, 0.0);
+      value += 0.5 * r * r;
+      if (outputs.residuals) outputs.residuals[j] = r;
+      for (std::size_t i = 0; i < 4; ++i) {
+        const double slope = i % 2 == 0 ? t * term(x, i / 2, t, 1.0) : -t * term(x, i / 2, t, 0.0);
+        if (outputs.jacobian) outputs.jacobian[4 * j + i] = slope;
+        if (outputs.gradient) outputs.gradient[i] += slope * r;
+      }
+    }
+    if (outputs.value) *outputs.value = value;
+  }
+};
+
+/// The outputs of another function, save those that are left out.
+class Without final : public ObjectiveFunction {
+ public:
+  Without(const ObjectiveFunction& function, Capabilities kept)
+      : function_(function), kept_(kept) {}
+  std::string_view name() const override { return "without"; }
+  std::size_t dimension() const override { return function_.dimension(); }
+  std::size_t residual_count() const override { return function_.residual_count(); }
+  Capabilities capabilities() const override { return kept_; }
+
+ private:
+  void do_evaluate(std::span<const double> x, const ObjectiveOutputs& outputs) const override {
+    function_.evaluate(x, outputs);
+  }
+  const ObjectiveFunction& function_;
+  Capabilities kept_;
+};
+
 /// Branin's function, minimum 5/(4π) = 0.397887… at (−π, 12.275), (π, 2.275), (3π, 2.475).
 class Branin final : public ObjectiveFunction {
  public:
