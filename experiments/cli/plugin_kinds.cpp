@@ -10,6 +10,8 @@
 #include "libinverse/regularizer.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/dynamics/friction/friction_law.hpp"
+#include "libsim/dynamics/gesture.hpp"
+#include "libsim/dynamics/initial/initial_motion.hpp"
 #include "libsim/dynamics/simulator.hpp"
 #include "libsim/model/damping.hpp"
 
@@ -33,6 +35,8 @@ std::span<const PluginKind> plugin_kinds() {
       kind_of<DampingLaw>("modal damping of the string"),
       kind_of<Experiment>("what a YAML file describes: its kind"),
       kind_of<FrictionLaw>("friction between bow and string"),
+      kind_of<Gesture>("how the bow's velocity or force changes with time"),
+      kind_of<InitialMotion>("how the string moves at first"),
       kind_of<Objective>("what a calibration minimizes"),
       kind_of<Optimizer>("how a calibration minimizes it"),
       kind_of<ParameterChoice>("how much regularization suits the data"),

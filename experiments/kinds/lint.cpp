@@ -69,6 +69,12 @@ std::vector<Finding> lint_scene(const Scene& scene, const Choice<Simulator>& sim
                                 const Measurement& measurement) {
   std::vector<Finding> findings;
   lint_string("scene.string", scene.string, scene.bow.position, "scene.bow", findings);
+  if (is_known(scene.string) && findings.empty()) {
+    lint_making(
+        "scene.initial", [&] { initial_state(scene, make_modal_basis(scene.string)); }, findings);
+  }
+  lint_making(
+      "scene.bow", [&] { bow_motion(scene.bow, scene.duration); }, findings);
   lint_rate(scene.string, measurement.sample_rate, "scene.string", findings);
   lint_making(
       "scene.friction", [&] { scene.friction.make(); }, findings);

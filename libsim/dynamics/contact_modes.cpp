@@ -1,5 +1,6 @@
 #include "libsim/dynamics/contact_modes.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -10,6 +11,7 @@ namespace modcal {
 namespace {
 
 constexpr double kNodeTolerance = 1e-13;
+constexpr double kNodeShape = 1e-20;
 
 void require_matching(const ModalState& initial, std::size_t modes) {
   for (const std::vector<double>* part : {&initial.displacement, &initial.velocity}) {
@@ -37,19 +39,12 @@ ContactModes contact_modes(const ModalBasis& basis, double contact, const ModalS
   const std::vector<double> right = reaction_gains(basis, End::kRight);
   ContactModes modes;
   for (std::size_t n = 0; n < basis.size(); ++n) {
-    const double phi = shape[n];
-    if (is_node(phi)) {
-      MODCAL_REQUIRE(value_or_zero(initial.displacement, n) == 0.0 &&
-                         value_or_zero(initial.velocity, n) == 0.0,
-                     "mode {} has a node at the contact: the contact model cannot carry its "
-                     "initial motion; move the contact point or set it to 0",
-                     n + 1);
-      continue;
-    }
-    const double decay = basis.zeta[n] * basis.omega[n];
-    const double damped = basis.omega[n] * std::sqrt(1.0 - basis.zeta[n] * basis.zeta[n]);
     const double q = value_or_zero(initial.displacement, n);
     const double p = value_or_zero(initial.velocity, n);
+    if (is_node(shape[n]) && q == 0.0 && p == 0.0) continue;
+    const double phi = is_node(shape[n]) ? kNodeShape : shape[n];
+    const double decay = basis.zeta[n] * basis.omega[n];
+    const double damped = basis.omega[n] * std::sqrt(1.0 - basis.zeta[n] * basis.zeta[n]);
     modes.pole.emplace_back(-decay, damped);
     modes.drive.push_back(phi * phi / basis.mass[n]);
     modes.quadrature.push_back(decay / damped);
@@ -58,9 +53,10 @@ ContactModes contact_modes(const ModalBasis& basis, double contact, const ModalS
     modes.right_gain.push_back(right[n] / (phi * damped));
     modes.initial.emplace_back(phi * (p + decay * q), phi * damped * q);
   }
-  MODCAL_REQUIRE(modes.size() > 0,
-                 "every mode has a node at the contact point {:g} m: nothing "
-                 "can move; move the bow",
+  MODCAL_REQUIRE(std::any_of(modes.drive.begin(), modes.drive.end(),
+                             [](double drive) { return drive > kNodeShape; }),
+                 "every mode has a node at the contact point {:g} m: nothing can move there; move "
+                 "the bow",
                  contact);
   return modes;
 }

@@ -14,7 +14,9 @@ namespace modcal {
 /// λ = −ζω + iω_d, ω_d = ω √(1 − ζ²): displacement of the contact y = Σ Im Z/ω_d, velocity
 /// v = Σ (Re Z − ζω/ω_d Im Z), reaction R_r = Σ g_r/(φ ω_d) Im Z.
 /// Modes with a node at the contact (|φ_n| ≤ 1e-13, the rounding of nπx_c/L for n up to 1000) are
-/// left out unless they move initially: no force reaches them and the contact does not see them.
+/// left out where they are at rest: no force reaches them and the contact does not see them. One
+/// that moves initially is carried with φ = 1e-20, so that it decays freely and reaches the ends,
+/// while its part of the contact's motion and of the force is below rounding.
 struct ContactModes {
   std::vector<std::complex<double>> pole;     ///< λ [1/s]
   std::vector<double> drive;                  ///< φ²/m [1/kg]

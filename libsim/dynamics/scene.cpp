@@ -2,23 +2,6 @@
 
 namespace modcal {
 
-void Bow::visit(OptionVisitor& visitor) {
-  visitor.number({.key = "position",
-                  .meaning = "contact point x_c, from the end x = 0",
-                  .unit = "m",
-                  .range = Range::positive(),
-                  .required = true},
-                 position);
-  visitor.number(
-      {.key = "velocity", .meaning = "bow velocity", .unit = "m/s", .range = Range::any()},
-      velocity);
-  visitor.number({.key = "normal_force",
-                  .meaning = "force that presses the bow on the string",
-                  .unit = "N",
-                  .range = Range::non_negative()},
-                 normal_force);
-}
-
 void Scene::visit(OptionVisitor& visitor) {
   visitor.section({.key = "string", .meaning = "the string"}, string);
   visitor.section({.key = "bow", .meaning = "the bow stroke"}, bow);
@@ -28,6 +11,12 @@ void Scene::visit(OptionVisitor& visitor) {
                   .unit = "s",
                   .range = Range::positive()},
                  duration);
+  visitor.plugin({.key = "initial", .meaning = "motion of the string at t = 0"}, start);
+}
+
+ModalState initial_state(const Scene& scene, const ModalBasis& basis) {
+  if (!scene.initial.displacement.empty() || !scene.initial.velocity.empty()) return scene.initial;
+  return scene.start.make()->state(basis);
 }
 
 }  // namespace modcal

@@ -36,7 +36,6 @@ Simulation Simulator::simulate(const Scene& scene, double sample_rate,
   MODCAL_REQUIRE(scene.bow.position > 0.0 && scene.bow.position < length,
                  "bow position {:g} m is not inside the string: it must lie in (0, {:g}) m",
                  scene.bow.position, length);
-  MODCAL_REQUIRE(std::isfinite(scene.bow.velocity), "bow velocity must be a finite number");
   sample_count(scene.duration, sample_rate);
   return run(scene, sample_rate, outputs);
 }

@@ -24,7 +24,8 @@ class FrictionLaw {
   static Registry<FrictionLaw> registry();
 
   virtual ~FrictionLaw() = default;
-  /// The sliding law for the normal force F_N ≥ 0 [N].
+  /// The sliding law for the normal force F_N ≥ 0 [N], proportional to F_N; for F_N = 1 N it is the
+  /// friction coefficient.
   SlidingLaw sliding(double normal_force) const;
   /// Largest force that adherence can carry, μ_S F_N [N].
   double static_limit(double normal_force) const;

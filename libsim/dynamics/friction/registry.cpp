@@ -1,6 +1,7 @@
 #include <array>
 
 #include "libsim/dynamics/friction/coulomb_exponential.hpp"
+#include "libsim/dynamics/friction/hyperbolic.hpp"
 
 namespace modcal {
 
@@ -8,6 +9,8 @@ Registry<FrictionLaw> FrictionLaw::registry() {
   static constexpr std::array kTable = {
       entry_of<FrictionLaw, CoulombExponential>(
           "coulomb_exponential", "Coulomb friction falling exponentially with the sliding speed"),
+      entry_of<FrictionLaw, Hyperbolic>(
+          "hyperbolic", "Coulomb friction falling as a hyperbola of the sliding speed"),
   };
   return kTable;
 }

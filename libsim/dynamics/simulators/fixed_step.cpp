@@ -34,12 +34,12 @@ void store_first(Signal& signal, double value) {
   if (!signal.samples.empty()) signal.samples[0] = value;
 }
 
-struct InitialMotion {
+struct ContactMotion {
   double displacement = 0.0, velocity = 0.0, left = 0.0, right = 0.0;
 };
 
-InitialMotion initial_motion(const ContactModes& modes) {
-  InitialMotion motion;
+ContactMotion initial_motion(const ContactModes& modes) {
+  ContactMotion motion;
   for (std::size_t n = 0; n < modes.size(); ++n) {
     const std::complex<double> z = modes.initial[n];
     motion.displacement += modes.compliance[n] * z.imag();
@@ -60,7 +60,7 @@ double initial_force(const StepLoop& loop) {
       loop.law);
 }
 
-void store_initial(Simulation& result, const InitialMotion& motion, double force) {
+void store_initial(Simulation& result, const ContactMotion& motion, double force) {
   store_first(result.displacement, motion.displacement);
   store_first(result.velocity, motion.velocity);
   store_first(result.force, force);
@@ -84,17 +84,17 @@ Simulation simulate_fixed_step(const Scene& scene, double sample_rate, const Out
                                WeightsOfPole weights_of_pole) {
   const StepPlan plan = plan_steps(wanted_time_step, sample_rate);
   const std::size_t count = sample_count(scene.duration, sample_rate);
-  const ModalBasis basis = make_modal_basis(scene.string);
-  const ContactModes modes = contact_modes(basis, scene.bow.position, scene.initial);
+  const BowMotion bow = steady_motion(scene, "a fixed-step simulator");
+  const ContactModes modes = scene_modes(scene);
   const auto friction = scene.friction.make();
-  const InitialMotion motion = initial_motion(modes);
+  const ContactMotion motion = initial_motion(modes);
 
   StepLoop loop{.timing = timing,
                 .time_step = plan.time_step,
                 .steps_per_sample = plan.steps_per_sample,
                 .samples = count,
-                .contact = contact_parameters(scene, *friction, modes.effective_mass()),
-                .law = friction->sliding(scene.bow.normal_force),
+                .contact = contact_parameters(bow, *friction, modes.effective_mass()),
+                .law = friction->sliding(bow.normal_force.at(0.0)),
                 .initial_displacement = motion.displacement,
                 .initial_velocity = motion.velocity,
                 .targets = {}};

@@ -49,23 +49,23 @@ Simulation ModalEvent::run(const Scene& scene, double sample_rate,
   const double wanted = std::isnan(options_.max_step) ? 1.0 / sample_rate : options_.max_step;
   const StepPlan plan = plan_steps(wanted, sample_rate);
   const std::size_t count = sample_count(scene.duration, sample_rate);
-  const ContactModes modes =
-      contact_modes(make_modal_basis(scene.string), scene.bow.position, scene.initial);
+  const BowMotion bow = steady_motion(scene, "modal_event");
+  const ContactModes modes = scene_modes(scene);
   const auto friction = scene.friction.make();
 
   Simulation result = empty_simulation(count, sample_rate, outputs);
-  const event::EventLoop loop{
-      .contact = contact_parameters(scene, *friction, modes.effective_mass()),
-      .law = friction->sliding(scene.bow.normal_force),
-      .attach = options_.attach == "continuous" ? event::AttachRule::kContinuous
-                                                : event::AttachRule::kLiteral,
-      .nodes = static_cast<int>(options_.nodes),
-      .slope_number = options_.slope_number,
-      .grid_step = plan.time_step,
-      .steps_per_sample = plan.steps_per_sample,
-      .samples = count,
-      .targets = targets_of(result)};
-  event::EventState state = event::initial_state(modes, scene.bow.velocity);
+  const event::EventLoop loop{.contact = contact_parameters(bow, *friction, modes.effective_mass()),
+                              .law = friction->sliding(bow.normal_force.at(0.0)),
+                              .attach = options_.attach == "continuous"
+                                            ? event::AttachRule::kContinuous
+                                            : event::AttachRule::kLiteral,
+                              .nodes = static_cast<int>(options_.nodes),
+                              .slope_number = options_.slope_number,
+                              .grid_step = plan.time_step,
+                              .steps_per_sample = plan.steps_per_sample,
+                              .samples = count,
+                              .targets = targets_of(result)};
+  event::EventState state = event::initial_state(modes, bow.velocity.at(0.0));
   const event::EventCounts counts = event::run_event_loop(loop, modes, state);
 
   if (counts.failure) {

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "libsim/base/error.hpp"
+
 namespace modcal {
 namespace {
 
@@ -15,12 +17,27 @@ double* target_of(Signal& signal) {
 
 }  // namespace
 
-ContactParameters contact_parameters(const Scene& scene, const FrictionLaw& friction,
+ContactModes scene_modes(const Scene& scene) {
+  const ModalBasis basis = make_modal_basis(scene.string);
+  return contact_modes(basis, scene.bow.position, initial_state(scene, basis));
+}
+
+BowMotion steady_motion(const Scene& scene, std::string_view simulator) {
+  BowMotion motion = bow_motion(scene.bow, scene.duration);
+  MODCAL_REQUIRE(motion.is_steady(),
+                 "the bow's velocity goes from {:g} to {:g} m/s and its force from {:g} to {:g} N, "
+                 "but {} has a steady bow only: use steady gestures or another simulator",
+                 motion.velocity.lowest(), motion.velocity.highest(), motion.normal_force.lowest(),
+                 motion.normal_force.highest(), simulator);
+  return motion;
+}
+
+ContactParameters contact_parameters(const BowMotion& motion, const FrictionLaw& friction,
                                      double effective_mass) {
   const Adherence adherence = friction.adherence();
   const bool near_critical = std::isnan(adherence.damping);
-  return {.bow_velocity = scene.bow.velocity,
-          .static_limit = friction.static_limit(scene.bow.normal_force),
+  return {.bow_velocity = motion.velocity.at(0.0),
+          .static_limit = friction.static_limit(motion.normal_force.at(0.0)),
           .stiffness = adherence.stiffness,
           .damping = near_critical ? 2.0 * std::sqrt(adherence.stiffness * effective_mass)
                                    : adherence.damping};

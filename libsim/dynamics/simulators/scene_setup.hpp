@@ -6,8 +6,16 @@
 
 namespace modcal {
 
-/// Contact of the scene; a near-critical adherence damping becomes C_a = 2 √(K_a m_eff).
-ContactParameters contact_parameters(const Scene& scene, const FrictionLaw& friction,
+/// The modes of the scene's string as the contact sees them.
+ContactModes scene_modes(const Scene& scene);
+
+/// Motion of a bow that must be steady. Throws InvalidInput for any other, in the name of the
+/// simulator.
+BowMotion steady_motion(const Scene& scene, std::string_view simulator);
+
+/// Contact of the scene under a bow that moves as at t = 0; a near-critical adherence damping
+/// becomes C_a = 2 √(K_a m_eff).
+ContactParameters contact_parameters(const BowMotion& motion, const FrictionLaw& friction,
                                      double effective_mass);
 
 /// A result whose asked-for signals have `count` zeros.

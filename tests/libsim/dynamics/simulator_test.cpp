@@ -8,6 +8,8 @@
 
 #include "libsim/base/error.hpp"
 #include "libsim/dynamics/friction/coulomb_exponential.hpp"
+#include "libsim/dynamics/gestures/ramp_gesture.hpp"
+#include "libsim/dynamics/initial/pluck.hpp"
 #include "libsim/dynamics/simulators/modal_exact.hpp"
 #include "libsim/dynamics/simulators/newmark_explicit.hpp"
 #include "libsim/model/constant_damping.hpp"
@@ -67,6 +69,36 @@ TEST(ModalExact, FreeDecayOfEveryModeIsTheClosedForm) {
     }
     // 20 000 products of modulus ≤ 1, each with a few roundings of 1.1e-16.
     EXPECT_NEAR(run.displacement.samples[k], expected, 20000 * 5e-16 * scale);
+  }
+}
+
+// A pluck with the bow off the string: every mode, those with a node at the contact included, rings
+// down as in the closed form, and the reactions show it.
+TEST(Simulators, APluckedStringDecaysFreely) {
+  Scene scene = paper_scene();  // x_c = L/11: modes 11, 22, 33 and 44 have a node there
+  scene.bow.normal_force = 0.0;
+  scene.duration = 0.05;
+  scene.start = Choice<InitialMotion>::of<Pluck>(
+      "pluck", Pluck::Options{.position = 0.07, .displacement = 2e-3, .width = 4e-3});
+  const ModalBasis basis = make_modal_basis(scene.string);
+  const ModalState start = initial_state(scene, basis);
+  const auto right = reaction_gains(basis, End::kRight);
+  const Simulation run = exact_with(1e-5).simulate(scene, 50000.0, OutputRequest::all());
+  double scale = 0.0;
+  for (const double r : run.right_reaction.samples) scale = std::max(scale, std::abs(r));
+  EXPECT_EQ(run.modes_moved, 49u);  // 0.07 m = 7 L/33 is a node of mode 33, which rests
+  for (std::size_t k = 0; k < run.right_reaction.size(); k += 13) {
+    const double t = static_cast<double>(k) / 50000.0;
+    double expected = 0.0;
+    for (std::size_t n = 0; n < 50; ++n) {
+      const double decay = basis.zeta[n] * basis.omega[n];
+      const double damped = basis.omega[n] * std::sqrt(1 - basis.zeta[n] * basis.zeta[n]);
+      expected += right[n] * start.displacement[n] * std::exp(-decay * t) *
+                  (std::cos(damped * t) + decay / damped * std::sin(damped * t));
+    }
+    // 5000 products of modulus ≤ 1 a mode and 50 modes, each with a few roundings of 1.1e-16.
+    EXPECT_NEAR(run.right_reaction.samples[k], expected, 5000 * 5e-16 * scale);
+    EXPECT_EQ(run.force.samples[k], 0.0);
   }
 }
 
@@ -308,6 +340,10 @@ TEST(Simulators, RefuseWhatTheyCannotDo) {
   Scene steep = paper_scene();
   set_friction(steep, {.decay = 500.0});
   EXPECT_THROW(exact_with(1e-5).simulate(steep, 51200.0, {}), InvalidInput);
+  Scene pulling = paper_scene();
+  pulling.bow.force_gesture =
+      Choice<Gesture>::of<RampGesture>("ramp", RampGesture::Options{.to = -1.0});
+  EXPECT_THROW(simulator->simulate(pulling, 51200.0, {}), InvalidInput);
 }
 
 TEST(NewmarkExplicit, SaysSoWhenItDiverges) {

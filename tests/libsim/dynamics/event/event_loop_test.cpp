@@ -21,7 +21,8 @@ ContactModes modes_of(const Scene& scene) {
 
 EventLoop loop_for(const Scene& scene, const ContactModes& modes, std::size_t samples) {
   const auto friction = scene.friction.make();
-  return {.contact = contact_parameters(scene, *friction, modes.effective_mass()),
+  return {.contact = contact_parameters(bow_motion(scene.bow, scene.duration), *friction,
+                                        modes.effective_mass()),
           .law = friction->sliding(scene.bow.normal_force),
           .grid_step = kStep,
           .samples = samples};

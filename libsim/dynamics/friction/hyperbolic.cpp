@@ -1,0 +1,41 @@
+#include "libsim/dynamics/friction/hyperbolic.hpp"
+
+#include "libsim/base/error.hpp"
+
+namespace modcal {
+
+void Hyperbolic::Options::visit(OptionVisitor& visitor) {
+  visitor.number({.key = "static",
+                  .meaning = "static friction coefficient mu_S",
+                  .unit = "1",
+                  .range = Range::non_negative()},
+                 static_coefficient);
+  visitor.number({.key = "dynamic",
+                  .meaning = "dynamic friction coefficient mu_D at high speed, at most mu_S",
+                  .unit = "1",
+                  .range = Range::non_negative()},
+                 dynamic_coefficient);
+  visitor.number({.key = "half_speed",
+                  .meaning = "sliding speed v0 at which half of the fall has happened",
+                  .unit = "m/s",
+                  .range = Range::positive()},
+                 half_speed);
+  visitor.section({.key = "adherence", .meaning = "spring and damper while sticking"}, adherence);
+}
+
+Hyperbolic::Hyperbolic(const Options& options) : options_(options) {
+  MODCAL_REQUIRE(options.dynamic_coefficient <= options.static_coefficient,
+                 "dynamic friction coefficient {:g} is above the static one, {:g}: the law must "
+                 "fall with the sliding speed",
+                 options.dynamic_coefficient, options.static_coefficient);
+  MODCAL_REQUIRE(options.half_speed > 0.0, "half speed {:g} m/s must be > 0", options.half_speed);
+}
+
+SlidingLaw Hyperbolic::make_sliding(double normal_force) const {
+  const double drop = options_.static_coefficient - options_.dynamic_coefficient;
+  return HyperbolicSliding{.dynamic_force = options_.dynamic_coefficient * normal_force,
+                           .force_drop = drop * normal_force,
+                           .half_speed = options_.half_speed};
+}
+
+}  // namespace modcal
