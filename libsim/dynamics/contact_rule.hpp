@@ -26,12 +26,23 @@ class ContactRule {
     restart(std::abs(slip));
   }
 
-  /// Response b of v and b_y of y to the force at the end of a step, for implicit_force().
-  void set_response(double b, double b_y) {
-    b_ = b;
-    b_y_ = b_y;
-    held_ = 1.0 / (1.0 + p_.stiffness * b_y + p_.damping * b);
-    caught_ = 1.0 / (1.0 + p_.damping * b);
+  /// Response of v and y to the newest force of a step (`newest`) and to the one before (`older`),
+  /// for implicit_force().
+  struct Response {
+    double velocity = 0.0;      // [m/(N s)]
+    double displacement = 0.0;  // [m/N]
+  };
+  void set_response(const Response& newest, const Response& older) {
+    b_ = newest.velocity;
+    b_y_ = newest.displacement;
+    older_ = older;
+    const double held = 1.0 / (1.0 + p_.stiffness * b_y_ + p_.damping * b_);
+    held_stiffness_ = held * p_.stiffness;
+    held_damping_ = held * p_.damping;
+    held_older_ = -(held_stiffness_ * older.displacement + held_damping_ * older.velocity);
+    caught_ = 1.0 / (1.0 + p_.damping * b_);
+    if constexpr (kHasClosedForm) closed_form_ = typename Law::ClosedForm(law_, b_);
+    restart(speed_[0]);
   }
 
   std::uint64_t attachments() const { return attachments_; }
@@ -40,8 +51,36 @@ class ContactRule {
   /// Force at t = 0.
   double initial_force() const { return sticking_ ? 0.0 : -side_ * law_.at(speed_[0]).force; }
 
+  /// The force of a step in which the contact goes on sticking or sliding as before; false where
+  /// that is not known: then ask explicit_force() or implicit_force(). Without a call, which would
+  /// push the modes out of the step loop's registers.
+  bool explicit_going_on(double v, double y, std::uint64_t k, double& force) const {
+    const double slip = v - p_.bow_velocity;
+    if (sticking_) {
+      force = -p_.stiffness * elongation(y, k) - p_.damping * slip;
+      return std::abs(force) <= p_.static_limit;
+    }
+    force = -side_ * law_.at(std::abs(slip)).force;
+    return slip * side_ > 0.0;
+  }
+  bool implicit_going_on(double v0, double y0, double older, std::uint64_t k, double& force) const {
+    if (sticking_) {
+      // The bow's part first: it needs nothing of this step.
+      const double bow = held_stiffness_ * bow_displacement(k) + held_damping_ * p_.bow_velocity;
+      force = ((bow - held_stiffness_ * y0) - held_damping_ * v0) + held_older_ * older;
+      return std::abs(force) <= p_.static_limit;
+    }
+    if constexpr (kHasClosedForm) {
+      if (!closed_form_.valid()) return false;
+      const double slip = (v0 + older_.velocity * older) - p_.bow_velocity;
+      force = closed_form_.force(side_, v0 - p_.bow_velocity, older_.velocity * side_, older);
+      return side_ * slip >= b_ * rest_force_;
+    }
+    return false;
+  }
+
   /// Force for the known velocity v and displacement y of step k.
-  double explicit_force(double v, double y, std::uint64_t k) {
+  [[gnu::noinline]] double explicit_force(double v, double y, std::uint64_t k) {
     const double slip = v - p_.bow_velocity;
     if (sticking_) {
       const double force = -p_.stiffness * elongation(y, k) - p_.damping * slip;
@@ -58,18 +97,20 @@ class ContactRule {
     return -side_ * law_.at(std::abs(slip)).force;
   }
 
-  /// Force that solves f = F(v), v = free_v + b f and y = free_y + b_y f at the end of step k.
-  double implicit_force(double free_v, double free_y, std::uint64_t k) {
-    const double slip = free_v - p_.bow_velocity;
+  /// Force that solves f = F(v) at the end of step k, where v = v₀ + d f_older + b f and
+  /// y = y₀ + d_y f_older + b_y f. What is known before f_older, that is v₀ and y₀, is put together
+  /// apart: the chain of dependent operations from step to step stays short.
+  [[gnu::noinline]] double implicit_force(double v0, double y0, double older, std::uint64_t k) {
+    const double slip = (v0 + older_.velocity * older) - p_.bow_velocity;
     if (sticking_) {
-      const double force = -(p_.stiffness * elongation(free_y, k) + p_.damping * slip) * held_;
-      if (std::abs(force) <= p_.static_limit) return force;
+      double force = 0.0;
+      if (implicit_going_on(v0, y0, older, k, force)) return force;
       release(-force);
       restart(0.0);
     } else if (side_ * slip < b_ * rest_force_) {
       const double force = -p_.damping * slip * caught_;
       if (std::abs(force) <= p_.static_limit) {
-        attach(free_y + b_y_ * force, k);
+        attach(y0 + older_.displacement * older + b_y_ * force, k);
         return force;
       }
       side_ = -side_;
@@ -78,10 +119,12 @@ class ContactRule {
   }
 
  private:
-  double elongation(double y, std::uint64_t k) const {
+  // Where the adherence spring is unstretched at step k.
+  double bow_displacement(std::uint64_t k) const {
     const double elapsed = time_step_ * static_cast<double>(k - attach_step_);
-    return y - attach_displacement_ - p_.bow_velocity * elapsed;
+    return attach_displacement_ + p_.bow_velocity * elapsed;
   }
+  double elongation(double y, std::uint64_t k) const { return y - bow_displacement(k); }
   void attach(double y, std::uint64_t k) {
     sticking_ = true;
     attach_displacement_ = y;
@@ -93,69 +136,94 @@ class ContactRule {
     side_ = direction < 0.0 ? -1.0 : 1.0;
     ++releases_;
   }
-  // The law at a speed, and the speed.
-  struct Tangent {
-    double speed = 0.0;
+  // The solution of u + b g(u) = w near w₀ = u₀ + b g(u₀), prepared before w is known: with
+  // ρ = (w − w₀)/(1 + b g'), u − u₀ = δ = ρ (1 + bend ρ) is one step of Halley's iteration.
+  struct Expansion {
+    double speed = 0.0, right_side = 0.0;  // u₀, w₀
+    double inverse_slope = 1.0, bend = 0.0;
     typename Law::Point point{};
   };
-  Tangent tangent_at(double speed) const {
-    const double u = speed > 0.0 ? speed : 0.0;
-    return {u, law_.at(u)};
+  Expansion expansion_at(double speed) const {
+    Expansion at{.speed = speed > 0.0 ? speed : 0.0};
+    at.point = law_.at(at.speed);
+    at.right_side = at.speed + b_ * at.point.force;
+    at.inverse_slope = 1.0 / (1.0 + b_ * at.point.slope);
+    at.bend = -0.5 * b_ * at.point.curvature * at.inverse_slope;
+    return at;
+  }
+  static double change(const Expansion& at, double w) {
+    const double linear = (w - at.right_side) * at.inverse_slope;
+    return linear + at.bend * (linear * linear);
+  }
+  // Where the change δ is carried over to the force by the law's parabola, it leaves
+  // |δ³ g'''|/6 ≤ 1e-15 · 0.23 g(0) for an exponential law: rounding.
+  static bool close(double change, double speed) { return std::abs(change) <= 1e-5 * speed; }
+  static double force_after(const Expansion& at, double change) {
+    return at.point.force + change * (at.point.slope + 0.5 * change * at.point.curvature);
   }
 
   // Sliding begins, or goes on from an unsteady step, at this speed.
   void restart(double speed) {
     for (double& past : speed_) past = speed;
-    for (Tangent& tangent : ahead_) tangent = tangent_at(speed);
+    for (Expansion& expansion : ahead_) expansion = expansion_at(speed);
   }
 
-  // Root u ≥ 0 of u + b g(u) = w: Halley's iteration on a convex function that rises because
-  // b·|g'| < 1 (the simulator refuses larger steps). It starts from the law at a speed extrapolated
-  // two steps ahead (by the quintic through the last six): that exponential does not wait for the
-  // running step. The last change δ is carried over to the force by the law's parabola; what that
-  // leaves, |δ³ g'''|/6 ≤ 1e-15 · 0.23 g(0) for an exponential law, is rounding.
+  // Force at the root u ≥ 0 of u + b g(u) = w: Halley's iteration on a convex function that rises
+  // because b·|g'| < 1 (the simulator refuses larger steps). It starts from the law at a speed
+  // extrapolated two steps ahead (by the quintic through the last six): that exponential does not
+  // wait for the running step.
   // Without a root at u ≥ 0 (the release would start in the wrong direction) the force stays at the
   // limit for this step.
-  // Not inlined: its many values would push the modes out of the step loop's registers.
-  [[gnu::noinline]] double sliding_force(double w) {
+  double sliding_force(double w) {
     if (!(w > b_ * rest_force_)) {
       restart(0.0);
       return rest_force_;
     }
-    Tangent at = ahead_[0];
+    Expansion at = ahead_[0];
     double force = rest_force_, u = at.speed;
     for (int iteration = 0; iteration < 50; ++iteration) {
-      const double residual = at.speed + b_ * at.point.force - w;
-      const double slope = 1.0 + b_ * at.point.slope;
-      const double newton = residual / slope;
-      const double wanted =
-          at.speed - newton * (1.0 + 0.5 * newton * (b_ * at.point.curvature) / slope);
+      const double wanted = at.speed + change(at, w);
       u = wanted > 0.0 ? wanted : 0.0;
-      const double change = u - at.speed;
-      force = at.point.force + change * (at.point.slope + 0.5 * change * at.point.curvature);
-      if (std::abs(change) <= 1e-5 * u) break;
-      at = tangent_at(u);
+      const double step = u - at.speed;
+      force = force_after(at, step);
+      if (close(step, u)) break;
+      at = expansion_at(u);
     }
     for (int i = kPast - 1; i > 0; --i) speed_[i] = speed_[i - 1];
     speed_[0] = u;
     ahead_[0] = ahead_[1];
-    ahead_[1] = tangent_at((21.0 * u - 70.0 * speed_[1]) + (105.0 * speed_[2] - 84.0 * speed_[3]) +
-                           (35.0 * speed_[4] - 6.0 * speed_[5]));
+    ahead_[1] =
+        expansion_at((21.0 * u - 70.0 * speed_[1]) + (105.0 * speed_[2] - 84.0 * speed_[3]) +
+                     (35.0 * speed_[4] - 6.0 * speed_[5]));
     return force;
   }
+
+  static constexpr bool kHasClosedForm = requires { typename Law::ClosedForm; };
+  template <typename L>
+  struct ClosedFormOf {
+    struct Type {};
+  };
+  template <typename L>
+  requires requires { typename L::ClosedForm; }
+  struct ClosedFormOf<L> {
+    using Type = typename L::ClosedForm;
+  };
 
   ContactParameters p_;
   Law law_;
   double time_step_;
   double rest_force_;  // g(0)
-  double b_ = 0.0, b_y_ = 0.0, held_ = 1.0, caught_ = 1.0;
+  double b_ = 0.0, b_y_ = 0.0, caught_ = 1.0;
+  double held_stiffness_ = 0.0, held_damping_ = 0.0, held_older_ = 0.0;
+  Response older_;
   bool sticking_ = false;
   double side_ = -1.0;
   double attach_displacement_ = 0.0;
   std::uint64_t attach_step_ = 0;
+  typename ClosedFormOf<Law>::Type closed_form_;
   static constexpr int kPast = 6;
   double speed_[kPast] = {};  // the last sliding speeds, newest first
-  Tangent ahead_[2];          // for the next step and the one after
+  Expansion ahead_[2];        // for the next step and the one after
   std::uint64_t attachments_ = 0;
   std::uint64_t releases_ = 0;
 };

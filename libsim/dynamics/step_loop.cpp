@@ -25,99 +25,133 @@ using Tag = hn::CappedTag<double, kVectorPadding>;
 // vectors' own pointers, and every step would load them again.
 struct Arrays {
   explicit Arrays(StepCoefficients& c)
-      : size(c.state_re.size()),
-        propagate_re(c.propagate_re.data()),
-        propagate_im(c.propagate_im.data()),
-        deferred_re(c.deferred_re.data()),
-        deferred_im(c.deferred_im.data()),
-        quadrature(c.quadrature.data()),
-        compliance(c.compliance.data()),
-        state_re(c.state_re.data()),
-        state_im(c.state_im.data()) {}
+      : size(c.velocity.size()),
+        vv(c.vv.data()),
+        vy(c.vy.data()),
+        yv(c.yv.data()),
+        yy(c.yy.data()),
+        deferred_velocity(c.deferred_velocity.data()),
+        deferred_displacement(c.deferred_displacement.data()),
+        velocity(c.velocity.data()),
+        displacement(c.displacement.data()) {}
   std::size_t size;
-  const double *propagate_re, *propagate_im, *deferred_re, *deferred_im, *quadrature, *compliance;
-  double *state_re, *state_im;
+  const double *vv, *vy, *yv, *yy, *deferred_velocity, *deferred_displacement;
+  double *velocity, *displacement;
 };
 
-// One vector of modes of P ← r (P + D u), added to the sums of the contact.
-struct VectorSums {
-  hn::Vec<Tag> velocity, displacement;
-
-  HWY_INLINE ContactSums Total() const {
-    const Tag d;
-    return {hn::GetLane(hn::SumOfLanes(d, velocity)), hn::GetLane(hn::SumOfLanes(d, displacement))};
-  }
-};
-
-HWY_INLINE void AdvanceVector(const Arrays& c, std::size_t i, hn::Vec<Tag> force,
-                              hn::Vec<Tag>& state_re, hn::Vec<Tag>& state_im, VectorSums& sums) {
+// Sums over the lanes of both vectors, by one tree: the first stage leaves half of each.
+HWY_INLINE ContactSums SumsOfLanes(hn::Vec<Tag> velocity, hn::Vec<Tag> displacement) {
   const Tag d;
-  const auto re = hn::MulAdd(hn::Load(d, c.deferred_re + i), force, state_re);
-  const auto im = hn::MulAdd(hn::Load(d, c.deferred_im + i), force, state_im);
-  const auto r_re = hn::Load(d, c.propagate_re + i);
-  const auto r_im = hn::Load(d, c.propagate_im + i);
-  state_re = hn::NegMulAdd(r_im, im, hn::Mul(r_re, re));
-  state_im = hn::MulAdd(r_re, im, hn::Mul(r_im, re));
-  sums.velocity =
-      hn::NegMulAdd(hn::Load(d, c.quadrature + i), state_im, hn::Add(sums.velocity, state_re));
-  sums.displacement = hn::MulAdd(hn::Load(d, c.compliance + i), state_im, sums.displacement);
+#if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+  const hn::Half<Tag> half;
+  auto sum = hn::Add(hn::InterleaveLower(d, velocity, displacement),
+                     hn::InterleaveUpper(d, velocity, displacement));
+  const auto folded = hn::Add(hn::LowerHalf(half, sum), hn::UpperHalf(half, sum));
+#if HWY_TARGET == HWY_AVX2
+  const auto pair = folded;
+  const auto pair_tag = half;
+#else
+  const hn::Half<decltype(half)> pair_tag;
+  const auto pair = hn::Add(hn::LowerHalf(pair_tag, folded), hn::UpperHalf(pair_tag, folded));
+#endif
+  return {hn::GetLane(pair), hn::GetLane(hn::Reverse2(pair_tag, pair))};
+#else
+  return {hn::GetLane(hn::SumOfLanes(d, velocity)), hn::GetLane(hn::SumOfLanes(d, displacement))};
+#endif
+}
+
+// One vector of modes of P ← M (P + D u).
+HWY_INLINE void AdvanceVector(const Arrays& c, std::size_t i, hn::Vec<Tag> force,
+                              hn::Vec<Tag>& velocity, hn::Vec<Tag>& displacement) {
+  const Tag d;
+  const auto v = hn::MulAdd(hn::Load(d, c.deferred_velocity + i), force, velocity);
+  const auto y = hn::MulAdd(hn::Load(d, c.deferred_displacement + i), force, displacement);
+  velocity = hn::MulAdd(hn::Load(d, c.vy + i), y, hn::Mul(hn::Load(d, c.vv + i), v));
+  displacement = hn::MulAdd(hn::Load(d, c.yv + i), v, hn::Mul(hn::Load(d, c.yy + i), y));
 }
 
 // The state in memory: any number of modes.
 class StreamedModes {
  public:
   explicit StreamedModes(StepCoefficients& c) : c_(c) {}
-  // Σ (Re P − κ Im P) and Σ Im P/ω_d of the new P.
+  // Σ v_n and Σ y_n of the new P.
   HWY_INLINE ContactSums Advance(double u) {
     const Tag d;
     const auto force = hn::Set(d, u);
-    VectorSums sums{hn::Zero(d), hn::Zero(d)};
+    auto sum_v = hn::Zero(d), sum_y = hn::Zero(d);
     for (std::size_t i = 0; i < c_.size; i += hn::Lanes(d)) {
-      auto re = hn::Load(d, c_.state_re + i);
-      auto im = hn::Load(d, c_.state_im + i);
-      AdvanceVector(c_, i, force, re, im, sums);
-      hn::Store(re, d, c_.state_re + i);
-      hn::Store(im, d, c_.state_im + i);
+      auto v = hn::Load(d, c_.velocity + i);
+      auto y = hn::Load(d, c_.displacement + i);
+      AdvanceVector(c_, i, force, v, y);
+      hn::Store(v, d, c_.velocity + i);
+      hn::Store(y, d, c_.displacement + i);
+      sum_v = hn::Add(sum_v, v);
+      sum_y = hn::Add(sum_y, y);
     }
-    return sums.Total();
+    return SumsOfLanes(sum_v, sum_y);
   }
   void Store() {}
+  void Load() {}
 
  private:
   Arrays c_;
 };
 
-// The state in registers, 2 kVectors of the 32 that the widest instruction sets have.
+// The state in registers, 2 kVectors of the 32 that the widest instruction sets have. Written
+// out by recursion, not as loops over arrays, which the compiler would keep in memory.
+template <std::size_t kVectors>
+struct VectorsInRegisters {
+  VectorsInRegisters<kVectors - 1> rest;
+  hn::Vec<Tag> v, y;
+
+  static constexpr std::size_t kFirst = (kVectors - 1) * hn::MaxLanes(Tag());
+
+  HWY_INLINE void Load(const Arrays& c) {
+    rest.Load(c);
+    v = hn::Load(Tag(), c.velocity + kFirst);
+    y = hn::Load(Tag(), c.displacement + kFirst);
+  }
+  HWY_INLINE void Store(const Arrays& c) const {
+    rest.Store(c);
+    hn::Store(v, Tag(), c.velocity + kFirst);
+    hn::Store(y, Tag(), c.displacement + kFirst);
+  }
+  HWY_INLINE void Advance(const Arrays& c, hn::Vec<Tag> force, hn::Vec<Tag>& sum_v,
+                          hn::Vec<Tag>& sum_y) {
+    rest.Advance(c, force, sum_v, sum_y);
+    AdvanceVector(c, kFirst, force, v, y);
+    sum_v = kFirst == 0 ? v : hn::Add(sum_v, v);
+    sum_y = kFirst == 0 ? y : hn::Add(sum_y, y);
+  }
+};
+template <>
+struct VectorsInRegisters<0> {
+  HWY_INLINE void Load(const Arrays&) {}
+  HWY_INLINE void Store(const Arrays&) const {}
+  HWY_INLINE void Advance(const Arrays&, hn::Vec<Tag>, hn::Vec<Tag>&, hn::Vec<Tag>&) {}
+};
+
 template <std::size_t kVectors>
 class ResidentModes {
  public:
-  explicit ResidentModes(StepCoefficients& c) : c_(c) {
-    const Tag d;
-    for (std::size_t i = 0; i < kVectors; ++i) {
-      re_[i] = hn::Load(d, c_.state_re + i * hn::Lanes(d));
-      im_[i] = hn::Load(d, c_.state_im + i * hn::Lanes(d));
-    }
-  }
+  explicit ResidentModes(StepCoefficients& c) : c_(c) { Load(); }
   HWY_INLINE ContactSums Advance(double u) {
     const Tag d;
-    const auto force = hn::Set(d, u);
-    VectorSums sums{hn::Zero(d), hn::Zero(d)};
-    for (std::size_t i = 0; i < kVectors; ++i) {
-      AdvanceVector(c_, i * hn::Lanes(d), force, re_[i], im_[i], sums);
-    }
-    return sums.Total();
+    auto sum_v = hn::Zero(d), sum_y = hn::Zero(d);
+    vectors_.Advance(c_, hn::Set(d, u), sum_v, sum_y);
+    return SumsOfLanes(sum_v, sum_y);
   }
-  void Store() {
-    const Tag d;
-    for (std::size_t i = 0; i < kVectors; ++i) {
-      hn::Store(re_[i], d, c_.state_re + i * hn::Lanes(d));
-      hn::Store(im_[i], d, c_.state_im + i * hn::Lanes(d));
-    }
+  // Around a call or whatever else needs registers: the compiler is not to keep both the state
+  // and a copy of it on the stack, written at every step.
+  HWY_INLINE void Load() {
+    asm volatile("" : : : "memory");
+    vectors_.Load(c_);
   }
+  HWY_INLINE void Store() { vectors_.Store(c_); }
 
  private:
   Arrays c_;
-  hn::Vec<Tag> re_[kVectors], im_[kVectors];
+  VectorsInRegisters<kVectors> vectors_;
 };
 
 HWY_INLINE double Dot(const AlignedVector& a, const AlignedVector& b) {
@@ -135,14 +169,17 @@ LoopCounts Loop(const StepLoop& loop, const Law& law, StepCoefficients& c) {
                         loop.initial_velocity);
   const StepCoefficients::Response deferred = c.deferred_response;
   const StepCoefficients::Response direct = c.direct_response;
-  rule.set_response(direct.velocity, direct.displacement);
+  if (kTiming == ForceTiming::kImplicit) {
+    rule.set_response({direct.velocity, direct.displacement},
+                      {deferred.velocity, deferred.displacement});
+  }
   double force = rule.initial_force();
   double previous_force = 0.0;
-  // Sums of P before the first step: r S_0, as the caller left it.
+  // Sums of P before the first step: M S_0, as the caller left it.
   ContactSums sums = {0.0, 0.0};
-  for (std::size_t i = 0; i < c.state_re.size(); ++i) {
-    sums.velocity += c.state_re[i] - c.quadrature[i] * c.state_im[i];
-    sums.displacement += c.compliance[i] * c.state_im[i];
+  for (std::size_t i = 0; i < c.velocity.size(); ++i) {
+    sums.velocity += c.velocity[i];
+    sums.displacement += c.displacement[i];
   }
   Modes modes(c);
   std::uint64_t step = 0;
@@ -156,25 +193,42 @@ LoopCounts Loop(const StepLoop& loop, const Law& law, StepCoefficients& c) {
       const double free_v = sums.velocity + deferred.velocity * u;
       const double free_y = sums.displacement + deferred.displacement * u;
       if (inner == 1) {
-        modes.Store();  // reactions need S of this step, which AdvanceModes overwrites
+        modes.Store();  // reactions need S of this step, which Advance() overwrites
         if (loop.targets.left_reaction) {
-          loop.targets.left_reaction[sample] = Dot(c.left_gain, c.state_im) + deferred.left * u;
+          loop.targets.left_reaction[sample] = Dot(c.left_gain, c.displacement) + deferred.left * u;
         }
         if (loop.targets.right_reaction) {
-          loop.targets.right_reaction[sample] = Dot(c.right_gain, c.state_im) + deferred.right * u;
+          loop.targets.right_reaction[sample] =
+              Dot(c.right_gain, c.displacement) + deferred.right * u;
         }
+        modes.Load();
       }
-      sums = modes.Advance(u);
       previous_force = force;
       if constexpr (kImplicit) {
-        force = rule.implicit_force(free_v, free_y, step);
+        double now = 0.0;
+        if (!rule.implicit_going_on(sums.velocity, sums.displacement, u, step, now)) [[unlikely]] {
+          modes.Store();
+          now = rule.implicit_force(sums.velocity, sums.displacement, u, step);
+          modes.Load();
+        }
+        force = now;
         driving = force;
       } else {
         driving = force;
       }
       v = free_v + direct.velocity * driving;
       y = free_y + direct.displacement * driving;
-      if constexpr (!kImplicit) force = rule.explicit_force(v, y, step);
+      if constexpr (!kImplicit) {
+        double now = 0.0;
+        if (!rule.explicit_going_on(v, y, step, now)) [[unlikely]] {
+          modes.Store();
+          now = rule.explicit_force(v, y, step);
+          modes.Load();
+        }
+        force = now;
+      }
+      // After the contact, whose chain of dependent operations the processor then starts first.
+      sums = modes.Advance(u);
     }
     if (loop.targets.left_reaction) {
       loop.targets.left_reaction[sample] += direct.left * driving;
@@ -208,7 +262,7 @@ LoopCounts LoopOf(const StepLoop& loop, StepCoefficients& coefficients) {
 
 LoopCounts RunStepLoop(const StepLoop& loop, StepCoefficients& coefficients) {
 #if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
-  switch (coefficients.state_re.size() / kVectorPadding) {
+  switch (coefficients.velocity.size() / kVectorPadding) {
     case 1:
       return LoopOf<ResidentModes<1>>(loop, coefficients);
     case 2:
@@ -249,16 +303,45 @@ AlignedVector padded(const std::vector<double>& values) {
 
 using ComplexVector = std::vector<std::complex<double>>;
 
-AlignedVector padded_real(const ComplexVector& values) {
+// The part of every Z that is the velocity of the contact, and the part that is its displacement.
+AlignedVector velocities(const ContactModes& modes, const ComplexVector& state) {
   std::vector<double> parts;
-  for (const auto& value : values) parts.push_back(value.real());
+  for (std::size_t n = 0; n < modes.size(); ++n) {
+    parts.push_back(state[n].real() - modes.quadrature[n] * state[n].imag());
+  }
   return padded(parts);
 }
 
-AlignedVector padded_imag(const ComplexVector& values) {
+AlignedVector displacements(const ContactModes& modes, const ComplexVector& state) {
   std::vector<double> parts;
-  for (const auto& value : values) parts.push_back(value.imag());
+  for (std::size_t n = 0; n < modes.size(); ++n) {
+    parts.push_back(modes.compliance[n] * state[n].imag());
+  }
   return padded(parts);
+}
+
+AlignedVector per_displacement(const ContactModes& modes, const std::vector<double>& gain) {
+  std::vector<double> parts;
+  for (std::size_t n = 0; n < modes.size(); ++n) parts.push_back(gain[n] / modes.compliance[n]);
+  return padded(parts);
+}
+
+// Z ← r Z in the coordinates v = Re Z − κ Im Z, y = Im Z/ω_d.
+void fill_propagator(const ContactModes& modes, const ComplexVector& propagate,
+                     StepCoefficients& c) {
+  std::vector<double> vv, vy, yv, yy;
+  for (std::size_t n = 0; n < modes.size(); ++n) {
+    const double a = propagate[n].real(), b = propagate[n].imag();
+    const double k = modes.quadrature[n];
+    vv.push_back(a - k * b);
+    vy.push_back(-b * (1.0 + k * k) / modes.compliance[n]);
+    yv.push_back(b * modes.compliance[n]);
+    yy.push_back(a + k * b);
+  }
+  c.vv = padded(vv);
+  c.vy = padded(vy);
+  c.yv = padded(yv);
+  c.yy = padded(yy);
 }
 
 StepCoefficients::Response response_of(const ContactModes& modes, const ComplexVector& state) {
@@ -284,16 +367,13 @@ StepCoefficients make_step_coefficients(const ContactModes& modes, const SchemeW
     state[n] = weights.propagate[n] * (modes.initial[n] - direct[n] * initial_force);
   }
   StepCoefficients c;
-  c.propagate_re = padded_real(weights.propagate);
-  c.propagate_im = padded_imag(weights.propagate);
-  c.deferred_re = padded_real(deferred);
-  c.deferred_im = padded_imag(deferred);
-  c.quadrature = padded(modes.quadrature);
-  c.compliance = padded(modes.compliance);
-  c.left_gain = padded(modes.left_gain);
-  c.right_gain = padded(modes.right_gain);
-  c.state_re = padded_real(state);
-  c.state_im = padded_imag(state);
+  fill_propagator(modes, weights.propagate, c);
+  c.deferred_velocity = velocities(modes, deferred);
+  c.deferred_displacement = displacements(modes, deferred);
+  c.left_gain = per_displacement(modes, modes.left_gain);
+  c.right_gain = per_displacement(modes, modes.right_gain);
+  c.velocity = velocities(modes, state);
+  c.displacement = displacements(modes, state);
   c.deferred_response = response_of(modes, deferred);
   c.direct_response = response_of(modes, direct);
   return c;

@@ -24,12 +24,14 @@ enum class ForceTiming {
   kImplicit,      ///< the force at the end of the step is solved for together with the velocity
 };
 
-/// One-step coefficients of every mode, padded with zeros to whole vectors.
+/// One-step coefficients of every mode in the coordinates (v, y) = (φ q̇, φ q), its shares of the
+/// velocity and displacement of the contact, whose sums over the modes are plain: padded with
+/// zeros to whole vectors.
 struct StepCoefficients {
-  AlignedVector propagate_re, propagate_im;  ///< r
-  AlignedVector deferred_re, deferred_im;    ///< D
-  AlignedVector quadrature, compliance, left_gain, right_gain;
-  AlignedVector state_re, state_im;  ///< P, overwritten by the loop
+  AlignedVector vv, vy, yv, yy;  ///< r as a matrix: v ← vv v + vy y, y ← yv v + yy y
+  AlignedVector deferred_velocity, deferred_displacement;  ///< D [m/(N s)], [m/N]
+  AlignedVector left_gain, right_gain;                     ///< g/φ [N/m]
+  AlignedVector velocity, displacement;  ///< P [m/s], [m], overwritten by the loop
   // Σ over modes: response of velocity, displacement and reactions to D and to d.
   struct Response {
     double velocity = 0.0, displacement = 0.0, left = 0.0, right = 0.0;
