@@ -1,7 +1,7 @@
 # Every target can be the first one run on a fresh Debian 12 (root or sudo).
 PRESET ?= release
 
-.PHONY: reproduce test bench format tidy clean build packages packages-test packages-develop
+.PHONY: reproduce test bench accuracy format tidy clean build packages packages-test packages-develop
 
 build: packages
 	@cmake --preset $(PRESET) >/dev/null
@@ -28,6 +28,11 @@ bench: packages
 	@cmake --preset $(PRESET) >/dev/null
 	@cmake --build --preset $(PRESET)
 	@benchmarks/run.sh build/$(PRESET)
+
+accuracy: packages
+	@cmake --preset $(PRESET) >/dev/null
+	@cmake --build --preset $(PRESET) --target work_precision perturbation_growth random_scenes
+	@benchmarks/accuracy/run.sh build/$(PRESET) docs/accuracy
 
 format: packages-develop
 	@git ls-files -co --exclude-standard -- '*.cpp' '*.hpp' | xargs ls 2>/dev/null | xargs clang-format -i
