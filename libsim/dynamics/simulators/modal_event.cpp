@@ -1,12 +1,30 @@
 #include "libsim/dynamics/simulators/modal_event.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "libsim/base/error.hpp"
 #include "libsim/dynamics/event/event_loop.hpp"
 #include "libsim/dynamics/simulators/scene_setup.hpp"
 
 namespace modcal {
+
+namespace {
+
+// Velocity and force at the knots of both.
+std::vector<event::BowKnot> knots_of(const BowMotion& bow) {
+  std::vector<double> times = bow.velocity.times();
+  const std::vector<double>& others = bow.normal_force.times();
+  times.insert(times.end(), others.begin(), others.end());
+  std::sort(times.begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  std::vector<event::BowKnot> knots;
+  for (const double t : times) knots.push_back({t, bow.velocity.at(t), bow.normal_force.at(t)});
+  return knots;
+}
+
+}  // namespace
 
 void ModalEvent::Options::visit(OptionVisitor& visitor) {
   visitor.integer({.key = "nodes",
@@ -49,22 +67,27 @@ Simulation ModalEvent::run(const Scene& scene, double sample_rate,
   const double wanted = std::isnan(options_.max_step) ? 1.0 / sample_rate : options_.max_step;
   const StepPlan plan = plan_steps(wanted, sample_rate);
   const std::size_t count = sample_count(scene.duration, sample_rate);
-  const BowMotion bow = steady_motion(scene, "modal_event");
+  const BowMotion bow = bow_motion(scene.bow, scene.duration);
+  // Under a gesture law and limit are those of 1 N, and the load is the normal force in N.
+  const double force = bow.is_steady() ? bow.normal_force.at(0.0) : 1.0;
   const ContactModes modes = scene_modes(scene);
   const auto friction = scene.friction.make();
 
   Simulation result = empty_simulation(count, sample_rate, outputs);
-  const event::EventLoop loop{.contact = contact_parameters(bow, *friction, modes.effective_mass()),
-                              .law = friction->sliding(bow.normal_force.at(0.0)),
-                              .attach = options_.attach == "continuous"
-                                            ? event::AttachRule::kContinuous
-                                            : event::AttachRule::kLiteral,
-                              .nodes = static_cast<int>(options_.nodes),
-                              .slope_number = options_.slope_number,
-                              .grid_step = plan.time_step,
-                              .steps_per_sample = plan.steps_per_sample,
-                              .samples = count,
-                              .targets = targets_of(result)};
+  ContactParameters contact = contact_parameters(bow, *friction, modes.effective_mass());
+  contact.static_limit = friction->static_limit(force);
+  const event::EventLoop loop{
+      .contact = contact,
+      .law = friction->sliding(force),
+      .bow = bow.is_steady() ? std::vector<event::BowKnot>{} : knots_of(bow),
+      .attach = options_.attach == "continuous" ? event::AttachRule::kContinuous
+                                                : event::AttachRule::kLiteral,
+      .nodes = static_cast<int>(options_.nodes),
+      .slope_number = options_.slope_number,
+      .grid_step = plan.time_step,
+      .steps_per_sample = plan.steps_per_sample,
+      .samples = count,
+      .targets = targets_of(result)};
   event::EventState state = event::initial_state(modes, bow.velocity.at(0.0));
   const event::EventCounts counts = event::run_event_loop(loop, modes, state);
 

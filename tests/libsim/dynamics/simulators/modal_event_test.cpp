@@ -7,6 +7,9 @@
 #include <cmath>
 
 #include "libsim/base/error.hpp"
+#include "libsim/dynamics/friction/hyperbolic.hpp"
+#include "libsim/dynamics/gestures/table_gesture.hpp"
+#include "libsim/dynamics/initial/pluck.hpp"
 #include "libsim/dynamics/simulators/modal_exact.hpp"
 #include "tests/libsim/dynamics/random_scenes.hpp"
 #include "tests/libsim/dynamics/simulators/long_double_twin.hpp"
@@ -231,6 +234,70 @@ TEST(ModalEvent, FreeDecayIsTheClosedForm) {
     // 2000 products of modulus ≤ 1 of 8 modes, a few roundings each.
     EXPECT_NEAR(run.displacement.samples[k], expected, 2000 * 8 * 4e-16 * 1e-3);
   }
+}
+
+// A scene with everything a bow can do: ramps, reversal, a lift, noise on both.
+Scene gestured_scene() {
+  Scene scene = paper_scene();
+  scene.duration = 0.04;
+  scene.bow.velocity_gesture = Choice<Gesture>::of<TableGesture>(
+      "table", TableGesture::Options{{0.0, 0.003, 0.018, 0.022}, {0.2, 1.0, 1.0, -1.0}});
+  scene.bow.force_gesture = Choice<Gesture>::of<TableGesture>(
+      "table", TableGesture::Options{{0.0, 0.002, 0.017, 0.018, 0.02, 0.021},
+                                     {0.3, 1.0, 1.0, 0.0, 0.0, 1.0}});
+  scene.bow.velocity_noise = {.present = true, .level = 0.02, .cutoff = 400.0, .seed = 3};
+  scene.bow.force_noise = {.present = true, .level = 0.02, .cutoff = 400.0, .seed = 4};
+  return scene;
+}
+
+TEST(ModalEvent, ConvergesUnderGesturesAndNoise) {
+  const Scene scene = gestured_scene();
+  const Simulation run = run_with(scene), fine = run_with(scene, {.max_step = 2.5e-6});
+  ASSERT_FALSE(run.diverged_at) << run.explanation;
+  EXPECT_EQ(run.attachments, fine.attachments);
+  EXPECT_GT(run.attachments, 10u);
+  // Order 8: the finer step is 1e3 to 1e5 times better. The bound is that of a steady bow.
+  EXPECT_LT(worst_error(run, fine), 1e-5);
+}
+
+TEST(ModalEvent, ASteadyGestureIsNoGesture) {
+  Scene scene = paper_scene();
+  scene.duration = 0.02;
+  const Simulation plain = run_with(scene);
+  scene.bow.velocity_gesture = Choice<Gesture>::of<TableGesture>(
+      "table", TableGesture::Options{{0.0, 0.01, 0.0301}, {1.0, 1.0, 1.0 + 1e-15}});
+  const Simulation table = run_with(scene);
+  // Steps end at the knot, 512 grid steps behind the start: rounding times 1e4.
+  EXPECT_EQ(plain.attachments, table.attachments);
+  EXPECT_LT(worst_error(table, plain), 1e-11);
+}
+
+TEST(ModalEvent, ConvergesWithHyperbolicFriction) {
+  Scene scene = paper_scene();
+  scene.duration = 0.02;
+  scene.friction = Choice<FrictionLaw>::of<Hyperbolic>("hyperbolic", Hyperbolic::Options{});
+  const Simulation run = run_with(scene), fine = run_with(scene, {.max_step = 2.5e-6});
+  ASSERT_FALSE(run.diverged_at) << run.explanation;
+  EXPECT_EQ(run.attachments, fine.attachments);
+  EXPECT_LT(worst_error(run, fine), 1e-4);
+}
+
+// The pluck moves modes with a node at the contact too: they only ring.
+TEST(ModalEvent, APluckedStringUnderALiftedBowRingsFreely) {
+  Scene scene = paper_scene();
+  scene.duration = 0.02;
+  scene.start = Choice<InitialMotion>::of<Pluck>("pluck", Pluck::Options{0.1, 1e-3});
+  scene.bow.normal_force = 0.0;
+  const Simulation event = run_with(scene);
+  const Simulation exact =
+      ModalExact({.time_step = 1e-5}).simulate(scene, kRate, OutputRequest::all());
+  EXPECT_EQ(event.attachments, 0u);
+  // Both are exact: 2000 products of modulus ≤ 1.
+  EXPECT_LT(relative_error(event.right_reaction, exact.right_reaction), 2000 * 4e-16);
+  scene.bow.normal_force = 1.0;
+  const Simulation bowed = run_with(scene), fine = run_with(scene, {.max_step = 2.5e-6});
+  ASSERT_FALSE(bowed.diverged_at) << bowed.explanation;
+  EXPECT_LT(worst_error(bowed, fine), 1e-5);
 }
 
 TEST(ModalEvent, SamplesDoNotDependOnWhatElseIsAskedFor) {
