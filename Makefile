@@ -1,7 +1,8 @@
 # Every target can be the first one run on a fresh Debian 12 (root or sudo).
 PRESET ?= release
 
-.PHONY: reproduce test bench accuracy format tidy clean build packages packages-test packages-develop
+.PHONY: reproduce test test-cluster bench accuracy format tidy clean build
+.PHONY: packages packages-test packages-cluster packages-develop
 
 build: packages
 	@cmake --preset $(PRESET) >/dev/null
@@ -13,6 +14,9 @@ packages:
 packages-test:
 	@cmake/install_packages.sh test
 
+packages-cluster:
+	@cmake/install_packages.sh cluster
+
 packages-develop:
 	@cmake/install_packages.sh develop
 
@@ -23,6 +27,11 @@ test: packages-test
 	@cmake --preset $(PRESET) -DMODCAL_WERROR=ON >/dev/null
 	@cmake --build --preset $(PRESET)
 	@ctest --preset $(PRESET) --parallel $$(nproc)
+
+test-cluster: packages-cluster
+	@cmake --preset $(PRESET) >/dev/null
+	@cmake --build --preset $(PRESET) --target modcal modcal-mpi
+	@tests/cluster/test_cluster.sh build/$(PRESET)
 
 bench: packages
 	@cmake --preset $(PRESET) >/dev/null

@@ -26,5 +26,6 @@ void add_status_command(CLI::App& app, const Chosen& chosen);
 void add_merge_command(CLI::App& app, const Chosen& chosen);
 void add_report_command(CLI::App& app, const Chosen& chosen);
 void add_replay_command(CLI::App& app, const Chosen& chosen);
+void add_submit_command(CLI::App& app, const Chosen& chosen);
 
 }  // namespace modcal

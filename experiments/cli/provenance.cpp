@@ -40,7 +40,9 @@ void collect_seeds(const nlohmann::ordered_json& options, const std::string& pre
     if ((key == "seed" || key == "seeds") && option.contains("default")) {
       seeds[prefix + key] = option["default"];
     }
-    if (option.contains("options")) collect_seeds(option["options"], prefix + key + ".", seeds);
+    const bool absent = option["type"] == "optional section" && !option.contains("present");
+    if (option.contains("options") && !absent)
+      collect_seeds(option["options"], prefix + key + ".", seeds);
   }
 }
 

@@ -18,20 +18,6 @@ StudyContext context_of(const StoredRun& run, SharedWork& work, std::string comm
   return {.work = work, .folder = run.folder(), .command = std::move(command)};
 }
 
-ExitCode report_run(const std::string& out) {
-  const StoredRun run(out);
-  for (const JournalDamage& damage : run.damages()) {
-    fmt::print(stderr, "warning: {}\n", message_of(damage));
-  }
-  SharedWork work;
-  const StudyResult result =
-      run.list().sum_up(run.outcomes(), context_of(run, work, run.command()));
-  MODCAL_REQUIRE(result.pending_tasks < run.records().size(),
-                 "{}: none of the {} tasks is done; run:\n  {}", out, run.records().size(),
-                 run.command());
-  return present(run.loaded(), result, settings_of(run, out), 0.0);
-}
-
 ExitCode replay_task(const std::string& out, std::size_t task) {
   const StoredRun run(out);
   MODCAL_REQUIRE(task < run.records().size(), "task {} does not exist: {} has the tasks 0 to {}",
@@ -51,11 +37,25 @@ ExitCode replay_task(const std::string& out, std::size_t task) {
 
 }  // namespace
 
+ExitCode report_stored_run(const std::string& out) {
+  const StoredRun run(out);
+  for (const JournalDamage& damage : run.damages()) {
+    fmt::print(stderr, "warning: {}\n", message_of(damage));
+  }
+  SharedWork work;
+  const StudyResult result =
+      run.list().sum_up(run.outcomes(), context_of(run, work, run.command()));
+  MODCAL_REQUIRE(result.pending_tasks < run.records().size(),
+                 "{}: none of the {} tasks is done; run:\n  {}", out, run.records().size(),
+                 run.command());
+  return present(run.loaded(), result, settings_of(run, out), 0.0);
+}
+
 void add_report_command(CLI::App& app, const Chosen& chosen) {
   CLI::App* command = app.add_subcommand("report", "Write the report of what a run has finished");
   auto out = std::make_shared<std::string>();
   command->add_option("folder", *out, "folder of the results")->required();
-  command->callback([=] { chosen([=] { return report_run(*out); }); });
+  command->callback([=] { chosen([=] { return report_stored_run(*out); }); });
 }
 
 void add_replay_command(CLI::App& app, const Chosen& chosen) {

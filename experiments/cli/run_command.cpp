@@ -4,6 +4,7 @@
 
 #include "experiments/cli/command.hpp"
 #include "experiments/cli/runner.hpp"
+#include "experiments/cli/shell_word.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -18,28 +19,11 @@ struct RunArguments {
   bool json = false;
 };
 
-// Single-quoted for a shell where anything could be special.
-std::string shell_word(const std::string& text) {
-  const std::string_view harmless =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-/=+:,%";
-  if (!text.empty() && text.find_first_not_of(harmless) == std::string::npos) return text;
-  std::string quoted = "'";
-  for (const char letter : text) {
-    if (letter == '\'') {
-      quoted += "'\\''";
-    } else {
-      quoted += letter;
-    }
-  }
-  return quoted + "'";
-}
-
 std::string command_of(const RunArguments& arguments, const std::string& out) {
   std::string command = "modcal run " + shell_word(arguments.file) + " --out " + shell_word(out);
   for (const std::string& assignment : arguments.assignments) {
     command += " --set " + shell_word(assignment);
   }
-  if (!parse_shard(arguments.shard).is_whole()) command += " --shard " + arguments.shard;
   if (arguments.threads > 0) command += fmt::format(" --threads {}", arguments.threads);
   return command;
 }

@@ -79,6 +79,15 @@ std::string resolved_text(const LoadedExperiment& loaded, const std::filesystem:
                      loaded.document.file, folder.string(), loaded.resolved());
 }
 
+void record_run(const LoadedExperiment& loaded, const RunSettings& settings,
+                const std::filesystem::path& folder, const OutputDirectory& out) {
+  out.write_text("resolved.yaml", resolved_text(loaded, folder));
+  nlohmann::ordered_json provenance = provenance_json(settings.command);
+  provenance["folder"] = std::filesystem::absolute(folder / "").lexically_normal().string();
+  provenance["seeds"] = seeds_json(loaded);
+  out.write_text("provenance.json", provenance.dump(2) + "\n");
+}
+
 ExitCode exit_code_of(const StudyResult& result) {
   if (result.status == report::Status::kFailed) return ExitCode::kNothingMeasured;
   return result.failed_tasks > 0 ? ExitCode::kSomeTasksFailed : ExitCode::kOk;
@@ -93,8 +102,9 @@ void finish_report(report::Report report, const RunSettings& settings, const Out
 }
 
 [[noreturn]] void say_interrupted(const RunSettings& settings, bool has_store) {
-  fmt::print(stderr, "\ninterrupted; {} with:\n  {}\n",
-             has_store ? "what is finished is kept, go on" : "run again", settings.command);
+  fmt::print(stderr, "\ninterrupted; {} with:\n  {}{}\n",
+             has_store ? "what is finished is kept, go on" : "run again", settings.command,
+             settings.shard.is_whole() ? "" : " --shard " + settings.shard.text());
   throw Interrupted();
 }
 
@@ -124,6 +134,35 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+PilotRun run_some_tasks(const TaskExperiment& list, const StudyContext& context, RunStore& store) {
+  constexpr std::size_t kMost = 20;
+  constexpr double kSeconds = 10.0;
+  std::vector<std::size_t> pending;
+  for (std::size_t task = 0; task < list.task_count(); ++task) {
+    const std::string key = store.finished().key_of(list.fingerprint(task, context.folder));
+    if (store.finished().find(key) == nullptr) pending.push_back(task);
+  }
+  MODCAL_REQUIRE(!pending.empty(), "all {} tasks are done: nothing is left to share out",
+                 list.task_count());
+  PilotRun pilot;
+  const std::size_t count = std::min(kMost, pending.size());
+  double seconds = 0.0;
+  while (pilot.run < count && (pilot.run == 0 || seconds < kSeconds)) {
+    context.throw_if_interrupted();
+    const std::size_t task = pending[pilot.run * pending.size() / count];
+    const auto start = std::chrono::steady_clock::now();
+    std::string outcome = list.run_task(task, context);
+    const double taken = seconds_since(start);
+    store.append({store.finished().key_of(list.fingerprint(task, context.folder)), task, taken,
+                  std::move(outcome)});
+    seconds += taken;
+    ++pilot.run;
+  }
+  pilot.pending = pending.size() - pilot.run;
+  pilot.seconds_per_task = seconds / static_cast<double>(pilot.run);
+  return pilot;
+}
+
 }  // namespace
 
 ExitCode present(const LoadedExperiment& loaded, const StudyResult& result,
@@ -142,6 +181,20 @@ ExitCode present(const LoadedExperiment& loaded, const StudyResult& result,
   return code == ExitCode::kOk && !result.missed.empty() ? ExitCode::kAcceptanceMissed : code;
 }
 
+PilotRun run_pilot(const LoadedExperiment& loaded, const RunSettings& settings) {
+  const auto* list = dynamic_cast<const TaskExperiment*>(loaded.experiment.get());
+  MODCAL_REQUIRE(list != nullptr, "kind {} is no list of tasks: there is nothing to share out",
+                 loaded.kind);
+  const OutputDirectory out(settings.out);
+  RunStore store(out.path(), Shard{}, program_identity());
+  const std::filesystem::path folder = folder_of(loaded, settings);
+  record_run(loaded, settings, folder, out);
+  SharedWork work;
+  return with_context(loaded, folder, settings.command, work, [&](const StudyContext& context) {
+    return run_some_tasks(*list, context, store);
+  });
+}
+
 ExitCode run_one(const LoadedExperiment& loaded, const RunSettings& settings) {
   const auto start = std::chrono::steady_clock::now();
   const OutputDirectory out(settings.out);
@@ -153,11 +206,7 @@ ExitCode run_one(const LoadedExperiment& loaded, const RunSettings& settings) {
   if (list != nullptr) store.emplace(out.path(), settings.shard, program_identity());
   const std::filesystem::path folder = folder_of(loaded, settings);
   // Before the work, so that an interrupted run says what it was.
-  out.write_text("resolved.yaml", resolved_text(loaded, folder));
-  nlohmann::ordered_json provenance = provenance_json(settings.command);
-  provenance["folder"] = std::filesystem::absolute(folder / "").lexically_normal().string();
-  provenance["seeds"] = seeds_json(loaded);
-  out.write_text("provenance.json", provenance.dump(2) + "\n");
+  record_run(loaded, settings, folder, out);
   const auto limit = limit_threads(settings.threads);
   SharedWork work;
   StudyResult result;

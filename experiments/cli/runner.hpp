@@ -14,11 +14,12 @@ namespace modcal {
 
 struct RunSettings {
   std::filesystem::path out;
-  int threads = 0;      ///< 0: all
-  bool json = false;    ///< summary on stdout as JSON
-  std::string command;  ///< the command line that makes the same results again
-  std::string title;    ///< of the report; empty: the experiment's
-  Shard shard;          ///< part of the task list to run
+  int threads = 0;    ///< 0: all
+  bool json = false;  ///< summary on stdout as JSON
+  /// The command line that makes the same results again, of the whole list.
+  std::string command;
+  std::string title;  ///< of the report; empty: the experiment's
+  Shard shard;        ///< part of the task list to run
   /// Where relative paths of the experiment start; empty: the folder of its file.
   std::filesystem::path folder;
 };
@@ -32,6 +33,17 @@ ExitCode run_one(const LoadedExperiment& loaded, const RunSettings& settings);
 /// Writes files, summary and report of a result and gives the exit code that stands for it.
 ExitCode present(const LoadedExperiment& loaded, const StudyResult& result,
                  const RunSettings& settings, double seconds);
+
+/// What a few tasks of a list cost.
+struct PilotRun {
+  std::size_t pending = 0;        ///< tasks still to do
+  std::size_t run = 0;            ///< tasks that the mean is taken over
+  double seconds_per_task = 0.0;  ///< mean
+};
+
+/// Runs evenly spaced tasks of a list for ten seconds, at least one and at most twenty; their
+/// results are kept. Throws InvalidInput where the experiment is no list or nothing is left to do.
+PilotRun run_pilot(const LoadedExperiment& loaded, const RunSettings& settings);
 
 /// Several experiments in one report; each one's resolved.yaml and files stand in a folder of its
 /// name. Truths are shared.

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/cli/exit_code.hpp"
 #include "experiments/loader.hpp"
 #include "experiments/task_experiment.hpp"
 
@@ -39,5 +40,8 @@ class StoredRun {
   std::optional<FinishedTasks> finished_;
   std::vector<const JournalRecord*> records_;
 };
+
+/// Files, summary and report of what is finished. Throws InvalidInput where nothing is.
+ExitCode report_stored_run(const std::string& out);
 
 }  // namespace modcal

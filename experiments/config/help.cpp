@@ -64,11 +64,13 @@ class Describer final : public OptionVisitor {
     visit_members(inner);
     add(info, "section")["options"] = inner.entries;
   }
-  void optional_group(const OptionInfo& info, bool& /*present*/,
+  void optional_group(const OptionInfo& info, bool& present,
                       const VisitMembers& visit_members) override {
     Describer inner;
     visit_members(inner);
-    add(info, "optional section")["options"] = inner.entries;
+    Json& entry = add(info, "optional section");
+    entry["options"] = inner.entries;
+    if (present) entry["present"] = true;
   }
   void list(const OptionInfo& info, ListSlot& slot) override {
     Describer inner;

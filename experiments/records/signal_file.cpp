@@ -1,5 +1,8 @@
 #include "experiments/records/signal_file.hpp"
 
+#include <fmt/format.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 #include <system_error>
@@ -39,7 +42,8 @@ void require_one_record(std::span<const Signal> signals, std::string_view file) 
 void replace_file(const std::filesystem::path& path,
                   const std::function<void(const std::filesystem::path&)>& write) {
   std::filesystem::path temporary = path;
-  temporary += ".part";
+  // Several processes may write the same file: each under a name of its own.
+  temporary += fmt::format(".{}.part", getpid());
   std::error_code error;
   try {
     write(temporary);

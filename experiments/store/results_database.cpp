@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <sqlite3.h>
+#include <unistd.h>
 
 #include <memory>
 #include <system_error>
@@ -146,7 +147,7 @@ std::string write_results_database(const std::filesystem::path& file,
   std::vector<std::pair<std::string, std::string>> all = facts;
   all.emplace_back("digest", digest);
   std::filesystem::path temporary = file;
-  temporary += ".part";
+  temporary += fmt::format(".{}.part", getpid());
   std::error_code error;
   std::filesystem::remove(temporary, error);
   {

@@ -19,8 +19,8 @@ namespace modcal {
 /// the continuous one stretched by −f_c/K_a. A string released while it moves against the slip
 /// slides in the direction of its motion.
 ///
-/// A gesture's knots end steps: between them velocity and normal force are linear, adherence follows
-/// in closed form and the static limit is a line. At F_N = 0 the string decays freely.
+/// A gesture's knots end steps: between them velocity and normal force are linear, adherence
+/// follows in closed form and the static limit is a line. At F_N = 0 the string decays freely.
 ///
 /// A run that cannot go on (contact chatter, a friction equation without solution) ends with
 /// `diverged_at` and the reason in `explanation`. Throws InvalidInput where adherence has a double

@@ -1,5 +1,6 @@
 #include "experiments/records/csv_writer.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -101,7 +102,8 @@ TEST_F(CsvWriter, RefusesWhatCannotBeOneRecord) {
 
 TEST_F(CsvWriter, LeavesAnExistingFileAloneWhenItFails) {
   write("a.csv", "kept");
-  std::filesystem::create_directory(path("a.csv.part"));  // in the way of the temporary file
+  std::filesystem::create_directory(
+      path(fmt::format("a.csv.{}.part", getpid())));  // in the way of the temporary file
   EXPECT_THAT(refusal([&] {
                 write_csv(path("a.csv"), std::vector{Signal{"R1", "N", 4.0, {1.0}}});
               }),

@@ -250,7 +250,8 @@ TEST(Sticking, ReleasesExactlyAtTheLimit) {
   const EventLoop loop = loop_for(scene, modes, 2);
   auto closed = make_closed_loop(modes, loop.contact.stiffness, loop.contact.damping);
   Sticking sticking(std::move(*closed), 0.4, kStep, {});
-  sticking.attach({.velocity = 0.1}, PlanarVector(modes.size()), 0.0, 0.0);  // at rest, gripped by the moving bow
+  sticking.attach({.velocity = 0.1}, PlanarVector(modes.size()), 0.0,
+                  0.0);  // at rest, gripped by the moving bow
   double tau = 0.0;
   for (int k = 0; k < 10000; ++k) {
     const auto result = sticking.advance(tau, kStep, false);

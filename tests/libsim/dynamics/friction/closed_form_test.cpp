@@ -1,8 +1,8 @@
-#include "libsim/dynamics/friction/sliding_laws.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "libsim/dynamics/friction/sliding_laws.hpp"
 
 namespace modcal {
 namespace {

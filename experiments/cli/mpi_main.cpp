@@ -1,0 +1,114 @@
+// modcal-mpi run FILE: a list of tasks over the ranks of an MPI job, one shard each; rank 0
+// reports.
+#include <fmt/format.h>
+#include <mpi.h>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <cstdio>
+
+#include "experiments/cli/interrupt.hpp"
+#include "experiments/cli/runner.hpp"
+#include "experiments/cli/shell_word.hpp"
+#include "experiments/cli/stored_run.hpp"
+#include "libsim/base/error.hpp"
+
+namespace modcal {
+namespace {
+
+struct MpiArguments {
+  std::string file;
+  std::string out;
+  std::vector<std::string> assignments;
+  int threads = 1;
+};
+
+// MPI_Finalize whichever way the program is left.
+class MpiSession {
+ public:
+  MpiSession(int* argc, char*** argv) { MPI_Init(argc, argv); }
+  ~MpiSession() { MPI_Finalize(); }
+  MpiSession(const MpiSession&) = delete;
+  MpiSession& operator=(const MpiSession&) = delete;
+
+  Shard shard() const {
+    int rank = 0, size = 1;
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    MPI_Comm_size(MPI_COMM_WORLD, &size);
+    return {static_cast<std::size_t>(rank) + 1, static_cast<std::size_t>(size)};
+  }
+  // The largest code of all ranks; waits for them.
+  static ExitCode worst(ExitCode own) {
+    int code = static_cast<int>(own);
+    MPI_Allreduce(MPI_IN_PLACE, &code, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
+    return static_cast<ExitCode>(code);
+  }
+};
+
+template <typename Work>
+ExitCode guarded(const Work& work) {
+  try {
+    return work();
+  } catch (const InvalidInput& error) {
+    fmt::print(stderr, "error: {}\n", error.what());
+    return ExitCode::kInvalidInput;
+  } catch (const Interrupted&) {
+    return ExitCode::kInterrupted;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "internal error: {}\n", error.what());
+    return ExitCode::kInternal;
+  }
+}
+
+ExitCode run_shard(const MpiArguments& arguments, const std::string& out, const Shard& shard) {
+  const LoadedExperiment loaded = load_experiment(arguments.file, arguments.assignments);
+  if (shard.index == 1) {
+    fmt::print(stderr, "{}", format_mistakes(loaded.document, loaded.mistakes));
+  }
+  if (loaded.has_errors()) return ExitCode::kInvalidInput;
+  std::string command =
+      fmt::format("modcal run {} --out {}", shell_word(arguments.file), shell_word(out));
+  for (const std::string& assignment : arguments.assignments) {
+    command += " --set " + shell_word(assignment);
+  }
+  return run_one(
+      loaded,
+      {.out = out, .threads = arguments.threads, .command = std::move(command), .shard = shard});
+}
+
+int main_of(int argc, char** argv) {
+  const MpiSession session(&argc, &argv);
+  CLI::App app("modcal-mpi: runs a list of tasks over the ranks of an MPI job");
+  MpiArguments arguments;
+  CLI::App* run = app.add_subcommand("run", "Run an experiment");
+  run->add_option("file", arguments.file, "YAML file")->required();
+  run->add_option("--out", arguments.out, "folder of the results, seen by all ranks");
+  run->add_option("--set", arguments.assignments, "key.path=value, overrides the file")
+      ->allow_extra_args(false);
+  run->add_option("--threads", arguments.threads, "threads of a rank; default 1")
+      ->check(CLI::Range(1, 4096));
+  app.require_subcommand(1);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::kUsage);
+  }
+  catch_interrupts();
+  const Shard shard = session.shard();
+  const std::string out =
+      arguments.out.empty()
+          ? (std::filesystem::path("out") / std::filesystem::path(arguments.file).stem()).string()
+          : arguments.out;
+  ExitCode code = MpiSession::worst(guarded([&] { return run_shard(arguments, out, shard); }));
+  const bool complete = code == ExitCode::kOk || code == ExitCode::kSomeTasksFailed;
+  if (complete && !shard.is_whole() && shard.index == 1) {
+    code = guarded([&out] { return report_stored_run(out); });
+  }
+  return static_cast<int>(MpiSession::worst(code));
+}
+
+}  // namespace
+}  // namespace modcal
+
+int main(int argc, char** argv) { return modcal::main_of(argc, argv); }
