@@ -35,6 +35,10 @@ class TaskExperiment : public Experiment {
   virtual std::string run_task(std::size_t task, const StudyContext& context) const = 0;
   /// The reason in an outcome why its task failed; empty where it did not.
   virtual std::string failure_in(const std::string& outcome) const = 0;
+  /// What loss_in() measures, for people; empty: tasks of this kind have no score.
+  virtual std::string loss_name() const { return {}; }
+  /// How wrong an outcome is, > 0; nullopt where its task failed.
+  virtual std::optional<double> loss_in(const std::string& /*outcome*/) const { return {}; }
   /// Tables, figures and acceptance of the outcomes there are; nullopt: not run yet.
   virtual StudyResult sum_up(const std::vector<std::optional<FinishedTask>>& outcomes,
                              const StudyContext& context) const = 0;

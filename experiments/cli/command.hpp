@@ -26,6 +26,7 @@ void add_status_command(CLI::App& app, const Chosen& chosen);
 void add_merge_command(CLI::App& app, const Chosen& chosen);
 void add_report_command(CLI::App& app, const Chosen& chosen);
 void add_replay_command(CLI::App& app, const Chosen& chosen);
+void add_compare_command(CLI::App& app, const Chosen& chosen);
 void add_submit_command(CLI::App& app, const Chosen& chosen);
 
 }  // namespace modcal

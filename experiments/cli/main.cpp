@@ -58,6 +58,7 @@ int main_of(int argc, char** argv) {
   add_merge_command(app, chosen);
   add_report_command(app, chosen);
   add_replay_command(app, chosen);
+  add_compare_command(app, chosen);
   add_submit_command(app, chosen);
   if (is_unknown_command(app, argc, argv)) return static_cast<int>(ExitCode::kUsage);
   try {

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -215,6 +216,12 @@ std::string BenchmarkExperiment::run_task(std::size_t task, const StudyContext& 
 
 std::string BenchmarkExperiment::failure_in(const std::string& outcome) const {
   return read_benchmark_outcome(outcome).failure;
+}
+
+std::optional<double> BenchmarkExperiment::loss_in(const std::string& outcome) const {
+  const BenchmarkOutcome read = read_benchmark_outcome(outcome);
+  if (!read.failure.empty() || !std::isfinite(read.frequency_error)) return std::nullopt;
+  return read.frequency_error;
 }
 
 BenchmarkGrid BenchmarkExperiment::grid(

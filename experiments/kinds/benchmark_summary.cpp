@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "libsim/base/random.hpp"
+#include "experiments/study/paired_bootstrap.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {
@@ -21,14 +21,6 @@ double loss_of(const BenchmarkOutcome& outcome) {
 
 using Losses = std::map<std::string, double>;  // by replicate
 
-// Log of the ratio of two medians; 0 where neither has an estimate.
-double log_ratio(std::vector<double> ours, std::vector<double> theirs) {
-  const double a = quantile(std::move(ours), 0.5);
-  const double b = quantile(std::move(theirs), 0.5);
-  if (a == b) return 0.0;
-  return std::log(a / b);
-}
-
 bool is_better(const Losses& ours, const Losses& theirs) {
   std::vector<double> a, b;
   for (const auto& [replicate, loss] : ours) {
@@ -37,23 +29,7 @@ bool is_better(const Losses& ours, const Losses& theirs) {
     a.push_back(loss);
     b.push_back(other->second);
   }
-  // Two draws more or less decide nothing below five.
-  if (a.size() < 5) return false;
-  constexpr std::size_t kResamples = 1000;
-  std::vector<double> uniform(a.size());
-  std::vector<double> ratios;
-  for (std::size_t resample = 0; resample < kResamples; ++resample) {
-    fill_uniform(StreamKey(1).with("paired bootstrap").with(resample), uniform);
-    std::vector<double> drawn_a, drawn_b;
-    for (const double u : uniform) {
-      const auto i =
-          std::min(static_cast<std::size_t>(u * static_cast<double>(a.size())), a.size() - 1);
-      drawn_a.push_back(a[i]);
-      drawn_b.push_back(b[i]);
-    }
-    ratios.push_back(log_ratio(std::move(drawn_a), std::move(drawn_b)));
-  }
-  return quantile(std::move(ratios), 0.975) < 0.0;
+  return !a.empty() && median_ratio(a, b).is_below_one();
 }
 
 void count_reasons(const std::vector<const BenchmarkTask*>& tasks, BenchmarkCell& cell) {

@@ -58,8 +58,7 @@ struct BenchmarkCell {
 
 /// Cells by condition, then method. Ranks compare medians of the frequency error over the draws
 /// that two methods share, a draw without an estimate being worse than any other: a method is
-/// better where the 95 % interval of the ratio of medians, by a paired bootstrap of 1000 resamples
-/// with a fixed seed (Efron and Tibshirani, 1993), lies below 1.
+/// better where the 95 % interval of the ratio of medians (median_ratio) lies below 1.
 std::vector<BenchmarkCell> benchmark_cells(const BenchmarkGrid& grid);
 
 /// "{type: nlopt, algorithm: LN_SBPLX}" → "nlopt LN_SBPLX".

@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "experiments/kinds/invert_experiment.hpp"
@@ -112,6 +113,19 @@ std::string SweepExperiment::run_task(std::size_t task, const StudyContext& cont
 
 std::string SweepExperiment::failure_in(const std::string& outcome) const {
   return read_outcome(outcome).failure;
+}
+
+std::optional<double> SweepExperiment::loss_in(const std::string& outcome) const {
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (const TaskScores& side : read_outcome(outcome).sides) {
+    for (const WindowScore& score : side.scores) {
+      sum += score.relative_rms_error;
+      ++count;
+    }
+  }
+  if (count == 0 || !std::isfinite(sum)) return std::nullopt;
+  return sum / static_cast<double>(count);
 }
 
 StudyResult SweepExperiment::sum_up(const std::vector<std::optional<FinishedTask>>& outcomes,

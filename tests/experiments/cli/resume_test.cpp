@@ -156,6 +156,19 @@ TEST_F(Resume, NamesADamagedLineAndRunsItsTaskAgain) {
   EXPECT_EQ(tables_of("a"), tables);
 }
 
+TEST_F(Resume, ComparesTwoRunsOnTheTasksTheyShare) {
+  ASSERT_EQ(modcal("run sweep.yaml --out a").code, 0);
+  ASSERT_EQ(modcal("run sweep.yaml --out b --set inversion.regularizer=none "
+                   "--set sweep.product.seed='[1, 2, 3]'")
+                .code,
+            0);
+  const Outcome outcome = modcal("compare a b");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("24 of 40 and 24 tasks in common"));
+  EXPECT_THAT(outcome.out, HasSubstr("a is better"));
+  EXPECT_THAT(modcal("compare a a").out, HasSubstr("the two cannot be told apart"));
+}
+
 TEST_F(Resume, RefusesFoldersWithoutARun) {
   for (const char* command : {"status", "merge", "report", "replay"}) {
     const Outcome outcome =
