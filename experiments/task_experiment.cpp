@@ -1,10 +1,10 @@
 #include "experiments/task_experiment.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+
+#include "libsim/base/task_loop.hpp"
 
 namespace modcal {
 namespace {
@@ -48,8 +48,7 @@ Outcomes run_tasks(const TaskExperiment& experiment, const StudyContext& context
       pending_tasks(experiment, context, store, shard, outcomes);
   const auto all = static_cast<double>(shard.size(outcomes.size()));
   std::atomic<std::size_t> left{pending.size()};
-  tbb::parallel_for(std::size_t{0}, pending.size(), [&](std::size_t i) {
-    if (context.interrupted()) return;
+  const auto run = [&](std::size_t i) {
     const auto start = std::chrono::steady_clock::now();
     const PendingTask& next = pending[i];
     FinishedTask finished{experiment.run_task(next.task, context), 0.0};
@@ -59,8 +58,8 @@ Outcomes run_tasks(const TaskExperiment& experiment, const StudyContext& context
     }
     outcomes[next.task] = std::move(finished);
     context.progress(1.0 - static_cast<double>(--left) / all);
-  });
-  context.throw_if_interrupted();
+  };
+  for_each_task(pending.size(), run, context.stop);
   return outcomes;
 }
 

@@ -5,10 +5,11 @@
 namespace modcal {
 namespace {
 
-volatile std::sig_atomic_t flag = 0;
+std::atomic<bool> flag{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler sets it");
 
 void on_signal(int number) {
-  flag = 1;
+  flag.store(true, std::memory_order_relaxed);
   std::signal(number, SIG_DFL);
 }
 
@@ -19,6 +20,8 @@ void catch_interrupts() {
   std::signal(SIGTERM, on_signal);
 }
 
-bool interrupted() { return flag != 0; }
+StopToken interrupt_token() { return StopToken(flag); }
+
+bool interrupted() { return interrupt_token().requested(); }
 
 }  // namespace modcal

@@ -1,10 +1,13 @@
-// Ctrl-C and termination, as a flag that the work polls.
+// Ctrl-C and termination, as a wish that the work polls.
 #pragma once
+
+#include "libsim/base/stop_token.hpp"
 
 namespace modcal {
 
-/// From now on SIGINT and SIGTERM set the flag; a second one ends the process at once.
+/// From now on SIGINT and SIGTERM request a stop; a second one ends the process at once.
 void catch_interrupts();
+StopToken interrupt_token();
 bool interrupted();
 
 }  // namespace modcal

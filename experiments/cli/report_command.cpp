@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "experiments/cli/command.hpp"
+#include "experiments/cli/interrupt.hpp"
 #include "experiments/cli/runner.hpp"
 #include "experiments/cli/stored_run.hpp"
 #include "libsim/base/error.hpp"
@@ -25,7 +26,7 @@ ExitCode replay_task(const std::string& out, std::size_t task) {
   for (std::size_t axis = 0; axis < run.list().axes().size(); ++axis) {
     fmt::print(stderr, "{}: {}\n", run.list().axes()[axis], run.list().axis_values(task)[axis]);
   }
-  SharedWork work;
+  SharedWork work(interrupt_token());
   const std::string command = fmt::format("modcal replay {} {}", out, task);
   const StudyResult result = run.list().replay(task, context_of(run, work, command));
   const std::filesystem::path folder =

@@ -46,7 +46,7 @@ auto with_context(const LoadedExperiment& loaded, const std::filesystem::path& f
                            .folder = folder,
                            .command = command,
                            .progress = [&progress](double share) { progress.report(share); },
-                           .interrupted = [] { return interrupted(); }});
+                           .stop = interrupt_token()});
 }
 
 void write_signal_file(const OutputDirectory& out, const SignalFile& file) {
@@ -208,7 +208,7 @@ ExitCode run_one(const LoadedExperiment& loaded, const RunSettings& settings) {
   // Before the work, so that an interrupted run says what it was.
   record_run(loaded, settings, folder, out);
   const auto limit = limit_threads(settings.threads);
-  SharedWork work;
+  SharedWork work(interrupt_token());
   StudyResult result;
   try {
     result = with_context(loaded, folder, settings.command, work, [&](const StudyContext& context) {
@@ -235,7 +235,7 @@ ExitCode run_together(const std::vector<LoadedExperiment>& experiments,
   const auto start = std::chrono::steady_clock::now();
   const OutputDirectory out(settings.out);
   const auto limit = limit_threads(settings.threads);
-  SharedWork work;
+  SharedWork work(interrupt_token());
   report::Report report;
   report.title = settings.title;
   ExitCode worst = ExitCode::kOk;

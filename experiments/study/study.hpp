@@ -11,12 +11,15 @@
 #include "experiments/report/report.hpp"
 #include "experiments/study/identification.hpp"
 #include "experiments/study/truth.hpp"
-#include "libsim/base/error.hpp"
+#include "libsim/base/stop_token.hpp"
 
 namespace modcal {
 
 /// Truths and prepared inversions, shared by all experiments of one process.
 struct SharedWork {
+  SharedWork() = default;
+  explicit SharedWork(const StopToken& stop) : truths(stop) {}
+
   TruthCache truths;
   InversionCache inversions;
 };
@@ -26,11 +29,9 @@ struct StudyContext {
   std::filesystem::path folder;  ///< where relative paths of the experiment start
   std::string command;           ///< what makes the results again
   std::function<void(double)> progress = [](double) {};  ///< share done, from any thread
-  std::function<bool()> interrupted = [] { return false; };
+  StopToken stop;                                        ///< set by Ctrl-C
 
-  void throw_if_interrupted() const {
-    if (interrupted()) throw Interrupted();
-  }
+  void throw_if_interrupted() const { stop.throw_if_requested(); }
 };
 
 /// Signals to be written as a record file, "csv" or "wav".

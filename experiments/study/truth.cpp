@@ -7,11 +7,11 @@ namespace modcal {
 namespace {
 
 std::shared_ptr<const Truth> simulate_truth(const TruthOptions& options, double sample_rate,
-                                            const OutputRequest& outputs) {
+                                            const OutputRequest& outputs, const StopToken& stop) {
   auto truth = std::make_shared<Truth>();
   truth->basis = make_modal_basis(options.scene.string);
   truth->contact = options.scene.bow.position;
-  truth->simulation = options.simulator.make()->simulate(options.scene, sample_rate, outputs);
+  truth->simulation = options.simulator.make()->simulate(options.scene, sample_rate, outputs, stop);
   MODCAL_REQUIRE(!truth->simulation.diverged_at,
                  "the simulation by {} diverges at {:g} s: use a smaller time step or modal_exact",
                  options.simulator.selected(), *truth->simulation.diverged_at);
@@ -28,6 +28,8 @@ std::string truth_key(TruthOptions options, double sample_rate, const OutputRequ
     bool flags[] = {outputs.displacement, outputs.velocity, outputs.force, outputs.left_reaction,
                     outputs.right_reaction};
     for (bool& flag : flags) visitor.flag({.key = "output", .meaning = ""}, flag);
+    double switches_from = outputs.switches_from;
+    visitor.number({.key = "switches_from", .meaning = ""}, switches_from);
   });
 }
 
@@ -46,7 +48,7 @@ std::shared_ptr<const Truth> TruthCache::get(const TruthOptions& options, double
   }
   if (is_mine) {
     try {
-      promise.set_value(simulate_truth(options, sample_rate, outputs));
+      promise.set_value(simulate_truth(options, sample_rate, outputs, stop_));
     } catch (...) {
       promise.set_exception(std::current_exception());
     }

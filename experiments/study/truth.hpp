@@ -31,7 +31,10 @@ std::string truth_key(TruthOptions options, double sample_rate, const OutputRequ
 /// Simulates, or waits for the thread that is simulating the same truth.
 class TruthCache {
  public:
-  /// Throws InvalidInput where the scene cannot be simulated or the simulation diverges.
+  TruthCache() = default;
+  explicit TruthCache(const StopToken& stop) : stop_(stop) {}
+  /// Throws InvalidInput where the scene cannot be simulated or the simulation diverges,
+  /// Interrupted where the stop was requested.
   std::shared_ptr<const Truth> get(const TruthOptions& options, double sample_rate,
                                    const OutputRequest& outputs);
   /// Simulations done so far.
@@ -39,6 +42,7 @@ class TruthCache {
 
  private:
   using Shared = std::shared_future<std::shared_ptr<const Truth>>;
+  StopToken stop_;
   mutable std::mutex mutex_;
   std::map<std::string, Shared> truths_;
 };

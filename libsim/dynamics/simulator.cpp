@@ -30,14 +30,16 @@ StepPlan plan_steps(double wanted_time_step, double sample_rate) {
           .steps_per_sample = static_cast<std::size_t>(steps)};
 }
 
-Simulation Simulator::simulate(const Scene& scene, double sample_rate,
-                               const OutputRequest& outputs) const {
+Simulation Simulator::simulate(const Scene& scene, double sample_rate, const OutputRequest& outputs,
+                               const StopToken& stop) const {
   const double length = scene.string.length;
   MODCAL_REQUIRE(scene.bow.position > 0.0 && scene.bow.position < length,
                  "bow position {:g} m is not inside the string: it must lie in (0, {:g}) m",
                  scene.bow.position, length);
   sample_count(scene.duration, sample_rate);
-  return run(scene, sample_rate, outputs);
+  Simulation result = run(scene, sample_rate, outputs, stop);
+  stop.throw_if_requested();
+  return result;
 }
 
 }  // namespace modcal

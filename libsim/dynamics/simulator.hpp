@@ -2,12 +2,16 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "libsim/base/registry.hpp"
+#include "libsim/base/stop_token.hpp"
 #include "libsim/dynamics/scene.hpp"
+#include "libsim/dynamics/switch.hpp"
 #include "libsim/signal/signal.hpp"
 
 namespace modcal {
@@ -19,8 +23,16 @@ struct OutputRequest {
   bool force = false;           ///< f_c [N]
   bool left_reaction = false;   ///< R₁ at x = 0 [N]
   bool right_reaction = false;  ///< R₂ at x = L [N]
+  /// Time from which the switches are listed [s]; infinite: none.
+  double switches_from = std::numeric_limits<double>::infinity();
 
-  static OutputRequest all() { return {true, true, true, true, true}; }
+  static OutputRequest all() {
+    return {.displacement = true,
+            .velocity = true,
+            .force = true,
+            .left_reaction = true,
+            .right_reaction = true};
+  }
 };
 
 /// Sampled result. A signal that was not asked for has no samples.
@@ -31,11 +43,12 @@ struct Simulation {
   Signal left_reaction;
   Signal right_reaction;
 
-  double time_step = 0.0;       ///< the step taken [s]: divides the sampling period
-  std::size_t steps = 0;        ///< steps taken
-  std::size_t attachments = 0;  ///< changes from sliding to sticking
-  std::size_t releases = 0;     ///< changes from sticking to sliding
-  std::size_t modes_moved = 0;  ///< modes that the contact force reaches
+  double time_step = 0.0;        ///< the step taken [s]: divides the sampling period
+  std::size_t steps = 0;         ///< steps taken
+  std::size_t attachments = 0;   ///< changes from sliding to sticking
+  std::size_t releases = 0;      ///< changes from sticking to sliding
+  std::size_t modes_moved = 0;   ///< modes that the contact force reaches
+  std::vector<Switch> switches;  ///< in the order of time, from OutputRequest::switches_from on
   /// Time at which the simulation could not go on [s]; such a result holds no signals.
   std::optional<double> diverged_at;
   /// Why it could not; empty otherwise.
@@ -59,12 +72,15 @@ class Simulator {
   static Registry<Simulator> registry();
 
   virtual ~Simulator() = default;
-  /// Simulates the scene and samples the asked-for outputs at `sample_rate` [Hz].
-  Simulation simulate(const Scene& scene, double sample_rate, const OutputRequest& outputs) const;
+  /// Simulates the scene and samples the asked-for outputs at `sample_rate` [Hz]. Throws
+  /// InvalidInput for a scene that cannot be simulated, Interrupted where `stop` was requested.
+  Simulation simulate(const Scene& scene, double sample_rate, const OutputRequest& outputs,
+                      const StopToken& stop = {}) const;
 
  private:
-  virtual Simulation run(const Scene& scene, double sample_rate,
-                         const OutputRequest& outputs) const = 0;
+  /// May end early, with any result, once `stop` is requested.
+  virtual Simulation run(const Scene& scene, double sample_rate, const OutputRequest& outputs,
+                         const StopToken& stop) const = 0;
 };
 
 }  // namespace modcal

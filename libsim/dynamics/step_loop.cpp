@@ -185,6 +185,7 @@ LoopCounts Loop(const StepLoop& loop, const Law& law, StepCoefficients& c) {
   std::uint64_t step = 0;
   LoopCounts counts;
   for (std::size_t sample = 1; sample < loop.samples; ++sample) {
+    if (loop.stop.requested()) break;
     double v = 0.0, y = 0.0, driving = 0.0;
     for (std::size_t inner = loop.steps_per_sample; inner > 0; --inner) {
       ++step;

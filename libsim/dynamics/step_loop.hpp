@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "libsim/base/aligned_vector.hpp"
+#include "libsim/base/stop_token.hpp"
 #include "libsim/dynamics/contact_modes.hpp"
 #include "libsim/dynamics/friction/sliding_laws.hpp"
 
@@ -81,6 +82,7 @@ struct StepLoop {
   double initial_displacement = 0.0;  ///< y at t = 0 [m]
   double initial_velocity = 0.0;      ///< v at t = 0 [m/s]
   SampleTargets targets;
+  StopToken stop;  ///< polled between samples
 };
 
 /// Runs all steps. Sample 0 is the state at t = 0.

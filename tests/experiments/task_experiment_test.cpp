@@ -24,7 +24,7 @@ class Squares final : public TaskExperiment {
     return std::to_string(task);
   }
   std::string run_task(std::size_t task, const StudyContext&) const override {
-    ++runs;
+    if (++runs >= stop_after) wish = true;
     return std::to_string(task * task);
   }
   std::string failure_in(const std::string&) const override { return {}; }
@@ -40,6 +40,8 @@ class Squares final : public TaskExperiment {
   StudyResult replay(std::size_t, const StudyContext&) const override { return {}; }
 
   mutable std::atomic<int> runs{0};
+  int stop_after = 1000;
+  mutable std::atomic<bool> wish{false};
 
  private:
   std::size_t tasks_;
@@ -68,9 +70,10 @@ TEST_F(TaskList, StandsInOrderWhateverTheThreads) {
 }
 
 TEST_F(TaskList, GoesOnAfterAnInterruptionWithoutRepeatingWork) {
-  const Squares squares(9);
+  Squares squares(9);
+  squares.stop_after = 4;
   StudyContext stopping = context();
-  stopping.interrupted = [&squares] { return squares.runs >= 4; };
+  stopping.stop = StopToken(squares.wish);
   {
     RunStore store(folder, {}, "p");
     EXPECT_THROW(run_tasks(squares, stopping, &store, {}), Interrupted);

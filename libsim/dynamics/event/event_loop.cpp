@@ -65,6 +65,7 @@ class Run {
     enter();
     store(0);
     for (std::size_t sample = 1; sample < loop_.samples && !counts_.failure; ++sample) {
+      if (loop_.stop.requested()) break;
       if (const std::size_t held = hold_block(sample); held > 0) {
         sample += held - 1;
         continue;
@@ -229,6 +230,7 @@ class Run {
     const double force = -sliding_.side() * friction_at_rest_ * drive.load;
     sticking_->attach(drive, state_.modes, y, continuous ? -force / loop_.contact.stiffness : 0.0);
     mark_base(x);
+    list_switch(x, y, true);
     state_.sticking = true;
     ++counts_.attachments;
   }
@@ -236,7 +238,9 @@ class Run {
   // `limit`: the sign of the force that adherence could not carry.
   void release(double x, int limit) {
     sticking_->detach(since_base(x), state_.modes);
-    const double v = model_.observe(state_.modes, {.reactions = false}).velocity;
+    const Motion motion = model_.observe(state_.modes, {.reactions = false});
+    const double v = motion.velocity;
+    list_switch(x, motion.displacement, false);
     const BowDrive drive = drive_at(x);
     const double slip = v - drive.velocity;
     const double against_force = -limit;
@@ -246,6 +250,13 @@ class Run {
     sliding_.start(side, at_rest ? 0.0 : std::abs(slip), drive.load);
     state_.sticking = false;
     ++counts_.releases;
+  }
+
+  void list_switch(double x, double displacement, bool attaches) {
+    const double time = (static_cast<double>(step_) + x) * loop_.grid_step;
+    if (time >= loop_.switches_from && loop_.switches != nullptr) {
+      loop_.switches->push_back({time, displacement, attaches});
+    }
   }
 
   // τ = 0 of adherence.

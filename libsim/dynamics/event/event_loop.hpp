@@ -2,13 +2,16 @@
 // switches located inside the step.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "libsim/base/stop_token.hpp"
 #include "libsim/dynamics/event/bow_path.hpp"
 #include "libsim/dynamics/event/closed_loop.hpp"
 #include "libsim/dynamics/step_loop.hpp"
+#include "libsim/dynamics/switch.hpp"
 
 namespace modcal::event {
 
@@ -44,6 +47,9 @@ struct EventLoop {
   std::size_t steps_per_sample = 1;
   std::size_t samples = 0;  ///< samples, that of the start included
   SampleTargets targets;    ///< sample j is taken after j·steps_per_sample grid steps
+  std::vector<Switch>* switches = nullptr;  ///< takes those from `switches_from` [s] on
+  double switches_from = std::numeric_limits<double>::infinity();
+  StopToken stop;  ///< polled between samples
 };
 
 struct EventCounts {

@@ -80,8 +80,10 @@ void FixedStepOptions::visit(OptionVisitor& visitor) {
 }
 
 Simulation simulate_fixed_step(const Scene& scene, double sample_rate, const OutputRequest& outputs,
-                               double wanted_time_step, ForceTiming timing,
+                               const StopToken& stop, double wanted_time_step, ForceTiming timing,
                                WeightsOfPole weights_of_pole) {
+  MODCAL_REQUIRE(std::isinf(outputs.switches_from),
+                 "a fixed-step simulator does not list its switches: use modal_event");
   const StepPlan plan = plan_steps(wanted_time_step, sample_rate);
   const std::size_t count = sample_count(scene.duration, sample_rate);
   const BowMotion bow = steady_motion(scene, "a fixed-step simulator");
@@ -97,7 +99,8 @@ Simulation simulate_fixed_step(const Scene& scene, double sample_rate, const Out
                 .law = friction->sliding(bow.normal_force.at(0.0)),
                 .initial_displacement = motion.displacement,
                 .initial_velocity = motion.velocity,
-                .targets = {}};
+                .targets = {},
+                .stop = stop};
   const double first_force = initial_force(loop);
   // The explicit scheme has no force before t = 0; the implicit one starts with that of t = 0.
   StepCoefficients coefficients =

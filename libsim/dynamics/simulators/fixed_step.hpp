@@ -20,7 +20,7 @@ struct ModeWeights {
 using WeightsOfPole = ModeWeights (*)(std::complex<double> pole, double time_step);
 
 Simulation simulate_fixed_step(const Scene& scene, double sample_rate, const OutputRequest& outputs,
-                               double wanted_time_step, ForceTiming timing,
+                               const StopToken& stop, double wanted_time_step, ForceTiming timing,
                                WeightsOfPole weights_of_pole);
 
 }  // namespace modcal

@@ -62,8 +62,8 @@ ModalEvent::ModalEvent(const Options& options) : options_(options) {
                  "unknown attachment rule \"{}\": literal or continuous", options.attach);
 }
 
-Simulation ModalEvent::run(const Scene& scene, double sample_rate,
-                           const OutputRequest& outputs) const {
+Simulation ModalEvent::run(const Scene& scene, double sample_rate, const OutputRequest& outputs,
+                           const StopToken& stop) const {
   const double wanted = std::isnan(options_.max_step) ? 1.0 / sample_rate : options_.max_step;
   const StepPlan plan = plan_steps(wanted, sample_rate);
   const std::size_t count = sample_count(scene.duration, sample_rate);
@@ -87,7 +87,10 @@ Simulation ModalEvent::run(const Scene& scene, double sample_rate,
       .grid_step = plan.time_step,
       .steps_per_sample = plan.steps_per_sample,
       .samples = count,
-      .targets = targets_of(result)};
+      .targets = targets_of(result),
+      .switches = &result.switches,
+      .switches_from = outputs.switches_from,
+      .stop = stop};
   event::EventState state = event::initial_state(modes, bow.velocity.at(0.0));
   const event::EventCounts counts = event::run_event_loop(loop, modes, state);
 

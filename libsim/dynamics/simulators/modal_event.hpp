@@ -39,8 +39,8 @@ class ModalEvent final : public Simulator {
   explicit ModalEvent(const Options& options);
 
  private:
-  Simulation run(const Scene& scene, double sample_rate,
-                 const OutputRequest& outputs) const override;
+  Simulation run(const Scene& scene, double sample_rate, const OutputRequest& outputs,
+                 const StopToken& stop) const override;
   Options options_;
 };
 

@@ -4,9 +4,9 @@
 
 namespace modcal {
 
-Simulation ModalExact::run(const Scene& scene, double sample_rate,
-                           const OutputRequest& outputs) const {
-  return simulate_fixed_step(scene, sample_rate, outputs, options_.time_step,
+Simulation ModalExact::run(const Scene& scene, double sample_rate, const OutputRequest& outputs,
+                           const StopToken& stop) const {
+  return simulate_fixed_step(scene, sample_rate, outputs, stop, options_.time_step,
                              ForceTiming::kImplicit, first_order_hold_weights);
 }
 

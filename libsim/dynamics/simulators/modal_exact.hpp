@@ -18,8 +18,8 @@ class ModalExact final : public Simulator {
   explicit ModalExact(const Options& options) : options_(options) {}
 
  private:
-  Simulation run(const Scene& scene, double sample_rate,
-                 const OutputRequest& outputs) const override;
+  Simulation run(const Scene& scene, double sample_rate, const OutputRequest& outputs,
+                 const StopToken& stop) const override;
   Options options_;
 };
 

@@ -12,8 +12,8 @@ ModeWeights trapezoidal_weights(std::complex<double> pole, double time_step) {
 }  // namespace
 
 Simulation NewmarkExplicit::run(const Scene& scene, double sample_rate,
-                                const OutputRequest& outputs) const {
-  return simulate_fixed_step(scene, sample_rate, outputs, options_.time_step,
+                                const OutputRequest& outputs, const StopToken& stop) const {
+  return simulate_fixed_step(scene, sample_rate, outputs, stop, options_.time_step,
                              ForceTiming::kPreviousStep, trapezoidal_weights);
 }
 

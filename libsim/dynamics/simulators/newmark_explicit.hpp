@@ -17,8 +17,8 @@ class NewmarkExplicit final : public Simulator {
   explicit NewmarkExplicit(const Options& options) : options_(options) {}
 
  private:
-  Simulation run(const Scene& scene, double sample_rate,
-                 const OutputRequest& outputs) const override;
+  Simulation run(const Scene& scene, double sample_rate, const OutputRequest& outputs,
+                 const StopToken& stop) const override;
   Options options_;
 };
 
