@@ -4,6 +4,7 @@
 #include "experiments/kinds/benchmark_experiment.hpp"
 #include "experiments/kinds/calibrate_experiment.hpp"
 #include "experiments/kinds/invert_experiment.hpp"
+#include "experiments/kinds/schelleng_experiment.hpp"
 #include "experiments/kinds/simulate_experiment.hpp"
 #include "experiments/kinds/sweep_experiment.hpp"
 
@@ -17,6 +18,8 @@ Registry<Experiment> Experiment::registry() {
           "calibrate", "refine the modal model, then identify force and motion with it"),
       entry_of<Experiment, InvertExperiment>(
           "invert", "contact force and motion from simulated or recorded reactions"),
+      entry_of<Experiment, SchellengExperiment>(
+          "schelleng", "which motion a steady bow stroke settles in, over positions and forces"),
       entry_of<Experiment, SimulateExperiment>("simulate",
                                                "a bowed string, its signals and figures"),
       entry_of<Experiment, SweepExperiment>(

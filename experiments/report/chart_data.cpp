@@ -114,6 +114,17 @@ Json axis_json(const Axis& axis) {
   return {{"label", axis.label}, {"text", axis.text()}, {"log", axis.logarithmic}};
 }
 
+Json map_json(const CategoryMap& map, ArrayPool& pool) {
+  Json categories = Json::array();
+  for (const Category& category : map.categories) {
+    categories.push_back({{"label", category.label}, {"ink", ink_of(category.color).name}});
+  }
+  return {{"x", pool.add(map.x_edges, map.x_edges.front())},
+          {"y", pool.add(map.y_edges, map.y_edges.front())},
+          {"cells", pool.add(std::vector<double>(map.cells.begin(), map.cells.end()), 0.0)},
+          {"categories", std::move(categories)}};
+}
+
 Json panel_json(const DrawnPanel& drawn, ArrayPool& pool) {
   const Panel& panel = *drawn.source;
   Json json = {{"x", axis_json(panel.x)}, {"y", axis_json(panel.y)}};
@@ -125,6 +136,7 @@ Json panel_json(const DrawnPanel& drawn, ArrayPool& pool) {
   for (const DrawnSeries& series : drawn.series) {
     if (series.has_values()) json["series"].push_back(series_json(series, pool));
   }
+  if (panel.map) json["map"] = map_json(*panel.map, pool);
   json["markers"] = Json::array();
   for (const Marker& marker : panel.markers) {
     json["markers"].push_back({{"vertical", marker.direction == Marker::Direction::kVertical},

@@ -143,6 +143,7 @@ std::array<double, 2> widened(const Extent& extent, double share, bool logarithm
 std::array<double, 2> x_window_of(const DrawnPanel& drawn) {
   const Panel& panel = *drawn.source;
   if (panel.x.range) return *panel.x.range;
+  if (panel.map) return {panel.map->x_edges.front(), panel.map->x_edges.back()};
   Extent extent;
   bool has_points = false;
   for (const DrawnSeries& series : drawn.series) {
@@ -159,6 +160,12 @@ std::array<double, 2> x_window_of(const DrawnPanel& drawn) {
 
 void set_y_window(DrawnPanel& drawn) {
   const Panel& panel = *drawn.source;
+  if (panel.map) {
+    drawn.y_fixed = true;
+    drawn.y_window =
+        panel.y.range.value_or(std::array{panel.map->y_edges.front(), panel.map->y_edges.back()});
+    return;
+  }
   Extent data;
   for (const DrawnSeries& series : drawn.series) {
     for (const auto* values : {&series.y, &series.low, &series.high}) {
@@ -207,6 +214,7 @@ bool DrawnSeries::has_values() const {
 }
 
 bool DrawnPanel::has_values() const {
+  if (source->map) return true;
   return std::any_of(series.begin(), series.end(),
                      [](const DrawnSeries& drawn) { return drawn.has_values(); });
 }

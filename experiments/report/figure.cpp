@@ -39,6 +39,30 @@ void check_marker(const Marker& marker, const Panel& panel, const std::string& f
                  marker.label, marker.value, axis.label);
 }
 
+void check_edges(const std::vector<double>& edges, const Axis& axis, const std::string& id) {
+  const bool ascending = edges.size() >= 2 && std::is_sorted(edges.begin(), edges.end()) &&
+                         std::adjacent_find(edges.begin(), edges.end()) == edges.end();
+  MODCAL_REQUIRE(ascending && std::isfinite(edges.front()) && std::isfinite(edges.back()) &&
+                     (!axis.logarithmic || edges.front() > 0.0),
+                 "figure \"{}\": the edges of a map along \"{}\" must be 2 or more ascending "
+                 "numbers that the axis can show",
+                 id, axis.label);
+}
+
+void check_map(const CategoryMap& map, const Panel& panel, const std::string& id) {
+  check_edges(map.x_edges, panel.x, id);
+  check_edges(map.y_edges, panel.y, id);
+  MODCAL_REQUIRE(map.cells.size() == map.columns() * map.rows(),
+                 "figure \"{}\": a map of {} columns and {} rows has {} cells", id, map.columns(),
+                 map.rows(), map.cells.size());
+  const auto categories = static_cast<int>(map.categories.size());
+  for (const int cell : map.cells) {
+    MODCAL_REQUIRE(cell >= -1 && cell < categories,
+                   "figure \"{}\": category {} of a cell is none of the {} of its map", id, cell,
+                   categories);
+  }
+}
+
 }  // namespace
 
 std::string Axis::text() const {
@@ -51,6 +75,7 @@ bool has_shared_legend(const Figure& figure) {
   };
   return std::all_of(figure.panels.begin(), figure.panels.end(), [&](const Panel& panel) {
     const auto& first = figure.panels.front().series;
+    if (panel.map && figure.panels.size() > 1) return false;
     return std::equal(panel.series.begin(), panel.series.end(), first.begin(), first.end(), same);
   });
 }
@@ -74,6 +99,7 @@ void check_figure(const Figure& figure) {
     check_axis(panel.y, figure.id);
     for (const Series& series : panel.series) check_series(series, figure.id);
     for (const Marker& marker : panel.markers) check_marker(marker, panel, figure.id);
+    if (panel.map) check_map(*panel.map, panel, figure.id);
   }
 }
 

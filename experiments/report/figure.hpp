@@ -60,12 +60,31 @@ struct Marker {
   ColorRole color = ColorRole::kReference;
 };
 
+/// One kind of cell of a map.
+struct Category {
+  std::string label = {};
+  ColorRole color = ColorRole::kFirst;
+};
+
+/// Cells coloured by their category, beneath the series: cell (column i, row j) is
+/// cells[j (x_edges.size() − 1) + i], a place in `categories` or −1 for none.
+struct CategoryMap {
+  std::vector<double> x_edges = {};  ///< ascending, one more than columns
+  std::vector<double> y_edges = {};  ///< ascending, one more than rows
+  std::vector<Category> categories = {};
+  std::vector<int> cells = {};
+
+  std::size_t columns() const { return x_edges.size() - 1; }
+  std::size_t rows() const { return y_edges.size() - 1; }
+};
+
 struct Panel {
   std::string title = {};
   Axis x = {};
   Axis y = {};
   std::vector<Series> series = {};
   std::vector<Marker> markers = {};
+  std::optional<CategoryMap> map = {};
 };
 
 /// Panels in reading order on a grid of `columns` columns.
@@ -79,8 +98,9 @@ struct Figure {
 };
 
 /// Throws InvalidInput where lengths differ, a range is empty or not finite, a logarithmic range is
-/// not positive, a marker is not finite, the grid has no column, there is no panel or the id cannot
-/// be a file name.
+/// not positive, a marker is not finite, the grid has no column, there is no panel, a map has not
+/// one cell per column and row, edges that do not ascend or a cell without category, or the id
+/// cannot be a file name.
 void check_figure(const Figure& figure);
 
 /// All panels show the same labels in the same styles and colours: one legend serves the figure.

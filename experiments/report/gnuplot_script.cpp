@@ -116,6 +116,66 @@ std::vector<std::string> elements_of(const Figure& figure, const DrawnSeries& dr
   return elements;
 }
 
+// Colour of a category under 18 % of white, as the page shows it.
+std::string softened(std::string_view color) {
+  std::string text = "#";
+  for (const std::size_t at : {1u, 3u, 5u}) {
+    const int part = std::stoi(std::string(color.substr(at, 2)), nullptr, 16);
+    text += fmt::format("{:02x}", static_cast<int>(std::lround(0.82 * part + 0.18 * 255)));
+  }
+  return text;
+}
+
+bool has_cells(const CategoryMap& map, std::size_t category) {
+  return std::count(map.cells.begin(), map.cells.end(), static_cast<int>(category)) > 0;
+}
+
+// Plot elements of a map: boxes, one data block a category that has cells.
+std::vector<std::string> map_elements(const Figure& figure, const CategoryMap& map,
+                                      std::size_t& index) {
+  std::vector<std::string> elements;
+  for (std::size_t category = 0; category < map.categories.size(); ++category) {
+    if (!has_cells(map, category)) continue;
+    const std::string color = softened(ink_of(map.categories[category].color).light);
+    elements.push_back(fmt::format(
+        "'{}.dat' index {} using 1:2:3:4:5:6 with boxxyerror fillstyle solid noborder linecolor "
+        "rgb '{}' notitle",
+        figure.id, index++, color));
+    elements.push_back(
+        fmt::format("keyentry with boxes fillstyle solid noborder linecolor rgb '{}' title {} "
+                    "noenhanced",
+                    color, gnuplot_quoted(map.categories[category].label)));
+  }
+  return elements;
+}
+
+std::string number(double value) {
+  return std::isnan(value) ? std::string("NaN") : fmt::format("{:.9g}", value);
+}
+
+// Cells of one category, neighbours of a row put together: middle, left, right, low, high.
+std::string category_data(const CategoryMap& map, std::size_t category) {
+  std::string text;
+  const std::size_t columns = map.columns();
+  const auto is_here = [&](std::size_t row, std::size_t column) {
+    return map.cells[row * columns + column] == static_cast<int>(category);
+  };
+  for (std::size_t row = 0; row < map.rows(); ++row) {
+    for (std::size_t begin = 0; begin < columns; ++begin) {
+      if (!is_here(row, begin)) continue;
+      std::size_t end = begin + 1;
+      while (end < columns && is_here(row, end)) ++end;
+      const double left = map.x_edges[begin], right = map.x_edges[end];
+      const double low = map.y_edges[row], high = map.y_edges[row + 1];
+      text += fmt::format("{} {} {} {} {} {}\n", number(0.5 * (left + right)),
+                          number(0.5 * (low + high)), number(left), number(right), number(low),
+                          number(high));
+      begin = end;
+    }
+  }
+  return text;
+}
+
 std::string panel_commands(const DrawnFigure& figure, std::size_t place, std::size_t& index) {
   const DrawnPanel& drawn = figure.panels[place];
   const Panel& panel = *drawn.source;
@@ -136,6 +196,7 @@ std::string panel_commands(const DrawnFigure& figure, std::size_t place, std::si
                       drawn.y_window[0]);
   }
   std::vector<std::string> elements;
+  if (panel.map) elements = map_elements(*figure.source, *panel.map, index);
   for (const DrawnSeries& series : drawn.series) {
     if (!series.has_values()) continue;
     const bool titled = !shared || place == 0;
@@ -183,10 +244,13 @@ std::string gnuplot_script(const DrawnFigure& figure) {
 
 std::string gnuplot_data(const DrawnFigure& figure) {
   std::string text;
-  const auto number = [](double value) {
-    return std::isnan(value) ? std::string("NaN") : fmt::format("{:.9g}", value);
-  };
   for (const DrawnPanel& panel : figure.panels) {
+    const CategoryMap* map = panel.source->map ? &*panel.source->map : nullptr;
+    for (std::size_t i = 0; map != nullptr && i < map->categories.size(); ++i) {
+      if (!has_cells(*map, i)) continue;
+      if (!text.empty()) text += "\n\n";
+      text += category_data(*map, i);
+    }
     for (const DrawnSeries& drawn : panel.series) {
       if (!drawn.has_values()) continue;
       if (!text.empty()) text += "\n\n";

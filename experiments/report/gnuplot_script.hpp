@@ -11,8 +11,9 @@ namespace modcal::report {
 /// `suffix`, if it is defined, behind both names).
 std::string gnuplot_script(const DrawnFigure& figure);
 
-/// One block per series that has values, in the order of the script: x, y and, with a spread, its
-/// two ends.
+/// One block per category of a map that has cells (middle, left, right, low, high of runs of cells)
+/// and per series that has values, in the order of the script: x, y and, with a spread, its two
+/// ends.
 std::string gnuplot_data(const DrawnFigure& figure);
 
 /// A single-quoted gnuplot string: nothing in it is special.

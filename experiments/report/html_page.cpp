@@ -27,6 +27,12 @@ std::string palette_style() {
 
 std::string legend_html(const Panel& panel) {
   std::string html;
+  for (const Category& category : panel.map ? panel.map->categories : std::vector<Category>{}) {
+    html += fmt::format(
+        "<span class=\"key\"><span class=\"mark cell ink-{}\" "
+        "aria-hidden=\"true\"></span>{}</span>",
+        ink_of(category.color).name, html_escaped(category.label));
+  }
   for (const Series& series : panel.series) {
     if (series.label.empty()) continue;
     const Ink& ink = ink_of(series.color);
@@ -66,10 +72,10 @@ std::string panel_html(const DrawnPanel& drawn, std::size_t place, bool legend_i
   html += "<output class=\"values\"></output></div>\n";
   if (!drawn.has_values()) return html + "<div class=\"nothing\">no data</div></div>\n";
   return html + fmt::format(
-                    "<div class=\"chart\" data-panel=\"{}\" tabindex=\"0\" role=\"img\" "
+                    "<div class=\"chart{}\" data-panel=\"{}\" tabindex=\"0\" role=\"img\" "
                     "aria-label=\"{}: {} over {}\"></div></div>\n",
-                    place, html_escaped(panel.title), html_escaped(panel.y.text()),
-                    html_escaped(panel.x.text()));
+                    panel.map ? " map" : "", place, html_escaped(panel.title),
+                    html_escaped(panel.y.text()), html_escaped(panel.x.text()));
 }
 
 // Writes blocks in reading order; figures are taken from the list of drawn ones.

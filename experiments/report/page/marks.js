@@ -99,9 +99,50 @@ function series_options(s, bars, dense) {
   };
 }
 
+// Pixels of a cell's borders: whole ones, so that neighbours meet without a seam.
+function pixels_of(edges, to_pixel) {
+  return Array.from(edges, function (edge) { return Math.round(to_pixel(edge)); });
+}
+
+function draw_map(c, chart, map) {
+  var x = pixels_of(map.x, function (v) { return chart.toDomXCoord(v); });
+  var y = pixels_of(map.y, function (v) { return chart.toDomYCoord(v); });
+  var columns = x.length - 1;
+  c.save();
+  c.globalAlpha = 0.82;
+  map.categories.forEach(function (category, kind) {
+    c.fillStyle = color(category.ink);
+    for (var j = 0; j + 1 < y.length; j++) {
+      for (var i = 0; i < columns; i++) {
+        if (map.cells[j * columns + i] === kind) c.fillRect(x[i], y[j + 1], x[i + 1] - x[i], y[j] - y[j + 1]);
+      }
+    }
+  });
+  c.restore();
+}
+
+// Place of a value between ascending edges; -1: outside.
+function cell_at(edges, value) {
+  for (var i = 0; i + 1 < edges.length; i++) {
+    if (value >= edges[i] && value < edges[i + 1]) return i;
+  }
+  return -1;
+}
+
+// Category of the map at a point; null: none.
+function category_at(map, x, y) {
+  var i = cell_at(map.x, x);
+  var j = cell_at(map.y, y);
+  return i < 0 || j < 0 ? null : map.categories[map.cells[j * (map.x.length - 1) + i]] || null;
+}
+
 function draw_markers(panel) {
   return function (c, area, chart) {
     c.save();
+    c.beginPath();
+    c.rect(area.x, area.y, area.w, area.h);
+    c.clip();
+    if (panel.map) draw_map(c, chart, panel.map);
     c.setLineDash([2, 3]);
     c.font = '11px system-ui, sans-serif';
     panel.markers.forEach(function (m) {

@@ -15,8 +15,8 @@ function span_of(text, ink) {
   return span;
 }
 
-// Writes the values at x into the panel's head.
-function show_values(item, x) {
+// Writes the values at x into the panel's head; of a map the one at y, where it is known.
+function show_values(item, x, y) {
   var panel = item.panel;
   item.values.textContent = '';
   if (x === null) return;
@@ -28,6 +28,10 @@ function show_values(item, x) {
     var named = s.label ? s.label + ' ' : '';
     item.values.appendChild(span_of(named + text + ' ' + panel.y.unit, s.ink));
   });
+  if (!panel.map || y === undefined) return;
+  var found = category_at(panel.map, x, y);
+  item.values.appendChild(span_of(panel.y.label + ' ' + shown(y, 4) + ' ' + panel.y.unit));
+  if (found) item.values.appendChild(span_of('\u25a0 ' + found.label, found.ink));
 }
 
 // Puts the cursor of one chart at x, for the keyboard and for linked charts.
@@ -117,6 +121,11 @@ function read_series(panel) {
   });
 }
 
+function read_map(panel) {
+  if (!panel.map) return;
+  ['x', 'y', 'cells'].forEach(function (key) { panel.map[key] = numbers(panel.map[key]); });
+}
+
 function axis_options(axis, pixels, width) {
   return {
     logscale: axis.log, ticker: ticks, pixelsPerLabel: pixels, axisLabelWidth: width,
@@ -148,13 +157,15 @@ function chart_options(item, bars) {
     yLabelWidth: 18,
     rightGap: 24,
     highlightCircleSize: 3.5,
+    drawGrid: !panel.map,
     underlayCallback: draw_markers(panel),
     interactionModel: Object.assign({}, Dygraph.defaultInteractionModel,
                                     {dblclick: function () { reset(item); }}),
     drawCallback: function (chart, initial) { if (!initial) update_reset_button(item.figure); },
     highlightCallback: function (event, x, points, row) {
       item.row = row;
-      show_values(item, x);
+      var y = panel.map && item.chart.toDataYCoord(item.chart.eventToDomCoords(event)[1]);
+      show_values(item, x, y || undefined);
       linked(item).forEach(function (other) { select(other, x); });
     },
     unhighlightCallback: function () {
@@ -169,6 +180,7 @@ function draw(element) {
   var source = data.figures.find(function (f) { return f.id === figure.id; });
   var panel = source.panels[Number(element.dataset.panel)];
   var series = read_series(panel);
+  read_map(panel);
   var bars = series.some(function (s) { return s.low !== null; });
   var table = rows(series, bars);
   var item = {

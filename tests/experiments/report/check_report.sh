@@ -52,6 +52,11 @@ cat >>"$probe" <<'JS'
   press('Escape');
   seen.reset = [picture(panels[0]) === start[0], picture(panels[3]) === start[1],
                 document.querySelector('#fig8 .reset').hidden, values(panels[3])].join();
+  var map = document.querySelector('#map .chart');
+  var box = map.getBoundingClientRect();
+  map.querySelector('canvas:last-of-type').dispatchEvent(new MouseEvent('mousemove', {
+    bubbles: true, clientX: box.left + 0.4 * box.width, clientY: box.top + 0.6 * box.height}));
+  seen.cell = map.parentNode.querySelector('.values').lastChild.textContent;
   window.dispatchEvent(new Event('beforeprint'));
   window.dispatchEvent(new Event('afterprint'));
   seen.printed = picture(panels[0]) === start[0];
@@ -75,8 +80,8 @@ expect() {  # expect WHAT ACTUAL EXPECTED
 seen() { grep -o "<html [^>]*>" <<<"$dom" | grep -o " data-$1=\"[^\"]*\"" | cut -d'"' -f2; }
 
 dom=$(browse "$probe")
-charts=$(grep -o '<div class="chart"' "$page" | wc -l)
-expect "charts in the page" "$charts" 25
+charts=$(grep -o '<div class="chart[" ]' "$page" | wc -l)
+expect "charts in the page" "$charts" 26
 expect "charts drawn" "$(seen charts)" "$charts"
 expect "charts with a curve" "$(seen painted)" "$charts"
 expect "errors" "$(seen errors)" 0
@@ -86,6 +91,7 @@ expect "linked cursor" "$(seen linked-cursor | cut -c1-12)" "t 0.780039 s"
 expect "cursor in another figure" "$(seen other-cursor)" ""
 expect "zoom (own, linked, other figure, reset button hidden)" "$(seen zoomed)" "true,true,false,false"
 expect "reset (own, linked, button hidden, values)" "$(seen reset)" "true,true,true,"
+expect "cell of the map" "$(seen cell)" "■ one slip"
 expect "printing restores the picture" "$(seen printed)" true
 [ "$failures" -eq 0 ] || { sed -n 1,20p "$folder/log"; exit 1; }
 echo "$charts charts drawn, linked and reset without an error"

@@ -35,6 +35,8 @@ TEST(HtmlPage, HoldsEveryFigurePanelTableAndCommand) {
   EXPECT_EQ(occurrences(page, "<figure id="), 5u);
   // 6 waveforms, 2 of noise, 2 curves, 12 objectives, 3 of the last figure and one without data.
   EXPECT_EQ(occurrences(page, "class=\"chart\""), 25u);
+  EXPECT_EQ(occurrences(page, "class=\"chart map\""), 1u);
+  EXPECT_EQ(occurrences(page, "&lt;several&gt;"), 1u);
   EXPECT_EQ(occurrences(page, "class=\"nothing\""), 1u);
   EXPECT_EQ(occurrences(page, "<table>"), 1u);
   EXPECT_EQ(occurrences(page, "class=\"command\""), 7u);

@@ -230,6 +230,26 @@ Figure long_figure() {
       .command = "modcal run configs/paper/fig3.yaml"};
 }
 
+Figure map_figure() {
+  CategoryMap map{.x_edges = {}, .y_edges = {}, .categories = {}, .cells = {}};
+  map.categories = {{"one slip", ColorRole::kFirst}, {"<several>", ColorRole::kFifth}};
+  for (int i = 0; i <= 8; ++i) map.x_edges.push_back(0.02 * std::pow(2.0, 0.5 * i));
+  for (int j = 0; j <= 6; ++j) map.y_edges.push_back(0.1 * std::pow(10.0, 0.5 * j));
+  Series limit{.label = "limit", .x = {}, .y = {}, .color = ColorRole::kReference};
+  for (int i = 0; i < 8; ++i) limit.x.push_back(0.02 * std::pow(2.0, 0.5 * i + 0.25));
+  for (const double x : limit.x) limit.y.push_back(0.3 / x);
+  for (int j = 0; j < 6; ++j) {
+    for (int i = 0; i < 8; ++i) map.cells.push_back(i + j == 0 ? -1 : i + j < 7 ? 0 : 1);
+  }
+  return {.id = "map",
+          .title = "Motion over two axes",
+          .panels = {{.x = {.label = "position", .unit = "1", .logarithmic = true},
+                      .y = {.label = "force", .unit = "N", .logarithmic = true},
+                      .series = {limit},
+                      .map = map}},
+          .command = "modcal run configs/schelleng.yaml"};
+}
+
 Table noise_table() {
   Table table{
       .id = "table1",
@@ -265,7 +285,7 @@ Report sample_report() {
                                     .kind = Text::Kind::kNote},
                                curve_figure(), objective_figure(),
                                Text{.text = "1 task failed: seed 3.", .kind = Text::Kind::kFailure},
-                               long_figure()}}},
+                               long_figure(), map_figure()}}},
       .provenance = {{"version", "0.1.0"}, {"commit", "0123456789abcdef"}, {"seeds", "1 … 5"}},
       .command = "modcal reproduce paper --out out/paper"};
 }

@@ -1,0 +1,93 @@
+// Ensembles over threads: the Schelleng map of configs/schelleng.yaml, thinned, on 1, 2, … threads.
+// Prints wall time, processor time and the efficiency against one thread: medians of interleaved
+// repetitions, since other work on the machine comes and goes. Run: ensemble_benchmark [cells an
+// axis] [repetitions]
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <ctime>
+#include <thread>
+
+#include "libsim/dynamics/ensemble.hpp"
+#include "libsim/dynamics/helmholtz_motion.hpp"
+#include "libsim/dynamics/simulators/modal_event.hpp"
+#include "libsim/dynamics/string_regime.hpp"
+#include "libsim/signal/statistics.hpp"
+#include "tests/libsim/dynamics/paper_case.hpp"
+
+namespace modcal {
+namespace {
+
+constexpr double kRate = 51200.0;
+
+Scene cell(std::size_t index, std::size_t axis) {
+  const auto share = [axis](std::size_t i) {
+    return (static_cast<double>(i) + 0.5) / static_cast<double>(axis);
+  };
+  Scene scene = paper_scene();
+  scene.duration = 0.5;
+  scene.bow.position = scene.string.length * 0.02 * std::pow(15.0, share(index % axis));
+  scene.bow.normal_force = 0.02 * std::pow(1500.0, share(index / axis));
+  scene.initial =
+      helmholtz_motion(make_modal_basis(scene.string), scene.bow.position, scene.bow.velocity);
+  return scene;
+}
+
+struct Times {
+  double wall = 0.0, processor = 0.0;
+};
+
+Times run_map(std::size_t axis, int threads, std::vector<int>& map) {
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                  static_cast<std::size_t>(threads));
+  const RegimeCriteria criteria;
+  const Ensemble ensemble{
+      .size = axis * axis,
+      .scene = [axis](std::size_t i) { return cell(i, axis); },
+      .sample_rate = kRate,
+      .outputs = {.velocity = true, .switches_from = judged_from(cell(0, axis), criteria)}};
+  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t clock = std::clock();
+  map = reduce_ensemble<int>(
+      ModalEvent({}), ensemble, [&](std::size_t i, const Simulation& simulation) {
+        return static_cast<int>(
+            classify(regime_features(cell(i, axis), simulation, criteria), criteria));
+      });
+  return {std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
+          static_cast<double>(std::clock() - clock) / CLOCKS_PER_SEC};
+}
+
+void run(std::size_t axis, std::size_t repetitions) {
+  const int most = static_cast<int>(std::max(2u, std::thread::hardware_concurrency()));
+  std::vector<std::vector<double>> wall(static_cast<std::size_t>(most));
+  std::vector<std::vector<double>> processor(wall.size());
+  std::vector<int> first, map;
+  for (std::size_t repetition = 0; repetition < repetitions; ++repetition) {
+    for (int threads = 1; threads <= most; ++threads) {
+      const Times times = run_map(axis, threads, map);
+      if (first.empty()) first = map;
+      if (map != first) fmt::print("the map depends on the threads\n");
+      wall[static_cast<std::size_t>(threads - 1)].push_back(times.wall);
+      processor[static_cast<std::size_t>(threads - 1)].push_back(times.processor);
+    }
+  }
+  fmt::print("{} scenes of 0.5 s\nthreads   wall s   processor s   speed-up\n", axis * axis);
+  for (std::size_t i = 0; i < wall.size(); ++i) {
+    std::vector<double> ratios;
+    for (std::size_t k = 0; k < repetitions; ++k) ratios.push_back(wall[0][k] / wall[i][k]);
+    fmt::print("{:7} {:8.3f} {:13.3f} {:10.2f}\n", i + 1, quantile(wall[i], 0.5),
+               quantile(processor[i], 0.5), quantile(ratios, 0.5));
+  }
+}
+
+}  // namespace
+}  // namespace modcal
+
+int main(int argc, char** argv) {
+  const auto argument = [&](int i, std::size_t otherwise) {
+    return argc > i ? static_cast<std::size_t>(std::atoi(argv[i])) : otherwise;
+  };
+  modcal::run(argument(1, 16), argument(2, 5));
+}
