@@ -1,6 +1,7 @@
 // One kind of experiment: what `kind:` names at the top of a file.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,6 +18,15 @@ struct Finding {
   bool is_error = true;
 };
 
+/// The simulations of a run, by one of them.
+struct PlannedSimulations {
+  Scene scene;
+  Choice<Simulator> simulator;
+  double sample_rate = 0.0;
+  OutputRequest outputs;
+  std::size_t count = 1;  ///< distinct ones
+};
+
 class Experiment {
  public:
   static constexpr std::string_view kKind = "experiment";
@@ -25,8 +35,10 @@ class Experiment {
   virtual ~Experiment() = default;
   /// Physics and consistency of the settings; nothing is computed.
   virtual std::vector<Finding> lint() const = 0;
-  /// What a run would do and what it would skip, one line each.
+  /// What a run would do, one line each.
   virtual std::vector<std::string> plan() const = 0;
+  /// What it would simulate; nothing where it simulates nothing.
+  virtual std::optional<PlannedSimulations> planned_simulations() const { return std::nullopt; }
   virtual StudyResult run(const StudyContext& context) const = 0;
 };
 

@@ -1,18 +1,132 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <nlohmann/json.hpp>
+#include <thread>
 
 #include "experiments/cli/command.hpp"
+#include "experiments/cli/interrupt.hpp"
 #include "experiments/loader.hpp"
+#include "experiments/price.hpp"
+#include "experiments/task_experiment.hpp"
+#include "libsim/base/error.hpp"
 
 namespace modcal {
 namespace {
 
-ExitCode plan(const std::string& file, const std::vector<std::string>& assignments) {
-  const LoadedExperiment loaded = load_experiment(file, assignments);
+struct PlanArguments {
+  std::string file;
+  std::vector<std::string> assignments;
+  bool json = false;
+};
+
+struct Plan {
+  std::vector<std::string> lines;
+  std::optional<SimulationPlan> simulation;
+  double duration = 0.0;
+  std::optional<Price> price;
+};
+
+Plan make_plan(const LoadedExperiment& loaded) {
+  Plan plan{.lines = loaded.experiment->plan(), .simulation = {}, .price = {}};
+  const auto planned = loaded.experiment->planned_simulations();
+  if (planned) {
+    plan.duration = planned->scene.duration;
+    plan.simulation = plan_simulation(planned->scene, *planned->simulator.make(),
+                                      planned->sample_rate, planned->outputs);
+  }
+  const auto* list = dynamic_cast<const TaskExperiment*>(loaded.experiment.get());
+  if (list != nullptr) {
+    SharedWork work(interrupt_token());
+    const std::filesystem::path folder = loaded.document.folder();
+    plan.price = price_of_tasks(*list, planned ? planned->count : 0,
+                                {.work = work,
+                                 .folder = folder.empty() ? "." : folder,
+                                 .command = {},
+                                 .stop = interrupt_token()});
+  } else if (planned) {
+    plan.price = price_of_simulations(*plan.simulation, *planned);
+  }
+  return plan;
+}
+
+// Saving of a whole record beside its cost without the skip [s].
+struct Saving {
+  double seconds, percent;
+};
+Saving saving_of(const Skip& skip, const Plan& plan) {
+  const double seconds = std::max(0.0, skip.saved_seconds) * plan.duration;
+  return {seconds, 100.0 * seconds / (seconds + plan.simulation->seconds(plan.duration))};
+}
+
+void print_text(const Plan& plan, std::size_t threads) {
+  for (const std::string& line : plan.lines) fmt::print("{}\n", line);
+  if (plan.simulation) {
+    const SimulationPlan& one = *plan.simulation;
+    fmt::print("modes: {} of {} move\n", one.modes_moved, one.modes);
+    fmt::print(
+        "one simulation: {:.3g} ms, {:.3g} of it set-up; {:.3g} steps, the longest {:.3g} s\n",
+        1e3 * one.seconds(plan.duration), 1e3 * one.set_up_seconds,
+        one.steps_per_second * plan.duration, one.time_step);
+    for (const Skip& skip : one.skips) {
+      const Saving saving = saving_of(skip, plan);
+      fmt::print("skipped: {}\n  because {}\n  saves {:.2g} ms ({:.0f} %) a simulation; {}\n",
+                 skip.what, skip.reason, 1e3 * saving.seconds, saving.percent, skip.note);
+    }
+  }
+  if (plan.price) {
+    fmt::print("price: {}\n  {}\n", text_of(*plan.price, threads), plan.price->basis);
+  }
+}
+
+void print_json(const LoadedExperiment& loaded, const Plan& plan, std::size_t threads) {
+  nlohmann::ordered_json object = {
+      {"kind", loaded.kind}, {"title", loaded.title}, {"lines", plan.lines}};
+  if (plan.simulation) {
+    const SimulationPlan& one = *plan.simulation;
+    auto skips = nlohmann::ordered_json::array();
+    for (const Skip& skip : one.skips) {
+      const Saving saving = saving_of(skip, plan);
+      skips.push_back({{"what", skip.what},
+                       {"reason", skip.reason},
+                       {"saved_seconds", saving.seconds},
+                       {"saved_percent", saving.percent},
+                       {"note", skip.note}});
+    }
+    object["simulation"] = {{"modes", one.modes},
+                            {"modes_moved", one.modes_moved},
+                            {"samples", one.samples},
+                            {"longest_step", one.time_step},
+                            {"steps", one.steps_per_second * plan.duration},
+                            {"set_up_seconds", one.set_up_seconds},
+                            {"seconds", one.seconds(plan.duration)},
+                            {"measured_on_first", one.piece},
+                            {"skips", std::move(skips)}};
+  }
+  if (plan.price) {
+    const Price& price = *plan.price;
+    object["price"] = {{"core_seconds", price.core_seconds},
+                       {"core_hours", price.core_seconds / 3600.0},
+                       {"threads", threads},
+                       {"seconds", price.core_seconds / static_cast<double>(threads)},
+                       {"basis", price.basis}};
+    if (price.disk_bytes) object["price"]["disk_bytes"] = *price.disk_bytes;
+  }
+  fmt::print("{}\n", object.dump(2));
+}
+
+ExitCode plan(const PlanArguments& arguments) {
+  const LoadedExperiment loaded = load_experiment(arguments.file, arguments.assignments);
   fmt::print(stderr, "{}", format_mistakes(loaded.document, loaded.mistakes));
   if (loaded.has_errors()) return ExitCode::kInvalidInput;
-  for (const std::string& line : loaded.experiment->plan()) fmt::print("{}\n", line);
+  const Plan made = make_plan(loaded);
+  const std::size_t threads = std::max(1u, std::thread::hardware_concurrency());
+  if (arguments.json) {
+    print_json(loaded, made, threads);
+  } else {
+    print_text(made, threads);
+  }
   return ExitCode::kOk;
 }
 
@@ -20,12 +134,12 @@ ExitCode plan(const std::string& file, const std::vector<std::string>& assignmen
 
 void add_plan_command(CLI::App& app, const Chosen& chosen) {
   CLI::App* command = app.add_subcommand("plan", "Say what a run would do, skip and cost");
-  auto file = std::make_shared<std::string>();
-  auto assignments = std::make_shared<std::vector<std::string>>();
-  command->add_option("file", *file, "YAML file")->required();
-  command->add_option("--set", *assignments, "key.path=value, overrides the file")
+  auto arguments = std::make_shared<PlanArguments>();
+  command->add_option("file", arguments->file, "YAML file")->required();
+  command->add_option("--set", arguments->assignments, "key.path=value, overrides the file")
       ->allow_extra_args(false);
-  command->callback([=] { chosen([=] { return plan(*file, *assignments); }); });
+  command->add_flag("--json", arguments->json, "as JSON");
+  command->callback([=] { chosen([=] { return plan(*arguments); }); });
 }
 
 }  // namespace modcal

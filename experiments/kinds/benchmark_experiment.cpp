@@ -177,27 +177,28 @@ std::vector<Finding> BenchmarkExperiment::lint_fairness() const {
 }
 
 std::vector<std::string> BenchmarkExperiment::plan() const {
-  std::set<std::string> methods, conditions, scenes;
+  std::set<std::string> methods, conditions;
   for (std::size_t task = 0; task < task_count(); ++task) {
     methods.insert(method_of(task));
     conditions.insert(condition_of(task));
-    const ObservationOptions& observation = options_.cells[task].inversion.observation;
-    scenes.insert(
-        truth_key(observation.truth, observation.measurement.sample_rate, {.force = true}));
   }
   std::vector<std::string> lines;
   for (const std::string& method : methods) lines.push_back("method: " + method);
   for (const std::string& condition : conditions) lines.push_back("condition: " + condition);
   lines.push_back(fmt::format("tasks: {} = {} methods, {} conditions", task_count(), methods.size(),
                               conditions.size()));
-  const ObservationOptions& observation = options_.base.inversion.observation;
-  if (observation.has_scene) {
-    for (std::string& line :
-         plan_scene(observation.truth.scene, observation.measurement.sample_rate, scenes.size())) {
-      lines.push_back(std::move(line));
-    }
-  }
+  if (const auto planned = planned_simulations()) lines.push_back(plan_line(*planned));
   return lines;
+}
+
+std::optional<PlannedSimulations> BenchmarkExperiment::planned_simulations() const {
+  std::set<std::string> scenes;
+  for (std::size_t task = 0; task < task_count(); ++task) {
+    const ObservationOptions& observation = options_.cells[task].inversion.observation;
+    scenes.insert(
+        truth_key(observation.truth, observation.measurement.sample_rate, {.force = true}));
+  }
+  return planned_truths(options_.base.inversion.observation, {.force = true}, scenes.size());
 }
 
 std::string BenchmarkExperiment::fingerprint(std::size_t task,

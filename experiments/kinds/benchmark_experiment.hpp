@@ -22,6 +22,7 @@ class BenchmarkExperiment final : public TaskExperiment {
   explicit BenchmarkExperiment(Options options) : options_(std::move(options)) {}
   std::vector<Finding> lint() const override;
   std::vector<std::string> plan() const override;
+  std::optional<PlannedSimulations> planned_simulations() const override;
 
   std::size_t task_count() const override { return options_.cells.size(); }
   std::vector<std::string> axes() const override { return options_.cells.paths(); }

@@ -27,11 +27,8 @@ std::vector<Finding> CalibrateExperiment::lint() const {
 std::vector<std::string> CalibrateExperiment::plan() const {
   std::vector<std::string> lines;
   const ObservationOptions& observation = options_.inversion.observation;
-  if (observation.has_scene) {
-    lines = plan_scene(observation.truth.scene, observation.measurement.sample_rate, 1);
-  } else {
-    lines.push_back("record: " + observation.record.file);
-  }
+  const auto planned = planned_simulations();
+  lines.push_back(planned ? plan_line(*planned) : "record: " + observation.record.file);
   const auto modes = static_cast<std::size_t>(observation.string_model().modes);
   const CalibrationOptions& calibration = options_.calibration;
   lines.push_back(
@@ -40,6 +37,10 @@ std::vector<std::string> CalibrateExperiment::plan() const {
                   calibration.parameters.names(modes).size(), calibration.objective.selected(),
                   calibration.optimizer.selected(), calibration.budget.evaluations));
   return lines;
+}
+
+std::optional<PlannedSimulations> CalibrateExperiment::planned_simulations() const {
+  return planned_truths(options_.inversion.observation, truth_outputs(options_.inversion.figures));
 }
 
 }  // namespace modcal

@@ -39,17 +39,17 @@ std::vector<Finding> InvertExperiment::lint() const {
 
 std::vector<std::string> InvertExperiment::plan() const {
   std::vector<std::string> lines;
-  const ObservationOptions& observation = options_.observation;
-  if (observation.has_scene) {
-    lines = plan_scene(observation.truth.scene, observation.measurement.sample_rate, 1);
-  } else {
-    lines.push_back("record: " + observation.record.file);
-  }
+  const auto planned = planned_simulations();
+  lines.push_back(planned ? plan_line(*planned) : "record: " + options_.observation.record.file);
   const InversionOutputs outputs = inversion_outputs(options_.figures, options_.write_signals);
   if (!outputs.displacement)
     lines.push_back("skipped: identified displacement, which nobody reads");
   if (!outputs.velocity) lines.push_back("skipped: identified velocity, which nobody reads");
   return lines;
+}
+
+std::optional<PlannedSimulations> InvertExperiment::planned_simulations() const {
+  return planned_truths(options_.observation, truth_outputs(options_.figures));
 }
 
 }  // namespace modcal

@@ -12,6 +12,7 @@ class InvertExperiment final : public Experiment {
   explicit InvertExperiment(Options options) : options_(std::move(options)) {}
   std::vector<Finding> lint() const override;
   std::vector<std::string> plan() const override;
+  std::optional<PlannedSimulations> planned_simulations() const override;
   StudyResult run(const StudyContext& context) const override {
     return invert_study(options_, context);
   }

@@ -1,15 +1,19 @@
-// What a simulation will do, said before it is done.
+// What the simulations of a run will do, said before they are done.
 #pragma once
 
+#include <optional>
 #include <string>
-#include <vector>
 
-#include "libsim/dynamics/scene.hpp"
+#include "experiments/experiment.hpp"
+#include "experiments/study/observation.hpp"
 
 namespace modcal {
 
-/// Samples, modes that move and modes that a node at the contact leaves at rest.
-std::vector<std::string> plan_scene(const Scene& scene, double sample_rate,
-                                    std::size_t simulations);
+/// How many simulations of how many samples.
+std::string plan_line(const PlannedSimulations& planned);
+
+/// The truth that a run simulates for inversions; nothing for a record.
+std::optional<PlannedSimulations> planned_truths(const ObservationOptions& observation,
+                                                 OutputRequest outputs, std::size_t count = 1);
 
 }  // namespace modcal

@@ -35,6 +35,11 @@ std::vector<Finding> SchellengExperiment::lint() const {
   if (scene.bow.velocity == 0.0) {
     findings.push_back({"scene.bow.velocity", "a bow that stands still keeps no motion up"});
   }
+  if (!bow_motion(scene.bow, scene.duration).is_steady()) {
+    findings.push_back({"scene.bow",
+                        "the bow's velocity or force goes with time: a map of steady "
+                        "strokes has neither gestures nor noise"});
+  }
   if (is_known(scene.string) && judged_from(scene, o.criteria) < 0.0) {
     findings.push_back(
         {"scene.duration",
@@ -46,14 +51,20 @@ std::vector<Finding> SchellengExperiment::lint() const {
 }
 
 std::vector<std::string> SchellengExperiment::plan() const {
-  std::vector<std::string> lines = {fmt::format("tasks: {} ({} bow positions x {} forces)",
-                                                options_.cells(), options_.positions.count,
-                                                options_.forces.count)};
-  for (std::string& line :
-       plan_scene(options_.cell_scene(0), options_.sample_rate, options_.cells())) {
-    lines.push_back(std::move(line));
-  }
-  return lines;
+  return {fmt::format("tasks: {} ({} bow positions x {} forces)", options_.cells(),
+                      options_.positions.count, options_.forces.count),
+          plan_line(*planned_simulations())};
+}
+
+// The cell in the middle of the map stands for all.
+std::optional<PlannedSimulations> SchellengExperiment::planned_simulations() const {
+  const std::size_t middle =
+      options_.cells() / 2 + static_cast<std::size_t>(options_.positions.count) / 2;
+  return PlannedSimulations{.scene = options_.cell_scene(std::min(middle, options_.cells() - 1)),
+                            .simulator = options_.simulator,
+                            .sample_rate = options_.sample_rate,
+                            .outputs = options_.outputs(),
+                            .count = options_.cells()};
 }
 
 std::vector<std::string> SchellengExperiment::axis_values(std::size_t task) const {

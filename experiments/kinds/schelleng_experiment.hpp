@@ -12,6 +12,7 @@ class SchellengExperiment final : public TaskExperiment {
   explicit SchellengExperiment(Options options) : options_(std::move(options)) {}
   std::vector<Finding> lint() const override;
   std::vector<std::string> plan() const override;
+  std::optional<PlannedSimulations> planned_simulations() const override;
 
   std::size_t task_count() const override { return options_.cells(); }
   std::vector<std::string> axes() const override {

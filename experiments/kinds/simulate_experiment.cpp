@@ -24,14 +24,14 @@ std::vector<Finding> SimulateExperiment::lint() const {
 }
 
 std::vector<std::string> SimulateExperiment::plan() const {
-  std::vector<std::string> lines =
-      plan_scene(options_.truth.scene, options_.measurement.sample_rate, 1);
-  for (const char* output : {"y", "v", "f_c", "R1", "R2"}) {
-    const auto& wanted = options_.outputs;
-    if (std::find(wanted.begin(), wanted.end(), output) != wanted.end()) continue;
-    lines.push_back(fmt::format("skipped: {}, which nobody reads", output));
-  }
-  return lines;
+  return {plan_line(*planned_simulations())};
+}
+
+std::optional<PlannedSimulations> SimulateExperiment::planned_simulations() const {
+  return PlannedSimulations{.scene = options_.truth.scene,
+                            .simulator = options_.truth.simulator,
+                            .sample_rate = options_.measurement.sample_rate,
+                            .outputs = request_of(options_.outputs)};
 }
 
 }  // namespace modcal

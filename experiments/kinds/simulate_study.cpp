@@ -33,8 +33,6 @@ void SimulateOptions::visit(OptionVisitor& visitor) {
   visitor.list({.key = "figures", .meaning = "what is drawn"}, list);
 }
 
-namespace {
-
 OutputRequest request_of(const std::vector<std::string>& outputs) {
   const auto wanted = [&outputs](std::string_view name) {
     return std::find(outputs.begin(), outputs.end(), name) != outputs.end();
@@ -45,6 +43,8 @@ OutputRequest request_of(const std::vector<std::string>& outputs) {
           .left_reaction = wanted("R1"),
           .right_reaction = wanted("R2")};
 }
+
+namespace {
 
 // Reactions go through the sensor; motion and force at the contact are the truth.
 Simulation measured(Simulation simulation, const Measurement& measurement, const StreamKey& key) {

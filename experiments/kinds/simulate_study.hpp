@@ -22,6 +22,9 @@ struct SimulateOptions {
   void visit(OptionVisitor& visitor);
 };
 
+/// The outputs by their names: y, v, f_c, R1, R2.
+OutputRequest request_of(const std::vector<std::string>& outputs);
+
 StudyResult simulate_study(const SimulateOptions& options, const StudyContext& context);
 
 }  // namespace modcal

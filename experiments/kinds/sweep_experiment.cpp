@@ -75,25 +75,24 @@ std::vector<Finding> SweepExperiment::lint() const {
 }
 
 std::vector<std::string> SweepExperiment::plan() const {
-  const ObservationOptions& observation = options_.base.observation;
   std::vector<std::string> lines;
   append_axes(options_.cells.plan(), lines);
   lines.push_back(fmt::format("tasks: {}", options_.cells.size()));
+  if (const auto planned = planned_simulations()) {
+    lines.push_back(plan_line(*planned));
+    lines.push_back(fmt::format("skipped: {} simulations whose scene another task has",
+                                options_.cells.size() - planned->count));
+  }
+  return lines;
+}
+
+std::optional<PlannedSimulations> SweepExperiment::planned_simulations() const {
   std::set<std::string> scenes;
   for (const InvertOptions& cell : options_.cells.all()) {
     scenes.insert(truth_key(cell.observation.truth, cell.observation.measurement.sample_rate,
                             {.force = true}));
   }
-  if (observation.has_scene) {
-    for (std::string& line :
-         plan_scene(observation.truth.scene, observation.measurement.sample_rate, scenes.size())) {
-      lines.push_back(std::move(line));
-    }
-    lines.push_back(fmt::format("skipped: {} simulations whose scene another task has",
-                                options_.cells.size() - scenes.size()));
-  }
-  lines.push_back("skipped: displacement and velocity at the contact, which no score reads");
-  return lines;
+  return planned_truths(options_.base.observation, {.force = true}, scenes.size());
 }
 
 std::string SweepExperiment::fingerprint(std::size_t task,

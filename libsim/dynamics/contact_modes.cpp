@@ -41,7 +41,10 @@ ContactModes contact_modes(const ModalBasis& basis, double contact, const ModalS
   for (std::size_t n = 0; n < basis.size(); ++n) {
     const double q = value_or_zero(initial.displacement, n);
     const double p = value_or_zero(initial.velocity, n);
-    if (is_node(shape[n]) && q == 0.0 && p == 0.0) continue;
+    if (is_node(shape[n]) && q == 0.0 && p == 0.0) {
+      modes.left_out.push_back(n);
+      continue;
+    }
     const double phi = is_node(shape[n]) ? kNodeShape : shape[n];
     const double decay = basis.zeta[n] * basis.omega[n];
     const double damped = basis.omega[n] * std::sqrt(1.0 - basis.zeta[n] * basis.zeta[n]);

@@ -25,6 +25,7 @@ struct ContactModes {
   std::vector<double> left_gain;              ///< g₁/(φ ω_d) [N s/m]
   std::vector<double> right_gain;             ///< g₂/(φ ω_d) [N s/m]
   std::vector<std::complex<double>> initial;  ///< Z at t = 0 [m/s]
+  std::vector<std::size_t> left_out;          ///< modes of the basis that are not here, from 0
 
   std::size_t size() const { return pole.size(); }
   /// Effective mass at the contact m_eff = 1/Σ φ²/m [kg].

@@ -215,6 +215,33 @@ TEST_F(Program, PrintsASchemaThatTellsRightFromWrong) {
   EXPECT_FALSE(schema.accepts(document));
 }
 
+TEST_F(Program, ValidatesAsJson) {
+  const Outcome good = modcal("validate small.yaml --json");
+  EXPECT_EQ(good.code, 0);
+  EXPECT_EQ(json::parse(good.out)["valid"], true);
+  const Outcome bad = modcal("validate small.yaml --set seed=x --set scene.bow.positon=1 --json");
+  EXPECT_EQ(bad.code, 3);
+  const json report = json::parse(bad.out);
+  EXPECT_EQ(report["valid"], false);
+  ASSERT_EQ(report["mistakes"].size(), 2u);
+  EXPECT_THAT(report["mistakes"][0]["place"], StartsWith("command line"));
+}
+
+TEST_F(Program, PlansSkipsAndPrice) {
+  const json plan = json::parse(
+      modcal("plan small.yaml --set scene.bow.position='33 mm' --set scene.string.modes=20 --json")
+          .out);
+  EXPECT_EQ(plan["kind"], "invert");
+  EXPECT_EQ(plan["simulation"]["modes_moved"], 18);
+  bool names_modes = false;
+  for (const json& skip : plan["simulation"]["skips"]) {
+    names_modes = names_modes || skip["what"] == "modes 10, 20";
+    EXPECT_GE(skip["saved_seconds"], 0.0);
+  }
+  EXPECT_TRUE(names_modes) << plan["simulation"]["skips"];
+  EXPECT_GT(plan["price"]["core_seconds"], 0.0);
+}
+
 TEST_F(Program, PlansWithoutRunning) {
   const Outcome outcome = modcal("plan small.yaml --set scene.duration='3100 s'");
   EXPECT_EQ(outcome.code, 0);
