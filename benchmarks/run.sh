@@ -16,6 +16,10 @@ done
 echo "== the spectral-peak search in NumPy, on the same data"
 "$build/benchmarks/spectral_peak_benchmark" --write_case="$out/case.bin"
 /usr/bin/python3 "$here/peers/spectral_peak_search.py" "$out/case.bin" 5
+echo "== ensembles over threads"
+"$build/benchmarks/ensemble_benchmark"
+echo "== what skipping saves"
+"$build/benchmarks/skipping_benchmark"
 echo "== whole commands"
 for config in table1 fig14 fig10; do
   "$here/whole_process.py" -- "$build/modcal" run "$here/../configs/paper/$config.yaml" --out "$out/$config"

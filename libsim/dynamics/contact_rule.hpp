@@ -45,6 +45,8 @@ class ContactRule {
     restart(speed_[0]);
   }
 
+  void list_switches(const SwitchList& list) { switch_list_ = list; }
+
   std::uint64_t attachments() const { return attachments_; }
   std::uint64_t releases() const { return releases_; }
 
@@ -85,7 +87,7 @@ class ContactRule {
     if (sticking_) {
       const double force = -p_.stiffness * elongation(y, k) - p_.damping * slip;
       if (std::abs(force) <= p_.static_limit) return force;
-      release(slip != 0.0 ? slip : -force);
+      release(slip != 0.0 ? slip : -force, y, k);
     } else if (slip * side_ <= 0.0) {
       const double force = -p_.damping * slip;
       if (std::abs(force) <= p_.static_limit) {
@@ -105,7 +107,7 @@ class ContactRule {
     if (sticking_) {
       double force = 0.0;
       if (implicit_going_on(v0, y0, older, k, force)) return force;
-      release(-force);
+      release(-force, y0 + older_.displacement * older + b_y_ * force, k);
       restart(0.0);
     } else if (side_ * slip < b_ * rest_force_) {
       const double force = -p_.damping * slip * caught_;
@@ -130,11 +132,16 @@ class ContactRule {
     attach_displacement_ = y;
     attach_step_ = k;
     ++attachments_;
+    list_switch(y, k);
   }
-  void release(double direction) {
+  void release(double direction, double y, std::uint64_t k) {
     sticking_ = false;
     side_ = direction < 0.0 ? -1.0 : 1.0;
     ++releases_;
+    list_switch(y, k);
+  }
+  void list_switch(double y, std::uint64_t k) const {
+    switch_list_.add({time_step_ * static_cast<double>(k), y, sticking_});
   }
   // The solution of u + b g(u) = w near w₀ = u₀ + b g(u₀), prepared before w is known: with
   // ρ = (w − w₀)/(1 + b g'), u − u₀ = δ = ρ (1 + bend ρ) is one step of Halley's iteration.
@@ -226,6 +233,7 @@ class ContactRule {
   Expansion ahead_[2];        // for the next step and the one after
   std::uint64_t attachments_ = 0;
   std::uint64_t releases_ = 0;
+  SwitchList switch_list_;
 };
 
 }  // namespace modcal

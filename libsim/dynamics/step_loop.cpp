@@ -167,6 +167,7 @@ template <ForceTiming kTiming, typename Modes, typename Law>
 LoopCounts Loop(const StepLoop& loop, const Law& law, StepCoefficients& c) {
   ContactRule<Law> rule(loop.contact, law, loop.time_step, loop.initial_displacement,
                         loop.initial_velocity);
+  rule.list_switches(loop.switches);
   const StepCoefficients::Response deferred = c.deferred_response;
   const StepCoefficients::Response direct = c.direct_response;
   if (kTiming == ForceTiming::kImplicit) {

@@ -16,6 +16,7 @@
 #include "libsim/base/stop_token.hpp"
 #include "libsim/dynamics/contact_modes.hpp"
 #include "libsim/dynamics/friction/sliding_laws.hpp"
+#include "libsim/dynamics/switch.hpp"
 
 namespace modcal {
 
@@ -82,6 +83,7 @@ struct StepLoop {
   double initial_displacement = 0.0;  ///< y at t = 0 [m]
   double initial_velocity = 0.0;      ///< v at t = 0 [m/s]
   SampleTargets targets;
+  SwitchList switches;
   StopToken stop;  ///< polled between samples
 };
 

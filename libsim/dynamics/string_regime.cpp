@@ -1,8 +1,10 @@
 #include "libsim/dynamics/string_regime.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <span>
+#include <vector>
 
 #include "libsim/base/error.hpp"
 #include "libsim/dynamics/helmholtz_motion.hpp"
@@ -32,24 +34,29 @@ struct Period {
   double samples = 0.0;
 };
 
+// A motion that repeats itself n times in a period correlates as well over (n ± 1)/n of one: among
+// equals the period nearest to the string's is taken.
+constexpr double kEqual = 0.02;
+
 Period find_period(std::span<const double> x, double period) {
   const auto first = static_cast<std::size_t>(kShortestPeriod * period);
   const auto last = static_cast<std::size_t>(std::ceil(kLongestPeriod * period));
-  Period best{0.0, period};
-  std::array<double, 3> around{};  // correlations at the lags before, at and after the best
-  double before = 0.0;
-  for (std::size_t lag = first; lag <= last; ++lag) {
-    const double value = lagged_correlation(x, lag);
-    if (value > best.correlation) {
-      best = {value, static_cast<double>(lag)};
-      around = {before, value, value};
-    } else if (static_cast<double>(lag) == best.samples + 1.0) {
-      around[2] = value;
+  std::vector<double> values;
+  for (std::size_t lag = first; lag <= last; ++lag) values.push_back(lagged_correlation(x, lag));
+  const double largest = *std::max_element(values.begin(), values.end());
+  if (largest <= 0.0) return {0.0, period};
+  Period best{0.0, 0.0};
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double left = i > 0 ? values[i - 1] : values[i];
+    const double right = i + 1 < values.size() ? values[i + 1] : values[i];
+    if (values[i] < largest - kEqual || values[i] < left || values[i] < right) continue;
+    const double bend = left - 2.0 * values[i] + right;
+    const double lag =
+        static_cast<double>(first + i) + (bend < 0.0 ? 0.5 * (left - right) / bend : 0.0);
+    if (best.samples == 0.0 || std::abs(lag - period) < std::abs(best.samples - period)) {
+      best = {values[i], lag};
     }
-    before = value;
   }
-  const double bend = around[0] - 2.0 * around[1] + around[2];
-  if (bend < 0.0) best.samples += 0.5 * (around[0] - around[2]) / bend;
   return best;
 }
 

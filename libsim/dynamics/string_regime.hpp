@@ -31,7 +31,7 @@ struct RegimeCriteria {
 struct RegimeFeatures {
   double slips_per_period = 0.0;
   /// Largest correlation of the contact's velocity with itself one period later, the period being
-  /// sought in [0.8, 1.25] T; 0 for a constant velocity.
+  /// sought in [0.8, 1.25] T (of equal ones the nearest to T); 0 for a constant velocity.
   double periodicity = 0.0;
   double period = 0.0;     ///< that period over T
   double adherence = 0.0;  ///< share of the time for which the string sticks

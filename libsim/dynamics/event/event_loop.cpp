@@ -254,9 +254,7 @@ class Run {
 
   void list_switch(double x, double displacement, bool attaches) {
     const double time = (static_cast<double>(step_) + x) * loop_.grid_step;
-    if (time >= loop_.switches_from && loop_.switches != nullptr) {
-      loop_.switches->push_back({time, displacement, attaches});
-    }
+    loop_.switches.add({time, displacement, attaches});
   }
 
   // τ = 0 of adherence.

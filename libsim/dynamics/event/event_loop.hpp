@@ -2,7 +2,6 @@
 // switches located inside the step.
 #pragma once
 
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -47,8 +46,7 @@ struct EventLoop {
   std::size_t steps_per_sample = 1;
   std::size_t samples = 0;  ///< samples, that of the start included
   SampleTargets targets;    ///< sample j is taken after j·steps_per_sample grid steps
-  std::vector<Switch>* switches = nullptr;  ///< takes those from `switches_from` [s] on
-  double switches_from = std::numeric_limits<double>::infinity();
+  SwitchList switches;
   StopToken stop;  ///< polled between samples
 };
 

@@ -82,8 +82,6 @@ void FixedStepOptions::visit(OptionVisitor& visitor) {
 Simulation simulate_fixed_step(const Scene& scene, double sample_rate, const OutputRequest& outputs,
                                const StopToken& stop, double wanted_time_step, ForceTiming timing,
                                WeightsOfPole weights_of_pole) {
-  MODCAL_REQUIRE(std::isinf(outputs.switches_from),
-                 "a fixed-step simulator does not list its switches: use modal_event");
   const StepPlan plan = plan_steps(wanted_time_step, sample_rate);
   const std::size_t count = sample_count(scene.duration, sample_rate);
   const BowMotion bow = steady_motion(scene, "a fixed-step simulator");
@@ -113,6 +111,7 @@ Simulation simulate_fixed_step(const Scene& scene, double sample_rate, const Out
   Simulation result = empty_simulation(count, sample_rate, outputs);
   store_initial(result, motion, first_force);
   loop.targets = targets_of(result);
+  loop.switches = {&result.switches, outputs.switches_from};
   const LoopCounts counts = run_step_loop(loop, coefficients);
 
   if (counts.first_bad_sample < count) {

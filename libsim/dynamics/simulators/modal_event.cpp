@@ -88,8 +88,7 @@ Simulation ModalEvent::run(const Scene& scene, double sample_rate, const OutputR
       .steps_per_sample = plan.steps_per_sample,
       .samples = count,
       .targets = targets_of(result),
-      .switches = &result.switches,
-      .switches_from = outputs.switches_from,
+      .switches = {&result.switches, outputs.switches_from},
       .stop = stop};
   event::EventState state = event::initial_state(modes, bow.velocity.at(0.0));
   const event::EventCounts counts = event::run_event_loop(loop, modes, state);

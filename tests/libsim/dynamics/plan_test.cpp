@@ -95,10 +95,11 @@ TEST(Skipping, OutputsBetweenSamplesChangesNoSample) {
   const auto compare = [&](const Simulator& simulator, std::size_t stride) {
     const Simulation few = simulator.simulate(scene, kRate, OutputRequest::all());
     Scene longer = scene;  // to the step of the last sample
-    longer.duration = (static_cast<double>(few.force.size() - 1) * static_cast<double>(stride) + 1) /
-                      (kRate * static_cast<double>(stride));
-    const Simulation every = simulator.simulate(
-        longer, kRate * static_cast<double>(stride), OutputRequest::all());
+    longer.duration =
+        (static_cast<double>(few.force.size() - 1) * static_cast<double>(stride) + 1) /
+        (kRate * static_cast<double>(stride));
+    const Simulation every =
+        simulator.simulate(longer, kRate * static_cast<double>(stride), OutputRequest::all());
     ASSERT_EQ(every.force.size(), (few.force.size() - 1) * stride + 1);
     EXPECT_LT(relative_error(few.velocity, every.velocity, stride), 1e-9);
     EXPECT_LT(relative_error(few.force, every.force, stride), 1e-9);
@@ -139,8 +140,8 @@ TEST(Skipping, TheFrictionLawIsNotEvaluatedDuringAdherence) {
 
 TEST(SimulationPlan, NamesWhatIsLeftOut) {
   const OutputRequest reactions{.left_reaction = true, .right_reaction = true};
-  const SimulationPlan plan =
-      plan_simulation(short_scene(), ModalEvent({.max_step = 0.25 / kRate}), kRate, reactions, 0.02);
+  const SimulationPlan plan = plan_simulation(short_scene(), ModalEvent({.max_step = 0.25 / kRate}),
+                                              kRate, reactions, 0.02);
   EXPECT_EQ(plan.modes, 50u);
   EXPECT_EQ(plan.modes_moved, 46u);
   EXPECT_EQ(plan.samples, 1024u);

@@ -72,7 +72,7 @@ TEST(StringRegime, KnowsIdealHelmholtzMotion) {
   const Scene scene = stroke();
   const RegimeFeatures f = features_of(scene, regular(scene, 1));
   EXPECT_EQ(classify(f, {}), StringRegime::kHelmholtz);
-  EXPECT_DOUBLE_EQ(f.slips_per_period, 1.0);
+  EXPECT_NEAR(f.slips_per_period, 1.0, 0.051);  // one slip of twenty may begin at the end
   // One sample of the slip's 24 may be on either side: 1 − 2/24 of the variance at the least.
   EXPECT_GT(f.periodicity, 1.0 - 2.0 / 24.0);
   EXPECT_NEAR(f.period, 1.0, 0.5 / 261.0);
@@ -155,9 +155,10 @@ TEST(StringRegime, TellsTheMotionsOfASimulatedStringApart) {
     double force;
     StringRegime regime;
   };
-  for (const Case& c : {Case{0.3, StringRegime::kHelmholtz}, Case{2.0, StringRegime::kHelmholtz},
-                        Case{10.0, StringRegime::kRaucous}, Case{0.02, StringRegime::kMultipleSlip},
-                        Case{1e-3, StringRegime::kSilent}}) {
+  for (const Case& c :
+       {Case{0.3, StringRegime::kHelmholtz}, Case{2.0, StringRegime::kHelmholtz},
+        Case{10.0, StringRegime::kRaucous}, Case{0.024, StringRegime::kMultipleSlip},
+        Case{1e-3, StringRegime::kSilent}}) {
     Scene scene = stroke(0.5);
     scene.bow.normal_force = c.force;
     scene.initial =
