@@ -121,7 +121,11 @@ ExitCode plan(const PlanArguments& arguments) {
   fmt::print(stderr, "{}", format_mistakes(loaded.document, loaded.mistakes));
   if (loaded.has_errors()) return ExitCode::kInvalidInput;
   const Plan made = make_plan(loaded);
-  const std::size_t threads = std::max(1u, std::thread::hardware_concurrency());
+  // A run that is no list of tasks simulates on one thread.
+  const auto* list = dynamic_cast<const TaskExperiment*>(loaded.experiment.get());
+  const std::size_t tasks = list != nullptr ? list->task_count() : 1;
+  const std::size_t threads = std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1,
+                                                      std::max<std::size_t>(tasks, 1));
   if (arguments.json) {
     print_json(loaded, made, threads);
   } else {

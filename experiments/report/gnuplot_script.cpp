@@ -45,10 +45,28 @@ double tic_step(const std::array<double, 2>& window) {
   return 10.0 * decade;
 }
 
+// Tics of a logarithmic axis that holds less than two powers of ten: 1, 2, 5, 10, …
+std::string dense_tics(char name, const std::array<double, 2>& window) {
+  std::vector<std::string> tics;
+  for (double decade = std::pow(10.0, std::floor(std::log10(window[0]))); decade <= window[1];
+       decade *= 10.0) {
+    for (const double multiple : {1.0, 2.0, 5.0}) {
+      const double tic = multiple * decade;
+      if (tic >= window[0] * (1.0 - 1e-9) && tic <= window[1] * (1.0 + 1e-9)) {
+        tics.push_back(fmt::format("{:.6g}", tic));
+      }
+    }
+  }
+  return fmt::format("set logscale {0}; set format {0} '%g'; set {0}tics ({1})\n", name,
+                     fmt::join(tics, ","));
+}
+
 std::string axis_settings(char name, const Axis& axis, const std::array<double, 2>& window) {
   std::string text = fmt::format("set {}label {} noenhanced offset {}\n", name,
                                  gnuplot_quoted(axis.text()), name == 'x' ? "0,0.5" : "0.5,0");
-  text += axis.logarithmic
+  const bool dense = axis.logarithmic && window[1] < 30.0 * window[0];
+  text += dense ? dense_tics(name, window)
+          : axis.logarithmic
               ? fmt::format("set logscale {0}; set format {0} '10^{{%L}}'; set {0}tics autofreq\n",
                             name)
               : fmt::format("unset logscale {0}; set format {0} '%h'; set {0}tics {1:.10g}\n", name,

@@ -104,9 +104,10 @@ function pixels_of(edges, to_pixel) {
   return Array.from(edges, function (edge) { return Math.round(to_pixel(edge)); });
 }
 
-function draw_map(c, chart, map) {
-  var x = pixels_of(map.x, function (v) { return chart.toDomXCoord(v); });
-  var y = pixels_of(map.y, function (v) { return chart.toDomYCoord(v); });
+function draw_map(c, area, chart, map) {
+  // Not toDomXCoord(), which is linear on a logarithmic axis, too.
+  var x = pixels_of(map.x, function (v) { return area.x + area.w * chart.toPercentXCoord(v); });
+  var y = pixels_of(map.y, function (v) { return area.y + area.h * chart.toPercentYCoord(v); });
   var columns = x.length - 1;
   c.save();
   c.globalAlpha = 0.82;
@@ -142,7 +143,7 @@ function draw_markers(panel) {
     c.beginPath();
     c.rect(area.x, area.y, area.w, area.h);
     c.clip();
-    if (panel.map) draw_map(c, chart, panel.map);
+    if (panel.map) draw_map(c, area, chart, panel.map);
     c.setLineDash([2, 3]);
     c.font = '11px system-ui, sans-serif';
     panel.markers.forEach(function (m) {

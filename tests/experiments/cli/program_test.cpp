@@ -223,8 +223,13 @@ TEST_F(Program, ValidatesAsJson) {
   EXPECT_EQ(bad.code, 3);
   const json report = json::parse(bad.out);
   EXPECT_EQ(report["valid"], false);
-  ASSERT_EQ(report["mistakes"].size(), 2u);
-  EXPECT_THAT(report["mistakes"][0]["place"], StartsWith("command line"));
+  std::size_t errors = 0;
+  for (const json& mistake : report["mistakes"]) {
+    if (mistake["severity"] != "error") continue;
+    ++errors;
+    EXPECT_THAT(mistake["place"], StartsWith("command line"));
+  }
+  EXPECT_EQ(errors, 2u);
 }
 
 TEST_F(Program, PlansSkipsAndPrice) {

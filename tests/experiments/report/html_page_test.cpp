@@ -32,16 +32,18 @@ std::size_t occurrences(const std::string& text, std::string_view part) {
 
 TEST(HtmlPage, HoldsEveryFigurePanelTableAndCommand) {
   const std::string page = page_of(sample_report());
-  EXPECT_EQ(occurrences(page, "<figure id="), 5u);
-  // 6 waveforms, 2 of noise, 2 curves, 12 objectives, 3 of the last figure and one without data.
+  EXPECT_EQ(occurrences(page, "<figure id="), 6u);
+  // 6 waveforms, 2 of noise, 2 curves, 12 objectives, 3 of one figure and one without data; one
+  // map.
   EXPECT_EQ(occurrences(page, "class=\"chart\""), 25u);
   EXPECT_EQ(occurrences(page, "class=\"chart map\""), 1u);
   EXPECT_EQ(occurrences(page, "&lt;several&gt;"), 1u);
   EXPECT_EQ(occurrences(page, "class=\"nothing\""), 1u);
   EXPECT_EQ(occurrences(page, "<table>"), 1u);
-  EXPECT_EQ(occurrences(page, "class=\"command\""), 7u);
+  EXPECT_EQ(occurrences(page, "class=\"command\""), 8u);
   EXPECT_THAT(page, HasSubstr("style=\"--columns:3\""));
-  for (const char* anchor : {"fig8", "noise", "table1", "fig9", "fig13", "long", "provenance"}) {
+  for (const char* anchor :
+       {"fig8", "noise", "table1", "fig9", "fig13", "long", "map", "provenance"}) {
     EXPECT_THAT(page, HasSubstr(std::string("href=\"#") + anchor + "\""));
     EXPECT_THAT(page, HasSubstr(std::string("id=\"") + anchor + "\""));
   }

@@ -83,7 +83,7 @@ TEST(StringRegime, KnowsIdealHelmholtzMotion) {
 
 TEST(StringRegime, CountsTheSlipsOfAPeriod) {
   const Scene scene = stroke();
-  for (const int count : {2, 3, 5}) {
+  for (const int count : {2, 3, 4}) {
     const RegimeFeatures f = features_of(scene, regular(scene, count));
     EXPECT_EQ(classify(f, {}), StringRegime::kMultipleSlip) << count;
     EXPECT_NEAR(f.slips_per_period, count, 0.051) << count;
@@ -155,10 +155,9 @@ TEST(StringRegime, TellsTheMotionsOfASimulatedStringApart) {
     double force;
     StringRegime regime;
   };
-  for (const Case& c :
-       {Case{0.3, StringRegime::kHelmholtz}, Case{2.0, StringRegime::kHelmholtz},
-        Case{10.0, StringRegime::kRaucous}, Case{0.024, StringRegime::kMultipleSlip},
-        Case{1e-3, StringRegime::kSilent}}) {
+  for (const Case& c : {Case{0.3, StringRegime::kHelmholtz}, Case{2.0, StringRegime::kHelmholtz},
+                        Case{10.0, StringRegime::kRaucous}, Case{0.03, StringRegime::kMultipleSlip},
+                        Case{1e-3, StringRegime::kSilent}}) {
     Scene scene = stroke(0.5);
     scene.bow.normal_force = c.force;
     scene.initial =
