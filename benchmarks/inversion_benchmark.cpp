@@ -2,6 +2,11 @@
 // functions prepared: transform, whole curve over the parameter, choice, inverse transforms.
 #include <benchmark/benchmark.h>
 
+#include <cstdio>
+#include <cstring>
+
+#include "libinverse/joint/joint_inversion.hpp"
+#include "libinverse/joint/priors.hpp"
 #include "libinverse/minimal_product.hpp"
 #include "libinverse/one_sided_inversion.hpp"
 #include "libsim/base/random.hpp"
@@ -70,7 +75,109 @@ void prepare(benchmark::State& state) {
 }
 BENCHMARK(prepare)->Unit(benchmark::kMillisecond);
 
+// Both reactions: noise levels, weighting, transforms, 100-point curve of evidence, inverse
+// transform, as JointEstimator does it with everything prepared.
+struct JointCase {
+  explicit JointCase(std::size_t samples)
+      : basis(violin_g_basis()),
+        sensors(basis, 0.03, samples, kRate, false, false, {}),
+        inversion(basis, 0.03, samples, kRate,
+                  {.sigma = 2.0 * kRate / static_cast<double>(samples)}),
+        left(draw(samples, 1)),
+        right(draw(samples, 2)) {}
+
+  static ModalBasis violin_g_basis() {
+    StringModel string;
+    string.length = 0.33;
+    string.linear_density = 3.1e-3;
+    string.fundamental = 196.0;
+    return make_modal_basis(string);
+  }
+  // A slowly wandering reaction with 5 % of white noise.
+  static std::vector<double> draw(std::size_t samples, std::uint64_t seed) {
+    std::vector<double> noise(samples);
+    fill_standard_normal(StreamKey(seed), noise);
+    double value = 0.0;
+    for (double& sample : noise) {
+      value = 0.98 * value + sample;
+      sample = 0.2 * value + 0.05 * sample;
+    }
+    return noise;
+  }
+  void invert(const ForcePrior& prior) {
+    const ReactionPair pair = {left, right};
+    noise = sensors.estimate(pair, workspace.noise);
+    inversion.invert(pair, noise, {.prior = prior, .offset = OffsetRule::kNone}, workspace, result);
+  }
+
+  ModalBasis basis;
+  SensorNoise sensors;
+  JointInversion inversion;
+  std::vector<double> left, right;
+  SensorNoiseLevel noise;
+  JointWorkspace workspace;
+  JointResult result;
+};
+
+void invert_jointly(benchmark::State& state, std::string_view prior_name) {
+  JointCase the_case(static_cast<std::size_t>(state.range(0)));
+  const auto prior = Choice<ForcePrior>(prior_name).make();
+  for (auto _ : state) {
+    the_case.invert(*prior);
+    benchmark::DoNotOptimize(the_case.result);
+  }
+}
+BENCHMARK_CAPTURE(invert_jointly, jumps, "jumps")
+    ->Arg(51200)
+    ->Arg(1000000)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(invert_jointly, learned, "learned")
+    ->Arg(51200)
+    ->Arg(1000000)
+    ->Unit(benchmark::kMillisecond);
+
+// samples, rate, σ, noise levels, λ; H_1, H_2, prior's shape; R_1, R_2, force: all doubles.
+int write_case(const char* path, std::size_t samples) {
+  JointCase the_case(samples);
+  const JumpPrior prior{JumpPrior::Options{}};
+  the_case.invert(prior);
+  FrequencyGrid grid = FrequencyGrid::of_record(samples, kRate);
+  grid.sigma = the_case.inversion.sigma();
+  std::vector<double> shape(grid.bins);
+  prior.shape({.bins = grid.bins, .samples = samples, .sample_rate = kRate}, shape);
+  std::FILE* file = std::fopen(path, "wb");
+  if (!file) return 1;
+  const auto write = [file](const double* values, std::size_t count) {
+    std::fwrite(values, sizeof(double), count, file);
+  };
+  const double head[] = {static_cast<double>(samples),
+                         kRate,
+                         grid.sigma,
+                         the_case.noise.rms[0],
+                         the_case.noise.rms[1],
+                         the_case.result.identified.choice.parameter()};
+  write(head, std::size(head));
+  for (const End end : {End::kLeft, End::kRight}) {
+    const auto transfer = reaction_transfer(the_case.basis, 0.03, end, grid);
+    write(reinterpret_cast<const double*>(transfer.data()), 2 * transfer.size());
+  }
+  write(shape.data(), shape.size());
+  write(the_case.left.data(), samples);
+  write(the_case.right.data(), samples);
+  write(the_case.result.identified.force.data(), samples);
+  return std::fclose(file);
+}
+
 }  // namespace
 }  // namespace modcal
 
-BENCHMARK_MAIN();
+int main(int argc, char** argv) {
+  constexpr const char* kFlag = "--write_case=";
+  for (int i = 1; i < argc; ++i) {
+    if (std::strncmp(argv[i], kFlag, std::strlen(kFlag)) == 0) {
+      return modcal::write_case(argv[i] + std::strlen(kFlag), modcal::kSamples);
+    }
+  }
+  benchmark::Initialize(&argc, argv);
+  benchmark::RunSpecifiedBenchmarks();
+}

@@ -2,15 +2,15 @@
 #pragma once
 
 #include <memory>
-#include <string>
 
+#include "libinverse/estimator.hpp"
 #include "libinverse/one_sided_inversion.hpp"
 
 namespace modcal {
 
 /// Section "inversion" of an experiment: how reactions are turned into a force.
 struct InversionOptions {
-  std::string estimator = "one_sided";
+  Choice<Estimator> estimator{"one_sided"};
   Choice<Regularizer> regularizer{"water_level"};
   Choice<ParameterChoice> parameter_choice{"minimal_product"};
 
@@ -26,8 +26,10 @@ class InversionRecipe {
                          double noise_rms = std::numeric_limits<double>::quiet_NaN()) const {
     return {*regularizer_, *parameter_choice_, outputs, noise_rms};
   }
+  const Estimator& estimator() const { return *estimator_; }
 
  private:
+  std::shared_ptr<const Estimator> estimator_;
   std::shared_ptr<const Regularizer> regularizer_;
   std::shared_ptr<const ParameterChoice> parameter_choice_;
 };

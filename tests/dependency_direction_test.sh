@@ -21,7 +21,7 @@ violations() {
       model = "^libsim/(base|signal|model)/"
       allowed["model"] = model
       allowed["dynamics"] = "^libsim/"
-      allowed["libinverse"] = model "|^libinverse/[^/]*$"
+      allowed["libinverse"] = model "|^libinverse/(joint/)?[^/]*$"
       allowed["identify"] = "^(libsim|libinverse)/"
       allowed["libcalib"] = "^(libsim|libinverse|libcalib)/"
       allowed["experiments"] = "^(libsim|libinverse|libcalib|experiments)/"

@@ -6,6 +6,8 @@
 #include "experiments/experiment.hpp"
 #include "libcalib/objective.hpp"
 #include "libcalib/optimizer.hpp"
+#include "libinverse/estimator.hpp"
+#include "libinverse/joint/force_prior.hpp"
 #include "libinverse/parameter_choice.hpp"
 #include "libinverse/regularizer.hpp"
 #include "libsim/base/error.hpp"
@@ -33,7 +35,9 @@ constexpr PluginKind kind_of(std::string_view summary) {
 std::span<const PluginKind> plugin_kinds() {
   static constexpr std::array kKinds = {
       kind_of<DampingLaw>("modal damping of the string"),
+      kind_of<Estimator>("what is estimated from which reactions"),
       kind_of<Experiment>("what a YAML file describes: its kind"),
+      kind_of<ForcePrior>("what a joint estimate supposes about the force's spectrum"),
       kind_of<FrictionLaw>("friction between bow and string"),
       kind_of<Gesture>("how the bow's velocity or force changes with time"),
       kind_of<InitialMotion>("how the string moves at first"),

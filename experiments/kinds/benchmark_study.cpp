@@ -51,12 +51,12 @@ double value_at_truth(const CalibrateOptions& options, const Observation& observ
 
 double mean_correlation(const CalibrateOptions& options, const Observation& observation,
                         const AssumedModel& refined) {
-  const PreparedInversions inversions(refined, observation.samples(), observation.sample_rate);
   const InversionRecipe recipe(options.inversion.inversion);
+  const auto estimator = prepare_estimator(refined, observation, recipe);
   double sum = 0.0;
   std::size_t count = 0;
   for (const SideIdentification& side :
-       identify(observation, inversions, recipe, {.force = true}, &options.inversion.score)) {
+       identify(observation, *estimator, recipe, {.force = true}, &options.inversion.score)) {
     for (const WindowScore& score : side.scores) {
       sum += score.correlation;
       ++count;

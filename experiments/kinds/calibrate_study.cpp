@@ -135,11 +135,10 @@ StudyResult calibrate_study(const CalibrateOptions& options, const StudyContext&
   const CalibrationOutcome outcome =
       calibrate_observation(options, observation, polling_clock(context));
   context.throw_if_interrupted();
-  const PreparedInversions inversions(outcome.refined, observation.samples(),
-                                      observation.sample_rate);
   const InversionRecipe recipe(inversion.inversion);
+  const auto estimator = prepare_estimator(outcome.refined, observation, recipe);
   const auto sides =
-      identify(observation, inversions, recipe,
+      identify(observation, *estimator, recipe,
                inversion_outputs(inversion.figures, inversion.write_signals), &inversion.score);
 
   StudyResult result;

@@ -1,6 +1,7 @@
 #include "experiments/kinds/invert_study.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "experiments/study/figures.hpp"
 
@@ -32,12 +33,16 @@ bool any_quantity(const std::vector<FigureOptions>& figures, std::string_view qu
   });
 }
 
-bool is_stand_in(ChoiceStatus status) {
-  return status == ChoiceStatus::kNoInteriorMinimum || status == ChoiceStatus::kEdgeOfRange ||
-         status == ChoiceStatus::kNotReached || status == ChoiceStatus::kNotComputed;
+report::Cell number_or_none(double value) {
+  return std::isnan(value) ? report::Cell() : report::Cell(value);
 }
 
 }  // namespace
+
+report::Cell side_cell(const std::string& side) {
+  if (side == "1" || side == "2") return side[0] - '0';
+  return side;
+}
 
 OutputRequest truth_outputs(const std::vector<FigureOptions>& figures) {
   return {.displacement = any_quantity(figures, "y"),
@@ -64,14 +69,18 @@ report::Table identification_table(const std::vector<SideIdentification>& sides,
                                   {.key = "choice", .name = "parameter choice"},
                                   {.key = "window_start", .name = "window from", .unit = "s"},
                                   {.key = "correlation", .name = "correlation R"},
-                                  {.key = "relative_rms_error", .name = "relative rms error"}},
+                                  {.key = "relative_rms_error", .name = "relative rms error"},
+                                  {.key = "anti_aliased", .name = "R, anti-aliased"},
+                                  {.key = "force_deviation",
+                                   .name = "standard deviation of the force, posterior",
+                                   .unit = "N"}},
                       .command = command};
   for (const SideIdentification& side : sides) {
-    const ChosenParameter& choice = side.result.choice;
+    const ChosenParameter& choice = side.estimate.result.choice;
     const bool free = choice.status == ChoiceStatus::kNoParameter;
     const std::vector<report::Cell> head = {
-        side_number(side.end), free ? report::Cell() : report::Cell(choice.parameter()),
-        free ? report::Cell() : report::Cell(choice.parameter() / side.largest_transfer),
+        side_cell(side.estimate.side), free ? report::Cell() : report::Cell(choice.parameter()),
+        free ? report::Cell() : report::Cell(choice.parameter() / side.estimate.largest_transfer),
         choice.kept_share, std::string(name_of(choice.status))};
     if (side.scores.empty()) {
       std::vector<report::Cell> row = head;
@@ -80,7 +89,9 @@ report::Table identification_table(const std::vector<SideIdentification>& sides,
     }
     for (const WindowScore& score : side.scores) {
       std::vector<report::Cell> row = head;
-      row.insert(row.end(), {score.start, score.correlation, score.relative_rms_error});
+      row.insert(row.end(), {score.start, score.correlation, score.relative_rms_error,
+                             number_or_none(score.anti_aliased),
+                             number_or_none(side.estimate.force_deviation)});
       table.rows.push_back(std::move(row));
     }
   }
@@ -112,12 +123,13 @@ SignalFile identified_signals(const Observation& observation,
     const auto add = [&](std::string_view name, std::string_view unit,
                          const std::vector<double>& samples) {
       if (samples.empty()) return;
-      file.signals.push_back({fmt::format("{}{}", name, side_number(side.end)), std::string(unit),
-                              observation.sample_rate, samples});
+      const bool numbered = side.estimate.side.size() == 1;
+      file.signals.push_back({fmt::format("{}{}{}", name, numbered ? "" : "_", side.estimate.side),
+                              std::string(unit), observation.sample_rate, samples});
     };
-    add("f_c", "N", side.result.force);
-    add("y", "m", side.result.displacement);
-    add("v", "m/s", side.result.velocity);
+    add("f_c", "N", side.estimate.result.force);
+    add("y", "m", side.estimate.result.displacement);
+    add("v", "m/s", side.estimate.result.velocity);
   }
   return file;
 }
@@ -129,26 +141,25 @@ void add_warnings(const Observation& observation, const std::vector<SideIdentifi
     result.summary += "warning: " + warning + "\n";
   }
   for (const SideIdentification& side : sides) {
-    const ChosenParameter& choice = side.result.choice;
-    if (!is_stand_in(choice.status)) continue;
-    const std::string text =
-        fmt::format("Reaction at {}: {}", label_of(side.end), choice.explanation);
-    result.blocks.emplace_back(report::Text{text, report::Text::Kind::kWarning});
-    result.summary += "warning: " + text + "\n";
+    for (const std::string& warning : side.estimate.warnings) {
+      const std::string text = fmt::format("Estimate {}: {}", side.estimate.label, warning);
+      result.blocks.emplace_back(report::Text{text, report::Text::Kind::kWarning});
+      result.summary += "warning: " + text + "\n";
+    }
   }
 }
 
 StudyResult invert_study(const InvertOptions& options, const StudyContext& context) {
   const StreamKey key = options.key();
-  const Observation observation = observe(options.observation, truth_outputs(options.figures),
-                                          context.work.truths, key, context.folder);
+  const Observation observation =
+      observe(options.observation, truth_outputs(options.figures), context.work.truths, key,
+              context.folder, options.score.oversampling);
   const AssumedModel model = with_errors(observation.basis, observation.contact,
                                          options.model_error, key.with("model error"));
-  const auto inversions =
-      context.work.inversions.get(model, observation.samples(), observation.sample_rate);
   const InversionRecipe recipe(options.inversion);
+  const auto estimator = context.work.inversions.get(model, observation, options.inversion, recipe);
   const auto sides =
-      identify(observation, *inversions, recipe,
+      identify(observation, *estimator, recipe,
                inversion_outputs(options.figures, options.write_signals), &options.score);
 
   StudyResult result;
@@ -161,8 +172,8 @@ StudyResult invert_study(const InvertOptions& options, const StudyContext& conte
       result.summary += fmt::format(
           "side {}  parameter {:.4g} N/N  window from {:g} s: R = {:.4f}, relative rms error "
           "{:.4f}\n",
-          side_number(side.end), side.result.choice.parameter(), score.start, score.correlation,
-          score.relative_rms_error);
+          side.estimate.side, side.estimate.result.choice.parameter(), score.start,
+          score.correlation, score.relative_rms_error);
     }
   }
   return result;

@@ -35,6 +35,8 @@ void add_identification_figures(const std::vector<FigureOptions>& figures,
                                 const Observation& observation,
                                 const std::vector<SideIdentification>& sides,
                                 const std::string& command, StudyResult& result);
+/// A side in a table: 1 and 2 are numbers, as the paper counts them.
+report::Cell side_cell(const std::string& side);
 /// identified.csv: every identified signal.
 SignalFile identified_signals(const Observation& observation,
                               const std::vector<SideIdentification>& sides);

@@ -44,6 +44,9 @@ void SweepExperimentOptions::visit(OptionVisitor& visitor) {
   visitor.optional_group(
       {.key = "compare_with", .meaning = "published figures to hold beside ours"},
       sweep.has_comparison, [this](OptionVisitor& inner) { sweep.comparison.visit(inner); });
+  ListOf<SweepTarget> targets(sweep.targets);
+  visitor.list({.key = "targets", .meaning = "figures that rows of the table have to reach"},
+               targets);
   // Last: every cell is read with the keys above known.
   visitor.sweep(
       {.key = "sweep", .meaning = "axes: option paths and their values", .required = true}, cells);

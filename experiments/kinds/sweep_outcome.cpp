@@ -22,27 +22,35 @@ ChoiceStatus read_status(const std::string& name) {
   throw InvalidInput("unknown status of a parameter choice: " + name);
 }
 
+json score_json(const WindowScore& score) {
+  return {number_json(score.start), number_json(score.correlation),
+          number_json(score.relative_rms_error), number_json(score.anti_aliased)};
+}
+
+WindowScore read_score(const json& value) {
+  return {read_number(value.at(0)), read_number(value.at(1)), read_number(value.at(2)),
+          read_number(value.at(3))};
+}
+
 json side_json(const TaskScores& side) {
   json scores = json::array();
-  for (const WindowScore& score : side.scores) {
-    scores.push_back({number_json(score.start), number_json(score.correlation),
-                      number_json(score.relative_rms_error)});
-  }
-  return {{"end", side.end == End::kLeft ? "left" : "right"},
+  for (const WindowScore& score : side.scores) scores.push_back(score_json(score));
+  return {{"side", side.side},
           {"parameter", number_json(side.parameter)},
           {"status", name_of(side.status)},
-          {"scores", std::move(scores)}};
+          {"scores", std::move(scores)},
+          {"whole", score_json(side.whole)},
+          {"warnings", side.warnings}};
 }
 
 TaskScores read_side(const json& value) {
   TaskScores side;
-  side.end = value.at("end") == "left" ? End::kLeft : End::kRight;
+  side.side = value.at("side").get<std::string>();
   side.parameter = read_number(value.at("parameter"));
   side.status = read_status(value.at("status").get<std::string>());
-  for (const json& score : value.at("scores")) {
-    side.scores.push_back(
-        {read_number(score.at(0)), read_number(score.at(1)), read_number(score.at(2))});
-  }
+  for (const json& score : value.at("scores")) side.scores.push_back(read_score(score));
+  side.whole = read_score(value.at("whole"));
+  side.warnings = value.at("warnings").get<std::vector<std::string>>();
   return side;
 }
 

@@ -11,10 +11,12 @@ namespace modcal {
 
 /// Outcome of one task (cell) on one side.
 struct TaskScores {
-  End end = End::kLeft;
+  std::string side;  ///< "1", "2", "joint", …
   double parameter = 0.0;
   ChoiceStatus status = ChoiceStatus::kNotComputed;
   std::vector<WindowScore> scores;
+  WindowScore whole;
+  std::vector<std::string> warnings;
 };
 
 struct TaskOutcome {

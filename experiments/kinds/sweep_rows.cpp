@@ -14,13 +14,26 @@ bool is_stand_in(ChoiceStatus status) {
          status != ChoiceStatus::kNoParameter;
 }
 
+bool is_numbered(const std::string& side) { return side == "1" || side == "2"; }
+
+// Sides that a failed task would have had.
+std::vector<std::string> sides_of(const SweepCell& cell) {
+  const std::string estimator(cell.options.inversion.estimator.selected());
+  if (estimator == "one_sided") return {"1", "2"};
+  return {estimator};
+}
+
 void add_draw(const TaskScores& draw, SweepRow& row) {
   row.parameter.push_back(draw.parameter);
   if (is_stand_in(draw.status)) ++row.stand_ins;
   for (const WindowScore& score : draw.scores) {
     row.correlation.push_back(score.correlation);
     row.rms_error.push_back(score.relative_rms_error);
+    row.anti_aliased.push_back(score.anti_aliased);
   }
+  row.whole.push_back(draw.whole.correlation);
+  row.whole_rms_error.push_back(draw.whole.relative_rms_error);
+  row.whole_anti_aliased.push_back(draw.whole.anti_aliased);
 }
 
 void sum_up(const PublishedTable& published, SweepRow& row) {
@@ -30,14 +43,25 @@ void sum_up(const PublishedTable& published, SweepRow& row) {
   row.rms_median = quantile(row.rms_error, 0.5);
   row.parameter_median = quantile(row.parameter, 0.5);
   for (const auto& [percent, values] : published) {
-    if (std::abs(percent - row.noise_percent) > 1e-6) continue;
-    const auto side = static_cast<std::size_t>(row.side - 1);
+    if (std::abs(percent - row.noise_percent) > 1e-6 || !is_numbered(row.side)) continue;
+    const auto side = static_cast<std::size_t>(row.side[0] - '1');
     row.published_correlation = values.correlation[side];
     row.published_parameter = values.parameter[side];
   }
 }
 
 }  // namespace
+
+double mean_of(const std::vector<double>& values) {
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (const double value : values) {
+    if (std::isnan(value)) continue;
+    sum += value;
+    ++count;
+  }
+  return count > 0 ? sum / static_cast<double>(count) : std::numeric_limits<double>::quiet_NaN();
+}
 
 PublishedTable read_published(const std::filesystem::path& path) {
   const Recording file = read_csv(
@@ -53,21 +77,21 @@ PublishedTable read_published(const std::filesystem::path& path) {
 std::vector<SweepRow> sweep_rows(const std::vector<SweepCell>& cells,
                                  const std::vector<std::optional<TaskOutcome>>& outcomes,
                                  const PublishedTable& published) {
-  std::map<std::pair<int, double>, SweepRow> rows;
+  std::map<std::pair<std::string, double>, SweepRow> rows;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (!outcomes[i]) continue;
     // Percent values are rounded to 1e-9 so that 0.03 and 3 % are one row.
     const double percent = std::round(cells[i].row_value * 1e11) / 1e9;
-    const auto row_of = [&](int side) -> SweepRow& {
+    const auto row_of = [&](const std::string& side) -> SweepRow& {
       SweepRow& row = rows[{side, percent}];
       row.noise_percent = percent;
       row.side = side;
       return row;
     };
     if (!outcomes[i]->failure.empty()) {
-      for (const End end : kEnds) ++row_of(side_number(end)).failures;
+      for (const std::string& side : sides_of(cells[i])) ++row_of(side).failures;
     }
-    for (const TaskScores& draw : outcomes[i]->sides) add_draw(draw, row_of(side_number(draw.end)));
+    for (const TaskScores& draw : outcomes[i]->sides) add_draw(draw, row_of(draw.side));
   }
   std::vector<SweepRow> result;
   for (auto& [key, row] : rows) {

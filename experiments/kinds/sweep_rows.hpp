@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "experiments/kinds/sweep_study.hpp"
@@ -25,15 +26,20 @@ PublishedTable read_published(const std::filesystem::path& path);
 /// One row of the table: all draws of one noise level on one side.
 struct SweepRow {
   double noise_percent = 0.0;
-  int side = 0;
+  std::string side;
   std::vector<double> correlation;
   std::vector<double> rms_error;
+  std::vector<double> anti_aliased;
+  std::vector<double> whole, whole_rms_error, whole_anti_aliased;
   std::vector<double> parameter;
   std::size_t stand_ins = 0;  ///< parameters that no rule has chosen
   std::size_t failures = 0;
   double median = 0.0, q10 = 0.0, q90 = 0.0, rms_median = 0.0, parameter_median = 0.0;
   std::optional<double> published_correlation, published_parameter;
 };
+
+/// Mean of what is not NaN; NaN where nothing is.
+double mean_of(const std::vector<double>& values);
 
 /// Rows by side and noise. Outcomes that are not there yet are left out.
 std::vector<SweepRow> sweep_rows(const std::vector<SweepCell>& cells,

@@ -9,16 +9,18 @@ TaskOutcome run_cell(const SweepCell& cell, const StudyContext& context) {
   TaskOutcome outcome;
   try {
     const Observation observation =
-        observe(options.observation, {.force = true}, context.work.truths, key, context.folder);
+        observe(options.observation, {.force = true}, context.work.truths, key, context.folder,
+                options.score.oversampling);
     const AssumedModel model = with_errors(observation.basis, observation.contact,
                                            options.model_error, key.with("model error"));
-    const auto inversions =
-        context.work.inversions.get(model, observation.samples(), observation.sample_rate);
     const InversionRecipe recipe(options.inversion);
+    const auto estimator =
+        context.work.inversions.get(model, observation, options.inversion, recipe);
     for (const SideIdentification& side :
-         identify(observation, *inversions, recipe, {.force = true}, &options.score)) {
-      outcome.sides.push_back(
-          {side.end, side.result.choice.parameter(), side.result.choice.status, side.scores});
+         identify(observation, *estimator, recipe, {.force = true}, &options.score)) {
+      const ChosenParameter& choice = side.estimate.result.choice;
+      outcome.sides.push_back({side.estimate.side, choice.parameter(), choice.status, side.scores,
+                               side.whole, side.estimate.warnings});
     }
   } catch (const InvalidInput& error) {
     outcome.failure = error.what();

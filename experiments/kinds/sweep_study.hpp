@@ -29,6 +29,15 @@ struct ComparisonOptions {
   void visit(OptionVisitor& visitor);
 };
 
+/// A figure that a row of the sweep's table has to reach.
+struct SweepTarget {
+  std::string side;
+  double noise = 0.0;        ///< row [1]
+  double correlation = 0.0;  ///< least mean over windows and draws
+  double whole = 0.0;        ///< least mean over the long window
+  void visit(OptionVisitor& visitor);
+};
+
 struct SweepTableOptions {
   std::string name = "table";
   void visit(OptionVisitor& visitor);
@@ -41,6 +50,7 @@ struct SweepOptions {
   SweepTableOptions table;
   bool has_comparison = false;
   ComparisonOptions comparison;
+  std::vector<SweepTarget> targets;
 };
 
 /// Table, figure and acceptance of the cells that are finished; nullopt: not run yet.

@@ -1,9 +1,13 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <map>
 
 #include "experiments/kinds/sweep_rows.hpp"
 #include "libsim/base/error.hpp"
+#include "libsim/signal/statistics.hpp"
 
 namespace modcal {
 
@@ -40,7 +44,31 @@ void ComparisonOptions::visit(OptionVisitor& visitor) {
                   parameter_cells);
 }
 
+void SweepTarget::visit(OptionVisitor& visitor) {
+  visitor.text({.key = "side",
+                .meaning = "row of the table: 1, 2, or the estimator's name for its estimate",
+                .required = true},
+               side);
+  visitor.number({.key = "noise",
+                  .meaning = "row of the table: noise level",
+                  .range = Range::non_negative(),
+                  .required = true},
+                 noise);
+  visitor.number({.key = "correlation",
+                  .meaning = "least mean correlation over windows and draws",
+                  .range = Range::closed(-1.0, 1.0)},
+                 correlation);
+  visitor.number({.key = "whole",
+                  .meaning = "least mean correlation over the long window",
+                  .range = Range::closed(-1.0, 1.0)},
+                 whole);
+}
+
 namespace {
+
+report::Cell number_or_none(double value) {
+  return std::isnan(value) ? report::Cell() : report::Cell(value);
+}
 
 report::Cell optional_cell(const std::optional<double>& value) {
   return value ? report::Cell(*value) : report::Cell();
@@ -60,6 +88,18 @@ report::Table sweep_table(const std::string& name, const std::vector<SweepRow>& 
            {.key = "relative_rms_error_median",
             .name = "relative rms error, median",
             .format = "{:.2f}"},
+           {.key = "R_mean", .name = "R, mean", .format = "{:.3f}"},
+           {.key = "relative_rms_error_mean",
+            .name = "relative rms error, mean",
+            .format = "{:.3f}"},
+           {.key = "R_anti_aliased_mean", .name = "R anti-aliased, mean", .format = "{:.3f}"},
+           {.key = "R_whole_mean", .name = "R long window, mean", .format = "{:.3f}"},
+           {.key = "whole_relative_rms_error_mean",
+            .name = "relative rms error long window, mean",
+            .format = "{:.3f}"},
+           {.key = "R_whole_anti_aliased_mean",
+            .name = "R long window anti-aliased, mean",
+            .format = "{:.3f}"},
            {.key = "n"},
            {.key = "epsilon_median", .name = "epsilon, median", .unit = "N/N", .format = "{:.3g}"},
            {.key = "paper_R", .name = "R, paper", .format = "{:.2f}"},
@@ -68,10 +108,14 @@ report::Table sweep_table(const std::string& name, const std::vector<SweepRow>& 
            {.key = "failures"}},
       .command = command};
   for (const SweepRow& row : rows) {
-    table.rows.push_back({row.noise_percent, row.side, row.median, row.q10, row.q90, row.rms_median,
-                          row.correlation.size(), row.parameter_median,
-                          optional_cell(row.published_correlation),
-                          optional_cell(row.published_parameter), row.stand_ins, row.failures});
+    table.rows.push_back(
+        {row.noise_percent, side_cell(row.side), row.median, row.q10, row.q90, row.rms_median,
+         number_or_none(mean_of(row.correlation)), number_or_none(mean_of(row.rms_error)),
+         number_or_none(mean_of(row.anti_aliased)), number_or_none(mean_of(row.whole)),
+         number_or_none(mean_of(row.whole_rms_error)),
+         number_or_none(mean_of(row.whole_anti_aliased)), row.correlation.size(),
+         row.parameter_median, optional_cell(row.published_correlation),
+         optional_cell(row.published_parameter), row.stand_ins, row.failures});
   }
   return table;
 }
@@ -86,9 +130,9 @@ report::Figure sweep_figure(const std::string& name, const std::vector<SweepRow>
                             "published figures.",
                         .columns = 2,
                         .command = command};
-  for (const int side : {1, 2}) {
+  for (const std::string side : {"1", "2"}) {
     report::Series ours{.label = "median, 10-90 %", .style = report::SeriesStyle::kLineWithPoints};
-    ours.color = side == 1 ? ColorRole::kFirst : ColorRole::kSecond;
+    ours.color = side == "1" ? ColorRole::kFirst : ColorRole::kSecond;
     report::Series paper{
         .label = "paper", .style = report::SeriesStyle::kPoints, .color = ColorRole::kReference};
     for (const SweepRow& row : rows) {
@@ -111,14 +155,79 @@ report::Figure sweep_figure(const std::string& name, const std::vector<SweepRow>
   return figure;
 }
 
+std::string series_name(const std::string& side) {
+  if (side == "1" || side == "2") return "water level, R" + side;
+  if (side == "linear_limit") return "linear limit (oracle Wiener)";
+  return side;
+}
+
+// Every estimate in one panel, with the better side of the published figures.
+report::Figure comparison_figure(const std::string& name, const std::vector<SweepRow>& rows,
+                                 const std::string& command) {
+  using report::ColorRole;
+  static constexpr ColorRole kColors[] = {ColorRole::kFirst, ColorRole::kSecond, ColorRole::kThird,
+                                          ColorRole::kFourth};
+  report::Figure figure{.id = name + "_figure",
+                        .title = "Correlation of identified and true force against noise",
+                        .caption = "Mean with the band from 10 % to 90 % of the draws.",
+                        .columns = 2,
+                        .command = command};
+  std::vector<std::string> sides;
+  std::map<double, double> paper;
+  for (const SweepRow& row : rows) {
+    if (sides.empty() || sides.back() != row.side) sides.push_back(row.side);
+    if (!row.published_correlation) continue;
+    double& best = paper[row.noise_percent];
+    best = std::max(best, *row.published_correlation);
+  }
+  const auto panel_of = [&](const std::string& title, std::vector<double> SweepRow::*values) {
+    report::Panel panel{
+        .title = title, .x = {.label = "noise", .unit = "%"}, .y = {.label = "correlation R"}};
+    for (std::size_t s = 0; s < sides.size(); ++s) {
+      report::Series series{.label = series_name(sides[s]),
+                            .style = report::SeriesStyle::kLineWithPoints,
+                            .color = kColors[s % std::size(kColors)]};
+      for (const SweepRow& row : rows) {
+        if (row.side != sides[s] || std::isnan(mean_of(row.*values))) continue;
+        series.x.push_back(row.noise_percent);
+        series.y.push_back(mean_of(row.*values));
+        series.y_low.push_back(quantile(row.*values, 0.1));
+        series.y_high.push_back(quantile(row.*values, 0.9));
+      }
+      if (!series.x.empty()) panel.series.push_back(std::move(series));
+    }
+    return panel;
+  };
+  report::Panel windows = panel_of("short windows", &SweepRow::correlation);
+  if (!paper.empty()) {
+    report::Series series{.label = "paper, better side",
+                          .style = report::SeriesStyle::kPoints,
+                          .color = ColorRole::kReference};
+    for (const auto& [noise, value] : paper) {
+      series.x.push_back(noise);
+      series.y.push_back(value);
+    }
+    windows.series.push_back(std::move(series));
+  }
+  figure.panels.push_back(std::move(windows));
+  report::Panel whole = panel_of("long window", &SweepRow::whole);
+  if (!whole.series.empty()) figure.panels.push_back(std::move(whole));
+  return figure;
+}
+
+bool compares_estimators(const std::vector<SweepRow>& rows) {
+  return std::any_of(rows.begin(), rows.end(),
+                     [](const SweepRow& row) { return row.side != "1" && row.side != "2"; });
+}
+
 report::Table task_table(const std::vector<std::string>& axes, const std::vector<SweepCell>& cells,
                          const std::vector<std::optional<TaskOutcome>>& outcomes,
                          const std::string& command) {
   report::Table table{
       .id = "tasks", .title = "Tasks", .columns = {{.key = "task"}}, .command = command};
   for (const std::string& axis : axes) table.columns.push_back({.key = axis});
-  for (const char* key :
-       {"side", "epsilon", "choice", "window_start", "R", "relative_rms_error", "failure"}) {
+  for (const char* key : {"side", "epsilon", "choice", "window_start", "R", "relative_rms_error",
+                          "R_anti_aliased", "failure"}) {
     table.columns.push_back({.key = key});
   }
   for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -135,8 +244,9 @@ report::Table task_table(const std::vector<std::string>& axes, const std::vector
       for (const WindowScore& score : side.scores) {
         std::vector<report::Cell> row = head;
         row.insert(row.end(),
-                   {side_number(side.end), side.parameter, std::string(name_of(side.status)),
-                    score.start, score.correlation, score.relative_rms_error, report::Cell()});
+                   {side_cell(side.side), side.parameter, std::string(name_of(side.status)),
+                    score.start, score.correlation, score.relative_rms_error,
+                    number_or_none(score.anti_aliased), report::Cell()});
         table.rows.push_back(std::move(row));
       }
     }
@@ -146,16 +256,20 @@ report::Table task_table(const std::vector<std::string>& axes, const std::vector
 
 std::string printed_table(const std::vector<SweepRow>& rows) {
   std::string text =
-      "noise %  side   R median [10 %, 90 %]   n   paper R   epsilon   paper epsilon\n";
+      "noise %  side          R median [10 %, 90 %]   n   paper R   epsilon   paper epsilon   R "
+      "mean"
+      "   R long\n";
   const auto optional_text = [](const std::optional<double>& value, int digits) {
     return value ? fmt::format("{:.{}f}", *value, digits) : std::string("-");
   };
   for (const SweepRow& row : rows) {
     text += fmt::format(
-        "{:7.3g}  {:4d}   {:5.2f}  [{:5.2f}, {:5.2f}]  {:3d}   {:>7}   {:7.3f}   {:>13}\n",
+        "{:7.3g}  {:<12}  {:5.2f}  [{:5.2f}, {:5.2f}]  {:3d}   {:>7}   {:7.3g}   {:>13}   {:6.3f}  "
+        " "
+        "{:6.3f}\n",
         row.noise_percent, row.side, row.median, row.q10, row.q90, row.correlation.size(),
         optional_text(row.published_correlation, 2), row.parameter_median,
-        optional_text(row.published_parameter, 3));
+        optional_text(row.published_parameter, 3), mean_of(row.correlation), mean_of(row.whole));
   }
   return text;
 }
@@ -181,6 +295,29 @@ void add_judgement(const Judgement& judgement, const ComparisonOptions& options,
        static_cast<double>(judgement.parameter_cells),
        judgement.parameter_cells >= static_cast<std::size_t>(options.parameter_cells),
        fmt::format("accepted from {}", options.parameter_cells));
+}
+
+void judge_targets(const std::vector<SweepTarget>& targets, const std::vector<SweepRow>& rows,
+                   StudyResult& result) {
+  for (const SweepTarget& target : targets) {
+    double reached = std::numeric_limits<double>::quiet_NaN(), whole = reached;
+    for (const SweepRow& row : rows) {
+      if (row.side != target.side || std::abs(row.noise_percent - 100.0 * target.noise) > 1e-6) {
+        continue;
+      }
+      reached = mean_of(row.correlation);
+      whole = mean_of(row.whole);
+    }
+    const bool passed =
+        reached >= target.correlation && (target.whole == 0.0 || whole >= target.whole);
+    const std::string text = fmt::format(
+        "{} at {:g} % noise: {:.4f} (accepted from {:g}), long window {:.4f} (from {:g})",
+        target.side, 100.0 * target.noise, reached, target.correlation, whole, target.whole);
+    result.summary += text + (passed ? "" : "  MISSED") + "\n";
+    result.blocks.emplace_back(
+        report::Text{text, passed ? report::Text::Kind::kNote : report::Text::Kind::kFailure});
+    if (!passed) result.missed.push_back(text);
+  }
 }
 
 void count_tasks(const std::vector<std::optional<TaskOutcome>>& outcomes, StudyResult& result) {
@@ -218,7 +355,10 @@ StudyResult sum_up_sweep(const SweepOptions& options, const std::vector<std::str
   if (options.has_comparison && result.pending_tasks == 0) {
     add_judgement(judge(rows, options.comparison), options.comparison, result);
   }
-  result.blocks.emplace_back(sweep_figure(options.table.name, rows, context.command));
+  if (result.pending_tasks == 0) judge_targets(options.targets, rows, result);
+  result.blocks.emplace_back(compares_estimators(rows)
+                                 ? comparison_figure(options.table.name, rows, context.command)
+                                 : sweep_figure(options.table.name, rows, context.command));
   result.files.emplace_back("tasks.csv",
                             report::table_csv(task_table(axes, cells, outcomes, context.command)));
   if (result.failed_tasks > 0) {

@@ -159,11 +159,11 @@ Figure parameter_curve_figure(const FigureOptions& options,
   Figure figure = empty_figure(options, sides.size());
   std::vector<Panel> criteria;
   for (const SideIdentification& side : sides) {
-    const std::string superscript = fmt::format("({})", side_number(side.end));
+    const std::string& name = side.estimate.side;
+    const std::string superscript = fmt::format("({})", name);
     Panel corner;
-    corner.title = std::string(label_of(side.end));
-    corner.x = {.label = fmt::format("||R{} - H{} F{}||", side_number(side.end),
-                                     side_number(side.end), superscript),
+    corner.title = side.estimate.label;
+    corner.x = {.label = fmt::format("||R_{} - H_{} F{}||", name, name, superscript),
                 .unit = "N",
                 .logarithmic = true};
     corner.y = {.label = "||dF" + superscript + "/dt||", .unit = "N/s", .logarithmic = true};
@@ -173,13 +173,13 @@ Figure parameter_curve_figure(const FigureOptions& options,
     criterion.y = {.label = "criterion", .unit = "1", .logarithmic = true};
     Series l_curve{.label = "all parameters"};
     Series product{.label = "criterion"};
-    for (const CurvePoint& point : side.result.choice.curve) {
+    for (const CurvePoint& point : side.estimate.result.choice.curve) {
       l_curve.x.push_back(point.residual_norm);
       l_curve.y.push_back(point.solution_norm);
       product.x.push_back(point.parameter);
       product.y.push_back(point.criterion);
     }
-    const CurvePoint& chosen = side.result.choice.point;
+    const CurvePoint& chosen = side.estimate.result.choice.point;
     const std::string label = fmt::format("chosen: {:.3g}", chosen.parameter);
     corner.series = {l_curve, Series{.label = label,
                                      .x = {chosen.residual_norm},
@@ -223,7 +223,7 @@ Figure identification_figure(const FigureOptions& options, const Observation& ob
                              const std::vector<SideIdentification>& sides) {
   std::vector<std::string> columns;
   for (const SideIdentification& side : sides) {
-    columns.push_back(fmt::format("from R{} ({})", side_number(side.end), label_of(side.end)));
+    columns.push_back(side.estimate.label);
   }
   // The identified signals have no static part, so the true ones are shown without theirs.
   std::map<std::string, std::vector<double>, std::less<>> truth;
@@ -235,9 +235,9 @@ Figure identification_figure(const FigureOptions& options, const Observation& ob
     }
   }
   const TraceLookup traces = [&](std::string_view quantity, std::size_t column) {
-    std::vector<Trace> result = {{"identified", &identified(sides[column].result, quantity),
-                                  SeriesStyle::kLine,
-                                  column == 0 ? ColorRole::kFirst : ColorRole::kSecond}};
+    std::vector<Trace> result = {
+        {"identified", &identified(sides[column].estimate.result, quantity), SeriesStyle::kLine,
+         column == 0 ? ColorRole::kFirst : ColorRole::kSecond}};
     const auto known = truth.find(quantity);
     if (known != truth.end() && !known->second.empty()) {
       result.push_back({"true", &known->second, SeriesStyle::kDotted, ColorRole::kReference});

@@ -1,64 +1,99 @@
 #include "experiments/study/identification.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "experiments/study/fingerprint.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {
-
-PreparedInversions::PreparedInversions(const AssumedModel& model, std::size_t samples,
-                                       double sample_rate) {
-  for (const End end : kEnds) {
-    sides_[static_cast<std::size_t>(end)] = std::make_unique<const OneSidedInversion>(
-        model.basis, model.contact, end, samples, sample_rate);
-  }
-}
-
-std::shared_ptr<const PreparedInversions> InversionCache::get(const AssumedModel& model,
-                                                              std::size_t samples,
-                                                              double sample_rate) {
-  const ModalBasis& basis = model.basis;
-  std::vector<double> key = {model.contact, sample_rate, static_cast<double>(samples), basis.length,
-                             basis.tension};
-  for (const auto* part : {&basis.omega, &basis.zeta, &basis.mass}) {
-    key.insert(key.end(), part->begin(), part->end());
-  }
-  const std::lock_guard lock(mutex_);
-  auto& slot = prepared_[std::move(key)];
-  if (!slot) slot = std::make_shared<const PreparedInversions>(model, samples, sample_rate);
-  return slot;
-}
-
 namespace {
 
-// Noise of one sample as stated by a simulated measurement; unknown for a record.
-double noise_rms_of(const Observation& observation, double noise_level, End end) {
+constexpr std::size_t kPreparedKept = 8;
+
+std::string key_of(const AssumedModel& model, const Observation& observation,
+                   InversionOptions options) {
+  const ModalBasis& basis = model.basis;
+  std::string key = fingerprint([&](OptionVisitor& visitor) {
+    visitor.plugin({.key = "estimator", .meaning = ""}, options.estimator);
+  });
+  const auto add = [&key](double value) { key += fmt::format(" {:a}", value); };
+  for (const double value :
+       {model.contact, observation.sample_rate, static_cast<double>(observation.samples()),
+        observation.truth ? 0.0 : 1.0, basis.length, basis.tension}) {
+    add(value);
+  }
+  for (const auto* part : {&basis.omega, &basis.zeta, &basis.mass}) {
+    std::for_each(part->begin(), part->end(), add);
+  }
+  return key;
+}
+
+// As stated by a simulated measurement; unknown for a record.
+double noise_rms_of(const Observation& observation, End end) {
   if (!observation.truth) return std::numeric_limits<double>::quiet_NaN();
   const Simulation& simulation = observation.truth->simulation;
   const Signal& clean = end == End::kLeft ? simulation.left_reaction : simulation.right_reaction;
-  return noise_level * standard_deviation(clean.samples);
+  return observation.noise_level * standard_deviation(clean.samples);
+}
+
+EstimationRecord record_of(const Observation& observation) {
+  EstimationRecord record;
+  for (const End end : kEnds) {
+    const auto side = static_cast<std::size_t>(end);
+    if (observation.reaction(end)) record.reactions[side] = observation.reaction(end)->samples;
+    record.stated_noise[side] = noise_rms_of(observation, end);
+  }
+  if (observation.truth && observation.reference) {
+    record.true_force = observation.reference->samples;
+  }
+  return record;
 }
 
 }  // namespace
 
+InversionCache::Prepared prepare_estimator(const AssumedModel& model,
+                                           const Observation& observation,
+                                           const InversionRecipe& recipe) {
+  return recipe.estimator().prepare({.basis = model.basis,
+                                     .contact = model.contact,
+                                     .samples = observation.samples(),
+                                     .sample_rate = observation.sample_rate,
+                                     .recorded = observation.truth == nullptr});
+}
+
+InversionCache::Prepared InversionCache::get(const AssumedModel& model,
+                                             const Observation& observation,
+                                             const InversionOptions& options,
+                                             const InversionRecipe& recipe) {
+  const std::string key = key_of(model, observation, options);
+  const std::lock_guard lock(mutex_);
+  for (const auto& [known, prepared] : prepared_) {
+    if (known == key) return prepared;
+  }
+  prepared_.emplace_back(key, prepare_estimator(model, observation, recipe));
+  if (prepared_.size() > kPreparedKept) prepared_.pop_front();
+  return prepared_.back().second;
+}
+
 std::vector<SideIdentification> identify(const Observation& observation,
-                                         const PreparedInversions& inversions,
+                                         const PreparedEstimator& estimator,
                                          const InversionRecipe& recipe,
                                          const InversionOutputs& outputs,
                                          const ScoreOptions* score) {
   std::vector<SideIdentification> sides;
-  for (const End end : kEnds) {
-    const auto& reaction = observation.reaction(end);
-    if (!reaction) continue;
-    const OneSidedInversion& inversion = inversions.of(end);
+  for (Estimate& estimate : estimator.estimate(record_of(observation), recipe.method(outputs))) {
     SideIdentification side;
-    side.end = end;
-    side.result = inversion.invert(
-        reaction->samples,
-        recipe.method(outputs, noise_rms_of(observation, observation.noise_level, end)));
-    side.largest_transfer =
-        inversion.problem().sigma().empty() ? 0.0 : inversion.problem().sigma()[0];
+    side.estimate = std::move(estimate);
     if (score && observation.reference) {
-      const Signal force{"f_c", "N", observation.sample_rate, side.result.force};
-      side.scores = score_windows(force, *observation.reference, *score, observation.fundamental);
+      const Signal force{"f_c", "N", observation.sample_rate, side.estimate.result.force};
+      const ScoreReference reference{.truth = *observation.reference,
+                                     .anti_aliased = observation.anti_aliased,
+                                     .anti_alias_cut = observation.anti_alias_cut,
+                                     .fundamental = observation.fundamental};
+      side.scores = score_windows(force, reference, *score);
+      side.whole = score_whole(force, reference, *score);
     }
     sides.push_back(std::move(side));
   }

@@ -1,9 +1,11 @@
-// Identified motion at the contact from each reaction, scored where a reference is known.
+// Identified force and motion at the contact, scored where a reference is known.
 #pragma once
 
-#include <map>
+#include <deque>
 #include <memory>
 #include <mutex>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "experiments/study/model_error.hpp"
@@ -13,38 +15,35 @@
 
 namespace modcal {
 
+/// One estimate of a record with its scores; empty without a reference.
 struct SideIdentification {
-  End end = End::kLeft;
-  InversionResult result;
-  double largest_transfer = 0.0;    ///< max |H_r| [N/N]
-  std::vector<WindowScore> scores;  ///< of the force; empty without a reference
+  Estimate estimate;
+  std::vector<WindowScore> scores;  ///< of the force, window by window
+  WindowScore whole;                ///< over the stated part of the record
 };
 
-/// Inversions of both sides prepared for one model and record length, shared by many noise draws.
-class PreparedInversions {
- public:
-  PreparedInversions(const AssumedModel& model, std::size_t samples, double sample_rate);
-  const OneSidedInversion& of(End end) const { return *sides_[static_cast<std::size_t>(end)]; }
-
- private:
-  std::unique_ptr<const OneSidedInversion> sides_[2];
-};
-
-/// Prepared inversions shared by all cells of a sweep that assume the same model.
+/// Estimators prepared for one model and record length, shared by the cells of a sweep that assume
+/// the same model. Keeps the last few: a sweep over model errors has as many models as cells.
 class InversionCache {
  public:
-  std::shared_ptr<const PreparedInversions> get(const AssumedModel& model, std::size_t samples,
-                                                double sample_rate);
+  using Prepared = std::shared_ptr<const PreparedEstimator>;
+  Prepared get(const AssumedModel& model, const Observation& observation,
+               const InversionOptions& options, const InversionRecipe& recipe);
 
  private:
   std::mutex mutex_;
-  // The model's numbers, bit for bit.
-  std::map<std::vector<double>, std::shared_ptr<const PreparedInversions>> prepared_;
+  // The model's numbers and the estimator's options, bit for bit.
+  std::deque<std::pair<std::string, Prepared>> prepared_;
 };
 
-/// Inverts every reaction of the observation; `score` null: no scores.
+/// The estimator of `recipe` with its transfer functions.
+InversionCache::Prepared prepare_estimator(const AssumedModel& model,
+                                           const Observation& observation,
+                                           const InversionRecipe& recipe);
+
+/// Inverts the reactions of the observation; `score` null: no scores.
 std::vector<SideIdentification> identify(const Observation& observation,
-                                         const PreparedInversions& inversions,
+                                         const PreparedEstimator& estimator,
                                          const InversionRecipe& recipe,
                                          const InversionOutputs& outputs,
                                          const ScoreOptions* score);

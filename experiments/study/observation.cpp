@@ -1,6 +1,7 @@
 #include "experiments/study/observation.hpp"
 
 #include "experiments/records/recorded_signals.hpp"
+#include "experiments/study/scoring.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/signal/statistics.hpp"
 
@@ -81,10 +82,25 @@ Observation observe_record(const ObservationOptions& options, const std::filesys
   return observation;
 }
 
+// Below the highest mode, where the reactions tell of the force.
+void add_anti_aliased(const ObservationOptions& options, TruthCache& cache,
+                      std::int64_t oversampling, Observation& observation) {
+  const auto step = static_cast<std::size_t>(oversampling);
+  const double rate = observation.sample_rate * static_cast<double>(oversampling);
+  const auto fine = cache.get(options.truth, rate, {.force = true});
+  observation.anti_alias_cut = observation.basis.frequency(observation.basis.size() - 1);
+  Signal signal = *observation.reference;
+  signal.samples =
+      low_passed(fine->simulation.force.samples, rate, observation.anti_alias_cut, step);
+  signal.samples.resize(observation.reference->size(), 0.0);
+  observation.anti_aliased = std::move(signal);
+}
+
 }  // namespace
 
 Observation observe(const ObservationOptions& options, const OutputRequest& truth_outputs,
-                    TruthCache& cache, const StreamKey& key, const std::filesystem::path& folder) {
+                    TruthCache& cache, const StreamKey& key, const std::filesystem::path& folder,
+                    std::int64_t oversampling) {
   options.require_one_source();
   Observation observation = options.has_scene ? observe_scene(options, truth_outputs, cache, key)
                                               : observe_record(options, folder);
@@ -95,6 +111,9 @@ Observation observe(const ObservationOptions& options, const OutputRequest& trut
       "the highest mode ({:g} Hz) is not below half the sample rate ({:g} Hz): use fewer "
       "modes or a higher rate",
       top, observation.sample_rate);
+  if (oversampling > 1 && options.has_scene && observation.reference) {
+    add_anti_aliased(options, cache, oversampling, observation);
+  }
   return observation;
 }
 

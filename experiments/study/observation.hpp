@@ -45,6 +45,9 @@ struct Observation {
   double noise_level = 0.0;            ///< as stated for a simulated measurement
   std::shared_ptr<const Truth> truth;  ///< null for a record
   std::optional<Signal> reference;  ///< true or recorded contact force, means removed with the rest
+  /// The true force low-passed before it was sampled, where a score asks for it.
+  std::optional<Signal> anti_aliased;
+  double anti_alias_cut = 0.0;  ///< [Hz]
   std::vector<std::string> warnings;
 
   const std::optional<Signal>& reaction(End end) const { return reactions[static_cast<int>(end)]; }
@@ -52,9 +55,10 @@ struct Observation {
 };
 
 /// Simulates (through the cache) or reads, and measures with noise drawn from `key`.
-/// `folder`: where a relative record path starts.
+/// `folder`: where a relative record path starts; `oversampling` > 1: with an anti-aliased truth.
 Observation observe(const ObservationOptions& options, const OutputRequest& truth_outputs,
-                    TruthCache& cache, const StreamKey& key, const std::filesystem::path& folder);
+                    TruthCache& cache, const StreamKey& key, const std::filesystem::path& folder,
+                    std::int64_t oversampling = 1);
 
 /// "x = 0" or "x = L".
 std::string_view label_of(End end);

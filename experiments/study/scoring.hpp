@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -12,20 +14,42 @@ namespace modcal {
 
 /// Windows over which an identified force is compared with the true one.
 struct ScoreOptions {
-  std::vector<double> windows;  ///< starts [s]; none: the whole record at once
-  double periods = 2.0;         ///< length in periods of the fundamental
+  std::vector<double> windows;    ///< starts [s]; none: the whole record at once
+  double periods = 2.0;           ///< length in periods of the fundamental
+  std::vector<double> whole;      ///< start and stop of the long window [s]; none: no long window
+  std::int64_t oversampling = 1;  ///< of the truth behind the anti-aliased figures; 1: none
   void visit(OptionVisitor& visitor);
 };
 
 struct WindowScore {
-  double start = 0.0;               ///< [s]
-  double correlation = 0.0;         ///< R of eq. 16
-  double relative_rms_error = 0.0;  ///< static parts removed
+  double start = 0.0;                                                    ///< [s]
+  double correlation = std::numeric_limits<double>::quiet_NaN();         ///< R of eq. 16
+  double relative_rms_error = std::numeric_limits<double>::quiet_NaN();  ///< static parts removed
+  /// R of both forces below the cut, the true one low-passed before it was sampled: one re-sticking
+  /// jump on the wrong side of a sample weighs no more than it lasts.
+  double anti_aliased = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// What an identified force is held against.
+struct ScoreReference {
+  const Signal& truth;
+  const std::optional<Signal>& anti_aliased;  ///< the truth low-passed at its full rate
+  double anti_alias_cut = 0.0;                ///< [Hz]
+  double fundamental = 0.0;                   ///< f₀ [Hz]
 };
 
 /// Scores over every window of `periods`/`fundamental` seconds. Throws InvalidInput where a window
 /// leaves the record.
-std::vector<WindowScore> score_windows(const Signal& identified, const Signal& truth,
-                                       const ScoreOptions& options, double fundamental);
+std::vector<WindowScore> score_windows(const Signal& identified, const ScoreReference& reference,
+                                       const ScoreOptions& options);
+
+/// Score over the long window; NaN where none is asked for. Throws InvalidInput where it is not two
+/// rising instants inside the record.
+WindowScore score_whole(const Signal& identified, const ScoreReference& reference,
+                        const ScoreOptions& options);
+
+/// The part below `cut` [Hz] of a signal, sampled at every `step`-th instant.
+std::vector<double> low_passed(std::span<const double> samples, double sample_rate, double cut,
+                               std::size_t step = 1);
 
 }  // namespace modcal

@@ -27,8 +27,8 @@ TEST(InversionOptions, MakeTheMethodTheyName) {
 
 TEST(InversionOptions, RefuseAnUnknownEstimator) {
   InversionOptions options;
-  options.estimator = "psychic";
-  EXPECT_THROW(InversionRecipe{options}, InvalidInput);
+  EXPECT_EQ(options.estimator.selected(), "one_sided");
+  EXPECT_THROW(options.estimator.select("psychic"), InvalidInput);
 }
 
 }  // namespace

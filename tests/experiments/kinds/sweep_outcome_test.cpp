@@ -13,8 +13,8 @@ namespace {
 TEST(SweepOutcome, ComesBackBitForBit) {
   TaskOutcome outcome;
   outcome.sides.push_back(
-      {End::kLeft, 0.1, ChoiceStatus::kChosen, {{0.78, 1.0 / 3.0, 5e-324}, {0.7, -0.0, 1e308}}});
-  outcome.sides.push_back({End::kRight,
+      {"1", 0.1, ChoiceStatus::kChosen, {{0.78, 1.0 / 3.0, 5e-324}, {0.7, -0.0, 1e308}}});
+  outcome.sides.push_back({"joint",
                            std::numeric_limits<double>::infinity(),
                            ChoiceStatus::kNoInteriorMinimum,
                            {{0.0, std::nan(""), 1.0}}});
@@ -22,7 +22,8 @@ TEST(SweepOutcome, ComesBackBitForBit) {
   EXPECT_EQ(text.find('\n'), std::string::npos);
   const TaskOutcome again = read_outcome(text);
   ASSERT_EQ(again.sides.size(), 2u);
-  EXPECT_EQ(again.sides[0].end, End::kLeft);
+  EXPECT_EQ(again.sides[0].side, "1");
+  EXPECT_EQ(again.sides[1].side, "joint");
   EXPECT_EQ(again.sides[0].parameter, 0.1);
   EXPECT_EQ(again.sides[0].scores[0].correlation, 1.0 / 3.0);
   EXPECT_EQ(again.sides[0].scores[0].relative_rms_error, 5e-324);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "libsim/base/error.hpp"
 
@@ -18,10 +19,17 @@ Signal sine(double phase, double offset) {
   return signal;
 }
 
+std::vector<WindowScore> score(const Signal& identified, const Signal& truth,
+                               const ScoreOptions& options) {
+  const std::optional<Signal> none;
+  return score_windows(identified, {.truth = truth, .anti_aliased = none, .fundamental = 10.0},
+                       options);
+}
+
 TEST(ScoreWindows, SeesPhaseAndNotTheStaticPart) {
   // Two whole periods of sines that differ by the phase p correlate as cos p, and the rms of their
   // difference over that of one is 2 sin(p/2).
-  const auto scores = score_windows(sine(0.3, 5.0), sine(0.0, -1.0), {.windows = {0.1, 0.5}}, 10.0);
+  const auto scores = score(sine(0.3, 5.0), sine(0.0, -1.0), {.windows = {0.1, 0.5}});
   ASSERT_EQ(scores.size(), 2u);
   for (const WindowScore& score : scores) {
     EXPECT_NEAR(score.correlation, std::cos(0.3), 1e-12);
@@ -31,14 +39,40 @@ TEST(ScoreWindows, SeesPhaseAndNotTheStaticPart) {
 }
 
 TEST(ScoreWindows, TakesTheWholeRecordWithoutWindows) {
-  const auto scores = score_windows(sine(0.3, 0.0), sine(0.0, 0.0), {}, 10.0);
+  const auto scores = score(sine(0.3, 0.0), sine(0.0, 0.0), {});
   ASSERT_EQ(scores.size(), 1u);
   EXPECT_NEAR(scores[0].correlation, std::cos(0.3), 1e-12);
 }
 
 TEST(ScoreWindows, RefusesAWindowBeyondTheRecord) {
-  EXPECT_THROW(score_windows(sine(0, 0), sine(0, 0), {.windows = {0.9}}, 10.0), InvalidInput);
-  EXPECT_NO_THROW(score_windows(sine(0, 0), sine(0, 0), {.windows = {0.8}}, 10.0));
+  EXPECT_THROW(score(sine(0, 0), sine(0, 0), {.windows = {0.9}}), InvalidInput);
+  EXPECT_NO_THROW(score(sine(0, 0), sine(0, 0), {.windows = {0.8}}));
+}
+
+TEST(ScoreWhole, ComparesTheLongWindowBelowTheCut) {
+  // A tone above the cut spoils the correlation and not the anti-aliased one.
+  Signal identified = sine(0.0, 0.0);
+  for (int i = 0; i < 1000; ++i) {
+    identified.samples[static_cast<std::size_t>(i)] +=
+        std::sin(2.0 * std::numbers::pi * 300.0 * i / 1000.0);
+  }
+  const Signal truth = sine(0.0, 0.0);
+  const std::optional<Signal> smooth = truth;
+  const ScoreReference reference{
+      .truth = truth, .anti_aliased = smooth, .anti_alias_cut = 100.0, .fundamental = 10.0};
+  const WindowScore whole = score_whole(identified, reference, {.whole = {0.1, 0.9}});
+  EXPECT_NEAR(whole.correlation, std::sqrt(0.5), 1e-12);
+  EXPECT_NEAR(whole.anti_aliased, 1.0, 1e-12);
+  EXPECT_TRUE(std::isnan(score_whole(identified, reference, {}).correlation));
+  EXPECT_THROW(score_whole(identified, reference, {.whole = {0.5, 0.1}}), InvalidInput);
+  EXPECT_THROW(score_whole(identified, reference, {.whole = {0.5, 1.1}}), InvalidInput);
+}
+
+TEST(LowPassed, KeepsWhatIsBelowTheCutAtEveryStep) {
+  const Signal signal = sine(0.4, 1.0);
+  const auto kept = low_passed(signal.samples, 1000.0, 50.0, 4);
+  ASSERT_EQ(kept.size(), 250u);
+  for (std::size_t j = 0; j < kept.size(); ++j) EXPECT_NEAR(kept[j], signal.samples[4 * j], 1e-12);
 }
 
 }  // namespace

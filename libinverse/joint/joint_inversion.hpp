@@ -1,0 +1,142 @@
+// The contact force from the reactions at both ends at once.
+#pragma once
+
+#include <array>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "libinverse/joint/evidence_curve.hpp"
+#include "libinverse/joint/force_prior.hpp"
+#include "libinverse/joint/sensor_noise.hpp"
+#include "libinverse/joint/string_transfer.hpp"
+#include "libinverse/joint/transient_fit.hpp"
+#include "libinverse/one_sided_inversion.hpp"
+
+namespace modcal {
+
+/// What is taken care of at the ends of the record.
+enum class Truncation {
+  kShiftedContour,  ///< at rest at t = 0; what rings on past the end is damped by exp(−σT)
+  kTransient,       ///< any state at either end: two unknowns a mode
+  kWrapped,         ///< nothing: the record is one period of a periodic motion
+};
+
+/// Static levels that sensors lose.
+enum class OffsetRule {
+  kArrival,  ///< at rest at t = 0: the mean before the first wave arrives is no reaction
+  kNone,
+};
+
+/// The string and its sensors as a joint inversion supposes them.
+struct JointModel {
+  Truncation truncation = Truncation::kShiftedContour;
+  double sigma = 0.0;  ///< real part of the contour [1/s]; 0 unless the contour is shifted
+  bool static_remainder = false;
+  bool bending = false;
+  SensorOptions sensors = {};
+};
+
+/// How to invert. The prior must outlive the call.
+struct JointMethod {
+  const ForcePrior& prior;
+  OffsetRule offset = OffsetRule::kArrival;
+  /// Nothing is identified above it [Hz]; NaN: no limit.
+  double band_limit = std::numeric_limits<double>::quiet_NaN();
+  /// Prior variances given in place of the prior's [N²], relative; empty: the prior's. Its evidence
+  /// is not searched: amplitude 1.
+  std::span<const double> known_variance = {};
+  InversionOutputs outputs = {};
+};
+
+/// Standard deviations of the force given the record, the same at every instant.
+struct PosteriorDeviation {
+  double force = std::numeric_limits<double>::quiet_NaN();         ///< [N]
+  double displacement = std::numeric_limits<double>::quiet_NaN();  ///< [m]
+  double velocity = std::numeric_limits<double>::quiet_NaN();      ///< [m/s]
+};
+
+struct JointResult {
+  InversionResult identified;
+  PosteriorDeviation deviation;
+  std::array<double, 2> offset = {0.0, 0.0};  ///< subtracted from the reactions [N]
+  double noise_amplitude = 0.0;               ///< √v̄, v̄ the mean variance of the sides [N]
+};
+
+/// Arrays that a call needs besides its results, to be kept from call to call; one per thread.
+struct JointWorkspace {
+  SensorNoise::Workspace noise;
+  std::vector<double> weighted;
+  std::vector<Complex> spectrum[2];
+  std::vector<double> gain;      ///< q_k = Σ_r |H_r|²/v_r
+  std::vector<double> variance;  ///< prior P_k, then posterior 1/(q_k + 1/P_k)
+  std::vector<double> learned;
+  std::vector<double> scratch;
+  std::vector<Complex> contact;
+  EvidenceCurve::Cells cells;
+  TransientFit::Workspace transient;
+};
+
+/// F = Σ_r conj(H_r) R_r/v_r ÷ (Σ_r |H_r|²/v_r + 1/P) on s = σ + iω, with noise variances v_r and a
+/// prior force spectrum P whose amplitude has the largest evidence. The record is weighted by
+/// exp(−σt) before and exp(σt) after. With one reaction it is the Wiener estimate of that side.
+///
+/// The parameter reported is λ = √(v̄/A), A the prior's amplitude: the |H| [N/N] at which a bin of
+/// prior shape 1 is kept by half. Prepared once per model and record length; const and safe to use
+/// from several threads. No heap allocation after the first call with a workspace and a result,
+/// unless the truncation is kTransient.
+class JointInversion {
+ public:
+  /// `contact` x_c in [0, L] [m], `samples` ≥ 1, `sample_rate` > 0 [Hz]; `points` ≥ 3 of the curve.
+  JointInversion(const ModalBasis& basis, double contact, std::size_t samples, double sample_rate,
+                 const JointModel& model, std::size_t points = 100);
+
+  std::size_t samples() const { return fft_.length(); }
+  double sample_rate() const { return sample_rate_; }
+  double sigma() const { return model_.sigma; }
+  /// max_k |H_r(s_k)| over both sides [N/N].
+  double largest_transfer() const { return largest_transfer_; }
+
+  /// Throws InvalidInput for lengths that differ, no reaction at all, a sample that is not finite
+  /// (with its index), a noise level that is negative.
+  void invert(const ReactionPair& reactions, const SensorNoiseLevel& noise,
+              const JointMethod& method, JointWorkspace& workspace, JointResult& result) const;
+
+ private:
+  struct Weights;
+  void require_record(const ReactionPair& reactions, const SensorNoiseLevel& noise) const;
+  double offset_of(std::span<const double> reaction, std::size_t side) const;
+  void transform(const ReactionPair& reactions, OffsetRule rule, JointWorkspace& workspace,
+                 JointResult& result) const;
+  void combine(const Weights& weights, JointWorkspace& workspace, JointResult& result) const;
+  void choose_amplitude(const Weights& weights, const JointMethod& method,
+                        JointWorkspace& workspace, JointResult& result) const;
+  void limit_band(double limit, JointWorkspace& workspace) const;
+  void learn_spectrum(const ForcePrior& prior, double band_limit, JointWorkspace& workspace) const;
+  void apply_posterior(const JointMethod& method, JointWorkspace& workspace,
+                       JointResult& result) const;
+  double write_signal(std::span<const Complex> transfer, bool wanted, JointWorkspace& workspace,
+                      std::vector<double>& signal) const;
+
+  RealFft fft_;
+  double sample_rate_;
+  JointModel model_;
+  std::vector<Complex> transfer_[2];
+  std::vector<Complex> receptance_;
+  std::vector<Complex> mobility_;
+  double arrival_[2] = {0.0, 0.0};  ///< [s]
+  double largest_transfer_ = 0.0;
+  std::vector<double> decay_;   ///< exp(−σ t_j), empty for σ = 0
+  std::vector<double> growth_;  ///< exp(σ t_j)
+  double weight_power_ = 0.0;   ///< W = Σ_j exp(−2σ t_j)
+  PriorGrid grid_;
+  EvidenceCurve curve_;
+  TransientFit transient_;
+};
+
+/// σ = ln(1/p)/2T − ζ_1ω_1/2 kept within 1/T … 4/T: what wraps around, exp(−(σ + ζ_1ω_1)T), and the
+/// noise of the late record, p exp(σT) with p the share of noise, then weigh the same.
+double contour_of(const ModalBasis& basis, double duration, double noise_share);
+
+}  // namespace modcal

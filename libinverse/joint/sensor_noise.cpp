@@ -1,0 +1,104 @@
+#include "libinverse/joint/sensor_noise.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "libsim/base/error.hpp"
+
+namespace modcal {
+namespace {
+
+constexpr std::size_t kSegment = 4096;
+constexpr std::size_t kMostSegments = 8;
+constexpr std::size_t kFewestBins = 8;
+constexpr double kSupposedShare = 0.01;
+// The cross relation of clean data stops at rounding, not at 0.
+constexpr double kLeastShare = 1e-20;
+
+double power_of(Complex value) { return value.real() * value.real() + value.imag() * value.imag(); }
+
+double rms_of(std::span<const double> samples) {
+  double mean = 0.0, power = 0.0;
+  for (const double value : samples) mean += value;
+  mean /= static_cast<double>(std::max<std::size_t>(1, samples.size()));
+  for (const double value : samples) power += (value - mean) * (value - mean);
+  return std::sqrt(power / static_cast<double>(std::max<std::size_t>(1, samples.size())));
+}
+
+}  // namespace
+
+SensorNoise::SensorNoise(const ModalBasis& basis, double contact, std::size_t samples,
+                         double sample_rate, bool static_remainder, bool bending,
+                         const SensorOptions& sensors)
+    : fft_(std::clamp<std::size_t>(samples, 1, kSegment)), samples_(samples) {
+  const std::size_t length = fft_.length();
+  window_.resize(length);
+  for (std::size_t j = 0; j < length; ++j) {
+    const double phase = std::numbers::pi * (static_cast<double>(j) + 0.5);
+    window_[j] = std::pow(std::sin(phase / static_cast<double>(length)), 2);
+    window_power_ += window_[j] * window_[j];
+  }
+  const FrequencyGrid grid = FrequencyGrid::of_record(length, sample_rate);
+  const double top =
+      basis.size() > 0 ? *std::max_element(basis.omega.begin(), basis.omega.end()) : 0.0;
+  const double nyquist = std::numbers::pi * sample_rate;
+  const double from = std::min(1.2 * top, 0.5 * (top + nyquist));
+  first_ = static_cast<std::size_t>(std::ceil(from / grid.spacing));
+  last_ = static_cast<std::size_t>(0.97 * nyquist / grid.spacing);
+  StringTransfer transfer =
+      string_transfer(basis, contact, grid, static_remainder, bending, sensors);
+  for (std::size_t r = 0; r < 2; ++r) transfer_[r] = std::move(transfer.reaction[r]);
+}
+
+void SensorNoise::transform(std::span<const double> segment, Workspace& workspace,
+                            std::size_t side) const {
+  workspace.windowed.resize(segment.size());
+  workspace.spectrum[side].resize(fft_.bins());
+  std::transform(segment.begin(), segment.end(), window_.begin(), workspace.windowed.begin(),
+                 [](double x, double w) { return x * w; });
+  fft_.forward(workspace.windowed, workspace.spectrum[side]);
+}
+
+SensorNoiseLevel SensorNoise::estimate(const ReactionPair& reactions, Workspace& workspace) const {
+  const bool both = !reactions[0].empty() && !reactions[1].empty();
+  SensorNoiseLevel level;
+  if (last_ < first_ + kFewestBins) {
+    for (std::size_t r = 0; r < 2; ++r) level.rms[r] = kSupposedShare * rms_of(reactions[r]);
+    return level;
+  }
+  level.measured = true;
+  const std::size_t length = fft_.length();
+  const std::size_t segments = std::clamp<std::size_t>(samples_ / length, 1, kMostSegments);
+  std::array<double, 2> power = {0.0, 0.0};
+  // Terms of |X_1 H_2 − X_2 H_1|² and of what noise alone would put there.
+  double cross = 0.0, of_side[2] = {0.0, 0.0};
+  for (std::size_t segment = 0; segment < segments; ++segment) {
+    const std::size_t start =
+        segments > 1 ? segment * ((samples_ - length) / (segments - 1)) : std::size_t{0};
+    for (std::size_t r = 0; r < 2; ++r) {
+      if (!reactions[r].empty()) transform(reactions[r].subspan(start, length), workspace, r);
+    }
+    for (std::size_t k = first_; k < last_; ++k) {
+      for (std::size_t r = 0; r < 2; ++r) {
+        if (!reactions[r].empty()) power[r] += power_of(workspace.spectrum[r][k]);
+      }
+      if (!both) continue;
+      // Weights 1/(|H_1|² + |H_2|²) give every bin the same say.
+      const double weight = 1.0 / (power_of(transfer_[0][k]) + power_of(transfer_[1][k]));
+      if (!std::isfinite(weight)) continue;
+      cross += weight * power_of(workspace.spectrum[0][k] * transfer_[1][k] -
+                                 workspace.spectrum[1][k] * transfer_[0][k]);
+      of_side[0] += weight * power_of(transfer_[1][k]);
+      of_side[1] += weight * power_of(transfer_[0][k]);
+    }
+  }
+  const double terms = static_cast<double>((last_ - first_) * segments) * window_power_;
+  for (double& value : power) value /= terms;
+  const double expected = (of_side[0] * power[0] + of_side[1] * power[1]) * window_power_;
+  if (both && expected > 0.0) level.noise_share = std::clamp(cross / expected, kLeastShare, 1.0);
+  for (std::size_t r = 0; r < 2; ++r) level.rms[r] = std::sqrt(power[r] * level.noise_share);
+  return level;
+}
+
+}  // namespace modcal

@@ -1,0 +1,51 @@
+// Noise of the two sensors, from the record alone.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "libinverse/joint/string_transfer.hpp"
+
+namespace modcal {
+
+/// The two reactions of one record, by End; an empty span: not recorded.
+using ReactionPair = std::array<std::span<const double>, 2>;
+
+struct SensorNoiseLevel {
+  std::array<double, 2> rms = {0.0, 0.0};  ///< of one sample [N]; 0 where a side is missing
+  /// Share of the band's power that the cross relation leaves as noise, in (0, 1].
+  double noise_share = 1.0;
+  bool measured = false;  ///< false: the rate leaves no band above the modes, 1 % is supposed
+};
+
+/// Standard deviations of white noise in the reactions. Above the top mode the power spectra of
+/// the Hann-windowed record (Welch, 1967) hold noise and the tail of the string's response; the
+/// cross relation R_1 H_2 − R_2 H_1 of the same bins holds noise only and tells their shares.
+class SensorNoise {
+ public:
+  /// Transfer functions as the inversion's, on the frequency axis.
+  SensorNoise(const ModalBasis& basis, double contact, std::size_t samples, double sample_rate,
+              bool static_remainder, bool bending, const SensorOptions& sensors);
+
+  struct Workspace {
+    std::vector<double> windowed;
+    std::vector<Complex> spectrum[2];
+  };
+  /// Both sides of `samples` samples, or one of them empty.
+  SensorNoiseLevel estimate(const ReactionPair& reactions, Workspace& workspace) const;
+
+ private:
+  void transform(std::span<const double> segment, Workspace& workspace, std::size_t side) const;
+
+  RealFft fft_;
+  std::size_t samples_;
+  std::vector<double> window_;
+  double window_power_ = 0.0;
+  std::size_t first_ = 0;  // bins of the band
+  std::size_t last_ = 0;
+  std::vector<Complex> transfer_[2];
+};
+
+}  // namespace modcal

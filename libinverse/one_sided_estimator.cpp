@@ -1,0 +1,55 @@
+#include "libinverse/one_sided_estimator.hpp"
+
+namespace modcal {
+namespace {
+
+class PreparedOneSided final : public PreparedEstimator {
+ public:
+  explicit PreparedOneSided(const EstimationModel& model)
+      : sides_{OneSidedInversion(model.basis, model.contact, End::kLeft, model.samples,
+                                 model.sample_rate),
+               OneSidedInversion(model.basis, model.contact, End::kRight, model.samples,
+                                 model.sample_rate)} {}
+
+  std::vector<Estimate> estimate(const EstimationRecord& record,
+                                 const InversionMethod& method) const override {
+    static constexpr const char* kNames[] = {"1", "2"};
+    static constexpr const char* kLabels[] = {"from R1 (x = 0)", "from R2 (x = L)"};
+    std::vector<Estimate> estimates;
+    for (std::size_t r = 0; r < 2; ++r) {
+      if (record.reactions[r].empty()) continue;
+      InversionMethod of_side = method;
+      of_side.noise_rms = record.stated_noise[r];
+      Estimate estimate;
+      estimate.side = kNames[r];
+      estimate.label = kLabels[r];
+      estimate.result = sides_[r].invert(record.reactions[r], of_side);
+      const auto sigma = sides_[r].problem().sigma();
+      estimate.largest_transfer = sigma.empty() ? 0.0 : sigma[0];
+      std::string warning = warning_of(estimate.result.choice);
+      if (!warning.empty()) estimate.warnings.push_back(std::move(warning));
+      estimates.push_back(std::move(estimate));
+    }
+    return estimates;
+  }
+
+ private:
+  OneSidedInversion sides_[2];
+};
+
+}  // namespace
+
+std::string warning_of(const ChosenParameter& choice) {
+  const bool stand_in = choice.status == ChoiceStatus::kNoInteriorMinimum ||
+                        choice.status == ChoiceStatus::kEdgeOfRange ||
+                        choice.status == ChoiceStatus::kNotReached ||
+                        choice.status == ChoiceStatus::kNotComputed;
+  return stand_in ? choice.explanation : std::string();
+}
+
+std::shared_ptr<const PreparedEstimator> OneSidedEstimator::do_prepare(
+    const EstimationModel& model) const {
+  return std::make_shared<const PreparedOneSided>(model);
+}
+
+}  // namespace modcal
