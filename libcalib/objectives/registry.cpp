@@ -2,6 +2,7 @@
 
 #include "libcalib/objectives/contact_location.hpp"
 #include "libcalib/objectives/force_mismatch.hpp"
+#include "libcalib/objectives/joint_likelihood.hpp"
 #include "libcalib/objectives/spectral_peak.hpp"
 
 namespace modcal {
@@ -12,6 +13,8 @@ Registry<Objective> Objective::registry() {
           "contact_location", "relative difference of the two identified force waveforms"),
       entry_of<Objective, ForceMismatch>("force_mismatch",
                                          "least squares of the two identified force spectra"),
+      entry_of<Objective, JointLikelihood>(
+          "joint_likelihood", "both reactions compared with the force eliminated in every bin"),
       entry_of<Objective, SpectralPeak>("spectral_peak",
                                         "the paper's integral of the force spectrum over a band"),
   };

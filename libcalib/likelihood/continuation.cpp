@@ -1,0 +1,269 @@
+#include "libcalib/likelihood/continuation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "libcalib/likelihood/bin_weights.hpp"
+#include "libcalib/likelihood/mode_verdict.hpp"
+#include "libcalib/likelihood/neighbor_test.hpp"
+#include "libcalib/likelihood/newton_fit.hpp"
+#include "libcalib/stiff_string_fit.hpp"
+#include "libsim/base/error.hpp"
+
+namespace modcal {
+namespace {
+
+constexpr std::size_t kNoiseRepeats = 3;
+constexpr double kStepCap = 1e-3;
+
+// One attempt: everything between a start of f_0 and a verdict by χ².
+class Attempt {
+ public:
+  Attempt(const ModelPoint& initial, const NoisyRecords& records,
+          const ContinuationOptions& options, double highest, double noise_error)
+      : initial_(initial),
+        records_(records),
+        options_(options),
+        highest_(highest),
+        noise_error_(noise_error) {
+    std::vector<double> frequencies;
+    for (std::size_t n = 0; n < modes(); ++n) frequencies.push_back(initial.basis.frequency(n));
+    start_ = fit_stiff_string(frequencies);
+    unit_ = start_.fundamental / 196.0;
+  }
+
+  ContinuationResult run(double shift) {
+    ContinuationResult result;
+    result.noise = records_.deviation;
+    follow_law(shift);
+    finish_law(result);
+    if (options_.frequencies) free_frequencies(result);
+    result.right = result.chi2 < 1.0 + 3.0 * result.chi2_deviation;
+    result.evaluations = evaluations_;
+    return result;
+  }
+
+ private:
+  std::size_t modes() const { return initial_.basis.size(); }
+  ProjectedLikelihood damped(double sigma) const {
+    return ProjectedLikelihood(WhitenedRecord::of(records_, sigma * unit_, highest_), false);
+  }
+  NewtonFit fit(const ProjectedLikelihood& likelihood, const StringUnknowns& unknowns,
+                const Eigen::VectorXd& theta, const NewtonOptions& options) {
+    NewtonFit result = newton_fit(likelihood, unknowns, theta, options);
+    evaluations_ += result.evaluations;
+    return result;
+  }
+
+  // f_0, B and x_c through the ladder, from the x_c that serves best.
+  void follow_law(double shift) {
+    const double step = initial_.basis.length / 660.0;
+    const ProjectedLikelihood widest = damped(200.0);
+    const StringUnknowns unknowns =
+        StringUnknowns::law(initial_, start_.fundamental * std::exp(shift), start_.inharmonicity)
+            .with_fixed_damping();
+    NewtonFit best;
+    for (int i = -4; i <= 4; ++i) {
+      Eigen::VectorXd theta = unknowns.start();
+      theta[unknowns.contact()] = i * step;
+      if (!unknowns.admits(theta)) continue;
+      NewtonFit found = fit(widest, unknowns, theta, {.steps = 25, .tolerance = 1e-2});
+      if (found.objective < best.objective) best = std::move(found);
+    }
+    MODCAL_REQUIRE(best.theta.size() > 0, "the initial frequencies follow no law of a string");
+    for (const double sigma : {100.0, 50.0}) {
+      best = fit(damped(sigma), unknowns, best.theta, {.steps = 20, .tolerance = 1e-2});
+    }
+    law_ =
+        StringUnknowns::law(initial_, start_.fundamental * std::exp(shift), start_.inharmonicity);
+    law_theta_ = Eigen::VectorXd::Zero(law_.size());
+    law_theta_.head(3) = best.theta;
+    law_theta_ = fit(damped(20.0), law_, law_theta_, {.steps = 20, .tolerance = 1e-3}).theta;
+    ladder_theta_ = law_theta_;
+  }
+
+  double reduced_chi2(const ModelPoint& point, std::size_t parameters) {
+    ++evaluations_;
+    return 2.0 * whole_->cost(point) / whole_->degrees_of_freedom(parameters, modes());
+  }
+
+  // σ = 0, end state projected out, then once more with weights and without the noise in JᵀJ.
+  void finish_law(ContinuationResult& result) {
+    whole_.emplace(WhitenedRecord::of(records_, 0.0, highest_), true);
+    result.chi2_deviation =
+        std::hypot(std::sqrt(2.0 / whole_->degrees_of_freedom(4, modes())), noise_error_);
+    law_theta_ = fit(*whole_, law_, law_theta_, {.steps = 12, .tolerance = 1e-2}).theta;
+    NewtonOptions options{.steps = 4, .tolerance = 1e-4};
+    options.noise = prepare_weights(law_, law_theta_);
+    const NewtonFit last = fit(*weighted_, law_, law_theta_, options);
+    law_theta_ = last.theta;
+    const Eigen::MatrixXd covariance = covariance_at(law_, law_theta_, options);
+    LawEstimate& law = result.law;
+    result.model = law_.model(law_theta_);
+    law.fundamental = law_.fundamental(law_theta_);
+    law.inharmonicity = law_theta_[1];
+    law.contact = result.model.contact;
+    law.damping = std::exp(law_theta_[3]);
+    for (std::size_t i = 0; i < 4; ++i) {
+      const auto j = static_cast<Eigen::Index>(i);
+      law.deviation[i] = std::sqrt(std::max(covariance(j, j), 0.0));
+    }
+    law.deviation[0] *= law.fundamental;
+    law.deviation[3] *= law.damping;
+    law.chi2 = result.chi2 = reduced_chi2(result.model, 4);
+    law.accepted = law.chi2 < 1.0 + 3.0 * result.chi2_deviation;
+    result.contact_deviation = law.deviation[2];
+    result.damping = law.damping;
+    result.damping_deviation = law.deviation[3];
+    result.modes = law_verdicts(result.model, law.inharmonicity, covariance.topLeftCorner(2, 2));
+  }
+
+  // Weights of the bins and N̄ under them, at θ.
+  Eigen::MatrixXd prepare_weights(const StringUnknowns& unknowns, const Eigen::VectorXd& theta) {
+    const ModelPoint point = unknowns.model(theta);
+    weighted_ = whole_;
+    weighted_->set_weights(signal_weights(records_, 3.0 * unit_, highest_, *whole_, point));
+    return weighted_->noise_information(point, unknowns.columns(theta), kNoiseRepeats);
+  }
+
+  Eigen::MatrixXd covariance_at(const StringUnknowns& unknowns, const Eigen::VectorXd& theta,
+                                const NewtonOptions& options) {
+    ++evaluations_;
+    return fit_covariance(weighted_->evaluate(unknowns.model(theta), unknowns.columns(theta),
+                                              {.twice_weighted = true}),
+                          options);
+  }
+
+  void free_frequencies(ContinuationResult& result) {
+    const bool from_law = result.law.accepted;
+    const StringUnknowns unknowns =
+        StringUnknowns::frequencies(law_.model(from_law ? law_theta_ : ladder_theta_));
+    const double inharmonicity = from_law ? law_theta_[1] : ladder_theta_[1];
+    const auto wide = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(modes()), kWidePrior);
+    NewtonOptions options{.steps = 10, .tolerance = 1e-2, .frequency_cap = kStepCap};
+    options.prior = law_prior(wide, inharmonicity);
+    Eigen::VectorXd theta = unknowns.start();
+    if (!from_law) theta = descend(unknowns, theta, options, result);
+    theta = fit(*whole_, unknowns, theta, options).theta;
+    options.noise = prepare_weights(unknowns, theta);
+    options.steps = 5;
+    theta = fit(*weighted_, unknowns, theta, options).theta;
+    const Eigen::MatrixXd wide_covariance = covariance_at(unknowns, theta, options);
+    const Eigen::VectorXd seen = wide_covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+
+    const auto n = static_cast<Eigen::Index>(modes());
+    const double estimated = estimate_law_width(theta.head(n), seen.head(n), inharmonicity);
+    result.law_width = std::isnan(options_.law_width) ? estimated : options_.law_width;
+    const Eigen::VectorXd widths = prior_widths(seen.head(n), result.law_width, estimated);
+    options.prior = law_prior(widths, inharmonicity);
+    options.tolerance = 1e-4;
+    theta = fit(*weighted_, unknowns, theta, options).theta;
+    const Eigen::MatrixXd covariance = covariance_at(unknowns, theta, options);
+    report(unknowns, theta, covariance, seen, estimated, result);
+  }
+
+  // Free frequencies on damped records, where the law does not hold: wide basins first.
+  Eigen::VectorXd descend(const StringUnknowns& unknowns, Eigen::VectorXd theta,
+                          const NewtonOptions& options, ContinuationResult& result) {
+    for (const double sigma : {40.0, 20.0, 10.0}) {
+      const ProjectedLikelihood likelihood = damped(sigma);
+      theta = fit(likelihood, unknowns, theta, options).theta;
+      if (sigma > 10.0) continue;
+      const std::size_t moved = leave_false_minima(likelihood, unknowns, options.prior, theta);
+      result.moved_modes += moved;
+      if (moved > 0) theta = fit(likelihood, unknowns, theta, options).theta;
+    }
+    return theta;
+  }
+
+  void report(const StringUnknowns& unknowns, const Eigen::VectorXd& theta,
+              const Eigen::MatrixXd& covariance, const Eigen::VectorXd& seen, double estimated,
+              ContinuationResult& result) {
+    result.frequencies_free = true;
+    result.model = unknowns.model(theta);
+    const Eigen::VectorXd deviation = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+    result.contact_deviation = deviation[unknowns.contact()];
+    result.damping = result.model.basis.zeta[0] / initial_.basis.zeta[0];
+    result.damping_deviation = deviation[unknowns.damping()] * result.damping;
+    result.chi2 = reduced_chi2(result.model, static_cast<std::size_t>(unknowns.size()));
+    const auto n = static_cast<Eigen::Index>(modes());
+    result.modes = free_verdicts(result.model, deviation.head(n), seen.head(n), estimated);
+  }
+
+  const ModelPoint& initial_;
+  const NoisyRecords& records_;
+  const ContinuationOptions& options_;
+  double highest_ = 0.0;      // [rad/s]
+  double noise_error_ = 0.0;  // relative error of the noise power
+  StiffStringFit start_;
+  double unit_ = 1.0;  // σ in proportion to f_0
+  StringUnknowns law_;
+  Eigen::VectorXd law_theta_, ladder_theta_;
+  std::optional<ProjectedLikelihood> whole_, weighted_;
+  std::size_t evaluations_ = 0;
+};
+
+}  // namespace
+
+void ContinuationOptions::visit(OptionVisitor& visitor) {
+  visitor.number({.key = "law_width",
+                  .meaning = "relative width of the prior of f_n about the law",
+                  .unit = "1",
+                  .range = Range::positive(),
+                  .word = "estimated"},
+                 law_width);
+  visitor.number({.key = "highest_frequency",
+                  .meaning = "highest frequency used; automatic: 5 % above the highest mode",
+                  .unit = "Hz",
+                  .range = Range::positive(),
+                  .word = "automatic"},
+                 highest_frequency);
+  visitor.number({.key = "left_noise",
+                  .meaning = "noise standard deviation of the reaction at x = 0",
+                  .unit = "N",
+                  .range = Range::positive(),
+                  .word = "estimated"},
+                 left_noise);
+  visitor.number({.key = "right_noise",
+                  .meaning = "noise standard deviation of the reaction at x = L",
+                  .unit = "N",
+                  .range = Range::positive(),
+                  .word = "estimated"},
+                 right_noise);
+  visitor.integer({.key = "restarts",
+                   .meaning = "other starts tried while the fit is contradicted by the data",
+                   .range = Range::closed(0.0, 4.0)},
+                  restarts);
+}
+
+double likelihood_band(const ModelPoint& point, double highest_frequency, double sample_rate) {
+  const double top = *std::max_element(point.basis.omega.begin(), point.basis.omega.end());
+  const double highest =
+      std::isnan(highest_frequency) ? 1.05 * top : 2.0 * std::numbers::pi * highest_frequency;
+  // Above 0.4 f_s the aliases of the force's jumps are no longer small.
+  return std::min(highest, 0.8 * std::numbers::pi * sample_rate);
+}
+
+ContinuationResult calibrate_by_continuation(const ModelPoint& initial, const CalibrationData& data,
+                                             const ContinuationOptions& options) {
+  const NoisyRecords records =
+      NoisyRecords::of_data(data, {options.left_noise, options.right_noise});
+  const bool estimated = std::isnan(options.left_noise) || std::isnan(options.right_noise);
+  // The noise level's own error, 0.7 % at 51 200 samples (see noise_deviation), both ends together.
+  const double noise_error =
+      estimated ? 1e-2 * std::sqrt(51200.0 / static_cast<double>(data.samples)) : 0.0;
+  const double highest = likelihood_band(initial, options.highest_frequency, data.sample_rate);
+  constexpr double kShifts[] = {0.0, 4e-3, -4e-3, 8e-3, -8e-3};
+  Attempt attempt(initial, records, options, highest, noise_error);
+  ContinuationResult best;
+  for (std::size_t i = 0; i <= static_cast<std::size_t>(options.restarts); ++i) {
+    ContinuationResult found = attempt.run(kShifts[i]);
+    found.restarts = i;
+    if (i == 0 || found.chi2 < best.chi2) best = std::move(found);
+    if (best.right) break;
+  }
+  return best;
+}
+
+}  // namespace modcal

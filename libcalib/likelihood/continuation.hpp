@@ -1,0 +1,88 @@
+// Calibration to the bound of the whole record: continuation in σ, the law first, then every
+// frequency.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "libcalib/calibration_data.hpp"
+#include "libcalib/parameters.hpp"
+#include "libsim/base/options.hpp"
+
+namespace modcal {
+
+struct ContinuationOptions {
+  /// Free every f_n after the law; false: the law alone.
+  bool frequencies = true;
+  /// Relative width τ of the prior of f_n about the law; NaN: estimated from the well-seen modes
+  /// [1].
+  double law_width = std::numeric_limits<double>::quiet_NaN();
+  /// Highest frequency used [Hz]; NaN: 1.05 times that of the highest mode.
+  double highest_frequency = std::numeric_limits<double>::quiet_NaN();
+  /// Noise standard deviation of each reaction [N]; NaN: estimated from the record.
+  double left_noise = std::numeric_limits<double>::quiet_NaN();
+  double right_noise = std::numeric_limits<double>::quiet_NaN();
+  std::int64_t restarts = 4;  ///< other starts tried while χ² says that the fit is wrong
+  void visit(OptionVisitor& visitor);
+};
+
+/// Where the frequency of a mode comes from.
+enum class ModeSource { kIdentified, kLaw, kPrior, kBlind };
+/// Why a mode is weak.
+enum class WeakReason { kNone, kNode, kAntinode, kNoise };
+std::string_view name_of(ModeSource source);
+std::string_view name_of(WeakReason reason);
+
+struct ModeVerdict {
+  double frequency = 0.0;       ///< [Hz]
+  double deviation = 0.0;       ///< relative standard deviation of the frequency reported
+  double data_deviation = 0.0;  ///< the same under a prior of 0.2 % alone
+  ModeSource source = ModeSource::kIdentified;
+  WeakReason reason = WeakReason::kNone;
+};
+
+/// f_0 [Hz], B [1], x_c [m] and the factor of all damping ratios, with standard deviations.
+struct LawEstimate {
+  double fundamental = 0.0, inharmonicity = 0.0, contact = 0.0, damping = 1.0;
+  std::array<double, 4> deviation{};  ///< of the four above, in this order
+  double chi2 = 0.0;                  ///< reduced
+  bool accepted = false;              ///< χ² does not contradict the law
+};
+
+struct ContinuationResult {
+  ModelPoint model;
+  LawEstimate law;
+  bool frequencies_free = false;
+  std::vector<ModeVerdict> modes;
+  double contact_deviation = 0.0;  ///< [m]
+  double damping = 1.0;            ///< factor of the initial damping ratios
+  double damping_deviation = 0.0;
+  double law_width = 0.0;  ///< τ
+  double chi2 = 0.0;       ///< reduced, of `model`
+  double chi2_deviation = 0.0;
+  /// χ² does not contradict the result: χ² < 1 + 3 sd.
+  bool right = false;
+  std::size_t restarts = 0;
+  std::size_t moved_modes = 0;  ///< modes found in a neighboring minimum and moved
+  std::size_t evaluations = 0;
+  std::array<double, 2> noise{};  ///< s_r [N]
+};
+
+/// Highest ω of the likelihood's bins [rad/s]: highest_frequency [Hz], or 1.05 times the highest
+/// mode where that is NaN; below 0.4 f_s.
+double likelihood_band(const ModelPoint& point, double highest_frequency, double sample_rate);
+
+/// Law (f_0, B, x_c, then one damping factor) through σ ≈ 200, 100, 50, 20 1/s (in proportion to
+/// f_0/196 Hz) on records cut to 8/σ, started from the law fitted to the initial frequencies and
+/// nine x_c within 0.6 % of L; then σ = 0 with the end state projected out and bins weighted by
+/// S/(1 + S). Where χ² contradicts the law: free frequencies through σ ≈ 40, 20, 10, each mode
+/// tested against its neighboring minima. Last, free frequencies at σ = 0 under the law prior,
+/// modes the data do not see tied to the law. The records must begin at rest.
+ContinuationResult calibrate_by_continuation(const ModelPoint& initial, const CalibrationData& data,
+                                             const ContinuationOptions& options);
+
+}  // namespace modcal

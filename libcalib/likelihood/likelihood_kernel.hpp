@@ -1,0 +1,77 @@
+// Kernels of the joint likelihood: columns of one block of bins and their products. No allocation,
+// instruction set chosen at run time.
+#pragma once
+
+#include <array>
+#include <complex>
+#include <cstddef>
+#include <span>
+
+#include "libcalib/likelihood/whitened_record.hpp"
+
+namespace modcal {
+
+/// One mode as the kernels see it: P_n = residue/D_n, D_n = ω_n² + s² + 2ζ_nω_n s,
+/// U_n = 1/(1 − E_n z^−1).
+struct LikelihoodMode {
+  bool even = false;            ///< n even: the end x = L moves as the end x = 0 does not
+  double residue = 0.0;         ///< |g_n| φ_n(x_c)/m_n
+  double residue_slope = 0.0;   ///< its derivative by x_c
+  double omega_squared = 0.0;   ///< ω_n²
+  double two_zeta_omega = 0.0;  ///< 2ζ_nω_n
+  Complex pole;                 ///< E_n
+  Complex pole_by_frequency;    ///< ∂E_n/∂ln ω_n
+  Complex pole_by_damping;      ///< ∂E_n/∂ln ζ_n
+};
+
+/// Share of one mode in one column of the Jacobian: ∂ln ω_n/∂θ and ∂ln ζ_n/∂θ.
+struct ColumnShare {
+  std::size_t column = 0;
+  double frequency = 0.0;
+  double damping = 0.0;
+};
+
+/// Per-bin numbers of one block that both passes need; real and imaginary parts.
+struct LikelihoodBlock {
+  static constexpr std::size_t kBins = WhitenedRecord::kBlock;
+  struct Planar {
+    alignas(64) double re[kBins];
+    alignas(64) double im[kBins];
+  };
+  Planar left, right;              // h_1, h_2
+  Planar odd, even;                // κ of odd and even modes, with √w
+  alignas(64) double norm[kBins];  // 1/|h|²
+};
+
+/// Length of a column of one block: real parts, then imaginary parts.
+inline constexpr std::size_t kColumnLength = 2 * WhitenedRecord::kBlock;
+
+/// First pass: fills `block` and, where `state` is not null, the columns κ_n(U_n + U'_n),
+/// iκ_n(U_n − U'_n) of every mode and two offsets; `residual`: the column (h_2y_1 − h_1y_2)/|h|.
+void fill_state_columns(const WhitenedRecord& record, std::size_t block_index,
+                        std::span<const LikelihoodMode> modes, LikelihoodBlock& block,
+                        double* state, double* offsets, double* residual);
+
+/// Second pass. amplitudes: c_n (empty: no end state), offset: that of both records. Adds the
+/// transients to the column `residual` and fills the Jacobian's columns, which must be zero.
+/// shares[share_begin[n] … share_begin[n+1]) belong to mode n; contact: column of x_c or null.
+struct JacobianTask {
+  std::span<const LikelihoodMode> modes;
+  std::span<const Complex> amplitudes;
+  std::array<double, 2> offset{};
+  std::span<const ColumnShare> shares;
+  std::span<const std::size_t> share_begin;
+  double* jacobian = nullptr;  ///< columns of this block; null: not asked for
+  double* contact = nullptr;
+  double* residual = nullptr;
+  std::complex<double>* force = nullptr;  ///< kBlock numbers; null: not asked for
+};
+void fill_jacobian_columns(const WhitenedRecord& record, std::size_t block_index,
+                           const LikelihoodBlock& block, const JacobianTask& task);
+
+/// out[i·stride + j] += Σ a_i b_j over columns of kColumnLength numbers. lower: only j ≤ i rounded
+/// up to tiles is needed.
+void add_products(const double* a, std::size_t a_count, const double* b, std::size_t b_count,
+                  bool lower, double* out, std::size_t stride);
+
+}  // namespace modcal

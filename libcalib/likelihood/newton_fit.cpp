@@ -1,0 +1,110 @@
+#include "libcalib/likelihood/newton_fit.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+namespace modcal {
+namespace {
+
+// Q padded with zeros for the unknowns that have no prior.
+Eigen::MatrixXd padded(const Eigen::MatrixXd& prior, Eigen::Index size) {
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(size, size);
+  result.topLeftCorner(prior.rows(), prior.cols()) = prior;
+  return result;
+}
+
+bool positive_definite(const Eigen::MatrixXd& matrix) {
+  // Scaled to a unit diagonal, so that units do not decide.
+  if ((matrix.diagonal().array() <= 0.0).any()) return false;
+  const Eigen::VectorXd scale = matrix.diagonal().cwiseSqrt().cwiseInverse();
+  Eigen::MatrixXd scaled = scale.asDiagonal() * matrix * scale.asDiagonal();
+  scaled.diagonal().array() -= 1e-10;
+  return scaled.llt().info() == Eigen::Success;
+}
+
+struct Objective2 {
+  double value;
+  Eigen::VectorXd gradient;
+};
+
+Objective2 with_prior(const LikelihoodPoint& point, const Eigen::VectorXd& theta,
+                      const Eigen::MatrixXd& prior) {
+  const Eigen::VectorXd pull = prior * theta;
+  return {point.cost + 0.5 * theta.dot(pull), 2.0 * point.slope + pull};
+}
+
+}  // namespace
+
+Eigen::MatrixXd debiased_hessian(const Eigen::MatrixXd& information, const NewtonOptions& options) {
+  const Eigen::MatrixXd prior = padded(options.prior, information.rows());
+  const Eigen::MatrixXd full = 2.0 * information + prior;
+  if (options.noise.size() == 0) return full;
+  double share = 1.0;
+  for (int i = 0; i < 60; ++i, share *= 0.9) {
+    const Eigen::MatrixXd hessian = full - 2.0 * share * options.noise;
+    if (positive_definite(hessian)) return hessian;
+  }
+  return full;
+}
+
+Eigen::MatrixXd fit_covariance(const LikelihoodPoint& point, const NewtonOptions& options) {
+  const Eigen::MatrixXd hessian = debiased_hessian(point.information, options);
+  const Eigen::VectorXd scale = hessian.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * hessian * scale.asDiagonal();
+  const Eigen::Index size = hessian.rows();
+  const Eigen::MatrixXd inverse = scale.asDiagonal() *
+                                  scaled.ldlt().solve(Eigen::MatrixXd::Identity(size, size)) *
+                                  scale.asDiagonal();
+  const Eigen::MatrixXd score = 2.0 * point.twice_weighted + padded(options.prior, size);
+  return inverse * score * inverse;
+}
+
+NewtonFit newton_fit(const ProjectedLikelihood& likelihood, const StringUnknowns& unknowns,
+                     const Eigen::VectorXd& start, const NewtonOptions& options) {
+  const Eigen::MatrixXd prior = padded(options.prior, unknowns.size());
+  NewtonFit fit{.theta = start};
+  fit.point = likelihood.evaluate(unknowns.model(start), unknowns.columns(start));
+  fit.evaluations = 1;
+  Objective2 at = with_prior(fit.point, start, prior);
+  fit.objective = at.value;
+  double damping = 0.0;
+  for (std::size_t step = 0; step < options.steps; ++step) {
+    Eigen::MatrixXd hessian = debiased_hessian(fit.point.information, options);
+    const Eigen::VectorXd scale = hessian.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    hessian = scale.asDiagonal() * hessian * scale.asDiagonal();
+    hessian.diagonal().array() += damping + 1e-12;
+    Eigen::VectorXd move =
+        -(scale.asDiagonal() * hessian.ldlt().solve(scale.asDiagonal() * at.gradient));
+    const double decrease = -move.dot(at.gradient);
+    if (decrease < options.tolerance && damping < 0.1) {
+      fit.converged = true;
+      break;
+    }
+    if (!unknowns.is_law()) {
+      const double largest =
+          move.head(static_cast<Eigen::Index>(unknowns.modes())).cwiseAbs().maxCoeff();
+      if (largest > options.frequency_cap) move *= options.frequency_cap / largest;
+    }
+    const Eigen::VectorXd trial = fit.theta + move;
+    bool better = false;
+    if (unknowns.admits(trial)) {
+      LikelihoodPoint point = likelihood.evaluate(unknowns.model(trial), unknowns.columns(trial));
+      ++fit.evaluations;
+      const Objective2 there = with_prior(point, trial, prior);
+      // The debiased step may pass the minimum of this draw by a little of its noise.
+      better = there.value < at.value + 0.5 * options.tolerance;
+      if (better) {
+        fit.theta = trial;
+        fit.point = std::move(point);
+        at = there;
+        fit.objective = at.value;
+      }
+    }
+    damping = better ? (damping < 1e-3 ? 0.0 : 0.2 * damping) : std::max(1e-2, 6.0 * damping);
+    if (damping > 1e8) break;
+  }
+  return fit;
+}
+
+}  // namespace modcal

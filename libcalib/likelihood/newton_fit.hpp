@@ -1,0 +1,38 @@
+// Damped Newton steps on the joint likelihood with the information freed of its noise.
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+
+#include "libcalib/likelihood/string_unknowns.hpp"
+
+namespace modcal {
+
+struct NewtonOptions {
+  std::size_t steps = 15;
+  /// Ends when gᵀH⁻¹g is below this: the step is then below its root in standard deviations.
+  double tolerance = 1e-4;
+  double frequency_cap = std::numeric_limits<double>::infinity();  ///< of one δ_n in one step
+  Eigen::MatrixXd noise;  ///< N̄; empty: none is subtracted
+  Eigen::MatrixXd prior;  ///< precision Q about θ = 0 of δ; empty: none
+};
+
+struct NewtonFit {
+  Eigen::VectorXd theta;
+  double objective = std::numeric_limits<double>::infinity();  ///< Σ w|e|² + ½ δᵀQδ
+  LikelihoodPoint point;
+  std::size_t evaluations = 0;
+  bool converged = false;
+};
+
+/// Minimizes Σ w|e|² + ½ θᵀQθ from `start`, Hessian 2(JᵀWJ − N̄) + Q.
+NewtonFit newton_fit(const ProjectedLikelihood& likelihood, const StringUnknowns& unknowns,
+                     const Eigen::VectorXd& start, const NewtonOptions& options);
+
+/// 2(JᵀWJ − N̄) + Q, N̄ shrunk by 0.9 as often as it takes to make it positive definite.
+Eigen::MatrixXd debiased_hessian(const Eigen::MatrixXd& information, const NewtonOptions& options);
+
+/// H⁻¹(2 JᵀW²J + Q)H⁻¹ of the fit's last point, which must hold `twice_weighted`.
+Eigen::MatrixXd fit_covariance(const LikelihoodPoint& point, const NewtonOptions& options);
+
+}  // namespace modcal

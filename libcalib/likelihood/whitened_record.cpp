@@ -1,0 +1,155 @@
+#include "libcalib/likelihood/whitened_record.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "libsim/base/error.hpp"
+#include "libsim/base/random.hpp"
+#include "libsim/signal/statistics.hpp"
+
+namespace modcal {
+namespace {
+
+using std::numbers::pi;
+
+// Largest even number ≤ length without a prime factor above 5: such transforms are fast.
+std::size_t fast_length(std::size_t length) {
+  for (std::size_t candidate = length - length % 2; candidate >= 2; candidate -= 2) {
+    std::size_t rest = candidate;
+    for (const std::size_t prime : {2u, 3u, 5u}) {
+      while (rest % prime == 0) rest /= prime;
+    }
+    if (rest == 1) return candidate;
+  }
+  return length;
+}
+
+std::size_t cut_length(const NoisyRecords& records, double sigma) {
+  if (sigma == 0.0) return records.samples();
+  const double wanted = std::round(8.0 / sigma * records.sample_rate);
+  if (wanted >= static_cast<double>(records.samples())) return records.samples();
+  return fast_length(std::max<std::size_t>(static_cast<std::size_t>(wanted), 2));
+}
+
+// y_r at the bins k = 1 … K_b; `decay` holds exp(−σt).
+void whiten(std::span<const double> samples, std::span<const double> decay, double scale,
+            std::size_t bins, PlanarVector& out) {
+  std::vector<double> damped(decay.size());
+  for (std::size_t j = 0; j < damped.size(); ++j) damped[j] = samples[j] * decay[j];
+  const std::vector<Complex> spectrum = RealFft(damped.size()).forward(damped);
+  for (std::size_t k = 0; k < bins; ++k) out.set(k, spectrum[k + 1] * scale);
+}
+
+}  // namespace
+
+double noise_deviation(std::span<const double> samples) {
+  MODCAL_REQUIRE(samples.size() >= 64, "{} samples are too few to estimate the noise from",
+                 samples.size());
+  const std::size_t count = samples.size();
+  const double mean = modcal::mean(samples);
+  std::vector<double> windowed(count);
+  double energy = 0.0;
+  for (std::size_t j = 0; j < count; ++j) {
+    const double hann =
+        0.5 - 0.5 * std::cos(2.0 * pi * static_cast<double>(j) / static_cast<double>(count));
+    windowed[j] = (samples[j] - mean) * hann;
+    energy += hann * hann;
+  }
+  const std::vector<Complex> spectrum = RealFft(count).forward(windowed);
+  const auto first = static_cast<std::size_t>(0.293 * static_cast<double>(count));
+  const auto last = static_cast<std::size_t>(0.488 * static_cast<double>(count));
+  double power = 0.0;
+  for (std::size_t k = first; k < last; ++k) power += std::norm(spectrum[k]);
+  const double deviation = std::sqrt(power / (static_cast<double>(last - first) * energy));
+  return std::max(deviation, 2e-4 * standard_deviation(samples));
+}
+
+NoisyRecords NoisyRecords::of_data(const CalibrationData& data, std::array<double, 2> deviation) {
+  data.require_valid();
+  MODCAL_REQUIRE(data.has_both(),
+                 "the joint likelihood compares both reactions, and one is missing");
+  NoisyRecords records{.sample_rate = data.sample_rate};
+  const RealFft fft(data.samples);
+  for (const End end : {End::kLeft, End::kRight}) {
+    const auto r = static_cast<std::size_t>(end);
+    records.reactions[r] = fft.inverse(data.reaction(end));
+    records.deviation[r] =
+        std::isnan(deviation[r]) ? noise_deviation(records.reactions[r]) : deviation[r];
+    MODCAL_REQUIRE(records.deviation[r] > 0.0 && std::isfinite(records.deviation[r]),
+                   "noise of {:g} N in a reaction: the likelihood needs noise > 0",
+                   records.deviation[r]);
+  }
+  return records;
+}
+
+WhitenedRecord WhitenedRecord::of(const NoisyRecords& records, double sigma, double highest) {
+  MODCAL_REQUIRE(sigma >= 0.0 && std::isfinite(sigma), "damping {:g} 1/s must be >= 0", sigma);
+  WhitenedRecord record;
+  const std::size_t length = cut_length(records, sigma);
+  const FrequencyGrid grid = FrequencyGrid::of_record(length, records.sample_rate);
+  record.bins = bins_between(grid, 0.0, std::min(highest, 0.98 * pi * records.sample_rate)).size();
+  MODCAL_REQUIRE(record.bins >= 1, "no bin below {:g} Hz in a record of {} samples",
+                 highest / (2.0 * pi), length);
+  record.sigma = sigma;
+  record.spacing = grid.spacing;
+  record.sample_rate = records.sample_rate;
+  record.deviation = records.deviation;
+  const std::size_t padded = (record.bins + kBlock - 1) / kBlock * kBlock;
+  record.left = record.right = record.delay = record.offset = PlanarVector(padded);
+  record.root_weight.assign(padded, 0.0);
+  std::fill_n(record.root_weight.begin(), record.bins, 1.0);
+
+  std::vector<double> decay(length);
+  double energy = 0.0;
+  for (std::size_t j = 0; j < length; ++j) {
+    decay[j] = std::exp(-sigma * static_cast<double>(j) / records.sample_rate);
+    energy += decay[j] * decay[j];
+  }
+  const double norm = 1.0 / std::sqrt(energy);
+  whiten(records.reactions[0], decay, norm / records.deviation[0], record.bins, record.left);
+  whiten(records.reactions[1], decay, norm / records.deviation[1], record.bins, record.right);
+  const double rest = sigma == 0.0 ? 1.0 : decay.back() * std::exp(-sigma / records.sample_rate);
+  for (std::size_t k = 0; k < padded; ++k) {
+    const double phase = record.spacing * static_cast<double>(k + 1) / records.sample_rate;
+    const Complex delay = std::polar(std::exp(-sigma / records.sample_rate), -phase);
+    record.delay.set(k, delay);
+    if (sigma > 0.0) record.offset.set(k, norm * (1.0 - rest) / (1.0 - delay));
+  }
+  return record;
+}
+
+WhitenedRecord WhitenedRecord::slice(std::size_t begin, std::size_t count) const {
+  MODCAL_REQUIRE(begin < bins && count >= 1, "bins {} ... of a record of {} bins", begin, bins);
+  WhitenedRecord part{.bins = std::min(count, bins - begin),
+                      .sigma = sigma,
+                      .spacing = spacing,
+                      .first = first + begin,
+                      .sample_rate = sample_rate,
+                      .deviation = deviation};
+  const std::size_t padded = (part.bins + kBlock - 1) / kBlock * kBlock;
+  part.left = part.right = part.delay = part.offset = PlanarVector(padded);
+  part.root_weight.assign(padded, 0.0);
+  for (std::size_t k = 0; k < part.bins; ++k) {
+    part.left.set(k, left.at(begin + k));
+    part.right.set(k, right.at(begin + k));
+    part.delay.set(k, delay.at(begin + k));
+    part.offset.set(k, offset.at(begin + k));
+    part.root_weight[k] = root_weight[begin + k];
+  }
+  return part;
+}
+
+WhitenedRecord WhitenedRecord::noise(std::uint64_t seed) const {
+  WhitenedRecord record = *this;
+  const StreamKey key = StreamKey(seed).with("likelihood noise");
+  std::vector<double> draw(4 * bins);
+  fill_standard_normal(key, draw);
+  for (std::size_t k = 0; k < bins; ++k) {
+    record.left.set(k, Complex(draw[4 * k], draw[4 * k + 1]) * std::numbers::sqrt2 * 0.5);
+    record.right.set(k, Complex(draw[4 * k + 2], draw[4 * k + 3]) * std::numbers::sqrt2 * 0.5);
+  }
+  return record;
+}
+
+}  // namespace modcal

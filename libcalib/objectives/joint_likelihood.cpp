@@ -1,0 +1,116 @@
+#include "libcalib/objectives/joint_likelihood.hpp"
+
+#include <numbers>
+
+#include "libcalib/likelihood/continuation.hpp"
+#include "libcalib/likelihood/projected_likelihood.hpp"
+#include "libsim/base/error.hpp"
+
+namespace modcal {
+namespace {
+
+LikelihoodColumns columns_of(const ParameterSet& parameters, std::span<const double> x,
+                             const ModelPoint& point) {
+  LikelihoodColumns columns{.count = parameters.size()};
+  std::vector<std::vector<ColumnShare>> by_mode(point.basis.size());
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    if (parameters[i].kind == ParameterKind::kContact) columns.contact = i;
+    for (const auto& [mode, slope] : parameters.frequency_slopes(x, i)) {
+      by_mode[mode].push_back({i, slope / point.basis.omega[mode], 0.0});
+    }
+  }
+  columns.share_begin.push_back(0);
+  for (const auto& shares : by_mode) {
+    columns.shares.insert(columns.shares.end(), shares.begin(), shares.end());
+    columns.share_begin.push_back(columns.shares.size());
+  }
+  return columns;
+}
+
+class JointLikelihoodFunction final : public ObjectiveFunction {
+ public:
+  JointLikelihoodFunction(ProjectedLikelihood likelihood, ParameterSet parameters)
+      : likelihood_(std::move(likelihood)), parameters_(std::move(parameters)) {
+    likelihood_.cost(parameters_.initial());  // an undamped mode and the like, before any search
+  }
+  std::string_view name() const override { return "joint_likelihood"; }
+  std::size_t dimension() const override { return parameters_.size(); }
+  std::size_t residual_count() const override { return 2 * likelihood_.record().bins; }
+  Capabilities capabilities() const override { return {.gradient = true, .least_squares = true}; }
+
+ private:
+  void do_evaluate(std::span<const double> x, const ObjectiveOutputs& outputs) const override {
+    const ModelPoint point = parameters_.model(x);
+    const bool slopes = outputs.gradient != nullptr || outputs.jacobian != nullptr;
+    const LikelihoodColumns columns =
+        slopes ? columns_of(parameters_, x, point) : LikelihoodColumns{};
+    std::vector<double> residuals(outputs.residuals ? residual_count() : 0);
+    Eigen::MatrixXd jacobian;
+    const LikelihoodPoint at =
+        likelihood_.evaluate(point, columns,
+                             {.residuals = outputs.residuals ? &residuals : nullptr,
+                              .jacobian = outputs.jacobian ? &jacobian : nullptr});
+    if (outputs.value) *outputs.value = at.cost;
+    for (std::size_t i = 0; outputs.gradient && i < dimension(); ++i) {
+      outputs.gradient[i] = 2.0 * at.slope[static_cast<Eigen::Index>(i)];
+    }
+    for (std::size_t j = 0; j < residuals.size(); ++j) {
+      outputs.residuals[j] = std::numbers::sqrt2 * residuals[j];
+    }
+    for (Eigen::Index j = 0; j < jacobian.rows(); ++j) {
+      for (Eigen::Index i = 0; i < jacobian.cols(); ++i) {
+        *(outputs.jacobian + j * jacobian.cols() + i) = std::numbers::sqrt2 * jacobian(j, i);
+      }
+    }
+  }
+
+  ProjectedLikelihood likelihood_;
+  ParameterSet parameters_;
+};
+
+}  // namespace
+
+void JointLikelihood::Options::visit(OptionVisitor& visitor) {
+  visitor.number({.key = "damping",
+                  .meaning = "the records are multiplied by exp(-damping t): wide basins; 0: the "
+                             "whole record, end state projected out",
+                  .unit = "Hz",
+                  .range = Range::non_negative()},
+                 damping);
+  visitor.number({.key = "highest_frequency",
+                  .meaning = "highest frequency used; automatic: 5 % above the highest mode",
+                  .unit = "Hz",
+                  .range = Range::positive(),
+                  .word = "automatic"},
+                 highest_frequency);
+  visitor.number({.key = "left_noise",
+                  .meaning = "noise standard deviation of the reaction at x = 0",
+                  .unit = "N",
+                  .range = Range::positive(),
+                  .word = "estimated"},
+                 left_noise);
+  visitor.number({.key = "right_noise",
+                  .meaning = "noise standard deviation of the reaction at x = L",
+                  .unit = "N",
+                  .range = Range::positive(),
+                  .word = "estimated"},
+                 right_noise);
+}
+
+JointLikelihood::JointLikelihood(const Options& options) : options_(options) {
+  MODCAL_REQUIRE(options.damping >= 0.0, "damping {:g} 1/s must be >= 0", options.damping);
+}
+
+std::unique_ptr<const ObjectiveFunction> JointLikelihood::do_bind(
+    const CalibrationData& data, const ParameterSet& parameters) const {
+  const NoisyRecords records =
+      NoisyRecords::of_data(data, {options_.left_noise, options_.right_noise});
+  const double highest =
+      likelihood_band(parameters.initial(), options_.highest_frequency, data.sample_rate);
+  return std::make_unique<JointLikelihoodFunction>(
+      ProjectedLikelihood(WhitenedRecord::of(records, options_.damping, highest),
+                          options_.damping == 0.0),
+      parameters);
+}
+
+}  // namespace modcal

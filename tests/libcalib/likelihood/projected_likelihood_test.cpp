@@ -1,0 +1,238 @@
+#include "libcalib/likelihood/projected_likelihood.hpp"
+
+#include <ceres/jet.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <numbers>
+
+#include "tests/libcalib/likelihood/bowed_case.hpp"
+
+namespace modcal {
+namespace {
+
+using std::numbers::pi;
+
+constexpr double kBand = 2.0 * pi * 10300.0;
+
+// Columns ln f_1 … ln f_N, x_c, ln ζ (all modes at once).
+LikelihoodColumns all_columns(std::size_t modes) {
+  LikelihoodColumns columns{.count = modes + 2, .share_begin = {0}, .contact = modes};
+  for (std::size_t n = 0; n < modes; ++n) {
+    columns.shares.push_back({n, 1.0, 0.0});
+    columns.shares.push_back({modes + 1, 0.0, 1.0});
+    columns.share_begin.push_back(columns.shares.size());
+  }
+  return columns;
+}
+
+// Columns ln f0, B, x_c, ln ζ of the law at B.
+LikelihoodColumns law_columns(std::size_t modes, double inharmonicity) {
+  LikelihoodColumns columns{.count = 4, .share_begin = {0}, .contact = 2};
+  for (std::size_t i = 0; i < modes; ++i) {
+    const double n2 = static_cast<double>((i + 1) * (i + 1));
+    columns.shares.push_back({0, 1.0, 0.0});
+    columns.shares.push_back({1, 0.5 * n2 / (1.0 + inharmonicity * n2), 0.0});
+    columns.shares.push_back({3, 0.0, 1.0});
+    columns.share_begin.push_back(columns.shares.size());
+  }
+  return columns;
+}
+
+ModelPoint moved(ModelPoint point, std::size_t column, double step) {
+  const std::size_t modes = point.basis.size();
+  if (column < modes) point.basis.omega[column] *= std::exp(step);
+  if (column == modes) point.contact += step;
+  if (column == modes + 1) {
+    for (double& zeta : point.basis.zeta) zeta *= std::exp(step);
+  }
+  return point;
+}
+
+TEST(ProjectedLikelihood, LeavesAlmostNothingOfCleanData) {
+  // What is left at the truth is what aliases into the band; the recipe's 1.8e-3 of 1 % noise.
+  const BowedCase bowed = bowed_case(0.03, 0.0, 1.0);
+  const ProjectedLikelihood clean(WhitenedRecord::of(noisy(bowed, 0.01, 1, false), 0.0, kBand),
+                                  true);
+  const double freedom = clean.degrees_of_freedom(0, 50);
+  EXPECT_LT(std::sqrt(2.0 * clean.cost(bowed.truth) / freedom), 3e-3);
+  // With noise χ² of 2 K_b − 2N degrees of freedom: sd √(2/20500) = 0.0099, four of them allowed.
+  const ProjectedLikelihood noisy_one(WhitenedRecord::of(noisy(bowed, 0.01, 1), 0.0, kBand), true);
+  EXPECT_NEAR(2.0 * noisy_one.cost(bowed.truth) / freedom, 1.0, 0.04);
+}
+
+class AtShortRecord : public testing::Test {
+ protected:
+  BowedCase bowed = bowed_case(0.0285, 1.39e-4, 0.1);
+  ModelPoint point() const {
+    ModelPoint off = moved(bowed.truth, 50, 2e-5);
+    for (std::size_t n = 0; n < 50; ++n) off = moved(off, n, n % 3 == 0 ? 1e-4 : -2e-4);
+    return off;
+  }
+};
+
+TEST_F(AtShortRecord, GradientIsTheDifferenceQuotient) {
+  for (const double sigma : {0.0, 40.0}) {
+    const ProjectedLikelihood likelihood(WhitenedRecord::of(noisy(bowed, 0.02, 3), sigma, kBand),
+                                         sigma == 0.0);
+    const LikelihoodPoint at = likelihood.evaluate(point(), all_columns(50));
+    for (const std::size_t column : {0u, 7u, 20u, 33u, 49u, 50u, 51u}) {
+      // Central differences err by h² f‴/6 and by rounding/h; the steps are small shares of a
+      // resonance's width, 1e-4 of the slopes is left.
+      const double step = column == 50 ? 1e-8 : 1e-6;
+      const double quotient = (likelihood.cost(moved(point(), column, step)) -
+                               likelihood.cost(moved(point(), column, -step))) /
+                              (2.0 * step);
+      const double slope = 2.0 * at.slope[static_cast<Eigen::Index>(column)];
+      const double size = std::sqrt(
+          at.information(static_cast<Eigen::Index>(column), static_cast<Eigen::Index>(column)) *
+          at.cost);
+      EXPECT_NEAR(quotient, slope, 1e-4 * size) << "column " << column << ", sigma " << sigma;
+    }
+  }
+}
+
+// Automatic differentiation of one residual: the model written out once more, term by term.
+using Jet = ceres::Jet<double, 3>;  // ln ω_n, x_c, ln ζ
+struct Dual {
+  Jet re, im;
+};
+Dual operator+(const Dual& a, const Dual& b) { return {a.re + b.re, a.im + b.im}; }
+Dual operator-(const Dual& a, const Dual& b) { return {a.re - b.re, a.im - b.im}; }
+Dual operator*(const Dual& a, const Dual& b) {
+  return {a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
+}
+Dual operator*(const Jet& s, const Dual& a) { return {s * a.re, s * a.im}; }
+Dual conj(const Dual& a) { return {a.re, -a.im}; }
+Dual inverse(const Dual& a) { return (Jet(1.0) / (a.re * a.re + a.im * a.im)) * conj(a); }
+Dual dual(Complex z) { return {Jet(z.real()), Jet(z.imag())}; }
+Complex slope(const Dual& z, int i) { return {z.re.v[i], z.im.v[i]}; }
+Complex value(const Dual& z) { return {z.re.a, z.im.a}; }
+
+struct ResidualJet {
+  Dual residual;
+  Complex turn[3];  // i Im(hᴴ ∂h)/|h|²
+};
+
+ResidualJet residual_jet(const ModelPoint& point, const WhitenedRecord& record,
+                         const std::vector<Complex>& amplitudes, std::size_t moving,
+                         std::size_t k) {
+  const double w = record.spacing * static_cast<double>(k + 1);
+  const ModalBasis& basis = point.basis;
+  const Jet contact(point.contact, 1);
+  Dual left = dual(0.0), right = dual(0.0), odd = dual(0.0), even = dual(0.0);
+  for (std::size_t i = 0; i < basis.size(); ++i) {
+    const double n = static_cast<double>(i + 1);
+    const Jet omega = i == moving ? basis.omega[i] * exp(Jet(0.0, 0)) : Jet(basis.omega[i]);
+    const Jet zeta = basis.zeta[i] * exp(Jet(0.0, 2));
+    const Jet gain = (basis.tension * n * pi / basis.length / basis.mass[i]) *
+                     sin((n * pi / basis.length) * contact);
+    const Dual term = gain * inverse({omega * omega - w * w, 2.0 * w * zeta * omega});
+    const double parity = i % 2 == 1 ? 1.0 : -1.0;
+    left = left - term;
+    right = right + Jet(parity) * term;
+    const Jet turn = omega * sqrt(Jet(1.0) - zeta * zeta) / record.sample_rate;
+    const Jet decay = exp(-zeta * omega / record.sample_rate);
+    const Dual pole{decay * cos(turn), decay * sin(turn)};
+    const Dual delay = dual(record.delay.at(k));
+    const Dual free = dual(amplitudes[i]) * inverse(dual(1.0) - pole * delay) +
+                      conj(dual(amplitudes[i])) * inverse(dual(1.0) - conj(pole) * delay);
+    (i % 2 == 1 ? even : odd) = (i % 2 == 1 ? even : odd) + free;
+  }
+  left = Jet(1.0 / record.deviation[0]) * left;
+  right = Jet(1.0 / record.deviation[1]) * right;
+  const Dual from_left = dual(record.left.at(k)) + Jet(1.0 / record.deviation[0]) * (odd + even);
+  const Dual from_right = dual(record.right.at(k)) - Jet(1.0 / record.deviation[1]) * (even - odd);
+  const Jet norm =
+      left.re * left.re + left.im * left.im + right.re * right.re + right.im * right.im;
+  ResidualJet result{.residual = (Jet(1.0) / sqrt(norm)) * (right * from_left - left * from_right)};
+  for (int i = 0; i < 3; ++i) {
+    const double change =
+        (std::conj(value(left)) * slope(left, i) + std::conj(value(right)) * slope(right, i))
+            .imag();
+    result.turn[i] = Complex(0.0, change / norm.a);
+  }
+  return result;
+}
+
+TEST_F(AtShortRecord, JacobianIsThatOfAutomaticDifferentiation) {
+  // One bin a block of 256 has its columns compared; the projection is off: fixed amplitudes.
+  const WhitenedRecord record = WhitenedRecord::of(noisy(bowed, 0.02, 3), 0.0, kBand);
+  const ProjectedLikelihood likelihood(record, true);
+  std::vector<Complex> amplitudes;
+  std::vector<double> residuals(2 * record.bins);
+  Eigen::MatrixXd projected;
+  likelihood.evaluate(point(), all_columns(50),
+                      {.residuals = &residuals, .jacobian = &projected, .amplitudes = &amplitudes});
+  const std::vector<LikelihoodMode> modes = likelihood_modes(point(), record.sample_rate);
+  const LikelihoodColumns columns = all_columns(50);
+  LikelihoodBlock block;
+  AlignedVector own(columns.count * kColumnLength);
+  AlignedVector residual(kColumnLength);
+  for (std::size_t b = 0; b < record.blocks(); ++b) {
+    std::fill(own.begin(), own.end(), 0.0);
+    fill_state_columns(record, b, modes, block, nullptr, nullptr, residual.data());
+    fill_jacobian_columns(record, b, block,
+                          {.modes = modes,
+                           .amplitudes = amplitudes,
+                           .shares = columns.shares,
+                           .share_begin = columns.share_begin,
+                           .jacobian = own.data(),
+                           .contact = own.data() + 50 * kColumnLength,
+                           .residual = residual.data()});
+    for (const std::size_t at : {3u, 100u, 170u}) {
+      const std::size_t k = b * WhitenedRecord::kBlock + at;
+      if (k >= record.bins) continue;
+      for (const std::size_t moving : {0u, 10u, 29u, 48u}) {
+        const ResidualJet jet = residual_jet(point(), record, amplitudes, moving, k);
+        const Complex e = value(jet.residual);
+        const Complex mine(residual[at], residual[WhitenedRecord::kBlock + at]);
+        // Two orders of the same sums of 50 terms with cancellation: 1e-9 of the data.
+        EXPECT_LT(std::abs(mine - e), 1e-9 * std::abs(record.left.at(k)) + 1e-9);
+        const std::size_t column[3] = {moving, 50, 51};
+        for (int i = 0; i < 3; ++i) {
+          const double* ours = own.data() + column[i] * kColumnLength + at;
+          const Complex expected = slope(jet.residual, i) - e * jet.turn[i];
+          EXPECT_LT(std::abs(Complex(ours[0], ours[WhitenedRecord::kBlock]) - expected),
+                    1e-7 * (std::abs(expected) + std::abs(e * jet.turn[i])) + 1e-7)
+              << "bin " << k << ", column " << column[i];
+        }
+      }
+    }
+  }
+  // The projected columns are orthogonal to the residuals' slopes as the products say.
+  const LikelihoodPoint at = likelihood.evaluate(point(), columns);
+  const Eigen::Map<const Eigen::VectorXd> r(residuals.data(), static_cast<long>(residuals.size()));
+  const Eigen::MatrixXd information = projected.transpose() * projected;
+  EXPECT_LT((information - at.information).cwiseAbs().maxCoeff(),
+            1e-6 * at.information.cwiseAbs().maxCoeff());
+  EXPECT_NEAR(r.squaredNorm(), at.cost, 1e-9 * at.cost);
+}
+
+TEST_F(AtShortRecord, NoiseAddsItsOwnInformation) {
+  // E JᵀJ = A + N̄, both means over 40 records; J = J_clean + J_noise has cross terms of mean 0.
+  const LikelihoodColumns columns = law_columns(50, 1.39e-4);
+  const auto information = [&](std::uint64_t seed, bool draw) {
+    const ProjectedLikelihood likelihood(
+        WhitenedRecord::of(noisy(bowed, 0.1, seed, draw), 0.0, kBand), true);
+    return likelihood.evaluate(bowed.truth, columns).information;
+  };
+  const ProjectedLikelihood clean(WhitenedRecord::of(noisy(bowed, 0.1, 0, false), 0.0, kBand),
+                                  true);
+  const Eigen::MatrixXd noise = clean.noise_information(bowed.truth, columns, 40);
+  Eigen::MatrixXd mean = Eigen::MatrixXd::Zero(4, 4);
+  for (std::uint64_t seed = 0; seed < 40; ++seed) mean += information(seed, true) / 40.0;
+  const Eigen::MatrixXd expected = information(0, false) + noise;
+  for (Eigen::Index i = 0; i < 4; ++i) {
+    EXPECT_GT(noise(i, i), 0.0);
+    for (Eigen::Index j = 0; j < 4; ++j) {
+      // Each mean has about √(2/(2 K_b 40)) of N̄'s size and cross terms of √(A N̄/40).
+      const double size = std::sqrt(expected(i, i) * expected(j, j));
+      EXPECT_NEAR(mean(i, j) / size, expected(i, j) / size, 0.04) << i << ", " << j;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace modcal
