@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libcalib/stiff_string_fit.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -60,6 +61,48 @@ std::vector<CalibratedMode> report_modes(const ParameterSet& parameters, const M
   return modes;
 }
 
+// What the continuation found, in the form of a search.
+CalibrationResult calibrate_to_the_bound(const ModelPoint& initial, const CalibrationData& data,
+                                         const CalibrationOptions& options,
+                                         const SecondsClock& clock) {
+  const ParameterOptions& free = options.parameters;
+  MODCAL_REQUIRE(free.law && free.contact && free.frequencies != "listed",
+                 "a continuation frees the law, the contact and no frequency or all of them: state "
+                 "parameters: {{frequencies: all, law: true, contact: true}}");
+  ContinuationOptions continuation = options.continuation;
+  continuation.frequencies = free.frequencies == "all";
+  const double begin = clock();
+  CalibrationResult result;
+  result.continuation = calibrate_by_continuation(initial, data, continuation);
+  const ContinuationResult& found = *result.continuation;
+  result.search.seconds = clock() - begin;
+  result.search.evaluations = static_cast<std::int64_t>(found.evaluations);
+  result.search.value = found.chi2;
+  result.search.stop = found.right ? StopReason::kConverged : StopReason::kNoProgress;
+  result.model = found.model;
+  std::vector<double> frequencies;
+  for (std::size_t n = 0; n < initial.basis.size(); ++n) {
+    frequencies.push_back(initial.basis.frequency(n));
+  }
+  const StiffStringFit start = fit_stiff_string(frequencies);
+  const LawEstimate& law = found.law;
+  result.parameters = {{"f0", "Hz", start.fundamental, law.fundamental},
+                       {"B", "1", start.inharmonicity, law.inharmonicity},
+                       {"x_c", "m", initial.contact, found.model.contact},
+                       {"damping", "1", 1.0, found.damping}};
+  const std::vector<bool> excited = excited_modes(found.model, options.excitation_threshold);
+  const std::vector<double> shape = initial.basis.shape_at(initial.contact);
+  for (std::size_t i = 0; i < found.modes.size(); ++i) {
+    result.modes.push_back({.number = i + 1,
+                            .initial_frequency = frequencies[i],
+                            .frequency = found.modes[i].frequency,
+                            .shape = shape[i],
+                            .excited = excited[i],
+                            .searched = found.modes[i].source == ModeSource::kIdentified});
+  }
+  return result;
+}
+
 }  // namespace
 
 void CalibrationOptions::visit(OptionVisitor& visitor) {
@@ -67,6 +110,11 @@ void CalibrationOptions::visit(OptionVisitor& visitor) {
   visitor.plugin({.key = "objective", .meaning = "what is minimized"}, objective);
   visitor.plugin({.key = "optimizer", .meaning = "how it is minimized"}, optimizer);
   visitor.section({.key = "budget", .meaning = "what the search may spend"}, budget);
+  visitor.optional_group(
+      {.key = "continuation",
+       .meaning = "calibrate to the bound by the joint likelihood, in the place of objective, "
+                  "optimizer and budget"},
+      has_continuation, [this](OptionVisitor& members) { continuation.visit(members); });
   visitor.number({.key = "excitation_threshold",
                   .meaning = "modes with a smaller |phi_n(x_c)| are blind and keep their frequency",
                   .unit = "1",
@@ -84,6 +132,7 @@ std::vector<bool> excited_modes(const ModelPoint& point, double threshold) {
 
 CalibrationResult calibrate(const ModelPoint& initial, const CalibrationData& data,
                             const CalibrationOptions& options, SecondsClock clock) {
+  if (options.has_continuation) return calibrate_to_the_bound(initial, data, options, clock);
   const std::vector<bool> excited = excited_modes(initial, options.excitation_threshold);
   Names names = split_names(options, excited);
   const ParameterSet parameters(initial, names.free, options.parameters.ranges);

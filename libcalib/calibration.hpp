@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "libcalib/budget.hpp"
 #include "libcalib/calibration_data.hpp"
+#include "libcalib/likelihood/continuation.hpp"
 #include "libcalib/objective.hpp"
 #include "libcalib/optimization_result.hpp"
 #include "libcalib/optimizer.hpp"
@@ -20,6 +22,10 @@ struct CalibrationOptions {
   Choice<Objective> objective{"spectral_peak"};
   Choice<Optimizer> optimizer{"mode_by_mode"};
   Budget budget;
+  /// Continuation of the joint likelihood in the place of objective and optimizer: x_c, the law and
+  /// one damping factor are free, and with frequencies: all every f_n.
+  bool has_continuation = false;
+  ContinuationOptions continuation;
   /// Modes with |φ_n(x_c)| below this are blind: nothing in the reactions tells their frequency
   /// [1].
   double excitation_threshold = 0.1;
@@ -52,6 +58,7 @@ struct CalibrationResult {
   std::vector<std::string> blind;
   ModelPoint model;  ///< refined
   OptimizationResult search;
+  std::optional<ContinuationResult> continuation;  ///< error bars, verdicts, χ²
 };
 
 /// Marks the modes with |φ_n(x_c)| ≥ threshold.

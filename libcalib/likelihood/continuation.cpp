@@ -16,6 +16,22 @@ namespace {
 
 constexpr std::size_t kNoiseRepeats = 3;
 constexpr double kStepCap = 1e-3;
+constexpr double kProof = 3.0;
+constexpr double kNodeProof = 10.0;
+constexpr double kNodeShape = 0.05;
+
+// A mode that nothing excites has the information of its noise, which scatters about N̄ with few
+// degrees of freedom: less than three times N̄ is no proof of a signal, and near a node of its
+// shape, where a signal would be a surprise, less than ten.
+void deny_noise(const ModelPoint& point, const Eigen::MatrixXd& information,
+                const Eigen::MatrixXd& noise, Eigen::VectorXd& seen) {
+  const std::vector<double> shape = point.basis.shape_at(point.contact);
+  for (std::size_t n = 0; n < shape.size(); ++n) {
+    const auto i = static_cast<Eigen::Index>(n);
+    const double proof = std::abs(shape[n]) < kNodeShape ? kNodeProof : kProof;
+    if (information(i, i) < proof * noise(i, i)) seen[i] = std::max(seen[i], kWidePrior);
+  }
+}
 
 // One attempt: everything between a start of f_0 and a verdict by χ².
 class Attempt {
@@ -127,12 +143,14 @@ class Attempt {
     return weighted_->noise_information(point, unknowns.columns(theta), kNoiseRepeats);
   }
 
+  LikelihoodPoint whole_point(const StringUnknowns& unknowns, const Eigen::VectorXd& theta) {
+    ++evaluations_;
+    return weighted_->evaluate(unknowns.model(theta), unknowns.columns(theta),
+                               {.twice_weighted = true});
+  }
   Eigen::MatrixXd covariance_at(const StringUnknowns& unknowns, const Eigen::VectorXd& theta,
                                 const NewtonOptions& options) {
-    ++evaluations_;
-    return fit_covariance(weighted_->evaluate(unknowns.model(theta), unknowns.columns(theta),
-                                              {.twice_weighted = true}),
-                          options);
+    return fit_covariance(whole_point(unknowns, theta), options);
   }
 
   void free_frequencies(ContinuationResult& result) {
@@ -149,8 +167,9 @@ class Attempt {
     options.noise = prepare_weights(unknowns, theta);
     options.steps = 5;
     theta = fit(*weighted_, unknowns, theta, options).theta;
-    const Eigen::MatrixXd wide_covariance = covariance_at(unknowns, theta, options);
-    const Eigen::VectorXd seen = wide_covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+    const LikelihoodPoint at = whole_point(unknowns, theta);
+    Eigen::VectorXd seen = fit_covariance(at, options).diagonal().cwiseMax(0.0).cwiseSqrt();
+    deny_noise(unknowns.model(theta), at.information, options.noise, seen);
 
     const auto n = static_cast<Eigen::Index>(modes());
     const double estimated = estimate_law_width(theta.head(n), seen.head(n), inharmonicity);
