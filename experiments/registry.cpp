@@ -3,6 +3,7 @@
 #include "experiments/experiment.hpp"
 #include "experiments/kinds/benchmark_experiment.hpp"
 #include "experiments/kinds/calibrate_experiment.hpp"
+#include "experiments/kinds/calibration_limit_experiment.hpp"
 #include "experiments/kinds/invert_experiment.hpp"
 #include "experiments/kinds/schelleng_experiment.hpp"
 #include "experiments/kinds/simulate_experiment.hpp"
@@ -16,6 +17,8 @@ Registry<Experiment> Experiment::registry() {
           "benchmark", "objectives and optimizers on the same truths, noise and starts"),
       entry_of<Experiment, CalibrateExperiment>(
           "calibrate", "refine the modal model, then identify force and motion with it"),
+      entry_of<Experiment, CalibrationLimitExperiment>(
+          "calibration_limit", "calibration error against noise beside the Cramer-Rao bound"),
       entry_of<Experiment, InvertExperiment>(
           "invert", "contact force and motion from simulated or recorded reactions"),
       entry_of<Experiment, SchellengExperiment>(

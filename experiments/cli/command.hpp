@@ -17,6 +17,7 @@ using Chosen = std::function<void(Action)>;
 void add_run_command(CLI::App& app, const Chosen& chosen);
 void add_validate_command(CLI::App& app, const Chosen& chosen);
 void add_plan_command(CLI::App& app, const Chosen& chosen);
+void add_limit_command(CLI::App& app, const Chosen& chosen);
 void add_list_command(CLI::App& app, const Chosen& chosen);
 void add_describe_command(CLI::App& app, const Chosen& chosen);
 void add_schema_command(CLI::App& app, const Chosen& chosen);

@@ -49,6 +49,7 @@ int main_of(int argc, char** argv) {
   add_run_command(app, chosen);
   add_validate_command(app, chosen);
   add_plan_command(app, chosen);
+  add_limit_command(app, chosen);
   add_list_command(app, chosen);
   add_describe_command(app, chosen);
   add_schema_command(app, chosen);

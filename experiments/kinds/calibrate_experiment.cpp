@@ -1,5 +1,7 @@
 #include "experiments/kinds/calibrate_experiment.hpp"
 
+#include <cmath>
+
 #include "experiments/kinds/invert_experiment.hpp"
 #include "experiments/kinds/lint.hpp"
 #include "experiments/kinds/scene_plan.hpp"
@@ -31,6 +33,12 @@ std::vector<std::string> CalibrateExperiment::plan() const {
   lines.push_back(planned ? plan_line(*planned) : "record: " + observation.record.file);
   const auto modes = static_cast<std::size_t>(observation.string_model().modes);
   const CalibrationOptions& calibration = options_.calibration;
+  if (calibration.has_continuation) {
+    lines.push_back(
+        "calibration: continuation of the joint likelihood, law first; objective and optimizer "
+        "are not used");
+    return lines;
+  }
   lines.push_back(
       fmt::format("calibration: {} parameters asked for, objective {}, optimizer {}, at "
                   "most {} evaluations",
@@ -41,6 +49,14 @@ std::vector<std::string> CalibrateExperiment::plan() const {
 
 std::optional<PlannedSimulations> CalibrateExperiment::planned_simulations() const {
   return planned_truths(options_.inversion.observation, truth_outputs(options_.inversion.figures));
+}
+
+LimitQuestion CalibrateExperiment::limit_question() const {
+  const ContinuationOptions& continuation = options_.calibration.continuation;
+  return {.observation = options_.inversion.observation,
+          .noise_level = options_.inversion.observation.measurement.noise_level,
+          .highest_frequency = continuation.highest_frequency,
+          .law_width = std::isnan(continuation.law_width) ? 2e-3 : continuation.law_width};
 }
 
 }  // namespace modcal

@@ -33,6 +33,11 @@ std::string calibration_json(const CalibrationOutcome& outcome) {
                      {"excited", mode.excited},
                      {"searched", mode.searched},
                      {"shape_at_contact", mode.shape}});
+    if (!outcome.result.continuation) continue;
+    const ModeVerdict& verdict = outcome.result.continuation->modes[mode.number - 1];
+    modes.back()["relative_sd"] = number_or_null(verdict.deviation);
+    modes.back()["source"] = name_of(verdict.source);
+    modes.back()["reason"] = name_of(verdict.reason);
   }
   Json parameters = Json::array();
   for (const CalibratedParameter& parameter : outcome.result.parameters) {
@@ -58,6 +63,22 @@ std::string calibration_json(const CalibrationOutcome& outcome) {
         {"B", outcome.law->inharmonicity},
         {"f0_sd_hz", number_or_null(outcome.law->fundamental_deviation)},
         {"B_sd", number_or_null(outcome.law->inharmonicity_deviation)}};
+  }
+  if (outcome.result.continuation) {
+    const ContinuationResult& found = *outcome.result.continuation;
+    document["continuation"] = {{"right", found.right},
+                                {"chi2", number_or_null(found.chi2)},
+                                {"chi2_sd", number_or_null(found.chi2_deviation)},
+                                {"law_chi2", number_or_null(found.law.chi2)},
+                                {"law_accepted", found.law.accepted},
+                                {"law_width", number_or_null(found.law_width)},
+                                {"f0_sd_hz", number_or_null(found.law.deviation[0])},
+                                {"B_sd", number_or_null(found.law.deviation[1])},
+                                {"x_c_sd_m", number_or_null(found.contact_deviation)},
+                                {"damping_sd", number_or_null(found.damping_deviation)},
+                                {"noise_left_n", number_or_null(found.noise[0])},
+                                {"noise_right_n", number_or_null(found.noise[1])},
+                                {"restarts", found.restarts}};
   }
   return document.dump(1) + "\n";
 }

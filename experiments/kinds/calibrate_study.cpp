@@ -49,6 +49,23 @@ void fill_blind(CalibrationOutcome& outcome) {
       with_frequencies(outcome.refined.basis, fill_unexcited_modes(refined, excited, *outcome.law));
 }
 
+std::string verdict_lines(const ContinuationResult& found) {
+  std::string text = fmt::format(
+      "reduced chi2 {:.4f} (sd {:.4f}): {}; law alone {:.4f}: {}\nsd: f0 {:.3g} Hz, B {:.3g}, x_c "
+      "{:.3g} m, damping factor {:.3g}\n",
+      found.chi2, found.chi2_deviation,
+      found.right ? "the data do not contradict the fit" : "THE FIT IS WRONG", found.law.chi2,
+      found.law.accepted ? "accepted" : "contradicted", found.law.deviation[0],
+      found.law.deviation[1], found.contact_deviation, found.damping_deviation);
+  for (std::size_t n = 0; found.frequencies_free && n < found.modes.size(); ++n) {
+    const ModeVerdict& mode = found.modes[n];
+    if (mode.source == ModeSource::kIdentified) continue;
+    text += fmt::format("mode {}: {} ({}), relative sd {:.2g}\n", n + 1, name_of(mode.source),
+                        name_of(mode.reason), mode.deviation);
+  }
+  return text;
+}
+
 void add_summary(const CalibrationOutcome& outcome, StudyResult& result) {
   const OptimizationResult& search = outcome.result.search;
   result.summary += fmt::format(
@@ -63,6 +80,7 @@ void add_summary(const CalibrationOutcome& outcome, StudyResult& result) {
     result.summary += fmt::format("{}: {:.8g} -> {:.8g} {}\n", parameter.name, parameter.initial,
                                   parameter.final, parameter.unit);
   }
+  if (outcome.result.continuation) result.summary += verdict_lines(*outcome.result.continuation);
   if (outcome.law) {
     result.summary += fmt::format("stiff-string law: f0 = {:.6g} Hz, B = {:.4g}\n",
                                   outcome.law->fundamental, outcome.law->inharmonicity);

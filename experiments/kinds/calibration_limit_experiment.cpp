@@ -1,0 +1,237 @@
+#include "experiments/kinds/calibration_limit_experiment.hpp"
+
+#include <chrono>
+#include <cmath>
+
+#include "experiments/kinds/number_json.hpp"
+#include "experiments/kinds/scene_plan.hpp"
+#include "experiments/study/fingerprint.hpp"
+#include "libcalib/calibration.hpp"
+#include "libsim/signal/statistics.hpp"
+
+namespace modcal {
+namespace {
+
+using nlohmann::json;
+
+// The truth with the start's errors, drawn from the seed alone: equal at every noise level.
+ModelPoint start_of(const ModelPoint& truth, ModelErrorOptions errors, const StreamKey& key) {
+  double draw[1];
+  fill_uniform(key.with("contact error"), draw);
+  errors.contact *= 2.0 * draw[0] - 1.0;
+  const AssumedModel model =
+      with_errors(truth.basis, truth.contact, errors, key.with("model error"));
+  return {model.basis, model.contact};
+}
+
+double median_error(const ModalBasis& found, const ModelPoint& truth) {
+  const std::vector<double> shape = truth.basis.shape_at(truth.contact);
+  std::vector<double> errors;
+  for (std::size_t n = 0; n < found.size(); ++n) {
+    if (std::abs(shape[n]) < 0.1) continue;
+    errors.push_back(std::abs(found.omega[n] / truth.basis.omega[n] - 1.0));
+  }
+  return quantile(std::move(errors), 0.5);
+}
+
+json numbers(std::span<const double> values) {
+  json list = json::array();
+  for (const double value : values) list.push_back(number_json(value));
+  return list;
+}
+
+void read_numbers(const json& list, std::span<double> values) {
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = read_number(list.at(i));
+}
+
+}  // namespace
+
+void CalibrationLimitOptions::visit(OptionVisitor& visitor) {
+  observation.visit(visitor);
+  visitor.section({.key = "model_error",
+                   .meaning = "bounds of the start's errors: uniform, drawn for each seed"},
+                  model_error);
+  visitor.section({.key = "continuation", .meaning = "how the calibration is done"}, continuation);
+  visitor.numbers({.key = "noise_levels",
+                   .meaning = "noise standard deviations over those of the signals",
+                   .unit = "1",
+                   .range = Range::positive()},
+                  noise_levels);
+  visitor.integer({.key = "seeds", .meaning = "noise draws a level", .range = Range::at_least(1)},
+                  seeds);
+  visitor.integer(
+      {.key = "seed", .meaning = "key of noise and starts", .range = Range::non_negative()}, seed);
+  visitor.flag({.key = "known_noise", .meaning = "the calibration is told the noise level"},
+               known_noise);
+  visitor.flag({.key = "paper_method", .meaning = "draw the paper's method from the same starts"},
+               paper_method);
+}
+
+std::string outcome_text(const LimitOutcome& outcome) {
+  if (!outcome.failure.empty()) return json{{"failure", outcome.failure}}.dump();
+  return json{{"law", numbers(outcome.law)},
+              {"law_deviation", numbers(outcome.law_deviation)},
+              {"frequencies", numbers(outcome.frequencies)},
+              {"deviations", numbers(outcome.deviations)},
+              {"contact", number_json(outcome.contact)},
+              {"contact_deviation", number_json(outcome.contact_deviation)},
+              {"law_chi2", number_json(outcome.law_chi2)},
+              {"chi2", number_json(outcome.chi2)},
+              {"right", outcome.right},
+              {"paper_error", number_json(outcome.paper_error)}}
+      .dump();
+}
+
+LimitOutcome read_limit_outcome(const std::string& text) {
+  try {
+    const json object = json::parse(text);
+    LimitOutcome outcome;
+    outcome.failure = object.value("failure", std::string());
+    if (!outcome.failure.empty()) return outcome;
+    read_numbers(object.at("law"), outcome.law);
+    read_numbers(object.at("law_deviation"), outcome.law_deviation);
+    outcome.frequencies.resize(object.at("frequencies").size());
+    outcome.deviations.resize(outcome.frequencies.size());
+    read_numbers(object.at("frequencies"), outcome.frequencies);
+    read_numbers(object.at("deviations"), outcome.deviations);
+    outcome.contact = read_number(object.at("contact"));
+    outcome.contact_deviation = read_number(object.at("contact_deviation"));
+    outcome.law_chi2 = read_number(object.at("law_chi2"));
+    outcome.chi2 = read_number(object.at("chi2"));
+    outcome.right = object.at("right").get<bool>();
+    outcome.paper_error = read_number(object.at("paper_error"));
+    return outcome;
+  } catch (const json::exception& error) {
+    throw InvalidInput(std::string("not the outcome of a calibration: ") + error.what());
+  }
+}
+
+std::vector<Finding> CalibrationLimitExperiment::lint() const {
+  std::vector<Finding> findings;
+  if (!options_.observation.has_scene) {
+    findings.push_back({"record",
+                        "a bound needs a truth, which a record does not have: state a "
+                        "scene"});
+  }
+  if (options_.noise_levels.empty()) {
+    findings.push_back({"noise_levels", "no noise level is stated"});
+  }
+  return findings;
+}
+
+std::vector<std::string> CalibrationLimitExperiment::plan() const {
+  std::vector<std::string> lines;
+  if (const auto planned = planned_simulations()) lines.push_back(plan_line(*planned));
+  lines.push_back(fmt::format("tasks: {} calibrations ({} noise levels, {} seeds)", task_count(),
+                              options_.noise_levels.size(), options_.seeds));
+  return lines;
+}
+
+std::optional<PlannedSimulations> CalibrationLimitExperiment::planned_simulations() const {
+  return planned_truths(options_.observation, {.left_reaction = true, .right_reaction = true});
+}
+
+LimitQuestion CalibrationLimitExperiment::limit_question() const {
+  const double width = options_.continuation.law_width;
+  return {.observation = options_.observation,
+          .noise_level = options_.noise_levels.front(),
+          .highest_frequency = options_.continuation.highest_frequency,
+          .law_width = std::isnan(width) ? 2e-3 : width};
+}
+
+std::vector<std::string> CalibrationLimitExperiment::axis_values(std::size_t task) const {
+  return {fmt::format("{:g}", level_of(task)),
+          std::to_string(task % static_cast<std::size_t>(options_.seeds))};
+}
+
+std::string CalibrationLimitExperiment::fingerprint(std::size_t task,
+                                                    const std::filesystem::path&) const {
+  Options options = options_;
+  options.noise_levels = {level_of(task)};
+  options.seeds = 1;
+  return fmt::format("calibration_limit {} ", task % static_cast<std::size_t>(options_.seeds)) +
+         modcal::fingerprint([&](OptionVisitor& visitor) { options.visit(visitor); });
+}
+
+std::string CalibrationLimitExperiment::run_task(std::size_t task,
+                                                 const StudyContext& context) const {
+  const auto draw = static_cast<std::uint64_t>(task % static_cast<std::size_t>(options_.seeds));
+  const double level = level_of(task);
+  const StreamKey key = StreamKey(static_cast<std::uint64_t>(options_.seed)).with(draw);
+  LimitOutcome outcome;
+  try {
+    LimitTruth truth = limit_truth(options_.observation, level, context.work.truths);
+    for (std::size_t r = 0; r < 2; ++r) {
+      std::vector<double> noise(truth.records.samples());
+      fill_standard_normal(key.with("measurement noise").with(std::uint64_t{r}), noise);
+      for (std::size_t j = 0; j < noise.size(); ++j) {
+        truth.records.reactions[r][j] += truth.records.deviation[r] * noise[j];
+      }
+      remove_mean(truth.records.reactions[r]);
+    }
+    const CalibrationData data = CalibrationData::of_records(
+        truth.records.reactions[0], truth.records.reactions[1], truth.records.sample_rate);
+    const ModelPoint start = start_of(truth.point, options_.model_error, key);
+    ContinuationOptions continuation = options_.continuation;
+    if (options_.known_noise) {
+      continuation.left_noise = truth.records.deviation[0];
+      continuation.right_noise = truth.records.deviation[1];
+    }
+    const ContinuationResult found = calibrate_by_continuation(start, data, continuation);
+    outcome.law = {found.law.fundamental, found.law.inharmonicity, found.law.contact,
+                   found.law.damping};
+    outcome.law_deviation = found.law.deviation;
+    for (const ModeVerdict& mode : found.modes) {
+      outcome.frequencies.push_back(mode.frequency);
+      outcome.deviations.push_back(mode.deviation);
+    }
+    outcome.contact = found.model.contact;
+    outcome.contact_deviation = found.contact_deviation;
+    outcome.law_chi2 = found.law.chi2;
+    outcome.chi2 = found.chi2;
+    outcome.right = found.right;
+    outcome.paper_error = std::numeric_limits<double>::quiet_NaN();
+    if (options_.paper_method) {
+      CalibrationOptions paper;
+      paper.parameters.frequencies = "all";
+      outcome.paper_error = median_error(calibrate(start, data, paper).model.basis, truth.point);
+    }
+  } catch (const InvalidInput& error) {
+    outcome.failure = error.what();
+  }
+  return outcome_text(outcome);
+}
+
+std::string CalibrationLimitExperiment::failure_in(const std::string& outcome) const {
+  return read_limit_outcome(outcome).failure;
+}
+
+StudyResult CalibrationLimitExperiment::sum_up(
+    const std::vector<std::optional<FinishedTask>>& outcomes, const StudyContext& context) const {
+  std::vector<LimitLevel> levels;
+  for (const double level : options_.noise_levels) levels.push_back({.noise_level = level});
+  std::size_t pending = 0;
+  for (std::size_t task = 0; task < outcomes.size(); ++task) {
+    if (!outcomes[task]) {
+      ++pending;
+      continue;
+    }
+    levels[task / static_cast<std::size_t>(options_.seeds)].outcomes.push_back(
+        read_limit_outcome(outcomes[task]->outcome));
+  }
+  StudyResult result = sum_up_limit(options_, levels, context);
+  result.pending_tasks = pending;
+  return result;
+}
+
+StudyResult CalibrationLimitExperiment::replay(std::size_t task,
+                                               const StudyContext& context) const {
+  Options one = options_;
+  one.noise_levels = {level_of(task)};
+  return sum_up_limit(
+      one,
+      {{.noise_level = level_of(task), .outcomes = {read_limit_outcome(run_task(task, context))}}},
+      context);
+}
+
+}  // namespace modcal
