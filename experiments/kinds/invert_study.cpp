@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/kinds/model_based_output.hpp"
+#include "experiments/kinds/wave_output.hpp"
 #include "experiments/study/figures.hpp"
 
 namespace modcal {
@@ -12,6 +14,13 @@ void InvertOptions::visit(OptionVisitor& visitor) {
   visitor.section({.key = "model_error", .meaning = "errors put into the model that inverts"},
                   model_error);
   visitor.section({.key = "inversion", .meaning = "how the reactions are inverted"}, inversion);
+  visitor.optional_group(
+      {.key = "model_based",
+       .meaning = "observer with a fitted friction law, beside the linear estimates"},
+      has_model_based, [this](OptionVisitor& inner) { model_based.visit(inner); });
+  visitor.flag({.key = "wave_based",
+                .meaning = "reconstruct the force from the waves of both reactions as well"},
+               wave_based);
   visitor.section({.key = "score", .meaning = "where identified and true force are compared"},
                   score);
   visitor.integer(
@@ -167,6 +176,22 @@ StudyResult invert_study(const InvertOptions& options, const StudyContext& conte
   add_identification_figures(options.figures, observation, sides, context.command, result);
   result.blocks.emplace_back(identification_table(sides, context.command));
   if (options.write_signals) result.signal_files.push_back(identified_signals(observation, sides));
+  if (options.wave_based) {
+    add_wave_based(observation, model, options.score, context.command, result);
+  }
+  if (options.has_model_based) {
+    std::vector<double> means;
+    if (observation.truth) {
+      means = mean_force_between_samples(options.observation, context.work.truths);
+    }
+    const ModelIdentification by_model =
+        identify_by_model(observation, model, options.model_based, &options.score, means,
+                          [&] { return context.stop.requested(); });
+    add_model_based(observation, by_model, options.score, context.command, result);
+    if (options.write_signals) {
+      add_model_signals(observation, by_model, result.signal_files.back());
+    }
+  }
   for (const SideIdentification& side : sides) {
     for (const WindowScore& score : side.scores) {
       result.summary += fmt::format(

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "experiments/study/figure_options.hpp"
+#include "experiments/study/model_based.hpp"
 #include "experiments/study/study.hpp"
 
 namespace modcal {
@@ -13,6 +14,9 @@ struct InvertOptions {
   ObservationOptions observation;
   ModelErrorOptions model_error;
   InversionOptions inversion;
+  bool has_model_based = false;  ///< the model-based estimate beside the linear ones
+  ModelBasedOptions model_based;
+  bool wave_based = false;  ///< the wave-based reconstructions beside the linear estimates
   ScoreOptions score;
   std::vector<FigureOptions> figures;
   std::int64_t seed = 1;

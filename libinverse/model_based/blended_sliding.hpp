@@ -15,12 +15,18 @@ struct BlendedSliding {
   double weight = 1.0;         ///< w [1]
   double ratio = 1.0;          ///< r [1]
   double viscous = 0.0;        ///< s [N s/m]
+  bool hyperbolic = false;
 
   struct Point {
     double force;  ///< [N]
     double slope;  ///< [N s/m]
   };
   Point at(double speed) const {
+    if (hyperbolic) {
+      const double inverse = 1.0 / (1.0 + decay * speed);
+      const double excess = force_drop * inverse;
+      return {dynamic_force + excess, -decay * excess * inverse};
+    }
     const double near = weight * force_drop * decaying_exp(-decay * speed);
     double force = dynamic_force + near;
     double slope = -decay * near;

@@ -11,6 +11,7 @@
 #include "libinverse/model_based/gain_search.hpp"
 #include "libinverse/model_based/innovation_fit.hpp"
 #include "libinverse/model_based/start_values.hpp"
+#include "libsim/base/error.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {
@@ -60,7 +61,7 @@ class Estimation {
     space = fitted(space, {kWide}, 8);
     free_more(freed(), runs_->string().mode, space);
     if (freed().any()) space = fitted(space, {kWide}, 8);
-    space = fitted(space, {kMiddle}, 8);
+    space = best_law(space, picture.slip_speed);
     if (record_.noise[0] < kQuietNoise * standard_deviation(record_.reaction[0])) {
       space = fitted(space, {kNarrow}, 6);
     }
@@ -76,7 +77,6 @@ class Estimation {
  private:
   FreedOptions freed() const {
     return {.adherence_damping = options_.adherence_damping,
-            .law_shape = options_.law_shape,
             .force_knots = static_cast<std::size_t>(options_.force_knots),
             .velocity_knots = static_cast<std::size_t>(options_.velocity_knots),
             .delay = options_.delay,
@@ -93,6 +93,31 @@ class Estimation {
     const FitOutcome outcome = fit_innovations(*runs_, space, schedule, limits);
     run_count_ += outcome.runs;
     return space.restarted_at(outcome.x);
+  }
+
+  // Every law is judged under gains of its own: one gain for all keeps bursts in which the observer
+  // has lost the string, and they outweigh what tells the laws apart.
+  ParameterSpace best_law(const ParameterSpace& space, double slip_speed) {
+    std::vector<ParameterSpace> fits;
+    for (const std::string& law : options_.laws) {
+      ParameterSpace fit = with_friction_law(space, law, slip_speed);
+      if (law != "exponential") fit = fitted(fit, {kWide}, 8);
+      fit = fitted(fit, {kMiddle}, 8);
+      GainSchedule schedule = {kMiddle};
+      if (options_.laws.size() > 1) {
+        fit = fitted(fit, search_gains(*runs_, fit.start(), kBeam), 4);
+        schedule = search_gains(*runs_, fit.start(), kBeam);
+      }
+      fits.push_back(fit);
+      candidates_.push_back(judge_friction_law(*runs_, fits.back(), law, schedule));
+    }
+    const auto less = [](const FrictionCandidate& a, const FrictionCandidate& b) {
+      return a.criterion < b.criterion;
+    };
+    const auto best = std::min_element(candidates_.begin(), candidates_.end(), less);
+    ParameterSpace result = fits[static_cast<std::size_t>(best - candidates_.begin())];
+    std::stable_sort(candidates_.begin(), candidates_.end(), less);
+    return result;
   }
 
   // Decay and adherence stiffness are not seen in the linear estimate: a grid, each corner fitted
@@ -141,12 +166,15 @@ class Estimation {
     result.force = std::move(motion.force);
     result.velocity = std::move(motion.velocity);
     result.displacement = std::move(motion.displacement);
+    result.mean_force = std::move(motion.mean_force);
     result.linear_force = std::move(linear.force);
+    result.linear_velocity = std::move(linear.velocity);
+    result.laws = candidates_;
     result.parameters = parameters;
     result.negated = record_.negated;
     if (record_.negated) {
-      for (auto* signal :
-           {&result.force, &result.velocity, &result.displacement, &result.linear_force}) {
+      for (auto* signal : {&result.force, &result.velocity, &result.displacement,
+                           &result.mean_force, &result.linear_force, &result.linear_velocity}) {
         for (double& value : *signal) value = -value;
       }
     }
@@ -180,7 +208,7 @@ class Estimation {
       result.warnings.push_back(fmt::format(
           "innovation misfit J = {:.3g} is above {:g}: the model does not explain the reactions to "
           "their noise; compare with the linear estimate, and free what may differ (force_knots, "
-          "velocity_knots, law_shape, delay, gain, contact, frequencies)",
+          "velocity_knots, laws, delay, gain, contact, frequencies)",
           result.misfit, options_.misfit_limit));
     }
     for (int r = 0; r < 2; ++r) {
@@ -201,11 +229,16 @@ class Estimation {
   double offset_deviation_[2] = {};
   std::unique_ptr<ObserverRuns> runs_;
   std::size_t run_count_ = 0;
+  std::vector<FrictionCandidate> candidates_;
 };
 
 }  // namespace
 
 void ModelBasedOptions::visit(OptionVisitor& visitor) {
+  visitor.texts({.key = "laws",
+                 .meaning = "friction laws to fit; of several the best supported one is taken",
+                 .choices = friction_law_names()},
+                laws);
   visitor.integer({.key = "substeps",
                    .meaning = "steps of the observer per sample",
                    .range = Range::closed(1, 64)},
@@ -216,9 +249,6 @@ void ModelBasedOptions::visit(OptionVisitor& visitor) {
   visitor.flag(
       {.key = "adherence_damping", .meaning = "fit the damping of adherence, else critical"},
       adherence_damping);
-  visitor.flag({.key = "law_shape",
-                .meaning = "fit a second exponential and a viscous term of the friction law"},
-               law_shape);
   visitor.integer({.key = "force_knots",
                    .meaning = "knots of the normal force in time; 0: constant",
                    .range = Range::closed(0, 200)},
@@ -236,6 +266,17 @@ void ModelBasedOptions::visit(OptionVisitor& visitor) {
                   .unit = "1",
                   .range = Range::positive()},
                  misfit_limit);
+}
+
+ModelBasedEstimator::ModelBasedEstimator(ModelBasedOptions options) : options_(std::move(options)) {
+  MODCAL_REQUIRE(!options_.laws.empty(), "no friction law to fit: state at least one of laws");
+  for (const std::string& law : options_.laws) {
+    const auto names = friction_law_names();
+    MODCAL_REQUIRE(std::find(names.begin(), names.end(), law) != names.end(),
+                   "unknown friction law \"{}\": exponential, hyperbolic and two_exponential can "
+                   "be fitted",
+                   law);
+  }
 }
 
 ModelBasedResult ModelBasedEstimator::estimate(const ModalBasis& basis, double contact,

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "libinverse/model_based/friction_candidates.hpp"
 #include "libinverse/model_based/parameter_space.hpp"
 #include "libsim/base/options.hpp"
 #include "libsim/model/modal_basis.hpp"
@@ -14,10 +15,11 @@
 namespace modcal {
 
 struct ModelBasedOptions {
+  /// Friction laws fitted; with several, the one with the least BIC is taken.
+  std::vector<std::string> laws = {"exponential"};
   std::int64_t substeps = 5;        ///< steps of the observer per sample while it is fitted
   std::int64_t rounds = 3;          ///< of gain search and fit
   bool adherence_damping = false;   ///< frees C_a, else 2√(K_a m_eff)
-  bool law_shape = false;           ///< frees a second exponential and a viscous term
   std::int64_t force_knots = 0;     ///< of ln F_N(t); 0: constant
   std::int64_t velocity_knots = 0;  ///< of v_bow(t); 0: constant
   bool delay = false;               ///< frees the delay between the two sensors
@@ -41,15 +43,19 @@ struct ModelBasedResult {
   std::vector<double> force;         ///< f_c(t_k) [N], with its static level as far as recovered
   std::vector<double> velocity;      ///< v(x_c, t_k) [m/s]
   std::vector<double> displacement;  ///< y(x_c, t_k) [m]
-  std::vector<double> linear_force;  ///< the linear estimate it started from [N]
+  /// Mean of f_c from every sample to the next [N]: what sampling does not alias.
+  std::vector<double> mean_force;
+  std::vector<double> linear_force;         ///< the linear estimate it started from [N]
+  std::vector<double> linear_velocity;      ///< and its velocity [m/s]
   observer::ObserverParameters parameters;  ///< in the frame of a bow that moves forward
   bool negated = false;                     ///< the bow moves in the negative direction
   double noise[2] = {};                     ///< estimated standard deviation of R₁, R₂ [N]
   double misfit = 0.0;  ///< J, mean Huber-ed (ν/s)²: 1 where model and noise are right
   StaticRecovery static_part;
-  std::vector<double> gain_share;   ///< share of blocks served by each listed gain
-  std::vector<double> force_noise;  ///< the list of gains, q [N]
-  std::size_t runs = 0;             ///< observer runs taken
+  std::vector<double> gain_share;                 ///< share of blocks served by each listed gain
+  std::vector<double> force_noise;                ///< the list of gains, q [N]
+  std::size_t runs = 0;                           ///< observer runs taken
+  std::vector<observer::FrictionCandidate> laws;  ///< the laws fitted, best supported first
   std::vector<std::string> warnings;
 };
 
@@ -59,7 +65,8 @@ struct ModelBasedResult {
 /// it stands beside a linear estimate, never in its place.
 class ModelBasedEstimator {
  public:
-  explicit ModelBasedEstimator(ModelBasedOptions options) : options_(options) {}
+  /// Throws InvalidInput where no friction law or an unknown one is asked for.
+  explicit ModelBasedEstimator(ModelBasedOptions options);
   /// Reactions [N] at x = 0 and x = L, contact x_c [m], sample_rate [Hz]. Throws InvalidInput as
   /// observer::observe_record does, and Interrupted when `interrupted` says so.
   ModelBasedResult estimate(

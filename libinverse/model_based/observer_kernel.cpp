@@ -158,6 +158,9 @@ class Observer {
       limit_ = scale_ * law_.at_rest();
       Correct(gain, signals, k);
       AdvanceSample();
+      if (signals.mean_force) {
+        signals.mean_force[k] = impulse_ / static_cast<double>(string_.substeps.coarse);
+      }
     }
     modes_.Store();
     state_.elongation = elongation_;
@@ -211,6 +214,7 @@ class Observer {
     Modes<kVectors> modes = modes_;
     Motion now = now_;
     double force = force_, elongation = elongation_;
+    impulse_ = 0.0;  // in steps: the sum of the steps' mean forces
     // P = r (Z − d f): what the next step needs of the modes does not wait for its force.
     Motion sums = modes.AddThenTurn(t.propagate, t.newer, -force);
     for (std::size_t left = string_.substeps.coarse; left > 0; --left) {
@@ -248,6 +252,7 @@ class Observer {
         sums = modes.AddThenTurn(t.propagate, t.newer, -force);
         continue;
       }
+      impulse_ += 0.5 * (older + force);
       const Motion next = {free.velocity + direct.velocity * force,
                            free.displacement + direct.displacement * force};
       if (sticking_) elongation += next.displacement - now.displacement - travel;
@@ -306,6 +311,7 @@ class Observer {
         }
       }
       const Motion now = modes_.Add(t.older, older, t.newer, force);
+      impulse_ += 0.5 * (older + force) / static_cast<double>(string_.substeps.fine);
       if (held_throughout) elongation_ += now.displacement - now_.displacement - bow_ * t.step;
       if (attaches) elongation_ = stretch;
       now_ = now;
@@ -341,6 +347,7 @@ class Observer {
   double elongation_, force_, side_;
   bool sticking_;
   double scale_ = 1.0, bow_ = 0.0, limit_ = 0.0;
+  double impulse_ = 0.0;
   Motion now_{};
 };
 

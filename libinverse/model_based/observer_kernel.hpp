@@ -53,6 +53,7 @@ struct ObserverSignals {
   double* force = nullptr;               ///< f_c [N]
   double* velocity = nullptr;            ///< v(x_c) [m/s]
   double* displacement = nullptr;        ///< y(x_c) [m]
+  double* mean_force = nullptr;          ///< mean of f_c from this sample to the next [N]
 };
 
 /// Runs samples [first, last): corrected at each, then taken on to the next. On return `state` is

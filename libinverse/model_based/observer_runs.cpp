@@ -165,12 +165,14 @@ void ObserverRuns::run_schedule(const PreparedObserver& observer, const GainSche
   outputs.left_innovation = innovations.scaled[0].data();
   outputs.right_innovation = innovations.scaled[1].data();
   if (motion) {
-    for (auto* signal : {&motion->force, &motion->velocity, &motion->displacement}) {
+    for (auto* signal :
+         {&motion->force, &motion->velocity, &motion->displacement, &motion->mean_force}) {
       signal->resize(samples);
     }
     outputs.force = motion->force.data();
     outputs.velocity = motion->velocity.data();
     outputs.displacement = motion->displacement.data();
+    outputs.mean_force = motion->mean_force.data();
   }
   ObserverState state = observer.initial_state();
   const std::size_t block = schedule.size() == 1 ? samples : kBlock;

@@ -23,7 +23,7 @@ struct Innovations {
 };
 
 struct ObserverMotion {
-  std::vector<double> force, velocity, displacement;
+  std::vector<double> force, velocity, displacement, mean_force;
 };
 
 /// Model and data of one set of parameters, ready to run.

@@ -106,15 +106,6 @@ void free_more(const FreedOptions& options, std::span<const std::size_t> modes,
     space.free_also({coordinate, index, step, prior / step});
   };
   if (options.adherence_damping) free(Coordinate::kDamping, 0, 0.08, 2.0);
-  if (options.law_shape) {
-    // Two equal exponentials say nothing about their shares: start apart.
-    start.sliding.weight = 0.7;
-    start.sliding.ratio = 0.25;
-    start.sliding.decay *= 1.5;
-    free(Coordinate::kWeight, 0, 0.05, 0.5);
-    free(Coordinate::kRatio, 0, 0.1, 1.0);
-    free(Coordinate::kViscous, 0, 0.01 * start.sliding.dynamic_force, start.sliding.dynamic_force);
-  }
   start.force_knots.assign(options.force_knots, 0.0);
   start.velocity_knots.assign(options.velocity_knots, 0.0);
   for (std::size_t i = 0; i < options.force_knots; ++i) {

@@ -80,7 +80,6 @@ class ParameterSpace {
 /// What is freed beyond friction products, decay, bow velocity, adherence stiffness and offsets.
 struct FreedOptions {
   bool adherence_damping = false;
-  bool law_shape = false;
   std::size_t force_knots = 0;     ///< 0: constant F_N
   std::size_t velocity_knots = 0;  ///< 0: constant v_bow
   bool delay = false;
@@ -88,8 +87,8 @@ struct FreedOptions {
   bool contact = false;
   bool frequencies = false;
   bool any() const {
-    return adherence_damping || law_shape || force_knots > 0 || velocity_knots > 0 || delay ||
-           gain || contact || frequencies;
+    return adherence_damping || force_knots > 0 || velocity_knots > 0 || delay || gain || contact ||
+           frequencies;
   }
 };
 

@@ -51,6 +51,12 @@ TEST_P(Configs, RunsSmall) {
     apply_assignment(document, "seeds=1", 1);
     document.root.find("noise_levels")->items.resize(1);
   }
+  if (document.root.find("model_based")) {
+    apply_assignment(document, "scene.duration=0.06 s", 2);
+    apply_assignment(document, "score.windows=[0.04 s]", 3);
+    apply_assignment(document, "model_based.rounds=0", 4);
+    apply_assignment(document, "scene.string.damping.ratio=1.5e-2", 5);  // dies out in 0.06 s
+  }
   if (YamlNode* sweep = document.root.find("sweep")) {
     for (YamlNode::Member& axis : sweep->find("product")->members) axis.value.items.resize(1);
     std::erase_if(sweep->members, [](const auto& member) { return member.key != "product"; });

@@ -1,0 +1,248 @@
+#include "experiments/kinds/model_based_output.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libinverse/model_based/friction_curve.hpp"
+
+namespace modcal {
+
+report::Table model_score_table(const ModelIdentification& identification,
+                                const std::string& command) {
+  report::Table table{.id = "model_based",
+                      .title = "Model-based estimate",
+                      .caption =
+                          "Sampled: f_c at the samples. Mean: f_c averaged from one sample to "
+                          "the next, which sampling does not alias. Linear: the joint linear "
+                          "estimate that the observer starts from.",
+                      .columns = {{.key = "window"},
+                                  {.key = "R", .name = "R, sampled", .format = "{:.4f}"},
+                                  {.key = "rms", .name = "rms error, sampled"},
+                                  {.key = "R_mean", .name = "R, mean", .format = "{:.4f}"},
+                                  {.key = "rms_mean", .name = "rms error, mean"},
+                                  {.key = "R_linear", .name = "R, linear", .format = "{:.4f}"},
+                                  {.key = "rms_linear", .name = "rms error, linear"}},
+                      .command = command};
+  for (const ModelScore& score : identification.scores) {
+    const auto optional = [&](double WindowScore::*value) {
+      return score.mean ? report::Cell((*score.mean).*value) : report::Cell();
+    };
+    table.rows.push_back({score.window, score.sampled.correlation, score.sampled.relative_rms_error,
+                          optional(&WindowScore::correlation),
+                          optional(&WindowScore::relative_rms_error), score.linear.correlation,
+                          score.linear.relative_rms_error});
+  }
+  return table;
+}
+
+report::Table model_parameter_table(const ModelIdentification& identification,
+                                    const std::string& command) {
+  const ModelBasedResult& r = identification.result;
+  const observer::ObserverParameters& p = r.parameters;
+  const double sign = r.negated ? -1.0 : 1.0;
+  report::Table table{.id = "model_parameters",
+                      .title = "Fitted model",
+                      .columns = {{.key = "quantity"}, {.key = "value"}, {.key = "unit"}},
+                      .command = command};
+  const auto row = [&](const char* name, double value, const char* unit) {
+    table.rows.push_back({name, value, unit});
+  };
+  row("dynamic friction force", p.sliding.dynamic_force, "N");
+  row("static friction force", p.sliding.at_rest(), "N");
+  row("decay", p.sliding.decay, "s/m");
+  row("bow velocity", sign * p.bow_velocity, "m/s");
+  row("adherence stiffness", p.stiffness, "N/m");
+  row("adherence damping / critical", p.damping_ratio, "1");
+  row("share of the first exponential", p.sliding.weight, "1");
+  row("viscous friction", p.sliding.viscous, "N s/m");
+  row("offset at x = 0", sign * p.offset[0], "N");
+  row("offset at x = L", sign * p.offset[1], "N");
+  row("sensor delay", p.delay, "s");
+  row("sensor gain ratio", p.gain, "1");
+  row("contact point", p.contact, "m");
+  row("noise at x = 0", r.noise[0], "N");
+  row("noise at x = L", r.noise[1], "N");
+  row("innovation misfit J", r.misfit, "1");
+  row("static level of the force", r.static_part.level, "N");
+  row("its standard deviation from the offsets", r.static_part.deviation, "N");
+  row("observer runs", static_cast<double>(r.runs), "1");
+  return table;
+}
+
+report::Table friction_law_table(const ModelIdentification& identification,
+                                 const std::string& command) {
+  const auto& laws = identification.result.laws;
+  report::Table table{.id = "friction_laws",
+                      .title = "Friction laws",
+                      .caption =
+                          "BIC over the innovations of both reactions, relative to the best "
+                          "supported law. Hyperbolic: F_D + drop/(1 + C u).",
+                      .columns = {{.key = "law"},
+                                  {.key = "bic_difference", .name = "BIC above the best"},
+                                  {.key = "misfit", .name = "J"},
+                                  {.key = "free_parameters"},
+                                  {.key = "dynamic_force", .unit = "N"},
+                                  {.key = "force_drop", .unit = "N"},
+                                  {.key = "decay", .unit = "s/m"}},
+                      .command = command};
+  for (const observer::FrictionCandidate& law : laws) {
+    const observer::BlendedSliding& sliding = law.parameters.sliding;
+    table.rows.push_back({law.law, law.criterion - laws.front().criterion, law.misfit,
+                          law.free_parameters, sliding.dynamic_force, sliding.force_drop,
+                          sliding.decay});
+  }
+  return table;
+}
+
+namespace {
+
+report::Series cells_of(const std::vector<double>& velocity, const std::vector<double>& force,
+                        double bow_velocity, const char* label, report::ColorRole color) {
+  report::Series series{.label = label, .style = report::SeriesStyle::kPoints, .color = color};
+  for (const auto& cell : observer::friction_curve(velocity, force, bow_velocity, 24)) {
+    series.x.push_back(cell.speed);
+    series.y.push_back(cell.median);
+    series.y_low.push_back(cell.low);
+    series.y_high.push_back(cell.high);
+  }
+  return series;
+}
+
+report::Series law_curve(const observer::BlendedSliding& law, double fastest) {
+  constexpr int kPoints = 100;
+  report::Series series{.label = "fitted law", .color = report::ColorRole::kReference};
+  for (int i = 0; i <= kPoints; ++i) {
+    series.x.push_back(fastest * i / kPoints);
+    series.y.push_back(law.at(series.x.back()).force);
+  }
+  return series;
+}
+
+}  // namespace
+
+report::Figure friction_figure(const Observation& observation,
+                               const ModelIdentification& identification, double start,
+                               double duration, const std::string& command) {
+  const ModelBasedResult& r = identification.result;
+  const double sign = r.negated ? -1.0 : 1.0;
+  const double bow = sign * r.parameters.bow_velocity;
+  report::Panel curve{.title = "Sliding: force against slip speed",
+                      .x = {.label = "|v_c|", .unit = "m/s"},
+                      .y = {.label = "|f_c|", .unit = "N"}};
+  curve.series.push_back(
+      cells_of(r.linear_velocity, r.linear_force, bow, "linear", report::ColorRole::kMuted));
+  curve.series.push_back(
+      cells_of(r.velocity, r.force, bow, "model-based", report::ColorRole::kFirst));
+  double fastest = 0.0;
+  for (const double v : r.velocity) fastest = std::max(fastest, sign * (bow - v));
+  curve.series.push_back(law_curve(r.parameters.sliding, fastest));
+
+  report::Panel loop{
+      .title = "Loops", .x = {.label = "v_c", .unit = "m/s"}, .y = {.label = "f_c", .unit = "N"}};
+  const auto first = static_cast<std::size_t>(std::max(0.0, start * observation.sample_rate));
+  const std::size_t last = std::min(
+      r.force.size(), first + static_cast<std::size_t>(duration * observation.sample_rate) + 1);
+  const auto add = [&](const char* label, const std::vector<double>& v,
+                       const std::vector<double>& f, report::ColorRole color) {
+    report::Series series{.label = label, .color = color};
+    for (std::size_t k = first; k < last; ++k) {
+      series.x.push_back(v[k] - bow);
+      series.y.push_back(f[k]);
+    }
+    loop.series.push_back(std::move(series));
+  };
+  add("linear", r.linear_velocity, r.linear_force, report::ColorRole::kMuted);
+  add("model-based", r.velocity, r.force, report::ColorRole::kFirst);
+  return {.id = "friction_law",
+          .title = "Friction law",
+          .caption =
+              "Medians of cells of slip speed with the 5 and 95 % quantiles of their samples. "
+              "The linear estimate assumes no law; the model-based one lies on its own.",
+          .columns = 2,
+          .panels = {std::move(curve), std::move(loop)},
+          .command = command};
+}
+
+report::Figure model_force_figure(const Observation& observation,
+                                  const ModelIdentification& identification, double start,
+                                  double duration, const std::string& command) {
+  const double rate = observation.sample_rate;
+  const auto first = static_cast<std::size_t>(std::max(0.0, start * rate));
+  const std::size_t last = std::min(identification.result.force.size(),
+                                    first + static_cast<std::size_t>(duration * rate) + 1);
+  report::Panel panel{.title = "Friction force",
+                      .x = {.label = "t", .unit = "s"},
+                      .y = {.label = "f_c", .unit = "N"}};
+  const auto add = [&](const char* label, const std::vector<double>& samples,
+                       report::SeriesStyle style, report::ColorRole color) {
+    report::Series series{.label = label, .style = style, .color = color};
+    for (std::size_t k = first; k < last; ++k) {
+      series.x.push_back(static_cast<double>(k) / rate);
+      series.y.push_back(samples[k]);
+    }
+    panel.series.push_back(std::move(series));
+  };
+  add("linear", identification.result.linear_force, report::SeriesStyle::kLine,
+      report::ColorRole::kMuted);
+  add("model-based", identification.result.force, report::SeriesStyle::kLine,
+      report::ColorRole::kFirst);
+  if (observation.reference) {
+    add("truth", observation.reference->samples, report::SeriesStyle::kDotted,
+        report::ColorRole::kReference);
+  }
+  return {.id = "model_based_force",
+          .title = "Contact force, model-based and linear",
+          .caption =
+              "The model-based estimate assumes a friction law of the exponential family; "
+              "the linear one assumes none.",
+          .panels = {std::move(panel)},
+          .command = command};
+}
+
+void add_model_signals(const Observation& observation, const ModelIdentification& identification,
+                       SignalFile& file) {
+  const ModelBasedResult& r = identification.result;
+  file.signals.push_back({"f_c_model", "N", observation.sample_rate, r.force});
+  file.signals.push_back({"v_model", "m/s", observation.sample_rate, r.velocity});
+  file.signals.push_back({"y_model", "m", observation.sample_rate, r.displacement});
+}
+
+void add_model_based(const Observation& observation, const ModelIdentification& identification,
+                     const ScoreOptions& score, const std::string& command, StudyResult& result) {
+  const ModelBasedResult& r = identification.result;
+  for (const std::string& warning : r.warnings) {
+    const std::string text = "Model-based estimate: " + warning;
+    result.blocks.emplace_back(report::Text{text, report::Text::Kind::kWarning});
+    result.summary += "warning: " + text + "\n";
+  }
+  const double length = score.periods / observation.fundamental;
+  const double duration = static_cast<double>(r.force.size()) / observation.sample_rate;
+  const double start = score.windows.empty() ? 0.5 * duration : score.windows.front();
+  result.blocks.emplace_back(
+      model_force_figure(observation, identification, start, length, command));
+  result.blocks.emplace_back(friction_figure(observation, identification, start, length, command));
+  if (r.laws.size() > 1) {
+    result.blocks.emplace_back(friction_law_table(identification, command));
+    result.summary += fmt::format("model  friction law: {} (BIC {:.3g} below {})\n", r.laws[0].law,
+                                  r.laws[1].criterion - r.laws[0].criterion, r.laws[1].law);
+  }
+  if (!identification.scores.empty()) {
+    result.blocks.emplace_back(model_score_table(identification, command));
+  }
+  result.blocks.emplace_back(model_parameter_table(identification, command));
+  for (const ModelScore& window : identification.scores) {
+    result.summary +=
+        fmt::format("model  J {:.3f}  window {}: R = {:.4f}, relative rms error {:.4f}", r.misfit,
+                    window.window, window.sampled.correlation, window.sampled.relative_rms_error);
+    if (window.mean) {
+      result.summary += fmt::format(" (between samples {:.4f}, {:.4f})", window.mean->correlation,
+                                    window.mean->relative_rms_error);
+    }
+    result.summary += "\n";
+  }
+  result.summary +=
+      fmt::format("model  static part {:.4g} N, standard deviation from the offsets {:.2g} N\n",
+                  r.static_part.level, r.static_part.deviation);
+}
+
+}  // namespace modcal
