@@ -46,6 +46,9 @@ Evaluator::Evaluator(const ObjectiveFunction& function, std::span<const Variable
     upper_.push_back((variable.upper - variable.initial) / variable.scale);
     x_.push_back(variable.initial);
   }
+  // So that searches that allocate nothing are not made to.
+  result_.trace.reserve(256);
+  best_.reserve(x_.size());
 }
 
 std::int64_t Evaluator::evaluations_left() const {

@@ -1,9 +1,12 @@
 #include <array>
 
 #include "libcalib/objectives/contact_location.hpp"
+#include "libcalib/objectives/contact_location_squares.hpp"
 #include "libcalib/objectives/force_mismatch.hpp"
 #include "libcalib/objectives/joint_likelihood.hpp"
+#include "libcalib/objectives/smooth_spectral_peak.hpp"
 #include "libcalib/objectives/spectral_peak.hpp"
+#include "libcalib/objectives/weighted_sum.hpp"
 
 namespace modcal {
 
@@ -11,12 +14,17 @@ Registry<Objective> Objective::registry() {
   static constexpr std::array kTable = {
       entry_of<Objective, ContactLocation>(
           "contact_location", "relative difference of the two identified force waveforms"),
+      entry_of<Objective, ContactLocationSquares>("contact_location_squares",
+                                                  "the same squared and smooth, as residuals"),
       entry_of<Objective, ForceMismatch>("force_mismatch",
                                          "least squares of the two identified force spectra"),
       entry_of<Objective, JointLikelihood>(
           "joint_likelihood", "both reactions compared with the force eliminated in every bin"),
+      entry_of<Objective, SmoothSpectralPeak>("smooth_spectral_peak",
+                                              "smooth variant of spectral_peak, as residuals"),
       entry_of<Objective, SpectralPeak>("spectral_peak",
                                         "the paper's integral of the force spectrum over a band"),
+      entry_of<Objective, WeightedSum>("weighted_sum", "a weighted sum of other objectives"),
   };
   return kTable;
 }

@@ -29,6 +29,9 @@ class SpectralPeakFunction final : public ObjectiveFunction {
   BinRange reachable() const;
   /// |R_r| Δω/f_s of all bins; empty where the reaction is missing. Index: End.
   const std::array<std::vector<double>, 2>& magnitudes() const { return magnitudes_; }
+  /// Bins from the lowest to the highest band of the value, and how many bands hold each.
+  BinRange covered() const { return covered_; }
+  const std::vector<double>& band_count() const { return count_; }
 
  private:
   void do_evaluate(std::span<const double> x, const ObjectiveOutputs& outputs) const override;

@@ -61,7 +61,7 @@ StopReason reason_of(const ceres::Solver::Summary& summary) {
 void CeresOptimizer::Options::visit(OptionVisitor& visitor) {
   visitor.text({.key = "strategy",
                 .meaning = "trust-region strategy",
-                .choices = {"levenberg_marquardt", "dogleg"}},
+                .choices = {"levenberg_marquardt", "dogleg", "subspace_dogleg"}},
                strategy);
   const auto tolerance = [&visitor](std::string_view key, std::string_view meaning, double& value) {
     visitor.number({.key = key, .meaning = meaning, .unit = "1", .range = Range::non_negative()},
@@ -79,8 +79,10 @@ void CeresOptimizer::Options::visit(OptionVisitor& visitor) {
 }
 
 CeresOptimizer::CeresOptimizer(const Options& options) : options_(options) {
-  MODCAL_REQUIRE(options.strategy == "levenberg_marquardt" || options.strategy == "dogleg",
-                 "unknown strategy \"{}\": levenberg_marquardt and dogleg are available",
+  MODCAL_REQUIRE(options.strategy == "levenberg_marquardt" || options.strategy == "dogleg" ||
+                     options.strategy == "subspace_dogleg",
+                 "unknown strategy \"{}\": levenberg_marquardt, dogleg and subspace_dogleg are "
+                 "available",
                  options.strategy);
 }
 
@@ -95,7 +97,9 @@ StopReason CeresOptimizer::search(Evaluator& evaluator) const {
   EndWithTheEvaluator end_with_the_evaluator(evaluator);
   ceres::Solver::Options settings;
   settings.trust_region_strategy_type =
-      options_.strategy == "dogleg" ? ceres::DOGLEG : ceres::LEVENBERG_MARQUARDT;
+      options_.strategy == "levenberg_marquardt" ? ceres::LEVENBERG_MARQUARDT : ceres::DOGLEG;
+  settings.dogleg_type =
+      options_.strategy == "subspace_dogleg" ? ceres::SUBSPACE_DOGLEG : ceres::TRADITIONAL_DOGLEG;
   settings.linear_solver_type = ceres::DENSE_QR;
   settings.gradient_tolerance = options_.gradient_tolerance;
   settings.parameter_tolerance = options_.step_tolerance;

@@ -6,8 +6,9 @@
 
 namespace modcal {
 
-/// Trust-region least squares of Ceres Solver (Agarwal, Mierle and others): Levenberg–Marquardt or
-/// dogleg on the residuals, within the bounds. Prints nothing.
+/// Trust-region least squares of Ceres Solver (Agarwal, Mierle and others): Levenberg–Marquardt,
+/// Powell's dogleg or the dogleg in the subspace of its two legs, on the residuals, within the
+/// bounds. Prints nothing.
 class CeresOptimizer final : public Optimizer {
  public:
   struct Options {

@@ -1,21 +1,27 @@
 #include <array>
 
+#include "libcalib/optimizers/ceres_line_search.hpp"
 #include "libcalib/optimizers/ceres_optimizer.hpp"
 #include "libcalib/optimizers/grid.hpp"
 #include "libcalib/optimizers/gsl_optimizer.hpp"
 #include "libcalib/optimizers/mode_by_mode.hpp"
 #include "libcalib/optimizers/nlopt_optimizer.hpp"
+#include "libcalib/optimizers/tiny_least_squares.hpp"
 
 namespace modcal {
 
 Registry<Optimizer> Optimizer::registry() {
   static constexpr std::array kTable = {
       entry_of<Optimizer, CeresOptimizer>("ceres", "trust-region least squares of Ceres Solver"),
+      entry_of<Optimizer, CeresLineSearch>("ceres_line_search",
+                                           "quasi-Newton line search of Ceres Solver"),
       entry_of<Optimizer, Grid>("grid", "every point of a regular grid, for few parameters"),
       entry_of<Optimizer, GslOptimizer>("gsl", "an algorithm of the GNU Scientific Library"),
       entry_of<Optimizer, ModeByMode>(
           "mode_by_mode", "the paper's systematic search, one parameter after the other"),
       entry_of<Optimizer, NloptOptimizer>("nlopt", "an algorithm of NLopt, by its name"),
+      entry_of<Optimizer, TinyLeastSquares>("tiny_least_squares",
+                                            "least squares for few parameters, without allocation"),
   };
   return kTable;
 }

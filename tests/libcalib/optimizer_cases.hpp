@@ -8,11 +8,13 @@
 #include <string>
 #include <vector>
 
+#include "libcalib/optimizers/ceres_line_search.hpp"
 #include "libcalib/optimizers/ceres_optimizer.hpp"
 #include "libcalib/optimizers/grid.hpp"
 #include "libcalib/optimizers/gsl_optimizer.hpp"
 #include "libcalib/optimizers/mode_by_mode.hpp"
 #include "libcalib/optimizers/nlopt_optimizer.hpp"
+#include "libcalib/optimizers/tiny_least_squares.hpp"
 
 namespace modcal {
 
@@ -61,9 +63,15 @@ inline std::vector<OptimizerCase> optimizer_cases() {
     const std::string name(algorithm);
     add("nlopt_" + name, way_of(algorithm), NloptOptimizer({.algorithm = name}));
   }
-  for (const std::string strategy : {"levenberg_marquardt", "dogleg"}) {
+  for (const std::string strategy : {"levenberg_marquardt", "dogleg", "subspace_dogleg"}) {
     add("ceres_" + strategy, Way::kLeastSquares, CeresOptimizer({.strategy = strategy}));
   }
+  for (const std::string direction : {"bfgs", "lbfgs", "fletcher_reeves", "polak_ribiere",
+                                      "hestenes_stiefel", "steepest_descent"}) {
+    add("ceres_line_search_" + direction, Way::kGradient,
+        CeresLineSearch({.direction = direction}));
+  }
+  add("tiny_least_squares", Way::kLeastSquares, TinyLeastSquares(TinyLeastSquares::Options{}));
   add("grid", Way::kSystematic, Grid(Grid::Options{}));
   add("mode_by_mode", Way::kSystematic, ModeByMode(ModeByMode::Options{}));
   return cases;

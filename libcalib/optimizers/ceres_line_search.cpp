@@ -1,0 +1,119 @@
+#include "libcalib/optimizers/ceres_line_search.hpp"
+
+#include <ceres/ceres.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "libcalib/optimizers/unbounded_search.hpp"
+#include "libsim/base/error.hpp"
+
+namespace modcal {
+namespace {
+
+constexpr std::array<std::string_view, 6> kDirections = {
+    "bfgs", "fletcher_reeves", "hestenes_stiefel", "lbfgs", "polak_ribiere", "steepest_descent"};
+
+class Function final : public ceres::FirstOrderFunction {
+ public:
+  explicit Function(UnboundedSearch& search) : search_(search) {}
+  int NumParameters() const override { return static_cast<int>(search_.dimension()); }
+  bool Evaluate(const double* const u, double* value, double* gradient) const override {
+    const std::size_t n = search_.dimension();
+    if (search_.try_evaluate({u, n}, {.value = value, .gradient = gradient})) {
+      last_value_ = *value;
+      return true;
+    }
+    // A failed evaluation makes Ceres retry and write to the error log: a flat function ends it
+    // silently instead. Its result is not used.
+    *value = last_value_;
+    if (gradient) std::fill_n(gradient, n, 0.0);
+    return true;
+  }
+
+ private:
+  UnboundedSearch& search_;
+  mutable double last_value_ = 0.0;
+};
+
+class EndWithTheSearch final : public ceres::IterationCallback {
+ public:
+  explicit EndWithTheSearch(const UnboundedSearch& search) : search_(search) {}
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& /*summary*/) override {
+    return search_.stopped() ? ceres::SOLVER_ABORT : ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  const UnboundedSearch& search_;
+};
+
+void set_direction(const std::string& direction, ceres::GradientProblemSolver::Options& settings) {
+  settings.line_search_direction_type = ceres::NONLINEAR_CONJUGATE_GRADIENT;
+  if (direction == "bfgs") settings.line_search_direction_type = ceres::BFGS;
+  if (direction == "lbfgs") settings.line_search_direction_type = ceres::LBFGS;
+  if (direction == "steepest_descent") {
+    settings.line_search_direction_type = ceres::STEEPEST_DESCENT;
+  }
+  settings.nonlinear_conjugate_gradient_type = ceres::FLETCHER_REEVES;
+  if (direction == "polak_ribiere") {
+    settings.nonlinear_conjugate_gradient_type = ceres::POLAK_RIBIERE;
+  }
+  if (direction == "hestenes_stiefel") {
+    settings.nonlinear_conjugate_gradient_type = ceres::HESTENES_STIEFEL;
+  }
+}
+
+// Ceres tells its kinds of convergence apart in its message only.
+StopReason reason_of(const ceres::GradientProblemSolver::Summary& summary) {
+  if (summary.termination_type == ceres::FAILURE) return StopReason::kRoundoff;
+  if (summary.termination_type != ceres::CONVERGENCE) return StopReason::kNoProgress;
+  if (summary.message.starts_with("Function tolerance")) return StopReason::kSmallDecrease;
+  if (summary.message.starts_with("Parameter tolerance")) return StopReason::kSmallStep;
+  return StopReason::kConverged;
+}
+
+}  // namespace
+
+void CeresLineSearch::Options::visit(OptionVisitor& visitor) {
+  visitor.text({.key = "direction",
+                .meaning = "how the direction of a line search is chosen",
+                .choices = {kDirections.begin(), kDirections.end()}},
+               direction);
+  const auto tolerance = [&visitor](std::string_view key, std::string_view meaning, double& value) {
+    visitor.number({.key = key, .meaning = meaning, .unit = "1", .range = Range::non_negative()},
+                   value);
+  };
+  tolerance("gradient_tolerance", "largest entry of the scaled gradient at an optimum",
+            gradient_tolerance);
+  tolerance("step_tolerance", "smallest step, relative to the scaled variables", step_tolerance);
+  tolerance("value_tolerance", "smallest decrease, relative to the value", value_tolerance);
+}
+
+CeresLineSearch::CeresLineSearch(const Options& options) : options_(options) {
+  MODCAL_REQUIRE(
+      std::find(kDirections.begin(), kDirections.end(), options.direction) != kDirections.end(),
+      "unknown direction \"{}\": {} are available", options.direction,
+      fmt::join(kDirections, ", "));
+}
+
+StopReason CeresLineSearch::search(Evaluator& evaluator) const {
+  UnboundedSearch unbounded(evaluator);
+  const ceres::GradientProblem problem(new Function(unbounded));
+  EndWithTheSearch end_with_the_search(unbounded);
+  ceres::GradientProblemSolver::Options settings;
+  set_direction(options_.direction, settings);
+  settings.gradient_tolerance = options_.gradient_tolerance;
+  settings.parameter_tolerance = options_.step_tolerance;
+  settings.function_tolerance = options_.value_tolerance;
+  settings.max_num_iterations = std::numeric_limits<int>::max();  // the evaluator's budget decides
+  settings.logging_type = ceres::SILENT;
+  settings.callbacks = {&end_with_the_search};
+  std::vector<double> u = evaluator.start();
+  ceres::GradientProblemSolver::Summary summary;
+  ceres::Solve(settings, problem, u.data(), &summary);
+  return reason_of(summary);
+}
+
+}  // namespace modcal
