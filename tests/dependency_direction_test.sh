@@ -16,12 +16,14 @@ violations() {
       folder = file; sub(/\/.*/, "", folder)
       if (folder == "libsim") folder = file ~ /^libsim\/dynamics\// ? "dynamics" : "model"
       if (file ~ /^libinverse\/model_based\//) folder = "identify"
+      if (file ~ /^libinverse\/pluck\//) folder = "pluck"
       test = folder == "tests" || folder == "benchmarks"
 
       model = "^libsim/(base|signal|model)/"
       allowed["model"] = model
       allowed["dynamics"] = "^libsim/"
       allowed["libinverse"] = model "|^libinverse/(joint/)?[^/]*$"
+      allowed["pluck"] = model "|^libinverse/pluck/"
       allowed["identify"] = "^(libsim|libinverse)/"
       allowed["libcalib"] = "^(libsim|libinverse|libcalib)/"
       allowed["experiments"] = "^(libsim|libinverse|libcalib|experiments)/"
