@@ -4,6 +4,7 @@
 #include "experiments/kinds/benchmark_experiment.hpp"
 #include "experiments/kinds/calibrate_experiment.hpp"
 #include "experiments/kinds/calibration_limit_experiment.hpp"
+#include "experiments/kinds/identify_experiment.hpp"
 #include "experiments/kinds/invert_experiment.hpp"
 #include "experiments/kinds/schelleng_experiment.hpp"
 #include "experiments/kinds/simulate_experiment.hpp"
@@ -19,6 +20,8 @@ Registry<Experiment> Experiment::registry() {
           "calibrate", "refine the modal model, then identify force and motion with it"),
       entry_of<Experiment, CalibrationLimitExperiment>(
           "calibration_limit", "calibration error against noise beside the Cramer-Rao bound"),
+      entry_of<Experiment, IdentifyExperiment>("identify",
+                                               "modes of a plucked string from its end reactions"),
       entry_of<Experiment, InvertExperiment>(
           "invert", "contact force and motion from simulated or recorded reactions"),
       entry_of<Experiment, SchellengExperiment>(
