@@ -1,7 +1,7 @@
 # Every target can be the first one run on a fresh Debian 12 (root or sudo).
 PRESET ?= release
 
-.PHONY: reproduce test test-cluster bench accuracy format tidy clean build
+.PHONY: reproduce test test-cluster bench accuracy stress format tidy clean build
 .PHONY: packages packages-test packages-cluster packages-develop
 
 build: packages
@@ -42,6 +42,11 @@ accuracy: packages
 	@cmake --preset $(PRESET) >/dev/null
 	@cmake --build --preset $(PRESET) --target work_precision perturbation_growth random_scenes
 	@benchmarks/accuracy/run.sh build/$(PRESET) docs/accuracy
+
+stress: packages
+	@cmake --preset $(PRESET) >/dev/null
+	@cmake --build --preset $(PRESET) --target stability_map
+	@benchmarks/stress/run.sh build/$(PRESET)
 
 format: packages-develop
 	@git ls-files -co --exclude-standard -- '*.cpp' '*.hpp' | xargs ls 2>/dev/null | xargs clang-format -i

@@ -13,6 +13,7 @@
 #include <string>
 #include <string_view>
 
+#include "libsim/base/error.hpp"
 #include "libsim/dynamics/simulators/modal_event.hpp"
 #include "libsim/dynamics/simulators/modal_exact.hpp"
 #include "libsim/dynamics/simulators/newmark_explicit.hpp"
@@ -55,7 +56,13 @@ Timed timed(const Simulator& simulator, const Scene& scene) {
 
 void print_row(const std::string& scheme, double step, const Simulator& simulator,
                const Scene& scene, const Simulation& reference) {
-  const Timed result = timed(simulator, scene);
+  Timed result;
+  try {
+    result = timed(simulator, scene);
+  } catch (const InvalidInput&) {  // a step too long for the scheme
+    fmt::print("{},{:g},,,,,,,,,,,refused\n", scheme, step);
+    return;
+  }
   const Simulation& run = result.run;
   if (run.diverged_at) {
     fmt::print("{},{:g},,,,,,,,,,,{}: {}\n", scheme, step, *run.diverged_at, run.explanation);

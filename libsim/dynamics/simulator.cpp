@@ -5,6 +5,12 @@
 #include "libsim/base/error.hpp"
 
 namespace modcal {
+namespace {
+
+// Its square, an energy, is finite.
+constexpr double kLargestInput = 1e150;
+
+}  // namespace
 
 std::size_t sample_count(double duration, double sample_rate) {
   const double count = std::round(duration * sample_rate);
@@ -36,6 +42,11 @@ Simulation Simulator::simulate(const Scene& scene, double sample_rate, const Out
   MODCAL_REQUIRE(scene.bow.position > 0.0 && scene.bow.position < length,
                  "bow position {:g} m is not inside the string: it must lie in (0, {:g}) m",
                  scene.bow.position, length);
+  MODCAL_REQUIRE(std::abs(scene.bow.velocity) <= kLargestInput &&
+                     std::abs(scene.bow.normal_force) <= kLargestInput,
+                 "bow velocity {:g} m/s or normal force {:g} N is beyond {:g}: energies would "
+                 "overflow",
+                 scene.bow.velocity, scene.bow.normal_force, kLargestInput);
   sample_count(scene.duration, sample_rate);
   Simulation result = run(scene, sample_rate, outputs, stop);
   stop.throw_if_requested();

@@ -4,6 +4,7 @@
 
 #include "libsim/base/error.hpp"
 #include "libsim/dynamics/contact_rule.hpp"
+#include "libsim/dynamics/simulators/explicit_stability.hpp"
 #include "libsim/dynamics/simulators/scene_setup.hpp"
 
 namespace modcal {
@@ -106,6 +107,9 @@ Simulation simulate_fixed_step(const Scene& scene, double sample_rate, const Out
                              timing == ForceTiming::kImplicit ? first_force : 0.0);
   if (timing == ForceTiming::kImplicit) {
     require_unique_sliding(loop.law, coefficients.direct_response.velocity, plan.time_step);
+  } else {
+    require_stable_contact(loop.contact, loop.law, coefficients.direct_response.velocity,
+                           plan.time_step);
   }
 
   Simulation result = empty_simulation(count, sample_rate, outputs);

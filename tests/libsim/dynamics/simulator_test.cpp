@@ -348,18 +348,46 @@ TEST(Simulators, RefuseWhatTheyCannotDo) {
 
 TEST(NewmarkExplicit, SaysSoWhenItDiverges) {
   Scene scene = paper_scene();
-  CoulombExponential::Options stiff;
-  stiff.static_coefficient = 1e150;  // never released, with an explicit spring past its limit
-  stiff.adherence.stiffness = 1e12;
-  set_friction(scene, stiff);
-  scene.bow.normal_force = 1e160;  // the limit overflows: no force is too large to hold
-  scene.bow.velocity = 0.0;        // it sticks from the start and is pulled back by its own spring
-  scene.initial.displacement.assign(50, 0.0);
-  scene.initial.displacement[0] = 1e-3;
+  scene.bow.normal_force = 0.0;
+  scene.string.modes = 10;
+  scene.initial.displacement.assign(10, 0.0);
+  scene.initial.displacement[0] = 1e307;  // its velocity, ω times as much, overflows
   const Simulation run =
       NewmarkExplicit({.time_step = 1e-5}).simulate(scene, 51200.0, OutputRequest::all());
   EXPECT_TRUE(run.diverged_at.has_value());
+  EXPECT_FALSE(run.explanation.empty());
   EXPECT_TRUE(run.force.samples.empty());
+}
+
+// One undamped mode held from the start by a spring of near-critical damping: h √(K_a/M) on either
+// side of 3 − √5, the mode's own ωh = 0.006 adding a relative 1e-5.
+TEST(NewmarkExplicit, RefusesStepsThatWouldCreateEnergy) {
+  Scene scene = paper_scene();
+  scene.string.modes = 1;
+  scene.bow.position = 0.165;
+  const double mass = make_modal_basis(scene.string).mass[0];
+  const double rate = 200000.0, number = (3.0 - std::sqrt(5.0)) * rate;
+  const NewmarkExplicit scheme({.time_step = 1.0 / rate});
+  CoulombExponential::Options options;
+  options.adherence.stiffness = 0.999 * number * number * mass;
+  set_friction(scene, options);
+  EXPECT_NO_THROW(scheme.simulate(scene, rate, {}));
+  options.adherence.stiffness = 1.001 * number * number * mass;
+  set_friction(scene, options);
+  EXPECT_THROW(scheme.simulate(scene, rate, {}), InvalidInput);
+  options = {.decay = 1e3};
+  set_friction(scene, options);
+  EXPECT_THROW(scheme.simulate(scene, rate, {}), InvalidInput);
+  scene.bow.normal_force = 0.0;  // no contact, no limit
+  EXPECT_NO_THROW(scheme.simulate(scene, rate, {}));
+}
+
+TEST(Simulators, RefuseInputsWhoseEnergyOverflows) {
+  Scene scene = paper_scene();
+  scene.bow.velocity = 1e200;
+  for (const char* name : {"modal_event", "modal_exact", "newmark_explicit"}) {
+    EXPECT_THROW(Choice<Simulator>(name).make()->simulate(scene, 51200.0, {}), InvalidInput);
+  }
 }
 
 }  // namespace

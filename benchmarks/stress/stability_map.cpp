@@ -1,0 +1,185 @@
+// Stability map of the simulators around the paper's case: for every time step and every value of
+// one parameter at a time, whether the outcome is right, refused or reported. Writes the table to
+// standard output and, for the figure, cells.txt and axes.gp to the folder named by the argument.
+#include <fmt/format.h>
+#include <fmt/os.h>
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "benchmarks/stress/stress_cell.hpp"
+#include "libsim/dynamics/friction/coulomb_exponential.hpp"
+#include "libsim/model/constant_damping.hpp"
+#include "tests/libsim/dynamics/paper_case.hpp"
+
+namespace modcal {
+namespace {
+
+struct Axis {
+  std::string name, unit;
+  std::vector<double> values;
+  std::function<void(Scene&, double)> set;
+};
+
+void set_stiffness(Scene& scene, double value) {
+  CoulombExponential::Options options;
+  options.adherence.stiffness = value;
+  scene.friction = Choice<FrictionLaw>::of<CoulombExponential>("coulomb_exponential", options);
+}
+
+void set_damping(Scene& scene, double value) {
+  scene.string.damping =
+      Choice<DampingLaw>::of<ConstantDamping>("constant", ConstantDamping::Options{value});
+}
+
+std::vector<Axis> axes() {
+  return {
+      {"adherence stiffness", "N/m", {1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9}, set_stiffness},
+      {"damping ratio", "1", {0.0, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 0.3, 0.5}, set_damping},
+      {"modes",
+       "1",
+       {1, 2, 5, 20, 50, 200, 1000, 5000},
+       [](Scene& s, double value) { s.string.modes = std::llround(value); }},
+      {"bow position x_c/L",
+       "1",
+       {1e-6, 1e-4, 1e-2, 1.0 / 11.0, 0.1, 1.0 / 3.0, 0.4999, 0.5},
+       [](Scene& s, double value) { s.bow.position = value * s.string.length; }},
+      {"normal force",
+       "N",
+       {0.0, 1e-310, 1e-9, 1e-3, 1.0, 30.0, 1e3, 1e300},
+       [](Scene& s, double value) { s.bow.normal_force = value; }},
+      {"bow velocity",
+       "m/s",
+       {0.0, 1e-310, 1e-6, 1e-2, -0.1, 1.0, 10.0, 1e300},
+       [](Scene& s, double value) { s.bow.velocity = value; }},
+  };
+}
+
+constexpr std::array kSimulators = {"newmark_explicit", "modal_exact", "modal_event"};
+constexpr std::array kSteps = {1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2};
+
+struct Tally {
+  std::array<int, 4> count{};
+  int resolved = 0;         // right cells whose bound is below kTightBound
+  double unbalanced = 0.0;  // worst of those
+};
+constexpr double kTightBound = 0.01;
+
+void print_row(const std::string& axis, const char* simulator, const Tally& tally) {
+  fmt::print("| {} | `{}` | {} | {} | {} | {} | {} | {:.0e} |\n", axis, simulator, tally.count[0],
+             tally.count[1], tally.count[2], tally.count[3], tally.resolved, tally.unbalanced);
+}
+
+class Map {
+ public:
+  explicit Map(const std::string& folder)
+      : cells_(fmt::output_file(folder + "/cells.txt")),
+        axes_(fmt::output_file(folder + "/axes.gp")) {
+    cells_.print(
+        "# panel simulator step_index value_index outcome unbalanced allowed passivity "
+        "reason\n");
+  }
+
+  void run() {
+    fmt::print(
+        "| varied | simulator | right | refused | reported | wrong | bound < 1 % | worst open "
+        "balance of these |\n|---|---|---|---|---|---|---|---|\n");
+    int panel = 0;
+    for (const Axis& axis : axes()) {
+      write_ticks(axis, panel);
+      for (const char* simulator : kSimulators) panel_of(axis, panel, simulator);
+      ++panel;
+    }
+    long_records();
+    fmt::print("\nReasons given:\n\n");
+    for (const auto& [reason, count] : reasons_) fmt::print("- {} × {}\n", count, reason);
+  }
+
+  bool wrong() const { return wrong_; }
+
+ private:
+  void panel_of(const Axis& axis, int panel, const char* simulator) {
+    Tally tally;
+    for (std::size_t i = 0; i < kSteps.size(); ++i) {
+      for (std::size_t j = 0; j < axis.values.size(); ++j) {
+        Scene scene = paper_scene();
+        axis.set(scene, axis.values[j]);
+        const CellResult cell =
+            run_cell(simulator, scene, kSteps[i], affordable_samples(scene, kSteps[i]));
+        note(cell, tally);
+        cells_.print("{} {} {} {} {} {:.1e} {:.1e} {:.2f} {}\n", panel, simulator, i, j,
+                     static_cast<int>(cell.outcome), cell.unbalanced, cell.allowed, cell.passivity,
+                     cell.reason);
+      }
+    }
+    cells_.flush();
+    print_row(axis.name, simulator, tally);
+  }
+
+  void write_ticks(const Axis& axis, int panel) {
+    axes_.print("title_{} = '{} [{}]'\ntics_{} = '", panel, axis.name, axis.unit, panel);
+    for (std::size_t j = 0; j < axis.values.size(); ++j) {
+      axes_.print("{}\"{:.3g}\" {}", j > 0 ? ", " : "", axis.values[j], j);
+    }
+    axes_.print("'\n");
+  }
+
+  void long_records() {
+    for (const char* simulator : kSimulators) {
+      Tally tally;
+      Scene scene = paper_scene();
+      scene.string.modes = 20;
+      note(run_cell(simulator, scene, 1e-5, 6'000'000), tally);
+      print_row("60 s, 20 modes, step 10 µs", simulator, tally);
+    }
+  }
+
+  void note(const CellResult& cell, Tally& tally) {
+    ++tally.count[static_cast<std::size_t>(cell.outcome)];
+    wrong_ = wrong_ || cell.outcome == Outcome::kWrong;
+    if (cell.outcome == Outcome::kRight) {
+      if (cell.allowed >= kTightBound) return;
+      ++tally.resolved;
+      tally.unbalanced = std::max(tally.unbalanced, cell.unbalanced);
+    } else {
+      ++reasons_[without_numbers(cell.reason)];
+    }
+  }
+
+  static std::string without_numbers(const std::string& text) {
+    std::string result;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+      const bool number =
+          (text[i] >= '0' && text[i] <= '9') &&
+          (i == 0 || text[i - 1] == ' ' || text[i - 1] == '-' || text[i - 1] == '(');
+      if (!number) {
+        result += text[i];
+        continue;
+      }
+      result += '#';
+      while (i + 1 < text.size() &&
+             std::string("0123456789.e+-").find(text[i + 1]) != std::string::npos &&
+             !(text[i + 1] == '.' && (i + 2 == text.size() || text[i + 2] == ' '))) {
+        ++i;
+      }
+    }
+    return result;
+  }
+
+  fmt::ostream cells_, axes_;
+  std::map<std::string, int> reasons_;
+  bool wrong_ = false;
+};
+
+}  // namespace
+}  // namespace modcal
+
+int main(int count, char** arguments) {
+  modcal::Map map(count > 1 ? arguments[1] : ".");
+  map.run();
+  return map.wrong() ? 1 : 0;
+}
