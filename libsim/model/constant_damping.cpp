@@ -10,8 +10,6 @@ void ConstantDamping::Options::visit(OptionVisitor& visitor) {
                  ratio);
 }
 
-double ConstantDamping::ratio(std::size_t /*mode_index*/, double /*omega*/) const {
-  return options_.ratio;
-}
+double ConstantDamping::ratio(const DampedMode& /*mode*/) const { return options_.ratio; }
 
 }  // namespace modcal

@@ -14,7 +14,7 @@ class ConstantDamping final : public DampingLaw {
   explicit ConstantDamping(const Options& options) : options_(options) {}
 
  private:
-  double ratio(std::size_t mode_index, double omega) const override;
+  double ratio(const DampedMode& mode) const override;
   Options options_;
 };
 

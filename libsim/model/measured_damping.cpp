@@ -30,8 +30,6 @@ MeasuredDamping::MeasuredDamping(const Options& options) {
   fit_ = fit_damping(modes, options.ratios, static_cast<std::size_t>(options.degree));
 }
 
-double MeasuredDamping::ratio(std::size_t mode_index, double /*omega*/) const {
-  return fit_.ratio(mode_index + 1);
-}
+double MeasuredDamping::ratio(const DampedMode& mode) const { return fit_.ratio(mode.index + 1); }
 
 }  // namespace modcal

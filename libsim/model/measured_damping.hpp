@@ -22,7 +22,7 @@ class MeasuredDamping final : public DampingLaw {
   explicit MeasuredDamping(const Options& options);
 
  private:
-  double ratio(std::size_t mode_index, double omega) const override;
+  double ratio(const DampedMode& mode) const override;
   DampingFit fit_;
 };
 

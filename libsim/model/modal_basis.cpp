@@ -44,7 +44,10 @@ ModalBasis make_modal_basis(const StringModel& string) {
     basis.omega[i] = 2.0 * std::numbers::pi *
                      stiff_string_frequency(string.fundamental, string.inharmonicity, i + 1);
   }
-  basis.zeta = string.damping.make()->ratios(basis.omega);
+  basis.zeta = string.damping.make()->ratios(basis.omega, {.length = string.length,
+                                                           .linear_density = string.linear_density,
+                                                           .tension = string.tension(),
+                                                           .inharmonicity = string.inharmonicity});
   basis.mass.assign(count, 0.5 * string.linear_density * string.length);
   return basis;
 }

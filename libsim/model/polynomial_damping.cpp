@@ -9,8 +9,8 @@ void PolynomialDamping::Options::visit(OptionVisitor& visitor) {
                   coefficients);
 }
 
-double PolynomialDamping::ratio(std::size_t mode_index, double /*omega*/) const {
-  const double n = static_cast<double>(mode_index + 1);
+double PolynomialDamping::ratio(const DampedMode& mode) const {
+  const double n = static_cast<double>(mode.index + 1);
   double value = 0.0;
   for (std::size_t j = options_.coefficients.size(); j-- > 0;) {
     value = value * n + options_.coefficients[j];

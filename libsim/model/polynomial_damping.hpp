@@ -15,7 +15,7 @@ class PolynomialDamping final : public DampingLaw {
   explicit PolynomialDamping(Options options) : options_(std::move(options)) {}
 
  private:
-  double ratio(std::size_t mode_index, double omega) const override;
+  double ratio(const DampedMode& mode) const override;
   Options options_;
 };
 
