@@ -37,12 +37,34 @@ void Bow::visit(OptionVisitor& visitor) {
                   .unit = "N",
                   .range = Range::non_negative()},
                  normal_force);
+  visitor.number({.key = "width",
+                  .meaning = "width of the bow hair along the string",
+                  .unit = "m",
+                  .range = Range::non_negative()},
+                 width);
+  visitor.integer(
+      {.key = "points", .meaning = "contact points over the width", .range = Range::closed(1, 16)},
+      points);
   visitor.plugin({.key = "velocity_gesture", .meaning = "factor of the velocity against time"},
                  velocity_gesture);
   visitor.plugin({.key = "force_gesture", .meaning = "factor of the normal force against time"},
                  force_gesture);
   visit_noise(visitor, "velocity_noise", "band-limited noise on the velocity", velocity_noise);
   visit_noise(visitor, "force_noise", "band-limited noise on the normal force", force_noise);
+}
+
+std::vector<double> Bow::contact_points() const {
+  MODCAL_REQUIRE(points >= 1 && points <= 16, "{} contact points: there are 1 to 16", points);
+  MODCAL_REQUIRE(width >= 0.0 && std::isfinite(width), "bow width {:g} m must be >= 0", width);
+  MODCAL_REQUIRE(width == 0.0 || points > 1,
+                 "a bow {:g} m wide needs several contact points: set bow.points to 2 or more",
+                 width);
+  std::vector<double> result;
+  const auto count = static_cast<double>(points);
+  for (double i = 0.0; i < count; i += 1.0) {
+    result.push_back(position + width * ((i + 0.5) / count - 0.5));
+  }
+  return result;
 }
 
 BowMotion bow_motion(const Bow& bow, double duration) {

@@ -1,7 +1,9 @@
 // The bow stroke as a user describes it, and its motion as the simulators take it.
 #pragma once
 
+#include <cstdint>
 #include <limits>
+#include <vector>
 
 #include "libsim/dynamics/gesture.hpp"
 #include "libsim/dynamics/gesture_noise.hpp"
@@ -14,11 +16,17 @@ struct Bow {
   double position = std::numeric_limits<double>::quiet_NaN();
   double velocity = 0.1;
   double normal_force = 1.0;
+  double width = 0.0;       ///< of the hair ribbon along the string [m]
+  std::int64_t points = 1;  ///< contact points, evenly spaced over the width
   Choice<Gesture> velocity_gesture{"steady"};
   Choice<Gesture> force_gesture{"steady"};
   GestureNoise velocity_noise;
   GestureNoise force_noise;
   void visit(OptionVisitor& visitor);
+
+  /// The contact points x_c + width ((i + ½)/points − ½) [m], each of which carries an equal share
+  /// of force, adherence and friction state.
+  std::vector<double> contact_points() const;
 };
 
 /// Velocity v_bow(t) [m/s] and normal force F_N(t) ≥ 0 [N] of the bow.

@@ -1,6 +1,5 @@
 #include "libsim/dynamics/contact_modes.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -26,6 +25,19 @@ double value_or_zero(const std::vector<double>& values, std::size_t index) {
 
 }  // namespace
 
+void ContactModes::append(const ContactModes& other) {
+  const auto join = [](auto& values, const auto& more) {
+    values.insert(values.end(), more.begin(), more.end());
+  };
+  join(pole, other.pole);
+  join(drive, other.drive);
+  join(quadrature, other.quadrature);
+  join(compliance, other.compliance);
+  join(left_gain, other.left_gain);
+  join(right_gain, other.right_gain);
+  join(initial, other.initial);
+}
+
 double ContactModes::effective_mass() const {
   return 1.0 / std::accumulate(drive.begin(), drive.end(), 0.0);
 }
@@ -38,7 +50,9 @@ ContactModes contact_modes(const ModalBasis& basis, double contact, const ModalS
   const std::vector<double> left = reaction_gains(basis, End::kLeft);
   const std::vector<double> right = reaction_gains(basis, End::kRight);
   ContactModes modes;
+  bool moves = false;
   for (std::size_t n = 0; n < basis.size(); ++n) {
+    moves = moves || !is_node(shape[n]);
     const double q = value_or_zero(initial.displacement, n);
     const double p = value_or_zero(initial.velocity, n);
     if (is_node(shape[n]) && q == 0.0 && p == 0.0) {
@@ -56,8 +70,7 @@ ContactModes contact_modes(const ModalBasis& basis, double contact, const ModalS
     modes.right_gain.push_back(right[n] / (phi * damped));
     modes.initial.emplace_back(phi * (p + decay * q), phi * damped * q);
   }
-  MODCAL_REQUIRE(std::any_of(modes.drive.begin(), modes.drive.end(),
-                             [](double drive) { return drive > kNodeShape; }),
+  MODCAL_REQUIRE(moves,
                  "every mode has a node at the contact point {:g} m: nothing can move there; move "
                  "the bow",
                  contact);

@@ -28,6 +28,8 @@ struct ContactModes {
   std::vector<std::size_t> left_out;          ///< modes of the basis that are not here, from 0
 
   std::size_t size() const { return pole.size(); }
+  /// Adds modes that the same contact force drives.
+  void append(const ContactModes& other);
   /// Effective mass at the contact m_eff = 1/Σ φ²/m [kg].
   double effective_mass() const;
 };

@@ -91,6 +91,7 @@ struct Base {
 };
 
 void add_blind_modes(const Base& base, std::vector<Skip>& skips) {
+  if (base.scene.bow.points > 1) return;  // what one point does not see another may
   std::vector<std::size_t> numbers;
   for (const std::size_t index : scene_modes(base.scene).left_out) numbers.push_back(index + 1);
   if (numbers.empty()) return;
@@ -157,7 +158,7 @@ void add_friction(const Base& base, double steps_per_second, std::vector<Skip>& 
     const bool is_last = i + 1 == base.result.switches.size();
     sticking += (is_last ? base.length : base.result.switches[i + 1].time) - now.time;
   }
-  if (sticking <= 0.0) return;
+  if (sticking <= 0.0 || base.scene.friction.make()->has_state()) return;
   const double share = sticking / base.length;
   skips.push_back(
       {"the friction law during adherence",

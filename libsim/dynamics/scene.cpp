@@ -12,6 +12,9 @@ void Scene::visit(OptionVisitor& visitor) {
                   .range = Range::positive()},
                  duration);
   visitor.plugin({.key = "initial", .meaning = "motion of the string at t = 0"}, start);
+  visitor.optional_group({.key = "torsion", .meaning = "torsional modes of the string"},
+                         torsion.present,
+                         [this](OptionVisitor& members) { torsion.visit(members); });
 }
 
 ModalState initial_state(const Scene& scene, const ModalBasis& basis) {

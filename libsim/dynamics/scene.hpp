@@ -5,6 +5,7 @@
 #include "libsim/dynamics/bow.hpp"
 #include "libsim/dynamics/friction/friction_law.hpp"
 #include "libsim/dynamics/initial/initial_motion.hpp"
+#include "libsim/dynamics/torsion.hpp"
 #include "libsim/model/string_model.hpp"
 
 namespace modcal {
@@ -15,6 +16,7 @@ struct Scene {
   Choice<FrictionLaw> friction{"coulomb_exponential"};
   double duration = 1.0;  ///< [s]
   Choice<InitialMotion> start{"rest"};
+  Torsion torsion;
   /// Modal state set in code, in the place of `start`; empty: that of `start`.
   ModalState initial;
   void visit(OptionVisitor& visitor);

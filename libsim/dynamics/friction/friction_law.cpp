@@ -23,6 +23,12 @@ SlidingLaw FrictionLaw::sliding(double normal_force) const {
   return make_sliding(normal_force);
 }
 
+SlidingLaw FrictionLaw::make_sliding(double /*normal_force*/) const {
+  throw_invalid_input(
+      "this friction law has a state (temperature, deflection) that this simulator does not "
+      "follow: use modal_exact or newmark_explicit, or a law of the sliding speed alone");
+}
+
 double FrictionLaw::static_limit(double normal_force) const {
   MODCAL_REQUIRE(normal_force >= 0.0, "normal force {:g} N must be >= 0", normal_force);
   return static_coefficient() * normal_force;

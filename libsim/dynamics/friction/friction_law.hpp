@@ -6,6 +6,7 @@
 
 #include "libsim/base/registry.hpp"
 #include "libsim/dynamics/friction/sliding_laws.hpp"
+#include "libsim/dynamics/friction/stateful_laws.hpp"
 
 namespace modcal {
 
@@ -26,13 +27,19 @@ class FrictionLaw {
   virtual ~FrictionLaw() = default;
   /// The sliding law for the normal force F_N ≥ 0 [N], proportional to F_N; for F_N = 1 N it is the
   /// friction coefficient.
+  /// Throws InvalidInput for a law with a state.
   SlidingLaw sliding(double normal_force) const;
+  /// The law where it has a state (temperature, deflection), which only the fixed-step simulators
+  /// follow; std::monostate where it has none.
+  StatefulLaw stateful() const { return make_stateful(); }
+  bool has_state() const { return stateful().index() != 0; }
   /// Largest force that adherence can carry, μ_S F_N [N].
   double static_limit(double normal_force) const;
   virtual Adherence adherence() const = 0;
 
  private:
-  virtual SlidingLaw make_sliding(double normal_force) const = 0;
+  virtual SlidingLaw make_sliding(double normal_force) const;
+  virtual StatefulLaw make_stateful() const { return {}; }
   virtual double static_coefficient() const = 0;
 };
 

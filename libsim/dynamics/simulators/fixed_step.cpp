@@ -5,21 +5,11 @@
 #include "libsim/base/error.hpp"
 #include "libsim/dynamics/contact_rule.hpp"
 #include "libsim/dynamics/simulators/explicit_stability.hpp"
+#include "libsim/dynamics/simulators/line_step.hpp"
 #include "libsim/dynamics/simulators/scene_setup.hpp"
 
 namespace modcal {
 namespace {
-
-SchemeWeights scheme_weights(const ContactModes& modes, double time_step, WeightsOfPole weights) {
-  SchemeWeights result;
-  for (const std::complex<double> pole : modes.pole) {
-    const ModeWeights mode = weights(pole, time_step);
-    result.propagate.push_back(mode.propagate);
-    result.older.push_back(mode.older);
-    result.newer.push_back(mode.newer);
-  }
-  return result;
-}
 
 // One step with the force solved for needs a single solution of v = v_free + b F(v).
 void require_unique_sliding(const SlidingLaw& law, double response, double time_step) {
@@ -69,7 +59,25 @@ void store_initial(Simulation& result, const ContactMotion& motion, double force
   store_first(result.right_reaction, motion.right);
 }
 
+// Whether one point, a steady bow and a law of the sliding speed are all that there is.
+bool is_plain(const Scene& scene, const BowMotion& bow, const FrictionLaw& friction) {
+  return scene.bow.points == 1 && scene.bow.width == 0.0 && bow.is_steady() &&
+         !friction.has_state();
+}
+
 }  // namespace
+
+SchemeWeights scheme_weights(std::span<const std::complex<double>> poles, double time_step,
+                             WeightsOfPole weights) {
+  SchemeWeights result;
+  for (const std::complex<double> pole : poles) {
+    const ModeWeights mode = weights(pole, time_step);
+    result.propagate.push_back(mode.propagate);
+    result.older.push_back(mode.older);
+    result.newer.push_back(mode.newer);
+  }
+  return result;
+}
 
 void FixedStepOptions::visit(OptionVisitor& visitor) {
   visitor.number({.key = "time_step",
@@ -83,11 +91,15 @@ void FixedStepOptions::visit(OptionVisitor& visitor) {
 Simulation simulate_fixed_step(const Scene& scene, double sample_rate, const OutputRequest& outputs,
                                const StopToken& stop, double wanted_time_step, ForceTiming timing,
                                WeightsOfPole weights_of_pole) {
+  const BowMotion bow = bow_motion(scene.bow, scene.duration);
+  const auto friction = scene.friction.make();
+  if (!is_plain(scene, bow, *friction)) {
+    return simulate_line(scene, sample_rate, outputs, stop, wanted_time_step, timing,
+                         weights_of_pole);
+  }
   const StepPlan plan = plan_steps(wanted_time_step, sample_rate);
   const std::size_t count = sample_count(scene.duration, sample_rate);
-  const BowMotion bow = steady_motion(scene, "a fixed-step simulator");
   const ContactModes modes = scene_modes(scene);
-  const auto friction = scene.friction.make();
   const ContactMotion motion = initial_motion(modes);
 
   StepLoop loop{.timing = timing,
@@ -103,7 +115,7 @@ Simulation simulate_fixed_step(const Scene& scene, double sample_rate, const Out
   const double first_force = initial_force(loop);
   // The explicit scheme has no force before t = 0; the implicit one starts with that of t = 0.
   StepCoefficients coefficients =
-      make_step_coefficients(modes, scheme_weights(modes, plan.time_step, weights_of_pole),
+      make_step_coefficients(modes, scheme_weights(modes.pole, plan.time_step, weights_of_pole),
                              timing == ForceTiming::kImplicit ? first_force : 0.0);
   if (timing == ForceTiming::kImplicit) {
     require_unique_sliding(loop.law, coefficients.direct_response.velocity, plan.time_step);

@@ -1,7 +1,8 @@
 // What the fixed-step simulators share: from scene and one-step weights to sampled signals.
 #pragma once
 
-#include <functional>
+#include <complex>
+#include <span>
 
 #include "libsim/dynamics/simulator.hpp"
 #include "libsim/dynamics/step_loop.hpp"
@@ -19,6 +20,12 @@ struct ModeWeights {
 };
 using WeightsOfPole = ModeWeights (*)(std::complex<double> pole, double time_step);
 
+/// Weights of all modes for one step.
+SchemeWeights scheme_weights(std::span<const std::complex<double>> poles, double time_step,
+                             WeightsOfPole weights);
+
+/// The plain scene (one contact point, steady bow, friction of the sliding speed alone) takes the
+/// fast loop, any other the general one.
 Simulation simulate_fixed_step(const Scene& scene, double sample_rate, const OutputRequest& outputs,
                                const StopToken& stop, double wanted_time_step, ForceTiming timing,
                                WeightsOfPole weights_of_pole);

@@ -18,8 +18,17 @@ double* target_of(Signal& signal) {
 }  // namespace
 
 ContactModes scene_modes(const Scene& scene) {
+  MODCAL_REQUIRE(scene.bow.contact_points().size() == 1,
+                 "{} contact points over {:g} m: this simulator has one; use modal_exact or "
+                 "newmark_explicit, or a bow of width 0",
+                 scene.bow.points, scene.bow.width);
   const ModalBasis basis = make_modal_basis(scene.string);
-  return contact_modes(basis, scene.bow.position, initial_state(scene, basis));
+  ContactModes modes = contact_modes(basis, scene.bow.position, initial_state(scene, basis));
+  if (scene.torsion.present) {
+    const ModalBasis torsional = scene.torsion.basis(basis, scene.string.wave_speed());
+    modes.append(contact_modes(torsional, scene.bow.position, {}));
+  }
+  return modes;
 }
 
 BowMotion steady_motion(const Scene& scene, std::string_view simulator) {

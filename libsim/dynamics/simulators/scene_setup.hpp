@@ -6,7 +6,8 @@
 
 namespace modcal {
 
-/// The modes of the scene's string as the contact sees them.
+/// The modes of the scene's string as one contact point sees them, the torsional ones last. Throws
+/// InvalidInput for a bow with several contact points.
 ContactModes scene_modes(const Scene& scene);
 
 /// Motion of a bow that must be steady. Throws InvalidInput for any other, in the name of the

@@ -1,0 +1,71 @@
+#include "libsim/dynamics/simulators/line_step.hpp"
+
+#include "libsim/base/error.hpp"
+#include "libsim/dynamics/simulators/scene_setup.hpp"
+
+namespace modcal {
+namespace {
+
+LineModes modes_of(const Scene& scene) {
+  const ModalBasis transverse = make_modal_basis(scene.string);
+  return line_modes(transverse, scene.torsion.basis(transverse, scene.string.wave_speed()),
+                    scene.bow.contact_points(), initial_state(scene, transverse));
+}
+
+LineFriction friction_of(const FrictionLaw& law, double effective_mass) {
+  const ContactParameters contact =
+      contact_parameters({PiecewiseLinear(0.0), PiecewiseLinear(1.0)}, law, effective_mass);
+  LineFriction friction{.coefficient = {},
+                        .stateful = law.stateful(),
+                        .stiffness = contact.stiffness,
+                        .damping = contact.damping};
+  if (!law.has_state()) friction.coefficient = law.sliding(1.0);
+  return friction;
+}
+
+}  // namespace
+
+Simulation simulate_line(const Scene& scene, double sample_rate, const OutputRequest& outputs,
+                         const StopToken& stop, double wanted_time_step, ForceTiming timing,
+                         WeightsOfPole weights_of_pole) {
+  const StepPlan plan = plan_steps(wanted_time_step, sample_rate);
+  const std::size_t count = sample_count(scene.duration, sample_rate);
+  const LineModes modes = modes_of(scene);
+  const auto friction = scene.friction.make();
+  const SchemeWeights weights = scheme_weights(modes.pole, plan.time_step, weights_of_pole);
+  LineLoop loop{.timing = timing,
+                .time_step = plan.time_step,
+                .steps_per_sample = plan.steps_per_sample,
+                .samples = count,
+                .bow = bow_motion(scene.bow, scene.duration),
+                .friction = friction_of(*friction, modes.effective_mass()),
+                .targets = {},
+                .switches = {},
+                .stop = stop};
+  if (timing == ForceTiming::kImplicit) {
+    const double number = slope_number(loop, modes, weights);
+    MODCAL_REQUIRE(number < 1.0,
+                   "time step {:g} s is too long for this friction law: its fall with the speed "
+                   "needs a step below about {:g} s",
+                   plan.time_step, plan.time_step / number);
+  }
+  Simulation result = empty_simulation(count, sample_rate, outputs);
+  loop.targets = targets_of(result);
+  loop.switches = {&result.switches, outputs.switches_from};
+  const LineCounts counts = run_line_loop(loop, modes, weights);
+  if (counts.first_bad_sample < count) {
+    result = empty_simulation(0, sample_rate, {});
+    result.diverged_at = static_cast<double>(counts.first_bad_sample) / sample_rate;
+    result.explanation = counts.settled ? "the motion is not a finite number"
+                                        : "the forces of the contact points do not settle within a "
+                                          "step: use a smaller time step";
+  }
+  result.time_step = plan.time_step;
+  result.steps = (count - 1) * plan.steps_per_sample;
+  result.attachments = counts.attachments;
+  result.releases = counts.releases;
+  result.modes_moved = modes.size();
+  return result;
+}
+
+}  // namespace modcal
