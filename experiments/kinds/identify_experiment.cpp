@@ -1,7 +1,6 @@
 #include "experiments/kinds/identify_experiment.hpp"
 
 #include "experiments/kinds/lint.hpp"
-#include "experiments/kinds/scene_plan.hpp"
 
 namespace modcal {
 
@@ -24,14 +23,18 @@ std::vector<Finding> IdentifyExperiment::lint() const {
 }
 
 std::vector<std::string> IdentifyExperiment::plan() const {
-  std::vector<std::string> lines =
-      plan_scene(options_.truth.scene, options_.measurement.sample_rate, 1);
-  lines.push_back(fmt::format("identify modes up to {:g} Hz by {}, orders {} to {}",
-                              options_.identification.highest_frequency,
-                              options_.identification.method,
-                              options_.identification.stabilization.lowest_order,
-                              options_.identification.stabilization.highest_order));
-  return lines;
+  const PluckOptions& identification = options_.identification;
+  return {fmt::format("identify modes up to {:g} Hz by {}, orders {} to {}",
+                      identification.highest_frequency, identification.method,
+                      identification.stabilization.lowest_order,
+                      identification.stabilization.highest_order)};
+}
+
+std::optional<PlannedSimulations> IdentifyExperiment::planned_simulations() const {
+  return PlannedSimulations{.scene = options_.truth.scene,
+                            .simulator = options_.truth.simulator,
+                            .sample_rate = options_.measurement.sample_rate,
+                            .outputs = {.left_reaction = true, .right_reaction = true}};
 }
 
 }  // namespace modcal

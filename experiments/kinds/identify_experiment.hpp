@@ -12,6 +12,7 @@ class IdentifyExperiment final : public Experiment {
   explicit IdentifyExperiment(Options options) : options_(std::move(options)) {}
   std::vector<Finding> lint() const override;
   std::vector<std::string> plan() const override;
+  std::optional<PlannedSimulations> planned_simulations() const override;
   StudyResult run(const StudyContext& context) const override {
     return identify_study(options_, context);
   }

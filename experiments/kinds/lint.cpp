@@ -82,7 +82,6 @@ std::vector<Finding> lint_scene(const Scene& scene, const Choice<Simulator>& sim
       "simulator", [&] { simulator.make(); }, findings);
   lint_making(
       "scene.duration", [&] { sample_count(scene.duration, measurement.sample_rate); }, findings);
-  lint_decay(scene, findings);
   return findings;
 }
 
@@ -92,7 +91,9 @@ std::vector<Finding> lint_observation(const ObservationOptions& options) {
       options.has_record ? "record" : "scene", [&] { options.require_one_source(); }, findings);
   if (!findings.empty()) return findings;
   if (options.has_scene) {
-    return lint_scene(options.truth.scene, options.truth.simulator, options.measurement);
+    findings = lint_scene(options.truth.scene, options.truth.simulator, options.measurement);
+    lint_decay(options.truth.scene, findings);
+    return findings;
   }
   lint_string("string", options.string, options.contact.position, "bow", findings);
   return findings;

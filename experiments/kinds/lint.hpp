@@ -13,10 +13,11 @@ namespace modcal {
 /// Whether the numbers that a string needs have been read: nothing follows from wrong ones.
 bool is_known(const StringModel& string);
 
-/// Nyquist against the highest mode, contact inside the string, record length against the decay.
+/// Nyquist against the highest mode, contact inside the string, what the scene's parts refuse.
 std::vector<Finding> lint_scene(const Scene& scene, const Choice<Simulator>& simulator,
                                 const Measurement& measurement);
-/// The same for what an experiment inverts; that exactly one source is stated.
+/// The same for what an experiment inverts; record length against the decay; that exactly one
+/// source is stated.
 std::vector<Finding> lint_observation(const ObservationOptions& options);
 /// Score windows inside the record.
 std::vector<Finding> lint_scores(const ScoreOptions& score, const ObservationOptions& options);

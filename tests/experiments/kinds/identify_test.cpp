@@ -17,8 +17,8 @@ TEST(IdentifyPluck, FindsTheElevenModesOfTheStringWithinTheirErrorBars) {
   const LoadedExperiment loaded = load_experiment(kConfig);
   ASSERT_NE(loaded.experiment, nullptr) << format_mistakes(loaded.document, loaded.mistakes);
   SharedWork work;
-  const StudyResult result = loaded.experiment->run(
-      {.work = work, .folder = loaded.document.folder(), .command = "test"});
+  const StudyResult result =
+      loaded.experiment->run({.work = work, .folder = loaded.document.folder(), .command = "test"});
   EXPECT_EQ(result.status, report::Status::kOk);
   const auto document = nlohmann::json::parse(result.files.at(0).second);
   ASSERT_EQ(document["modes"].size(), 11u);

@@ -36,8 +36,8 @@ TEST_F(WriteReport, LeavesEveryFileItNames) {
   const WrittenReport written = write_report(sample_report(), folder_ / "made" / "here");
   EXPECT_EQ(written.warning, "");
   EXPECT_EQ(written.page, folder_ / "made" / "here" / "report.html");
-  // 5 figures with csv, dat, gp, svg and pdf, a table with csv and json, and the page.
-  EXPECT_EQ(written.files.size(), 5u * 5u + 2u + 1u);
+  // 6 figures with csv, dat, gp, svg and pdf, a table with csv and json, and the page.
+  EXPECT_EQ(written.files.size(), 6u * 5u + 2u + 1u);
   std::size_t found = 0;
   for (const auto& entry : fs::recursive_directory_iterator(folder_)) {
     if (entry.is_regular_file()) ++found;

@@ -49,8 +49,8 @@ class BridgeLoss final : public DampingLaw {
   explicit BridgeLoss(const Options& options) : options_(options) {}
 
  private:
-  double ratio(std::size_t mode_index, double /*omega*/) const override {
-    return options_.impedance_ratio / (pi * static_cast<double>(mode_index + 1));
+  double ratio(const DampedMode& mode) const override {
+    return options_.impedance_ratio / (pi * static_cast<double>(mode.index + 1));
   }
   Options options_;
 };
