@@ -1,11 +1,11 @@
 #include "libinverse/model_based/gain_search.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <limits>
 #include <numeric>
+
+#include "libsim/base/task_loop.hpp"
 
 namespace modcal::observer {
 namespace {
@@ -46,7 +46,7 @@ class Search {
     const std::size_t samples = record_.samples();
     for (std::size_t first = 0; first < samples; first += kBlock) {
       std::vector<Candidate> next(alive.size() * gains_.size());
-      tbb::parallel_for(std::size_t{0}, next.size(), [&](std::size_t i) {
+      for_each_task(next.size(), [&](std::size_t i) {
         next[i] = advanced(alive[i / gains_.size()], gains_[i % gains_.size()], first,
                            std::min(samples, first + kBlock));
       });

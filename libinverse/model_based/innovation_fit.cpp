@@ -1,12 +1,11 @@
 #include "libinverse/model_based/innovation_fit.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
 #include "libsim/base/error.hpp"
+#include "libsim/base/task_loop.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal::observer {
@@ -90,7 +89,7 @@ class Fit {
   Linearization linearize() {
     Linearization l;
     l.slope.resize(space_.size());
-    tbb::parallel_for(std::size_t{0}, space_.size() + 1, [&](std::size_t i) {
+    for_each_task(space_.size() + 1, [&](std::size_t i) {
       if (i == space_.size()) {
         l.at = at(outcome_.x);
         return;
@@ -161,7 +160,7 @@ class Fit {
     const double dampings[2] = {damping, 30.0 * damping};
     std::vector<double> x[2];
     double cost[2];
-    tbb::parallel_for(0, 2, [&](int i) {
+    for_each_task(2, [&](std::size_t i) {
       x[i] = stepped(e, dampings[i]);
       cost[i] = cost_of(at(x[i]), l.weight) + space_.penalty(x[i]);
     });

@@ -1,7 +1,6 @@
 #include "libinverse/model_based/model_based_estimator.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -12,6 +11,7 @@
 #include "libinverse/model_based/innovation_fit.hpp"
 #include "libinverse/model_based/start_values.hpp"
 #include "libsim/base/error.hpp"
+#include "libsim/base/task_loop.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {
@@ -148,7 +148,7 @@ class Estimation {
     limits.interrupted = interrupted_;
     std::vector<FitOutcome> outcomes(starts.size());
     std::vector<double> score(starts.size());
-    tbb::parallel_for(std::size_t{0}, starts.size(), [&](std::size_t i) {
+    for_each_task(starts.size(), [&](std::size_t i) {
       outcomes[i] = fit_innovations(*runs_, starts[i], {kWide}, limits);
       starts[i] = starts[i].restarted_at(outcomes[i].x);
       score[i] = misfit(runs_->innovations(starts[i].start(), {kWide}, limits.samples));
