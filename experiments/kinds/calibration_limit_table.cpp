@@ -231,7 +231,7 @@ report::Panel panel_of(const std::string& title, const std::string& unit) {
 }
 
 report::Figure error_figure(const std::vector<LevelSummary>& levels, const std::string& command) {
-  report::Figure figure{.id = "calibration_limit",
+  report::Figure figure{.id = "calibration_limit_figure",
                         .title = "Calibration error against noise",
                         .caption =
                             "Points: RMSE over the seeds, bars: its standard error; line: "

@@ -33,6 +33,20 @@ std::string messages(const LoadedExperiment& loaded) {
   return format_mistakes(loaded.document, loaded.mistakes);
 }
 
+// Figures and tables leave files of their names: one name a report.
+std::vector<std::string> names_used_twice(const StudyResult& result) {
+  std::vector<std::string> names, twice;
+  for (const report::Block& block : result.blocks) {
+    if (const auto* table = std::get_if<report::Table>(&block)) names.push_back(table->id);
+    if (const auto* figure = std::get_if<report::Figure>(&block)) names.push_back(figure->id);
+  }
+  std::sort(names.begin(), names.end());
+  for (std::size_t i = 1; i < names.size(); ++i) {
+    if (names[i] == names[i - 1]) twice.push_back(names[i]);
+  }
+  return twice;
+}
+
 class Configs : public testing::TestWithParam<std::string> {};
 
 TEST_P(Configs, RunsSmall) {
@@ -67,6 +81,7 @@ TEST_P(Configs, RunsSmall) {
   EXPECT_EQ(result.status, report::Status::kOk);
   EXPECT_FALSE(result.blocks.empty());
   EXPECT_FALSE(result.summary.empty());
+  EXPECT_THAT(names_used_twice(result), testing::IsEmpty());
 }
 
 TEST_P(Configs, ResolvedReadsBackToItself) {
