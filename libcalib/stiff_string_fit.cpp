@@ -57,7 +57,7 @@ Law linear_start(const Lines& lines) {
   matrix.col(1) = weight * square;
   const Eigen::VectorXd right = weight * lines.frequency.square() / square;
   const Law solution = matrix.colPivHouseholderQr().solve(right);
-  const Law law{std::sqrt(solution[0]), solution[1] / solution[0]};
+  Law law{std::sqrt(solution[0]), solution[1] / solution[0]};
   require_law(law, lines.n.maxCoeff());
   return law;
 }

@@ -163,7 +163,7 @@ std::string CsvFile::place(std::size_t index) const {
     if (index > 0 && text_[i] == separator_ && --index == 0) column = i + 1;
     return index > 0;
   });
-  column = std::min(text_.find_first_not_of(" ", column), text_.size() - 1);
+  column = std::min(text_.find_first_not_of(' ', column), text_.size() - 1);
   return fmt::format("{}:{}:{}", name_, line_, column + 1);
 }
 
