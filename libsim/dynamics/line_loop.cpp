@@ -409,10 +409,7 @@ LineCounts run_line_loop(const LineLoop& loop, const LineModes& modes,
                     loop.friction.coefficient);
 }
 
-double slope_number(const LineLoop& loop, const LineModes& modes, const SchemeWeights& weights) {
-  if (loop.friction.stateful.index() != 0) return 0.0;
-  const double fall =
-      std::visit([](const auto& law) { return law.steepest_fall(); }, loop.friction.coefficient);
+double contact_response(const LineModes& modes, const SchemeWeights& weights) {
   const DirectResponse direct = direct_response(modes, weights);
   double most = 0.0;
   for (std::size_t j = 0; j < modes.points(); ++j) {
@@ -420,7 +417,13 @@ double slope_number(const LineLoop& loop, const LineModes& modes, const SchemeWe
     for (std::size_t i = 0; i < modes.points(); ++i) row += std::abs(direct.velocity[j][i]);
     most = std::max(most, row);
   }
-  return fall * loop.bow.normal_force.highest() / static_cast<double>(modes.points()) * most;
+  return most / static_cast<double>(modes.points());
+}
+
+double steepest_fall(const LineLoop& loop) {
+  if (loop.friction.stateful.index() != 0) return 0.0;
+  return loop.bow.normal_force.highest() *
+         std::visit([](const auto& law) { return law.steepest_fall(); }, loop.friction.coefficient);
 }
 
 }  // namespace modcal

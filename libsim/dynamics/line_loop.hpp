@@ -47,8 +47,12 @@ struct LineCounts {
 LineCounts run_line_loop(const LineLoop& loop, const LineModes& modes,
                          const SchemeWeights& weights);
 
-/// Largest fall of the friction force with the speed times the response of the contact, which must
-/// stay below 1 for the implicit scheme to have one solution.
-double slope_number(const LineLoop& loop, const LineModes& modes, const SchemeWeights& weights);
+/// Largest response of the velocity of a point to the newest force, shared by the points alike or
+/// with any signs [m/(N s)]: no pattern of the points answers more.
+double contact_response(const LineModes& modes, const SchemeWeights& weights);
+
+/// Largest fall of the friction force of the whole contact with the speed [N s/m]; 0 for a law with
+/// a state, whose force does not follow the speed at once.
+double steepest_fall(const LineLoop& loop);
 
 }  // namespace modcal

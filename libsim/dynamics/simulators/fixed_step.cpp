@@ -11,9 +11,13 @@
 namespace modcal {
 namespace {
 
+double steepest_fall(const SlidingLaw& law) {
+  return std::visit([](const auto& l) { return l.steepest_fall(); }, law);
+}
+
 // One step with the force solved for needs a single solution of v = v_free + b F(v).
 void require_unique_sliding(const SlidingLaw& law, double response, double time_step) {
-  const double fall = std::visit([](const auto& l) { return l.steepest_fall(); }, law);
+  const double fall = steepest_fall(law);
   MODCAL_REQUIRE(
       fall * response < 1.0,
       "time step {:g} s is too long for this friction law: its force falls by {:g} N per "
@@ -119,8 +123,11 @@ Simulation simulate_fixed_step(const Scene& scene, double sample_rate, const Out
                              timing == ForceTiming::kImplicit ? first_force : 0.0);
   if (timing == ForceTiming::kImplicit) {
     require_unique_sliding(loop.law, coefficients.direct_response.velocity, plan.time_step);
-  } else {
-    require_stable_contact(loop.contact, loop.law, coefficients.direct_response.velocity,
+  } else if (loop.contact.static_limit > 0.0) {
+    require_stable_contact({.stiffness = loop.contact.stiffness,
+                            .damping = loop.contact.damping,
+                            .fall = steepest_fall(loop.law),
+                            .response = coefficients.direct_response.velocity},
                            plan.time_step);
   }
 

@@ -1,6 +1,7 @@
 #include "libsim/dynamics/simulators/line_step.hpp"
 
 #include "libsim/base/error.hpp"
+#include "libsim/dynamics/simulators/explicit_stability.hpp"
 #include "libsim/dynamics/simulators/scene_setup.hpp"
 
 namespace modcal {
@@ -23,6 +24,23 @@ LineFriction friction_of(const FrictionLaw& law, double effective_mass) {
   return friction;
 }
 
+// Throws InvalidInput where the scheme cannot take the step.
+void require_step(const LineLoop& loop, double response) {
+  if (loop.timing == ForceTiming::kImplicit) {
+    const double slope_number = steepest_fall(loop) * response;
+    MODCAL_REQUIRE(slope_number < 1.0,
+                   "time step {:g} s is too long for this friction law: its fall with the speed "
+                   "needs a step below about {:g} s",
+                   loop.time_step, loop.time_step / slope_number);
+  } else if (loop.bow.normal_force.highest() > 0.0) {
+    require_stable_contact({.stiffness = loop.friction.stiffness,
+                            .damping = loop.friction.damping,
+                            .fall = steepest_fall(loop),
+                            .response = response},
+                           loop.time_step);
+  }
+}
+
 }  // namespace
 
 Simulation simulate_line(const Scene& scene, double sample_rate, const OutputRequest& outputs,
@@ -42,13 +60,7 @@ Simulation simulate_line(const Scene& scene, double sample_rate, const OutputReq
                 .targets = {},
                 .switches = {},
                 .stop = stop};
-  if (timing == ForceTiming::kImplicit) {
-    const double number = slope_number(loop, modes, weights);
-    MODCAL_REQUIRE(number < 1.0,
-                   "time step {:g} s is too long for this friction law: its fall with the speed "
-                   "needs a step below about {:g} s",
-                   plan.time_step, plan.time_step / number);
-  }
+  require_step(loop, contact_response(modes, weights));
   Simulation result = empty_simulation(count, sample_rate, outputs);
   loop.targets = targets_of(result);
   loop.switches = {&result.switches, outputs.switches_from};
