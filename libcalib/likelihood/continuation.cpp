@@ -8,6 +8,7 @@
 #include "libcalib/likelihood/mode_verdict.hpp"
 #include "libcalib/likelihood/neighbor_test.hpp"
 #include "libcalib/likelihood/newton_fit.hpp"
+#include "libcalib/likelihood/record_options.hpp"
 #include "libcalib/stiff_string_fit.hpp"
 #include "libsim/base/error.hpp"
 
@@ -232,24 +233,7 @@ void ContinuationOptions::visit(OptionVisitor& visitor) {
                   .range = Range::positive(),
                   .word = "estimated"},
                  law_width);
-  visitor.number({.key = "highest_frequency",
-                  .meaning = "highest frequency used; automatic: 5 % above the highest mode",
-                  .unit = "Hz",
-                  .range = Range::positive(),
-                  .word = "automatic"},
-                 highest_frequency);
-  visitor.number({.key = "left_noise",
-                  .meaning = "noise standard deviation of the reaction at x = 0",
-                  .unit = "N",
-                  .range = Range::positive(),
-                  .word = "estimated"},
-                 left_noise);
-  visitor.number({.key = "right_noise",
-                  .meaning = "noise standard deviation of the reaction at x = L",
-                  .unit = "N",
-                  .range = Range::positive(),
-                  .word = "estimated"},
-                 right_noise);
+  visit_record_options(visitor, highest_frequency, left_noise, right_noise);
   visitor.integer({.key = "restarts",
                    .meaning = "other starts tried while the fit is contradicted by the data",
                    .range = Range::closed(0.0, 4.0)},

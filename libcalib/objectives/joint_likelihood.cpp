@@ -4,6 +4,7 @@
 
 #include "libcalib/likelihood/continuation.hpp"
 #include "libcalib/likelihood/projected_likelihood.hpp"
+#include "libcalib/likelihood/record_options.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -77,24 +78,7 @@ void JointLikelihood::Options::visit(OptionVisitor& visitor) {
                   .unit = "Hz",
                   .range = Range::non_negative()},
                  damping);
-  visitor.number({.key = "highest_frequency",
-                  .meaning = "highest frequency used; automatic: 5 % above the highest mode",
-                  .unit = "Hz",
-                  .range = Range::positive(),
-                  .word = "automatic"},
-                 highest_frequency);
-  visitor.number({.key = "left_noise",
-                  .meaning = "noise standard deviation of the reaction at x = 0",
-                  .unit = "N",
-                  .range = Range::positive(),
-                  .word = "estimated"},
-                 left_noise);
-  visitor.number({.key = "right_noise",
-                  .meaning = "noise standard deviation of the reaction at x = L",
-                  .unit = "N",
-                  .range = Range::positive(),
-                  .word = "estimated"},
-                 right_noise);
+  visit_record_options(visitor, highest_frequency, left_noise, right_noise);
 }
 
 JointLikelihood::JointLikelihood(const Options& options) : options_(options) {

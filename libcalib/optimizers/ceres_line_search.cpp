@@ -7,6 +7,8 @@
 #include <array>
 #include <limits>
 
+#include "libcalib/optimizers/ceres_convergence.hpp"
+#include "libcalib/optimizers/tolerances.hpp"
 #include "libcalib/optimizers/unbounded_search.hpp"
 #include "libsim/base/error.hpp"
 
@@ -65,13 +67,10 @@ void set_direction(const std::string& direction, ceres::GradientProblemSolver::O
   }
 }
 
-// Ceres tells its kinds of convergence apart in its message only.
 StopReason reason_of(const ceres::GradientProblemSolver::Summary& summary) {
+  // A line search that fails has lost its descent in rounding errors.
   if (summary.termination_type == ceres::FAILURE) return StopReason::kRoundoff;
-  if (summary.termination_type != ceres::CONVERGENCE) return StopReason::kNoProgress;
-  if (summary.message.starts_with("Function tolerance")) return StopReason::kSmallDecrease;
-  if (summary.message.starts_with("Parameter tolerance")) return StopReason::kSmallStep;
-  return StopReason::kConverged;
+  return convergence_reason(summary);
 }
 
 }  // namespace
@@ -81,14 +80,7 @@ void CeresLineSearch::Options::visit(OptionVisitor& visitor) {
                 .meaning = "how the direction of a line search is chosen",
                 .choices = {kDirections.begin(), kDirections.end()}},
                direction);
-  const auto tolerance = [&visitor](std::string_view key, std::string_view meaning, double& value) {
-    visitor.number({.key = key, .meaning = meaning, .unit = "1", .range = Range::non_negative()},
-                   value);
-  };
-  tolerance("gradient_tolerance", "largest entry of the scaled gradient at an optimum",
-            gradient_tolerance);
-  tolerance("step_tolerance", "smallest step, relative to the scaled variables", step_tolerance);
-  tolerance("value_tolerance", "smallest decrease, relative to the value", value_tolerance);
+  visit_tolerances(visitor, gradient_tolerance, step_tolerance, value_tolerance);
 }
 
 CeresLineSearch::CeresLineSearch(const Options& options) : options_(options) {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "libcalib/optimizers/ceres_convergence.hpp"
+#include "libcalib/optimizers/tolerances.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -48,14 +50,6 @@ class EndWithTheEvaluator final : public ceres::IterationCallback {
   const Evaluator& evaluator_;
 };
 
-// Ceres tells its three kinds of convergence apart in its message only.
-StopReason reason_of(const ceres::Solver::Summary& summary) {
-  if (summary.termination_type != ceres::CONVERGENCE) return StopReason::kNoProgress;
-  if (summary.message.starts_with("Function tolerance")) return StopReason::kSmallDecrease;
-  if (summary.message.starts_with("Parameter tolerance")) return StopReason::kSmallStep;
-  return StopReason::kConverged;
-}
-
 }  // namespace
 
 void CeresOptimizer::Options::visit(OptionVisitor& visitor) {
@@ -63,14 +57,7 @@ void CeresOptimizer::Options::visit(OptionVisitor& visitor) {
                 .meaning = "trust-region strategy",
                 .choices = {"levenberg_marquardt", "dogleg", "subspace_dogleg"}},
                strategy);
-  const auto tolerance = [&visitor](std::string_view key, std::string_view meaning, double& value) {
-    visitor.number({.key = key, .meaning = meaning, .unit = "1", .range = Range::non_negative()},
-                   value);
-  };
-  tolerance("gradient_tolerance", "largest entry of the scaled gradient at an optimum",
-            gradient_tolerance);
-  tolerance("step_tolerance", "smallest step, relative to the scaled variables", step_tolerance);
-  tolerance("value_tolerance", "smallest decrease, relative to the value", value_tolerance);
+  visit_tolerances(visitor, gradient_tolerance, step_tolerance, value_tolerance);
   visitor.number({.key = "initial_radius",
                   .meaning = "first radius of the trust region, in scaled variables",
                   .unit = "1",
@@ -111,7 +98,7 @@ StopReason CeresOptimizer::search(Evaluator& evaluator) const {
   settings.callbacks = {&end_with_the_evaluator};
   ceres::Solver::Summary summary;
   ceres::Solve(settings, &problem, &summary);
-  return reason_of(summary);
+  return convergence_reason(summary);
 }
 
 }  // namespace modcal

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libcalib/optimizers/tolerances.hpp"
 #include "libcalib/optimizers/unbounded_search.hpp"
 #include "libsim/base/error.hpp"
 
@@ -73,14 +74,7 @@ std::span<const double> span_of(const Eigen::VectorXd& vector) {
 }  // namespace
 
 void TinyLeastSquares::Options::visit(OptionVisitor& visitor) {
-  const auto tolerance = [&visitor](std::string_view key, std::string_view meaning, double& value) {
-    visitor.number({.key = key, .meaning = meaning, .unit = "1", .range = Range::non_negative()},
-                   value);
-  };
-  tolerance("gradient_tolerance", "largest entry of the scaled gradient at an optimum",
-            gradient_tolerance);
-  tolerance("step_tolerance", "smallest step, relative to the scaled variables", step_tolerance);
-  tolerance("value_tolerance", "smallest decrease, relative to the value", value_tolerance);
+  visit_tolerances(visitor, gradient_tolerance, step_tolerance, value_tolerance);
   visitor.number({.key = "initial_damping",
                   .meaning = "first damping, relative to the diagonal of the normal equations",
                   .unit = "1",

@@ -1,0 +1,27 @@
+#include "libcalib/likelihood/record_options.hpp"
+
+namespace modcal {
+
+void visit_record_options(OptionVisitor& visitor, double& highest_frequency, double& left_noise,
+                          double& right_noise) {
+  visitor.number({.key = "highest_frequency",
+                  .meaning = "highest frequency used; automatic: 5 % above the highest mode",
+                  .unit = "Hz",
+                  .range = Range::positive(),
+                  .word = "automatic"},
+                 highest_frequency);
+  visitor.number({.key = "left_noise",
+                  .meaning = "noise standard deviation of the reaction at x = 0",
+                  .unit = "N",
+                  .range = Range::positive(),
+                  .word = "estimated"},
+                 left_noise);
+  visitor.number({.key = "right_noise",
+                  .meaning = "noise standard deviation of the reaction at x = L",
+                  .unit = "N",
+                  .range = Range::positive(),
+                  .word = "estimated"},
+                 right_noise);
+}
+
+}  // namespace modcal
