@@ -45,7 +45,13 @@ std::string best_of(const BenchmarkGrid& grid, const std::vector<const Benchmark
   for (const BenchmarkCell* cell : order) {
     if (cell->rank == 1 && cell->successes > 0) best.push_back(cell);
   }
-  if (best.empty()) return "no method is right";
+  if (best.empty()) {
+    const auto* clearest = *std::max_element(
+        order.begin(), order.end(),
+        [](const auto* a, const auto* b) { return a->reason_count < b->reason_count; });
+    return fmt::format("no method is right; on {} of {} draws {} {}", clearest->reason_count,
+                       clearest->n, grid.methods[clearest->method], clearest->reason);
+  }
   const auto cheapest = std::min_element(
       best.begin(), best.end(),
       [](const auto* a, const auto* b) { return a->evaluations < b->evaluations; });

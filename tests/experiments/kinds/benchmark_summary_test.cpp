@@ -90,6 +90,15 @@ TEST(BenchmarkSummary, ConcludesInWords) {
             "at the truth.");
 }
 
+TEST(BenchmarkSummary, SaysWhyNoMethodIsRight) {
+  BenchmarkGrid grid{.methods = {"a"}, .conditions = {"noise 1 %"}, .noise_levels = {0.01}};
+  grid.tasks.push_back(task_of(0, 1, 0.1, false));
+  grid.tasks.back().outcome = {.failure = "needs a gradient"};
+  EXPECT_EQ(conclusion(grid, benchmark_cells(grid)).front(),
+            "At noise 1 %: no method is right; on 1 of 1 draws a refused or broke: needs a "
+            "gradient.");
+}
+
 TEST(BenchmarkSummary, DrawsProfilesThatEndAtTheShareSolved) {
   const BenchmarkGrid grid = grid_of(10, 1.0);
   for (const report::Figure& figure : {data_profile(grid), performance_profile(grid)}) {
