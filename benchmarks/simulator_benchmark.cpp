@@ -23,14 +23,13 @@ Scene scene_with(std::int64_t modes, double duration) {
   return scene;
 }
 
-// Floor of a fixed step: six multiply-adds a vector of modes (2 by 2 matrix 4, force 2; the two
-// additions to the sums of the contact have units of their own), as fast as the machine does
-// independent ones. The loads (six a vector, the state being in registers) run beside them, and
-// the contact's chain of dependent operations, about 25 cycles while sticking, is shorter.
+// Floor of a fixed step: four multiply-adds a vector of modes (two advance it, two are the sum that
+// the contact asks for; its two additions have units of their own), as fast as the machine does
+// independent ones. The four loads, the state being in registers, run beside them.
 double floor_ns(std::size_t modes) {
   static const VectorThroughput throughput = measure_vector_throughput();
   const std::size_t vectors = (modes + throughput.lanes - 1) / throughput.lanes;
-  return 6.0 * static_cast<double>(vectors) * throughput.multiply_add_ns;
+  return 4.0 * static_cast<double>(vectors) * throughput.multiply_add_ns;
 }
 
 // Nanoseconds of one step, and how many times the floor that is.

@@ -27,7 +27,7 @@ class ContactRule {
   }
 
   /// Response of v and y to the newest force of a step (`newest`) and to the one before (`older`),
-  /// for implicit_force().
+  /// for implicit_force() and the steps that go on as before.
   struct Response {
     double velocity = 0.0;      // [m/(N s)]
     double displacement = 0.0;  // [m/N]
@@ -53,29 +53,49 @@ class ContactRule {
   /// Force at t = 0.
   double initial_force() const { return sticking_ ? 0.0 : -side_ * law_.at(speed_[0]).force; }
 
-  /// The force of a step in which the contact goes on sticking or sliding as before; false where
-  /// that is not known: then ask explicit_force() or implicit_force(). Without a call, which would
-  /// push the modes out of the step loop's registers.
-  bool explicit_going_on(double v, double y, std::uint64_t k, double& force) const {
-    const double slip = v - p_.bow_velocity;
-    if (sticking_) {
-      force = -p_.stiffness * elongation(y, k) - p_.damping * slip;
-      return std::abs(force) <= p_.static_limit;
-    }
+  bool sticking() const { return sticking_; }
+
+  /// Spring [N/m] and damper [N s/m] whose force on P is all that a sticking step asks of the
+  /// modes: those of the adherence, for a force solved for shared between contact and string.
+  struct Spring {
+    double stiffness = 0.0, damping = 0.0;
+  };
+  Spring implicit_spring() const { return {held_stiffness_, held_damping_}; }
+  Spring explicit_spring() const { return {p_.stiffness, p_.damping}; }
+
+  /// The force while the contact sticks, a line in the number j of steps since `k` less the force
+  /// of the spring on P: bow + bow_per_step j − spring(P) + newest f_{k−1} + older f_{k−2}.
+  struct Held {
+    double bow = 0.0, bow_per_step = 0.0;
+    double newest = 0.0, older = 0.0;
+    double limit = 0.0;
+  };
+  Held implicit_held(std::uint64_t k) const {
+    Held held = held_by(implicit_spring(), k);
+    held.newest = held_older_;
+    return held;
+  }
+  Held explicit_held(std::uint64_t k) const {
+    Held held = held_by(explicit_spring(), k);
+    held.newest = -(p_.stiffness * b_y_ + p_.damping * b_);
+    held.older = -(p_.stiffness * older_.displacement + p_.damping * older_.velocity);
+    return held;
+  }
+
+  /// The force of a step in which the contact goes on sliding as before; false where that is not
+  /// known: then ask explicit_force() or implicit_force(). Without a call, which would push the
+  /// modes out of the step loop's registers. `v0` is the velocity of P, without the forces of the
+  /// two steps before.
+  bool explicit_slides_on(double v0, double newest, double older, double& force) const {
+    const double slip = (v0 - p_.bow_velocity) + older_.velocity * older + b_ * newest;
     force = -side_ * law_.at(std::abs(slip)).force;
     return slip * side_ > 0.0;
   }
-  bool implicit_going_on(double v0, double y0, double older, std::uint64_t k, double& force) const {
-    if (sticking_) {
-      // The bow's part first: it needs nothing of this step.
-      const double bow = held_stiffness_ * bow_displacement(k) + held_damping_ * p_.bow_velocity;
-      force = ((bow - held_stiffness_ * y0) - held_damping_ * v0) + held_older_ * older;
-      return std::abs(force) <= p_.static_limit;
-    }
+  bool implicit_slides_on(double v0, double newest, double& force) const {
     if constexpr (kHasClosedForm) {
       if (!closed_form_.valid()) return false;
-      const double slip = (v0 + older_.velocity * older) - p_.bow_velocity;
-      force = closed_form_.force(side_, v0 - p_.bow_velocity, older_.velocity * side_, older);
+      const double slip = (v0 + older_.velocity * newest) - p_.bow_velocity;
+      force = closed_force(v0, newest);
       return side_ * slip >= b_ * rest_force_;
     }
     return false;
@@ -105,8 +125,11 @@ class ContactRule {
   [[gnu::noinline]] double implicit_force(double v0, double y0, double older, std::uint64_t k) {
     const double slip = (v0 + older_.velocity * older) - p_.bow_velocity;
     if (sticking_) {
-      double force = 0.0;
-      if (implicit_going_on(v0, y0, older, k, force)) return force;
+      // The bow's part first: it needs nothing of this step.
+      const double bow = held_stiffness_ * bow_displacement(k) + held_damping_ * p_.bow_velocity;
+      const double force =
+          ((bow - held_stiffness_ * y0) - held_damping_ * v0) + held_older_ * older;
+      if (std::abs(force) <= p_.static_limit) return force;
       release(-force, y0 + older_.displacement * older + b_y_ * force, k);
       restart(0.0);
     } else if (side_ * slip < b_ * rest_force_) {
@@ -117,7 +140,7 @@ class ContactRule {
       }
       side_ = -side_;
     }
-    return -side_ * sliding_force(side_ * slip);
+    return sliding_force_of(v0, older, slip);
   }
 
  private:
@@ -127,6 +150,11 @@ class ContactRule {
     return attach_displacement_ + p_.bow_velocity * elapsed;
   }
   double elongation(double y, std::uint64_t k) const { return y - bow_displacement(k); }
+  Held held_by(const Spring& spring, std::uint64_t k) const {
+    return {.bow = spring.stiffness * bow_displacement(k) + spring.damping * p_.bow_velocity,
+            .bow_per_step = spring.stiffness * p_.bow_velocity * time_step_,
+            .limit = p_.static_limit};
+  }
   void attach(double y, std::uint64_t k) {
     sticking_ = true;
     attach_displacement_ = y;
@@ -173,6 +201,17 @@ class ContactRule {
   void restart(double speed) {
     for (double& past : speed_) past = speed;
     for (Expansion& expansion : ahead_) expansion = expansion_at(speed);
+  }
+
+  // The force of a step that slides with this slip before its own force.
+  double sliding_force_of(double v0, double older, double slip) {
+    if constexpr (kHasClosedForm) {
+      if (closed_form_.valid() && side_ * slip >= b_ * rest_force_) return closed_force(v0, older);
+    }
+    return -side_ * sliding_force(side_ * slip);
+  }
+  double closed_force(double v0, double older) const {
+    return closed_form_.force(side_, v0 - p_.bow_velocity, older_.velocity * side_, older);
   }
 
   // Force at the root u ≥ 0 of u + b g(u) = w: Halley's iteration on a convex function that rises
@@ -235,5 +274,21 @@ class ContactRule {
   std::uint64_t releases_ = 0;
   SwitchList switch_list_;
 };
+
+/// The rule of a loop, and in `coefficients` the spring that the loop asks of the modes.
+template <typename Law>
+ContactRule<Law> make_rule(const StepLoop& loop, const Law& law, StepCoefficients& coefficients) {
+  ContactRule<Law> rule(loop.contact, law, loop.time_step, loop.initial_displacement,
+                        loop.initial_velocity);
+  rule.list_switches(loop.switches);
+  const auto& direct = coefficients.direct_response;
+  const auto& deferred = coefficients.deferred_response;
+  rule.set_response({direct.velocity, direct.displacement},
+                    {deferred.velocity, deferred.displacement});
+  const auto spring =
+      loop.timing == ForceTiming::kImplicit ? rule.implicit_spring() : rule.explicit_spring();
+  coefficients.hold(spring.stiffness, spring.damping);
+  return rule;
+}
 
 }  // namespace modcal

@@ -9,239 +9,178 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "libsim/dynamics/stepped_modes-inl.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace modcal::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
 
-struct ContactSums {
-  double velocity;
-  double displacement;
+// The string a step ahead of the contact: `base` is the sum over P of the coming step without the
+// force `pending`, which the modes have not taken up yet.
+template <typename Modes>
+struct LeadingString {
+  Modes modes;
+  double base = 0.0, pending = 0.0;
+
+  // The sum that was asked for with the last step.
+  HWY_INLINE double Leading(const SumWeights& weights) const {
+    return base + weights.kick * pending;
+  }
+  // Any sum, at the cost of a pass over the modes.
+  HWY_INLINE double Sum(const SumWeights& weights) const {
+    return modes.Sum(weights) + weights.kick * pending;
+  }
+  HWY_INLINE void Advance(double force, const SumWeights& weights) {
+    base = modes.Advance(pending, weights);
+    pending = force;
+  }
 };
 
-// At most 8 lanes, the padding of the coefficients.
-using Tag = hn::CappedTag<double, kVectorPadding>;
+// The contact forces of the two steps before the running one.
+struct LastForces {
+  double newest = 0.0, older = 0.0;
 
-// The arrays of the coefficients, read once: a store into the state could otherwise change the
-// vectors' own pointers, and every step would load them again.
-struct Arrays {
-  explicit Arrays(StepCoefficients& c)
-      : size(c.velocity.size()),
-        vv(c.vv.data()),
-        vy(c.vy.data()),
-        yv(c.yv.data()),
-        yy(c.yy.data()),
-        deferred_velocity(c.deferred_velocity.data()),
-        deferred_displacement(c.deferred_displacement.data()),
-        velocity(c.velocity.data()),
-        displacement(c.displacement.data()) {}
-  std::size_t size;
-  const double *vv, *vy, *yv, *yy, *deferred_velocity, *deferred_displacement;
-  double *velocity, *displacement;
+  // The force that S of the running step takes up: the scheme that solves for its force has used
+  // the newest one already.
+  template <ForceTiming kTiming>
+  HWY_INLINE double Taken() const {
+    return kTiming == ForceTiming::kImplicit ? newest : older;
+  }
+  HWY_INLINE void Push(double force) {
+    older = newest;
+    newest = force;
+  }
 };
 
-// Sums over the lanes of both vectors, by one tree: the first stage leaves half of each.
-HWY_INLINE ContactSums SumsOfLanes(hn::Vec<Tag> velocity, hn::Vec<Tag> displacement) {
-  const Tag d;
-#if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
-  const hn::Half<Tag> half;
-  auto sum = hn::Add(hn::InterleaveLower(d, velocity, displacement),
-                     hn::InterleaveUpper(d, velocity, displacement));
-  const auto folded = hn::Add(hn::LowerHalf(half, sum), hn::UpperHalf(half, sum));
-#if HWY_TARGET == HWY_AVX2
-  const auto pair = folded;
-  const auto pair_tag = half;
-#else
-  const hn::Half<decltype(half)> pair_tag;
-  const auto pair = hn::Add(hn::LowerHalf(pair_tag, folded), hn::UpperHalf(pair_tag, folded));
-#endif
-  return {hn::GetLane(pair), hn::GetLane(hn::Reverse2(pair_tag, pair))};
-#else
-  return {hn::GetLane(hn::SumOfLanes(d, velocity)), hn::GetLane(hn::SumOfLanes(d, displacement))};
-#endif
+struct Weights {
+  explicit Weights(const StepCoefficients& c)
+      : velocity(c.velocity), displacement(c.displacement), held(c.held) {}
+  SumWeights velocity, displacement, held;
+  HWY_INLINE const SumWeights& For(bool sticking) const { return sticking ? held : velocity; }
+};
+
+// Goes on sticking for `steps` steps at most; returns how many.
+template <ForceTiming kTiming, typename Modes, typename Held>
+HWY_INLINE std::size_t StickOn(const Held& held, const SumWeights& weights, std::size_t steps,
+                               LeadingString<Modes>& string, LastForces& forces) {
+  for (std::size_t j = 0; j < steps; ++j) {
+    const double bow = held.bow + held.bow_per_step * static_cast<double>(j);
+    double rest = bow - string.Leading(weights);
+    if constexpr (kTiming == ForceTiming::kPreviousStep) rest += held.older * forces.older;
+    const double force = rest + held.newest * forces.newest;
+    if (!(std::abs(force) <= held.limit)) return j;
+    string.Advance(forces.Taken<kTiming>(), weights);
+    forces.Push(force);
+  }
+  return steps;
 }
 
-// One vector of modes of P ← M (P + D u).
-HWY_INLINE void AdvanceVector(const Arrays& c, std::size_t i, hn::Vec<Tag> force,
-                              hn::Vec<Tag>& velocity, hn::Vec<Tag>& displacement) {
-  const Tag d;
-  const auto v = hn::MulAdd(hn::Load(d, c.deferred_velocity + i), force, velocity);
-  const auto y = hn::MulAdd(hn::Load(d, c.deferred_displacement + i), force, displacement);
-  velocity = hn::MulAdd(hn::Load(d, c.vy + i), y, hn::Mul(hn::Load(d, c.vv + i), v));
-  displacement = hn::MulAdd(hn::Load(d, c.yv + i), v, hn::Mul(hn::Load(d, c.yy + i), y));
-}
-
-// The state in memory: any number of modes.
-class StreamedModes {
- public:
-  explicit StreamedModes(StepCoefficients& c) : c_(c) {}
-  // Σ v_n and Σ y_n of the new P.
-  HWY_INLINE ContactSums Advance(double u) {
-    const Tag d;
-    const auto force = hn::Set(d, u);
-    auto sum_v = hn::Zero(d), sum_y = hn::Zero(d);
-    for (std::size_t i = 0; i < c_.size; i += hn::Lanes(d)) {
-      auto v = hn::Load(d, c_.velocity + i);
-      auto y = hn::Load(d, c_.displacement + i);
-      AdvanceVector(c_, i, force, v, y);
-      hn::Store(v, d, c_.velocity + i);
-      hn::Store(y, d, c_.displacement + i);
-      sum_v = hn::Add(sum_v, v);
-      sum_y = hn::Add(sum_y, y);
+// Goes on sliding for `steps` steps at most; returns how many.
+template <ForceTiming kTiming, typename Modes, typename Rule>
+HWY_INLINE std::size_t SlideOn(const Rule& rule, const SumWeights& weights, std::size_t steps,
+                               LeadingString<Modes>& string, LastForces& forces) {
+  for (std::size_t j = 0; j < steps; ++j) {
+    const double v0 = string.Leading(weights);
+    double force = 0.0;
+    bool going_on = false;
+    if constexpr (kTiming == ForceTiming::kImplicit) {
+      going_on = rule.implicit_slides_on(v0, forces.newest, force);
+    } else {
+      going_on = rule.explicit_slides_on(v0, forces.newest, forces.older, force);
     }
-    return SumsOfLanes(sum_v, sum_y);
+    if (!going_on) return j;
+    string.Advance(forces.Taken<kTiming>(), weights);
+    forces.Push(force);
   }
-  void Store() {}
-  void Load() {}
+  return steps;
+}
 
- private:
-  Arrays c_;
+// Goes on as before; returns for how many of the steps from `step` + 1 on.
+template <ForceTiming kTiming, typename Modes, typename Rule>
+HWY_INLINE std::size_t GoOn(const Rule& rule, const Weights& weights, std::uint64_t step,
+                            std::size_t steps, LeadingString<Modes>& string, LastForces& forces) {
+  if (!rule.sticking()) return SlideOn<kTiming>(rule, weights.velocity, steps, string, forces);
+  const auto held = kTiming == ForceTiming::kImplicit ? rule.implicit_held(step + 1)
+                                                      : rule.explicit_held(step + 1);
+  return StickOn<kTiming>(held, weights.held, steps, string, forces);
+}
+
+struct Motion {
+  double velocity = 0.0, displacement = 0.0;
 };
 
-// The state in registers, 2 kVectors of the 32 that the widest instruction sets have. Written
-// out by recursion, not as loops over arrays, which the compiler would keep in memory.
-template <std::size_t kVectors>
-struct VectorsInRegisters {
-  VectorsInRegisters<kVectors - 1> rest;
-  hn::Vec<Tag> v, y;
+// One step whatever happens in it.
+template <ForceTiming kTiming, typename Modes, typename Rule>
+HWY_INLINE Motion StepAcross(Rule& rule, const StepCoefficients& c, const Weights& weights,
+                             std::uint64_t step, LeadingString<Modes>& string, LastForces& forces) {
+  const double taken = forces.Taken<kTiming>();
+  const double v0 = string.Sum(weights.velocity), y0 = string.Sum(weights.displacement);
+  Motion motion{v0 + c.deferred_response.velocity * taken,
+                y0 + c.deferred_response.displacement * taken};
+  const auto drive = [&](double by) {
+    motion.velocity += c.direct_response.velocity * by;
+    motion.displacement += c.direct_response.displacement * by;
+  };
+  double force = 0.0;
+  string.modes.Store();
+  if constexpr (kTiming == ForceTiming::kImplicit) {
+    force = rule.implicit_force(v0, y0, taken, step);
+    drive(force);
+  } else {
+    drive(forces.newest);
+    force = rule.explicit_force(motion.velocity, motion.displacement, step);
+  }
+  string.modes.Load();
+  string.Advance(taken, weights.For(rule.sticking()));
+  forces.Push(force);
+  return motion;
+}
 
-  static constexpr std::size_t kFirst = (kVectors - 1) * hn::MaxLanes(Tag());
+// The reactions of a sampled step without the force that drives it.
+template <typename Modes>
+HWY_INLINE void StartReactions(const SampleTargets& to, std::size_t sample,
+                               const StepCoefficients& c, double taken,
+                               const LeadingString<Modes>& string) {
+  if (to.left_reaction) {
+    to.left_reaction[sample] = string.Sum(SumWeights(c.left)) + c.deferred_response.left * taken;
+  }
+  if (to.right_reaction) {
+    to.right_reaction[sample] = string.Sum(SumWeights(c.right)) + c.deferred_response.right * taken;
+  }
+}
 
-  HWY_INLINE void Load(const Arrays& c) {
-    rest.Load(c);
-    v = hn::Load(Tag(), c.velocity + kFirst);
-    y = hn::Load(Tag(), c.displacement + kFirst);
-  }
-  HWY_INLINE void Store(const Arrays& c) const {
-    rest.Store(c);
-    hn::Store(v, Tag(), c.velocity + kFirst);
-    hn::Store(y, Tag(), c.displacement + kFirst);
-  }
-  HWY_INLINE void Advance(const Arrays& c, hn::Vec<Tag> force, hn::Vec<Tag>& sum_v,
-                          hn::Vec<Tag>& sum_y) {
-    rest.Advance(c, force, sum_v, sum_y);
-    AdvanceVector(c, kFirst, force, v, y);
-    sum_v = kFirst == 0 ? v : hn::Add(sum_v, v);
-    sum_y = kFirst == 0 ? y : hn::Add(sum_y, y);
-  }
-};
-template <>
-struct VectorsInRegisters<0> {
-  HWY_INLINE void Load(const Arrays&) {}
-  HWY_INLINE void Store(const Arrays&) const {}
-  HWY_INLINE void Advance(const Arrays&, hn::Vec<Tag>, hn::Vec<Tag>&, hn::Vec<Tag>&) {}
-};
-
-template <std::size_t kVectors>
-class ResidentModes {
- public:
-  explicit ResidentModes(StepCoefficients& c) : c_(c) { Load(); }
-  HWY_INLINE ContactSums Advance(double u) {
-    const Tag d;
-    auto sum_v = hn::Zero(d), sum_y = hn::Zero(d);
-    vectors_.Advance(c_, hn::Set(d, u), sum_v, sum_y);
-    return SumsOfLanes(sum_v, sum_y);
-  }
-  // Around a call or whatever else needs registers: the compiler is not to keep both the state
-  // and a copy of it on the stack, written at every step.
-  HWY_INLINE void Load() {
-    asm volatile("" : : : "memory");
-    vectors_.Load(c_);
-  }
-  HWY_INLINE void Store() { vectors_.Store(c_); }
-
- private:
-  Arrays c_;
-  VectorsInRegisters<kVectors> vectors_;
-};
-
-HWY_INLINE double Dot(const AlignedVector& a, const AlignedVector& b) {
-  const Tag d;
-  auto sum = hn::Zero(d);
-  for (std::size_t i = 0; i < a.size(); i += hn::Lanes(d)) {
-    sum = hn::MulAdd(hn::Load(d, a.data() + i), hn::Load(d, b.data() + i), sum);
-  }
-  return hn::GetLane(hn::SumOfLanes(d, sum));
+HWY_INLINE void FinishSample(const SampleTargets& to, std::size_t sample, const StepCoefficients& c,
+                             const Motion& motion, double driving, double force) {
+  if (to.left_reaction) to.left_reaction[sample] += c.direct_response.left * driving;
+  if (to.right_reaction) to.right_reaction[sample] += c.direct_response.right * driving;
+  if (to.displacement) to.displacement[sample] = motion.displacement;
+  if (to.velocity) to.velocity[sample] = motion.velocity;
+  if (to.force) to.force[sample] = force;
 }
 
 template <ForceTiming kTiming, typename Modes, typename Law>
-LoopCounts Loop(const StepLoop& loop, const Law& law, StepCoefficients& c) {
-  ContactRule<Law> rule(loop.contact, law, loop.time_step, loop.initial_displacement,
-                        loop.initial_velocity);
-  rule.list_switches(loop.switches);
-  const StepCoefficients::Response deferred = c.deferred_response;
-  const StepCoefficients::Response direct = c.direct_response;
-  if (kTiming == ForceTiming::kImplicit) {
-    rule.set_response({direct.velocity, direct.displacement},
-                      {deferred.velocity, deferred.displacement});
-  }
-  double force = rule.initial_force();
-  double previous_force = 0.0;
-  // Sums of P before the first step: M S_0, as the caller left it.
-  ContactSums sums = {0.0, 0.0};
-  for (std::size_t i = 0; i < c.velocity.size(); ++i) {
-    sums.velocity += c.velocity[i];
-    sums.displacement += c.displacement[i];
-  }
-  Modes modes(c);
+LoopCounts Loop(const StepLoop& loop, ContactRule<Law>& rule, StepCoefficients& c) {
+  constexpr bool kImplicit = kTiming == ForceTiming::kImplicit;
+  const Weights weights(c);
+  LastForces forces{.newest = rule.initial_force()};
+  LeadingString<Modes> string{Modes(c)};
+  string.base = string.modes.Sum(weights.For(rule.sticking()));
   std::uint64_t step = 0;
   LoopCounts counts;
   for (std::size_t sample = 1; sample < loop.samples; ++sample) {
     if (loop.stop.requested()) break;
-    double v = 0.0, y = 0.0, driving = 0.0;
-    for (std::size_t inner = loop.steps_per_sample; inner > 0; --inner) {
-      ++step;
-      constexpr bool kImplicit = kTiming == ForceTiming::kImplicit;
-      const double u = kImplicit ? force : previous_force;
-      const double free_v = sums.velocity + deferred.velocity * u;
-      const double free_y = sums.displacement + deferred.displacement * u;
-      if (inner == 1) {
-        modes.Store();  // reactions need S of this step, which Advance() overwrites
-        if (loop.targets.left_reaction) {
-          loop.targets.left_reaction[sample] = Dot(c.left_gain, c.displacement) + deferred.left * u;
-        }
-        if (loop.targets.right_reaction) {
-          loop.targets.right_reaction[sample] =
-              Dot(c.right_gain, c.displacement) + deferred.right * u;
-        }
-        modes.Load();
-      }
-      previous_force = force;
-      if constexpr (kImplicit) {
-        double now = 0.0;
-        if (!rule.implicit_going_on(sums.velocity, sums.displacement, u, step, now)) [[unlikely]] {
-          modes.Store();
-          now = rule.implicit_force(sums.velocity, sums.displacement, u, step);
-          modes.Load();
-        }
-        force = now;
-        driving = force;
-      } else {
-        driving = force;
-      }
-      v = free_v + direct.velocity * driving;
-      y = free_y + direct.displacement * driving;
-      if constexpr (!kImplicit) {
-        double now = 0.0;
-        if (!rule.explicit_going_on(v, y, step, now)) [[unlikely]] {
-          modes.Store();
-          now = rule.explicit_force(v, y, step);
-          modes.Load();
-        }
-        force = now;
-      }
-      // After the contact, whose chain of dependent operations the processor then starts first.
-      sums = modes.Advance(u);
+    for (std::size_t left = loop.steps_per_sample - 1; left > 0;) {
+      const std::size_t gone = GoOn<kTiming>(rule, weights, step, left, string, forces);
+      step += gone;
+      left -= gone;
+      if (left == 0) break;
+      StepAcross<kTiming>(rule, c, weights, ++step, string, forces);
+      --left;
     }
-    if (loop.targets.left_reaction) {
-      loop.targets.left_reaction[sample] += direct.left * driving;
-    }
-    if (loop.targets.right_reaction) {
-      loop.targets.right_reaction[sample] += direct.right * driving;
-    }
-    if (loop.targets.displacement) loop.targets.displacement[sample] = y;
-    if (loop.targets.velocity) loop.targets.velocity[sample] = v;
-    if (loop.targets.force) loop.targets.force[sample] = force;
-    if (!std::isfinite(v) || !std::isfinite(force)) {
+    StartReactions(loop.targets, sample, c, forces.Taken<kTiming>(), string);
+    const Motion motion = StepAcross<kTiming>(rule, c, weights, ++step, string, forces);
+    FinishSample(loop.targets, sample, c, motion, kImplicit ? forces.newest : forces.older,
+                 forces.newest);
+    if (!std::isfinite(motion.velocity) || !std::isfinite(forces.newest)) {
       counts.first_bad_sample = sample;
       break;
     }
@@ -251,41 +190,47 @@ LoopCounts Loop(const StepLoop& loop, const Law& law, StepCoefficients& c) {
   return counts;
 }
 
-template <typename Modes>
-LoopCounts LoopOf(const StepLoop& loop, StepCoefficients& coefficients) {
-  return std::visit(
-      [&](const auto& law) {
-        return loop.timing == ForceTiming::kImplicit
-                   ? Loop<ForceTiming::kImplicit, Modes>(loop, law, coefficients)
-                   : Loop<ForceTiming::kPreviousStep, Modes>(loop, law, coefficients);
-      },
-      loop.law);
+template <typename Modes, typename Law>
+LoopCounts LoopOf(const StepLoop& loop, ContactRule<Law>& rule, StepCoefficients& c) {
+  return loop.timing == ForceTiming::kImplicit
+             ? Loop<ForceTiming::kImplicit, Modes>(loop, rule, c)
+             : Loop<ForceTiming::kPreviousStep, Modes>(loop, rule, c);
 }
 
-LoopCounts RunStepLoop(const StepLoop& loop, StepCoefficients& coefficients) {
+template <typename Law>
+LoopCounts LoopOfLaw(const StepLoop& loop, ContactRule<Law>& rule, StepCoefficients& c) {
 #if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
-  switch (coefficients.velocity.size() / kVectorPadding) {
+  switch (c.first.size() / kVectorPadding) {
     case 1:
-      return LoopOf<ResidentModes<1>>(loop, coefficients);
+      return LoopOf<ResidentModes<1>>(loop, rule, c);
     case 2:
-      return LoopOf<ResidentModes<2>>(loop, coefficients);
+      return LoopOf<ResidentModes<2>>(loop, rule, c);
     case 3:
-      return LoopOf<ResidentModes<3>>(loop, coefficients);
+      return LoopOf<ResidentModes<3>>(loop, rule, c);
     case 4:
-      return LoopOf<ResidentModes<4>>(loop, coefficients);
+      return LoopOf<ResidentModes<4>>(loop, rule, c);
     case 5:
-      return LoopOf<ResidentModes<5>>(loop, coefficients);
+      return LoopOf<ResidentModes<5>>(loop, rule, c);
     case 6:
-      return LoopOf<ResidentModes<6>>(loop, coefficients);
+      return LoopOf<ResidentModes<6>>(loop, rule, c);
     case 7:
-      return LoopOf<ResidentModes<7>>(loop, coefficients);
+      return LoopOf<ResidentModes<7>>(loop, rule, c);
     case 8:
-      return LoopOf<ResidentModes<8>>(loop, coefficients);
+      return LoopOf<ResidentModes<8>>(loop, rule, c);
     default:
       break;
   }
 #endif
-  return LoopOf<StreamedModes>(loop, coefficients);
+  return LoopOf<StreamedModes>(loop, rule, c);
+}
+
+LoopCounts RunStepLoop(const StepLoop& loop, StepCoefficients& c) {
+  return std::visit(
+      [&](const auto& law) {
+        auto rule = make_rule(loop, law, c);
+        return LoopOfLaw(loop, rule, c);
+      },
+      loop.law);
 }
 
 }  // namespace modcal::HWY_NAMESPACE
@@ -294,92 +239,6 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace modcal {
 HWY_EXPORT(RunStepLoop);
-
-namespace {
-
-AlignedVector padded(const std::vector<double>& values) {
-  AlignedVector result(values.begin(), values.end());
-  result.resize(padded_size(values.size()), 0.0);
-  return result;
-}
-
-using ComplexVector = std::vector<std::complex<double>>;
-
-// The part of every Z that is the velocity of the contact, and the part that is its displacement.
-AlignedVector velocities(const ContactModes& modes, const ComplexVector& state) {
-  std::vector<double> parts;
-  for (std::size_t n = 0; n < modes.size(); ++n) {
-    parts.push_back(state[n].real() - modes.quadrature[n] * state[n].imag());
-  }
-  return padded(parts);
-}
-
-AlignedVector displacements(const ContactModes& modes, const ComplexVector& state) {
-  std::vector<double> parts;
-  for (std::size_t n = 0; n < modes.size(); ++n) {
-    parts.push_back(modes.compliance[n] * state[n].imag());
-  }
-  return padded(parts);
-}
-
-AlignedVector per_displacement(const ContactModes& modes, const std::vector<double>& gain) {
-  std::vector<double> parts;
-  for (std::size_t n = 0; n < modes.size(); ++n) parts.push_back(gain[n] / modes.compliance[n]);
-  return padded(parts);
-}
-
-// Z ← r Z in the coordinates v = Re Z − κ Im Z, y = Im Z/ω_d.
-void fill_propagator(const ContactModes& modes, const ComplexVector& propagate,
-                     StepCoefficients& c) {
-  std::vector<double> vv, vy, yv, yy;
-  for (std::size_t n = 0; n < modes.size(); ++n) {
-    const double a = propagate[n].real(), b = propagate[n].imag();
-    const double k = modes.quadrature[n];
-    vv.push_back(a - k * b);
-    vy.push_back(-b * (1.0 + k * k) / modes.compliance[n]);
-    yv.push_back(b * modes.compliance[n]);
-    yy.push_back(a + k * b);
-  }
-  c.vv = padded(vv);
-  c.vy = padded(vy);
-  c.yv = padded(yv);
-  c.yy = padded(yy);
-}
-
-StepCoefficients::Response response_of(const ContactModes& modes, const ComplexVector& state) {
-  StepCoefficients::Response sum;
-  for (std::size_t n = 0; n < modes.size(); ++n) {
-    sum.velocity += state[n].real() - modes.quadrature[n] * state[n].imag();
-    sum.displacement += modes.compliance[n] * state[n].imag();
-    sum.left += modes.left_gain[n] * state[n].imag();
-    sum.right += modes.right_gain[n] * state[n].imag();
-  }
-  return sum;
-}
-
-}  // namespace
-
-StepCoefficients make_step_coefficients(const ContactModes& modes, const SchemeWeights& weights,
-                                        double initial_force) {
-  const std::size_t size = modes.size();
-  ComplexVector direct(size), deferred(size), state(size);
-  for (std::size_t n = 0; n < size; ++n) {
-    direct[n] = modes.drive[n] * weights.newer[n];
-    deferred[n] = weights.propagate[n] * direct[n] + modes.drive[n] * weights.older[n];
-    state[n] = weights.propagate[n] * (modes.initial[n] - direct[n] * initial_force);
-  }
-  StepCoefficients c;
-  fill_propagator(modes, weights.propagate, c);
-  c.deferred_velocity = velocities(modes, deferred);
-  c.deferred_displacement = displacements(modes, deferred);
-  c.left_gain = per_displacement(modes, modes.left_gain);
-  c.right_gain = per_displacement(modes, modes.right_gain);
-  c.velocity = velocities(modes, state);
-  c.displacement = displacements(modes, state);
-  c.deferred_response = response_of(modes, deferred);
-  c.direct_response = response_of(modes, direct);
-  return c;
-}
 
 LoopCounts run_step_loop(const StepLoop& loop, StepCoefficients& coefficients) {
   return HWY_DYNAMIC_DISPATCH(RunStepLoop)(loop, coefficients);

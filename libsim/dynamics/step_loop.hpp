@@ -1,21 +1,20 @@
 // Fixed-step loop shared by the time-stepping simulators. Kernel: no allocation, no I/O, no virtual
 // call; instruction set chosen at run time.
 //
-// One step of either scheme is Z_{k+1} = r Z_k + … with forces of the two ends. With
-// S = the part of Z that does not need the newest force u's partner,
-//   S_{k+1} = r S_k + D u,      Z_{k+1} = S_{k+1} + d f,
-// the sums over the modes that the contact needs are those of P_k = r S_k plus a scalar times u:
-// they do not wait for the force of the running step, which hides the latency of the reduction.
+// The string runs ahead of the contact: what the modes answer to all forces but the last two is
+// known two steps before it is needed, and these two come in by one product each. The sum over the
+// modes, a long chain of dependent operations, therefore keeps no step waiting. And it is one sum,
+// that of the quantity which decides the step: the slip velocity while the contact slides, the
+// force of the adherence on the string while it sticks.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
-#include "libsim/base/aligned_vector.hpp"
 #include "libsim/base/stop_token.hpp"
-#include "libsim/dynamics/contact_modes.hpp"
 #include "libsim/dynamics/friction/sliding_laws.hpp"
+#include "libsim/dynamics/step_coefficients.hpp"
 #include "libsim/dynamics/switch.hpp"
 
 namespace modcal {
@@ -25,30 +24,6 @@ enum class ForceTiming {
   kPreviousStep,  ///< explicit: the force of the previous step drives this one (the paper)
   kImplicit,      ///< the force at the end of the step is solved for together with the velocity
 };
-
-/// One-step coefficients of every mode in the coordinates (v, y) = (φ q̇, φ q), its shares of the
-/// velocity and displacement of the contact, whose sums over the modes are plain: padded with
-/// zeros to whole vectors.
-struct StepCoefficients {
-  AlignedVector vv, vy, yv, yy;  ///< r as a matrix: v ← vv v + vy y, y ← yv v + yy y
-  AlignedVector deferred_velocity, deferred_displacement;  ///< D [m/(N s)], [m/N]
-  AlignedVector left_gain, right_gain;                     ///< g/φ [N/m]
-  AlignedVector velocity, displacement;  ///< P [m/s], [m], overwritten by the loop
-  // Σ over modes: response of velocity, displacement and reactions to D and to d.
-  struct Response {
-    double velocity = 0.0, displacement = 0.0, left = 0.0, right = 0.0;
-  };
-  Response deferred_response;
-  Response direct_response;
-};
-
-/// Scheme given by r, d₀ (weight of the older force) and d₁ (weight of the newer force), per mode:
-/// Z_{k+1} = r Z_k + drive·(d₀ f_old + d₁ f_new). `initial_force` is f_new of t = 0.
-struct SchemeWeights {
-  std::vector<std::complex<double>> propagate, older, newer;
-};
-StepCoefficients make_step_coefficients(const ContactModes& modes, const SchemeWeights& weights,
-                                        double initial_force);
 
 struct ContactParameters {
   double bow_velocity = 0.0;  ///< [m/s]

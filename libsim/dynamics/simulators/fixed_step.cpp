@@ -97,13 +97,16 @@ Simulation simulate_fixed_step(const Scene& scene, double sample_rate, const Out
                                WeightsOfPole weights_of_pole) {
   const BowMotion bow = bow_motion(scene.bow, scene.duration);
   const auto friction = scene.friction.make();
-  if (!is_plain(scene, bow, *friction)) {
+  const auto general = [&] {
     return simulate_line(scene, sample_rate, outputs, stop, wanted_time_step, timing,
                          weights_of_pole);
-  }
+  };
+  if (!is_plain(scene, bow, *friction)) return general();
   const StepPlan plan = plan_steps(wanted_time_step, sample_rate);
   const std::size_t count = sample_count(scene.duration, sample_rate);
   const ContactModes modes = scene_modes(scene);
+  const SchemeWeights weights = scheme_weights(modes.pole, plan.time_step, weights_of_pole);
+  if (!are_separable(weights)) return general();
   const ContactMotion motion = initial_motion(modes);
 
   StepLoop loop{.timing = timing,
@@ -119,8 +122,7 @@ Simulation simulate_fixed_step(const Scene& scene, double sample_rate, const Out
   const double first_force = initial_force(loop);
   // The explicit scheme has no force before t = 0; the implicit one starts with that of t = 0.
   StepCoefficients coefficients =
-      make_step_coefficients(modes, scheme_weights(modes.pole, plan.time_step, weights_of_pole),
-                             timing == ForceTiming::kImplicit ? first_force : 0.0);
+      make_step_coefficients(modes, weights, timing == ForceTiming::kImplicit ? first_force : 0.0);
   if (timing == ForceTiming::kImplicit) {
     require_unique_sliding(loop.law, coefficients.direct_response.velocity, plan.time_step);
   } else if (loop.contact.static_limit > 0.0) {

@@ -189,16 +189,19 @@ TEST(Gestures, MirroredGesturesGiveMirroredMotion) {
   }
 }
 
-TEST(Torsion, WithInfiniteImpedanceIsNoTorsionBitForBit) {
+// Rounding, which 66 modes do not share with 46, grows by the contact's transient sensitivity,
+// below 1e6 in 20 ms.
+TEST(Torsion, WithInfiniteImpedanceIsNoTorsion) {
   Scene scene = paper_scene();
   scene.duration = 0.02;
   Scene stiff = scene;
   stiff.torsion.present = true;
   stiff.torsion.impedance_ratio = 1e290;
   const Simulation a = exact(scene), b = exact(stiff);
-  EXPECT_EQ(a.velocity.samples, b.velocity.samples);
-  EXPECT_EQ(a.force.samples, b.force.samples);
-  EXPECT_EQ(a.right_reaction.samples, b.right_reaction.samples);
+  EXPECT_EQ(a.releases, b.releases);
+  EXPECT_LT(distance(b.velocity, a.velocity), 1e-9);
+  EXPECT_LT(distance(b.force, a.force), 1e-9);
+  EXPECT_LT(distance(b.right_reaction, a.right_reaction), 1e-9);
 }
 
 // The contact force sees both impedances in parallel: at the first instants, before any reflection,
