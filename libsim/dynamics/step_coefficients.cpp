@@ -1,6 +1,5 @@
 #include "libsim/dynamics/step_coefficients.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -72,8 +71,13 @@ void StepCoefficients::hold(double stiffness, double damping) {
 }
 
 bool are_separable(const SchemeWeights& weights) {
-  return std::all_of(weights.propagate.begin(), weights.propagate.end(),
-                     [](Complex r) { return std::abs(r.imag()) >= 0.05 * std::abs(1.0 - r); });
+  for (std::size_t n = 0; n < weights.propagate.size(); ++n) {
+    const Complex r = weights.propagate[n], older = weights.older[n], newer = weights.newer[n];
+    const bool distinct = std::abs(r.imag()) >= 0.05 * std::abs(1.0 - r);
+    const bool driven = std::abs(r * newer + older) >= 1e-3 * (std::abs(older) + std::abs(newer));
+    if (!distinct || !driven) return false;
+  }
+  return true;
 }
 
 StepCoefficients make_step_coefficients(const ContactModes& modes, const SchemeWeights& weights,

@@ -45,8 +45,9 @@ struct StepCoefficients {
   void hold(double stiffness, double damping);
 };
 
-/// Whether x₁ and x₂ can be told apart, |Im r| ≥ 0.05 |1 − r| for every mode: not where a mode does
-/// a whole number of half turns a step, nor where it is damped nearly critically.
+/// Whether x₁ and x₂ can be told apart, |Im r| ≥ 0.05 |1 − r|, and forces reach them,
+/// |r d₁ + d₀| ≥ 1e-3 (|d₀| + |d₁|), for every mode: not where a mode does a whole number of half
+/// turns a step, nor where it is damped nearly critically.
 bool are_separable(const SchemeWeights& weights);
 
 /// `initial_force` is f_new of t = 0. Modes must be separable.
