@@ -25,6 +25,13 @@ struct Axis {
   std::function<void(Scene&, double)> set;
 };
 
+// An axis of scenes that no number tells apart.
+struct NamedAxis {
+  std::string name;
+  std::vector<NamedScene> (*scenes)(double duration);
+};
+const NamedAxis kNamedAxes[] = {{"bow and start", moving_bows}, {"contact", other_contacts}};
+
 void set_stiffness(Scene& scene, double value) {
   CoulombExponential::Options options;
   options.adherence.stiffness = value;
@@ -89,11 +96,8 @@ class Map {
         "| varied | simulator | right | refused | reported | wrong | bound < 1 % | worst open "
         "balance of these |\n|---|---|---|---|---|---|---|---|\n");
     int panel = 0;
-    for (const Axis& axis : axes()) {
-      write_ticks(axis, panel);
-      for (const char* simulator : kSimulators) panel_of(axis, panel, simulator);
-      ++panel;
-    }
+    for (const Axis& axis : axes()) number_panel(axis, panel++);
+    for (const NamedAxis& axis : kNamedAxes) named_panel(axis, panel++);
     long_records();
     fmt::print("\nReasons given:\n\n");
     for (const auto& [reason, count] : reasons_) fmt::print("- {} × {}\n", count, reason);
@@ -102,39 +106,76 @@ class Map {
   bool wrong() const { return wrong_; }
 
  private:
-  void panel_of(const Axis& axis, int panel, const char* simulator) {
-    Tally tally;
-    for (std::size_t i = 0; i < kSteps.size(); ++i) {
-      for (std::size_t j = 0; j < axis.values.size(); ++j) {
-        Scene scene = paper_scene();
-        axis.set(scene, axis.values[j]);
-        const CellResult cell =
-            run_cell(simulator, scene, kSteps[i], affordable_samples(scene, kSteps[i]));
-        note(cell, tally);
-        cells_.print("{} {} {} {} {} {:.1e} {:.1e} {:.2f} {}\n", panel, simulator, i, j,
-                     static_cast<int>(cell.outcome), cell.unbalanced, cell.allowed, cell.passivity,
-                     cell.reason);
+  struct Place {
+    int panel;
+    const char* simulator;
+    std::size_t step, value;
+  };
+
+  void number_panel(const Axis& axis, int panel) {
+    std::vector<std::string> ticks;
+    for (const double value : axis.values) ticks.push_back(fmt::format("{:.3g}", value));
+    write_ticks(fmt::format("{} [{}]", axis.name, axis.unit), ticks, panel);
+    for (const char* simulator : kSimulators) {
+      Tally tally;
+      for (std::size_t i = 0; i < kSteps.size(); ++i) {
+        for (std::size_t j = 0; j < axis.values.size(); ++j) {
+          Scene scene = paper_scene();
+          axis.set(scene, axis.values[j]);
+          cell({panel, simulator, i, j}, scene, affordable_samples(scene, kSteps[i]), tally);
+        }
       }
+      print_row(axis.name, simulator, tally);
     }
-    cells_.flush();
-    print_row(axis.name, simulator, tally);
   }
 
-  void write_ticks(const Axis& axis, int panel) {
-    axes_.print("title_{} = '{} [{}]'\ntics_{} = '", panel, axis.name, axis.unit, panel);
-    for (std::size_t j = 0; j < axis.values.size(); ++j) {
-      axes_.print("{}\"{:.3g}\" {}", j > 0 ? ", " : "", axis.values[j], j);
+  void named_panel(const NamedAxis& axis, int panel) {
+    std::vector<std::string> ticks;
+    for (const NamedScene& scene : axis.scenes(1.0)) ticks.push_back(scene.name);
+    write_ticks(axis.name, ticks, panel);
+    for (const char* simulator : kSimulators) {
+      Tally tally;
+      for (std::size_t i = 0; i < kSteps.size(); ++i) {
+        const std::size_t samples = affordable_samples(paper_scene(), kSteps[i]);
+        const auto scenes = axis.scenes(static_cast<double>(samples) * kSteps[i]);
+        for (std::size_t j = 0; j < scenes.size(); ++j) {
+          cell({panel, simulator, i, j}, scenes[j].scene, samples, tally);
+        }
+      }
+      print_row(axis.name, simulator, tally);
+    }
+  }
+
+  void cell(const Place& at, const Scene& scene, std::size_t samples, Tally& tally) {
+    const CellResult result = run_cell(at.simulator, scene, kSteps[at.step], samples);
+    note(result, tally);
+    cells_.print("{} {} {} {} {} {:.1e} {:.1e} {:.2f} {}\n", at.panel, at.simulator, at.step,
+                 at.value, static_cast<int>(result.outcome), result.unbalanced, result.allowed,
+                 result.passivity, result.reason);
+    cells_.flush();
+  }
+
+  void write_ticks(const std::string& title, const std::vector<std::string>& ticks, int panel) {
+    axes_.print("title_{} = '{}'\ntics_{} = '", panel, title, panel);
+    for (std::size_t j = 0; j < ticks.size(); ++j) {
+      axes_.print("{}\"{}\" {}", j > 0 ? ", " : "", ticks[j], j);
     }
     axes_.print("'\n");
   }
 
   void long_records() {
-    for (const char* simulator : kSimulators) {
-      Tally tally;
-      Scene scene = paper_scene();
-      scene.string.modes = 20;
-      note(run_cell(simulator, scene, 1e-5, 6'000'000), tally);
-      print_row("60 s, 20 modes, step 10 µs", simulator, tally);
+    constexpr std::size_t kSamples = 6'000'000;
+    constexpr double kStep = 1e-5;
+    for (const bool reverses : {false, true}) {
+      for (const char* simulator : kSimulators) {
+        Tally tally;
+        Scene scene =
+            reverses ? moving_bows(static_cast<double>(kSamples) * kStep)[1].scene : paper_scene();
+        scene.string.modes = 10;
+        note(run_cell(simulator, scene, kStep, kSamples), tally);
+        print_row(reverses ? "60 s of strokes, 10 modes, step 10 µs" : "60 s, 10 modes, step 10 µs",
+                  simulator, tally);
+      }
     }
   }
 

@@ -7,6 +7,8 @@
 
 #include "libsim/base/error.hpp"
 #include "libsim/dynamics/energy_audit.hpp"
+#include "libsim/dynamics/first_order_hold.hpp"
+#include "libsim/dynamics/simulators/line_step.hpp"
 #include "libsim/dynamics/simulators/modal_event.hpp"
 #include "libsim/dynamics/simulators/modal_exact.hpp"
 #include "libsim/dynamics/simulators/newmark_explicit.hpp"
@@ -15,16 +17,43 @@
 namespace modcal {
 namespace {
 
-Simulation simulate(std::string_view simulator, const Scene& scene, double step) {
+// A simulation and the motion of every contact point.
+struct CellRun {
+  Simulation simulation;
+  std::vector<PointMotion> points;
+};
+
+CellRun simulate_wide(const Scene& scene, double step, bool is_explicit) {
+  CellRun cell;
+  const OutputRequest outputs{.displacement = true, .velocity = true, .force = true};
+  cell.simulation =
+      simulate_line(scene, 1.0 / step, outputs, {}, step,
+                    is_explicit ? ForceTiming::kPreviousStep : ForceTiming::kImplicit,
+                    is_explicit ? trapezoidal_weights : first_order_hold_weights, &cell.points);
+  return cell;
+}
+
+CellRun simulate(std::string_view simulator, const Scene& scene, double step) {
+  const bool is_explicit = simulator == "newmark_explicit";
+  if (scene.bow.points > 1 && simulator != "modal_event") {
+    return simulate_wide(scene, step, is_explicit);
+  }
   const OutputRequest outputs{.displacement = true, .velocity = true, .force = true};
   const double rate = 1.0 / step;
-  if (simulator == "newmark_explicit") {
-    return NewmarkExplicit({.time_step = step}).simulate(scene, rate, outputs);
+  CellRun cell;
+  if (is_explicit) {
+    cell.simulation = NewmarkExplicit({.time_step = step}).simulate(scene, rate, outputs);
+  } else if (simulator == "modal_exact") {
+    cell.simulation = ModalExact({.time_step = step}).simulate(scene, rate, outputs);
+  } else {
+    cell.simulation = ModalEvent({}).simulate(scene, rate, outputs);
   }
-  if (simulator == "modal_exact") {
-    return ModalExact({.time_step = step}).simulate(scene, rate, outputs);
-  }
-  return ModalEvent({}).simulate(scene, rate, outputs);
+  PointMotion point(0);
+  point.displacement = cell.simulation.displacement.samples;
+  point.velocity = cell.simulation.velocity.samples;
+  point.force = cell.simulation.force.samples;
+  cell.points.push_back(std::move(point));
+  return cell;
 }
 
 ForceHold hold_of(std::string_view simulator) {
@@ -32,49 +61,74 @@ ForceHold hold_of(std::string_view simulator) {
   return simulator == "modal_exact" ? ForceHold::kLinear : ForceHold::kSampled;
 }
 
-bool all_finite(const Simulation& run) {
-  for (const Signal* signal : {&run.displacement, &run.velocity, &run.force}) {
-    for (const double x : signal->samples) {
-      if (!std::isfinite(x)) return false;
-    }
-  }
-  return true;
+bool all_finite(const std::vector<double>& values) {
+  return std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
+}
+bool all_finite(const CellRun& cell) {
+  return std::all_of(cell.points.begin(), cell.points.end(), [](const PointMotion& point) {
+    return all_finite(point.displacement) && all_finite(point.velocity) && all_finite(point.force);
+  });
 }
 
-double largest_force(const Simulation& run) {
-  double result = 0.0;
-  for (const double f : run.force.samples) result = std::max(result, std::abs(f));
-  return result;
+// What friction allows at a sample [N]. Bristles carry μ_S F_N and their damper, limited to 4 g at
+// a sudden slip, as much as |1 − μ_S F_N/g| ≤ 1 times that for the coefficients of the map.
+double force_limit(const Scene& scene, const FrictionLaw& law, double normal_force) {
+  const bool has_bristles = std::holds_alternative<BristleFriction>(law.stateful());
+  return (has_bristles ? 5.0 : 1.0) * law.static_limit(normal_force) /
+         static_cast<double>(scene.bow.points);
+}
+
+// Why a force is above its limit; empty: none is.
+std::string excess_force(const Scene& scene, const BowMotion& bow, const CellRun& cell,
+                         double step) {
+  const auto law = scene.friction.make();
+  for (const PointMotion& point : cell.points) {
+    for (std::size_t k = 0; k < point.force.size(); ++k) {
+      const double t = static_cast<double>(k) * step;
+      const double limit = force_limit(scene, *law, bow.normal_force.at(t));
+      if (std::abs(point.force[k]) <= limit * (1.0 + (cell.points.size() > 1 ? 1e-7 : 1e-12)))
+        continue;
+      return fmt::format("force of {:g} N above the limit of {:g} N", point.force[k], limit);
+    }
+  }
+  return {};
 }
 
 // The samples hold for a step each: what a force that changes inside one may take from the contact
 // or give to it, ∫|f v_c| over the steps in which the force changes by more than a twentieth of
 // its limit (a switch, or a sliding speed that one step cannot follow).
-double switching_tolerance(const Simulation& run, double bow, double limit) {
-  const auto& f = run.force.samples;
-  const auto& v = run.velocity.samples;
-  double sum = 0.0;
-  for (std::size_t k = 1; k < f.size(); ++k) {
-    const double change = std::abs(f[k] - f[k - 1]);
-    const double slip = std::max(std::abs(v[k] - bow), std::abs(v[k - 1] - bow));
-    if (change > 0.05 * limit) sum += change * slip;
+double switching_tolerance(const PointMotion& point, const BowMotion& bow, double limit,
+                           double step) {
+  double sum = 0.0, before = 0.0;
+  for (std::size_t k = 0; k < point.force.size(); ++k) {
+    const double slip =
+        std::abs(point.velocity[k] - bow.velocity.at(static_cast<double>(k) * step));
+    const double change = k > 0 ? std::abs(point.force[k] - point.force[k - 1]) : 0.0;
+    if (change > 0.05 * limit) sum += change * std::max(slip, before);
+    before = slip;
   }
-  return sum / run.force.sample_rate;
+  return sum * step;
 }
 
-CellResult judged(const Scene& scene, const Simulation& run, ForceHold hold) {
+EnergyAccount audit(const Scene& scene, const BowMotion& bow, const CellRun& cell, double step,
+                    ForceHold hold) {
+  std::vector<PointRecord> records;
+  for (const PointMotion& point : cell.points) {
+    records.push_back({point.displacement, point.velocity, point.force});
+  }
+  return audit_energy(scene_line_modes(scene), bow, records, 1.0 / step, hold);
+}
+
+CellResult judged(const Scene& scene, const CellRun& cell, double step, ForceHold hold) {
   CellResult result;
-  const double limit = scene.friction.make()->static_limit(scene.bow.normal_force);
-  if (!all_finite(run)) {
+  if (!all_finite(cell)) {
     result.reason = "a sample is not finite";
     return result;
   }
-  if (largest_force(run) > limit * (1.0 + 1e-12)) {
-    result.reason =
-        fmt::format("force of {:g} N above the limit of {:g} N", largest_force(run), limit);
-    return result;
-  }
-  const EnergyAccount energy = audit_energy(scene_modes(scene), run, scene.bow.velocity, hold);
+  const BowMotion bow = bow_motion(scene.bow, scene.duration);
+  result.reason = excess_force(scene, bow, cell, step);
+  if (!result.reason.empty()) return result;
+  const EnergyAccount energy = audit(scene, bow, cell, step, hold);
   // Below 1e-290 J products of samples are denormal or zero.
   const double at_hand = energy.throughput + energy.dissipated + energy.largest_stored + 1e-290;
   result.unbalanced = std::abs(energy.residual()) / at_hand;
@@ -85,9 +139,12 @@ CellResult judged(const Scene& scene, const Simulation& run, ForceHold hold) {
                                 result.allowed);
     return result;
   }
-  const double given = -energy.contact_loss - energy.rounding - energy.interpolation -
-                       switching_tolerance(run, scene.bow.velocity, limit);
-  if (given > 1e-9 * energy.contact_throughput) {
+  double given = -energy.contact_loss - energy.rounding - energy.interpolation;
+  const double limit = force_limit(scene, *scene.friction.make(), bow.normal_force.highest());
+  for (const PointMotion& point : cell.points) {
+    given -= switching_tolerance(point, bow, limit, step);
+  }
+  if (!(given <= 1e-9 * energy.contact_throughput)) {
     result.reason =
         fmt::format("the contact gives energy: {:.1e} of what goes through it", -result.passivity);
     return result;
@@ -101,17 +158,19 @@ CellResult judged(const Scene& scene, const Simulation& run, ForceHold hold) {
 CellResult run_cell(std::string_view simulator, Scene scene, double time_step,
                     std::size_t samples) {
   scene.duration = static_cast<double>(samples) * time_step;
-  Simulation run;
+  CellRun run;
   try {
     run = simulate(simulator, scene, time_step);
   } catch (const InvalidInput& refusal) {
     return {.outcome = Outcome::kRefused, .reason = refusal.what()};
   }
-  if (run.diverged_at) {
-    const bool clear = !run.explanation.empty() && run.force.samples.empty();
-    return {.outcome = clear ? Outcome::kReported : Outcome::kWrong, .reason = run.explanation};
+  const Simulation& simulation = run.simulation;
+  if (simulation.diverged_at) {
+    const bool clear = !simulation.explanation.empty() && simulation.force.samples.empty();
+    return {.outcome = clear ? Outcome::kReported : Outcome::kWrong,
+            .reason = simulation.explanation};
   }
-  return judged(scene, run, hold_of(simulator));
+  return judged(scene, run, time_step, hold_of(simulator));
 }
 
 std::size_t affordable_samples(const Scene& scene, double time_step) {

@@ -4,6 +4,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "libsim/dynamics/scene.hpp"
 
@@ -26,6 +27,16 @@ struct CellResult {
 
 /// Simulates `samples` steps of `time_step` [s] and checks what comes out.
 CellResult run_cell(std::string_view simulator, Scene scene, double time_step, std::size_t samples);
+
+/// Scenes of the paper's case with a bow that does what the parameters above do not: its gestures
+/// and the start span a record of `duration` [s].
+struct NamedScene {
+  std::string name;
+  Scene scene;
+};
+std::vector<NamedScene> moving_bows(double duration);
+/// The paper's case with every other friction law, torsion and wide bows.
+std::vector<NamedScene> other_contacts(double duration);
 
 /// Samples that keep simulation and audit of such a cell at about a tenth of a second; ≥ 20.
 std::size_t affordable_samples(const Scene& scene, double time_step);

@@ -84,6 +84,11 @@ class CoulombPoint {
     return -side_ * sliding_force(side_ * slip, b.velocity * bow.normal_force, bow.normal_force);
   }
 
+  /// Whether friction can carry the force, but for what the solution for several points leaves.
+  bool carries(double force, const BowInstant& bow) const {
+    return std::abs(force) <= bow.normal_force * law_.at(0.0).force * (1.0 + 1e-7);
+  }
+
   void end_step(double h, double velocity, double force, const BowInstant& bow) {
     if constexpr (requires { law_.advance(h, 0.0, 0.0); }) {
       const double speed = sticking_ ? 0.0 : std::abs(velocity - bow.velocity);
@@ -172,6 +177,8 @@ class BristlePoint {
     }
     return force_at(bracketed_root(residual, near, at_near, far, at_far));
   }
+
+  bool carries(double /*force*/, const BowInstant& /*bow*/) const { return true; }
 
   void end_step(double h, double velocity, double /*force*/, const BowInstant& bow) {
     const double slip = velocity - bow.velocity;

@@ -1,21 +1,23 @@
 // Energy of a finished simulation, from its force record alone.
 #pragma once
 
-#include <vector>
+#include <span>
 
-#include "libsim/dynamics/contact_modes.hpp"
+#include "libsim/dynamics/bow.hpp"
+#include "libsim/dynamics/energy_replay.hpp"
+#include "libsim/dynamics/line_modes.hpp"
 #include "libsim/dynamics/simulator.hpp"
 
 namespace modcal {
 
-/// How the force of a record drives the string between two samples.
-enum class ForceHold {
-  kLinear,   ///< it goes straight from one sample to the next (modal_exact)
-  kSampled,  ///< unknown between samples, taken as straight (modal_event)
-  kLagged,   ///< step k feels (f_{k−2} + f_{k−1})/2, trapezoidal rule (newmark_explicit)
+/// Motion and force of one contact point at every step of a simulation.
+struct PointRecord {
+  std::span<const double> displacement;  ///< y_j [m]
+  std::span<const double> velocity;      ///< v_j [m/s]
+  std::span<const double> force;         ///< f_j [N]
 };
 
-/// Energies in J over a whole record. The string's balance is
+/// Energies in J over a whole record, sums over the contact points. The string's balance is
 /// string_work = dissipated + stored, the contact's bow_work = string_work + contact_loss.
 struct EnergyAccount {
   double bow_work = 0.0;      ///< ∫ f_c v_bow dt
@@ -39,12 +41,16 @@ struct EnergyAccount {
   double residual() const { return string_work - dissipated - stored; }
 };
 
-/// Replays the modes under the force of `run`, sampled at every step, apart from the simulator's
-/// own arithmetic, and accounts for every mode exactly: closed-form integrals of e^{λt} where
-/// |λ|h > 8, 6-point Gauss quadrature on substeps of |λ|δ ≤ 1 (error 1e-12) below; discrete
-/// identities of the trapezoidal rule for kLagged.
-/// `run` needs displacement, velocity and force; throws InvalidInput without them.
-EnergyAccount audit_energy(const ContactModes& modes, const Simulation& run, double bow_velocity,
-                           ForceHold hold);
+/// Replays the modes, torsional ones included, under the forces of the contact points, sampled at
+/// every step, apart from the simulator's own arithmetic (energy_replay.hpp), and accounts for
+/// every mode exactly. The bow may move as it likes; its work is exact where no knot of its gesture
+/// lies inside a step. What the friction law is does not matter.
+/// modes: of the scene, with the points' shapes; points: one record each, of equal length; ≥ 1
+/// sample. kSampled: one point. Throws InvalidInput otherwise.
+EnergyAccount audit_energy(const LineModes& modes, const BowMotion& bow,
+                           std::span<const PointRecord> points, double sample_rate, ForceHold hold);
+
+/// The same for a bow of one contact point. `run` needs displacement, velocity and force.
+EnergyAccount audit_energy(const Scene& scene, const Simulation& run, ForceHold hold);
 
 }  // namespace modcal

@@ -24,7 +24,7 @@ struct LineArrays {
 
 constexpr std::size_t kMostPoints = 16;
 
-struct PointMotion {
+struct PointMotions {
   double velocity[kMostPoints];
   double displacement[kMostPoints];
 };
@@ -39,7 +39,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using LineTag = hn::CappedTag<double, kVectorPadding>;
 
 // S ← r S + D Σ φ_j f_j/m and the motion of every point that the new S makes.
-void AdvanceLine(LineArrays& c, const double* forces, PointMotion& motion) {
+void AdvanceLine(LineArrays& c, const double* forces, PointMotions& motion) {
   const LineTag d;
   const std::size_t points = c.shape.size();
   hn::Vec<LineTag> velocity[kMostPoints], displacement[kMostPoints];
@@ -283,7 +283,8 @@ class Run {
 
   // The forces of all points, in states that fit them: all points that must switch under the
   // forces of the others do so together, each once, and the forces are solved for again. Points in
-  // equal positions therefore behave equally.
+  // equal positions therefore behave equally. False where that leaves a point with a force that
+  // friction cannot carry: the step is too long to tell what happened first.
   bool solve(const BowInstant& bow) {
     for (std::size_t j = 0; j < size_; ++j) points_[j].begin_step();
     if (size_ > 1 && !settle(bow)) return false;
@@ -293,9 +294,16 @@ class Run {
         const FreeMotion free = free_motion(j);
         switched |= points_[j].switch_state(free.velocity, free.displacement, free.own, bow);
       }
-      if (size_ > 1 && !switched) return true;
+      if (size_ > 1 && !switched) break;
       if (!settle(bow)) return false;
       if (size_ == 1) return true;
+    }
+    return carried(bow);
+  }
+
+  bool carried(const BowInstant& bow) const {
+    for (std::size_t j = 0; j < size_; ++j) {
+      if (!points_[j].carries(force_[j], bow)) return false;
     }
     return true;
   }
@@ -341,6 +349,11 @@ class Run {
     if (to.displacement) to.displacement[sample] = mean(motion_.displacement);
     if (to.velocity) to.velocity[sample] = mean(motion_.velocity);
     if (to.force) to.force[sample] = mean(force_) * static_cast<double>(size_);
+    for (std::size_t j = 0; j < loop_.point_targets.size(); ++j) {
+      loop_.point_targets[j].displacement[sample] = motion_.displacement[j];
+      loop_.point_targets[j].velocity[sample] = motion_.velocity[j];
+      loop_.point_targets[j].force[sample] = force_[j];
+    }
   }
   void store_start() {
     store_contact(0);
@@ -369,7 +382,7 @@ class Run {
   BowCursor cursor_;
   std::size_t size_;
   std::vector<Point> points_;
-  PointMotion motion_{};
+  PointMotions motion_{};
   struct Switches {
     std::uint64_t attachments = 0, releases = 0;
   };

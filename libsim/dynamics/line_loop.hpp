@@ -30,6 +30,8 @@ struct LineLoop {
   LineFriction friction;
   /// Displacement and velocity are the means over the points, the force is their sum.
   SampleTargets targets;
+  /// Displacement, velocity and force of every contact point; empty: not asked for.
+  std::vector<SampleTargets> point_targets;
   SwitchList switches;
   StopToken stop;  ///< polled between samples
 };

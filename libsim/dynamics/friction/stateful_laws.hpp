@@ -78,13 +78,15 @@ struct BristleFriction {
     double deflection, force;
   };
   /// Deflection and force after a step h at the end of which the slip velocity is `slip`: backward
-  /// Euler with the α of the step's start. For every state and step the work of the slip,
-  /// −f·slip·h, is at least the change of ½ σ₀ z².
+  /// Euler with the α of the step's start, |z| ≤ μ_S F_N/σ₀, which no bristle passes but by a step
+  /// that jumps over its yielding. For every state and step the work of the slip, −f·slip·h, is at
+  /// least the change of ½ σ₀ z².
   Step step(double h, double slip, double normal_force) const {
     if (!(normal_force > 0.0)) return {0.0, 0.0};
     const double speed = std::abs(slip), g = steady_force(slip, normal_force);
     const double yielding = plasticity(slip, normal_force) * speed * stiffness / g;
-    const double z = (deflection + h * slip) / (1.0 + h * yielding);
+    const double most = (dynamic_coefficient + drop) * normal_force / stiffness;
+    const double z = std::clamp((deflection + h * slip) / (1.0 + h * yielding), -most, most);
     const double rate = slip - yielding * z;
     const double damper = damping * speed <= 4.0 * g ? damping : 4.0 * g / speed;
     return {z, -(stiffness * z + damper * rate)};

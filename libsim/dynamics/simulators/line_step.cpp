@@ -7,12 +7,6 @@
 namespace modcal {
 namespace {
 
-LineModes modes_of(const Scene& scene) {
-  const ModalBasis transverse = make_modal_basis(scene.string);
-  return line_modes(transverse, scene.torsion.basis(transverse, scene.string.wave_speed()),
-                    scene.bow.contact_points(), initial_state(scene, transverse));
-}
-
 LineFriction friction_of(const FrictionLaw& law, double effective_mass) {
   const ContactParameters contact =
       contact_parameters({PiecewiseLinear(0.0), PiecewiseLinear(1.0)}, law, effective_mass);
@@ -45,10 +39,10 @@ void require_step(const LineLoop& loop, double response) {
 
 Simulation simulate_line(const Scene& scene, double sample_rate, const OutputRequest& outputs,
                          const StopToken& stop, double wanted_time_step, ForceTiming timing,
-                         WeightsOfPole weights_of_pole) {
+                         WeightsOfPole weights_of_pole, std::vector<PointMotion>* points) {
   const StepPlan plan = plan_steps(wanted_time_step, sample_rate);
   const std::size_t count = sample_count(scene.duration, sample_rate);
-  const LineModes modes = modes_of(scene);
+  const LineModes modes = scene_line_modes(scene);
   const auto friction = scene.friction.make();
   const SchemeWeights weights = scheme_weights(modes.pole, plan.time_step, weights_of_pole);
   LineLoop loop{.timing = timing,
@@ -63,6 +57,14 @@ Simulation simulate_line(const Scene& scene, double sample_rate, const OutputReq
   require_step(loop, contact_response(modes, weights));
   Simulation result = empty_simulation(count, sample_rate, outputs);
   loop.targets = targets_of(result);
+  if (points != nullptr) {
+    points->assign(modes.points(), PointMotion(count));
+    for (PointMotion& point : *points) {
+      loop.point_targets.push_back({.displacement = point.displacement.data(),
+                                    .velocity = point.velocity.data(),
+                                    .force = point.force.data()});
+    }
+  }
   loop.switches = {&result.switches, outputs.switches_from};
   const LineCounts counts = run_line_loop(loop, modes, weights);
   if (counts.first_bad_sample < count) {

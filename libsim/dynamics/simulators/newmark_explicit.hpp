@@ -4,6 +4,9 @@
 
 namespace modcal {
 
+/// r = (1 + λΔt/2)/(1 − λΔt/2), d₀ = d₁ = (Δt/2)/(1 − λΔt/2) of a mode with pole λ [1/s].
+ModeWeights trapezoidal_weights(std::complex<double> pole, double time_step);
+
 /// The paper's own scheme: constant average acceleration Newmark in every mode, the modal force
 /// taken from the previous step (Debut, Delaune and Antunes, 2010, section 2.3).
 ///

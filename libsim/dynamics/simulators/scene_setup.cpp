@@ -31,6 +31,12 @@ ContactModes scene_modes(const Scene& scene) {
   return modes;
 }
 
+LineModes scene_line_modes(const Scene& scene) {
+  const ModalBasis transverse = make_modal_basis(scene.string);
+  return line_modes(transverse, scene.torsion.basis(transverse, scene.string.wave_speed()),
+                    scene.bow.contact_points(), initial_state(scene, transverse));
+}
+
 BowMotion steady_motion(const Scene& scene, std::string_view simulator) {
   BowMotion motion = bow_motion(scene.bow, scene.duration);
   MODCAL_REQUIRE(motion.is_steady(),

@@ -1,6 +1,7 @@
 // What every simulator sets up in the same way: the contact of a scene and the signals of a result.
 #pragma once
 
+#include "libsim/dynamics/line_modes.hpp"
 #include "libsim/dynamics/simulator.hpp"
 #include "libsim/dynamics/step_loop.hpp"
 
@@ -9,6 +10,9 @@ namespace modcal {
 /// The modes of the scene's string as one contact point sees them, the torsional ones last. Throws
 /// InvalidInput for a bow with several contact points.
 ContactModes scene_modes(const Scene& scene);
+
+/// The same as all contact points of the bow see them.
+LineModes scene_line_modes(const Scene& scene);
 
 /// Motion of a bow that must be steady. Throws InvalidInput for any other, in the name of the
 /// simulator.

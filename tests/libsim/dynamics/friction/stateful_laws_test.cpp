@@ -67,6 +67,26 @@ TEST(Thermal, SoftensFromTheColdCoefficientToTheHotOne) {
   EXPECT_DOUBLE_EQ(law.at(0.0).force, 0.2);
 }
 
+// Friction turns work into heat: the force opposes every slip, and the contact never holds more heat
+// than was rubbed into it.
+TEST(Thermal, NeverGivesEnergy) {
+  ThermalSliding law = thermal();
+  constexpr std::size_t kSteps = 20000;
+  std::vector<double> slips(kSteps), steps(kSteps);
+  fill_standard_normal(StreamKey(5).with("slips"), slips);
+  fill_uniform(StreamKey(5).with("steps"), steps);
+  double rubbed = 0.0;
+  for (std::size_t k = 0; k < kSteps; ++k) {
+    const double slip = 2.0 * slips[k], h = 1e-4 * steps[k];
+    const double magnitude = 1.5 * law.at(std::abs(slip)).force;
+    ASSERT_GE(magnitude, 0.0);  // f = −sgn(slip)·magnitude: f·slip ≤ 0
+    rubbed += magnitude * std::abs(slip) * h;
+    law.advance(h, std::abs(slip), magnitude);
+    ASSERT_GE(law.rise, 0.0);
+    ASSERT_LE(law.capacity * law.rise, rubbed * (1.0 + 1e-12));
+  }
+}
+
 TEST(ElastoPlastic, SteadySlidingFollowsTheSteadyCurve) {
   for (const char* model : {"elasto_plastic", "lugre"}) {
     for (const double slip : {-0.5, -0.03, 0.002, 0.2}) {
