@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "libsim/dynamics/friction/coulomb_exponential.hpp"
-#include "libsim/dynamics/simulators/modal_event.hpp"
+#include "libsim/dynamics/simulator.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
 namespace modcal {
@@ -42,14 +42,14 @@ double playing_frequency(const Signal& signal) {
   return best;
 }
 
-Simulation bowed(double position, double force, double decay) {
+Simulation bowed(const char* simulator, double position, double force, double decay) {
   Scene scene = paper_scene();
   scene.bow.position = position;
   scene.bow.normal_force = force;
   CoulombExponential::Options friction;
   friction.decay = decay;
   scene.friction = Choice<FrictionLaw>::of<CoulombExponential>("coulomb_exponential", friction);
-  return ModalEvent({}).simulate(scene, kRate, OutputRequest::all());
+  return Choice<Simulator>(simulator).make()->simulate(scene, kRate, OutputRequest::all());
 }
 
 // Largest deviation of the first harmonics of R₁ from a sawtooth's: n a_n/(a_1/|a_1|)^n/|a_1| is
@@ -70,11 +70,16 @@ double distance_from_sawtooth(const Signal& reaction, double f, double direction
   return worst;
 }
 
+// Every simulator at its default step.
+class BowedString : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(All, BowedString,
+                         testing::Values("modal_event", "modal_exact", "newmark_explicit"));
+
 // Helmholtz motion (Cremer, 1984): the string's speed at the bow jumps by v_b/β, and the force on
 // the end is a sawtooth, harmonics ∝ (−1)^(n+1)/n: it grows while the string sticks.
-TEST(BowedString, MovesAsHelmholtzSaw) {
+TEST_P(BowedString, MovesAsHelmholtzSaw) {
   const double beta = 0.03 / 0.33;
-  const Simulation run = bowed(0.03, 0.88, 5.0);
+  const Simulation run = bowed(GetParam(), 0.03, 0.88, 5.0);
   ASSERT_FALSE(run.diverged_at) << run.explanation;
   double sticking = 0.0, slipping = 0.0;
   std::size_t sticks = 0, slips = 0;
@@ -103,14 +108,14 @@ TEST(BowedString, MovesAsHelmholtzSaw) {
 // Above F_max = 2 Z₀ v_b/(β (μ_S − μ_D)) the bow can hold the string when the corner comes to
 // release it (Schelleng, 1973). Measured limits lie within a factor of 1.5 of it (Woodhouse and
 // Galluzzo, 2004): at half of it one slip a period, at one and a half of it no Helmholtz motion.
-TEST(BowedString, LosesHelmholtzMotionAtSchellengsForce) {
+TEST_P(BowedString, LosesHelmholtzMotionAtSchellengsForce) {
   const Scene scene = paper_scene();
   const double impedance =
       2.0 * scene.string.length * scene.string.fundamental * scene.string.linear_density;
   const double position = 0.045, beta = position / scene.string.length;
   const double largest = 2.0 * impedance * 0.1 / (beta * 0.2);
   for (const double share : {0.5, 1.5}) {
-    const Simulation run = bowed(position, share * largest, 20.0);
+    const Simulation run = bowed(GetParam(), position, share * largest, 20.0);
     ASSERT_FALSE(run.diverged_at) << run.explanation;
     const double f = playing_frequency(run.left_reaction);
     const double distance = distance_from_sawtooth(run.left_reaction, f, 1.0);
