@@ -13,6 +13,8 @@ for kernel in simulator inversion spectral_peak; do
     --benchmark_report_aggregates_only=true --benchmark_display_aggregates_only=true 2>/dev/null |
     grep -E '_median|_cv|^Benchmark'
 done
+echo "== growth of the fixed-step schemes with record and modes"
+"$build/benchmarks/simulator_benchmark" --growth
 echo "== the spectral-peak search in NumPy, on the same data"
 "$build/benchmarks/spectral_peak_benchmark" --write_case="$out/case.bin"
 /usr/bin/python3 "$here/peers/spectral_peak_search.py" "$out/case.bin" 5

@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <optional>
 #include <variant>
 
+#include "libsim/base/error.hpp"
 #include "libsim/dynamics/contact_modes.hpp"
 #include "libsim/dynamics/simulators/scene_setup.hpp"
 #include "libsim/signal/statistics.hpp"
@@ -167,6 +169,57 @@ void add_friction(const Base& base, double steps_per_second, std::vector<Skip>& 
        fmt::format("counted: {:.0f} % of the steps, one evaluation each", 100.0 * share)});
 }
 
+// What the same part of the record costs in the scene with something more in it [s a second];
+// nothing where this simulator refuses it.
+std::optional<double> cost_of(const Base& base, const Scene& with) {
+  try {
+    base.pieces.run(with, 2.0 / base.pieces.rate(), base.pieces.rate(), base.outputs);
+  } catch (const InvalidInput&) {
+    return std::nullopt;
+  }
+  // Several times as slow as the scene itself: a part of it will do.
+  const double length = std::min(base.length, std::max(2e-3, 0.2 * base.length));
+  const auto timed = [&](const Scene& scene) {
+    return base.pieces.run(scene, length, base.pieces.rate(), base.outputs).seconds;
+  };
+  return Pieces::difference([&] { return timed(base.scene); }, [&] { return timed(with); }) /
+         length;
+}
+
+void add_feature(const Base& base, const char* what, const char* reason, const Scene& with,
+                 const char* note, std::vector<Skip>& skips) {
+  const std::optional<double> saved = cost_of(base, with);
+  skips.push_back({what, reason, saved.value_or(0.0),
+                   saved ? note : "this simulator does not follow it: nothing to save"});
+}
+
+// Physics that the scene does not ask for.
+void add_features(const Base& base, std::vector<Skip>& skips) {
+  const Scene& scene = base.scene;
+  if (scene.bow.normal_force == 0.0) return;  // no contact, of whatever kind
+  if (!scene.torsion.present) {
+    Scene with = scene;
+    with.torsion.present = true;
+    with.torsion.impedance_ratio = 1e16;
+    add_feature(base, "torsion", "scene.torsion is off", with,
+                "measured with 20 torsional modes of 1e16 times the impedance, which move nothing",
+                skips);
+  }
+  if (!scene.friction.make()->has_state()) {
+    Scene with = scene;
+    with.friction = Choice<FrictionLaw>("thermal");
+    add_feature(base, "temperature of the contact",
+                "the friction law follows the sliding speed alone", with,
+                "measured with scene.friction thermal", skips);
+  }
+  if (scene.bow.points == 1) {
+    Scene with = scene;
+    with.bow.points = 3;
+    add_feature(base, "width of the bow", "it has one contact point", with,
+                "measured with 3 contact points in its place", skips);
+  }
+}
+
 }  // namespace
 
 Scene with_nodes_carried(Scene scene) {
@@ -201,6 +254,7 @@ SimulationPlan plan_simulation(const Scene& scene, const Simulator& simulator, d
   add_unread_outputs(base, plan.skips);
   add_reconstruction(base, plan.skips);
   add_friction(base, plan.steps_per_second, plan.skips);
+  add_features(base, plan.skips);
   return plan;
 }
 
