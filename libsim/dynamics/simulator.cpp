@@ -48,6 +48,9 @@ Simulation Simulator::simulate(const Scene& scene, double sample_rate, const Out
                  "overflow",
                  scene.bow.velocity, scene.bow.normal_force, kLargestInput);
   sample_count(scene.duration, sample_rate);
+  for (const SceneRefusal& refusal : refusals(scene)) {
+    throw_invalid_input("scene.{}: {}", refusal.key, refusal.reason);
+  }
   Simulation result = run(scene, sample_rate, outputs, stop);
   stop.throw_if_requested();
   return result;

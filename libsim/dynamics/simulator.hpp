@@ -66,6 +66,12 @@ struct StepPlan {
 };
 StepPlan plan_steps(double wanted_time_step, double sample_rate);
 
+/// Why a simulator cannot simulate a scene.
+struct SceneRefusal {
+  std::string key;     ///< of the scene's options, as "bow.points"
+  std::string reason;  ///< value, reason and remedy
+};
+
 class Simulator {
  public:
   static constexpr std::string_view kKind = "simulator";
@@ -76,8 +82,12 @@ class Simulator {
   /// InvalidInput for a scene that cannot be simulated, Interrupted where `stop` was requested.
   Simulation simulate(const Scene& scene, double sample_rate, const OutputRequest& outputs,
                       const StopToken& stop = {}) const;
+  /// What of the scene this simulator cannot simulate, whatever the numbers; simulate() throws
+  /// InvalidInput then.
+  std::vector<SceneRefusal> refusals(const Scene& scene) const { return unsupported(scene); }
 
  private:
+  virtual std::vector<SceneRefusal> unsupported(const Scene& /*scene*/) const { return {}; }
   /// May end early, with any result, once `stop` is requested.
   virtual Simulation run(const Scene& scene, double sample_rate, const OutputRequest& outputs,
                          const StopToken& stop) const = 0;

@@ -6,11 +6,16 @@
 
 namespace modcal::event {
 
+/// Friction [N] and its slope [N s/m] at one node.
+struct NodeFriction {
+  double friction = 0.0, slope = 0.0;
+};
+
 struct NodeValues {
   NodeVector speed{};     ///< u_i = side·v_c [m/s]
   NodeVector load{};      ///< l_i ≥ 0, the factor of the law at the node
   NodeVector friction{};  ///< l_i g(u_i) [N]
-  NodeVector slope{};     ///< l_i g'(u_i) [N s/m]
+  NodeVector slope{};     ///< l_i g'(u_i) [N s/m], or what the steps must resolve in its place
 };
 
 /// Solves u_i = free_i − Σ_j coupling_ij l_j g(u_j) for the nodes 2…s by Newton's method; `values`

@@ -40,10 +40,11 @@ std::vector<BowKnot> knots_of(const EventLoop& loop) {
   return {{.time = 0.0, .velocity = loop.contact.bow_velocity, .load = 1.0}};
 }
 
-template <typename Law>
+template <typename Friction>
 class Run {
  public:
-  Run(const EventLoop& loop, const Law& law, const ContactModes& modes, EventState& state)
+  Run(const EventLoop& loop, const Friction& friction, const LobattoRule& rule,
+      const ContactModes& modes, EventState& state)
       : loop_(loop),
         state_(state),
         path_(knots_of(loop), loop.grid_step),
@@ -51,13 +52,14 @@ class Run {
         last_stretch_(stretch_ + path_.stretches().size() - 1),
         wanted_{.contact = loop.targets.displacement || loop.targets.velocity,
                 .reactions = loop.targets.left_reaction || loop.targets.right_reaction},
-        model_(modes, lobatto_rule(loop.nodes), loop.grid_step),
-        sliding_(model_, law, loop.slope_number),
-        friction_at_rest_(law.at(0.0).force) {
+        model_(modes, rule, loop.grid_step),
+        sliding_(model_, friction, loop.slope_number) {
     // A bow that cannot carry any force is not there: no contact, no switches.
     if (loop.contact.static_limit > 0.0) {
-      sticking_.emplace(closed_loop_for(loop, modes), loop.contact.static_limit, loop.grid_step,
-                        wanted_);
+      sticking_.emplace(
+          closed_loop_for(loop, modes),
+          loop.thermal ? StaticLimit(*loop.thermal) : StaticLimit(loop.contact.static_limit),
+          loop.grid_step, wanted_);
     }
   }
 
@@ -82,12 +84,16 @@ class Run {
 
  private:
   void enter() {
+    law().set_rise(state_.rise);
     in_contact_ = sticking_ && !stretch_->drive.lifted();
-    if (!in_contact_) return;
+    if (!in_contact_) {
+      mark_base(0.0);
+      return;
+    }
     const Motion motion = model_.observe(state_.modes, {});
     const BowDrive drive = drive_at(0.0);
     if (state_.sticking) {
-      sticking_->attach(drive, state_.modes, motion.displacement, state_.elongation);
+      sticking_->attach(drive, state_.modes, motion.displacement, state_.elongation, state_.rise);
       mark_base(0.0);
     } else {
       sliding_.start(state_.side, state_.side * (motion.velocity - drive.velocity), drive.load);
@@ -95,10 +101,13 @@ class Run {
   }
 
   void leave() {
+    const double tau = since_base(0.0);
+    if (!in_contact_) law().cool(tau);
+    state_.rise = law().rise();
     if (!in_contact_) return;
     state_.side = sliding_.side();
     if (!state_.sticking) return;
-    const double tau = since_base(0.0);
+    state_.rise = sticking_->rise(tau);
     sticking_->detach(tau, state_.modes);
     state_.elongation = sticking_->elongation(tau, model_.observe(state_.modes, {}).displacement);
   }
@@ -123,23 +132,30 @@ class Run {
       sticking_->change_drive(since_base(x), stretch_->drive);
       mark_base(x);
     }
-    if (in_contact_ && !contact && state_.sticking) {
-      sticking_->detach(since_base(x), state_.modes);
-      state_.sticking = false;
-    }
+    if (in_contact_ && !contact) lift(x);
     if (!in_contact_ && contact) touch_down(x);
     in_contact_ = contact;
   }
 
+  void lift(double x) {
+    if (state_.sticking) {
+      law().set_rise(sticking_->rise(since_base(x)));
+      sticking_->detach(since_base(x), state_.modes);
+      state_.sticking = false;
+    }
+    mark_base(x);
+  }
+
   // The bow comes back: it holds the string where both move alike, else the string slides.
   void touch_down(double x) {
+    law().cool(since_base(x));
     const Motion motion = model_.observe(state_.modes, {.reactions = false});
     const BowDrive drive = stretch_->drive;
     const double slip = motion.velocity - drive.velocity;
-    if (slip == 0.0) {
-      sticking_->attach(drive, state_.modes, motion.displacement, 0.0);
+    state_.sticking = slip == 0.0;
+    if (state_.sticking) {
+      sticking_->attach(drive, state_.modes, motion.displacement, 0.0, law().rise());
       mark_base(x);
-      state_.sticking = true;
     } else {
       sliding_.start(slip < 0.0 ? -1.0 : 1.0, std::abs(slip), drive.load);
     }
@@ -211,7 +227,7 @@ class Run {
   }
 
   double slide(double x, double last) {
-    using Outcome = typename Sliding<Law>::Outcome;
+    using Outcome = typename Sliding<Friction>::Outcome;
     const auto result = sliding_.advance(x, last, drive_at(x), state_.modes);
     if (result.outcome == Outcome::kFailed) {
       fail(x,
@@ -227,8 +243,9 @@ class Run {
     const double y = model_.observe(state_.modes, {.reactions = false}).displacement;
     const BowDrive drive = drive_at(x);
     const bool continuous = loop_.attach == AttachRule::kContinuous;
-    const double force = -sliding_.side() * friction_at_rest_ * drive.load;
-    sticking_->attach(drive, state_.modes, y, continuous ? -force / loop_.contact.stiffness : 0.0);
+    const double force = -sliding_.side() * law().at(0.0, drive.load).friction;
+    sticking_->attach(drive, state_.modes, y, continuous ? -force / loop_.contact.stiffness : 0.0,
+                      law().rise());
     mark_base(x);
     list_switch(x, y, true);
     state_.sticking = true;
@@ -238,6 +255,7 @@ class Run {
   // `limit`: the sign of the force that adherence could not carry.
   void release(double x, int limit) {
     sticking_->detach(since_base(x), state_.modes);
+    law().set_rise(sticking_->rise(since_base(x)));
     const Motion motion = model_.observe(state_.modes, {.reactions = false});
     const double v = motion.velocity;
     list_switch(x, motion.displacement, false);
@@ -257,7 +275,9 @@ class Run {
     loop_.switches.add({time, displacement, attaches});
   }
 
-  // τ = 0 of adherence.
+  Friction& law() { return sliding_.friction(); }
+
+  // τ = 0 of adherence, and of a bow in the air.
   void mark_base(double x) { base_ = {step_, x}; }
   double since_base(double x) const { return since(base_, x); }
 
@@ -296,9 +316,8 @@ class Run {
   const BowPath::Stretch* last_stretch_;
   MotionRequest wanted_;
   SlidingModel model_;
-  Sliding<Law> sliding_;
+  Sliding<Friction> sliding_;
   std::optional<Sticking> sticking_;
-  double friction_at_rest_;  // at load 1
   bool in_contact_ = false;
   EventCounts counts_;
   std::uint64_t step_ = 0;
@@ -321,11 +340,13 @@ EventState initial_state(const ContactModes& modes, double bow_velocity) {
 }
 
 EventCounts run_event_loop(const EventLoop& loop, const ContactModes& modes, EventState& state) {
+  const LobattoRule rule = lobatto_rule(loop.nodes);
+  const auto run = [&](auto friction) {
+    return Run<decltype(friction)>(loop, friction, rule, modes, state).run();
+  };
+  if (loop.thermal) return run(ThermalFriction(*loop.thermal, rule, modes.effective_mass()));
   return std::visit(
-      [&](const auto& law) {
-        using Law = std::decay_t<decltype(law)>;
-        return Run<Law>(loop, law, modes, state).run();
-      },
+      [&](const auto& law) { return run(CurveFriction(law, rule, modes.effective_mass())); },
       loop.law);
 }
 

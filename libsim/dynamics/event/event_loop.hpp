@@ -9,6 +9,7 @@
 #include "libsim/base/stop_token.hpp"
 #include "libsim/dynamics/event/bow_path.hpp"
 #include "libsim/dynamics/event/closed_loop.hpp"
+#include "libsim/dynamics/friction/stateful_laws.hpp"
 #include "libsim/dynamics/step_loop.hpp"
 #include "libsim/dynamics/switch.hpp"
 
@@ -26,6 +27,7 @@ struct EventState {
   bool sticking = false;
   double elongation = 0.0;  ///< y_c of the adherence spring [m], while sticking
   double side = -1.0;       ///< sgn v_c, while sliding
+  double rise = 0.0;        ///< temperature rise of a contact that has one [K]
 };
 
 /// Hysteresis: adherence ends only at |f| = μ_S F_N, sliding only at v_c = 0; between these limits
@@ -36,6 +38,10 @@ struct EventState {
 struct EventLoop {
   ContactParameters contact;
   SlidingLaw law;
+  /// In the place of `law` and of contact.static_limit, where the friction depends on the
+  /// temperature; `bow` then tells the normal force [N] as the load. The contact starts with
+  /// EventState::rise.
+  std::optional<ThermalSliding> thermal;
   /// Motion of the bow; empty: steady at contact.bow_velocity. Otherwise its velocity stands in the
   /// place of that one, and law and contact.static_limit are those of load 1.
   std::vector<BowKnot> bow;

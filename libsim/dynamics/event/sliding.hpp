@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "libsim/dynamics/event/bow_path.hpp"
-#include "libsim/dynamics/event/collocation.hpp"
+#include "libsim/dynamics/event/contact_friction.hpp"
 #include "libsim/dynamics/event/first_crossing.hpp"
 
 namespace modcal::event {
@@ -13,21 +13,21 @@ namespace modcal::event {
 /// One stretch of sliding with sign side = sgn(v_c), f = −side·load·g(side·v_c). Position x in
 /// [0, 1] counts grid steps; steps are dyadic parts of one, one of any length leads to the next
 /// dyadic point or to where the bow's drive changes.
-template <typename Law>
+template <typename Friction>
 class Sliding {
  public:
   /// `slope_number` κ: the steps h keep |g'(u)| h/m_eff ≤ κ at their start and ≤ 2κ at every node,
   /// where the friction equation has one solution.
-  Sliding(SlidingModel& model, const Law& law, double slope_number)
-      : model_(model), law_(law), any_law_(law), slope_number_(slope_number) {}
+  Sliding(SlidingModel& model, const Friction& friction, double slope_number)
+      : model_(model), law_(friction), slope_number_(slope_number) {}
 
   /// Starts with the sliding speed u = side·v_c ≥ 0 under the given load.
   void start(double side, double speed, double load) {
     side_ = side;
     speed_ = std::max(speed, 0.0);
-    const auto point = law_.at(speed_);
-    friction_ = load * point.force;
-    slope_ = load * point.slope;
+    const NodeFriction first = law_.at(speed_, load);
+    friction_ = first.friction;
+    slope_ = first.slope;
     refinement_ = 0;
     powers_ = {friction_};
     last_length_ = 0.0;
@@ -65,6 +65,7 @@ class Sliding {
   double side() const { return side_; }
   double speed() const { return speed_; }
   double force() const { return -side_ * friction_; }
+  Friction& friction() { return law_; }
 
  private:
   static constexpr int kDeepestLevel = 44;
@@ -120,6 +121,7 @@ class Sliding {
 
   // `length`: of the step, in grid steps.
   void accept(const NodeValues& values, const NodeVector& powers, double length) {
+    law_.accept(1.0);
     const int last = nodes() - 1;
     speed_ = values.speed[last];
     friction_ = values.friction[last];
@@ -160,8 +162,7 @@ class Sliding {
     for (int i = 1; i < nodes(); ++i) free[i] = sliding_speed(free[i], table.step, i);
     const double length = table.step / model_.grid_step();
     guess(free, table.coupling, powers_, 1.0, extrapolation(length), values);
-    if (!solve_nodes(any_law_, nodes(), table.coupling, free, values) ||
-        steep(values, table.step)) {
+    if (!law_.solve(table.coupling, free, table.step, values) || steep(values, table.step)) {
       return refined(end - length);
     }
     const NodeVector powers = friction_powers(values);
@@ -225,6 +226,7 @@ class Sliding {
       }
       if (std::abs(*theta - 1.0) <= kLastCorrection) {
         model_.advance_any(ratio, *theta, force, state);
+        law_.accept(*theta);
         return {x + *theta * length, Outcome::kAttached};
       }
       length *= *theta;
@@ -235,7 +237,7 @@ class Sliding {
   }
 
   bool solve_any(const Series& free_velocity, double ratio, double from, double scale,
-                 const NodeVector& powers, NodeValues& values) const {
+                 const NodeVector& powers, NodeValues& values) {
     NodeVector free{}, velocity{};
     for (std::size_t p = kSeriesTerms; p-- > 0;) {
       for (int i = 1; i < nodes(); ++i) {
@@ -246,7 +248,7 @@ class Sliding {
     for (int i = 1; i < nodes(); ++i) free[i] = sliding_speed(velocity[i], step, i);
     const NodeMatrix coupling = model_.coupling(ratio);
     guess(free, coupling, powers, from, scale, values);
-    return solve_nodes(any_law_, nodes(), coupling, free, values);
+    return law_.solve(coupling, free, step, values);
   }
 
   // u(θ) of a step, θ = 1 at its end.
@@ -267,8 +269,7 @@ class Sliding {
   int nodes() const { return model_.rule().nodes; }
 
   SlidingModel& model_;
-  Law law_;
-  SlidingLaw any_law_;
+  Friction law_;
   double slope_number_;
   BowDrive drive_;  // from the start of the running step
   double side_ = -1.0;

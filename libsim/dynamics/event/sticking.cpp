@@ -24,7 +24,8 @@ PlanarVector exponentials(const PlanarVector& pole, std::size_t count, double ti
 
 }  // namespace
 
-Sticking::Sticking(ClosedLoop loop, double static_limit, double longest_step, MotionRequest wanted)
+Sticking::Sticking(ClosedLoop loop, StaticLimit static_limit, double longest_step,
+                   MotionRequest wanted)
     : loop_(std::move(loop)),
       limit_(static_limit),
       longest_step_(longest_step),
@@ -92,7 +93,8 @@ void Sticking::restart() {
 }
 
 void Sticking::attach(const BowDrive& drive, const PlanarVector& open_state, double displacement,
-                      double elongation) {
+                      double elongation, double rise) {
+  limit_.start(rise);
   drive_ = drive;
   rest_point_ = displacement - elongation;
   slow_ = loop_.slow_force(drive.velocity, drive.acceleration, rest_point_);
@@ -107,6 +109,7 @@ void Sticking::attach(const BowDrive& drive, const PlanarVector& open_state, dou
 void Sticking::change_drive(double tau, const BowDrive& drive) {
   add_slow(1.0, tau);
   rest_point_ += drive_.travel(tau);
+  limit_.start(limit_.rise_at(tau));
   drive_ = drive;
   slow_ = loop_.slow_force(drive.velocity, drive.acceleration, rest_point_);
   add_slow(-1.0, 0.0);
@@ -169,6 +172,16 @@ bool Sticking::certified(double tau, double time, ForceJet end) {
   return hull_inside(tau, time, force_, end);
 }
 
+// Powers of θ of the limit at τ + θ·time.
+std::array<double, Sticking::kTerms> Sticking::limit_series(double tau, double time) const {
+  std::array<double, kTerms> bound;
+  limit_.series(tau, time, bound);
+  const double load = drive_.load_at(tau), change = drive_.load_at(tau + time) - load;
+  for (std::size_t p = kTerms; p-- > 1;) bound[p] = load * bound[p] + change * bound[p - 1];
+  bound[0] *= load;
+  return bound;
+}
+
 std::optional<Sticking::Advance> Sticking::crossing(double tau, double time) {
   std::array<double, kTerms> force;
   real_products(series_, state_, force);
@@ -184,15 +197,14 @@ std::optional<Sticking::Advance> Sticking::crossing(double tau, double time) {
   for (std::size_t p = 1; p < kTerms; ++p) swing += std::abs(force[p]);
 
   const Limit at = limit(tau, time);
+  const std::array<double, kTerms> bound = limit_series(tau, time);
   std::optional<double> first;
   Advance result;
   for (const int sign : {1, -1}) {
     const bool starts_there = sign > 0 ? starts_at_upper_ : starts_at_lower_;
     if (!starts_there && sign * force[0] + swing < std::min(at.start, at.end)) continue;
     std::array<double, kTerms> margin;
-    for (std::size_t p = 0; p < kTerms; ++p) margin[p] = -sign * force[p];
-    margin[0] += at.start;
-    margin[1] += at.end - at.start;
+    for (std::size_t p = 0; p < kTerms; ++p) margin[p] = bound[p] - sign * force[p];
     const auto found = first_crossing(margin, first.value_or(1.0), starts_there);
     if (!found) continue;
     first = found;
@@ -205,9 +217,9 @@ std::optional<Sticking::Advance> Sticking::crossing(double tau, double time) {
 Sticking::Advance Sticking::advance(double tau, double time, bool observed) {
   SumAndRate sums = propagate(time, observed);
   bool safe = certified(tau, time, jet_at(tau + time, sums));
-  if (!safe && time > series_step_ * (1.0 + 1e-9)) {
+  if (!safe && time > reach() * (1.0 + 1e-9)) {
     // A longer stretch than the series can tell is cut; the caller asks again for the rest.
-    time = series_step_;
+    time = reach();
     sums = propagate(time, false);
     safe = certified(tau, time, jet_at(tau + time, sums));
   }

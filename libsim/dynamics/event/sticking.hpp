@@ -2,12 +2,14 @@
 // between.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 
 #include "libsim/dynamics/event/bow_path.hpp"
 #include "libsim/dynamics/event/closed_loop.hpp"
 #include "libsim/dynamics/event/motion.hpp"
+#include "libsim/dynamics/event/static_limit.hpp"
 
 namespace modcal::event {
 
@@ -17,12 +19,12 @@ class Sticking {
  public:
   /// `longest_step` [s]: no call of advance() asks for more.
   /// `static_limit` [N] at load 1.
-  Sticking(ClosedLoop loop, double static_limit, double longest_step, MotionRequest wanted);
+  Sticking(ClosedLoop loop, StaticLimit static_limit, double longest_step, MotionRequest wanted);
 
   /// Starts from the open-loop state Z with the contact at y [m] and its spring stretched by
-  /// `elongation` [m].
+  /// `elongation` [m] and its temperature risen by `rise` [K], where it has one.
   void attach(const BowDrive& drive, const PlanarVector& open_state, double displacement,
-              double elongation);
+              double elongation, double rise = 0.0);
   /// The bow moves on differently from τ, which becomes τ = 0.
   void change_drive(double tau, const BowDrive& drive);
   /// Open-loop state Z at τ.
@@ -47,6 +49,8 @@ class Sticking {
   std::size_t advance_block(double tau, Block& motions);
 
   double force() const { return force_.value; }
+  /// Temperature rise at τ [K].
+  double rise(double tau) const { return limit_.rise_at(tau); }
   /// y_c at τ, the contact being at y [m].
   double elongation(double tau, double displacement) const {
     return displacement - rest_point_ - drive_.travel(tau);
@@ -63,9 +67,13 @@ class Sticking {
   struct Limit {
     double start = 0.0, end = 0.0;
   };
+  // A line below the limit: the contact only cools.
   Limit limit(double tau, double time) const {
-    return {limit_ * drive_.load_at(tau), limit_ * drive_.load_at(tau + time)};
+    const double at_start = limit_.at(tau);
+    return {at_start * drive_.load_at(tau), at_start * drive_.load_at(tau + time)};
   }
+  double reach() const { return std::min(series_step_, limit_.reach()); }
+  std::array<double, kTerms> limit_series(double tau, double time) const;
   ForceJet jet_at(double tau, const SumAndRate& sums) const {
     return {slow_.value_at(tau) + sums.sum, slow_.rate_at(tau) + sums.rate};
   }
@@ -83,7 +91,8 @@ class Sticking {
                    const std::array<double, ClosedLoop::kRows>& seen) const;
 
   ClosedLoop loop_;
-  double limit_, longest_step_, series_step_;
+  StaticLimit limit_;
+  double longest_step_, series_step_;
   PlanarVector step_factor_, series_factor_;
   PlanarRows series_;           // (μ·series_step)^p/p!
   AlignedVector fourth_power_;  // |μ|⁴

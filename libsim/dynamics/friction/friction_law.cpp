@@ -25,8 +25,8 @@ SlidingLaw FrictionLaw::sliding(double normal_force) const {
 
 SlidingLaw FrictionLaw::make_sliding(double /*normal_force*/) const {
   throw_invalid_input(
-      "this friction law has a state (temperature, deflection) that this simulator does not "
-      "follow: use modal_exact or newmark_explicit, or a law of the sliding speed alone");
+      "this friction law has a state (temperature, deflection): it is no curve over the sliding "
+      "speed; use a law of the sliding speed alone");
 }
 
 double FrictionLaw::static_limit(double normal_force) const {

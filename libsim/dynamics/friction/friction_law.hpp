@@ -29,8 +29,7 @@ class FrictionLaw {
   /// friction coefficient.
   /// Throws InvalidInput for a law with a state.
   SlidingLaw sliding(double normal_force) const;
-  /// The law where it has a state (temperature, deflection), which only the fixed-step simulators
-  /// follow; std::monostate where it has none.
+  /// The law where it has a state (temperature, deflection); std::monostate where it has none.
   StatefulLaw stateful() const { return make_stateful(); }
   bool has_state() const { return stateful().index() != 0; }
   /// Largest force that adherence can carry, μ_S F_N [N].

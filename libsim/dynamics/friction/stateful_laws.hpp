@@ -24,13 +24,23 @@ struct ThermalSliding {
   double carried = 0.0;                            ///< S [J/(K m)]
   double rise = 0.0;                               ///< ϑ [K]
 
-  SlidingPoint at(double /*speed*/) const {
-    return {hot + drop / (1.0 + std::exp((rise - softening) / softening_width)), 0.0, 0.0};
+  /// (μ − μ_hot)/(μ_cold − μ_hot) at the rise ϑ.
+  double cold_share(double at_rise) const {
+    return 1.0 / (1.0 + std::exp((at_rise - softening) / softening_width));
   }
+  struct Softening {
+    double coefficient;  ///< μ(ϑ)
+    double slope;        ///< dμ/dϑ ≤ 0 [1/K]
+  };
+  Softening softening_at(double at_rise) const {
+    const double share = cold_share(at_rise);
+    return {hot + drop * share, -drop * share * (1.0 - share) / softening_width};
+  }
+  SlidingPoint at(double /*speed*/) const { return {softening_at(rise).coefficient, 0.0, 0.0}; }
   /// Advances ϑ by h [s] at the sliding speed u ≥ 0 [m/s] under the friction force |f| [N]; exact
-  /// where both are steady.
+  /// where both are steady. Nothing is rubbed, and no heat carried off, where there is no force.
   void advance(double h, double speed, double force) {
-    const double rate = (conductance + carried * speed) / capacity;
+    const double rate = (conductance + (force > 0.0 ? carried * speed : 0.0)) / capacity;
     const double change = force * speed / capacity - rate * rise;
     rise += rate * h > 0.0 ? -change * std::expm1(-rate * h) / rate : change * h;
   }

@@ -1,5 +1,7 @@
 #include "libsim/dynamics/simulators/modal_event.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -17,6 +19,7 @@ std::vector<event::BowKnot> knots_of(const BowMotion& bow) {
   std::vector<double> times = bow.velocity.times();
   const std::vector<double>& others = bow.normal_force.times();
   times.insert(times.end(), others.begin(), others.end());
+  if (times.empty()) times.push_back(0.0);  // steady
   std::sort(times.begin(), times.end());
   times.erase(std::unique(times.begin(), times.end()), times.end());
   std::vector<event::BowKnot> knots;
@@ -62,24 +65,51 @@ ModalEvent::ModalEvent(const Options& options) : options_(options) {
                  "unknown attachment rule \"{}\": literal or continuous", options.attach);
 }
 
+std::vector<SceneRefusal> ModalEvent::unsupported(const Scene& scene) const {
+  std::vector<SceneRefusal> refusals;
+  if (scene.bow.points > 1) {
+    refusals.push_back(
+        {"bow.points",
+         fmt::format("{} contact points over {:g} m: modal_event locates the switches of one "
+                     "contact point; use modal_exact or newmark_explicit, or one point",
+                     scene.bow.points, scene.bow.width)});
+  }
+  if (std::holds_alternative<BristleFriction>(scene.friction.make()->stateful())) {
+    refusals.push_back(
+        {"friction",
+         fmt::format("\"{}\" friction deflects bristles and never sticks, but modal_event goes "
+                     "from one switch between sticking and sliding to the next; use modal_exact "
+                     "or newmark_explicit, or a law with an adherence",
+                     scene.friction.selected())});
+  }
+  return refusals;
+}
+
 Simulation ModalEvent::run(const Scene& scene, double sample_rate, const OutputRequest& outputs,
                            const StopToken& stop) const {
   const double wanted = std::isnan(options_.max_step) ? 1.0 / sample_rate : options_.max_step;
   const StepPlan plan = plan_steps(wanted, sample_rate);
   const std::size_t count = sample_count(scene.duration, sample_rate);
   const BowMotion bow = bow_motion(scene.bow, scene.duration);
-  // Under a gesture law and limit are those of 1 N, and the load is the normal force in N.
-  const double force = bow.is_steady() ? bow.normal_force.at(0.0) : 1.0;
   const ContactModes modes = scene_modes(scene);
   const auto friction = scene.friction.make();
+  const StatefulLaw stateful = friction->stateful();
+  const auto* thermal = std::get_if<ThermalSliding>(&stateful);
+  // Under a gesture law and limit are those of 1 N, and the load is the normal force in N; the
+  // heat of a contact needs that force at all times.
+  const bool scaled = thermal != nullptr || !bow.is_steady();
+  const double force = scaled ? 1.0 : bow.normal_force.at(0.0);
 
   Simulation result = empty_simulation(count, sample_rate, outputs);
   ContactParameters contact = contact_parameters(bow, *friction, modes.effective_mass());
   contact.static_limit = friction->static_limit(force);
+  event::EventState state = event::initial_state(modes, bow.velocity.at(0.0));
+  if (thermal != nullptr) state.rise = thermal->rise;
   const event::EventLoop loop{
       .contact = contact,
-      .law = friction->sliding(force),
-      .bow = bow.is_steady() ? std::vector<event::BowKnot>{} : knots_of(bow),
+      .law = thermal != nullptr ? SlidingLaw{} : friction->sliding(force),
+      .thermal = thermal != nullptr ? std::optional(*thermal) : std::nullopt,
+      .bow = scaled ? knots_of(bow) : std::vector<event::BowKnot>{},
       .attach = options_.attach == "continuous" ? event::AttachRule::kContinuous
                                                 : event::AttachRule::kLiteral,
       .nodes = static_cast<int>(options_.nodes),
@@ -90,7 +120,6 @@ Simulation ModalEvent::run(const Scene& scene, double sample_rate, const OutputR
       .targets = targets_of(result),
       .switches = {&result.switches, outputs.switches_from},
       .stop = stop};
-  event::EventState state = event::initial_state(modes, bow.velocity.at(0.0));
   const event::EventCounts counts = event::run_event_loop(loop, modes, state);
 
   if (counts.failure) {

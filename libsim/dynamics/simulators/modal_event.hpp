@@ -22,6 +22,10 @@ namespace modcal {
 /// A gesture's knots end steps: between them velocity and normal force are linear, adherence
 /// follows in closed form and the static limit is a line. At F_N = 0 the string decays freely.
 ///
+/// The temperature of thermal friction is collocated with the force at the same nodes while the
+/// string slides, and cools in closed form while it sticks; the limit that ends adherence is then
+/// the one of the temperature at that instant.
+///
 /// A run that cannot go on (contact chatter, a friction equation without solution) ends with
 /// `diverged_at` and the reason in `explanation`. Throws InvalidInput where adherence has a double
 /// root or turns by more than 1e4 rad in a step.
@@ -39,6 +43,7 @@ class ModalEvent final : public Simulator {
   explicit ModalEvent(const Options& options);
 
  private:
+  std::vector<SceneRefusal> unsupported(const Scene& scene) const override;
   Simulation run(const Scene& scene, double sample_rate, const OutputRequest& outputs,
                  const StopToken& stop) const override;
   Options options_;

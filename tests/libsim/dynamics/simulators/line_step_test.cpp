@@ -345,11 +345,9 @@ TEST(Simulators, RefuseScenesThatTheyCannotFollow) {
   EXPECT_THROW(event->simulate(wide, kRate, {}), InvalidInput);
   wide.bow.width = 0.1;  // past the end
   EXPECT_THROW(exact(wide), InvalidInput);
-  for (const char* law : {"thermal", "elasto_plastic"}) {
-    Scene stateful = paper_scene();
-    stateful.friction = Choice<FrictionLaw>(law);
-    EXPECT_THROW(event->simulate(stateful, kRate, {}), InvalidInput) << law;
-  }
+  Scene bristles = paper_scene();
+  bristles.friction = Choice<FrictionLaw>("elasto_plastic");
+  EXPECT_THROW(event->simulate(bristles, kRate, {}), InvalidInput);
   Scene steep = paper_scene();
   steep.bow.force_gesture = table({0.0, 1.0}, {0.0, 1000.0});
   EXPECT_THROW(exact(steep, 1e-5), InvalidInput);
