@@ -11,6 +11,8 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr double kWorstCondition = 1e8;
+// Entries of a change of basis that is kept; 16 bytes each, there and back.
+constexpr std::size_t kMostEntries = 512 * 512;
 constexpr double kWorstRoundTrip = 1e-7;
 
 // What one root contributes: 1/((μ − λ_n)(μ − λ̄_n)) for every mode and sums over them.
@@ -65,7 +67,14 @@ void size_maps(const ContactModes& modes, ClosedLoop& loop) {
     const std::size_t inputs = closing ? n : m, outputs = closing ? m : n;
     map->a = map->b = PlanarVector(inputs);
     map->p = map->q = PlanarVector(outputs);
-    map->matrix = PlanarRows(inputs, outputs);
+    if (n * m <= kMostEntries) {
+      map->matrix = PlanarRows(inputs, outputs);
+    } else {
+      map->towards_roots = closing;
+      map->pole = PlanarVector(n);
+      map->anchor = map->offset = PlanarVector(m);
+      for (std::size_t i = 0; i < n; ++i) map->pole.set(i, modes.pole[i]);
+    }
     map->scratch_a.resize(padded_size(inputs));
     map->scratch_b.resize(padded_size(inputs));
   }
@@ -84,17 +93,26 @@ void fill_root(const ContactModes& modes, std::span<const OpenLoopMode> open, st
   const Complex mu = root.value();
   loop.pole.set(j, mu);
   loop.largest_pole = std::max(loop.largest_pole, std::abs(mu));
-  loop.to_closed.p.set(j, mu);
-  loop.to_closed.q.set(j, -1.0);
   loop.to_open.a.set(j, std::conj(mu));
   loop.to_open.b.set(j, 1.0);
   const Complex scale = (root.is_real() ? 1.0 : 2.0) / column.biorthogonal;
+  const bool kept = loop.to_closed.matrix.count > 0;
+  // A matrix that is kept holds the scale.
+  loop.to_closed.p.set(j, kept ? mu : mu * scale);
+  loop.to_closed.q.set(j, kept ? -1.0 : -scale);
+  for (PoleMap* map : {&loop.to_closed, &loop.to_open}) {
+    if (kept) continue;
+    map->anchor.set(j, root.anchor());
+    map->offset.set(j, root.offset());
+  }
   Complex left = 0.0, right = 0.0;
   for (std::size_t n = 0; n < open.size(); ++n) {
-    loop.to_closed.matrix.set(n, j, scale * column.inverse[n]);
     const Complex pole = open[n].pole;
-    const Complex pair = -root.minus(pole) * (pole - std::conj(mu));
-    loop.to_open.matrix.set(j, n, 1.0 / pair);
+    if (kept) {
+      loop.to_closed.matrix.set(n, j, scale * column.inverse[n]);
+      const Complex pair = -root.minus(pole) * (pole - std::conj(mu));
+      loop.to_open.matrix.set(j, n, 1.0 / pair);
+    }
     const double weight = open[n].drive * pole.imag();
     left += modes.left_gain[n] * weight * column.inverse[n];
     right += modes.right_gain[n] * weight * column.inverse[n];

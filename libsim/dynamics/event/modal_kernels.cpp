@@ -329,6 +329,51 @@ HWY_INLINE void ApplyBlock(const PoleMap& map, std::size_t inputs, const double*
   }
 }
 
+// 1/z for the product z of two numbers.
+HWY_INLINE ComplexVec InverseOfProduct(ComplexVec x, ComplexVec y) {
+  const ComplexVec z = Times(x, y);
+  const Vec square = hn::MulAdd(z.re, z.re, hn::Mul(z.im, z.im));
+  const Vec inverse = hn::Div(hn::Set(Tag(), 1.0), square);
+  return {hn::Mul(z.re, inverse), hn::Neg(hn::Mul(z.im, inverse))};
+}
+
+// A block of one vector of roots from all poles (kTowardsRoots), or the other way round.
+template <bool kTowardsRoots>
+HWY_INLINE void ComputeBlock(const PoleMap& map, std::size_t inputs, const double* a,
+                             const double* b, std::size_t first, PlanarVector& out) {
+  const Tag d;
+  const Source poles(map.pole), anchors(map.anchor), offsets(map.offset);
+  const auto all = [&d](const double* value) { return hn::Set(d, *value); };
+  ComplexVec of_a = {hn::Zero(d), hn::Zero(d)}, of_b = of_a;
+  for (std::size_t n = 0; n < inputs; ++n) {
+    ComplexVec pole, anchor, offset;
+    if constexpr (kTowardsRoots) {
+      pole = {all(poles.re + n), all(poles.im + n)};
+      anchor = anchors[first];
+      offset = offsets[first];
+    } else {
+      pole = poles[first];
+      anchor = {all(anchors.re + n), all(anchors.im + n)};
+      offset = {all(offsets.re + n), all(offsets.im + n)};
+    }
+    // The anchor is one of the poles: the difference is exact, and the offset keeps its digits.
+    const ComplexVec from = {hn::Add(hn::Sub(anchor.re, pole.re), offset.re),
+                             hn::Add(hn::Sub(anchor.im, pole.im), offset.im)};
+    ComplexVec mirrored = {from.re, hn::Add(hn::Add(anchor.im, pole.im), offset.im)};
+    if constexpr (!kTowardsRoots) mirrored.re = hn::Neg(mirrored.re);
+    ComplexVec inverse = InverseOfProduct(from, mirrored);
+    if constexpr (!kTowardsRoots) inverse = {hn::Neg(inverse.re), hn::Neg(inverse.im)};
+    of_a = {hn::MulAdd(all(a + n), inverse.re, of_a.re),
+            hn::MulAdd(all(a + n), inverse.im, of_a.im)};
+    of_b = {hn::MulAdd(all(b + n), inverse.re, of_b.re),
+            hn::MulAdd(all(b + n), inverse.im, of_b.im)};
+  }
+  const Source p(map.p), q(map.q);
+  const ComplexVec left = Times(p[first], of_a);
+  const ComplexVec right = Times(q[first], of_b);
+  Target(out).Set(first, {hn::Add(left.re, right.re), hn::Add(left.im, right.im)});
+}
+
 void Apply(const PoleMap& map, std::size_t inputs, const PlanarVector& in, double* a, double* b,
            PlanarVector& out) {
   const Tag d;
@@ -340,6 +385,16 @@ void Apply(const PoleMap& map, std::size_t inputs, const PlanarVector& in, doubl
     hn::Store(Times(of_b[i], z).re, d, b + i);
   }
   std::size_t i = 0;
+  if (map.matrix.count == 0) {
+    for (; i < out.size(); i += lanes) {
+      if (map.towards_roots) {
+        ComputeBlock<true>(map, inputs, a, b, i, out);
+      } else {
+        ComputeBlock<false>(map, inputs, a, b, i, out);
+      }
+    }
+    return;
+  }
   for (; i + 3 * lanes <= out.size(); i += 3 * lanes) ApplyBlock<3>(map, inputs, a, b, i, out);
   for (; i < out.size(); i += lanes) ApplyBlock<1>(map, inputs, a, b, i, out);
 }

@@ -28,6 +28,7 @@ class SecularRoot {
     return (anchor_ - other.anchor_) + (offset_ - other.offset_);
   }
   std::complex<double> offset() const { return offset_; }
+  std::complex<double> anchor() const { return anchor_; }
   void move(std::complex<double> change) { offset_ += change; }
   SecularRoot conjugate() const { return {std::conj(anchor_), std::conj(offset_)}; }
   bool is_real() const { return real_; }

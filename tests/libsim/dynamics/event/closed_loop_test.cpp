@@ -196,5 +196,34 @@ TEST(ClosedLoop, ObservesWhatTheModesShow) {
   EXPECT_NEAR(row[ClosedLoop::kRight], right, 1e-12 * std::abs(modes.left_gain[0]) * 20);
 }
 
+// Beyond 512 modes the matrices of the change of basis are computed, not kept; the rounding of the
+// sums grows with their terms.
+TEST(ClosedLoop, CoordinatesOfManyModesGoThereAndBack) {
+  const ContactModes modes = paper_modes(700, 0.0471);
+  auto loop = make_closed_loop(modes, 1e5, critical_damping(modes, 1e5));
+  ASSERT_TRUE(loop.has_value());
+  EXPECT_EQ(loop->to_closed.matrix.count, 0u);
+  PlanarVector state(modes.size()), coordinates(loop->roots), back(modes.size());
+  double size = 0.0, y = 0.0, v = 0.0;
+  for (std::size_t n = 0; n < modes.size(); ++n) {
+    const Complex z{std::sin(1.0 + 3.0 * static_cast<double>(n)),
+                    std::cos(2.0 * static_cast<double>(n))};
+    state.set(n, z);
+    size += std::norm(z);
+    y += modes.compliance[n] * z.imag();
+    v += z.real() - modes.quadrature[n] * z.imag();
+  }
+  apply(loop->to_closed, loop->modes, state, coordinates);
+  apply(loop->to_open, loop->roots, coordinates, back);
+  double error = 0.0, force = 0.0, gross = 0.0;
+  for (std::size_t n = 0; n < modes.size(); ++n) error += std::norm(back.at(n) - state.at(n));
+  EXPECT_LT(std::sqrt(error / size), 30 * 30 * 700 * 1.1e-16);
+  for (std::size_t j = 0; j < loop->roots; ++j) {
+    force += coordinates.re[j];
+    gross += std::abs(coordinates.at(j));
+  }
+  EXPECT_NEAR(force, -1e5 * y - loop->damping * v, 30 * 700 * 1.1e-16 * gross);
+}
+
 }  // namespace
 }  // namespace modcal::event
