@@ -41,6 +41,14 @@ void lint_rate(const StringModel& string, double sample_rate, const std::string&
                    string.modes, top, 0.5 * sample_rate, most)});
 }
 
+// What the simulator refuses for its kind alone.
+void lint_fit(const Scene& scene, const Choice<Simulator>& simulator,
+              std::vector<Finding>& findings) {
+  for (const SceneRefusal& refusal : simulator.make()->refusals(scene)) {
+    findings.push_back({"scene." + refusal.key, refusal.reason});
+  }
+}
+
 void lint_decay(const Scene& scene, std::vector<Finding>& findings) {
   if (!is_known(scene.string)) return;
   std::vector<double> zeta;
@@ -76,10 +84,12 @@ std::vector<Finding> lint_scene(const Scene& scene, const Choice<Simulator>& sim
   lint_making(
       "scene.bow", [&] { bow_motion(scene.bow, scene.duration); }, findings);
   lint_rate(scene.string, measurement.sample_rate, "scene.string", findings);
+  const std::size_t before = findings.size();
   lint_making(
       "scene.friction", [&] { scene.friction.make(); }, findings);
   lint_making(
       "simulator", [&] { simulator.make(); }, findings);
+  if (findings.size() == before) lint_fit(scene, simulator, findings);
   lint_making(
       "scene.duration", [&] { sample_count(scene.duration, measurement.sample_rate); }, findings);
   return findings;
