@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "libsim/base/error.hpp"
@@ -206,9 +207,8 @@ class Run {
     if (stretch_ != last_stretch_ && (stretch_ + 1)->start.step < step_ + Sticking::kBlock) {
       return 0;
     }
-    Sticking::Block motions;
-    const std::size_t held = sticking_->advance_block(since_base(0.0), motions);
-    for (std::size_t k = 0; k < held; ++k) store(sample + k, motions[k]);
+    const std::size_t held = sticking_->advance_block(since_base(0.0), block_);
+    store(sample, held);
     counts_.steps += held;
     step_ += held;
     return held;
@@ -309,6 +309,18 @@ class Run {
     if (to.right_reaction) to.right_reaction[sample] = motion.right;
   }
 
+  void store(std::size_t sample, std::size_t count) {
+    const auto copy = [&](const Sticking::Block::Row& row, double* to) {
+      if (to) std::copy_n(row.begin(), count, to + sample);
+    };
+    const SampleTargets& to = loop_.targets;
+    copy(block_.displacement, to.displacement);
+    copy(block_.velocity, to.velocity);
+    copy(block_.force, to.force);
+    copy(block_.left, to.left_reaction);
+    copy(block_.right, to.right_reaction);
+  }
+
   const EventLoop& loop_;
   EventState& state_;
   BowPath path_;
@@ -322,6 +334,7 @@ class Run {
   EventCounts counts_;
   std::uint64_t step_ = 0;
   GridPoint base_;
+  Sticking::Block block_;  // the samples of a held block
 };
 
 }  // namespace

@@ -35,9 +35,11 @@ Sticking::Sticking(ClosedLoop loop, StaticLimit static_limit, double longest_ste
       state_(loop_.roots),
       trial_(loop_.roots),
       wanted_(wanted) {
-  while (series_step_ * loop_.largest_pole > kSeriesPhase) series_step_ *= 0.5;
-  step_factor_ = exponentials(loop_.pole, loop_.roots, longest_step_);
-  series_factor_ = exponentials(loop_.pole, loop_.roots, series_step_);
+  step_factor_.push_back(exponentials(loop_.pole, loop_.roots, longest_step_));
+  while (series_step_ * loop_.largest_pole > kSeriesPhase) {
+    series_step_ *= 0.5;
+    step_factor_.push_back(exponentials(loop_.pole, loop_.roots, series_step_));
+  }
   for (std::size_t j = 0; j < loop_.roots; ++j) {
     const Complex x = loop_.pole.at(j) * series_step_;
     Complex term = 1.0;
@@ -137,10 +139,13 @@ SumAndRate Sticking::propagate(double time, bool observed) {
   seen_is_valid_ = false;
   if (time == longest_step_) {
     seen_is_valid_ = observed;
-    return event::advance(step_factor_, loop_.pole, state_, trial_, loop_.observed,
+    return event::advance(step_factor_[0], loop_.pole, state_, trial_, loop_.observed,
                           std::span(seen_).first(observed ? rows() : 0));
   }
-  if (time == series_step_) return event::advance(series_factor_, loop_.pole, state_, trial_);
+  if (time == step_of(level_)) {
+    return event::advance(step_factor_[static_cast<std::size_t>(level_)], loop_.pole, state_,
+                          trial_);
+  }
   return advance_by(time, loop_.pole, state_, trial_);
 }
 
@@ -155,7 +160,8 @@ bool Sticking::hull_inside(double tau, double time, ForceJet start, ForceJet end
       std::max(std::max(std::abs(start.value) - at.start, std::abs(second) - (at.start + fall)),
                std::max(std::abs(third) - (at.end - fall), std::abs(end.value) - at.end));
   const double square = time * time;
-  return excess + square * square * (fourth_derivative_ * (1.0 / 384.0)) < 0.0;
+  return excess + square * square * (fourth_derivative_ * (1.0 / 384.0)) < 0.0 &&
+         std::isfinite(end.value);
 }
 
 void Sticking::refresh_bound() {
@@ -215,13 +221,28 @@ std::optional<Sticking::Advance> Sticking::crossing(double tau, double time) {
 }
 
 Sticking::Advance Sticking::advance(double tau, double time, bool observed) {
+  const int last_level = static_cast<int>(step_factor_.size()) - 1;
+  const auto cut = [&](double longest) {
+    if (time > longest * (1.0 + 1e-9)) time = longest;
+  };
+  cut(step_of(level_));
   SumAndRate sums = propagate(time, observed);
   bool safe = certified(tau, time, jet_at(tau + time, sums));
-  if (!safe && time > reach() * (1.0 + 1e-9)) {
-    // A longer stretch than the series can tell is cut; the caller asks again for the rest.
-    time = reach();
+  // A stretch that is not certified is cut down to what the series can tell; the caller asks again
+  // for the rest.
+  while (!safe && time > reach() * (1.0 + 1e-9)) {
+    if (level_ == last_level) {
+      cut(reach());
+    } else {
+      cut(step_of(++level_));
+    }
+    certified_in_a_row_ = 0;
     sums = propagate(time, false);
     safe = certified(tau, time, jet_at(tau + time, sums));
+  }
+  if (safe && level_ > 0 && ++certified_in_a_row_ > 4) {
+    --level_;
+    certified_in_a_row_ = 0;
   }
   Advance result{time, 0};
   if (!safe) {
@@ -238,24 +259,47 @@ Sticking::Advance Sticking::advance(double tau, double time, bool observed) {
   return result;
 }
 
-std::size_t Sticking::certified_steps(double tau,
-                                      const std::array<ForceJet, kBlock + 1>& force) const {
+// hull_inside() for the steps of a block side by side.
+std::size_t Sticking::certified_steps(double tau, const BlockForce& force) const {
+  Block::Row start, end, excess;
+  for (std::size_t k = 0; k < kBlock; ++k) {
+    const Limit at = limit(tau + static_cast<double>(k) * longest_step_, longest_step_);
+    start[k] = at.start;
+    end[k] = at.end;
+  }
+  for (std::size_t k = 0; k < kBlock; ++k) {
+    const double fall = (end[k] - start[k]) * (1.0 / 3.0);
+    const double first = std::abs(force.value[k]) - start[k];
+    const double second = std::abs(force.value[k] + force.reach[k]) - (start[k] + fall);
+    const double third = std::abs(force.value[k + 1] - force.reach[k + 1]) - (end[k] - fall);
+    const double last = std::abs(force.value[k + 1]) - end[k];
+    excess[k] = std::max(std::max(first, second), std::max(third, last));
+  }
+  const double square = longest_step_ * longest_step_;
+  const double remainder = square * square * (fourth_derivative_ * (1.0 / 384.0));
   std::size_t steps = 0;
-  while (steps < kBlock && hull_inside(tau + static_cast<double>(steps) * longest_step_,
-                                       longest_step_, force[steps], force[steps + 1])) {
+  while (steps < kBlock && excess[steps] + remainder < 0.0 &&
+         std::isfinite(force.value[steps + 1])) {
     ++steps;
   }
   return steps;
 }
 
-std::size_t Sticking::advance_block(double tau, Block& motions) {
+std::size_t Sticking::advance_block(double tau, Block& out) {
   if (starts_at_upper_ || starts_at_lower_) return 0;
   std::array<double, kBlockRows * kBlock> sums{};
   real_products(block_, state_, std::span(sums).first(block_.count));
-  std::array<ForceJet, kBlock + 1> force{force_};
+  BlockForce force;
+  Block::Row rate;
+  const double part = longest_step_ * (1.0 / 3.0);
+  force.value[0] = force_.value;
+  force.reach[0] = part * force_.rate;
   for (std::size_t k = 0; k < kBlock; ++k) {
-    force[k + 1] = jet_at(tau + static_cast<double>(k + 1) * longest_step_,
-                          {sums[kBlockForce * kBlock + k], sums[kBlockRate * kBlock + k]});
+    const double at = tau + static_cast<double>(k + 1) * longest_step_;
+    out.force[k] = slow_.value_at(at) + sums[kBlockForce * kBlock + k];
+    rate[k] = slow_.rate_at(at) + sums[kBlockRate * kBlock + k];
+    force.value[k + 1] = out.force[k];
+    force.reach[k + 1] = part * rate[k];
   }
   std::size_t steps = certified_steps(tau, force);
   if (steps < kBlock && !bound_is_fresh_) {
@@ -263,15 +307,27 @@ std::size_t Sticking::advance_block(double tau, Block& motions) {
     steps = certified_steps(tau, force);
   }
   if (steps == 0) return 0;
-  for (std::size_t k = 0; k < steps; ++k) {
-    const double* seen = &sums[kBlockVelocity * kBlock + k];
-    motions[k] = motion_at(tau + static_cast<double>(k + 1) * longest_step_, force[k + 1].value,
-                           {seen[0], seen[kBlock], seen[2 * kBlock]});
-  }
+  fill_motions(tau, &sums[kBlockVelocity * kBlock], out);
   event::advance(block_factor_[steps - 1], loop_.pole, state_, state_);
-  force_ = force[steps];
+  force_ = {out.force[steps - 1], rate[steps - 1]};
   bound_is_fresh_ = seen_is_valid_ = false;
   return steps;
+}
+
+// motion_at() for the ends of a block's steps side by side.
+void Sticking::fill_motions(double tau, const double* seen, Block& out) const {
+  const double* seen_left = seen + ClosedLoop::kLeft * kBlock;
+  const double* seen_right = seen + ClosedLoop::kRight * kBlock;
+  for (std::size_t k = 0; k < kBlock; ++k) {
+    const double at = tau + static_cast<double>(k + 1) * longest_step_;
+    out.velocity[k] = seen[k] + loop_.displacement.value * slow_.rate_at(at) +
+                      loop_.displacement.rate * slow_.curvature;
+    const double slip = out.velocity[k] - drive_.velocity_at(at);
+    out.displacement[k] =
+        rest_point_ + drive_.travel(at) - (out.force[k] + loop_.damping * slip) / loop_.stiffness;
+    out.left[k] = seen_left[k] + loop_.left.at(slow_, at);
+    out.right[k] = seen_right[k] + loop_.right.at(slow_, at);
+  }
 }
 
 Motion Sticking::motion_at(double tau, double force,

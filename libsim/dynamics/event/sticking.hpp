@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
+#include <vector>
 
 #include "libsim/dynamics/event/bow_path.hpp"
 #include "libsim/dynamics/event/closed_loop.hpp"
@@ -43,10 +45,13 @@ class Sticking {
 
   /// Samples in a row, each a longest step after the one before.
   static constexpr std::size_t kBlock = 4;
-  using Block = std::array<Motion, kBlock>;
+  struct Block {
+    using Row = std::array<double, kBlock>;
+    Row displacement, velocity, force, left, right;
+  };
   /// Advances from τ by as many longest steps, at most kBlock, as are certified free of events, and
   /// tells what happens at their ends. Possibly none: advance() decides then.
-  std::size_t advance_block(double tau, Block& motions);
+  std::size_t advance_block(double tau, Block& out);
 
   double force() const { return force_.value; }
   /// Temperature rise at τ [K].
@@ -86,14 +91,22 @@ class Sticking {
   void refresh_bound();
   std::optional<Advance> crossing(double tau, double time);
   void fill_block();
-  std::size_t certified_steps(double tau, const std::array<ForceJet, kBlock + 1>& force) const;
+  // Force and a third of a step's change by its rate at the start and at the ends of a block.
+  struct BlockForce {
+    std::array<double, kBlock + 1> value, reach;
+  };
+  std::size_t certified_steps(double tau, const BlockForce& force) const;
+  void fill_motions(double tau, const double* seen, Block& out) const;
+  double step_of(int level) const { return std::ldexp(longest_step_, -level); }
   Motion motion_at(double tau, double force,
                    const std::array<double, ClosedLoop::kRows>& seen) const;
 
   ClosedLoop loop_;
   StaticLimit limit_;
   double longest_step_, series_step_;
-  PlanarVector step_factor_, series_factor_;
+  // Steps that were not certified are halved down to the series' own and grow again with success.
+  std::vector<PlanarVector> step_factor_;  // e^{μh}, h = longest_step/2^j
+  int level_ = 0, certified_in_a_row_ = 0;
   PlanarRows series_;           // (μ·series_step)^p/p!
   AlignedVector fourth_power_;  // |μ|⁴
   // Rows of f, f', v, R₁, R₂ (as many as wanted) for the ends of the kBlock steps.
