@@ -18,6 +18,8 @@ echo "== growth of the fixed-step schemes with record and modes"
 echo "== the spectral-peak search in NumPy, on the same data"
 "$build/benchmarks/spectral_peak_benchmark" --write_case="$out/case.bin"
 /usr/bin/python3 "$here/peers/spectral_peak_search.py" "$out/case.bin" 5
+echo "== growth of the event-driven integrator's time with modes and duration"
+"$build/benchmarks/event_scaling"
 echo "== ensembles over threads"
 "$build/benchmarks/ensemble_benchmark"
 echo "== what skipping saves"

@@ -8,7 +8,7 @@ quick=${3:-}
 here=$(dirname "$0")
 mkdir -p "$out"
 
-for scene in paper stiff; do
+for scene in paper stiff thermal; do
   "$build/benchmarks/work_precision" "$scene" $quick >"$out/work_precision_$scene.csv"
   gnuplot -e "table='$out/work_precision_$scene.csv'; figure='$out/work_precision_$scene.svg'; name='$scene'" \
     "$here/work_precision.gp"

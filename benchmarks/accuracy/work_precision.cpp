@@ -2,7 +2,7 @@
 // of each signal over the first 50 ms and over 1 s, transient included, against the event-driven
 // integrator with 5 nodes and steps of 0.8 µs, and the processor time it took.
 //
-//     work_precision paper|stiff [--quick] > work_precision.csv
+//     work_precision paper|stiff|thermal [--quick] > work_precision.csv
 #include <fmt/format.h>
 
 #include <cmath>
@@ -86,6 +86,10 @@ std::optional<Scene> scene_named(std::string_view name) {
     scene.string.inharmonicity = 1.4e-4;
     return scene;
   }
+  if (name == "thermal") {
+    scene.friction = Choice<FrictionLaw>("thermal");
+    return scene;
+  }
   return std::nullopt;
 }
 
@@ -116,7 +120,7 @@ void work_precision(const Scene& scene, bool quick) {
 int main(int argc, char** argv) {
   const auto scene = argc > 1 ? modcal::scene_named(argv[1]) : std::nullopt;
   if (!scene) {
-    fmt::print(stderr, "usage: work_precision paper|stiff [--quick]\n");
+    fmt::print(stderr, "usage: work_precision paper|stiff|thermal [--quick]\n");
     return 2;
   }
   modcal::work_precision(*scene, argc > 2 && std::strcmp(argv[2], "--quick") == 0);
