@@ -25,7 +25,8 @@ Discrepancy::Discrepancy(const Options& options)
   require_noise_option(noise_rms_);
 }
 
-ParameterChoice::Pick Discrepancy::pick(const SpectralData& data,
+ParameterChoice::Pick Discrepancy::pick(const Regularizer& /*regularizer*/,
+                                        const SpectralData& data,
                                         std::span<CurvePoint> curve) const {
   const double rows = static_cast<double>(data.problem->rows());
   const double bound = tau_ * known_noise_rms(noise_rms_, data) * std::sqrt(rows);

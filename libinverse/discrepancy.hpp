@@ -19,7 +19,8 @@ class Discrepancy final : public ParameterChoice {
   explicit Discrepancy(const Options& options);
 
  private:
-  Pick pick(const SpectralData& data, std::span<CurvePoint> curve) const override;
+  Pick pick(const Regularizer& regularizer, const SpectralData& data,
+            std::span<CurvePoint> curve) const override;
   double tau_;
   double noise_rms_;
 };

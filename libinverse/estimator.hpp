@@ -74,7 +74,4 @@ class Estimator {
       const EstimationModel& model) const = 0;
 };
 
-/// A warning for a parameter that no rule has chosen; empty for one that was.
-std::string warning_of(const ChosenParameter& choice);
-
 }  // namespace modcal

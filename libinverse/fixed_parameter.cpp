@@ -22,7 +22,8 @@ FixedParameter::FixedParameter(const Options& options)
                  "fixed regularization parameter {:g} must be a finite number >= 0", value_);
 }
 
-ParameterChoice::Pick FixedParameter::pick(const SpectralData& /*data*/,
+ParameterChoice::Pick FixedParameter::pick(const Regularizer& /*regularizer*/,
+                                           const SpectralData& /*data*/,
                                            std::span<CurvePoint> /*curve*/) const {
   return {value_, ChoiceStatus::kGiven, "the parameter was given"};
 }

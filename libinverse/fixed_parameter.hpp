@@ -16,7 +16,8 @@ class FixedParameter final : public ParameterChoice {
   explicit FixedParameter(const Options& options);
 
  private:
-  Pick pick(const SpectralData& data, std::span<CurvePoint> curve) const override;
+  Pick pick(const Regularizer& regularizer, const SpectralData& data,
+            std::span<CurvePoint> curve) const override;
   double value_;
 };
 

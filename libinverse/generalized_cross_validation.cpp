@@ -2,7 +2,8 @@
 
 namespace modcal {
 
-ParameterChoice::Pick GeneralizedCrossValidation::pick(const SpectralData& data,
+ParameterChoice::Pick GeneralizedCrossValidation::pick(const Regularizer& /*regularizer*/,
+                                                       const SpectralData& data,
                                                        std::span<CurvePoint> curve) const {
   const double rows = static_cast<double>(data.problem->rows());
   for (CurvePoint& point : curve) {

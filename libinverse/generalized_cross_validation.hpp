@@ -15,7 +15,8 @@ class GeneralizedCrossValidation final : public ParameterChoice {
   explicit GeneralizedCrossValidation(const Options& options) : ParameterChoice(options.curve) {}
 
  private:
-  Pick pick(const SpectralData& data, std::span<CurvePoint> curve) const override;
+  Pick pick(const Regularizer& regularizer, const SpectralData& data,
+            std::span<CurvePoint> curve) const override;
 };
 
 }  // namespace modcal

@@ -52,7 +52,7 @@ LCurve::LCurve(const Options& options) : ParameterChoice(options.curve, 5), span
   MODCAL_REQUIRE(span_ >= 0.0 && std::isfinite(span_), "span of {:g} decades must be >= 0", span_);
 }
 
-ParameterChoice::Pick LCurve::pick(const SpectralData& /*data*/,
+ParameterChoice::Pick LCurve::pick(const Regularizer& /*regularizer*/, const SpectralData& /*data*/,
                                    std::span<CurvePoint> curve) const {
   const std::size_t stride = stride_of(curve, span_);
   const std::vector<Slope> slopes = slopes_of(curve, stride);

@@ -18,7 +18,8 @@ class LCurve final : public ParameterChoice {
   explicit LCurve(const Options& options);
 
  private:
-  Pick pick(const SpectralData& data, std::span<CurvePoint> curve) const override;
+  Pick pick(const Regularizer& regularizer, const SpectralData& data,
+            std::span<CurvePoint> curve) const override;
   double span_;
 };
 

@@ -6,7 +6,8 @@
 
 namespace modcal {
 
-ParameterChoice::Pick MinimalProduct::pick(const SpectralData& /*data*/,
+ParameterChoice::Pick MinimalProduct::pick(const Regularizer& /*regularizer*/,
+                                           const SpectralData& /*data*/,
                                            std::span<CurvePoint> curve) const {
   std::vector<double> product(curve.size());
   for (std::size_t j = 0; j < curve.size(); ++j) {

@@ -19,7 +19,8 @@ class MinimalProduct final : public ParameterChoice {
   explicit MinimalProduct(const Options& options) : ParameterChoice(options.curve) {}
 
  private:
-  Pick pick(const SpectralData& data, std::span<CurvePoint> curve) const override;
+  Pick pick(const Regularizer& regularizer, const SpectralData& data,
+            std::span<CurvePoint> curve) const override;
 };
 
 }  // namespace modcal

@@ -1,5 +1,7 @@
 #include "libinverse/one_sided_estimator.hpp"
 
+#include <memory>
+
 namespace modcal {
 namespace {
 
@@ -26,8 +28,7 @@ class PreparedOneSided final : public PreparedEstimator {
       estimate.result = sides_[r].invert(record.reactions[r], of_side);
       const auto sigma = sides_[r].problem().sigma();
       estimate.largest_transfer = sigma.empty() ? 0.0 : sigma[0];
-      std::string warning = warning_of(estimate.result.choice);
-      if (!warning.empty()) estimate.warnings.push_back(std::move(warning));
+      estimate.warnings = estimate.result.choice.warnings;
       estimates.push_back(std::move(estimate));
     }
     return estimates;
@@ -38,14 +39,6 @@ class PreparedOneSided final : public PreparedEstimator {
 };
 
 }  // namespace
-
-std::string warning_of(const ChosenParameter& choice) {
-  const bool stand_in = choice.status == ChoiceStatus::kNoInteriorMinimum ||
-                        choice.status == ChoiceStatus::kEdgeOfRange ||
-                        choice.status == ChoiceStatus::kNotReached ||
-                        choice.status == ChoiceStatus::kNotComputed;
-  return stand_in ? choice.explanation : std::string();
-}
 
 std::shared_ptr<const PreparedEstimator> OneSidedEstimator::do_prepare(
     const EstimationModel& model) const {

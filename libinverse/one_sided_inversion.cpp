@@ -119,7 +119,12 @@ SpectralData OneSidedInversion::data_of(std::span<const Complex> spectrum,
 void OneSidedInversion::apply_filter(const Regularizer& regularizer, double parameter,
                                      InversionWorkspace& workspace) const {
   workspace.factors.resize(problem_.size());
-  regularizer.filter_factors(problem_.sigma_as_given(), parameter, workspace.factors);
+  if (regularizer.has_penalty()) {
+    regularizer.filter_factors(penalized_sigma_as_given(regularizer, problem_), parameter,
+                               workspace.factors);
+  } else {
+    regularizer.filter_factors(problem_.sigma_as_given(), parameter, workspace.factors);
+  }
   workspace.force[0] = 0.0;
   for (std::size_t k = 1; k < workspace.force.size(); ++k) {
     workspace.force[k] *= workspace.factors[k - 1] * inverse_[k];

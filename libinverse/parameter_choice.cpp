@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "libinverse/rule_disagreement.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -62,6 +63,14 @@ void CurveOptions::visit(OptionVisitor& visitor) {
       measure);
 }
 
+std::string warning_of(const ChosenParameter& choice) {
+  const bool stand_in = choice.status == ChoiceStatus::kNoInteriorMinimum ||
+                        choice.status == ChoiceStatus::kEdgeOfRange ||
+                        choice.status == ChoiceStatus::kNotReached ||
+                        choice.status == ChoiceStatus::kNotComputed;
+  return stand_in ? choice.explanation : std::string();
+}
+
 ParameterChoice::ParameterChoice(CurveOptions options, std::int64_t least_points)
     : options_(std::move(options)),
       measure_(options_.measure == "solution" ? Measure::kSolution : Measure::kDerivative) {
@@ -90,15 +99,19 @@ ChosenParameter ParameterChoice::choose(const Regularizer& regularizer,
     result.point = point_at(0.0, regularizer, data, {});
     result.curve = {result.point};
   } else {
-    const std::vector<double> grid = search_grid(problem.sigma());
+    const std::vector<double> grid = search_grid(falling_penalized_sigma(regularizer, problem));
     result.curve.resize(grid.size());
     regularizer.trace(SpectralSystem(data, measure_), grid, result.curve);
-    Pick picked = pick(data, result.curve);
+    Pick picked = pick(regularizer, data, result.curve);
     result.status = picked.status;
     result.explanation = std::move(picked.explanation);
     result.point = point_at(picked.parameter, regularizer, data, result.curve);
   }
   result.kept_share = problem.freedom() > 0.0 ? result.point.freedom / problem.freedom() : 0.0;
+  for (std::string warning :
+       {warning_of(result), disagreement_of(result, problem.rows(), data.noise_rms)}) {
+    if (!warning.empty()) result.warnings.push_back(std::move(warning));
+  }
   return result;
 }
 

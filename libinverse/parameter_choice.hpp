@@ -34,9 +34,15 @@ struct ChosenParameter {
   double kept_share = 0.0;  ///< effective share of the degrees of freedom kept, in [0, 1]; for
                             ///< a water level that zeroes: share of kept bins
   std::vector<CurvePoint> curve;  ///< every parameter searched, rising
+  /// What to beware of: a parameter that stands in for one the rule did not find, or other rules
+  /// that would have chosen one more than a decade away (rule_disagreement.hpp).
+  std::vector<std::string> warnings;
 
   double parameter() const { return point.parameter; }
 };
+
+/// A sentence for a parameter that stands in for one the rule did not find; empty for a chosen one.
+std::string warning_of(const ChosenParameter& choice);
 
 /// Parameters searched and the measure of the solution: options that every choice has.
 struct CurveOptions {
@@ -71,14 +77,16 @@ class ParameterChoice {
     ChoiceStatus status = ChoiceStatus::kNotComputed;
     std::string explanation;
   };
+  Measure measure() const { return measure_; }
   /// The point of the smallest criterion; at either end of where the criterion is
   /// defined the status is kEdgeOfRange.
   static Pick smallest_criterion(std::span<const CurvePoint> curve, std::string_view what);
 
  private:
-  /// Fills the criterion of every point and picks a parameter. The curve has at least one
-  /// point, unless the constructor allowed none.
-  virtual Pick pick(const SpectralData& data, std::span<CurvePoint> curve) const = 0;
+  /// Fills the criterion of every point of the regularizer's curve and picks a parameter. The curve
+  /// has at least one point, unless the constructor allowed none.
+  virtual Pick pick(const Regularizer& regularizer, const SpectralData& data,
+                    std::span<CurvePoint> curve) const = 0;
 
   std::vector<double> search_grid(std::span<const double> falling_sigma) const;
   CurvePoint point_at(double parameter, const Regularizer& regularizer, const SpectralData& data,

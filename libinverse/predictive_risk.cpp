@@ -14,7 +14,8 @@ PredictiveRisk::PredictiveRisk(const Options& options)
   require_noise_option(noise_rms_);
 }
 
-ParameterChoice::Pick PredictiveRisk::pick(const SpectralData& data,
+ParameterChoice::Pick PredictiveRisk::pick(const Regularizer& /*regularizer*/,
+                                           const SpectralData& data,
                                            std::span<CurvePoint> curve) const {
   const double noise = known_noise_rms(noise_rms_, data);
   const double rows = static_cast<double>(data.problem->rows());

@@ -18,7 +18,8 @@ class PredictiveRisk final : public ParameterChoice {
   explicit PredictiveRisk(const Options& options);
 
  private:
-  Pick pick(const SpectralData& data, std::span<CurvePoint> curve) const override;
+  Pick pick(const Regularizer& regularizer, const SpectralData& data,
+            std::span<CurvePoint> curve) const override;
   double noise_rms_;
 };
 

@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "libinverse/spectral_system.hpp"
 #include "libsim/base/registry.hpp"
@@ -29,6 +30,11 @@ class Regularizer {
   /// False where there is nothing to choose: the filter factors do not depend on the parameter.
   virtual bool has_parameter() const { return true; }
 
+  /// Relative size p(ω) > 0 of the solution's penalty at angular frequency ω [rad/s]: filter
+  /// factors see σ_i/p(ω_i) in place of σ_i. Constant 1 unless has_penalty().
+  virtual double penalty(double /*omega*/, double /*reference*/) const { return 1.0; }
+  virtual bool has_penalty() const { return false; }
+
   /// kept_i = φ(σ_i; λ), 0 where σ_i = 0, and, unless that span is empty, lost_i = 1 − φ(σ_i; λ)
   /// without cancellation. sigma, kept: n. Throws InvalidInput unless λ is finite and ≥ 0.
   void filter_factors(std::span<const double> sigma, double parameter, std::span<double> kept,
@@ -47,5 +53,15 @@ class Regularizer {
   virtual void do_trace_squares(const SpectralSystem& system, std::span<const double> parameters,
                                 std::span<CurvePoint> curve) const;
 };
+
+/// σ_i/p(ω_i) in the operator's sorted order (falling σ_i), or in the order it was given. Throws
+/// InvalidInput where a penalty needs frequencies and the problem has none.
+std::vector<double> penalized_sigma(const Regularizer& regularizer,
+                                    const SpectralOperator& problem);
+std::vector<double> penalized_sigma_as_given(const Regularizer& regularizer,
+                                             const SpectralOperator& problem);
+/// The same, falling.
+std::vector<double> falling_penalized_sigma(const Regularizer& regularizer,
+                                            const SpectralOperator& problem);
 
 }  // namespace modcal

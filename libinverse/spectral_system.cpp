@@ -46,8 +46,9 @@ std::vector<double> reordered(std::span<const double> values,
 
 SpectralOperator::SpectralOperator(std::vector<double> singular_values,
                                    std::vector<double> multiplicity,
-                                   std::vector<double> derivative_weight, std::size_t rows)
-    : sigma_as_given_(std::move(singular_values)), rows_(rows) {
+                                   std::vector<double> derivative_weight, std::size_t rows,
+                                   bool penalized)
+    : sigma_as_given_(std::move(singular_values)), rows_(rows), penalized_(penalized) {
   MODCAL_REQUIRE(
       multiplicity.size() == sigma_as_given_.size() &&
           (derivative_weight.empty() || derivative_weight.size() == multiplicity.size()),
@@ -70,6 +71,9 @@ SpectralOperator::SpectralOperator(std::vector<double> singular_values,
                  [](double sigma) { return sigma > 0.0 ? 1.0 / (sigma * sigma) : 0.0; });
   if (derivative_weight.empty()) return;
   derivative_weight_ = reordered(derivative_weight, order_);
+  omega_.resize(derivative_weight_.size());
+  std::transform(derivative_weight_.begin(), derivative_weight_.end(), omega_.begin(),
+                 [](double square) { return std::sqrt(square); });
   std::transform(derivative_weight_.begin(), derivative_weight_.end(), inverse_square_.begin(),
                  derivative_weight_.begin(), std::multiplies<>());
 }
@@ -83,7 +87,8 @@ std::span<const double> SpectralOperator::solution_weight(Measure measure) const
 }
 
 SpectralSystem::SpectralSystem(const SpectralData& data, Measure measure)
-    : sigma(data.problem->sigma()),
+    : problem(data.problem),
+      sigma(data.problem->sigma()),
       multiplicity(data.problem->multiplicity()),
       power(data.power),
       solution_weight(data.problem->solution_weight(measure)),

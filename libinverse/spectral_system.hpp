@@ -23,13 +23,15 @@ class SpectralOperator {
   /// `singular_values` ≥ 0 in any order; `multiplicity`: real degrees of freedom of each component
   /// (2 for a complex Fourier bin, 1 for a real one); `derivative_weight`: squared weight of each
   /// component in ‖dF/dt‖² (ω²), empty where the problem has no time; `rows`: real numbers in the
-  /// data. Singular values whose square underflows (below 1.5e-154) count as 0.
+  /// data; `penalized`: the penalty of a regularizer is in the singular values already. Singular
+  /// values whose square underflows (below 1.5e-154) count as 0.
   /// Throws InvalidInput for a singular value or weight that is negative or not finite.
   SpectralOperator(std::vector<double> singular_values, std::vector<double> multiplicity,
-                   std::vector<double> derivative_weight, std::size_t rows);
+                   std::vector<double> derivative_weight, std::size_t rows, bool penalized = false);
 
   std::size_t size() const { return sigma_.size(); }
   std::size_t rows() const { return rows_; }
+  bool penalized() const { return penalized_; }
   /// σ_i, falling.
   std::span<const double> sigma() const { return sigma_; }
   /// Degrees of freedom of component i.
@@ -40,6 +42,8 @@ class SpectralOperator {
   /// i adds to the squared norm of the unregularized solution. Throws InvalidInput where the
   /// problem has no such measure.
   std::span<const double> solution_weight(Measure measure) const;
+  /// ω_i of component i [rad/s]; empty where the problem has no time.
+  std::span<const double> omega() const { return omega_; }
   /// Place of sorted component i in the order the constructor was given.
   std::span<const std::uint32_t> order() const { return order_; }
   /// Singular values in the order the constructor was given.
@@ -54,9 +58,11 @@ class SpectralOperator {
   std::vector<double> multiplicity_;
   std::vector<double> inverse_square_;
   std::vector<double> derivative_weight_;
+  std::vector<double> omega_;
   double freedom_ = 0.0;
   std::size_t rows_ = 0;
   std::size_t zeros_ = 0;
+  bool penalized_ = false;
 };
 
 /// One set of data in the components of an operator.
@@ -73,6 +79,7 @@ struct SpectralData {
 
 /// Operator and data with the solution's measure decided on; all spans in sorted order.
 struct SpectralSystem {
+  const SpectralOperator* problem = nullptr;
   std::span<const double> sigma;
   std::span<const double> multiplicity;
   std::span<const double> power;

@@ -212,7 +212,12 @@ TEST_P(EveryChoice, ReturnsItsWholeCurveAndAStatus) {
     for (std::size_t j = 1; j < chosen.curve.size(); ++j) {
       EXPECT_GT(chosen.curve[j].parameter, chosen.curve[j - 1].parameter);
     }
-    EXPECT_EQ(chosen.curve.back().parameter, 1e4);  // the largest singular value
+    const double largest = falling_penalized_sigma(*plugin, *data.problem)[0];
+    EXPECT_EQ(chosen.curve.back().parameter, largest);
+    EXPECT_TRUE(plugin->has_penalty() || largest == 1e4);
+    if (!warning_of(chosen).empty()) {
+      EXPECT_THAT(chosen.warnings, testing::Contains(chosen.explanation));
+    }
   }
 }
 
