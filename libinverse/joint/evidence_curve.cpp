@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <iterator>
 
+#include "libinverse/joint/bin_kernels.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -19,47 +20,96 @@ constexpr double kLowestOctave = -40.0;  // of g
 constexpr double kLowestParameterOctave = -64.0;
 constexpr std::size_t kParameterOctaves = 80;
 
-// To 2e-5: y = (m − 1)/(m + 1) of the mantissa m, log m = 2 artanh y. The exponent is exact, so
-// that powers of two shift cells by whole octaves.
-double fast_log2(double value) {
-  const auto bits = std::bit_cast<std::uint64_t>(value);
-  const double exponent = static_cast<double>(static_cast<std::int64_t>(bits >> 52) - 1023);
-  const auto mantissa =
-      std::bit_cast<double>((bits & 0x000fffffffffffffULL) | 0x3ff0000000000000ULL);
-  const double y = (mantissa - 1.0) / (mantissa + 1.0);
-  const double z = y * y;
-  constexpr double kTwoOverLn2 = 2.885390081777927;
-  return exponent + kTwoOverLn2 * y * (1.0 + z * (1.0 / 3.0 + z * (0.2 + z / 7.0)));
+// log₂ to 1.1e-5, from the line through the ends of 128 parts of an octave. The exponent is exact,
+// so that powers of two shift cells by whole octaves.
+class FastLog2 {
+ public:
+  FastLog2() {
+    for (std::size_t i = 0; i < kParts; ++i) {
+      const double low = 1.0 + static_cast<double>(i) / kParts;
+      const double high = low + 1.0 / kParts;
+      slope_[i] = kParts * std::log2(high / low);
+      start_[i] = std::log2(low) - slope_[i] * low;
+    }
+  }
+  double operator()(double value) const {
+    const auto bits = std::bit_cast<std::uint64_t>(value);
+    const double exponent = static_cast<double>(static_cast<std::int64_t>(bits >> 52) - 1023);
+    const auto mantissa =
+        std::bit_cast<double>((bits & 0x000fffffffffffffULL) | 0x3ff0000000000000ULL);
+    const std::size_t part = (bits >> 45) & (kParts - 1);
+    return exponent + start_[part] + slope_[part] * mantissa;
+  }
+
+ private:
+  static constexpr std::size_t kParts = 128;
+  std::array<double, kParts> slope_{}, start_{};
+};
+
+const FastLog2& fast_log2() {
+  static const FastLog2 table;
+  return table;
+}
+
+// Adds {m, power, solution, 0} to the two cells nearest to g > 0. What lies beyond the cells counts
+// as the first or last of them: kept or lost at every λ.
+void spread(const FastLog2& log2, double g, const std::array<double, 4>& terms,
+            std::array<double, 4>* cells) {
+  const double place = std::clamp((log2(g) - kLowestOctave) * kCellsPerOctave, 0.0,
+                                  static_cast<double>(kCells) - 1.001);
+  const auto cell = static_cast<std::size_t>(place);
+  const double upper = place - static_cast<double>(cell);
+  const double lower = 1.0 - upper;
+  std::array<double, 4>& low = cells[cell];
+  std::array<double, 4>& high = cells[cell + 1];
+  for (std::size_t c = 0; c < 4; ++c) low[c] += lower * terms[c];
+  for (std::size_t c = 0; c < 4; ++c) high[c] += upper * terms[c];
+}
+
+template <class Column>
+CellColumns columns_from(const Column (&columns)[3], std::size_t begin) {
+  return {columns[0].data() + begin, columns[1].data() + begin, columns[2].data() + begin};
+}
+
+CurvePoint point_of(const CellColumns& cells, const CellColumns& values, std::size_t count,
+                    double unseen, double parameter) {
+  std::array<double, 4> sums;
+  sum_cells(cells, values, count, sums);
+  return {.parameter = parameter,
+          .residual_norm = std::sqrt(sums[1] + unseen),
+          .solution_norm = std::sqrt(sums[2]),
+          .freedom = sums[3],
+          .criterion = sums[0]};
 }
 
 }  // namespace
 
 void EvidenceCurve::Cells::clear() {
-  sums.assign(kCells, {0.0, 0.0, 0.0, 0.0});
+  sums.assign(2 * kCells, {0.0, 0.0, 0.0, 0.0});
   unseen = 0.0;
   freedom = 0.0;
 }
 
 void EvidenceCurve::Cells::add(double g, double freedom_i, double power, double solution) {
   freedom += freedom_i;
-  if (!(g > 0.0)) {
+  if (g > 0.0) {
+    spread(fast_log2(), g, {freedom_i, power, solution, 0.0}, sums.data());
+  } else {
     unseen += power;
-    return;
   }
-  // What lies beyond the cells counts as the first or last of them: kept or lost at every λ.
-  const double place = std::clamp((fast_log2(g) - kLowestOctave) * kCellsPerOctave, 0.0,
-                                  static_cast<double>(kCells) - 1.001);
-  const auto cell = static_cast<std::size_t>(place);
-  const double upper = place - static_cast<double>(cell);
-  const double lower = 1.0 - upper;
-  std::array<double, 4>& low = sums[cell];
-  std::array<double, 4>& high = sums[cell + 1];
-  low[0] += lower * freedom_i;
-  low[1] += lower * power;
-  low[2] += lower * solution;
-  high[0] += upper * freedom_i;
-  high[1] += upper * power;
-  high[2] += upper * solution;
+}
+
+void EvidenceCurve::Cells::add_pairs(std::span<const double> g, std::span<const double> power,
+                                     std::span<const double> solution) {
+  const FastLog2& log2 = fast_log2();
+  freedom += 2.0 * static_cast<double>(g.size());
+  for (std::size_t i = 0; i < g.size(); ++i) {
+    if (g[i] > 0.0) {
+      spread(log2, g[i], {2.0, power[i], solution[i], 0.0}, sums.data() + (i % 2) * kCells);
+    } else {
+      unseen += power[i];
+    }
+  }
 }
 
 EvidenceCurve::Values EvidenceCurve::values_at(double octaves) {
@@ -73,45 +123,55 @@ EvidenceCurve::EvidenceCurve(std::size_t points) : points_(points) {
                  "{} points on the curve of evidence: 3 to {} are possible", points,
                  kParameterOctaves * kCellsPerOctave);
   stride_ = kParameterOctaves * kCellsPerOctave / (points - 1);
-  table_.resize(kCells + stride_ * (points - 1));
+  const std::size_t entries = kCells + stride_ * (points - 1);
+  for (auto& column : table_) column.resize(entries);
   // Entry i + stride·(points − 1 − j) belongs to cell i at parameter j.
   const double highest = kLowestParameterOctave + static_cast<double>(stride_ * (points - 1)) /
                                                       static_cast<double>(kCellsPerOctave);
-  for (std::size_t e = 0; e < table_.size(); ++e) {
-    table_[e] = values_at(kLowestOctave - highest +
-                          static_cast<double>(e) / static_cast<double>(kCellsPerOctave));
+  for (std::size_t e = 0; e < entries; ++e) {
+    const Values values = values_at(kLowestOctave - highest +
+                                    static_cast<double>(e) / static_cast<double>(kCellsPerOctave));
+    table_[0][e] = values.logarithm;
+    table_[1][e] = values.kept;
+    table_[2][e] = values.lost;
   }
 }
 
-CurvePoint EvidenceCurve::point_of(const Cells& cells, std::size_t first, std::size_t last,
-                                   const Values* values, double parameter) {
-  double criterion = 0.0, residual = 0.0, solution = 0.0, freedom = 0.0;
-  for (std::size_t i = first; i < last; ++i) {
-    const std::array<double, 4>& sum = cells.sums[i];
-    const Values& value = values[i];
-    criterion += value.logarithm * sum[0] - value.kept * sum[1];
-    residual += value.lost * value.lost * sum[1];
-    solution += value.kept * value.kept * sum[2];
-    freedom += value.kept * sum[0];
+CurvePoint EvidenceCurve::point_between(const Cells& cells, std::size_t first, std::size_t count,
+                                        double octave) {
+  std::array<double, kCells> column[3];
+  for (std::size_t i = first; i < first + count; ++i) {
+    const Values values = values_at(
+        kLowestOctave + static_cast<double>(i) / static_cast<double>(kCellsPerOctave) - octave);
+    column[0][i] = values.logarithm;
+    column[1][i] = values.kept;
+    column[2][i] = values.lost;
   }
-  return {.parameter = parameter,
-          .residual_norm = std::sqrt(residual + cells.unseen),
-          .solution_norm = std::sqrt(solution),
-          .freedom = freedom,
-          .criterion = criterion};
+  return point_of(columns_from(cells.column, first), columns_from(column, first), count,
+                  cells.unseen, std::exp2(0.5 * octave));
 }
 
-void EvidenceCurve::trace(const Cells& cells, ChosenParameter& choice) const {
+void EvidenceCurve::trace(Cells& cells, ChosenParameter& choice) const {
+  for (std::size_t c = 0; c < 3; ++c) {
+    cells.column[c].resize(kCells);
+    for (std::size_t i = 0; i < kCells; ++i) {
+      cells.column[c][i] = cells.sums[i][c] + cells.sums[kCells + i][c];
+    }
+  }
+  const std::vector<double>& freedoms = cells.column[0];
   std::size_t first = 0, last = kCells;
-  while (first < last && cells.sums[first][0] == 0.0) ++first;
-  while (last > first && cells.sums[last - 1][0] == 0.0) --last;
+  while (first < last && freedoms[first] == 0.0) ++first;
+  while (last > first && freedoms[last - 1] == 0.0) --last;
+  first -= first % kCellBlock;
+  const std::size_t count = (last - first + kCellBlock - 1) / kCellBlock * kCellBlock;
   choice.curve.resize(points_);
   const double step = static_cast<double>(stride_) / static_cast<double>(kCellsPerOctave);
   std::size_t best = 0;
   for (std::size_t j = 0; j < points_; ++j) {
     const double octave = kLowestParameterOctave + step * static_cast<double>(j);
-    choice.curve[j] = point_of(cells, first, last, table_.data() + stride_ * (points_ - 1 - j),
-                               std::exp2(0.5 * octave));
+    choice.curve[j] = point_of(columns_from(cells.column, first),
+                               columns_from(table_, first + stride_ * (points_ - 1 - j)), count,
+                               cells.unseen, std::exp2(0.5 * octave));
     if (choice.curve[j].criterion < choice.curve[best].criterion) best = j;
   }
   choice.explanation.clear();
@@ -128,12 +188,7 @@ void EvidenceCurve::trace(const Cells& cells, ChosenParameter& choice) const {
   const double bend = left - 2.0 * middle + right;
   const double shift = bend > 0.0 ? std::clamp(0.5 * (left - right) / bend, -0.5, 0.5) : 0.0;
   const double octave = kLowestParameterOctave + step * (static_cast<double>(best) + shift);
-  std::array<Values, kCells> values;
-  for (std::size_t i = first; i < last; ++i) {
-    values[i] = values_at(kLowestOctave +
-                          static_cast<double>(i) / static_cast<double>(kCellsPerOctave) - octave);
-  }
-  choice.point = point_of(cells, first, last, values.data(), std::exp2(0.5 * octave));
+  choice.point = point_between(cells, first, count, octave);
   choice.status = ChoiceStatus::kChosen;
   fmt::format_to(text, "largest evidence at {:.4g}", choice.point.parameter);
 }

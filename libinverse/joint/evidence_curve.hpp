@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "libinverse/parameter_choice.hpp"
@@ -22,29 +23,34 @@ class EvidenceCurve {
 
   /// Sums by cell, to be kept from call to call.
   struct Cells {
+    /// Two sets of cells taken in turn, so that neighbors do not wait for each other's sums.
     std::vector<std::array<double, 4>> sums;
-    double unseen = 0.0;  ///< Σ m u of components with g = 0: residual whatever λ is
+    std::vector<double> column[3];  ///< the same by column, see EvidenceCurve::trace
+    double unseen = 0.0;            ///< Σ m u of components with g = 0: residual whatever λ is
     double freedom = 0.0;
     void clear();
     /// g ≥ 0; freedom m; power m u; solution m |x_i|² of the unregularized solution.
     void add(double g, double freedom_i, double power, double solution);
+    /// Components of two degrees of freedom, spans of one length.
+    void add_pairs(std::span<const double> g, std::span<const double> power,
+                   std::span<const double> solution);
   };
 
   /// Fills the curve; the norms are square roots of sums. Returns the minimum of the criterion,
-  /// refined by a parabola in log λ.
-  void trace(const Cells& cells, ChosenParameter& choice) const;
+  /// refined by a parabola in log λ. Overwrites the cells' columns.
+  void trace(Cells& cells, ChosenParameter& choice) const;
 
  private:
   struct Values {
     double logarithm = 0.0, kept = 0.0, lost = 0.0;
   };
   static Values values_at(double octaves);
-  static CurvePoint point_of(const Cells& cells, std::size_t first, std::size_t last,
-                             const Values* values, double parameter);
+  static CurvePoint point_between(const Cells& cells, std::size_t first, std::size_t count,
+                                  double octave);
 
   std::size_t points_;
   std::size_t stride_;
-  std::vector<Values> table_;
+  std::vector<double> table_[3];
 };
 
 }  // namespace modcal

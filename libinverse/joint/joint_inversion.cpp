@@ -4,12 +4,11 @@
 #include <cmath>
 #include <numeric>
 
+#include "libinverse/joint/bin_kernels.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
 namespace {
-
-double power_of(Complex value) { return value.real() * value.real() + value.imag() * value.imag(); }
 
 // Four partial sums, so that additions do not wait for each other.
 double square_sum(std::span<const double> samples) {
@@ -54,30 +53,20 @@ double contour_of(const ModalBasis& basis, double duration, double noise_share) 
   return std::clamp(balanced, 1.0, 4.0) / duration;
 }
 
-// Weights of the two sides in every bin.
-struct JointInversion::Weights {
-  std::array<double, 2> inverse_variance = {0.0, 0.0};
-  double mean_variance = 0.0;
-
-  Weights(const ReactionPair& reactions, const SensorNoiseLevel& noise) {
-    double sides = 0.0, largest = 0.0;
-    for (const auto& reaction : reactions) {
-      if (reaction.empty()) continue;
-      const double mean_power = square_sum(reaction) / static_cast<double>(reaction.size());
-      largest = std::max(largest, std::sqrt(mean_power));
-    }
-    // Digits of the data: below them no noise level means anything.
-    const double floor = std::max(1e-15 * largest, 1e-150);
-    for (std::size_t r = 0; r < 2; ++r) {
-      if (reactions[r].empty()) continue;
-      const double rms = std::max(noise.rms[r], floor);
-      inverse_variance[r] = 1.0 / (rms * rms);
-      mean_variance += rms * rms;
-      sides += 1.0;
-    }
-    mean_variance /= sides;
+JointInversion::Weights::Weights(const SidePowers& powers, const SensorNoiseLevel& noise) {
+  double sides = 0.0;
+  const double largest = std::sqrt(std::max(powers[0].mean, powers[1].mean));
+  // Digits of the data: below them no noise level means anything.
+  const double floor = std::max(1e-15 * largest, 1e-150);
+  for (std::size_t r = 0; r < 2; ++r) {
+    if (!powers[r].recorded) continue;
+    const double rms = std::max(noise.rms[r], floor);
+    inverse_variance[r] = 1.0 / (rms * rms);
+    mean_variance += rms * rms;
+    sides += 1.0;
   }
-};
+  mean_variance /= sides;
+}
 
 JointInversion::JointInversion(const ModalBasis& basis, double contact, std::size_t samples,
                                double sample_rate, const JointModel& model, std::size_t points)
@@ -122,8 +111,9 @@ JointInversion::JointInversion(const ModalBasis& basis, double contact, std::siz
   }
 }
 
-void JointInversion::require_record(const ReactionPair& reactions,
-                                    const SensorNoiseLevel& noise) const {
+JointInversion::SidePowers JointInversion::require_record(const ReactionPair& reactions,
+                                                          const SensorNoiseLevel& noise) const {
+  SidePowers powers;
   MODCAL_REQUIRE(!(reactions[0].empty() && reactions[1].empty()),
                  "no reaction to invert: one side at least is needed");
   for (std::size_t r = 0; r < 2; ++r) {
@@ -133,7 +123,9 @@ void JointInversion::require_record(const ReactionPair& reactions,
     MODCAL_REQUIRE(reactions[r].size() == samples(),
                    "reaction {} has {} samples, the inversion is prepared for {}", r + 1,
                    reactions[r].size(), samples());
-    if (std::isfinite(square_sum(reactions[r]))) continue;
+    const double square = square_sum(reactions[r]);
+    powers[r] = {.recorded = true, .mean = square / static_cast<double>(samples())};
+    if (std::isfinite(square)) continue;
     for (std::size_t j = 0; j < reactions[r].size(); ++j) {
       MODCAL_REQUIRE(std::isfinite(reactions[r][j]),
                      "sample {} of reaction {} is {:g}: cut the record before it or repair it", j,
@@ -141,6 +133,7 @@ void JointInversion::require_record(const ReactionPair& reactions,
     }
     throw_invalid_input("the square of reaction {} overflows: check the calibration factor", r + 1);
   }
+  return powers;
 }
 
 double JointInversion::offset_of(std::span<const double> reaction, std::size_t side) const {
@@ -179,155 +172,17 @@ void JointInversion::transform(const ReactionPair& reactions, OffsetRule rule,
 }
 
 // After it spectrum[0] holds Σ conj(H_r) R_r/v_r.
-void JointInversion::combine(const Weights& weights, JointWorkspace& workspace,
-                             JointResult& /*result*/) const {
-  const std::size_t bins = fft_.bins();
-  workspace.gain.resize(bins);
-  const double w0 = weights.inverse_variance[0], w1 = weights.inverse_variance[1];
-  const Complex* h0 = transfer_[0].data();
-  const Complex* h1 = transfer_[1].data();
-  Complex* x0 = workspace.spectrum[0].data();
-  const Complex* x1 = workspace.spectrum[1].data();
-  for (std::size_t k = 0; k < bins; ++k) {
-    workspace.gain[k] = w0 * power_of(h0[k]) + w1 * power_of(h1[k]);
-    x0[k] = w0 * (std::conj(h0[k]) * x0[k]) + w1 * (std::conj(h1[k]) * x1[k]);
-  }
+void JointInversion::combine(const Weights& weights, JointWorkspace& workspace) const {
+  workspace.gain.resize(fft_.bins());
+  combine_sides(weights.inverse_variance, transfer_[0], transfer_[1], workspace.spectrum[1],
+                workspace.spectrum[0], workspace.gain);
   if (decay_.empty()) workspace.gain[0] = 0.0;
-}
-
-void JointInversion::choose_amplitude(const Weights& weights, const JointMethod& method,
-                                      JointWorkspace& workspace, JointResult& result) const {
-  const std::size_t bins = fft_.bins();
-  workspace.variance.resize(bins);
-  const bool known = !method.known_variance.empty();
-  if (known) {
-    MODCAL_REQUIRE(method.known_variance.size() == bins, "{} prior variances for {} bins",
-                   method.known_variance.size(), bins);
-    std::copy(method.known_variance.begin(), method.known_variance.end(),
-              workspace.variance.begin());
-  } else {
-    method.prior.shape(grid_, workspace.variance);
-  }
-  EvidenceCurve::Cells& cells = workspace.cells;
-  cells.clear();
-  const double per_bin = 1.0 / weight_power_;
-  for (std::size_t k = decay_.empty() ? 1 : 0; k < bins; ++k) {
-    const double q = workspace.gain[k];
-    const double multiplicity = bin_multiplicity(k, samples());
-    const double power = power_of(workspace.spectrum[0][k]) * per_bin;
-    if (!(q > 0.0)) {
-      cells.add(0.0, multiplicity, 0.0, 0.0);
-      continue;
-    }
-    const double inverse = 1.0 / q;
-    const double reduced = multiplicity * power * inverse;
-    cells.add(q * weights.mean_variance * workspace.variance[k], multiplicity, reduced,
-              reduced * inverse);
-  }
-  ChosenParameter& choice = result.identified.choice;
-  curve_.trace(cells, choice);
-  // Norms of samples: ‖r‖ in units of the mean noise, ‖F‖ by Parseval.
-  const double residual_scale = std::sqrt(weights.mean_variance);
-  for (CurvePoint& point : choice.curve) point.residual_norm *= residual_scale;
-  choice.point.residual_norm *= residual_scale;
-  double amplitude = weights.mean_variance / (choice.parameter() * choice.parameter());
-  if (known) {
-    amplitude = 1.0;
-    choice.status = ChoiceStatus::kGiven;
-    choice.explanation.assign("the spectrum of the force is given");
-    choice.point.parameter = std::sqrt(weights.mean_variance);
-  }
-  for (double& variance : workspace.variance) variance *= amplitude;
-  limit_band(method.band_limit, workspace);
-}
-
-void JointInversion::limit_band(double limit, JointWorkspace& workspace) const {
-  if (std::isnan(limit)) return;
-  for (std::size_t k = 0; k < workspace.variance.size(); ++k) {
-    if (static_cast<double>(k) * grid_.bin_width() > limit) workspace.variance[k] = 0.0;
-  }
-}
-
-// E|F_k|² given the record, smoothed, is the next prior.
-void JointInversion::learn_spectrum(const ForcePrior& prior, double band_limit,
-                                    JointWorkspace& workspace) const {
-  const std::size_t bins = fft_.bins();
-  workspace.scratch.resize(bins);
-  const double per_bin = 1.0 / weight_power_;
-  for (std::int64_t pass = 0; pass < prior.passes(); ++pass) {
-    for (std::size_t k = 0; k < bins; ++k) {
-      const double p = workspace.variance[k];
-      const double posterior = p / (1.0 + workspace.gain[k] * p);
-      workspace.variance[k] =
-          p == 0.0
-              ? 0.0
-              : power_of(workspace.spectrum[0][k]) * posterior * posterior * per_bin + posterior;
-    }
-    prior.learn(grid_, workspace.variance, workspace.scratch);
-    limit_band(band_limit, workspace);
-  }
-}
-
-double JointInversion::write_signal(std::span<const Complex> transfer, bool wanted,
-                                    JointWorkspace& workspace, std::vector<double>& signal) const {
-  const std::size_t bins = fft_.bins();
-  signal.clear();
-  if (!wanted) return std::numeric_limits<double>::quiet_NaN();
-  workspace.contact.resize(bins);
-  double variance = 0.0;
-  const std::vector<Complex>& force = workspace.spectrum[0];
-  for (std::size_t k = 0; k < bins; ++k) {
-    const double multiplicity = bin_multiplicity(k, samples());
-    const double gain = transfer.empty() ? 1.0 : power_of(transfer[k]);
-    workspace.contact[k] = transfer.empty() ? force[k] : transfer[k] * force[k];
-    variance += multiplicity * gain * workspace.variance[k];
-  }
-  signal.resize(samples());
-  fft_.inverse(workspace.contact, signal);
-  for (std::size_t j = 0; j < growth_.size(); ++j) signal[j] *= growth_[j];
-  return std::sqrt(variance / static_cast<double>(samples()));
-}
-
-void JointInversion::apply_posterior(const JointMethod& method, JointWorkspace& workspace,
-                                     JointResult& result) const {
-  InversionResult& identified = result.identified;
-  double kept = 0.0, all = 0.0;
-  std::size_t blind = 0;
-  for (std::size_t k = 0; k < fft_.bins(); ++k) {
-    const double p = workspace.variance[k];
-    const double posterior = p / (1.0 + workspace.gain[k] * p);
-    const double share = workspace.gain[k] * posterior;
-    workspace.variance[k] = posterior;
-    workspace.spectrum[0][k] *= posterior;
-    if (k == 0 && decay_.empty()) continue;
-    const double multiplicity = bin_multiplicity(k, samples());
-    kept += multiplicity * share;
-    all += multiplicity;
-    if (workspace.gain[k] == 0.0) ++blind;
-  }
-  if (decay_.empty()) workspace.variance[0] = 0.0;
-  workspace.spectrum[0].front() = workspace.spectrum[0].front().real();
-  if (samples() % 2 == 0) workspace.spectrum[0].back() = workspace.spectrum[0].back().real();
-  identified.bins = fft_.bins() - (decay_.empty() ? 1 : 0);
-  identified.blind_bins = blind;
-  identified.choice.kept_share = all > 0.0 ? kept / all : 0.0;
-  identified.force_spectrum.clear();
-  if (method.outputs.force_spectrum) {
-    identified.force_spectrum.assign(workspace.spectrum[0].begin(), workspace.spectrum[0].end());
-  }
-  const InversionOutputs& outputs = method.outputs;
-  result.deviation.force = write_signal({}, outputs.force, workspace, identified.force);
-  result.deviation.displacement =
-      write_signal(receptance_, outputs.displacement, workspace, identified.displacement);
-  result.deviation.velocity =
-      write_signal(mobility_, outputs.velocity, workspace, identified.velocity);
 }
 
 void JointInversion::invert(const ReactionPair& reactions, const SensorNoiseLevel& noise,
                             const JointMethod& method, JointWorkspace& workspace,
                             JointResult& result) const {
-  require_record(reactions, noise);
-  const Weights weights(reactions, noise);
+  const Weights weights(require_record(reactions, noise), noise);
   result.noise_amplitude = std::sqrt(weights.mean_variance);
   const bool from_rest = model_.truncation == Truncation::kShiftedContour;
   transform(reactions, from_rest ? method.offset : OffsetRule::kNone, workspace, result);
@@ -336,7 +191,7 @@ void JointInversion::invert(const ReactionPair& reactions, const SensorNoiseLeve
     // holds what the decays explain.
     const std::vector<Complex> kept[2] = {workspace.spectrum[0], workspace.spectrum[1]};
     for (int round = 0; round < 2; ++round) {
-      combine(weights, workspace, result);
+      combine(weights, workspace);
       choose_amplitude(weights, method, workspace, result);
       workspace.learned.assign(workspace.variance.begin(), workspace.variance.end());
       for (double& variance : workspace.learned) variance *= weight_power_;
@@ -353,7 +208,7 @@ void JointInversion::invert(const ReactionPair& reactions, const SensorNoiseLeve
       transient_.subtract(setting, spectra, workspace.transient);
     }
   }
-  combine(weights, workspace, result);
+  combine(weights, workspace);
   choose_amplitude(weights, method, workspace, result);
   if (method.known_variance.empty()) {
     learn_spectrum(method.prior, method.band_limit, workspace);

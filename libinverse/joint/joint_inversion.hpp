@@ -71,6 +71,8 @@ struct JointWorkspace {
   std::vector<Complex> spectrum[2];
   std::vector<double> gain;      ///< q_k = Σ_r |H_r|²/v_r
   std::vector<double> variance;  ///< prior P_k, then posterior 1/(q_k + 1/P_k)
+  std::vector<double> power;     ///< |Σ_r conj(H_r) R_r/v_r|² of a unit sum of weights
+  std::vector<double> terms[3];
   std::vector<double> learned;
   std::vector<double> scratch;
   std::vector<Complex> contact;
@@ -104,18 +106,33 @@ class JointInversion {
               const JointMethod& method, JointWorkspace& workspace, JointResult& result) const;
 
  private:
-  struct Weights;
-  void require_record(const ReactionPair& reactions, const SensorNoiseLevel& noise) const;
+  struct SidePower {
+    bool recorded = false;
+    double mean = 0.0;  // of the squares [N²]
+  };
+  using SidePowers = std::array<SidePower, 2>;
+  /// Of the two sides, in every bin.
+  struct Weights {
+    std::array<double, 2> inverse_variance = {0.0, 0.0};
+    double mean_variance = 0.0;
+    Weights(const SidePowers& powers, const SensorNoiseLevel& noise);
+  };
+  SidePowers require_record(const ReactionPair& reactions, const SensorNoiseLevel& noise) const;
   double offset_of(std::span<const double> reaction, std::size_t side) const;
   void transform(const ReactionPair& reactions, OffsetRule rule, JointWorkspace& workspace,
                  JointResult& result) const;
-  void combine(const Weights& weights, JointWorkspace& workspace, JointResult& result) const;
+  void combine(const Weights& weights, JointWorkspace& workspace) const;
+  void set_prior(const JointMethod& method, JointWorkspace& workspace) const;
+  void fill_cells(const Weights& weights, JointWorkspace& workspace) const;
   void choose_amplitude(const Weights& weights, const JointMethod& method,
                         JointWorkspace& workspace, JointResult& result) const;
   void limit_band(double limit, JointWorkspace& workspace) const;
   void learn_spectrum(const ForcePrior& prior, double band_limit, JointWorkspace& workspace) const;
   void apply_posterior(const JointMethod& method, JointWorkspace& workspace,
                        JointResult& result) const;
+  void count_bins(double kept_pairs, JointWorkspace& workspace, InversionResult& identified) const;
+  double deviation_of(double sum, std::span<const Complex> transfer,
+                      const JointWorkspace& workspace) const;
   double write_signal(std::span<const Complex> transfer, bool wanted, JointWorkspace& workspace,
                       std::vector<double>& signal) const;
 

@@ -39,21 +39,23 @@ JumpPrior::JumpPrior(const Options& options) : corner_(options.corner) {
 }
 
 void JumpPrior::do_shape(const PriorGrid& grid, std::span<double> variance) const {
-  // sin² x = (1 − cos 2x)/2 by rotation, begun anew before its rounding shows.
-  constexpr std::size_t kAnew = 64;
+  // sin² x = (1 − cos 2x)/2, cosines of sums from those of 64 places and of 64 steps within.
+  constexpr std::size_t kBlock = 64;
   const double step = 2.0 * std::numbers::pi / static_cast<double>(grid.samples);
-  const double step_cosine = std::cos(step), step_sine = std::sin(step);
-  double cosine = 1.0, sine = 0.0;
+  std::array<double, kBlock> cosine, sine;
+  for (std::size_t j = 0; j < kBlock; ++j) {
+    cosine[j] = 0.5 * std::cos(step * static_cast<double>(j));
+    sine[j] = 0.5 * std::sin(step * static_cast<double>(j));
+  }
   const double corner = std::sin(std::min(0.5, corner_ / grid.sample_rate) * std::numbers::pi);
-  for (std::size_t k = 0; k < variance.size(); ++k) {
-    if (k % kAnew == 0) {
-      cosine = std::cos(step * static_cast<double>(k));
-      sine = std::sin(step * static_cast<double>(k));
+  const double constant = 0.5 + corner * corner;
+  for (std::size_t begin = 0; begin < variance.size(); begin += kBlock) {
+    const double place = step * static_cast<double>(begin);
+    const double place_cosine = std::cos(place), place_sine = std::sin(place);
+    const std::size_t count = std::min(kBlock, variance.size() - begin);
+    for (std::size_t j = 0; j < count; ++j) {
+      variance[begin + j] = 1.0 / (constant - (place_cosine * cosine[j] - place_sine * sine[j]));
     }
-    variance[k] = 1.0 / (0.5 * (1.0 - cosine) + corner * corner);
-    const double next = cosine * step_cosine - sine * step_sine;
-    sine = sine * step_cosine + cosine * step_sine;
-    cosine = next;
   }
 }
 

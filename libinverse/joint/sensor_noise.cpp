@@ -48,7 +48,13 @@ SensorNoise::SensorNoise(const ModalBasis& basis, double contact, std::size_t sa
   last_ = static_cast<std::size_t>(0.97 * nyquist / grid.spacing);
   StringTransfer transfer =
       string_transfer(basis, contact, grid, static_remainder, bending, sensors);
-  for (std::size_t r = 0; r < 2; ++r) transfer_[r] = std::move(transfer.reaction[r]);
+  for (std::size_t k = first_; k < last_; ++k) {
+    const Complex left = transfer.reaction[0][k], right = transfer.reaction[1][k];
+    const double scale = 1.0 / std::sqrt(power_of(left) + power_of(right));
+    const bool known = std::isfinite(scale);
+    direction_[0].push_back(known ? scale * left : Complex{});
+    direction_[1].push_back(known ? scale * right : Complex{});
+  }
 }
 
 void SensorNoise::transform(std::span<const double> segment, Workspace& workspace,
@@ -84,13 +90,11 @@ SensorNoiseLevel SensorNoise::estimate(const ReactionPair& reactions, Workspace&
         if (!reactions[r].empty()) power[r] += power_of(workspace.spectrum[r][k]);
       }
       if (!both) continue;
-      // Weights 1/(|H_1|² + |H_2|²) give every bin the same say.
-      const double weight = 1.0 / (power_of(transfer_[0][k]) + power_of(transfer_[1][k]));
-      if (!std::isfinite(weight)) continue;
-      cross += weight * power_of(workspace.spectrum[0][k] * transfer_[1][k] -
-                                 workspace.spectrum[1][k] * transfer_[0][k]);
-      of_side[0] += weight * power_of(transfer_[1][k]);
-      of_side[1] += weight * power_of(transfer_[0][k]);
+      // Directions, H over √(|H_1|² + |H_2|²), give every bin the same say.
+      const Complex left = direction_[0][k - first_], right = direction_[1][k - first_];
+      cross += power_of(workspace.spectrum[0][k] * right - workspace.spectrum[1][k] * left);
+      of_side[0] += power_of(right);
+      of_side[1] += power_of(left);
     }
   }
   const double terms = static_cast<double>((last_ - first_) * segments) * window_power_;

@@ -45,7 +45,8 @@ class SensorNoise {
   double window_power_ = 0.0;
   std::size_t first_ = 0;  // bins of the band
   std::size_t last_ = 0;
-  std::vector<Complex> transfer_[2];
+  // Of the band's bins: H_r/√(|H_1|² + |H_2|²), 0 where neither is finite and above 0.
+  std::vector<Complex> direction_[2];
 };
 
 }  // namespace modcal

@@ -1,0 +1,153 @@
+#include <algorithm>
+#include <cmath>
+
+#include "libinverse/joint/bin_kernels.hpp"
+#include "libinverse/joint/joint_inversion.hpp"
+#include "libsim/base/error.hpp"
+
+namespace modcal {
+
+void JointInversion::set_prior(const JointMethod& method, JointWorkspace& workspace) const {
+  workspace.variance.resize(fft_.bins());
+  if (method.known_variance.empty()) {
+    method.prior.shape(grid_, workspace.variance);
+    return;
+  }
+  MODCAL_REQUIRE(method.known_variance.size() == fft_.bins(), "{} prior variances for {} bins",
+                 method.known_variance.size(), fft_.bins());
+  std::copy(method.known_variance.begin(), method.known_variance.end(), workspace.variance.begin());
+}
+
+// The first bin and the last of an even length are one degree of freedom, all others two.
+void JointInversion::fill_cells(const Weights& weights, JointWorkspace& workspace) const {
+  const std::size_t bins = fft_.bins();
+  workspace.power.resize(bins);
+  for (auto& term : workspace.terms) term.resize(bins);
+  scaled_power(workspace.spectrum[0], 1.0 / weight_power_, workspace.power);
+  auto& [g, reduced, solution] = workspace.terms;
+  evidence_terms(workspace.gain, workspace.variance, workspace.power, weights.mean_variance, g,
+                 reduced, solution);
+  EvidenceCurve::Cells& cells = workspace.cells;
+  cells.clear();
+  const std::size_t end = samples() % 2 == 0 ? bins - 1 : bins;
+  const auto add_single = [&](std::size_t k) {
+    cells.add(g[k], 1.0, 0.5 * reduced[k], 0.5 * solution[k]);
+  };
+  if (!decay_.empty()) add_single(0);
+  if (end < bins && end > 0) add_single(end);
+  if (end <= 1) return;
+  const auto pairs = [end](const std::vector<double>& values) {
+    return std::span(values).subspan(1, end - 1);
+  };
+  cells.add_pairs(pairs(g), pairs(reduced), pairs(solution));
+}
+
+void JointInversion::choose_amplitude(const Weights& weights, const JointMethod& method,
+                                      JointWorkspace& workspace, JointResult& result) const {
+  set_prior(method, workspace);
+  fill_cells(weights, workspace);
+  ChosenParameter& choice = result.identified.choice;
+  curve_.trace(workspace.cells, choice);
+  // Norms of samples: ‖r‖ in units of the mean noise, ‖F‖ by Parseval.
+  const double residual_scale = std::sqrt(weights.mean_variance);
+  for (CurvePoint& point : choice.curve) point.residual_norm *= residual_scale;
+  choice.point.residual_norm *= residual_scale;
+  double amplitude = weights.mean_variance / (choice.parameter() * choice.parameter());
+  if (!method.known_variance.empty()) {
+    amplitude = 1.0;
+    choice.status = ChoiceStatus::kGiven;
+    choice.explanation.assign("the spectrum of the force is given");
+    choice.point.parameter = std::sqrt(weights.mean_variance);
+  }
+  for (double& variance : workspace.variance) variance *= amplitude;
+  limit_band(method.band_limit, workspace);
+}
+
+void JointInversion::limit_band(double limit, JointWorkspace& workspace) const {
+  if (std::isnan(limit)) return;
+  for (std::size_t k = 0; k < workspace.variance.size(); ++k) {
+    if (static_cast<double>(k) * grid_.bin_width() > limit) workspace.variance[k] = 0.0;
+  }
+}
+
+// E|F_k|² given the record, smoothed, is the next prior.
+void JointInversion::learn_spectrum(const ForcePrior& prior, double band_limit,
+                                    JointWorkspace& workspace) const {
+  workspace.scratch.resize(fft_.bins());
+  for (std::int64_t pass = 0; pass < prior.passes(); ++pass) {
+    expected_power(workspace.gain, workspace.power, workspace.variance);
+    prior.learn(grid_, workspace.variance, workspace.scratch);
+    limit_band(band_limit, workspace);
+  }
+}
+
+// The signal's standard deviation from the sum over all bins of its variance, which counts the
+// first bin and the last of an even length twice.
+double JointInversion::deviation_of(double sum, std::span<const Complex> transfer,
+                                    const JointWorkspace& workspace) const {
+  const auto variance_at = [&](std::size_t k) {
+    return workspace.variance[k] * (transfer.empty() ? 1.0 : std::norm(transfer[k]));
+  };
+  double variance = 2.0 * sum - variance_at(0);
+  const std::size_t last = fft_.bins() - 1;
+  if (samples() % 2 == 0 && last > 0) variance -= variance_at(last);
+  return std::sqrt(variance / static_cast<double>(samples()));
+}
+
+double JointInversion::write_signal(std::span<const Complex> transfer, bool wanted,
+                                    JointWorkspace& workspace, std::vector<double>& signal) const {
+  signal.clear();
+  if (!wanted) return std::numeric_limits<double>::quiet_NaN();
+  double sum = 0.0;
+  std::span<Complex> spectrum = workspace.spectrum[0];  // the force comes last
+  if (transfer.empty()) {
+    for (const double variance : workspace.variance) sum += variance;
+  } else {
+    workspace.contact.resize(fft_.bins());
+    spectrum = workspace.contact;
+    sum = through_transfer(transfer, workspace.spectrum[0], workspace.variance, spectrum);
+  }
+  signal.resize(samples());
+  fft_.inverse(spectrum, signal);
+  for (std::size_t j = 0; j < growth_.size(); ++j) signal[j] *= growth_[j];
+  return deviation_of(sum, transfer, workspace);
+}
+
+void JointInversion::count_bins(double kept_pairs, JointWorkspace& workspace,
+                                InversionResult& identified) const {
+  const std::size_t bins = fft_.bins(), last = bins - 1, first = decay_.empty() ? 1 : 0;
+  const auto share = [&](std::size_t k) { return workspace.gain[k] * workspace.variance[k]; };
+  double kept = 2.0 * kept_pairs - share(0), all = 2.0 * static_cast<double>(bins) - 1.0;
+  if (samples() % 2 == 0 && last > 0) {
+    kept -= share(last);
+    all -= 1.0;
+  }
+  if (first == 1) all -= 1.0;  // the gain of bin 0 is 0 on the frequency axis
+  identified.bins = bins - first;
+  identified.blind_bins = static_cast<std::size_t>(std::count(
+      workspace.gain.begin() + static_cast<std::ptrdiff_t>(first), workspace.gain.end(), 0.0));
+  identified.choice.kept_share = all > 0.0 ? std::clamp(kept / all, 0.0, 1.0) : 0.0;
+}
+
+void JointInversion::apply_posterior(const JointMethod& method, JointWorkspace& workspace,
+                                     JointResult& result) const {
+  InversionResult& identified = result.identified;
+  std::vector<Complex>& force = workspace.spectrum[0];
+  const double kept = modcal::apply_posterior(workspace.gain, workspace.variance, force);
+  count_bins(kept, workspace, identified);
+  if (decay_.empty()) workspace.variance[0] = 0.0;
+  force.front() = force.front().real();
+  if (samples() % 2 == 0) force.back() = force.back().real();
+  identified.force_spectrum.clear();
+  if (method.outputs.force_spectrum) {
+    identified.force_spectrum.assign(force.begin(), force.end());
+  }
+  const InversionOutputs& outputs = method.outputs;
+  result.deviation.displacement =
+      write_signal(receptance_, outputs.displacement, workspace, identified.displacement);
+  result.deviation.velocity =
+      write_signal(mobility_, outputs.velocity, workspace, identified.velocity);
+  result.deviation.force = write_signal({}, outputs.force, workspace, identified.force);
+}
+
+}  // namespace modcal
