@@ -8,7 +8,7 @@ namespace modcal {
 std::vector<double> signal_weights(const NoisyRecords& records, double sigma, double highest,
                                    const ProjectedLikelihood& target, const ModelPoint& point) {
   constexpr std::size_t kHalfWindow = 15;
-  const ProjectedLikelihood damped(WhitenedRecord::of(records, sigma, highest), false);
+  const ProjectedLikelihood damped(WhitenedRecord::of(records, sigma, highest));
   std::vector<Complex> force;
   std::vector<double> gain;
   damped.evaluate(point, {}, {.force = &force, .gain = &gain});

@@ -64,7 +64,7 @@ class Attempt {
  private:
   std::size_t modes() const { return initial_.basis.size(); }
   ProjectedLikelihood damped(double sigma) const {
-    return ProjectedLikelihood(WhitenedRecord::of(records_, sigma * unit_, highest_), false);
+    return ProjectedLikelihood(WhitenedRecord::of(records_, sigma * unit_, highest_));
   }
   NewtonFit fit(const ProjectedLikelihood& likelihood, const StringUnknowns& unknowns,
                 const Eigen::VectorXd& theta, const NewtonOptions& options) {
@@ -107,7 +107,7 @@ class Attempt {
 
   // σ = 0, end state projected out, then once more with weights and without the noise in JᵀJ.
   void finish_law(ContinuationResult& result) {
-    whole_.emplace(WhitenedRecord::of(records_, 0.0, highest_), true);
+    whole_.emplace(WhitenedRecord::of(records_, 0.0, highest_));
     result.chi2_deviation =
         std::hypot(std::sqrt(2.0 / whole_->degrees_of_freedom(4, modes())), noise_error_);
     law_theta_ = fit(*whole_, law_, law_theta_, {.steps = 12, .tolerance = 1e-2}).theta;

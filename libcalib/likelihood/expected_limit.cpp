@@ -30,7 +30,7 @@ ExpectedLimit expected_limit(const ModelPoint& truth, const NoisyRecords& record
                              double highest_frequency, double law_width) {
   MODCAL_REQUIRE(law_width > 0.0, "law width {:g} must be > 0", law_width);
   const double highest = likelihood_band(truth, highest_frequency, records.sample_rate);
-  const ProjectedLikelihood whole(WhitenedRecord::of(records, 0.0, highest), true);
+  const ProjectedLikelihood whole(WhitenedRecord::of(records, 0.0, highest));
   std::vector<double> frequencies;
   for (std::size_t n = 0; n < truth.basis.size(); ++n) {
     frequencies.push_back(truth.basis.frequency(n));

@@ -1,5 +1,5 @@
-// Kernels of the joint likelihood: columns of one block of bins and their products. No allocation,
-// instruction set chosen at run time.
+// Kernels of the joint likelihood, one block of bins at a time: transfer functions, residual and
+// the columns of its Jacobian. No allocation, instruction set chosen at run time.
 #pragma once
 
 #include <array>
@@ -31,7 +31,7 @@ struct ColumnShare {
   double damping = 0.0;
 };
 
-/// Per-bin numbers of one block that both passes need; real and imaginary parts.
+/// Per-bin numbers of one block that later passes need; real and imaginary parts.
 struct LikelihoodBlock {
   static constexpr std::size_t kBins = WhitenedRecord::kBlock;
   struct Planar {
@@ -40,38 +40,34 @@ struct LikelihoodBlock {
   };
   Planar left, right;              // h_1, h_2
   Planar odd, even;                // κ of odd and even modes, with √w
+  Planar odd_decay, even_decay;    // Σ c_n U_n + conj(c_n) U'_n over odd and even modes
   alignas(64) double norm[kBins];  // 1/|h|²
 };
 
 /// Length of a column of one block: real parts, then imaginary parts.
 inline constexpr std::size_t kColumnLength = 2 * WhitenedRecord::kBlock;
 
-/// First pass: fills `block` and, where `state` is not null, the columns κ_n(U_n + U'_n),
-/// iκ_n(U_n − U'_n) of every mode and two offsets; `residual`: the column (h_2y_1 − h_1y_2)/|h|.
-void fill_state_columns(const WhitenedRecord& record, std::size_t block_index,
-                        std::span<const LikelihoodMode> modes, LikelihoodBlock& block,
-                        double* state, double* offsets, double* residual);
+/// Fills transfer functions, κ and 1/|h|² of `block` and the column `residual`,
+/// (h_2y_1 − h_1y_2)/|h| with √w; `offsets`: two columns of offsets of both records, or null.
+void fill_block(const WhitenedRecord& record, std::size_t block_index,
+                std::span<const LikelihoodMode> modes, LikelihoodBlock& block, double* residual,
+                double* offsets);
 
-/// Second pass. amplitudes: c_n (empty: no end state), offset: that of both records. Adds the
-/// transients to the column `residual` and fills the Jacobian's columns, which must be zero.
+/// What fill_jacobian_columns() is asked for.
 /// shares[share_begin[n] … share_begin[n+1]) belong to mode n; contact: column of x_c or null.
 struct JacobianTask {
   std::span<const LikelihoodMode> modes;
-  std::span<const Complex> amplitudes;
-  std::array<double, 2> offset{};
+  std::span<const Complex> amplitudes;  ///< c_n; empty: no end state
+  std::array<double, 2> offset{};       ///< of both records
   std::span<const ColumnShare> shares;
   std::span<const std::size_t> share_begin;
-  double* jacobian = nullptr;  ///< columns of this block; null: not asked for
+  double* jacobian = nullptr;  ///< columns of this block, zeros; null: not asked for
   double* contact = nullptr;
   double* residual = nullptr;
-  std::complex<double>* force = nullptr;  ///< kBlock numbers; null: not asked for
+  std::complex<double>* force = nullptr;  ///< kBins numbers; null: not asked for
 };
+/// Adds the transients of the block to the column `residual` and fills the Jacobian's columns.
 void fill_jacobian_columns(const WhitenedRecord& record, std::size_t block_index,
                            const LikelihoodBlock& block, const JacobianTask& task);
-
-/// out[i·stride + j] += Σ a_i b_j over columns of kColumnLength numbers. lower: only j ≤ i rounded
-/// up to tiles is needed.
-void add_products(const double* a, std::size_t a_count, const double* b, std::size_t b_count,
-                  bool lower, double* out, std::size_t stride);
 
 }  // namespace modcal

@@ -15,7 +15,7 @@ ProjectedLikelihood about(const ProjectedLikelihood& likelihood, double omega) {
   const WhitenedRecord& record = likelihood.record();
   const auto center = std::min(static_cast<std::size_t>(omega / record.spacing), record.bins - 1);
   const std::size_t begin = center > kHalfBand ? center - kHalfBand : 0;
-  return ProjectedLikelihood(record.slice(begin, 2 * kHalfBand), false);
+  return ProjectedLikelihood(record.slice(begin, 2 * kHalfBand));
 }
 
 double with_prior(double cost, const Eigen::VectorXd& theta, const Eigen::MatrixXd& prior) {

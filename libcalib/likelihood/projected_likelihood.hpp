@@ -2,34 +2,17 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <optional>
 #include <span>
 #include <vector>
 
-#include "libcalib/likelihood/likelihood_kernel.hpp"
+#include "libcalib/likelihood/likelihood_outputs.hpp"
 #include "libcalib/parameters.hpp"
 
 namespace modcal {
 
-/// How the columns of a Jacobian are made of ∂/∂ln ω_n and ∂/∂ln ζ_n, and which one is that of x_c.
-struct LikelihoodColumns {
-  std::size_t count = 0;
-  std::vector<ColumnShare> shares;       ///< by mode
-  std::vector<std::size_t> share_begin;  ///< N + 1 numbers: where those of mode n begin
-  std::optional<std::size_t> contact;
-};
-
 /// The modes as the kernels see them. Throws InvalidInput for an undamped mode or one above the
 /// Nyquist frequency.
 std::vector<LikelihoodMode> likelihood_modes(const ModelPoint& point, double sample_rate);
-
-/// One evaluation at a model.
-struct LikelihoodPoint {
-  double cost = 0.0;               ///< Σ_k w_k |e_k|²
-  Eigen::VectorXd slope;           ///< Re Jᴴ W e: half the gradient of the cost
-  Eigen::MatrixXd information;     ///< Re J⊥ᴴ W J⊥
-  Eigen::MatrixXd twice_weighted;  ///< Re J⊥ᴴ W² J⊥, where asked for
-};
 
 /// With h_r = H_r/s_r, κ_n = (h_2/s_1 + (−1)ⁿ h_1/s_2)/|h| and the sampled free decay of what the
 /// record leaves ringing, u_n = c_n U_n + conj(c_n) U'_n (c_n a linear unknown):
@@ -39,21 +22,15 @@ struct LikelihoodPoint {
 ///
 /// Y_r the data without their transients. J is ∂e/∂θ without the turn i e Im(hᴴ∂h)/|h|² of the
 /// residual's phase, which changes neither cost nor gradient. The 2N real unknowns c_n are
-/// projected out of both (ridge 1e-9 of the normalized normal equations); for σ > 0 the static
-/// offsets of both records are, too. J is linear in the data at fixed θ.
+/// projected out of both (end_state.hpp); for σ > 0 the static offsets of both records are, in
+/// their place. J is linear in the data at fixed θ.
 class ProjectedLikelihood {
  public:
-  /// end_state: project c_n out; else the system is at rest at t = 0 and σ > 0 hides the end.
-  ProjectedLikelihood(WhitenedRecord record, bool end_state);
+  using Outputs = LikelihoodOutputs;
 
-  struct Outputs {
-    bool twice_weighted = false;
-    std::vector<double>* residuals = nullptr;  ///< √w e, real and imaginary part in turn: 2K_b
-    Eigen::MatrixXd* jacobian = nullptr;       ///< √w J⊥, rows in the same order
-    std::vector<Complex>* force = nullptr;     ///< F̂, whitened like y_r, K_b numbers
-    std::vector<double>* gain = nullptr;       ///< |h|², K_b numbers
-    std::vector<Complex>* amplitudes = nullptr;
-  };
+  /// At σ = 0 the end state is projected out; for σ > 0 the system is taken to be at rest at t = 0,
+  /// and σ hides the end.
+  explicit ProjectedLikelihood(WhitenedRecord record);
 
   const WhitenedRecord& record() const { return record_; }
   void set_weights(std::span<const double> weights);  ///< w_k of the K_b bins, in [0, 1]
@@ -72,14 +49,7 @@ class ProjectedLikelihood {
                                     std::size_t repeats) const;
 
  private:
-  struct Workspace;
-  std::size_t state_columns(std::size_t modes) const;
-  void project(const WhitenedRecord& record, Workspace& work, bool keep_state) const;
-  LikelihoodPoint differentiate(const WhitenedRecord& record, const LikelihoodColumns& columns,
-                                Workspace& work, const Outputs& outputs) const;
-
   WhitenedRecord record_;
-  bool end_state_;
 };
 
 }  // namespace modcal

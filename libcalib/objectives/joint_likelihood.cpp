@@ -92,9 +92,7 @@ std::unique_ptr<const ObjectiveFunction> JointLikelihood::do_bind(
   const double highest =
       likelihood_band(parameters.initial(), options_.highest_frequency, data.sample_rate);
   return std::make_unique<JointLikelihoodFunction>(
-      ProjectedLikelihood(WhitenedRecord::of(records, options_.damping, highest),
-                          options_.damping == 0.0),
-      parameters);
+      ProjectedLikelihood(WhitenedRecord::of(records, options_.damping, highest)), parameters);
 }
 
 }  // namespace modcal

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "libcalib/likelihood/decay_kernel.hpp"
 #include "tests/libcalib/likelihood/bowed_case.hpp"
 
 namespace modcal {
@@ -53,12 +54,11 @@ ModelPoint moved(ModelPoint point, std::size_t column, double step) {
 TEST(ProjectedLikelihood, LeavesAlmostNothingOfCleanData) {
   // What is left at the truth is what aliases into the band; the recipe's 1.8e-3 of 1 % noise.
   const BowedCase bowed = bowed_case(0.03, 0.0, 1.0);
-  const ProjectedLikelihood clean(WhitenedRecord::of(noisy(bowed, 0.01, 1, false), 0.0, kBand),
-                                  true);
+  const ProjectedLikelihood clean(WhitenedRecord::of(noisy(bowed, 0.01, 1, false), 0.0, kBand));
   const double freedom = clean.degrees_of_freedom(0, 50);
   EXPECT_LT(std::sqrt(2.0 * clean.cost(bowed.truth) / freedom), 3e-3);
   // With noise χ² of 2 K_b − 2N degrees of freedom: sd √(2/20500) = 0.0099, four of them allowed.
-  const ProjectedLikelihood noisy_one(WhitenedRecord::of(noisy(bowed, 0.01, 1), 0.0, kBand), true);
+  const ProjectedLikelihood noisy_one(WhitenedRecord::of(noisy(bowed, 0.01, 1), 0.0, kBand));
   EXPECT_NEAR(2.0 * noisy_one.cost(bowed.truth) / freedom, 1.0, 0.04);
 }
 
@@ -74,8 +74,7 @@ class AtShortRecord : public testing::Test {
 
 TEST_F(AtShortRecord, GradientIsTheDifferenceQuotient) {
   for (const double sigma : {0.0, 40.0}) {
-    const ProjectedLikelihood likelihood(WhitenedRecord::of(noisy(bowed, 0.02, 3), sigma, kBand),
-                                         sigma == 0.0);
+    const ProjectedLikelihood likelihood(WhitenedRecord::of(noisy(bowed, 0.02, 3), sigma, kBand));
     const LikelihoodPoint at = likelihood.evaluate(point(), all_columns(50));
     for (const std::size_t column : {0u, 7u, 20u, 33u, 49u, 50u, 51u}) {
       // Central differences err by h² f‴/6 and by rounding/h; the steps are small shares of a
@@ -159,7 +158,7 @@ ResidualJet residual_jet(const ModelPoint& point, const WhitenedRecord& record,
 TEST_F(AtShortRecord, JacobianIsThatOfAutomaticDifferentiation) {
   // One bin a block of 256 has its columns compared; the projection is off: fixed amplitudes.
   const WhitenedRecord record = WhitenedRecord::of(noisy(bowed, 0.02, 3), 0.0, kBand);
-  const ProjectedLikelihood likelihood(record, true);
+  const ProjectedLikelihood likelihood(record);
   std::vector<Complex> amplitudes;
   std::vector<double> residuals(2 * record.bins);
   Eigen::MatrixXd projected;
@@ -172,7 +171,8 @@ TEST_F(AtShortRecord, JacobianIsThatOfAutomaticDifferentiation) {
   AlignedVector residual(kColumnLength);
   for (std::size_t b = 0; b < record.blocks(); ++b) {
     std::fill(own.begin(), own.end(), 0.0);
-    fill_state_columns(record, b, modes, block, nullptr, nullptr, residual.data());
+    fill_block(record, b, modes, block, residual.data(), nullptr);
+    fill_decays(record, b, modes, amplitudes, block, nullptr);
     fill_jacobian_columns(record, b, block,
                           {.modes = modes,
                            .amplitudes = amplitudes,
@@ -215,11 +215,10 @@ TEST_F(AtShortRecord, NoiseAddsItsOwnInformation) {
   const LikelihoodColumns columns = law_columns(50, 1.39e-4);
   const auto information = [&](std::uint64_t seed, bool draw) {
     const ProjectedLikelihood likelihood(
-        WhitenedRecord::of(noisy(bowed, 0.1, seed, draw), 0.0, kBand), true);
+        WhitenedRecord::of(noisy(bowed, 0.1, seed, draw), 0.0, kBand));
     return likelihood.evaluate(bowed.truth, columns).information;
   };
-  const ProjectedLikelihood clean(WhitenedRecord::of(noisy(bowed, 0.1, 0, false), 0.0, kBand),
-                                  true);
+  const ProjectedLikelihood clean(WhitenedRecord::of(noisy(bowed, 0.1, 0, false), 0.0, kBand));
   const Eigen::MatrixXd noise = clean.noise_information(bowed.truth, columns, 40);
   Eigen::MatrixXd mean = Eigen::MatrixXd::Zero(4, 4);
   for (std::uint64_t seed = 0; seed < 40; ++seed) mean += information(seed, true) / 40.0;

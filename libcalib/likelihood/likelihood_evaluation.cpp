@@ -1,0 +1,163 @@
+#include "libcalib/likelihood/likelihood_evaluation.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+#include "libcalib/likelihood/column_products.hpp"
+
+namespace modcal {
+namespace {
+
+constexpr std::size_t kBins = LikelihoodBlock::kBins;
+
+Eigen::MatrixXd symmetric(const auto& lower, std::size_t count) {
+  const auto n = static_cast<Eigen::Index>(count);
+  return Eigen::MatrixXd(lower.topLeftCorner(n, n)).template selfadjointView<Eigen::Lower>();
+}
+
+// Calls give(row, real or imaginary part's place in the block's column) for the bins of a block.
+template <typename Give>
+void for_rows(std::size_t b, std::size_t bins, Give give) {
+  const std::size_t count = std::min(kBins, bins - b * kBins);
+  for (std::size_t k = 0; k < count; ++k) {
+    give(2 * (b * kBins + k), k);
+    give(2 * (b * kBins + k) + 1, kBins + k);
+  }
+}
+
+}  // namespace
+
+// The Jacobian's columns, the residual behind them; of one block, or of all where they are kept.
+struct LikelihoodEvaluation::Columns {
+  Columns(std::size_t column_count, std::size_t block_count, bool keep)
+      : count(column_count),
+        width(tiled(column_count + 1)),
+        kept(keep),
+        numbers(width * kColumnLength * (keep ? block_count : 1)) {}
+  double* of(std::size_t b) { return numbers.data() + (kept ? b * width * kColumnLength : 0); }
+
+  std::size_t count, width;
+  bool kept;
+  AlignedVector numbers;
+};
+
+LikelihoodEvaluation::LikelihoodEvaluation(const WhitenedRecord& record,
+                                           std::vector<LikelihoodMode> modes)
+    : record_(record),
+      modes_(std::move(modes)),
+      end_state_(record, modes_),
+      state_width_(tiled(end_state_.size())),
+      blocks_(record.blocks()),
+      residual_(kColumnLength * record.blocks()),
+      offsets_(end_state_.decays() ? 0 : state_width_ * kColumnLength * record.blocks()) {
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    double* offsets = end_state_.decays() ? nullptr : offsets_of(b);
+    fill_block(record_, b, modes_, blocks_[b], residual_of(b), offsets);
+    end_state_.add(record_, b, blocks_[b], residual_of(b), offsets);
+  }
+  end_state_.solve();
+}
+
+// Columns of the end state; the decays' sums over the modes on the way.
+const double* LikelihoodEvaluation::state_columns(std::size_t b, bool wanted) {
+  if (!end_state_.decays()) return offsets_of(b);
+  if (wanted) state_.resize(state_width_ * kColumnLength);
+  fill_decays(record_, b, modes_, end_state_.amplitudes(), blocks_[b],
+              wanted ? state_.data() : nullptr);
+  return state_.data();
+}
+
+void LikelihoodEvaluation::fill_columns(std::size_t b, const LikelihoodColumns& columns,
+                                        double* jacobian, std::complex<double>* force) {
+  double* residual = jacobian + columns.count * kColumnLength;
+  std::fill_n(jacobian, tiled(columns.count + 1) * kColumnLength, 0.0);
+  std::copy_n(residual_of(b), kColumnLength, residual);
+  fill_jacobian_columns(
+      record_, b, blocks_[b],
+      {.modes = modes_,
+       .amplitudes = end_state_.amplitudes(),
+       .offset = end_state_.offset(),
+       .shares = columns.shares,
+       .share_begin = columns.share_begin,
+       .jacobian = columns.shares.empty() ? nullptr : jacobian,
+       .contact = columns.contact ? jacobian + *columns.contact * kColumnLength : nullptr,
+       .residual = residual,
+       .force = force});
+}
+
+LikelihoodPoint LikelihoodEvaluation::differentiate(const LikelihoodColumns& columns,
+                                                    const LikelihoodOutputs& outputs) {
+  assert(columns.count == 0 || columns.share_begin.size() == modes_.size() + 1);
+  const bool keep = outputs.jacobian || outputs.twice_weighted;
+  Columns work(columns.count, blocks_.size(), keep);
+  const auto n = static_cast<Eigen::Index>(work.count);
+  const auto width = static_cast<Eigen::Index>(work.width);
+  const auto state_width = static_cast<Eigen::Index>(state_width_);
+  RowMatrix own = RowMatrix::Zero(width, width);
+  RowMatrix mixed = RowMatrix::Zero(width, state_width);
+  std::vector<Complex> force(outputs.force ? blocks_.size() * kBins : 0);
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    double* jacobian = work.of(b);
+    const double* state = state_columns(b, work.count > 0);
+    fill_columns(b, columns, jacobian, outputs.force ? force.data() + b * kBins : nullptr);
+    add_products(jacobian, work.width, jacobian, work.width, true, own.data(), work.width);
+    if (work.count > 0) {
+      add_products(jacobian, work.width, state, state_width_, false, mixed.data(), state_width_);
+    }
+    if (!outputs.residuals) continue;
+    const double* residual = jacobian + work.count * kColumnLength;
+    for_rows(b, record_.bins,
+             [&](std::size_t row, std::size_t at) { (*outputs.residuals)[row] = residual[at]; });
+  }
+  const Eigen::MatrixXd products = symmetric(own, work.count + 1);
+  LikelihoodPoint point{.cost = products(n, n), .slope = products.col(n).head(n)};
+  force.resize(std::min(force.size(), record_.bins));
+  if (outputs.force) *outputs.force = std::move(force);
+  give(outputs);
+  if (n == 0) return point;
+  const Eigen::MatrixXd cross =
+      mixed.topLeftCorner(n, static_cast<Eigen::Index>(end_state_.size()));
+  const Eigen::MatrixXd fit = end_state_.fit(cross.transpose());
+  point.information = products.topLeftCorner(n, n) - cross * fit;
+  if (keep) project_columns(work, fit, outputs, point);
+  return point;
+}
+
+void LikelihoodEvaluation::project_columns(Columns& work, const Eigen::MatrixXd& fit,
+                                           const LikelihoodOutputs& outputs,
+                                           LikelihoodPoint& point) {
+  const auto width = static_cast<Eigen::Index>(work.width);
+  RowMatrix factors = RowMatrix::Zero(fit.rows(), width);
+  factors.leftCols(fit.cols()) = fit;
+  RowMatrix twice = RowMatrix::Zero(width, width);
+  if (outputs.jacobian) outputs.jacobian->resize(static_cast<long>(2 * record_.bins), fit.cols());
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    double* jacobian = work.of(b);
+    subtract_columns(state_columns(b, true), end_state_.size(), factors.data(), work.width,
+                     jacobian);
+    for (std::size_t i = 0; outputs.jacobian && i < work.count; ++i) {
+      for_rows(b, record_.bins, [&](std::size_t row, std::size_t at) {
+        (*outputs.jacobian)(static_cast<long>(row), static_cast<long>(i)) =
+            jacobian[i * kColumnLength + at];
+      });
+    }
+    if (!outputs.twice_weighted) continue;
+    scale_columns(record_.root_weight.data() + b * kBins, work.width, jacobian);
+    add_products(jacobian, work.width, jacobian, work.width, true, twice.data(), work.width);
+  }
+  if (outputs.twice_weighted) point.twice_weighted = symmetric(twice, work.count);
+}
+
+// What the passes leave in the blocks.
+void LikelihoodEvaluation::give(const LikelihoodOutputs& outputs) const {
+  if (outputs.amplitudes) {
+    outputs.amplitudes->assign(end_state_.amplitudes().begin(), end_state_.amplitudes().end());
+  }
+  if (!outputs.gain) return;
+  outputs.gain->resize(record_.bins);
+  for (std::size_t k = 0; k < record_.bins; ++k) {
+    (*outputs.gain)[k] = 1.0 / blocks_[k / kBins].norm[k % kBins];
+  }
+}
+
+}  // namespace modcal

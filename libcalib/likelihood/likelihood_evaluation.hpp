@@ -1,0 +1,45 @@
+// One evaluation of the joint likelihood: passes over the blocks of bins.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "libcalib/likelihood/end_state.hpp"
+#include "libcalib/likelihood/likelihood_kernel.hpp"
+#include "libcalib/likelihood/likelihood_outputs.hpp"
+
+namespace modcal {
+
+/// First pass: transfer functions, data residual and the end state that fits best. Second pass:
+/// columns of the Jacobian and their products with each other and with those of the end state.
+/// Third pass, where asked for: the columns with the end state projected out.
+class LikelihoodEvaluation {
+ public:
+  /// `record` must outlive this.
+  LikelihoodEvaluation(const WhitenedRecord& record, std::vector<LikelihoodMode> modes);
+
+  LikelihoodPoint differentiate(const LikelihoodColumns& columns, const LikelihoodOutputs& outputs);
+
+ private:
+  using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  struct Columns;
+  double* residual_of(std::size_t b) { return residual_.data() + b * kColumnLength; }
+  double* offsets_of(std::size_t b) { return offsets_.data() + b * state_width_ * kColumnLength; }
+  const double* state_columns(std::size_t b, bool wanted);
+  void fill_columns(std::size_t b, const LikelihoodColumns& columns, double* jacobian,
+                    std::complex<double>* force);
+  void project_columns(Columns& work, const Eigen::MatrixXd& fit, const LikelihoodOutputs& outputs,
+                       LikelihoodPoint& point);
+  void give(const LikelihoodOutputs& outputs) const;
+
+  const WhitenedRecord& record_;
+  std::vector<LikelihoodMode> modes_;
+  EndState end_state_;
+  std::size_t state_width_;
+  std::vector<LikelihoodBlock> blocks_;
+  AlignedVector residual_;  // one column a block
+  AlignedVector offsets_;   // state_width_ columns a block, for σ > 0
+  AlignedVector state_;     // columns of the decays of one block
+};
+
+}  // namespace modcal
