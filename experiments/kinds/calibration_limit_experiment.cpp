@@ -1,7 +1,7 @@
 #include "experiments/kinds/calibration_limit_experiment.hpp"
 
-#include <chrono>
 #include <cmath>
+#include <limits>
 
 #include "experiments/kinds/number_json.hpp"
 #include "experiments/kinds/scene_plan.hpp"
@@ -13,6 +13,8 @@ namespace modcal {
 namespace {
 
 using nlohmann::json;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // The truth with the start's errors, drawn from the seed alone: equal at every noise level.
 ModelPoint start_of(const ModelPoint& truth, ModelErrorOptions errors, const StreamKey& key) {
@@ -32,6 +34,58 @@ double median_error(const ModalBasis& found, const ModelPoint& truth) {
     errors.push_back(std::abs(found.omega[n] / truth.basis.omega[n] - 1.0));
   }
   return quantile(std::move(errors), 0.5);
+}
+
+void add_noise(const StreamKey& key, NoisyRecords& records) {
+  for (std::size_t r = 0; r < 2; ++r) {
+    std::vector<double> noise(records.samples());
+    fill_standard_normal(key.with("measurement noise").with(std::uint64_t{r}), noise);
+    for (std::size_t j = 0; j < noise.size(); ++j) {
+      records.reactions[r][j] += records.deviation[r] * noise[j];
+    }
+    remove_mean(records.reactions[r]);
+  }
+}
+
+LimitOutcome outcome_of(const ContinuationResult& found) {
+  LimitOutcome outcome{
+      .law = {found.law.fundamental, found.law.inharmonicity, found.law.contact, found.law.damping},
+      .law_deviation = found.law.deviation,
+      .contact = found.model.contact,
+      .contact_deviation = found.contact_deviation,
+      .law_chi2 = found.law.chi2,
+      .chi2 = found.chi2,
+      .right = found.right,
+      .paper_error = kNan,
+      .force_correlation = kNan};
+  for (const ModeVerdict& mode : found.modes) {
+    outcome.frequencies.push_back(mode.frequency);
+    outcome.deviations.push_back(mode.deviation);
+  }
+  return outcome;
+}
+
+double force_correlation(const LimitTruth& truth, double level, const ModelPoint& model,
+                         const InversionRecipe& recipe) {
+  Observation observation{.sample_rate = truth.records.sample_rate,
+                          .basis = truth.point.basis,
+                          .contact = truth.point.contact,
+                          .fundamental = truth.point.basis.frequency(0),
+                          .noise_level = level,
+                          .truth = truth.simulated,
+                          .reference = truth.simulated->simulation.force};
+  for (std::size_t r = 0; r < 2; ++r) {
+    observation.reactions[r] = Signal{.quantity = r == 0 ? "R1" : "R2",
+                                      .unit = "N",
+                                      .sample_rate = truth.records.sample_rate,
+                                      .samples = truth.records.reactions[r]};
+  }
+  const double duration = observation.reactions[0]->duration();
+  const ScoreOptions score{.whole = {0.1 * duration, 0.95 * duration}};
+  const auto estimator = prepare_estimator({model.basis, model.contact}, observation, recipe);
+  const std::vector<SideIdentification> sides =
+      identify(observation, *estimator, recipe, {.force = true}, &score);
+  return sides.front().whole.correlation;
 }
 
 json numbers(std::span<const double> values) {
@@ -55,16 +109,20 @@ void CalibrationLimitOptions::visit(OptionVisitor& visitor) {
   visitor.numbers({.key = "noise_levels",
                    .meaning = "noise standard deviations over those of the signals",
                    .unit = "1",
-                   .range = Range::positive()},
+                   .range = Range::non_negative()},
                   noise_levels);
   visitor.integer({.key = "seeds", .meaning = "noise draws a level", .range = Range::at_least(1)},
                   seeds);
   visitor.integer(
       {.key = "seed", .meaning = "key of noise and starts", .range = Range::non_negative()}, seed);
-  visitor.flag({.key = "known_noise", .meaning = "the calibration is told the noise level"},
+  visitor.flag({.key = "known_noise",
+                .meaning = "the calibration is told the noise level, where there is any"},
                known_noise);
   visitor.flag({.key = "paper_method", .meaning = "draw the paper's method from the same starts"},
                paper_method);
+  visitor.optional_group(
+      {.key = "inversion", .meaning = "identify the force with the calibrated model as well"},
+      has_inversion, [this](OptionVisitor& members) { inversion.visit(members); });
 }
 
 std::string outcome_text(const LimitOutcome& outcome) {
@@ -78,7 +136,8 @@ std::string outcome_text(const LimitOutcome& outcome) {
               {"law_chi2", number_json(outcome.law_chi2)},
               {"chi2", number_json(outcome.chi2)},
               {"right", outcome.right},
-              {"paper_error", number_json(outcome.paper_error)}}
+              {"paper_error", number_json(outcome.paper_error)},
+              {"force_correlation", number_json(outcome.force_correlation)}}
       .dump();
 }
 
@@ -100,6 +159,7 @@ LimitOutcome read_limit_outcome(const std::string& text) {
     outcome.chi2 = read_number(object.at("chi2"));
     outcome.right = object.at("right").get<bool>();
     outcome.paper_error = read_number(object.at("paper_error"));
+    outcome.force_correlation = read_number(object.at("force_correlation"));
     return outcome;
   } catch (const json::exception& error) {
     throw InvalidInput(std::string("not the outcome of a calibration: ") + error.what());
@@ -156,50 +216,40 @@ std::string CalibrationLimitExperiment::fingerprint(std::size_t task,
 std::string CalibrationLimitExperiment::run_task(std::size_t task,
                                                  const StudyContext& context) const {
   const auto draw = static_cast<std::uint64_t>(task % static_cast<std::size_t>(options_.seeds));
-  const double level = level_of(task);
-  const StreamKey key = StreamKey(static_cast<std::uint64_t>(options_.seed)).with(draw);
   LimitOutcome outcome;
   try {
-    LimitTruth truth = limit_truth(options_.observation, level, context.work.truths);
-    for (std::size_t r = 0; r < 2; ++r) {
-      std::vector<double> noise(truth.records.samples());
-      fill_standard_normal(key.with("measurement noise").with(std::uint64_t{r}), noise);
-      for (std::size_t j = 0; j < noise.size(); ++j) {
-        truth.records.reactions[r][j] += truth.records.deviation[r] * noise[j];
-      }
-      remove_mean(truth.records.reactions[r]);
-    }
-    const CalibrationData data = CalibrationData::of_records(
-        truth.records.reactions[0], truth.records.reactions[1], truth.records.sample_rate);
-    const ModelPoint start = start_of(truth.point, options_.model_error, key);
-    ContinuationOptions continuation = options_.continuation;
-    if (options_.known_noise) {
-      continuation.left_noise = truth.records.deviation[0];
-      continuation.right_noise = truth.records.deviation[1];
-    }
-    const ContinuationResult found = calibrate_by_continuation(start, data, continuation);
-    outcome.law = {found.law.fundamental, found.law.inharmonicity, found.law.contact,
-                   found.law.damping};
-    outcome.law_deviation = found.law.deviation;
-    for (const ModeVerdict& mode : found.modes) {
-      outcome.frequencies.push_back(mode.frequency);
-      outcome.deviations.push_back(mode.deviation);
-    }
-    outcome.contact = found.model.contact;
-    outcome.contact_deviation = found.contact_deviation;
-    outcome.law_chi2 = found.law.chi2;
-    outcome.chi2 = found.chi2;
-    outcome.right = found.right;
-    outcome.paper_error = std::numeric_limits<double>::quiet_NaN();
-    if (options_.paper_method) {
-      CalibrationOptions paper;
-      paper.parameters.frequencies = "all";
-      outcome.paper_error = median_error(calibrate(start, data, paper).model.basis, truth.point);
-    }
+    outcome = calibrate_draw(level_of(task), draw, context.work.truths);
   } catch (const InvalidInput& error) {
     outcome.failure = error.what();
   }
   return outcome_text(outcome);
+}
+
+LimitOutcome CalibrationLimitExperiment::calibrate_draw(double level, std::uint64_t draw,
+                                                        TruthCache& truths) const {
+  const StreamKey key = StreamKey(static_cast<std::uint64_t>(options_.seed)).with(draw);
+  LimitTruth truth = limit_truth(options_.observation, level, truths, options_.has_inversion);
+  if (level > 0.0) add_noise(key, truth.records);
+  const CalibrationData data = CalibrationData::of_records(
+      truth.records.reactions[0], truth.records.reactions[1], truth.records.sample_rate);
+  const ModelPoint start = start_of(truth.point, options_.model_error, key);
+  ContinuationOptions continuation = options_.continuation;
+  if (options_.known_noise && level > 0.0) {
+    continuation.left_noise = truth.records.deviation[0];
+    continuation.right_noise = truth.records.deviation[1];
+  }
+  const ContinuationResult found = calibrate_by_continuation(start, data, continuation);
+  LimitOutcome outcome = outcome_of(found);
+  if (options_.paper_method) {
+    CalibrationOptions paper;
+    paper.parameters.frequencies = "all";
+    outcome.paper_error = median_error(calibrate(start, data, paper).model.basis, truth.point);
+  }
+  if (options_.has_inversion) {
+    outcome.force_correlation =
+        force_correlation(truth, level, found.model, InversionRecipe(options_.inversion));
+  }
+  return outcome;
 }
 
 std::string CalibrationLimitExperiment::failure_in(const std::string& outcome) const {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "experiments/kinds/limit_source.hpp"
+#include "experiments/study/identification.hpp"
 #include "experiments/study/model_error.hpp"
 #include "experiments/study/observation.hpp"
 #include "experiments/task_experiment.hpp"
@@ -23,8 +24,11 @@ struct CalibrationLimitOptions {
   std::vector<double> noise_levels = {0.001, 0.003, 0.01, 0.02, 0.05, 0.08, 0.1};
   std::int64_t seeds = 50;
   std::int64_t seed = 1;
-  bool known_noise = true;   ///< the calibration is told the noise level
+  bool known_noise = true;   ///< the calibration is told the noise level, where there is any
   bool paper_method = true;  ///< the spectral-peak search from the same starts beside it
+  /// Identify the force with the calibrated model and compare it with the true one.
+  bool has_inversion = false;
+  InversionOptions inversion;
   void visit(OptionVisitor& visitor);
 };
 
@@ -37,6 +41,9 @@ struct LimitOutcome {
   double law_chi2 = 0.0, chi2 = 0.0;
   bool right = false;
   double paper_error = 0.0;  ///< median relative error of the paper's method; NaN: not run
+  /// Of the force identified with the calibrated model, from 10 % to 95 % of the record; NaN: not
+  /// asked for.
+  double force_correlation = 0.0;
 };
 std::string outcome_text(const LimitOutcome& outcome);
 /// Throws InvalidInput for a text that outcome_text did not write.
@@ -52,13 +59,15 @@ struct LimitLevel {
 StudyResult sum_up_limit(const CalibrationLimitOptions& options,
                          const std::vector<LimitLevel>& levels, const StudyContext& context);
 
-/// Clean reactions of the scene with the noise expected at a level.
+/// Clean reactions of the scene with the noise expected at a level; at zero the noise a calibration
+/// takes the aliases of clean records for.
 struct LimitTruth {
   ModelPoint point;
   NoisyRecords records;
+  std::shared_ptr<const Truth> simulated;
 };
 LimitTruth limit_truth(const ObservationOptions& observation, double noise_level,
-                       TruthCache& truths);
+                       TruthCache& truths, bool force = false);
 
 class CalibrationLimitExperiment final : public TaskExperiment, public LimitSource {
  public:
@@ -82,6 +91,7 @@ class CalibrationLimitExperiment final : public TaskExperiment, public LimitSour
   StudyResult replay(std::size_t task, const StudyContext& context) const override;
 
  private:
+  LimitOutcome calibrate_draw(double level, std::uint64_t draw, TruthCache& truths) const;
   double level_of(std::size_t task) const {
     return options_.noise_levels[task / static_cast<std::size_t>(options_.seeds)];
   }

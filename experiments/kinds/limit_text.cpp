@@ -71,26 +71,28 @@ std::string proposals(const LimitQuestion& question, const ExpectedLimit& limit,
 }  // namespace
 
 LimitTruth limit_truth(const ObservationOptions& observation, double noise_level,
-                       TruthCache& truths) {
+                       TruthCache& truths, bool force) {
   MODCAL_REQUIRE(observation.has_scene,
                  "a limit is computed from a simulated truth: state a scene, not a record");
   const double rate = observation.measurement.sample_rate;
-  const auto truth =
-      truths.get(observation.truth, rate, {.left_reaction = true, .right_reaction = true});
-  LimitTruth result{.point = {truth->basis, truth->contact}};
+  const auto truth = truths.get(observation.truth, rate,
+                                {.force = force, .left_reaction = true, .right_reaction = true});
+  LimitTruth result{.point = {truth->basis, truth->contact}, .simulated = truth};
   result.records.sample_rate = rate;
   result.records.reactions = {truth->simulation.left_reaction.samples,
                               truth->simulation.right_reaction.samples};
   for (std::size_t r = 0; r < 2; ++r) {
     remove_mean(result.records.reactions[r]);
-    result.records.deviation[r] = noise_level * standard_deviation(result.records.reactions[r]);
-    MODCAL_REQUIRE(result.records.deviation[r] > 0.0,
-                   "without noise there is no limit: state measurement.noise_level > 0");
+    result.records.deviation[r] =
+        noise_level > 0.0 ? noise_level * standard_deviation(result.records.reactions[r])
+                          : noise_deviation(result.records.reactions[r]);
   }
   return result;
 }
 
 std::string limit_text(const LimitQuestion& question, TruthCache& truths) {
+  MODCAL_REQUIRE(question.noise_level > 0.0,
+                 "without noise there is no limit: state a noise level > 0");
   const LimitTruth truth = limit_truth(question.observation, question.noise_level, truths);
   const ExpectedLimit limit =
       expected_limit(truth.point, truth.records, question.highest_frequency, question.law_width);

@@ -1,0 +1,161 @@
+#include "experiments/kinds/limit_summary.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libcalib/stiff_string_fit.hpp"
+#include "libsim/signal/statistics.hpp"
+
+namespace modcal {
+namespace {
+
+constexpr double kFailure = 7.8;
+constexpr double kWellSeen = 5e-4;
+constexpr const char* kLawNames[] = {"f0", "B", "x_c", "damping"};
+
+class LevelReader {
+ public:
+  LevelReader(const LimitLevel& level, const LimitTruth& truth, const ExpectedLimit& bound)
+      : truth_(truth), bound_(bound) {
+    summary_.level = level.noise_level;
+    for (const LimitOutcome& outcome : level.outcomes) {
+      if (!outcome.failure.empty()) {
+        ++summary_.broken;
+      } else {
+        outcomes_.push_back(outcome);
+        if (!outcome.right) ++summary_.contradicted;
+      }
+    }
+    summary_.runs = outcomes_.size();
+    beyond_.assign(outcomes_.size(), false);
+  }
+
+  LimitSummary read() {
+    add_law();
+    add_frequencies();
+    add_means();
+    count_wrong();
+    return std::move(summary_);
+  }
+
+ private:
+  // deviation_of: standard deviation the calibration reports.
+  template <typename Value, typename Deviation>
+  LimitRow row(std::string name, double bound, Value error_of, Deviation deviation_of) {
+    LimitRow row{.noise_percent = 100.0 * summary_.level,
+                 .parameter = std::move(name),
+                 .bound = bound,
+                 .count = outcomes_.size()};
+    if (outcomes_.empty()) return row;
+    double square = 0.0, sum = 0.0, variance = 0.0;
+    for (std::size_t i = 0; i < outcomes_.size(); ++i) {
+      const double error = error_of(outcomes_[i]);
+      square += error * error;
+      sum += error;
+      variance += std::pow(deviation_of(outcomes_[i]), 2);
+      if (std::abs(error) <= kFailure * bound) continue;
+      ++row.failures;
+      beyond_[i] = true;
+    }
+    const auto n = static_cast<double>(outcomes_.size());
+    row.rmse = std::sqrt(square / n);
+    row.bias = sum / n;
+    row.reported = std::sqrt(variance / n);
+    return row;
+  }
+
+  void add_law() {
+    std::vector<double> frequencies;
+    for (std::size_t n = 0; n < truth_.point.basis.size(); ++n) {
+      frequencies.push_back(truth_.point.basis.frequency(n));
+    }
+    const StiffStringFit fit = fit_stiff_string(frequencies);
+    const double values[] = {fit.fundamental, fit.inharmonicity, truth_.point.contact, 1.0};
+    for (std::size_t i = 0; i < 4; ++i) {
+      LimitRow law = row(
+          kLawNames[i], bound_.law[i], [&](const LimitOutcome& o) { return o.law[i] - values[i]; },
+          [&](const LimitOutcome& o) { return o.law_deviation[i]; });
+      law.law = true;
+      summary_.rows.push_back(std::move(law));
+    }
+  }
+
+  void add_frequencies() {
+    double square = 0.0, count = 0.0;
+    std::vector<double> bounds;
+    for (std::size_t n = 0; n < truth_.point.basis.size(); ++n) {
+      const ModeVerdict& mode = bound_.modes[n];
+      if (!(mode.deviation < kWellSeen) || mode.source != ModeSource::kIdentified) continue;
+      LimitRow free = row(
+          fmt::format("f_{}", n + 1), mode.deviation,
+          [&](const LimitOutcome& o) {
+            return o.frequencies[n] / truth_.point.basis.frequency(n) - 1.0;
+          },
+          [&](const LimitOutcome& o) { return o.deviations[n]; });
+      bounds.push_back(mode.deviation);
+      square += free.ratio() * free.ratio();
+      count += 1.0;
+      summary_.free_worst = std::fmax(summary_.free_worst, free.ratio());
+      summary_.rows.push_back(std::move(free));
+    }
+    summary_.free_rms = std::sqrt(square / count);
+    summary_.median_bound = quantile(bounds, 0.5);
+    summary_.rows.push_back(row(
+        "x_c, frequencies free", bound_.contact,
+        [&](const LimitOutcome& o) { return o.contact - truth_.point.contact; },
+        [](const LimitOutcome& o) { return o.contact_deviation; }));
+  }
+
+  void add_means() {
+    std::vector<double> chi2, law_chi2, medians, paper, force;
+    const std::vector<double> shape = truth_.point.basis.shape_at(truth_.point.contact);
+    for (const LimitOutcome& outcome : outcomes_) {
+      chi2.push_back(outcome.chi2);
+      law_chi2.push_back(outcome.law_chi2);
+      std::vector<double> errors;
+      for (std::size_t n = 0; n < shape.size(); ++n) {
+        if (std::abs(shape[n]) < 0.1) continue;
+        errors.push_back(std::abs(outcome.frequencies[n] / truth_.point.basis.frequency(n) - 1.0));
+      }
+      medians.push_back(quantile(std::move(errors), 0.5));
+      if (std::isfinite(outcome.paper_error)) paper.push_back(outcome.paper_error);
+      if (std::isfinite(outcome.force_correlation)) force.push_back(outcome.force_correlation);
+    }
+    if (outcomes_.empty()) return;
+    summary_.mean_chi2 = mean(chi2);
+    summary_.mean_law_chi2 = mean(law_chi2);
+    summary_.median_error = quantile(medians, 0.5);
+    summary_.paper_error = quantile(paper, 0.5);
+    if (!force.empty()) summary_.force_correlation = mean(force);
+  }
+
+  void count_wrong() {
+    summary_.wrong = summary_.broken;
+    for (std::size_t i = 0; i < outcomes_.size(); ++i) {
+      if (!beyond_[i]) continue;
+      ++summary_.wrong;
+      if (outcomes_[i].right) ++summary_.silent;
+    }
+  }
+
+  const LimitTruth& truth_;
+  const ExpectedLimit& bound_;
+  std::vector<LimitOutcome> outcomes_;
+  std::vector<bool> beyond_;  // an error of this run is no noise
+  LimitSummary summary_;
+};
+
+}  // namespace
+
+const LimitRow* LimitSummary::find(const std::string& parameter) const {
+  const auto found = std::find_if(rows.begin(), rows.end(),
+                                  [&](const LimitRow& row) { return row.parameter == parameter; });
+  return found == rows.end() ? nullptr : &*found;
+}
+
+LimitSummary summarize_level(const LimitLevel& level, const LimitTruth& truth,
+                             const ExpectedLimit& bound) {
+  return LevelReader(level, truth, bound).read();
+}
+
+}  // namespace modcal
