@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <complex>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -15,10 +16,25 @@
 
 namespace modcal {
 
+/// How the sensor at x = L reads for one at x = 0 that reads the reaction itself. What both have in
+/// common cannot be told from the force.
+struct SensorPair {
+  double gain = 1.0;    ///< > 0 [1]
+  double delay = 0.0;   ///< [s]
+  double corner = 0.0;  ///< of a high-pass of first order, >= 0 [rad/s]
+
+  bool alike() const { return gain == 1.0 && delay == 0.0 && corner == 0.0; }
+  /// gain exp(−s delay) s/(s + corner) at s != 0 [1/s].
+  std::complex<double> response(std::complex<double> s) const {
+    return gain * std::exp(-s * delay) * s / (s + corner);
+  }
+};
+
 /// The model as far as a calibration changes it.
 struct ModelPoint {
   ModalBasis basis;
   double contact = std::numeric_limits<double>::quiet_NaN();  ///< x_c [m]
+  SensorPair sensors = {};  ///< known to the joint likelihood alone
 };
 
 enum class ParameterKind { kFrequency, kFundamental, kInharmonicity, kContact };

@@ -1,5 +1,7 @@
 #include "libcalib/likelihood/end_state.hpp"
 
+#include <cmath>
+
 namespace modcal {
 namespace {
 
@@ -72,49 +74,65 @@ Column column(const double* numbers) { return Column(numbers, static_cast<Index>
 
 }  // namespace
 
-EndState::EndState(const WhitenedRecord& record, std::span<const LikelihoodMode> modes)
+std::vector<PlainTransient> plain_transients(const WhitenedRecord& record,
+                                             const SensorPair& sensors) {
+  if (record.sigma > 0.0) return {{false, record.offset}, {true, record.offset}};
+  if (sensors.alike()) return {};
+  const std::size_t padded = record.root_weight.size();
+  PlainTransient sample{true, PlanarVector(padded)};
+  PlainTransient decay{true, PlanarVector(padded)};
+  const double pole = std::exp(-sensors.corner / record.sample_rate);
+  for (std::size_t k = 0; k < record.bins; ++k) {
+    sample.numbers.set(k, record.deviation[1]);
+    decay.numbers.set(k, record.deviation[1] / (1.0 - pole * record.delay.at(k)));
+  }
+  return {std::move(sample), std::move(decay)};
+}
+
+EndState::EndState(const WhitenedRecord& record, std::span<const LikelihoodMode> modes,
+                   std::size_t plain)
     : modes_(modes),
-      decays_(record.sigma == 0.0),
-      size_(decays_ ? 2 * modes.size() : 2),
-      powers_(decays_ ? modes.size() : 0),
-      gram_(Eigen::MatrixXd::Zero(static_cast<Index>(size_), static_cast<Index>(size_))),
-      products_(Eigen::VectorXd::Zero(static_cast<Index>(size_))) {}
+      plain_(plain),
+      powers_(record.sigma == 0.0 ? modes.size() : 0),
+      gram_(Eigen::MatrixXd::Zero(static_cast<Index>(size()), static_cast<Index>(size()))),
+      products_(Eigen::VectorXd::Zero(static_cast<Index>(size()))) {}
 
 void EndState::add(const WhitenedRecord& record, std::size_t block_index,
-                   const LikelihoodBlock& block, const double* residual, const double* offsets) {
-  if (decays_) {
+                   const LikelihoodBlock& block, const double* residual, const double* plain) {
+  const auto first = static_cast<Index>(2 * decays());
+  if (decays() > 0) {
     add_decay_powers(record, block_index, modes_, block, powers_, totals_);
     add_decay_products(record, block_index, modes_, block, residual, products_.data());
-    return;
   }
-  const Column data = column(residual);
-  const Column left = column(offsets);
-  const Column right = column(offsets + kColumnLength);
-  gram_(0, 0) += left.squaredNorm();
-  gram_(1, 1) += right.squaredNorm();
-  gram_(0, 1) += left.dot(right);
-  gram_(1, 0) = gram_(0, 1);
-  products_[0] += left.dot(data);
-  products_[1] += right.dot(data);
+  for (std::size_t p = 0; p < plain_; ++p) {
+    const auto i = first + static_cast<Index>(p);
+    const double* own = plain + p * kColumnLength;
+    products_[i] += column(own).dot(column(residual));
+    for (std::size_t q = 0; q <= p; ++q) {
+      gram_(i, first + static_cast<Index>(q)) += column(own).dot(column(plain + q * kColumnLength));
+    }
+    // Beside the decays' own square, whose columns are as long as this one's.
+    if (decays() > 0) {
+      add_decay_products(record, block_index, modes_, block, own, gram_.col(i).data());
+    }
+  }
 }
 
 void EndState::solve() {
-  if (decays_) gram_ = decay_gram(modes_, powers_, totals_);
+  const auto first = static_cast<Index>(2 * decays());
+  if (decays() > 0) gram_.topLeftCorner(first, first) = decay_gram(modes_, powers_, totals_);
+  for (Index i = first; i < gram_.rows(); ++i) {
+    gram_.row(i).head(first) = gram_.col(i).head(first).transpose();
+    for (Index j = first; j < i; ++j) gram_(j, i) = gram_(i, j);
+  }
   inverse_norms_ = gram_.diagonal();
   for (double& norm : inverse_norms_) norm = norm > 0.0 ? 1.0 / std::sqrt(norm) : 1.0;
   Eigen::MatrixXd scaled = inverse_norms_.asDiagonal() * gram_ * inverse_norms_.asDiagonal();
   scaled.diagonal().array() += kRidge;
   normal_.compute(scaled);
   const Eigen::VectorXd found = -fit(products_);
-  if (!decays_) {
-    offset_ = {found[0], found[1]};
-    return;
-  }
-  amplitudes_.resize(modes_.size());
-  for (std::size_t n = 0; n < modes_.size(); ++n) {
-    const auto i = static_cast<Index>(2 * n);
-    amplitudes_[n] = {found[i], found[i + 1]};
-  }
+  for (Index i = 0; i < first; i += 2) amplitudes_.emplace_back(found[i], found[i + 1]);
+  plain_amplitudes_.assign(found.begin() + first, found.end());
 }
 
 Eigen::MatrixXd EndState::fit(const Eigen::MatrixXd& products) const {

@@ -3,42 +3,51 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
-#include <array>
 #include <span>
 #include <vector>
 
 #include "libcalib/likelihood/decay_kernel.hpp"
+#include "libcalib/parameters.hpp"
 
 namespace modcal {
 
+/// Something in the record of one end, known but for its real amplitude.
+struct PlainTransient {
+  bool right = false;
+  PlanarVector numbers;  ///< its transform, whitened but for 1/s_r
+};
+/// σ > 0: static offsets of both records. σ = 0: where the sensor at x = L has a delay or a corner
+/// of its own, what it holds at the end of the record, one sample and its own decay.
+std::vector<PlainTransient> plain_transients(const WhitenedRecord& record,
+                                             const SensorPair& sensors);
+
 /// At σ = 0 the complex amplitudes c_n of the sampled free decays (2N columns x_n, x'_n, see
-/// decay_kernel.hpp), for σ > 0 the static offsets of both records. Least squares by the normal
-/// equations, columns normalized, ridge 1e-9. The Gram matrix of the decays takes one sum a mode
-/// and parity, since with |z| = 1
+/// decay_kernel.hpp), and the amplitudes of plain transients behind them. Least squares by the
+/// normal equations, columns normalized, ridge 1e-9. The Gram matrix of the decays takes one sum a
+/// mode and parity, since with |z| = 1
 ///
 ///     conj(U_m) U_n = (conj(U_m) + U_n − 1)/(1 − conj(E_m) E_n).
 class EndState {
  public:
-  /// `modes` must outlive this.
-  EndState(const WhitenedRecord& record, std::span<const LikelihoodMode> modes);
+  /// `modes` must outlive this. plain: how many plain transients there are.
+  EndState(const WhitenedRecord& record, std::span<const LikelihoodMode> modes, std::size_t plain);
 
-  bool decays() const { return decays_; }
-  std::size_t size() const { return size_; }
-  /// First pass over one block; `offsets`: the two columns of offsets, unless decays().
+  std::size_t decays() const { return powers_.size(); }  ///< N, or 0 for σ > 0
+  std::size_t size() const { return 2 * decays() + plain_; }
+  /// First pass over one block; `plain`: columns of the plain transients.
   void add(const WhitenedRecord& record, std::size_t block_index, const LikelihoodBlock& block,
-           const double* residual, const double* offsets);
+           const double* residual, const double* plain);
   /// Finds the unknowns of least squares.
   void solve();
 
-  std::span<const Complex> amplitudes() const { return amplitudes_; }  ///< c_n, where decays()
-  std::array<double, 2> offset() const { return offset_; }
+  std::span<const Complex> amplitudes() const { return amplitudes_; }  ///< c_n
+  double plain_amplitude(std::size_t i) const { return plain_amplitudes_[i]; }
   /// (XᵀX)⁻¹ B for the columns X.
   Eigen::MatrixXd fit(const Eigen::MatrixXd& products) const;
 
  private:
   std::span<const LikelihoodMode> modes_;
-  bool decays_;
-  std::size_t size_;
+  std::size_t plain_;
   std::vector<DecayPowers> powers_;
   DecayTotals totals_;
   Eigen::MatrixXd gram_;
@@ -46,7 +55,7 @@ class EndState {
   Eigen::VectorXd inverse_norms_;
   Eigen::LLT<Eigen::MatrixXd> normal_;
   std::vector<Complex> amplitudes_;
-  std::array<double, 2> offset_{};
+  std::vector<double> plain_amplitudes_;
 };
 
 }  // namespace modcal

@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "libcalib/likelihood/column_products.hpp"
+#include "libcalib/likelihood/projected_likelihood.hpp"
 
 namespace modcal {
 namespace {
@@ -25,6 +26,15 @@ void for_rows(std::size_t b, std::size_t bins, Give give) {
   }
 }
 
+PlanarVector sensor_response(const WhitenedRecord& record, const SensorPair& sensors) {
+  PlanarVector response(record.root_weight.size());
+  for (std::size_t k = 0; k < record.bins; ++k) {
+    const Complex s(record.sigma, record.spacing * static_cast<double>(record.first + k));
+    response.set(k, sensors.response(s));
+  }
+  return response;
+}
+
 }  // namespace
 
 // The Jacobian's columns, the residual behind them; of one block, or of all where they are kept.
@@ -41,29 +51,51 @@ struct LikelihoodEvaluation::Columns {
   AlignedVector numbers;
 };
 
-LikelihoodEvaluation::LikelihoodEvaluation(const WhitenedRecord& record,
-                                           std::vector<LikelihoodMode> modes)
+LikelihoodEvaluation::LikelihoodEvaluation(const WhitenedRecord& record, const ModelPoint& point)
     : record_(record),
-      modes_(std::move(modes)),
-      end_state_(record, modes_),
+      sensors_(point.sensors),
+      modes_(likelihood_modes(point, record.sample_rate)),
+      plain_(plain_transients(record, point.sensors)),
+      end_state_(record, modes_, plain_.size()),
       state_width_(tiled(end_state_.size())),
       blocks_(record.blocks()),
       residual_(kColumnLength * record.blocks()),
-      offsets_(end_state_.decays() ? 0 : state_width_ * kColumnLength * record.blocks()) {
+      plain_columns_(plain_.size() * kColumnLength * record.blocks()) {
+  if (!sensors_.alike()) sensor_ = sensor_response(record, sensors_);
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
-    double* offsets = end_state_.decays() ? nullptr : offsets_of(b);
-    fill_block(record_, b, modes_, blocks_[b], residual_of(b), offsets);
-    end_state_.add(record_, b, blocks_[b], residual_of(b), offsets);
+    fill_block(record_, b, modes_, sensor_ ? &*sensor_ : nullptr, blocks_[b], residual_of(b));
+    for (std::size_t p = 0; p < plain_.size(); ++p) {
+      fill_plain_column(record_, b, blocks_[b], plain_[p].right, plain_[p].numbers,
+                        plain_of(b) + p * kColumnLength);
+    }
+    end_state_.add(record_, b, blocks_[b], residual_of(b), plain_of(b));
   }
   end_state_.solve();
+  sum_plain();
+}
+
+void LikelihoodEvaluation::sum_plain() {
+  for (std::size_t p = 0; p < plain_.size(); ++p) {
+    std::optional<PlanarVector>& sum = plain_sums_[plain_[p].right ? 1 : 0];
+    if (!sum) sum.emplace(record_.root_weight.size());
+    for (std::size_t k = 0; k < record_.bins; ++k) {
+      sum->set(k, sum->at(k) + end_state_.plain_amplitude(p) * plain_[p].numbers.at(k));
+    }
+  }
 }
 
 // Columns of the end state; the decays' sums over the modes on the way.
 const double* LikelihoodEvaluation::state_columns(std::size_t b, bool wanted) {
-  if (!end_state_.decays()) return offsets_of(b);
   if (wanted) state_.resize(state_width_ * kColumnLength);
-  fill_decays(record_, b, modes_, end_state_.amplitudes(), blocks_[b],
-              wanted ? state_.data() : nullptr);
+  const std::size_t decays = 2 * end_state_.decays();
+  if (decays > 0) {
+    fill_decays(record_, b, modes_, end_state_.amplitudes(), blocks_[b],
+                wanted ? state_.data() : nullptr);
+  }
+  if (wanted) {
+    std::copy_n(plain_of(b), plain_.size() * kColumnLength,
+                state_.begin() + static_cast<long>(decays * kColumnLength));
+  }
   return state_.data();
 }
 
@@ -72,15 +104,24 @@ void LikelihoodEvaluation::fill_columns(std::size_t b, const LikelihoodColumns& 
   double* residual = jacobian + columns.count * kColumnLength;
   std::fill_n(jacobian, tiled(columns.count + 1) * kColumnLength, 0.0);
   std::copy_n(residual_of(b), kColumnLength, residual);
+  const auto place = [&](const std::optional<std::size_t>& column) {
+    return column ? jacobian + *column * kColumnLength : nullptr;
+  };
+  const auto given = [](const std::optional<PlanarVector>& numbers) {
+    return numbers ? &*numbers : nullptr;
+  };
   fill_jacobian_columns(
       record_, b, blocks_[b],
       {.modes = modes_,
        .amplitudes = end_state_.amplitudes(),
-       .offset = end_state_.offset(),
+       .sensor = given(sensor_),
+       .plain = {given(plain_sums_[0]), given(plain_sums_[1])},
        .shares = columns.shares,
        .share_begin = columns.share_begin,
        .jacobian = columns.shares.empty() ? nullptr : jacobian,
-       .contact = columns.contact ? jacobian + *columns.contact * kColumnLength : nullptr,
+       .contact = place(columns.contact),
+       .sensors = {place(columns.gain), place(columns.delay), place(columns.corner)},
+       .corner = sensors_.corner,
        .residual = residual,
        .force = force});
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "libcalib/likelihood/end_state.hpp"
@@ -16,7 +17,7 @@ namespace modcal {
 class LikelihoodEvaluation {
  public:
   /// `record` must outlive this.
-  LikelihoodEvaluation(const WhitenedRecord& record, std::vector<LikelihoodMode> modes);
+  LikelihoodEvaluation(const WhitenedRecord& record, const ModelPoint& point);
 
   LikelihoodPoint differentiate(const LikelihoodColumns& columns, const LikelihoodOutputs& outputs);
 
@@ -24,7 +25,9 @@ class LikelihoodEvaluation {
   using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   struct Columns;
   double* residual_of(std::size_t b) { return residual_.data() + b * kColumnLength; }
-  double* offsets_of(std::size_t b) { return offsets_.data() + b * state_width_ * kColumnLength; }
+  double* plain_of(std::size_t b) {
+    return plain_columns_.data() + b * plain_.size() * kColumnLength;
+  }
   const double* state_columns(std::size_t b, bool wanted);
   void fill_columns(std::size_t b, const LikelihoodColumns& columns, double* jacobian,
                     std::complex<double>* force);
@@ -32,14 +35,20 @@ class LikelihoodEvaluation {
                        LikelihoodPoint& point);
   void give(const LikelihoodOutputs& outputs) const;
 
+  void sum_plain();
+
   const WhitenedRecord& record_;
+  SensorPair sensors_;
   std::vector<LikelihoodMode> modes_;
+  std::vector<PlainTransient> plain_;
   EndState end_state_;
   std::size_t state_width_;
   std::vector<LikelihoodBlock> blocks_;
-  AlignedVector residual_;  // one column a block
-  AlignedVector offsets_;   // state_width_ columns a block, for σ > 0
-  AlignedVector state_;     // columns of the decays of one block
+  std::optional<PlanarVector> sensor_;         // where the sensors differ
+  std::optional<PlanarVector> plain_sums_[2];  // plain transients with their amplitudes
+  AlignedVector residual_;                     // one column a block
+  AlignedVector plain_columns_;                // of the plain transients, every block
+  AlignedVector state_;                        // all columns of the end state, of one block
 };
 
 }  // namespace modcal

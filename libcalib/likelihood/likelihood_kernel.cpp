@@ -54,17 +54,19 @@ HWY_INLINE Transfers TransfersAt(const WhitenedRecord& record,
 }
 
 void FillBlock(const WhitenedRecord& record, std::size_t block_index,
-               std::span<const LikelihoodMode> modes, LikelihoodBlock& block, double* residual,
-               double* offsets) {
+               std::span<const LikelihoodMode> modes, const PlanarVector* sensor,
+               LikelihoodBlock& block, double* residual) {
   const std::size_t first = block_index * kBins;
   const V per_left = Real(1.0 / record.deviation[0]);
   const V per_right = Real(1.0 / record.deviation[1]);
   for (std::size_t k = 0; k < kBins; k += hn::Lanes(D())) {
-    const auto [left, right] = TransfersAt(record, modes, BinsAt(record, first + k));
+    auto [left, right] = TransfersAt(record, modes, BinsAt(record, first + k));
+    if (sensor) right = Mul(right, Load(*sensor, first + k));
     const V norm = hn::Div(Real(1.0), hn::Add(Norm(left), Norm(right)));
     const V scale = hn::Mul(hn::Sqrt(norm), LoadReal(record.root_weight.data() + first + k));
     const C a = Scale(right, hn::Mul(per_left, scale));
-    const C b = Scale(left, hn::Mul(per_right, scale));
+    C b = Scale(left, hn::Mul(per_right, scale));
+    if (sensor) b = Mul(b, Load(*sensor, first + k));
     Store(left, block.left, k);
     Store(right, block.right, k);
     Store(Sub(a, b), block.odd, k);
@@ -73,10 +75,24 @@ void FillBlock(const WhitenedRecord& record, std::size_t block_index,
     const C data =
         Sub(Mul(right, Load(record.left, first + k)), Mul(left, Load(record.right, first + k)));
     StoreColumn(Scale(data, scale), residual, k);
-    if (!offsets) continue;
-    const C offset = Load(record.offset, first + k);
-    StoreColumn(Mul(a, offset), offsets, k);
-    StoreColumn(Mul(b, offset), offsets + kColumnLength, k);
+  }
+}
+
+HWY_INLINE V ScaleAt(const WhitenedRecord& record, const LikelihoodBlock& block, std::size_t first,
+                     std::size_t k) {
+  return hn::Mul(hn::Sqrt(LoadReal(block.norm + k)),
+                 LoadReal(record.root_weight.data() + first + k));
+}
+
+void FillPlainColumn(const WhitenedRecord& record, std::size_t block_index,
+                     const LikelihoodBlock& block, bool right, const PlanarVector& numbers,
+                     double* column) {
+  const std::size_t first = block_index * kBins;
+  const V per_deviation = Real(1.0 / record.deviation[right ? 1 : 0]);
+  for (std::size_t k = 0; k < kBins; k += hn::Lanes(D())) {
+    const C other = Load(right ? block.left : block.right, k);
+    const V scale = hn::Mul(ScaleAt(record, block, first, k), per_deviation);
+    StoreColumn(Scale(Mul(other, Load(numbers, first + k)), scale), column, k);
   }
 }
 
@@ -133,10 +149,22 @@ HWY_INLINE Transfers TransientsAt(const WhitenedRecord& record, const Likelihood
     const C even = Load(block.even_decay, k);
     left = Add(odd, even);
     right = Sub(odd, even);
+    if (task.sensor) right = Mul(right, Load(*task.sensor, first + k));
   }
-  const C offset = Load(record.offset, first + k);
-  return {Scale(AddScaled(left, offset, Real(task.offset[0])), Real(1.0 / record.deviation[0])),
-          Scale(AddScaled(right, offset, Real(-task.offset[1])), Real(1.0 / record.deviation[1]))};
+  if (task.plain[0]) left = Add(left, Load(*task.plain[0], first + k));
+  if (task.plain[1]) right = Sub(right, Load(*task.plain[1], first + k));
+  return {Scale(left, Real(1.0 / record.deviation[0])),
+          Scale(right, Real(1.0 / record.deviation[1]))};
+}
+
+// Columns of the sensors: `read` is h_1/|h| times what the sensor at x = L reads.
+HWY_INLINE void FillSensorColumns(const JacobianTask& task, const Bins& bins, C read,
+                                  std::size_t k) {
+  if (task.sensors[0]) StoreColumn(read, task.sensors[0], k);
+  if (task.sensors[1]) StoreColumn(Scale(Mul(bins.s, read), Real(-1.0)), task.sensors[1], k);
+  if (!task.sensors[2]) return;
+  const C pole = Inverse(Make(hn::Add(bins.s.re, Real(task.corner)), bins.s.im));
+  StoreColumn(Scale(Mul(pole, read), Real(-1.0)), task.sensors[2], k);
 }
 
 void FillJacobianColumns(const WhitenedRecord& record, std::size_t block_index,
@@ -148,7 +176,7 @@ void FillJacobianColumns(const WhitenedRecord& record, std::size_t block_index,
     const C right = Load(block.right, k);
     const C delay = Load(record.delay, first + k);
     const V norm = LoadReal(block.norm + k);
-    const V scale = hn::Mul(hn::Sqrt(norm), LoadReal(record.root_weight.data() + first + k));
+    const V scale = ScaleAt(record, block, first, k);
     const Transfers transient = TransientsAt(record, block, task, first, k);
     const C change = Sub(Mul(right, transient.left), Mul(left, transient.right));
     StoreColumn(AddScaled(LoadColumn(task.residual, k), change, scale), task.residual, k);
@@ -158,6 +186,8 @@ void FillJacobianColumns(const WhitenedRecord& record, std::size_t block_index,
     if (task.force) {
       hn::StoreInterleaved2(force.re, force.im, D(), reinterpret_cast<double*>(task.force + k));
     }
+    const C read = Sub(Mul(right, force), transient.right);
+    FillSensorColumns(task, bins, Scale(Mul(left, read), scale), k);
     if (!task.jacobian && !task.contact) continue;
     const C odd = Load(block.odd, k);
     const C even = Load(block.even, k);
@@ -180,12 +210,19 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace modcal {
 HWY_EXPORT(FillBlock);
+HWY_EXPORT(FillPlainColumn);
 HWY_EXPORT(FillJacobianColumns);
 
 void fill_block(const WhitenedRecord& record, std::size_t block_index,
-                std::span<const LikelihoodMode> modes, LikelihoodBlock& block, double* residual,
-                double* offsets) {
-  HWY_DYNAMIC_DISPATCH(FillBlock)(record, block_index, modes, block, residual, offsets);
+                std::span<const LikelihoodMode> modes, const PlanarVector* sensor,
+                LikelihoodBlock& block, double* residual) {
+  HWY_DYNAMIC_DISPATCH(FillBlock)(record, block_index, modes, sensor, block, residual);
+}
+
+void fill_plain_column(const WhitenedRecord& record, std::size_t block_index,
+                       const LikelihoodBlock& block, bool right, const PlanarVector& numbers,
+                       double* column) {
+  HWY_DYNAMIC_DISPATCH(FillPlainColumn)(record, block_index, block, right, numbers, column);
 }
 
 void fill_jacobian_columns(const WhitenedRecord& record, std::size_t block_index,

@@ -48,23 +48,31 @@ struct LikelihoodBlock {
 inline constexpr std::size_t kColumnLength = 2 * WhitenedRecord::kBlock;
 
 /// Fills transfer functions, κ and 1/|h|² of `block` and the column `residual`,
-/// (h_2y_1 − h_1y_2)/|h| with √w; `offsets`: two columns of offsets of both records, or null.
+/// (h_2y_1 − h_1y_2)/|h| with √w. sensor: how the sensor at x = L reads for one that reads 1 at
+/// x = 0, a factor of h_2 and of its decays; null: alike.
 void fill_block(const WhitenedRecord& record, std::size_t block_index,
-                std::span<const LikelihoodMode> modes, LikelihoodBlock& block, double* residual,
-                double* offsets);
+                std::span<const LikelihoodMode> modes, const PlanarVector* sensor,
+                LikelihoodBlock& block, double* residual);
 
-/// What fill_jacobian_columns() is asked for.
-/// shares[share_begin[n] … share_begin[n+1]) belong to mode n; contact: column of x_c or null.
+/// Column of the residual for something in the record of one end whose transform is `numbers` [N].
+void fill_plain_column(const WhitenedRecord& record, std::size_t block_index,
+                       const LikelihoodBlock& block, bool right, const PlanarVector& numbers,
+                       double* column);
+
+/// What fill_jacobian_columns() is asked for; null: not asked for.
 struct JacobianTask {
   std::span<const LikelihoodMode> modes;
   std::span<const Complex> amplitudes;  ///< c_n; empty: no end state
-  std::array<double, 2> offset{};       ///< of both records
-  std::span<const ColumnShare> shares;
+  const PlanarVector* sensor = nullptr;
+  std::array<const PlanarVector*, 2> plain{};  ///< what else is in the records, both ends [N]
+  std::span<const ColumnShare> shares;  ///< [share_begin[n] … share_begin[n+1]) belong to mode n
   std::span<const std::size_t> share_begin;
-  double* jacobian = nullptr;  ///< columns of this block, zeros; null: not asked for
+  double* jacobian = nullptr;  ///< columns of this block, zeros
   double* contact = nullptr;
+  std::array<double*, 3> sensors{};  ///< ln gain, delay [s], corner [rad/s]
+  double corner = 0.0;               ///< of the sensor at x = L [rad/s]
   double* residual = nullptr;
-  std::complex<double>* force = nullptr;  ///< kBins numbers; null: not asked for
+  std::complex<double>* force = nullptr;  ///< kBins numbers
 };
 /// Adds the transients of the block to the column `residual` and fills the Jacobian's columns.
 void fill_jacobian_columns(const WhitenedRecord& record, std::size_t block_index,

@@ -63,8 +63,7 @@ double ProjectedLikelihood::cost(const ModelPoint& point) const {
 LikelihoodPoint ProjectedLikelihood::evaluate(const ModelPoint& point,
                                               const LikelihoodColumns& columns,
                                               const Outputs& outputs) const {
-  return LikelihoodEvaluation(record_, likelihood_modes(point, record_.sample_rate))
-      .differentiate(columns, outputs);
+  return LikelihoodEvaluation(record_, point).differentiate(columns, outputs);
 }
 
 Eigen::MatrixXd ProjectedLikelihood::noise_information(const ModelPoint& point,
@@ -74,9 +73,7 @@ Eigen::MatrixXd ProjectedLikelihood::noise_information(const ModelPoint& point,
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(n, n);
   for (std::size_t r = 0; r < repeats; ++r) {
     const WhitenedRecord noise = record_.noise(r);
-    sum += LikelihoodEvaluation(noise, likelihood_modes(point, record_.sample_rate))
-               .differentiate(columns, {})
-               .information;
+    sum += LikelihoodEvaluation(noise, point).differentiate(columns, {}).information;
   }
   return sum / static_cast<double>(repeats);
 }

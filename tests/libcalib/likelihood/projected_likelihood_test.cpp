@@ -171,7 +171,7 @@ TEST_F(AtShortRecord, JacobianIsThatOfAutomaticDifferentiation) {
   AlignedVector residual(kColumnLength);
   for (std::size_t b = 0; b < record.blocks(); ++b) {
     std::fill(own.begin(), own.end(), 0.0);
-    fill_block(record, b, modes, block, residual.data(), nullptr);
+    fill_block(record, b, modes, nullptr, block, residual.data());
     fill_decays(record, b, modes, amplitudes, block, nullptr);
     fill_jacobian_columns(record, b, block,
                           {.modes = modes,
