@@ -6,6 +6,7 @@
 #include "experiments/kinds/calibration_limit_experiment.hpp"
 #include "experiments/kinds/identify_experiment.hpp"
 #include "experiments/kinds/invert_experiment.hpp"
+#include "experiments/kinds/pluck_then_bow_experiment.hpp"
 #include "experiments/kinds/schelleng_experiment.hpp"
 #include "experiments/kinds/simulate_experiment.hpp"
 #include "experiments/kinds/sweep_experiment.hpp"
@@ -24,6 +25,8 @@ Registry<Experiment> Experiment::registry() {
                                                "modes of a plucked string from its end reactions"),
       entry_of<Experiment, InvertExperiment>(
           "invert", "contact force and motion from simulated or recorded reactions"),
+      entry_of<Experiment, PluckThenBowExperiment>(
+          "pluck_then_bow", "pluck test, law, refinement and contact on a stroke, identification"),
       entry_of<Experiment, SchellengExperiment>(
           "schelleng", "which motion a steady bow stroke settles in, over positions and forces"),
       entry_of<Experiment, SimulateExperiment>("simulate",

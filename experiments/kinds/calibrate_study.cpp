@@ -27,15 +27,6 @@ std::vector<double> frequencies_of(const ModalBasis& basis) {
   return frequencies;
 }
 
-CalibrationData calibration_data(const Observation& observation) {
-  const auto samples = [&observation](End end) -> std::span<const double> {
-    const auto& reaction = observation.reaction(end);
-    return reaction ? std::span<const double>(reaction->samples) : std::span<const double>();
-  };
-  return CalibrationData::of_records(samples(End::kLeft), samples(End::kRight),
-                                     observation.sample_rate);
-}
-
 void fill_blind(CalibrationOutcome& outcome) {
   std::vector<bool> excited;
   std::vector<double> weights;
@@ -123,6 +114,15 @@ double median_relative_error(const CalibrationOutcome& outcome) {
     errors.push_back(std::abs(mode.frequency / truth - 1.0));
   }
   return quantile(std::move(errors), 0.5);
+}
+
+CalibrationData calibration_data(const Observation& observation) {
+  const auto samples = [&observation](End end) -> std::span<const double> {
+    const auto& reaction = observation.reaction(end);
+    return reaction ? std::span<const double>(reaction->samples) : std::span<const double>();
+  };
+  return CalibrationData::of_records(samples(End::kLeft), samples(End::kRight),
+                                     observation.sample_rate);
 }
 
 SecondsClock polling_clock(const StudyContext& context) {

@@ -31,6 +31,9 @@ CalibrationOutcome calibrate_observation(const CalibrateOptions& options,
                                          const Observation& observation,
                                          SecondsClock clock = steady_seconds());
 
+/// Spectra of the reactions that were observed.
+CalibrationData calibration_data(const Observation& observation);
+
 /// Clock that ends a search with Interrupted where the context says so.
 SecondsClock polling_clock(const StudyContext& context);
 

@@ -56,7 +56,7 @@ std::string sentence_of(const IdentifyOutcome& outcome) {
 
 }  // namespace
 
-StudyResult identify_study(const IdentifyOptions& options, const StudyContext& context) {
+IdentifyOutcome identify_outcome(const IdentifyOptions& options, const StudyContext& context) {
   const auto truth = context.work.truths.get(options.truth, options.measurement.sample_rate,
                                              {.left_reaction = true, .right_reaction = true});
   context.throw_if_interrupted();
@@ -65,6 +65,11 @@ StudyResult identify_study(const IdentifyOptions& options, const StudyContext& c
                               options.truth.scene.string.fundamental, options.identification),
       .truth = truth};
   outcome.law = law_of(outcome.found);
+  return outcome;
+}
+
+StudyResult identify_study(const IdentifyOptions& options, const StudyContext& context) {
+  const IdentifyOutcome outcome = identify_outcome(options, context);
   StudyResult result;
   result.blocks.emplace_back(identified_modes_table(outcome, context.command));
   result.blocks.emplace_back(stabilization_figure(outcome, context.command));

@@ -28,6 +28,9 @@ struct IdentifyOutcome {
   std::optional<StiffStringFit> law;
 };
 
+/// Simulates, measures and identifies.
+IdentifyOutcome identify_outcome(const IdentifyOptions& options, const StudyContext& context);
+
 /// Modes, law and noise as a JSON document.
 std::string identification_json(const IdentifyOutcome& outcome);
 report::Table identified_modes_table(const IdentifyOutcome& outcome, const std::string& command);

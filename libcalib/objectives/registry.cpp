@@ -3,6 +3,7 @@
 #include "libcalib/objectives/contact_location.hpp"
 #include "libcalib/objectives/contact_location_squares.hpp"
 #include "libcalib/objectives/force_mismatch.hpp"
+#include "libcalib/objectives/frequency_prior.hpp"
 #include "libcalib/objectives/joint_likelihood.hpp"
 #include "libcalib/objectives/smooth_spectral_peak.hpp"
 #include "libcalib/objectives/spectral_peak.hpp"
@@ -18,6 +19,8 @@ Registry<Objective> Objective::registry() {
                                                   "the same squared and smooth, as residuals"),
       entry_of<Objective, ForceMismatch>("force_mismatch",
                                          "least squares of the two identified force spectra"),
+      entry_of<Objective, FrequencyPrior>(
+          "frequency_prior", "modal frequencies measured otherwise, with their deviations"),
       entry_of<Objective, JointLikelihood>(
           "joint_likelihood", "both reactions compared with the force eliminated in every bin"),
       entry_of<Objective, SmoothSpectralPeak>("smooth_spectral_peak",

@@ -102,9 +102,12 @@ std::vector<std::string_view> WeightedSum::TermChoice::names() const {
   return all;
 }
 
-void WeightedSum::TermChoice::select(std::string_view name) {
-  MODCAL_REQUIRE(name != kName, "a weighted_sum in a weighted_sum: write its terms into this one");
-  choice_.select(name);
+void WeightedSum::TermChoice::select(std::string_view name) { assign(Choice<Objective>(name)); }
+
+void WeightedSum::TermChoice::assign(Choice<Objective> choice) {
+  MODCAL_REQUIRE(choice.selected() != kName,
+                 "a weighted_sum in a weighted_sum: write its terms into this one");
+  choice_ = std::move(choice);
 }
 
 void WeightedSum::Term::visit(OptionVisitor& visitor) {

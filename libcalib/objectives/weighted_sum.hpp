@@ -22,6 +22,8 @@ class WeightedSum final : public Objective {
     void select(std::string_view name) override;
     void visit_options(OptionVisitor& visitor) override { choice_.visit_options(visitor); }
     std::shared_ptr<const Objective> make() const { return choice_.make(); }
+    /// A term whose options are given in code. Throws InvalidInput for a weighted_sum.
+    void assign(Choice<Objective> choice);
 
    private:
     Choice<Objective> choice_;

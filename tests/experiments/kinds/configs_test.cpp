@@ -65,6 +65,10 @@ TEST_P(Configs, RunsSmall) {
     apply_assignment(document, "seeds=1", 1);
     document.root.find("noise_levels")->items.resize(1);
   }
+  if (full.kind == "pluck_then_bow") {
+    apply_assignment(document, "scene.string.modes=14", 1);
+    apply_assignment(document, "refinement.optimizer.loops=1", 2);
+  }
   if (document.root.find("model_based")) {
     apply_assignment(document, "scene.duration=0.06 s", 2);
     apply_assignment(document, "score.windows=[0.04 s]", 3);
