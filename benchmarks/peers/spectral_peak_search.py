@@ -9,7 +9,8 @@ candidates x bins; the sum of the other modes is kept and not recomputed.
     spectral_peak_benchmark --write_case=case.bin
     spectral_peak_search.py case.bin [repetitions]
 
-Prints the median time and the largest difference from the frequencies the C++ program found.
+Prints the median time and the largest difference from the frequencies the C++ program found, over
+the modes that the contact excites.
 """
 import sys
 import time
@@ -81,9 +82,11 @@ def main():
         begin = time.perf_counter()
         frequency = refine(case)
         seconds.append(time.perf_counter() - begin)
-    difference = np.abs(frequency / case["found"] - 1)
+    # In a node of the contact every candidate has the same integral to rounding: no frequency is right.
+    excited = np.abs(case["residues"][0]) > 1e-9 * np.abs(case["residues"]).max()
+    difference = np.abs(frequency / case["found"] - 1)[excited]
     print(f"median of {repetitions}: {1e3 * np.median(seconds):.0f} ms")
-    print(f"largest relative difference from the frequencies of the C++ program: {difference.max():.1e}")
+    print(f"largest relative difference of the {excited.sum()} excited modes from the C++ program: {difference.max():.1e}")
     if not difference.max() < 1e-9:
         sys.exit("the two programs did not do the same work")
 

@@ -61,19 +61,6 @@ BinRange SpectralPeakFunction::band_about(double omega) const {
   return bins_between(grid_, omega * (1.0 - half_band_), omega * (1.0 + half_band_));
 }
 
-BinRange SpectralPeakFunction::reachable() const {
-  std::vector<double> lower, upper;
-  for (const Variable& variable : parameters_.variables()) {
-    lower.push_back(variable.lower);
-    upper.push_back(variable.upper);
-  }
-  // Every ω_n rises with every parameter that it depends on.
-  const std::vector<double> lowest = parameters_.model(lower).basis.omega;
-  const std::vector<double> highest = parameters_.model(upper).basis.omega;
-  return {band_about(*std::min_element(lowest.begin(), lowest.end())).first,
-          band_about(*std::max_element(highest.begin(), highest.end())).last};
-}
-
 std::unique_ptr<CoordinateScanner> SpectralPeakFunction::scanner(std::span<const double> x) const {
   return std::make_unique<SpectralPeakScanner>(*this, x);
 }

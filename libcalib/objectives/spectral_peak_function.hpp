@@ -25,8 +25,6 @@ class SpectralPeakFunction final : public ObjectiveFunction {
   const FrequencyGrid& grid() const { return grid_; }
   /// Bins within ω (1 ± half_band) [rad/s].
   BinRange band_about(double omega) const;
-  /// Bins that any band can reach within the parameters' bounds.
-  BinRange reachable() const;
   /// |R_r| Δω/f_s of all bins; empty where the reaction is missing. Index: End.
   const std::array<std::vector<double>, 2>& magnitudes() const { return magnitudes_; }
   /// Bins from the lowest to the highest band of the value, and how many bands hold each.

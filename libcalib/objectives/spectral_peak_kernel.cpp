@@ -34,24 +34,6 @@ HWY_INLINE ComplexVector Denominator(double omega_n, double zeta, Vector omega) 
           hn::Mul(omega, hn::Set(d, 2.0 * zeta * omega_n))};
 }
 
-// Calls body(offset) at every vector of the bins; the tail goes through a call with `count` <
-// lanes.
-template <typename Body>
-HWY_INLINE void ForVectors(std::size_t bins, Body body) {
-  const std::size_t lanes = hn::Lanes(Tag());
-  std::size_t i = 0;
-  for (; i + lanes <= bins; i += lanes) body(i, lanes);
-  if (i < bins) body(i, bins - i);
-}
-
-HWY_INLINE Vector LoadPart(const double* from, std::size_t count) {
-  const Tag d;
-  if (count == hn::Lanes(d)) return hn::LoadU(d, from);
-  HWY_ALIGN double part[kBandLanes] = {};
-  for (std::size_t j = 0; j < count; ++j) part[j] = from[j];
-  return hn::Load(d, part);
-}
-
 HWY_INLINE void StorePart(Vector values, double* to, std::size_t count) {
   const Tag d;
   if (count == hn::Lanes(d)) {
@@ -63,85 +45,63 @@ HWY_INLINE void StorePart(Vector values, double* to, std::size_t count) {
   for (std::size_t j = 0; j < count; ++j) to[j] = part[j];
 }
 
-// sums_r += a_r z for both ends.
-HWY_INLINE void Accumulate(const TwoSidedTerm& term, const ComplexVector& z,
-                           const TwoSidedSums& sums, std::size_t i, std::size_t count) {
+/// Sums of a vector of bins at both ends.
+struct SumPair {
+  ComplexVector left, right;
+};
+
+HWY_INLINE void AddTerm(const TwoSidedTerm& term, const ComplexVector& denominator, Vector inverse,
+                        SumPair& sums) {
   const Tag d;
-  for (std::size_t r = 0; r < 2; ++r) {
-    const auto a = hn::Set(d, term.residue[r]);
-    StorePart(hn::MulAdd(a, z.real, LoadPart(sums.real[r] + i, count)), sums.real[r] + i, count);
-    StorePart(hn::MulAdd(a, z.imag, LoadPart(sums.imag[r] + i, count)), sums.imag[r] + i, count);
-  }
+  const auto real = hn::Mul(denominator.real, inverse);
+  const auto imag = hn::Mul(denominator.imag, inverse);
+  const auto left = hn::Set(d, term.residue[0]);
+  const auto right = hn::Set(d, term.residue[1]);
+  sums.left.real = hn::MulAdd(left, real, sums.left.real);
+  sums.left.imag = hn::NegMulAdd(left, imag, sums.left.imag);
+  sums.right.real = hn::MulAdd(right, real, sums.right.real);
+  sums.right.imag = hn::NegMulAdd(right, imag, sums.right.imag);
+}
+
+// 1/x_0 … 1/x_3 by one division. |D|² lies within 1e-12 to 1e30 for frequencies in the range of
+// numbers a string can have, so that no product of four leaves the range of doubles.
+HWY_INLINE void AddFourTerms(const TwoSidedTerm* terms, Vector omega, SumPair& sums) {
+  const Tag d;
+  const ComplexVector d0 = Denominator(terms[0].omega, terms[0].zeta, omega);
+  const ComplexVector d1 = Denominator(terms[1].omega, terms[1].zeta, omega);
+  const ComplexVector d2 = Denominator(terms[2].omega, terms[2].zeta, omega);
+  const ComplexVector d3 = Denominator(terms[3].omega, terms[3].zeta, omega);
+  const auto x0 = SquaredMagnitude(d0), x1 = SquaredMagnitude(d1);
+  const auto x2 = SquaredMagnitude(d2), x3 = SquaredMagnitude(d3);
+  const auto low = hn::Mul(x0, x1), high = hn::Mul(x2, x3);
+  const auto inverse = hn::Div(hn::Set(d, 1.0), hn::Mul(low, high));
+  const auto inverse_low = hn::Mul(inverse, high), inverse_high = hn::Mul(inverse, low);
+  AddTerm(terms[0], d0, hn::Mul(inverse_low, x1), sums);
+  AddTerm(terms[1], d1, hn::Mul(inverse_low, x0), sums);
+  AddTerm(terms[2], d2, hn::Mul(inverse_high, x3), sums);
+  AddTerm(terms[3], d3, hn::Mul(inverse_high, x2), sums);
 }
 
 void AddUpTerms(std::span<const TwoSidedTerm> terms, double spacing, const TwoSidedSums& sums) {
   const Tag d;
-  ForVectors(sums.bins, [&](std::size_t i, std::size_t count) HWY_ATTR {
+  const std::size_t lanes = hn::Lanes(d);
+  for (std::size_t i = 0; i < sums.bins; i += lanes) {
     const auto omega = OmegaOf(sums.first_bin + i, spacing);
-    ComplexVector left{hn::Zero(d), hn::Zero(d)};
-    ComplexVector right = left;
-    for (const TwoSidedTerm& term : terms) {
-      const ComplexVector denominator = Denominator(term.omega, term.zeta, omega);
+    const auto zero = hn::Zero(d);
+    SumPair total{{zero, zero}, {zero, zero}};
+    std::size_t n = 0;
+    for (; n + 4 <= terms.size(); n += 4) AddFourTerms(&terms[n], omega, total);
+    for (; n < terms.size(); ++n) {
+      const ComplexVector denominator = Denominator(terms[n].omega, terms[n].zeta, omega);
       const auto inverse = hn::Div(hn::Set(d, 1.0), SquaredMagnitude(denominator));
-      const auto real = hn::Mul(denominator.real, inverse);
-      const auto imag = hn::Mul(denominator.imag, inverse);
-      left.real = hn::MulAdd(hn::Set(d, term.residue[0]), real, left.real);
-      left.imag = hn::NegMulAdd(hn::Set(d, term.residue[0]), imag, left.imag);
-      right.real = hn::MulAdd(hn::Set(d, term.residue[1]), real, right.real);
-      right.imag = hn::NegMulAdd(hn::Set(d, term.residue[1]), imag, right.imag);
+      AddTerm(terms[n], denominator, inverse, total);
     }
-    StorePart(left.real, sums.real[0] + i, count);
-    StorePart(left.imag, sums.imag[0] + i, count);
-    StorePart(right.real, sums.real[1] + i, count);
-    StorePart(right.imag, sums.imag[1] + i, count);
-  });
-}
-
-// 1/D_new − 1/D_old = (D_old − D_new)/(D_old D_new).
-void MoveTerm(const TwoSidedTerm& from, double new_omega, double spacing,
-              const TwoSidedSums& sums) {
-  const Tag d;
-  const double step = from.omega - new_omega;
-  const auto real_step = hn::Set(d, step * (from.omega + new_omega));
-  const auto imag_slope = hn::Set(d, 2.0 * from.zeta * step);
-  ForVectors(sums.bins, [&](std::size_t i, std::size_t count) HWY_ATTR {
-    const auto omega = OmegaOf(sums.first_bin + i, spacing);
-    const ComplexVector old_d = Denominator(from.omega, from.zeta, omega);
-    const ComplexVector new_d = Denominator(new_omega, from.zeta, omega);
-    const ComplexVector product{
-        hn::NegMulAdd(old_d.imag, new_d.imag, hn::Mul(old_d.real, new_d.real)),
-        hn::MulAdd(old_d.real, new_d.imag, hn::Mul(old_d.imag, new_d.real))};
-    const auto imag_step = hn::Mul(imag_slope, omega);
-    const auto inverse = hn::Div(hn::Set(d, 1.0), SquaredMagnitude(product));
-    const ComplexVector change{
-        hn::Mul(hn::MulAdd(real_step, product.real, hn::Mul(imag_step, product.imag)), inverse),
-        hn::Mul(hn::NegMulAdd(real_step, product.imag, hn::Mul(imag_step, product.real)), inverse)};
-    Accumulate(from, change, sums, i, count);
-  });
-}
-
-void LeaveOutTerm(const TwoSidedTerm& term, double spacing, const TwoSidedSums& sums,
-                  const TwoSidedSums& rest) {
-  const Tag d;
-  const std::size_t shift = rest.first_bin - sums.first_bin;
-  const std::size_t padded = (rest.bins + kBandLanes - 1) / kBandLanes * kBandLanes;
-  for (std::size_t r = 0; r < 2; ++r) {
-    for (std::size_t i = rest.bins; i < padded; ++i) rest.real[r][i] = rest.imag[r][i] = 0.0;
+    const std::size_t count = HWY_MIN(lanes, sums.bins - i);
+    StorePart(total.left.real, sums.real[0] + i, count);
+    StorePart(total.left.imag, sums.imag[0] + i, count);
+    StorePart(total.right.real, sums.real[1] + i, count);
+    StorePart(total.right.imag, sums.imag[1] + i, count);
   }
-  ForVectors(rest.bins, [&](std::size_t i, std::size_t count) HWY_ATTR {
-    const ComplexVector denominator =
-        Denominator(term.omega, term.zeta, OmegaOf(rest.first_bin + i, spacing));
-    const auto inverse = hn::Div(hn::Set(d, 1.0), SquaredMagnitude(denominator));
-    const auto real = hn::Mul(denominator.real, inverse);
-    const auto imag = hn::Mul(denominator.imag, inverse);
-    for (std::size_t r = 0; r < 2; ++r) {
-      const auto a = hn::Set(d, term.residue[r]);
-      const auto total_real = LoadPart(sums.real[r] + shift + i, count);
-      const auto total_imag = LoadPart(sums.imag[r] + shift + i, count);
-      StorePart(hn::NegMulAdd(a, real, total_real), rest.real[r] + i, count);
-      StorePart(hn::MulAdd(a, imag, total_imag), rest.imag[r] + i, count);
-    }
-  });
 }
 
 // |rest_r D + a_r|².
@@ -157,19 +117,47 @@ HWY_INLINE Vector NumeratorPower(const CandidateBand& band, std::size_t r, std::
   return SquaredMagnitude(sum);
 }
 
-// Both quotients |D|²/n_1 and |D|²/n_2 by one division: q = |D|²/(n_1 n_2), q n_2 and q n_1.
+// 1/√x for normal x > 0 within 1e-4.
+HWY_INLINE Vector RoughInverseRoot(Vector x) {
+#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+  return Vector{_mm512_rsqrt14_pd(x.raw)};
+#else
+  // Half the exponent by an integer shift, within 3.5 %, then a cubic step.
+  const Tag d;
+  const hn::RebindToUnsigned<Tag> du;
+  const auto bits = hn::ShiftRight<1>(hn::BitCast(du, x));
+  const auto y = hn::BitCast(d, hn::Sub(hn::Set(du, 0x5FE6EB50C7B537A9ull), bits));
+  const auto r = hn::Mul(x, hn::Mul(y, y));
+  const auto cubic = hn::MulAdd(r, hn::Set(d, 0.375), hn::Set(d, -1.25));
+  return hn::Mul(y, hn::MulAdd(r, cubic, hn::Set(d, 1.875)));
+#endif
+}
+
+// Two steps of Newton's: 1e-4 becomes 1.5e-8 and then less than rounding.
+HWY_INLINE Vector InverseRoot(Vector x) {
+  const Tag d;
+  const auto half = hn::Mul(x, hn::Set(d, 0.5));
+  auto y = RoughInverseRoot(x);
+  y = hn::Mul(y, hn::NegMulAdd(hn::Mul(half, y), y, hn::Set(d, 1.5)));
+  return hn::Mul(y, hn::NegMulAdd(hn::Mul(half, y), y, hn::Set(d, 1.5)));
+}
+
+// |D|/√n_1 by multiplications, as |D|²/√(|D|² n_1), |D|/√n_2 by the hardware's division and root:
+// the two run side by side and take about the same time.
 HWY_INLINE double IntegrateBoth(const CandidateBand& band, double candidate) {
   const Tag d;
   const std::size_t lanes = hn::Lanes(d);
   auto sum = hn::Zero(d);
   for (std::size_t i = 0; i < band.rest.bins; i += lanes) {
     const ComplexVector denominator =
-        Denominator(candidate, band.term.zeta, OmegaOf(band.rest.first_bin + i, band.spacing));
+        Denominator(candidate, band.term.zeta, hn::LoadU(d, band.omega + i));
     const auto left = NumeratorPower(band, 0, i, denominator);
     const auto right = NumeratorPower(band, 1, i, denominator);
-    const auto quotient = hn::Div(SquaredMagnitude(denominator), hn::Mul(left, right));
-    sum = hn::MulAdd(hn::LoadU(d, band.magnitude[0] + i), hn::Sqrt(hn::Mul(quotient, right)), sum);
-    sum = hn::MulAdd(hn::LoadU(d, band.magnitude[1] + i), hn::Sqrt(hn::Mul(quotient, left)), sum);
+    const auto power = SquaredMagnitude(denominator);
+    const auto left_root = hn::Mul(power, InverseRoot(hn::Mul(power, left)));
+    sum = hn::MulAdd(hn::LoadU(d, band.magnitude[0] + i), left_root, sum);
+    const auto right_root = hn::Sqrt(hn::Div(power, right));
+    sum = hn::MulAdd(hn::LoadU(d, band.magnitude[1] + i), right_root, sum);
   }
   return hn::GetLane(hn::SumOfLanes(d, sum));
 }
@@ -180,7 +168,7 @@ HWY_INLINE double IntegrateOne(const CandidateBand& band, std::size_t r, double 
   auto sum = hn::Zero(d);
   for (std::size_t i = 0; i < band.rest.bins; i += lanes) {
     const ComplexVector denominator =
-        Denominator(candidate, band.term.zeta, OmegaOf(band.rest.first_bin + i, band.spacing));
+        Denominator(candidate, band.term.zeta, hn::LoadU(d, band.omega + i));
     const auto quotient =
         hn::Div(SquaredMagnitude(denominator), NumeratorPower(band, r, i, denominator));
     sum = hn::MulAdd(hn::LoadU(d, band.magnitude[r] + i), hn::Sqrt(quotient), sum);
@@ -204,22 +192,10 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace modcal {
 HWY_EXPORT(AddUpTerms);
-HWY_EXPORT(MoveTerm);
-HWY_EXPORT(LeaveOutTerm);
 HWY_EXPORT(IntegrateCandidates);
 
 void add_up_terms(std::span<const TwoSidedTerm> terms, double spacing, const TwoSidedSums& sums) {
   HWY_DYNAMIC_DISPATCH(AddUpTerms)(terms, spacing, sums);
-}
-
-void move_term(const TwoSidedTerm& from, double new_omega, double spacing,
-               const TwoSidedSums& sums) {
-  HWY_DYNAMIC_DISPATCH(MoveTerm)(from, new_omega, spacing, sums);
-}
-
-void leave_out_term(const TwoSidedTerm& term, double spacing, const TwoSidedSums& sums,
-                    const TwoSidedSums& rest) {
-  HWY_DYNAMIC_DISPATCH(LeaveOutTerm)(term, spacing, sums, rest);
 }
 
 void integrate_candidates(const CandidateBand& band, std::span<const double> candidates,

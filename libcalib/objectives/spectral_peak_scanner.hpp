@@ -9,9 +9,10 @@
 
 namespace modcal {
 
-/// Scans of f_n change one term of H_r: the sum of the others is kept, and |F_r| is
-/// |R_r| |D| / |S_r D + a_r|. Candidates are spread over the cores; the bits do not depend on their
-/// number. Other parameters are scanned by evaluations of the whole objective.
+/// Scans of f_n change one term of H_r: with S_r, the sum of the others over the mode's band,
+/// |F_r| is |R_r| |D| / |S_r D + a_r|. Blocks of bins are spread over the cores and added up in
+/// their order; the bits do not depend on the number of cores. Other parameters are scanned by
+/// evaluations of the whole objective.
 class SpectralPeakScanner final : public EvaluatingScanner {
  public:
   SpectralPeakScanner(const SpectralPeakFunction& function, std::span<const double> x);
@@ -20,16 +21,17 @@ class SpectralPeakScanner final : public EvaluatingScanner {
   void refresh() override;
 
  private:
-  CandidateBand prepare_band(const TwoSidedTerm& term);
+  CandidateBand prepare_band(std::size_t mode);
+  void integrate_block(const CandidateBand& band, std::size_t block);
 
   const SpectralPeakFunction& function_;
-  BinRange range_;
   std::vector<TwoSidedTerm> terms_;
-  TwoSidedArrays sums_storage_;
+  std::vector<TwoSidedTerm> others_;  // without the scanned mode
   TwoSidedArrays rest_storage_;
-  TwoSidedSums sums_;
-  std::array<std::vector<double>, 2> band_magnitudes_;
+  std::array<std::vector<double>, 2> magnitudes_;
+  std::vector<double> band_omegas_;
   std::vector<double> omegas_;
+  std::vector<double> partial_;  // blocks × candidates
 };
 
 }  // namespace modcal
