@@ -20,6 +20,9 @@ echo "== the spectral-peak search in NumPy, on the same data"
 /usr/bin/python3 "$here/peers/spectral_peak_search.py" "$out/case.bin" 5
 echo "== growth of the event-driven integrator's time with modes and duration"
 "$build/benchmarks/event_scaling"
+echo "== calibration to the bound in NumPy and SciPy, on the same data"
+"$build/benchmarks/calibration_peer" --write_case="$out/calibration.bin"
+/usr/bin/python3 "$here/peers/joint_likelihood_fit.py" "$out/calibration.bin" 3
 echo "== ensembles over threads"
 "$build/benchmarks/ensemble_benchmark"
 echo "== what skipping saves"
