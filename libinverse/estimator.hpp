@@ -31,6 +31,9 @@ struct Estimate {
   std::string side;   ///< "1", "2", "joint", …: the key of tables
   std::string label;  ///< "from R1 (x = 0)", "from both reactions": for figures and warnings
   InversionResult result;
+  /// f_c averaged over a sample period about every sample, undone below half the rate [N]: what
+  /// sampling the force does not fold back. Empty: the force has nothing above the highest mode.
+  std::vector<double> unaliased_force;
   double largest_transfer = 0.0;  ///< max |H| that the parameter is relative to [N/N]
   /// Standard deviations given the record: force [N], displacement [m], velocity [m/s]; NaN: none.
   double force_deviation = std::numeric_limits<double>::quiet_NaN();

@@ -2,16 +2,13 @@
 
 #include "libinverse/cumulative_periodogram.hpp"
 #include "libinverse/discrepancy.hpp"
-#include "libinverse/estimator.hpp"
 #include "libinverse/evidence.hpp"
 #include "libinverse/fixed_parameter.hpp"
 #include "libinverse/generalized_cross_validation.hpp"
-#include "libinverse/joint/joint_estimator.hpp"
 #include "libinverse/l_curve.hpp"
 #include "libinverse/l_curve_adaptive.hpp"
 #include "libinverse/minimal_product.hpp"
 #include "libinverse/no_regularization.hpp"
-#include "libinverse/one_sided_estimator.hpp"
 #include "libinverse/predictive_risk.hpp"
 #include "libinverse/quasi_optimality.hpp"
 #include "libinverse/robust_cross_validation.hpp"
@@ -22,16 +19,6 @@
 #include "libinverse/wiener.hpp"
 
 namespace modcal {
-
-Registry<Estimator> Estimator::registry() {
-  static constexpr std::array kTable = {
-      entry_of<Estimator, JointEstimator>("joint", "one force from both reactions"),
-      entry_of<Estimator, LinearLimitEstimator>(
-          "linear_limit", "what no linear estimate beats: true spectra known (oracle)"),
-      entry_of<Estimator, OneSidedEstimator>("one_sided", "each reaction gives a force of its own"),
-  };
-  return kTable;
-}
 
 Registry<Regularizer> Regularizer::registry() {
   static constexpr std::array kTable = {

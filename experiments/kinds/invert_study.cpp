@@ -180,12 +180,8 @@ StudyResult invert_study(const InvertOptions& options, const StudyContext& conte
     add_wave_based(observation, model, options.score, context.command, result);
   }
   if (options.has_model_based) {
-    std::vector<double> means;
-    if (observation.truth) {
-      means = mean_force_between_samples(options.observation, context.work.truths);
-    }
     const ModelIdentification by_model =
-        identify_by_model(observation, model, options.model_based, &options.score, means,
+        identify_by_model(observation, model, options.model_based, &options.score,
                           [&] { return context.stop.requested(); });
     add_model_based(observation, by_model, options.score, context.command, result);
     if (options.write_signals) {

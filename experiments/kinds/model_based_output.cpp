@@ -7,30 +7,40 @@
 
 namespace modcal {
 
+namespace {
+
+report::Cell number_or_none(double value) {
+  return std::isnan(value) ? report::Cell() : report::Cell(value);
+}
+
+}  // namespace
+
 report::Table model_score_table(const ModelIdentification& identification,
                                 const std::string& command) {
-  report::Table table{.id = "model_based",
-                      .title = "Model-based estimate",
-                      .caption =
-                          "Sampled: f_c at the samples. Mean: f_c averaged from one sample to "
-                          "the next, which sampling does not alias. Linear: the joint linear "
-                          "estimate that the observer starts from.",
-                      .columns = {{.key = "window"},
-                                  {.key = "R", .name = "R, sampled", .format = "{:.4f}"},
-                                  {.key = "rms", .name = "rms error, sampled"},
-                                  {.key = "R_mean", .name = "R, mean", .format = "{:.4f}"},
-                                  {.key = "rms_mean", .name = "rms error, mean"},
-                                  {.key = "R_linear", .name = "R, linear", .format = "{:.4f}"},
-                                  {.key = "rms_linear", .name = "rms error, linear"}},
-                      .command = command};
+  report::Table table{
+      .id = "model_based",
+      .title = "Model-based estimate",
+      .caption =
+          "R and relative rms error of f_c at the samples; anti-aliased: of what is "
+          "below the highest mode, not folded back by sampling. Linear: the joint "
+          "linear estimate that the observer starts from.",
+      .columns = {{.key = "window"},
+                  {.key = "R", .format = "{:.4f}"},
+                  {.key = "relative_rms_error", .name = "relative rms error"},
+                  {.key = "R_anti_aliased", .name = "R, anti-aliased", .format = "{:.4f}"},
+                  {.key = "R_linear", .name = "R, linear", .format = "{:.4f}"},
+                  {.key = "relative_rms_error_linear", .name = "relative rms error, linear"},
+                  {.key = "R_anti_aliased_linear",
+                   .name = "R, anti-aliased, linear",
+                   .format = "{:.4f}"}},
+      .command = command};
   for (const ModelScore& score : identification.scores) {
-    const auto optional = [&](double WindowScore::*value) {
-      return score.mean ? report::Cell((*score.mean).*value) : report::Cell();
-    };
-    table.rows.push_back({score.window, score.sampled.correlation, score.sampled.relative_rms_error,
-                          optional(&WindowScore::correlation),
-                          optional(&WindowScore::relative_rms_error), score.linear.correlation,
-                          score.linear.relative_rms_error});
+    std::vector<report::Cell> row = {score.window};
+    for (const WindowScore* part : {&score.model, &score.linear}) {
+      row.insert(row.end(),
+                 {part->correlation, part->relative_rms_error, number_or_none(part->anti_aliased)});
+    }
+    table.rows.push_back(std::move(row));
   }
   return table;
 }
@@ -233,10 +243,9 @@ void add_model_based(const Observation& observation, const ModelIdentification& 
   for (const ModelScore& window : identification.scores) {
     result.summary +=
         fmt::format("model  J {:.3f}  window {}: R = {:.4f}, relative rms error {:.4f}", r.misfit,
-                    window.window, window.sampled.correlation, window.sampled.relative_rms_error);
-    if (window.mean) {
-      result.summary += fmt::format(" (between samples {:.4f}, {:.4f})", window.mean->correlation,
-                                    window.mean->relative_rms_error);
+                    window.window, window.model.correlation, window.model.relative_rms_error);
+    if (!std::isnan(window.model.anti_aliased)) {
+      result.summary += fmt::format(", anti-aliased R = {:.4f}", window.model.anti_aliased);
     }
     result.summary += "\n";
   }

@@ -40,6 +40,7 @@ json side_json(const TaskScores& side) {
           {"status", name_of(side.status)},
           {"scores", std::move(scores)},
           {"whole", score_json(side.whole)},
+          {"misfit", number_json(side.misfit)},
           {"warnings", side.warnings}};
 }
 
@@ -50,6 +51,7 @@ TaskScores read_side(const json& value) {
   side.status = read_status(value.at("status").get<std::string>());
   for (const json& score : value.at("scores")) side.scores.push_back(read_score(score));
   side.whole = read_score(value.at("whole"));
+  side.misfit = read_number(value.at("misfit"));
   side.warnings = value.at("warnings").get<std::vector<std::string>>();
   return side;
 }

@@ -1,6 +1,7 @@
 // Outcome of one task of a sweep, and its text in the store.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,8 @@ struct TaskScores {
   ChoiceStatus status = ChoiceStatus::kNotComputed;
   std::vector<WindowScore> scores;
   WindowScore whole;
+  /// Mean square of what the estimate leaves of the data over that of their noise; NaN: not known.
+  double misfit = std::numeric_limits<double>::quiet_NaN();
   std::vector<std::string> warnings;
 };
 

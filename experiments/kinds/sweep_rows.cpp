@@ -20,6 +20,7 @@ bool is_numbered(const std::string& side) { return side == "1" || side == "2"; }
 std::vector<std::string> sides_of(const SweepCell& cell) {
   const std::string estimator(cell.options.inversion.estimator.selected());
   if (estimator == "one_sided") return {"1", "2"};
+  if (estimator == "model_based") return {"model"};
   return {estimator};
 }
 
@@ -31,6 +32,8 @@ void add_draw(const TaskScores& draw, SweepRow& row) {
     row.rms_error.push_back(score.relative_rms_error);
     row.anti_aliased.push_back(score.anti_aliased);
   }
+  row.misfit.push_back(draw.misfit);
+  if (!draw.warnings.empty()) ++row.warned;
   row.whole.push_back(draw.whole.correlation);
   row.whole_rms_error.push_back(draw.whole.relative_rms_error);
   row.whole_anti_aliased.push_back(draw.whole.anti_aliased);

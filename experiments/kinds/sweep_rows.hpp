@@ -31,8 +31,10 @@ struct SweepRow {
   std::vector<double> rms_error;
   std::vector<double> anti_aliased;
   std::vector<double> whole, whole_rms_error, whole_anti_aliased;
+  std::vector<double> misfit;
   std::vector<double> parameter;
   std::size_t stand_ins = 0;  ///< parameters that no rule has chosen
+  std::size_t warned = 0;     ///< draws whose estimate carries a warning
   std::size_t failures = 0;
   double median = 0.0, q10 = 0.0, q90 = 0.0, rms_median = 0.0, parameter_median = 0.0;
   std::optional<double> published_correlation, published_parameter;

@@ -19,8 +19,13 @@ TaskOutcome run_cell(const SweepCell& cell, const StudyContext& context) {
     for (const SideIdentification& side :
          identify(observation, *estimator, recipe, {.force = true}, &options.score)) {
       const ChosenParameter& choice = side.estimate.result.choice;
-      outcome.sides.push_back({side.estimate.side, choice.parameter(), choice.status, side.scores,
-                               side.whole, side.estimate.warnings});
+      TaskScores scores{side.estimate.side, choice.parameter(), choice.status, side.scores,
+                        side.whole};
+      for (const auto& [name, value] : side.estimate.figures) {
+        if (name == "misfit") scores.misfit = value;
+      }
+      scores.warnings = side.estimate.warnings;
+      outcome.sides.push_back(std::move(scores));
     }
   } catch (const InvalidInput& error) {
     outcome.failure = error.what();

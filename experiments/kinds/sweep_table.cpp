@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -104,18 +105,32 @@ report::Table sweep_table(const std::string& name, const std::vector<SweepRow>& 
            {.key = "epsilon_median", .name = "epsilon, median", .unit = "N/N", .format = "{:.3g}"},
            {.key = "paper_R", .name = "R, paper", .format = "{:.2f}"},
            {.key = "paper_epsilon", .name = "epsilon, paper", .unit = "N/N", .format = "{:.3g}"},
+           {.key = "misfit_mean", .name = "misfit J, mean", .format = "{:.3f}"},
            {.key = "stand_ins", .name = "no interior minimum"},
+           {.key = "warned", .name = "draws with a warning"},
            {.key = "failures"}},
       .command = command};
   for (const SweepRow& row : rows) {
-    table.rows.push_back(
-        {row.noise_percent, side_cell(row.side), row.median, row.q10, row.q90, row.rms_median,
-         number_or_none(mean_of(row.correlation)), number_or_none(mean_of(row.rms_error)),
-         number_or_none(mean_of(row.anti_aliased)), number_or_none(mean_of(row.whole)),
-         number_or_none(mean_of(row.whole_rms_error)),
-         number_or_none(mean_of(row.whole_anti_aliased)), row.correlation.size(),
-         row.parameter_median, optional_cell(row.published_correlation),
-         optional_cell(row.published_parameter), row.stand_ins, row.failures});
+    table.rows.push_back({row.noise_percent,
+                          side_cell(row.side),
+                          row.median,
+                          row.q10,
+                          row.q90,
+                          row.rms_median,
+                          number_or_none(mean_of(row.correlation)),
+                          number_or_none(mean_of(row.rms_error)),
+                          number_or_none(mean_of(row.anti_aliased)),
+                          number_or_none(mean_of(row.whole)),
+                          number_or_none(mean_of(row.whole_rms_error)),
+                          number_or_none(mean_of(row.whole_anti_aliased)),
+                          row.correlation.size(),
+                          row.parameter_median,
+                          optional_cell(row.published_correlation),
+                          optional_cell(row.published_parameter),
+                          number_or_none(mean_of(row.misfit)),
+                          row.stand_ins,
+                          row.warned,
+                          row.failures});
   }
   return table;
 }
@@ -158,6 +173,7 @@ report::Figure sweep_figure(const std::string& name, const std::vector<SweepRow>
 std::string series_name(const std::string& side) {
   if (side == "1" || side == "2") return "water level, R" + side;
   if (side == "linear_limit") return "linear limit (oracle Wiener)";
+  if (side == "model") return "model-based";
   return side;
 }
 
@@ -166,7 +182,7 @@ report::Figure comparison_figure(const std::string& name, const std::vector<Swee
                                  const std::string& command) {
   using report::ColorRole;
   static constexpr ColorRole kColors[] = {ColorRole::kFirst, ColorRole::kSecond, ColorRole::kThird,
-                                          ColorRole::kFourth};
+                                          ColorRole::kFourth, ColorRole::kFifth};
   report::Figure figure{.id = name + "_figure",
                         .title = "Correlation of identified and true force against noise",
                         .caption = "Mean with the band from 10 % to 90 % of the draws.",
@@ -227,7 +243,8 @@ report::Table task_table(const std::vector<std::string>& axes, const std::vector
       .id = "tasks", .title = "Tasks", .columns = {{.key = "task"}}, .command = command};
   for (const std::string& axis : axes) table.columns.push_back({.key = axis});
   for (const char* key : {"side", "epsilon", "choice", "window_start", "R", "relative_rms_error",
-                          "R_anti_aliased", "failure"}) {
+                          "R_anti_aliased", "R_whole", "whole_relative_rms_error",
+                          "R_whole_anti_aliased", "misfit", "warnings", "failure"}) {
     table.columns.push_back({.key = key});
   }
   for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -243,10 +260,13 @@ report::Table task_table(const std::vector<std::string>& axes, const std::vector
     for (const TaskScores& side : outcomes[i]->sides) {
       for (const WindowScore& score : side.scores) {
         std::vector<report::Cell> row = head;
-        row.insert(row.end(),
-                   {side_cell(side.side), side.parameter, std::string(name_of(side.status)),
-                    score.start, score.correlation, score.relative_rms_error,
-                    number_or_none(score.anti_aliased), report::Cell()});
+        row.insert(
+            row.end(),
+            {side_cell(side.side), side.parameter, std::string(name_of(side.status)), score.start,
+             score.correlation, score.relative_rms_error, number_or_none(score.anti_aliased),
+             number_or_none(side.whole.correlation), number_or_none(side.whole.relative_rms_error),
+             number_or_none(side.whole.anti_aliased), number_or_none(side.misfit),
+             fmt::format("{}", fmt::join(side.warnings, "; ")), report::Cell()});
         table.rows.push_back(std::move(row));
       }
     }

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "experiments/study/fingerprint.hpp"
+#include "libsim/base/error.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {
@@ -53,6 +54,14 @@ EstimationRecord record_of(const Observation& observation) {
 
 }  // namespace
 
+ScoreReference reference_of(const Observation& observation) {
+  MODCAL_REQUIRE(observation.reference.has_value(), "no true force to score against");
+  return {.truth = *observation.reference,
+          .anti_aliased = observation.anti_aliased,
+          .anti_alias_cut = observation.anti_alias_cut,
+          .fundamental = observation.fundamental};
+}
+
 InversionCache::Prepared prepare_estimator(const AssumedModel& model,
                                            const Observation& observation,
                                            const InversionRecipe& recipe) {
@@ -88,12 +97,9 @@ std::vector<SideIdentification> identify(const Observation& observation,
     side.estimate = std::move(estimate);
     if (score && observation.reference) {
       const Signal force{"f_c", "N", observation.sample_rate, side.estimate.result.force};
-      const ScoreReference reference{.truth = *observation.reference,
-                                     .anti_aliased = observation.anti_aliased,
-                                     .anti_alias_cut = observation.anti_alias_cut,
-                                     .fundamental = observation.fundamental};
-      side.scores = score_windows(force, reference, *score);
-      side.whole = score_whole(force, reference, *score);
+      const ScoreReference reference = reference_of(observation);
+      side.scores = score_windows(force, reference, *score, side.estimate.unaliased_force);
+      side.whole = score_whole(force, reference, *score, side.estimate.unaliased_force);
     }
     sides.push_back(std::move(side));
   }

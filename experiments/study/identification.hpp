@@ -41,6 +41,10 @@ InversionCache::Prepared prepare_estimator(const AssumedModel& model,
                                            const Observation& observation,
                                            const InversionRecipe& recipe);
 
+/// What identified forces of an observation are held against; it must outlive the result. Throws
+/// InvalidInput where the observation has no reference.
+ScoreReference reference_of(const Observation& observation);
+
 /// Inverts the reactions of the observation; `score` null: no scores.
 std::vector<SideIdentification> identify(const Observation& observation,
                                          const PreparedEstimator& estimator,

@@ -56,20 +56,23 @@ WindowScore score(std::span<const double> identified, std::span<const double> sm
   return result;
 }
 
-std::vector<double> smooth_estimate(const Signal& identified, const ScoreReference& reference) {
+std::vector<double> smooth_estimate(const Signal& identified, const ScoreReference& reference,
+                                    std::span<const double> unaliased) {
   if (!reference.anti_aliased) return {};
-  return low_passed(identified.samples, identified.sample_rate, reference.anti_alias_cut);
+  const std::span<const double> samples = unaliased.empty() ? identified.samples : unaliased;
+  return low_passed(samples, identified.sample_rate, reference.anti_alias_cut);
 }
 
 }  // namespace
 
 std::vector<WindowScore> score_windows(const Signal& identified, const ScoreReference& reference,
-                                       const ScoreOptions& options) {
+                                       const ScoreOptions& options,
+                                       std::span<const double> unaliased) {
   const Signal& truth = reference.truth;
   const double rate = truth.sample_rate;
   const auto length =
       static_cast<std::size_t>(std::round(options.periods / reference.fundamental * rate));
-  const std::vector<double> smooth = smooth_estimate(identified, reference);
+  const std::vector<double> smooth = smooth_estimate(identified, reference, unaliased);
   std::vector<WindowScore> scores;
   if (options.windows.empty()) {
     scores.push_back(score(identified.samples, smooth, reference, {0.0, 0, truth.size()}));
@@ -86,7 +89,7 @@ std::vector<WindowScore> score_windows(const Signal& identified, const ScoreRefe
 }
 
 WindowScore score_whole(const Signal& identified, const ScoreReference& reference,
-                        const ScoreOptions& options) {
+                        const ScoreOptions& options, std::span<const double> unaliased) {
   if (options.whole.empty()) return {};
   MODCAL_REQUIRE(options.whole.size() == 2, "the long window has {} ends: start and stop are two",
                  options.whole.size());
@@ -96,7 +99,7 @@ WindowScore score_whole(const Signal& identified, const ScoreReference& referenc
   MODCAL_REQUIRE(first + 2 <= last && last <= truth.size(),
                  "the long window from {:g} s to {:g} s is not inside the record of {:g} s",
                  options.whole[0], options.whole[1], truth.duration());
-  return score(identified.samples, smooth_estimate(identified, reference), reference,
+  return score(identified.samples, smooth_estimate(identified, reference, unaliased), reference,
                {options.whole[0], first, last - first});
 }
 

@@ -25,8 +25,9 @@ struct WindowScore {
   double start = 0.0;                                                    ///< [s]
   double correlation = std::numeric_limits<double>::quiet_NaN();         ///< R of eq. 16
   double relative_rms_error = std::numeric_limits<double>::quiet_NaN();  ///< static parts removed
-  /// R of both forces below the cut, the true one low-passed before it was sampled: one re-sticking
-  /// jump on the wrong side of a sample weighs no more than it lasts.
+  /// R of both forces below the cut, neither folded back by sampling (the true one low-passed
+  /// before it was sampled): one re-sticking jump on the wrong side of a sample weighs no more than
+  /// it lasts.
   double anti_aliased = std::numeric_limits<double>::quiet_NaN();
 };
 
@@ -38,15 +39,17 @@ struct ScoreReference {
   double fundamental = 0.0;                   ///< f₀ [Hz]
 };
 
-/// Scores over every window of `periods`/`fundamental` seconds. Throws InvalidInput where a window
-/// leaves the record.
+/// Scores over every window of `periods`/`fundamental` seconds. `unaliased`: the identified force
+/// where sampling has not folded it back, for the anti-aliased score; empty: the samples, of which
+/// nothing was above half the rate. Throws InvalidInput where a window leaves the record.
 std::vector<WindowScore> score_windows(const Signal& identified, const ScoreReference& reference,
-                                       const ScoreOptions& options);
+                                       const ScoreOptions& options,
+                                       std::span<const double> unaliased = {});
 
 /// Score over the long window; NaN where none is asked for. Throws InvalidInput where it is not two
 /// rising instants inside the record.
 WindowScore score_whole(const Signal& identified, const ScoreReference& reference,
-                        const ScoreOptions& options);
+                        const ScoreOptions& options, std::span<const double> unaliased = {});
 
 /// The part below `cut` [Hz] of a signal, sampled at every `step`-th instant.
 std::vector<double> low_passed(std::span<const double> samples, double sample_rate, double cut,

@@ -6,12 +6,14 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <numbers>
 
 #include "libinverse/model_based/gain_search.hpp"
 #include "libinverse/model_based/innovation_fit.hpp"
 #include "libinverse/model_based/start_values.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/base/task_loop.hpp"
+#include "libsim/signal/fft.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {
@@ -29,6 +31,19 @@ constexpr std::array<std::size_t, 4> kBeam = {0, 1, 3, 4};
 // in the mean of the silent samples.
 constexpr double kRipple = 0.003;
 constexpr double kQuietNoise = 0.015;  // noise over signal below which a narrower gain pays
+
+// Samples of a signal without content above half the rate from its means m_k over [t_k, t_{k+1}]:
+// M = F e^{iωT/2} sin(ωT/2)/(ωT/2).
+std::vector<double> from_means(const std::vector<double>& means) {
+  const RealFft fft(means.size());
+  std::vector<Complex> spectrum = fft.forward(means);
+  for (std::size_t k = 1; k < spectrum.size(); ++k) {
+    const double half =
+        std::numbers::pi * static_cast<double>(k) / static_cast<double>(means.size());
+    spectrum[k] *= std::polar(half / std::sin(half), -half);
+  }
+  return fft.inverse(std::move(spectrum));
+}
 
 class Estimation {
  public:
@@ -166,15 +181,16 @@ class Estimation {
     result.force = std::move(motion.force);
     result.velocity = std::move(motion.velocity);
     result.displacement = std::move(motion.displacement);
-    result.mean_force = std::move(motion.mean_force);
+    result.unaliased_force = from_means(motion.mean_force);
     result.linear_force = std::move(linear.force);
     result.linear_velocity = std::move(linear.velocity);
     result.laws = candidates_;
     result.parameters = parameters;
     result.negated = record_.negated;
     if (record_.negated) {
-      for (auto* signal : {&result.force, &result.velocity, &result.displacement,
-                           &result.mean_force, &result.linear_force, &result.linear_velocity}) {
+      for (auto* signal :
+           {&result.force, &result.velocity, &result.displacement, &result.unaliased_force,
+            &result.linear_force, &result.linear_velocity}) {
         for (double& value : *signal) value = -value;
       }
     }

@@ -43,8 +43,8 @@ struct ModelBasedResult {
   std::vector<double> force;         ///< f_c(t_k) [N], with its static level as far as recovered
   std::vector<double> velocity;      ///< v(x_c, t_k) [m/s]
   std::vector<double> displacement;  ///< y(x_c, t_k) [m]
-  /// Mean of f_c from every sample to the next [N]: what sampling does not alias.
-  std::vector<double> mean_force;
+  /// f_c(t_k) [N] from its means between samples: steps within a sample do not fold back.
+  std::vector<double> unaliased_force;
   std::vector<double> linear_force;         ///< the linear estimate it started from [N]
   std::vector<double> linear_velocity;      ///< and its velocity [m/s]
   observer::ObserverParameters parameters;  ///< in the frame of a bow that moves forward

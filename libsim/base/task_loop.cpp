@@ -1,6 +1,7 @@
 #include "libsim/base/task_loop.hpp"
 
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <atomic>
 #include <exception>
@@ -38,14 +39,17 @@ class FirstFailure {
 void for_each_task(std::size_t count, const std::function<void(std::size_t)>& task,
                    const StopToken& stop) {
   FirstFailure failure(count);
-  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t index) {
+  const auto guarded = [&](std::size_t index) {
     if (stop.requested() || failure.is_before(index)) return;
     try {
       task(index);
     } catch (...) {
       failure.keep(index, std::current_exception());
     }
-  });
+  };
+  // Isolated: a thread that waits for a loop inside a task would otherwise begin another task of
+  // the outer loop, and come back when that one, and all it began, has ended.
+  tbb::this_task_arena::isolate([&] { tbb::parallel_for(std::size_t{0}, count, guarded); });
   stop.throw_if_requested();
   failure.rethrow();
 }

@@ -12,6 +12,9 @@ namespace modcal {
 /// (tbb::global_control), in any order. What task(i) does must depend on i alone; then results that
 /// are kept by i are the same bits for any number of threads.
 ///
+/// A task may run a loop of its own: a thread that waits for it takes part in that loop alone, so
+/// that a task once begun is not put off by others of its list.
+///
 /// Where tasks throw, the exception of the smallest such i is thrown when all tasks before it have
 /// ended: the same one whatever the threads; tasks after it may be left out. Throws Interrupted
 /// where `stop` was requested; tasks that had not begun are left out then.

@@ -72,6 +72,9 @@ TEST_P(Configs, RunsSmall) {
   if (document.root.find("model_based")) {
     apply_assignment(document, "scene.duration=0.06 s", 2);
     apply_assignment(document, "score.windows=[0.04 s]", 3);
+    if (document.root.find("score")->find("whole")) {
+      apply_assignment(document, "score.whole=[0.01 s, 0.057 s]", 6);
+    }
     apply_assignment(document, "model_based.rounds=0", 4);
     apply_assignment(document, "scene.string.damping.ratio=1.5e-2", 5);  // dies out in 0.06 s
   }

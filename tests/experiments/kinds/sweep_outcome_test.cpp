@@ -18,6 +18,7 @@ TEST(SweepOutcome, ComesBackBitForBit) {
                            std::numeric_limits<double>::infinity(),
                            ChoiceStatus::kNoInteriorMinimum,
                            {{0.0, std::nan(""), 1.0}}});
+  outcome.sides[0].misfit = 1.0 + 1e-15;
   const std::string text = outcome_text(outcome);
   EXPECT_EQ(text.find('\n'), std::string::npos);
   const TaskOutcome again = read_outcome(text);
@@ -25,6 +26,8 @@ TEST(SweepOutcome, ComesBackBitForBit) {
   EXPECT_EQ(again.sides[0].side, "1");
   EXPECT_EQ(again.sides[1].side, "joint");
   EXPECT_EQ(again.sides[0].parameter, 0.1);
+  EXPECT_EQ(again.sides[0].misfit, 1.0 + 1e-15);
+  EXPECT_TRUE(std::isnan(again.sides[1].misfit));
   EXPECT_EQ(again.sides[0].scores[0].correlation, 1.0 / 3.0);
   EXPECT_EQ(again.sides[0].scores[0].relative_rms_error, 5e-324);
   EXPECT_TRUE(std::signbit(again.sides[0].scores[1].correlation));

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "libinverse/model_based/observer_estimator.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
 namespace modcal {
@@ -35,6 +38,38 @@ TEST(RunCell, PutsAFailureIntoItsOutcome) {
   const TaskOutcome outcome = run_cell(cell_with(0.0, 0.2), {.work = work});
   EXPECT_FALSE(outcome.failure.empty());
   EXPECT_TRUE(outcome.sides.empty());
+}
+
+// The model-based estimate as one of the sweep's estimators, beside the linear limit of the same
+// draw: 0.1 s at 5 % noise.
+TEST(RunCell, TakesTheModelBasedEstimateForAnEstimator) {
+  SweepCell cell = cell_with(0.05, 0.08);
+  cell.options.observation.truth.scene.duration = 0.1;
+  cell.options.observation.truth.simulator.select("modal_event");
+  cell.options.score.whole = {0.02, 0.095};
+  cell.options.score.oversampling = 4;
+  ModelBasedOptions options;
+  options.substeps = 4;
+  options.rounds = 1;
+  cell.options.inversion.estimator =
+      Choice<Estimator>::of<ObserverEstimator>("model_based", options);
+  SharedWork work;
+  const StudyContext context{.work = work};
+  const TaskOutcome model = run_cell(cell, context);
+  cell.options.inversion.estimator.select("linear_limit");
+  const TaskOutcome limit = run_cell(cell, context);
+  ASSERT_EQ(model.failure, "");
+  ASSERT_EQ(model.sides.size(), 1u);
+  const TaskScores& scores = model.sides[0];
+  EXPECT_EQ(scores.side, "model");
+  // Measured 0.97 against 0.88; a model-based force that is not better is none.
+  EXPECT_GT(scores.whole.correlation, limit.sides[0].whole.correlation + 0.03);
+  EXPECT_GT(scores.whole.anti_aliased, 0.95);
+  EXPECT_LT(scores.whole.relative_rms_error, limit.sides[0].whole.relative_rms_error);
+  EXPECT_NEAR(scores.misfit, 1.0, 0.2);
+  EXPECT_TRUE(std::isnan(limit.sides[0].misfit));
+  const StudyResult table = sum_up_sweep({}, {}, {cell, cell}, {model, limit}, context);
+  EXPECT_NE(table.summary.find("model "), std::string::npos);
 }
 
 TEST(SumUpSweep, CountsWhatFailedAndWhatIsNotRunYet) {

@@ -68,6 +68,26 @@ TEST(ScoreWhole, ComparesTheLongWindowBelowTheCut) {
   EXPECT_THROW(score_whole(identified, reference, {.whole = {0.5, 1.1}}), InvalidInput);
 }
 
+// Where sampling has folded a tone back below the cut, the force before it was sampled counts.
+TEST(ScoreWhole, TakesTheUnaliasedForceWhereThereIsOne) {
+  const Signal truth = sine(0.0, 0.0);
+  Signal identified = truth;
+  for (int i = 0; i < 1000; ++i) {
+    identified.samples[static_cast<std::size_t>(i)] +=
+        std::sin(2.0 * std::numbers::pi * 40.0 * i / 1000.0);
+  }
+  const std::optional<Signal> smooth = truth;
+  const ScoreReference reference{
+      .truth = truth, .anti_aliased = smooth, .anti_alias_cut = 100.0, .fundamental = 10.0};
+  const ScoreOptions options{.windows = {0.1}, .whole = {0.1, 0.9}};
+  EXPECT_NEAR(score_whole(identified, reference, options).anti_aliased, std::sqrt(0.5), 1e-12);
+  const WindowScore whole = score_whole(identified, reference, options, truth.samples);
+  EXPECT_NEAR(whole.anti_aliased, 1.0, 1e-12);
+  EXPECT_NEAR(whole.correlation, std::sqrt(0.5), 1e-12);
+  const auto windows = score_windows(identified, reference, options, truth.samples);
+  EXPECT_NEAR(windows[0].anti_aliased, 1.0, 1e-12);
+}
+
 TEST(LowPassed, KeepsWhatIsBelowTheCutAtEveryStep) {
   const Signal signal = sine(0.4, 1.0);
   const auto kept = low_passed(signal.samples, 1000.0, 50.0, 4);

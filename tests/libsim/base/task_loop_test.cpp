@@ -5,6 +5,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <string>
 #include <thread>
@@ -27,6 +28,25 @@ TEST(ForEachTask, RunsEveryTaskOnce) {
     with_threads(threads, [&] { for_each_task(runs.size(), [&](std::size_t i) { ++runs[i]; }); });
     EXPECT_EQ(std::count(runs.begin(), runs.end(), 1), 1000);
   }
+}
+
+// A thread that waits for the loop inside a task begins no other task of the outer loop.
+TEST(ForEachTask, ATaskWithALoopOfItsOwnIsNotPutOff) {
+  with_threads(4, [] {
+    thread_local int depth = 0;
+    std::atomic<int> deepest{0};
+    for_each_task(32, [&](std::size_t) {
+      ++depth;
+      int seen = deepest;
+      while (depth > seen && !deepest.compare_exchange_weak(seen, depth)) {
+      }
+      for_each_task(8, [](std::size_t i) {
+        std::this_thread::sleep_for(std::chrono::microseconds(i % 2 == 0 ? 300 : 10));
+      });
+      --depth;
+    });
+    EXPECT_EQ(deepest, 1);
+  });
 }
 
 TEST(ForEachTask, ThrowsTheFirstFailureOfTheListWhateverTheThreads) {
