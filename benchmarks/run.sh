@@ -13,13 +13,11 @@ for kernel in simulator inversion spectral_peak; do
     --benchmark_report_aggregates_only=true --benchmark_display_aggregates_only=true 2>/dev/null |
     grep -E '_median|_cv|^Benchmark'
 done
-echo "== growth of the fixed-step schemes with record and modes"
-"$build/benchmarks/simulator_benchmark" --growth
+echo "== growth of the simulators' time with record and modes"
+"$build/benchmarks/simulator_scaling"
 echo "== the spectral-peak search in NumPy, on the same data"
 "$build/benchmarks/spectral_peak_benchmark" --write_case="$out/case.bin"
 /usr/bin/python3 "$here/peers/spectral_peak_search.py" "$out/case.bin" 5
-echo "== growth of the event-driven integrator's time with modes and duration"
-"$build/benchmarks/event_scaling"
 echo "== calibration to the bound in NumPy and SciPy, on the same data"
 "$build/benchmarks/calibration_peer" --write_case="$out/calibration.bin"
 /usr/bin/python3 "$here/peers/joint_likelihood_fit.py" "$out/calibration.bin" 3

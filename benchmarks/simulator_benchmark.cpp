@@ -5,11 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <ctime>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "benchmarks/vector_throughput.hpp"
 #include "libsim/dynamics/simulators/modal_event.hpp"
@@ -97,64 +93,6 @@ double event_floor_ms(const Scene& scene, std::int64_t nodes) {
           static_cast<double>(run.switches.size()) * switch_cost);
 }
 
-// Growth of the cost with the record, 1 to 60 s, and with the modes, 50 to 2000: `--growth` prints
-// the exponents fitted over all sizes.
-struct Growth {
-  std::string what;
-  std::vector<double> size, seconds;
-
-  // Slope of log(seconds) over log(size), least squares.
-  double exponent() const {
-    const auto count = static_cast<double>(size.size());
-    double x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
-    for (std::size_t i = 0; i < size.size(); ++i) {
-      const double a = std::log(size[i]), b = std::log(seconds[i]);
-      x += a / count;
-      y += b / count;
-      xx += a * a / count;
-      xy += a * b / count;
-    }
-    return (xy - x * y) / (xx - x * x);
-  }
-  void print() const {
-    std::printf("%s: size^%.2f;", what.c_str(), exponent());
-    for (std::size_t i = 0; i < size.size(); ++i) {
-      std::printf(" %g: %.3g s;", size[i], seconds[i]);
-    }
-    std::printf("\n");
-  }
-};
-
-// The least of three runs: what else the machine does only adds.
-double processor_seconds(const Simulator& scheme, const Scene& scene) {
-  double least = HUGE_VAL;
-  for (int i = 0; i < 3; ++i) {
-    const std::clock_t start = std::clock();
-    benchmark::DoNotOptimize(scheme.simulate(scene, kRate, OutputRequest::all()).steps);
-    least = std::min(least, static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
-  }
-  return least;
-}
-
-template <typename Scheme>
-void print_growth(const char* name) {
-  const Scheme scheme({.time_step = 1e-6});
-  Growth length{std::string(name) + ", 50 modes, seconds of the record", {}, {}};
-  for (const double duration : {1.0, 4.0, 15.0, 60.0}) {
-    length.size.push_back(duration);
-    length.seconds.push_back(processor_seconds(scheme, scene_with(50, duration)));
-  }
-  length.print();
-  // The contact of 2000 modes is so light that the explicit scheme needs the shorter step.
-  const Scheme finer({.time_step = 2e-7});
-  Growth modes{std::string(name) + ", 4 ms at 0.2 us, modes", {}, {}};
-  for (const std::int64_t count : {50, 100, 200, 500, 1000, 2000}) {
-    modes.size.push_back(static_cast<double>(count));
-    modes.seconds.push_back(processor_seconds(finer, scene_with(count, 0.004)));
-  }
-  modes.print();
-}
-
 // One iteration is one simulated second of the paper's case, all five outputs at 51.2 kHz.
 void event_second(benchmark::State& state) {
   const Scene scene = scene_with(50, 1.0);
@@ -183,23 +121,6 @@ void event_set_up(benchmark::State& state) {
 BENCHMARK(event_set_up)->Arg(50)->Arg(200)->Arg(800)->Unit(benchmark::kMillisecond);
 
 }  // namespace
-
-void print_all_growth() {
-  print_growth<ModalExact>("modal_exact");
-  print_growth<NewmarkExplicit>("newmark_explicit");
-}
-
 }  // namespace modcal
 
-// --growth prints the exponents alone.
-int main(int count, char** arguments) {
-  if (count > 1 && std::string_view(arguments[1]) == "--growth") {
-    modcal::print_all_growth();
-    return 0;
-  }
-  benchmark::Initialize(&count, arguments);
-  if (benchmark::ReportUnrecognizedArguments(count, arguments)) return 1;
-  benchmark::RunSpecifiedBenchmarks();
-  benchmark::Shutdown();
-  return 0;
-}
+BENCHMARK_MAIN();
