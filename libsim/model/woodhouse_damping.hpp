@@ -8,7 +8,7 @@ namespace modcal {
 
 /// Three-term losses of a string,
 ///   1/Q_n = [T (η_F + η_A/ω_n) + EI η_B (nπ/L)²]/[T + EI (nπ/L)²],   ζ_n = 1/(2 Q_n)
-/// (Woodhouse, 2004, "On the synthesis of guitar plucks", eq. 8): internal friction η_F [1], air
+/// (Woodhouse, 2004, "On the synthesis of guitar plucks"): internal friction η_F [1], air
 /// η_A [1/s], bending η_B [1]. With B = π² EI/(T L²) the ratio of the two stiffnesses is B n².
 class WoodhouseDamping final : public DampingLaw {
  public:

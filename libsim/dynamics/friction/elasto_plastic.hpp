@@ -11,8 +11,9 @@ namespace modcal {
 ///   g(v) = F_N [μ_D + (μ_S − μ_D) exp(−(v/v_s)²)]
 /// (Dupont, Hayward, Armstrong and Altpeter, 2002; α = 1: LuGre, Canudas de Wit, Olsson, Åström and
 /// Lischinsky, 1995). In steady sliding f_c = −sgn(v_c) g(v_c). The bristles take the place of the
-/// adherence spring: σ₀ = K_a, σ₁ = C_a, the latter limited to 4 g(v)/|v| for passivity (Barahanov
-/// and Ortega, 2000).
+/// adherence spring: σ₀ = K_a, σ₁ = C_a, the latter limited to 4 g(v)/|v|: then the power that is
+/// neither stored nor given back, σ₀ a z² + σ₁ v² − σ₁ a v z with a = α σ₀|v|/g, is never negative
+/// (on the passivity of the LuGre model: Barahanov and Ortega, 2000).
 class ElastoPlastic final : public FrictionLaw {
  public:
   struct Options {

@@ -59,7 +59,7 @@ struct ThermalSliding {
 ///   g(v) = F_N [μ_D + (μ_S − μ_D) exp(−(v/v_s)²)],
 /// α = 1 at |z| ≥ g/σ₀, 0 below the breakaway deflection and where v_c unloads the bristle, half a
 /// sine wave between; α = 1 throughout makes it the LuGre model. σ₁ is at most 4 g(v)/|v|, the
-/// largest for which the model is passive (Barahanov and Ortega, 2000).
+/// largest for which the model is passive (elasto_plastic.hpp).
 struct BristleFriction {
   double dynamic_coefficient = 0.0, drop = 0.0;  ///< μ_D, μ_S − μ_D [1]
   double stribeck_speed = 0.1;                   ///< v_s [m/s]

@@ -7,7 +7,8 @@ namespace modcal {
 /// Rosin friction: the coefficient follows the temperature of the contact, not the sliding speed,
 ///   f_c = −sgn(v_c) F_N μ(ϑ),  μ(ϑ) = μ_hot + (μ_cold − μ_hot)/(1 + e^((ϑ − ϑ_s)/w)),
 ///   H ϑ' = |f_c v_c| − (G + S |v_c|) ϑ
-/// (Smith and Woodhouse, 2000; Woodhouse, 2003). ϑ [K] is the rise above the surroundings, H [J/K]
+/// (Smith and Woodhouse, 2000, "The tribology of rosin"; Woodhouse, 2003, "Bowed string simulation
+/// using a thermal friction model"). ϑ [K] is the rise above the surroundings, H [J/K]
 /// the heat capacity of the contact, G [W/K] the conduction into string and bow, S |v_c| [W/K] the
 /// heat that leaves with the material rubbed past; the cited work convolves a thermal Green's
 /// function in the place of G, and fits a yield stress to measurements in that of the sigmoid,
