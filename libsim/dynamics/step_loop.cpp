@@ -104,83 +104,82 @@ HWY_INLINE std::size_t GoOn(const Rule& rule, const Weights& weights, std::uint6
   return StickOn<kTiming>(held, weights.held, steps, string, forces);
 }
 
-struct Motion {
-  double velocity = 0.0, displacement = 0.0;
-};
-
 // One step whatever happens in it.
 template <ForceTiming kTiming, typename Modes, typename Rule>
-HWY_INLINE Motion StepAcross(Rule& rule, const StepCoefficients& c, const Weights& weights,
-                             std::uint64_t step, LeadingString<Modes>& string, LastForces& forces) {
-  const double taken = forces.Taken<kTiming>();
+HWY_INLINE void StepAcross(Rule& rule, const StepCoefficients& c, const Weights& weights,
+                           std::uint64_t step, LeadingString<Modes>& string, LastForces& forces) {
+  const double taken = forces.Taken<kTiming>(), newest = forces.newest;
   const double v0 = string.Sum(weights.velocity), y0 = string.Sum(weights.displacement);
-  Motion motion{v0 + c.deferred_response.velocity * taken,
-                y0 + c.deferred_response.displacement * taken};
-  const auto drive = [&](double by) {
-    motion.velocity += c.direct_response.velocity * by;
-    motion.displacement += c.direct_response.displacement * by;
-  };
   double force = 0.0;
   string.modes.Store();
   if constexpr (kTiming == ForceTiming::kImplicit) {
     force = rule.implicit_force(v0, y0, taken, step);
-    drive(force);
   } else {
-    drive(forces.newest);
-    force = rule.explicit_force(motion.velocity, motion.displacement, step);
+    const double v = v0 + c.deferred_response.velocity * taken;
+    const double y = y0 + c.deferred_response.displacement * taken;
+    force = rule.explicit_force(v + c.direct_response.velocity * newest,
+                                y + c.direct_response.displacement * newest, step);
   }
   string.modes.Load();
   string.Advance(taken, weights.For(rule.sticking()));
   forces.Push(force);
-  return motion;
 }
 
-// The reactions of a sampled step without the force that drives it.
-template <typename Modes>
-HWY_INLINE void StartReactions(const SampleTargets& to, std::size_t sample,
-                               const StepCoefficients& c, double taken,
-                               const LeadingString<Modes>& string) {
-  if (to.left_reaction) {
-    to.left_reaction[sample] = string.Sum(SumWeights(c.left)) + c.deferred_response.left * taken;
-  }
-  if (to.right_reaction) {
-    to.right_reaction[sample] = string.Sum(SumWeights(c.right)) + c.deferred_response.right * taken;
-  }
+// The step that is sampled, without the force that drives it: S where it is asked for, and the
+// velocity, which tells whether the motion is finite.
+template <ForceTiming kTiming, typename Modes>
+HWY_INLINE StepCoefficients::Response Observe(const SampleTargets& to, const StepCoefficients& c,
+                                              const LeadingString<Modes>& string,
+                                              const LastForces& forces) {
+  const double taken = forces.Taken<kTiming>();
+  const auto sum = [&](bool wanted, const ModeSum& of, double response) {
+    return wanted ? string.Sum(SumWeights(of)) + response * taken : 0.0;
+  };
+  const StepCoefficients::Response& response = c.deferred_response;
+  return {.velocity = sum(true, c.velocity, response.velocity),
+          .displacement = sum(to.displacement, c.displacement, response.displacement),
+          .left = sum(to.left_reaction, c.left, response.left),
+          .right = sum(to.right_reaction, c.right, response.right)};
 }
 
-HWY_INLINE void FinishSample(const SampleTargets& to, std::size_t sample, const StepCoefficients& c,
-                             const Motion& motion, double driving, double force) {
-  if (to.left_reaction) to.left_reaction[sample] += c.direct_response.left * driving;
-  if (to.right_reaction) to.right_reaction[sample] += c.direct_response.right * driving;
-  if (to.displacement) to.displacement[sample] = motion.displacement;
-  if (to.velocity) to.velocity[sample] = motion.velocity;
+// Stores the sample; false where it is not finite.
+HWY_INLINE bool StoreSample(const SampleTargets& to, std::size_t sample, const StepCoefficients& c,
+                            const StepCoefficients::Response& observed, double driving,
+                            double force) {
+  const StepCoefficients::Response& direct = c.direct_response;
+  const double velocity = observed.velocity + direct.velocity * driving;
+  if (to.left_reaction) to.left_reaction[sample] = observed.left + direct.left * driving;
+  if (to.right_reaction) to.right_reaction[sample] = observed.right + direct.right * driving;
+  if (to.displacement) {
+    to.displacement[sample] = observed.displacement + direct.displacement * driving;
+  }
+  if (to.velocity) to.velocity[sample] = velocity;
   if (to.force) to.force[sample] = force;
+  return std::isfinite(velocity) && std::isfinite(force);
 }
 
 template <ForceTiming kTiming, typename Modes, typename Law>
 LoopCounts Loop(const StepLoop& loop, ContactRule<Law>& rule, StepCoefficients& c) {
-  constexpr bool kImplicit = kTiming == ForceTiming::kImplicit;
   const Weights weights(c);
   LastForces forces{.newest = rule.initial_force()};
   LeadingString<Modes> string{Modes(c)};
   string.base = string.modes.Sum(weights.For(rule.sticking()));
   std::uint64_t step = 0;
   LoopCounts counts;
-  for (std::size_t sample = 1; sample < loop.samples; ++sample) {
-    if (loop.stop.requested()) break;
-    for (std::size_t left = loop.steps_per_sample - 1; left > 0;) {
-      const std::size_t gone = GoOn<kTiming>(rule, weights, step, left, string, forces);
+  for (std::size_t sample = 1; sample < loop.samples && !loop.stop.requested(); ++sample) {
+    StepCoefficients::Response observed;
+    for (std::size_t left = loop.steps_per_sample; left > 0;) {
+      if (left == 1) observed = Observe<kTiming>(loop.targets, c, string, forces);
+      const std::size_t wanted = left == 1 ? 1 : left - 1;
+      const std::size_t gone = GoOn<kTiming>(rule, weights, step, wanted, string, forces);
       step += gone;
       left -= gone;
-      if (left == 0) break;
+      if (gone == wanted) continue;
       StepAcross<kTiming>(rule, c, weights, ++step, string, forces);
       --left;
     }
-    StartReactions(loop.targets, sample, c, forces.Taken<kTiming>(), string);
-    const Motion motion = StepAcross<kTiming>(rule, c, weights, ++step, string, forces);
-    FinishSample(loop.targets, sample, c, motion, kImplicit ? forces.newest : forces.older,
-                 forces.newest);
-    if (!std::isfinite(motion.velocity) || !std::isfinite(forces.newest)) {
+    const double driving = kTiming == ForceTiming::kImplicit ? forces.newest : forces.older;
+    if (!StoreSample(loop.targets, sample, c, observed, driving, forces.newest)) {
       counts.first_bad_sample = sample;
       break;
     }
