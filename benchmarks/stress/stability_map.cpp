@@ -73,12 +73,15 @@ struct Tally {
   std::array<int, 4> count{};
   int resolved = 0;         // right cells whose bound is below kTightBound
   double unbalanced = 0.0;  // worst of those
+  int repeated = 0;    // of the others, those that keep their motion with a quarter of the step
+  int unrepeated = 0;  // and those that do not
 };
-constexpr double kTightBound = 0.01;
+constexpr double kSameMotion = 1e-3;
 
 void print_row(const std::string& axis, const char* simulator, const Tally& tally) {
-  fmt::print("| {} | `{}` | {} | {} | {} | {} | {} | {:.0e} |\n", axis, simulator, tally.count[0],
-             tally.count[1], tally.count[2], tally.count[3], tally.resolved, tally.unbalanced);
+  fmt::print("| {} | `{}` | {} | {} | {} | {} | {} | {:.0e} | {} | {} |\n", axis, simulator,
+             tally.count[0], tally.count[1], tally.count[2], tally.count[3], tally.resolved,
+             tally.unbalanced, tally.repeated, tally.unrepeated);
 }
 
 class Map {
@@ -88,13 +91,14 @@ class Map {
         axes_(fmt::output_file(folder + "/axes.gp")) {
     cells_.print(
         "# panel simulator step_index value_index outcome unbalanced allowed passivity "
-        "reason\n");
+        "distance reason\n");
   }
 
   void run() {
     fmt::print(
         "| varied | simulator | right | refused | reported | wrong | bound < 1 % | worst open "
-        "balance of these |\n|---|---|---|---|---|---|---|---|\n");
+        "balance of these | others: repeat | do not "
+        "|\n|---|---|---|---|---|---|---|---|---|---|\n");
     int panel = 0;
     for (const Axis& axis : axes()) number_panel(axis, panel++);
     for (const NamedAxis& axis : kNamedAxes) named_panel(axis, panel++);
@@ -149,9 +153,9 @@ class Map {
   void cell(const Place& at, const Scene& scene, std::size_t samples, Tally& tally) {
     const CellResult result = run_cell(at.simulator, scene, kSteps[at.step], samples);
     note(result, tally);
-    cells_.print("{} {} {} {} {} {:.1e} {:.1e} {:.2f} {}\n", at.panel, at.simulator, at.step,
+    cells_.print("{} {} {} {} {} {:.1e} {:.1e} {:.2f} {:.1e} {}\n", at.panel, at.simulator, at.step,
                  at.value, static_cast<int>(result.outcome), result.unbalanced, result.allowed,
-                 result.passivity, result.reason);
+                 result.passivity, result.distance, result.reason);
     cells_.flush();
   }
 
@@ -183,9 +187,12 @@ class Map {
     ++tally.count[static_cast<std::size_t>(cell.outcome)];
     wrong_ = wrong_ || cell.outcome == Outcome::kWrong;
     if (cell.outcome == Outcome::kRight) {
-      if (cell.allowed >= kTightBound) return;
-      ++tally.resolved;
-      tally.unbalanced = std::max(tally.unbalanced, cell.unbalanced);
+      if (cell.allowed < kTightBound) {
+        ++tally.resolved;
+        tally.unbalanced = std::max(tally.unbalanced, cell.unbalanced);
+      } else {
+        ++(cell.distance <= kSameMotion ? tally.repeated : tally.unrepeated);
+      }
     } else {
       ++reasons_[without_numbers(cell.reason)];
     }
