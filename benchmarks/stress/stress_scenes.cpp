@@ -1,6 +1,5 @@
 #include "benchmarks/stress/stress_cell.hpp"
 #include "libsim/dynamics/friction/elasto_plastic.hpp"
-#include "libsim/dynamics/gestures/sine_gesture.hpp"
 #include "libsim/dynamics/gestures/table_gesture.hpp"
 #include "libsim/dynamics/initial/pluck.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
@@ -15,13 +14,10 @@ Choice<Gesture> table(double duration, std::vector<double> shares, std::vector<d
       "table", TableGesture::Options{std::move(shares), std::move(factors)});
 }
 
-// Strokes that turn round five times.
+// Strokes that turn round five times. A table: the pieces of a sine depend on the record's length.
 Choice<Gesture> strokes(double duration) {
-  SineGesture::Options options;
-  options.mean = 0.0;
-  options.amplitude = 1.0;
-  options.frequency = 2.5 / duration;
-  return Choice<Gesture>::of<SineGesture>("sine", options);
+  return table(duration, {0.0, 0.1, 0.3, 0.5, 0.7, 0.9, 1.0},
+               {0.0, 1.0, -1.0, 1.0, -1.0, 1.0, 0.0});
 }
 
 Choice<InitialMotion> pluck(double displacement) {
