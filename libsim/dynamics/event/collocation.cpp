@@ -37,6 +37,59 @@ HWY_INLINE void SubtractBack(const double (&a)[kSize][kSize], double (&b)[kSize]
   if constexpr (k > 0) SubtractBack<k - 1>(a, b, x);
 }
 
+// b ← A⁻¹ b of a 2 by 2 block.
+struct Block2 {
+  double inverse[2][2];
+  HWY_INLINE bool Invert(double a, double b, double c, double d) {
+    const double determinant = a * d - b * c, scale = 1.0 / determinant;
+    inverse[0][0] = scale * d;
+    inverse[0][1] = -scale * b;
+    inverse[1][0] = -scale * c;
+    inverse[1][1] = scale * a;
+    return std::abs(determinant) > 1e-12;
+  }
+  HWY_INLINE double First(double x, double y) const {
+    return inverse[0][0] * x + inverse[0][1] * y;
+  }
+  HWY_INLINE double Second(double x, double y) const {
+    return inverse[1][0] * x + inverse[1][1] * y;
+  }
+};
+
+// x ← x − A⁻¹ b; b becomes A⁻¹ b. False where A is singular.
+template <int kSize>
+HWY_INLINE bool NewtonStep(double (&a)[kSize][kSize], double (&b)[kSize], double (&x)[kSize]) {
+  if constexpr (kSize == 4) {
+    // By blocks: two divisions wait for each other instead of four.
+    Block2 upper, lower;
+    bool regular = upper.Invert(a[0][0], a[0][1], a[1][0], a[1][1]);
+    double q[2][2];
+    for (int j = 0; j < 2; ++j) {
+      q[0][j] = upper.First(a[0][2 + j], a[1][2 + j]);
+      q[1][j] = upper.Second(a[0][2 + j], a[1][2 + j]);
+    }
+    const double y0 = upper.First(b[0], b[1]), y1 = upper.Second(b[0], b[1]);
+    double s[2][2], r[2];
+    for (int i = 0; i < 2; ++i) {
+      for (int j = 0; j < 2; ++j) {
+        s[i][j] = a[2 + i][2 + j] - (a[2 + i][0] * q[0][j] + a[2 + i][1] * q[1][j]);
+      }
+      r[i] = b[2 + i] - (a[2 + i][0] * y0 + a[2 + i][1] * y1);
+    }
+    regular &= lower.Invert(s[0][0], s[0][1], s[1][0], s[1][1]);
+    b[2] = lower.First(r[0], r[1]);
+    b[3] = lower.Second(r[0], r[1]);
+    b[0] = y0 - (q[0][0] * b[2] + q[0][1] * b[3]);
+    b[1] = y1 - (q[1][0] * b[2] + q[1][1] * b[3]);
+    for (int i = 0; i < 4; ++i) x[i] -= b[i];
+    return regular;
+  } else {
+    if (!Eliminate<0>(a, b)) return false;
+    SubtractBack<kSize - 1>(a, b, x);
+    return true;
+  }
+}
+
 // The law at the unknown nodes 2…s, below u = 0 continued smoothly.
 template <int kUnknowns>
 struct LawValues {
@@ -128,8 +181,7 @@ bool SolveNodesOf(const Law& law, const NodeMatrix& coupling, const NodeVector& 
         jacobian[i][j] = coupling[i + 1][j + 1] * at.slope[j] + (i == j ? 1.0 : 0.0);
       }
     }
-    if (!Eliminate<0>(jacobian, step)) return false;
-    SubtractBack<kUnknowns - 1>(jacobian, step, speed);
+    if (!NewtonStep(jacobian, step, speed)) return false;
     // The residual that this step leaves is ½ coupling g'' step²; where it is below the tight bound
     // (and the parabola's own remainder with it) the law need not be computed again.
     double bend = 0.0;

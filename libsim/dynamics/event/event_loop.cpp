@@ -311,7 +311,12 @@ class Run {
 
   void store(std::size_t sample, std::size_t count) {
     const auto copy = [&](const Sticking::Block::Row& row, double* to) {
-      if (to) std::copy_n(row.begin(), count, to + sample);
+      if (to == nullptr) return;
+      if (count == Sticking::kBlock) {  // known to the compiler: no call
+        std::copy_n(row.begin(), Sticking::kBlock, to + sample);
+      } else {
+        std::copy_n(row.begin(), count, to + sample);
+      }
     };
     const SampleTargets& to = loop_.targets;
     copy(block_.displacement, to.displacement);

@@ -46,9 +46,9 @@ struct EventLoop {
   /// place of that one, and law and contact.static_limit are those of load 1.
   std::vector<BowKnot> bow;
   AttachRule attach = AttachRule::kLiteral;
-  int nodes = 5;              ///< Lobatto nodes of a sliding step, 2 … 5: order 2(nodes − 1)
+  int nodes = 5;               ///< Lobatto nodes of a sliding step, 2 … 5: order 2(nodes − 1)
   double slope_number = 0.35;  ///< κ, largest |g'| h/m_eff of a sliding step
-  double grid_step = 0.0;     ///< longest step [s]
+  double grid_step = 0.0;      ///< longest step [s]
   std::size_t steps_per_sample = 1;
   std::size_t samples = 0;  ///< samples, that of the start included
   SampleTargets targets;    ///< sample j is taken after j·steps_per_sample grid steps

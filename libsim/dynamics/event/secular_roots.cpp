@@ -66,15 +66,15 @@ SecularRoot first_guess(std::span<const OpenLoopMode> modes, Contact contact, st
   const Complex pole = modes[n].pole;
   const Complex gain = contact.stiffness + contact.damping * pole;
   Complex rest = 1.0;
-  double spacing = std::abs(pole);
+  double square = std::norm(pole);
   for (std::size_t m = 0; m < modes.size(); ++m) {
     if (m == n) continue;
     const Complex from = pole - modes[m].pole;
     rest += gain * modes[m].drive / (from * (pole - std::conj(modes[m].pole)));
-    spacing = std::min(spacing, std::abs(from));
+    square = std::min(square, std::norm(from));
   }
   Complex offset = -gain * modes[n].drive / (Complex(0.0, 2.0 * pole.imag()) * rest);
-  const double size = std::abs(offset);
+  const double size = std::abs(offset), spacing = std::sqrt(square);
   if (size > 0.5 * spacing) offset *= 0.5 * spacing / size;
   return {pole, offset};
 }
@@ -135,7 +135,7 @@ SecularRoot anchored(std::span<const OpenLoopMode> modes, const SecularRoot& roo
   for (const OpenLoopMode& mode : modes) {
     for (const Complex pole : {mode.pole, std::conj(mode.pole)}) {
       const Complex offset = root.minus(pole);
-      if (std::abs(offset) < std::abs(best.offset())) best = SecularRoot(pole, offset);
+      if (std::norm(offset) < std::norm(best.offset())) best = SecularRoot(pole, offset);
     }
   }
   return best;
