@@ -57,3 +57,9 @@ tidy: packages packages-develop
 
 clean:
 	@cmake -E rm -rf build
+
+.PHONY: calibration
+calibration: packages
+	@cmake --preset $(PRESET) >/dev/null
+	@cmake --build --preset $(PRESET) --target calibration_work_precision objective_bias
+	@benchmarks/accuracy/calibration.sh build/$(PRESET) docs/calibration

@@ -2,10 +2,21 @@
 #pragma once
 
 #include <ceres/types.h>
+#include <glog/logging.h>
 
 #include "libcalib/stop_reason.hpp"
 
 namespace modcal {
+
+/// Ceres' solvers write warnings to standard error (restarts of conjugate gradients, rounding) that
+/// the stop reason tells better: switched off for the whole process at the first use.
+inline void silence_ceres() {
+  static const bool once = [] {
+    FLAGS_minloglevel = google::GLOG_FATAL;
+    return true;
+  }();
+  static_cast<void>(once);
+}
 
 /// Why a solver that did not fail has ended: Ceres tells its three kinds of convergence apart in
 /// its message only.

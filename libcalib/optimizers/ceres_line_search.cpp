@@ -91,6 +91,7 @@ CeresLineSearch::CeresLineSearch(const Options& options) : options_(options) {
 }
 
 StopReason CeresLineSearch::search(Evaluator& evaluator) const {
+  silence_ceres();
   UnboundedSearch unbounded(evaluator);
   const ceres::GradientProblem problem(new Function(unbounded));
   EndWithTheSearch end_with_the_search(unbounded);

@@ -74,6 +74,7 @@ CeresOptimizer::CeresOptimizer(const Options& options) : options_(options) {
 }
 
 StopReason CeresOptimizer::search(Evaluator& evaluator) const {
+  silence_ceres();
   ceres::Problem problem;
   std::vector<double> z = evaluator.start();
   problem.AddResidualBlock(new Residuals(evaluator), nullptr, z.data());
