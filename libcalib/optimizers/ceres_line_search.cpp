@@ -104,9 +104,17 @@ StopReason CeresLineSearch::search(Evaluator& evaluator) const {
   settings.logging_type = ceres::SILENT;
   settings.callbacks = {&end_with_the_search};
   std::vector<double> u = evaluator.start();
-  ceres::GradientProblemSolver::Summary summary;
-  ceres::Solve(settings, problem, u.data(), &summary);
-  return reason_of(summary);
+  // Conjugate directions that have lost their conjugacy end in small steps far from the minimum:
+  // as long as a fresh start along the gradient gets on, the search is not over.
+  double previous = std::numeric_limits<double>::infinity();
+  while (true) {
+    ceres::GradientProblemSolver::Summary summary;
+    ceres::Solve(settings, problem, u.data(), &summary);
+    const StopReason reason = reason_of(summary);
+    const bool better = summary.final_cost < previous;
+    if (reason != StopReason::kSmallStep || !better || unbounded.stopped()) return reason;
+    previous = summary.final_cost;
+  }
 }
 
 }  // namespace modcal

@@ -62,8 +62,13 @@ class Rosenbrock final : public LeastSquaresProblem {
 };
 
 /// Powell's (1970) badly scaled function, minimum 0 at (1.098159e-5, 9.106147) (Moré, Garbow and
-/// Hillstrom, 1981, problem 3).
+/// Hillstrom, 1981, problem 3), here with all digits, by Newton's method in 40.
 class PowellBadlyScaled final : public LeastSquaresProblem {
+ public:
+  static constexpr double kX = 1.0981593296998175e-5;
+  static constexpr double kY = 9.106146739866524;
+
+ private:
   std::array<double, 2> residuals(double x, double y) const override {
     return {1e4 * x * y - 1.0, std::exp(-x) + std::exp(-y) - 1.0001};
   }

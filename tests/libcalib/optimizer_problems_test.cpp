@@ -1,0 +1,131 @@
+// The digits that optimizers promise on standard problems with known answers.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "tests/libcalib/any_optimizer.hpp"
+
+namespace modcal {
+namespace {
+
+INSTANTIATE_TEST_SUITE_P(All, AnyOptimizer, testing::ValuesIn(optimizer_cases()),
+                         [](const auto& parameter) { return parameter.param.label; });
+
+/// What is promised in a box ten wide with curvatures of order one.
+double quadratic_digits(Way way) {
+  switch (way) {
+    case Way::kLeastSquares:
+      // The last step of a Gauss–Newton method is below 1e-9 of variables of size 5; what it leaves
+      // is a fraction of it.
+      return 5e-9;
+    case Way::kGradient:
+      // NLopt's searches end with steps of 1e-8 of the box, the others with slopes or steps of
+      // 1e-10; steepest descent leaves a few times its last step.
+      return 1e-7;
+    case Way::kGlobal:
+      return 1e-2;  // the share of the box that thousands of points tell apart
+    default:
+      // Models of values alone, interpolated from points 1e-3 apart, lose half their 16 digits
+      // there: 1e-8/1e-3 in the slope.
+      return 5e-6;
+  }
+}
+
+TEST_P(AnyOptimizer, AVariableMayStartOnItsBound) {
+  if (way() == Way::kSystematic || one_variable()) return;
+  const Quadratic function;
+  const auto on_bound = optimizer().minimize(function, box(5.0, 0.0, -5.0, 5.0), enough());
+  EXPECT_NEAR(on_bound.x[0], 3.0, quadratic_digits(way()));
+  EXPECT_NEAR(on_bound.x[1], -1.0, quadratic_digits(way()));
+}
+
+TEST_P(AnyOptimizer, SolvesTheQuadratic) {
+  if (way() == Way::kSystematic) return;
+  const Quadratic function;
+  const Problem problem(function, box(0.0, 0.0, -5.0, 5.0), one_variable());
+  const auto result = problem.minimize(optimizer(), enough());
+  const double tolerance = quadratic_digits(way());
+  EXPECT_NEAR(result.x[0], 3.0, tolerance);
+  EXPECT_NEAR(one_variable() ? -1.0 : result.x[1], -1.0, tolerance);
+  EXPECT_NE(result.stop, StopReason::kNoProgress);
+}
+
+TEST_P(AnyOptimizer, SolvesRosenbrocksProblem) {
+  if (way() != Way::kLeastSquares && way() != Way::kGradient) return;
+  if (GetParam().label.ends_with("steepest_descent")) return;  // it never gets through the valley
+  const auto result = optimizer().minimize(Rosenbrock(), box(-1.2, 1.0, -2.0, 2.0), {});
+  // Residuals vanish at the optimum: Gauss–Newton steps are quadratic. The least curvature of the
+  // valley is 0.4, so that quasi-Newton steps end at 1e-10/0.4 of slope or sooner by rounding of a
+  // value of 1e-13. CCSAQ and MMA replace the valley by separable functions and creep along it:
+  // they end with steps of 1e-8 that shrink by 1e-3 or less each.
+  const bool separable = GetParam().label.ends_with("CCSAQ") || GetParam().label.ends_with("MMA");
+  const double tolerance = way() == Way::kLeastSquares ? 5e-9 : separable ? 1e-4 : 1e-6;
+  EXPECT_NEAR(result.x[0], 1.0, tolerance);
+  EXPECT_NEAR(result.x[1], 1.0, 2.0 * tolerance);
+}
+
+TEST_P(AnyOptimizer, SolvesPowellsBadlyScaledProblem) {
+  if (way() != Way::kLeastSquares) return;
+  const auto found = optimizer().minimize(
+      PowellBadlyScaled(), {{{"x", "1", 0.0, -1.0, 1.0, 1.0}, {"y", "1", 1.0, 0.0, 20.0, 1.0}}},
+      {});
+  // y to the last step, 1e-9 of its size 9; xy = 1e-4 gives x with the same relative error.
+  EXPECT_NEAR(found.x[0], PowellBadlyScaled::kX, 1e-9 * PowellBadlyScaled::kX);
+  EXPECT_NEAR(found.x[1], PowellBadlyScaled::kY, 1e-9 * PowellBadlyScaled::kY);
+}
+
+TEST_P(AnyOptimizer, SolvesPowellsSingularProblem) {
+  if (way() != Way::kLeastSquares) return;
+  std::vector<Variable> four;
+  for (const double start : {3.0, -1.0, 0.0, 1.0}) four.push_back({"x", "1", start, -9.0, 9.0});
+  const auto found = optimizer().minimize(PowellSingular(), four, {});
+  // Where the Hessian is singular the value is about 5 x⁴ and its slope 20 x³, which passes the
+  // tolerance g of the slope at x = (g/20)^⅓; twice that for its direction.
+  const double slope = optimizer().name() == "gsl" ? 1e-10 : 1e-12;
+  const double x = std::cbrt(slope / 20.0);
+  EXPECT_LE(found.value, 2.0 * 5.0 * std::pow(x, 4));
+  for (const double value : found.x) EXPECT_NEAR(value, 0.0, 2.0 * x);
+}
+
+TEST_P(AnyOptimizer, FitsASumOfDampedSinusoids) {
+  if (way() != Way::kLeastSquares && way() != Way::kGradient) return;
+  if (GetParam().label.ends_with("steepest_descent")) return;
+  const std::vector<Variable> variables = {{"omega_1", "rad/s", 11.7, 10.0, 14.0, 0.5},
+                                           {"d_1", "1/s", 1.0, 0.1, 3.0, 0.5},
+                                           {"omega_2", "rad/s", 19.4, 17.0, 21.0, 0.5},
+                                           {"d_2", "1/s", 1.2, 0.1, 3.0, 0.5}};
+  const auto result = optimizer().minimize(DampedSinusoids(), variables, {});
+  // 200 samples over 2 s: curvatures of 7 and more, slopes and steps as in quadratic_digits().
+  const double tolerance = quadratic_digits(way());
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_NEAR(result.x[i], DampedSinusoids::kTruth[i], tolerance) << variables[i].name;
+  }
+}
+
+TEST_P(AnyOptimizer, FindsBraninsMinimum) {
+  if (way() != Way::kGlobal) return;
+  const auto result = optimizer().minimize(Branin(), branin_box(), {.evaluations = 5000});
+  // Curvatures at the three equal minima are below 60: 1e-2 of the variables is 3e-3 of the value.
+  EXPECT_NEAR(result.value, Branin::kMinimum, 3e-3);
+}
+
+// Slopes that the objective does not give.
+
+TEST_P(AnyOptimizer, FormsMissingSlopesByDifferences) {
+  const bool least_squares = way() == Way::kLeastSquares;
+  if (!least_squares && way() != Way::kGradient) return;
+  const Quadratic quadratic;
+  const Without function(quadratic, {.residuals = least_squares});
+  const auto result = optimizer().minimize(function, box(0.0, 0.0, -5.0, 5.0), {});
+  EXPECT_EQ(result.evaluations, quadratic.calls);
+  EXPECT_GT(result.difference_evaluations, 0);
+  // The slope's error h² f‴/6 + ε f/h vanishes with f where residuals do: that of a quadratic is
+  // rounding over h = 6e-6, 1e-16·8/6e-6 at worst, and less the nearer the minimum is.
+  const double tolerance = quadratic_digits(way());
+  EXPECT_NEAR(result.x[0], 3.0, tolerance);
+  EXPECT_NEAR(result.x[1], -1.0, tolerance);
+}
+
+}  // namespace
+}  // namespace modcal
