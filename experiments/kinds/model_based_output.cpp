@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "libinverse/model_based/friction_curve.hpp"
 
@@ -65,6 +66,12 @@ report::Table model_parameter_table(const ModelIdentification& identification,
   row("adherence damping / critical", p.damping_ratio, "1");
   row("share of the first exponential", p.sliding.weight, "1");
   row("viscous friction", p.sliding.viscous, "N s/m");
+  if (p.sliding.thermal) {
+    row("heating", p.sliding.heating, "1/J");
+    row("cooling", p.sliding.cooling, "1/s");
+    row("heat carried away", p.sliding.carried, "1/m");
+    row("width of softening", p.sliding.width, "1");
+  }
   row("offset at x = 0", sign * p.offset[0], "N");
   row("offset at x = L", sign * p.offset[1], "N");
   row("sensor delay", p.delay, "s");
@@ -73,6 +80,9 @@ report::Table model_parameter_table(const ModelIdentification& identification,
   row("noise at x = 0", r.noise[0], "N");
   row("noise at x = L", r.noise[1], "N");
   row("innovation misfit J", r.misfit, "1");
+  row("its median over blocks", r.steady_misfit, "1");
+  row("of a right model", r.expected_misfit, "1");
+  row("standard deviation of the median", r.misfit_deviation, "1");
   row("static level of the force", r.static_part.level, "N");
   row("its standard deviation from the offsets", r.static_part.deviation, "N");
   row("observer runs", static_cast<double>(r.runs), "1");
@@ -82,29 +92,49 @@ report::Table model_parameter_table(const ModelIdentification& identification,
 report::Table friction_law_table(const ModelIdentification& identification,
                                  const std::string& command) {
   const auto& laws = identification.result.laws;
-  report::Table table{.id = "friction_laws",
-                      .title = "Friction laws",
-                      .caption =
-                          "BIC over the innovations of both reactions, relative to the best "
-                          "supported law. Hyperbolic: F_D + drop/(1 + C u).",
-                      .columns = {{.key = "law"},
-                                  {.key = "bic_difference", .name = "BIC above the best"},
-                                  {.key = "misfit", .name = "J"},
-                                  {.key = "free_parameters"},
-                                  {.key = "dynamic_force", .unit = "N"},
-                                  {.key = "force_drop", .unit = "N"},
-                                  {.key = "decay", .unit = "s/m"}},
-                      .command = command};
+  report::Table table{
+      .id = "friction_laws",
+      .title = "Friction laws",
+      .caption =
+          "BIC over the innovations of both reactions. The first law is named: it has the "
+          "fewest parameters of those that the record does not tell from the least "
+          "BIC (Vuong's z below 3). Hyperbolic: F_D + drop/(1 + C u). Thermal: F_D + "
+          "drop/(1 + exp((T - 1)/width)), T' = heating |f| u - (cooling + carried u) "
+          "T, T in units of the softening temperature.",
+      .columns = {{.key = "law"},
+                  {.key = "bic_difference", .name = "BIC above the least"},
+                  {.key = "distance", .name = "Vuong's z to the least BIC"},
+                  {.key = "misfit", .name = "J"},
+                  {.key = "free_parameters"},
+                  {.key = "dynamic_force", .unit = "N"},
+                  {.key = "force_drop", .unit = "N"},
+                  {.key = "decay", .unit = "s/m"},
+                  {.key = "heating", .unit = "1/J"},
+                  {.key = "cooling", .unit = "1/s"},
+                  {.key = "carried", .unit = "1/m"},
+                  {.key = "width"}},
+      .command = command};
+  double least = std::numeric_limits<double>::infinity();
+  for (const observer::FrictionCandidate& law : laws) least = std::min(least, law.criterion);
   for (const observer::FrictionCandidate& law : laws) {
     const observer::BlendedSliding& sliding = law.parameters.sliding;
-    table.rows.push_back({law.law, law.criterion - laws.front().criterion, law.misfit,
-                          law.free_parameters, sliding.dynamic_force, sliding.force_drop,
-                          sliding.decay});
+    std::vector<report::Cell> row = {
+        law.law,           law.criterion - least, law.distance,
+        law.misfit,        law.free_parameters,   sliding.dynamic_force,
+        sliding.force_drop};
+    if (!sliding.thermal) row.emplace_back(sliding.decay);
+    row.resize(sliding.thermal ? 8 : table.columns.size());
+    if (sliding.thermal) {
+      row.insert(row.end(), {sliding.heating, sliding.cooling, sliding.carried, sliding.width});
+    }
+    table.rows.push_back(std::move(row));
   }
   return table;
 }
 
 namespace {
+
+constexpr double kBand = 1.96;  // 95 % of a normal distribution
 
 report::Series cells_of(const std::vector<double>& velocity, const std::vector<double>& force,
                         double bow_velocity, const char* label, report::ColorRole color) {
@@ -145,7 +175,10 @@ report::Figure friction_figure(const Observation& observation,
       cells_of(r.velocity, r.force, bow, "model-based", report::ColorRole::kFirst));
   double fastest = 0.0;
   for (const double v : r.velocity) fastest = std::max(fastest, sign * (bow - v));
-  curve.series.push_back(law_curve(r.parameters.sliding, fastest));
+  // A thermal law has no one force for a speed.
+  if (!r.parameters.sliding.thermal) {
+    curve.series.push_back(law_curve(r.parameters.sliding, fastest));
+  }
 
   report::Panel loop{
       .title = "Loops", .x = {.label = "v_c", .unit = "m/s"}, .y = {.label = "f_c", .unit = "N"}};
@@ -153,24 +186,30 @@ report::Figure friction_figure(const Observation& observation,
   const std::size_t last = std::min(
       r.force.size(), first + static_cast<std::size_t>(duration * observation.sample_rate) + 1);
   const auto add = [&](const char* label, const std::vector<double>& v,
-                       const std::vector<double>& f, report::ColorRole color) {
-    report::Series series{.label = label, .color = color};
+                       const std::vector<double>& f, const std::vector<double>& deviation,
+                       report::ColorRole color) {
+    report::Series series{.label = label, .style = report::SeriesStyle::kPoints, .color = color};
     for (std::size_t k = first; k < last; ++k) {
       series.x.push_back(v[k] - bow);
       series.y.push_back(f[k]);
+      series.y_low.push_back(f[k] - kBand * deviation[k]);
+      series.y_high.push_back(f[k] + kBand * deviation[k]);
     }
     loop.series.push_back(std::move(series));
   };
-  add("linear", r.linear_velocity, r.linear_force, report::ColorRole::kMuted);
-  add("model-based", r.velocity, r.force, report::ColorRole::kFirst);
-  return {.id = "friction_law",
-          .title = "Friction law",
-          .caption =
-              "Medians of cells of slip speed with the 5 and 95 % quantiles of their samples. "
-              "The linear estimate assumes no law; the model-based one lies on its own.",
-          .columns = 2,
-          .panels = {std::move(curve), std::move(loop)},
-          .command = command};
+  add("linear", r.linear_velocity, r.linear_force, r.linear_deviation, report::ColorRole::kMuted);
+  add("model-based", r.velocity, r.force, r.force_deviation, report::ColorRole::kFirst);
+  return {
+      .id = "friction_law",
+      .title = "Friction law",
+      .caption =
+          "Left: medians of cells of slip speed with the 5 and 95 % quantiles of their samples. "
+          "Right: the bars are 95 % bands under the sensors' noise, what the band limit cuts off "
+          "and a wrong law not counted. The linear estimate assumes no law; the model-based one "
+          "lies on its own.",
+      .columns = 2,
+      .panels = {std::move(curve), std::move(loop)},
+      .command = command};
 }
 
 report::Figure model_force_figure(const Observation& observation,
@@ -215,6 +254,9 @@ void add_model_signals(const Observation& observation, const ModelIdentification
   file.signals.push_back({"f_c_model", "N", observation.sample_rate, r.force});
   file.signals.push_back({"v_model", "m/s", observation.sample_rate, r.velocity});
   file.signals.push_back({"y_model", "m", observation.sample_rate, r.displacement});
+  file.signals.push_back({"f_c_model_deviation", "N", observation.sample_rate, r.force_deviation});
+  file.signals.push_back(
+      {"v_model_deviation", "m/s", observation.sample_rate, r.velocity_deviation});
 }
 
 void add_model_based(const Observation& observation, const ModelIdentification& identification,
@@ -233,8 +275,13 @@ void add_model_based(const Observation& observation, const ModelIdentification& 
   result.blocks.emplace_back(friction_figure(observation, identification, start, length, command));
   if (r.laws.size() > 1) {
     result.blocks.emplace_back(friction_law_table(identification, command));
-    result.summary += fmt::format("model  friction law: {} (BIC {:.3g} below {})\n", r.laws[0].law,
-                                  r.laws[1].criterion - r.laws[0].criterion, r.laws[1].law);
+    result.summary += fmt::format("model  friction law: {}", r.laws[0].law);
+    for (std::size_t i = 1; i < r.laws.size(); ++i) {
+      result.summary += fmt::format("{} {} (BIC {:+.4g}, z {:.2g})", i == 1 ? "; others:" : ",",
+                                    r.laws[i].law, r.laws[i].criterion - r.laws[0].criterion,
+                                    r.laws[i].distance - r.laws[0].distance);
+    }
+    result.summary += "\n";
   }
   if (!identification.scores.empty()) {
     result.blocks.emplace_back(model_score_table(identification, command));

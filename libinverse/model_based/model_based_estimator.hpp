@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,7 +27,9 @@ struct ModelBasedOptions {
   bool gain = false;                ///< frees the gain ratio of the two sensors
   bool contact = false;             ///< frees x_c
   bool frequencies = false;         ///< frees every ω_n
-  double misfit_limit = 1.05;       ///< J above which the result warns
+  /// Steady J above which the result warns; NaN: four standard deviations above what a right model
+  /// leaves.
+  double misfit_limit = std::numeric_limits<double>::quiet_NaN();
   void visit(OptionVisitor& visitor);
 };
 
@@ -47,10 +50,20 @@ struct ModelBasedResult {
   std::vector<double> unaliased_force;
   std::vector<double> linear_force;         ///< the linear estimate it started from [N]
   std::vector<double> linear_velocity;      ///< and its velocity [m/s]
+  std::vector<double> linear_deviation;     ///< of linear_force under the sensors' noise [N]
   observer::ObserverParameters parameters;  ///< in the frame of a bow that moves forward
   bool negated = false;                     ///< the bow moves in the negative direction
   double noise[2] = {};                     ///< estimated standard deviation of R₁, R₂ [N]
   double misfit = 0.0;  ///< J, mean Huber-ed (ν/s)²: 1 where model and noise are right
+  /// Median of J over blocks of 256 samples: bursts in which the observer has lost the string do
+  /// not count. This is what the warning goes by.
+  double steady_misfit = 0.0;
+  double expected_misfit = 1.0;   ///< what a right model leaves under the gains taken
+  double misfit_deviation = 0.0;  ///< standard deviation of steady_misfit over records
+  /// Standard deviation of force [N] and velocity [m/s] at every sample under the sensors' noise
+  /// and what that puts the parameters off by (a measured factor): nothing in it for a wrong law or
+  /// a static level that is off.
+  std::vector<double> force_deviation, velocity_deviation;
   StaticRecovery static_part;
   std::vector<double> gain_share;                 ///< share of blocks served by each listed gain
   std::vector<double> force_noise;                ///< the list of gains, q [N]

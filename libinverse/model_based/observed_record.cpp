@@ -10,7 +10,15 @@
 
 namespace modcal::observer {
 
-double noise_above(std::span<const double> samples, double sample_rate, double lowest) {
+namespace {
+
+// Σ over lags of the squared correlation between bins of a Hann-windowed white spectrum,
+// 1 + 2 (2/3)² + 2 (1/6)².
+constexpr double kHannSpread = 35.0 / 18.0;
+
+}  // namespace
+
+WhiteNoise noise_above(std::span<const double> samples, double sample_rate, double lowest) {
   const std::size_t count = samples.size();
   std::vector<double> windowed(samples.begin(), samples.end());
   remove_mean(windowed);
@@ -33,7 +41,8 @@ double noise_above(std::span<const double> samples, double sample_rate, double l
       lowest, 0.49 * sample_rate, sample_rate, count);
   double power = 0.0;
   for (std::size_t k = first; k < last; ++k) power += std::norm(spectrum[k]);
-  return std::sqrt(power / (static_cast<double>(last - first) * energy));
+  const auto bins = static_cast<double>(last - first);
+  return {std::sqrt(power / (bins * energy)), std::sqrt(kHannSpread / bins)};
 }
 
 std::size_t silent_samples(const ModalBasis& basis, double contact, End end, double sample_rate) {
@@ -68,7 +77,9 @@ ObservedRecord observe_record(const ModalBasis& basis, double contact, double sa
     MODCAL_REQUIRE(deviation > 0.0, "the reaction at {} is constant: nothing moved",
                    r == 0 ? "x = 0" : "x = L");
     record.reaction[r].assign(samples.begin(), samples.end());
-    record.raw_noise[r] = noise_above(samples, sample_rate, 1.22 * top);
+    const WhiteNoise noise = noise_above(samples, sample_rate, 1.22 * top);
+    record.raw_noise[r] = noise.rms;
+    record.noise_deviation[r] = noise.deviation;
     record.noise[r] = std::max(record.raw_noise[r], kNoiseFloor * deviation);
     record.silent[r] =
         silent_samples(basis, contact, r == 0 ? End::kLeft : End::kRight, sample_rate);

@@ -17,10 +17,11 @@ struct ObservedRecord {
   double sample_rate = 0.0;  ///< [Hz]
   /// Reactions z₁, z₂ [N]; both negated where the bow moves in the negative direction.
   std::vector<double> reaction[2];
-  double noise[2] = {};        ///< standard deviation s of a sample's noise, with its floor [N]
-  double raw_noise[2] = {};    ///< the same without floor [N]
-  double offset[2] = {};       ///< mean before the first wave arrives [N]
-  std::size_t silent[2] = {};  ///< samples before the first wave arrives
+  double noise[2] = {};            ///< standard deviation s of a sample's noise, with its floor [N]
+  double raw_noise[2] = {};        ///< the same without floor [N]
+  double noise_deviation[2] = {};  ///< relative standard deviation of raw_noise² as estimated [1]
+  double offset[2] = {};           ///< mean before the first wave arrives [N]
+  std::size_t silent[2] = {};      ///< samples before the first wave arrives
   bool negated = false;
 
   std::size_t samples() const { return reaction[0].size(); }
@@ -30,10 +31,16 @@ struct ObservedRecord {
 /// would hold its own discretization for truth.
 inline constexpr double kNoiseFloor = 0.01;
 
+/// White noise as estimated.
+struct WhiteNoise {
+  double rms = 0.0;        ///< [N]
+  double deviation = 0.0;  ///< relative standard deviation of rms² [1]
+};
+
 /// Standard deviation of white noise [N] from the part of a Hann-windowed spectrum between
 /// `lowest` [Hz], above the signal, and 0.98 of half the sample rate. Throws InvalidInput where
 /// that band holds fewer than 8 bins.
-double noise_above(std::span<const double> samples, double sample_rate, double lowest);
+WhiteNoise noise_above(std::span<const double> samples, double sample_rate, double lowest);
 
 /// Samples before a wave that leaves the contact at t = 0 reaches the end, speed c = 2 L f₁.
 std::size_t silent_samples(const ModalBasis& basis, double contact, End end, double sample_rate);

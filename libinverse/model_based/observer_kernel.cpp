@@ -148,7 +148,9 @@ class Observer {
         elongation_(state.elongation),
         force_(state.force),
         side_(state.side),
-        sticking_(state.sticking) {}
+        sticking_(state.sticking) {
+    law_.temperature = state.temperature;
+  }
 
   void Run(const GainTable& gain, const ObserverSignals& signals, std::size_t first,
            std::size_t last) {
@@ -167,6 +169,7 @@ class Observer {
     state_.force = force_;
     state_.side = side_;
     state_.sticking = sticking_;
+    state_.temperature = law_.temperature;
   }
 
  private:
@@ -209,7 +212,7 @@ class Observer {
     const StepTable::Response direct = t.newer_response, deferred = t.deferred_response;
     const double stiffness = contact_.stiffness, damping = contact_.damping;
     const double held = 1.0 / (1.0 + stiffness * direct.displacement + damping * direct.velocity);
-    const double least = direct.velocity * limit_;
+    double least = direct.velocity * limit_;
     // Copies that no call can reach stay in registers.
     Modes<kVectors> modes = modes_;
     Motion now = now_;
@@ -249,6 +252,7 @@ class Observer {
         now = now_;
         force = force_;
         elongation = elongation_;
+        least = direct.velocity * limit_;
         sums = modes.AddThenTurn(t.propagate, t.newer, -force);
         continue;
       }
@@ -257,6 +261,10 @@ class Observer {
                            free.displacement + direct.displacement * force};
       if (sticking_) elongation += next.displacement - now.displacement - travel;
       now = next;
+      if (law_.thermal) {
+        Warm(t.step, now, force);
+        least = direct.velocity * limit_;
+      }
     }
     modes.TurnThenAdd(t.undo, t.newer, force);
     modes_ = modes;
@@ -316,12 +324,22 @@ class Observer {
       if (attaches) elongation_ = stretch;
       now_ = now;
       force_ = force;
+      if (law_.thermal) Warm(t.step, now_, force_);
     }
+  }
+
+  // The temperature after a step that ends with this motion and force, and what the string sticks
+  // up to from there.
+  HWY_NOINLINE void Warm(double step, const Motion& motion, double force) {
+    const double speed = sticking_ ? 0.0 : std::max(0.0, side_ * (motion.velocity - bow_));
+    law_.warm(step, speed, std::abs(force));
+    limit_ = scale_ * law_.at_rest();
   }
 
   // scale·g(u) at the root u ≥ 0 of u + b scale g(u) = w by Newton's iteration from the last speed.
   static HWY_NOINLINE double SlidingForce(const BlendedSliding& law, double scale, double response,
                                           double w, double last_speed) {
+    if (law.thermal) return scale * law.at_rest();
     const double b = response * scale;
     if (!(w > b * law.at_rest())) return scale * law.at_rest();
     double u = std::max(0.0, last_speed);
@@ -340,7 +358,7 @@ class Observer {
   }
 
   const StringTables& string_;
-  const BlendedSliding law_;
+  BlendedSliding law_;
   const ContactLaw contact_;
   Modes<kVectors> modes_;
   ObserverState& state_;

@@ -33,9 +33,10 @@ struct ContactLaw {
 /// State between two samples.
 struct ObserverState {
   PlanarVector modes;
-  double elongation = 0.0;  ///< y_c of the adherence spring [m]
-  double force = 0.0;       ///< f_c [N]
-  double side = -1.0;       ///< sgn v_c while it slides
+  double elongation = 0.0;   ///< y_c of the adherence spring [m]
+  double force = 0.0;        ///< f_c [N]
+  double side = -1.0;        ///< sgn v_c while it slides
+  double temperature = 0.0;  ///< T of a thermal law [1]
   bool sticking = false;
 
   /// At rest on a string at rest, the bow moving in the positive direction.

@@ -5,6 +5,7 @@
 #include <memory>
 #include <numbers>
 
+#include "libsim/base/task_loop.hpp"
 #include "libsim/signal/fft.hpp"
 #include "libsim/signal/statistics.hpp"
 
@@ -61,6 +62,25 @@ double misfit(const Innovations& innovations) {
   return sum / static_cast<double>(count);
 }
 
+std::vector<double> block_costs(const Innovations& innovations) {
+  const std::size_t samples = innovations.scaled[0].size();
+  std::vector<double> blocks;
+  for (std::size_t first = 0; first + kBlock <= samples; first += kBlock) {
+    double sum = 0.0;
+    for (const auto& scaled : innovations.scaled) {
+      for (std::size_t k = first; k < first + kBlock; ++k) sum += 2.0 * huber(scaled[k]);
+    }
+    blocks.push_back(sum);
+  }
+  return blocks;
+}
+
+double steady_misfit(const Innovations& innovations) {
+  const std::vector<double> blocks = block_costs(innovations);
+  if (blocks.empty()) return misfit(innovations);
+  return quantile(blocks, 0.5) / static_cast<double>(2 * kBlock);
+}
+
 ObserverState PreparedObserver::initial_state() const {
   ObserverState state = ObserverState::at_rest(string_->size());
   state.force = force_scale_[0] * contact_.sliding.at(bow_velocity_[0]).force;
@@ -71,7 +91,7 @@ ObserverSignals PreparedObserver::with_inputs(const ObserverSignals& outputs,
                                               std::size_t first) const {
   ObserverSignals signals = outputs;
   signals.left = (left_.empty() ? z_left_ : left_.data()) + first;
-  signals.right = z_right_ + first;
+  signals.right = (right_.empty() ? z_right_ : right_.data()) + first;
   signals.force_scale = force_scale_.data() + first;
   signals.bow_velocity = bow_velocity_.data() + first;
   return signals;
@@ -94,8 +114,10 @@ ObserverRuns::ObserverRuns(const ObservedRecord& record, std::vector<double> for
   string_ = std::make_shared<const StringTables>(
       make_string_tables(record.basis, record.contact, record.sample_rate, substeps));
   for (const double q : force_noise_) {
-    nominal_.push_back(
-        steady_gain(record.basis, record.contact, record.sample_rate, q, record.noise).gain);
+    SteadyGain gain =
+        steady_gain(record.basis, record.contact, record.sample_rate, q, record.noise);
+    nominal_.push_back(std::move(gain.gain));
+    quiet_misfit_.push_back(gain.quiet_misfit);
   }
   gains_ = std::make_shared<const std::vector<GainTable>>(nominal_);
 }
@@ -190,6 +212,48 @@ Innovations ObserverRuns::innovations(const ObserverParameters& parameters,
                                       const GainSchedule& schedule, std::size_t samples) const {
   Innovations result;
   run_schedule(prepare(parameters), schedule, samples, result, nullptr);
+  return result;
+}
+
+PreparedObserver ObserverRuns::disturbed(const ObserverParameters& parameters,
+                                         const StreamKey& key) const {
+  PreparedObserver observer = prepare(parameters);
+  for (int r = 0; r < 2; ++r) {
+    std::vector<double>& z = r == 0 ? observer.left_ : observer.right_;
+    if (z.empty()) z = record_.reaction[r];
+    std::vector<double> noise(z.size());
+    fill_standard_normal(key.with(r == 0 ? "R1" : "R2"), noise);
+    for (std::size_t k = 0; k < z.size(); ++k) z[k] += record_.raw_noise[r] * noise[k];
+  }
+  return observer;
+}
+
+MotionDeviation ObserverRuns::deviation(const ObserverParameters& parameters,
+                                        const GainSchedule& schedule, std::size_t draws,
+                                        const StreamKey& key) const {
+  const std::size_t samples = record_.samples();
+  Innovations unused;
+  ObserverMotion plain;
+  run_schedule(prepare(parameters), schedule, samples, unused, &plain);
+  std::vector<ObserverMotion> motions(draws);
+  for_each_task(draws, [&](std::size_t i) {
+    Innovations own;
+    run_schedule(disturbed(parameters, key.with(static_cast<std::uint64_t>(i))), schedule, samples,
+                 own, &motions[i]);
+  });
+  MotionDeviation result{std::vector<double>(samples, 0.0), std::vector<double>(samples, 0.0)};
+  const auto rms = [&](std::vector<double> ObserverMotion::*signal,
+                       std::vector<double>& deviation) {
+    for (std::size_t k = 0; k < samples; ++k) {
+      for (const ObserverMotion& motion : motions) {
+        const double change = (motion.*signal)[k] - (plain.*signal)[k];
+        deviation[k] += change * change;
+      }
+      deviation[k] = std::sqrt(deviation[k] / static_cast<double>(draws));
+    }
+  };
+  rms(&ObserverMotion::force, result.force);
+  rms(&ObserverMotion::velocity, result.velocity);
   return result;
 }
 

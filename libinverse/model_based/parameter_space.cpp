@@ -42,6 +42,18 @@ void move(ObserverParameters& p, const FreeParameter& free, double amount) {
     case Coordinate::kViscous:
       p.sliding.viscous += change;
       break;
+    case Coordinate::kHeating:
+      p.sliding.heating *= std::exp(change);
+      break;
+    case Coordinate::kCooling:
+      p.sliding.cooling *= std::exp(change);
+      break;
+    case Coordinate::kCarried:
+      p.sliding.carried *= std::exp(change);
+      break;
+    case Coordinate::kWidth:
+      p.sliding.width *= std::exp(change);
+      break;
     case Coordinate::kForceKnot:
       p.force_knots[free.index] += change;
       break;

@@ -40,6 +40,10 @@ enum class Coordinate {
   kWeight,
   kRatio,
   kViscous,
+  kHeating,
+  kCooling,
+  kCarried,
+  kWidth,
   kForceKnot,
   kVelocityKnot,
   kDelay,
@@ -70,6 +74,11 @@ class ParameterSpace {
   /// The same parameters, counted from θ(x): what is free and how far it may move stays.
   ParameterSpace restarted_at(std::span<const double> x) const;
   void free_also(const FreeParameter& parameter) { free_.push_back(parameter); }
+  /// Fixes what one coordinate moves.
+  void hold(Coordinate coordinate) {
+    std::erase_if(free_,
+                  [coordinate](const FreeParameter& f) { return f.coordinate == coordinate; });
+  }
   ObserverParameters& start() { return start_; }
 
  private:

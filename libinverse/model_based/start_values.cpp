@@ -43,6 +43,25 @@ double most_frequent(const std::vector<double>& values) {
   return low + (static_cast<double>(fullest) + 0.5) * width;
 }
 
+// The weighted noise has the variance s² Σ_j w_j² in every bin, the force that over s² Σ|H|²/s²;
+// the weight's inverse makes it grow with time.
+std::vector<double> noise_deviation(const std::vector<double>& precision, std::size_t count,
+                                    const FrequencyGrid& grid, double top) {
+  double variance = 0.0, power = 0.0;
+  for (std::size_t k = 0; k < grid.bins && grid.omega(k) <= 1.02 * top; ++k) {
+    if (precision[k] > 0.0) variance += bin_multiplicity(k, count) / precision[k];
+  }
+  const auto samples = static_cast<double>(count);
+  for (std::size_t j = 0; j < count; ++j) {
+    power += std::exp(-2.0 * kWeight * static_cast<double>(j) / samples);
+  }
+  std::vector<double> deviation(count, std::sqrt(variance * power) / samples);
+  for (std::size_t j = 0; j < count; ++j) {
+    deviation[j] *= std::exp(kWeight * static_cast<double>(j) / samples);
+  }
+  return deviation;
+}
+
 }  // namespace
 
 LinearEstimate linear_estimate(const ObservedRecord& record) {
@@ -74,7 +93,8 @@ LinearEstimate linear_estimate(const ObservedRecord& record) {
     force[k] = numerator[k] / denominator[k];
     velocity[k] = Complex(grid.sigma, grid.omega(k)) * receptance[k] * force[k];
   }
-  return {unweighted(fft, std::move(force)), unweighted(fft, std::move(velocity))};
+  return {unweighted(fft, std::move(force)), unweighted(fft, std::move(velocity)),
+          noise_deviation(denominator, count, grid, top)};
 }
 
 double bow_direction(const LinearEstimate& estimate) {

@@ -12,6 +12,9 @@ namespace modcal::observer {
 struct LinearEstimate {
   std::vector<double> force;     ///< [N]
   std::vector<double> velocity;  ///< [m/s]
+  /// Standard deviation of force [N] under the sensors' noise; what the band limit cuts off is not
+  /// in it.
+  std::vector<double> force_deviation;
 };
 
 /// Joint estimate on the contour s = 2/T + iω, F = Σ_r H̄_r R_r/s_r² ÷ Σ_r |H_r|²/s_r² up to the

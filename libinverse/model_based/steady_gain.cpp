@@ -67,6 +67,27 @@ RiccatiSolution solve_by_doubling(const MatrixXd& transition, MatrixXd g, Matrix
   return solution;
 }
 
+// X = Σ_k Fᵏ Q (Fᵏ)ᵀ.
+MatrixXd solve_stein(MatrixXd f, MatrixXd q) {
+  constexpr int kMost = 40;
+  for (int i = 0; i < kMost; ++i) {
+    const MatrixXd growth = f * q * f.transpose();
+    q += growth;
+    if (growth.norm() <= 1e-12 * q.norm()) break;
+    f = (f * f).eval();
+  }
+  return q;
+}
+
+// Mean of (H P₀ Hᵀ + R)/R over the reactions for the gain `k`.
+double quiet_misfit_of(const SampledString& s, const MatrixXd& k, const Eigen::Vector2d& variance) {
+  const MatrixXd turned = s.transition * k;
+  const MatrixXd loop = s.transition - turned * s.observation;
+  const MatrixXd p = solve_stein(loop, turned * variance.asDiagonal() * turned.transpose());
+  const Eigen::Vector2d spread = (s.observation * p * s.observation.transpose()).diagonal();
+  return 1.0 + spread.cwiseQuotient(variance).mean();
+}
+
 }  // namespace
 
 SteadyGain steady_gain(const ModalBasis& basis, double contact, double sample_rate,
@@ -93,6 +114,7 @@ SteadyGain steady_gain(const ModalBasis& basis, double contact, double sample_ra
   const MatrixXd k = spread.llt().solve(ph.transpose()).transpose();
 
   SteadyGain result;
+  result.quiet_misfit = quiet_misfit_of(s, k, variance);
   result.doublings = solution.doublings;
   result.converged = solution.converged;
   const MatrixXd corrected = p - k * ph.transpose();

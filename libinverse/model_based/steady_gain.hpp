@@ -17,6 +17,10 @@ struct SteadyGain {
   bool converged = false;
   /// ‖P − right-hand side‖/‖P‖ of the Riccati equation (Frobenius).
   double residual = 0.0;
+  /// Mean over both reactions of the innovations' variance over that of the noise where the model
+  /// is right and no force but the known one acts: (H P₀ Hᵀ + R)/R, P₀ = F P₀ Fᵀ + A K R Kᵀ Aᵀ, F =
+  /// A (1 − K H). What the gain lets in of the noise is all that is above 1.
+  double quiet_misfit = 1.0;
 };
 
 /// force_noise q > 0 [N], noise > 0 [N], sample_rate > 0 [Hz]. Throws InvalidInput otherwise.

@@ -6,6 +6,8 @@
 #include "libinverse/model_based/model_based_estimator.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/dynamics/friction/hyperbolic.hpp"
+#include "libsim/dynamics/friction/stateful_laws.hpp"
+#include "libsim/dynamics/simulators/modal_exact.hpp"
 #include "tests/libinverse/model_based/bowed_record.hpp"
 
 namespace modcal {
@@ -42,10 +44,14 @@ TEST(FrictionCurve, RefusesWhatIsNoPair) {
   EXPECT_THROW(observer::friction_curve(three, three, 0.1, 0), InvalidInput);
 }
 
-ModelBasedResult compare_laws(const Choice<FrictionLaw>& law, double noise) {
-  BowedRecord record = bowed_record(0.15, 0.0);
+ModelBasedResult compare_laws(const Choice<FrictionLaw>& law, double duration, double noise,
+                              std::vector<std::string> laws) {
+  BowedRecord record = bowed_record(duration, 0.0);
   record.scene.friction = law;
-  record.truth = ModalEvent({}).simulate(record.scene, kRecordRate, OutputRequest::all());
+  // The event-driven simulator has no friction with a state.
+  record.truth = law.selected() == "thermal"
+                     ? ModalExact({}).simulate(record.scene, kRecordRate, OutputRequest::all())
+                     : ModalEvent({}).simulate(record.scene, kRecordRate, OutputRequest::all());
   Measurement measurement;
   measurement.noise_level = noise;
   record.left = measure(record.truth.left_reaction, measurement, StreamKey(1).with("R1"));
@@ -53,26 +59,112 @@ ModelBasedResult compare_laws(const Choice<FrictionLaw>& law, double noise) {
   ModelBasedOptions options;
   options.substeps = 4;
   options.rounds = 0;
-  options.laws = {"exponential", "hyperbolic"};
+  options.laws = std::move(laws);
   return ModelBasedEstimator(options).estimate(record.basis, record.scene.bow.position, kRecordRate,
                                                record.left.samples, record.right.samples);
 }
 
 // The round trip: each law is told from the other by the reactions of 0.15 s.
 TEST(FrictionCandidates, TheLawThatMadeTheRecordIsNamed) {
+  const std::vector<std::string> laws = {"exponential", "hyperbolic"};
   const ModelBasedResult exponential =
-      compare_laws(Choice<FrictionLaw>("coulomb_exponential"), 0.02);
+      compare_laws(Choice<FrictionLaw>("coulomb_exponential"), 0.15, 0.02, laws);
   ASSERT_EQ(exponential.laws.size(), 2u);
   EXPECT_EQ(exponential.laws[0].law, "exponential");
   EXPECT_GT(exponential.laws[1].criterion, exponential.laws[0].criterion + 20.0);
   Hyperbolic::Options options;
   options.half_speed = 0.1;
   const ModelBasedResult hyperbolic =
-      compare_laws(Choice<FrictionLaw>::of<Hyperbolic>("hyperbolic", options), 0.02);
+      compare_laws(Choice<FrictionLaw>::of<Hyperbolic>("hyperbolic", options), 0.15, 0.02, laws);
   EXPECT_EQ(hyperbolic.laws[0].law, "hyperbolic");
   EXPECT_GT(hyperbolic.laws[1].criterion, hyperbolic.laws[0].criterion + 20.0);
   // 1/v₀.
   EXPECT_NEAR(hyperbolic.parameters.sliding.decay, 10.0, 2.0);
+}
+
+// 5 % noise, 0.1 s, three kinds of law: a fall with the speed of two shapes, and one with the
+// temperature.
+TEST(FrictionCandidates, EachOfThreeLawsIsNamedAtFivePercentNoise) {
+  Hyperbolic::Options slow;
+  slow.half_speed = 0.1;
+  const std::pair<std::string, Choice<FrictionLaw>> truths[] = {
+      {"exponential", Choice<FrictionLaw>("coulomb_exponential")},
+      {"hyperbolic", Choice<FrictionLaw>::of<Hyperbolic>("hyperbolic", slow)},
+      {"thermal", Choice<FrictionLaw>("thermal")}};
+  for (const auto& [name, truth] : truths) {
+    const ModelBasedResult result =
+        compare_laws(truth, 0.1, 0.05, {"exponential", "hyperbolic", "thermal"});
+    EXPECT_EQ(result.laws[0].law, name);
+    for (std::size_t i = 1; i < 3; ++i) {
+      EXPECT_GT(result.laws[i].criterion, result.laws[0].criterion + 20.0) << name;
+      EXPECT_GT(result.laws[i].distance, observer::kToldApart) << name;
+    }
+  }
+}
+
+observer::FrictionCandidate candidate(std::string law, std::size_t parameters,
+                                      std::vector<double> block_cost) {
+  observer::FrictionCandidate result{.law = std::move(law)};
+  result.free_parameters = parameters;
+  const double count =
+      static_cast<double>(2 * observer::kBlock) * static_cast<double>(block_cost.size());
+  for (const double cost : block_cost) result.misfit += cost / count;
+  result.criterion =
+      count * std::log(result.misfit) + static_cast<double>(parameters) * std::log(count);
+  result.block_cost = std::move(block_cost);
+  return result;
+}
+
+// 40 blocks of 512 innovations. A burst in one of them moves the BIC by more than three parameters
+// cost, and says nothing about the laws; 2 % in every block says all.
+TEST(FrictionCandidates, ABurstNamesNoLaw) {
+  std::vector<double> simple(40), rich(40), better(40);
+  for (std::size_t b = 0; b < 40; ++b) {
+    const double ripple = 10.0 * std::sin(static_cast<double>(b));
+    simple[b] = 512.0 + ripple;
+    rich[b] = 512.0 - ripple;
+    better[b] = 0.96 * 512.0 + ripple;
+  }
+  simple[7] += 400.0;
+  std::vector<observer::FrictionCandidate> laws = {candidate("simple", 7, simple),
+                                                   candidate("rich", 10, rich)};
+  ASSERT_LT(laws[1].criterion, laws[0].criterion - 100.0);
+  observer::rank_friction_laws(laws);
+  EXPECT_EQ(laws[0].law, "simple");
+  EXPECT_LT(laws[0].distance, observer::kToldApart);
+  laws.push_back(candidate("better", 10, better));
+  observer::rank_friction_laws(laws);
+  EXPECT_EQ(laws[0].law, "better");
+}
+
+// The observer's temperature against that of the simulators: the same steady rise, and the same way
+// there to the first order of the step.
+TEST(BlendedSliding, WarmsAsTheThermalLawDoes) {
+  const ThermalSliding law{.hot = 0.2,
+                           .drop = 0.6,
+                           .softening = 20.0,
+                           .softening_width = 6.0,
+                           .capacity = 5e-6,
+                           .conductance = 2e-3,
+                           .carried = 1e-3};
+  const double speed = 0.8, force = 0.4, duration = 5e-4;
+  double previous = 1.0;
+  for (const int steps : {50, 100, 200}) {
+    ThermalSliding exact = law;
+    observer::BlendedSliding own{.dynamic_force = 0.2, .force_drop = 0.6, .thermal = true};
+    own.width = law.softening_width / law.softening;
+    own.heating = 1.0 / (law.capacity * law.softening);
+    own.cooling = law.conductance / law.capacity;
+    own.carried = law.carried / law.capacity;
+    for (int i = 0; i < steps; ++i) own.warm(duration / steps, speed, force);
+    exact.advance(duration, speed, force);
+    const double error = std::abs(own.temperature - exact.rise / law.softening);
+    EXPECT_LT(error, 0.6 * previous);
+    previous = error;
+    // h/2 times the rate 560/s of a rise of at most 1.6.
+    EXPECT_LT(error, 0.5 * duration / steps * 560.0 * 1.6);
+    EXPECT_NEAR(own.at(speed).force, exact.at(speed).force, 0.6 / 1.2 * error);
+  }
 }
 
 TEST(FrictionCandidates, UnknownLawsAreRefused) {

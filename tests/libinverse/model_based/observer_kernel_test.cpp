@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "libinverse/model_based/steady_gain.hpp"
+#include "libsim/dynamics/friction/thermal.hpp"
+#include "libsim/dynamics/simulators/modal_exact.hpp"
 #include "libsim/signal/statistics.hpp"
 #include "tests/libinverse/model_based/bowed_record.hpp"
 
@@ -15,16 +17,32 @@ struct Observed {
   std::vector<double> left_innovation, right_innovation, force, velocity, displacement;
 };
 
-ContactLaw papers_contact(const StringTables& string) {
+BlendedSliding papers_sliding() { return {.dynamic_force = 0.2, .force_drop = 0.2, .decay = 5.0}; }
+
+// Thermal friction with its default numbers.
+BlendedSliding thermal_sliding() {
+  const Thermal::Options law;
+  BlendedSliding sliding{.dynamic_force = law.hot_coefficient,
+                         .force_drop = law.cold_coefficient - law.hot_coefficient,
+                         .thermal = true};
+  sliding.heating = 1.0 / (law.heat_capacity * law.softening_rise);
+  sliding.cooling = law.conductance / law.heat_capacity;
+  sliding.carried = law.carried_heat / law.heat_capacity;
+  sliding.width = law.softening_width / law.softening_rise;
+  return sliding;
+}
+
+ContactLaw contact_with(const BlendedSliding& sliding, const StringTables& string) {
   ContactLaw contact;
-  contact.sliding = {.dynamic_force = 0.2, .force_drop = 0.2, .decay = 5.0};
+  contact.sliding = sliding;
   contact.stiffness = 1e5;
   contact.damping = 2.0 * std::sqrt(contact.stiffness * string.effective_mass);
   return contact;
 }
 
 Observed run(const BowedRecord& record, Substeps substeps, const GainTable* gain,
-             std::size_t samples, std::size_t block) {
+             std::size_t samples, std::size_t block,
+             const BlendedSliding& sliding = papers_sliding()) {
   const StringTables string =
       make_string_tables(record.basis, record.scene.bow.position, kRecordRate, substeps);
   const GainTable none{PlanarVector(string.mode.size()), PlanarVector(string.mode.size())};
@@ -43,7 +61,7 @@ Observed run(const BowedRecord& record, Substeps substeps, const GainTable* gain
                                 out.force.data(),
                                 out.velocity.data(),
                                 out.displacement.data()};
-  const ContactLaw contact = papers_contact(string);
+  const ContactLaw contact = contact_with(sliding, string);
   ObserverState state = ObserverState::at_rest(string.size());
   state.force = contact.sliding.at(bow[0]).force;
   for (std::size_t first = 0; first < samples; first += block) {
@@ -71,6 +89,20 @@ TEST(ObserverKernel, WithoutGainItSimulatesTheScene) {
     EXPECT_LT(error_of(r.displacement, record.truth.displacement, samples), 0.01);
   }
   EXPECT_LT(previous, 2e-3);
+}
+
+// The same with friction that follows the temperature, against the fixed-step simulator: its
+// switches stand on a grid of 0.2 µs, the observer's temperature is of first order.
+TEST(ObserverKernel, WithoutGainItSimulatesThermalFriction) {
+  BowedRecord record = bowed_record(0.012, 0.0);
+  record.scene.friction.select("thermal");
+  ModalExact::Options fine;
+  fine.time_step = 2e-7;
+  record.truth = ModalExact(fine).simulate(record.scene, kRecordRate, OutputRequest::all());
+  const std::size_t samples = 512;
+  const Observed r = run(record, {20, 16}, nullptr, samples, samples, thermal_sliding());
+  EXPECT_LT(error_of(r.velocity, record.truth.velocity, samples), 0.05);
+  EXPECT_GT(correlation(r.force, std::span(record.truth.force.samples).first(samples)), 0.99);
 }
 
 TEST(ObserverKernel, WithTrueParametersItFollowsCleanData) {

@@ -67,6 +67,19 @@ TEST(SteadyGain, IsTheLimitOfTheFilterRecursion) {
     p = a * (p - k * h * p) * a.transpose() + q * q * b * b.transpose();
   }
   const SteadyGain result = steady_gain(basis, kContact, kRecordRate, q, kNoise);
+  // The error's covariance with that gain and no force at work.
+  Eigen::MatrixXd quiet = Eigen::MatrixXd::Zero(2 * n, 2 * n);
+  for (int i = 0; i < 40000; ++i) {
+    quiet = a *
+            ((Eigen::MatrixXd::Identity(2 * n, 2 * n) - k * h) * quiet *
+                 (Eigen::MatrixXd::Identity(2 * n, 2 * n) - k * h).transpose() +
+             k * r * k.transpose()) *
+            a.transpose();
+  }
+  const double excess =
+      0.5 * ((h * quiet * h.transpose()).diagonal().array() / r.diagonal().array()).sum();
+  EXPECT_GT(excess, 1e-3);
+  EXPECT_NEAR(result.quiet_misfit, 1.0 + excess, 1e-6 * excess);
   for (Eigen::Index i = 0; i < n; ++i) {
     const auto m = static_cast<std::size_t>(i);
     const double decay = basis.zeta[m] * basis.omega[m];
