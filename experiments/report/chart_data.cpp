@@ -43,9 +43,10 @@ bool fits_float(std::span<const double> values, double offset) {
 // Collects arrays so that equal ones are written once.
 class ArrayPool {
  public:
-  std::size_t add(const std::vector<double>& values, double offset) {
+  /// `exact`: short arrays keep every bit.
+  std::size_t add(const std::vector<double>& values, double offset, bool exact = true) {
     Json array;
-    if (values.size() <= kShortArray || !fits_float(values, offset)) {
+    if ((exact && values.size() <= kShortArray) || !fits_float(values, offset)) {
       array = {{"t", "f8"}, {"d", bytes_of<double>(values, 0.0)}};
     } else {
       array = {{"t", "f4"}, {"o", offset}, {"d", bytes_of<float>(values, offset)}};
@@ -65,6 +66,12 @@ std::string_view style_name(SeriesStyle style) {
   static constexpr std::array<std::string_view, 4> kNames = {"line", "points", "line_with_points",
                                                              "dotted"};
   return kNames.at(static_cast<std::size_t>(style));
+}
+
+Json tags_json(const Tags& tags) {
+  Json json = Json::object();
+  for (const Tag& tag : tags) json[tag.facet] = tag.values;
+  return json;
 }
 
 std::vector<double> reordered(const std::vector<double>& values,
@@ -98,12 +105,16 @@ Json series_json(const DrawnSeries& drawn, ArrayPool& pool) {
                      [&](std::size_t a, std::size_t b) { return drawn.x[a] < drawn.x[b]; });
   }
   const double offset = drawn.x.empty() ? 0.0 : drawn.x[order.front()];
-  json["x"] = pool.add(reordered(drawn.x, order), offset);
-  json["y"] = pool.add(reordered(drawn.y, order), 0.0);
+  const bool exact = !series.hidden;
+  json["x"] = pool.add(reordered(drawn.x, order), offset, exact);
+  json["y"] = pool.add(reordered(drawn.y, order), 0.0, exact);
   if (!drawn.low.empty()) {
-    json["low"] = pool.add(reordered(drawn.low, order), 0.0);
-    json["high"] = pool.add(reordered(drawn.high, order), 0.0);
+    json["low"] = pool.add(reordered(drawn.low, order), 0.0, exact);
+    json["high"] = pool.add(reordered(drawn.high, order), 0.0, exact);
   }
+  // Whole numbers below 2^24 survive as float32.
+  if (!drawn.tasks.empty()) json["task"] = pool.add(reordered(drawn.tasks, order), 0.0, false);
+  if (!series.tags.empty()) json["tags"] = tags_json(series.tags);
   if (!ascending && series.style != SeriesStyle::kPoints) {
     json["path"] = pool.add(path_through(order), 0.0);
   }
@@ -149,7 +160,7 @@ Json panel_json(const DrawnPanel& drawn, ArrayPool& pool) {
 
 }  // namespace
 
-std::string chart_data_json(std::span<const DrawnFigure> figures) {
+std::string chart_data_json(std::span<const DrawnFigure> figures, const std::string& replay) {
   ArrayPool pool;
   Json list = Json::array();
   for (const DrawnFigure& figure : figures) {
@@ -157,7 +168,8 @@ std::string chart_data_json(std::span<const DrawnFigure> figures) {
     for (const DrawnPanel& panel : figure.panels) panels.push_back(panel_json(panel, pool));
     list.push_back({{"id", figure.source->id}, {"panels", std::move(panels)}});
   }
-  const Json data = {{"arrays", pool.take()}, {"figures", std::move(list)}};
+  Json data = {{"arrays", pool.take()}, {"figures", std::move(list)}};
+  if (!replay.empty()) data["replay"] = replay;
   std::string escaped;
   for (const char c : data.dump(-1, ' ', false, Json::error_handler_t::replace)) {
     if (c == '<') {
@@ -167,6 +179,10 @@ std::string chart_data_json(std::span<const DrawnFigure> figures) {
     }
   }
   return escaped;
+}
+
+std::string tags_text(const Tags& tags) {
+  return tags_json(tags).dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 std::string base64(std::span<const unsigned char> bytes) {

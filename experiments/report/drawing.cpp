@@ -70,7 +70,7 @@ bool inside(double x, const Axis& axis) {
 
 // Samples within the range of x and their neighbours, so that lines run on to the frame.
 DrawnSeries clipped(const Series& series, const Panel& panel, LeftOut& left_out) {
-  DrawnSeries drawn{.source = &series, .x = {}, .y = {}, .low = {}, .high = {}};
+  DrawnSeries drawn{.source = &series, .x = {}, .y = {}, .low = {}, .high = {}, .tasks = {}};
   const std::size_t n = series.x.size();
   const bool has_spread = !series.y_low.empty();
   for (std::size_t i = 0; i < n; ++i) {
@@ -83,6 +83,7 @@ DrawnSeries clipped(const Series& series, const Panel& panel, LeftOut& left_out)
     const double y = drawable(series.y[i], panel.y, left_out);
     drawn.x.push_back(x);
     drawn.y.push_back(y);
+    if (!series.tasks.empty()) drawn.tasks.push_back(static_cast<double>(series.tasks[i]));
     if (!has_spread) continue;
     drawn.low.push_back(drawable_end(series.y_low[i], y, panel.y, left_out));
     drawn.high.push_back(drawable_end(series.y_high[i], y, panel.y, left_out));
@@ -108,7 +109,7 @@ void thin(DrawnSeries& drawn, const Panel& panel, std::size_t columns, LeftOut& 
   if (kept.size() == drawn.x.size()) return;
   left_out.thinned_from += drawn.x.size();
   left_out.thinned_to += kept.size();
-  for (auto* values : {&drawn.x, &drawn.y, &drawn.low, &drawn.high}) {
+  for (auto* values : {&drawn.x, &drawn.y, &drawn.low, &drawn.high, &drawn.tasks}) {
     *values = picked(*values, kept);
   }
 }
@@ -168,6 +169,7 @@ void set_y_window(DrawnPanel& drawn) {
   }
   Extent data;
   for (const DrawnSeries& series : drawn.series) {
+    if (series.source->hidden) continue;
     for (const auto* values : {&series.y, &series.low, &series.high}) {
       for (const double value : *values) data.add(value);
     }
@@ -225,9 +227,11 @@ DrawnFigure draw_figure(const Figure& figure, std::size_t columns) {
   LeftOut left_out;
   for (const Panel& panel : figure.panels) {
     DrawnPanel drawn{.source = &panel, .series = {}};
+    LeftOut not_seen;  // of hidden series: the caption speaks of what is shown
     for (const Series& series : panel.series) {
-      drawn.series.push_back(clipped(series, panel, left_out));
-      thin(drawn.series.back(), panel, columns, left_out);
+      LeftOut& counted = series.hidden ? not_seen : left_out;
+      drawn.series.push_back(clipped(series, panel, counted));
+      thin(drawn.series.back(), panel, columns, counted);
     }
     drawn.x_window = x_window_of(drawn);
     set_y_window(drawn);

@@ -16,6 +16,7 @@ struct DrawnSeries {
   std::vector<double> y = {};    ///< NaN: gap
   std::vector<double> low = {};  ///< empty where the series has no spread
   std::vector<double> high = {};
+  std::vector<double> tasks = {};  ///< empty where no sample has a task
   bool has_values() const;
 };
 

@@ -30,6 +30,10 @@ void check_series(const Series& series, const std::string& figure_id) {
                  "figure \"{}\": series \"{}\" has {} samples, {} lower and {} upper ends of its "
                  "spread; give both ends for every sample or none",
                  figure_id, series.label, n, series.y_low.size(), series.y_high.size());
+  MODCAL_REQUIRE(series.tasks.empty() || series.tasks.size() == n,
+                 "figure \"{}\": series \"{}\" has {} samples and {} task numbers; give as many or "
+                 "none",
+                 figure_id, series.label, n, series.tasks.size());
 }
 
 void check_marker(const Marker& marker, const Panel& panel, const std::string& figure_id) {
@@ -70,14 +74,23 @@ std::string Axis::text() const {
 }
 
 bool has_shared_legend(const Figure& figure) {
-  const auto same = [](const Series& a, const Series& b) {
-    return a.label == b.label && a.style == b.style && a.color == b.color;
+  const auto same = [](const Series* a, const Series* b) {
+    return a->label == b->label && a->style == b->style && a->color == b->color;
   };
+  const std::vector<const Series*> first = shown_series(figure.panels.front());
   return std::all_of(figure.panels.begin(), figure.panels.end(), [&](const Panel& panel) {
-    const auto& first = figure.panels.front().series;
     if (panel.map && figure.panels.size() > 1) return false;
-    return std::equal(panel.series.begin(), panel.series.end(), first.begin(), first.end(), same);
+    const std::vector<const Series*> series = shown_series(panel);
+    return std::equal(series.begin(), series.end(), first.begin(), first.end(), same);
   });
+}
+
+std::vector<const Series*> shown_series(const Panel& panel) {
+  std::vector<const Series*> shown;
+  for (const Series& series : panel.series) {
+    if (!series.hidden) shown.push_back(&series);
+  }
+  return shown;
 }
 
 bool is_file_stem(std::string_view id) {

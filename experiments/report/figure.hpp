@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,7 +12,8 @@
 namespace modcal::report {
 
 /// Meaning of a colour (and of a point's shape): the palette is that of Okabe and Ito (2008), which
-/// colour-blind readers can tell apart; kReference is the ink of the page.
+/// colour-blind readers can tell apart; kReference is the ink of the page. kSeventh to kTwelfth
+/// have the colours of the first six and other shapes: draw their lines dotted.
 enum class ColorRole {
   kReference,
   kFirst,
@@ -21,10 +23,26 @@ enum class ColorRole {
   kFifth,
   kSixth,
   kMuted,
+  kSeventh,
+  kEighth,
+  kNinth,
+  kTenth,
+  kEleventh,
+  kTwelfth,
 };
-constexpr std::size_t kColorRoles = 8;
+constexpr std::size_t kColorRoles = 14;
 
 enum class SeriesStyle { kLine, kPoints, kLineWithPoints, kDotted };
+
+/// What a reader can filter a page by: a facet ("noise") and the values under which something is
+/// shown. A facet that has the value kEverything somewhere offers one value at a time, "all" first;
+/// any other facet can be narrowed to some of its values.
+struct Tag {
+  std::string facet = {};
+  std::vector<std::string> values = {};
+};
+using Tags = std::vector<Tag>;
+inline constexpr std::string_view kEverything = "all";
 
 /// Samples (x_i, y_i) in the units of the panel's axes. A NaN in y is a gap. The line joins the
 /// samples in their order; x need not grow.
@@ -37,6 +55,12 @@ struct Series {
   std::vector<double> y_high = {};
   SeriesStyle style = SeriesStyle::kLine;
   ColorRole color = ColorRole::kFirst;
+  Tags tags = {};
+  /// Only a filter of the page brings it up; the files do not have it.
+  bool hidden = false;
+  /// Number of the task behind each sample, −1: none; empty or as long as x. The page shows the
+  /// command that replays it.
+  std::vector<std::int64_t> tasks = {};
 };
 
 struct Axis {
@@ -104,7 +128,11 @@ struct Figure {
 void check_figure(const Figure& figure);
 
 /// All panels show the same labels in the same styles and colours: one legend serves the figure.
+/// Hidden series do not count.
 bool has_shared_legend(const Figure& figure);
+
+/// The series that are not hidden.
+std::vector<const Series*> shown_series(const Panel& panel);
 
 /// True for [A-Za-z0-9_-]+.
 bool is_file_stem(std::string_view id);

@@ -70,7 +70,8 @@ MapColumns map_columns(const Figure& figure) {
 std::vector<NamedColumn> columns_of(const Figure& figure) {
   std::vector<Block> blocks;
   for (const Panel& panel : figure.panels) {
-    for (const Series& series : panel.series) {
+    for (const Series* shown : shown_series(panel)) {
+      const Series& series = *shown;
       Block& block = block_for(blocks, panel, series);
       const auto add = [&](const char* suffix, const std::vector<double>& values) {
         const Axis heading{.label = name_of(panel, series) + suffix, .unit = panel.y.unit};

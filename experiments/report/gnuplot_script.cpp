@@ -216,7 +216,7 @@ std::string panel_commands(const DrawnFigure& figure, std::size_t place, std::si
   std::vector<std::string> elements;
   if (panel.map) elements = map_elements(*figure.source, *panel.map, index);
   for (const DrawnSeries& series : drawn.series) {
-    if (!series.has_values()) continue;
+    if (!series.has_values() || series.source->hidden) continue;
     const bool titled = !shared || place == 0;
     for (auto& element : elements_of(*figure.source, series, index, titled)) {
       elements.push_back(std::move(element));
@@ -270,7 +270,7 @@ std::string gnuplot_data(const DrawnFigure& figure) {
       text += category_data(*map, i);
     }
     for (const DrawnSeries& drawn : panel.series) {
-      if (!drawn.has_values()) continue;
+      if (!drawn.has_values() || drawn.source->hidden) continue;
       if (!text.empty()) text += "\n\n";
       for (std::size_t i = 0; i < drawn.x.size(); ++i) {
         text += number(drawn.x[i]) + ' ' + number(drawn.y[i]);

@@ -4,12 +4,22 @@
 
 #include <algorithm>
 
+#include "experiments/report/chart_data.hpp"
 #include "experiments/report/html_text.hpp"
 #include "experiments/report/page_assets.hpp"
 #include "experiments/report/palette.hpp"
 
 namespace modcal::report {
 namespace {
+
+// Filled by the script where the page has something to filter.
+constexpr std::string_view kFilterBar =
+    "<div id=\"filters\" role=\"search\" aria-label=\"Filters\" "
+    "hidden><strong>Show</strong></div>\n";
+constexpr std::string_view kReplayBar =
+    "<div id=\"replay\" role=\"status\" hidden><span class=\"what\"></span><code></code><button "
+    "type=\"button\" class=\"copy\">Copy</button><button type=\"button\" class=\"close\" "
+    "aria-label=\"Close\">×</button></div>\n";
 
 std::string palette_style() {
   std::string light, dark, classes;
@@ -25,6 +35,13 @@ std::string palette_style() {
       light, dark, classes);
 }
 
+// One series a label, hidden ones only where no shown one has it.
+std::vector<const Series*> legend_entries(const Panel& panel) {
+  std::vector<const Series*> entries = shown_series(panel);
+  std::erase_if(entries, [](const Series* series) { return series->label.empty(); });
+  return entries;
+}
+
 std::string legend_html(const Panel& panel) {
   std::string html;
   for (const Category& category : panel.map ? panel.map->categories : std::vector<Category>{}) {
@@ -33,14 +50,15 @@ std::string legend_html(const Panel& panel) {
         "aria-hidden=\"true\"></span>{}</span>",
         ink_of(category.color).name, html_escaped(category.label));
   }
-  for (const Series& series : panel.series) {
-    if (series.label.empty()) continue;
+  for (const Series* shown : legend_entries(panel)) {
+    const Series& series = *shown;
     const Ink& ink = ink_of(series.color);
     const bool line = series.style != SeriesStyle::kPoints;
     const bool points =
         series.style == SeriesStyle::kPoints || series.style == SeriesStyle::kLineWithPoints;
     html += fmt::format(
-        "<span class=\"key\"><span class=\"mark{} ink-{}\" aria-hidden=\"true\">{}</span>{}</span>",
+        "<span class=\"key\" data-label=\"{3}\"><span class=\"mark{0} ink-{1}\" "
+        "aria-hidden=\"true\">{2}</span>{3}</span>",
         line ? (series.style == SeriesStyle::kDotted ? " dotted" : " line") : "", ink.name,
         points ? ink.glyph : "", html_escaped(series.label));
   }
@@ -62,6 +80,11 @@ std::string links_html(const PageLinks& links, const std::string& stem,
     html += fmt::format("<a href=\"{}\">{}</a> ", html_escaped(file), name);
   }
   return html.empty() ? html : "<div class=\"files\">" + html + "</div>\n";
+}
+
+std::string tags_attribute(const Tags& tags) {
+  if (tags.empty()) return {};
+  return fmt::format(" data-tags=\"{}\"", html_escaped(tags_text(tags)));
 }
 
 std::string panel_html(const DrawnPanel& drawn, std::size_t place, bool legend_in_panel) {
@@ -133,8 +156,9 @@ class BlockWriter {
       html += heading_html(table.columns[j], is_text[j]);
     }
     html += "</tr></thead>\n<tbody>\n";
-    for (const auto& row : table.rows) {
-      html += "<tr>";
+    for (std::size_t i = 0; i < table.rows.size(); ++i) {
+      const auto& row = table.rows[i];
+      html += "<tr" + (table.row_tags.empty() ? "" : tags_attribute(table.row_tags[i])) + ">";
       for (std::size_t j = 0; j < row.size(); ++j)
         html += cell_html(row[j], table.columns[j], is_text[j]);
       html += "</tr>\n";
@@ -142,6 +166,18 @@ class BlockWriter {
     html += "</tbody></table></div>\n<div class=\"about\">" + html_paragraphs(table.caption);
     html += links_html(links_, table.id, {{".csv", "CSV"}, {".json", "JSON"}});
     return html + command_html(table.command) + "</div></div>\n";
+  }
+
+  std::string operator()(const Audio& audio) const {
+    std::string html = fmt::format("<div class=\"sound\" id=\"{}\"><h3>{}</h3>\n<ul>\n", audio.id,
+                                   html_escaped(audio.title));
+    for (const Track& track : audio.tracks) {
+      html += fmt::format(
+          "<li><span>{0}</span><audio controls preload=\"metadata\" aria-label=\"{0}\" "
+          "src=\"{1}\"></audio></li>\n",
+          html_escaped(track.label), wav_data_uri(track.samples, audio.sample_rate));
+    }
+    return html + "</ul>\n" + html_paragraphs(audio.caption) + "</div>\n";
   }
 
   static std::string box(std::string_view kind, std::string_view name, const std::string& text) {
@@ -171,7 +207,13 @@ class BlockWriter {
       kind += " fail";
       mark = " <span class=\"verdict\" title=\"failed\">✗</span>";
     }
-    return fmt::format("<td class=\"{}\">{}{}</td>", kind, html_escaped(text), mark);
+    std::string more;
+    if (cell.heat >= 0.0) {
+      kind += " heat";
+      more += fmt::format(" style=\"--h:{:.2f}\"", std::min(cell.heat, 1.0));
+    }
+    if (cell.task >= 0) more += fmt::format(" data-task=\"{}\"", cell.task);
+    return fmt::format("<td class=\"{}\"{}>{}{}</td>", kind, more, html_escaped(text), mark);
   }
 
   std::span<const DrawnFigure> figures_;
@@ -193,6 +235,8 @@ std::string contents_html(const Report& report) {
         html += entry(figure->id, figure->title);
       } else if (const auto* table = std::get_if<Table>(&block)) {
         html += entry(table->id, table->title);
+      } else if (const auto* audio = std::get_if<Audio>(&block)) {
+        html += entry(audio->id, audio->title);
       }
     }
     html += "</ul></li>\n";
@@ -246,19 +290,21 @@ std::string html_page(const Report& report, std::span<const DrawnFigure> figures
   std::string page = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<meta "
       "http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src "
-      "'unsafe-inline'; style-src 'unsafe-inline'; img-src data:\">\n<meta name=\"viewport\" "
+      "'unsafe-inline'; style-src 'unsafe-inline'; img-src data:; "
+      "media-src data:\">\n<meta name=\"viewport\" "
       "content=\"width=device-width, initial-scale=1\">\n<meta name=\"color-scheme\" "
       "content=\"light dark\">\n<title>{}</title>\n",
       html_escaped(report.title));
   page += fmt::format("<style>{}\n{}\n{}</style></head>\n<body>\n", kDygraphsStyle, palette_style(),
                       kPageStyle);
-  page += "<main>\n" + header_html(report, links) + contents_html(report) + body +
-          provenance_html(report) + "</main>\n";
+  page += "<main>\n" + header_html(report, links) + contents_html(report) +
+          std::string(kFilterBar) + body + provenance_html(report) + "</main>\n" +
+          std::string(kReplayBar);
   page += fmt::format("<script type=\"application/json\" id=\"modcal-data\">{}</script>\n", data);
   page += fmt::format("<script>{}</script>\n<script>{}</script>\n", kDygraphsScript,
                       kDygraphsSynchronizer);
-  page += fmt::format("<script>(function () {{\n'use strict';\n{}\n{}\n{}}})();</script>\n",
-                      kPageValues, kPageMarks, kPageScript);
+  page += fmt::format("<script>(function () {{\n'use strict';\n{}\n{}\n{}\n{}}})();</script>\n",
+                      kPageValues, kPageMarks, kPageFilters, kPageScript);
   return page + "</body></html>\n";
 }
 

@@ -5,6 +5,7 @@
 #include <variant>
 #include <vector>
 
+#include "experiments/report/audio.hpp"
 #include "experiments/report/figure.hpp"
 #include "experiments/report/table.hpp"
 
@@ -19,7 +20,7 @@ struct Text {
 
 /// What a section is made of. A new type of block is added here; the compiler then names every
 /// writer that has to learn it.
-using Block = std::variant<Text, Figure, Table>;
+using Block = std::variant<Text, Figure, Table, Audio>;
 
 struct Section {
   std::string title = {};
@@ -43,6 +44,8 @@ struct Report {
   std::vector<Section> sections = {};
   std::vector<ProvenanceLine> provenance = {};
   std::string command = {};  ///< what makes the whole report again
+  /// Command that replays a task, without the task's number at its end; empty: none.
+  std::string replay = {};
 };
 
 }  // namespace modcal::report

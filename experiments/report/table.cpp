@@ -56,6 +56,9 @@ void check_table(const Table& table) {
                    "table \"{}\": column key \"{}\" is empty or used twice", table.id, column.key);
     check_column(column, table);
   }
+  MODCAL_REQUIRE(table.row_tags.empty() || table.row_tags.size() == table.rows.size(),
+                 "table \"{}\" has {} rows and tags of {}; give one list a row or none", table.id,
+                 table.rows.size(), table.row_tags.size());
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     MODCAL_REQUIRE(table.rows[i].size() == table.columns.size(),
                    "table \"{}\": row {} has {} cells for {} columns", table.id, i + 1,

@@ -8,6 +8,8 @@
 #include <variant>
 #include <vector>
 
+#include "experiments/report/figure.hpp"
+
 namespace modcal::report {
 
 enum class Highlight { kNone, kPass, kFail };
@@ -30,6 +32,8 @@ struct Cell {
 
   Value value = {};
   Highlight highlight = Highlight::kNone;
+  double heat = -1.0;      ///< shade of its ground in the page, 0 to 1; below: none
+  std::int64_t task = -1;  ///< task behind it, whose replay the page offers; below 0: none
 };
 
 struct Column {
@@ -45,11 +49,12 @@ struct Table {
   std::string caption = {};
   std::vector<Column> columns = {};
   std::vector<std::vector<Cell>> rows = {};
-  std::string command = {};  ///< what regenerates its numbers
+  std::vector<Tags> row_tags = {};  ///< empty or one a row
+  std::string command = {};         ///< what regenerates its numbers
 };
 
-/// Throws InvalidInput where a row has not one cell per column, a key is empty or used twice, a
-/// format cannot print a number or the id cannot be a file name.
+/// Throws InvalidInput where a row has not one cell per column, tags do not come one list a row, a
+/// key is empty or used twice, a format cannot print a number or the id cannot be a file name.
 void check_table(const Table& table);
 
 /// What the page shows: numbers by the column's format, "NaN" for a NaN, "–" for no value.

@@ -32,7 +32,8 @@ std::vector<const Item*> items_of(const Report& report) {
   return items;
 }
 
-void check(const std::vector<const Figure*>& figures, const std::vector<const Table*>& tables) {
+void check(const std::vector<const Figure*>& figures, const std::vector<const Table*>& tables,
+           const std::vector<const Audio*>& sounds) {
   std::set<std::string> ids;
   const auto check_id = [&ids](const std::string& id) {
     MODCAL_REQUIRE(ids.insert(id).second, "two figures or tables are called \"{}\"", id);
@@ -45,6 +46,27 @@ void check(const std::vector<const Figure*>& figures, const std::vector<const Ta
     check_table(*table);
     check_id(table->id);
   }
+  for (const Audio* audio : sounds) {
+    check_audio(*audio);
+    check_id(audio->id);
+  }
+}
+
+// About what tables and sounds take in the page: 16 bits a sample in base64, elements about a cell.
+std::size_t bytes_beside_charts(const std::vector<const Table*>& tables,
+                                const std::vector<const Audio*>& sounds) {
+  std::size_t bytes = 0;
+  for (const Table* table : tables) {
+    for (const auto& row : table->rows) {
+      for (std::size_t j = 0; j < row.size(); ++j) {
+        bytes += 40 + cell_text(row[j], table->columns[j]).size();
+      }
+    }
+  }
+  for (const Audio* audio : sounds) {
+    for (const Track& track : audio->tracks) bytes += 8 * track.samples.size() / 3;
+  }
+  return bytes;
 }
 
 struct DrawnFigures {
@@ -53,15 +75,17 @@ struct DrawnFigures {
 };
 
 // Figures thinned to as many pixel columns as a page under 2 MB can hold.
-DrawnFigures draw_all(const std::vector<const Figure*>& figures) {
-  constexpr std::size_t kLargestData =
-      1'600'000;  // bytes; 0.2 MB of scripts and the text go beside
+DrawnFigures draw_all(const std::vector<const Figure*>& figures, std::size_t other_bytes,
+                      const std::string& replay) {
+  constexpr std::size_t kPage = 1'700'000;     // bytes; 0.2 MB of scripts go beside
+  constexpr std::size_t kLeastData = 200'000;  // where a report holds more sound than fits
+  const std::size_t largest = other_bytes + kLeastData < kPage ? kPage - other_bytes : kLeastData;
   DrawnFigures drawn;
-  for (const std::size_t columns : {1000u, 500u, 250u, 120u, 60u}) {
+  for (const std::size_t columns : {1000u, 500u, 250u, 120u, 60u, 30u, 15u}) {
     drawn.figures.clear();
     for (const Figure* figure : figures) drawn.figures.push_back(draw_figure(*figure, columns));
-    drawn.data = chart_data_json(drawn.figures);
-    if (drawn.data.size() <= kLargestData) break;
+    drawn.data = chart_data_json(drawn.figures, replay);
+    if (drawn.data.size() <= largest) break;
   }
   return drawn;
 }
@@ -122,8 +146,9 @@ WrittenReport write_report(const Report& report, const fs::path& directory,
                            const WriteOptions& options) {
   const auto figures = items_of<Figure>(report);
   const auto tables = items_of<Table>(report);
-  check(figures, tables);
-  const auto [drawn, data] = draw_all(figures);
+  const auto sounds = items_of<Audio>(report);
+  check(figures, tables, sounds);
+  const auto [drawn, data] = draw_all(figures, bytes_beside_charts(tables, sounds), report.replay);
 
   ReportFolder folder(directory, !figures.empty());
   remove_drawn_files(drawn, folder.figures());

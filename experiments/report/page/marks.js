@@ -12,7 +12,8 @@ function polygon(c, x, y, radius, turn, corners) {
 }
 
 function outline(c, shape, x, y, r) {
-  if (shape === 'square' || shape === 'open_square') c.rect(x - r, y - r, 2 * r, 2 * r);
+  shape = shape.replace('open_', '');
+  if (shape === 'square') c.rect(x - r, y - r, 2 * r, 2 * r);
   else if (shape === 'triangle') polygon(c, x, y, 1.3 * r, -Math.PI / 2, 3);
   else if (shape === 'inverted_triangle') polygon(c, x, y, 1.3 * r, Math.PI / 2, 3);
   else if (shape === 'diamond') polygon(c, x, y, 1.3 * r, 0, 4);

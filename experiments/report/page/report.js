@@ -98,6 +98,12 @@ function on_key(item, event) {
     '+': function () { zoom(item, 0.5); },
     '-': function () { zoom(item, 2); },
     '0': function () { reset(item); },
+    Enter: function () {
+      var x = item.xs[row];
+      var found = item.series.filter(function (s) { return s.task; })[0];
+      var i = found && nearest(found.x, x);
+      if (found) offer_task(item, {label: found.label, task: found.task[i], x: found.x[i], y: found.y[i]});
+    },
     Escape: function () { deselect(item); linked(item).forEach(deselect); }
   };
   var action = actions[event.key];
@@ -117,7 +123,8 @@ function looks(series) {
 function read_series(panel) {
   return panel.series.map(function (s) {
     return {label: s.label, style: s.style, ink: s.ink, shape: s.shape, x: numbers(s.x), y: numbers(s.y),
-            low: numbers(s.low), high: numbers(s.high), path: numbers(s.path), rows: []};
+            low: numbers(s.low), high: numbers(s.high), path: numbers(s.path), task: numbers(s.task),
+            tags: s.tags, rows: []};
   });
 }
 
@@ -133,14 +140,27 @@ function axis_options(axis, pixels, width) {
   };
 }
 
-function chart_options(item, bars) {
+// The series that the filters let through, as dygraphs takes them.
+function shown_options(item) {
+  item.series = item.all.filter(function (s) { return is_shown(s.tags); });
+  var drawn = item.series.length ? item.series : item.all;  // a chart needs a series, even out of sight
+  var table = rows(drawn, item.bars);
+  item.xs = table.map(function (row) { return row[0]; });
+  item.row = undefined;
+  return Object.assign(looks(drawn), {
+    file: table,
+    labels: ['x'].concat(drawn.map(function (s) { return 's' + item.all.indexOf(s); }))
+  });
+}
+
+function chart_options(item) {
   var panel = item.panel;
+  var bars = item.bars;
   var per_series = {};
-  item.series.forEach(function (s, k) {
+  item.all.forEach(function (s, k) {
     per_series['s' + k] = series_options(s, bars, s.x.length > 200);
   });
   return {
-    labels: ['x'].concat(Object.keys(per_series)),
     series: per_series,
     customBars: bars,
     connectSeparatedPoints: true,
@@ -181,17 +201,44 @@ function draw(element) {
   var panel = source.panels[Number(element.dataset.panel)];
   var series = read_series(panel);
   read_map(panel);
-  var bars = series.some(function (s) { return s.low !== null; });
-  var table = rows(series, bars);
   var item = {
-    figure: figure, panel: panel, series: series,
+    figure: figure, panel: panel, all: series, element: element,
+    bars: series.some(function (s) { return s.low !== null; }),
     values: element.parentNode.querySelector('.values'),
-    xs: table.map(function (row) { return row[0]; }),
     link: JSON.stringify([panel.x.text, panel.x.log, panel.x.window])
   };
-  item.chart = new Dygraph(element, table, Object.assign(looks(series), chart_options(item, bars)));
+  var shown_now = shown_options(item);
+  var table = shown_now.file;
+  delete shown_now.file;
+  item.chart = new Dygraph(element, table, Object.assign(shown_now, chart_options(item)));
   element.addEventListener('keydown', function (event) { on_key(item, event); });
+  offer_replays(item, element);
   charts.push(item);
+}
+
+// Shows what the filters let through, in charts, legends and tables.
+function apply_filters() {
+  charts.forEach(function (item) {
+    deselect(item);
+    var before = item.series;
+    var options = shown_options(item);
+    var empty = item.all.length > 0 && item.series.length === 0;
+    var was_empty = item.element.parentNode.hidden;
+    item.element.parentNode.hidden = empty;
+    var same = before.length === item.series.length &&
+        before.every(function (s, k) { return s === item.series[k]; });
+    if (empty || (same && !was_empty)) return;
+    item.chart.updateOptions(options);
+    if (was_empty) item.chart.resize();
+  });
+  document.querySelectorAll('figure').forEach(function (figure) {
+    var labels = {};
+    charts.forEach(function (item) {
+      if (item.figure === figure) item.series.forEach(function (s) { labels[s.label] = true; });
+    });
+    filter_legend(figure, labels);
+  });
+  filter_rows();
 }
 
 // One zoom for all charts of a figure over the same x.
@@ -217,10 +264,13 @@ function repaint() {
   charts.forEach(function (item) { item.chart.updateOptions(looks(item.series)); });
 }
 
+read_facets();
 var waiting = Array.prototype.slice.call(document.querySelectorAll('.chart'));
 
 function finish() {
   document.querySelectorAll('figure').forEach(link_zoom);
+  make_filters(apply_filters);
+  offer_cell_replays();
   window.__modcal_ready = charts.length;
   root.dataset.charts = String(charts.length);
 }

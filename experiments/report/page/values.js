@@ -1,5 +1,5 @@
 // The numbers of the page: arrays from #modcal-data, rows for dygraphs, texts and ticks of axes.
-// First part of the page's script; its parts stand in one function, in the order values, marks, report.
+// First part of the page's script; its parts stand in one function: values, marks, filters, report.
 var root = document.documentElement;
 window.__modcal_ready = null;
 root.dataset.errors = '0';
@@ -84,6 +84,7 @@ function ticks(low, high, pixels, options, chart, values) {
 // line goes on), NaN where it has a gap. series.rows: the row of each of its samples.
 function rows(series, bars) {
   var at = series.map(function () { return 0; });
+  series.forEach(function (s) { s.rows = []; });
   var result = [];
   for (;;) {
     var x = Infinity;
