@@ -19,6 +19,30 @@ struct FinishedTask {
   double seconds = 0.0;  ///< time it took; the only part that differs between runs
 };
 
+/// Outcomes of a list by task. With a store they stay in its journals, 16 bytes a task are kept
+/// here, and each is read when it is asked for.
+class TaskOutcomes {
+ public:
+  /// Nothing is finished. `finished` null: outcomes are kept here.
+  explicit TaskOutcomes(std::size_t tasks, const FinishedTasks* finished = nullptr);
+
+  std::size_t size() const { return finished_ != nullptr ? places_.size() : kept_.size(); }
+  bool has(std::size_t task) const {
+    return finished_ != nullptr ? places_[task].is_known() : kept_[task].has_value();
+  }
+  /// nullopt: not run yet.
+  std::optional<FinishedTask> operator[](std::size_t task) const;
+
+  /// Different tasks may be put from different threads.
+  void put(std::size_t task, const RecordPlace& place) { places_[task] = place; }
+  void put(std::size_t task, FinishedTask finished) { kept_[task] = std::move(finished); }
+
+ private:
+  const FinishedTasks* finished_;
+  std::vector<RecordPlace> places_;
+  std::vector<std::optional<FinishedTask>> kept_;
+};
+
 class TaskExperiment : public Experiment {
  public:
   virtual std::size_t task_count() const = 0;
@@ -40,8 +64,7 @@ class TaskExperiment : public Experiment {
   /// How wrong an outcome is, > 0; nullopt where its task failed.
   virtual std::optional<double> loss_in(const std::string& /*outcome*/) const { return {}; }
   /// Tables, figures and acceptance of the outcomes there are; nullopt: not run yet.
-  virtual StudyResult sum_up(const std::vector<std::optional<FinishedTask>>& outcomes,
-                             const StudyContext& context) const = 0;
+  virtual StudyResult sum_up(const TaskOutcomes& outcomes, const StudyContext& context) const = 0;
   /// One task again, with everything drawn and written that can be.
   virtual StudyResult replay(std::size_t task, const StudyContext& context) const = 0;
 
@@ -51,10 +74,14 @@ class TaskExperiment : public Experiment {
 
 /// Outcomes of all tasks of the experiment that are finished once the shard's tasks are: those the
 /// store holds already are not run again, the others are put into it as they finish. The results
-/// stand in the order of the tasks whatever the threads. `store` may be null. Throws Interrupted
-/// where the context says so; what has finished by then is in the store.
-std::vector<std::optional<FinishedTask>> run_tasks(const TaskExperiment& experiment,
-                                                   const StudyContext& context, RunStore* store,
-                                                   const Shard& shard);
+/// stand in the order of the tasks whatever the threads. `store` may be null, otherwise it must
+/// outlive the outcomes. Throws Interrupted where the context says so; what has finished by then is
+/// in the store.
+TaskOutcomes run_tasks(const TaskExperiment& experiment, const StudyContext& context,
+                       RunStore* store, const Shard& shard);
+
+/// Outcomes of what the store had finished when it was scanned; `finished` must outlive them.
+TaskOutcomes stored_outcomes(const TaskExperiment& experiment, const FinishedTasks& finished,
+                             const std::filesystem::path& folder);
 
 }  // namespace modcal

@@ -28,10 +28,10 @@ std::map<Cell, double> losses_of(const StoredRun& run) {
                  "{} holds a run of kind {}, whose tasks have no score to compare",
                  run.out().string(), run.loaded().kind);
   std::map<Cell, double> losses;
-  for (std::size_t task = 0; task < run.records().size(); ++task) {
-    const JournalRecord* record = run.records()[task];
-    if (record == nullptr) continue;
-    losses[cell_of(run, task)] = run.list().loss_in(record->outcome).value_or(1e300);
+  for (std::size_t task = 0; task < run.tasks(); ++task) {
+    const std::optional<FinishedTask> finished = run.outcomes()[task];
+    if (!finished) continue;
+    losses[cell_of(run, task)] = run.list().loss_in(finished->outcome).value_or(1e300);
   }
   return losses;
 }

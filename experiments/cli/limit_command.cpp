@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "experiments/cli/command.hpp"
+#include "experiments/cli/message_colors.hpp"
 #include "experiments/kinds/limit_source.hpp"
 #include "experiments/loader.hpp"
 
@@ -11,7 +12,7 @@ namespace {
 
 ExitCode limit(const std::string& file, const std::vector<std::string>& assignments) {
   const LoadedExperiment loaded = load_experiment(file, assignments);
-  fmt::print(stderr, "{}", format_mistakes(loaded.document, loaded.mistakes));
+  fmt::print(stderr, "{}", colored(format_mistakes(loaded.document, loaded.mistakes)));
   if (loaded.has_errors()) return ExitCode::kInvalidInput;
   const auto* source = dynamic_cast<const LimitSource*>(loaded.experiment.get());
   MODCAL_REQUIRE(source != nullptr,

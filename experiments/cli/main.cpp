@@ -6,6 +6,7 @@
 
 #include "experiments/cli/command.hpp"
 #include "experiments/cli/interrupt.hpp"
+#include "experiments/cli/message_colors.hpp"
 #include "experiments/cli/provenance.hpp"
 #include "experiments/config/reader.hpp"
 #include "libsim/base/error.hpp"
@@ -17,7 +18,7 @@ ExitCode act(const Action& action) {
   try {
     return action();
   } catch (const InvalidInput& error) {
-    fmt::print(stderr, "error: {}\n", error.what());
+    fmt::print(stderr, "{} {}\n", colored("error:"), error.what());
     return ExitCode::kInvalidInput;
   } catch (const Interrupted&) {
     return ExitCode::kInterrupted;
@@ -34,7 +35,8 @@ bool is_unknown_command(const CLI::App& app, int argc, char** argv) {
   std::vector<std::string> names;
   for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
   if (std::find(names.begin(), names.end(), argv[1]) != names.end()) return false;
-  fmt::print(stderr, "error: unknown command \"{}\"{}\n", argv[1], suggestion(argv[1], names));
+  fmt::print(stderr, "{} unknown command \"{}\"{}\n", colored("error:"), argv[1],
+             suggestion(argv[1], names));
   return true;
 }
 

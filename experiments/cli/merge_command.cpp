@@ -3,39 +3,41 @@
 #include <cstdio>
 
 #include "experiments/cli/command.hpp"
+#include "experiments/cli/message_colors.hpp"
 #include "experiments/cli/stored_run.hpp"
 #include "experiments/store/results_database.hpp"
 
 namespace modcal {
 namespace {
 
-std::vector<ResultRow> rows_of(const StoredRun& run) {
-  std::vector<ResultRow> rows;
-  for (std::size_t task = 0; task < run.records().size(); ++task) {
-    const JournalRecord* record = run.records()[task];
-    if (record == nullptr) continue;
-    rows.push_back({task, run.list().axis_values(task), run.list().failure_in(record->outcome),
-                    record->outcome, record->seconds});
+// Row by row: what is held does not grow with the list.
+std::size_t add_rows(const StoredRun& run, ResultsDatabase& database) {
+  std::size_t done = 0;
+  for (std::size_t task = 0; task < run.tasks(); ++task) {
+    std::optional<FinishedTask> finished = run.outcomes()[task];
+    if (!finished) continue;
+    std::string failure = run.list().failure_in(finished->outcome);
+    database.add({task, run.list().axis_values(task), std::move(failure),
+                  std::move(finished->outcome), finished->seconds});
+    ++done;
   }
-  return rows;
+  return done;
 }
 
 ExitCode merge(const std::string& out) {
   const StoredRun run(out);
   for (const JournalDamage& damage : run.damages()) {
-    fmt::print(stderr, "warning: {}\n", message_of(damage));
+    fmt::print(stderr, "{} {}\n", colored("warning:"), message_of(damage));
   }
-  const std::vector<ResultRow> rows = rows_of(run);
   const std::filesystem::path file = std::filesystem::path(out) / "results.sqlite";
-  const std::string digest =
-      write_results_database(file, run.list().axes(), rows,
-                             {{"kind", run.loaded().kind},
-                              {"title", run.loaded().title},
-                              {"command", run.command()},
-                              {"tasks", std::to_string(run.records().size())},
-                              {"done", std::to_string(rows.size())}});
-  fmt::print("{}: {} of {} tasks, digest {}\n", file.string(), rows.size(), run.records().size(),
-             digest);
+  ResultsDatabase database(file, run.list().axes());
+  const std::size_t done = add_rows(run, database);
+  const std::string digest = database.finish({{"kind", run.loaded().kind},
+                                              {"title", run.loaded().title},
+                                              {"command", run.command()},
+                                              {"tasks", std::to_string(run.tasks())},
+                                              {"done", std::to_string(done)}});
+  fmt::print("{}: {} of {} tasks, digest {}\n", file.string(), done, run.tasks(), digest);
   return ExitCode::kOk;
 }
 

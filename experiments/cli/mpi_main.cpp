@@ -9,6 +9,7 @@
 #include <cstdio>
 
 #include "experiments/cli/interrupt.hpp"
+#include "experiments/cli/message_colors.hpp"
 #include "experiments/cli/runner.hpp"
 #include "experiments/cli/shell_word.hpp"
 #include "experiments/cli/stored_run.hpp"
@@ -51,7 +52,7 @@ ExitCode guarded(const Work& work) {
   try {
     return work();
   } catch (const InvalidInput& error) {
-    fmt::print(stderr, "error: {}\n", error.what());
+    fmt::print(stderr, "{} {}\n", colored("error:"), error.what());
     return ExitCode::kInvalidInput;
   } catch (const Interrupted&) {
     return ExitCode::kInterrupted;
@@ -64,7 +65,7 @@ ExitCode guarded(const Work& work) {
 ExitCode run_shard(const MpiArguments& arguments, const std::string& out, const Shard& shard) {
   const LoadedExperiment loaded = load_experiment(arguments.file, arguments.assignments);
   if (shard.index == 1) {
-    fmt::print(stderr, "{}", format_mistakes(loaded.document, loaded.mistakes));
+    fmt::print(stderr, "{}", colored(format_mistakes(loaded.document, loaded.mistakes)));
   }
   if (loaded.has_errors()) return ExitCode::kInvalidInput;
   std::string command =

@@ -7,6 +7,7 @@
 
 #include "experiments/cli/command.hpp"
 #include "experiments/cli/interrupt.hpp"
+#include "experiments/cli/message_colors.hpp"
 #include "experiments/loader.hpp"
 #include "experiments/price.hpp"
 #include "experiments/task_experiment.hpp"
@@ -118,7 +119,7 @@ void print_json(const LoadedExperiment& loaded, const Plan& plan, std::size_t th
 
 ExitCode plan(const PlanArguments& arguments) {
   const LoadedExperiment loaded = load_experiment(arguments.file, arguments.assignments);
-  fmt::print(stderr, "{}", format_mistakes(loaded.document, loaded.mistakes));
+  fmt::print(stderr, "{}", colored(format_mistakes(loaded.document, loaded.mistakes)));
   if (loaded.has_errors()) return ExitCode::kInvalidInput;
   const Plan made = make_plan(loaded);
   // A run that is no list of tasks simulates on one thread.

@@ -4,6 +4,7 @@
 
 #include "experiments/cli/command.hpp"
 #include "experiments/cli/interrupt.hpp"
+#include "experiments/cli/message_colors.hpp"
 #include "experiments/cli/runner.hpp"
 #include "experiments/cli/stored_run.hpp"
 #include "libsim/base/error.hpp"
@@ -21,8 +22,8 @@ StudyContext context_of(const StoredRun& run, SharedWork& work, std::string comm
 
 ExitCode replay_task(const std::string& out, std::size_t task) {
   const StoredRun run(out);
-  MODCAL_REQUIRE(task < run.records().size(), "task {} does not exist: {} has the tasks 0 to {}",
-                 task, out, run.records().size() - 1);
+  MODCAL_REQUIRE(task < run.tasks(), "task {} does not exist: {} has the tasks 0 to {}", task, out,
+                 run.tasks() - 1);
   for (std::size_t axis = 0; axis < run.list().axes().size(); ++axis) {
     fmt::print(stderr, "{}: {}\n", run.list().axes()[axis], run.list().axis_values(task)[axis]);
   }
@@ -41,14 +42,13 @@ ExitCode replay_task(const std::string& out, std::size_t task) {
 ExitCode report_stored_run(const std::string& out) {
   const StoredRun run(out);
   for (const JournalDamage& damage : run.damages()) {
-    fmt::print(stderr, "warning: {}\n", message_of(damage));
+    fmt::print(stderr, "{} {}\n", colored("warning:"), message_of(damage));
   }
   SharedWork work;
   const StudyResult result =
       run.list().sum_up(run.outcomes(), context_of(run, work, run.command()));
-  MODCAL_REQUIRE(result.pending_tasks < run.records().size(),
-                 "{}: none of the {} tasks is done; run:\n  {}", out, run.records().size(),
-                 run.command());
+  MODCAL_REQUIRE(result.pending_tasks < run.tasks(), "{}: none of the {} tasks is done; run:\n  {}",
+                 out, run.tasks(), run.command());
   return present(run.loaded(), result, settings_of(run, out), 0.0);
 }
 

@@ -5,6 +5,7 @@
 
 #include "experiments/cli/build_info.hpp"
 #include "experiments/cli/command.hpp"
+#include "experiments/cli/message_colors.hpp"
 #include "experiments/cli/runner.hpp"
 #include "experiments/config/reader.hpp"
 #include "libsim/base/error.hpp"
@@ -50,7 +51,7 @@ ExitCode reproduce(const ReproduceArguments& arguments) {
   for (const std::filesystem::path& file : files_of(arguments)) {
     experiments.push_back(load_experiment(file));
     const LoadedExperiment& loaded = experiments.back();
-    fmt::print(stderr, "{}", format_mistakes(loaded.document, loaded.mistakes));
+    fmt::print(stderr, "{}", colored(format_mistakes(loaded.document, loaded.mistakes)));
     if (loaded.has_errors()) return ExitCode::kInvalidInput;
   }
   const std::string out = arguments.out.empty() ? "out/" + arguments.target : arguments.out;

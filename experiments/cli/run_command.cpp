@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "experiments/cli/command.hpp"
+#include "experiments/cli/message_colors.hpp"
 #include "experiments/cli/runner.hpp"
 #include "experiments/cli/shell_word.hpp"
 #include "libsim/base/error.hpp"
@@ -30,7 +31,7 @@ std::string command_of(const RunArguments& arguments, const std::string& out) {
 
 ExitCode run(const RunArguments& arguments) {
   const LoadedExperiment loaded = load_experiment(arguments.file, arguments.assignments);
-  fmt::print(stderr, "{}", format_mistakes(loaded.document, loaded.mistakes));
+  fmt::print(stderr, "{}", colored(format_mistakes(loaded.document, loaded.mistakes)));
   if (loaded.has_errors()) return ExitCode::kInvalidInput;
   const std::string out =
       arguments.out.empty()

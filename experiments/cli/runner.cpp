@@ -8,9 +8,11 @@
 #include <optional>
 
 #include "experiments/cli/interrupt.hpp"
+#include "experiments/cli/message_colors.hpp"
 #include "experiments/cli/output_directory.hpp"
 #include "experiments/cli/progress.hpp"
 #include "experiments/cli/provenance.hpp"
+#include "experiments/cli/shell_word.hpp"
 #include "experiments/records/csv_writer.hpp"
 #include "experiments/records/wav_writer.hpp"
 #include "experiments/report/write_report.hpp"
@@ -97,7 +99,7 @@ void finish_report(report::Report report, const RunSettings& settings, const Out
   report.command = settings.command;
   report.provenance = provenance_lines(settings.command);
   const report::WrittenReport written = report::write_report(report, out.path());
-  if (!written.warning.empty()) fmt::print(stderr, "warning: {}\n", written.warning);
+  if (!written.warning.empty()) fmt::print(stderr, "{} {}\n", colored("warning:"), written.warning);
   fmt::print(stderr, "report: {}\n", written.page.string());
 }
 
@@ -125,7 +127,7 @@ void print_summary(const StudyResult& result, const RunSettings& settings, doubl
 StudyResult run_list(const TaskExperiment& list, const StudyContext& context, RunStore& store,
                      const Shard& shard) {
   for (const JournalDamage& damage : store.finished().damages()) {
-    fmt::print(stderr, "warning: {}\n", message_of(damage));
+    fmt::print(stderr, "{} {}\n", colored("warning:"), message_of(damage));
   }
   return list.sum_up(run_tasks(list, context, &store, shard), context);
 }
@@ -140,7 +142,7 @@ PilotRun run_some_tasks(const TaskExperiment& list, const StudyContext& context,
   std::vector<std::size_t> pending;
   for (std::size_t task = 0; task < list.task_count(); ++task) {
     const std::string key = store.finished().key_of(list.fingerprint(task, context.folder));
-    if (store.finished().find(key) == nullptr) pending.push_back(task);
+    if (!store.finished().find(key).is_known()) pending.push_back(task);
   }
   MODCAL_REQUIRE(!pending.empty(), "all {} tasks are done: nothing is left to share out",
                  list.task_count());
@@ -176,6 +178,9 @@ ExitCode present(const LoadedExperiment& loaded, const StudyResult& result,
   report.status = result.status;
   report.status_text = status_text(loaded, result);
   report.sections.push_back({"Results", result.blocks});
+  if (dynamic_cast<const TaskExperiment*>(loaded.experiment.get()) != nullptr) {
+    report.replay = "modcal replay " + shell_word(settings.out.string());
+  }
   finish_report(std::move(report), settings, out);
   const ExitCode code = exit_code_of(result);
   return code == ExitCode::kOk && !result.missed.empty() ? ExitCode::kAcceptanceMissed : code;

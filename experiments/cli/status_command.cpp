@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/cli/command.hpp"
+#include "experiments/cli/message_colors.hpp"
 #include "experiments/cli/stored_run.hpp"
 #include "libsim/signal/statistics.hpp"
 
@@ -19,13 +20,14 @@ struct Counts {
 };
 
 Counts count(const StoredRun& run) {
-  Counts counts{.all = run.records().size()};
+  Counts counts{.all = run.tasks()};
   std::vector<double> seconds;
-  for (const JournalRecord* record : run.records()) {
-    if (record == nullptr) continue;
+  for (std::size_t task = 0; task < run.tasks(); ++task) {
+    const std::optional<FinishedTask> finished = run.outcomes()[task];
+    if (!finished) continue;
     ++counts.done;
-    seconds.push_back(record->seconds);
-    if (!run.list().failure_in(record->outcome).empty()) ++counts.failed;
+    seconds.push_back(finished->seconds);
+    if (!run.list().failure_in(finished->outcome).empty()) ++counts.failed;
   }
   if (!seconds.empty()) counts.median_seconds = quantile(std::move(seconds), 0.5);
   return counts;
@@ -36,7 +38,7 @@ ExitCode status(const std::string& out, bool json) {
   const Counts counts = count(run);
   const bool running = is_running(journal_folder(out));
   for (const JournalDamage& damage : run.damages()) {
-    fmt::print(stderr, "warning: {}\n", message_of(damage));
+    fmt::print(stderr, "{} {}\n", colored("warning:"), message_of(damage));
   }
   if (json) {
     const nlohmann::ordered_json object = {{"kind", run.loaded().kind},

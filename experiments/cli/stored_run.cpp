@@ -37,19 +37,7 @@ StoredRun::StoredRun(std::filesystem::path out) : out_(std::move(out)) {
   MODCAL_REQUIRE(list_ != nullptr, "{} holds a run of kind {}, which is no list of tasks",
                  out_.string(), loaded_.kind);
   finished_.emplace(out_, provenance["program"].get<std::string>());
-  records_.resize(list_->task_count());
-  for (std::size_t task = 0; task < records_.size(); ++task) {
-    records_[task] = finished_->find(finished_->key_of(list_->fingerprint(task, folder_)));
-  }
-}
-
-std::vector<std::optional<FinishedTask>> StoredRun::outcomes() const {
-  std::vector<std::optional<FinishedTask>> outcomes(records_.size());
-  for (std::size_t task = 0; task < records_.size(); ++task) {
-    if (records_[task] == nullptr) continue;
-    outcomes[task] = {records_[task]->outcome, records_[task]->seconds};
-  }
-  return outcomes;
+  outcomes_.emplace(stored_outcomes(*list_, *finished_, folder_));
 }
 
 }  // namespace modcal

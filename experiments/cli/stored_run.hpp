@@ -26,10 +26,10 @@ class StoredRun {
   const std::filesystem::path& folder() const { return folder_; }
   /// The command that made the run, and makes it go on.
   const std::string& command() const { return command_; }
-  /// Records by task; null: not finished.
-  const std::vector<const JournalRecord*>& records() const { return records_; }
+  /// What was finished when the folder was read, by task.
+  const TaskOutcomes& outcomes() const { return *outcomes_; }
+  std::size_t tasks() const { return outcomes_->size(); }
   const std::vector<JournalDamage>& damages() const { return finished_->damages(); }
-  std::vector<std::optional<FinishedTask>> outcomes() const;
 
  private:
   std::filesystem::path out_;
@@ -38,7 +38,7 @@ class StoredRun {
   std::filesystem::path folder_;
   std::string command_;
   std::optional<FinishedTasks> finished_;
-  std::vector<const JournalRecord*> records_;
+  std::optional<TaskOutcomes> outcomes_;
 };
 
 /// Files, summary and report of what is finished. Throws InvalidInput where nothing is.

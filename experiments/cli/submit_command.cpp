@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "experiments/cli/command.hpp"
+#include "experiments/cli/message_colors.hpp"
 #include "experiments/cli/output_directory.hpp"
 #include "experiments/cli/runner.hpp"
 #include "experiments/cli/shell_word.hpp"
@@ -59,7 +60,7 @@ void submit(const std::filesystem::path& folder) {
 
 ExitCode submit_to_slurm(const SubmitArguments& arguments) {
   const LoadedExperiment loaded = load_experiment(arguments.file, arguments.assignments);
-  fmt::print(stderr, "{}", format_mistakes(loaded.document, loaded.mistakes));
+  fmt::print(stderr, "{}", colored(format_mistakes(loaded.document, loaded.mistakes)));
   if (loaded.has_errors()) return ExitCode::kInvalidInput;
   const std::filesystem::path out = std::filesystem::absolute(
       arguments.out.empty()

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/cli/command.hpp"
+#include "experiments/cli/message_colors.hpp"
 #include "experiments/loader.hpp"
 
 namespace modcal {
@@ -38,7 +39,7 @@ ExitCode validate(const ValidateArguments& arguments) {
                                            {"mistakes", mistakes_json(loaded)}};
     fmt::print("{}\n", object.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
   } else {
-    fmt::print(stderr, "{}", format_mistakes(loaded.document, loaded.mistakes));
+    fmt::print(stderr, "{}", colored(format_mistakes(loaded.document, loaded.mistakes)));
     if (valid) fmt::print("{}: valid, kind {}\n", arguments.file, loaded.kind);
   }
   return valid ? ExitCode::kOk : ExitCode::kInvalidInput;

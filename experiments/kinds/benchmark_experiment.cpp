@@ -8,8 +8,10 @@
 #include <map>
 #include <set>
 
+#include "experiments/kinds/benchmark_lint.hpp"
 #include "experiments/kinds/benchmark_report.hpp"
 #include "experiments/kinds/calibrate_experiment.hpp"
+#include "experiments/kinds/lint.hpp"
 #include "experiments/kinds/scene_plan.hpp"
 #include "experiments/study/fingerprint.hpp"
 
@@ -17,6 +19,7 @@ namespace modcal {
 namespace {
 
 constexpr std::string_view kMethodPrefix = "calibration.";
+constexpr std::string_view kObjectiveAxis = "calibration.objective";
 
 bool is_method_axis(const std::string& path) { return path.starts_with(kMethodPrefix); }
 bool is_seed_axis(const std::string& path) { return path == "seed" || path.ends_with(".seed"); }
@@ -50,18 +53,20 @@ report::Table task_table(const BenchmarkGrid& grid, const std::string& command) 
                                   {.key = "objective_at_truth"},
                                   {.key = "frequency_error"},
                                   {.key = "frequency_rms_error"},
+                                  {.key = "frequency_bound"},
+                                  {.key = "bound_ratio"},
                                   {.key = "contact_error", .unit = "m"},
                                   {.key = "correlation"},
                                   {.key = "reason"}},
                       .command = command};
   for (const BenchmarkTask& task : grid.tasks) {
     const BenchmarkOutcome& outcome = task.outcome;
-    table.rows.push_back({task.task, grid.conditions[task.condition], task.replicate,
-                          grid.methods[task.method], outcome.success,
-                          std::string(name_of(outcome.stop)), outcome.evaluations,
-                          outcome.initial_value, outcome.value, outcome.truth_value,
-                          outcome.frequency_error, outcome.frequency_rms_error,
-                          outcome.contact_error, outcome.correlation, reason_of(outcome)});
+    table.rows.push_back(
+        {task.task, grid.conditions[task.condition], task.replicate, grid.methods[task.method],
+         outcome.success, std::string(name_of(outcome.stop)), outcome.evaluations,
+         outcome.initial_value, outcome.value, outcome.truth_value, outcome.frequency_error,
+         outcome.frequency_rms_error, outcome.frequency_bound, outcome.bound_ratio(),
+         outcome.contact_error, outcome.correlation, reason_of(outcome)});
   }
   return table;
 }
@@ -76,28 +81,40 @@ void BenchmarkOptions::visit(OptionVisitor& visitor) {
       {.key = "sweep", .meaning = "axes: option paths and their values", .required = true}, cells);
 }
 
-std::string BenchmarkExperiment::method_of(std::size_t task) const {
+std::string BenchmarkExperiment::search_of(std::size_t task) const {
   const std::vector<std::string>& paths = options_.cells.paths();
-  const std::vector<std::string>& values = options_.cells.values(task);
+  const std::vector<std::string> values = options_.cells.values(task);
   std::vector<std::string> parts;
   for (std::size_t i = 0; i < paths.size(); ++i) {
-    if (is_method_axis(paths[i])) parts.push_back(short_label(values[i]));
+    if (is_method_axis(paths[i]) && paths[i] != kObjectiveAxis) {
+      parts.push_back(short_label(values[i]));
+    }
   }
-  const CalibrationOptions& calibration = options_.cells[task].calibration;
-  if (parts.empty()) {
-    return fmt::format("{}, {}", calibration.optimizer.selected(),
-                       calibration.objective.selected());
-  }
+  if (parts.empty()) return std::string(options_.base.calibration.optimizer.selected());
   return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+std::string BenchmarkExperiment::method_of(std::size_t task) const {
+  return search_of(task) + ", " + objective_of(task);
+}
+
+std::string BenchmarkExperiment::objective_of(std::size_t task) const {
+  const std::vector<std::string>& paths = options_.cells.paths();
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    const std::string& value = options_.cells.value(task, i);
+    if (paths[i] == kObjectiveAxis && !value.empty()) return short_label(value);
+  }
+  return std::string(options_.base.calibration.objective.selected());
 }
 
 std::string BenchmarkExperiment::condition_of(std::size_t task) const {
   const std::vector<std::string>& paths = options_.cells.paths();
-  const std::vector<std::string>& values = options_.cells.values(task);
+  const std::vector<std::string> values = options_.cells.values(task);
   std::vector<std::string> parts;
   for (std::size_t i = 0; i < paths.size(); ++i) {
     if (is_method_axis(paths[i]) || is_seed_axis(paths[i]) || values[i].empty()) continue;
-    const std::string key = paths[i].substr(paths[i].find_last_of('.') + 1);
+    const std::string last = paths[i].substr(paths[i].find_last_of('.') + 1);
+    const std::string key = last == "noise_level" ? "noise" : last;
     parts.push_back(fmt::format("{} {}", key, short_label(values[i])));
   }
   return parts.empty() ? "the one condition" : fmt::format("{}", fmt::join(parts, ", "));
@@ -107,7 +124,7 @@ std::string BenchmarkExperiment::replicate_of(std::size_t task) const {
   const std::vector<std::string>& paths = options_.cells.paths();
   std::vector<std::string> parts;
   for (std::size_t i = 0; i < paths.size(); ++i) {
-    if (is_seed_axis(paths[i])) parts.push_back(options_.cells.values(task)[i]);
+    if (is_seed_axis(paths[i])) parts.push_back(options_.cells.value(task, i));
   }
   return parts.empty() ? std::to_string(options_.cells[task].inversion.seed)
                        : fmt::format("{}", fmt::join(parts, ", "));
@@ -127,52 +144,11 @@ std::vector<Finding> BenchmarkExperiment::lint() const {
                           "have: state a scene"});
     }
   }
-  for (Finding& finding : lint_fairness()) findings.push_back(std::move(finding));
-  return findings;
-}
-
-std::vector<Finding> BenchmarkExperiment::lint_fairness() const {
-  std::map<std::string, std::set<std::string>> problems;
-  std::map<std::string, std::set<std::string>> budgets, ranges;
-  std::map<std::string, std::set<std::string>> draws;
+  std::vector<FairnessTask> tasks;
   for (std::size_t task = 0; task < task_count(); ++task) {
-    const std::string method = method_of(task);
-    problems[method].insert(condition_of(task) + " / " + replicate_of(task));
-    CalibrationOptions calibration = options_.cells[task].calibration;
-    budgets[modcal::fingerprint([&](OptionVisitor& visitor) { calibration.budget.visit(visitor); })]
-        .insert(method);
-    ranges[modcal::fingerprint([&](OptionVisitor& visitor) {
-      calibration.parameters.ranges.visit(visitor);
-    })].insert(method);
-    draws[condition_of(task)].insert(replicate_of(task));
+    tasks.push_back({task, method_of(task), condition_of(task), replicate_of(task)});
   }
-  std::vector<Finding> findings;
-  const auto warn = [&findings](std::string path, std::string text) {
-    findings.push_back({std::move(path), std::move(text), false});
-  };
-  for (const auto& [method, theirs] : problems) {
-    if (theirs == problems.begin()->second) continue;
-    warn("sweep", fmt::format("{} meets {} problems, {} meets {}: methods are compared on the "
-                              "problems they share",
-                              method, theirs.size(), problems.begin()->first,
-                              problems.begin()->second.size()));
-  }
-  if (budgets.size() > 1) {
-    warn("calibration.budget", "the methods have different budgets: what costs more wins");
-  }
-  if (ranges.size() > 1) {
-    warn("calibration.parameters",
-         "the methods search different ranges: the narrower one is a head start");
-  }
-  const std::size_t fewest =
-      std::min_element(draws.begin(), draws.end(), [](const auto& a, const auto& b) {
-        return a.second.size() < b.second.size();
-      })->second.size();
-  if (problems.size() > 1 && fewest < 10) {
-    warn("sweep", fmt::format("{} draws a condition tell methods apart only where they differ "
-                              "grossly: take 10 seeds or more",
-                              fewest));
-  }
+  append(findings, lint_fairness(tasks, [this](std::size_t task) { return options_.cells[task]; }));
   return findings;
 }
 
@@ -193,8 +169,8 @@ std::vector<std::string> BenchmarkExperiment::plan() const {
 
 std::optional<PlannedSimulations> BenchmarkExperiment::planned_simulations() const {
   std::set<std::string> scenes;
-  for (std::size_t task = 0; task < task_count(); ++task) {
-    const ObservationOptions& observation = options_.cells[task].inversion.observation;
+  for (const CalibrateOptions& cell : options_.cells.all()) {
+    const ObservationOptions& observation = cell.inversion.observation;
     scenes.insert(
         truth_key(observation.truth, observation.measurement.sample_rate, {.force = true}));
   }
@@ -212,7 +188,8 @@ std::string BenchmarkExperiment::fingerprint(std::size_t task,
 }
 
 std::string BenchmarkExperiment::run_task(std::size_t task, const StudyContext& context) const {
-  return outcome_text(run_benchmark_cell(options_.cells[task], options_.success, context));
+  return outcome_text(
+      run_benchmark_cell(options_.cells[task], options_.success, *bounds_, context));
 }
 
 std::string BenchmarkExperiment::failure_in(const std::string& outcome) const {
@@ -225,23 +202,34 @@ std::optional<double> BenchmarkExperiment::loss_in(const std::string& outcome) c
   return read.frequency_error;
 }
 
-BenchmarkGrid BenchmarkExperiment::grid(
-    const std::vector<std::optional<FinishedTask>>& outcomes) const {
+BenchmarkGrid BenchmarkExperiment::grid(const TaskOutcomes& outcomes) const {
   BenchmarkGrid grid;
+  std::set<std::pair<std::size_t, std::size_t>> traced;
   for (std::size_t task = 0; task < outcomes.size(); ++task) {
     const std::size_t method = index_of(method_of(task), grid.methods);
     const std::size_t condition = index_of(condition_of(task), grid.conditions);
-    const double noise = options_.cells[task].inversion.observation.measurement.noise_level;
-    if (condition == grid.noise_levels.size()) grid.noise_levels.push_back(noise);
-    if (!outcomes[task]) continue;
-    grid.tasks.push_back({task, method, condition, replicate_of(task), noise,
-                          outcomes[task]->seconds,
-                          read_benchmark_outcome(outcomes[task]->outcome)});
+    if (method == grid.objectives.size()) {
+      grid.objectives.push_back(objective_of(task));
+      grid.searches.push_back(search_of(task));
+    }
+    if (condition == grid.noise_levels.size()) {
+      grid.noise_levels.push_back(
+          options_.cells[task].inversion.observation.measurement.noise_level);
+    }
+    const std::optional<FinishedTask> finished = outcomes[task];
+    if (!finished) continue;
+    grid.tasks.push_back({task, method, condition, replicate_of(task), finished->seconds,
+                          read_benchmark_outcome(finished->outcome)});
+    // The figure of traces draws one a method and condition.
+    BenchmarkOutcome& outcome = grid.tasks.back().outcome;
+    if (!outcome.trace.empty() && !traced.insert({method, condition}).second) {
+      outcome.trace = {};
+    }
   }
   return grid;
 }
 
-StudyResult BenchmarkExperiment::sum_up(const std::vector<std::optional<FinishedTask>>& outcomes,
+StudyResult BenchmarkExperiment::sum_up(const TaskOutcomes& outcomes,
                                         const StudyContext& context) const {
   const BenchmarkGrid grid = this->grid(outcomes);
   const std::vector<BenchmarkCell> cells = benchmark_cells(grid);
@@ -254,15 +242,19 @@ StudyResult BenchmarkExperiment::sum_up(const std::vector<std::optional<Finished
   if (!grid.tasks.empty() && result.failed_tasks == grid.tasks.size()) {
     result.status = report::Status::kFailed;
   }
+  std::string paragraphs;
   for (const std::string& sentence : conclusion(grid, cells)) {
     result.summary += sentence + "\n";
-    result.blocks.emplace_back(report::Text{sentence});
+    paragraphs += (paragraphs.empty() ? "" : "\n\n") + sentence;
   }
+  result.blocks.emplace_back(report::Text{paragraphs});
   result.blocks.emplace_back(success_map(grid, cells, context.command));
+  report::Table bounds = bound_map(grid, cells, context.command);
+  if (!bounds.rows.empty()) result.blocks.emplace_back(std::move(bounds));
   for (report::Figure figure :
        {error_figure(grid, cells), data_profile(grid), performance_profile(grid),
         work_precision_figure(grid, cells), waterfall_figure(grid), trace_figure(grid)}) {
-    if (figure.panels.front().series.empty()) continue;
+    if (figure.panels.empty()) continue;
     figure.command = context.command;
     result.blocks.emplace_back(std::move(figure));
   }

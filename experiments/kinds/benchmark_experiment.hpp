@@ -34,17 +34,18 @@ class BenchmarkExperiment final : public TaskExperiment {
   std::string failure_in(const std::string& outcome) const override;
   std::string loss_name() const override { return "median relative frequency error"; }
   std::optional<double> loss_in(const std::string& outcome) const override;
-  StudyResult sum_up(const std::vector<std::optional<FinishedTask>>& outcomes,
-                     const StudyContext& context) const override;
+  StudyResult sum_up(const TaskOutcomes& outcomes, const StudyContext& context) const override;
   StudyResult replay(std::size_t task, const StudyContext& context) const override;
 
  private:
   std::string method_of(std::size_t task) const;
+  std::string objective_of(std::size_t task) const;
+  std::string search_of(std::size_t task) const;
   std::string condition_of(std::size_t task) const;
   std::string replicate_of(std::size_t task) const;
-  BenchmarkGrid grid(const std::vector<std::optional<FinishedTask>>& outcomes) const;
-  std::vector<Finding> lint_fairness() const;
+  BenchmarkGrid grid(const TaskOutcomes& outcomes) const;
   Options options_;
+  std::shared_ptr<FrequencyBounds> bounds_ = std::make_shared<FrequencyBounds>();
 };
 
 }  // namespace modcal

@@ -22,6 +22,7 @@ constexpr std::array kNumbers = {
     NumberMember{"initial_error", &BenchmarkOutcome::initial_error},
     NumberMember{"frequency_error", &BenchmarkOutcome::frequency_error},
     NumberMember{"frequency_rms_error", &BenchmarkOutcome::frequency_rms_error},
+    NumberMember{"frequency_bound", &BenchmarkOutcome::frequency_bound},
     NumberMember{"contact_error", &BenchmarkOutcome::contact_error},
     NumberMember{"correlation", &BenchmarkOutcome::correlation}};
 

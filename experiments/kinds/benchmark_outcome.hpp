@@ -23,12 +23,17 @@ struct BenchmarkOutcome {
   /// Median of |f_n − true|/true over the modes that the contact excites.
   double frequency_error = std::numeric_limits<double>::quiet_NaN();
   double frequency_rms_error = std::numeric_limits<double>::quiet_NaN();  ///< over the same modes
-  double contact_error = std::numeric_limits<double>::quiet_NaN();        ///< |x_c − true| [m]
+  /// Cramér–Rao bound of frequency_rms_error; NaN without noise.
+  double frequency_bound = std::numeric_limits<double>::quiet_NaN();
+  double contact_error = std::numeric_limits<double>::quiet_NaN();  ///< |x_c − true| [m]
   /// Mean correlation of identified and true force over sides and windows.
   double correlation = std::numeric_limits<double>::quiet_NaN();
   bool success = false;
   /// Evaluations so far and best value, at the improvements; thinned to 100.
   std::vector<std::pair<std::int64_t, double>> trace;
+
+  /// frequency_rms_error over its bound; NaN without a bound.
+  double bound_ratio() const { return frequency_rms_error / frequency_bound; }
 };
 
 /// JSON on one line; read_benchmark_outcome gives back every bit.

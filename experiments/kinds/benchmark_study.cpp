@@ -49,6 +49,20 @@ double value_at_truth(const CalibrateOptions& options, const Observation& observ
   return calibrate_observation(at_truth, observation).result.search.initial_value;
 }
 
+// NaN where the bound does not exist: the calibration is scored all the same.
+double bound_of(const CalibrateOptions& options, const CalibrationOutcome& calibrated,
+                FrequencyBounds& bounds, TruthCache& truths) {
+  std::vector<std::size_t> modes;
+  for (const CalibratedMode& mode : calibrated.result.modes) {
+    if (mode.excited) modes.push_back(mode.number);
+  }
+  try {
+    return rms_bound(bounds.of(options, truths), modes);
+  } catch (const InvalidInput&) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
 double mean_correlation(const CalibrateOptions& options, const Observation& observation,
                         const AssumedModel& refined) {
   const InversionRecipe recipe(options.inversion.inversion);
@@ -101,14 +115,16 @@ BenchmarkOutcome score(const CalibrateOptions& options, const SuccessOptions& su
 }  // namespace
 
 BenchmarkOutcome run_benchmark_cell(const CalibrateOptions& options, const SuccessOptions& success,
-                                    const StudyContext& context) {
+                                    FrequencyBounds& bounds, const StudyContext& context) {
   try {
     const InvertOptions& inversion = options.inversion;
     const Observation observation = observe(inversion.observation, {.force = true},
                                             context.work.truths, inversion.key(), context.folder);
     const CalibrationOutcome calibrated =
         calibrate_observation(options, observation, polling_clock(context));
-    return score(options, success, observation, calibrated);
+    BenchmarkOutcome outcome = score(options, success, observation, calibrated);
+    outcome.frequency_bound = bound_of(options, calibrated, bounds, context.work.truths);
+    return outcome;
   } catch (const InvalidInput& error) {
     return {.failure = error.what()};
   }

@@ -1,6 +1,7 @@
 // Kind "benchmark": calibrations over objectives, optimizers and data, scored on the truth.
 #pragma once
 
+#include "experiments/kinds/benchmark_bound.hpp"
 #include "experiments/kinds/benchmark_outcome.hpp"
 #include "experiments/kinds/calibrate_study.hpp"
 
@@ -16,6 +17,6 @@ struct SuccessOptions {
 /// Calibrates one cell and scores it; a failure is an outcome. Noise, model errors and truth depend
 /// on the cell's seed and scene alone: every optimizer sees the same. Throws Interrupted.
 BenchmarkOutcome run_benchmark_cell(const CalibrateOptions& options, const SuccessOptions& success,
-                                    const StudyContext& context);
+                                    FrequencyBounds& bounds, const StudyContext& context);
 
 }  // namespace modcal

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 #include "experiments/study/paired_bootstrap.hpp"
+#include "libsim/base/task_loop.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {
@@ -21,7 +23,26 @@ double loss_of(const BenchmarkOutcome& outcome) {
 
 using Losses = std::map<std::string, double>;  // by replicate
 
-bool is_better(const Losses& ours, const Losses& theirs) {
+std::vector<double> values_of(const Losses& losses) {
+  std::vector<double> values;
+  for (const auto& [replicate, loss] : losses) values.push_back(loss);
+  return values;
+}
+
+bool have_the_same_draws(const std::vector<const Losses*>& losses) {
+  return std::all_of(losses.begin(), losses.end(), [&losses](const Losses* theirs) {
+    return std::equal(theirs->begin(), theirs->end(), losses.front()->begin(),
+                      losses.front()->end(),
+                      [](const auto& a, const auto& b) { return a.first == b.first; });
+  });
+}
+
+int sign_of(const MedianRatio& ratio) {
+  return ratio.is_below_one() ? -1 : ratio.is_above_one() ? 1 : 0;
+}
+
+// −1: ours are smaller beyond doubt, 1: theirs are, 0: nobody knows.
+int compared(const Losses& ours, const Losses& theirs) {
   std::vector<double> a, b;
   for (const auto& [replicate, loss] : ours) {
     const auto other = theirs.find(replicate);
@@ -29,7 +50,7 @@ bool is_better(const Losses& ours, const Losses& theirs) {
     a.push_back(loss);
     b.push_back(other->second);
   }
-  return !a.empty() && median_ratio(a, b).is_below_one();
+  return a.empty() ? 0 : sign_of(median_ratio(a, b));
 }
 
 void count_reasons(const std::vector<const BenchmarkTask*>& tasks, BenchmarkCell& cell) {
@@ -45,9 +66,27 @@ void count_reasons(const std::vector<const BenchmarkTask*>& tasks, BenchmarkCell
   }
 }
 
+// NaN of nothing.
+double mean_of(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+std::int64_t median_task(std::vector<const BenchmarkTask*> tasks) {
+  std::erase_if(tasks, [](const BenchmarkTask* task) {
+    return !std::isfinite(task->outcome.frequency_error) || !task->outcome.failure.empty();
+  });
+  if (tasks.empty()) return -1;
+  const auto middle = tasks.begin() + static_cast<std::ptrdiff_t>(tasks.size() / 2);
+  std::nth_element(tasks.begin(), middle, tasks.end(), [](const auto* a, const auto* b) {
+    return a->outcome.frequency_error < b->outcome.frequency_error;
+  });
+  return static_cast<std::int64_t>((*middle)->task);
+}
+
 BenchmarkCell sum_up(const std::vector<const BenchmarkTask*>& tasks) {
   BenchmarkCell cell{.n = tasks.size()};
-  std::vector<double> errors, contact_errors, correlations, evaluations, seconds;
+  std::vector<double> errors, rms_errors, squares, bound_squares;
+  std::vector<double> contact_errors, correlations, evaluations, seconds;
   for (const BenchmarkTask* task : tasks) {
     seconds.push_back(task->seconds);
     const BenchmarkOutcome& outcome = task->outcome;
@@ -57,6 +96,9 @@ BenchmarkCell sum_up(const std::vector<const BenchmarkTask*>& tasks) {
     }
     if (outcome.success) ++cell.successes;
     errors.push_back(outcome.frequency_error);
+    rms_errors.push_back(outcome.frequency_rms_error);
+    squares.push_back(outcome.frequency_rms_error * outcome.frequency_rms_error);
+    bound_squares.push_back(outcome.frequency_bound * outcome.frequency_bound);
     contact_errors.push_back(outcome.contact_error);
     correlations.push_back(outcome.correlation);
     evaluations.push_back(static_cast<double>(outcome.evaluations));
@@ -65,6 +107,13 @@ BenchmarkCell sum_up(const std::vector<const BenchmarkTask*>& tasks) {
   cell.error = quantile(errors, 0.5);
   cell.error_q10 = quantile(errors, 0.1);
   cell.error_q90 = quantile(errors, 0.9);
+  cell.rms = quantile(rms_errors, 0.5);
+  cell.rms_q10 = quantile(rms_errors, 0.1);
+  cell.rms_q90 = quantile(rms_errors, 0.9);
+  cell.rmse = std::sqrt(mean_of(squares));
+  cell.bound = std::sqrt(mean_of(bound_squares));
+  cell.bound_ratio = cell.rmse / cell.bound;
+  cell.task = median_task(tasks);
   cell.contact_error = quantile(contact_errors, 0.5);
   cell.correlation = quantile(correlations, 0.5);
   cell.evaluations = quantile(evaluations, 0.5);
@@ -74,10 +123,17 @@ BenchmarkCell sum_up(const std::vector<const BenchmarkTask*>& tasks) {
 }
 
 void rank(const std::vector<const Losses*>& losses, std::vector<BenchmarkCell*>& cells) {
+  for (BenchmarkCell* cell : cells) cell->rank = 1;
+  // While a run goes on, methods may have different draws; then every pair is resampled by itself.
+  std::vector<BootstrapMedians> medians;
+  if (have_the_same_draws(losses)) {
+    for (const Losses* own : losses) medians.emplace_back(values_of(*own));
+  }
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    cells[i]->rank = 1;
-    for (std::size_t j = 0; j < cells.size(); ++j) {
-      if (i != j && is_better(*losses[j], *losses[i])) ++cells[i]->rank;
+    for (std::size_t j = 0; j < i; ++j) {
+      const int order = medians.empty() ? compared(*losses[i], *losses[j])
+                                        : sign_of(median_ratio(medians[i], medians[j]));
+      if (order != 0) ++cells[order < 0 ? j : i]->rank;
     }
   }
 }
@@ -112,7 +168,8 @@ std::vector<BenchmarkCell> benchmark_cells(const BenchmarkGrid& grid) {
       losses.back()[task->replicate] = loss_of(task->outcome);
     }
   }
-  for (std::size_t condition = 0; condition < grid.conditions.size(); ++condition) {
+  // A condition a task: its cells are its own.
+  for_each_task(grid.conditions.size(), [&](std::size_t condition) {
     std::vector<BenchmarkCell*> together;
     std::vector<const Losses*> their_losses;
     for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -121,8 +178,16 @@ std::vector<BenchmarkCell> benchmark_cells(const BenchmarkGrid& grid) {
       their_losses.push_back(&losses[i]);
     }
     rank(their_losses, together);
-  }
+  });
   return cells;
+}
+
+std::vector<std::string> distinct(const std::vector<std::string>& values) {
+  std::vector<std::string> result;
+  for (const std::string& value : values) {
+    if (std::find(result.begin(), result.end(), value) == result.end()) result.push_back(value);
+  }
+  return result;
 }
 
 std::string short_label(const std::string& value) {

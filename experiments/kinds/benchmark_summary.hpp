@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,7 +17,6 @@ struct BenchmarkTask {
   std::size_t method = 0;     ///< index: what differs in the calibration
   std::size_t condition = 0;  ///< index: what differs in the data, but for the seed
   std::string replicate;      ///< what tells draws of one condition apart: the seed
-  double noise_level = 0.0;
   double seconds = 0.0;
   BenchmarkOutcome outcome;
 };
@@ -24,6 +24,8 @@ struct BenchmarkTask {
 /// A benchmark as a grid of methods and conditions.
 struct BenchmarkGrid {
   std::vector<std::string> methods;     ///< "nlopt LN_SBPLX, force_mismatch"
+  std::vector<std::string> objectives;  ///< of the methods: "force_mismatch"
+  std::vector<std::string> searches;    ///< what else tells methods apart: "nlopt LN_SBPLX"
   std::vector<std::string> conditions;  ///< "5 %"
   std::vector<double> noise_levels;     ///< of the conditions [1]
   std::vector<BenchmarkTask> tasks;
@@ -44,22 +46,30 @@ struct BenchmarkCell {
   std::size_t failures = 0;  ///< refused or broke: without any estimate
   SuccessShare success;
   double error = 0.0, error_q10 = 0.0, error_q90 = 0.0;  ///< of the frequencies; failures left out
-  double contact_error = 0.0;                            ///< median [m]
-  double correlation = 0.0;                              ///< median
-  double evaluations = 0.0;                              ///< median
-  double seconds = 0.0;                                  ///< median
+  double rms = 0.0, rms_q10 = 0.0, rms_q90 = 0.0;        ///< median and quantiles of the rms error
+  double rmse = 0.0;           ///< over all modes and draws with an estimate
+  double bound = 0.0;          ///< Cramér–Rao bound of rmse; NaN without noise
+  double bound_ratio = 0.0;    ///< rmse / bound
+  double contact_error = 0.0;  ///< median [m]
+  double correlation = 0.0;    ///< median
+  double evaluations = 0.0;    ///< median
+  double seconds = 0.0;        ///< median
   /// 1 + number of methods that are better beyond doubt under this condition; methods that cannot
   /// be told apart share a rank.
   std::size_t rank = 0;
   /// What most of the draws without success had in common; empty where all succeeded.
   std::string reason;
   std::size_t reason_count = 0;
+  std::int64_t task = -1;  ///< the draw with the median error; −1: none has an estimate
 };
 
 /// Cells by condition, then method. Ranks compare medians of the frequency error over the draws
 /// that two methods share, a draw without an estimate being worse than any other: a method is
 /// better where the 95 % interval of the ratio of medians (median_ratio) lies below 1.
 std::vector<BenchmarkCell> benchmark_cells(const BenchmarkGrid& grid);
+
+/// Distinct values in the order of their first use.
+std::vector<std::string> distinct(const std::vector<std::string>& values);
 
 /// "{type: nlopt, algorithm: LN_SBPLX}" → "nlopt LN_SBPLX".
 std::string short_label(const std::string& value);

@@ -1,15 +1,49 @@
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
-#include "experiments/kinds/benchmark_report.hpp"
+#include "experiments/kinds/benchmark_drawing.hpp"
 
 namespace modcal {
 namespace {
 
 using report::Cell;
 using report::Highlight;
+
+Cell number_or_none(double value) { return std::isfinite(value) ? Cell(value) : Cell(); }
+
+// Methods in the first columns, conditions in the others.
+report::Table map_of(const BenchmarkGrid& grid, std::string id, std::string title,
+                     std::string caption, const char* format, const std::string& command) {
+  report::Table table{.id = std::move(id),
+                      .title = std::move(title),
+                      .caption = std::move(caption),
+                      .columns = {{.key = "objective"}, {.key = "optimizer"}},
+                      .command = command};
+  for (std::size_t c = 0; c < grid.conditions.size(); ++c) {
+    table.columns.push_back(
+        {.key = fmt::format("condition_{}", c), .name = grid.conditions[c], .format = format});
+  }
+  return table;
+}
+
+template <typename CellOf>
+void fill_map(const BenchmarkGrid& grid, const std::vector<BenchmarkCell>& cells,
+              const CellOf& cell_of, report::Table& table) {
+  for (std::size_t method = 0; method < grid.methods.size(); ++method) {
+    std::vector<Cell> row = {grid.objectives[method], grid.searches[method]};
+    for (std::size_t condition = 0; condition < grid.conditions.size(); ++condition) {
+      const BenchmarkCell* cell = find_cell(cells, method, condition);
+      row.push_back(cell == nullptr ? Cell() : cell_of(*cell));
+      if (cell != nullptr) row.back().task = cell->task;
+    }
+    table.rows.push_back(std::move(row));
+    table.row_tags.push_back(method_tags(grid, method));
+  }
+}
+
+}  // namespace
 
 const BenchmarkCell* find_cell(const std::vector<BenchmarkCell>& cells, std::size_t method,
                                std::size_t condition) {
@@ -19,9 +53,8 @@ const BenchmarkCell* find_cell(const std::vector<BenchmarkCell>& cells, std::siz
   return nullptr;
 }
 
-// Cells of one condition, best first; equals in the order of the methods.
-std::vector<const BenchmarkCell*> ranked(const std::vector<BenchmarkCell>& cells,
-                                         std::size_t condition) {
+std::vector<const BenchmarkCell*> ranked_cells(const std::vector<BenchmarkCell>& cells,
+                                               std::size_t condition) {
   std::vector<const BenchmarkCell*> result;
   for (const BenchmarkCell& cell : cells) {
     if (cell.condition == condition) result.push_back(&cell);
@@ -32,41 +65,6 @@ std::vector<const BenchmarkCell*> ranked(const std::vector<BenchmarkCell>& cells
   });
   return result;
 }
-
-std::string recommended(const BenchmarkGrid& grid, const BenchmarkCell& cell) {
-  return fmt::format("{} (median error {:.2g}, {} of {} right, {:.0f} evaluations)",
-                     grid.methods[cell.method], cell.error, cell.successes, cell.n,
-                     cell.evaluations);
-}
-
-// The methods that nothing is better than, and the cheapest of them.
-std::string best_of(const BenchmarkGrid& grid, const std::vector<const BenchmarkCell*>& order) {
-  std::vector<const BenchmarkCell*> best;
-  for (const BenchmarkCell* cell : order) {
-    if (cell->rank == 1 && cell->successes > 0) best.push_back(cell);
-  }
-  if (best.empty()) {
-    const auto* clearest = *std::max_element(
-        order.begin(), order.end(),
-        [](const auto* a, const auto* b) { return a->reason_count < b->reason_count; });
-    return fmt::format("no method is right; on {} of {} draws {} {}", clearest->reason_count,
-                       clearest->n, grid.methods[clearest->method], clearest->reason);
-  }
-  const auto cheapest = std::min_element(
-      best.begin(), best.end(),
-      [](const auto* a, const auto* b) { return a->evaluations < b->evaluations; });
-  std::string text = "use " + recommended(grid, **cheapest);
-  std::vector<std::string> others;
-  for (const BenchmarkCell* cell : best) {
-    if (cell != *cheapest) others.push_back(grid.methods[cell->method]);
-  }
-  if (!others.empty()) {
-    text += fmt::format("; not to be told apart from it: {}", fmt::join(others, "; "));
-  }
-  return text;
-}
-
-}  // namespace
 
 report::Table benchmark_table(const BenchmarkGrid& grid, const std::vector<BenchmarkCell>& cells,
                               const std::string& command) {
@@ -85,6 +83,9 @@ report::Table benchmark_table(const BenchmarkGrid& grid, const std::vector<Bench
                   {.key = "error", .name = "frequency error, median", .format = "{:.2e}"},
                   {.key = "error_q10", .name = "10 %", .format = "{:.2e}"},
                   {.key = "error_q90", .name = "90 %", .format = "{:.2e}"},
+                  {.key = "rmse", .name = "RMSE", .format = "{:.2e}"},
+                  {.key = "bound", .name = "Cramér–Rao bound", .format = "{:.2e}"},
+                  {.key = "bound_ratio", .name = "RMSE / bound", .format = "{:.3g}"},
                   {.key = "contact_error", .unit = "m", .format = "{:.2e}"},
                   {.key = "correlation", .name = "force correlation", .format = "{:.3f}"},
                   {.key = "evaluations", .format = "{:.0f}"},
@@ -92,13 +93,20 @@ report::Table benchmark_table(const BenchmarkGrid& grid, const std::vector<Bench
                   {.key = "reason", .name = "most frequent reason without success"}},
       .command = command};
   for (std::size_t condition = 0; condition < grid.conditions.size(); ++condition) {
-    for (const BenchmarkCell* cell : ranked(cells, condition)) {
+    for (const BenchmarkCell* cell : ranked_cells(cells, condition)) {
       const Highlight mark = cell->successes == 0 ? Highlight::kFail : Highlight::kNone;
+      Cell error(cell->error);
+      error.task = cell->task;
+      table.row_tags.push_back(method_tags(grid, cell->method));
+      if (grid.conditions.size() > 1) {
+        table.row_tags.back().push_back(condition_tag(grid, condition));
+      }
       table.rows.push_back({grid.conditions[condition], grid.methods[cell->method], cell->rank,
                             cell->n, Cell(cell->success.share, mark), cell->success.low,
-                            cell->success.high, cell->failures, cell->error, cell->error_q10,
-                            cell->error_q90, cell->contact_error, cell->correlation,
-                            cell->evaluations, cell->seconds, cell->reason});
+                            cell->success.high, cell->failures, error, cell->error_q10,
+                            cell->error_q90, cell->rmse, number_or_none(cell->bound),
+                            number_or_none(cell->bound_ratio), cell->contact_error,
+                            cell->correlation, cell->evaluations, cell->seconds, cell->reason});
     }
   }
   return table;
@@ -106,52 +114,46 @@ report::Table benchmark_table(const BenchmarkGrid& grid, const std::vector<Bench
 
 report::Table success_map(const BenchmarkGrid& grid, const std::vector<BenchmarkCell>& cells,
                           const std::string& command) {
-  report::Table table{.id = "success",
-                      .title = "Share of draws that are right",
-                      .columns = {{.key = "method"}},
-                      .command = command};
-  for (std::size_t c = 0; c < grid.conditions.size(); ++c) {
-    table.columns.push_back(
-        {.key = fmt::format("condition_{}", c), .name = grid.conditions[c], .format = "{:.2f}"});
-  }
-  for (std::size_t method = 0; method < grid.methods.size(); ++method) {
-    std::vector<Cell> row = {grid.methods[method]};
-    for (std::size_t condition = 0; condition < grid.conditions.size(); ++condition) {
-      const BenchmarkCell* cell = find_cell(cells, method, condition);
-      if (cell == nullptr) {
-        row.emplace_back();
-        continue;
-      }
-      const Highlight mark = cell->success.low > 0.5    ? Highlight::kPass
-                             : cell->success.high < 0.5 ? Highlight::kFail
-                                                        : Highlight::kNone;
-      row.emplace_back(cell->success.share, mark);
-    }
-    table.rows.push_back(std::move(row));
-  }
+  report::Table table =
+      map_of(grid, "success", "Share of draws that are right",
+             "✓: more than half are right with 95 % confidence, ✗: fewer are.", "{:.2f}", command);
+  fill_map(
+      grid, cells,
+      [](const BenchmarkCell& cell) {
+        const Highlight mark = cell.success.low > 0.5    ? Highlight::kPass
+                               : cell.success.high < 0.5 ? Highlight::kFail
+                                                         : Highlight::kNone;
+        Cell shown(cell.success.share, mark);
+        shown.heat = cell.success.share;
+        return shown;
+      },
+      table);
   return table;
 }
 
-std::vector<std::string> conclusion(const BenchmarkGrid& grid,
-                                    const std::vector<BenchmarkCell>& cells) {
-  std::vector<std::string> sentences;
-  for (std::size_t condition = 0; condition < grid.conditions.size(); ++condition) {
-    const auto order = ranked(cells, condition);
-    if (order.empty()) continue;
-    sentences.push_back(
-        fmt::format("At {}: {}.", grid.conditions[condition], best_of(grid, order)));
-    for (const BenchmarkCell* cell : order) {
-      if (cell->success.high >= 0.5) continue;
-      sentences.push_back(fmt::format("At {}: {} fails on {} of {} draws; {} {}.",
-                                      grid.conditions[condition], grid.methods[cell->method],
-                                      cell->n - cell->successes, cell->n,
-                                      cell->reason_count == cell->n - cell->successes
-                                          ? "it"
-                                          : fmt::format("on {} it", cell->reason_count),
-                                      cell->reason));
-    }
-  }
-  return sentences;
+report::Table bound_map(const BenchmarkGrid& grid, const std::vector<BenchmarkCell>& cells,
+                        const std::string& command) {
+  const bool bounded = std::any_of(cells.begin(), cells.end(), [](const BenchmarkCell& cell) {
+    return std::isfinite(cell.bound_ratio);
+  });
+  report::Table table = map_of(
+      grid, "bound_ratio", "Frequency RMSE over the Cramér–Rao bound",
+      "Over all excited modes and draws with an estimate. 1 is the best that the data allow with "
+      "the force unknown; an objective that is told less than both reactions cannot reach it. "
+      "Without noise there is no bound.",
+      "{:.3g}", command);
+  if (!bounded) return table;
+  fill_map(
+      grid, cells,
+      [](const BenchmarkCell& cell) {
+        if (!std::isfinite(cell.bound_ratio)) return Cell();
+        Cell shown(cell.bound_ratio);
+        // Dark at the bound, white at a thousand times.
+        shown.heat = std::clamp(1.0 - std::log10(cell.bound_ratio) / 3.0, 0.0, 1.0);
+        return shown;
+      },
+      table);
+  return table;
 }
 
 }  // namespace modcal

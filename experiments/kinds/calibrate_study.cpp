@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/kinds/calibrate_audio.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {
@@ -17,6 +18,11 @@ void CalibrateOptions::visit(OptionVisitor& visitor) {
                 .meaning = "give blind modes the frequencies of the stiff-string law fitted to the "
                            "others"},
                fill_blind_modes);
+  visitor.flag(
+      {.key = "audio",
+       .meaning = "players in the report for the true, one-sided and joint force and string "
+                  "velocity"},
+      audio);
 }
 
 namespace {
@@ -148,8 +154,10 @@ CalibrationOutcome calibrate_observation(const CalibrateOptions& options,
 
 StudyResult calibrate_study(const CalibrateOptions& options, const StudyContext& context) {
   const InvertOptions& inversion = options.inversion;
-  const Observation observation = observe(inversion.observation, truth_outputs(inversion.figures),
-                                          context.work.truths, inversion.key(), context.folder);
+  OutputRequest outputs = truth_outputs(inversion.figures);
+  if (options.audio) outputs.velocity = true;
+  const Observation observation =
+      observe(inversion.observation, outputs, context.work.truths, inversion.key(), context.folder);
   const CalibrationOutcome outcome =
       calibrate_observation(options, observation, polling_clock(context));
   context.throw_if_interrupted();
@@ -176,6 +184,9 @@ StudyResult calibrate_study(const CalibrateOptions& options, const StudyContext&
     result.blocks.emplace_back(std::move(drawn));
   }
   add_identification_figures(inversion.figures, observation, sides, context.command, result);
+  if (options.audio) {
+    result.blocks.emplace_back(calibration_audio(options, observation, outcome.refined));
+  }
   result.blocks.emplace_back(search_table(outcome, context.command));
   result.blocks.emplace_back(mode_table(outcome, context.command));
   result.blocks.emplace_back(identification_table(sides, context.command));

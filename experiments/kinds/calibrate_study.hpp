@@ -15,7 +15,9 @@ struct CalibrateOptions {
   /// Give blind modes the frequencies of the stiff-string law fitted to the others (paper, eq. 18
   /// and section 7.1).
   bool fill_blind_modes = false;
+  bool audio = false;  ///< players in the report
   void visit(OptionVisitor& visitor);
+  std::int64_t& seed_slot() { return inversion.seed; }
 };
 
 /// A calibration together with what it is judged by.

@@ -256,8 +256,8 @@ std::string CalibrationLimitExperiment::failure_in(const std::string& outcome) c
   return read_limit_outcome(outcome).failure;
 }
 
-StudyResult CalibrationLimitExperiment::sum_up(
-    const std::vector<std::optional<FinishedTask>>& outcomes, const StudyContext& context) const {
+StudyResult CalibrationLimitExperiment::sum_up(const TaskOutcomes& outcomes,
+                                               const StudyContext& context) const {
   std::vector<LimitLevel> levels;
   for (const double level : options_.noise_levels) levels.push_back({.noise_level = level});
   std::size_t pending = 0;

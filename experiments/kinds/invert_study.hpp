@@ -22,6 +22,7 @@ struct InvertOptions {
   std::int64_t seed = 1;
   bool write_signals = false;
   void visit(OptionVisitor& visitor);
+  std::int64_t& seed_slot() { return seed; }
   StreamKey key() const { return StreamKey(static_cast<std::uint64_t>(seed)); }
 };
 

@@ -94,7 +94,7 @@ std::string SchellengExperiment::failure_in(const std::string& outcome) const {
   return read_cell_outcome(outcome).failure;
 }
 
-StudyResult SchellengExperiment::sum_up(const std::vector<std::optional<FinishedTask>>& outcomes,
+StudyResult SchellengExperiment::sum_up(const TaskOutcomes& outcomes,
                                         const StudyContext& context) const {
   CellOutcomes cells(outcomes.size());
   for (std::size_t task = 0; task < outcomes.size(); ++task) {

@@ -22,8 +22,7 @@ class SchellengExperiment final : public TaskExperiment {
   std::string fingerprint(std::size_t task, const std::filesystem::path& folder) const override;
   std::string run_task(std::size_t task, const StudyContext& context) const override;
   std::string failure_in(const std::string& outcome) const override;
-  StudyResult sum_up(const std::vector<std::optional<FinishedTask>>& outcomes,
-                     const StudyContext& context) const override;
+  StudyResult sum_up(const TaskOutcomes& outcomes, const StudyContext& context) const override;
   StudyResult replay(std::size_t task, const StudyContext& context) const override {
     return show_cell(options_, task, context);
   }

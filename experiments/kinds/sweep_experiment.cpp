@@ -130,7 +130,7 @@ std::optional<double> SweepExperiment::loss_in(const std::string& outcome) const
   return sum / static_cast<double>(count);
 }
 
-StudyResult SweepExperiment::sum_up(const std::vector<std::optional<FinishedTask>>& outcomes,
+StudyResult SweepExperiment::sum_up(const TaskOutcomes& outcomes,
                                     const StudyContext& context) const {
   std::vector<SweepCell> cells;
   std::vector<std::optional<TaskOutcome>> read(outcomes.size());

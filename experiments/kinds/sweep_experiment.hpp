@@ -34,8 +34,7 @@ class SweepExperiment final : public TaskExperiment {
   std::string failure_in(const std::string& outcome) const override;
   std::string loss_name() const override { return "mean relative rms error of the force"; }
   std::optional<double> loss_in(const std::string& outcome) const override;
-  StudyResult sum_up(const std::vector<std::optional<FinishedTask>>& outcomes,
-                     const StudyContext& context) const override;
+  StudyResult sum_up(const TaskOutcomes& outcomes, const StudyContext& context) const override;
   StudyResult replay(std::size_t task, const StudyContext& context) const override;
 
  private:

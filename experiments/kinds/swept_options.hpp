@@ -1,40 +1,92 @@
 // Options of every cell of a sweep.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
+#include "experiments/study/fingerprint.hpp"
 #include "libsim/base/sweep.hpp"
 
 namespace modcal {
 
-/// SweepSlot over copies of a type with visit().
+/// SweepSlot over copies of a type with visit() and the member function seed_slot(). Cells that
+/// differ in their seed alone share one copy, so that a list of 10⁶ draws is as small as its
+/// settings are few.
 template <typename Options>
 class SweptOptions final : public SweepSlot {
  public:
   const SweepPlan& plan() const override { return plan_; }
   void set_cells(SweepPlan plan, SweepCells cells) override {
     plan_ = std::move(plan);
-    cells_ = std::move(cells);
-    options_.assign(cells_.values.size(), Options{});
+    paths_ = std::move(cells.paths);
+    values_.clear();
+    value_of_.clear();
+    std::unordered_map<std::string, std::uint32_t> known;
+    value_of_.reserve(cells.values.size() * paths_.size());
+    for (const std::vector<std::string>& cell : cells.values) {
+      for (const std::string& value : cell) {
+        const auto [place, is_new] =
+            known.try_emplace(value, static_cast<std::uint32_t>(values_.size()));
+        if (is_new) values_.push_back(value);
+        value_of_.push_back(place->second);
+      }
+    }
+    settings_.clear();
+    known_settings_.clear();
+    cells_.assign(cells.values.size(), Cell{});
   }
   void visit_cell(std::size_t index, OptionVisitor& visitor) override {
-    options_[index].visit(visitor);
+    Options options;
+    options.visit(visitor);
+    cells_[index].seed = std::exchange(options.seed_slot(), 0);
+    std::string key = fingerprint([&options](OptionVisitor& writer) { options.visit(writer); });
+    const auto [place, is_new] =
+        known_settings_.try_emplace(std::move(key), static_cast<std::uint32_t>(settings_.size()));
+    if (is_new) {
+      options.seed_slot() = cells_[index].seed;
+      settings_.push_back(std::move(options));
+    }
+    cells_[index].settings = place->second;
   }
 
-  std::size_t size() const { return options_.size(); }
+  std::size_t size() const { return cells_.size(); }
   /// Paths of the options that differ between cells.
-  const std::vector<std::string>& paths() const { return cells_.paths; }
+  const std::vector<std::string>& paths() const { return paths_; }
   /// Their values in a cell, as written; empty: the experiment's own.
-  const std::vector<std::string>& values(std::size_t cell) const { return cells_.values[cell]; }
-  const Options& operator[](std::size_t cell) const { return options_[cell]; }
-  const std::vector<Options>& all() const { return options_; }
+  std::vector<std::string> values(std::size_t cell) const {
+    std::vector<std::string> values;
+    for (std::size_t i = 0; i < paths_.size(); ++i) values.push_back(value(cell, i));
+    return values;
+  }
+  const std::string& value(std::size_t cell, std::size_t path) const {
+    return values_[value_of_[cell * paths_.size() + path]];
+  }
+  Options operator[](std::size_t cell) const {
+    Options options = settings_[cells_[cell].settings];
+    options.seed_slot() = cells_[cell].seed;
+    return options;
+  }
+  /// Equal for cells that differ in their seed alone.
+  std::size_t setting_of(std::size_t cell) const { return cells_[cell].settings; }
+  /// The options of all cells, those that differ in their seed alone once.
+  const std::vector<Options>& all() const { return settings_; }
 
  private:
+  struct Cell {
+    std::int64_t seed = 0;
+    std::uint32_t settings = 0;
+  };
   SweepPlan plan_;
-  SweepCells cells_;
-  std::vector<Options> options_;
+  std::vector<std::string> paths_;
+  std::vector<std::string> values_;      // distinct ones
+  std::vector<std::uint32_t> value_of_;  // places in them, cell by cell
+  std::vector<Options> settings_;
+  std::unordered_map<std::string, std::uint32_t> known_settings_;
+  std::vector<Cell> cells_;
 };
 
 }  // namespace modcal

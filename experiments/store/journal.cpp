@@ -10,7 +10,6 @@
 #include <charconv>
 #include <cstring>
 #include <fstream>
-#include <sstream>
 
 #include "experiments/store/task_key.hpp"
 #include "libsim/base/error.hpp"
@@ -35,15 +34,24 @@ bool read_number(std::string_view word, Number& value) {
   return error == std::errc() && end == word.data() + word.size();
 }
 
+bool parse_record(std::string_view content, JournalRecord& record) {
+  record.key = take_word(content);
+  const bool good = read_number(take_word(content), record.task) &&
+                    read_number(take_word(content), record.seconds);
+  record.outcome = content;
+  return good && !record.key.empty() && !content.empty();
+}
+
 std::string content_of(const JournalRecord& record) {
   return fmt::format("{} {} {} {}", record.key, record.task, record.seconds, record.outcome);
 }
 
-// A line without its end, put into contents.
+// A line without its end, handed on.
 class LineReader {
  public:
-  LineReader(const std::filesystem::path& file, JournalContents& contents)
-      : file_(file), contents_(contents) {}
+  LineReader(const std::filesystem::path& file, const TakeRecord& take,
+             std::vector<JournalDamage>& damages)
+      : file_(file), take_(take), damages_(damages) {}
 
   void read(std::string_view line, std::size_t offset, bool has_end) {
     ++number_;
@@ -53,12 +61,12 @@ class LineReader {
                         checksum_of(content) == line.substr(0, kChecksumDigits);
     if (!intact) return damaged(offset, has_end ? "does not match its checksum" : "is cut off");
     if (content.starts_with(kHeaderOfAnyVersion)) return require_version(content);
-    read_record(content, offset);
+    read_record(content, offset, line.size());
   }
 
  private:
   void damaged(std::size_t offset, std::string reason) {
-    contents_.damages.push_back({file_, number_, offset, std::move(reason)});
+    damages_.push_back({file_, number_, offset, std::move(reason)});
   }
   void require_version(std::string_view content) const {
     MODCAL_REQUIRE(content.starts_with(kHeader),
@@ -66,42 +74,17 @@ class LineReader {
                    "modcal that wrote it",
                    file_.string(), content);
   }
-  void read_record(std::string_view content, std::size_t offset) {
-    JournalRecord record;
-    record.key = take_word(content);
-    const bool good = read_number(take_word(content), record.task) &&
-                      read_number(take_word(content), record.seconds);
-    if (!good || record.key.empty() || content.empty()) return damaged(offset, "is no record");
-    record.outcome = content;
-    contents_.records.push_back(std::move(record));
+  void read_record(std::string_view content, std::size_t offset, std::size_t length) {
+    if (!parse_record(content, record_)) return damaged(offset, "is no record");
+    take_(record_, offset, length);
   }
 
   const std::filesystem::path& file_;
-  JournalContents& contents_;
+  const TakeRecord& take_;
+  std::vector<JournalDamage>& damages_;
+  JournalRecord record_;
   std::size_t number_ = 0;
 };
-
-std::string all_of(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  MODCAL_REQUIRE(stream.good(), "{}: the journal cannot be read: {}", file.string(),
-                 std::strerror(errno));
-  return std::move(text).str();
-}
-
-void read_into(const std::filesystem::path& file, JournalContents& contents) {
-  if (std::filesystem::file_size(file) == 0) return;
-  const std::string text = all_of(file);
-  LineReader reader(file, contents);
-  for (std::size_t start = 0; start < text.size();) {
-    const std::size_t found = text.find('\n', start);
-    const bool has_end = found != std::string::npos;
-    const std::size_t end = has_end ? found : text.size();
-    reader.read(std::string_view(text).substr(start, end - start), start, has_end);
-    start = end + 1;
-  }
-}
 
 }  // namespace
 
@@ -110,21 +93,64 @@ std::string message_of(const JournalDamage& damage) {
                      damage.line, damage.offset, damage.reason);
 }
 
+void scan_journal(const std::filesystem::path& file, const TakeRecord& take,
+                  std::vector<JournalDamage>& damages) {
+  std::ifstream stream(file, std::ios::binary);
+  MODCAL_REQUIRE(stream.good(), "{}: the journal cannot be read: {}", file.string(),
+                 std::strerror(errno));
+  LineReader reader(file, take, damages);
+  std::string line;
+  for (std::size_t start = 0; std::getline(stream, line); start += line.size() + 1) {
+    // A last line without its end sets the end of the file.
+    reader.read(line, start, !stream.eof());
+  }
+  MODCAL_REQUIRE(!stream.bad(), "{}: the journal cannot be read: {}", file.string(),
+                 std::strerror(errno));
+}
+
+JournalRecord record_of_line(const std::filesystem::path& file, std::string_view line) {
+  JournalRecord record;
+  const std::string_view content = line.substr(std::min(kChecksumDigits + 1, line.size()));
+  const bool intact = line.size() > kChecksumDigits &&
+                      checksum_of(content) == line.substr(0, kChecksumDigits) &&
+                      parse_record(content, record);
+  MODCAL_REQUIRE(intact, "{}: a line has changed while it was in use; run the command again",
+                 file.string());
+  return record;
+}
+
+namespace {
+
+void read_into(const std::filesystem::path& file, JournalContents& contents) {
+  scan_journal(
+      file,
+      [&contents](const JournalRecord& record, std::uint64_t, std::size_t) {
+        contents.records.push_back(record);
+      },
+      contents.damages);
+}
+
+}  // namespace
+
 JournalContents read_journal(const std::filesystem::path& file) {
   JournalContents contents;
   read_into(file, contents);
   return contents;
 }
 
-JournalContents read_journals(const std::filesystem::path& folder) {
+std::vector<std::filesystem::path> journals_in(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
   std::error_code none;
   for (const auto& entry : std::filesystem::directory_iterator(folder, none)) {
     if (entry.path().extension() == ".journal") files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());
+  return files;
+}
+
+JournalContents read_journals(const std::filesystem::path& folder) {
   JournalContents contents;
-  for (const std::filesystem::path& file : files) read_into(file, contents);
+  for (const std::filesystem::path& file : journals_in(folder)) read_into(file, contents);
   return contents;
 }
 
@@ -148,9 +174,11 @@ JournalWriter::~JournalWriter() {
   close(descriptor_);
 }
 
-void JournalWriter::append(const JournalRecord& record) { write_line(content_of(record)); }
+JournalWriter::Place JournalWriter::append(const JournalRecord& record) {
+  return write_line(content_of(record));
+}
 
-void JournalWriter::write_line(std::string_view content) {
+JournalWriter::Place JournalWriter::write_line(std::string_view content) {
   const std::string line = fmt::format("{} {}\n", checksum_of(content), content);
   const std::lock_guard lock(mutex_);
   const off_t start = lseek(descriptor_, 0, SEEK_END);
@@ -168,6 +196,7 @@ void JournalWriter::write_line(std::string_view content) {
     }
     written += static_cast<std::size_t>(count);
   }
+  return {static_cast<std::uint64_t>(start), line.size() - 1};
 }
 
 }  // namespace modcal

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <mutex>
 #include <string>
 #include <string_view>
@@ -37,6 +38,20 @@ struct JournalContents {
   std::vector<JournalDamage> damages;
 };
 
+/// Calls `take` for every record of a journal with the place of its line's first byte and the
+/// line's length; holds one line at a time. Throws like read_journal().
+using TakeRecord =
+    std::function<void(const JournalRecord& record, std::uint64_t offset, std::size_t length)>;
+void scan_journal(const std::filesystem::path& file, const TakeRecord& take,
+                  std::vector<JournalDamage>& damages);
+
+/// The record of a line that scan_journal() or append() has placed. Throws InvalidInput where the
+/// line is no longer what it was.
+JournalRecord record_of_line(const std::filesystem::path& file, std::string_view line);
+
+/// Journals (*.journal) of a folder by name; none where there is no such folder.
+std::vector<std::filesystem::path> journals_in(const std::filesystem::path& folder);
+
 /// Reads one journal. Throws InvalidInput where it cannot be read or has another version's format.
 JournalContents read_journal(const std::filesystem::path& file);
 
@@ -53,12 +68,18 @@ class JournalWriter {
   JournalWriter(const JournalWriter&) = delete;
   JournalWriter& operator=(const JournalWriter&) = delete;
 
+  /// Where a line stands, without its end.
+  struct Place {
+    std::uint64_t offset = 0;
+    std::size_t length = 0;
+  };
   /// Hands the record to the system in one write: it outlives the process from then on. Throws
   /// InvalidInput where that fails (no space); the journal then ends with the record before.
-  void append(const JournalRecord& record);
+  Place append(const JournalRecord& record);
+  const std::filesystem::path& file() const { return file_; }
 
  private:
-  void write_line(std::string_view content);
+  Place write_line(std::string_view content);
 
   std::filesystem::path file_;
   int descriptor_ = -1;

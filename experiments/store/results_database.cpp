@@ -5,9 +5,9 @@
 #include <unistd.h>
 
 #include <memory>
+#include <optional>
 #include <system_error>
 
-#include "experiments/store/task_key.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -93,70 +93,107 @@ class Insert {
   int column_ = 0;
 };
 
-void write_tables(Database& database, const std::vector<std::string>& axes,
-                  const std::vector<ResultRow>& rows,
-                  const std::vector<std::pair<std::string, std::string>>& facts) {
-  // Not shared, and thrown away where it is not finished: no journal of its own is needed.
-  database.execute("PRAGMA journal_mode=OFF");
-  database.execute("PRAGMA synchronous=OFF");
-  database.execute("BEGIN");
-  std::string columns;
-  for (const std::string& axis : axes) columns += identifier(axis) + " TEXT, ";
-  database.execute("CREATE TABLE tasks (task INTEGER PRIMARY KEY, " + columns +
-                   "failure TEXT, outcome TEXT)");
-  database.execute("CREATE TABLE timing (task INTEGER PRIMARY KEY, seconds REAL)");
-  database.execute("CREATE TABLE run (name TEXT PRIMARY KEY, value TEXT)");
-  Insert task(database, "tasks", axes.size() + 3);
-  Insert timing(database, "timing", 2);
-  for (const ResultRow& row : rows) {
-    task.number(row.task);
-    for (const std::string& value : row.axis_values) task.text(value);
-    task.text_or_null(row.failure).text(row.outcome).end_row();
-    timing.number(row.task).real(row.seconds).end_row();
+}  // namespace
+
+class ResultsDatabase::Writer {
+ public:
+  Writer(const std::filesystem::path& file, const std::vector<std::string>& axes)
+      : database_(file) {
+    // Not shared, and thrown away where it is not finished: no journal of its own is needed.
+    database_.execute("PRAGMA journal_mode=OFF");
+    database_.execute("PRAGMA synchronous=OFF");
+    database_.execute("BEGIN");
+    std::string columns;
+    for (const std::string& axis : axes) columns += identifier(axis) + " TEXT, ";
+    database_.execute("CREATE TABLE tasks (task INTEGER PRIMARY KEY, " + columns +
+                      "failure TEXT, outcome TEXT)");
+    database_.execute("CREATE TABLE timing (task INTEGER PRIMARY KEY, seconds REAL)");
+    database_.execute("CREATE TABLE run (name TEXT PRIMARY KEY, value TEXT)");
+    task_.emplace(database_, "tasks", axes.size() + 3);
+    timing_.emplace(database_, "timing", 2);
   }
-  Insert fact(database, "run", 2);
-  for (const auto& [name, value] : facts) fact.text(name).text(value).end_row();
-  database.execute("COMMIT");
+  void add(const ResultRow& row) {
+    task_->number(row.task);
+    for (const std::string& value : row.axis_values) task_->text(value);
+    task_->text_or_null(row.failure).text(row.outcome).end_row();
+    timing_->number(row.task).real(row.seconds).end_row();
+  }
+  void finish(const std::vector<std::pair<std::string, std::string>>& facts) {
+    task_.reset();
+    timing_.reset();
+    {
+      Insert fact(database_, "run", 2);
+      for (const auto& [name, value] : facts) fact.text(name).text(value).end_row();
+    }
+    database_.execute("COMMIT");
+  }
+
+ private:
+  Database database_;
+  std::optional<Insert> task_, timing_;
+};
+
+RowsDigest::RowsDigest(const std::vector<std::string>& axes) {
+  for (const std::string& axis : axes) add(axis);
 }
 
-}  // namespace
+// Lengths before texts: no two tables give one line of bytes.
+void RowsDigest::add(const std::string& part) {
+  digest_.add(fmt::format("{}:", part.size()));
+  digest_.add(part);
+}
+
+void RowsDigest::add(const ResultRow& row) {
+  digest_.add(fmt::format("\n{}:", row.task));
+  for (const std::string& value : row.axis_values) add(value);
+  add(row.failure);
+  add(row.outcome);
+}
 
 std::string digest_of_rows(const std::vector<std::string>& axes,
                            const std::vector<ResultRow>& rows) {
-  // Lengths before texts: no two tables give one line of bytes.
-  std::string text;
-  const auto add = [&text](const std::string& part) {
-    text += fmt::format("{}:", part.size());
-    text += part;
-  };
-  for (const std::string& axis : axes) add(axis);
-  for (const ResultRow& row : rows) {
-    text += fmt::format("\n{}:", row.task);
-    for (const std::string& value : row.axis_values) add(value);
-    add(row.failure);
-    add(row.outcome);
-  }
-  return digest_of(text);
+  RowsDigest digest(axes);
+  for (const ResultRow& row : rows) digest.add(row);
+  return digest.text();
+}
+
+ResultsDatabase::ResultsDatabase(std::filesystem::path file, const std::vector<std::string>& axes)
+    : file_(std::move(file)), temporary_(file_), digest_(axes) {
+  temporary_ += fmt::format(".{}.part", getpid());
+  std::error_code error;
+  std::filesystem::remove(temporary_, error);
+  writer_ = std::make_unique<Writer>(temporary_, axes);
+}
+
+ResultsDatabase::~ResultsDatabase() {
+  writer_.reset();
+  std::error_code error;
+  std::filesystem::remove(temporary_, error);
+}
+
+void ResultsDatabase::add(const ResultRow& row) {
+  digest_.add(row);
+  writer_->add(row);
+}
+
+std::string ResultsDatabase::finish(std::vector<std::pair<std::string, std::string>> facts) {
+  const std::string digest = digest_.text();
+  facts.emplace_back("digest", digest);
+  writer_->finish(facts);
+  writer_.reset();
+  std::error_code error;
+  std::filesystem::rename(temporary_, file_, error);
+  MODCAL_REQUIRE(!error, "{} cannot be put in place: {}", file_.string(), error.message());
+  return digest;
 }
 
 std::string write_results_database(const std::filesystem::path& file,
                                    const std::vector<std::string>& axes,
                                    const std::vector<ResultRow>& rows,
                                    const std::vector<std::pair<std::string, std::string>>& facts) {
-  const std::string digest = digest_of_rows(axes, rows);
-  std::vector<std::pair<std::string, std::string>> all = facts;
-  all.emplace_back("digest", digest);
-  std::filesystem::path temporary = file;
-  temporary += fmt::format(".{}.part", getpid());
-  std::error_code error;
-  std::filesystem::remove(temporary, error);
-  {
-    Database database(temporary);
-    write_tables(database, axes, rows, all);
-  }
-  std::filesystem::rename(temporary, file, error);
-  MODCAL_REQUIRE(!error, "{} cannot be put in place: {}", file.string(), error.message());
-  return digest;
+  ResultsDatabase database(file, axes);
+  for (const ResultRow& row : rows) database.add(row);
+  return database.finish(facts);
 }
 
 }  // namespace modcal

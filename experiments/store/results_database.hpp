@@ -3,9 +3,12 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "experiments/store/task_key.hpp"
 
 namespace modcal {
 
@@ -16,6 +19,39 @@ struct ResultRow {
   std::string failure;  ///< empty: none
   std::string outcome;  ///< JSON
   double seconds = 0.0;
+};
+
+/// Digest of rows without their times, one after the other.
+class RowsDigest {
+ public:
+  explicit RowsDigest(const std::vector<std::string>& axes);
+  void add(const ResultRow& row);
+  std::string text() const { return digest_.text(); }
+
+ private:
+  void add(const std::string& part);
+  Digest digest_;
+};
+
+/// A database that is written row by row: what is held does not grow with the rows. Until finish()
+/// it has another name; without finish() nothing of it is left.
+class ResultsDatabase {
+ public:
+  /// Throws InvalidInput, as add() and finish() do, where the file cannot be written.
+  ResultsDatabase(std::filesystem::path file, const std::vector<std::string>& axes);
+  ~ResultsDatabase();
+  ResultsDatabase(const ResultsDatabase&) = delete;
+  ResultsDatabase& operator=(const ResultsDatabase&) = delete;
+
+  void add(const ResultRow& row);
+  /// Writes the facts, puts the file in place and gives the digest of the rows.
+  std::string finish(std::vector<std::pair<std::string, std::string>> facts);
+
+ private:
+  class Writer;
+  std::filesystem::path file_, temporary_;
+  RowsDigest digest_;
+  std::unique_ptr<Writer> writer_;
 };
 
 /// Writes the rows, in their order, as table `tasks` (task, one column an axis, failure, outcome),

@@ -28,10 +28,10 @@ class Squares final : public TaskExperiment {
     return std::to_string(task * task);
   }
   std::string failure_in(const std::string&) const override { return {}; }
-  StudyResult sum_up(const std::vector<std::optional<FinishedTask>>& outcomes,
-                     const StudyContext&) const override {
+  StudyResult sum_up(const TaskOutcomes& outcomes, const StudyContext&) const override {
     StudyResult result;
-    for (const auto& outcome : outcomes) {
+    for (std::size_t task = 0; task < outcomes.size(); ++task) {
+      const std::optional<FinishedTask> outcome = outcomes[task];
       result.summary += (outcome ? outcome->outcome : "-") + " ";
       if (!outcome) ++result.pending_tasks;
     }
@@ -115,10 +115,7 @@ TEST_F(TaskList, LetsAnErrorOfATaskThrough) {
       return "{}";
     }
     std::string failure_in(const std::string&) const override { return {}; }
-    StudyResult sum_up(const std::vector<std::optional<FinishedTask>>&,
-                       const StudyContext&) const override {
-      return {};
-    }
+    StudyResult sum_up(const TaskOutcomes&, const StudyContext&) const override { return {}; }
     StudyResult replay(std::size_t, const StudyContext&) const override { return {}; }
   };
   EXPECT_THROW(Wrong().run(context()), std::runtime_error);

@@ -183,6 +183,17 @@ TEST_F(Program, UsesNoColorsOnATerminalWhereTheyAreNotWanted) {
   EXPECT_THAT(outcome.out, Not(HasSubstr("\x1b")));
 }
 
+TEST_F(Program, MarksMistakesOnATerminal) {
+  const auto on_terminal = [this](const std::string& environment) {
+    return shell(environment + " script -qec \"'" MODCAL_PROGRAM
+                               "' validate small.yaml --set seed=x\" /dev/null");
+  };
+  const Outcome outcome = on_terminal("env -u NO_COLOR TERM=xterm");
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_THAT(outcome.out, HasSubstr("\x1b[1;31merror:\x1b[0m seed must be a whole number"));
+  EXPECT_THAT(on_terminal("env -u NO_COLOR TERM=dumb").out, Not(HasSubstr("\x1b")));
+}
+
 TEST_F(Program, ListsAndDescribesEveryPlugin) {
   const json kinds = json::parse(modcal("list --json").out);
   ASSERT_GE(kinds.size(), 8u);

@@ -15,9 +15,12 @@ namespace {
 using ::testing::HasSubstr;
 
 BenchmarkTask task_of(std::size_t method, std::size_t replicate, double error, bool success) {
-  BenchmarkTask task{.method = method, .replicate = std::to_string(replicate)};
+  BenchmarkTask task{
+      .task = 3 * replicate + method, .method = method, .replicate = std::to_string(replicate)};
   task.outcome.frequency_error = error;
   task.outcome.success = success;
+  task.outcome.frequency_rms_error = 2.0 * error;
+  task.outcome.frequency_bound = 0.5;
   task.outcome.stop = StopReason::kSmallStep;
   task.outcome.evaluations = 100 + static_cast<std::int64_t>(method);
   task.outcome.value = success ? 1.0 : 3.0;
@@ -28,8 +31,11 @@ BenchmarkTask task_of(std::size_t method, std::size_t replicate, double error, b
 
 // Methods whose errors are drawn about 1, `ratio` and 10, the last failing on every third draw.
 BenchmarkGrid grid_of(std::size_t draws, double ratio) {
-  BenchmarkGrid grid{
-      .methods = {"a", "b", "c"}, .conditions = {"noise 1 %"}, .noise_levels = {0.01}};
+  BenchmarkGrid grid{.methods = {"a", "b", "c"},
+                     .objectives = {"peak", "peak", "peak"},
+                     .searches = {"a", "b", "c"},
+                     .conditions = {"noise 1 %"},
+                     .noise_levels = {0.01}};
   std::vector<double> normal(3 * draws);
   fill_standard_normal(StreamKey(7), normal);
   for (std::size_t i = 0; i < draws; ++i) {
@@ -85,9 +91,88 @@ TEST(BenchmarkSummary, ConcludesInWords) {
   EXPECT_THAT(sentences[0], HasSubstr("At noise 1 %: use a (median error"));
   EXPECT_THAT(sentences[0],
               HasSubstr("20 of 20 right, 100 evaluations); not to be told apart from it: b"));
-  EXPECT_EQ(sentences[1],
-            "At noise 1 %: c fails on 20 of 20 draws; on 13 it ended in a minimum above the value "
-            "at the truth.");
+  EXPECT_EQ(
+      sentences[1],
+      "c fails on 20 of 20 draws at noise 1 %; on 13 it ended in a minimum above the value at "
+      "the truth.");
+}
+
+// Both methods of an objective fail under both conditions: one sentence, with all draws counted.
+TEST(BenchmarkSummary, TellsAnObjectiveThatNoOptimizerGetsRightOnce) {
+  BenchmarkGrid grid{.methods = {"a, peak", "b, peak", "a, other"},
+                     .objectives = {"peak", "peak", "other"},
+                     .searches = {"a", "b", "a"},
+                     .conditions = {"noise 1 %", "noise 5 %"},
+                     .noise_levels = {0.01, 0.05}};
+  for (std::size_t condition = 0; condition < 2; ++condition) {
+    for (std::size_t i = 0; i < 20; ++i) {
+      for (std::size_t method = 0; method < 3; ++method) {
+        grid.tasks.push_back(task_of(method, i, 0.1, method == 2));
+        grid.tasks.back().condition = condition;
+      }
+    }
+  }
+  const std::vector<std::string> sentences = conclusion(grid, benchmark_cells(grid));
+  ASSERT_EQ(sentences.size(), 3u);
+  EXPECT_EQ(sentences[2],
+            "peak with every optimizer fails on 80 of 80 draws at all conditions; it ended in a "
+            "minimum above the value at the truth.");
+}
+
+// Root of the mean square over draws; the bound of every draw is 0.5.
+TEST(BenchmarkSummary, HoldsTheErrorAgainstTheBound) {
+  BenchmarkGrid grid = grid_of(20, 1.0);
+  double sum = 0.0;
+  for (const BenchmarkTask& task : grid.tasks) {
+    if (task.method == 0) sum += std::pow(task.outcome.frequency_rms_error, 2) / 20.0;
+  }
+  const BenchmarkCell cell = benchmark_cells(grid)[0];
+  EXPECT_NEAR(cell.rmse, std::sqrt(sum), 1e-12);
+  EXPECT_NEAR(cell.bound_ratio, 2.0 * cell.rmse, 1e-12);
+  EXPECT_EQ(bound_map(grid, benchmark_cells(grid), "").rows.size(), 3u);
+  for (BenchmarkTask& task : grid.tasks) task.outcome.frequency_bound = std::nan("");
+  EXPECT_TRUE(std::isnan(benchmark_cells(grid)[0].bound_ratio));
+  EXPECT_TRUE(bound_map(grid, benchmark_cells(grid), "").rows.empty());
+}
+
+// The task offered for replay is a draw of that method with the median error.
+TEST(BenchmarkSummary, NamesTheDrawInTheMiddle) {
+  const BenchmarkGrid grid = grid_of(9, 1.0);
+  const BenchmarkCell cell = benchmark_cells(grid)[1];
+  ASSERT_EQ(cell.task % 3, 1);
+  EXPECT_EQ(grid.tasks[static_cast<std::size_t>(cell.task)].outcome.frequency_error, cell.error);
+}
+
+TEST(BenchmarkSummary, DrawsTheBoundBesideTheErrorsAndOneConditionAtATime) {
+  BenchmarkGrid grid = grid_of(10, 1.0);
+  grid.conditions.push_back("noise 5 %");
+  grid.noise_levels.push_back(0.05);
+  const std::size_t first = grid.tasks.size();
+  for (std::size_t i = 0; i < first; ++i) {
+    grid.tasks.push_back(grid.tasks[i]);
+    grid.tasks.back().condition = 1;
+    grid.tasks.back().task += first;
+  }
+  const std::vector<BenchmarkCell> cells = benchmark_cells(grid);
+  const report::Figure errors = error_figure(grid, cells);
+  report::check_figure(errors);
+  ASSERT_EQ(errors.panels[0].series.size(), 4u);
+  EXPECT_EQ(errors.panels[0].series[0].label, "Cramér–Rao bound");
+  EXPECT_EQ(errors.panels[0].series[0].y, (std::vector<double>{0.5, 0.5}));
+  EXPECT_EQ(errors.panels[0].series[1].y_low.size(), 2u);
+  for (const report::Figure& figure :
+       {data_profile(grid), performance_profile(grid), waterfall_figure(grid),
+        work_precision_figure(grid, cells), trace_figure(grid)}) {
+    report::check_figure(figure);
+    std::size_t shown = 0;
+    for (const report::Series& series : figure.panels[0].series) {
+      EXPECT_EQ(series.tasks.size(), series.x.size()) << figure.id;
+      ASSERT_EQ(series.tags.back().facet, "condition") << figure.id;
+      shown += series.hidden ? 0 : 1;
+    }
+    EXPECT_GT(shown, 0u) << figure.id;
+    EXPECT_GT(figure.panels[0].series.size(), shown) << figure.id;
+  }
 }
 
 TEST(BenchmarkSummary, SaysWhyNoMethodIsRight) {

@@ -33,12 +33,12 @@ void finish(RunStore& store, const std::string& fingerprint) {
 TEST_F(Store, FindsWhatAnEarlierRunOfTheSameProgramFinished) {
   {
     RunStore store(folder(), {}, "program 1");
-    EXPECT_EQ(store.finished().find(store.finished().key_of("a")), nullptr);
+    EXPECT_FALSE(store.finished().find(store.finished().key_of("a")).is_known());
     finish(store, "a");
   }
   const RunStore again(folder(), {}, "program 1");
-  EXPECT_NE(again.finished().find(again.finished().key_of("a")), nullptr);
-  EXPECT_EQ(again.finished().find(again.finished().key_of("b")), nullptr);
+  EXPECT_TRUE(again.finished().find(again.finished().key_of("a")).is_known());
+  EXPECT_FALSE(again.finished().find(again.finished().key_of("b")).is_known());
 }
 
 TEST_F(Store, TakesNothingFromAnotherProgram) {
@@ -47,7 +47,7 @@ TEST_F(Store, TakesNothingFromAnotherProgram) {
     finish(store, "a");
   }
   const RunStore again(folder(), {}, "program 2");
-  EXPECT_EQ(again.finished().find(again.finished().key_of("a")), nullptr);
+  EXPECT_FALSE(again.finished().find(again.finished().key_of("a")).is_known());
 }
 
 TEST_F(Store, RefusesASecondRunInTheSameFolderAndNamesTheFirst) {
@@ -65,6 +65,25 @@ TEST_F(Store, RefusesASecondRunInTheSameFolderAndNamesTheFirst) {
   first.reset();
   EXPECT_FALSE(is_running(journal_folder(folder())));
   EXPECT_NO_THROW(RunStore(folder(), {}, "p"));
+}
+
+TEST_F(Store, ReadsRecordsOfItsOwnAndOfEarlierRunsFromTheirPlaces) {
+  RecordPlace first;
+  {
+    RunStore store(folder(), {}, "p");
+    store.append({store.finished().key_of("a"), 3, 0.5, "{\"x\":1}"});
+    first = store.append({store.finished().key_of("b"), 4, 0.25, "{\"x\":2}"});
+    EXPECT_EQ(store.finished().read(first).outcome, "{\"x\":2}");
+  }
+  const RunStore again(folder(), {}, "p");
+  const FinishedTasks& finished = again.finished();
+  const JournalRecord record = finished.read(finished.find(finished.key_of("a")));
+  EXPECT_EQ(record.task, 3u);
+  EXPECT_EQ(record.seconds, 0.5);
+  EXPECT_EQ(record.outcome, "{\"x\":1}");
+  // A line that has changed since it was placed is not taken for a result.
+  std::filesystem::resize_file(journal_folder(folder()) / "shard-1-of-1.journal", 40);
+  EXPECT_THROW(finished.read(finished.find(finished.key_of("b"))), InvalidInput);
 }
 
 TEST_F(Store, LetsDifferentShardsShareAFolder) {
