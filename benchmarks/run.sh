@@ -25,6 +25,8 @@ echo "== ensembles over threads"
 "$build/benchmarks/ensemble_benchmark"
 echo "== what skipping saves"
 "$build/benchmarks/skipping_benchmark"
+echo "== lists of tasks"
+"$build/benchmarks/task_list_benchmark"
 echo "== whole commands"
 for config in table1 fig14 fig10; do
   "$here/whole_process.py" -- "$build/modcal" run "$here/../configs/paper/$config.yaml" --out "$out/$config"

@@ -195,6 +195,56 @@ TEST_F(Resume, KeepsWhatIsFinishedWhereTheDiskIsFull) {
   EXPECT_EQ(tables_of("a"), tables_of("whole"));
 }
 
+// Every place at which a full disk can meet a run: journal, settings, tables, report.
+TEST_F(Resume, SaysThatTheDiskIsFullWhereverItMeetsIt) {
+  ASSERT_EQ(modcal("run sweep.yaml --out whole").code, 0);
+  ASSERT_EQ(modcal("run sweep.yaml --out a --shard 1/2").code, 0);
+  const std::string half = content_of(folder() / "a/journal/shard-1-of-2.journal");
+  std::filesystem::create_symlink("/dev/full", folder() / "a/journal/shard-1-of-1.journal");
+  const Outcome full = modcal("run sweep.yaml --out a");
+  EXPECT_EQ(full.code, 3);
+  EXPECT_THAT(full.err, HasSubstr("No space left on device"));
+  EXPECT_THAT(full.err, HasSubstr("make room and run the same command again"));
+  EXPECT_EQ(content_of(folder() / "a/journal/shard-1-of-2.journal"), half);
+  std::filesystem::remove(folder() / "a/journal/shard-1-of-1.journal");
+  ASSERT_EQ(modcal("run sweep.yaml --out a").code, 0);
+  EXPECT_EQ(tables_of("a"), tables_of("whole"));
+}
+
+// Writes fail at random, as on a disk that fills up and is emptied: every run ends with a message
+// or well, and in the end nothing is lost.
+TEST_F(Resume, LosesNothingWhereWritesFailAtRandom) {
+  if (shell("command -v fiu-run").code != 0) GTEST_SKIP() << "fiu-run is missing: see packages.txt";
+  ASSERT_EQ(modcal("run sweep.yaml --out whole").code, 0);
+  int failures = 0;
+  for (int attempt = 0; attempt < 12; ++attempt) {
+    const Outcome outcome = shell(
+        "fiu-run -x -c 'enable_random name=posix/io/rw/write,probability=0.1,failinfo=28' "
+        "-c 'enable_random name=posix/io/rw/pwrite,probability=0.1,failinfo=28' '" MODCAL_PROGRAM
+        "' run sweep.yaml --threads 2 --out a");
+    ASSERT_TRUE(outcome.code == 0 || outcome.code == 3) << outcome.code << outcome.err;
+    if (outcome.code == 0) continue;
+    ++failures;
+    EXPECT_THAT(outcome.err, HasSubstr("No space left on device"));
+  }
+  EXPECT_GT(failures, 0);
+  ASSERT_EQ(modcal("run sweep.yaml --out a").code, 0);
+  EXPECT_EQ(tables_of("a"), tables_of("whole"));
+  EXPECT_EQ(json::parse(modcal("status a --json").out)["damaged_lines"], 0);
+}
+
+TEST_F(Resume, RefusesAFolderThatCannotBeWritten) {
+  ASSERT_EQ(modcal("run sweep.yaml --out a --shard 1/2").code, 0);
+  const std::string half = content_of(folder() / "a/journal/shard-1-of-2.journal");
+  // Root may write anywhere but into what is no folder, or below /proc.
+  for (const char* out : {"/proc/modcal", "a/provenance.json"}) {
+    const Outcome outcome = modcal(std::string("run sweep.yaml --out ") + out);
+    EXPECT_EQ(outcome.code, 3) << out;
+    EXPECT_THAT(outcome.err, HasSubstr("choose another one with --out")) << out;
+  }
+  EXPECT_EQ(content_of(folder() / "a/journal/shard-1-of-2.journal"), half);
+}
+
 TEST_F(Resume, RefusesShardsOfWhatIsNoList) {
   std::string text(kSweep);
   text.replace(text.find("sweep"), 5, "invert");
