@@ -47,6 +47,8 @@ class Attempt {
     std::vector<double> frequencies;
     for (std::size_t n = 0; n < modes(); ++n) frequencies.push_back(initial.basis.frequency(n));
     start_ = fit_stiff_string(frequencies);
+    reference_ = initial;
+    reference_.sensors = options.unknowns.sensors();
     unit_ = start_.fundamental / 196.0;
   }
 
@@ -73,13 +75,21 @@ class Attempt {
     return result;
   }
 
+  static NewtonOptions with_priors(const StringUnknowns& unknowns, std::size_t steps,
+                                   double tolerance) {
+    return {.steps = steps,
+            .tolerance = tolerance,
+            .prior = unknowns.prior(),
+            .prior_mean = unknowns.prior_mean()};
+  }
+
   // f_0, B and x_c through the ladder, from the x_c that serves best.
   void follow_law(double shift) {
     const double step = initial_.basis.length / 660.0;
     const ProjectedLikelihood widest = damped(200.0);
     const StringUnknowns unknowns =
-        StringUnknowns::law(initial_, start_.fundamental * std::exp(shift), start_.inharmonicity)
-            .with_fixed_damping();
+        StringUnknowns::law(reference_, start_.fundamental * std::exp(shift), start_.inharmonicity)
+            .without_damping_and_sensors();
     NewtonFit best;
     for (int i = -4; i <= 4; ++i) {
       Eigen::VectorXd theta = unknowns.start();
@@ -92,11 +102,11 @@ class Attempt {
     for (const double sigma : {100.0, 50.0}) {
       best = fit(damped(sigma), unknowns, best.theta, {.steps = 20, .tolerance = 1e-2});
     }
-    law_ =
-        StringUnknowns::law(initial_, start_.fundamental * std::exp(shift), start_.inharmonicity);
+    law_ = StringUnknowns::law(reference_, start_.fundamental * std::exp(shift),
+                               start_.inharmonicity, options_.unknowns);
     law_theta_ = Eigen::VectorXd::Zero(law_.size());
     law_theta_.head(3) = best.theta;
-    law_theta_ = fit(damped(20.0), law_, law_theta_, {.steps = 20, .tolerance = 1e-3}).theta;
+    law_theta_ = fit(damped(20.0), law_, law_theta_, with_priors(law_, 20, 1e-3)).theta;
     ladder_theta_ = law_theta_;
   }
 
@@ -108,10 +118,11 @@ class Attempt {
   // σ = 0, end state projected out, then once more with weights and without the noise in JᵀJ.
   void finish_law(ContinuationResult& result) {
     whole_.emplace(WhitenedRecord::of(records_, 0.0, highest_));
-    result.chi2_deviation =
-        std::hypot(std::sqrt(2.0 / whole_->degrees_of_freedom(4, modes())), noise_error_);
-    law_theta_ = fit(*whole_, law_, law_theta_, {.steps = 12, .tolerance = 1e-2}).theta;
-    NewtonOptions options{.steps = 4, .tolerance = 1e-4};
+    result.chi2_deviation = std::hypot(
+        std::sqrt(2.0 / whole_->degrees_of_freedom(static_cast<std::size_t>(law_.size()), modes())),
+        noise_error_);
+    law_theta_ = fit(*whole_, law_, law_theta_, with_priors(law_, 12, 1e-2)).theta;
+    NewtonOptions options = with_priors(law_, 4, 1e-4);
     options.noise = prepare_weights(law_, law_theta_);
     const NewtonFit last = fit(*weighted_, law_, law_theta_, options);
     law_theta_ = last.theta;
@@ -121,18 +132,19 @@ class Attempt {
     law.fundamental = law_.fundamental(law_theta_);
     law.inharmonicity = law_theta_[1];
     law.contact = result.model.contact;
-    law.damping = std::exp(law_theta_[3]);
-    for (std::size_t i = 0; i < 4; ++i) {
+    law.damping = law_.damping_factor(law_theta_);
+    for (std::size_t i = 0; i < 3; ++i) {
       const auto j = static_cast<Eigen::Index>(i);
       law.deviation[i] = std::sqrt(std::max(covariance(j, j), 0.0));
     }
     law.deviation[0] *= law.fundamental;
-    law.deviation[3] *= law.damping;
-    law.chi2 = result.chi2 = reduced_chi2(result.model, 4);
+    law.deviation[3] = law_.damping_deviation(covariance) * law.damping;
+    law.chi2 = result.chi2 = reduced_chi2(result.model, static_cast<std::size_t>(law_.size()));
     law.accepted = law.chi2 < 1.0 + 3.0 * result.chi2_deviation;
     result.contact_deviation = law.deviation[2];
     result.damping = law.damping;
     result.damping_deviation = law.deviation[3];
+    report_sensors(law_, covariance, result);
     result.modes = law_verdicts(result.model, law.inharmonicity, covariance.topLeftCorner(2, 2));
   }
 
@@ -156,12 +168,13 @@ class Attempt {
 
   void free_frequencies(ContinuationResult& result) {
     const bool from_law = result.law.accepted;
-    const StringUnknowns unknowns =
-        StringUnknowns::frequencies(law_.model(from_law ? law_theta_ : ladder_theta_));
+    const StringUnknowns unknowns = StringUnknowns::frequencies(
+        law_.model(from_law ? law_theta_ : ladder_theta_), options_.unknowns);
     const double inharmonicity = from_law ? law_theta_[1] : ladder_theta_[1];
     const auto wide = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(modes()), kWidePrior);
     NewtonOptions options{.steps = 10, .tolerance = 1e-2, .frequency_cap = kStepCap};
-    options.prior = law_prior(wide, inharmonicity);
+    options.prior = unknowns.prior(law_prior(wide, inharmonicity));
+    options.prior_mean = unknowns.prior_mean();
     Eigen::VectorXd theta = unknowns.start();
     if (!from_law) theta = descend(unknowns, theta, options, result);
     theta = fit(*whole_, unknowns, theta, options).theta;
@@ -176,11 +189,12 @@ class Attempt {
     const double estimated = estimate_law_width(theta.head(n), seen.head(n), inharmonicity);
     result.law_width = std::isnan(options_.law_width) ? estimated : options_.law_width;
     const Eigen::VectorXd widths = prior_widths(seen.head(n), result.law_width, estimated);
-    options.prior = law_prior(widths, inharmonicity);
+    options.prior = unknowns.prior(law_prior(widths, inharmonicity));
     options.tolerance = 1e-4;
     theta = fit(*weighted_, unknowns, theta, options).theta;
     const Eigen::MatrixXd covariance = covariance_at(unknowns, theta, options);
-    report(unknowns, theta, covariance, seen, estimated, result);
+    const double reference_factor = law_.damping_factor(from_law ? law_theta_ : ladder_theta_);
+    report(unknowns, theta, covariance, seen, estimated, reference_factor, result);
   }
 
   // Free frequencies on damped records, where the law does not hold: wide basins first.
@@ -199,16 +213,28 @@ class Attempt {
 
   void report(const StringUnknowns& unknowns, const Eigen::VectorXd& theta,
               const Eigen::MatrixXd& covariance, const Eigen::VectorXd& seen, double estimated,
-              ContinuationResult& result) {
+              double reference_factor, ContinuationResult& result) {
     result.frequencies_free = true;
     result.model = unknowns.model(theta);
     const Eigen::VectorXd deviation = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
     result.contact_deviation = deviation[unknowns.contact()];
-    result.damping = result.model.basis.zeta[0] / initial_.basis.zeta[0];
-    result.damping_deviation = deviation[unknowns.damping()] * result.damping;
+    // The law's factor made the reference of the free frequencies.
+    result.damping = unknowns.damping_factor(theta) * reference_factor;
+    result.damping_deviation = unknowns.damping_deviation(covariance) * result.damping;
+    report_sensors(unknowns, covariance, result);
     result.chi2 = reduced_chi2(result.model, static_cast<std::size_t>(unknowns.size()));
     const auto n = static_cast<Eigen::Index>(modes());
     result.modes = free_verdicts(result.model, deviation.head(n), seen.head(n), estimated);
+  }
+
+  static void report_sensors(const StringUnknowns& unknowns, const Eigen::MatrixXd& covariance,
+                             ContinuationResult& result) {
+    const double unit[] = {result.model.sensors.gain, 1.0, 0.5 / std::numbers::pi};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Eigen::Index at = unknowns.sensor(i);
+      result.sensor_deviation[i] =
+          at < 0 ? 0.0 : unit[i] * std::sqrt(std::max(covariance(at, at), 0.0));
+    }
   }
 
   const ModelPoint& initial_;
@@ -216,6 +242,7 @@ class Attempt {
   const ContinuationOptions& options_;
   double highest_ = 0.0;      // [rad/s]
   double noise_error_ = 0.0;  // relative error of the noise power
+  ModelPoint reference_;      // the initial model with the sensors stated
   StiffStringFit start_;
   double unit_ = 1.0;  // σ in proportion to f_0
   StringUnknowns law_;
@@ -234,6 +261,7 @@ void ContinuationOptions::visit(OptionVisitor& visitor) {
                   .word = "estimated"},
                  law_width);
   visit_record_options(visitor, highest_frequency, left_noise, right_noise);
+  visitor.section({.key = "unknowns", .meaning = "what is free of damping and sensors"}, unknowns);
   visitor.integer({.key = "restarts",
                    .meaning = "other starts tried while the fit is contradicted by the data",
                    .range = Range::closed(0.0, 4.0)},

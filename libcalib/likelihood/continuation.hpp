@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "libcalib/calibration_data.hpp"
+#include "libcalib/likelihood/string_unknowns.hpp"
 #include "libcalib/parameters.hpp"
 #include "libsim/base/options.hpp"
 
@@ -26,6 +27,7 @@ struct ContinuationOptions {
   /// Noise standard deviation of each reaction [N]; NaN: estimated from the record.
   double left_noise = std::numeric_limits<double>::quiet_NaN();
   double right_noise = std::numeric_limits<double>::quiet_NaN();
+  UnknownsOptions unknowns;   ///< damping and sensors
   std::int64_t restarts = 4;  ///< other starts tried while χ² says that the fit is wrong
   void visit(OptionVisitor& visitor);
 };
@@ -59,8 +61,10 @@ struct ContinuationResult {
   bool frequencies_free = false;
   std::vector<ModeVerdict> modes;
   double contact_deviation = 0.0;  ///< [m]
-  double damping = 1.0;            ///< factor of the initial damping ratios
+  double damping = 1.0;            ///< geometric mean of ζ_n over that of the initial ones
   double damping_deviation = 0.0;
+  /// Of gain, delay [s] and corner [Hz] of model.sensors; 0: not free.
+  std::array<double, 3> sensor_deviation{};
   double law_width = 0.0;  ///< τ
   double chi2 = 0.0;       ///< reduced, of `model`
   double chi2_deviation = 0.0;

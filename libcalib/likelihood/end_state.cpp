@@ -76,15 +76,18 @@ Column column(const double* numbers) { return Column(numbers, static_cast<Index>
 
 std::vector<PlainTransient> plain_transients(const WhitenedRecord& record,
                                              const SensorPair& sensors) {
-  if (record.sigma > 0.0) return {{false, record.offset}, {true, record.offset}};
+  if (record.sigma > 0.0) return {{false, record.offset, {}}, {true, record.offset, {}}};
   if (sensors.alike()) return {};
   const std::size_t padded = record.root_weight.size();
-  PlainTransient sample{true, PlanarVector(padded)};
-  PlainTransient decay{true, PlanarVector(padded)};
+  PlainTransient sample{true, PlanarVector(padded), {}};
+  PlainTransient decay{true, PlanarVector(padded), PlanarVector(padded)};
   const double pole = std::exp(-sensors.corner / record.sample_rate);
   for (std::size_t k = 0; k < record.bins; ++k) {
     sample.numbers.set(k, record.deviation[1]);
-    decay.numbers.set(k, record.deviation[1] / (1.0 - pole * record.delay.at(k)));
+    const Complex u = 1.0 / (1.0 - pole * record.delay.at(k));
+    decay.numbers.set(k, record.deviation[1] * u);
+    // dU/dE = U² z^−1 and E U z^−1 = U − 1.
+    decay.by_corner.set(k, record.deviation[1] * u * (1.0 - u) / record.sample_rate);
   }
   return {std::move(sample), std::move(decay)};
 }

@@ -14,7 +14,8 @@ namespace modcal {
 /// Something in the record of one end, known but for its real amplitude.
 struct PlainTransient {
   bool right = false;
-  PlanarVector numbers;  ///< its transform, whitened but for 1/s_r
+  PlanarVector numbers;    ///< its transform, whitened but for 1/s_r
+  PlanarVector by_corner;  ///< ∂numbers/∂corner; empty: none
 };
 /// σ > 0: static offsets of both records. σ = 0: where the sensor at x = L has a delay or a corner
 /// of its own, what it holds at the end of the record, one sample and its own decay.

@@ -75,12 +75,17 @@ LikelihoodEvaluation::LikelihoodEvaluation(const WhitenedRecord& record, const M
 }
 
 void LikelihoodEvaluation::sum_plain() {
-  for (std::size_t p = 0; p < plain_.size(); ++p) {
-    std::optional<PlanarVector>& sum = plain_sums_[plain_[p].right ? 1 : 0];
+  const auto add = [this](const PlanarVector& numbers, double amplitude,
+                          std::optional<PlanarVector>& sum) {
+    if (numbers.size() == 0) return;
     if (!sum) sum.emplace(record_.root_weight.size());
     for (std::size_t k = 0; k < record_.bins; ++k) {
-      sum->set(k, sum->at(k) + end_state_.plain_amplitude(p) * plain_[p].numbers.at(k));
+      sum->set(k, sum->at(k) + amplitude * numbers.at(k));
     }
+  };
+  for (std::size_t p = 0; p < plain_.size(); ++p) {
+    add(plain_[p].numbers, end_state_.plain_amplitude(p), plain_sums_[plain_[p].right ? 1 : 0]);
+    add(plain_[p].by_corner, end_state_.plain_amplitude(p), by_corner_);
   }
 }
 
@@ -121,6 +126,7 @@ void LikelihoodEvaluation::fill_columns(std::size_t b, const LikelihoodColumns& 
        .jacobian = columns.shares.empty() ? nullptr : jacobian,
        .contact = place(columns.contact),
        .sensors = {place(columns.gain), place(columns.delay), place(columns.corner)},
+       .plain_by_corner = given(by_corner_),
        .corner = sensors_.corner,
        .residual = residual,
        .force = force});

@@ -46,6 +46,7 @@ class LikelihoodEvaluation {
   std::vector<LikelihoodBlock> blocks_;
   std::optional<PlanarVector> sensor_;         // where the sensors differ
   std::optional<PlanarVector> plain_sums_[2];  // plain transients with their amplitudes
+  std::optional<PlanarVector> by_corner_;      // and their derivative by the sensor's corner
   AlignedVector residual_;                     // one column a block
   AlignedVector plain_columns_;                // of the plain transients, every block
   AlignedVector state_;                        // all columns of the end state, of one block

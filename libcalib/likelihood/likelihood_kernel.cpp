@@ -139,32 +139,47 @@ HWY_INLINE void AddModeColumns(const JacobianTask& task, std::size_t n, const Bi
   }
 }
 
-// What the end states add to h_1F and to h_2F.
-HWY_INLINE Transfers TransientsAt(const WhitenedRecord& record, const LikelihoodBlock& block,
-                                  const JacobianTask& task, std::size_t first, std::size_t k) {
+// What the end states add to h_1F and to h_2F; decays: the part that the sensor at x = L reads.
+struct Transients {
+  C left, right, right_decays;
+};
+HWY_INLINE Transients TransientsAt(const WhitenedRecord& record, const LikelihoodBlock& block,
+                                   const JacobianTask& task, std::size_t first, std::size_t k) {
+  const V per_left = Real(1.0 / record.deviation[0]);
+  const V per_right = Real(1.0 / record.deviation[1]);
   C left = Zero();
   C right = Zero();
   if (!task.amplitudes.empty()) {
     const C odd = Load(block.odd_decay, k);
     const C even = Load(block.even_decay, k);
-    left = Add(odd, even);
-    right = Sub(odd, even);
+    left = Scale(Add(odd, even), per_left);
+    right = Scale(Sub(odd, even), per_right);
     if (task.sensor) right = Mul(right, Load(*task.sensor, first + k));
   }
-  if (task.plain[0]) left = Add(left, Load(*task.plain[0], first + k));
-  if (task.plain[1]) right = Sub(right, Load(*task.plain[1], first + k));
-  return {Scale(left, Real(1.0 / record.deviation[0])),
-          Scale(right, Real(1.0 / record.deviation[1]))};
+  const C decays = right;
+  if (task.plain[0]) left = AddScaled(left, Load(*task.plain[0], first + k), per_left);
+  if (task.plain[1]) {
+    right = Sub(right, Scale(Load(*task.plain[1], first + k), per_right));
+  }
+  return {left, right, decays};
 }
 
-// Columns of the sensors: `read` is h_1/|h| times what the sensor at x = L reads.
-HWY_INLINE void FillSensorColumns(const JacobianTask& task, const Bins& bins, C read,
+// Columns of the sensors; left: h_1/|h|, read: what the sensor at x = L reads of the string.
+HWY_INLINE void FillSensorColumns(const WhitenedRecord& record, const JacobianTask& task,
+                                  const Bins& bins, C left, C read, std::size_t first,
                                   std::size_t k) {
-  if (task.sensors[0]) StoreColumn(read, task.sensors[0], k);
-  if (task.sensors[1]) StoreColumn(Scale(Mul(bins.s, read), Real(-1.0)), task.sensors[1], k);
+  if (task.sensors[0]) StoreColumn(Mul(left, read), task.sensors[0], k);
+  if (task.sensors[1]) {
+    StoreColumn(Scale(Mul(left, Mul(bins.s, read)), Real(-1.0)), task.sensors[1], k);
+  }
   if (!task.sensors[2]) return;
   const C pole = Inverse(Make(hn::Add(bins.s.re, Real(task.corner)), bins.s.im));
-  StoreColumn(Scale(Mul(pole, read), Real(-1.0)), task.sensors[2], k);
+  C slope = Scale(Mul(pole, read), Real(-1.0));
+  if (task.plain_by_corner) {
+    slope =
+        AddScaled(slope, Load(*task.plain_by_corner, first + k), Real(1.0 / record.deviation[1]));
+  }
+  StoreColumn(Mul(left, slope), task.sensors[2], k);
 }
 
 void FillJacobianColumns(const WhitenedRecord& record, std::size_t block_index,
@@ -177,7 +192,7 @@ void FillJacobianColumns(const WhitenedRecord& record, std::size_t block_index,
     const C delay = Load(record.delay, first + k);
     const V norm = LoadReal(block.norm + k);
     const V scale = ScaleAt(record, block, first, k);
-    const Transfers transient = TransientsAt(record, block, task, first, k);
+    const Transients transient = TransientsAt(record, block, task, first, k);
     const C change = Sub(Mul(right, transient.left), Mul(left, transient.right));
     StoreColumn(AddScaled(LoadColumn(task.residual, k), change, scale), task.residual, k);
     const C from_left = Add(Load(record.left, first + k), transient.left);
@@ -186,8 +201,8 @@ void FillJacobianColumns(const WhitenedRecord& record, std::size_t block_index,
     if (task.force) {
       hn::StoreInterleaved2(force.re, force.im, D(), reinterpret_cast<double*>(task.force + k));
     }
-    const C read = Sub(Mul(right, force), transient.right);
-    FillSensorColumns(task, bins, Scale(Mul(left, read), scale), k);
+    FillSensorColumns(record, task, bins, Scale(left, scale),
+                      Sub(Mul(right, force), transient.right_decays), first, k);
     if (!task.jacobian && !task.contact) continue;
     const C odd = Load(block.odd, k);
     const C even = Load(block.even, k);

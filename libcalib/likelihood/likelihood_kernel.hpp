@@ -69,8 +69,9 @@ struct JacobianTask {
   std::span<const std::size_t> share_begin;
   double* jacobian = nullptr;  ///< columns of this block, zeros
   double* contact = nullptr;
-  std::array<double*, 3> sensors{};  ///< ln gain, delay [s], corner [rad/s]
-  double corner = 0.0;               ///< of the sensor at x = L [rad/s]
+  std::array<double*, 3> sensors{};               ///< ln gain, delay [s], corner [rad/s]
+  const PlanarVector* plain_by_corner = nullptr;  ///< ∂plain[1]/∂corner
+  double corner = 0.0;                            ///< of the sensor at x = L [rad/s]
   double* residual = nullptr;
   std::complex<double>* force = nullptr;  ///< kBins numbers
 };

@@ -29,9 +29,10 @@ struct Objective2 {
 };
 
 Objective2 with_prior(const LikelihoodPoint& point, const Eigen::VectorXd& theta,
-                      const Eigen::MatrixXd& prior) {
-  const Eigen::VectorXd pull = prior * theta;
-  return {point.cost + 0.5 * theta.dot(pull), 2.0 * point.slope + pull};
+                      const Eigen::MatrixXd& prior, const Eigen::VectorXd& mean) {
+  const Eigen::VectorXd change = mean.size() == 0 ? theta : theta - mean;
+  const Eigen::VectorXd pull = prior * change;
+  return {point.cost + 0.5 * change.dot(pull), 2.0 * point.slope + pull};
 }
 
 }  // namespace
@@ -60,13 +61,13 @@ Eigen::MatrixXd fit_covariance(const LikelihoodPoint& point, const NewtonOptions
   return inverse * score * inverse;
 }
 
-NewtonFit newton_fit(const ProjectedLikelihood& likelihood, const StringUnknowns& unknowns,
-                     const Eigen::VectorXd& start, const NewtonOptions& options) {
-  const Eigen::MatrixXd prior = padded(options.prior, unknowns.size());
+NewtonFit newton_fit(const FitTarget& target, const Eigen::VectorXd& start,
+                     const NewtonOptions& options) {
+  const Eigen::MatrixXd prior = padded(options.prior, start.size());
   NewtonFit fit{.theta = start};
-  fit.point = likelihood.evaluate(unknowns.model(start), unknowns.columns(start));
+  fit.point = target.evaluate(start);
   fit.evaluations = 1;
-  Objective2 at = with_prior(fit.point, start, prior);
+  Objective2 at = with_prior(fit.point, start, prior, options.prior_mean);
   fit.objective = at.value;
   double damping = 0.0;
   for (std::size_t step = 0; step < options.steps; ++step) {
@@ -81,17 +82,16 @@ NewtonFit newton_fit(const ProjectedLikelihood& likelihood, const StringUnknowns
       fit.converged = true;
       break;
     }
-    if (!unknowns.is_law()) {
-      const double largest =
-          move.head(static_cast<Eigen::Index>(unknowns.modes())).cwiseAbs().maxCoeff();
+    if (target.capped > 0) {
+      const double largest = move.head(target.capped).cwiseAbs().maxCoeff();
       if (largest > options.frequency_cap) move *= options.frequency_cap / largest;
     }
     const Eigen::VectorXd trial = fit.theta + move;
     bool better = false;
-    if (unknowns.admits(trial)) {
-      LikelihoodPoint point = likelihood.evaluate(unknowns.model(trial), unknowns.columns(trial));
+    if (target.admits(trial)) {
+      LikelihoodPoint point = target.evaluate(trial);
       ++fit.evaluations;
-      const Objective2 there = with_prior(point, trial, prior);
+      const Objective2 there = with_prior(point, trial, prior, options.prior_mean);
       // The debiased step may pass the minimum of this draw by a little of its noise.
       better = there.value < at.value + 0.5 * options.tolerance;
       if (better) {
@@ -105,6 +105,18 @@ NewtonFit newton_fit(const ProjectedLikelihood& likelihood, const StringUnknowns
     if (damping > 1e8) break;
   }
   return fit;
+}
+
+NewtonFit newton_fit(const ProjectedLikelihood& likelihood, const StringUnknowns& unknowns,
+                     const Eigen::VectorXd& start, const NewtonOptions& options) {
+  return newton_fit({.evaluate =
+                         [&](const Eigen::VectorXd& theta) {
+                           return likelihood.evaluate(unknowns.model(theta),
+                                                      unknowns.columns(theta));
+                         },
+                     .admits = [&](const Eigen::VectorXd& theta) { return unknowns.admits(theta); },
+                     .capped = unknowns.is_law() ? 0 : static_cast<Eigen::Index>(unknowns.modes())},
+                    start, options);
 }
 
 }  // namespace modcal

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <limits>
 
 #include "libcalib/likelihood/string_unknowns.hpp"
@@ -13,19 +14,30 @@ struct NewtonOptions {
   /// Ends when gᵀH⁻¹g is below this: the step is then below its root in standard deviations.
   double tolerance = 1e-4;
   double frequency_cap = std::numeric_limits<double>::infinity();  ///< of one δ_n in one step
-  Eigen::MatrixXd noise;  ///< N̄; empty: none is subtracted
-  Eigen::MatrixXd prior;  ///< precision Q about θ = 0 of δ; empty: none
+  Eigen::MatrixXd noise;       ///< N̄; empty: none is subtracted
+  Eigen::MatrixXd prior;       ///< precision Q; empty: none
+  Eigen::VectorXd prior_mean;  ///< θ_0; empty: 0
+};
+
+/// What a fit evaluates.
+struct FitTarget {
+  std::function<LikelihoodPoint(const Eigen::VectorXd&)> evaluate;
+  std::function<bool(const Eigen::VectorXd&)> admits;
+  Eigen::Index capped = 0;  ///< leading unknowns that frequency_cap holds
 };
 
 struct NewtonFit {
   Eigen::VectorXd theta;
-  double objective = std::numeric_limits<double>::infinity();  ///< Σ w|e|² + ½ δᵀQδ
+  double objective = std::numeric_limits<double>::infinity();  ///< Σ w|e|² + ½ (θ − θ_0)ᵀQ(θ − θ_0)
   LikelihoodPoint point;
   std::size_t evaluations = 0;
   bool converged = false;
 };
 
-/// Minimizes Σ w|e|² + ½ θᵀQθ from `start`, Hessian 2(JᵀWJ − N̄) + Q.
+/// Minimizes Σ w|e|² + ½ (θ − θ_0)ᵀQ(θ − θ_0) from `start`, Hessian 2(JᵀWJ − N̄) + Q.
+NewtonFit newton_fit(const FitTarget& target, const Eigen::VectorXd& start,
+                     const NewtonOptions& options);
+/// The same for one record.
 NewtonFit newton_fit(const ProjectedLikelihood& likelihood, const StringUnknowns& unknowns,
                      const Eigen::VectorXd& start, const NewtonOptions& options);
 

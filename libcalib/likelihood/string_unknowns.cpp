@@ -4,28 +4,137 @@
 #include <cmath>
 #include <numbers>
 
+#include "libsim/base/error.hpp"
+
 namespace modcal {
+namespace {
+
+using Index = Eigen::Index;
+using std::numbers::pi;
+
+void visit_unknown(OptionVisitor& visitor, const OptionInfo& info, UnknownOption& unknown,
+                   const Range& range) {
+  visitor.group(info, [&](OptionVisitor& members) {
+    members.flag({.key = "free", .meaning = "found from the data"}, unknown.free);
+    members.number({.key = "value",
+                    .meaning = "fixed value; of what is free: start and mean of the prior",
+                    .unit = info.unit,
+                    .range = range},
+                   unknown.value);
+    members.number({.key = "deviation",
+                    .meaning = "standard deviation of the prior; none: no prior",
+                    .unit = info.unit,
+                    .range = Range::positive(),
+                    .word = "none"},
+                   unknown.deviation);
+  });
+}
+
+}  // namespace
+
+void UnknownsOptions::visit(OptionVisitor& visitor) {
+  visitor.text({.key = "damping",
+                .meaning = "fixed; one factor of all damping ratios; factor and power of the mode "
+                           "number; each under a prior about the stated ones",
+                .choices = {"fixed", "factor", "power", "each"}},
+               damping);
+  visitor.number({.key = "damping_width",
+                  .meaning = "relative standard deviation of the prior of each damping ratio",
+                  .unit = "1",
+                  .range = Range::positive()},
+                 damping_width);
+  visit_unknown(
+      visitor,
+      {.key = "gain", .meaning = "gain of the sensor at x = L over that at x = 0", .unit = "1"},
+      gain, Range::positive());
+  visit_unknown(visitor,
+                {.key = "delay",
+                 .meaning = "delay of the sensor at x = L against that at x = 0",
+                 .unit = "s"},
+                delay, Range::any());
+  visit_unknown(visitor,
+                {.key = "corner",
+                 .meaning = "corner of a high-pass of the sensor at x = L that the other has not",
+                 .unit = "Hz"},
+                corner, Range::non_negative());
+  visitor.number({.key = "gain_delay_correlation",
+                  .meaning = "correlation of the priors of gain and delay",
+                  .unit = "1",
+                  .range = Range::open(-1.0, 1.0)},
+                 gain_delay_correlation);
+}
+
+SensorPair UnknownsOptions::sensors() const {
+  return {.gain = gain.value, .delay = delay.value, .corner = 2.0 * pi * corner.value};
+}
 
 StringUnknowns StringUnknowns::law(const ModelPoint& reference, double fundamental,
-                                   double inharmonicity) {
-  StringUnknowns unknowns;
-  unknowns.reference_ = reference;
+                                   double inharmonicity, const UnknownsOptions& options) {
+  StringUnknowns unknowns = frequencies(reference, options);
   unknowns.fundamental_ = fundamental;
   unknowns.inharmonicity_ = inharmonicity;
   unknowns.law_ = true;
   return unknowns;
 }
 
-StringUnknowns StringUnknowns::frequencies(const ModelPoint& reference) {
+StringUnknowns StringUnknowns::frequencies(const ModelPoint& reference,
+                                           const UnknownsOptions& options) {
   StringUnknowns unknowns;
   unknowns.reference_ = reference;
+  unknowns.options_ = options;
   return unknowns;
 }
 
-StringUnknowns StringUnknowns::with_fixed_damping() const {
+StringUnknowns StringUnknowns::without_damping_and_sensors() const {
   StringUnknowns unknowns = *this;
-  unknowns.damping_ = false;
+  unknowns.options_.damping = "fixed";
+  for (UnknownOption* sensor :
+       {&unknowns.options_.gain, &unknowns.options_.delay, &unknowns.options_.corner}) {
+    sensor->free = false;
+  }
   return unknowns;
+}
+
+StringUnknowns::Damping StringUnknowns::damping_kind() const {
+  if (options_.damping == "fixed") return Damping::kFixed;
+  if (options_.damping == "power") return Damping::kPower;
+  return options_.damping == "each" && !law_ ? Damping::kEach : Damping::kFactor;
+}
+
+Index StringUnknowns::damping_count() const {
+  switch (damping_kind()) {
+    case Damping::kFixed:
+      return 0;
+    case Damping::kFactor:
+      return 1;
+    case Damping::kPower:
+      return 2;
+    case Damping::kEach:
+      return static_cast<Index>(modes());
+  }
+  return 0;
+}
+
+const UnknownOption& StringUnknowns::sensor_option(std::size_t which) const {
+  return which == 0 ? options_.gain : which == 1 ? options_.delay : options_.corner;
+}
+
+Index StringUnknowns::sensor_count() const {
+  Index count = 0;
+  for (std::size_t i = 0; i < 3; ++i) count += sensor_option(i).free ? 1 : 0;
+  return count;
+}
+
+Index StringUnknowns::sensor(std::size_t which) const {
+  if (!sensor_option(which).free) return -1;
+  Index place = sensor_begin();
+  for (std::size_t i = 0; i < which; ++i) place += sensor_option(i).free ? 1 : 0;
+  return place;
+}
+
+double StringUnknowns::sensor_change(std::size_t which, const Eigen::VectorXd& theta) const {
+  const Index place = sensor(which);
+  return place < 0 ? 0.0 : theta[place];
 }
 
 Eigen::VectorXd StringUnknowns::start() const {
@@ -38,14 +147,57 @@ double StringUnknowns::fundamental(const Eigen::VectorXd& theta) const {
   return fundamental_ * std::exp(theta[0]);
 }
 
+// ln ζ_n/ζ_n(reference).
+double StringUnknowns::damping_change(std::size_t mode, const Eigen::VectorXd& theta) const {
+  switch (damping_kind()) {
+    case Damping::kFixed:
+      return 0.0;
+    case Damping::kFactor:
+      return theta[damping()];
+    case Damping::kPower:
+      return theta[damping()] + theta[damping() + 1] * std::log(static_cast<double>(mode + 1));
+    case Damping::kEach:
+      return theta[damping() + static_cast<Index>(mode)];
+  }
+  return 0.0;
+}
+
+double StringUnknowns::damping_factor(const Eigen::VectorXd& theta) const {
+  double sum = 0.0;
+  for (std::size_t n = 0; n < modes(); ++n) sum += damping_change(n, theta);
+  return std::exp(sum / static_cast<double>(modes()));
+}
+
+double StringUnknowns::damping_deviation(const Eigen::MatrixXd& covariance) const {
+  const Index count = damping_count();
+  if (count == 0) return 0.0;
+  // The mean of all changes is linear in the unknowns.
+  Eigen::VectorXd slope(count);
+  for (Index i = 0; i < count; ++i) {
+    Eigen::VectorXd theta = Eigen::VectorXd::Zero(size());
+    theta[damping() + i] = 1.0;
+    slope[i] = std::log(damping_factor(theta));
+  }
+  const double variance = slope.dot(covariance.block(damping(), damping(), count, count) * slope);
+  return std::sqrt(std::max(variance, 0.0));
+}
+
 bool StringUnknowns::admits(const Eigen::VectorXd& theta) const {
   if (!theta.allFinite()) return false;
   const double x = reference_.contact + theta[contact()];
   const double top = static_cast<double>(modes());
+  if (x <= 1e-4 * reference_.basis.length || x >= (1.0 - 1e-4) * reference_.basis.length) {
+    return false;
+  }
   // The damping may change fiftyfold, f_0 by a third: beyond that it is another string.
-  return x > 1e-4 * reference_.basis.length && x < (1.0 - 1e-4) * reference_.basis.length &&
-         (!damping_ || std::abs(theta[damping()]) < 4.0) &&
-         (!law_ || (1.0 + theta[1] * top * top > 0.25 && std::abs(theta[0]) < 0.3));
+  for (std::size_t n = 0; n < modes(); ++n) {
+    if (std::abs(damping_change(n, theta)) >= 4.0) return false;
+  }
+  if (law_ && (1.0 + theta[1] * top * top <= 0.25 || std::abs(theta[0]) >= 0.3)) return false;
+  // Sensors: half the gain, 10 ms, 50 Hz. A corner below 0 is no filter, but a fit may pass there.
+  const SensorPair sensors = model(theta).sensors;
+  return std::abs(std::log(sensors.gain)) < 0.7 && std::abs(sensors.delay) < 1e-2 &&
+         std::abs(sensors.corner) < 2.0 * pi * 50.0;
 }
 
 ModelPoint StringUnknowns::model(const Eigen::VectorXd& theta) const {
@@ -53,11 +205,14 @@ ModelPoint StringUnknowns::model(const Eigen::VectorXd& theta) const {
   for (std::size_t i = 0; i < modes(); ++i) {
     const double n = static_cast<double>(i + 1);
     point.basis.omega[i] =
-        law_ ? 2.0 * std::numbers::pi * n * fundamental(theta) * std::sqrt(1.0 + theta[1] * n * n)
-             : reference_.basis.omega[i] * std::exp(theta[static_cast<Eigen::Index>(i)]);
-    if (damping_) point.basis.zeta[i] = reference_.basis.zeta[i] * std::exp(theta[damping()]);
+        law_ ? 2.0 * pi * n * fundamental(theta) * std::sqrt(1.0 + theta[1] * n * n)
+             : reference_.basis.omega[i] * std::exp(theta[static_cast<Index>(i)]);
+    point.basis.zeta[i] = reference_.basis.zeta[i] * std::exp(damping_change(i, theta));
   }
   point.contact += theta[contact()];
+  point.sensors.gain *= std::exp(sensor_change(0, theta));
+  point.sensors.delay += sensor_change(1, theta);
+  point.sensors.corner += sensor_change(2, theta);
   return point;
 }
 
@@ -65,18 +220,72 @@ LikelihoodColumns StringUnknowns::columns(const Eigen::VectorXd& theta) const {
   LikelihoodColumns columns{.count = static_cast<std::size_t>(size()),
                             .share_begin = {0},
                             .contact = static_cast<std::size_t>(contact())};
+  const auto first = static_cast<std::size_t>(damping());
   for (std::size_t i = 0; i < modes(); ++i) {
-    const double n2 = static_cast<double>((i + 1) * (i + 1));
+    const double n = static_cast<double>(i + 1);
     if (law_) {
       columns.shares.push_back({0, 1.0, 0.0});
-      columns.shares.push_back({1, 0.5 * n2 / (1.0 + theta[1] * n2), 0.0});
+      columns.shares.push_back({1, 0.5 * n * n / (1.0 + theta[1] * n * n), 0.0});
     } else {
       columns.shares.push_back({i, 1.0, 0.0});
     }
-    if (damping_) columns.shares.push_back({static_cast<std::size_t>(damping()), 0.0, 1.0});
+    const Damping kind = damping_kind();
+    if (kind == Damping::kEach) columns.shares.push_back({first + i, 0.0, 1.0});
+    if (kind == Damping::kFactor || kind == Damping::kPower) {
+      columns.shares.push_back({first, 0.0, 1.0});
+    }
+    if (kind == Damping::kPower) columns.shares.push_back({first + 1, 0.0, std::log(n)});
     columns.share_begin.push_back(columns.shares.size());
   }
+  const auto place = [this](std::size_t which) {
+    const Index at = sensor(which);
+    return at < 0 ? std::optional<std::size_t>() : static_cast<std::size_t>(at);
+  };
+  columns.gain = place(0);
+  columns.delay = place(1);
+  columns.corner = place(2);
   return columns;
+}
+
+Eigen::MatrixXd StringUnknowns::prior(const Eigen::MatrixXd& frequencies) const {
+  Eigen::MatrixXd precision = Eigen::MatrixXd::Zero(size(), size());
+  precision.topLeftCorner(frequencies.rows(), frequencies.cols()) = frequencies;
+  if (damping_kind() == Damping::kEach) {
+    precision.diagonal().segment(damping(), damping_count()).array() =
+        1.0 / (options_.damping_width * options_.damping_width);
+  }
+  // Deviations in the units of θ; NaN: no prior.
+  const double deviation[] = {options_.gain.deviation / options_.gain.value,
+                              options_.delay.deviation, 2.0 * pi * options_.corner.deviation};
+  const Index place[] = {sensor(0), sensor(1), sensor(2)};
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (place[i] < 0 || std::isnan(deviation[i])) continue;
+    precision(place[i], place[i]) = 1.0 / (deviation[i] * deviation[i]);
+  }
+  const double r = options_.gain_delay_correlation;
+  if (r != 0.0) {
+    MODCAL_REQUIRE(place[0] >= 0 && place[1] >= 0 && std::isfinite(deviation[0] * deviation[1]),
+                   "gain and delay have a correlation of {:g}: state free: true and a deviation "
+                   "for both",
+                   r);
+    for (const std::size_t i : {0u, 1u}) precision(place[i], place[i]) /= 1.0 - r * r;
+    const double joint = -r / ((1.0 - r * r) * deviation[0] * deviation[1]);
+    precision(place[0], place[1]) = joint;
+    precision(place[1], place[0]) = joint;
+  }
+  return precision;
+}
+
+Eigen::VectorXd StringUnknowns::prior_mean() const {
+  Eigen::VectorXd mean = Eigen::VectorXd::Zero(size());
+  const SensorPair about = options_.sensors();
+  const double change[] = {std::log(about.gain / reference_.sensors.gain),
+                           about.delay - reference_.sensors.delay,
+                           about.corner - reference_.sensors.corner};
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (sensor(i) >= 0) mean[sensor(i)] = change[i];
+  }
+  return mean;
 }
 
 Eigen::MatrixXd law_prior(const Eigen::VectorXd& widths, double inharmonicity) {

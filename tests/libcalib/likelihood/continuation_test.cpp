@@ -96,7 +96,7 @@ TEST(Continuation, FreesTheDampingItWasToldWrong) {
   // With the wrong damping held, χ² leaves 1 by more than three of its 0.007 whatever else fits.
   const double highest = likelihood_band(start, NAN, 51200.0);
   const ProjectedLikelihood whole(WhitenedRecord::of(records, 0.0, highest));
-  const StringUnknowns law = StringUnknowns::law(damped, 196.0, 1.39e-4).with_fixed_damping();
+  const StringUnknowns law = StringUnknowns::law(damped, 196.0, 1.39e-4, {.damping = "fixed"});
   const NewtonFit held = newton_fit(whole, law, law.start(), {.steps = 10});
   EXPECT_GT(2.0 * held.point.cost / whole.degrees_of_freedom(3, 50), 1.02);
 }

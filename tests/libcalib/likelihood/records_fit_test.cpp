@@ -1,0 +1,85 @@
+#include "libcalib/likelihood/records_fit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "libsim/base/error.hpp"
+#include "tests/libcalib/likelihood/bowed_case.hpp"
+
+namespace modcal {
+namespace {
+
+constexpr double kInharmonicity = 1.39e-4;
+
+struct Strokes {
+  ModelPoint start;
+  std::vector<CalibrationData> data;
+  ContinuationOptions options;
+};
+
+// Strokes at the contacts, half a second each, equal noise in all of them.
+Strokes strokes(const std::vector<double>& contacts) {
+  Strokes result;
+  for (std::size_t r = 0; r < contacts.size(); ++r) {
+    const BowedCase bowed = bowed_case(contacts[r], kInharmonicity, 0.5);
+    if (r == 0) {
+      result.start = bowed.truth;
+      result.options = {.law_width = 2e-3,
+                        .left_noise = 0.02 * bowed.spread[0],
+                        .right_noise = 0.02 * bowed.spread[1],
+                        .restarts = 0};
+    }
+    BowedCase scaled = bowed;
+    scaled.spread = {50.0 * result.options.left_noise, 50.0 * result.options.right_noise};
+    const NoisyRecords records = noisy(scaled, 0.02, 40 + r);
+    result.data.push_back(CalibrationData::of_records(records.reactions[0], records.reactions[1],
+                                                      records.sample_rate));
+  }
+  for (double& omega : result.start.basis.omega) omega *= 1.004;
+  return result;
+}
+
+TEST(RecordsFit, FourStrokesHalveTheDeviationsAndKeepTheirContacts) {
+  const std::vector<double> contacts = {0.0285, 0.0285, 0.0291, 0.0291};
+  Strokes four = strokes(contacts);
+  four.options.frequencies = false;
+  const RecordsFit fit = calibrate_records(four.start, four.data, four.options);
+  EXPECT_TRUE(fit.right) << fit.chi2;
+  EXPECT_LT(std::abs(fit.fundamental - 196.0), 6.0 * fit.fundamental_deviation);
+  EXPECT_LT(std::abs(fit.inharmonicity - kInharmonicity), 6.0 * fit.inharmonicity_deviation);
+  double information = 0.0;
+  for (std::size_t r = 0; r < contacts.size(); ++r) {
+    EXPECT_LT(std::abs(fit.contacts[r] - contacts[r]), 6.0 * fit.contact_deviations[r]) << r;
+    information += std::pow(fit.single[r].law.deviation[0], -2);
+  }
+  // Informations add; that of f0 alone knows of x_c and the rest, which are the records' own but
+  // for the damping: a few percent. Noise in JᵀJ and weights are another.
+  EXPECT_NEAR(fit.fundamental_deviation * std::sqrt(information), 1.0, 0.1);
+  EXPECT_LT(fit.fundamental_deviation, 0.65 * fit.single[0].law.deviation[0]);
+}
+
+TEST(RecordsFit, EveryFrequencyProfits) {
+  const Strokes two = strokes({0.0285, 0.0285});
+  const RecordsFit fit = calibrate_records(two.start, two.data, two.options);
+  EXPECT_TRUE(fit.right) << fit.chi2;
+  ASSERT_EQ(fit.frequency_deviations.size(), 50u);
+  const ModelPoint truth = bowed_case(0.0285, kInharmonicity, 0.02).truth;
+  double square = 0.0, count = 0.0;
+  for (std::size_t n = 0; n < 50; ++n) {
+    const ModeVerdict& alone = fit.single[0].modes[n];
+    if (alone.source != ModeSource::kIdentified || alone.deviation > 3e-4) continue;
+    EXPECT_NEAR(fit.frequency_deviations[n] / alone.deviation, std::sqrt(0.5), 0.15) << n + 1;
+    const double error = fit.model.basis.omega[n] / truth.basis.omega[n] - 1.0;
+    square += std::pow(error / fit.frequency_deviations[n], 2);
+    count += 1.0;
+  }
+  EXPECT_GT(count, 10.0);
+  // Mean of squares of unit variance: sd √(2/count), five of them.
+  EXPECT_LT(square / count, 1.0 + 5.0 * std::sqrt(2.0 / count));
+}
+
+TEST(RecordsFit, RefusesNoRecord) { EXPECT_THROW(calibrate_records({}, {}, {}), InvalidInput); }
+
+}  // namespace
+}  // namespace modcal
