@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstdint>
 #include <iterator>
 
 #include "libinverse/joint/bin_kernels.hpp"
@@ -20,42 +18,10 @@ constexpr double kLowestOctave = -40.0;  // of g
 constexpr double kLowestParameterOctave = -64.0;
 constexpr std::size_t kParameterOctaves = 80;
 
-// log₂ to 1.1e-5, from the line through the ends of 128 parts of an octave. The exponent is exact,
-// so that powers of two shift cells by whole octaves.
-class FastLog2 {
- public:
-  FastLog2() {
-    for (std::size_t i = 0; i < kParts; ++i) {
-      const double low = 1.0 + static_cast<double>(i) / kParts;
-      const double high = low + 1.0 / kParts;
-      slope_[i] = kParts * std::log2(high / low);
-      start_[i] = std::log2(low) - slope_[i] * low;
-    }
-  }
-  double operator()(double value) const {
-    const auto bits = std::bit_cast<std::uint64_t>(value);
-    const double exponent = static_cast<double>(static_cast<std::int64_t>(bits >> 52) - 1023);
-    const auto mantissa =
-        std::bit_cast<double>((bits & 0x000fffffffffffffULL) | 0x3ff0000000000000ULL);
-    const std::size_t part = (bits >> 45) & (kParts - 1);
-    return exponent + start_[part] + slope_[part] * mantissa;
-  }
-
- private:
-  static constexpr std::size_t kParts = 128;
-  std::array<double, kParts> slope_{}, start_{};
-};
-
-const FastLog2& fast_log2() {
-  static const FastLog2 table;
-  return table;
-}
-
 // Adds {m, power, solution, 0} to the two cells nearest to g > 0. What lies beyond the cells counts
 // as the first or last of them: kept or lost at every λ.
-void spread(const FastLog2& log2, double g, const std::array<double, 4>& terms,
-            std::array<double, 4>* cells) {
-  const double place = std::clamp((log2(g) - kLowestOctave) * kCellsPerOctave, 0.0,
+void spread(double g, const std::array<double, 4>& terms, std::array<double, 4>* cells) {
+  const double place = std::clamp((std::log2(g) - kLowestOctave) * kCellsPerOctave, 0.0,
                                   static_cast<double>(kCells) - 1.001);
   const auto cell = static_cast<std::size_t>(place);
   const double upper = place - static_cast<double>(cell);
@@ -93,7 +59,7 @@ void EvidenceCurve::Cells::clear() {
 void EvidenceCurve::Cells::add(double g, double freedom_i, double power, double solution) {
   freedom += freedom_i;
   if (g > 0.0) {
-    spread(fast_log2(), g, {freedom_i, power, solution, 0.0}, sums.data());
+    spread(g, {freedom_i, power, solution, 0.0}, sums.data());
   } else {
     unseen += power;
   }
@@ -101,15 +67,8 @@ void EvidenceCurve::Cells::add(double g, double freedom_i, double power, double 
 
 void EvidenceCurve::Cells::add_pairs(std::span<const double> g, std::span<const double> power,
                                      std::span<const double> solution) {
-  const FastLog2& log2 = fast_log2();
   freedom += 2.0 * static_cast<double>(g.size());
-  for (std::size_t i = 0; i < g.size(); ++i) {
-    if (g[i] > 0.0) {
-      spread(log2, g[i], {2.0, power[i], solution[i], 0.0}, sums.data() + (i % 2) * kCells);
-    } else {
-      unseen += power[i];
-    }
-  }
+  unseen += spread_pairs(g, power, solution, kLowestOctave, kCellsPerOctave, sums);
 }
 
 EvidenceCurve::Values EvidenceCurve::values_at(double octaves) {

@@ -101,7 +101,7 @@ JointInversion::JointInversion(const ModalBasis& basis, double contact, std::siz
     for (std::size_t j = 0; j < samples; ++j) {
       const double exponent = model.sigma * static_cast<double>(j) / sample_rate;
       decay_[j] = std::exp(-exponent);
-      growth_[j] = std::exp(exponent);
+      growth_[j] = std::exp(exponent) / static_cast<double>(samples);
       weight_power_ += decay_[j] * decay_[j];
     }
   }
@@ -147,7 +147,6 @@ double JointInversion::offset_of(std::span<const double> reaction, std::size_t s
 
 void JointInversion::transform(const ReactionPair& reactions, OffsetRule rule,
                                JointWorkspace& workspace, JointResult& result) const {
-  workspace.weighted.resize(samples());
   for (std::size_t r = 0; r < 2; ++r) {
     result.offset[r] = 0.0;
     workspace.spectrum[r].resize(fft_.bins());
@@ -157,15 +156,15 @@ void JointInversion::transform(const ReactionPair& reactions, OffsetRule rule,
     }
     const double offset = rule == OffsetRule::kArrival ? offset_of(reactions[r], r) : 0.0;
     result.offset[r] = offset;
+    const std::span<double> weighted = fft_.samples_in(workspace.spectrum[r]);
     if (decay_.empty()) {
-      std::transform(reactions[r].begin(), reactions[r].end(), workspace.weighted.begin(),
+      std::transform(reactions[r].begin(), reactions[r].end(), weighted.begin(),
                      [offset](double x) { return x - offset; });
     } else {
-      std::transform(reactions[r].begin(), reactions[r].end(), decay_.begin(),
-                     workspace.weighted.begin(),
+      std::transform(reactions[r].begin(), reactions[r].end(), decay_.begin(), weighted.begin(),
                      [offset](double x, double w) { return (x - offset) * w; });
     }
-    fft_.forward(workspace.weighted, workspace.spectrum[r]);
+    fft_.forward(workspace.spectrum[r]);
     // On the frequency axis bin 0 is the static level, which sensors do not give.
     if (decay_.empty()) workspace.spectrum[r][0] = 0.0;
   }

@@ -13,6 +13,7 @@
 #include "libinverse/joint/string_transfer.hpp"
 #include "libinverse/joint/transient_fit.hpp"
 #include "libinverse/one_sided_inversion.hpp"
+#include "libsim/signal/in_place_fft.hpp"
 
 namespace modcal {
 
@@ -67,7 +68,6 @@ struct JointResult {
 /// Arrays that a call needs besides its results, to be kept from call to call; one per thread.
 struct JointWorkspace {
   SensorNoise::Workspace noise;
-  std::vector<double> weighted;
   std::vector<Complex> spectrum[2];
   std::vector<double> gain;      ///< q_k = Σ_r |H_r|²/v_r
   std::vector<double> variance;  ///< prior P_k, then posterior 1/(q_k + 1/P_k)
@@ -136,7 +136,7 @@ class JointInversion {
   double write_signal(std::span<const Complex> transfer, bool wanted, JointWorkspace& workspace,
                       std::vector<double>& signal) const;
 
-  RealFft fft_;
+  InPlaceFft fft_;
   double sample_rate_;
   JointModel model_;
   std::vector<Complex> transfer_[2];
@@ -145,7 +145,7 @@ class JointInversion {
   double arrival_[2] = {0.0, 0.0};  ///< [s]
   double largest_transfer_ = 0.0;
   std::vector<double> decay_;   ///< exp(−σ t_j), empty for σ = 0
-  std::vector<double> growth_;  ///< exp(σ t_j)
+  std::vector<double> growth_;  ///< exp(σ t_j)/K
   double weight_power_ = 0.0;   ///< W = Σ_j exp(−2σ t_j)
   PriorGrid grid_;
   EvidenceCurve curve_;

@@ -96,8 +96,10 @@ double JointInversion::deviation_of(double sum, std::span<const Complex> transfe
 
 double JointInversion::write_signal(std::span<const Complex> transfer, bool wanted,
                                     JointWorkspace& workspace, std::vector<double>& signal) const {
-  signal.clear();
-  if (!wanted) return std::numeric_limits<double>::quiet_NaN();
+  if (!wanted) {
+    signal.clear();
+    return std::numeric_limits<double>::quiet_NaN();
+  }
   double sum = 0.0;
   std::span<Complex> spectrum = workspace.spectrum[0];  // the force comes last
   if (transfer.empty()) {
@@ -108,8 +110,16 @@ double JointInversion::write_signal(std::span<const Complex> transfer, bool want
     sum = through_transfer(transfer, workspace.spectrum[0], workspace.variance, spectrum);
   }
   signal.resize(samples());
-  fft_.inverse(spectrum, signal);
-  for (std::size_t j = 0; j < growth_.size(); ++j) signal[j] *= growth_[j];
+  fft_.inverse(spectrum);
+  const std::span<const double> weighted = fft_.samples_in(spectrum);
+  if (growth_.empty()) {
+    const double scale = 1.0 / static_cast<double>(samples());
+    std::transform(weighted.begin(), weighted.end(), signal.begin(),
+                   [scale](double x) { return scale * x; });
+  } else {
+    std::transform(weighted.begin(), weighted.end(), growth_.begin(), signal.begin(),
+                   [](double x, double w) { return x * w; });
+  }
   return deviation_of(sum, transfer, workspace);
 }
 

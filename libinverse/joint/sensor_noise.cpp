@@ -59,11 +59,11 @@ SensorNoise::SensorNoise(const ModalBasis& basis, double contact, std::size_t sa
 
 void SensorNoise::transform(std::span<const double> segment, Workspace& workspace,
                             std::size_t side) const {
-  workspace.windowed.resize(segment.size());
-  workspace.spectrum[side].resize(fft_.bins());
-  std::transform(segment.begin(), segment.end(), window_.begin(), workspace.windowed.begin(),
-                 [](double x, double w) { return x * w; });
-  fft_.forward(workspace.windowed, workspace.spectrum[side]);
+  std::vector<Complex>& spectrum = workspace.spectrum[side];
+  spectrum.resize(fft_.bins());
+  std::transform(segment.begin(), segment.end(), window_.begin(),
+                 fft_.samples_in(spectrum).begin(), [](double x, double w) { return x * w; });
+  fft_.forward(spectrum);
 }
 
 SensorNoiseLevel SensorNoise::estimate(const ReactionPair& reactions, Workspace& workspace) const {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "libinverse/joint/string_transfer.hpp"
+#include "libsim/signal/in_place_fft.hpp"
 
 namespace modcal {
 
@@ -30,7 +31,6 @@ class SensorNoise {
               bool static_remainder, bool bending, const SensorOptions& sensors);
 
   struct Workspace {
-    std::vector<double> windowed;
     std::vector<Complex> spectrum[2];
   };
   /// Both sides of `samples` samples, or one of them empty.
@@ -39,7 +39,7 @@ class SensorNoise {
  private:
   void transform(std::span<const double> segment, Workspace& workspace, std::size_t side) const;
 
-  RealFft fft_;
+  InPlaceFft fft_;
   std::size_t samples_;
   std::vector<double> window_;
   double window_power_ = 0.0;
