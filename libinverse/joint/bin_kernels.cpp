@@ -52,6 +52,37 @@ void CombineSides(double weight0, double weight1, const Complex* h0, const Compl
   });
 }
 
+double CrossMisfit(double variance0, double variance1, double scale, const Complex* h0,
+                   const Complex* h1, const Complex* x0, const Complex* x1, double* misfit,
+                   std::size_t bins) {
+  Vector sum = hn::Zero(Lanes());
+  double rest = 0.0;
+  ForBins(bins, [&](auto d, std::size_t k) HWY_ATTR {
+    using V = hn::Vec<decltype(d)>;
+    V a, b, c, e, x, y, z, w;
+    hn::LoadInterleaved2(d, Parts(h0 + k), a, b);
+    hn::LoadInterleaved2(d, Parts(h1 + k), c, e);
+    hn::LoadInterleaved2(d, Parts(x0 + k), x, y);
+    hn::LoadInterleaved2(d, Parts(x1 + k), z, w);
+    // (x + iy)(c + ie) − (z + iw)(a + ib)
+    const V real = hn::Sub(hn::NegMulAdd(y, e, hn::Mul(x, c)), hn::NegMulAdd(w, b, hn::Mul(z, a)));
+    const V imag = hn::Sub(hn::MulAdd(x, e, hn::Mul(y, c)), hn::MulAdd(z, b, hn::Mul(w, a)));
+    const V noise = hn::MulAdd(hn::Set(d, variance0), hn::MulAdd(c, c, hn::Mul(e, e)),
+                               hn::Mul(hn::Set(d, variance1), hn::MulAdd(a, a, hn::Mul(b, b))));
+    const V power = hn::MulAdd(real, real, hn::Mul(imag, imag));
+    const V one = hn::Set(d, 1.0);
+    const auto seen = hn::Gt(noise, hn::Zero(d));
+    const V value = hn::IfThenElse(seen, hn::Div(hn::Mul(power, hn::Set(d, scale)), noise), one);
+    hn::StoreU(value, d, misfit + k);
+    if constexpr (std::is_same_v<decltype(d), Lanes>) {
+      sum = hn::Add(sum, value);
+    } else {
+      rest += hn::GetLane(value);
+    }
+  });
+  return hn::GetLane(hn::SumOfLanes(Lanes(), sum)) + rest;
+}
+
 void ScaledPower(const Complex* data, double scale, double* power, std::size_t bins) {
   ForBins(bins, [&](auto d, std::size_t k) HWY_ATTR {
     hn::Vec<decltype(d)> x, y;
@@ -124,15 +155,15 @@ double ThroughTransfer(const Complex* transfer, const Complex* data, const doubl
   return hn::GetLane(hn::SumOfLanes(Lanes(), sum)) + rest;
 }
 
-// log₂ g: with the mantissa m and y = (m − 1)/(m + 1), log m = 2 artanh y. The exponent is exact, so
-// that powers of two shift cells by whole octaves.
+// log₂ g: with the mantissa m and y = (m − 1)/(m + 1), log m = 2 artanh y. The exponent is exact,
+// so that powers of two shift cells by whole octaves.
 template <class D, class V>
 HWY_INLINE V FastLog2(D d, V value) {
   const hn::RebindToSigned<D> di;
   const auto bits = hn::BitCast(di, value);
   const auto exponent = hn::ConvertTo(d, hn::Sub(hn::ShiftRight<52>(bits), hn::Set(di, 1023)));
-  const V mantissa = hn::BitCast(d, hn::Or(hn::And(bits, hn::Set(di, 0x000fffffffffffff)),
-                                           hn::Set(di, 0x3ff0000000000000)));
+  const V mantissa = hn::BitCast(
+      d, hn::Or(hn::And(bits, hn::Set(di, 0x000fffffffffffff)), hn::Set(di, 0x3ff0000000000000)));
   const V one = hn::Set(d, 1.0);
   const V y = hn::Div(hn::Sub(mantissa, one), hn::Add(mantissa, one));
   const V z = hn::Mul(y, y);
@@ -150,9 +181,8 @@ HWY_INLINE void AddScaled(double share, const double* terms, double* cell) {
   }
 }
 
-double SpreadPairs(const double* g, const double* reduced, const double* solution,
-                   std::size_t bins, double lowest, double per_octave, double* sets,
-                   std::size_t cells) {
+double SpreadPairs(const double* g, const double* reduced, const double* solution, std::size_t bins,
+                   double lowest, double per_octave, double* sets, std::size_t cells) {
   constexpr std::size_t kBlock = 64;
   HWY_ALIGN double place[kBlock];
   HWY_ALIGN double terms[4] = {0.0, 0.0, 0.0, 0.0};
@@ -161,9 +191,8 @@ double SpreadPairs(const double* g, const double* reduced, const double* solutio
     const std::size_t count = HWY_MIN(kBlock, bins - begin);
     ForBins(count, [&](auto d, std::size_t i) HWY_ATTR {
       const auto octave = hn::Sub(FastLog2(d, hn::LoadU(d, g + begin + i)), hn::Set(d, lowest));
-      const auto inside =
-          hn::Min(hn::Max(hn::Mul(octave, hn::Set(d, per_octave)), hn::Zero(d)),
-                  hn::Set(d, static_cast<double>(cells) - 1.001));
+      const auto inside = hn::Min(hn::Max(hn::Mul(octave, hn::Set(d, per_octave)), hn::Zero(d)),
+                                  hn::Set(d, static_cast<double>(cells) - 1.001));
       hn::StoreU(inside, d, place + i);
     });
     for (std::size_t i = 0; i < count; ++i) {
@@ -210,6 +239,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace modcal {
 HWY_EXPORT(CombineSides);
+HWY_EXPORT(CrossMisfit);
 HWY_EXPORT(ScaledPower);
 HWY_EXPORT(EvidenceTerms);
 HWY_EXPORT(ExpectedPower);
@@ -240,6 +270,17 @@ void combine_sides(std::array<double, 2> weight, std::span<const Complex> transf
   HWY_DYNAMIC_DISPATCH(CombineSides)
   (weight[0], weight[1], transfer0.data(), transfer1.data(), spectrum1.data(), spectrum0.data(),
    gain.data(), gain.size());
+}
+
+double cross_misfit(std::array<double, 2> noise_variance, double scale,
+                    std::span<const Complex> transfer0, std::span<const Complex> transfer1,
+                    std::span<const Complex> spectrum0, std::span<const Complex> spectrum1,
+                    std::span<double> misfit) {
+  assert(transfer0.size() == misfit.size() && transfer1.size() == misfit.size() &&
+         spectrum0.size() == misfit.size() && spectrum1.size() == misfit.size());
+  return HWY_DYNAMIC_DISPATCH(CrossMisfit)(noise_variance[0], noise_variance[1], scale,
+                                           transfer0.data(), transfer1.data(), spectrum0.data(),
+                                           spectrum1.data(), misfit.data(), misfit.size());
 }
 
 void scaled_power(std::span<const Complex> data, double scale, std::span<double> power) {

@@ -14,6 +14,13 @@ void combine_sides(std::array<double, 2> weight, std::span<const Complex> transf
                    std::span<const Complex> transfer1, std::span<const Complex> spectrum1,
                    std::span<Complex> spectrum0, std::span<double> gain);
 
+/// Per bin |X_0 H_1 − X_1 H_0|² scale/(v_0 |H_1|² + v_1 |H_0|²), 1 where both H are 0: 1 on average
+/// where nothing but noise of variances v parts the sides. Returns the sum.
+double cross_misfit(std::array<double, 2> noise_variance, double scale,
+                    std::span<const Complex> transfer0, std::span<const Complex> transfer1,
+                    std::span<const Complex> spectrum0, std::span<const Complex> spectrum1,
+                    std::span<double> misfit);
+
 /// Per bin: power |d|² · scale.
 void scaled_power(std::span<const Complex> data, double scale, std::span<double> power);
 
@@ -36,9 +43,9 @@ double through_transfer(std::span<const Complex> transfer, std::span<const Compl
                         std::span<const double> variance, std::span<Complex> out);
 
 /// Adds components of two degrees of freedom {2, reduced, solution, 0} to the two of `cells` cells
-/// nearest to log₂ g (2e-5 near), of which an octave has `per_octave` from `lowest` on; even and odd
-/// components to a set of their own, one behind the other. What lies beyond counts as the first or
-/// the last cell. Returns Σ reduced of those with g = 0, which go nowhere.
+/// nearest to log₂ g (2e-5 near), of which an octave has `per_octave` from `lowest` on; even and
+/// odd components to a set of their own, one behind the other. What lies beyond counts as the first
+/// or the last cell. Returns Σ reduced of those with g = 0, which go nowhere.
 double spread_pairs(std::span<const double> g, std::span<const double> reduced,
                     std::span<const double> solution, double lowest, double per_octave,
                     std::span<std::array<double, 4>> sets);

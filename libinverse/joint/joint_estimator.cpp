@@ -159,7 +159,14 @@ Estimate estimate_of(JointResult result, const JointInversion& inversion,
                       {"noise_share_of_band", noise.noise_share},
                       {"offset_1", result.offset[0]},
                       {"offset_2", result.offset[1]},
-                      {"force_deviation", result.deviation.force}};
+                      {"force_deviation", result.deviation.force},
+                      {"misfit_of_sides", result.misfit}};
+  if (result.misfit > JointInversion::kContradiction) {
+    estimate.warnings.push_back(fmt::format(
+        "the reactions contradict each other {:.2g} times more than their noise: the model or the "
+        "ends of the record limit the estimate, and its error bars are widened",
+        std::sqrt(result.misfit)));
+  }
   const bool both = !record.reactions[0].empty() && !record.reactions[1].empty();
   if (!both) {
     estimate.warnings.push_back(

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "libinverse/joint/bin_kernels.hpp"
@@ -20,6 +21,8 @@ double square_sum(std::span<const double> samples) {
   for (; j < samples.size(); ++j) sums[0] += samples[j] * samples[j];
   return (sums[0] + sums[1]) + (sums[2] + sums[3]);
 }
+
+constexpr double kMisfitWidth = 40.0;  // over which it is smoothed [Hz]
 
 FrequencyGrid contour_grid(std::size_t samples, double sample_rate, double sigma) {
   FrequencyGrid grid = FrequencyGrid::of_record(samples, sample_rate);
@@ -136,9 +139,13 @@ JointInversion::SidePowers JointInversion::require_record(const ReactionPair& re
   return powers;
 }
 
+std::size_t JointInversion::samples_before_arrival(std::size_t side) const {
+  return std::min(static_cast<std::size_t>(std::max(0.0, arrival_[side] * sample_rate_)),
+                  samples());
+}
+
 double JointInversion::offset_of(std::span<const double> reaction, std::size_t side) const {
-  const auto before = std::min(
-      static_cast<std::size_t>(std::max(0.0, arrival_[side] * sample_rate_)), reaction.size());
+  const std::size_t before = samples_before_arrival(side);
   if (before == 0) return 0.0;
   return std::accumulate(reaction.begin(), reaction.begin() + static_cast<std::ptrdiff_t>(before),
                          0.0) /
@@ -170,6 +177,48 @@ void JointInversion::transform(const ReactionPair& reactions, OffsetRule rule,
   }
 }
 
+// A mean over n samples errs by √(v/n), and that constant has the spectrum f_s/(σ + iω): at low
+// frequencies it parts the sides by more than their noise. Returns by how much the sum has fallen.
+double JointInversion::allow_for_offsets(OffsetRule rule, std::span<double> misfit) const {
+  if (rule == OffsetRule::kNone) return 0.0;
+  const std::size_t least = std::min(samples_before_arrival(0), samples_before_arrival(1));
+  if (least == 0) return 0.0;
+  const double power = sample_rate_ * sample_rate_ / (static_cast<double>(least) * weight_power_);
+  const double spacing = 2.0 * std::numbers::pi * grid_.bin_width();
+  double fallen = 0.0;
+  for (std::size_t k = 0; k < misfit.size(); ++k) {
+    const double omega = spacing * static_cast<double>(k);
+    const double share = power / (model_.sigma * model_.sigma + omega * omega);
+    if (share < 1e-3) break;
+    const double allowed = misfit[k] / (1.0 + share);
+    fallen += misfit[k] - allowed;
+    misfit[k] = allowed;
+  }
+  return fallen;
+}
+
+void JointInversion::compare_sides(const Weights& weights, OffsetRule rule,
+                                   JointWorkspace& workspace, JointResult& result) const {
+  result.misfit = std::numeric_limits<double>::quiet_NaN();
+  workspace.misfit.clear();
+  const auto& inverse = weights.inverse_variance;
+  if (inverse[0] == 0.0 || inverse[1] == 0.0) return;
+  const std::size_t bins = fft_.bins();
+  workspace.misfit.resize(bins);
+  const double sum =
+      cross_misfit({1.0 / inverse[0], 1.0 / inverse[1]}, 1.0 / weight_power_, transfer_[0],
+                   transfer_[1], workspace.spectrum[0], workspace.spectrum[1], workspace.misfit);
+  const double excess = allow_for_offsets(rule, workspace.misfit);
+  result.misfit = (sum - excess) / static_cast<double>(bins);
+  if (result.misfit < kContradiction) {
+    workspace.misfit.clear();
+    return;
+  }
+  workspace.scratch.resize(bins);
+  const double half = std::max(4.0, 0.25 * kMisfitWidth / grid_.bin_width());
+  smooth_power(workspace.misfit, workspace.scratch, half, 0.0);
+}
+
 // After it spectrum[0] holds Σ conj(H_r) R_r/v_r.
 void JointInversion::combine(const Weights& weights, JointWorkspace& workspace) const {
   workspace.gain.resize(fft_.bins());
@@ -184,7 +233,8 @@ void JointInversion::invert(const ReactionPair& reactions, const SensorNoiseLeve
   const Weights weights(require_record(reactions, noise), noise);
   result.noise_amplitude = std::sqrt(weights.mean_variance);
   const bool from_rest = model_.truncation == Truncation::kShiftedContour;
-  transform(reactions, from_rest ? method.offset : OffsetRule::kNone, workspace, result);
+  const OffsetRule offset_rule = from_rest ? method.offset : OffsetRule::kNone;
+  transform(reactions, offset_rule, workspace, result);
   if (model_.truncation == Truncation::kTransient) {
     // The force's amplitude and the decays are found in turn: the first round's amplitude still
     // holds what the decays explain.
@@ -207,6 +257,7 @@ void JointInversion::invert(const ReactionPair& reactions, const SensorNoiseLeve
       transient_.subtract(setting, spectra, workspace.transient);
     }
   }
+  compare_sides(weights, offset_rule, workspace, result);
   combine(weights, workspace);
   choose_amplitude(weights, method, workspace, result);
   if (method.known_variance.empty()) {

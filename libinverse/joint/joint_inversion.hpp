@@ -63,6 +63,9 @@ struct JointResult {
   PosteriorDeviation deviation;
   std::array<double, 2> offset = {0.0, 0.0};  ///< subtracted from the reactions [N]
   double noise_amplitude = 0.0;               ///< √v̄, v̄ the mean variance of the sides [N]
+  /// Mean over the bins of |R_1 H_2 − R_2 H_1|² over what the noise puts there: 1 where the model
+  /// holds, NaN with one reaction.
+  double misfit = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Arrays that a call needs besides its results, to be kept from call to call; one per thread.
@@ -71,7 +74,8 @@ struct JointWorkspace {
   std::vector<Complex> spectrum[2];
   std::vector<double> gain;      ///< q_k = Σ_r |H_r|²/v_r
   std::vector<double> variance;  ///< prior P_k, then posterior 1/(q_k + 1/P_k)
-  std::vector<double> power;     ///< |Σ_r conj(H_r) R_r/v_r|² of a unit sum of weights
+  std::vector<double> misfit;  ///< of the sides in every bin, smoothed; empty: as the noise allows
+  std::vector<double> power;   ///< |Σ_r conj(H_r) R_r/v_r|² of a unit sum of weights
   std::vector<double> terms[3];
   std::vector<double> learned;
   std::vector<double> scratch;
@@ -84,6 +88,13 @@ struct JointWorkspace {
 /// prior force spectrum P whose amplitude has the largest evidence. The record is weighted by
 /// exp(−σt) before and exp(σt) after. With one reaction it is the Wiener estimate of that side.
 ///
+/// The deviations are those of the posterior where the two reactions agree within the noise. Where
+/// they contradict each other by far more (a record of less than 0.1 % noise, whose aliases and
+/// wrapped end no noise level tells of; a model that is wrong), the variance that the data leave is
+/// multiplied by the misfit of the cross relation around each bin (Birge, 1932): what the model
+/// lacks is supposed to be as large along the force as across it. For bowed strings the 95 % band
+/// then holds 93 % to 98 % of the truth at 0.1 % to 10 % of noise and more of it below.
+///
 /// The parameter reported is λ = √(v̄/A), A the prior's amplitude: the |H| [N/N] at which a bin of
 /// prior shape 1 is kept by half. Prepared once per model and record length; const and safe to use
 /// from several threads. No heap allocation after the first call with a workspace and a result,
@@ -93,6 +104,11 @@ class JointInversion {
   /// `contact` x_c in [0, L] [m], `samples` ≥ 1, `sample_rate` > 0 [Hz]; `points` ≥ 3 of the curve.
   JointInversion(const ModalBasis& basis, double contact, std::size_t samples, double sample_rate,
                  const JointModel& model, std::size_t points = 100);
+
+  /// Mean misfit of the sides from which on it widens the deviations. On bowed strings it is 6 at
+  /// 1 % of noise and 80 at 0.1 %, from few bins beside resonances: what wraps around, an error of
+  /// the record's beginning that the rest of the band need not pay for.
+  static constexpr double kContradiction = 100.0;
 
   std::size_t samples() const { return fft_.length(); }
   double sample_rate() const { return sample_rate_; }
@@ -118,9 +134,13 @@ class JointInversion {
     Weights(const SidePowers& powers, const SensorNoiseLevel& noise);
   };
   SidePowers require_record(const ReactionPair& reactions, const SensorNoiseLevel& noise) const;
+  std::size_t samples_before_arrival(std::size_t side) const;
   double offset_of(std::span<const double> reaction, std::size_t side) const;
   void transform(const ReactionPair& reactions, OffsetRule rule, JointWorkspace& workspace,
                  JointResult& result) const;
+  double allow_for_offsets(OffsetRule rule, std::span<double> misfit) const;
+  void compare_sides(const Weights& weights, OffsetRule rule, JointWorkspace& workspace,
+                     JointResult& result) const;
   void combine(const Weights& weights, JointWorkspace& workspace) const;
   void set_prior(const JointMethod& method, JointWorkspace& workspace) const;
   void fill_cells(const Weights& weights, JointWorkspace& workspace) const;
@@ -130,6 +150,7 @@ class JointInversion {
   void learn_spectrum(const ForcePrior& prior, double band_limit, JointWorkspace& workspace) const;
   void apply_posterior(const JointMethod& method, JointWorkspace& workspace,
                        JointResult& result) const;
+  void widen_by_misfit(JointWorkspace& workspace) const;
   void count_bins(double kept_pairs, JointWorkspace& workspace, InversionResult& identified) const;
   double deviation_of(double sum, std::span<const Complex> transfer,
                       const JointWorkspace& workspace) const;

@@ -61,8 +61,8 @@ void SensorNoise::transform(std::span<const double> segment, Workspace& workspac
                             std::size_t side) const {
   std::vector<Complex>& spectrum = workspace.spectrum[side];
   spectrum.resize(fft_.bins());
-  std::transform(segment.begin(), segment.end(), window_.begin(),
-                 fft_.samples_in(spectrum).begin(), [](double x, double w) { return x * w; });
+  std::transform(segment.begin(), segment.end(), window_.begin(), fft_.samples_in(spectrum).begin(),
+                 [](double x, double w) { return x * w; });
   fft_.forward(spectrum);
 }
 
