@@ -40,7 +40,7 @@ bench: packages
 
 accuracy: packages
 	@cmake --preset $(PRESET) >/dev/null
-	@cmake --build --preset $(PRESET) --target work_precision perturbation_growth random_scenes
+	@cmake --build --preset $(PRESET) --target work_precision perturbation_growth random_scenes regularizer_error
 	@benchmarks/accuracy/run.sh build/$(PRESET) docs/accuracy
 
 stress: packages

@@ -21,6 +21,9 @@ echo "== the spectral-peak search in NumPy, on the same data"
 echo "== calibration to the bound in NumPy and SciPy, on the same data"
 "$build/benchmarks/calibration_peer" --write_case="$out/calibration.bin"
 /usr/bin/python3 "$here/peers/joint_likelihood_fit.py" "$out/calibration.bin" 3
+echo "== the joint inversion in NumPy and SciPy, on the same data"
+"$build/benchmarks/inversion_benchmark" --write_case="$out/joint.bin"
+/usr/bin/python3 "$here/peers/joint_inversion.py" "$out/joint.bin" 9
 echo "== ensembles over threads"
 "$build/benchmarks/ensemble_benchmark"
 echo "== what skipping saves"
