@@ -1,0 +1,179 @@
+// The joint estimator as an experiment uses it: what is automatic, what is an option.
+#include "libinverse/joint/joint_estimator.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "libsim/base/error.hpp"
+#include "tests/libinverse/joint/joint_case.hpp"
+
+namespace modcal {
+namespace {
+
+Estimate estimate_with(const JointOptions& joint, const ModalBasis& basis,
+                       const ReactionPair& reactions, bool recorded = false) {
+  const std::size_t samples = std::max(reactions[0].size(), reactions[1].size());
+  JointEstimator::Options options;
+  options.joint = joint;
+  const auto prepared =
+      JointEstimator(options).prepare({basis, kPosition, samples, kRate, recorded});
+  const auto regularizer = Choice<Regularizer>("none").make();
+  const auto rule = Choice<ParameterChoice>("gcv").make();
+  EstimationRecord record;
+  record.reactions = reactions;
+  return prepared->estimate(record, {*regularizer, *rule}).front();
+}
+
+double figure(const Estimate& estimate, const std::string& name) {
+  const std::map<std::string, double> figures(estimate.figures.begin(), estimate.figures.end());
+  return figures.at(name);
+}
+
+double middle_error(std::span<const double> x, std::span<const double> y) {
+  const std::size_t edge = y.size() / 8;
+  return relative_rms_error(x.subspan(edge, y.size() - 2 * edge),
+                            y.subspan(edge, y.size() - 2 * edge));
+}
+
+TEST(JointEstimator, ReportsTheContourItHasChosen) {
+  const std::size_t samples = 8192;
+  const ModalBasis basis = violin_g();
+  const double duration = static_cast<double>(samples) / kRate;
+  double before = 5.0;
+  for (const double level : {0.001, 0.01, 0.1}) {
+    DrivenString string = drive(basis, kPosition, jumping_force(samples, StreamKey(1)));
+    add_noise(string, level, StreamKey(2));
+    const Estimate estimate = estimate_with({}, basis, string.pair());
+    const double sigma_t = figure(estimate, "sigma_T");
+    // Quarters of 1/T next to the rule, whose noise is measured to a few percent.
+    EXPECT_NEAR(sigma_t, duration * contour_of(basis, duration, level), 0.13 + 0.05) << level;
+    EXPECT_EQ(figure(estimate, "sigma"), sigma_t / duration);
+    EXPECT_LT(sigma_t, before);  // more noise, less of it let grow
+    before = sigma_t;
+  }
+  JointOptions given;
+  given.sigma = 7.0;
+  const DrivenString string = drive(basis, kPosition, jumping_force(samples, StreamKey(1)));
+  EXPECT_EQ(figure(estimate_with(given, basis, string.pair()), "sigma"), 7.0);
+}
+
+TEST(JointEstimator, TakesARecordThatBeginsInMidMotion) {
+  // Four periods cut from a longer record; the sensors' levels are lost.
+  const std::size_t samples = 1045, before = 3000;
+  const ModalBasis basis = violin_g();
+  DrivenString string = drive(basis, kPosition, jumping_force(before + samples, StreamKey(2)));
+  for (auto& reaction : string.reaction) {
+    reaction.erase(reaction.begin(), reaction.begin() + before);
+    remove_mean(reaction);
+  }
+  std::vector<double> force(string.force.begin() + before, string.force.end());
+  remove_mean(force);
+  JointOptions transient;
+  transient.truncation = "transient";
+  transient.noise_rms[0] = transient.noise_rms[1] = 1e-8;
+  JointOptions contour = transient;
+  contour.truncation = "shifted_contour";
+  const auto error_with = [&](const JointOptions& options) {
+    auto identified = estimate_with(options, basis, string.pair()).result.force;
+    remove_mean(identified);
+    return middle_error(identified, force);
+  };
+  EXPECT_LT(error_with(transient), 0.15);
+  EXPECT_GT(error_with(contour), 0.5);
+}
+
+TEST(JointEstimator, StaticRemainderIsOnForRecordedStringsUnlessStated) {
+  const std::size_t samples = 4096;
+  const ModalBasis basis = violin_g();
+  const DrivenString string =
+      drive(basis, kPosition, jumping_force(samples, StreamKey(4)), {}, true);
+  const auto force_with = [&](const char* remainder, bool recorded) {
+    JointOptions options;
+    options.transfer.static_remainder = remainder;
+    options.noise_rms[0] = options.noise_rms[1] = 1e-6;
+    return estimate_with(options, basis, string.pair(), recorded).result.force;
+  };
+  const auto on = force_with("on", false), off = force_with("off", true);
+  EXPECT_EQ(force_with("auto", true), on);
+  EXPECT_EQ(force_with("auto", false), off);
+  // The response holds the remainder: without it the error is larger.
+  EXPECT_LT(1.5 * middle_error(on, string.force), middle_error(off, string.force));
+}
+
+TEST(JointEstimator, BendingOfTheSupportsIsAnOption) {
+  const std::size_t samples = 4096;
+  StringModel model;
+  model.length = 0.33;
+  model.linear_density = 3.1e-3;
+  model.fundamental = 196.0;
+  model.inharmonicity = 1e-3;  // reactions of mode 50 times 3.5
+  const ModalBasis basis = make_modal_basis(model);
+  const DrivenString string =
+      drive(basis, kPosition, jumping_force(samples, StreamKey(4)), {}, false, true);
+  const auto error_with = [&](bool bending) {
+    JointOptions options;
+    options.transfer.bending = bending;
+    options.noise_rms[0] = options.noise_rms[1] = 1e-6;
+    return middle_error(estimate_with(options, basis, string.pair()).result.force, string.force);
+  };
+  EXPECT_LT(1.5 * error_with(true), error_with(false));
+}
+
+TEST(JointEstimator, GainAndDelayOfEachSensorAreOptions) {
+  const std::size_t samples = 4096;
+  const ModalBasis basis = violin_g();
+  const SensorOptions sensors{.gain = {1.3, 0.8}, .delay = {7e-6, -4e-6}};
+  const DrivenString string =
+      drive(basis, kPosition, jumping_force(samples, StreamKey(4)), sensors);
+  JointOptions options;
+  options.noise_rms[0] = options.noise_rms[1] = 1e-6;
+  const double ignored =
+      middle_error(estimate_with(options, basis, string.pair()).result.force, string.force);
+  options.sensors = sensors;
+  const double known =
+      middle_error(estimate_with(options, basis, string.pair()).result.force, string.force);
+  EXPECT_LT(3.0 * known, ignored);
+}
+
+TEST(JointEstimator, SaysWhenTheSidesContradictEachOther) {
+  const std::size_t samples = 8192;
+  const ModalBasis basis = violin_g();
+  DrivenString string = drive(basis, kPosition, jumping_force(samples, StreamKey(5)));
+  add_noise(string, 0.02, StreamKey(6));
+  const auto contradiction = testing::Contains(testing::HasSubstr("contradict"));
+  const Estimate good = estimate_with({}, basis, string.pair());
+  EXPECT_THAT(good.warnings, testing::Not(contradiction));
+  // A wrong model of the second sensor, where the noise is said to be small.
+  JointOptions wrong;
+  wrong.sensors.gain[1] = 0.7;
+  wrong.noise_rms[0] = wrong.noise_rms[1] = 1e-4 * standard_deviation(string.reaction[0]);
+  const Estimate bad = estimate_with(wrong, basis, string.pair());
+  EXPECT_THAT(bad.warnings, contradiction);
+  JointOptions trusting = wrong;
+  trusting.sensors.gain[1] = 1.0;
+  EXPECT_GT(figure(bad, "misfit_of_sides"),
+            figure(estimate_with(trusting, basis, string.pair()), "misfit_of_sides"));
+}
+
+TEST(JointEstimator, ABinThatNeitherSideSeesKeepsThePrior) {
+  // At a support nothing is seen: every bin is blind, the force 0, its band the prior's.
+  const std::size_t samples = 512;
+  const JointInversion inversion(violin_g(), 0.0, samples, kRate, {.sigma = 200.0});
+  const auto noise = normal_draw(samples, StreamKey(1));
+  const JumpPrior prior{JumpPrior::Options{}};
+  const std::vector<double> variance(samples / 2 + 1, 4.0);
+  JointWorkspace workspace;
+  JointResult result;
+  inversion.invert({noise, noise}, {.rms = {0.1, 0.1}},
+                   {.prior = prior, .offset = OffsetRule::kNone, .known_variance = variance},
+                   workspace, result);
+  EXPECT_EQ(result.identified.blind_bins, samples / 2 + 1);
+  EXPECT_EQ(result.identified.choice.kept_share, 0.0);
+  for (const double value : result.identified.force) EXPECT_EQ(value, 0.0);
+  EXPECT_NEAR(result.deviation.force, 2.0, 1e-12);  // K bins of variance 4 over K samples
+}
+
+}  // namespace
+}  // namespace modcal
