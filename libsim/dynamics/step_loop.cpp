@@ -132,7 +132,7 @@ HWY_INLINE StepCoefficients::Response Observe(const SampleTargets& to, const Ste
                                               const LeadingString<Modes>& string,
                                               const LastForces& forces) {
   const double taken = forces.Taken<kTiming>();
-  const auto sum = [&](bool wanted, const ModeSum& of, double response) {
+  const auto sum = [&](bool wanted, const ModeSum& of, double response) HWY_ATTR {
     return wanted ? string.Sum(SumWeights(of)) + response * taken : 0.0;
   };
   const StepCoefficients::Response& response = c.deferred_response;
