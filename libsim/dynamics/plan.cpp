@@ -178,7 +178,7 @@ std::optional<double> cost_of(const Base& base, const Scene& with) {
     return std::nullopt;
   }
   // Several times as slow as the scene itself: a part of it will do.
-  const double length = std::min(base.length, std::max(2e-3, 0.2 * base.length));
+  const double length = std::min(base.length, std::max(2e-3, 0.1 * base.length));
   const auto timed = [&](const Scene& scene) {
     return base.pieces.run(scene, length, base.pieces.rate(), base.outputs).seconds;
   };
