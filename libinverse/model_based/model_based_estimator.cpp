@@ -25,7 +25,7 @@ namespace {
 // Force noise of the gains over the static friction force: the first contracts from bad parameters,
 // the last trusts good ones.
 constexpr std::array kForceNoise = {0.075, 0.025, 0.0125, 0.0075, 0.0025};
-constexpr std::size_t kWide = 0, kMiddle = 1, kNarrow = 2;
+constexpr std::size_t kWide = 0, kMiddle = 1, kNarrow = 2, kTrusting = 4;
 constexpr std::array<std::size_t, 4> kBeam = {0, 1, 3, 4};
 // A finite number of modes ripples ahead of the first wave: this share of the reaction's deviation
 // in the mean of the silent samples.
@@ -90,6 +90,9 @@ class Estimation {
     if (record_.noise[0] < kQuietNoise * standard_deviation(record_.reaction[0])) {
       space = fitted(space, {kNarrow}, 6);
     }
+    // What heats, cools and softens trade off against each other: only an observer that leans on
+    // its model tells them apart.
+    if (space.start().sliding.thermal) space = fitted(space, {kTrusting}, 12);
     GainSchedule schedule;
     for (std::int64_t round = 0; round < options_.rounds; ++round) {
       schedule = search_gains(*runs_, space.start(), kBeam);
