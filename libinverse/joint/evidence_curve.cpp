@@ -6,7 +6,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "libinverse/joint/bin_kernels.hpp"
+#include "libinverse/joint/cell_kernels.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {

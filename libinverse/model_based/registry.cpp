@@ -3,6 +3,7 @@
 
 #include "libinverse/estimator.hpp"
 #include "libinverse/joint/joint_estimator.hpp"
+#include "libinverse/joint/linear_limit_estimator.hpp"
 #include "libinverse/model_based/observer_estimator.hpp"
 #include "libinverse/one_sided_estimator.hpp"
 

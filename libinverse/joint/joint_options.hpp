@@ -1,0 +1,34 @@
+// What all estimators on both reactions have to be told.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+
+#include "libinverse/joint/joint_inversion.hpp"
+
+namespace modcal {
+
+/// Section "inversion" of an estimator on both reactions.
+struct JointOptions {
+  std::string truncation = "shifted_contour";
+  double sigma = std::numeric_limits<double>::quiet_NaN();  ///< [1/s]; NaN: see contour_of
+  std::string offset = "arrival";
+  /// Standard deviations of the noise of one sample [N]; NaN: from the record.
+  double noise_rms[2] = {std::numeric_limits<double>::quiet_NaN(),
+                         std::numeric_limits<double>::quiet_NaN()};
+  double band_limit = std::numeric_limits<double>::quiet_NaN();  ///< [Hz]; NaN: none
+  bool limit_to_top_mode = false;
+  std::int64_t points = 100;
+  TransferOptions transfer = {};
+  SensorOptions sensors = {};
+
+  void visit(OptionVisitor& visitor);
+  /// Throws InvalidInput for options out of range.
+  void require() const;
+};
+
+/// Throws InvalidInput for an unknown name.
+Truncation truncation_of(const std::string& name);
+
+}  // namespace modcal

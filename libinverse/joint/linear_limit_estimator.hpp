@@ -1,0 +1,27 @@
+#pragma once
+
+#include "libinverse/estimator.hpp"
+#include "libinverse/joint/joint_options.hpp"
+
+namespace modcal {
+
+/// The linear limit: the joint estimate with the true spectrum of the force for a prior and the
+/// true noise levels, an oracle. No linear estimate that knows spectra alone does better on average
+/// (Wiener, 1949). For simulated records.
+class LinearLimitEstimator final : public Estimator {
+ public:
+  struct Options {
+    JointOptions joint = {};
+    double bandwidth = 20.0;  ///< over which the true spectrum is smoothed [Hz]
+    void visit(OptionVisitor& visitor);
+  };
+  /// Throws InvalidInput for options out of range.
+  explicit LinearLimitEstimator(const Options& options);
+
+ private:
+  std::shared_ptr<const PreparedEstimator> do_prepare(const EstimationModel& model) const override;
+  JointOptions joint_;
+  double bandwidth_;
+};
+
+}  // namespace modcal
