@@ -14,8 +14,8 @@ namespace modcal {
 /// with φ = g/(g + λ²): Σ_i m_i [log(1 + g_i/λ²) − u_i φ_i] (MacKay, 1992, section 3).
 ///
 /// Components are split between the two nearest of 16 cells an octave of g (linear interpolation:
-/// 1e-4 of each sum), so that a curve costs as much as the cells, whatever the number of
-/// components.
+/// at most 9e-4 of a sum of squares), so that a curve costs as much as the cells, whatever the
+/// number of components.
 class EvidenceCurve {
  public:
   /// `points` ≥ 3 over 80 octaves of λ², 2^−64 … 2^16.
