@@ -7,7 +7,7 @@ out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 
 echo "machine: $(grep -m1 'model name' /proc/cpuinfo | cut -d: -f2 | xargs), $(nproc) threads, load $(cut -d' ' -f1 /proc/loadavg)"
-for kernel in simulator inversion spectral_peak; do
+for kernel in simulator inversion spectral_peak calibration_bound; do
   echo "== $kernel"
   "$build/benchmarks/${kernel}_benchmark" --benchmark_repetitions=5 \
     --benchmark_report_aggregates_only=true --benchmark_display_aggregates_only=true 2>/dev/null |
