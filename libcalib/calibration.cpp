@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "libcalib/stiff_string_fit.hpp"
 #include "libsim/base/error.hpp"
@@ -90,6 +91,18 @@ CalibrationResult calibrate_to_the_bound(const ModelPoint& initial, const Calibr
                        {"B", "1", start.inharmonicity, law.inharmonicity},
                        {"x_c", "m", initial.contact, found.model.contact},
                        {"damping", "1", 1.0, found.damping}};
+  const UnknownsOptions& unknowns = continuation.unknowns;
+  const SensorPair& sensors = found.model.sensors;
+  if (unknowns.gain.free) {
+    result.parameters.push_back({"gain", "1", unknowns.gain.value, sensors.gain});
+  }
+  if (unknowns.delay.free) {
+    result.parameters.push_back({"delay", "s", unknowns.delay.value, sensors.delay});
+  }
+  if (unknowns.corner.free) {
+    result.parameters.push_back(
+        {"corner", "Hz", unknowns.corner.value, 0.5 * sensors.corner / std::numbers::pi});
+  }
   const std::vector<bool> excited = excited_modes(found.model, options.excitation_threshold);
   const std::vector<double> shape = initial.basis.shape_at(initial.contact);
   for (std::size_t i = 0; i < found.modes.size(); ++i) {

@@ -251,6 +251,24 @@ class Attempt {
   std::size_t evaluations_ = 0;
 };
 
+// Where nothing fits, what the law leaves is taken for noise: frequencies that fit the misfit would
+// be farther from the truth than the law. χ² and verdict stay those of the noise stated.
+ContinuationResult with_misfit_for_noise(const ModelPoint& initial, NoisyRecords records,
+                                         const ContinuationOptions& options, double highest,
+                                         double noise_error, ContinuationResult contradicted) {
+  const double misfit = contradicted.law.chi2;
+  if (!(misfit > 1.0)) return contradicted;
+  for (double& deviation : records.deviation) deviation *= std::sqrt(misfit);
+  ContinuationResult found = Attempt(initial, records, options, highest, noise_error).run(0.0);
+  found.chi2 *= misfit;
+  found.law.chi2 *= misfit;
+  found.law.accepted = false;
+  found.right = false;
+  found.restarts = contradicted.restarts;
+  found.noise = contradicted.noise;
+  return found;
+}
+
 }  // namespace
 
 void ContinuationOptions::visit(OptionVisitor& visitor) {
@@ -294,7 +312,8 @@ ContinuationResult calibrate_by_continuation(const ModelPoint& initial, const Ca
     if (i == 0 || found.chi2 < best.chi2) best = std::move(found);
     if (best.right) break;
   }
-  return best;
+  if (best.right || !options.frequencies) return best;
+  return with_misfit_for_noise(initial, records, options, highest, noise_error, std::move(best));
 }
 
 }  // namespace modcal
