@@ -16,7 +16,7 @@ using ::testing::Not;
 constexpr std::string_view kHead = R"(kind: benchmark
 title: small benchmark
 scene:
-  string: {length: 0.33 m, linear_density: 3.1e-3 kg/m, fundamental: 196 Hz, modes: 8}
+  string: {length: 0.33 m, linear_density: 3.1e-3 kg/m, fundamental: 196 Hz, modes: 8, damping: {type: constant, ratio: 1.5e-2}}
   bow: {position: 31 mm, velocity: 0.1 m/s, normal_force: 1 N}
   friction: {type: coulomb_exponential, static: 0.4, dynamic: 0.2, decay: 5 s/m}
   duration: 0.1 s
