@@ -31,11 +31,19 @@ std::string law_lines(const ExpectedLimit& limit) {
   return text;
 }
 
+std::string singular_values(const ExpectedLimit& limit) {
+  std::string text = "singular values of the frequencies' information:";
+  for (std::size_t i = 0; i < limit.singular_values.size(); ++i) {
+    text += fmt::format("{}{:<9.3g}", i % 10 == 0 ? "\n  " : " ", limit.singular_values[i]);
+  }
+  return text + "\n";
+}
+
 std::string mode_lines(const ExpectedLimit& limit) {
   std::string text = fmt::format(
-      "every frequency free: sd of x_c {:.3g} m, of the damping factor {:.3g}; singular values of "
-      "the frequencies {:.3g} ... {:.3g}\n  n  f [Hz]      relative sd  verdict\n",
-      limit.contact, limit.damping, limit.singular_values.front(), limit.singular_values.back());
+      "every frequency free: sd of x_c {:.3g} m, of the damping factor {:.3g}\n{}"
+      "  n  f [Hz]      relative sd  verdict\n",
+      limit.contact, limit.damping, singular_values(limit));
   for (std::size_t n = 0; n < limit.modes.size(); ++n) {
     const ModeVerdict& mode = limit.modes[n];
     text += fmt::format("{:>3}  {:<10.3f}  {:<11.2e}  {}", n + 1, mode.frequency, mode.deviation,
