@@ -4,6 +4,7 @@
 #include "libcalib/objectives/contact_location_squares.hpp"
 #include "libcalib/objectives/force_mismatch.hpp"
 #include "libcalib/objectives/frequency_prior.hpp"
+#include "libcalib/objectives/innovation_misfit.hpp"
 #include "libcalib/objectives/joint_likelihood.hpp"
 #include "libcalib/objectives/smooth_spectral_peak.hpp"
 #include "libcalib/objectives/spectral_peak.hpp"
@@ -21,6 +22,8 @@ Registry<Objective> Objective::registry() {
                                          "least squares of the two identified force spectra"),
       entry_of<Objective, FrequencyPrior>(
           "frequency_prior", "modal frequencies measured otherwise, with their deviations"),
+      entry_of<Objective, InnovationMisfit>(
+          "innovation_misfit", "what an observer with a fitted friction law fails to predict"),
       entry_of<Objective, JointLikelihood>(
           "joint_likelihood", "both reactions compared with the force eliminated in every bin"),
       entry_of<Objective, SmoothSpectralPeak>("smooth_spectral_peak",

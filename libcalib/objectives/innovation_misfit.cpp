@@ -1,0 +1,140 @@
+#include "libcalib/objectives/innovation_misfit.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libinverse/model_based/innovation_fit.hpp"
+#include "libinverse/model_based/model_based_estimator.hpp"
+#include "libinverse/model_based/observer_runs.hpp"
+#include "libsim/base/error.hpp"
+#include "libsim/signal/fft.hpp"
+#include "libsim/signal/statistics.hpp"
+
+namespace modcal {
+namespace {
+
+using observer::ObservedRecord;
+using observer::ObserverParameters;
+
+std::vector<double> samples_of(const CalibrationData& data, End end) {
+  return RealFft(data.samples).inverse(data.reaction(end));
+}
+
+/// Prior deviation of an offset [N]: noise of the silent samples, and the ripple of a finite number
+/// of modes ahead of the first wave, 0.3 % of the reaction.
+double offset_deviation(const ObservedRecord& record, int r) {
+  const double noise = record.noise[r] / std::sqrt(static_cast<double>(record.silent[r]));
+  return std::hypot(noise, 0.003 * standard_deviation(record.reaction[r]));
+}
+
+class Function final : public ObjectiveFunction {
+ public:
+  Function(const CalibrationData& data, ParameterSet parameters,
+           const InnovationMisfit::Options& options)
+      : parameters_(std::move(parameters)),
+        options_(options),
+        sample_rate_(data.sample_rate),
+        left_(samples_of(data, End::kLeft)),
+        right_(samples_of(data, End::kRight)) {
+    const ModelPoint& initial = parameters_.initial();
+    const ModelBasedResult start =
+        ModelBasedEstimator({.substeps = options.substeps, .rounds = 0})
+            .estimate(initial.basis, initial.contact, sample_rate_, left_, right_);
+    friction_ = start.parameters;
+    negated_ = start.negated;
+    static_force_ = friction_.sliding.dynamic_force + friction_.sliding.force_drop;
+  }
+  std::string_view name() const override { return "innovation_misfit"; }
+  std::size_t dimension() const override { return parameters_.size(); }
+  std::size_t residual_count() const override { return 2 * left_.size(); }
+  Capabilities capabilities() const override { return {.residuals = true}; }
+
+ private:
+  ObservedRecord record_at(const ModelPoint& point) const {
+    ObservedRecord record =
+        observer::observe_record(point.basis, point.contact, sample_rate_, left_, right_);
+    if (negated_) observer::negate(record);
+    return record;
+  }
+
+  ObserverParameters fitted(const observer::ObserverRuns& runs, double contact) const {
+    ObserverParameters start = friction_;
+    start.contact = contact;
+    const ObservedRecord& record = runs.record();
+    const double deviation[2] = {offset_deviation(record, 0), offset_deviation(record, 1)};
+    const observer::ParameterSpace space(start,
+                                         observer::basic_parameters(static_force_, deviation));
+    if (options_.iterations == 0) return start;
+    observer::FitLimits limits;
+    limits.iterations = static_cast<std::size_t>(options_.iterations);
+    return space.at(observer::fit_innovations(runs, space, {0}, limits).x);
+  }
+
+  void do_evaluate(std::span<const double> x, const ObjectiveOutputs& outputs) const override {
+    const ModelPoint point = parameters_.model(x);
+    const ObservedRecord record = record_at(point);
+    const observer::ObserverRuns runs(
+        record, {options_.force_noise * static_force_},
+        {.coarse = static_cast<std::size_t>(options_.substeps), .fine = 16});
+    const observer::Innovations innovations =
+        runs.innovations(fitted(runs, point.contact), {0}, record.samples());
+    double value = 0.0;
+    std::size_t row = 0;
+    for (const auto& scaled : innovations.scaled) {
+      for (const double innovation : scaled) {
+        const double cost = observer::huber(innovation);
+        value += cost;
+        if (outputs.residuals) {
+          outputs.residuals[row++] = std::copysign(std::sqrt(2.0 * cost), innovation);
+        }
+      }
+    }
+    if (outputs.value) *outputs.value = value;
+  }
+
+  ParameterSet parameters_;
+  InnovationMisfit::Options options_;
+  double sample_rate_;
+  std::vector<double> left_, right_;
+  ObserverParameters friction_;  // fitted with the initial model
+  bool negated_ = false;
+  double static_force_ = 0.0;
+};
+
+}  // namespace
+
+void InnovationMisfit::Options::visit(OptionVisitor& visitor) {
+  visitor.integer({.key = "substeps",
+                   .meaning = "steps of the observer per sample",
+                   .range = Range::closed(1, 64)},
+                  substeps);
+  visitor.integer({.key = "iterations",
+                   .meaning = "steps of the friction's fit in every evaluation; 0: as fitted with "
+                              "the initial model",
+                   .range = Range::closed(0, 50)},
+                  iterations);
+  visitor.number({.key = "force_noise",
+                  .meaning = "noise of the force that the observer allows for, relative to the "
+                             "static friction force",
+                  .unit = "1",
+                  .range = Range::positive()},
+                 force_noise);
+}
+
+InnovationMisfit::InnovationMisfit(const Options& options) : options_(options) {
+  MODCAL_REQUIRE(options.substeps >= 1, "{} substeps: at least one is needed", options.substeps);
+  MODCAL_REQUIRE(options.iterations >= 0, "iterations {} must be >= 0", options.iterations);
+  MODCAL_REQUIRE(options.force_noise > 0.0 && std::isfinite(options.force_noise),
+                 "force noise {:g} must be > 0", options.force_noise);
+}
+
+std::unique_ptr<const ObjectiveFunction> InnovationMisfit::do_bind(
+    const CalibrationData& data, const ParameterSet& parameters) const {
+  MODCAL_REQUIRE(data.has_both(),
+                 "objective \"innovation_misfit\" predicts both reactions: the {} "
+                 "one is missing",
+                 data.has(End::kLeft) ? "right" : "left");
+  return std::make_unique<Function>(data, parameters, options_);
+}
+
+}  // namespace modcal
