@@ -119,6 +119,9 @@ FrequencyErrors errors_of(const PluckThenBowOptions& options, const PluckThenBow
 
 StudyResult pluck_then_bow_study(const PluckThenBowOptions& options, const StudyContext& context);
 
+std::vector<report::Figure> pluck_then_bow_figures(const PluckThenBowOptions& options,
+                                                   const PluckThenBowOutcome& outcome,
+                                                   const std::string& command);
 /// Tables and figures of all steps, in the order of the route.
 std::vector<report::Block> pluck_then_bow_blocks(const PluckThenBowOptions& options,
                                                  const PluckThenBowOutcome& outcome,
