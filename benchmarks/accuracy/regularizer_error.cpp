@@ -125,7 +125,7 @@ void print_row(const std::string& problem, const std::string& filter_name,
 double best_of(const Invert& invert, std::size_t draws, double largest, const char* measure) {
   std::vector<double> best(draws, 1e300);
   for (std::size_t draw = 0; draw < draws; ++draw) {
-    for (double level = largest; level > 1e-10 * largest; level *= 0.6) {
+    for (double level = largest; level > 1e-10 * largest; level *= 0.85) {
       CurveOptions none;
       none.points = 0;
       none.measure = measure;
