@@ -47,6 +47,10 @@ std::string calibration_json(const CalibrationOutcome& outcome) {
                           {"final", parameter.final},
                           {"at_bound", parameter.at_bound}});
   }
+  Json trace = Json::array();
+  for (const TracePoint& point : search.trace) {
+    trace.push_back({point.evaluations, number_or_null(point.value)});
+  }
   Json document = {
       {"modes", std::move(modes)},
       {"loops", search.loops},
@@ -56,7 +60,8 @@ std::string calibration_json(const CalibrationOutcome& outcome) {
       {"objective_initial", number_or_null(search.initial_value)},
       {"objective", number_or_null(search.value)},
       {"median_relative_error_excited", number_or_null(median_relative_error(outcome))},
-      {"parameters", std::move(parameters)}};
+      {"parameters", std::move(parameters)},
+      {"trace", std::move(trace)}};
   if (outcome.law) {
     document["stiff_string_law"] = {
         {"f0_hz", outcome.law->fundamental},

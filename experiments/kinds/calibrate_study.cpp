@@ -180,6 +180,7 @@ StudyResult calibrate_study(const CalibrateOptions& options, const StudyContext&
     } else {
       continue;
     }
+    if (drawn.panels.empty()) continue;  // only a systematic search has candidates to draw
     drawn.command = context.command;
     result.blocks.emplace_back(std::move(drawn));
   }
