@@ -128,8 +128,8 @@ Ending ending_of(const Optimizer& optimizer, std::size_t dimension, Budget budge
   budget.seconds = std::numeric_limits<double>::quiet_NaN();
   try {
     const OptimizationResult result = optimizer.minimize(Bowl(dimension), variables, budget);
-    // A tenth of the way left is near enough: the search did work, whatever it still polished.
-    const bool near = result.value <= 1e-2 * result.initial_value;
+    // With half of the way behind it the search did begin, whatever it still has to polish.
+    const bool near = result.value <= 0.25 * result.initial_value;
     return result.stop == StopReason::kEvaluationBudget && !near ? Ending::kCut : Ending::kFinished;
   } catch (const InvalidInput&) {
     return Ending::kRefused;
@@ -175,10 +175,11 @@ std::vector<Finding> lint_fairness(const std::vector<FairnessTask>& tasks,
     const auto [place, is_new] = probed.try_emplace(key, false);
     if (!is_new) continue;
     if (is_cut_everywhere(facts.first)) {
-      warnings.add("calibration.budget",
-                   fmt::format("{} does not come near the minimum of a parabola within {} "
-                               "evaluations: the budget cuts it everywhere",
-                               name, facts.first.calibration.budget.evaluations));
+      warnings.add(
+          "calibration.budget",
+          fmt::format("{} does not come half the way to the minimum of a parabola within {} "
+                      "evaluations: the budget cuts it everywhere",
+                      name, facts.first.calibration.budget.evaluations));
     }
   }
   return warnings.findings;

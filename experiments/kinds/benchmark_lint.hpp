@@ -20,8 +20,9 @@ struct FairnessTask {
 using CellOptions = std::function<CalibrateOptions(std::size_t task)>;
 
 /// Warnings where methods have different budgets, bounds, starts, noise or problems, where there
-/// are fewer than 10 draws to rank them by, and where a search cannot get near the minimum of a
-/// parabola of as many variables within its budget, though it could with twenty times as much.
+/// are fewer than 10 draws to rank them by, and where a search does not come half the way to the
+/// minimum of a parabola of as many variables within its budget, though it could with twenty times
+/// as much.
 std::vector<Finding> lint_fairness(const std::vector<FairnessTask>& tasks,
                                    const CellOptions& options_of);
 

@@ -10,6 +10,7 @@
 #include <charconv>
 #include <cstring>
 #include <fstream>
+#include <system_error>
 
 #include "experiments/store/task_key.hpp"
 #include "libsim/base/error.hpp"
@@ -95,6 +96,11 @@ std::string message_of(const JournalDamage& damage) {
 
 void scan_journal(const std::filesystem::path& file, const TakeRecord& take,
                   std::vector<JournalDamage>& damages) {
+  // A device would never end.
+  std::error_code error;
+  if (std::filesystem::exists(file, error) && !std::filesystem::is_regular_file(file, error)) {
+    return;
+  }
   std::ifstream stream(file, std::ios::binary);
   MODCAL_REQUIRE(stream.good(), "{}: the journal cannot be read: {}", file.string(),
                  std::strerror(errno));

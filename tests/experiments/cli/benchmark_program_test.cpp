@@ -104,8 +104,8 @@ TEST_F(BenchmarkProgram, WarnsAboutDifferentNoise) {
 }
 
 TEST_F(BenchmarkProgram, WarnsAboutAnOptimizerThatTheBudgetCutsEverywhere) {
-  // 20 points in each of two variables are 400, the budget is 200. A global search that the budget
-  // ends near the minimum is not meant.
+  // 20 points in each of two variables are 400, the budget is 200. A global search that has begun
+  // to find the minimum is not meant.
   write_sweep(
       "  product:\n"
       "    calibration.optimizer: [{type: nlopt, algorithm: GN_CRS2_LM}, {type: grid, points: "
@@ -114,7 +114,8 @@ TEST_F(BenchmarkProgram, WarnsAboutAnOptimizerThatTheBudgetCutsEverywhere) {
   const std::string text = warnings();
   EXPECT_THAT(
       text,
-      HasSubstr("grid 20, spectral_peak does not come near the minimum of a parabola within 200"));
+      HasSubstr("grid 20, spectral_peak does not come half the way to the minimum of a parabola "
+                "within 200"));
   EXPECT_THAT(text, Not(HasSubstr("GN_CRS2_LM, spectral_peak does not")));
 }
 

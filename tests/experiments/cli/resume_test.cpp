@@ -62,7 +62,7 @@ TEST_F(Resume, GivesTheSameBytesAfterTwoHundredKills) {
     const std::string out = "killed" + std::to_string(round);
     for (int attempt = 0; attempt < 12 && kills < 200; ++attempt) {
       const Outcome outcome =
-          shell("timeout -s KILL " + std::to_string(seconds(random)) +
+          shell("timeout --foreground -s KILL " + std::to_string(seconds(random)) +
                 " '" MODCAL_PROGRAM "' run sweep.yaml --threads 2 --out " + out);
       if (outcome.code == 0) break;
       ASSERT_EQ(outcome.code, 137) << outcome.err;
