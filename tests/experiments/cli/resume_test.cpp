@@ -64,7 +64,8 @@ TEST_F(Resume, GivesTheSameBytesAfterTwoHundredKills) {
       const Outcome outcome =
           shell("timeout --foreground -s KILL " + std::to_string(seconds(random)) +
                 " '" MODCAL_PROGRAM "' run sweep.yaml --threads 2 --out " + out);
-      if (outcome.code == 0) break;
+      // 124: it ended by itself in the instant in which its time was up.
+      if (outcome.code == 0 || outcome.code == 124) break;
       ASSERT_EQ(outcome.code, 137) << outcome.err;
       ++kills;
     }

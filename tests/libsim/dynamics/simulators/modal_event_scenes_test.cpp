@@ -13,7 +13,6 @@
 #include "libsim/dynamics/gestures/table_gesture.hpp"
 #include "libsim/dynamics/simulators/modal_event.hpp"
 #include "libsim/dynamics/simulators/modal_exact.hpp"
-#include "libsim/dynamics/simulators/scene_setup.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
 namespace modcal {
@@ -93,8 +92,7 @@ TEST(ModalEventTorsion, EnergyBalances) {
   const double rate = 2e6;
   const Simulation run = run_with(scene, {}, rate);
   ASSERT_FALSE(run.diverged_at) << run.explanation;
-  const EnergyAccount account =
-      audit_energy(scene_modes(scene), run, scene.bow.velocity, ForceHold::kSampled);
+  const EnergyAccount account = audit_energy(scene, run, ForceHold::kSampled);
   // At each switch the straight line between samples misses at most half a step of the jump of the
   // force, 0.4 N, at the speed there, 0.1 m/s.
   const double missed =
