@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "libcalib/likelihood/records_fit.hpp"
 #include "libcalib/stiff_string_fit.hpp"
 #include "libsim/base/error.hpp"
 
@@ -63,7 +64,8 @@ std::vector<CalibratedMode> report_modes(const ParameterSet& parameters, const M
 }
 
 // What the continuation found, in the form of a search.
-CalibrationResult calibrate_to_the_bound(const ModelPoint& initial, const CalibrationData& data,
+CalibrationResult calibrate_to_the_bound(const ModelPoint& initial,
+                                         std::span<const CalibrationData> records,
                                          const CalibrationOptions& options,
                                          const SecondsClock& clock) {
   const ParameterOptions& free = options.parameters;
@@ -74,7 +76,16 @@ CalibrationResult calibrate_to_the_bound(const ModelPoint& initial, const Calibr
   continuation.frequencies = free.frequencies == "all";
   const double begin = clock();
   CalibrationResult result;
-  result.continuation = calibrate_by_continuation(initial, data, continuation);
+  std::vector<double> further_contacts;
+  if (records.size() == 1) {
+    result.continuation = calibrate_by_continuation(initial, records.front(), continuation);
+    result.contact_deviations = {result.continuation->contact_deviation};
+  } else {
+    const RecordsFit fit = calibrate_records(initial, records, continuation);
+    result.continuation = as_continuation(fit);
+    result.contact_deviations = fit.contact_deviations;
+    further_contacts.assign(fit.contacts.begin() + 1, fit.contacts.end());
+  }
   const ContinuationResult& found = *result.continuation;
   result.search.seconds = clock() - begin;
   result.search.evaluations = static_cast<std::int64_t>(found.evaluations);
@@ -91,6 +102,10 @@ CalibrationResult calibrate_to_the_bound(const ModelPoint& initial, const Calibr
                        {"B", "1", start.inharmonicity, law.inharmonicity},
                        {"x_c", "m", initial.contact, found.model.contact},
                        {"damping", "1", 1.0, found.damping}};
+  for (std::size_t r = 0; r < further_contacts.size(); ++r) {
+    result.parameters.push_back(
+        {fmt::format("x_c {}", r + 2), "m", initial.contact, further_contacts[r]});
+  }
   const UnknownsOptions& unknowns = continuation.unknowns;
   const SensorPair& sensors = found.model.sensors;
   if (unknowns.gain.free) {
@@ -145,7 +160,9 @@ std::vector<bool> excited_modes(const ModelPoint& point, double threshold) {
 
 CalibrationResult calibrate(const ModelPoint& initial, const CalibrationData& data,
                             const CalibrationOptions& options, SecondsClock clock) {
-  if (options.has_continuation) return calibrate_to_the_bound(initial, data, options, clock);
+  if (options.has_continuation) {
+    return calibrate_to_the_bound(initial, std::span(&data, 1), options, clock);
+  }
   const std::vector<bool> excited = excited_modes(initial, options.excitation_threshold);
   Names names = split_names(options, excited);
   const ParameterSet parameters(initial, names.free, options.parameters.ranges);
@@ -159,6 +176,17 @@ CalibrationResult calibrate(const ModelPoint& initial, const CalibrationData& da
   result.parameters = report_parameters(variables, result.search.x);
   result.modes = report_modes(parameters, result.model, excited);
   return result;
+}
+
+CalibrationResult calibrate(const ModelPoint& initial, std::span<const CalibrationData> records,
+                            const CalibrationOptions& options, SecondsClock clock) {
+  MODCAL_REQUIRE(!records.empty(), "a calibration needs at least {} record", 1);
+  if (records.size() == 1) return calibrate(initial, records.front(), options, std::move(clock));
+  MODCAL_REQUIRE(options.has_continuation,
+                 "{} records are fitted together by the joint likelihood alone: state "
+                 "calibration.continuation",
+                 records.size());
+  return calibrate_to_the_bound(initial, records, options, clock);
 }
 
 }  // namespace modcal

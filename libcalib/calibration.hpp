@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -59,6 +60,7 @@ struct CalibrationResult {
   ModelPoint model;  ///< refined
   OptimizationResult search;
   std::optional<ContinuationResult> continuation;  ///< error bars, verdicts, χ²
+  std::vector<double> contact_deviations;          ///< of every record [m], with a continuation
 };
 
 /// Marks the modes with |φ_n(x_c)| ≥ threshold.
@@ -68,6 +70,12 @@ std::vector<bool> excited_modes(const ModelPoint& point, double threshold);
 /// Throws InvalidInput where objective, optimizer, data and parameters do not fit together, before
 /// the first evaluation.
 CalibrationResult calibrate(const ModelPoint& initial, const CalibrationData& data,
+                            const CalibrationOptions& options,
+                            SecondsClock clock = steady_seconds());
+
+/// Several records of one string, each with a contact point of its own (calibrate_records): "x_c 2",
+/// "x_c 3", … follow among the parameters. More than one record needs `continuation`.
+CalibrationResult calibrate(const ModelPoint& initial, std::span<const CalibrationData> records,
                             const CalibrationOptions& options,
                             SecondsClock clock = steady_seconds());
 

@@ -20,6 +20,10 @@ std::vector<Finding> CalibrateExperiment::lint() const {
       "calibration.optimizer", [&] { calibration.optimizer.make(); }, findings);
   lint_making(
       "calibration.budget", [&] { calibration.budget.require_valid(); }, findings);
+  lint_making(
+      "further_strokes",
+      [&] { options_.further.require_fit_to(options_.inversion.observation, calibration); },
+      findings);
   const auto modes = static_cast<std::size_t>(options_.inversion.observation.string_model().modes);
   lint_making(
       "calibration.parameters", [&] { calibration.parameters.names(modes); }, findings);
@@ -37,6 +41,8 @@ std::vector<std::string> CalibrateExperiment::plan() const {
     lines.push_back(
         "calibration: continuation of the joint likelihood, law first; objective and optimizer "
         "are not used");
+    const std::size_t further = options_.further.contacts.size() + options_.further.files.size();
+    if (further > 0) lines.push_back(fmt::format("strokes fitted together: {}", further + 1));
     return lines;
   }
   lines.push_back(
@@ -48,7 +54,8 @@ std::vector<std::string> CalibrateExperiment::plan() const {
 }
 
 std::optional<PlannedSimulations> CalibrateExperiment::planned_simulations() const {
-  return planned_truths(options_.inversion.observation, truth_outputs(options_.inversion.figures));
+  return planned_truths(options_.inversion.observation, truth_outputs(options_.inversion.figures),
+                        1 + options_.further.contacts.size());
 }
 
 LimitQuestion CalibrateExperiment::limit_question() const {

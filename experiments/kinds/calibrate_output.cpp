@@ -83,7 +83,8 @@ std::string calibration_json(const CalibrationOutcome& outcome) {
                                 {"damping_sd", number_or_null(found.damping_deviation)},
                                 {"noise_left_n", number_or_null(found.noise[0])},
                                 {"noise_right_n", number_or_null(found.noise[1])},
-                                {"restarts", found.restarts}};
+                                {"restarts", found.restarts},
+                                {"x_c_sd_of_strokes_m", outcome.result.contact_deviations}};
   }
   return document.dump(1) + "\n";
 }

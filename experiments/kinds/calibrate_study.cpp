@@ -4,9 +4,42 @@
 #include <cmath>
 
 #include "experiments/kinds/calibrate_audio.hpp"
+#include "libsim/base/error.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {
+
+void FurtherStrokes::visit(OptionVisitor& visitor) {
+  visitor.numbers({.key = "contacts",
+                   .meaning = "contact points x_c of further simulated strokes",
+                   .unit = "m",
+                   .range = Range::positive()},
+                  contacts);
+  visitor.texts({.key = "records",
+                 .meaning = "further recorded files with the channels of the first; each stroke's "
+                            "contact point is found by itself, started from the bow's"},
+                files);
+}
+
+void FurtherStrokes::require_fit_to(const ObservationOptions& first,
+                                    const CalibrationOptions& calibration) const {
+  if (contacts.empty() && files.empty()) return;
+  MODCAL_REQUIRE(calibration.has_continuation,
+                 "{} further strokes are fitted together by the joint likelihood alone: state "
+                 "calibration.continuation",
+                 contacts.size() + files.size());
+  MODCAL_REQUIRE(contacts.empty() || first.has_scene,
+                 "{} further contacts are simulated, but there is no scene: name further records",
+                 contacts.size());
+  MODCAL_REQUIRE(files.empty() || first.has_record,
+                 "{} further records go with a first one: state record, or name further contacts",
+                 files.size());
+  const double length = first.string_model().length;
+  for (const double contact : contacts) {
+    MODCAL_REQUIRE(contact < length, "contact at {} m is not on the string of {} m", contact,
+                   length);
+  }
+}
 
 void CalibrateOptions::visit(OptionVisitor& visitor) {
   inversion.visit(visitor);
@@ -14,6 +47,9 @@ void CalibrateOptions::visit(OptionVisitor& visitor) {
                    .meaning = "what is refined, by which objective and optimizer",
                    .required = true},
                   calibration);
+  visitor.section({.key = "further_strokes",
+                   .meaning = "strokes of the same string that are fitted together with the first"},
+                  further);
   visitor.flag({.key = "fill_blind_modes",
                 .meaning = "give blind modes the frequencies of the stiff-string law fitted to the "
                            "others"},
@@ -63,6 +99,19 @@ std::string verdict_lines(const ContinuationResult& found) {
   return text;
 }
 
+std::string stroke_lines(const CalibrationOutcome& outcome) {
+  std::string text;
+  const std::vector<double>& deviations = outcome.result.contact_deviations;
+  std::size_t stroke = 0;
+  for (const CalibratedParameter& parameter : outcome.result.parameters) {
+    if (deviations.size() < 2 || !parameter.name.starts_with("x_c")) continue;
+    text += fmt::format("stroke {}: x_c {:.6g} m, sd {:.3g} m\n", stroke + 1, parameter.final,
+                        deviations[stroke]);
+    ++stroke;
+  }
+  return text;
+}
+
 void add_summary(const CalibrationOutcome& outcome, StudyResult& result) {
   const OptimizationResult& search = outcome.result.search;
   result.summary += fmt::format(
@@ -78,10 +127,35 @@ void add_summary(const CalibrationOutcome& outcome, StudyResult& result) {
                                   parameter.final, parameter.unit);
   }
   if (outcome.result.continuation) result.summary += verdict_lines(*outcome.result.continuation);
+  result.summary += stroke_lines(outcome);
   if (outcome.law) {
     result.summary += fmt::format("stiff-string law: f0 = {:.6g} Hz, B = {:.4g}\n",
                                   outcome.law->fundamental, outcome.law->inharmonicity);
   }
+}
+
+// Strokes after the first: the same scene bowed elsewhere, or other files; noise of their own.
+std::vector<Observation> further_observations(const CalibrateOptions& options,
+                                              const StudyContext& context) {
+  std::vector<Observation> strokes;
+  const OutputRequest reactions{.left_reaction = true, .right_reaction = true};
+  const auto add = [&](const ObservationOptions& stroke) {
+    context.throw_if_interrupted();
+    const StreamKey key = options.inversion.key().with("stroke").with(
+        static_cast<std::uint64_t>(strokes.size() + 2));
+    strokes.push_back(observe(stroke, reactions, context.work.truths, key, context.folder));
+  };
+  for (const double contact : options.further.contacts) {
+    ObservationOptions stroke = options.inversion.observation;
+    stroke.truth.scene.bow.position = contact;
+    add(stroke);
+  }
+  for (const std::string& file : options.further.files) {
+    ObservationOptions stroke = options.inversion.observation;
+    stroke.record.file = file;
+    add(stroke);
+  }
+  return strokes;
 }
 
 void add_calibration_warnings(const CalibrationOutcome& outcome, StudyResult& result) {
@@ -140,12 +214,20 @@ SecondsClock polling_clock(const StudyContext& context) {
 
 CalibrationOutcome calibrate_observation(const CalibrateOptions& options,
                                          const Observation& observation, SecondsClock clock) {
+  return calibrate_strokes(options, std::span(&observation, 1), std::move(clock));
+}
+
+CalibrationOutcome calibrate_strokes(const CalibrateOptions& options,
+                                     std::span<const Observation> strokes, SecondsClock clock) {
+  const Observation& observation = strokes.front();
   CalibrationOutcome outcome;
   outcome.initial =
       with_errors(observation.basis, observation.contact, options.inversion.model_error,
                   options.inversion.key().with("model error"));
-  outcome.result = calibrate({outcome.initial.basis, outcome.initial.contact},
-                             calibration_data(observation), options.calibration, std::move(clock));
+  std::vector<CalibrationData> data;
+  for (const Observation& stroke : strokes) data.push_back(calibration_data(stroke));
+  outcome.result = calibrate({outcome.initial.basis, outcome.initial.contact}, data,
+                             options.calibration, std::move(clock));
   outcome.refined = {outcome.result.model.basis, outcome.result.model.contact};
   if (observation.truth) outcome.true_frequencies = frequencies_of(observation.basis);
   if (options.fill_blind_modes) fill_blind(outcome);
@@ -158,8 +240,10 @@ StudyResult calibrate_study(const CalibrateOptions& options, const StudyContext&
   if (options.audio) outputs.velocity = true;
   const Observation observation =
       observe(inversion.observation, outputs, context.work.truths, inversion.key(), context.folder);
-  const CalibrationOutcome outcome =
-      calibrate_observation(options, observation, polling_clock(context));
+  options.further.require_fit_to(inversion.observation, options.calibration);
+  std::vector<Observation> strokes = further_observations(options, context);
+  strokes.insert(strokes.begin(), observation);
+  const CalibrationOutcome outcome = calibrate_strokes(options, strokes, polling_clock(context));
   context.throw_if_interrupted();
   const InversionRecipe recipe(inversion.inversion);
   const auto estimator = prepare_estimator(outcome.refined, observation, recipe);

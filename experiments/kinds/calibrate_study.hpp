@@ -2,6 +2,9 @@
 #pragma once
 
 #include <optional>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "experiments/kinds/invert_study.hpp"
 #include "libcalib/calibration.hpp"
@@ -9,9 +12,20 @@
 
 namespace modcal {
 
+/// Further strokes of the same string, fitted together with the first: simulated ones at further
+/// contact points, or further recorded files laid out as the first.
+struct FurtherStrokes {
+  std::vector<double> contacts;    ///< x_c [m]
+  std::vector<std::string> files;  ///< relative to the folder of the experiment's file
+  void visit(OptionVisitor& visitor);
+  /// Throws InvalidInput where they do not fit to what is calibrated.
+  void require_fit_to(const ObservationOptions& first, const CalibrationOptions& calibration) const;
+};
+
 struct CalibrateOptions {
   InvertOptions inversion;
   CalibrationOptions calibration;
+  FurtherStrokes further;
   /// Give blind modes the frequencies of the stiff-string law fitted to the others (paper, eq. 18
   /// and section 7.1).
   bool fill_blind_modes = false;
@@ -32,6 +46,11 @@ struct CalibrationOutcome {
 CalibrationOutcome calibrate_observation(const CalibrateOptions& options,
                                          const Observation& observation,
                                          SecondsClock clock = steady_seconds());
+
+/// The same from several strokes; the first is the one that is identified.
+CalibrationOutcome calibrate_strokes(const CalibrateOptions& options,
+                                     std::span<const Observation> strokes,
+                                     SecondsClock clock = steady_seconds());
 
 /// Spectra of the reactions that were observed.
 CalibrationData calibration_data(const Observation& observation);

@@ -200,4 +200,33 @@ RecordsFit calibrate_records(const ModelPoint& initial, std::span<const Calibrat
   return fit;
 }
 
+ContinuationResult as_continuation(const RecordsFit& fit) {
+  ContinuationResult result = fit.single.front();
+  result.model = fit.model;
+  result.contact_deviation = fit.contact_deviations.front();
+  result.damping = fit.damping;
+  result.damping_deviation = fit.damping_deviation;
+  result.sensor_deviation = fit.sensor_deviation;
+  result.chi2 = fit.chi2;
+  result.chi2_deviation = fit.chi2_deviation;
+  result.right = fit.right;
+  if (!result.frequencies_free) {
+    result.law.fundamental = fit.fundamental;
+    result.law.inharmonicity = fit.inharmonicity;
+    result.law.contact = fit.model.contact;
+    result.law.damping = fit.damping;
+    result.law.deviation = {fit.fundamental_deviation, fit.inharmonicity_deviation,
+                            result.contact_deviation, fit.damping_deviation};
+  }
+  for (std::size_t n = 0; n < result.modes.size(); ++n) {
+    result.modes[n].frequency = fit.model.basis.frequency(n);
+    if (!fit.frequency_deviations.empty()) {
+      result.modes[n].deviation = fit.frequency_deviations[n];
+    }
+  }
+  result.evaluations = 0;
+  for (const ContinuationResult& single : fit.single) result.evaluations += single.evaluations;
+  return result;
+}
+
 }  // namespace modcal

@@ -33,4 +33,8 @@ struct RecordsFit {
 RecordsFit calibrate_records(const ModelPoint& initial, std::span<const CalibrationData> records,
                              const ContinuationOptions& options);
 
+/// The fit in the form of that of one record: model, χ², what is shared and its deviations, the
+/// first record's contact; verdicts are those of the first record by itself.
+ContinuationResult as_continuation(const RecordsFit& fit);
+
 }  // namespace modcal
