@@ -27,8 +27,10 @@ namespace {
 constexpr std::array kForceNoise = {0.075, 0.025, 0.0125, 0.0075, 0.0025};
 constexpr std::size_t kWide = 0, kMiddle = 1, kNarrow = 2, kTrusting = 4;
 constexpr std::array<std::size_t, 4> kBeam = {0, 1, 3, 4};
-// A finite number of modes ripples ahead of the first wave: this share of the reaction's deviation
-// in the mean of the silent samples.
+// A finite number of modes ripples ahead of the first wave. The prior of the offsets grants it this
+// share of the reaction's deviation, less than a string of few modes asks for (silent_ripple): the
+// observer knows the ripple, and a tight prior keeps friction forces and offsets from shifting
+// together.
 constexpr double kRipple = 0.003;
 constexpr std::size_t kNoiseDraws = 16;  // the deviation of the motion is known to 1/√32
 // Fitted parameters are off, too. The formal covariance of the fit is far too small (its
@@ -222,7 +224,7 @@ class Estimation {
     }
     result.runs = run_count_;
     judge_misfit(schedule, result);
-    result.static_part = static_recovery(result.force);
+    result.static_part = static_recovery(result);
     add_warnings(result);
     return result;
   }
@@ -244,16 +246,27 @@ class Estimation {
         result.expected_misfit * std::sqrt(relative + std::numbers::pi / samples);
   }
 
+  // How well the silent samples tell the offset of reaction r [N]: by their noise, and by the
+  // ripple of the 2 Z₀ v_bow that the bow draws until the first wave is back.
+  double silent_deviation(int r, double bow_velocity) const {
+    const ModalBasis& basis = record_.basis;
+    const double impedance = basis.tension / (2.0 * basis.length * basis.frequency(0));
+    const double ripple = silent_ripple(basis, record_.contact, r == 0 ? End::kLeft : End::kRight,
+                                        record_.sample_rate);
+    const double noise = record_.noise[r] / std::sqrt(static_cast<double>(record_.silent[r]));
+    return std::hypot(noise, 2.0 * impedance * bow_velocity * ripple);
+  }
+
   // A steady force F lifts R₁ by −(1 − x_c/L) F and R₂ by −(x_c/L) F: both offsets measure it.
-  StaticRecovery static_recovery(const std::vector<double>& force) const {
+  StaticRecovery static_recovery(const ModelBasedResult& result) const {
     const double xi = record_.contact / record_.basis.length;
     const double share[2] = {1.0 - xi, xi};
     double precision = 0.0;
     for (int r = 0; r < 2; ++r) {
-      const double weight = share[r] / offset_deviation_[r];
+      const double weight = share[r] / silent_deviation(r, result.parameters.bow_velocity);
       precision += weight * weight;
     }
-    return {mean(force), 1.0 / std::sqrt(precision)};
+    return {mean(result.force), 1.0 / std::sqrt(precision)};
   }
 
   void add_warnings(ModelBasedResult& result) const {
@@ -272,11 +285,13 @@ class Estimation {
     for (int r = 0; r < 2; ++r) {
       const double level = std::abs(mean(std::span(record_.reaction[r]).first(record_.silent[r])) -
                                     result.parameters.offset[r]);
-      if (level > 5.0 * offset_deviation_[r]) {
+      const double deviation =
+          std::max(offset_deviation_[r], silent_deviation(r, result.parameters.bow_velocity));
+      if (level > 5.0 * deviation) {
         result.warnings.push_back(fmt::format(
             "the fitted offset of the reaction at {} is {:.3g} N away from its level before the "
             "first wave, {:.2g} standard deviations: the record may not start at rest",
-            r == 0 ? "x = 0" : "x = L", level, level / offset_deviation_[r]));
+            r == 0 ? "x = 0" : "x = L", level, level / deviation));
       }
     }
   }

@@ -37,8 +37,9 @@ struct ModelBasedOptions {
 /// before the first wave arrives are all that give it back.
 struct StaticRecovery {
   double level = 0.0;  ///< mean of the estimated force [N]
-  /// Standard deviation of that level from the offsets' silent samples [N]: the fit cannot do
-  /// better unless the shape of the motion depends on the level.
+  /// Standard deviation of that level from the offsets' silent samples [N], by their noise and by
+  /// what a string of finitely many modes ripples in them: the fit cannot do better unless its
+  /// observer knows that ripple or the shape of the motion depends on the level.
   double deviation = 0.0;
 };
 

@@ -51,6 +51,24 @@ std::size_t silent_samples(const ModalBasis& basis, double contact, End end, dou
   return static_cast<std::size_t>(std::max(0.0, std::floor(path / speed * sample_rate)));
 }
 
+double silent_ripple(const ModalBasis& basis, double contact, End end, double sample_rate) {
+  const std::size_t count =
+      std::max<std::size_t>(1, silent_samples(basis, contact, end, sample_rate));
+  const std::vector<double> shape = basis.shape_at(contact);
+  const std::vector<double> gain = reaction_gains(basis, end);
+  std::vector<double> answer(count, 0.0);
+  for (std::size_t n = 0; n < basis.size(); ++n) {
+    const double omega = basis.omega[n];
+    const double share = gain[n] * shape[n] / (basis.mass[n] * omega * omega);
+    for (std::size_t k = 0; k < count; ++k) {
+      const double time = static_cast<double>(k) / sample_rate;
+      answer[k] += share * (1.0 - std::exp(-basis.zeta[n] * omega * time) * std::cos(omega * time));
+    }
+  }
+  return std::hypot(mean(answer),
+                    standard_deviation(answer) / std::sqrt(static_cast<double>(count)));
+}
+
 ObservedRecord observe_record(const ModalBasis& basis, double contact, double sample_rate,
                               std::span<const double> left, std::span<const double> right) {
   MODCAL_REQUIRE(left.size() == right.size(),

@@ -45,6 +45,11 @@ WhiteNoise noise_above(std::span<const double> samples, double sample_rate, doub
 /// Samples before a wave that leaves the contact at t = 0 reaches the end, speed c = 2 L f₁.
 std::size_t silent_samples(const ModalBasis& basis, double contact, End end, double sample_rate);
 
+/// Reaction in the silent samples to a unit force held from t = 0 [1], as √(mean² + variance/n): a
+/// string of finitely many modes ripples ahead of the first wave, and the mean of n samples takes
+/// that for its offset.
+double silent_ripple(const ModalBasis& basis, double contact, End end, double sample_rate);
+
 /// Record that starts at rest. Noise from the band above 1.22 times the highest mode. Throws
 /// InvalidInput for reactions of different lengths, samples that are not finite and records shorter
 /// than four periods.

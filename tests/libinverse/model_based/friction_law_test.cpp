@@ -46,41 +46,38 @@ TEST(FrictionCurve, RefusesWhatIsNoPair) {
 
 ModelBasedResult compare_laws(const Choice<FrictionLaw>& law, double duration, double noise,
                               std::vector<std::string> laws) {
-  BowedRecord record = bowed_record(duration, 0.0);
-  record.scene.friction = law;
+  Scene scene = light_scene(duration);
+  scene.friction = law;
   // The event-driven simulator has no friction with a state.
-  record.truth = law.selected() == "thermal"
-                     ? ModalExact({}).simulate(record.scene, kRecordRate, OutputRequest::all())
-                     : ModalEvent({}).simulate(record.scene, kRecordRate, OutputRequest::all());
-  Measurement measurement;
-  measurement.noise_level = noise;
-  record.left = measure(record.truth.left_reaction, measurement, StreamKey(1).with("R1"));
-  record.right = measure(record.truth.right_reaction, measurement, StreamKey(1).with("R2"));
+  const BowedRecord record = law.selected() == "thermal"
+                                 ? record_of<ModalExact>(scene, kLightRate, noise)
+                                 : record_of(scene, kLightRate, noise);
   ModelBasedOptions options;
   options.substeps = 4;
   options.rounds = 0;
   options.laws = std::move(laws);
-  return ModelBasedEstimator(options).estimate(record.basis, record.scene.bow.position, kRecordRate,
+  return ModelBasedEstimator(options).estimate(record.basis, record.scene.bow.position, record.rate,
                                                record.left.samples, record.right.samples);
 }
 
-// The round trip over 0.1 s: laws that fall with the speed in two shapes, and one that falls with
-// the temperature.
+// The round trip: laws that fall with the speed in two shapes, which take longest to tell apart,
+// and one that falls with the temperature.
 TEST(FrictionCandidates, TheLawThatMadeTheRecordIsNamed) {
   struct Truth {
     std::string name;
     Choice<FrictionLaw> law;
+    double duration;
     double noise;
   };
   Hyperbolic::Options slow;
   slow.half_speed = 0.1;
   const Truth truths[] = {
-      {"exponential", Choice<FrictionLaw>("coulomb_exponential"), 0.05},
-      {"hyperbolic", Choice<FrictionLaw>::of<Hyperbolic>("hyperbolic", slow), 0.02},
-      {"thermal", Choice<FrictionLaw>("thermal"), 0.05}};
+      {"exponential", Choice<FrictionLaw>("coulomb_exponential"), 0.1, 0.05},
+      {"hyperbolic", Choice<FrictionLaw>::of<Hyperbolic>("hyperbolic", slow), 0.2, 0.01},
+      {"thermal", Choice<FrictionLaw>("thermal"), 0.06, 0.05}};
   for (const Truth& truth : truths) {
-    const ModelBasedResult result =
-        compare_laws(truth.law, 0.1, truth.noise, {"exponential", "hyperbolic", "thermal"});
+    const ModelBasedResult result = compare_laws(truth.law, truth.duration, truth.noise,
+                                                 {"exponential", "hyperbolic", "thermal"});
     EXPECT_EQ(result.laws[0].law, truth.name);
     for (std::size_t i = 1; i < 3; ++i) {
       EXPECT_GT(result.laws[i].criterion, result.laws[0].criterion + 20.0) << truth.name;

@@ -37,6 +37,22 @@ TEST(ObservedRecord, ReadsNoiseAndOffsets) {
   EXPECT_EQ(record.silent[1], 118u);  // 0.30 m
 }
 
+// The offset that the silent samples of a clean record miss, against the ripple of the 2 Z₀ v_bow =
+// 0.080 N that the bow draws before a wave is back. Its first 0.3 ms are no step: the string must
+// catch the bow first, and the adherence rings; a factor of two either way.
+TEST(ObservedRecord, KnowsTheRippleBeforeTheFirstWave) {
+  for (const bool light : {false, true}) {
+    const BowedRecord r = light ? light_record(0.05, 0.0) : bowed_record(0.05, 0.0);
+    const ObservedRecord record =
+        observe_record(r.basis, r.scene.bow.position, r.rate, r.left.samples, r.right.samples);
+    const double missed = std::abs(record.offset[0] + mean(r.truth.left_reaction.samples));
+    const double force = 2.0 * 3.1e-3 * (2.0 * 0.33 * 196.0) * 0.1;
+    const double ripple = force * silent_ripple(r.basis, r.scene.bow.position, End::kLeft, r.rate);
+    EXPECT_GT(missed, 0.5 * ripple) << light;
+    EXPECT_LT(missed, 2.0 * ripple) << light;
+  }
+}
+
 TEST(ObservedRecord, KeepsAFloorUnderTheNoise) {
   const BowedRecord r = bowed_record(0.1, 0.0);
   const ObservedRecord record = observed(r);
