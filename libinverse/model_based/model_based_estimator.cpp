@@ -38,6 +38,7 @@ constexpr std::size_t kNoiseDraws = 16;  // the deviation of the motion is known
 // 2 and 5 % noise hold the truth 83 to 88 % of the time.
 constexpr double kParameterShare = 1.4;
 constexpr std::uint64_t kNoiseSeed = 0x6f627376;  // fixed: the result depends on the record alone
+constexpr std::array kEnds = {End::kLeft, End::kRight};
 constexpr double kQuietNoise = 0.015;  // noise over signal below which a narrower gain pays
 
 // Samples of a signal without content above half the rate from its means m_k over [t_k, t_{k+1}]:
@@ -246,24 +247,14 @@ class Estimation {
         result.expected_misfit * std::sqrt(relative + std::numbers::pi / samples);
   }
 
-  // How well the silent samples tell the offset of reaction r [N]: by their noise, and by the
-  // ripple of the 2 Z₀ v_bow that the bow draws until the first wave is back.
-  double silent_deviation(int r, double bow_velocity) const {
-    const ModalBasis& basis = record_.basis;
-    const double impedance = basis.tension / (2.0 * basis.length * basis.frequency(0));
-    const double ripple = silent_ripple(basis, record_.contact, r == 0 ? End::kLeft : End::kRight,
-                                        record_.sample_rate);
-    const double noise = record_.noise[r] / std::sqrt(static_cast<double>(record_.silent[r]));
-    return std::hypot(noise, 2.0 * impedance * bow_velocity * ripple);
-  }
-
   // A steady force F lifts R₁ by −(1 − x_c/L) F and R₂ by −(x_c/L) F: both offsets measure it.
   StaticRecovery static_recovery(const ModelBasedResult& result) const {
     const double xi = record_.contact / record_.basis.length;
     const double share[2] = {1.0 - xi, xi};
     double precision = 0.0;
     for (int r = 0; r < 2; ++r) {
-      const double weight = share[r] / silent_deviation(r, result.parameters.bow_velocity);
+      const double weight =
+          share[r] / silent_deviation(record_, kEnds[r], result.parameters.bow_velocity);
       precision += weight * weight;
     }
     return {mean(result.force), 1.0 / std::sqrt(precision)};
@@ -286,7 +277,8 @@ class Estimation {
       const double level = std::abs(mean(std::span(record_.reaction[r]).first(record_.silent[r])) -
                                     result.parameters.offset[r]);
       const double deviation =
-          std::max(offset_deviation_[r], silent_deviation(r, result.parameters.bow_velocity));
+          std::max(offset_deviation_[r],
+                   silent_deviation(record_, kEnds[r], result.parameters.bow_velocity));
       if (level > 5.0 * deviation) {
         result.warnings.push_back(fmt::format(
             "the fitted offset of the reaction at {} is {:.3g} N away from its level before the "

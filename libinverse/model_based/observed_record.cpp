@@ -108,6 +108,15 @@ ObservedRecord observe_record(const ModalBasis& basis, double contact, double sa
   return record;
 }
 
+double silent_deviation(const ObservedRecord& record, End end, double bow_velocity) {
+  const ModalBasis& basis = record.basis;
+  const auto r = static_cast<std::size_t>(end);
+  const double noise = record.noise[r] / std::sqrt(static_cast<double>(record.silent[r]));
+  const double impedance = basis.tension / (2.0 * basis.length * basis.frequency(0));
+  const double ripple = silent_ripple(basis, record.contact, end, record.sample_rate);
+  return std::hypot(noise, 2.0 * impedance * bow_velocity * ripple);
+}
+
 void negate(ObservedRecord& record) {
   record.negated = !record.negated;
   for (int r = 0; r < 2; ++r) {

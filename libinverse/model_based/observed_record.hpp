@@ -56,6 +56,11 @@ double silent_ripple(const ModalBasis& basis, double contact, End end, double sa
 ObservedRecord observe_record(const ModalBasis& basis, double contact, double sample_rate,
                               std::span<const double> left, std::span<const double> right);
 
+/// Standard deviation of the mean of an end's silent samples about its offset [N], bow velocity
+/// v_bow [m/s]: their noise, and the ripple of the 2 Z₀ v_bow that the bow draws until the first
+/// wave is back.
+double silent_deviation(const ObservedRecord& record, End end, double bow_velocity);
+
 /// The record with both reactions negated: a bow moving in the other direction.
 void negate(ObservedRecord& record);
 

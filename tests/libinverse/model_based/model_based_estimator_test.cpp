@@ -128,7 +128,7 @@ TEST(ModelBasedEstimator, SaysHowFarTheStaticPartIsRecovered) {
   EXPECT_LT(std::sqrt(sum / 6.0), 1.76);
 }
 
-// With half the modes the ripple ahead of the first wave moves the left offset by ten times the
+// With half the modes the ripple ahead of the first wave moves the left offset by eight times the
 // noise of its five silent samples: the deviation holds it, and the record is not taken for one
 // that was under way.
 TEST(ModelBasedEstimator, AStringOfFewModesRipplesBeforeTheFirstWave) {
