@@ -70,7 +70,8 @@ void add_reproduce_command(CLI::App& app, const Chosen& chosen) {
   CLI::App* command = app.add_subcommand(
       "reproduce", "Make the paper's table and figures: paper, table1, fig02, ...");
   auto arguments = std::make_shared<ReproduceArguments>();
-  command->add_option("target", arguments->target, "paper, table1, fig02 ... fig17, section7")->required();
+  command->add_option("target", arguments->target, "paper, table1, fig02 ... fig17, section7")
+      ->required();
   command->add_option("--configs", arguments->configs, "folder of the experiment files");
   command->add_option("--out", arguments->out, "folder of the results; default out/<target>");
   command->add_option("--threads", arguments->threads, "number of threads; default all")

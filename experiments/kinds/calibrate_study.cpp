@@ -141,8 +141,8 @@ std::vector<Observation> further_observations(const CalibrateOptions& options,
   const OutputRequest reactions{.left_reaction = true, .right_reaction = true};
   const auto add = [&](const ObservationOptions& stroke) {
     context.throw_if_interrupted();
-    const StreamKey key = options.inversion.key().with("stroke").with(
-        static_cast<std::uint64_t>(strokes.size() + 2));
+    const StreamKey key =
+        options.inversion.key().with("stroke").with(static_cast<std::uint64_t>(strokes.size() + 2));
     strokes.push_back(observe(stroke, reactions, context.work.truths, key, context.folder));
   };
   for (const double contact : options.further.contacts) {

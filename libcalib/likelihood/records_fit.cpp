@@ -219,6 +219,9 @@ ContinuationResult as_continuation(const RecordsFit& fit) {
                             result.contact_deviation, fit.damping_deviation};
   }
   for (std::size_t n = 0; n < result.modes.size(); ++n) {
+    for (const ContinuationResult& single : fit.single) {
+      if (single.modes[n].deviation < result.modes[n].deviation) result.modes[n] = single.modes[n];
+    }
     result.modes[n].frequency = fit.model.basis.frequency(n);
     if (!fit.frequency_deviations.empty()) {
       result.modes[n].deviation = fit.frequency_deviations[n];

@@ -34,7 +34,7 @@ RecordsFit calibrate_records(const ModelPoint& initial, std::span<const Calibrat
                              const ContinuationOptions& options);
 
 /// The fit in the form of that of one record: model, χ², what is shared and its deviations, the
-/// first record's contact; verdicts are those of the first record by itself.
+/// first record's contact; a mode's verdict is that of the record by itself that sees it best.
 ContinuationResult as_continuation(const RecordsFit& fit);
 
 }  // namespace modcal

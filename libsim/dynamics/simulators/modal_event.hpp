@@ -35,8 +35,8 @@ class ModalEvent final : public Simulator {
     std::int64_t nodes = 5;  ///< Lobatto nodes of a sliding step
     /// Longest step [s]; the largest smaller one that divides 1/f_s is taken. NaN: 1/f_s.
     double max_step = std::numeric_limits<double>::quiet_NaN();
-    /// κ: sliding steps h are halved until |dg/du| h/m_eff ≤ κ. Above 0.35 the steps after a release
-    /// limit the accuracy of steep laws.
+    /// κ: sliding steps h are halved until |dg/du| h/m_eff ≤ κ. Above 0.35 the steps after a
+    /// release limit the accuracy of steep laws.
     double slope_number = 0.35;
     std::string attach = "literal";
     void visit(OptionVisitor& visitor);

@@ -50,5 +50,27 @@ TEST(LintSimulator, HasNothingAgainstWhatTheSimulatorFollows) {
   EXPECT_EQ(messages_of(config("hyperbolic", ", width: 5 mm, points: 3", "modal_exact")), "");
 }
 
+std::string strokes(const std::string& calibration, const std::string& further) {
+  return "kind: calibrate\n"
+         "scene:\n"
+         "  string: {length: 0.33 m, linear_density: 3.1e-3 kg/m, fundamental: 196 Hz}\n"
+         "  bow: {position: 30 mm}\n"
+         "  duration: 0.1 s\n"
+         "calibration: {parameters: {frequencies: all, law: true, contact: true}" +
+         calibration + "}\nfurther_strokes: " + further + "\n";
+}
+
+TEST(LintStrokes, RefusesWhatCannotBeFittedTogether) {
+  EXPECT_THAT(messages_of(strokes("", "{contacts: [28 mm]}")),
+              testing::AllOf(testing::HasSubstr("scene.yaml:7:"),
+                             testing::HasSubstr("state calibration.continuation")));
+  EXPECT_THAT(messages_of(strokes(", continuation: {}", "{contacts: [28 mm, 0.4 m]}")),
+              testing::HasSubstr("0.4 m is not on the string"));
+  EXPECT_THAT(messages_of(strokes(", continuation: {}", "{records: [second.wav]}")),
+              testing::HasSubstr("name further contacts"));
+  EXPECT_EQ(messages_of(strokes(", continuation: {}", "{contacts: [28 mm]}")).find("error"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace modcal

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "libcalib/calibration.hpp"
 #include "libsim/base/error.hpp"
 #include "tests/libcalib/likelihood/bowed_case.hpp"
 
@@ -77,6 +78,31 @@ TEST(RecordsFit, EveryFrequencyProfits) {
   EXPECT_GT(count, 10.0);
   // Mean of squares of unit variance: sd √(2/count), five of them.
   EXPECT_LT(square / count, 1.0 + 5.0 * std::sqrt(2.0 / count));
+}
+
+TEST(RecordsFit, IsACalibrationWithAContactForEveryStroke) {
+  const std::vector<double> contacts = {0.0285, 0.0291};
+  const Strokes two = strokes(contacts);
+  CalibrationOptions options{.has_continuation = true, .continuation = two.options};
+  options.parameters.law = options.parameters.contact = true;
+  options.parameters.frequencies = "none";
+  const CalibrationResult result = calibrate(two.start, two.data, options);
+  const RecordsFit fit = [&] {
+    ContinuationOptions law = two.options;
+    law.frequencies = false;
+    return calibrate_records(two.start, two.data, law);
+  }();
+  EXPECT_EQ(result.contact_deviations, fit.contact_deviations);
+  EXPECT_EQ(result.continuation->chi2, fit.chi2);
+  EXPECT_EQ(result.continuation->law.deviation[0], fit.fundamental_deviation);
+  EXPECT_EQ(result.model.basis.omega, fit.model.basis.omega);
+  std::vector<double> found;
+  for (const CalibratedParameter& parameter : result.parameters) {
+    if (parameter.name.starts_with("x_c")) found.push_back(parameter.final);
+  }
+  EXPECT_EQ(found, fit.contacts);
+  options.has_continuation = false;
+  EXPECT_THROW(calibrate(two.start, two.data, options), InvalidInput);
 }
 
 TEST(RecordsFit, RefusesNoRecord) { EXPECT_THROW(calibrate_records({}, {}, {}), InvalidInput); }

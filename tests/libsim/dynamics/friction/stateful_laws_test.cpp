@@ -67,8 +67,8 @@ TEST(Thermal, SoftensFromTheColdCoefficientToTheHotOne) {
   EXPECT_DOUBLE_EQ(law.at(0.0).force, 0.2);
 }
 
-// Friction turns work into heat: the force opposes every slip, and the contact never holds more heat
-// than was rubbed into it.
+// Friction turns work into heat: the force opposes every slip, and the contact never holds more
+// heat than was rubbed into it.
 TEST(Thermal, NeverGivesEnergy) {
   ThermalSliding law = thermal();
   constexpr std::size_t kSteps = 20000;
