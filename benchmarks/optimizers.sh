@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # Runs configs/benchmark/optimizers.yaml (or goes on with it), renders its report into
 # docs/benchmark.png and puts its conclusion into the README: optimizers.sh BUILD_DIRECTORY [OUT].
+# OUT is relative to the project, so that the picture shows a command that works everywhere.
 set -euo pipefail
 build=$(cd "${1:?usage: optimizers.sh BUILD_DIRECTORY [OUT]}" && pwd)
 root=$(cd "$(dirname "$0")/.." && pwd)
-out=$(realpath -m "${2:-$root/out/optimizers}")
+out=${2:-out/optimizers}
 profile=$(mktemp -d)
 trap 'rm -rf "$profile"' EXIT
 
@@ -17,11 +18,11 @@ cat "$profile/conclusion"
 chromium --headless --no-sandbox --disable-gpu --no-first-run --disable-background-networking \
   --hide-scrollbars --user-data-dir="$profile/chromium" --virtual-time-budget=20000 \
   --force-device-scale-factor=0.65 --window-size=1290,"${HEIGHT:-2750}" --screenshot=docs/benchmark.png \
-  "file://$out/report.html" 2>/dev/null
+  "file://$(realpath "$out")/report.html" 2>/dev/null
 stat -c '%n: %s bytes' docs/benchmark.png
 
 awk -v text="$profile/conclusion" '
   /<!-- conclusion of the benchmark -->/ { print; print ""; while ((getline line < text) > 0) print "* " line; print ""; skip = 1; next }
   /<!-- end of the conclusion -->/ { skip = 0 }
-  !skip { sub(/; here with two seeds/, ""); print }' README.md >"$profile/README.md"
+  !skip { print }' README.md >"$profile/README.md"
 cp "$profile/README.md" README.md
