@@ -92,21 +92,24 @@ std::string calibration_json(const CalibrationOutcome& outcome) {
 report::Table search_table(const CalibrationOutcome& outcome, const std::string& command) {
   const OptimizationResult& search = outcome.result.search;
   const double error = median_relative_error(outcome);
-  return {.id = "search",
-          .title = "Search",
-          .columns = {{.key = "stop_reason", .name = "ended because"},
-                      {.key = "evaluations"},
-                      {.key = "loops"},
-                      {.key = "seconds", .unit = "s"},
-                      {.key = "objective_initial", .name = "objective, initial"},
-                      {.key = "objective", .name = "objective, final"},
-                      {.key = "median_relative_error_excited",
-                       .name = "median relative error, excited modes",
-                       .format = "{:.3g}"}},
-          .rows = {{std::string(name_of(search.stop)), search.evaluations, search.loops,
-                    search.seconds, search.initial_value, search.value,
-                    std::isfinite(error) ? report::Cell(error) : report::Cell()}},
-          .command = command};
+  return {
+      .id = "search",
+      .title = "Search",
+      .columns = {{.key = "stop_reason", .name = "ended because"},
+                  {.key = "evaluations"},
+                  {.key = "loops"},
+                  {.key = "seconds", .unit = "s"},
+                  {.key = "objective_initial", .name = "objective, initial"},
+                  {.key = "objective", .name = "objective, final"},
+                  {.key = "median_relative_error_excited",
+                   .name = "median relative error, excited modes",
+                   .format = "{:.3g}"}},
+      .rows = {{std::string(name_of(search.stop)), search.evaluations, search.loops, search.seconds,
+                std::isfinite(search.initial_value) || !outcome.result.continuation
+                    ? report::Cell(search.initial_value)
+                    : report::Cell(),
+                search.value, std::isfinite(error) ? report::Cell(error) : report::Cell()}},
+      .command = command};
 }
 
 report::Table mode_table(const CalibrationOutcome& outcome, const std::string& command) {

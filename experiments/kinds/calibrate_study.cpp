@@ -114,9 +114,13 @@ std::string stroke_lines(const CalibrationOutcome& outcome) {
 
 void add_summary(const CalibrationOutcome& outcome, StudyResult& result) {
   const OptimizationResult& search = outcome.result.search;
-  result.summary += fmt::format(
-      "{} evaluations, {} loops, {:.3f} s; objective {:.6g} -> {:.6g}; {}\n", search.evaluations,
-      search.loops, search.seconds, search.initial_value, search.value, explain(search.stop));
+  // A continuation starts on another record than it ends on: its first value says nothing.
+  const std::string values =
+      outcome.result.continuation
+          ? fmt::format("reduced chi2 {:.6g}", search.value)
+          : fmt::format("objective {:.6g} -> {:.6g}", search.initial_value, search.value);
+  result.summary += fmt::format("{} evaluations, {} loops, {:.3f} s; {}; {}\n", search.evaluations,
+                                search.loops, search.seconds, values, explain(search.stop));
   if (!outcome.true_frequencies.empty()) {
     result.summary += fmt::format("median relative frequency error of the excited modes: {:.3g}\n",
                                   median_relative_error(outcome));

@@ -115,14 +115,15 @@ StringUnknowns shared_unknowns(const RecordsFit& fit, const ContinuationOptions&
                                                    best->law.inharmonicity, options.unknowns);
 }
 
-NewtonOptions newton_options(const StringUnknowns& unknowns, const ContinuationOptions& options,
-                             double inharmonicity) {
+// The law's prior is as wide as the record that departs furthest from it says.
+NewtonOptions newton_options(const StringUnknowns& unknowns, const RecordsFit& fit) {
   NewtonOptions newton{.steps = 10, .tolerance = 1e-4, .frequency_cap = 1e-3};
   Eigen::MatrixXd frequencies;
-  if (options.frequencies) {
-    const double width = std::isnan(options.law_width) ? kWidePrior : options.law_width;
+  if (!unknowns.is_law()) {
+    double width = 0.0;
+    for (const ContinuationResult& single : fit.single) width = std::max(width, single.law_width);
     frequencies = law_prior(Eigen::VectorXd::Constant(static_cast<Index>(unknowns.modes()), width),
-                            inharmonicity);
+                            fit.single.front().law.inharmonicity);
   }
   newton.prior = unknowns.prior(frequencies);
   return newton;
@@ -185,7 +186,7 @@ RecordsFit calibrate_records(const ModelPoint& initial, std::span<const Calibrat
     weighted.set_weights(signal_weights(noisy, sigma, highest, whole, point));
     all.add(whole, std::move(weighted));
   }
-  NewtonOptions newton = newton_options(unknowns, options, fit.single.front().law.inharmonicity);
+  NewtonOptions newton = newton_options(unknowns, fit);
   newton.prior_mean = Eigen::VectorXd::Zero(all.size());
   newton.prior_mean.head(unknowns.size()) = unknowns.prior_mean();
   newton.noise = all.noise(start);

@@ -35,6 +35,7 @@ RecordsFit calibrate_records(const ModelPoint& initial, std::span<const Calibrat
 
 /// The fit in the form of that of one record: model, χ², what is shared and its deviations, the
 /// first record's contact; a mode's verdict is that of the record by itself that sees it best.
+/// Where every frequency is free, `law` stays that of the first record.
 ContinuationResult as_continuation(const RecordsFit& fit);
 
 }  // namespace modcal
