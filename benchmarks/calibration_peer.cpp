@@ -10,63 +10,17 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "libcalib/likelihood/continuation.hpp"
-#include "libsim/base/random.hpp"
-#include "libsim/dynamics/simulators/modal_event.hpp"
-#include "libsim/signal/statistics.hpp"
+#include "benchmarks/noisy_stroke.hpp"
 
 namespace modcal {
 namespace {
-
-constexpr double kRate = 51200.0;
-constexpr double kNoise = 0.01;
-
-struct Case {
-  ModelPoint truth, start;
-  std::vector<double> left, right;
-  CalibrationData data;
-  ContinuationOptions options;
-};
-
-std::vector<double> with_noise(std::vector<double> samples, double deviation,
-                               std::string_view end) {
-  std::vector<double> noise(samples.size());
-  fill_standard_normal(StreamKey(1).with("measurement noise").with(end), noise);
-  for (std::size_t j = 0; j < noise.size(); ++j) samples[j] += deviation * noise[j];
-  remove_mean(samples);
-  return samples;
-}
-
-Case make_case() {
-  Scene scene;
-  scene.string.length = 0.33;
-  scene.string.linear_density = 3.1e-3;
-  scene.string.fundamental = 196.0;
-  scene.bow.position = 0.03;
-  const Simulation run =
-      ModalEvent({}).simulate(scene, kRate, {.left_reaction = true, .right_reaction = true});
-  Case result{.truth = {make_modal_basis(scene.string), scene.bow.position}};
-  result.options.left_noise = kNoise * standard_deviation(run.left_reaction.samples);
-  result.options.right_noise = kNoise * standard_deviation(run.right_reaction.samples);
-  result.left = with_noise(run.left_reaction.samples, result.options.left_noise, "left");
-  result.right = with_noise(run.right_reaction.samples, result.options.right_noise, "right");
-  result.data = CalibrationData::of_records(result.left, result.right, kRate);
-  result.start = result.truth;
-  std::vector<double> draw(result.truth.basis.size());
-  fill_uniform(StreamKey(1).with("start"), draw);
-  for (std::size_t n = 0; n < draw.size(); ++n) {
-    result.start.basis.omega[n] *= 1.0 + 0.02 * (2.0 * draw[n] - 1.0);
-  }
-  result.start.contact += 1.5e-3;
-  return result;
-}
 
 struct Timed {
   ContinuationResult found;
   double seconds = 0.0;  // median
 };
 
-Timed calibrate_case(const Case& the, bool frequencies, std::size_t repetitions) {
+Timed calibrate_case(const NoisyStroke& the, bool frequencies, std::size_t repetitions) {
   ContinuationOptions options = the.options;
   options.law_width = 2e-3;  // every frequency on its own data
   options.frequencies = frequencies;
@@ -84,7 +38,7 @@ Timed calibrate_case(const Case& the, bool frequencies, std::size_t repetitions)
 
 // Raw doubles: K, f_s, N, x_c, L, T, m, zeta, s_1, s_2; seconds of law and of all, f0, B and x_c of
 // the law, x_c of all; initial and found f (N each); R1, R2 (K each).
-void write_case(const char* path, const Case& the, const Timed& law, const Timed& all) {
+void write_case(const char* path, const NoisyStroke& the, const Timed& law, const Timed& all) {
   const ModalBasis& basis = the.start.basis;
   std::vector<double> numbers = {static_cast<double>(the.left.size()),
                                  kRate,
@@ -116,7 +70,7 @@ void write_case(const char* path, const Case& the, const Timed& law, const Timed
   }
 }
 
-void print(std::string_view what, const Timed& timed, const Case& the) {
+void print(std::string_view what, const Timed& timed, const NoisyStroke& the) {
   fmt::print("{:<18} median {:7.1f} ms, {} evaluations, {}, x_c off by {:.2g} m\n", what,
              1e3 * timed.seconds, timed.found.evaluations, timed.found.right ? "right" : "WRONG",
              timed.found.model.contact - the.truth.contact);
@@ -128,7 +82,7 @@ void print(std::string_view what, const Timed& timed, const Case& the) {
 int main(int argc, char** argv) {
   using namespace modcal;
   constexpr std::string_view kWrite = "--write_case=";
-  const Case the = make_case();
+  const NoisyStroke the = make_noisy_stroke();
   const Timed law = calibrate_case(the, false, 5);
   const Timed all = calibrate_case(the, true, 5);
   print("law", law, the);

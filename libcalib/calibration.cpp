@@ -63,6 +63,56 @@ std::vector<CalibratedMode> report_modes(const ParameterSet& parameters, const M
   return modes;
 }
 
+std::vector<double> frequencies_of(const ModalBasis& basis) {
+  std::vector<double> frequencies;
+  for (std::size_t n = 0; n < basis.size(); ++n) frequencies.push_back(basis.frequency(n));
+  return frequencies;
+}
+
+// Law, contacts, damping and sensors before and after.
+std::vector<CalibratedParameter> found_parameters(const ModelPoint& initial,
+                                                  const ContinuationResult& found,
+                                                  std::span<const double> further_contacts,
+                                                  const UnknownsOptions& unknowns) {
+  const StiffStringFit start = fit_stiff_string(frequencies_of(initial.basis));
+  std::vector<CalibratedParameter> parameters = {
+      {"f0", "Hz", start.fundamental, found.law.fundamental},
+      {"B", "1", start.inharmonicity, found.law.inharmonicity},
+      {"x_c", "m", initial.contact, found.model.contact},
+      {"damping", "1", 1.0, found.damping}};
+  for (std::size_t r = 0; r < further_contacts.size(); ++r) {
+    parameters.push_back({fmt::format("x_c {}", r + 2), "m", initial.contact, further_contacts[r]});
+  }
+  const SensorPair& sensors = found.model.sensors;
+  if (unknowns.gain.free) {
+    parameters.push_back({"gain", "1", unknowns.gain.value, sensors.gain});
+  }
+  if (unknowns.delay.free) {
+    parameters.push_back({"delay", "s", unknowns.delay.value, sensors.delay});
+  }
+  if (unknowns.corner.free) {
+    parameters.push_back(
+        {"corner", "Hz", unknowns.corner.value, 0.5 * sensors.corner / std::numbers::pi});
+  }
+  return parameters;
+}
+
+std::vector<CalibratedMode> found_modes(const ModelPoint& initial, const ContinuationResult& found,
+                                        double excitation_threshold) {
+  const std::vector<bool> excited = excited_modes(found.model, excitation_threshold);
+  const std::vector<double> shape = initial.basis.shape_at(initial.contact);
+  std::vector<CalibratedMode> modes;
+  for (std::size_t i = 0; i < found.modes.size(); ++i) {
+    modes.push_back({.number = i + 1,
+                     .initial_frequency = initial.basis.frequency(i),
+                     .frequency = found.modes[i].frequency,
+                     .shape = shape[i],
+                     .excited = excited[i],
+                     .searched = found.modes[i].source == ModeSource::kIdentified});
+  }
+  return modes;
+}
+
 // What the continuation found, in the form of a search.
 CalibrationResult calibrate_to_the_bound(const ModelPoint& initial,
                                          std::span<const CalibrationData> records,
@@ -92,42 +142,8 @@ CalibrationResult calibrate_to_the_bound(const ModelPoint& initial,
   result.search.value = found.chi2;
   result.search.stop = found.right ? StopReason::kConverged : StopReason::kNoProgress;
   result.model = found.model;
-  std::vector<double> frequencies;
-  for (std::size_t n = 0; n < initial.basis.size(); ++n) {
-    frequencies.push_back(initial.basis.frequency(n));
-  }
-  const StiffStringFit start = fit_stiff_string(frequencies);
-  const LawEstimate& law = found.law;
-  result.parameters = {{"f0", "Hz", start.fundamental, law.fundamental},
-                       {"B", "1", start.inharmonicity, law.inharmonicity},
-                       {"x_c", "m", initial.contact, found.model.contact},
-                       {"damping", "1", 1.0, found.damping}};
-  for (std::size_t r = 0; r < further_contacts.size(); ++r) {
-    result.parameters.push_back(
-        {fmt::format("x_c {}", r + 2), "m", initial.contact, further_contacts[r]});
-  }
-  const UnknownsOptions& unknowns = continuation.unknowns;
-  const SensorPair& sensors = found.model.sensors;
-  if (unknowns.gain.free) {
-    result.parameters.push_back({"gain", "1", unknowns.gain.value, sensors.gain});
-  }
-  if (unknowns.delay.free) {
-    result.parameters.push_back({"delay", "s", unknowns.delay.value, sensors.delay});
-  }
-  if (unknowns.corner.free) {
-    result.parameters.push_back(
-        {"corner", "Hz", unknowns.corner.value, 0.5 * sensors.corner / std::numbers::pi});
-  }
-  const std::vector<bool> excited = excited_modes(found.model, options.excitation_threshold);
-  const std::vector<double> shape = initial.basis.shape_at(initial.contact);
-  for (std::size_t i = 0; i < found.modes.size(); ++i) {
-    result.modes.push_back({.number = i + 1,
-                            .initial_frequency = frequencies[i],
-                            .frequency = found.modes[i].frequency,
-                            .shape = shape[i],
-                            .excited = excited[i],
-                            .searched = found.modes[i].source == ModeSource::kIdentified});
-  }
+  result.parameters = found_parameters(initial, found, further_contacts, continuation.unknowns);
+  result.modes = found_modes(initial, found, options.excitation_threshold);
   return result;
 }
 
