@@ -4,12 +4,9 @@
 # error and without a look at the network, that the filters work and a click gives the command that
 # replays a task. Exit code 77: there is no browser.
 set -euo pipefail
+. "$(dirname "$0")/../report/browser.sh"
 write_sample=$1
-browser=$(command -v chromium || command -v chromium-browser || true)
-if [ -z "$browser" ]; then
-  echo "no chromium: the page is not looked at (install the packages marked test in packages.txt)"
-  exit 77
-fi
+find_browser
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 "$write_sample" "$folder/out" 321
@@ -84,28 +81,10 @@ cat >>"$probe" <<'JS'
 </script>
 JS
 
-browse() {
-  "$browser" --headless --no-sandbox --disable-gpu --disable-quic --no-first-run \
-    --disable-background-networking --disable-component-update --disable-sync \
-    --user-data-dir="$folder/profile$RANDOM" --enable-logging=stderr --virtual-time-budget=20000 \
-    --window-size=1400,1000 --dump-dom "file://$1" 2>"$folder/log"
-}
-failures=0
-expect() {  # expect WHAT ACTUAL EXPECTED
-  if [ "$2" != "$3" ]; then
-    echo "$1: \"$2\" instead of \"$3\""
-    failures=$((failures + 1))
-  fi
-}
-dom=$(browse "$probe")
-seen() { grep -o "<html [^>]*>" <<<"$dom" | grep -o " data-$1=\"[^\"]*\"" | cut -d'"' -f2; }
-charts=$(grep -o '<div class="chart[" ]' "$page" | wc -l)
+browse "$probe" 20000
 size=$(stat -c %s "$page")
 [ "$size" -le 2000000 ] || { echo "the page has $size bytes"; failures=1; }
-expect "charts in the page" "$charts" 18
-expect "charts drawn" "$(seen charts)" "$charts"
-expect "errors" "$(seen errors)" 0
-expect "console" "$(grep CONSOLE "$folder/log" || true)" ""
+expect_charts "$page" 18
 expect "facets" "$(seen facets)" 3
 expect "rows" "$(seen rows)" 312
 expect "one noise level (picture changed, rows)" "$(seen one-noise)" "true,39"
@@ -119,5 +98,5 @@ expect "command by keyboard" "$(seen key-command)" "modcal replay out/made-up N"
 expect "command of a point" "$(seen point-command)" "modcal replay out/made-up N"
 expect "requests" "$(seen requests)" 0
 expect "sounds" "$(seen sounds)" "0.50,0.50"
-[ "$failures" -eq 0 ] || { sed -n 1,20p "$folder/log"; exit 1; }
+give_verdict
 echo "$charts charts of 10^5 tasks in $size bytes, filtered and replayed without an error"

@@ -3,12 +3,9 @@
 # that every chart is drawn without an error, and that cursor, zoom and reset act on linked charts.
 # Exit code 77: there is no browser.
 set -euo pipefail
+. "$(dirname "$0")/browser.sh"
 write_sample=$1
-browser=$(command -v chromium || command -v chromium-browser || true)
-if [ -z "$browser" ]; then
-  echo "no chromium: the page is not looked at (install the packages marked test in packages.txt)"
-  exit 77
-fi
+find_browser
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 "$write_sample" "$folder/out" >/dev/null
@@ -64,28 +61,9 @@ cat >>"$probe" <<'JS'
 </script>
 JS
 
-browse() {
-  "$browser" --headless --no-sandbox --disable-gpu --disable-quic --no-first-run \
-    --disable-background-networking --disable-component-update --disable-sync \
-    --user-data-dir="$folder/profile$RANDOM" --enable-logging=stderr --virtual-time-budget=10000 \
-    --window-size=1400,1000 --dump-dom "file://$1" 2>"$folder/log"
-}
-failures=0
-expect() {  # expect WHAT ACTUAL EXPECTED
-  if [ "$2" != "$3" ]; then
-    echo "$1: \"$2\" instead of \"$3\""
-    failures=$((failures + 1))
-  fi
-}
-seen() { grep -o "<html [^>]*>" <<<"$dom" | grep -o " data-$1=\"[^\"]*\"" | cut -d'"' -f2; }
-
-dom=$(browse "$probe")
-charts=$(grep -o '<div class="chart[" ]' "$page" | wc -l)
-expect "charts in the page" "$charts" 26
-expect "charts drawn" "$(seen charts)" "$charts"
+browse "$probe" 10000
+expect_charts "$page" 26
 expect "charts with a curve" "$(seen painted)" "$charts"
-expect "errors" "$(seen errors)" 0
-expect "console" "$(grep CONSOLE "$folder/log" || true)" ""
 expect "cursor" "$(seen cursor | cut -c1-12)" "t 0.780039 s"
 expect "linked cursor" "$(seen linked-cursor | cut -c1-12)" "t 0.780039 s"
 expect "cursor in another figure" "$(seen other-cursor)" ""
@@ -93,5 +71,5 @@ expect "zoom (own, linked, other figure, reset button hidden)" "$(seen zoomed)" 
 expect "reset (own, linked, button hidden, values)" "$(seen reset)" "true,true,true,"
 expect "cell of the map" "$(seen cell)" "■ one slip"
 expect "printing restores the picture" "$(seen printed)" true
-[ "$failures" -eq 0 ] || { sed -n 1,20p "$folder/log"; exit 1; }
+give_verdict
 echo "$charts charts drawn, linked and reset without an error"
