@@ -18,6 +18,7 @@
 #include "libsim/base/random.hpp"
 #include "libsim/model/constant_damping.hpp"
 #include "libsim/signal/statistics.hpp"
+#include "tests/refusal.hpp"
 
 namespace modcal {
 namespace {
@@ -312,16 +313,6 @@ TEST(OneSidedInversion, GivesTheSameBitsFromSeveralThreadsAndWorkspaces) {
     EXPECT_EQ(results[i].velocity, expected.velocity);
     EXPECT_EQ(results[i].choice.parameter(), expected.choice.parameter());
   }
-}
-
-template <typename Call>
-std::string refusal_of(Call call) {
-  try {
-    call();
-  } catch (const InvalidInput& error) {
-    return error.what();
-  }
-  return "accepted";
 }
 
 TEST(OneSidedInversion, RefusesWhatItCannotInvert) {

@@ -103,4 +103,32 @@ inline void add_noise(DrivenString& string, double level, const StreamKey& key,
   }
 }
 
+inline const JumpPrior kJumps{JumpPrior::Options{}};
+inline const LearnedPrior kLearned{LearnedPrior::Options{}};
+inline constexpr InversionOutputs kEverything = {
+    .force = true, .displacement = true, .velocity = true, .force_spectrum = true};
+
+inline JointModel contour_at(double sigma_t, std::size_t samples) {
+  return {.sigma = sigma_t * kRate / static_cast<double>(samples)};
+}
+
+inline JointMethod method_with(const ForcePrior& prior, const InversionOutputs& outputs = {}) {
+  return {.prior = prior, .offset = OffsetRule::kNone, .outputs = outputs};
+}
+
+inline JointResult invert(const JointInversion& inversion, const ReactionPair& reactions,
+                          const SensorNoiseLevel& noise, const JointMethod& method) {
+  JointWorkspace workspace;
+  JointResult result;
+  inversion.invert(reactions, noise, method, workspace, result);
+  return result;
+}
+
+/// The long force without the first and last eighth, where a short record knows least.
+inline double middle_error(std::span<const double> x, std::span<const double> y) {
+  const std::size_t edge = y.size() / 8;
+  return relative_rms_error(x.subspan(edge, y.size() - 2 * edge),
+                            y.subspan(edge, y.size() - 2 * edge));
+}
+
 }  // namespace modcal

@@ -31,12 +31,6 @@ double figure(const Estimate& estimate, const std::string& name) {
   return figures.at(name);
 }
 
-double middle_error(std::span<const double> x, std::span<const double> y) {
-  const std::size_t edge = y.size() / 8;
-  return relative_rms_error(x.subspan(edge, y.size() - 2 * edge),
-                            y.subspan(edge, y.size() - 2 * edge));
-}
-
 TEST(JointEstimator, ReportsTheContourItHasChosen) {
   const std::size_t samples = 8192;
   const ModalBasis basis = violin_g();
@@ -173,6 +167,37 @@ TEST(JointEstimator, ABinThatNeitherSideSeesKeepsThePrior) {
   EXPECT_EQ(result.identified.choice.kept_share, 0.0);
   for (const double value : result.identified.force) EXPECT_EQ(value, 0.0);
   EXPECT_NEAR(result.deviation.force, 2.0, 1e-12);  // K bins of variance 4 over K samples
+}
+
+TEST(JointEstimator, FallsBackToTheSideThatWasRecorded) {
+  const std::size_t samples = 4096;
+  const ModalBasis basis = violin_g();
+  const DrivenString string = drive(basis, kPosition, jumping_force(samples, StreamKey(9)));
+  const auto prepared =
+      Choice<Estimator>("joint").make()->prepare({basis, kPosition, samples, kRate, false});
+  const auto regularizer = Choice<Regularizer>("none").make();
+  const auto choice = Choice<ParameterChoice>("gcv").make();
+  EstimationRecord record;
+  record.reactions = {string.reaction[0], {}};
+  const auto estimates = prepared->estimate(record, {*regularizer, *choice});
+  ASSERT_EQ(estimates.size(), 1u);
+  EXPECT_EQ(estimates[0].side, "joint");
+  EXPECT_THAT(estimates[0].warnings,
+              testing::Contains(testing::HasSubstr("reaction 2 is missing")));
+  EXPECT_GT(correlation(estimates[0].result.force, string.force), 0.9);
+}
+
+TEST(JointEstimator, LinearLimitNeedsTheTruth) {
+  const std::size_t samples = 256;
+  const auto prepared = Choice<Estimator>("linear_limit")
+                            .make()
+                            ->prepare({violin_g(), kPosition, samples, kRate, false});
+  const auto regularizer = Choice<Regularizer>("none").make();
+  const auto choice = Choice<ParameterChoice>("gcv").make();
+  const auto noise = normal_draw(samples, StreamKey(1));
+  EstimationRecord record;
+  record.reactions = {noise, noise};
+  EXPECT_THROW(prepared->estimate(record, {*regularizer, *choice}), InvalidInput);
 }
 
 }  // namespace

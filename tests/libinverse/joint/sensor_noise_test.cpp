@@ -1,0 +1,43 @@
+// Noise levels and contours that the joint inversion takes from a record.
+#include "libinverse/joint/sensor_noise.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/libinverse/joint/joint_case.hpp"
+
+namespace modcal {
+namespace {
+
+TEST(SensorNoise, IsMeasuredFromTheRecordAlone) {
+  const std::size_t samples = 16384;
+  const ModalBasis basis = violin_g();
+  const SensorNoise sensors(basis, kPosition, samples, kRate, false, false, {});
+  for (const double level : {0.01, 0.1}) {
+    DrivenString string = drive(basis, kPosition, jumping_force(samples, StreamKey(10)));
+    SensorNoiseLevel truth;
+    add_noise(string, level, StreamKey(11), &truth);
+    SensorNoise::Workspace workspace;
+    const auto estimate = sensors.estimate(string.pair(), workspace);
+    EXPECT_TRUE(estimate.measured);
+    // 4 segments of about 1000 bins: a standard deviation of 1.5 % in the rms, and leakage.
+    for (std::size_t r = 0; r < 2; ++r) EXPECT_NEAR(estimate.rms[r] / truth.rms[r], 1.0, 0.06);
+  }
+  // Without noise the band holds the tail of the response alone, and the cross relation knows it.
+  const DrivenString clean = drive(basis, kPosition, jumping_force(samples, StreamKey(10)));
+  SensorNoise::Workspace workspace;
+  EXPECT_LT(sensors.estimate(clean.pair(), workspace).noise_share, 1e-2);
+}
+
+TEST(ContourOf, LiesBetweenOneAndFourOverTheRecord) {
+  const ModalBasis basis = violin_g();
+  EXPECT_NEAR(contour_of(basis, 1.0, 1e-12), 4.0, 1e-12);
+  EXPECT_NEAR(contour_of(basis, 1.0, 0.5), 1.0, 1e-12);
+  const double decay = 1e-3 * 2.0 * std::numbers::pi * 196.0;
+  EXPECT_NEAR(contour_of(basis, 1.0, 0.01), 0.5 * (std::log(100.0) - decay), 1e-12);
+}
+
+}  // namespace
+}  // namespace modcal
