@@ -2,32 +2,16 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <exception>
 
 #include "experiments/cli/command.hpp"
+#include "experiments/cli/guarded.hpp"
 #include "experiments/cli/interrupt.hpp"
 #include "experiments/cli/message_colors.hpp"
 #include "experiments/cli/provenance.hpp"
 #include "experiments/config/reader.hpp"
-#include "libsim/base/error.hpp"
 
 namespace modcal {
 namespace {
-
-ExitCode act(const Action& action) {
-  try {
-    return action();
-  } catch (const InvalidInput& error) {
-    fmt::print(stderr, "{} {}\n", colored("error:"), error.what());
-    return ExitCode::kInvalidInput;
-  } catch (const Interrupted&) {
-    return ExitCode::kInterrupted;
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "internal error: {}\nPlease report it with the file and the command.\n",
-               error.what());
-    return ExitCode::kInternal;
-  }
-}
 
 // CLI11 would say that a command is missing.
 bool is_unknown_command(const CLI::App& app, int argc, char** argv) {
@@ -70,7 +54,7 @@ int main_of(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::kUsage);
   }
   catch_interrupts();
-  return static_cast<int>(act(action));
+  return static_cast<int>(guarded(action));
 }
 
 }  // namespace

@@ -8,12 +8,12 @@
 #include <CLI/Formatter.hpp>
 #include <cstdio>
 
+#include "experiments/cli/guarded.hpp"
 #include "experiments/cli/interrupt.hpp"
 #include "experiments/cli/message_colors.hpp"
 #include "experiments/cli/runner.hpp"
 #include "experiments/cli/shell_word.hpp"
 #include "experiments/cli/stored_run.hpp"
-#include "libsim/base/error.hpp"
 
 namespace modcal {
 namespace {
@@ -46,21 +46,6 @@ class MpiSession {
     return static_cast<ExitCode>(code);
   }
 };
-
-template <typename Work>
-ExitCode guarded(const Work& work) {
-  try {
-    return work();
-  } catch (const InvalidInput& error) {
-    fmt::print(stderr, "{} {}\n", colored("error:"), error.what());
-    return ExitCode::kInvalidInput;
-  } catch (const Interrupted&) {
-    return ExitCode::kInterrupted;
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "internal error: {}\n", error.what());
-    return ExitCode::kInternal;
-  }
-}
 
 ExitCode run_shard(const MpiArguments& arguments, const std::string& out, const Shard& shard) {
   const LoadedExperiment loaded = load_experiment(arguments.file, arguments.assignments);
