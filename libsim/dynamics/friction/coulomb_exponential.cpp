@@ -1,20 +1,11 @@
 #include "libsim/dynamics/friction/coulomb_exponential.hpp"
 
-#include "libsim/base/error.hpp"
+#include "libsim/dynamics/friction/falling_coefficients.hpp"
 
 namespace modcal {
 
 void CoulombExponential::Options::visit(OptionVisitor& visitor) {
-  visitor.number({.key = "static",
-                  .meaning = "static friction coefficient mu_S",
-                  .unit = "1",
-                  .range = Range::non_negative()},
-                 static_coefficient);
-  visitor.number({.key = "dynamic",
-                  .meaning = "dynamic friction coefficient mu_D at high speed, at most mu_S",
-                  .unit = "1",
-                  .range = Range::non_negative()},
-                 dynamic_coefficient);
+  visit_falling_coefficients(visitor, static_coefficient, dynamic_coefficient);
   visitor.number({.key = "decay",
                   .meaning = "decay C of the friction coefficient with the sliding speed",
                   .unit = "s/m",
@@ -24,10 +15,7 @@ void CoulombExponential::Options::visit(OptionVisitor& visitor) {
 }
 
 CoulombExponential::CoulombExponential(const Options& options) : options_(options) {
-  MODCAL_REQUIRE(options.dynamic_coefficient <= options.static_coefficient,
-                 "dynamic friction coefficient {:g} is above the static one, {:g}: the law must "
-                 "fall with the sliding speed",
-                 options.dynamic_coefficient, options.static_coefficient);
+  require_falling(options.static_coefficient, options.dynamic_coefficient);
 }
 
 SlidingLaw CoulombExponential::make_sliding(double normal_force) const {

@@ -1,20 +1,12 @@
 #include "libsim/dynamics/friction/hyperbolic.hpp"
 
 #include "libsim/base/error.hpp"
+#include "libsim/dynamics/friction/falling_coefficients.hpp"
 
 namespace modcal {
 
 void Hyperbolic::Options::visit(OptionVisitor& visitor) {
-  visitor.number({.key = "static",
-                  .meaning = "static friction coefficient mu_S",
-                  .unit = "1",
-                  .range = Range::non_negative()},
-                 static_coefficient);
-  visitor.number({.key = "dynamic",
-                  .meaning = "dynamic friction coefficient mu_D at high speed, at most mu_S",
-                  .unit = "1",
-                  .range = Range::non_negative()},
-                 dynamic_coefficient);
+  visit_falling_coefficients(visitor, static_coefficient, dynamic_coefficient);
   visitor.number({.key = "half_speed",
                   .meaning = "sliding speed v0 at which half of the fall has happened",
                   .unit = "m/s",
@@ -24,10 +16,7 @@ void Hyperbolic::Options::visit(OptionVisitor& visitor) {
 }
 
 Hyperbolic::Hyperbolic(const Options& options) : options_(options) {
-  MODCAL_REQUIRE(options.dynamic_coefficient <= options.static_coefficient,
-                 "dynamic friction coefficient {:g} is above the static one, {:g}: the law must "
-                 "fall with the sliding speed",
-                 options.dynamic_coefficient, options.static_coefficient);
+  require_falling(options.static_coefficient, options.dynamic_coefficient);
   MODCAL_REQUIRE(options.half_speed > 0.0, "half speed {:g} m/s must be > 0", options.half_speed);
 }
 
