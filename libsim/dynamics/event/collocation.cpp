@@ -183,13 +183,16 @@ bool SolveNodesOf(const Law& law, const NodeMatrix& coupling, const NodeVector& 
     }
     if (!NewtonStep(jacobian, step, speed)) return false;
     // The residual that this step leaves is ½ coupling g'' step²; where it is below the tight bound
-    // (and the parabola's own remainder with it) the law need not be computed again.
+    // (and the parabola's own remainder with it) the law need not be computed again. A step from
+    // far off leaves the rounding of what it started from.
     double bend = 0.0;
     for (int j = 0; j < kUnknowns; ++j) {
       bend = std::max(bend, 0.5 * std::abs(at.curvature[j]) * step[j] * step[j]);
     }
     solved = true;
-    for (int i = 0; i < kUnknowns; ++i) solved = solved && size[i] * bend <= kTight * scale[i];
+    for (int i = 0; i < kUnknowns; ++i) {
+      solved = solved && size[i] * bend <= kTight * scale[i] && std::abs(step[i]) <= scale[i];
+    }
     if (solved) at.shift(step);
     if (iteration + 1 == kMaxIterations && !solved) return false;
   }

@@ -131,9 +131,11 @@ class Sliding {
     refinement_ = 0;
   }
 
-  // Scale of a guess from the polynomial of the last step; none so far to go by: a constant.
+  // Scale of a guess from the polynomial of the last step. None so far to go by, or one so short
+  // that its polynomial is rounding this far out: a constant.
   double extrapolation(double length) const {
-    return last_length_ > 0.0 ? length / last_length_ : 0.0;
+    constexpr double kFarthest = 16.0;
+    return length <= kFarthest * last_length_ ? length / last_length_ : 0.0;
   }
 
   Advance refined(double x) {

@@ -290,6 +290,26 @@ TEST(ModalEvent, APluckedStringUnderALiftedBowRingsFreely) {
   scene.bow.normal_force = 0.0;
   const Simulation event = run_with(scene);
   const Simulation exact =
+// Knots a rounding error behind the points at which sliding steps end: a step of 1e-12 of its
+// neighbors says nothing of the force in the next one.
+TEST(ModalEvent, StepsOfRoundingLengthChangeNothing) {
+  Scene scene = paper_scene();
+  scene.duration = 0.02;
+  const Simulation plain = run_with(scene);
+  TableGesture::Options knots{{0.0}, {1.0}};
+  for (int k = 0; k < 1000; ++k) {
+    knots.times.push_back((k + 0.5 + 1e-12) / kRate);
+    knots.factors.push_back(1.0);
+  }
+  knots.factors.back() += 1e-15;  // not steady
+  scene.bow.velocity_gesture = Choice<Gesture>::of<TableGesture>("table", knots);
+  const Simulation cut = run_with(scene);
+  ASSERT_FALSE(cut.diverged_at) << cut.explanation;
+  EXPECT_EQ(cut.attachments, plain.attachments);
+  // The steps are halved, so that the two differ by what the longer ones miss.
+  EXPECT_LT(worst_error(cut, plain), 1e-6);
+}
+
       ModalExact({.time_step = 1e-5}).simulate(scene, kRate, OutputRequest::all());
   EXPECT_EQ(event.attachments, 0u);
   // Both are exact: 2000 products of modulus ≤ 1.
