@@ -43,10 +43,12 @@ struct Simulation {
   Signal left_reaction;
   Signal right_reaction;
 
-  double time_step = 0.0;        ///< the step taken [s]: divides the sampling period
-  std::size_t steps = 0;         ///< steps taken
-  std::size_t attachments = 0;   ///< changes from sliding to sticking
-  std::size_t releases = 0;      ///< changes from sticking to sliding
+  double time_step = 0.0;       ///< the step taken [s]: divides the sampling period
+  std::size_t steps = 0;        ///< steps taken
+  std::size_t attachments = 0;  ///< changes from sliding to sticking
+  std::size_t releases = 0;     ///< changes from sticking to sliding
+  /// Steps that the simulator took back for shorter ones because its own checks did not hold.
+  std::size_t refined_steps = 0;
   std::size_t modes_moved = 0;   ///< modes that the contact force reaches
   std::vector<Switch> switches;  ///< in the order of time, from OutputRequest::switches_from on
   /// Time at which the simulation could not go on [s]; such a result holds no signals.

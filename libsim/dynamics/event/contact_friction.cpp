@@ -152,6 +152,13 @@ void ThermalFriction::cool(double time) {
 }
 
 void ThermalFriction::accept(double theta) {
+  powers_ = {rise_};
+  double scale = step_ * theta;
+  for (int k = 0; k < rule_.nodes; ++k) {
+    for (int j = 0; j < rule_.nodes; ++j) powers_[k + 1] += rule_.power[j][k] * node_[j].rate;
+    powers_[k + 1] *= scale / (k + 1.0);
+    scale *= theta;
+  }
   const NodeVector weights = integral_weights(rule_, theta);
   double sum = 0.0;
   for (int j = 0; j < rule_.nodes; ++j) sum += weights[j] * node_[j].rate;

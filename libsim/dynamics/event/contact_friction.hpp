@@ -1,6 +1,8 @@
 // Friction of the sliding contact as the collocation steps ask for it.
 #pragma once
 
+#include <span>
+
 #include "libsim/dynamics/event/collocation.hpp"
 #include "libsim/dynamics/friction/stateful_laws.hpp"
 
@@ -24,6 +26,8 @@ class CurveFriction {
   }
   /// The state at the part θ of the step solved last.
   void accept(double /*theta*/) const {}
+  /// Powers of θ of the temperature rise [K] on the step accepted last, θ = 1 where that ended.
+  std::span<const double> rise_powers() const { return {}; }
   /// Temperature rise [K].
   double rise() const { return 0.0; }
   void set_rise(double /*rise*/) const {}
@@ -51,6 +55,7 @@ class ThermalFriction {
   /// Solves for the nodes 2…s by Newton's method; true when every equation holds to rounding.
   bool solve(const NodeMatrix& coupling, const NodeVector& free, double step, NodeValues& values);
   void accept(double theta);
+  std::span<const double> rise_powers() const { return powers_; }
   double rise() const { return rise_; }
   void set_rise(double rise) { rise_ = rise; }
   void cool(double time);
@@ -76,6 +81,7 @@ class ThermalFriction {
   double step_ = 0.0;
   NodeVector node_rise_{};
   std::array<Heating, kMaxNodes> node_{};
+  std::array<double, kMaxNodes + 1> powers_{};  // of the step accepted last
 };
 
 }  // namespace modcal::event

@@ -54,7 +54,7 @@ class Run {
         wanted_{.contact = loop.targets.displacement || loop.targets.velocity,
                 .reactions = loop.targets.left_reaction || loop.targets.right_reaction},
         model_(modes, rule, loop.grid_step),
-        sliding_(model_, friction, loop.slope_number) {
+        sliding_(model_, friction, loop.slope_number, loop.tail_ratio) {
     // A bow that cannot carry any force is not there: no contact, no switches.
     if (loop.contact.static_limit > 0.0) {
       sticking_.emplace(
@@ -80,6 +80,7 @@ class Run {
       if (!counts_.failure) store(sample);
     }
     leave();
+    counts_.refined_steps = sliding_.refined_steps();
     return counts_;
   }
 
@@ -143,6 +144,7 @@ class Run {
       law().set_rise(sticking_->rise(since_base(x)));
       sticking_->detach(since_base(x), state_.modes);
       state_.sticking = false;
+      if (loop_.witness != nullptr) loop_.witness->released();
     }
     mark_base(x);
   }
@@ -157,6 +159,7 @@ class Run {
     if (state_.sticking) {
       sticking_->attach(drive, state_.modes, motion.displacement, 0.0, law().rise());
       mark_base(x);
+      if (loop_.witness != nullptr) loop_.witness->attached(0.0);
     } else {
       sliding_.start(slip < 0.0 ? -1.0 : 1.0, std::abs(slip), drive.load);
     }
@@ -192,6 +195,7 @@ class Run {
   // From x to `last` at most.
   double part(double x, double last, bool sampled) {
     if (in_contact_) return state_.sticking ? stick(x, last, sampled) : slide(x, last);
+    if (loop_.witness != nullptr) loop_.witness->saw({.duration = (last - x) * loop_.grid_step});
     if (x == 0.0 && last == 1.0) {
       model_.advance_free(state_.modes);
     } else {
@@ -207,7 +211,10 @@ class Run {
     if (stretch_ != last_stretch_ && (stretch_ + 1)->start.step < step_ + Sticking::kBlock) {
       return 0;
     }
-    const std::size_t held = sticking_->advance_block(since_base(0.0), block_);
+    const double tau = since_base(0.0);
+    if (loop_.witness != nullptr) before_ = sticking_->state();
+    const std::size_t held = sticking_->advance_block(tau, block_);
+    if (loop_.witness != nullptr) show_held(tau, static_cast<double>(held) * loop_.grid_step);
     store(sample, held);
     counts_.steps += held;
     step_ += held;
@@ -216,7 +223,9 @@ class Run {
 
   double stick(double x, double last, bool sampled) {
     const double remaining = (last - x) * loop_.grid_step;
+    if (loop_.witness != nullptr) before_ = sticking_->state();
     const auto result = sticking_->advance(since_base(x), remaining, sampled && last == 1.0);
+    if (loop_.witness != nullptr) show_held(since_base(x), result.time);
     if (!std::isfinite(sticking_->force())) {
       fail(x, "the contact force is not a finite number");
       return x;
@@ -229,6 +238,7 @@ class Run {
   double slide(double x, double last) {
     using Outcome = typename Sliding<Friction>::Outcome;
     const auto result = sliding_.advance(x, last, drive_at(x), state_.modes);
+    if (loop_.witness != nullptr && result.position > x) show_slid(x);
     if (result.outcome == Outcome::kFailed) {
       fail(x,
            "the friction equation has no solution on any step: the force falls too steeply with "
@@ -239,13 +249,37 @@ class Run {
     return result.position;
   }
 
+  // What the string held from `tau` for `time` felt.
+  void show_held(double tau, double time) {
+    if (time == 0.0) return;
+    const double pieces = sticking_->pieces_of(time), length = time / pieces;
+    for (double k = 0.0; k < pieces; k += 1.0) {
+      const auto force = sticking_->force_piece(before_, tau, k * length, length);
+      loop_.witness->saw({.phase = ContactPhase::kSticking,
+                          .duration = length,
+                          .force = force,
+                          .drive = sticking_->drive().from(tau + k * length)});
+    }
+  }
+  // What the step that slid from x felt.
+  void show_slid(double x) {
+    const auto step = sliding_.last_step();
+    loop_.witness->saw({.phase = ContactPhase::kSliding,
+                        .duration = step.length * loop_.grid_step,
+                        .force = std::span(step.force).first(static_cast<std::size_t>(loop_.nodes)),
+                        .drive = drive_at(x),
+                        .side = sliding_.side(),
+                        .rise = law().rise_powers()});
+  }
+
   void attach(double x) {
     const double y = model_.observe(state_.modes, {.reactions = false}).displacement;
     const BowDrive drive = drive_at(x);
     const bool continuous = loop_.attach == AttachRule::kContinuous;
     const double force = -sliding_.side() * law().at(0.0, drive.load).friction;
-    sticking_->attach(drive, state_.modes, y, continuous ? -force / loop_.contact.stiffness : 0.0,
-                      law().rise());
+    const double elongation = continuous ? -force / loop_.contact.stiffness : 0.0;
+    sticking_->attach(drive, state_.modes, y, elongation, law().rise());
+    if (loop_.witness != nullptr) loop_.witness->attached(elongation);
     mark_base(x);
     list_switch(x, y, true);
     state_.sticking = true;
@@ -256,6 +290,7 @@ class Run {
   void release(double x, int limit) {
     sticking_->detach(since_base(x), state_.modes);
     law().set_rise(sticking_->rise(since_base(x)));
+    if (loop_.witness != nullptr) loop_.witness->released();
     const Motion motion = model_.observe(state_.modes, {.reactions = false});
     const double v = motion.velocity;
     list_switch(x, motion.displacement, false);
@@ -340,6 +375,7 @@ class Run {
   std::uint64_t step_ = 0;
   GridPoint base_;
   Sticking::Block block_;  // the samples of a held block
+  PlanarVector before_;    // what the held string was when it moved on, for the witness
 };
 
 }  // namespace

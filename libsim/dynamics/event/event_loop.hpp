@@ -9,6 +9,7 @@
 #include "libsim/base/stop_token.hpp"
 #include "libsim/dynamics/event/bow_path.hpp"
 #include "libsim/dynamics/event/closed_loop.hpp"
+#include "libsim/dynamics/event/force_witness.hpp"
 #include "libsim/dynamics/friction/stateful_laws.hpp"
 #include "libsim/dynamics/step_loop.hpp"
 #include "libsim/dynamics/switch.hpp"
@@ -48,11 +49,14 @@ struct EventLoop {
   AttachRule attach = AttachRule::kLiteral;
   int nodes = 5;               ///< Lobatto nodes of a sliding step, 2 … 5: order 2(nodes − 1)
   double slope_number = 0.35;  ///< κ, largest |g'| h/m_eff of a sliding step
+  double tail_ratio = 0.3;     ///< r, how fast the powers of the force in a sliding step fall
   double grid_step = 0.0;      ///< longest step [s]
   std::size_t steps_per_sample = 1;
   std::size_t samples = 0;  ///< samples, that of the start included
   SampleTargets targets;    ///< sample j is taken after j·steps_per_sample grid steps
   SwitchList switches;
+  /// Sees every piece of the force and every switch; null: nobody does, at no cost.
+  ForceWitness* witness = nullptr;
   StopToken stop;  ///< polled between samples
 };
 
@@ -62,6 +66,7 @@ struct EventCounts {
   /// Releases at which the string already moved against the slip that the force asked for.
   std::size_t wrong_sign_releases = 0;
   std::size_t steps = 0;
+  std::size_t refined_steps = 0;  ///< sliding steps taken back for shorter ones
   /// Why the run stopped early, and when [s].
   std::optional<std::string> failure;
   double failed_at = 0.0;

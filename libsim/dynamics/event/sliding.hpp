@@ -17,9 +17,13 @@ template <typename Friction>
 class Sliding {
  public:
   /// `slope_number` κ: the steps h keep |g'(u)| h/m_eff ≤ κ at their start and ≤ 2κ at every node,
-  /// where the friction equation has one solution.
-  Sliding(SlidingModel& model, const Friction& friction, double slope_number)
-      : model_(model), law_(friction), slope_number_(slope_number) {}
+  /// where the friction equation has one solution. `tail_ratio` r: with f = Σ F_k θ^k through the
+  /// s nodes they keep |F_{s−1}| h/m_eff ≤ r^{s−1} (|v_bow| + max u_i).
+  Sliding(SlidingModel& model, const Friction& friction, double slope_number, double tail_ratio)
+      : model_(model),
+        law_(friction),
+        slope_number_(slope_number),
+        longest_tail_(model.effective_mass() * std::pow(tail_ratio, model.rule().nodes - 1)) {}
 
   /// Starts with the sliding speed u = side·v_c ≥ 0 under the given load.
   void start(double side, double speed, double load) {
@@ -31,6 +35,7 @@ class Sliding {
     refinement_ = 0;
     powers_ = {friction_};
     last_length_ = 0.0;
+    attached_part_ = 1.0;
   }
 
   enum class Outcome {
@@ -46,13 +51,16 @@ class Sliding {
   /// Advances `state` from x by one step at most, not beyond `last`; `drive` has its τ = 0 at x.
   Advance advance(double x, double last, const BowDrive& drive, PlanarVector& state) {
     drive_ = drive;
-    const int level = wanted_level() + refinement_;
+    int level = wanted_level() + refinement_;
     if (level > kDeepestLevel) return {x, Outcome::kFailed};
     const double parts = std::ldexp(1.0, level);
     double end = (std::floor(x * parts) + 1.0) / parts;
     if ((end - x) * parts < 1e-9) end += 1.0 / parts;  // x is that point but for rounding
     end = std::min(end, last);
-    const bool on_grid = (end - x) * parts == 1.0;
+    // Behind a refined step: a half, a quarter, … of a step has its table too.
+    int deeper = 0;
+    const bool on_grid = std::frexp((end - x) * parts, &deeper) == 0.5;
+    level += 1 - deeper;
     NodeValues values = start_values((end - x) * model_.grid_step());
     const bool from_tables = on_grid && speed_ > 0.0;
     if (from_tables) {
@@ -62,9 +70,26 @@ class Sliding {
     return any_step(x, end, state, values, from_tables);
   }
 
+  /// The force that drove the last step that moved, as powers of θ, and its length in grid steps.
+  struct LastStep {
+    double length = 0.0;
+    NodeVector force{};
+  };
+  LastStep last_step() const {
+    LastStep step{attached_part_ * last_length_, powers_};
+    double scale = -side_;
+    for (double& c : step.force) {
+      c *= scale;
+      scale *= attached_part_;
+    }
+    return step;
+  }
+
   double side() const { return side_; }
   double speed() const { return speed_; }
   double force() const { return -side_ * friction_; }
+  /// Steps that were taken back for shorter ones.
+  std::size_t refined_steps() const { return refined_; }
   Friction& friction() { return law_; }
 
  private:
@@ -119,6 +144,14 @@ class Sliding {
     return steepest * step > 2.0 * slope_number_ * model_.effective_mass();
   }
 
+  // The powers of the force do not fall fast enough for the polynomial to stand for it.
+  bool unresolved(const NodeValues& values, const NodeVector& powers, double step) const {
+    double speed = 0.0;
+    for (int i = 0; i < nodes(); ++i) speed = std::max(speed, values.speed[i]);
+    const double tail = std::abs(powers[static_cast<std::size_t>(nodes() - 1)]);
+    return tail * step > longest_tail_ * (speed + std::abs(drive_.velocity));
+  }
+
   // `length`: of the step, in grid steps.
   void accept(const NodeValues& values, const NodeVector& powers, double length) {
     law_.accept(1.0);
@@ -128,6 +161,7 @@ class Sliding {
     slope_ = values.slope[last];
     powers_ = powers;
     last_length_ = length;
+    attached_part_ = 1.0;
     refinement_ = 0;
   }
 
@@ -140,6 +174,7 @@ class Sliding {
 
   Advance refined(double x) {
     ++refinement_;
+    ++refined_;
     return {x, Outcome::kRefined};
   }
 
@@ -168,6 +203,7 @@ class Sliding {
       return refined(end - length);
     }
     const NodeVector powers = friction_powers(values);
+    if (unresolved(values, powers, table.step)) return refined(end - length);
     if (!stays_sliding(table, values, powers, state)) return std::nullopt;
     NodeVector force{};
     for (int j = 0; j < nodes(); ++j) force[j] = -side_ * values.friction[j];
@@ -208,7 +244,10 @@ class Sliding {
     NodeVector powers = powers_;
     double from = 1.0, scale = extrapolation(length);
     for (int trial = 0; trial < kMaxTrials; ++trial) {
-      if (trial > 0 && length < 1e-15) return {x, Outcome::kAttached};
+      if (trial > 0 && length < 1e-15) {
+        last_length_ = 0.0;
+        return {x, Outcome::kAttached};
+      }
       const double ratio = length / series_length, step = length * model_.grid_step();
       set_loads(step, values);
       if (!solved &&
@@ -217,6 +256,7 @@ class Sliding {
       }
       solved = false;
       powers = friction_powers(values);
+      if (unresolved(values, powers, step)) return refined(x);
       NodeVector force;
       for (std::size_t k = 0; k < force.size(); ++k) force[k] = -side_ * powers[k];
       const auto theta =
@@ -229,6 +269,9 @@ class Sliding {
       if (std::abs(*theta - 1.0) <= kLastCorrection) {
         model_.advance_any(ratio, *theta, force, state);
         law_.accept(*theta);
+        powers_ = powers;
+        last_length_ = length;
+        attached_part_ = *theta;
         return {x + *theta * length, Outcome::kAttached};
       }
       length *= *theta;
@@ -273,13 +316,16 @@ class Sliding {
   SlidingModel& model_;
   Friction law_;
   double slope_number_;
-  BowDrive drive_;  // from the start of the running step
+  double longest_tail_;  // m_eff r^{s−1}
+  BowDrive drive_;       // from the start of the running step
   double side_ = -1.0;
   double speed_ = 0.0, friction_ = 0.0, slope_ = 0.0;
   // Power coefficients of the friction on the last step, and its length in grid steps; none: 0.
   NodeVector powers_{};
   double last_length_ = 0.0;
+  double attached_part_ = 1.0;  // of that step, where the string stuck inside it
   int refinement_ = 0;
+  std::size_t refined_ = 0;
 };
 
 }  // namespace modcal::event

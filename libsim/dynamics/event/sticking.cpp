@@ -188,11 +188,12 @@ std::array<double, Sticking::kTerms> Sticking::limit_series(double tau, double t
   return bound;
 }
 
-std::optional<Sticking::Advance> Sticking::crossing(double tau, double time) {
+std::array<double, Sticking::kTerms> Sticking::force_series(const PlanarVector& state, double tau,
+                                                            double time) const {
   std::array<double, kTerms> force;
-  real_products(series_, state_, force);
+  real_products(series_, state, force);
   const double ratio = time / series_step_;
-  double scale = 1.0, swing = 0.0;
+  double scale = 1.0;
   for (double& c : force) {
     c *= scale;
     scale *= ratio;
@@ -200,6 +201,19 @@ std::optional<Sticking::Advance> Sticking::crossing(double tau, double time) {
   force[0] += slow_.value_at(tau);
   force[1] += slow_.rate_at(tau) * time;
   force[2] += 0.5 * slow_.curvature * time * time;
+  return force;
+}
+
+std::array<double, Sticking::kTerms> Sticking::force_piece(const PlanarVector& state, double tau,
+                                                           double offset, double time) {
+  if (offset == 0.0) return force_series(state, tau, time);
+  advance_by(offset, loop_.pole, state, trial_);
+  return force_series(trial_, tau + offset, time);
+}
+
+std::optional<Sticking::Advance> Sticking::crossing(double tau, double time) {
+  const std::array<double, kTerms> force = force_series(state_, tau, time);
+  double swing = 0.0;
   for (std::size_t p = 1; p < kTerms; ++p) swing += std::abs(force[p]);
 
   const Limit at = limit(tau, time);

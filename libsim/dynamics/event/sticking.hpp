@@ -53,6 +53,19 @@ class Sticking {
   /// tells what happens at their ends. Possibly none: advance() decides then.
   std::size_t advance_block(double tau, Block& out);
 
+  /// The state to ask force_piece() about later.
+  const PlanarVector& state() const { return state_; }
+  /// Number of pieces for which the series of the force converges.
+  double pieces_of(double time) const {
+    return std::max(1.0, std::ceil(time / series_step_ * (1.0 - 1e-12)));
+  }
+  static constexpr std::size_t kTerms = 25;
+  /// Powers of θ of the force from `tau` + `offset` on, θ = 1 after `time` ≤ the time of a piece;
+  /// `state` is that of `tau`.
+  std::array<double, kTerms> force_piece(const PlanarVector& state, double tau, double offset,
+                                         double time);
+  const BowDrive& drive() const { return drive_; }
+
   double force() const { return force_.value; }
   /// Temperature rise at τ [K].
   double rise(double tau) const { return limit_.rise_at(tau); }
@@ -63,8 +76,6 @@ class Sticking {
   Motion observe(double tau);
 
  private:
-  static constexpr std::size_t kTerms = 25;
-
   struct ForceJet {
     double value = 0.0;
     double rate = 0.0;
@@ -79,6 +90,7 @@ class Sticking {
   }
   double reach() const { return std::min(series_step_, limit_.reach()); }
   std::array<double, kTerms> limit_series(double tau, double time) const;
+  std::array<double, kTerms> force_series(const PlanarVector& state, double tau, double time) const;
   ForceJet jet_at(double tau, const SumAndRate& sums) const {
     return {slow_.value_at(tau) + sums.sum, slow_.rate_at(tau) + sums.rate};
   }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "libsim/base/error.hpp"
-#include "libsim/dynamics/event/event_loop.hpp"
+#include "libsim/dynamics/event/energy_meter.hpp"
 #include "libsim/dynamics/simulators/scene_setup.hpp"
 
 namespace modcal {
@@ -47,6 +47,13 @@ void ModalEvent::Options::visit(OptionVisitor& visitor) {
                   .unit = "1",
                   .range = Range::positive()},
                  slope_number);
+  visitor.number({.key = "tail_ratio",
+                  .meaning = "highest power of the friction force in a sliding step, times the "
+                             "step, over effective mass and speed, at most this to the power "
+                             "nodes - 1; smaller ones halve more steps",
+                  .unit = "1",
+                  .range = Range::positive()},
+                 tail_ratio);
   visitor.text({.key = "attach",
                 .meaning = "adherence spring at attachment: literal (unstretched: the force starts "
                            "at 0) or continuous (the force goes on from the sliding limit)",
@@ -61,6 +68,8 @@ ModalEvent::ModalEvent(const Options& options) : options_(options) {
                  "slope number {:g} must be in (0, 1]: above 1 the friction equation of a step may "
                  "have several solutions",
                  options.slope_number);
+  MODCAL_REQUIRE(options.tail_ratio > 0.0 && std::isfinite(options.tail_ratio),
+                 "tail ratio {:g} must be > 0", options.tail_ratio);
   MODCAL_REQUIRE(options.attach == "literal" || options.attach == "continuous",
                  "unknown attachment rule \"{}\": literal or continuous", options.attach);
 }
@@ -85,6 +94,16 @@ std::vector<SceneRefusal> ModalEvent::unsupported(const Scene& scene) const {
   return refusals;
 }
 
+ModalEvent::Audited ModalEvent::simulate_audited(const Scene& scene, double sample_rate,
+                                                 const OutputRequest& outputs,
+                                                 const StopToken& stop) const {
+  Audited result;
+  ModalEvent watched = *this;
+  watched.energy_ = &result.energy;
+  result.simulation = watched.simulate(scene, sample_rate, outputs, stop);
+  return result;
+}
+
 Simulation ModalEvent::run(const Scene& scene, double sample_rate, const OutputRequest& outputs,
                            const StopToken& stop) const {
   const double wanted = std::isnan(options_.max_step) ? 1.0 / sample_rate : options_.max_step;
@@ -105,22 +124,25 @@ Simulation ModalEvent::run(const Scene& scene, double sample_rate, const OutputR
   contact.static_limit = friction->static_limit(force);
   event::EventState state = event::initial_state(modes, bow.velocity.at(0.0));
   if (thermal != nullptr) state.rise = thermal->rise;
-  const event::EventLoop loop{
-      .contact = contact,
-      .law = thermal != nullptr ? SlidingLaw{} : friction->sliding(force),
-      .thermal = thermal != nullptr ? std::optional(*thermal) : std::nullopt,
-      .bow = scaled ? knots_of(bow) : std::vector<event::BowKnot>{},
-      .attach = options_.attach == "continuous" ? event::AttachRule::kContinuous
-                                                : event::AttachRule::kLiteral,
-      .nodes = static_cast<int>(options_.nodes),
-      .slope_number = options_.slope_number,
-      .grid_step = plan.time_step,
-      .steps_per_sample = plan.steps_per_sample,
-      .samples = count,
-      .targets = targets_of(result),
-      .switches = {&result.switches, outputs.switches_from},
-      .stop = stop};
+  event::EventLoop loop{.contact = contact,
+                        .law = thermal != nullptr ? SlidingLaw{} : friction->sliding(force),
+                        .thermal = thermal != nullptr ? std::optional(*thermal) : std::nullopt,
+                        .bow = scaled ? knots_of(bow) : std::vector<event::BowKnot>{},
+                        .attach = options_.attach == "continuous" ? event::AttachRule::kContinuous
+                                                                  : event::AttachRule::kLiteral,
+                        .nodes = static_cast<int>(options_.nodes),
+                        .slope_number = options_.slope_number,
+                        .tail_ratio = options_.tail_ratio,
+                        .grid_step = plan.time_step,
+                        .steps_per_sample = plan.steps_per_sample,
+                        .samples = count,
+                        .targets = targets_of(result),
+                        .switches = {&result.switches, outputs.switches_from},
+                        .stop = stop};
+  std::optional<event::EnergyMeter> meter;
+  if (energy_ != nullptr) loop.witness = &meter.emplace(loop, modes, state);
   const event::EventCounts counts = event::run_event_loop(loop, modes, state);
+  if (meter && !counts.failure) *energy_ = meter->account(state);
 
   if (counts.failure) {
     result = empty_simulation(0, sample_rate, {});
@@ -131,6 +153,7 @@ Simulation ModalEvent::run(const Scene& scene, double sample_rate, const OutputR
   result.steps = counts.steps;
   result.attachments = counts.attachments;
   result.releases = counts.releases;
+  result.refined_steps = counts.refined_steps;
   result.modes_moved = modes.size();
   return result;
 }

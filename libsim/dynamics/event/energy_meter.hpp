@@ -1,0 +1,47 @@
+// Integrates the energies of an event-driven run from the pieces of its contact force.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "libsim/dynamics/event/event_energy.hpp"
+#include "libsim/dynamics/event/event_loop.hpp"
+#include "libsim/dynamics/event/mode_replay.hpp"
+
+namespace modcal::event {
+
+/// Replays the string under the force alone, in arithmetic of its own (mode_replay.hpp), and takes
+/// the velocity that comes out of it for everything: works are integrals of polynomials in time,
+/// the law's own force is computed anew at 14 Gauss points of every piece, elongation is the
+/// integral of v_c from the attachment on.
+class EnergyMeter final : public ForceWitness {
+ public:
+  /// The contact of `loop` and the state that the run starts from.
+  EnergyMeter(const EventLoop& loop, const ContactModes& modes, const EventState& start);
+
+  void saw(const ForcePiece& piece) override;
+  void attached(double elongation) override;
+  void released() override;
+  /// The account up to the integrator's final state.
+  EventEnergy account(const EventState& end) const;
+
+ private:
+  void part(const ForcePiece& piece);
+  void divide(const ForcePiece& piece, double phase);
+  double law_force(const ForcePiece& piece, double theta, double slip, double elongation) const;
+  double spring_energy() const { return 0.5 * stiffness_ * elongation_ * elongation_; }
+
+  double stiffness_, damping_;
+  SlidingLaw law_;
+  std::optional<ThermalSliding> thermal_;
+  ModeReplay replay_;
+  GaussRule rule_;
+  std::vector<double> velocity_;  // powers of θ of v on the running piece
+  bool sticking_ = false;
+  double elongation_ = 0.0;
+  double start_energy_ = 0.0, start_spring_ = 0.0;
+  EventEnergy sum_;
+};
+
+}  // namespace modcal::event
