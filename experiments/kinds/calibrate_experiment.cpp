@@ -25,6 +25,13 @@ std::vector<Finding> CalibrateExperiment::lint() const {
       [&] { options_.further.require_fit_to(options_.inversion.observation, calibration); },
       findings);
   const auto modes = static_cast<std::size_t>(options_.inversion.observation.string_model().modes);
+  if (calibration.has_continuation) {
+    const std::size_t strokes =
+        1 + options_.further.contacts.size() + options_.further.files.size();
+    lint_making(
+        "calibration.continuation.unknowns.priors",
+        [&] { require_priors(calibration.continuation.unknowns, modes, strokes); }, findings);
+  }
   lint_making(
       "calibration.parameters", [&] { calibration.parameters.names(modes); }, findings);
   return findings;

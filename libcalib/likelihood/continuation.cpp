@@ -8,7 +8,6 @@
 #include "libcalib/likelihood/mode_verdict.hpp"
 #include "libcalib/likelihood/neighbor_test.hpp"
 #include "libcalib/likelihood/newton_fit.hpp"
-#include "libcalib/likelihood/record_options.hpp"
 #include "libcalib/stiff_string_fit.hpp"
 #include "libsim/base/error.hpp"
 
@@ -38,10 +37,12 @@ void deny_noise(const ModelPoint& point, const Eigen::MatrixXd& information,
 class Attempt {
  public:
   Attempt(const ModelPoint& initial, const NoisyRecords& records,
-          const ContinuationOptions& options, double highest, double noise_error)
+          const ContinuationOptions& options, const StatedPriors& priors, double highest,
+          double noise_error)
       : initial_(initial),
         records_(records),
         options_(options),
+        priors_(priors),
         highest_(highest),
         noise_error_(noise_error) {
     std::vector<double> frequencies;
@@ -75,12 +76,17 @@ class Attempt {
     return result;
   }
 
-  static NewtonOptions with_priors(const StringUnknowns& unknowns, std::size_t steps,
-                                   double tolerance) {
-    return {.steps = steps,
-            .tolerance = tolerance,
-            .prior = unknowns.prior(),
-            .prior_mean = unknowns.prior_mean()};
+  // About θ, where the fit starts.
+  static NewtonOptions with_priors(const StringUnknowns& unknowns, const Eigen::VectorXd& theta,
+                                   std::size_t steps, double tolerance) {
+    NewtonOptions options{.steps = steps, .tolerance = tolerance};
+    set_prior(unknowns.prior(theta), options);
+    return options;
+  }
+
+  static void set_prior(QuadraticPrior prior, NewtonOptions& options) {
+    options.prior = std::move(prior.precision);
+    options.prior_mean = std::move(prior.mean);
   }
 
   // f_0, B and x_c through the ladder, from the x_c that serves best.
@@ -88,25 +94,26 @@ class Attempt {
     const double step = initial_.basis.length / 660.0;
     const ProjectedLikelihood widest = damped(200.0);
     const StringUnknowns unknowns =
-        StringUnknowns::law(reference_, start_.fundamental * std::exp(shift), start_.inharmonicity)
+        StringUnknowns::law(reference_, start_.fundamental * std::exp(shift), start_.inharmonicity,
+                            {}, priors_)
             .without_damping_and_sensors();
     NewtonFit best;
     for (int i = -4; i <= 4; ++i) {
       Eigen::VectorXd theta = unknowns.start();
       theta[unknowns.contact()] = i * step;
       if (!unknowns.admits(theta)) continue;
-      NewtonFit found = fit(widest, unknowns, theta, {.steps = 25, .tolerance = 1e-2});
+      NewtonFit found = fit(widest, unknowns, theta, with_priors(unknowns, theta, 25, 1e-2));
       if (found.objective < best.objective) best = std::move(found);
     }
     MODCAL_REQUIRE(best.theta.size() > 0, "the initial frequencies follow no law of a string");
     for (const double sigma : {100.0, 50.0}) {
-      best = fit(damped(sigma), unknowns, best.theta, {.steps = 20, .tolerance = 1e-2});
+      best = fit(damped(sigma), unknowns, best.theta, with_priors(unknowns, best.theta, 20, 1e-2));
     }
     law_ = StringUnknowns::law(reference_, start_.fundamental * std::exp(shift),
-                               start_.inharmonicity, options_.unknowns);
+                               start_.inharmonicity, options_.unknowns, priors_);
     law_theta_ = Eigen::VectorXd::Zero(law_.size());
     law_theta_.head(3) = best.theta;
-    law_theta_ = fit(damped(20.0), law_, law_theta_, with_priors(law_, 20, 1e-3)).theta;
+    law_theta_ = fit(damped(20.0), law_, law_theta_, with_priors(law_, law_theta_, 20, 1e-3)).theta;
     ladder_theta_ = law_theta_;
   }
 
@@ -121,8 +128,8 @@ class Attempt {
     result.chi2_deviation = std::hypot(
         std::sqrt(2.0 / whole_->degrees_of_freedom(static_cast<std::size_t>(law_.size()), modes())),
         noise_error_);
-    law_theta_ = fit(*whole_, law_, law_theta_, with_priors(law_, 12, 1e-2)).theta;
-    NewtonOptions options = with_priors(law_, 4, 1e-4);
+    law_theta_ = fit(*whole_, law_, law_theta_, with_priors(law_, law_theta_, 12, 1e-2)).theta;
+    NewtonOptions options = with_priors(law_, law_theta_, 4, 1e-4);
     options.noise = prepare_weights(law_, law_theta_);
     const NewtonFit last = fit(*weighted_, law_, law_theta_, options);
     law_theta_ = last.theta;
@@ -169,13 +176,12 @@ class Attempt {
   void free_frequencies(ContinuationResult& result) {
     const bool from_law = result.law.accepted;
     const StringUnknowns unknowns = StringUnknowns::frequencies(
-        law_.model(from_law ? law_theta_ : ladder_theta_), options_.unknowns);
+        law_.model(from_law ? law_theta_ : ladder_theta_), options_.unknowns, priors_);
     const double inharmonicity = from_law ? law_theta_[1] : ladder_theta_[1];
     const auto wide = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(modes()), kWidePrior);
     NewtonOptions options{.steps = 10, .tolerance = 1e-2, .frequency_cap = kStepCap};
-    options.prior = unknowns.prior(law_prior(wide, inharmonicity));
-    options.prior_mean = unknowns.prior_mean();
     Eigen::VectorXd theta = unknowns.start();
+    set_prior(unknowns.prior(theta, {wide, inharmonicity}), options);
     if (!from_law) theta = descend(unknowns, theta, options, result);
     theta = fit(*whole_, unknowns, theta, options).theta;
     options.noise = prepare_weights(unknowns, theta);
@@ -189,7 +195,7 @@ class Attempt {
     const double estimated = estimate_law_width(theta.head(n), seen.head(n), inharmonicity);
     result.law_width = std::isnan(options_.law_width) ? estimated : options_.law_width;
     const Eigen::VectorXd widths = prior_widths(seen.head(n), result.law_width, estimated);
-    options.prior = unknowns.prior(law_prior(widths, inharmonicity));
+    set_prior(unknowns.prior(theta, {widths, inharmonicity}), options);
     options.tolerance = 1e-4;
     theta = fit(*weighted_, unknowns, theta, options).theta;
     const Eigen::MatrixXd covariance = covariance_at(unknowns, theta, options);
@@ -204,7 +210,8 @@ class Attempt {
       const ProjectedLikelihood likelihood = damped(sigma);
       theta = fit(likelihood, unknowns, theta, options).theta;
       if (sigma > 10.0) continue;
-      const std::size_t moved = leave_false_minima(likelihood, unknowns, options.prior, theta);
+      const std::size_t moved =
+          leave_false_minima(likelihood, unknowns, {options.prior, options.prior_mean}, theta);
       result.moved_modes += moved;
       if (moved > 0) theta = fit(likelihood, unknowns, theta, options).theta;
     }
@@ -225,6 +232,19 @@ class Attempt {
     result.chi2 = reduced_chi2(result.model, static_cast<std::size_t>(unknowns.size()));
     const auto n = static_cast<Eigen::Index>(modes());
     result.modes = free_verdicts(result.model, deviation.head(n), seen.head(n), estimated);
+    trust_stated_frequencies(deviation, result);
+  }
+
+  // What is stated of a mode's frequency speaks for it where the data do not.
+  void trust_stated_frequencies(const Eigen::VectorXd& deviation,
+                                ContinuationResult& result) const {
+    for (std::size_t n = 0; n < modes(); ++n) {
+      ModeVerdict& verdict = result.modes[n];
+      if (verdict.source == ModeSource::kIdentified) continue;
+      if (!priors_.has({.kind = UnknownKind::kFrequency, .mode = n})) continue;
+      verdict.source = ModeSource::kPrior;
+      verdict.deviation = deviation[static_cast<Eigen::Index>(n)];
+    }
   }
 
   static void report_sensors(const StringUnknowns& unknowns, const Eigen::MatrixXd& covariance,
@@ -240,6 +260,7 @@ class Attempt {
   const ModelPoint& initial_;
   const NoisyRecords& records_;
   const ContinuationOptions& options_;
+  const StatedPriors& priors_;
   double highest_ = 0.0;      // [rad/s]
   double noise_error_ = 0.0;  // relative error of the noise power
   ModelPoint reference_;      // the initial model with the sensors stated
@@ -254,12 +275,14 @@ class Attempt {
 // Where nothing fits, what the law leaves is taken for noise: frequencies that fit the misfit would
 // be farther from the truth than the law. χ² and verdict stay those of the noise stated.
 ContinuationResult with_misfit_for_noise(const ModelPoint& initial, NoisyRecords records,
-                                         const ContinuationOptions& options, double highest,
+                                         const ContinuationOptions& options,
+                                         const StatedPriors& priors, double highest,
                                          double noise_error, ContinuationResult contradicted) {
   const double misfit = contradicted.law.chi2;
   if (!(misfit > 1.0)) return contradicted;
   for (double& deviation : records.deviation) deviation *= std::sqrt(misfit);
-  ContinuationResult found = Attempt(initial, records, options, highest, noise_error).run(0.0);
+  ContinuationResult found =
+      Attempt(initial, records, options, priors, highest, noise_error).run(0.0);
   found.chi2 *= misfit;
   found.law.chi2 *= misfit;
   found.law.accepted = false;
@@ -271,31 +294,16 @@ ContinuationResult with_misfit_for_noise(const ModelPoint& initial, NoisyRecords
 
 }  // namespace
 
-void ContinuationOptions::visit(OptionVisitor& visitor) {
-  visitor.number({.key = "law_width",
-                  .meaning = "relative width of the prior of f_n about the law",
-                  .unit = "1",
-                  .range = Range::positive(),
-                  .word = "estimated"},
-                 law_width);
-  visit_record_options(visitor, highest_frequency, left_noise, right_noise);
-  visitor.section({.key = "unknowns", .meaning = "what is free of damping and sensors"}, unknowns);
-  visitor.integer({.key = "restarts",
-                   .meaning = "other starts tried while the fit is contradicted by the data",
-                   .range = Range::closed(0.0, 4.0)},
-                  restarts);
-}
-
-double likelihood_band(const ModelPoint& point, double highest_frequency, double sample_rate) {
-  const double top = *std::max_element(point.basis.omega.begin(), point.basis.omega.end());
-  const double highest =
-      std::isnan(highest_frequency) ? 1.05 * top : 2.0 * std::numbers::pi * highest_frequency;
-  // Above 0.4 f_s the aliases of the force's jumps are no longer small.
-  return std::min(highest, 0.8 * std::numbers::pi * sample_rate);
+ContinuationResult calibrate_by_continuation(const ModelPoint& initial, const CalibrationData& data,
+                                             const ContinuationOptions& options) {
+  ModelPoint stated = initial;
+  stated.sensors = options.unknowns.sensors();
+  return calibrate_by_continuation(initial, data, options, StatedPriors(options.unknowns, stated));
 }
 
 ContinuationResult calibrate_by_continuation(const ModelPoint& initial, const CalibrationData& data,
-                                             const ContinuationOptions& options) {
+                                             const ContinuationOptions& options,
+                                             const StatedPriors& priors) {
   const NoisyRecords records =
       NoisyRecords::of_data(data, {options.left_noise, options.right_noise});
   const bool estimated = std::isnan(options.left_noise) || std::isnan(options.right_noise);
@@ -304,7 +312,7 @@ ContinuationResult calibrate_by_continuation(const ModelPoint& initial, const Ca
       estimated ? 1e-2 * std::sqrt(51200.0 / static_cast<double>(data.samples)) : 0.0;
   const double highest = likelihood_band(initial, options.highest_frequency, data.sample_rate);
   constexpr double kShifts[] = {0.0, 4e-3, -4e-3, 8e-3, -8e-3};
-  Attempt attempt(initial, records, options, highest, noise_error);
+  Attempt attempt(initial, records, options, priors, highest, noise_error);
   ContinuationResult best;
   for (std::size_t i = 0; i <= static_cast<std::size_t>(options.restarts); ++i) {
     ContinuationResult found = attempt.run(kShifts[i]);
@@ -313,7 +321,8 @@ ContinuationResult calibrate_by_continuation(const ModelPoint& initial, const Ca
     if (best.right) break;
   }
   if (best.right || !options.frequencies) return best;
-  return with_misfit_for_noise(initial, records, options, highest, noise_error, std::move(best));
+  return with_misfit_for_noise(initial, records, options, priors, highest, noise_error,
+                               std::move(best));
 }
 
 }  // namespace modcal

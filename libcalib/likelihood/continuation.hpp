@@ -88,5 +88,9 @@ double likelihood_band(const ModelPoint& point, double highest_frequency, double
 /// modes the data do not see tied to the law. The records must begin at rest.
 ContinuationResult calibrate_by_continuation(const ModelPoint& initial, const CalibrationData& data,
                                              const ContinuationOptions& options);
+/// The same with these priors in the place of those among the options.
+ContinuationResult calibrate_by_continuation(const ModelPoint& initial, const CalibrationData& data,
+                                             const ContinuationOptions& options,
+                                             const StatedPriors& priors);
 
 }  // namespace modcal

@@ -18,15 +18,10 @@ ProjectedLikelihood about(const ProjectedLikelihood& likelihood, double omega) {
   return ProjectedLikelihood(record.slice(begin, 2 * kHalfBand));
 }
 
-double with_prior(double cost, const Eigen::VectorXd& theta, const Eigen::MatrixXd& prior) {
-  const auto delta = theta.head(prior.rows());
-  return cost + 0.5 * delta.dot(prior * delta);
-}
-
 }  // namespace
 
 std::size_t leave_false_minima(const ProjectedLikelihood& likelihood,
-                               const StringUnknowns& unknowns, const Eigen::MatrixXd& prior,
+                               const StringUnknowns& unknowns, const QuadraticPrior& prior,
                                Eigen::VectorXd& theta) {
   std::size_t moved = 0;
   for (std::size_t n = 0; n < unknowns.modes(); ++n) {
@@ -37,12 +32,12 @@ std::size_t leave_false_minima(const ProjectedLikelihood& likelihood,
     // Half a width of the damped resonance: finer than its minima are apart.
     const double step = std::max(
         0.5 * (likelihood.record().sigma + point.basis.zeta[n] * omega) / omega, kReach / 16.0);
-    double best = with_prior(local.cost(point), theta, prior) - kMargin;
+    double best = local.cost(point) + prior.value(theta) - kMargin;
     double best_shift = 0.0;
     for (double shift = -kReach; shift <= kReach; shift += step) {
       Eigen::VectorXd trial = theta;
       trial[i] += shift;
-      const double value = with_prior(local.cost(unknowns.model(trial)), trial, prior);
+      const double value = local.cost(unknowns.model(trial)) + prior.value(trial);
       if (value >= best) continue;
       best = value;
       best_shift = shift;

@@ -9,7 +9,7 @@ namespace modcal {
 /// than 9 in Σ|e|² + prior (three standard deviations), one mode at a time, all else fixed. Returns
 /// how many were moved.
 std::size_t leave_false_minima(const ProjectedLikelihood& likelihood,
-                               const StringUnknowns& unknowns, const Eigen::MatrixXd& prior,
+                               const StringUnknowns& unknowns, const QuadraticPrior& prior,
                                Eigen::VectorXd& theta);
 
 }  // namespace modcal

@@ -55,6 +55,16 @@ class AllRecords {
     return true;
   }
 
+  std::optional<LinearForm> coordinate(const UnknownName& name,
+                                       const Eigen::VectorXd& theta) const {
+    const std::optional<LinearForm> own = unknowns_.coordinate(name, this->own(theta, name.record));
+    if (!own) return own;
+    LinearForm form{.slope = Eigen::VectorXd::Zero(size() + 2), .offset = own->offset};
+    for (Index i = 0; i < unknowns_.size(); ++i) form.slope[place(i, name.record)] = own->slope[i];
+    form.slope.tail(2) = own->slope.tail(2);
+    return form;
+  }
+
   LikelihoodPoint evaluate(const Eigen::VectorXd& theta, bool twice_weighted) const {
     LikelihoodPoint sum{.slope = Eigen::VectorXd::Zero(size()),
                         .information = Eigen::MatrixXd::Zero(size(), size())};
@@ -104,29 +114,39 @@ class AllRecords {
 };
 
 // The record to start from has the smallest χ²; its contact is that of the first.
-StringUnknowns shared_unknowns(const RecordsFit& fit, const ContinuationOptions& options) {
+StringUnknowns shared_unknowns(const RecordsFit& fit, const ContinuationOptions& options,
+                               const StatedPriors& priors) {
   const auto best = std::min_element(
       fit.single.begin(), fit.single.end(),
       [](const ContinuationResult& a, const ContinuationResult& b) { return a.chi2 < b.chi2; });
   ModelPoint reference = best->model;
   reference.contact = fit.single.front().model.contact;
-  return options.frequencies ? StringUnknowns::frequencies(reference, options.unknowns)
-                             : StringUnknowns::law(reference, best->law.fundamental,
-                                                   best->law.inharmonicity, options.unknowns);
+  return options.frequencies
+             ? StringUnknowns::frequencies(reference, options.unknowns, priors)
+             : StringUnknowns::law(reference, best->law.fundamental, best->law.inharmonicity,
+                                   options.unknowns, priors);
 }
 
 // The law's prior is as wide as the record that departs furthest from it says.
-NewtonOptions newton_options(const StringUnknowns& unknowns, const RecordsFit& fit) {
-  NewtonOptions newton{.steps = 10, .tolerance = 1e-4, .frequency_cap = 1e-3};
-  Eigen::MatrixXd frequencies;
+NewtonOptions newton_options(const AllRecords& all, const StatedPriors& priors,
+                             const Eigen::VectorXd& start, const RecordsFit& fit) {
+  const StringUnknowns& unknowns = all.unknowns();
+  PriorEquations equations(all.size());
+  priors.state([&](const UnknownName& name) { return all.coordinate(name, start); }, equations);
+  unknowns.state_damping_ratios(equations);
   if (!unknowns.is_law()) {
     double width = 0.0;
     for (const ContinuationResult& single : fit.single) width = std::max(width, single.law_width);
-    frequencies = law_prior(Eigen::VectorXd::Constant(static_cast<Index>(unknowns.modes()), width),
-                            fit.single.front().law.inharmonicity);
+    equations.add_scatter({Eigen::VectorXd::Constant(static_cast<Index>(unknowns.modes()), width),
+                           fit.single.front().law.inharmonicity},
+                          unknowns.log_frequencies());
   }
-  newton.prior = unknowns.prior(frequencies);
-  return newton;
+  QuadraticPrior prior = equations.solve();
+  return {.steps = 10,
+          .tolerance = 1e-4,
+          .frequency_cap = 1e-3,
+          .prior = std::move(prior.precision),
+          .prior_mean = std::move(prior.mean)};
 }
 
 void report(const AllRecords& all, const Eigen::VectorXd& theta, const Eigen::MatrixXd& covariance,
@@ -165,13 +185,17 @@ void report(const AllRecords& all, const Eigen::VectorXd& theta, const Eigen::Ma
 RecordsFit calibrate_records(const ModelPoint& initial, std::span<const CalibrationData> records,
                              const ContinuationOptions& options) {
   MODCAL_REQUIRE(!records.empty(), "a fit of several records needs at least {}", 1);
+  ModelPoint stated = initial;
+  stated.sensors = options.unknowns.sensors();
+  const StatedPriors priors(options.unknowns, stated, records.size());
   RecordsFit fit;
   std::vector<double> contacts;
-  for (const CalibrationData& data : records) {
-    fit.single.push_back(calibrate_by_continuation(initial, data, options));
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    fit.single.push_back(
+        calibrate_by_continuation(initial, records[r], options, priors.of_record(r)));
     contacts.push_back(fit.single.back().model.contact);
   }
-  const StringUnknowns unknowns = shared_unknowns(fit, options);
+  const StringUnknowns unknowns = shared_unknowns(fit, options, priors);
   AllRecords all(unknowns, contacts);
   const Eigen::VectorXd start = all.start();
   for (std::size_t r = 0; r < records.size(); ++r) {
@@ -186,9 +210,7 @@ RecordsFit calibrate_records(const ModelPoint& initial, std::span<const Calibrat
     weighted.set_weights(signal_weights(noisy, sigma, highest, whole, point));
     all.add(whole, std::move(weighted));
   }
-  NewtonOptions newton = newton_options(unknowns, fit);
-  newton.prior_mean = Eigen::VectorXd::Zero(all.size());
-  newton.prior_mean.head(unknowns.size()) = unknowns.prior_mean();
+  NewtonOptions newton = newton_options(all, priors, start, fit);
   newton.noise = all.noise(start);
   const NewtonFit found = newton_fit(
       {.evaluate = [&](const Eigen::VectorXd& theta) { return all.evaluate(theta, false); },

@@ -1,10 +1,7 @@
 #include "libcalib/likelihood/string_unknowns.hpp"
 
-#include <Eigen/LU>
 #include <cmath>
 #include <numbers>
-
-#include "libsim/base/error.hpp"
 
 namespace modcal {
 namespace {
@@ -15,8 +12,9 @@ using std::numbers::pi;
 }  // namespace
 
 StringUnknowns StringUnknowns::law(const ModelPoint& reference, double fundamental,
-                                   double inharmonicity, const UnknownsOptions& options) {
-  StringUnknowns unknowns = frequencies(reference, options);
+                                   double inharmonicity, const UnknownsOptions& options,
+                                   const StatedPriors& priors) {
+  StringUnknowns unknowns = frequencies(reference, options, priors);
   unknowns.fundamental_ = fundamental;
   unknowns.inharmonicity_ = inharmonicity;
   unknowns.law_ = true;
@@ -24,10 +22,12 @@ StringUnknowns StringUnknowns::law(const ModelPoint& reference, double fundament
 }
 
 StringUnknowns StringUnknowns::frequencies(const ModelPoint& reference,
-                                           const UnknownsOptions& options) {
+                                           const UnknownsOptions& options,
+                                           const StatedPriors& priors) {
   StringUnknowns unknowns;
   unknowns.reference_ = reference;
   unknowns.options_ = options;
+  unknowns.priors_ = priors;
   return unknowns;
 }
 
@@ -191,63 +191,6 @@ LikelihoodColumns StringUnknowns::columns(const Eigen::VectorXd& theta) const {
   columns.delay = place(1);
   columns.corner = place(2);
   return columns;
-}
-
-Eigen::MatrixXd StringUnknowns::prior(const Eigen::MatrixXd& frequencies) const {
-  Eigen::MatrixXd precision = Eigen::MatrixXd::Zero(size(), size());
-  precision.topLeftCorner(frequencies.rows(), frequencies.cols()) = frequencies;
-  if (damping_kind() == Damping::kEach) {
-    precision.diagonal().segment(damping(), damping_count()).array() =
-        1.0 / (options_.damping_width * options_.damping_width);
-  }
-  // Deviations in the units of θ; NaN: no prior.
-  const double deviation[] = {options_.gain.deviation / options_.gain.value,
-                              options_.delay.deviation, 2.0 * pi * options_.corner.deviation};
-  const Index place[] = {sensor(0), sensor(1), sensor(2)};
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (place[i] < 0 || std::isnan(deviation[i])) continue;
-    precision(place[i], place[i]) = 1.0 / (deviation[i] * deviation[i]);
-  }
-  const double r = options_.gain_delay_correlation;
-  if (r != 0.0) {
-    MODCAL_REQUIRE(place[0] >= 0 && place[1] >= 0 && std::isfinite(deviation[0] * deviation[1]),
-                   "gain and delay have a correlation of {:g}: state free: true and a deviation "
-                   "for both",
-                   r);
-    for (const std::size_t i : {0u, 1u}) precision(place[i], place[i]) /= 1.0 - r * r;
-    const double joint = -r / ((1.0 - r * r) * deviation[0] * deviation[1]);
-    precision(place[0], place[1]) = joint;
-    precision(place[1], place[0]) = joint;
-  }
-  return precision;
-}
-
-Eigen::VectorXd StringUnknowns::prior_mean() const {
-  Eigen::VectorXd mean = Eigen::VectorXd::Zero(size());
-  const SensorPair about = options_.sensors();
-  const double change[] = {std::log(about.gain / reference_.sensors.gain),
-                           about.delay - reference_.sensors.delay,
-                           about.corner - reference_.sensors.corner};
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (sensor(i) >= 0) mean[sensor(i)] = change[i];
-  }
-  return mean;
-}
-
-Eigen::MatrixXd law_prior(const Eigen::VectorXd& widths, double inharmonicity) {
-  const Eigen::VectorXd weight = widths.cwiseAbs2().cwiseInverse();
-  Eigen::MatrixXd law(widths.size(), 2);
-  for (Eigen::Index i = 0; i < widths.size(); ++i) {
-    const double n2 = static_cast<double>((i + 1) * (i + 1));
-    law(i, 0) = 1.0;
-    // Scaled: B of order 1/N² moves the top mode by a sensible share.
-    law(i, 1) =
-        n2 / (1.0 + inharmonicity * n2) / static_cast<double>(widths.size() * widths.size());
-  }
-  const Eigen::MatrixXd weighted = weight.asDiagonal() * law;
-  Eigen::MatrixXd precision = weight.asDiagonal();
-  precision -= weighted * (law.transpose() * weighted).inverse() * weighted.transpose();
-  return precision;
 }
 
 }  // namespace modcal

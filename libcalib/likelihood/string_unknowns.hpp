@@ -2,23 +2,25 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <limits>
+#include <optional>
 #include <string>
+#include <vector>
 
+#include "libcalib/likelihood/prior_equations.hpp"
 #include "libcalib/likelihood/projected_likelihood.hpp"
+#include "libcalib/likelihood/stated_priors.hpp"
 #include "libsim/base/options.hpp"
 
 namespace modcal {
 
-/// One number that may be free, fixed at its value, or free under a Gaussian prior about it.
+/// One number that is fixed at its value or free, started there.
 struct UnknownOption {
   bool free = false;
-  double value = 0.0;  ///< start, and mean of the prior
-  /// Standard deviation of the prior; NaN: none.
-  double deviation = std::numeric_limits<double>::quiet_NaN();
+  double value = 0.0;
 };
 
-/// What is unknown of the damping and of the sensor at x = L beside frequencies and contact.
+/// What is unknown of the damping and of the sensor at x = L beside frequencies and contact, and
+/// what is known of all of them beforehand.
 struct UnknownsOptions {
   /// "fixed": ζ_n as stated; "factor": times one factor; "power": times a factor and a power of n;
   /// "each": every ζ_n, under a prior about the stated one.
@@ -27,8 +29,8 @@ struct UnknownsOptions {
   UnknownOption gain{.value = 1.0};  ///< of the sensor at x = L over that at x = 0 [1]
   UnknownOption delay;               ///< [s]
   UnknownOption corner;              ///< [Hz]
-  /// Correlation of the priors of gain and delay, in (−1, 1) [1].
-  double gain_delay_correlation = 0.0;
+  std::vector<ParameterPrior> priors;
+  std::vector<PriorCorrelation> correlations;
   void visit(OptionVisitor& visitor);
   SensorPair sensors() const;  ///< start
 };
@@ -43,9 +45,10 @@ class StringUnknowns {
   StringUnknowns() = default;
   /// Law with f_0 [Hz] and B [1]; contact, damping and sensors of the reference.
   static StringUnknowns law(const ModelPoint& reference, double fundamental, double inharmonicity,
-                            const UnknownsOptions& options = {});
+                            const UnknownsOptions& options = {}, const StatedPriors& priors = {});
   static StringUnknowns frequencies(const ModelPoint& reference,
-                                    const UnknownsOptions& options = {});
+                                    const UnknownsOptions& options = {},
+                                    const StatedPriors& priors = {});
   /// Frequencies and contact alone.
   StringUnknowns without_damping_and_sensors() const;
 
@@ -69,28 +72,40 @@ class StringUnknowns {
   bool admits(const Eigen::VectorXd& theta) const;
   ModelPoint model(const Eigen::VectorXd& theta) const;
   LikelihoodColumns columns(const Eigen::VectorXd& theta) const;
-  /// Precision of the priors of damping and sensors, all of θ; `frequencies`: that of δ, or empty.
-  Eigen::MatrixXd prior(const Eigen::MatrixXd& frequencies = {}) const;
-  /// θ the prior is about.
-  Eigen::VectorXd prior_mean() const;
+  /// Coordinate of a prior (StatedPriors), linear about θ in z = (θ, ln f_0, B), the last two those
+  /// of the law where every frequency is free; none where nothing of θ moves it.
+  std::optional<LinearForm> coordinate(const UnknownName& name, const Eigen::VectorXd& theta) const;
+  /// Priors stated and those of every ζ_n, linear about θ.
+  QuadraticPrior prior(const Eigen::VectorXd& theta) const;
+  /// The same with frequencies about the law.
+  QuadraticPrior prior(const Eigen::VectorXd& theta, const LawScatter& law) const;
+  /// Adds the priors of every ζ_n about that of the reference, where each is free, unless something
+  /// else is stated of it.
+  void state_damping_ratios(PriorEquations& equations) const;
+  Eigen::VectorXd log_frequencies() const;  ///< ln f_n of the reference
 
  private:
   enum class Damping { kFixed, kFactor, kPower, kEach };
   Damping damping_kind() const;
   const UnknownOption& sensor_option(std::size_t which) const;
+  std::optional<LinearForm> frequency_coordinate(std::size_t mode,
+                                                 const Eigen::VectorXd& theta) const;
+  std::optional<LinearForm> damping_coordinate(std::size_t mode) const;
+  LinearForm form(double offset) const;
+  PriorEquations stated(const Eigen::VectorXd& theta) const;
   Eigen::Index sensor_count() const;
   double sensor_change(std::size_t which, const Eigen::VectorXd& theta) const;
   double damping_change(std::size_t mode, const Eigen::VectorXd& theta) const;
 
   ModelPoint reference_;
   UnknownsOptions options_;
+  StatedPriors priors_;
   double fundamental_ = 0.0;
   double inharmonicity_ = 0.0;
   bool law_ = false;
 };
 
-/// Precision of δ under δ_n = law's change + N(0, τ_n²), the law's change (ln f_0, B) unknown:
-/// W − WL(LᵀWL)⁻¹LᵀW with W = diag(τ_n⁻²), L_n = (1, ½n²/(1 + B n²)).
+/// Precision of δ under δ_n = law's change + N(0, τ_n²), the law's change (ln f_0, B) unknown.
 Eigen::MatrixXd law_prior(const Eigen::VectorXd& widths, double inharmonicity);
 
 }  // namespace modcal

@@ -12,16 +12,10 @@ void visit_unknown(OptionVisitor& visitor, const OptionInfo& info, UnknownOption
   visitor.group(info, [&](OptionVisitor& members) {
     members.flag({.key = "free", .meaning = "found from the data"}, unknown.free);
     members.number({.key = "value",
-                    .meaning = "fixed value; of what is free: start and mean of the prior",
+                    .meaning = "fixed value; of what is free: start",
                     .unit = info.unit,
                     .range = range},
                    unknown.value);
-    members.number({.key = "deviation",
-                    .meaning = "standard deviation of the prior; none: no prior",
-                    .unit = info.unit,
-                    .range = Range::positive(),
-                    .word = "none"},
-                   unknown.deviation);
   });
 }
 
@@ -52,11 +46,11 @@ void UnknownsOptions::visit(OptionVisitor& visitor) {
                  .meaning = "corner of a high-pass of the sensor at x = L that the other has not",
                  .unit = "Hz"},
                 corner, Range::non_negative());
-  visitor.number({.key = "gain_delay_correlation",
-                  .meaning = "correlation of the priors of gain and delay",
-                  .unit = "1",
-                  .range = Range::open(-1.0, 1.0)},
-                 gain_delay_correlation);
+  ListOf<ParameterPrior> prior_slot(priors);
+  visitor.list({.key = "priors", .meaning = "Gaussian priors of single parameters"}, prior_slot);
+  ListOf<PriorCorrelation> correlation_slot(correlations);
+  visitor.list({.key = "correlations", .meaning = "correlations of these priors"},
+               correlation_slot);
 }
 
 SensorPair UnknownsOptions::sensors() const {

@@ -91,26 +91,6 @@ TEST(StringUnknowns, GradientOfEveryUnknownIsTheDifferenceQuotient) {
   }
 }
 
-TEST(StringUnknowns, PriorHasTheCovarianceStated) {
-  UnknownsOptions options = free_sensors(false);
-  options.gain = {.free = true, .value = 1.0, .deviation = 0.02};
-  options.delay = {.free = true, .value = 1e-6, .deviation = 2e-6};
-  options.gain_delay_correlation = 0.5;
-  ModelPoint point = bowed_case(0.0285, 0.0, 0.02).truth;
-  point.sensors.gain = 1.1;
-  const StringUnknowns unknowns = StringUnknowns::law(point, 196.0, 0.0, options);
-  const Eigen::Index at = unknowns.sensor(0);
-  const Eigen::Matrix2d covariance = unknowns.prior().block<2, 2>(at, at).inverse();
-  EXPECT_NEAR(covariance(0, 0), 0.02 * 0.02, 1e-12);
-  EXPECT_NEAR(covariance(1, 1), 4e-12, 1e-20);
-  EXPECT_NEAR(covariance(0, 1), 0.5 * 0.02 * 2e-6, 1e-15);
-  EXPECT_NEAR(unknowns.prior_mean()[at], std::log(1.0 / 1.1), 1e-12);
-  EXPECT_NEAR(unknowns.prior_mean()[at + 1], 1e-6, 1e-18);
-  EXPECT_EQ(unknowns.sensor(2), -1);
-  options.delay.deviation = NAN;
-  EXPECT_THROW(StringUnknowns::law(point, 196.0, 0.0, options).prior(), InvalidInput);
-}
-
 // Six standard deviations, as in the Monte Carlo studies.
 void expect_sensors(const ContinuationResult& result, const SensorPair& truth, bool corner) {
   EXPECT_TRUE(result.right) << result.chi2;
@@ -154,10 +134,12 @@ TEST(StringUnknowns, APriorHoldsWhatTheDataDoNotTell) {
   ModelPoint start = sensed.truth;
   start.sensors = {};
   UnknownsOptions options = free_sensors(false);
-  options.gain = {.free = true, .value = 1.0, .deviation = 1e-7};
-  const StringUnknowns held = StringUnknowns::law(start, 196.0, 1.39e-4, options);
-  const NewtonFit fit = newton_fit(whole, held, held.start(),
-                                   {.prior = held.prior(), .prior_mean = held.prior_mean()});
+  options.priors = {{.parameter = "gain", .mean = 1.0, .deviation = 1e-7}};
+  const StringUnknowns held =
+      StringUnknowns::law(start, 196.0, 1.39e-4, options, StatedPriors(options, start));
+  const QuadraticPrior prior = held.prior(held.start());
+  const NewtonFit fit =
+      newton_fit(whole, held, held.start(), {.prior = prior.precision, .prior_mean = prior.mean});
   EXPECT_NEAR(held.model(fit.theta).sensors.gain, 1.0, 1e-5);
 }
 

@@ -1,0 +1,69 @@
+// What is known of the unknowns before the data: one Gaussian.
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "libcalib/likelihood/prior_equations.hpp"
+#include "libcalib/parameters.hpp"
+#include "libcalib/unknown_name.hpp"
+#include "libsim/base/options.hpp"
+
+namespace modcal {
+
+/// Mean and standard deviation of one parameter, in the unit of its name.
+struct ParameterPrior {
+  std::string parameter;
+  double mean = std::numeric_limits<double>::quiet_NaN();  ///< NaN: the initial value
+  double deviation = std::numeric_limits<double>::quiet_NaN();
+  void visit(OptionVisitor& visitor);
+};
+
+/// Correlation of two parameters that have priors.
+struct PriorCorrelation {
+  std::vector<std::string> between;
+  double value = 0.0;
+  void visit(OptionVisitor& visitor);
+};
+
+struct UnknownsOptions;
+
+/// Throws InvalidInput for a name that is unknown, repeated or of something that is not free, a
+/// deviation or mean out of range, correlations that no Gaussian has. modes: of the string.
+void require_priors(const UnknownsOptions& options, std::size_t modes, std::size_t records = 1);
+
+/// The priors as one Gaussian of coordinates: the logarithm of what is positive (is_positive(),
+/// with the relative deviation), else the value itself, a corner in rad/s. The factor of the
+/// damping is stated through ζ_1; the exponent through ln ζ_2/ζ_1.
+class StatedPriors {
+ public:
+  struct Entry {
+    UnknownName name;
+    double mean = 0.0;       ///< of the coordinate
+    double deviation = 0.0;  ///< of the coordinate
+  };
+
+  StatedPriors() = default;
+  /// initial: model that "initial" means, damping ratios that a factor is of.
+  StatedPriors(const UnknownsOptions& options, const ModelPoint& initial, std::size_t records = 1);
+
+  const std::vector<Entry>& entries() const { return entries_; }
+  /// Adds what is stated of the coordinates that there are; the others are unknown.
+  void state(const std::function<std::optional<LinearForm>(const UnknownName&)>& coordinate,
+             PriorEquations& equations) const;
+  /// What is stated of one record and of all of them, as that of a first one.
+  StatedPriors of_record(std::size_t record) const;
+  bool has(const UnknownName& name) const;
+
+ private:
+  Eigen::MatrixXd covariance(const std::vector<std::size_t>& which) const;
+
+  std::vector<Entry> entries_;
+  Eigen::MatrixXd correlation_;
+};
+
+}  // namespace modcal

@@ -1,0 +1,168 @@
+// What is known beforehand, in a fit to synthetic truth.
+#include "libcalib/likelihood/stated_priors.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <numbers>
+
+#include "libcalib/likelihood/newton_fit.hpp"
+#include "libsim/base/error.hpp"
+#include "tests/libcalib/likelihood/bowed_case.hpp"
+
+namespace modcal {
+namespace {
+
+constexpr double kBand = 2.0 * std::numbers::pi * 10300.0;
+constexpr double kInharmonicity = 1.39e-4;
+
+UnknownsOptions stating(std::vector<ParameterPrior> priors,
+                        std::vector<PriorCorrelation> correlations = {}) {
+  UnknownsOptions options;
+  options.gain.free = options.delay.free = true;
+  options.priors = std::move(priors);
+  options.correlations = std::move(correlations);
+  return options;
+}
+
+ModelPoint stiff_string() {
+  Scene scene = paper_scene();
+  scene.string.inharmonicity = kInharmonicity;
+  return {make_modal_basis(scene.string), 0.0285};
+}
+
+TEST(StatedPriors, HaveTheCovarianceStated) {
+  const UnknownsOptions options =
+      stating({{"gain", 1.0, 0.02}, {"delay", 1e-6, 2e-6}}, {{{"gain", "delay"}, 0.5}});
+  ModelPoint point = stiff_string();
+  point.sensors.gain = 1.1;
+  const StringUnknowns unknowns =
+      StringUnknowns::law(point, 196.0, 0.0, options, StatedPriors(options, point));
+  const Eigen::Index at = unknowns.sensor(0);
+  const QuadraticPrior prior = unknowns.prior(unknowns.start());
+  const Eigen::Matrix2d covariance = prior.precision.block<2, 2>(at, at).inverse();
+  EXPECT_NEAR(covariance(0, 0), 0.02 * 0.02, 1e-12);
+  EXPECT_NEAR(covariance(1, 1), 4e-12, 1e-20);
+  EXPECT_NEAR(covariance(0, 1), 0.5 * 0.02 * 2e-6, 1e-15);
+  EXPECT_NEAR(prior.mean[at], std::log(1.0 / 1.1), 1e-12);
+  EXPECT_NEAR(prior.mean[at + 1], 1e-6, 1e-18);
+  EXPECT_EQ(unknowns.sensor(2), -1);
+}
+
+TEST(StatedPriors, OfALawAreThoseOfFrequenciesThatScatterAboutIt) {
+  // δ = L l + scatter, l = (ln f0, B) Gaussian: δ ~ N(L m, W⁻¹ + L C Lᵀ).
+  const double f0 = 196.5, b = 1.4e-4, width = 3e-4;
+  const UnknownsOptions options =
+      stating({{"f0", f0, 0.1}, {"B", b, 2e-6}, {"x_c", 0.029, 1e-3}}, {{{"B", "f0"}, -0.6}});
+  const ModelPoint point = stiff_string();
+  const StringUnknowns unknowns =
+      StringUnknowns::frequencies(point, options, StatedPriors(options, point));
+  const QuadraticPrior prior =
+      unknowns.prior(unknowns.start(), {Eigen::VectorXd::Constant(50, width), kInharmonicity});
+  Eigen::MatrixXd slopes(50, 2);
+  Eigen::VectorXd expected(50);
+  for (Eigen::Index i = 0; i < 50; ++i) {
+    const double n2 = static_cast<double>((i + 1) * (i + 1));
+    slopes(i, 0) = 1.0;
+    slopes(i, 1) = 0.5 * n2 / (1.0 + kInharmonicity * n2);
+    expected[i] = std::log(f0 / 196.0) + slopes(i, 1) * (b - kInharmonicity);
+  }
+  const double sd = 0.1 / f0;
+  const Eigen::Matrix2d law{{sd * sd, -0.6 * sd * 2e-6}, {-0.6 * sd * 2e-6, 4e-12}};
+  Eigen::MatrixXd covariance = slopes * law * slopes.transpose();
+  covariance.diagonal().array() += width * width;
+  const Eigen::MatrixXd found = prior.precision.topLeftCorner(50, 50).inverse();
+  EXPECT_LT((found - covariance).cwiseAbs().maxCoeff(), 1e-8 * covariance.maxCoeff());
+  EXPECT_LT((prior.mean.head(50) - expected).cwiseAbs().maxCoeff(), 1e-9);
+  EXPECT_NEAR(prior.mean[unknowns.contact()], 0.029 - 0.0285, 1e-12);
+  EXPECT_NEAR(prior.precision(unknowns.contact(), unknowns.contact()), 1e6, 1e-3);
+}
+
+// Fit to half a second at 2 % with and without what is stated.
+class Posterior : public testing::Test {
+ protected:
+  BowedCase bowed = bowed_case(0.0285, kInharmonicity, 0.5);
+  ProjectedLikelihood whole{WhitenedRecord::of(noisy(bowed, 0.02, 5), 0.0, kBand)};
+
+  NewtonFit fit(const StringUnknowns& unknowns, const QuadraticPrior& prior) const {
+    return newton_fit(whole, unknowns, unknowns.start(),
+                      {.tolerance = 1e-8, .prior = prior.precision, .prior_mean = prior.mean});
+  }
+};
+
+TEST_F(Posterior, IsThatOfTwoGaussians) {
+  const StringUnknowns plain = StringUnknowns::law(bowed.truth, 196.0, kInharmonicity);
+  const NewtonFit data = newton_fit(whole, plain, plain.start(), {.tolerance = 1e-8});
+  const Eigen::MatrixXd hessian = 2.0 * data.point.information;
+  const Eigen::VectorXd sd = hessian.inverse().diagonal().cwiseSqrt();
+  // As certain as the data, two standard deviations off.
+  UnknownsOptions options;
+  options.priors = {{"f0", 196.0 * std::exp(data.theta[0] + 2.0 * sd[0]), 196.0 * sd[0]},
+                    {"B", data.theta[1] - 2.0 * sd[1], sd[1]},
+                    {"x_c", 0.0285 + data.theta[2], sd[2]},
+                    {"damping", std::exp(data.theta[3]), sd[3]}};
+  options.correlations = {{{"f0", "B"}, 0.3}, {{"x_c", "B"}, -0.4}};
+  const StringUnknowns stated = StringUnknowns::law(bowed.truth, 196.0, kInharmonicity, options,
+                                                    StatedPriors(options, bowed.truth));
+  const QuadraticPrior prior = stated.prior(stated.start());
+  const NewtonFit found = fit(stated, prior);
+  const Eigen::MatrixXd both = hessian + prior.precision;
+  const Eigen::VectorXd posterior =
+      both.ldlt().solve(hessian * data.theta + prior.precision * prior.mean);
+  // The likelihood is quadratic to some percent over two standard deviations.
+  for (Eigen::Index i = 0; i < 4; ++i) {
+    EXPECT_NEAR((found.theta[i] - posterior[i]) / sd[i], 0.0, 0.05) << i;
+    const double information = 2.0 * found.point.information(i, i) + prior.precision(i, i);
+    EXPECT_NEAR(information / both(i, i), 1.0, 0.05) << i;
+  }
+  EXPECT_GT(std::abs(found.theta[0] - data.theta[0]), 0.3 * sd[0]);
+}
+
+TEST_F(Posterior, OfWhatTheDataDoNotTellIsThePrior) {
+  // Mode 3 under a prior much tighter than half a second of data.
+  UnknownsOptions options;
+  options.damping = "each";
+  options.priors = {{"f_3", 589.0, 589.0e-7}, {"zeta_3", 1.2e-3, 1.2e-9}};
+  const StringUnknowns stated =
+      StringUnknowns::frequencies(bowed.truth, options, StatedPriors(options, bowed.truth));
+  const QuadraticPrior prior =
+      stated.prior(stated.start(), {Eigen::VectorXd::Constant(50, 2e-3), kInharmonicity});
+  const NewtonFit found = fit(stated, prior);
+  const ModelPoint model = stated.model(found.theta);
+  EXPECT_NEAR(model.basis.frequency(2), 589.0, 1e-3);
+  EXPECT_NEAR(model.basis.zeta[2], 1.2e-3, 1e-7);
+}
+
+TEST(StatedPriors, ThatAreNoneAreRefusedWithTheReason) {
+  const auto refused = [](const UnknownsOptions& options, const std::string& reason) {
+    try {
+      require_priors(options, 50, 2);
+      ADD_FAILURE() << "accepted, not refused for " << reason;
+    } catch (const InvalidInput& error) {
+      EXPECT_NE(std::string(error.what()).find(reason), std::string::npos) << error.what();
+    }
+  };
+  refused(stating({{"f_51", 1e4, 1.0}}), "unknown parameter \"f_51\"");
+  refused(stating({{"F0", 196.0, 1.0}}), "unknown parameter \"F0\"");
+  refused(stating({{"f0", 196.0, 1.0}, {"f0", 197.0, 1.0}}), "\"f0\" has two priors");
+  refused(stating({{"x_c", 0.03, 1e-3}, {"x_c 1", 0.03, 1e-3}}), "\"x_c 1\" has two priors");
+  refused(stating({{"x_c 3", 0.03, 1e-3}}), "there are 2 records");
+  refused(stating({{"f0 2", 196.0, 1.0}}), "all records share it");
+  refused(stating({{"f0", 196.0, 0.0}}), "deviation 0");
+  refused(stating({{"f0", -196.0, 1.0}}), "mean -196");
+  refused(stating({{"corner", 4.0, 1.0}}), "corner: {free: true}");
+  refused(stating({{"zeta_3", 1e-3, 1e-4}, {"damping_power", 0.0, 0.1}}), "damping: power");
+  refused(stating({}, {{{"f0", "B"}, 0.3}}), "priors that are not stated");
+  const std::vector<ParameterPrior> three = {
+      {"f0", 196.0, 1.0}, {"B", 1e-4, 1e-5}, {"x_c", 0.03, 1e-3}};
+  refused(stating(three, {{{"f0", "gain"}, 0.3}}), "\"gain\", which has no prior");
+  refused(stating(three, {{{"f0", "f0"}, 0.3}}), "two different parameters");
+  refused(stating(three, {{{"f0", "B"}, 1.0}}), "(-1, 1)");
+  refused(stating(three, {{{"f0", "B"}, 0.3}, {{"B", "f0"}, 0.3}}), "stated twice");
+  refused(stating(three, {{{"f0", "B"}, 0.9}, {{"B", "x_c"}, 0.9}, {{"f0", "x_c"}, -0.9}}),
+          "belong to no Gaussian");
+}
+
+}  // namespace
+}  // namespace modcal
