@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "libcalib/likelihood/records_fit.hpp"
 #include "libcalib/stiff_string_fit.hpp"
 #include "libsim/base/error.hpp"
 
@@ -116,6 +115,7 @@ std::vector<CalibratedMode> found_modes(const ModelPoint& initial, const Continu
 // What the continuation found, in the form of a search.
 CalibrationResult calibrate_to_the_bound(const ModelPoint& initial,
                                          std::span<const CalibrationData> records,
+                                         std::span<const PluckRecord> plucks,
                                          const CalibrationOptions& options,
                                          const SecondsClock& clock) {
   const ParameterOptions& free = options.parameters;
@@ -127,11 +127,11 @@ CalibrationResult calibrate_to_the_bound(const ModelPoint& initial,
   const double begin = clock();
   CalibrationResult result;
   std::vector<double> further_contacts;
-  if (records.size() == 1) {
+  if (records.size() == 1 && plucks.empty()) {
     result.continuation = calibrate_by_continuation(initial, records.front(), continuation);
     result.contact_deviations = {result.continuation->contact_deviation};
   } else {
-    const RecordsFit fit = calibrate_records(initial, records, continuation);
+    const RecordsFit fit = calibrate_records(initial, records, continuation, plucks);
     result.continuation = as_continuation(fit);
     result.contact_deviations = fit.contact_deviations;
     further_contacts.assign(fit.contacts.begin() + 1, fit.contacts.end());
@@ -177,7 +177,7 @@ std::vector<bool> excited_modes(const ModelPoint& point, double threshold) {
 CalibrationResult calibrate(const ModelPoint& initial, const CalibrationData& data,
                             const CalibrationOptions& options, SecondsClock clock) {
   if (options.has_continuation) {
-    return calibrate_to_the_bound(initial, std::span(&data, 1), options, clock);
+    return calibrate_to_the_bound(initial, std::span(&data, 1), {}, options, clock);
   }
   const std::vector<bool> excited = excited_modes(initial, options.excitation_threshold);
   Names names = split_names(options, excited);
@@ -196,13 +196,21 @@ CalibrationResult calibrate(const ModelPoint& initial, const CalibrationData& da
 
 CalibrationResult calibrate(const ModelPoint& initial, std::span<const CalibrationData> records,
                             const CalibrationOptions& options, SecondsClock clock) {
-  MODCAL_REQUIRE(!records.empty(), "a calibration needs at least {} record", 1);
-  if (records.size() == 1) return calibrate(initial, records.front(), options, std::move(clock));
+  return calibrate(initial, records, {}, options, std::move(clock));
+}
+
+CalibrationResult calibrate(const ModelPoint& initial, std::span<const CalibrationData> strokes,
+                            std::span<const PluckRecord> plucks, const CalibrationOptions& options,
+                            SecondsClock clock) {
+  MODCAL_REQUIRE(!strokes.empty(), "a calibration needs at least {} stroke", 1);
+  if (strokes.size() == 1 && plucks.empty()) {
+    return calibrate(initial, strokes.front(), options, std::move(clock));
+  }
   MODCAL_REQUIRE(options.has_continuation,
                  "{} records are fitted together by the joint likelihood alone: state "
                  "calibration.continuation",
-                 records.size());
-  return calibrate_to_the_bound(initial, records, options, clock);
+                 strokes.size() + plucks.size());
+  return calibrate_to_the_bound(initial, strokes, plucks, options, clock);
 }
 
 }  // namespace modcal

@@ -9,7 +9,7 @@
 
 #include "libcalib/budget.hpp"
 #include "libcalib/calibration_data.hpp"
-#include "libcalib/likelihood/continuation.hpp"
+#include "libcalib/likelihood/records_fit.hpp"
 #include "libcalib/objective.hpp"
 #include "libcalib/optimization_result.hpp"
 #include "libcalib/optimizer.hpp"
@@ -73,10 +73,14 @@ CalibrationResult calibrate(const ModelPoint& initial, const CalibrationData& da
                             const CalibrationOptions& options,
                             SecondsClock clock = steady_seconds());
 
-/// Several records of one string, each with a contact point of its own (calibrate_records): "x_c 2",
-/// "x_c 3", … follow among the parameters. More than one record needs `continuation`.
+/// Several records of one string, each with a contact point of its own (calibrate_records): "x_c
+/// 2", "x_c 3", … follow among the parameters. More than one record needs `continuation`.
 CalibrationResult calibrate(const ModelPoint& initial, std::span<const CalibrationData> records,
                             const CalibrationOptions& options,
+                            SecondsClock clock = steady_seconds());
+/// The same with plucks of that string, which need `continuation` too.
+CalibrationResult calibrate(const ModelPoint& initial, std::span<const CalibrationData> strokes,
+                            std::span<const PluckRecord> plucks, const CalibrationOptions& options,
                             SecondsClock clock = steady_seconds());
 
 }  // namespace modcal

@@ -24,6 +24,10 @@ std::vector<Finding> CalibrateExperiment::lint() const {
       "further_strokes",
       [&] { options_.further.require_fit_to(options_.inversion.observation, calibration); },
       findings);
+  lint_making(
+      "plucks",
+      [&] { require_plucks(options_.plucks, options_.inversion.observation, calibration); },
+      findings);
   const auto modes = static_cast<std::size_t>(options_.inversion.observation.string_model().modes);
   if (calibration.has_continuation) {
     const std::size_t strokes =
@@ -50,6 +54,9 @@ std::vector<std::string> CalibrateExperiment::plan() const {
         "are not used");
     const std::size_t further = options_.further.contacts.size() + options_.further.files.size();
     if (further > 0) lines.push_back(fmt::format("strokes fitted together: {}", further + 1));
+    if (!options_.plucks.empty()) {
+      lines.push_back(fmt::format("plucks fitted with them: {}", options_.plucks.size()));
+    }
     return lines;
   }
   lines.push_back(

@@ -50,6 +50,10 @@ void CalibrateOptions::visit(OptionVisitor& visitor) {
   visitor.section({.key = "further_strokes",
                    .meaning = "strokes of the same string that are fitted together with the first"},
                   further);
+  ListOf<PluckRecordOptions> pluck_slot(plucks);
+  visitor.list({.key = "plucks",
+                .meaning = "plucks of the same string that are fitted together with the strokes"},
+               pluck_slot);
   visitor.flag({.key = "fill_blind_modes",
                 .meaning = "give blind modes the frequencies of the stiff-string law fitted to the "
                            "others"},
@@ -222,7 +226,8 @@ CalibrationOutcome calibrate_observation(const CalibrateOptions& options,
 }
 
 CalibrationOutcome calibrate_strokes(const CalibrateOptions& options,
-                                     std::span<const Observation> strokes, SecondsClock clock) {
+                                     std::span<const Observation> strokes, SecondsClock clock,
+                                     std::span<const PluckRecord> plucks) {
   const Observation& observation = strokes.front();
   CalibrationOutcome outcome;
   outcome.initial =
@@ -230,7 +235,7 @@ CalibrationOutcome calibrate_strokes(const CalibrateOptions& options,
                   options.inversion.key().with("model error"));
   std::vector<CalibrationData> data;
   for (const Observation& stroke : strokes) data.push_back(calibration_data(stroke));
-  outcome.result = calibrate({outcome.initial.basis, outcome.initial.contact}, data,
+  outcome.result = calibrate({outcome.initial.basis, outcome.initial.contact}, data, plucks,
                              options.calibration, std::move(clock));
   outcome.refined = {outcome.result.model.basis, outcome.result.model.contact};
   if (observation.truth) outcome.true_frequencies = frequencies_of(observation.basis);
@@ -247,7 +252,11 @@ StudyResult calibrate_study(const CalibrateOptions& options, const StudyContext&
   options.further.require_fit_to(inversion.observation, options.calibration);
   std::vector<Observation> strokes = further_observations(options, context);
   strokes.insert(strokes.begin(), observation);
-  const CalibrationOutcome outcome = calibrate_strokes(options, strokes, polling_clock(context));
+  require_plucks(options.plucks, inversion.observation, options.calibration);
+  const std::vector<PluckRecord> plucks =
+      observe_plucks(options.plucks, inversion.observation, inversion.key(), context);
+  const CalibrationOutcome outcome =
+      calibrate_strokes(options, strokes, polling_clock(context), plucks);
   context.throw_if_interrupted();
   const InversionRecipe recipe(inversion.inversion);
   const auto estimator = prepare_estimator(outcome.refined, observation, recipe);

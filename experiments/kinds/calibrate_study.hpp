@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/kinds/calibrate_plucks.hpp"
 #include "experiments/kinds/invert_study.hpp"
 #include "libcalib/calibration.hpp"
 #include "libcalib/stiff_string_fit.hpp"
@@ -26,6 +27,7 @@ struct CalibrateOptions {
   InvertOptions inversion;
   CalibrationOptions calibration;
   FurtherStrokes further;
+  std::vector<PluckRecordOptions> plucks;
   /// Give blind modes the frequencies of the stiff-string law fitted to the others (paper, eq. 18
   /// and section 7.1).
   bool fill_blind_modes = false;
@@ -47,10 +49,11 @@ CalibrationOutcome calibrate_observation(const CalibrateOptions& options,
                                          const Observation& observation,
                                          SecondsClock clock = steady_seconds());
 
-/// The same from several strokes; the first is the one that is identified.
+/// The same from several strokes and plucks; the first stroke is the one that is identified.
 CalibrationOutcome calibrate_strokes(const CalibrateOptions& options,
                                      std::span<const Observation> strokes,
-                                     SecondsClock clock = steady_seconds());
+                                     SecondsClock clock = steady_seconds(),
+                                     std::span<const PluckRecord> plucks = {});
 
 /// Spectra of the reactions that were observed.
 CalibrationData calibration_data(const Observation& observation);

@@ -8,6 +8,7 @@
 #include "libcalib/likelihood/mode_verdict.hpp"
 #include "libcalib/likelihood/neighbor_test.hpp"
 #include "libcalib/likelihood/newton_fit.hpp"
+#include "libcalib/likelihood/stated_verdict.hpp"
 #include "libcalib/stiff_string_fit.hpp"
 #include "libsim/base/error.hpp"
 
@@ -232,19 +233,7 @@ class Attempt {
     result.chi2 = reduced_chi2(result.model, static_cast<std::size_t>(unknowns.size()));
     const auto n = static_cast<Eigen::Index>(modes());
     result.modes = free_verdicts(result.model, deviation.head(n), seen.head(n), estimated);
-    trust_stated_frequencies(deviation, result);
-  }
-
-  // What is stated of a mode's frequency speaks for it where the data do not.
-  void trust_stated_frequencies(const Eigen::VectorXd& deviation,
-                                ContinuationResult& result) const {
-    for (std::size_t n = 0; n < modes(); ++n) {
-      ModeVerdict& verdict = result.modes[n];
-      if (verdict.source == ModeSource::kIdentified) continue;
-      if (!priors_.has({.kind = UnknownKind::kFrequency, .mode = n})) continue;
-      verdict.source = ModeSource::kPrior;
-      verdict.deviation = deviation[static_cast<Eigen::Index>(n)];
-    }
+    trust_stated_frequencies(priors_, deviation, result.modes);
   }
 
   static void report_sensors(const StringUnknowns& unknowns, const Eigen::MatrixXd& covariance,

@@ -3,115 +3,23 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <tuple>
 
+#include "libcalib/likelihood/all_records.hpp"
 #include "libcalib/likelihood/bin_weights.hpp"
 #include "libcalib/likelihood/mode_verdict.hpp"
 #include "libcalib/likelihood/newton_fit.hpp"
+#include "libcalib/likelihood/pluck_likelihood.hpp"
+#include "libcalib/likelihood/stated_verdict.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
 namespace {
 
 using Index = Eigen::Index;
-constexpr std::size_t kNoiseRepeats = 3;
-
-// All records as one likelihood. Unknowns of the first record, then x_c of the others.
-class AllRecords {
- public:
-  AllRecords(const StringUnknowns& first, std::span<const double> contacts)
-      : unknowns_(first), contacts_(contacts.begin(), contacts.end()) {}
-
-  void add(ProjectedLikelihood whole, ProjectedLikelihood weighted) {
-    whole_.push_back(std::move(whole));
-    weighted_.push_back(std::move(weighted));
-  }
-  Index size() const { return unknowns_.size() + static_cast<Index>(contacts_.size()) - 1; }
-  Index contact(std::size_t r) const {
-    return r == 0 ? unknowns_.contact() : unknowns_.size() + static_cast<Index>(r) - 1;
-  }
-  const StringUnknowns& unknowns() const { return unknowns_; }
-  Eigen::VectorXd start() const {
-    Eigen::VectorXd theta = Eigen::VectorXd::Zero(size());
-    theta.head(unknowns_.size()) = unknowns_.start();
-    for (std::size_t r = 0; r < contacts_.size(); ++r) {
-      theta[contact(r)] = contacts_[r] - contacts_[0];
-    }
-    return theta;
-  }
-  // θ of one record.
-  Eigen::VectorXd own(const Eigen::VectorXd& theta, std::size_t r) const {
-    Eigen::VectorXd part = theta.head(unknowns_.size());
-    part[unknowns_.contact()] = theta[contact(r)];
-    return part;
-  }
-  ModelPoint model(const Eigen::VectorXd& theta, std::size_t r) const {
-    return unknowns_.model(own(theta, r));
-  }
-  bool admits(const Eigen::VectorXd& theta) const {
-    for (std::size_t r = 0; r < contacts_.size(); ++r) {
-      if (!unknowns_.admits(own(theta, r))) return false;
-    }
-    return true;
-  }
-
-  std::optional<LinearForm> coordinate(const UnknownName& name,
-                                       const Eigen::VectorXd& theta) const {
-    const std::optional<LinearForm> own = unknowns_.coordinate(name, this->own(theta, name.record));
-    if (!own) return own;
-    LinearForm form{.slope = Eigen::VectorXd::Zero(size() + 2), .offset = own->offset};
-    for (Index i = 0; i < unknowns_.size(); ++i) form.slope[place(i, name.record)] = own->slope[i];
-    form.slope.tail(2) = own->slope.tail(2);
-    return form;
-  }
-
-  LikelihoodPoint evaluate(const Eigen::VectorXd& theta, bool twice_weighted) const {
-    LikelihoodPoint sum{.slope = Eigen::VectorXd::Zero(size()),
-                        .information = Eigen::MatrixXd::Zero(size(), size())};
-    if (twice_weighted) sum.twice_weighted = sum.information;
-    for (std::size_t r = 0; r < weighted_.size(); ++r) {
-      const LikelihoodPoint point = weighted_[r].evaluate(
-          model(theta, r), unknowns_.columns(own(theta, r)), {.twice_weighted = twice_weighted});
-      sum.cost += point.cost;
-      for (Index i = 0; i < unknowns_.size(); ++i) sum.slope[place(i, r)] += point.slope[i];
-      add_to(sum.information, point.information, r);
-      if (twice_weighted) add_to(sum.twice_weighted, point.twice_weighted, r);
-    }
-    return sum;
-  }
-  Eigen::MatrixXd noise(const Eigen::VectorXd& theta) const {
-    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(size(), size());
-    for (std::size_t r = 0; r < weighted_.size(); ++r) {
-      add_to(sum,
-             weighted_[r].noise_information(model(theta, r), unknowns_.columns(own(theta, r)),
-                                            kNoiseRepeats),
-             r);
-    }
-    return sum;
-  }
-  // Reduced χ² of all records and its standard deviation.
-  std::pair<double, double> chi2(const Eigen::VectorXd& theta) const {
-    double cost = 0.0;
-    double freedom = -static_cast<double>(size());
-    for (std::size_t r = 0; r < whole_.size(); ++r) {
-      cost += whole_[r].cost(model(theta, r));
-      freedom += whole_[r].degrees_of_freedom(0, unknowns_.modes());
-    }
-    return {2.0 * cost / freedom, std::sqrt(2.0 / freedom)};
-  }
-
- private:
-  Index place(Index i, std::size_t r) const { return i == unknowns_.contact() ? contact(r) : i; }
-  void add_to(Eigen::MatrixXd& sum, const Eigen::MatrixXd& part, std::size_t r) const {
-    for (Index i = 0; i < part.rows(); ++i) {
-      for (Index j = 0; j < part.cols(); ++j) sum(place(i, r), place(j, r)) += part(i, j);
-    }
-  }
-
-  StringUnknowns unknowns_;
-  std::vector<double> contacts_;
-  std::vector<ProjectedLikelihood> whole_, weighted_;
-};
+constexpr double kProof = 3.0;
+constexpr double kNodeProof = 10.0;
+constexpr double kNodeShape = 0.05;
+constexpr double kReach = 6e-3;
 
 // The record to start from has the smallest χ²; its contact is that of the first.
 StringUnknowns shared_unknowns(const RecordsFit& fit, const ContinuationOptions& options,
@@ -127,99 +35,239 @@ StringUnknowns shared_unknowns(const RecordsFit& fit, const ContinuationOptions&
                                    options.unknowns, priors);
 }
 
-// The law's prior is as wide as the record that departs furthest from it says.
-NewtonOptions newton_options(const AllRecords& all, const StatedPriors& priors,
-                             const Eigen::VectorXd& start, const RecordsFit& fit) {
-  const StringUnknowns& unknowns = all.unknowns();
-  PriorEquations equations(all.size());
-  priors.state([&](const UnknownName& name) { return all.coordinate(name, start); }, equations);
-  unknowns.state_damping_ratios(equations);
-  if (!unknowns.is_law()) {
-    double width = 0.0;
-    for (const ContinuationResult& single : fit.single) width = std::max(width, single.law_width);
-    equations.add_scatter({Eigen::VectorXd::Constant(static_cast<Index>(unknowns.modes()), width),
-                           fit.single.front().law.inharmonicity},
-                          unknowns.log_frequencies());
-  }
-  QuadraticPrior prior = equations.solve();
-  return {.steps = 10,
-          .tolerance = 1e-4,
-          .frequency_cap = 1e-3,
-          .prior = std::move(prior.precision),
-          .prior_mean = std::move(prior.mean)};
+// Relative standard deviation of an estimated noise power, see noise_deviation().
+double noise_error(const std::array<double, 2>& stated, std::size_t samples) {
+  const bool estimated = std::isnan(stated[0]) || std::isnan(stated[1]);
+  return estimated ? 1e-2 * std::sqrt(51200.0 / static_cast<double>(samples)) : 0.0;
 }
 
-void report(const AllRecords& all, const Eigen::VectorXd& theta, const Eigen::MatrixXd& covariance,
-            const ModelPoint& initial, RecordsFit& fit) {
-  const StringUnknowns& unknowns = all.unknowns();
-  const Eigen::VectorXd deviation = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
-  fit.model = all.model(theta, 0);
-  for (std::size_t r = 0; r < fit.single.size(); ++r) {
-    fit.contacts.push_back(all.model(theta, r).contact);
-    fit.contact_deviations.push_back(deviation[all.contact(r)]);
+// The fit of all records, from their gathering to the report.
+class JointFit {
+ public:
+  JointFit(const ModelPoint& initial, const ContinuationOptions& options,
+           const StatedPriors& priors, RecordsFit& fit)
+      : initial_(initial),
+        options_(options),
+        priors_(priors),
+        fit_(fit),
+        all_(shared_unknowns(fit, options, priors)) {}
+
+  void add(const CalibrationData& stroke) {
+    const std::array<double, 2> noise{options_.left_noise, options_.right_noise};
+    const NoisyRecords noisy = NoisyRecords::of_data(stroke, noise);
+    const double highest =
+        likelihood_band(initial_, options_.highest_frequency, stroke.sample_rate);
+    const ProjectedLikelihood whole(WhitenedRecord::of(noisy, 0.0, highest));
+    ProjectedLikelihood weighted = whole;
+    Eigen::VectorXd start = unknowns().start();
+    start[unknowns().contact()] =
+        fit_.single[all_.records()].model.contact - fit_.single.front().model.contact;
+    const ModelPoint point = unknowns().model(start);
+    const double sigma = 3.0 * point.basis.frequency(0) / 196.0;
+    weighted.set_weights(signal_weights(noisy, sigma, highest, whole, point));
+    all_.add(std::make_shared<StrokeLikelihood>(whole, std::move(weighted)), start,
+             {unknowns().contact()});
+    noise_errors_.push_back(noise_error(noise, stroke.samples));
   }
-  if (unknowns.is_law()) {
-    fit.fundamental = unknowns.fundamental(theta);
-    fit.inharmonicity = theta[1];
-    fit.fundamental_deviation = fit.fundamental * deviation[0];
-    fit.inharmonicity_deviation = deviation[1];
-  } else {
-    const auto frequencies = deviation.head(static_cast<Index>(unknowns.modes()));
-    fit.frequency_deviations.assign(frequencies.begin(), frequencies.end());
+
+  void add(const PluckRecord& pluck) {
+    const NoisyRecords noisy = NoisyRecords::of_data(pluck.data, pluck.noise);
+    const double highest =
+        likelihood_band(initial_, options_.highest_frequency, pluck.data.sample_rate);
+    plucks_.push_back(std::make_shared<PluckLikelihood>(WhitenedRecord::of(noisy, 0.0, highest)));
+    all_.add(plucks_.back(), unknowns().start(), {});
+    noise_errors_.push_back(noise_error(pluck.noise, pluck.data.samples));
   }
-  double change = 0.0;
-  for (std::size_t n = 0; n < unknowns.modes(); ++n) {
-    change += std::log(fit.model.basis.zeta[n] / initial.basis.zeta[n]);
+
+  void run() {
+    theta_ = all_.start();
+    NewtonOptions newton{.steps = 10, .tolerance = 1e-4, .frequency_cap = 1e-3};
+    if (unknowns().is_law()) {
+      state(nullptr, newton);
+      newton.noise = all_.noise(theta_);
+      search(newton);
+    } else {
+      listen_to_plucks();
+      free_frequencies(newton);
+    }
+    report(fit_covariance(point(true), newton));
+    const AllRecords::Misfit misfit = all_.misfit(theta_, noise_errors_);
+    fit_.chi2 = misfit.chi2;
+    fit_.chi2_deviation = misfit.deviation;
+    fit_.right = fit_.chi2 < 1.0 + 3.0 * fit_.chi2_deviation;
   }
-  fit.damping = std::exp(change / static_cast<double>(unknowns.modes()));
-  fit.damping_deviation = fit.damping * unknowns.damping_deviation(covariance);
-  const double unit[] = {fit.model.sensors.gain, 1.0, 0.5 / std::numbers::pi};
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Index at = unknowns.sensor(i);
-    fit.sensor_deviation[i] = at < 0 ? 0.0 : unit[i] * deviation[at];
+
+ private:
+  const StringUnknowns& unknowns() const { return all_.unknowns(); }
+  Index modes() const { return static_cast<Index>(unknowns().modes()); }
+  double inharmonicity() const { return fit_.single.front().law.inharmonicity; }
+  LikelihoodPoint point(bool twice_weighted) {
+    ++fit_.evaluations;
+    return all_.evaluate(theta_, twice_weighted);
   }
-}
+
+  // Priors about θ; widths of the frequencies' scatter about the law, or null.
+  void state(const Eigen::VectorXd* widths, NewtonOptions& newton) const {
+    PriorEquations equations(all_.size());
+    priors_.state([&](const UnknownName& name) { return all_.coordinate(name, theta_); },
+                  equations);
+    unknowns().state_damping_ratios(equations);
+    if (widths) equations.add_scatter({*widths, inharmonicity()}, unknowns().log_frequencies());
+    QuadraticPrior prior = equations.solve();
+    newton.prior = std::move(prior.precision);
+    newton.prior_mean = std::move(prior.mean);
+  }
+
+  void search(const NewtonOptions& newton) {
+    const NewtonFit found = newton_fit(
+        {.evaluate = [this](const Eigen::VectorXd& theta) { return all_.evaluate(theta, false); },
+         .admits = [this](const Eigen::VectorXd& theta) { return all_.admits(theta); },
+         .capped = unknowns().is_law() ? 0 : modes()},
+        theta_, newton);
+    theta_ = found.theta;
+    fit_.evaluations += found.evaluations;
+  }
+
+  // Frequencies that no stroke identifies go where most of the plucks' power is, within ±0.6 %.
+  void listen_to_plucks() {
+    if (plucks_.empty()) return;
+    for (Index i = 0; i < modes(); ++i) {
+      const auto n = static_cast<std::size_t>(i);
+      const bool identified =
+          std::any_of(fit_.single.begin(), fit_.single.end(), [n](const ContinuationResult& r) {
+            return r.modes[n].source == ModeSource::kIdentified;
+          });
+      if (!identified) theta_[i] += loudest_shift(n);
+    }
+  }
+
+  double loudest_shift(std::size_t mode) const {
+    const ModelPoint here = all_.model(theta_, 0);
+    const double zeta = here.basis.zeta[mode];
+    const auto power = [&](double shift) {
+      const double omega = here.basis.omega[mode] * std::exp(shift);
+      double sum = 0.0;
+      for (const auto& pluck : plucks_) {
+        const Complex rate(-zeta * omega, omega * std::sqrt(1.0 - zeta * zeta));
+        sum += pluck->power_about(std::exp(rate / pluck->record().sample_rate), omega);
+      }
+      return sum;
+    };
+    // A move must explain more than noise does: its largest of some tens of places.
+    double best = power(0.0) + 20.0, found = 0.0;
+    const double step = 0.5 * zeta;
+    for (double shift = -kReach; shift <= kReach; shift += step) {
+      if (const double value = power(shift); value > best) {
+        best = value;
+        found = shift;
+      }
+    }
+    return found;
+  }
+
+  // What the data tell under a prior that only keeps a mode from wandering, then the law's.
+  void free_frequencies(NewtonOptions& newton) {
+    const Eigen::VectorXd wide = Eigen::VectorXd::Constant(modes(), kWidePrior);
+    state(&wide, newton);
+    newton.noise = all_.noise(theta_);
+    search(newton);
+    const LikelihoodPoint at = point(true);
+    seen_ = fit_covariance(at, newton).diagonal().head(modes()).cwiseMax(0.0).cwiseSqrt();
+    deny_noise(at.information, newton.noise);
+    const ModelPoint model = all_.model(theta_, 0);
+    Eigen::VectorXd delta(modes());
+    for (Index i = 0; i < modes(); ++i) {
+      const double n = static_cast<double>(i + 1);
+      delta[i] = std::log(model.basis.omega[static_cast<std::size_t>(i)] /
+                          (n * std::sqrt(1.0 + inharmonicity() * n * n)));
+    }
+    estimated_ = estimate_law_width(delta, seen_, inharmonicity());
+    fit_.law_width = std::isnan(options_.law_width) ? estimated_ : options_.law_width;
+    const Eigen::VectorXd widths = prior_widths(seen_, fit_.law_width, estimated_);
+    state(&widths, newton);
+    search(newton);
+  }
+
+  // As in the fit of one record; a mode at a node of every contact is no surprise to a pluck.
+  void deny_noise(const Eigen::MatrixXd& information, const Eigen::MatrixXd& noise) {
+    for (Index i = 0; i < modes(); ++i) {
+      bool node = plucks_.empty();
+      for (std::size_t r = 0; node && r < fit_.single.size(); ++r) {
+        const ModelPoint model = all_.model(theta_, r);
+        node =
+            std::abs(model.basis.shape_at(model.contact)[static_cast<std::size_t>(i)]) < kNodeShape;
+      }
+      const double proof = node ? kNodeProof : kProof;
+      if (information(i, i) < proof * noise(i, i)) seen_[i] = std::max(seen_[i], kWidePrior);
+    }
+  }
+
+  void report(const Eigen::MatrixXd& covariance) {
+    const Eigen::VectorXd deviation = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+    fit_.model = all_.model(theta_, 0);
+    for (std::size_t r = 0; r < fit_.single.size(); ++r) {
+      fit_.contacts.push_back(all_.model(theta_, r).contact);
+      fit_.contact_deviations.push_back(deviation[all_.place(unknowns().contact(), r)]);
+    }
+    if (unknowns().is_law()) {
+      fit_.fundamental = unknowns().fundamental(theta_);
+      fit_.inharmonicity = theta_[1];
+      fit_.fundamental_deviation = fit_.fundamental * deviation[0];
+      fit_.inharmonicity_deviation = deviation[1];
+    } else {
+      const auto frequencies = deviation.head(modes());
+      fit_.frequency_deviations.assign(frequencies.begin(), frequencies.end());
+      fit_.modes = free_verdicts(fit_.model, frequencies, seen_, estimated_);
+      trust_stated_frequencies(priors_, deviation, fit_.modes);
+    }
+    report_damping_and_sensors(covariance, deviation);
+  }
+
+  void report_damping_and_sensors(const Eigen::MatrixXd& covariance,
+                                  const Eigen::VectorXd& deviation) {
+    double change = 0.0;
+    for (std::size_t n = 0; n < unknowns().modes(); ++n) {
+      change += std::log(fit_.model.basis.zeta[n] / initial_.basis.zeta[n]);
+    }
+    fit_.damping = std::exp(change / static_cast<double>(unknowns().modes()));
+    fit_.damping_deviation = fit_.damping * unknowns().damping_deviation(covariance);
+    const double unit[] = {fit_.model.sensors.gain, 1.0, 0.5 / std::numbers::pi};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Index at = unknowns().sensor(i);
+      fit_.sensor_deviation[i] = at < 0 ? 0.0 : unit[i] * deviation[at];
+    }
+  }
+
+  const ModelPoint& initial_;
+  const ContinuationOptions& options_;
+  const StatedPriors& priors_;
+  RecordsFit& fit_;
+  AllRecords all_;
+  std::vector<std::shared_ptr<const PluckLikelihood>> plucks_;
+  std::vector<double> noise_errors_;
+  Eigen::VectorXd theta_;
+  Eigen::VectorXd seen_;    // of δ, under the wide prior
+  double estimated_ = 0.0;  // τ
+};
 
 }  // namespace
 
-RecordsFit calibrate_records(const ModelPoint& initial, std::span<const CalibrationData> records,
-                             const ContinuationOptions& options) {
-  MODCAL_REQUIRE(!records.empty(), "a fit of several records needs at least {}", 1);
+RecordsFit calibrate_records(const ModelPoint& initial, std::span<const CalibrationData> strokes,
+                             const ContinuationOptions& options,
+                             std::span<const PluckRecord> plucks) {
+  MODCAL_REQUIRE(!strokes.empty(), "a fit of several records needs at least {} stroke", 1);
   ModelPoint stated = initial;
   stated.sensors = options.unknowns.sensors();
-  const StatedPriors priors(options.unknowns, stated, records.size());
+  const StatedPriors priors(options.unknowns, stated, strokes.size());
   RecordsFit fit;
-  std::vector<double> contacts;
-  for (std::size_t r = 0; r < records.size(); ++r) {
+  for (std::size_t r = 0; r < strokes.size(); ++r) {
     fit.single.push_back(
-        calibrate_by_continuation(initial, records[r], options, priors.of_record(r)));
-    contacts.push_back(fit.single.back().model.contact);
+        calibrate_by_continuation(initial, strokes[r], options, priors.of_record(r)));
   }
-  const StringUnknowns unknowns = shared_unknowns(fit, options, priors);
-  AllRecords all(unknowns, contacts);
-  const Eigen::VectorXd start = all.start();
-  for (std::size_t r = 0; r < records.size(); ++r) {
-    const NoisyRecords noisy =
-        NoisyRecords::of_data(records[r], {options.left_noise, options.right_noise});
-    const double highest =
-        likelihood_band(initial, options.highest_frequency, records[r].sample_rate);
-    const ProjectedLikelihood whole(WhitenedRecord::of(noisy, 0.0, highest));
-    ProjectedLikelihood weighted = whole;
-    const ModelPoint point = all.model(start, r);
-    const double sigma = 3.0 * point.basis.frequency(0) / 196.0;
-    weighted.set_weights(signal_weights(noisy, sigma, highest, whole, point));
-    all.add(whole, std::move(weighted));
-  }
-  NewtonOptions newton = newton_options(all, priors, start, fit);
-  newton.noise = all.noise(start);
-  const NewtonFit found = newton_fit(
-      {.evaluate = [&](const Eigen::VectorXd& theta) { return all.evaluate(theta, false); },
-       .admits = [&](const Eigen::VectorXd& theta) { return all.admits(theta); },
-       .capped = unknowns.is_law() ? 0 : static_cast<Index>(unknowns.modes())},
-      start, newton);
-  report(all, found.theta, fit_covariance(all.evaluate(found.theta, true), newton), initial, fit);
-  std::tie(fit.chi2, fit.chi2_deviation) = all.chi2(found.theta);
-  fit.right = fit.chi2 < 1.0 + 3.0 * fit.chi2_deviation;
+  JointFit joint(initial, options, priors, fit);
+  for (const CalibrationData& stroke : strokes) joint.add(stroke);
+  for (const PluckRecord& pluck : plucks) joint.add(pluck);
+  joint.run();
   return fit;
 }
 
@@ -233,24 +281,21 @@ ContinuationResult as_continuation(const RecordsFit& fit) {
   result.chi2 = fit.chi2;
   result.chi2_deviation = fit.chi2_deviation;
   result.right = fit.right;
-  if (!result.frequencies_free) {
+  if (result.frequencies_free) {
+    result.modes = fit.modes;
+    result.law_width = fit.law_width;
+  } else {
     result.law.fundamental = fit.fundamental;
     result.law.inharmonicity = fit.inharmonicity;
     result.law.contact = fit.model.contact;
     result.law.damping = fit.damping;
     result.law.deviation = {fit.fundamental_deviation, fit.inharmonicity_deviation,
                             result.contact_deviation, fit.damping_deviation};
-  }
-  for (std::size_t n = 0; n < result.modes.size(); ++n) {
-    for (const ContinuationResult& single : fit.single) {
-      if (single.modes[n].deviation < result.modes[n].deviation) result.modes[n] = single.modes[n];
-    }
-    result.modes[n].frequency = fit.model.basis.frequency(n);
-    if (!fit.frequency_deviations.empty()) {
-      result.modes[n].deviation = fit.frequency_deviations[n];
+    for (std::size_t n = 0; n < result.modes.size(); ++n) {
+      result.modes[n].frequency = fit.model.basis.frequency(n);
     }
   }
-  result.evaluations = 0;
+  result.evaluations = fit.evaluations;
   for (const ContinuationResult& single : fit.single) result.evaluations += single.evaluations;
   return result;
 }

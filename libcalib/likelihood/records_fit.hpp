@@ -1,4 +1,4 @@
-// One fit to several records of one string: strokes, contact points.
+// One fit to several records of one string: strokes, contact points, plucks.
 #pragma once
 
 #include <span>
@@ -8,34 +8,46 @@
 
 namespace modcal {
 
+/// Both reactions of the string left to itself after a pluck.
+struct PluckRecord {
+  CalibrationData data;
+  /// Noise standard deviation of each reaction [N]; NaN: estimated from the record.
+  std::array<double, 2> noise{std::numeric_limits<double>::quiet_NaN(),
+                              std::numeric_limits<double>::quiet_NaN()};
+};
+
 struct RecordsFit {
   ModelPoint model;              ///< shared; the contact of the first record
-  std::vector<double> contacts;  ///< x_c of every record [m]
+  std::vector<double> contacts;  ///< x_c of every stroke [m]
   std::vector<double> contact_deviations;
   /// f_0 [Hz] and B where the law alone is fitted, and their standard deviations.
   double fundamental = 0.0, inharmonicity = 0.0;
   double fundamental_deviation = 0.0, inharmonicity_deviation = 0.0;
   /// Relative standard deviations of f_n, where every frequency is free.
   std::vector<double> frequency_deviations;
+  std::vector<ModeVerdict> modes;            ///< by all records, where every frequency is free
+  double law_width = 0.0;                    ///< τ, where every frequency is free
   std::array<double, 3> sensor_deviation{};  ///< as in ContinuationResult
   double damping = 1.0;                      ///< as in ContinuationResult
   double damping_deviation = 0.0;
   double chi2 = 0.0;  ///< reduced, of all records
   double chi2_deviation = 0.0;
   bool right = false;                      ///< χ² < 1 + 3 sd
-  std::vector<ContinuationResult> single;  ///< every record by itself
+  std::size_t evaluations = 0;             ///< of all records together
+  std::vector<ContinuationResult> single;  ///< every stroke by itself
 };
 
-/// Every record by itself (calibrate_by_continuation), then all at σ = 0 in one likelihood, started
+/// Every stroke by itself (calibrate_by_continuation), then all at σ = 0 in one likelihood, started
 /// from the one χ² contradicts least: frequencies or law, damping and sensors shared, x_c and the
-/// end state of each record its own. Records are independent, so their informations add. Stated
-/// noise levels hold for all records. Throws InvalidInput for no record.
-RecordsFit calibrate_records(const ModelPoint& initial, std::span<const CalibrationData> records,
-                             const ContinuationOptions& options);
+/// end state of each record its own. Modes that no stroke identifies start where the plucks ring.
+/// Records are independent, so their informations add. Stated noise levels of `options` hold for
+/// all strokes. Throws InvalidInput for no stroke.
+RecordsFit calibrate_records(const ModelPoint& initial, std::span<const CalibrationData> strokes,
+                             const ContinuationOptions& options,
+                             std::span<const PluckRecord> plucks = {});
 
 /// The fit in the form of that of one record: model, χ², what is shared and its deviations, the
-/// first record's contact; a mode's verdict is that of the record by itself that sees it best.
-/// Where every frequency is free, `law` stays that of the first record.
+/// first record's contact. Where every frequency is free, `law` stays that of the first record.
 ContinuationResult as_continuation(const RecordsFit& fit);
 
 }  // namespace modcal

@@ -1,0 +1,118 @@
+#include "libcalib/likelihood/all_records.hpp"
+
+#include <cmath>
+#include <numeric>
+
+namespace modcal {
+
+namespace {
+constexpr std::size_t kNoiseRepeats = 3;
+}
+
+LikelihoodPoint StrokeLikelihood::evaluate(const ModelPoint& point,
+                                           const LikelihoodColumns& columns,
+                                           bool twice_weighted) const {
+  return weighted_.evaluate(point, columns, {.twice_weighted = twice_weighted});
+}
+
+Eigen::MatrixXd StrokeLikelihood::noise_information(const ModelPoint& point,
+                                                    const LikelihoodColumns& columns) const {
+  return weighted_.noise_information(point, columns, kNoiseRepeats);
+}
+
+double StrokeLikelihood::unweighted_cost(const ModelPoint& point) const {
+  return whole_.cost(point);
+}
+
+double StrokeLikelihood::degrees_of_freedom(const ModelPoint& point) const {
+  return whole_.degrees_of_freedom(0, point.basis.size());
+}
+
+void AllRecords::add(std::shared_ptr<const RecordLikelihood> record, const Eigen::VectorXd& start,
+                     const std::vector<Index>& own) {
+  std::vector<Index> places(static_cast<std::size_t>(unknowns_.size()));
+  std::iota(places.begin(), places.end(), Index{0});
+  if (records_.empty()) {
+    start_ = start;
+  } else {
+    for (const Index i : own) {
+      places[static_cast<std::size_t>(i)] = size_++;
+      start_.conservativeResize(size_);
+      start_[size_ - 1] = start[i];
+    }
+  }
+  places_.push_back(std::move(places));
+  records_.push_back(std::move(record));
+}
+
+Eigen::VectorXd AllRecords::own(const Eigen::VectorXd& theta, std::size_t record) const {
+  Eigen::VectorXd part(unknowns_.size());
+  for (Index i = 0; i < part.size(); ++i) part[i] = theta[place(i, record)];
+  return part;
+}
+
+bool AllRecords::admits(const Eigen::VectorXd& theta) const {
+  for (std::size_t r = 0; r < records(); ++r) {
+    if (!unknowns_.admits(own(theta, r))) return false;
+  }
+  return true;
+}
+
+std::optional<LinearForm> AllRecords::coordinate(const UnknownName& name,
+                                                 const Eigen::VectorXd& theta) const {
+  const std::optional<LinearForm> of_record = unknowns_.coordinate(name, own(theta, name.record));
+  if (!of_record) return of_record;
+  LinearForm form{.slope = Eigen::VectorXd::Zero(size() + 2), .offset = of_record->offset};
+  for (Index i = 0; i < unknowns_.size(); ++i) {
+    form.slope[place(i, name.record)] = of_record->slope[i];
+  }
+  form.slope.tail(2) = of_record->slope.tail(2);
+  return form;
+}
+
+LikelihoodPoint AllRecords::evaluate(const Eigen::VectorXd& theta, bool twice_weighted) const {
+  LikelihoodPoint sum{.slope = Eigen::VectorXd::Zero(size()),
+                      .information = Eigen::MatrixXd::Zero(size(), size())};
+  if (twice_weighted) sum.twice_weighted = sum.information;
+  for (std::size_t r = 0; r < records(); ++r) {
+    const LikelihoodPoint point =
+        records_[r]->evaluate(model(theta, r), unknowns_.columns(own(theta, r)), twice_weighted);
+    sum.cost += point.cost;
+    for (Index i = 0; i < unknowns_.size(); ++i) sum.slope[place(i, r)] += point.slope[i];
+    add_to(sum.information, point.information, r);
+    if (twice_weighted) add_to(sum.twice_weighted, point.twice_weighted, r);
+  }
+  return sum;
+}
+
+Eigen::MatrixXd AllRecords::noise(const Eigen::VectorXd& theta) const {
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(size(), size());
+  for (std::size_t r = 0; r < records(); ++r) {
+    add_to(sum, records_[r]->noise_information(model(theta, r), unknowns_.columns(own(theta, r))),
+           r);
+  }
+  return sum;
+}
+
+AllRecords::Misfit AllRecords::misfit(const Eigen::VectorXd& theta,
+                                      std::span<const double> noise_errors) const {
+  double cost = 0.0, freedom = -static_cast<double>(size()), variance = 0.0;
+  for (std::size_t r = 0; r < records(); ++r) {
+    const ModelPoint point = model(theta, r);
+    const double own_freedom = records_[r]->degrees_of_freedom(point);
+    cost += records_[r]->unweighted_cost(point);
+    freedom += own_freedom;
+    variance += std::pow(own_freedom * noise_errors[r], 2);
+  }
+  return {.chi2 = 2.0 * cost / freedom,
+          .deviation = std::hypot(std::sqrt(2.0 / freedom), std::sqrt(variance) / freedom)};
+}
+
+void AllRecords::add_to(Eigen::MatrixXd& sum, const Eigen::MatrixXd& part,
+                        std::size_t record) const {
+  for (Index i = 0; i < part.rows(); ++i) {
+    for (Index j = 0; j < part.cols(); ++j) sum(place(i, record), place(j, record)) += part(i, j);
+  }
+}
+
+}  // namespace modcal

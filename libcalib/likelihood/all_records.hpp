@@ -1,0 +1,79 @@
+// All records of one string as one likelihood.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "libcalib/likelihood/record_likelihood.hpp"
+#include "libcalib/likelihood/string_unknowns.hpp"
+
+namespace modcal {
+
+/// A stroke: bins weighted in the fit, all alike in χ².
+class StrokeLikelihood final : public RecordLikelihood {
+ public:
+  StrokeLikelihood(ProjectedLikelihood whole, ProjectedLikelihood weighted)
+      : whole_(std::move(whole)), weighted_(std::move(weighted)) {}
+  LikelihoodPoint evaluate(const ModelPoint& point, const LikelihoodColumns& columns,
+                           bool twice_weighted) const override;
+  Eigen::MatrixXd noise_information(const ModelPoint& point,
+                                    const LikelihoodColumns& columns) const override;
+  double unweighted_cost(const ModelPoint& point) const override;
+  double degrees_of_freedom(const ModelPoint& point) const override;
+
+ private:
+  ProjectedLikelihood whole_, weighted_;
+};
+
+/// Unknowns of the first record, then what each further record has for itself. Records are
+/// independent: costs, slopes and informations add.
+class AllRecords {
+ public:
+  using Index = Eigen::Index;
+
+  explicit AllRecords(const StringUnknowns& shared) : unknowns_(shared), size_(shared.size()) {}
+
+  /// start: θ of the record; own: which of it no other record has, ascending. The first record
+  /// owns nothing, all it has is shared.
+  void add(std::shared_ptr<const RecordLikelihood> record, const Eigen::VectorXd& start,
+           const std::vector<Index>& own);
+
+  Index size() const { return size_; }
+  std::size_t records() const { return records_.size(); }
+  const StringUnknowns& unknowns() const { return unknowns_; }
+  const Eigen::VectorXd& start() const { return start_; }
+  /// Place of unknown i of a record among all.
+  Index place(Index i, std::size_t record) const {
+    return places_[record][static_cast<std::size_t>(i)];
+  }
+  /// θ of one record.
+  Eigen::VectorXd own(const Eigen::VectorXd& theta, std::size_t record) const;
+  ModelPoint model(const Eigen::VectorXd& theta, std::size_t record) const {
+    return unknowns_.model(own(theta, record));
+  }
+  bool admits(const Eigen::VectorXd& theta) const;
+  /// Coordinate of a prior, see StringUnknowns.
+  std::optional<LinearForm> coordinate(const UnknownName& name, const Eigen::VectorXd& theta) const;
+  LikelihoodPoint evaluate(const Eigen::VectorXd& theta, bool twice_weighted) const;
+  Eigen::MatrixXd noise(const Eigen::VectorXd& theta) const;
+
+  struct Misfit {
+    double chi2 = 0.0;       ///< reduced
+    double deviation = 0.0;  ///< its standard deviation
+  };
+  /// noise_errors: relative standard deviation of the noise power stated for each record.
+  Misfit misfit(const Eigen::VectorXd& theta, std::span<const double> noise_errors) const;
+
+ private:
+  void add_to(Eigen::MatrixXd& sum, const Eigen::MatrixXd& part, std::size_t record) const;
+
+  StringUnknowns unknowns_;
+  Index size_;
+  Eigen::VectorXd start_;
+  std::vector<std::shared_ptr<const RecordLikelihood>> records_;
+  std::vector<std::vector<Index>> places_;
+};
+
+}  // namespace modcal

@@ -1,0 +1,214 @@
+#include "libcalib/likelihood/pluck_evaluation.hpp"
+
+#include <algorithm>
+
+#include "libcalib/likelihood/column_products.hpp"
+#include "libcalib/likelihood/projected_likelihood.hpp"
+
+namespace modcal {
+namespace {
+
+using Index = Eigen::Index;
+constexpr double kRidge = 1e-9;
+
+}  // namespace
+
+PluckEvaluation::Mode PluckEvaluation::mode_of(const LikelihoodMode& mode,
+                                               const SensorPair& sensors, double sample_rate,
+                                               double scale) {
+  const Complex rate = std::log(mode.pole) * sample_rate;
+  const Complex response = (mode.even ? -scale : scale) * sensors.response(rate);
+  const Complex by_rate = response * (1.0 / rate - sensors.delay - 1.0 / (rate + sensors.corner));
+  Mode result{.pole = mode.pole,
+              .by_frequency = mode.pole_by_frequency / mode.pole,
+              .by_damping = mode.pole_by_damping / mode.pole,
+              .right = response};
+  result.right_slopes[0] = by_rate * result.by_frequency * sample_rate;
+  result.right_slopes[1] = by_rate * result.by_damping * sample_rate;
+  result.right_slopes[2] = response;
+  result.right_slopes[3] = -rate * response;
+  result.right_slopes[4] = -response / (rate + sensors.corner);
+  return result;
+}
+
+PluckEvaluation::PluckEvaluation(const WhitenedRecord& record, const ModelPoint& point)
+    : record_(record), plain_(plain_transients(record, point.sensors)) {
+  for (const LikelihoodMode& mode : likelihood_modes(point, record.sample_rate)) {
+    modes_.push_back(mode_of(mode, point.sensors, record.sample_rate,
+                             record.deviation[0] / record.deviation[1]));
+  }
+  const std::size_t width = tiled(linear_unknowns() + 1);
+  RowMatrix products = RowMatrix::Zero(static_cast<Index>(width), static_cast<Index>(width));
+  AlignedVector left(width * kColumnLength), right(width * kColumnLength);
+  for (std::size_t b = 0; b < record.blocks(); ++b) {
+    fill_linear(b, left.data(), right.data());
+    for (const double* columns : {left.data(), right.data()}) {
+      add_products(columns, width, columns, width, true, products.data(), width);
+    }
+  }
+  solve(products);
+}
+
+void PluckEvaluation::fill(std::size_t block, std::size_t mode, bool slopes, Decay& decay) const {
+  const std::size_t first = block * kBins;
+  const std::size_t count = std::min(kBins, record_.bins - first);
+  const double* delay_re = record_.delay.re.data() + first;
+  const double* delay_im = record_.delay.im.data() + first;
+  for (int conjugate = 0; conjugate < 2; ++conjugate) {
+    const double pole_re = modes_[mode].pole.real();
+    const double pole_im = conjugate ? -modes_[mode].pole.imag() : modes_[mode].pole.imag();
+    double* re = decay.re[conjugate];
+    double* im = decay.im[conjugate];
+    for (std::size_t k = 0; k < count; ++k) {
+      const double a = 1.0 - pole_re * delay_re[k] + pole_im * delay_im[k];
+      const double b = pole_re * delay_im[k] + pole_im * delay_re[k];
+      const double inverse = 1.0 / (a * a + b * b);
+      re[k] = a * inverse;
+      im[k] = b * inverse;
+    }
+    std::fill(re + count, re + kBins, 0.0);
+    std::fill(im + count, im + kBins, 0.0);
+    if (!slopes) continue;
+    double* slope_re = decay.re[conjugate + kSlope];
+    double* slope_im = decay.im[conjugate + kSlope];
+    for (std::size_t k = 0; k < kBins; ++k) {
+      slope_re[k] = re[k] * re[k] - im[k] * im[k] - re[k];
+      slope_im[k] = 2.0 * re[k] * im[k] - im[k];
+    }
+  }
+}
+
+void PluckEvaluation::add(const Decay& decay, Part part, Complex a, double* column) {
+  const double *re = decay.re[part], *im = decay.im[part];
+  const double *conj_re = decay.re[part + 1], *conj_im = decay.im[part + 1];
+  const double x = a.real(), y = a.imag();
+  for (std::size_t k = 0; k < kBins; ++k) {
+    column[k] += x * (re[k] + conj_re[k]) - y * (im[k] - conj_im[k]);
+    column[kBins + k] += x * (im[k] + conj_im[k]) + y * (re[k] - conj_re[k]);
+  }
+}
+
+void PluckEvaluation::fill_plain(std::size_t block, const PlanarVector& numbers, double factor,
+                                 double* column) const {
+  const std::size_t first = block * kBins;
+  for (std::size_t k = 0; k < std::min(kBins, record_.bins - first); ++k) {
+    column[k] += factor * numbers.re[first + k];
+    column[kBins + k] += factor * numbers.im[first + k];
+  }
+}
+
+// Columns of all that is linear, the data behind them.
+void PluckEvaluation::fill_linear(std::size_t block, double* left, double* right) const {
+  const std::size_t width = tiled(linear_unknowns() + 1);
+  std::fill_n(left, width * kColumnLength, 0.0);
+  std::fill_n(right, width * kColumnLength, 0.0);
+  Decay decay;
+  for (std::size_t n = 0; n < modes_.size(); ++n) {
+    fill(block, n, false, decay);
+    const std::size_t at = 2 * n * kColumnLength;
+    add(decay, kLevel, 1.0, left + at);
+    add(decay, kLevel, Complex(0.0, 1.0), left + at + kColumnLength);
+    add(decay, kLevel, modes_[n].right, right + at);
+    add(decay, kLevel, Complex(0.0, 1.0) * modes_[n].right, right + at + kColumnLength);
+  }
+  const std::size_t first = 2 * modes_.size();
+  for (std::size_t p = 0; p < plain_.size(); ++p) {
+    fill_plain(block, plain_[p].numbers, 1.0 / record_.deviation[1],
+               right + (first + p) * kColumnLength);
+  }
+  fill_plain(block, record_.left, 1.0, left + linear_unknowns() * kColumnLength);
+  fill_plain(block, record_.right, 1.0, right + linear_unknowns() * kColumnLength);
+}
+
+void PluckEvaluation::solve(const RowMatrix& products) {
+  const auto count = static_cast<Index>(linear_unknowns());
+  const Eigen::MatrixXd gram =
+      Eigen::MatrixXd(products.topLeftCorner(count, count)).selfadjointView<Eigen::Lower>();
+  const Eigen::VectorXd with_data = products.row(count).head(count).transpose();
+  scale_ = gram.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  Eigen::MatrixXd scaled = scale_.asDiagonal() * gram * scale_.asDiagonal();
+  scaled.diagonal().array() += kRidge;
+  normal_.compute(scaled);
+  linear_ = scale_.asDiagonal() * normal_.solve(scale_.asDiagonal() * with_data);
+  cost_ = products(count, count) - 2.0 * linear_.dot(with_data) + linear_.dot(gram * linear_);
+  for (std::size_t n = 0; n < modes_.size(); ++n) {
+    const auto at = static_cast<Index>(2 * n);
+    amplitudes_.emplace_back(linear_[at], linear_[at + 1]);
+  }
+}
+
+// What one mode adds to the columns of -e: the Jacobian's, and the model behind them.
+void PluckEvaluation::add_mode(const LikelihoodColumns& columns, std::size_t mode,
+                               const Decay& decay, double* left, double* right) const {
+  const Mode& own = modes_[mode];
+  const Complex c = amplitudes_[mode];
+  for (std::size_t i = columns.share_begin[mode]; i < columns.share_begin[mode + 1]; ++i) {
+    const auto& [column, frequency, damping] = columns.shares[i];
+    const Complex slope = c * (frequency * own.by_frequency + damping * own.by_damping);
+    const Complex level = c * (frequency * own.right_slopes[0] + damping * own.right_slopes[1]);
+    add(decay, kSlope, slope, left + column * kColumnLength);
+    add(decay, kSlope, slope * own.right, right + column * kColumnLength);
+    if (level != 0.0) add(decay, kLevel, level, right + column * kColumnLength);
+  }
+  const std::optional<std::size_t> sensors[] = {columns.gain, columns.delay, columns.corner};
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!sensors[i]) continue;
+    add(decay, kLevel, c * own.right_slopes[2 + i], right + *sensors[i] * kColumnLength);
+  }
+  add(decay, kLevel, c, left + columns.count * kColumnLength);
+  add(decay, kLevel, c * own.right, right + columns.count * kColumnLength);
+}
+
+// Columns of -e and of its derivatives, of both ends.
+void PluckEvaluation::fill_jacobian(std::size_t block, const LikelihoodColumns& columns,
+                                    double* left, double* right) const {
+  const std::size_t width = tiled(columns.count + 1);
+  std::fill_n(left, width * kColumnLength, 0.0);
+  std::fill_n(right, width * kColumnLength, 0.0);
+  Decay decay;
+  for (std::size_t n = 0; n < modes_.size(); ++n) {
+    fill(block, n, true, decay);
+    add_mode(columns, n, decay, left, right);
+  }
+  double* model = right + columns.count * kColumnLength;
+  for (std::size_t p = 0; p < plain_.size(); ++p) {
+    const double factor = linear_[static_cast<Index>(2 * modes_.size() + p)] / record_.deviation[1];
+    fill_plain(block, plain_[p].numbers, factor, model);
+    if (columns.corner && plain_[p].by_corner.size() > 0) {
+      fill_plain(block, plain_[p].by_corner, factor, right + *columns.corner * kColumnLength);
+    }
+  }
+  fill_plain(block, record_.left, -1.0, left + columns.count * kColumnLength);
+  fill_plain(block, record_.right, -1.0, model);
+}
+
+LikelihoodPoint PluckEvaluation::differentiate(const LikelihoodColumns& columns) const {
+  const std::size_t width = tiled(columns.count + 1);
+  const std::size_t linear_width = tiled(linear_unknowns() + 1);
+  RowMatrix own = RowMatrix::Zero(static_cast<Index>(width), static_cast<Index>(width));
+  RowMatrix mixed = RowMatrix::Zero(static_cast<Index>(width), static_cast<Index>(linear_width));
+  AlignedVector jacobian[2], linear[2];
+  for (std::size_t r = 0; r < 2; ++r) {
+    jacobian[r].resize(width * kColumnLength);
+    linear[r].resize(linear_width * kColumnLength);
+  }
+  for (std::size_t b = 0; b < record_.blocks(); ++b) {
+    fill_jacobian(b, columns, jacobian[0].data(), jacobian[1].data());
+    fill_linear(b, linear[0].data(), linear[1].data());
+    for (std::size_t r = 0; r < 2; ++r) {
+      add_products(jacobian[r].data(), width, jacobian[r].data(), width, true, own.data(), width);
+      add_products(jacobian[r].data(), width, linear[r].data(), linear_width, false, mixed.data(),
+                   linear_width);
+    }
+  }
+  const auto n = static_cast<Index>(columns.count);
+  const Eigen::MatrixXd products =
+      Eigen::MatrixXd(own.topLeftCorner(n + 1, n + 1)).selfadjointView<Eigen::Lower>();
+  const Eigen::MatrixXd cross =
+      mixed.topLeftCorner(n, static_cast<Index>(linear_unknowns())) * scale_.asDiagonal();
+  LikelihoodPoint point{.cost = cost_, .slope = products.col(n).head(n)};
+  point.information = products.topLeftCorner(n, n) - cross * normal_.solve(cross.transpose());
+  return point;
+}
+
+}  // namespace modcal

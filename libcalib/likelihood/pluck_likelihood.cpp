@@ -1,0 +1,66 @@
+#include "libcalib/likelihood/pluck_likelihood.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libcalib/likelihood/pluck_evaluation.hpp"
+#include "libsim/base/error.hpp"
+
+namespace modcal {
+namespace {
+
+constexpr std::size_t kNoiseRepeats = 3;
+constexpr std::size_t kHalfBand = 128;
+
+}  // namespace
+
+PluckLikelihood::PluckLikelihood(WhitenedRecord record) : record_(std::move(record)) {
+  MODCAL_REQUIRE(record_.sigma == 0.0,
+                 "a pluck damped by {:g} 1/s: it is compared as it was recorded, at 0 1/s",
+                 record_.sigma);
+}
+
+LikelihoodPoint PluckLikelihood::evaluate(const ModelPoint& point, const LikelihoodColumns& columns,
+                                          bool twice_weighted) const {
+  LikelihoodPoint result = PluckEvaluation(record_, point).differentiate(columns);
+  if (twice_weighted) result.twice_weighted = result.information;
+  return result;
+}
+
+Eigen::MatrixXd PluckLikelihood::noise_information(const ModelPoint& point,
+                                                   const LikelihoodColumns& columns) const {
+  const auto n = static_cast<Eigen::Index>(columns.count);
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(n, n);
+  for (std::size_t r = 0; r < kNoiseRepeats; ++r) {
+    const WhitenedRecord noise = record_.noise(r);
+    sum += PluckEvaluation(noise, point).differentiate(columns).information;
+  }
+  return sum / static_cast<double>(kNoiseRepeats);
+}
+
+double PluckLikelihood::unweighted_cost(const ModelPoint& point) const {
+  return PluckEvaluation(record_, point).cost();
+}
+
+double PluckLikelihood::degrees_of_freedom(const ModelPoint& point) const {
+  const std::size_t linear =
+      2 * point.basis.size() + plain_transients(record_, point.sensors).size();
+  return 4.0 * static_cast<double>(record_.bins) - static_cast<double>(linear);
+}
+
+double PluckLikelihood::power_about(std::complex<double> pole, double omega) const {
+  const auto center = std::min(static_cast<std::size_t>(omega / record_.spacing), record_.bins - 1);
+  const std::size_t begin = center > kHalfBand ? center - kHalfBand : 0;
+  const std::size_t end = std::min(center + kHalfBand, record_.bins);
+  Complex left = 0.0, right = 0.0;
+  double norm = 0.0;
+  for (std::size_t k = begin; k < end; ++k) {
+    const Complex decay = 1.0 / (1.0 - pole * record_.delay.at(k));
+    left += std::conj(decay) * record_.left.at(k);
+    right += std::conj(decay) * record_.right.at(k);
+    norm += std::norm(decay);
+  }
+  return (std::norm(left) + std::norm(right)) / norm;
+}
+
+}  // namespace modcal
