@@ -1,7 +1,10 @@
 #include "libcalib/likelihood/bin_weights.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+
+#include "libsim/base/error.hpp"
 
 namespace modcal {
 namespace {
@@ -13,36 +16,68 @@ class Windows {
     for (std::size_t k = 0; k < values.size(); ++k) cumulative_[k + 1] = cumulative_[k] + values[k];
   }
   double sum(std::size_t center, std::size_t half) const {
-    const std::size_t low = center > half ? center - half : 0;
-    return cumulative_[std::min(center + half + 1, cumulative_.size() - 1)] - cumulative_[low];
+    return cumulative_[end(center, half)] - cumulative_[begin(center, half)];
+  }
+  double mean(std::size_t center, std::size_t half) const {
+    return sum(center, half) / static_cast<double>(end(center, half) - begin(center, half));
   }
 
  private:
+  static std::size_t begin(std::size_t center, std::size_t half) {
+    return center > half ? center - half : 0;
+  }
+  std::size_t end(std::size_t center, std::size_t half) const {
+    return std::min(center + half + 1, cumulative_.size() - 1);
+  }
   std::vector<double> cumulative_;
 };
 
 constexpr std::size_t kLine = 2;    // bins either side of a line of the force
-constexpr std::size_t kFloor = 30;  // and of a stretch between lines
+constexpr std::size_t kFloor = 60;  // and of a stretch between lines
 constexpr double kProof = 15.0;     // excess of five bins that noise has once in 60 000
+constexpr std::size_t kNoiseHalf = 3;
+constexpr std::size_t kNoiseRepeats = 2;
 
-// Power of the force in each bin: its lines by themselves, what is between them smoothed widely, so
-// that noise does not choose its own weight.
-std::vector<double> force_power(const std::vector<Complex>& force,
-                                const std::vector<double>& gain) {
-  std::vector<double> excess(force.size());
-  for (std::size_t k = 0; k < force.size(); ++k) {
-    excess[k] = std::norm(force[k]) * gain[k] - 1.0;
+// J_k A⁻¹ J_kᴴ of every bin, A = LLᵀ scaled to a unit diagonal.
+class Shares {
+ public:
+  explicit Shares(const Eigen::MatrixXd& information)
+      : scale_(information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse()) {
+    Eigen::MatrixXd scaled = scale_.asDiagonal() * information * scale_.asDiagonal();
+    // A mode that nothing excites has no row of its own.
+    scaled.diagonal().array() += 1e-9;
+    factor_.compute(scaled);
   }
+  std::vector<double> of(const Eigen::MatrixXd& jacobian) const {
+    const Eigen::MatrixXd rows =
+        factor_.matrixL().solve(scale_.asDiagonal() * jacobian.transpose());
+    std::vector<double> shares(static_cast<std::size_t>(rows.cols() / 2));
+    for (std::size_t k = 0; k < shares.size(); ++k) {
+      const auto i = static_cast<Eigen::Index>(2 * k);
+      shares[k] = rows.col(i).squaredNorm() + rows.col(i + 1).squaredNorm();
+    }
+    return shares;
+  }
+
+ private:
+  Eigen::VectorXd scale_;
+  Eigen::LLT<Eigen::MatrixXd> factor_;
+};
+
+// S/|h|² of every bin.
+std::vector<double> power_of_excess(const std::vector<double>& excess,
+                                    const std::vector<double>& gain) {
   const Windows near_excess(excess), near_gain(gain);
-  std::vector<double> between(force.size()), between_gain(force.size());
-  for (std::size_t k = 0; k < force.size(); ++k) {
+  std::vector<double> between(excess.size()), between_gain(excess.size());
+  for (std::size_t k = 0; k < excess.size(); ++k) {
     if (near_excess.sum(k, kLine) > kProof) continue;
     between[k] = excess[k];
     between_gain[k] = gain[k];
   }
+  // Lines by themselves, what is between them smoothed widely: noise does not choose its weight.
   const Windows wide_excess(between), wide_gain(between_gain);
-  std::vector<double> power(force.size());
-  for (std::size_t k = 0; k < force.size(); ++k) {
+  std::vector<double> power(excess.size());
+  for (std::size_t k = 0; k < excess.size(); ++k) {
     const bool line = near_excess.sum(k, kLine) > kProof;
     const double total = line ? near_gain.sum(k, kLine) : wide_gain.sum(k, kFloor);
     const double found = line ? near_excess.sum(k, kLine) : wide_excess.sum(k, kFloor);
@@ -51,7 +86,16 @@ std::vector<double> force_power(const std::vector<Complex>& force,
   return power;
 }
 
+double weight(double signal) { return signal / (1.0 + signal); }
+
 }  // namespace
+
+std::vector<double> weights_of_excess(const std::vector<double>& excess,
+                                      const std::vector<double>& gain) {
+  std::vector<double> weights = power_of_excess(excess, gain);
+  for (std::size_t k = 0; k < weights.size(); ++k) weights[k] = weight(gain[k] * weights[k]);
+  return weights;
+}
 
 std::vector<double> signal_weights(const NoisyRecords& records, double sigma, double highest,
                                    const ProjectedLikelihood& target, const ModelPoint& point) {
@@ -60,15 +104,47 @@ std::vector<double> signal_weights(const NoisyRecords& records, double sigma, do
   std::vector<double> gain, own_gain;
   damped.evaluate(point, {}, {.force = &force, .gain = &gain});
   target.evaluate(point, {}, {.gain = &own_gain});
-  const std::vector<double> power = force_power(force, gain);
+  std::vector<double> excess(force.size());
+  for (std::size_t k = 0; k < force.size(); ++k) {
+    excess[k] = std::norm(force[k]) * gain[k] - 1.0;
+  }
+  const std::vector<double> power = power_of_excess(excess, gain);
   std::vector<double> weights(own_gain.size());
   const double ratio = target.record().spacing / damped.record().spacing;
   for (std::size_t k = 0; k < weights.size(); ++k) {
     const auto place = static_cast<std::size_t>(std::lround(static_cast<double>(k + 1) * ratio));
-    const double signal = own_gain[k] * power[std::clamp<std::size_t>(place, 1, power.size()) - 1];
-    weights[k] = signal / (1.0 + signal);
+    weights[k] = weight(own_gain[k] * power[std::clamp<std::size_t>(place, 1, power.size()) - 1]);
   }
   return weights;
+}
+
+std::vector<double> information_weights(const ProjectedLikelihood& likelihood,
+                                        const ModelPoint& point, const LikelihoodColumns& columns) {
+  const WhitenedRecord& record = likelihood.record();
+  MODCAL_REQUIRE(std::all_of(record.root_weight.begin(),
+                             record.root_weight.begin() + static_cast<long>(record.bins),
+                             [](double weight) { return weight == 1.0; }),
+                 "weights of {} bins are asked of a likelihood that has some already: give the "
+                 "one without weights",
+                 record.bins);
+  Eigen::MatrixXd jacobian;
+  std::vector<double> gain;
+  const LikelihoodPoint at =
+      likelihood.evaluate(point, columns, {.jacobian = &jacobian, .gain = &gain});
+  const Shares shares(at.information);
+  std::vector<double> excess = shares.of(jacobian);
+  std::vector<double> noise(excess.size(), 0.0);
+  for (std::size_t r = 0; r < kNoiseRepeats; ++r) {
+    ProjectedLikelihood(record.noise(r)).evaluate(point, columns, {.jacobian = &jacobian});
+    const std::vector<double> draw = shares.of(jacobian);
+    for (std::size_t k = 0; k < noise.size(); ++k) noise[k] += draw[k] / kNoiseRepeats;
+  }
+  const Windows expected(noise);
+  for (std::size_t k = 0; k < excess.size(); ++k) {
+    const double alone = expected.mean(k, kNoiseHalf);
+    excess[k] = alone > 0.0 ? excess[k] / alone - 1.0 : 0.0;
+  }
+  return weights_of_excess(excess, gain);
 }
 
 }  // namespace modcal

@@ -160,8 +160,12 @@ class Attempt {
   Eigen::MatrixXd prepare_weights(const StringUnknowns& unknowns, const Eigen::VectorXd& theta) {
     const ModelPoint point = unknowns.model(theta);
     weighted_ = whole_;
-    weighted_->set_weights(signal_weights(records_, 3.0 * unit_, highest_, *whole_, point));
-    return weighted_->noise_information(point, unknowns.columns(theta), kNoiseRepeats);
+    weighted_->set_weights(information_weights(*whole_, point, unknowns.columns(theta)));
+    return noise_at(unknowns, theta);
+  }
+  Eigen::MatrixXd noise_at(const StringUnknowns& unknowns, const Eigen::VectorXd& theta) const {
+    return weighted_->noise_information(unknowns.model(theta), unknowns.columns(theta),
+                                        kNoiseRepeats);
   }
 
   LikelihoodPoint whole_point(const StringUnknowns& unknowns, const Eigen::VectorXd& theta) {
@@ -185,7 +189,8 @@ class Attempt {
     set_prior(unknowns.prior(theta, {wide, inharmonicity}), options);
     if (!from_law) theta = descend(unknowns, theta, options, result);
     theta = fit(*whole_, unknowns, theta, options).theta;
-    options.noise = prepare_weights(unknowns, theta);
+    // Where the law holds, its weights serve: a bin tells of every unknown by what force is in it.
+    options.noise = from_law ? noise_at(unknowns, theta) : prepare_weights(unknowns, theta);
     options.steps = 5;
     theta = fit(*weighted_, unknowns, theta, options).theta;
     const LikelihoodPoint at = whole_point(unknowns, theta);
