@@ -1,5 +1,6 @@
 #include "libcalib/likelihood/continuation.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -32,6 +33,15 @@ void deny_noise(const ModelPoint& point, const Eigen::MatrixXd& information,
     const double proof = std::abs(shape[n]) < kNodeShape ? kNodeProof : kProof;
     if (information(i, i) < proof * noise(i, i)) seen[i] = std::max(seen[i], kWidePrior);
   }
+}
+
+// How many residuals the fit takes, 2 tr H⁻¹JᵀWJ: an unknown that its prior holds takes none.
+double taken_by_fit(const LikelihoodPoint& point, const NewtonOptions& options) {
+  const Eigen::MatrixXd hessian = debiased_hessian(point.information, options);
+  const Eigen::VectorXd scale = hessian.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * hessian * scale.asDiagonal();
+  const Eigen::MatrixXd information = scale.asDiagonal() * point.information * scale.asDiagonal();
+  return 2.0 * scaled.ldlt().solve(information).trace();
 }
 
 // One attempt: everything between a start of f_0 and a verdict by χ².
@@ -118,9 +128,9 @@ class Attempt {
     ladder_theta_ = law_theta_;
   }
 
-  double reduced_chi2(const ModelPoint& point, std::size_t parameters) {
+  double reduced_chi2(const ModelPoint& point, double taken) {
     ++evaluations_;
-    return 2.0 * whole_->cost(point) / whole_->degrees_of_freedom(parameters, modes());
+    return 2.0 * whole_->cost(point) / (whole_->degrees_of_freedom(0, modes()) - taken);
   }
 
   // σ = 0, end state projected out, then once more with weights and without the noise in JᵀJ.
@@ -147,7 +157,7 @@ class Attempt {
     }
     law.deviation[0] *= law.fundamental;
     law.deviation[3] = law_.damping_deviation(covariance) * law.damping;
-    law.chi2 = result.chi2 = reduced_chi2(result.model, static_cast<std::size_t>(law_.size()));
+    law.chi2 = result.chi2 = reduced_chi2(result.model, static_cast<double>(law_.size()));
     law.accepted = law.chi2 < 1.0 + 3.0 * result.chi2_deviation;
     result.contact_deviation = law.deviation[2];
     result.damping = law.damping;
@@ -204,9 +214,11 @@ class Attempt {
     set_prior(unknowns.prior(theta, {widths, inharmonicity}), options);
     options.tolerance = 1e-4;
     theta = fit(*weighted_, unknowns, theta, options).theta;
-    const Eigen::MatrixXd covariance = covariance_at(unknowns, theta, options);
+    const LikelihoodPoint last = whole_point(unknowns, theta);
+    const Eigen::MatrixXd covariance = fit_covariance(last, options);
     const double reference_factor = law_.damping_factor(from_law ? law_theta_ : ladder_theta_);
     report(unknowns, theta, covariance, seen, estimated, reference_factor, result);
+    result.chi2 = reduced_chi2(result.model, taken_by_fit(last, options));
   }
 
   // Free frequencies on damped records, where the law does not hold: wide basins first.
@@ -235,7 +247,6 @@ class Attempt {
     result.damping = unknowns.damping_factor(theta) * reference_factor;
     result.damping_deviation = unknowns.damping_deviation(covariance) * result.damping;
     report_sensors(unknowns, covariance, result);
-    result.chi2 = reduced_chi2(result.model, static_cast<std::size_t>(unknowns.size()));
     const auto n = static_cast<Eigen::Index>(modes());
     result.modes = free_verdicts(result.model, deviation.head(n), seen.head(n), estimated);
     trust_stated_frequencies(priors_, deviation, result.modes);
