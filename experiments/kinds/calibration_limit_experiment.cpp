@@ -55,6 +55,7 @@ LimitOutcome outcome_of(const ContinuationResult& found) {
       .contact_deviation = found.contact_deviation,
       .law_chi2 = found.law.chi2,
       .chi2 = found.chi2,
+      .chi2_deviation = found.chi2_deviation,
       .right = found.right,
       .paper_error = kNan,
       .force_correlation = kNan};
@@ -135,6 +136,7 @@ std::string outcome_text(const LimitOutcome& outcome) {
               {"contact_deviation", number_json(outcome.contact_deviation)},
               {"law_chi2", number_json(outcome.law_chi2)},
               {"chi2", number_json(outcome.chi2)},
+              {"chi2_deviation", number_json(outcome.chi2_deviation)},
               {"right", outcome.right},
               {"paper_error", number_json(outcome.paper_error)},
               {"force_correlation", number_json(outcome.force_correlation)}}
@@ -157,6 +159,7 @@ LimitOutcome read_limit_outcome(const std::string& text) {
     outcome.contact_deviation = read_number(object.at("contact_deviation"));
     outcome.law_chi2 = read_number(object.at("law_chi2"));
     outcome.chi2 = read_number(object.at("chi2"));
+    outcome.chi2_deviation = read_number(object.at("chi2_deviation"));
     outcome.right = object.at("right").get<bool>();
     outcome.paper_error = read_number(object.at("paper_error"));
     outcome.force_correlation = read_number(object.at("force_correlation"));
@@ -229,7 +232,8 @@ LimitOutcome CalibrationLimitExperiment::calibrate_draw(double level, std::uint6
                                                         TruthCache& truths) const {
   const StreamKey key = StreamKey(static_cast<std::uint64_t>(options_.seed)).with(draw);
   LimitTruth truth = limit_truth(options_.observation, level, truths, options_.has_inversion);
-  if (level > 0.0) add_noise(key, truth.records);
+  // Every level has its own noise, so that levels are independent; starts are the same at all.
+  if (level > 0.0) add_noise(key.with(level), truth.records);
   const CalibrationData data = CalibrationData::of_records(
       truth.records.reactions[0], truth.records.reactions[1], truth.records.sample_rate);
   const ModelPoint start = start_of(truth.point, options_.model_error, key);

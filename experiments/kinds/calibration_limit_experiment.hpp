@@ -39,6 +39,7 @@ struct LimitOutcome {
   std::vector<double> frequencies, deviations;   ///< of every mode [Hz], relative
   double contact = 0.0, contact_deviation = 0.0;
   double law_chi2 = 0.0, chi2 = 0.0;
+  double chi2_deviation = 0.0;  ///< of χ², as the calibration states it
   bool right = false;
   double paper_error = 0.0;  ///< median relative error of the paper's method; NaN: not run
   /// Of the force identified with the calibrated model, from 10 % to 95 % of the record; NaN: not

@@ -1,7 +1,9 @@
 // Error of the calibration over noise: tables and acceptance.
 #include <cmath>
+#include <limits>
 
 #include "experiments/kinds/limit_summary.hpp"
+#include "libcalib/rms_interval.hpp"
 
 namespace modcal {
 namespace {
@@ -10,11 +12,17 @@ report::Cell number_or_none(double value) {
   return std::isfinite(value) ? report::Cell(value) : report::Cell();
 }
 
+RmsInterval interval_of(std::size_t count) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  return count > 0 ? rms_interval(count) : RmsInterval{kNan, kNan};
+}
+
 report::Table row_table(const std::vector<LimitSummary>& levels, const std::string& command) {
   report::Table table{.id = "calibration_limit",
                       .title = "Error and bound",
                       .caption =
-                          "Frequencies f_n as shares of f_n; efficiency is bound/RMSE; a "
+                          "Frequencies f_n as shares of f_n; efficiency is bound/RMSE; the "
+                          "intervals hold the true ratio with 95 % (chi-square of n draws); a "
                           "failure is an error beyond 7.8 bounds or a run that broke.",
                       .columns = {{.key = "noise_percent", .name = "noise", .unit = "%"},
                                   {.key = "parameter"},
@@ -22,16 +30,46 @@ report::Table row_table(const std::vector<LimitSummary>& levels, const std::stri
                                   {.key = "bias"},
                                   {.key = "crb", .name = "bound"},
                                   {.key = "efficiency"},
+                                  {.key = "ratio_low", .name = "RMSE/bound from"},
+                                  {.key = "ratio_high", .name = "to"},
                                   {.key = "reported_sd", .name = "sd reported"},
+                                  {.key = "sd_ratio_low", .name = "that/RMSE from"},
+                                  {.key = "sd_ratio_high", .name = "to"},
                                   {.key = "n"},
                                   {.key = "failures"}},
                       .command = command};
   for (const LimitSummary& level : levels) {
     for (const LimitRow& row : level.rows) {
+      const RmsInterval interval = interval_of(row.count);
+      const double sd_ratio = row.reported / row.rmse;
       table.rows.push_back({row.noise_percent, row.parameter, row.rmse, row.bias, row.bound,
-                            row.bound / row.rmse, row.reported, row.count,
-                            row.failures + level.broken});
+                            row.bound / row.rmse, row.ratio() * interval.low,
+                            row.ratio() * interval.high, row.reported, sd_ratio / interval.high,
+                            sd_ratio / interval.low, row.count, row.failures + level.broken});
     }
+  }
+  return table;
+}
+
+report::Table pooled_table(const std::vector<LimitSummary>& levels, const std::string& command) {
+  report::Table table{.id = "calibration_limit_pooled",
+                      .title = "All noise levels together",
+                      .caption = "The law's errors in bounds; every level has its own noise.",
+                      .columns = {{.key = "parameter"},
+                                  {.key = "ratio", .name = "RMSE/bound", .format = "{:.3f}"},
+                                  {.key = "ratio_low", .name = "from", .format = "{:.3f}"},
+                                  {.key = "ratio_high", .name = "to", .format = "{:.3f}"},
+                                  {.key = "bias", .name = "bias, bounds", .format = "{:.3f}"},
+                                  {.key = "sd_ratio", .name = "sd/RMSE", .format = "{:.3f}"},
+                                  {.key = "sd_ratio_low", .name = "from", .format = "{:.3f}"},
+                                  {.key = "sd_ratio_high", .name = "to", .format = "{:.3f}"},
+                                  {.key = "n"}},
+                      .command = command};
+  for (const PooledRow& row : pooled_rows(levels)) {
+    const RmsInterval interval = interval_of(row.count);
+    table.rows.push_back({row.parameter, row.ratio, row.ratio * interval.low,
+                          row.ratio * interval.high, row.bias, row.sd_ratio,
+                          row.sd_ratio / interval.high, row.sd_ratio / interval.low, row.count});
   }
   return table;
 }
@@ -46,6 +84,8 @@ report::Table level_table(const std::vector<LimitSummary>& levels, const std::st
                   {.key = "silent", .name = "wrong and not contradicted"},
                   {.key = "rejected", .name = "contradicted by chi2"},
                   {.key = "mean_chi2", .name = "mean reduced chi2", .format = "{:.4f}"},
+                  {.key = "chi2_scatter", .name = "its scatter", .format = "{:.4f}"},
+                  {.key = "chi2_deviation", .name = "as stated", .format = "{:.4f}"},
                   {.key = "mean_law_chi2", .name = "that of the law", .format = "{:.4f}"},
                   {.key = "free_rms", .name = "free f_n: rms of RMSE/bound"},
                   {.key = "free_worst", .name = "largest"},
@@ -55,11 +95,11 @@ report::Table level_table(const std::vector<LimitSummary>& levels, const std::st
                   {.key = "force_correlation", .name = "correlation of the identified force"}},
       .command = command};
   for (const LimitSummary& level : levels) {
-    table.rows.push_back({100.0 * level.level, level.runs, level.wrong, level.silent,
-                          level.contradicted, level.mean_chi2, level.mean_law_chi2, level.free_rms,
-                          level.free_worst, level.median_error, level.median_bound,
-                          number_or_none(level.paper_error),
-                          number_or_none(level.force_correlation)});
+    table.rows.push_back(
+        {100.0 * level.level, level.runs, level.wrong, level.silent, level.contradicted,
+         level.mean_chi2, level.chi2_scatter, level.chi2_deviation, level.mean_law_chi2,
+         level.free_rms, level.free_worst, level.median_error, level.median_bound,
+         number_or_none(level.paper_error), number_or_none(level.force_correlation)});
   }
   return table;
 }
@@ -80,8 +120,9 @@ void judge_row(const LimitRow& row, auto miss) {
   }
 }
 
-// Targets that 50 seeds can tell; fewer prove nothing. Without noise only right and wrong count.
-// An estimated noise level holds aliases, which χ² below 1 tells at low noise.
+// Targets that 50 seeds can tell (what more of them tell, the intervals say); fewer prove nothing.
+// Without noise only right and wrong count. An estimated noise level holds aliases, which χ² below
+// 1 tells at low noise.
 void judge(const std::vector<LimitSummary>& levels, bool known_noise, StudyResult& result) {
   for (const LimitSummary& level : levels) {
     if (level.runs + level.broken < 50) continue;
@@ -144,6 +185,7 @@ StudyResult sum_up_limit(const CalibrationLimitOptions& options,
   const report::Table rows = row_table(summaries, context.command);
   result.files.emplace_back("calibration_limit.json", report::table_json(rows));
   result.blocks.emplace_back(level_table(summaries, context.command));
+  result.blocks.emplace_back(pooled_table(summaries, context.command));
   result.blocks.emplace_back(rows);
   if (result.failed_tasks > 0) result.status = report::Status::kFailed;
   return result;

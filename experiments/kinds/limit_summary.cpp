@@ -107,10 +107,11 @@ class LevelReader {
   }
 
   void add_means() {
-    std::vector<double> chi2, law_chi2, medians, paper, force;
+    std::vector<double> chi2, stated, law_chi2, medians, paper, force;
     const std::vector<double> shape = truth_.point.basis.shape_at(truth_.point.contact);
     for (const LimitOutcome& outcome : outcomes_) {
       chi2.push_back(outcome.chi2);
+      stated.push_back(outcome.chi2_deviation);
       law_chi2.push_back(outcome.law_chi2);
       std::vector<double> errors;
       for (std::size_t n = 0; n < shape.size(); ++n) {
@@ -123,6 +124,8 @@ class LevelReader {
     }
     if (outcomes_.empty()) return;
     summary_.mean_chi2 = mean(chi2);
+    summary_.chi2_scatter = standard_deviation(chi2);
+    summary_.chi2_deviation = mean(stated);
     summary_.mean_law_chi2 = mean(law_chi2);
     summary_.median_error = quantile(medians, 0.5);
     summary_.paper_error = quantile(paper, 0.5);
@@ -151,6 +154,29 @@ const LimitRow* LimitSummary::find(const std::string& parameter) const {
   const auto found = std::find_if(rows.begin(), rows.end(),
                                   [&](const LimitRow& row) { return row.parameter == parameter; });
   return found == rows.end() ? nullptr : &*found;
+}
+
+std::vector<PooledRow> pooled_rows(const std::vector<LimitSummary>& levels) {
+  std::vector<PooledRow> pooled;
+  for (const char* name : kLawNames) {
+    PooledRow sum{.parameter = name};
+    double square = 0.0, variance = 0.0;
+    for (const LimitSummary& level : levels) {
+      const LimitRow* row = level.find(name);
+      if (!row || !(level.level > 0.0) || row->count == 0) continue;
+      const auto n = static_cast<double>(row->count);
+      square += n * row->ratio() * row->ratio();
+      variance += n * std::pow(row->reported / row->bound, 2);
+      sum.bias += n * row->bias / row->bound;
+      sum.count += row->count;
+    }
+    if (sum.count == 0) continue;
+    sum.ratio = std::sqrt(square / static_cast<double>(sum.count));
+    sum.sd_ratio = std::sqrt(variance / square);
+    sum.bias /= static_cast<double>(sum.count);
+    pooled.push_back(sum);
+  }
+  return pooled;
 }
 
 LimitSummary summarize_level(const LimitLevel& level, const LimitTruth& truth,

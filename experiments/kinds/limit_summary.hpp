@@ -23,6 +23,15 @@ struct LimitRow {
   double ratio() const { return rmse / bound; }
 };
 
+/// One parameter of the law over all levels with noise, which are independent: errors in bounds.
+struct PooledRow {
+  std::string parameter;
+  double ratio = 0.0;     ///< RMSE/bound
+  double bias = 0.0;      ///< in bounds
+  double sd_ratio = 0.0;  ///< standard deviation reported over the RMSE
+  std::size_t count = 0;
+};
+
 /// A run is wrong where an error of the law, of a well-seen f_n or of x_c exceeds 7.8 bounds
 /// (another minimum, not noise) or where it broke, contradicted where χ² speaks against its result.
 struct LimitSummary {
@@ -30,6 +39,7 @@ struct LimitSummary {
   double level = 0.0;
   std::vector<LimitRow> rows;
   double mean_chi2 = kNan, mean_law_chi2 = kNan;
+  double chi2_scatter = kNan, chi2_deviation = kNan;  ///< found, and stated by the calibrations
   double free_rms = kNan, free_worst = kNan;  ///< RMSE/bound over the modes with a bound < 5e-4
   double median_error = kNan, paper_error = kNan, median_bound = kNan;
   double force_correlation = kNan;  ///< mean of that of the identified force
@@ -42,6 +52,9 @@ struct LimitSummary {
 
 LimitSummary summarize_level(const LimitLevel& level, const LimitTruth& truth,
                              const ExpectedLimit& bound);
+
+/// The law's rows of all levels with noise and runs, pooled.
+std::vector<PooledRow> pooled_rows(const std::vector<LimitSummary>& levels);
 
 /// Errors over noise: law, x_c, median frequency, with bound and the paper's method.
 report::Figure limit_figure(const std::vector<LimitSummary>& levels, const std::string& command);
