@@ -1,5 +1,5 @@
 // Kernels of the free decays that a record leaves ringing: their Gram matrix from sums of one mode
-// each, and their columns.
+// each, their sums and their columns.
 #pragma once
 
 #include <span>
@@ -21,21 +21,38 @@ struct DecayTotals {
   Complex mixed;                 ///< Σ χ
 };
 
-/// Adds the sums of one block; `powers`: one a mode.
-void add_decay_powers(const WhitenedRecord& record, std::size_t block_index,
-                      std::span<const LikelihoodMode> modes, const LikelihoodBlock& block,
-                      std::span<DecayPowers> powers, DecayTotals& totals);
+/// Sums kept lane by lane: this many numbers a sum.
+inline constexpr std::size_t kSumLanes = 8;
+/// Sums of add_decay_powers() a mode.
+inline constexpr std::size_t kPowerSums = 10;
+/// Columns that add_decay_products() takes at most, with two sums each a mode.
+inline constexpr std::size_t kDecayColumns = 8;
 
-/// Adds Re Σ conj(x) v and Re Σ conj(x') v of every mode to products[2n] and products[2n + 1], with
-/// x = κ_n (U_n + U'_n), x' = iκ_n (U_n − U'_n) and a column v.
+/// Adds the sums of one block, kPowerSums of kSumLanes numbers a mode.
+void add_decay_powers(const WhitenedRecord& record, std::size_t block_index, const ModeSplit& split,
+                      const LikelihoodBlock& block, double* sums, DecayTotals& totals);
+void collect_decay_powers(const double* sums, std::span<DecayPowers> powers);
+
+/// Adds Re Σ conj(x) v and Re Σ conj(x') v of every mode and each of `count` columns v to two sums
+/// of kSumLanes numbers, first by mode, then by column, with x = κ_n (U_n + U'_n) and
+/// x' = iκ_n (U_n − U'_n).
 void add_decay_products(const WhitenedRecord& record, std::size_t block_index,
-                        std::span<const LikelihoodMode> modes, const LikelihoodBlock& block,
-                        const double* column, double* products);
+                        const ModeSplit& split, const LikelihoodBlock& block, const double* columns,
+                        std::size_t count, double* sums);
+/// products[2n·count + v] for x_n, products[(2n + 1)·count + v] for x'_n.
+void collect_decay_products(const double* sums, std::size_t modes, std::size_t count,
+                            double* products);
 
-/// Fills odd_decay and even_decay of the block and, where `columns` is not null, x_n and x'_n of
-/// every mode in turn.
-void fill_decays(const WhitenedRecord& record, std::size_t block_index,
-                 std::span<const LikelihoodMode> modes, std::span<const Complex> amplitudes,
-                 LikelihoodBlock& block, double* columns);
+/// Fills odd_decay and even_decay of the block.
+void fill_decays(const WhitenedRecord& record, std::size_t block_index, const ModeSplit& split,
+                 std::span<const Complex> amplitudes, LikelihoodBlock& block);
+/// Fills the columns x_n and x'_n of every mode in turn.
+void fill_decay_columns(const WhitenedRecord& record, std::size_t block_index,
+                        std::span<const LikelihoodMode> modes, const LikelihoodBlock& block,
+                        double* columns);
+/// column −= Σ_n κ_n (a_n U_n + conj(a_n) U'_n).
+void subtract_decays(const WhitenedRecord& record, std::size_t block_index, const ModeSplit& split,
+                     std::span<const Complex> amplitudes, const LikelihoodBlock& block,
+                     double* column);
 
 }  // namespace modcal

@@ -69,8 +69,25 @@ Eigen::MatrixXd decay_gram(std::span<const LikelihoodMode> modes,
   return gram;
 }
 
-using Column = Eigen::Map<const Eigen::VectorXd>;
-Column column(const double* numbers) { return Column(numbers, static_cast<Index>(kColumnLength)); }
+void add_to(AlignedVector& sum, const AlignedVector& part) {
+  for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += part[i];
+}
+
+EndState::Sums added(std::span<const EndState::Sums> parts) {
+  EndState::Sums sum = parts[0];
+  for (const EndState::Sums& part : parts.subspan(1)) {
+    add_to(sum.powers, part.powers);
+    add_to(sum.products, part.products);
+    sum.totals.odd += part.totals.odd;
+    sum.totals.even += part.totals.even;
+    sum.totals.mixed += part.totals.mixed;
+    sum.plain += part.plain;
+  }
+  return sum;
+}
+
+using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using Columns = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic>>;
 
 }  // namespace
 
@@ -94,46 +111,47 @@ std::vector<PlainTransient> plain_transients(const WhitenedRecord& record,
 
 EndState::EndState(const WhitenedRecord& record, std::span<const LikelihoodMode> modes,
                    std::size_t plain)
-    : modes_(modes),
-      plain_(plain),
-      powers_(record.sigma == 0.0 ? modes.size() : 0),
-      gram_(Eigen::MatrixXd::Zero(static_cast<Index>(size()), static_cast<Index>(size()))),
-      products_(Eigen::VectorXd::Zero(static_cast<Index>(size()))) {}
+    : modes_(modes), decays_(record.sigma == 0.0 ? modes.size() : 0), plain_(plain) {}
 
-void EndState::add(const WhitenedRecord& record, std::size_t block_index,
-                   const LikelihoodBlock& block, const double* residual, const double* plain) {
-  const auto first = static_cast<Index>(2 * decays());
-  if (decays() > 0) {
-    add_decay_powers(record, block_index, modes_, block, powers_, totals_);
-    add_decay_products(record, block_index, modes_, block, residual, products_.data());
+void EndState::add(const WhitenedRecord& record, std::size_t block_index, const ModeSplit& split,
+                   const LikelihoodBlock& block, const double* columns, Sums& sums) const {
+  const std::size_t count = 1 + plain_;
+  if (sums.plain.size() == 0) {
+    sums.powers.resize(decays_ * kPowerSums * kSumLanes);
+    sums.products.resize(decays_ * 2 * count * kSumLanes);
+    sums.plain.setZero(static_cast<Index>(count), static_cast<Index>(count));
   }
-  for (std::size_t p = 0; p < plain_; ++p) {
-    const auto i = first + static_cast<Index>(p);
-    const double* own = plain + p * kColumnLength;
-    products_[i] += column(own).dot(column(residual));
-    for (std::size_t q = 0; q <= p; ++q) {
-      gram_(i, first + static_cast<Index>(q)) += column(own).dot(column(plain + q * kColumnLength));
-    }
-    // Beside the decays' own square, whose columns are as long as this one's.
-    if (decays() > 0) {
-      add_decay_products(record, block_index, modes_, block, own, gram_.col(i).data());
-    }
+  if (decays_ > 0) {
+    add_decay_powers(record, block_index, split, block, sums.powers.data(), sums.totals);
+    add_decay_products(record, block_index, split, block, columns, count, sums.products.data());
   }
+  if (plain_ == 0) return;
+  const Columns all(columns, static_cast<Index>(kColumnLength), static_cast<Index>(count));
+  sums.plain += all.transpose() * all;
 }
 
-void EndState::solve() {
-  const auto first = static_cast<Index>(2 * decays());
-  if (decays() > 0) gram_.topLeftCorner(first, first) = decay_gram(modes_, powers_, totals_);
-  for (Index i = first; i < gram_.rows(); ++i) {
-    gram_.row(i).head(first) = gram_.col(i).head(first).transpose();
-    for (Index j = first; j < i; ++j) gram_(j, i) = gram_(i, j);
+void EndState::solve(std::span<const Sums> parts) {
+  const Sums sums = added(parts);
+  const auto first = static_cast<Index>(2 * decays_);
+  const auto plain = static_cast<Index>(plain_);
+  Eigen::MatrixXd gram(first + plain, first + plain);
+  RowMatrix products(first + plain, 1 + plain);  // with the residual, then the plain transients
+  if (decays_ > 0) {
+    std::vector<DecayPowers> powers(decays_);
+    collect_decay_powers(sums.powers.data(), powers);
+    gram.topLeftCorner(first, first) = decay_gram(modes_, powers, sums.totals);
+    collect_decay_products(sums.products.data(), decays_, 1 + plain_, products.data());
   }
-  inverse_norms_ = gram_.diagonal();
+  products.bottomRows(plain) = sums.plain.bottomRows(plain);
+  gram.rightCols(plain) = products.rightCols(plain);
+  gram.bottomLeftCorner(plain, first) = products.topRightCorner(first, plain).transpose();
+
+  inverse_norms_ = gram.diagonal();
   for (double& norm : inverse_norms_) norm = norm > 0.0 ? 1.0 / std::sqrt(norm) : 1.0;
-  Eigen::MatrixXd scaled = inverse_norms_.asDiagonal() * gram_ * inverse_norms_.asDiagonal();
+  Eigen::MatrixXd scaled = inverse_norms_.asDiagonal() * gram * inverse_norms_.asDiagonal();
   scaled.diagonal().array() += kRidge;
   normal_.compute(scaled);
-  const Eigen::VectorXd found = -fit(products_);
+  const Eigen::VectorXd found = -fit(products.col(0));
   for (Index i = 0; i < first; i += 2) amplitudes_.emplace_back(found[i], found[i + 1]);
   plain_amplitudes_.assign(found.begin() + first, found.end());
 }

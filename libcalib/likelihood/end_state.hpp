@@ -33,13 +33,20 @@ class EndState {
   /// `modes` must outlive this. plain: how many plain transients there are.
   EndState(const WhitenedRecord& record, std::span<const LikelihoodMode> modes, std::size_t plain);
 
-  std::size_t decays() const { return powers_.size(); }  ///< N, or 0 for σ > 0
-  std::size_t size() const { return 2 * decays() + plain_; }
-  /// First pass over one block; `plain`: columns of the plain transients.
-  void add(const WhitenedRecord& record, std::size_t block_index, const LikelihoodBlock& block,
-           const double* residual, const double* plain);
-  /// Finds the unknowns of least squares.
-  void solve();
+  /// Sums over some of the blocks.
+  struct Sums {
+    AlignedVector powers, products;  // lanes
+    DecayTotals totals;
+    Eigen::MatrixXd plain;  // products of residual and plain transients
+  };
+
+  std::size_t decays() const { return decays_; }  ///< N, or 0 for σ > 0
+  std::size_t size() const { return 2 * decays_ + plain_; }
+  /// First pass over one block; `columns`: the residual, then those of the plain transients.
+  void add(const WhitenedRecord& record, std::size_t block_index, const ModeSplit& split,
+           const LikelihoodBlock& block, const double* columns, Sums& sums) const;
+  /// Finds the unknowns of least squares from the sums over all blocks, added up in their order.
+  void solve(std::span<const Sums> sums);
 
   std::span<const Complex> amplitudes() const { return amplitudes_; }  ///< c_n
   double plain_amplitude(std::size_t i) const { return plain_amplitudes_[i]; }
@@ -48,11 +55,7 @@ class EndState {
 
  private:
   std::span<const LikelihoodMode> modes_;
-  std::size_t plain_;
-  std::vector<DecayPowers> powers_;
-  DecayTotals totals_;
-  Eigen::MatrixXd gram_;
-  Eigen::VectorXd products_;  // with the residual
+  std::size_t decays_, plain_;
   Eigen::VectorXd inverse_norms_;
   Eigen::LLT<Eigen::MatrixXd> normal_;
   std::vector<Complex> amplitudes_;

@@ -2,54 +2,77 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <optional>
 #include <vector>
 
 #include "libcalib/likelihood/end_state.hpp"
 #include "libcalib/likelihood/likelihood_kernel.hpp"
 #include "libcalib/likelihood/likelihood_outputs.hpp"
+#include "libcalib/likelihood/mode_columns.hpp"
 
 namespace modcal {
 
 /// First pass: transfer functions, data residual and the end state that fits best. Second pass:
-/// columns of the Jacobian and their products with each other and with those of the end state.
-/// Third pass, where asked for: the columns with the end state projected out.
+/// residual and, as asked for, its products with the columns of the Jacobian, or the columns and
+/// their products with each other and with those of the end state. Third pass, where asked for: the
+/// columns with the end state projected out.
+///
+/// Blocks are spread over the threads that oneTBB is allowed, in chunks whose number depends on the
+/// record alone; their sums are added up in one order: the same bits for any number of threads.
 class LikelihoodEvaluation {
  public:
-  /// `record` must outlive this.
-  LikelihoodEvaluation(const WhitenedRecord& record, const ModelPoint& point);
+  /// `record` must outlive this. interpolate: far modes at nodes alone (mode_split.hpp).
+  LikelihoodEvaluation(const WhitenedRecord& record, const ModelPoint& point,
+                       bool interpolate = true);
 
+  /// Call one of these, once.
   LikelihoodPoint differentiate(const LikelihoodColumns& columns, const LikelihoodOutputs& outputs);
+  /// Cost and slope alone; no column is formed.
+  LikelihoodPoint slope(const LikelihoodColumns& columns);
 
  private:
   using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   struct Columns;
-  double* residual_of(std::size_t b) { return residual_.data() + b * kColumnLength; }
-  double* plain_of(std::size_t b) {
-    return plain_columns_.data() + b * plain_.size() * kColumnLength;
+  struct Products;
+  struct Slopes;
+  /// Residual and columns of the plain transients: a block's, one after the other.
+  double* residual_of(std::size_t b) {
+    return first_columns_.data() + b * (1 + plain_width_) * kColumnLength;
   }
-  const double* state_columns(std::size_t b, bool wanted);
-  void fill_columns(std::size_t b, const LikelihoodColumns& columns, double* jacobian,
-                    std::complex<double>* force);
+  double* plain_of(std::size_t b) { return residual_of(b) + kColumnLength; }
+  std::size_t chunks() const;
+  /// Calls work(chunk, block) for every block, chunks side by side.
+  void for_blocks(const std::function<void(std::size_t, std::size_t)>& work) const;
+  void fill(std::size_t b, EndState::Sums& sums);
+  void sum_plain();
+  void turn_amplitudes();
+  ColumnTask column_task(const LikelihoodColumns& columns) const;
+  void finish(std::size_t b, const std::array<double*, 3>& sensors);
+  void fill_columns(std::size_t b, const LikelihoodColumns& columns, double* jacobian);
+  void add_cross_products(std::size_t b, const Columns& work, const double* jacobian,
+                          Products& sums);
+  Eigen::MatrixXd cross_products(const Columns& work, const Products& sums) const;
   void project_columns(Columns& work, const Eigen::MatrixXd& fit, const LikelihoodOutputs& outputs,
                        LikelihoodPoint& point);
-  void give(const LikelihoodOutputs& outputs) const;
-
-  void sum_plain();
+  void project_block(std::size_t b, const Eigen::MatrixXd& fit, const RowMatrix& factors,
+                     Columns& work, AlignedVector& state);
+  void fill_state(std::size_t b, AlignedVector& state);
+  void give(const LikelihoodOutputs& outputs);
 
   const WhitenedRecord& record_;
   SensorPair sensors_;
   std::vector<LikelihoodMode> modes_;
+  ModeSplits splits_;
   std::vector<PlainTransient> plain_;
   EndState end_state_;
-  std::size_t state_width_;
+  std::size_t plain_width_, state_width_;
   std::vector<LikelihoodBlock> blocks_;
-  std::optional<PlanarVector> sensor_;         // where the sensors differ
-  std::optional<PlanarVector> plain_sums_[2];  // plain transients with their amplitudes
-  std::optional<PlanarVector> by_corner_;      // and their derivative by the sensor's corner
-  AlignedVector residual_;                     // one column a block
-  AlignedVector plain_columns_;                // of the plain transients, every block
-  AlignedVector state_;                        // all columns of the end state, of one block
+  std::optional<PlanarVector> sensor_;              // where the sensors differ
+  std::optional<PlanarVector> plain_sums_[2];       // plain transients with their amplitudes
+  std::optional<PlanarVector> by_corner_;           // and their derivative by the sensor's corner
+  std::vector<Complex> by_frequency_, by_damping_;  // c_n times the derivatives of E_n
+  AlignedVector first_columns_;
 };
 
 }  // namespace modcal

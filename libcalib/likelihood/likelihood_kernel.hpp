@@ -1,5 +1,5 @@
-// Kernels of the joint likelihood, one block of bins at a time: transfer functions, residual and
-// the columns of its Jacobian. No allocation, instruction set chosen at run time.
+// Kernels of the joint likelihood, one block of bins at a time: transfer functions and residual. No
+// allocation, instruction set chosen at run time.
 #pragma once
 
 #include <array>
@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <span>
 
+#include "libcalib/likelihood/mode_split.hpp"
 #include "libcalib/likelihood/whitened_record.hpp"
 
 namespace modcal {
@@ -41,6 +42,7 @@ struct LikelihoodBlock {
   Planar left, right;              // h_1, h_2
   Planar odd, even;                // κ of odd and even modes, with √w
   Planar odd_decay, even_decay;    // Σ c_n U_n + conj(c_n) U'_n over odd and even modes
+  Planar force;                    // F̂
   alignas(64) double norm[kBins];  // 1/|h|²
 };
 
@@ -50,33 +52,27 @@ inline constexpr std::size_t kColumnLength = 2 * WhitenedRecord::kBlock;
 /// Fills transfer functions, κ and 1/|h|² of `block` and the column `residual`,
 /// (h_2y_1 − h_1y_2)/|h| with √w. sensor: how the sensor at x = L reads for one that reads 1 at
 /// x = 0, a factor of h_2 and of its decays; null: alike.
-void fill_block(const WhitenedRecord& record, std::size_t block_index,
-                std::span<const LikelihoodMode> modes, const PlanarVector* sensor,
-                LikelihoodBlock& block, double* residual);
+void fill_block(const WhitenedRecord& record, std::size_t block_index, const ModeSplit& split,
+                const PlanarVector* sensor, LikelihoodBlock& block, double* residual);
 
 /// Column of the residual for something in the record of one end whose transform is `numbers` [N].
 void fill_plain_column(const WhitenedRecord& record, std::size_t block_index,
                        const LikelihoodBlock& block, bool right, const PlanarVector& numbers,
                        double* column);
 
-/// What fill_jacobian_columns() is asked for; null: not asked for.
-struct JacobianTask {
-  std::span<const LikelihoodMode> modes;
-  std::span<const Complex> amplitudes;  ///< c_n; empty: no end state
+/// What is in the records beside the force, and which columns of the sensors are asked for.
+struct ResidualTask {
+  bool decays = false;  ///< odd_decay and even_decay of the block
   const PlanarVector* sensor = nullptr;
-  std::array<const PlanarVector*, 2> plain{};  ///< what else is in the records, both ends [N]
-  std::span<const ColumnShare> shares;  ///< [share_begin[n] … share_begin[n+1]) belong to mode n
-  std::span<const std::size_t> share_begin;
-  double* jacobian = nullptr;  ///< columns of this block, zeros
-  double* contact = nullptr;
-  std::array<double*, 3> sensors{};               ///< ln gain, delay [s], corner [rad/s]
+  std::array<const PlanarVector*, 2> plain{};     ///< what else is in the records, both ends [N]
   const PlanarVector* plain_by_corner = nullptr;  ///< ∂plain[1]/∂corner
   double corner = 0.0;                            ///< of the sensor at x = L [rad/s]
+  std::array<double*, 3> sensors{};               ///< ln gain, delay [s], corner [rad/s]
   double* residual = nullptr;
-  std::complex<double>* force = nullptr;  ///< kBins numbers
 };
-/// Adds the transients of the block to the column `residual` and fills the Jacobian's columns.
-void fill_jacobian_columns(const WhitenedRecord& record, std::size_t block_index,
-                           const LikelihoodBlock& block, const JacobianTask& task);
+/// Adds the transients of the block to the column `residual`, fills its force and the columns of
+/// the sensors.
+void finish_residual(const WhitenedRecord& record, std::size_t block_index,
+                     const ResidualTask& task, LikelihoodBlock& block);
 
 }  // namespace modcal

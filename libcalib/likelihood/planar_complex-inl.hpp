@@ -12,6 +12,7 @@
 #include <complex>
 
 #include "libcalib/likelihood/likelihood_kernel.hpp"
+#include "libcalib/likelihood/mode_split.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace modcal::HWY_NAMESPACE {
@@ -20,6 +21,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::ScalableTag<double>;
 using V = hn::Vec<D>;
 constexpr std::size_t kBins = WhitenedRecord::kBlock;
+constexpr std::size_t kNodes = WhitenedRecord::kNodes;
 
 struct C {
   V re, im;
@@ -82,9 +84,10 @@ HWY_INLINE C Inverse(C a) {
 HWY_INLINE double Sum(V v) { return hn::GetLane(hn::SumOfLanes(D(), v)); }
 HWY_INLINE std::complex<double> Sum(C z) { return {Sum(z.re), Sum(z.im)}; }
 
-// U = 1/(1 − E z^−1) and U' = 1/(1 − conj(E) z^−1), one division for both.
+// U = 1/(1 − E z^−1) and U' = 1/(1 − conj(E) z^−1), one division for both, and their norms.
 struct Decays {
   C u, u_conj;
+  V norm, norm_conj;
 };
 HWY_INLINE Decays DecaysAt(std::complex<double> pole, C delay) {
   const V re = Real(pole.real());
@@ -98,8 +101,98 @@ HWY_INLINE Decays DecaysAt(std::complex<double> pole, C delay) {
   const V a_norm = Norm(a);
   const V b_norm = Norm(b);
   const V inverse = hn::Div(Real(1.0), hn::Mul(a_norm, b_norm));
-  return {Scale(a, hn::Mul(b_norm, inverse)), Scale(b, hn::Mul(a_norm, inverse))};
+  const V norm = hn::Mul(b_norm, inverse);
+  const V norm_conj = hn::Mul(a_norm, inverse);
+  return {Scale(a, norm), Scale(b, norm_conj), norm, norm_conj};
 }
+
+// s_k and s_k² of neighboring bins or nodes.
+struct Bins {
+  C s, s_squared;
+};
+HWY_INLINE Bins BinsAt(const double* omega_at, double sigma_at) {
+  const V omega = LoadReal(omega_at);
+  const V sigma = Real(sigma_at);
+  return {Make(sigma, omega), Make(hn::NegMulAdd(omega, omega, hn::Mul(sigma, sigma)),
+                                   hn::Mul(Real(2.0 * sigma_at), omega))};
+}
+HWY_INLINE C InverseDenominator(const LikelihoodMode& mode, const Bins& bins) {
+  const V damping = Real(mode.two_zeta_omega);
+  return Inverse(
+      Make(hn::MulAdd(damping, bins.s.re, hn::Add(bins.s_squared.re, Real(mode.omega_squared))),
+           hn::MulAdd(damping, bins.s.im, bins.s_squared.im)));
+}
+
+// Where modes are evaluated: the bins of a block or its nodes.
+struct Places {
+  const double* omega;
+  const double* delay_re;
+  const double* delay_im;
+  double sigma;
+  std::size_t count;
+
+  HWY_INLINE Bins BinsFrom(std::size_t k) const { return BinsAt(omega + k, sigma); }
+  HWY_INLINE C Delay(std::size_t k) const {
+    return modcal::HWY_NAMESPACE::Load(delay_re + k, delay_im + k);
+  }
+};
+HWY_INLINE Places BinsOf(const WhitenedRecord& record, std::size_t block) {
+  const std::size_t first = block * kBins;
+  return {record.omega.data() + first, record.delay.re.data() + first,
+          record.delay.im.data() + first, record.sigma, kBins};
+}
+HWY_INLINE Places NodesOf(const WhitenedRecord& record, std::size_t block) {
+  const std::size_t first = block * kNodes;
+  return {record.node_omega.data() + first, record.node_delay.re.data() + first,
+          record.node_delay.im.data() + first, record.sigma, kNodes};
+}
+
+// Four numbers given at the nodes, kNodes each, at the bins k, k + 1, …
+struct Four {
+  V a, b, c, d;
+};
+HWY_INLINE Four Interpolate(const BlockNodes& basis, const double* nodes, std::size_t k) {
+  Four sum{hn::Zero(D()), hn::Zero(D()), hn::Zero(D()), hn::Zero(D())};
+  for (std::size_t j = 0; j < kNodes; ++j) {
+    const V weight = LoadReal(basis.weight[j] + k);
+    sum.a = hn::MulAdd(weight, Real(nodes[j]), sum.a);
+    sum.b = hn::MulAdd(weight, Real(nodes[kNodes + j]), sum.b);
+    sum.c = hn::MulAdd(weight, Real(nodes[2 * kNodes + j]), sum.c);
+    sum.d = hn::MulAdd(weight, Real(nodes[3 * kNodes + j]), sum.d);
+  }
+  return sum;
+}
+
+// The adjoint: weights of the nodes that serve functions smooth across the block as the weights
+// `bins` (fields of kBins, a multiple of four) do.
+HWY_INLINE void Gather(const BlockNodes& basis, const double* bins, std::size_t fields,
+                       double* nodes) {
+  for (std::size_t f = 0; f < fields; f += 4) {
+    const double* from = bins + f * kBins;
+    double* to = nodes + f * kNodes;
+    for (std::size_t j = 0; j < kNodes; j += 2) {
+      Four even{hn::Zero(D()), hn::Zero(D()), hn::Zero(D()), hn::Zero(D())};
+      Four odd = even;
+      for (std::size_t k = 0; k < kBins; k += hn::Lanes(D())) {
+        const V x = LoadReal(basis.weight[j] + k), y = LoadReal(basis.weight[j + 1] + k);
+        const V a = LoadReal(from + k), b = LoadReal(from + kBins + k),
+                c = LoadReal(from + 2 * kBins + k), d = LoadReal(from + 3 * kBins + k);
+        even.a = hn::MulAdd(x, a, even.a), odd.a = hn::MulAdd(y, a, odd.a);
+        even.b = hn::MulAdd(x, b, even.b), odd.b = hn::MulAdd(y, b, odd.b);
+        even.c = hn::MulAdd(x, c, even.c), odd.c = hn::MulAdd(y, c, odd.c);
+        even.d = hn::MulAdd(x, d, even.d), odd.d = hn::MulAdd(y, d, odd.d);
+      }
+      to[j] = Sum(even.a), to[j + 1] = Sum(odd.a);
+      to[kNodes + j] = Sum(even.b), to[kNodes + j + 1] = Sum(odd.b);
+      to[2 * kNodes + j] = Sum(even.c), to[2 * kNodes + j + 1] = Sum(odd.c);
+      to[3 * kNodes + j] = Sum(even.d), to[3 * kNodes + j + 1] = Sum(odd.d);
+    }
+  }
+}
+
+// A sum over bins that ends up as one number keeps its lanes until all blocks are through.
+HWY_INLINE void AddLanes(double* lanes, V v) { hn::Store(hn::Add(LoadReal(lanes), v), D(), lanes); }
+HWY_INLINE double SumOfLanes(const double* lanes) { return Sum(LoadReal(lanes)); }
 
 }  // namespace modcal::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -57,7 +57,12 @@ double ProjectedLikelihood::degrees_of_freedom(std::size_t parameters, std::size
 }
 
 double ProjectedLikelihood::cost(const ModelPoint& point) const {
-  return evaluate(point, LikelihoodColumns{}).cost;
+  return slope(point, LikelihoodColumns{}).cost;
+}
+
+LikelihoodPoint ProjectedLikelihood::slope(const ModelPoint& point,
+                                           const LikelihoodColumns& columns) const {
+  return LikelihoodEvaluation(record_, point).slope(columns);
 }
 
 LikelihoodPoint ProjectedLikelihood::evaluate(const ModelPoint& point,

@@ -116,7 +116,32 @@ WhitenedRecord WhitenedRecord::of(const NoisyRecords& records, double sigma, dou
     record.delay.set(k, delay);
     if (sigma > 0.0) record.offset.set(k, norm * (1.0 - rest) / (1.0 - delay));
   }
+  record.place_bins();
   return record;
+}
+
+double WhitenedRecord::block_place(double k) {
+  constexpr double kHalf = 0.5 * static_cast<double>(kBlock - 1);
+  return (k - kHalf) / kHalf;
+}
+
+double WhitenedRecord::node_place(std::size_t j) {
+  return -std::cos(pi * (static_cast<double>(j) + 0.5) / static_cast<double>(kNodes));
+}
+
+void WhitenedRecord::place_bins() {
+  omega.resize(root_weight.size());
+  for (std::size_t k = 0; k < omega.size(); ++k) {
+    omega[k] = spacing * static_cast<double>(first + k);
+  }
+  node_omega.resize(blocks() * kNodes);
+  node_delay = PlanarVector(node_omega.size());
+  const double half = 0.5 * static_cast<double>(kBlock - 1);
+  for (std::size_t i = 0; i < node_omega.size(); ++i) {
+    const double begin = static_cast<double>(first + i / kNodes * kBlock);
+    node_omega[i] = spacing * (begin + half * (1.0 + node_place(i % kNodes)));
+    node_delay.set(i, std::polar(std::exp(-sigma / sample_rate), -node_omega[i] / sample_rate));
+  }
 }
 
 WhitenedRecord WhitenedRecord::slice(std::size_t begin, std::size_t count) const {
@@ -137,6 +162,7 @@ WhitenedRecord WhitenedRecord::slice(std::size_t begin, std::size_t count) const
     part.offset.set(k, offset.at(begin + k));
     part.root_weight[k] = root_weight[begin + k];
   }
+  part.place_bins();
   return part;
 }
 

@@ -39,6 +39,7 @@ double noise_deviation(std::span<const double> samples);
 /// has weight 0.
 struct WhitenedRecord {
   static constexpr std::size_t kBlock = 256;
+  static constexpr std::size_t kNodes = 16;  ///< Chebyshev nodes of a block
 
   std::size_t bins = 0;      ///< K_b
   double sigma = 0.0;        ///< σ [1/s]
@@ -50,7 +51,13 @@ struct WhitenedRecord {
   PlanarVector delay;         ///< z^−1 = exp(−s_k/f_s)
   PlanarVector offset;        ///< whitened transform of 1·exp(−σt); zero at σ = 0
   AlignedVector root_weight;  ///< √w_k: 1, in the padding 0
+  AlignedVector omega;        ///< ω_k [rad/s], in the padding too
+  AlignedVector node_omega;   ///< at the nodes of every block
+  PlanarVector node_delay;    ///< z^−1 there
 
+  /// Place of bin k of a block, and of node j, in [−1, 1].
+  static double block_place(double k);
+  static double node_place(std::size_t j);
   std::size_t blocks() const { return root_weight.size() / kBlock; }
   /// σ ≥ 0 [1/s]; bins up to `highest` [rad/s]. Throws InvalidInput where no bin is left.
   static WhitenedRecord of(const NoisyRecords& records, double sigma, double highest);
@@ -58,6 +65,9 @@ struct WhitenedRecord {
   WhitenedRecord slice(std::size_t begin, std::size_t count) const;
   /// The same bins with pure noise CN(0, 1) in place of the data.
   WhitenedRecord noise(std::uint64_t seed) const;
+
+ private:
+  void place_bins();
 };
 
 }  // namespace modcal

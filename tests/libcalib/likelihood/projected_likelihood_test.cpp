@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "libcalib/likelihood/decay_kernel.hpp"
+#include "libcalib/likelihood/mode_columns.hpp"
 #include "tests/libcalib/likelihood/bowed_case.hpp"
 
 namespace modcal {
@@ -166,21 +167,28 @@ TEST_F(AtShortRecord, JacobianIsThatOfAutomaticDifferentiation) {
                       {.residuals = &residuals, .jacobian = &projected, .amplitudes = &amplitudes});
   const std::vector<LikelihoodMode> modes = likelihood_modes(point(), record.sample_rate);
   const LikelihoodColumns columns = all_columns(50);
+  const ModeSplits splits(record, modes);
+  std::vector<Complex> by_frequency, by_damping;
+  for (std::size_t n = 0; n < modes.size(); ++n) {
+    by_frequency.push_back(amplitudes[n] * modes[n].pole_by_frequency);
+    by_damping.push_back(amplitudes[n] * modes[n].pole_by_damping);
+  }
   LikelihoodBlock block;
   AlignedVector own(columns.count * kColumnLength);
   AlignedVector residual(kColumnLength);
   for (std::size_t b = 0; b < record.blocks(); ++b) {
     std::fill(own.begin(), own.end(), 0.0);
-    fill_block(record, b, modes, nullptr, block, residual.data());
-    fill_decays(record, b, modes, amplitudes, block, nullptr);
-    fill_jacobian_columns(record, b, block,
-                          {.modes = modes,
-                           .amplitudes = amplitudes,
-                           .shares = columns.shares,
-                           .share_begin = columns.share_begin,
-                           .jacobian = own.data(),
-                           .contact = own.data() + 50 * kColumnLength,
-                           .residual = residual.data()});
+    fill_block(record, b, splits.of(b), nullptr, block, residual.data());
+    fill_decays(record, b, splits.of(b), amplitudes, block);
+    finish_residual(record, b, {.decays = true, .residual = residual.data()}, block);
+    fill_mode_columns(record, b, modes, block,
+                      {.by_frequency = by_frequency,
+                       .by_damping = by_damping,
+                       .shares = columns.shares,
+                       .share_begin = columns.share_begin,
+                       .count = columns.count,
+                       .contact = 50,
+                       .jacobian = own.data()});
     for (const std::size_t at : {3u, 100u, 170u}) {
       const std::size_t k = b * WhitenedRecord::kBlock + at;
       if (k >= record.bins) continue;

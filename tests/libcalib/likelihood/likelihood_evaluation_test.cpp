@@ -1,0 +1,143 @@
+#include "libcalib/likelihood/likelihood_evaluation.hpp"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "libcalib/likelihood/string_unknowns.hpp"
+#include "libsim/base/task_loop.hpp"
+#include "tests/libcalib/likelihood/bowed_case.hpp"
+
+namespace modcal {
+namespace {
+
+constexpr double kBand = 2.0 * std::numbers::pi * 10300.0;
+
+class OneSecond : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() { bowed = bowed_case(0.0285, 1.39e-4, 1.0); }
+  static WhitenedRecord record(double sigma, double noise = 0.01) {
+    return WhitenedRecord::of(noisy(bowed, noise, 3), sigma, kBand);
+  }
+  static StringUnknowns law(const UnknownsOptions& options = {}) {
+    return StringUnknowns::law(bowed.truth, 196.0, 1.39e-4, options);
+  }
+  // Some standard deviations from the truth, so that the slopes are not those of noise alone.
+  static ModelPoint beside(const StringUnknowns& unknowns) {
+    Eigen::VectorXd theta = unknowns.start();
+    theta[unknowns.contact()] = 5e-6;
+    theta[0] += 1e-5;
+    return unknowns.model(theta);
+  }
+  static BowedCase bowed;
+};
+BowedCase OneSecond::bowed;
+
+// In units of standard deviations: √(J_iᵀJ_i) an unknown, √cost for the residual.
+void expect_near(const LikelihoodPoint& a, const LikelihoodPoint& b, double error) {
+  EXPECT_NEAR(a.cost / b.cost, 1.0, error);
+  for (Eigen::Index i = 0; i < b.slope.size(); ++i) {
+    const double own = std::sqrt(b.information(i, i));
+    EXPECT_NEAR(a.slope[i] / own, b.slope[i] / own, error * std::sqrt(b.cost)) << i;
+    if (a.information.size() == 0) continue;
+    for (Eigen::Index j = 0; j <= i; ++j) {
+      const double size = own * std::sqrt(b.information(j, j));
+      EXPECT_NEAR(a.information(i, j) / size, b.information(i, j) / size, error) << i << ", " << j;
+    }
+  }
+}
+
+// A term at the nodes is off by 22e-14 of itself at most (mode_split.hpp). Errors of the end
+// state's products grow by the inverse of the root of its ridge, 3e4: 7e-9, and the largest term of
+// a sum may exceed the sum.
+constexpr double kSkipped = 1e-8;
+
+LikelihoodPoint twice(LikelihoodPoint point) {
+  point.information = point.twice_weighted;
+  return point;
+}
+
+TEST_F(OneSecond, FarModesAtNodesChangeNothing) {
+  for (const double noise : {0.001, 0.1}) {
+    for (const double sigma : {0.0, 20.0}) {
+      const WhitenedRecord whitened = record(sigma, noise);
+      for (const StringUnknowns& unknowns : {law(), StringUnknowns::frequencies(bowed.truth)}) {
+        const ModelPoint point = beside(unknowns);
+        const LikelihoodColumns columns = unknowns.columns(unknowns.start());
+        const LikelihoodOutputs outputs{.twice_weighted = true};
+        const LikelihoodPoint full =
+            LikelihoodEvaluation(whitened, point, false).differentiate(columns, outputs);
+        const LikelihoodPoint skipped =
+            LikelihoodEvaluation(whitened, point).differentiate(columns, outputs);
+        expect_near(skipped, full, kSkipped);
+        expect_near(twice(skipped), twice(full), kSkipped);
+      }
+    }
+  }
+}
+
+TEST_F(OneSecond, SlopeAloneIsThatOfTheColumns) {
+  UnknownsOptions sensors{.damping = "power"};
+  sensors.gain.free = sensors.delay.free = sensors.corner.free = true;
+  sensors.delay.value = 2e-6;
+  sensors.corner.value = 3.0;
+  for (const double sigma : {0.0, 20.0}) {
+    const WhitenedRecord whitened = record(sigma);
+    for (const StringUnknowns& unknowns :
+         {law(), law(sensors), StringUnknowns::frequencies(bowed.truth, {.damping = "each"})}) {
+      const ModelPoint point = beside(unknowns);
+      const LikelihoodColumns columns = unknowns.columns(unknowns.start());
+      const LikelihoodPoint full = LikelihoodEvaluation(whitened, point).differentiate(columns, {});
+      const LikelihoodPoint alone = LikelihoodEvaluation(whitened, point).slope(columns);
+      // The same sums in another order.
+      expect_near(alone, full, 1e-12);
+    }
+  }
+}
+
+// Runs `work` with so many threads, more than the machine has if need be.
+template <typename Work>
+void with_threads(int threads, const Work& work) {
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                  static_cast<std::size_t>(threads));
+  tbb::task_arena(threads).execute(work);
+}
+
+void expect_same_bits(const LikelihoodPoint& a, const LikelihoodPoint& b) {
+  EXPECT_EQ(a.cost, b.cost);
+  EXPECT_TRUE(a.slope == b.slope);
+  EXPECT_TRUE(a.information == b.information);
+  EXPECT_TRUE(a.twice_weighted == b.twice_weighted);
+}
+
+TEST_F(OneSecond, ThreadsDoNotChangeABit) {
+  const WhitenedRecord whitened = record(0.0);
+  for (const StringUnknowns& unknowns : {law(), StringUnknowns::frequencies(bowed.truth)}) {
+    const ModelPoint point = beside(unknowns);
+    const LikelihoodColumns columns = unknowns.columns(unknowns.start());
+    const auto evaluate = [&] {
+      return LikelihoodEvaluation(whitened, point).differentiate(columns, {.twice_weighted = true});
+    };
+    LikelihoodPoint one, slope;
+    with_threads(1, [&] {
+      one = evaluate();
+      slope = LikelihoodEvaluation(whitened, point).slope(columns);
+    });
+    for (const int threads : {2, 3}) {
+      with_threads(threads, [&] {
+        expect_same_bits(evaluate(), one);
+        expect_same_bits(LikelihoodEvaluation(whitened, point).slope(columns), slope);
+        // Inside the tasks of a sweep, whose own loops share the threads.
+        std::vector<LikelihoodPoint> found(5);
+        for_each_task(found.size(), [&](std::size_t i) { found[i] = evaluate(); });
+        for (const LikelihoodPoint& each : found) expect_same_bits(each, one);
+      });
+    }
+  }
+}
+
+}  // namespace
+}  // namespace modcal
