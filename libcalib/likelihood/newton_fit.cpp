@@ -35,6 +35,15 @@ Objective2 with_prior(const LikelihoodPoint& point, const Eigen::VectorXd& theta
   return {point.cost + 0.5 * change.dot(pull), 2.0 * point.slope + pull};
 }
 
+// The trial's cost and slope, and its information where that of the last point is not good enough.
+LikelihoodPoint try_point(const FitTarget& target, const Eigen::VectorXd& trial, bool fresh,
+                          NewtonFit& fit) {
+  ++fit.evaluations;
+  if (fresh || !target.slope) return target.evaluate(trial);
+  ++fit.slopes;
+  return target.slope(trial);
+}
+
 }  // namespace
 
 Eigen::MatrixXd debiased_hessian(const Eigen::MatrixXd& information, const NewtonOptions& options) {
@@ -70,6 +79,7 @@ NewtonFit newton_fit(const FitTarget& target, const Eigen::VectorXd& start,
   Objective2 at = with_prior(fit.point, start, prior, options.prior_mean);
   fit.objective = at.value;
   double damping = 0.0;
+  double moved = 0.0;  // since the information was found
   for (std::size_t step = 0; step < options.steps; ++step) {
     Eigen::MatrixXd hessian = debiased_hessian(fit.point.information, options);
     const Eigen::VectorXd scale = hessian.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
@@ -89,12 +99,14 @@ NewtonFit newton_fit(const FitTarget& target, const Eigen::VectorXd& start,
     const Eigen::VectorXd trial = fit.theta + move;
     bool better = false;
     if (target.admits(trial)) {
-      LikelihoodPoint point = target.evaluate(trial);
-      ++fit.evaluations;
+      const bool fresh = moved + decrease > kFresh;
+      LikelihoodPoint point = try_point(target, trial, fresh, fit);
       const Objective2 there = with_prior(point, trial, prior, options.prior_mean);
       // The debiased step may pass the minimum of this draw by a little of its noise.
       better = there.value < at.value + 0.5 * options.tolerance;
       if (better) {
+        moved = point.information.size() > 0 ? 0.0 : moved + decrease;
+        if (point.information.size() == 0) point.information = std::move(fit.point.information);
         fit.theta = trial;
         fit.point = std::move(point);
         at = there;
@@ -115,7 +127,11 @@ NewtonFit newton_fit(const ProjectedLikelihood& likelihood, const StringUnknowns
                                                       unknowns.columns(theta));
                          },
                      .admits = [&](const Eigen::VectorXd& theta) { return unknowns.admits(theta); },
-                     .capped = unknowns.is_law() ? 0 : static_cast<Eigen::Index>(unknowns.modes())},
+                     .capped = unknowns.is_law() ? 0 : static_cast<Eigen::Index>(unknowns.modes()),
+                     .slope =
+                         [&](const Eigen::VectorXd& theta) {
+                           return likelihood.slope(unknowns.model(theta), unknowns.columns(theta));
+                         }},
                     start, options);
 }
 

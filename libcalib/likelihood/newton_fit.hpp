@@ -19,22 +19,28 @@ struct NewtonOptions {
   Eigen::VectorXd prior_mean;  ///< θ_0; empty: 0
 };
 
+inline constexpr double kFresh = 10.0;
+
 /// What a fit evaluates.
 struct FitTarget {
   std::function<LikelihoodPoint(const Eigen::VectorXd&)> evaluate;
   std::function<bool(const Eigen::VectorXd&)> admits;
   Eigen::Index capped = 0;  ///< leading unknowns that frequency_cap holds
+  /// Cost and slope alone; empty: evaluate.
+  std::function<LikelihoodPoint(const Eigen::VectorXd&)> slope = {};
 };
 
 struct NewtonFit {
   Eigen::VectorXd theta;
   double objective = std::numeric_limits<double>::infinity();  ///< Σ w|e|² + ½ (θ − θ_0)ᵀQ(θ − θ_0)
-  LikelihoodPoint point;
+  LikelihoodPoint point;  ///< its information may be that of a point a few deviations before
   std::size_t evaluations = 0;
+  std::size_t slopes = 0;  ///< those of cost and slope alone
   bool converged = false;
 };
 
-/// Minimizes Σ w|e|² + ½ (θ − θ_0)ᵀQ(θ − θ_0) from `start`, Hessian 2(JᵀWJ − N̄) + Q.
+/// Minimizes Σ w|e|² + ½ (θ − θ_0)ᵀQ(θ − θ_0) from `start`, Hessian 2(JᵀWJ − N̄) + Q. JᵀWJ changes
+/// slowly: it is kept until the steps taken since come to kFresh standard deviations squared.
 NewtonFit newton_fit(const FitTarget& target, const Eigen::VectorXd& start,
                      const NewtonOptions& options);
 /// The same for one record.
