@@ -100,6 +100,29 @@ class Attempt {
     options.prior_mean = std::move(prior.mean);
   }
 
+  // Of nine x_c those whose cost is below that of both neighbors: a start between them leads to one
+  // of theirs.
+  std::vector<Eigen::VectorXd> contact_starts(const ProjectedLikelihood& likelihood,
+                                              const StringUnknowns& unknowns, double step) {
+    constexpr double kNever = std::numeric_limits<double>::infinity();
+    std::vector<Eigen::VectorXd> starts;
+    std::vector<double> costs = {kNever};
+    for (int i = -4; i <= 4; ++i) {
+      starts.push_back(unknowns.start());
+      starts.back()[unknowns.contact()] = i * step;
+      const bool admitted = unknowns.admits(starts.back());
+      costs.push_back(admitted ? likelihood.cost(unknowns.model(starts.back())) : kNever);
+      evaluations_ += admitted ? 1 : 0;
+    }
+    costs.push_back(kNever);
+    std::vector<Eigen::VectorXd> lowest;
+    for (std::size_t i = 0; i < starts.size(); ++i) {
+      const double cost = costs[i + 1];
+      if (cost < kNever && cost <= costs[i] && cost <= costs[i + 2]) lowest.push_back(starts[i]);
+    }
+    return lowest;
+  }
+
   // f_0, B and x_c through the ladder, from the x_c that serves best.
   void follow_law(double shift) {
     const double step = initial_.basis.length / 660.0;
@@ -109,10 +132,7 @@ class Attempt {
                             {}, priors_)
             .without_damping_and_sensors();
     NewtonFit best;
-    for (int i = -4; i <= 4; ++i) {
-      Eigen::VectorXd theta = unknowns.start();
-      theta[unknowns.contact()] = i * step;
-      if (!unknowns.admits(theta)) continue;
+    for (const Eigen::VectorXd& theta : contact_starts(widest, unknowns, step)) {
       NewtonFit found = fit(widest, unknowns, theta, with_priors(unknowns, theta, 25, 1e-2));
       if (found.objective < best.objective) best = std::move(found);
     }
