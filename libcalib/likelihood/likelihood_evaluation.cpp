@@ -58,19 +58,19 @@ std::array<std::optional<std::size_t>, 3> sensor_columns(const LikelihoodColumns
 
 // The Jacobian's columns, the residual behind them; where they are not kept, one block a chunk.
 struct LikelihoodEvaluation::Columns {
-  Columns(std::size_t column_count, std::size_t block_count, std::size_t chunk_count, bool keep)
-      : count(column_count),
-        width(tiled(column_count + 1)),
-        kept(keep),
-        numbers(width * kColumnLength * (keep ? block_count : chunk_count)) {}
+  Columns(std::size_t column_count, std::size_t pieces, bool keep, AlignedVector& room)
+      : count(column_count), width(tiled(column_count + 1)), kept(keep) {
+    if (room.size() < width * kColumnLength * pieces) room.resize(width * kColumnLength * pieces);
+    numbers = room.data();
+  }
   double* of(std::size_t chunk, std::size_t b) {
-    return numbers.data() + (kept ? b : chunk) * width * kColumnLength;
+    return numbers + (kept ? b : chunk) * width * kColumnLength;
   }
   bool shared() const { return count <= kSharedColumns; }
 
   std::size_t count, width;
   bool kept;
-  AlignedVector numbers;
+  double* numbers;
 };
 
 // Sums over the blocks of a chunk.
@@ -95,14 +95,23 @@ LikelihoodEvaluation::LikelihoodEvaluation(const WhitenedRecord& record, const M
       end_state_(record, modes_, plain_.size()),
       plain_width_(tiled(plain_.size())),
       state_width_(tiled(end_state_.size())),
-      blocks_(record.blocks()),
-      first_columns_((1 + plain_width_) * kColumnLength * record.blocks()) {
+      arrays_(std::move(spare())) {
+  if (arrays_.blocks.size() < record.blocks()) arrays_.blocks.resize(record.blocks());
+  blocks_ = std::span(arrays_.blocks).first(record.blocks());
+  arrays_.first_columns.resize((1 + plain_width_) * kColumnLength * record.blocks());
   if (!sensors_.alike()) sensor_ = sensor_response(record, sensors_);
   std::vector<EndState::Sums> sums(chunks());
   for_blocks([&](std::size_t chunk, std::size_t b) { fill(b, sums[chunk]); });
   end_state_.solve(sums);
   sum_plain();
   turn_amplitudes();
+}
+
+LikelihoodEvaluation::~LikelihoodEvaluation() { spare() = std::move(arrays_); }
+
+LikelihoodEvaluation::Arrays& LikelihoodEvaluation::spare() {
+  static thread_local Arrays arrays;
+  return arrays;
 }
 
 std::size_t LikelihoodEvaluation::chunks() const {
@@ -293,7 +302,7 @@ LikelihoodPoint LikelihoodEvaluation::differentiate(const LikelihoodColumns& col
                                                     const LikelihoodOutputs& outputs) {
   assert(columns.count == 0 || columns.share_begin.size() == modes_.size() + 1);
   const bool keep = outputs.jacobian || outputs.twice_weighted;
-  Columns work(columns.count, blocks_.size(), chunks(), keep);
+  Columns work(columns.count, keep ? blocks_.size() : chunks(), keep, arrays_.columns);
   const auto n = static_cast<Index>(work.count);
   const auto width = static_cast<Index>(work.width);
   std::vector<Products> parts(chunks());

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "libcalib/likelihood/end_state.hpp"
@@ -25,6 +26,9 @@ class LikelihoodEvaluation {
   /// `record` must outlive this. interpolate: far modes at nodes alone (mode_split.hpp).
   LikelihoodEvaluation(const WhitenedRecord& record, const ModelPoint& point,
                        bool interpolate = true);
+  ~LikelihoodEvaluation();
+  LikelihoodEvaluation(const LikelihoodEvaluation&) = delete;
+  LikelihoodEvaluation& operator=(const LikelihoodEvaluation&) = delete;
 
   /// Call one of these, once.
   LikelihoodPoint differentiate(const LikelihoodColumns& columns, const LikelihoodOutputs& outputs);
@@ -33,12 +37,19 @@ class LikelihoodEvaluation {
 
  private:
   using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  /// Large arrays, which a thread keeps from one evaluation to the next: pages that are new to a
+  /// process cost as much as what is computed in them.
+  struct Arrays {
+    std::vector<LikelihoodBlock> blocks;
+    AlignedVector first_columns, columns;
+  };
+  static Arrays& spare();
   struct Columns;
   struct Products;
   struct Slopes;
   /// Residual and columns of the plain transients: a block's, one after the other.
   double* residual_of(std::size_t b) {
-    return first_columns_.data() + b * (1 + plain_width_) * kColumnLength;
+    return arrays_.first_columns.data() + b * (1 + plain_width_) * kColumnLength;
   }
   double* plain_of(std::size_t b) { return residual_of(b) + kColumnLength; }
   std::size_t chunks() const;
@@ -67,12 +78,12 @@ class LikelihoodEvaluation {
   std::vector<PlainTransient> plain_;
   EndState end_state_;
   std::size_t plain_width_, state_width_;
-  std::vector<LikelihoodBlock> blocks_;
+  Arrays arrays_;
+  std::span<LikelihoodBlock> blocks_;
   std::optional<PlanarVector> sensor_;              // where the sensors differ
   std::optional<PlanarVector> plain_sums_[2];       // plain transients with their amplitudes
   std::optional<PlanarVector> by_corner_;           // and their derivative by the sensor's corner
   std::vector<Complex> by_frequency_, by_damping_;  // c_n times the derivatives of E_n
-  AlignedVector first_columns_;
 };
 
 }  // namespace modcal

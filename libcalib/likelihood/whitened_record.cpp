@@ -32,12 +32,27 @@ std::size_t cut_length(const NoisyRecords& records, double sigma) {
   return fast_length(std::max<std::size_t>(static_cast<std::size_t>(wanted), 2));
 }
 
-// y_r at the bins k = 1 … K_b; `decay` holds exp(−σt).
+// first·step^k for k < count, step = exp(rate), with two exponentials for every 256.
+std::vector<Complex> powers(Complex first, Complex rate, std::size_t count) {
+  constexpr std::size_t kRun = WhitenedRecord::kBlock;
+  Complex run[kRun];
+  for (std::size_t k = 0; k < kRun; ++k) run[k] = std::exp(rate * static_cast<double>(k));
+  std::vector<Complex> result(count);
+  Complex begin;
+  for (std::size_t k = 0; k < count; ++k) {
+    if (k % kRun == 0) begin = first * std::exp(rate * static_cast<double>(k));
+    result[k] = begin * run[k % kRun];
+  }
+  return result;
+}
+
+// y_r at the bins k = 1 … K_b; `decay` holds exp(−σt), nothing at σ = 0.
 void whiten(std::span<const double> samples, std::span<const double> decay, double scale,
             std::size_t bins, PlanarVector& out) {
   std::vector<double> damped(decay.size());
   for (std::size_t j = 0; j < damped.size(); ++j) damped[j] = samples[j] * decay[j];
-  const std::vector<Complex> spectrum = RealFft(damped.size()).forward(damped);
+  const RealFft fft(samples.size());
+  const std::vector<Complex> spectrum = fft.forward(decay.empty() ? samples : damped);
   for (std::size_t k = 0; k < bins; ++k) out.set(k, spectrum[k + 1] * scale);
 }
 
@@ -100,21 +115,29 @@ WhitenedRecord WhitenedRecord::of(const NoisyRecords& records, double sigma, dou
   record.root_weight.assign(padded, 0.0);
   std::fill_n(record.root_weight.begin(), record.bins, 1.0);
 
-  std::vector<double> decay(length);
-  double energy = 0.0;
-  for (std::size_t j = 0; j < length; ++j) {
-    decay[j] = std::exp(-sigma * static_cast<double>(j) / records.sample_rate);
-    energy += decay[j] * decay[j];
+  std::vector<double> decay;
+  double energy = static_cast<double>(length);
+  if (sigma > 0.0) {
+    energy = 0.0;
+    for (const Complex number : powers(1.0, -sigma / records.sample_rate, length)) {
+      decay.push_back(number.real());
+      energy += number.real() * number.real();
+    }
   }
   const double norm = 1.0 / std::sqrt(energy);
-  whiten(records.reactions[0], decay, norm / records.deviation[0], record.bins, record.left);
-  whiten(records.reactions[1], decay, norm / records.deviation[1], record.bins, record.right);
+  const auto whiten_end = [&](std::size_t r, PlanarVector& out) {
+    whiten(std::span(records.reactions[r]).first(length), decay, norm / records.deviation[r],
+           record.bins, out);
+  };
+  whiten_end(0, record.left);
+  whiten_end(1, record.right);
   const double rest = sigma == 0.0 ? 1.0 : decay.back() * std::exp(-sigma / records.sample_rate);
+  const Complex turn(0.0, -record.spacing / records.sample_rate);
+  const std::vector<Complex> delays =
+      powers(std::exp(turn - sigma / records.sample_rate), turn, padded);
   for (std::size_t k = 0; k < padded; ++k) {
-    const double phase = record.spacing * static_cast<double>(k + 1) / records.sample_rate;
-    const Complex delay = std::polar(std::exp(-sigma / records.sample_rate), -phase);
-    record.delay.set(k, delay);
-    if (sigma > 0.0) record.offset.set(k, norm * (1.0 - rest) / (1.0 - delay));
+    record.delay.set(k, delays[k]);
+    if (sigma > 0.0) record.offset.set(k, norm * (1.0 - rest) / (1.0 - delays[k]));
   }
   record.place_bins();
   return record;
