@@ -86,7 +86,6 @@ EndState::Sums added(std::span<const EndState::Sums> parts) {
   return sum;
 }
 
-using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 using Columns = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic>>;
 
 }  // namespace
@@ -113,16 +112,22 @@ EndState::EndState(const WhitenedRecord& record, std::span<const LikelihoodMode>
                    std::size_t plain)
     : modes_(modes), decays_(record.sigma == 0.0 ? modes.size() : 0), plain_(plain) {}
 
-void EndState::add(const WhitenedRecord& record, std::size_t block_index, const ModeSplit& split,
-                   const LikelihoodBlock& block, const double* columns, Sums& sums) const {
+void EndState::add_gram(const WhitenedRecord& record, std::size_t block_index,
+                        const ModeSplit& split, const LikelihoodBlock& block, Sums& sums) const {
+  if (decays_ == 0) return;
+  sums.powers.resize(decays_ * kPowerSums * kSumLanes);
+  add_decay_powers(record, block_index, split, block, sums.powers.data(), sums.totals);
+}
+
+void EndState::add_products(const WhitenedRecord& record, std::size_t block_index,
+                            const ModeSplit& split, const LikelihoodBlock& block,
+                            const double* columns, Sums& sums) const {
   const std::size_t count = 1 + plain_;
   if (sums.plain.size() == 0) {
-    sums.powers.resize(decays_ * kPowerSums * kSumLanes);
     sums.products.resize(decays_ * 2 * count * kSumLanes);
     sums.plain.setZero(static_cast<Index>(count), static_cast<Index>(count));
   }
   if (decays_ > 0) {
-    add_decay_powers(record, block_index, split, block, sums.powers.data(), sums.totals);
     add_decay_products(record, block_index, split, block, columns, count, sums.products.data());
   }
   if (plain_ == 0) return;
@@ -130,19 +135,28 @@ void EndState::add(const WhitenedRecord& record, std::size_t block_index, const 
   sums.plain += all.transpose() * all;
 }
 
+// With the residual, then with the plain transients.
+EndState::RowMatrix EndState::collect_products(const Sums& sums) const {
+  const auto plain = static_cast<Index>(plain_);
+  RowMatrix products(static_cast<Index>(size()), 1 + plain);
+  if (decays_ > 0) {
+    collect_decay_products(sums.products.data(), decays_, 1 + plain_, products.data());
+  }
+  products.bottomRows(plain) = sums.plain.bottomRows(plain);
+  return products;
+}
+
 void EndState::solve(std::span<const Sums> parts) {
   const Sums sums = added(parts);
+  const RowMatrix products = collect_products(sums);
   const auto first = static_cast<Index>(2 * decays_);
   const auto plain = static_cast<Index>(plain_);
   Eigen::MatrixXd gram(first + plain, first + plain);
-  RowMatrix products(first + plain, 1 + plain);  // with the residual, then the plain transients
   if (decays_ > 0) {
     std::vector<DecayPowers> powers(decays_);
     collect_decay_powers(sums.powers.data(), powers);
     gram.topLeftCorner(first, first) = decay_gram(modes_, powers, sums.totals);
-    collect_decay_products(sums.products.data(), decays_, 1 + plain_, products.data());
   }
-  products.bottomRows(plain) = sums.plain.bottomRows(plain);
   gram.rightCols(plain) = products.rightCols(plain);
   gram.bottomLeftCorner(plain, first) = products.topRightCorner(first, plain).transpose();
 
@@ -151,9 +165,21 @@ void EndState::solve(std::span<const Sums> parts) {
   Eigen::MatrixXd scaled = inverse_norms_.asDiagonal() * gram * inverse_norms_.asDiagonal();
   scaled.diagonal().array() += kRidge;
   normal_.compute(scaled);
-  const Eigen::VectorXd found = -fit(products.col(0));
-  for (Index i = 0; i < first; i += 2) amplitudes_.emplace_back(found[i], found[i + 1]);
-  plain_amplitudes_.assign(found.begin() + first, found.end());
+  find(products.col(0));
+}
+
+void EndState::solve_again(std::span<const Sums> parts) {
+  find(collect_products(added(parts)).col(0));
+}
+
+void EndState::find(const Eigen::VectorXd& products) {
+  const Eigen::VectorXd found = -fit(products);
+  amplitudes_.clear();
+  for (std::size_t n = 0; n < decays_; ++n) {
+    const auto i = static_cast<Index>(2 * n);
+    amplitudes_.emplace_back(found[i], found[i + 1]);
+  }
+  plain_amplitudes_.assign(found.end() - static_cast<Index>(plain_), found.end());
 }
 
 Eigen::MatrixXd EndState::fit(const Eigen::MatrixXd& products) const {

@@ -42,11 +42,16 @@ class EndState {
 
   std::size_t decays() const { return decays_; }  ///< N, or 0 for σ > 0
   std::size_t size() const { return 2 * decays_ + plain_; }
-  /// First pass over one block; `columns`: the residual, then those of the plain transients.
-  void add(const WhitenedRecord& record, std::size_t block_index, const ModeSplit& split,
-           const LikelihoodBlock& block, const double* columns, Sums& sums) const;
+  /// Adds what the model alone decides, of one block.
+  void add_gram(const WhitenedRecord& record, std::size_t block_index, const ModeSplit& split,
+                const LikelihoodBlock& block, Sums& sums) const;
+  /// Adds products of `columns`: the residual, then those of the plain transients.
+  void add_products(const WhitenedRecord& record, std::size_t block_index, const ModeSplit& split,
+                    const LikelihoodBlock& block, const double* columns, Sums& sums) const;
   /// Finds the unknowns of least squares from the sums over all blocks, added up in their order.
   void solve(std::span<const Sums> sums);
+  /// The same for other data of the same model, from their products alone.
+  void solve_again(std::span<const Sums> sums);
 
   std::span<const Complex> amplitudes() const { return amplitudes_; }  ///< c_n
   double plain_amplitude(std::size_t i) const { return plain_amplitudes_[i]; }
@@ -54,6 +59,10 @@ class EndState {
   Eigen::MatrixXd fit(const Eigen::MatrixXd& products) const;
 
  private:
+  using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  RowMatrix collect_products(const Sums& sums) const;
+  void find(const Eigen::VectorXd& products);
+
   std::span<const LikelihoodMode> modes_;
   std::size_t decays_, plain_;
   Eigen::VectorXd inverse_norms_;

@@ -87,7 +87,7 @@ struct LikelihoodEvaluation::Slopes {
 
 LikelihoodEvaluation::LikelihoodEvaluation(const WhitenedRecord& record, const ModelPoint& point,
                                            bool interpolate)
-    : record_(record),
+    : record_(&record),
       sensors_(point.sensors),
       modes_(likelihood_modes(point, record.sample_rate)),
       splits_(record, modes_, interpolate),
@@ -101,10 +101,21 @@ LikelihoodEvaluation::LikelihoodEvaluation(const WhitenedRecord& record, const M
   arrays_.first_columns.resize((1 + plain_width_) * kColumnLength * record.blocks());
   if (!sensors_.alike()) sensor_ = sensor_response(record, sensors_);
   std::vector<EndState::Sums> sums(chunks());
-  for_blocks([&](std::size_t chunk, std::size_t b) { fill(b, sums[chunk]); });
+  for_blocks([&](std::size_t chunk, std::size_t b) {
+    fill_model(b, sums[chunk]);
+    fill_data(b, sums[chunk]);
+  });
   end_state_.solve(sums);
-  sum_plain();
-  turn_amplitudes();
+  apply_end_state();
+}
+
+void LikelihoodEvaluation::take(const WhitenedRecord& record) {
+  assert(record.bins == record_->bins && record.sigma == record_->sigma);
+  record_ = &record;
+  std::vector<EndState::Sums> sums(chunks());
+  for_blocks([&](std::size_t chunk, std::size_t b) { fill_data(b, sums[chunk]); });
+  end_state_.solve_again(sums);
+  apply_end_state();
 }
 
 LikelihoodEvaluation::~LikelihoodEvaluation() { spare() = std::move(arrays_); }
@@ -132,36 +143,48 @@ void LikelihoodEvaluation::for_blocks(
   }
 }
 
-void LikelihoodEvaluation::fill(std::size_t b, EndState::Sums& sums) {
+void LikelihoodEvaluation::fill_model(std::size_t b, EndState::Sums& sums) {
   const ModeSplit split = splits_.of(b);
-  fill_block(record_, b, split, given(sensor_), blocks_[b], residual_of(b));
+  fill_block(*record_, b, split, given(sensor_), blocks_[b]);
   for (std::size_t p = 0; p < plain_.size(); ++p) {
-    fill_plain_column(record_, b, blocks_[b], plain_[p].right, plain_[p].numbers,
+    fill_plain_column(*record_, b, blocks_[b], plain_[p].right, plain_[p].numbers,
                       plain_of(b) + p * kColumnLength);
   }
-  end_state_.add(record_, b, split, blocks_[b], residual_of(b), sums);
+  end_state_.add_gram(*record_, b, split, blocks_[b], sums);
+}
+
+void LikelihoodEvaluation::fill_data(std::size_t b, EndState::Sums& sums) {
+  fill_residual(*record_, b, blocks_[b], residual_of(b));
+  end_state_.add_products(*record_, b, splits_.of(b), blocks_[b], residual_of(b), sums);
+}
+
+// What the amplitudes decide beside the residual.
+void LikelihoodEvaluation::apply_end_state() {
+  const std::span<const Complex> amplitudes = end_state_.amplitudes();
+  by_frequency_.clear();
+  by_damping_.clear();
+  for (std::size_t n = 0; n < amplitudes.size(); ++n) {
+    by_frequency_.push_back(amplitudes[n] * modes_[n].pole_by_frequency);
+    by_damping_.push_back(amplitudes[n] * modes_[n].pole_by_damping);
+  }
+  sum_plain();
 }
 
 void LikelihoodEvaluation::sum_plain() {
+  plain_sums_[0].reset();
+  plain_sums_[1].reset();
+  by_corner_.reset();
   const auto add = [this](const PlanarVector& numbers, double amplitude,
                           std::optional<PlanarVector>& sum) {
     if (numbers.size() == 0) return;
-    if (!sum) sum.emplace(record_.root_weight.size());
-    for (std::size_t k = 0; k < record_.bins; ++k) {
+    if (!sum) sum.emplace(record_->root_weight.size());
+    for (std::size_t k = 0; k < record_->bins; ++k) {
       sum->set(k, sum->at(k) + amplitude * numbers.at(k));
     }
   };
   for (std::size_t p = 0; p < plain_.size(); ++p) {
     add(plain_[p].numbers, end_state_.plain_amplitude(p), plain_sums_[plain_[p].right ? 1 : 0]);
     add(plain_[p].by_corner, end_state_.plain_amplitude(p), by_corner_);
-  }
-}
-
-void LikelihoodEvaluation::turn_amplitudes() {
-  const std::span<const Complex> amplitudes = end_state_.amplitudes();
-  for (std::size_t n = 0; n < amplitudes.size(); ++n) {
-    by_frequency_.push_back(amplitudes[n] * modes_[n].pole_by_frequency);
-    by_damping_.push_back(amplitudes[n] * modes_[n].pole_by_damping);
   }
 }
 
@@ -177,9 +200,9 @@ ColumnTask LikelihoodEvaluation::column_task(const LikelihoodColumns& columns) c
 // The residual of a block, its force and the sensors' columns.
 void LikelihoodEvaluation::finish(std::size_t b, const std::array<double*, 3>& sensors) {
   if (end_state_.decays() > 0) {
-    fill_decays(record_, b, splits_.of(b), end_state_.amplitudes(), blocks_[b]);
+    fill_decays(*record_, b, splits_.of(b), end_state_.amplitudes(), blocks_[b]);
   }
-  finish_residual(record_, b,
+  finish_residual(*record_, b,
                   {.decays = end_state_.decays() > 0,
                    .sensor = given(sensor_),
                    .plain = {given(plain_sums_[0]), given(plain_sums_[1])},
@@ -210,7 +233,7 @@ LikelihoodPoint LikelihoodEvaluation::slope(const LikelihoodColumns& columns) {
       if (places[i]) part.sensors[i] += dot(places[i], residual);
     }
     if (columns.count == 0) return;
-    add_mode_slopes(record_, b, splits_.of(b), blocks_[b], end_state_.decays() > 0, residual,
+    add_mode_slopes(*record_, b, splits_.of(b), blocks_[b], end_state_.decays() > 0, residual,
                     part.modes.data());
   });
   Slopes sum = std::move(parts[0]);
@@ -252,9 +275,9 @@ void LikelihoodEvaluation::fill_columns(std::size_t b, const LikelihoodColumns& 
   ColumnTask task = column_task(columns);
   task.jacobian = jacobian;
   if (columns.count <= kSharedColumns) {
-    fill_shared_columns(record_, b, splits_.of(b), blocks_[b], task);
+    fill_shared_columns(*record_, b, splits_.of(b), blocks_[b], task);
   } else {
-    fill_mode_columns(record_, b, modes_, blocks_[b], task);
+    fill_mode_columns(*record_, b, modes_, blocks_[b], task);
   }
 }
 
@@ -262,7 +285,7 @@ void LikelihoodEvaluation::fill_columns(std::size_t b, const LikelihoodColumns& 
 void LikelihoodEvaluation::fill_state(std::size_t b, AlignedVector& state) {
   state.resize(state_width_ * kColumnLength);
   const std::size_t decays = 2 * end_state_.decays();
-  if (decays > 0) fill_decay_columns(record_, b, modes_, blocks_[b], state.data());
+  if (decays > 0) fill_decay_columns(*record_, b, modes_, blocks_[b], state.data());
   std::copy_n(plain_of(b), plain_.size() * kColumnLength,
               state.begin() + static_cast<long>(decays * kColumnLength));
 }
@@ -277,7 +300,7 @@ void LikelihoodEvaluation::add_cross_products(std::size_t b, const Columns& work
     return;
   }
   if (end_state_.decays() > 0) {
-    add_decay_products(record_, b, splits_.of(b), blocks_[b], jacobian, work.count,
+    add_decay_products(*record_, b, splits_.of(b), blocks_[b], jacobian, work.count,
                        sums.decays.data());
   }
   add_products(jacobian, work.width, plain_of(b), plain_width_, false, sums.plain.data(),
@@ -355,7 +378,7 @@ void LikelihoodEvaluation::project_block(std::size_t b, const Eigen::MatrixXd& f
     for (Index m = 0; m < decays; ++m) {
       amplitudes[static_cast<std::size_t>(m)] = Complex(fit(2 * m, i), fit(2 * m + 1, i));
     }
-    subtract_decays(record_, b, splits_.of(b), amplitudes, blocks_[b],
+    subtract_decays(*record_, b, splits_.of(b), amplitudes, blocks_[b],
                     jacobian + i * static_cast<Index>(kColumnLength));
   }
   subtract_columns(plain_of(b), plain_.size(),
@@ -368,7 +391,7 @@ void LikelihoodEvaluation::project_columns(Columns& work, const Eigen::MatrixXd&
   const auto width = static_cast<Index>(work.width);
   RowMatrix factors = RowMatrix::Zero(fit.rows(), width);
   factors.leftCols(fit.cols()) = fit;
-  if (outputs.jacobian) outputs.jacobian->resize(static_cast<long>(2 * record_.bins), fit.cols());
+  if (outputs.jacobian) outputs.jacobian->resize(static_cast<long>(2 * record_->bins), fit.cols());
   struct Part {
     RowMatrix twice;
     AlignedVector state;
@@ -379,13 +402,13 @@ void LikelihoodEvaluation::project_columns(Columns& work, const Eigen::MatrixXd&
     double* jacobian = work.of(chunk, b);
     project_block(b, fit, factors, work, parts[chunk].state);
     for (std::size_t i = 0; outputs.jacobian && i < work.count; ++i) {
-      for_rows(b, record_.bins, [&](std::size_t row, std::size_t at) {
+      for_rows(b, record_->bins, [&](std::size_t row, std::size_t at) {
         (*outputs.jacobian)(static_cast<long>(row), static_cast<long>(i)) =
             jacobian[i * kColumnLength + at];
       });
     }
     if (!outputs.twice_weighted) return;
-    scale_columns(record_.root_weight.data() + b * kBins, work.width, jacobian);
+    scale_columns(record_->root_weight.data() + b * kBins, work.width, jacobian);
     add_products(jacobian, work.width, jacobian, work.width, true, parts[chunk].twice.data(),
                  work.width);
   });
@@ -402,21 +425,21 @@ void LikelihoodEvaluation::give(const LikelihoodOutputs& outputs) {
   }
   if (outputs.residuals) {
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
-      for_rows(b, record_.bins, [&](std::size_t row, std::size_t at) {
+      for_rows(b, record_->bins, [&](std::size_t row, std::size_t at) {
         (*outputs.residuals)[row] = residual_of(b)[at];
       });
     }
   }
   if (outputs.force) {
-    outputs.force->resize(record_.bins);
-    for (std::size_t k = 0; k < record_.bins; ++k) {
+    outputs.force->resize(record_->bins);
+    for (std::size_t k = 0; k < record_->bins; ++k) {
       const LikelihoodBlock::Planar& force = blocks_[k / kBins].force;
       (*outputs.force)[k] = {force.re[k % kBins], force.im[k % kBins]};
     }
   }
   if (!outputs.gain) return;
-  outputs.gain->resize(record_.bins);
-  for (std::size_t k = 0; k < record_.bins; ++k) {
+  outputs.gain->resize(record_->bins);
+  for (std::size_t k = 0; k < record_->bins; ++k) {
     (*outputs.gain)[k] = 1.0 / blocks_[k / kBins].norm[k % kBins];
   }
 }

@@ -30,7 +30,11 @@ class LikelihoodEvaluation {
   LikelihoodEvaluation(const LikelihoodEvaluation&) = delete;
   LikelihoodEvaluation& operator=(const LikelihoodEvaluation&) = delete;
 
-  /// Call one of these, once.
+  /// The same model with other data of the same bins and weights, whose transfer functions, decays
+  /// and Gram matrix serve again. `record` must outlive this.
+  void take(const WhitenedRecord& record);
+
+  /// Call one of these, once for each record.
   LikelihoodPoint differentiate(const LikelihoodColumns& columns, const LikelihoodOutputs& outputs);
   /// Cost and slope alone; no column is formed.
   LikelihoodPoint slope(const LikelihoodColumns& columns);
@@ -55,9 +59,10 @@ class LikelihoodEvaluation {
   std::size_t chunks() const;
   /// Calls work(chunk, block) for every block, chunks side by side.
   void for_blocks(const std::function<void(std::size_t, std::size_t)>& work) const;
-  void fill(std::size_t b, EndState::Sums& sums);
+  void fill_model(std::size_t b, EndState::Sums& sums);
+  void fill_data(std::size_t b, EndState::Sums& sums);
+  void apply_end_state();
   void sum_plain();
-  void turn_amplitudes();
   ColumnTask column_task(const LikelihoodColumns& columns) const;
   void finish(std::size_t b, const std::array<double*, 3>& sensors);
   void fill_columns(std::size_t b, const LikelihoodColumns& columns, double* jacobian);
@@ -71,7 +76,7 @@ class LikelihoodEvaluation {
   void fill_state(std::size_t b, AlignedVector& state);
   void give(const LikelihoodOutputs& outputs);
 
-  const WhitenedRecord& record_;
+  const WhitenedRecord* record_;
   SensorPair sensors_;
   std::vector<LikelihoodMode> modes_;
   ModeSplits splits_;

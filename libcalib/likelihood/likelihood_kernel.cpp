@@ -36,7 +36,7 @@ HWY_INLINE C ReceptanceSum(const ModeSplit& split, std::span<const std::size_t> 
 }
 
 void FillBlock(const WhitenedRecord& record, std::size_t block_index, const ModeSplit& split,
-               const PlanarVector* sensor, LikelihoodBlock& block, double* residual) {
+               const PlanarVector* sensor, LikelihoodBlock& block) {
   const std::size_t first = block_index * kBins;
   const Places places = BinsOf(record, block_index);
   const Places far_places = NodesOf(record, block_index);
@@ -70,9 +70,6 @@ void FillBlock(const WhitenedRecord& record, std::size_t block_index, const Mode
     Store(Sub(a, b), block.odd, k);
     Store(Add(a, b), block.even, k);
     hn::Store(norm, D(), block.norm + k);
-    const C data =
-        Sub(Mul(right, Load(record.left, first + k)), Mul(left, Load(record.right, first + k)));
-    StoreColumn(Scale(data, scale), residual, k);
   }
 }
 
@@ -80,6 +77,16 @@ HWY_INLINE V ScaleAt(const WhitenedRecord& record, const LikelihoodBlock& block,
                      std::size_t k) {
   return hn::Mul(hn::Sqrt(LoadReal(block.norm + k)),
                  LoadReal(record.root_weight.data() + first + k));
+}
+
+void FillResidual(const WhitenedRecord& record, std::size_t block_index,
+                  const LikelihoodBlock& block, double* residual) {
+  const std::size_t first = block_index * kBins;
+  for (std::size_t k = 0; k < kBins; k += hn::Lanes(D())) {
+    const C data = Sub(Mul(Load(block.right, k), Load(record.left, first + k)),
+                       Mul(Load(block.left, k), Load(record.right, first + k)));
+    StoreColumn(Scale(data, ScaleAt(record, block, first, k)), residual, k);
+  }
 }
 
 void FillPlainColumn(const WhitenedRecord& record, std::size_t block_index,
@@ -164,12 +171,18 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace modcal {
 HWY_EXPORT(FillBlock);
+HWY_EXPORT(FillResidual);
 HWY_EXPORT(FillPlainColumn);
 HWY_EXPORT(FinishResidual);
 
 void fill_block(const WhitenedRecord& record, std::size_t block_index, const ModeSplit& split,
-                const PlanarVector* sensor, LikelihoodBlock& block, double* residual) {
-  HWY_DYNAMIC_DISPATCH(FillBlock)(record, block_index, split, sensor, block, residual);
+                const PlanarVector* sensor, LikelihoodBlock& block) {
+  HWY_DYNAMIC_DISPATCH(FillBlock)(record, block_index, split, sensor, block);
+}
+
+void fill_residual(const WhitenedRecord& record, std::size_t block_index,
+                   const LikelihoodBlock& block, double* residual) {
+  HWY_DYNAMIC_DISPATCH(FillResidual)(record, block_index, block, residual);
 }
 
 void fill_plain_column(const WhitenedRecord& record, std::size_t block_index,

@@ -49,11 +49,13 @@ struct LikelihoodBlock {
 /// Length of a column of one block: real parts, then imaginary parts.
 inline constexpr std::size_t kColumnLength = 2 * WhitenedRecord::kBlock;
 
-/// Fills transfer functions, κ and 1/|h|² of `block` and the column `residual`,
-/// (h_2y_1 − h_1y_2)/|h| with √w. sensor: how the sensor at x = L reads for one that reads 1 at
-/// x = 0, a factor of h_2 and of its decays; null: alike.
+/// Fills transfer functions, κ and 1/|h|² of `block`. sensor: how the sensor at x = L reads for one
+/// that reads 1 at x = 0, a factor of h_2 and of its decays; null: alike.
 void fill_block(const WhitenedRecord& record, std::size_t block_index, const ModeSplit& split,
-                const PlanarVector* sensor, LikelihoodBlock& block, double* residual);
+                const PlanarVector* sensor, LikelihoodBlock& block);
+/// Fills the column `residual`, (h_2y_1 − h_1y_2)/|h| with √w.
+void fill_residual(const WhitenedRecord& record, std::size_t block_index,
+                   const LikelihoodBlock& block, double* residual);
 
 /// Column of the residual for something in the record of one end whose transform is `numbers` [N].
 void fill_plain_column(const WhitenedRecord& record, std::size_t block_index,

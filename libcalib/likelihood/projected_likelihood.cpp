@@ -74,11 +74,13 @@ LikelihoodPoint ProjectedLikelihood::evaluate(const ModelPoint& point,
 Eigen::MatrixXd ProjectedLikelihood::noise_information(const ModelPoint& point,
                                                        const LikelihoodColumns& columns,
                                                        std::size_t repeats) const {
-  const auto n = static_cast<Eigen::Index>(columns.count);
-  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(n, n);
-  for (std::size_t r = 0; r < repeats; ++r) {
-    const WhitenedRecord noise = record_.noise(r);
-    sum += LikelihoodEvaluation(noise, point).differentiate(columns, {}).information;
+  WhitenedRecord noise = record_.noise(0);
+  LikelihoodEvaluation evaluation(noise, point);
+  Eigen::MatrixXd sum = evaluation.differentiate(columns, {}).information;
+  for (std::size_t r = 1; r < repeats; ++r) {
+    noise.draw_noise(r);
+    evaluation.take(noise);
+    sum += evaluation.differentiate(columns, {}).information;
   }
   return sum / static_cast<double>(repeats);
 }

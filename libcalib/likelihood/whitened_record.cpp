@@ -56,6 +56,21 @@ void whiten(std::span<const double> samples, std::span<const double> decay, doub
   for (std::size_t k = 0; k < bins; ++k) out.set(k, spectrum[k + 1] * scale);
 }
 
+// Draws that depend on seed and number alone are kept by the thread: every fit asks for the same.
+std::span<const double> noise_draw(std::uint64_t seed, std::size_t count) {
+  struct Draw {
+    std::uint64_t seed = 0;
+    std::vector<double> numbers;
+  };
+  static thread_local std::array<Draw, 4> kept;
+  Draw& draw = kept[seed % kept.size()];
+  if (draw.numbers.size() != count || draw.seed != seed) {
+    draw = {seed, std::vector<double>(count)};
+    fill_standard_normal(StreamKey(seed).with("likelihood noise"), draw.numbers);
+  }
+  return draw.numbers;
+}
+
 }  // namespace
 
 double noise_deviation(std::span<const double> samples) {
@@ -191,14 +206,16 @@ WhitenedRecord WhitenedRecord::slice(std::size_t begin, std::size_t count) const
 
 WhitenedRecord WhitenedRecord::noise(std::uint64_t seed) const {
   WhitenedRecord record = *this;
-  const StreamKey key = StreamKey(seed).with("likelihood noise");
-  std::vector<double> draw(4 * bins);
-  fill_standard_normal(key, draw);
-  for (std::size_t k = 0; k < bins; ++k) {
-    record.left.set(k, Complex(draw[4 * k], draw[4 * k + 1]) * std::numbers::sqrt2 * 0.5);
-    record.right.set(k, Complex(draw[4 * k + 2], draw[4 * k + 3]) * std::numbers::sqrt2 * 0.5);
-  }
+  record.draw_noise(seed);
   return record;
+}
+
+void WhitenedRecord::draw_noise(std::uint64_t seed) {
+  const std::span<const double> draw = noise_draw(seed, 4 * bins);
+  for (std::size_t k = 0; k < bins; ++k) {
+    left.set(k, Complex(draw[4 * k], draw[4 * k + 1]) * std::numbers::sqrt2 * 0.5);
+    right.set(k, Complex(draw[4 * k + 2], draw[4 * k + 3]) * std::numbers::sqrt2 * 0.5);
+  }
 }
 
 }  // namespace modcal

@@ -65,6 +65,7 @@ struct WhitenedRecord {
   WhitenedRecord slice(std::size_t begin, std::size_t count) const;
   /// The same bins with pure noise CN(0, 1) in place of the data.
   WhitenedRecord noise(std::uint64_t seed) const;
+  void draw_noise(std::uint64_t seed);  ///< puts it in the place of the data
 
  private:
   void place_bins();

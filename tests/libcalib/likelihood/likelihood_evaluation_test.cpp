@@ -98,6 +98,23 @@ TEST_F(OneSecond, SlopeAloneIsThatOfTheColumns) {
   }
 }
 
+TEST_F(OneSecond, TakesOtherDataOfTheSameModel) {
+  UnknownsOptions sensors;
+  sensors.delay.free = true;
+  sensors.delay.value = 2e-6;
+  const StringUnknowns unknowns = law(sensors);
+  const ModelPoint point = beside(unknowns);
+  const LikelihoodColumns columns = unknowns.columns(unknowns.start());
+  const WhitenedRecord whitened = record(0.0), other = whitened.noise(7);
+  LikelihoodEvaluation evaluation(whitened, point);
+  evaluation.differentiate(columns, {});
+  evaluation.take(other);
+  const LikelihoodPoint again = evaluation.differentiate(columns, {});
+  const LikelihoodPoint anew = LikelihoodEvaluation(other, point).differentiate(columns, {});
+  EXPECT_EQ(again.cost, anew.cost);
+  EXPECT_TRUE(again.information == anew.information);
+}
+
 // Runs `work` with so many threads, more than the machine has if need be.
 template <typename Work>
 void with_threads(int threads, const Work& work) {

@@ -178,7 +178,8 @@ TEST_F(AtShortRecord, JacobianIsThatOfAutomaticDifferentiation) {
   AlignedVector residual(kColumnLength);
   for (std::size_t b = 0; b < record.blocks(); ++b) {
     std::fill(own.begin(), own.end(), 0.0);
-    fill_block(record, b, splits.of(b), nullptr, block, residual.data());
+    fill_block(record, b, splits.of(b), nullptr, block);
+    fill_residual(record, b, block, residual.data());
     fill_decays(record, b, splits.of(b), amplitudes, block);
     finish_residual(record, b, {.decays = true, .residual = residual.data()}, block);
     fill_mode_columns(record, b, modes, block,
