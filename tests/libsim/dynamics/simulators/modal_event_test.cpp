@@ -10,8 +10,8 @@
 #include "libsim/dynamics/friction/hyperbolic.hpp"
 #include "libsim/dynamics/gestures/table_gesture.hpp"
 #include "libsim/dynamics/initial/pluck.hpp"
-#include "libsim/dynamics/simulators/modal_exact.hpp"
 #include "tests/libsim/dynamics/random_scenes.hpp"
+#include "tests/libsim/dynamics/simulators/compared_runs.hpp"
 #include "tests/libsim/dynamics/simulators/long_double_twin.hpp"
 
 namespace modcal {
@@ -20,23 +20,7 @@ namespace {
 constexpr double kRate = 51200.0;
 
 Simulation run_with(const Scene& scene, ModalEvent::Options options = {}, double rate = kRate) {
-  return ModalEvent(options).simulate(scene, rate, OutputRequest::all());
-}
-
-double relative_error(const Signal& a, const Signal& b) {
-  double error = 0.0, power = 0.0;
-  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
-    error += std::pow(a.samples[i] - b.samples[i], 2);
-    power += std::pow(b.samples[i], 2);
-  }
-  return std::sqrt(error / power);
-}
-
-double worst_error(const Simulation& a, const Simulation& b) {
-  return std::max({relative_error(a.displacement, b.displacement),
-                   relative_error(a.velocity, b.velocity), relative_error(a.force, b.force),
-                   relative_error(a.left_reaction, b.left_reaction),
-                   relative_error(a.right_reaction, b.right_reaction)});
+  return event_run(scene, options, rate);
 }
 
 Simulation first_part(Simulation run, double duration) {
@@ -103,19 +87,10 @@ TEST(ModalEvent, RefinesWhereItsForceIsNotResolved) {
   EXPECT_LT(worst_error(held, reference), 0.1 * worst_error(free, reference));
 }
 
-TEST(ModalEvent, TheFixedStepSchemeApproachesItAtFirstOrder) {
+TEST(ModalEvent, TheFixedStepSchemeApproachesIt) {
   Scene scene = paper_scene();
   scene.duration = 0.02;
-  const Simulation event = run_with(scene, {}, 50000.0);
-  const auto distance = [&](double step) {
-    const Simulation run =
-        ModalExact({.time_step = step}).simulate(scene, 50000.0, OutputRequest::all());
-    return relative_error(run.velocity, event.velocity);
-  };
-  const double coarse = distance(4e-7), fine = distance(5e-8);
-  EXPECT_LT(fine, 1e-3);
-  // Its switches are late by a varying part of a step: over a factor of 8 at least order 0.8.
-  EXPECT_GT(std::log2(coarse / fine) / 3.0, 0.8);
+  expect_the_fixed_step_limit(scene, 50000.0);
 }
 
 TEST(ModalEvent, FollowsTheExtendedPrecisionTwin) {
@@ -150,40 +125,6 @@ TEST(ModalEvent, FollowsTheExtendedPrecisionTwin) {
   EXPECT_LT(error_v, 2e-11);
   EXPECT_LT(error_f, 2e-11);
   EXPECT_LT(error_y, 2e-11 * size_y);
-}
-
-TEST(ModalEvent, EnergyBalanceOfOneDampedMode) {
-  Scene scene = paper_scene();
-  scene.string.modes = 1;
-  scene.bow.position = 0.165;
-  scene.bow.velocity = 0.05;
-  scene.duration = 0.05;
-  scene.string.damping =
-      Choice<DampingLaw>::of<ConstantDamping>("constant", ConstantDamping::Options{0.02});
-  const double rate = 1e6;
-  const Simulation run = run_with(scene, {}, rate);
-  ASSERT_FALSE(run.diverged_at);
-  const ModalBasis basis = make_modal_basis(scene.string);
-  const double m = basis.mass[0], w = basis.omega[0];
-  double work = 0.0, dissipated = 0.0, gross = 0.0;
-  for (std::size_t k = 0; k + 1 < run.force.size(); ++k) {
-    const auto power = [&](std::size_t i) {
-      return run.force.samples[i] * run.velocity.samples[i];
-    };
-    const auto loss = [&](std::size_t i) {
-      return 2.0 * 0.02 * w * m * run.velocity.samples[i] * run.velocity.samples[i];
-    };
-    work += 0.5 / rate * (power(k) + power(k + 1));
-    gross += 0.5 / rate * std::abs(power(k));
-    dissipated += 0.5 / rate * (loss(k) + loss(k + 1));
-  }
-  const double y = run.displacement.samples.back(), v = run.velocity.samples.back();
-  const double stored = 0.5 * m * (v * v + w * w * y * y);
-  // At each switch the trapezoidal rule misses at most half a step of the jump of f v, 0.4 · 0.1 W.
-  const double missed =
-      static_cast<double>(run.attachments + run.releases) * 0.5 / rate * 0.4 * 0.1;
-  EXPECT_NEAR(work, dissipated + stored, missed + 1e-6 * gross);
-  EXPECT_GT(dissipated, 10.0 * missed);
 }
 
 TEST(ModalEvent, HoldsOnRandomScenes) {

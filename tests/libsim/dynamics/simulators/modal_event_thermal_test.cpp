@@ -12,9 +12,8 @@
 #include "libsim/dynamics/friction/coulomb_exponential.hpp"
 #include "libsim/dynamics/friction/thermal.hpp"
 #include "libsim/dynamics/gestures/table_gesture.hpp"
-#include "libsim/dynamics/simulators/modal_event.hpp"
-#include "libsim/dynamics/simulators/modal_exact.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
+#include "tests/libsim/dynamics/simulators/compared_runs.hpp"
 
 namespace modcal {
 namespace {
@@ -28,16 +27,7 @@ Scene thermal_scene(double duration, const Thermal::Options& law = {}) {
 
 Simulation run_with(const Scene& scene, const ModalEvent::Options& options = {},
                     double rate = 25000.0) {
-  return ModalEvent(options).simulate(scene, rate, OutputRequest::all());
-}
-
-double relative_error(const Signal& a, const Signal& b) {
-  double error = 0.0, power = 0.0;
-  for (std::size_t i = 0; i < b.size(); ++i) {
-    error += std::pow(a.samples[i] - b.samples[i], 2);
-    power += std::pow(b.samples[i], 2);
-  }
-  return std::sqrt(error / power);
+  return event_run(scene, options, rate);
 }
 
 // As for a friction curve: temperature and force are collocated at the same nodes. Steps above the
@@ -45,7 +35,9 @@ double relative_error(const Signal& a, const Signal& b) {
 TEST(ModalEventThermal, ConvergesAtTheOrderOfItsNodes) {
   const Scene scene = thermal_scene(0.02, {.softening_rise = 10.0});
   const auto run = [&](std::int64_t nodes, double step) {
-    return run_with(scene, {.nodes = nodes, .max_step = step, .slope_number = 0.7 * step / 4e-5});
+    return run_with(
+        scene,
+        {.nodes = nodes, .max_step = step, .slope_number = 0.7 * step / 4e-5, .tail_ratio = 1e3});
   };
   const Simulation reference = run(5, 2e-6);
   ASSERT_FALSE(reference.diverged_at) << reference.explanation;
@@ -64,24 +56,8 @@ TEST(ModalEventThermal, ConvergesAtTheOrderOfItsNodes) {
   }
 }
 
-// Its switches stand on the grid and its temperature is a step late: first order.
-void expect_the_fixed_step_limit(const Scene& scene) {
-  const Simulation event = run_with(scene);
-  ASSERT_FALSE(event.diverged_at) << event.explanation;
-  const auto distance = [&](double step) {
-    const Simulation run =
-        ModalExact({.time_step = step}).simulate(scene, 25000.0, OutputRequest::all());
-    EXPECT_EQ(run.attachments, event.attachments) << step;
-    return std::max(relative_error(run.velocity, event.velocity),
-                    relative_error(run.right_reaction, event.right_reaction));
-  };
-  const double coarse = distance(4e-7), fine = distance(5e-8);
-  EXPECT_LT(fine, 2e-3);
-  EXPECT_GT(std::log2(coarse / fine) / 3.0, 0.7);
-}
-
 TEST(ModalEventThermal, TheFixedStepSchemeApproachesIt) {
-  expect_the_fixed_step_limit(thermal_scene(0.02));
+  expect_the_fixed_step_limit(thermal_scene(0.02), 25000.0);
 }
 
 Scene gestured_scene() {
@@ -96,7 +72,7 @@ Scene gestured_scene() {
 
 // Ramps, a reversal, and a lift in which the contact cools.
 TEST(ModalEventThermal, TheFixedStepSchemeApproachesItUnderGestures) {
-  expect_the_fixed_step_limit(gestured_scene());
+  expect_the_fixed_step_limit(gestured_scene(), 25000.0);
 }
 
 TEST(ModalEventThermal, IsConvergedAtTheSamplingPeriodUnderGestures) {
