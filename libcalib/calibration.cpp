@@ -122,6 +122,10 @@ CalibrationResult calibrate_to_the_bound(const ModelPoint& initial,
   MODCAL_REQUIRE(free.law && free.contact && free.frequencies != "listed",
                  "a continuation frees the law, the contact and no frequency or all of them: state "
                  "parameters: {{frequencies: all, law: true, contact: true}}");
+  MODCAL_REQUIRE(free.damping == "fixed" && free.sensors.empty(),
+                 "a continuation is told of damping {} and {} sensor parameters in another place: "
+                 "state them under continuation: {{unknowns: ...}}, not under parameters",
+                 free.damping, free.sensors.size());
   ContinuationOptions continuation = options.continuation;
   continuation.frequencies = free.frequencies == "all";
   const double begin = clock();

@@ -1,11 +1,59 @@
 #include "libcalib/objective.hpp"
 
+#include <optional>
+#include <vector>
+
 #include "libsim/base/error.hpp"
 
 namespace modcal {
 
+// Frequencies and contact are what every objective was made for.
+Response Objective::response(ParameterKind kind) const {
+  switch (kind) {
+    case ParameterKind::kFundamental:
+    case ParameterKind::kInharmonicity:
+    case ParameterKind::kContact:
+    case ParameterKind::kFrequency:
+      return Response::kMoves;
+    case ParameterKind::kDampingRatio:
+    case ParameterKind::kDampingFactor:
+    case ParameterKind::kDampingPower:
+      return Response::kRefused;
+    case ParameterKind::kGain:
+    case ParameterKind::kDelay:
+    case ParameterKind::kCorner:
+      break;
+  }
+  return Response::kNone;
+}
+
+void Objective::require_moved_by(std::span<const std::string> names) const {
+  for (const std::string& name : names) {
+    const std::optional<UnknownName> parsed = parse_unknown(name);
+    if (!parsed) continue;
+    const Response response = this->response(parsed->kind);
+    MODCAL_REQUIRE(response != Response::kNone,
+                   "the objective does not depend on {}: fix it, or add an objective that does "
+                   "(joint_likelihood sees every parameter) in a weighted_sum",
+                   name);
+    MODCAL_REQUIRE(
+        response != Response::kRefused,
+        "the objective takes damping as it is stated and cannot find {}: fix it, or take "
+        "joint_likelihood",
+        name);
+  }
+}
+
 std::unique_ptr<const ObjectiveFunction> Objective::bind(const CalibrationData& data,
                                                          const ParameterSet& parameters) const {
+  std::vector<std::string> names;
+  for (const Variable& variable : parameters.variables()) names.push_back(variable.name);
+  require_moved_by(names);
+  return bind_term(data, parameters);
+}
+
+std::unique_ptr<const ObjectiveFunction> Objective::bind_term(
+    const CalibrationData& data, const ParameterSet& parameters) const {
   data.require_valid();
   const ModalBasis& basis = parameters.initial().basis;
   for (std::size_t n = 0; n < basis.size(); ++n) {

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <memory>
+#include <span>
+#include <string>
 #include <string_view>
 
 #include "libcalib/calibration_data.hpp"
@@ -10,6 +12,13 @@
 #include "libsim/base/registry.hpp"
 
 namespace modcal {
+
+/// What a parameter does to an objective.
+enum class Response {
+  kMoves,   ///< it changes the value, and slopes are known where there are any
+  kNone,    ///< the value does not depend on it
+  kRefused  ///< it changes the value in a way the objective does not follow
+};
 
 class Objective {
  public:
@@ -22,6 +31,12 @@ class Objective {
   /// parameters the objective cannot work with.
   std::unique_ptr<const ObjectiveFunction> bind(const CalibrationData& data,
                                                 const ParameterSet& parameters) const;
+  /// The same for one term of a sum: another term may see what this one does not depend on.
+  std::unique_ptr<const ObjectiveFunction> bind_term(const CalibrationData& data,
+                                                     const ParameterSet& parameters) const;
+  /// Throws InvalidInput for a parameter (see parse_unknown()) that the objective cannot find.
+  void require_moved_by(std::span<const std::string> names) const;
+  virtual Response response(ParameterKind kind) const;
 
  private:
   virtual std::unique_ptr<const ObjectiveFunction> do_bind(

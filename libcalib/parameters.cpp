@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <charconv>
 #include <cmath>
 #include <numbers>
 
@@ -14,17 +13,9 @@ namespace {
 
 using std::numbers::pi;
 
-// Number n of "f_n"; 0 where the name is no such name.
-std::size_t mode_number(const std::string& name) {
-  if (!name.starts_with("f_")) return 0;
-  std::size_t number = 0;
-  const auto [end, error] = std::from_chars(name.data() + 2, name.data() + name.size(), number);
-  return error == std::errc{} && end == name.data() + name.size() ? number : 0;
-}
-
-Variable within_share(std::string name, double initial, double share) {
+Variable within_share(std::string name, std::string unit, double initial, double share) {
   return {.name = std::move(name),
-          .unit = "Hz",
+          .unit = std::move(unit),
           .initial = initial,
           .lower = initial * (1.0 - share),
           .upper = initial * (1.0 + share),
@@ -38,13 +29,23 @@ void require_ranges(const ParameterRanges& ranges) {
                  "inharmonicity range {:g} must be > 0", ranges.inharmonicity);
   MODCAL_REQUIRE(ranges.contact > 0.0 && std::isfinite(ranges.contact),
                  "contact range {:g} m must be > 0", ranges.contact);
+  for (const double share : {ranges.damping, ranges.gain}) {
+    MODCAL_REQUIRE(share > 0.0 && share < 1.0, "range {:g} of damping or gain must lie in (0, 1)",
+                   share);
+  }
+  for (const double range : {ranges.power, ranges.delay, ranges.corner}) {
+    MODCAL_REQUIRE(range > 0.0 && std::isfinite(range),
+                   "range {:g} of damping power, delay or corner must be > 0", range);
+  }
 }
 
 }  // namespace
 
 ParameterSet::ParameterSet(ModelPoint initial, std::span<const std::string> names,
                            const ParameterRanges& ranges)
-    : initial_(std::move(initial)), follows_(initial_.basis.size(), false) {
+    : initial_(std::move(initial)),
+      follows_(initial_.basis.size(), false),
+      damped_(initial_.basis.size(), false) {
   require_ranges(ranges);
   MODCAL_REQUIRE(!names.empty(), "a calibration needs at least one free parameter");
   MODCAL_REQUIRE(initial_.contact > 0.0 && initial_.contact < initial_.basis.length,
@@ -69,33 +70,67 @@ ParameterSet::ParameterSet(ModelPoint initial, std::span<const std::string> name
     parameters_.push_back(parameter(name, ranges));
     const Parameter& added = parameters_.back();
     if (added.kind == ParameterKind::kFrequency) follows_[added.mode] = false;
+    if (added.kind == ParameterKind::kDampingRatio) damped_[added.mode] = true;
   }
 }
 
 Parameter ParameterSet::parameter(const std::string& name, const ParameterRanges& ranges) const {
-  if (name == "f0") {
-    return {within_share(name, law_.fundamental, ranges.frequency), ParameterKind::kFundamental};
+  const UnknownName of = require_unknown(name, initial_.basis.size());
+  MODCAL_REQUIRE(of.record == 0, "parameter \"{}\": an objective compares one record alone", name);
+  switch (of.kind) {
+    case ParameterKind::kFundamental:
+      return {within_share(name, "Hz", law_.fundamental, ranges.frequency), of.kind};
+    case ParameterKind::kInharmonicity:
+      // The highest mode moves by 0.5 B N² of its frequency: a step of 1e-5 is sensible for any N
+      // up to some hundred.
+      return {{name, "1", law_.inharmonicity, 0.0, law_.inharmonicity + ranges.inharmonicity, 1e-5},
+              of.kind};
+    case ParameterKind::kContact: {
+      const double x = initial_.contact;
+      // Ends of the string are no contact: nothing is excited there.
+      const double margin = 1e-6 * initial_.basis.length;
+      return {{name, "m", x, std::max(margin, x - ranges.contact),
+               std::min(initial_.basis.length - margin, x + ranges.contact), ranges.contact},
+              of.kind};
+    }
+    case ParameterKind::kFrequency:
+      return {within_share(name, "Hz", initial_.basis.frequency(of.mode), ranges.frequency),
+              of.kind, of.mode};
+    case ParameterKind::kDampingRatio:
+    case ParameterKind::kDampingFactor:
+    case ParameterKind::kDampingPower:
+      return damping_parameter(name, of, ranges);
+    case ParameterKind::kGain:
+    case ParameterKind::kDelay:
+    case ParameterKind::kCorner:
+      break;
   }
-  if (name == "B") {
-    // The highest mode moves by 0.5 B N² of its frequency: a step of 1e-5 is sensible for any N up
-    // to some hundred.
-    return {{name, "1", law_.inharmonicity, 0.0, law_.inharmonicity + ranges.inharmonicity, 1e-5},
-            ParameterKind::kInharmonicity};
+  return sensor_parameter(name, of, ranges);
+}
+
+Parameter ParameterSet::damping_parameter(const std::string& name, const UnknownName& of,
+                                          const ParameterRanges& ranges) const {
+  if (of.kind == ParameterKind::kDampingPower) {
+    return {{name, "1", 0.0, -ranges.power, ranges.power, 0.1}, of.kind};
   }
-  if (name == "x_c") {
-    const double x = initial_.contact;
-    // Ends of the string are no contact: nothing is excited there.
-    const double margin = 1e-6 * initial_.basis.length;
-    return {{name, "m", x, std::max(margin, x - ranges.contact),
-             std::min(initial_.basis.length - margin, x + ranges.contact), ranges.contact},
-            ParameterKind::kContact};
+  const bool one = of.kind == ParameterKind::kDampingRatio;
+  return {within_share(name, "1", one ? initial_.basis.zeta[of.mode] : 1.0, ranges.damping),
+          of.kind, of.mode};
+}
+
+Parameter ParameterSet::sensor_parameter(const std::string& name, const UnknownName& of,
+                                         const ParameterRanges& ranges) const {
+  const SensorPair& sensors = initial_.sensors;
+  if (of.kind == ParameterKind::kGain) {
+    return {within_share(name, "1", sensors.gain, ranges.gain), of.kind};
   }
-  const std::size_t n = mode_number(name);
-  MODCAL_REQUIRE(n >= 1 && n <= initial_.basis.size(),
-                 "unknown parameter \"{}\": parameters are f_1 ... f_{}, f0, B and x_c", name,
-                 initial_.basis.size());
-  return {within_share(name, initial_.basis.frequency(n - 1), ranges.frequency),
-          ParameterKind::kFrequency, n - 1};
+  if (of.kind == ParameterKind::kDelay) {
+    return {{name, "s", sensors.delay, sensors.delay - ranges.delay, sensors.delay + ranges.delay,
+             ranges.delay},
+            of.kind};
+  }
+  const double corner = 0.5 * sensors.corner / pi;
+  return {{name, "Hz", corner, 0.0, corner + ranges.corner, ranges.corner}, of.kind};
 }
 
 std::vector<Variable> ParameterSet::variables() const {
@@ -140,15 +175,59 @@ ModelPoint ParameterSet::model(std::span<const double> x) const {
     }
     if (parameter.kind == ParameterKind::kContact) point.contact = x[i];
   }
+  set_damping_and_sensors(x, point);
   return point;
+}
+
+double ParameterSet::damping_at(std::span<const double> x, std::size_t mode) const {
+  double change = 1.0;
+  for (std::size_t i = 0; i < size(); ++i) {
+    if (parameters_[i].kind == ParameterKind::kDampingFactor) change *= x[i];
+    if (parameters_[i].kind == ParameterKind::kDampingPower) {
+      change *= std::pow(static_cast<double>(mode + 1), x[i]);
+    }
+  }
+  return change;
+}
+
+void ParameterSet::set_damping_and_sensors(std::span<const double> x, ModelPoint& point) const {
+  if (has(ParameterKind::kDampingFactor) || has(ParameterKind::kDampingPower)) {
+    for (std::size_t n = 0; n < damped_.size(); ++n) point.basis.zeta[n] *= damping_at(x, n);
+  }
+  for (std::size_t i = 0; i < size(); ++i) {
+    const Parameter& parameter = parameters_[i];
+    if (parameter.kind == ParameterKind::kDampingRatio) point.basis.zeta[parameter.mode] = x[i];
+    if (parameter.kind == ParameterKind::kGain) point.sensors.gain = x[i];
+    if (parameter.kind == ParameterKind::kDelay) point.sensors.delay = x[i];
+    if (parameter.kind == ParameterKind::kCorner) point.sensors.corner = 2.0 * pi * x[i];
+  }
+}
+
+std::vector<FrequencySlope> ParameterSet::damping_slopes(std::span<const double> x,
+                                                         std::size_t i) const {
+  assert(x.size() == size() && i < size());
+  const Parameter& parameter = parameters_[i];
+  if (parameter.kind == ParameterKind::kDampingRatio) return {{parameter.mode, 1.0}};
+  const bool factor = parameter.kind == ParameterKind::kDampingFactor;
+  if (!factor && parameter.kind != ParameterKind::kDampingPower) return {};
+  std::vector<FrequencySlope> slopes;
+  for (std::size_t n = 0; n < damped_.size(); ++n) {
+    if (damped_[n]) continue;
+    const double zeta = initial_.basis.zeta[n] * damping_at(x, n);
+    slopes.push_back({n, zeta * (factor ? 1.0 / x[i] : std::log(static_cast<double>(n + 1)))});
+  }
+  return slopes;
 }
 
 std::vector<FrequencySlope> ParameterSet::frequency_slopes(std::span<const double> x,
                                                            std::size_t i) const {
   assert(x.size() == size() && i < size());
   const Parameter& parameter = parameters_[i];
-  if (parameter.kind == ParameterKind::kContact) return {};
   if (parameter.kind == ParameterKind::kFrequency) return {{parameter.mode, 2.0 * pi}};
+  if (parameter.kind != ParameterKind::kFundamental &&
+      parameter.kind != ParameterKind::kInharmonicity) {
+    return {};
+  }
   const Law law = law_at(x);
   std::vector<FrequencySlope> slopes;
   for (std::size_t index = 0; index < follows_.size(); ++index) {
@@ -161,55 +240,6 @@ std::vector<FrequencySlope> ParameterSet::frequency_slopes(std::span<const doubl
     slopes.push_back({index, 2.0 * pi * slope});
   }
   return slopes;
-}
-
-void ParameterRanges::visit(OptionVisitor& visitor) {
-  visitor.number({.key = "frequency_range",
-                  .meaning = "how far f_n and f0 may move, relative to their initial values",
-                  .unit = "1",
-                  .range = Range::open(0.0, 1.0)},
-                 frequency);
-  visitor.number({.key = "inharmonicity_range",
-                  .meaning = "how far B may rise",
-                  .unit = "1",
-                  .range = Range::positive()},
-                 inharmonicity);
-  visitor.number({.key = "contact_range",
-                  .meaning = "how far x_c may move",
-                  .unit = "m",
-                  .range = Range::positive()},
-                 contact);
-}
-
-void ParameterOptions::visit(OptionVisitor& visitor) {
-  visitor.text({.key = "frequencies",
-                .meaning = "free modal frequencies: none, all, or those of the listed modes",
-                .choices = {"none", "all", "listed"}},
-               frequencies);
-  visitor.integers({.key = "modes",
-                    .meaning = "mode numbers, with frequencies: listed",
-                    .range = Range::at_least(1)},
-                   modes);
-  visitor.flag({.key = "law", .meaning = "free f0 and B of the stiff-string law"}, law);
-  visitor.flag({.key = "contact", .meaning = "free contact location x_c"}, contact);
-  ranges.visit(visitor);
-}
-
-std::vector<std::string> ParameterOptions::names(std::size_t modes_of_model) const {
-  const bool listed = frequencies == "listed";
-  MODCAL_REQUIRE(listed == !modes.empty(),
-                 "modes are listed if and only if frequencies is \"listed\"; it is \"{}\" with {} "
-                 "modes",
-                 frequencies, modes.size());
-  std::vector<std::string> names;
-  if (frequencies == "all") {
-    for (std::size_t n = 1; n <= modes_of_model; ++n) names.push_back(fmt::format("f_{}", n));
-  }
-  for (const std::int64_t n : modes) names.push_back(fmt::format("f_{}", n));
-  if (law) names.insert(names.end(), {"f0", "B"});
-  if (contact) names.emplace_back("x_c");
-  MODCAL_REQUIRE(!names.empty(), "no parameter is free: ask for frequencies, law or contact");
-  return names;
 }
 
 }  // namespace modcal

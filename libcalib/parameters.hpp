@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "libcalib/unknown_name.hpp"
 #include "libcalib/variable.hpp"
 #include "libsim/base/options.hpp"
 #include "libsim/model/modal_basis.hpp"
@@ -37,12 +38,12 @@ struct ModelPoint {
   SensorPair sensors = {};  ///< known to the joint likelihood alone
 };
 
-enum class ParameterKind { kFrequency, kFundamental, kInharmonicity, kContact };
+using ParameterKind = UnknownKind;
 
 struct Parameter {
   Variable variable;
   ParameterKind kind = ParameterKind::kFrequency;
-  std::size_t mode = 0;  ///< index of the mode, for kFrequency
+  std::size_t mode = 0;  ///< index of the mode, for kFrequency and kDampingRatio
 };
 
 /// How far parameters may go from their initial values.
@@ -50,18 +51,25 @@ struct ParameterRanges {
   double frequency = 0.04;      ///< f_n and f0: share of the initial value [1]
   double inharmonicity = 1e-3;  ///< B: from 0 to the initial value plus this [1]
   double contact = 5e-3;        ///< x_c: distance [m], kept inside the string
+  double damping = 0.5;         ///< ζ_n and their factor: share of the initial value [1]
+  double power = 1.0;           ///< exponent of n in ζ_n: distance [1]
+  double gain = 0.1;            ///< share of the initial value [1]
+  double delay = 5e-5;          ///< distance [s]
+  double corner = 20.0;         ///< from 0 to the initial value plus this [Hz]
   void visit(OptionVisitor& visitor);
 };
 
-/// dω_n/dx of one mode for one parameter, in rad/s per unit of the parameter.
+/// dω_n/dx of one mode for one parameter, in rad/s per unit of the parameter; or dζ_n/dx.
 struct FrequencySlope {
   std::size_t mode = 0;
   double slope = 0.0;
 };
 
-/// Subset of {f_1 … f_N}, {f0, B}, x_c with names "f_3", "f0", "B", "x_c", bounds and scales, bound
-/// to an initial model. Where f0 or B is free, the modes without a free frequency of their own
-/// follow f_n = n f0 √(1 + B n²), started from the law fitted to the initial frequencies. The
+/// Subset of {f_1 … f_N}, {f0, B}, x_c, {zeta_1 … zeta_N}, {damping, damping_power}, {gain, delay,
+/// corner} (see parse_unknown()) with bounds and scales, bound to an initial model. Where f0 or B
+/// is free, the modes without a free frequency of their own follow f_n = n f0 √(1 + B n²), started
+/// from the law fitted to the initial frequencies. Modes without a free ζ_n of their own have the
+/// initial one times damping·n^damping_power. The sensor at x = L has gain, delay and corner. The
 /// tension is left alone: it scales H_r of both ends alike and cannot be told from the force.
 class ParameterSet {
  public:
@@ -83,8 +91,10 @@ class ParameterSet {
 
   /// The model at the parameters x (`size()` values in user units).
   ModelPoint model(std::span<const double> x) const;
-  /// The modes whose ω_n depends on parameter i, with dω_n/dx_i at x; empty for x_c.
+  /// The modes whose ω_n depends on parameter i, with dω_n/dx_i at x; empty for what moves none.
   std::vector<FrequencySlope> frequency_slopes(std::span<const double> x, std::size_t i) const;
+  /// The modes whose ζ_n depends on parameter i, with dζ_n/dx_i at x; empty for what moves none.
+  std::vector<FrequencySlope> damping_slopes(std::span<const double> x, std::size_t i) const;
 
  private:
   struct Law {
@@ -92,12 +102,20 @@ class ParameterSet {
     double inharmonicity = 0.0;
   };
   Parameter parameter(const std::string& name, const ParameterRanges& ranges) const;
+  Parameter damping_parameter(const std::string& name, const UnknownName& of,
+                              const ParameterRanges& ranges) const;
+  Parameter sensor_parameter(const std::string& name, const UnknownName& of,
+                             const ParameterRanges& ranges) const;
   Law law_at(std::span<const double> x) const;
+  /// ζ_n over the initial one where it has no unknown of its own.
+  double damping_at(std::span<const double> x, std::size_t mode) const;
+  void set_damping_and_sensors(std::span<const double> x, ModelPoint& point) const;
 
   ModelPoint initial_;
   std::vector<Parameter> parameters_;
   Law law_;                    // initial law; used where f0 or B is free
   std::vector<bool> follows_;  // per mode: ω_n comes from the law
+  std::vector<bool> damped_;   // per mode: ζ_n is an unknown of its own
 };
 
 /// Section "parameters" of a calibration.
@@ -106,6 +124,9 @@ struct ParameterOptions {
   std::vector<std::int64_t> modes;   ///< mode numbers, with frequencies: listed
   bool law = false;                  ///< f0 and B
   bool contact = false;              ///< x_c
+  /// fixed; factor; power: factor and exponent of n; each: every ζ_n.
+  std::string damping = "fixed";
+  std::vector<std::string> sensors;  ///< some of gain, delay, corner
   ParameterRanges ranges;
   void visit(OptionVisitor& visitor);
   /// Names for a model of N modes. Throws InvalidInput where modes are listed but not asked for, or

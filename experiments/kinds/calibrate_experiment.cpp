@@ -37,7 +37,12 @@ std::vector<Finding> CalibrateExperiment::lint() const {
         [&] { require_priors(calibration.continuation.unknowns, modes, strokes); }, findings);
   }
   lint_making(
-      "calibration.parameters", [&] { calibration.parameters.names(modes); }, findings);
+      "calibration.parameters",
+      [&] {
+        const std::vector<std::string> names = calibration.parameters.names(modes);
+        if (!calibration.has_continuation) calibration.objective.make()->require_moved_by(names);
+      },
+      findings);
   return findings;
 }
 

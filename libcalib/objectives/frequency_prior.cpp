@@ -100,6 +100,12 @@ FrequencyPrior::FrequencyPrior(const Options& options) : options_(options) {
   require_positive(options.deviations, "deviation");
 }
 
+Response FrequencyPrior::response(ParameterKind kind) const {
+  const bool frequency = kind == ParameterKind::kFrequency || kind == ParameterKind::kFundamental ||
+                         kind == ParameterKind::kInharmonicity;
+  return frequency ? Response::kMoves : Response::kNone;
+}
+
 std::unique_ptr<const ObjectiveFunction> FrequencyPrior::do_bind(
     const CalibrationData& /*data*/, const ParameterSet& parameters) const {
   MODCAL_REQUIRE(!options_.modes.empty(), "a frequency_prior without modes: name at least one");

@@ -128,6 +128,11 @@ InnovationMisfit::InnovationMisfit(const Options& options) : options_(options) {
                  "force noise {:g} must be > 0", options.force_noise);
 }
 
+Response InnovationMisfit::response(ParameterKind kind) const {
+  const Response response = Objective::response(kind);
+  return response == Response::kRefused ? Response::kMoves : response;
+}
+
 std::unique_ptr<const ObjectiveFunction> InnovationMisfit::do_bind(
     const CalibrationData& data, const ParameterSet& parameters) const {
   MODCAL_REQUIRE(data.has_both(),

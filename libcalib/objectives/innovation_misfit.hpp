@@ -26,6 +26,8 @@ class InnovationMisfit final : public Objective {
   };
   /// Throws InvalidInput for fewer than one substep, negative iterations, a force noise not > 0.
   explicit InnovationMisfit(const Options& options);
+  /// The observer has the damping of the model, and takes both sensors to read alike.
+  Response response(ParameterKind kind) const override;
 
  private:
   /// Throws InvalidInput where a reaction is missing and where the record shows no stick and slip

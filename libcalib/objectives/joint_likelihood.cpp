@@ -15,9 +15,16 @@ LikelihoodColumns columns_of(const ParameterSet& parameters, std::span<const dou
   LikelihoodColumns columns{.count = parameters.size()};
   std::vector<std::vector<ColumnShare>> by_mode(point.basis.size());
   for (std::size_t i = 0; i < parameters.size(); ++i) {
-    if (parameters[i].kind == ParameterKind::kContact) columns.contact = i;
+    const ParameterKind kind = parameters[i].kind;
+    if (kind == ParameterKind::kContact) columns.contact = i;
+    if (kind == ParameterKind::kGain) columns.gain = i;
+    if (kind == ParameterKind::kDelay) columns.delay = i;
+    if (kind == ParameterKind::kCorner) columns.corner = i;
     for (const auto& [mode, slope] : parameters.frequency_slopes(x, i)) {
       by_mode[mode].push_back({i, slope / point.basis.omega[mode], 0.0});
+    }
+    for (const auto& [mode, slope] : parameters.damping_slopes(x, i)) {
+      by_mode[mode].push_back({i, 0.0, slope / point.basis.zeta[mode]});
     }
   }
   columns.share_begin.push_back(0);
@@ -26,6 +33,16 @@ LikelihoodColumns columns_of(const ParameterSet& parameters, std::span<const dou
     columns.share_begin.push_back(columns.shares.size());
   }
   return columns;
+}
+
+// Factors that turn the columns, by ln gain and corner in rad/s, into those of the parameters.
+std::vector<double> column_units(const ParameterSet& parameters, const ModelPoint& point) {
+  std::vector<double> units(parameters.size(), std::numbers::sqrt2);
+  for (std::size_t i = 0; i < units.size(); ++i) {
+    if (parameters[i].kind == ParameterKind::kGain) units[i] /= point.sensors.gain;
+    if (parameters[i].kind == ParameterKind::kCorner) units[i] *= 2.0 * std::numbers::pi;
+  }
+  return units;
 }
 
 class JointLikelihoodFunction final : public ObjectiveFunction {
@@ -52,15 +69,17 @@ class JointLikelihoodFunction final : public ObjectiveFunction {
                              {.residuals = outputs.residuals ? &residuals : nullptr,
                               .jacobian = outputs.jacobian ? &jacobian : nullptr});
     if (outputs.value) *outputs.value = at.cost;
+    const std::vector<double> units = column_units(parameters_, point);
     for (std::size_t i = 0; outputs.gradient && i < dimension(); ++i) {
-      outputs.gradient[i] = 2.0 * at.slope[static_cast<Eigen::Index>(i)];
+      outputs.gradient[i] = std::numbers::sqrt2 * units[i] * at.slope[static_cast<Eigen::Index>(i)];
     }
     for (std::size_t j = 0; j < residuals.size(); ++j) {
       outputs.residuals[j] = std::numbers::sqrt2 * residuals[j];
     }
     for (Eigen::Index j = 0; j < jacobian.rows(); ++j) {
       for (Eigen::Index i = 0; i < jacobian.cols(); ++i) {
-        *(outputs.jacobian + j * jacobian.cols() + i) = std::numbers::sqrt2 * jacobian(j, i);
+        *(outputs.jacobian + j * jacobian.cols() + i) =
+            units[static_cast<std::size_t>(i)] * jacobian(j, i);
       }
     }
   }

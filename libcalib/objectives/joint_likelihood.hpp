@@ -22,6 +22,7 @@ class JointLikelihood final : public Objective {
     void visit(OptionVisitor& visitor);
   };
   explicit JointLikelihood(const Options& options);
+  Response response(ParameterKind /*kind*/) const override { return Response::kMoves; }
 
  private:
   /// Throws InvalidInput where a reaction is missing.

@@ -132,12 +132,22 @@ WeightedSum::WeightedSum(const Options& options) : options_(options) {
   }
 }
 
+Response WeightedSum::response(ParameterKind kind) const {
+  Response response = Response::kNone;
+  for (const Term& term : options_.terms) {
+    const Response own = term.objective.make()->response(kind);
+    if (own == Response::kRefused) return own;
+    if (own == Response::kMoves) response = own;
+  }
+  return response;
+}
+
 std::unique_ptr<const ObjectiveFunction> WeightedSum::do_bind(
     const CalibrationData& data, const ParameterSet& parameters) const {
   MODCAL_REQUIRE(!options_.terms.empty(), "a weighted_sum without terms: give at least one");
   std::vector<BoundTerm> bound;
   for (const Term& term : options_.terms) {
-    bound.push_back({term.weight, term.objective.make()->bind(data, parameters)});
+    bound.push_back({term.weight, term.objective.make()->bind_term(data, parameters)});
   }
   return std::make_unique<Function>(std::move(bound));
 }

@@ -39,6 +39,8 @@ class WeightedSum final : public Objective {
   };
   /// Throws InvalidInput for a weight that is not positive.
   explicit WeightedSum(const Options& options);
+  /// Moved by what moves one of the terms.
+  Response response(ParameterKind kind) const override;
 
  private:
   /// Throws InvalidInput where there is no term, and what the terms throw.

@@ -50,6 +50,40 @@ TEST(ParameterSet, FrequencySlopesAreThoseOfTheModel) {
   }
 }
 
+TEST(ParameterSet, DampingAndSensorsAreThoseOfTheModel) {
+  ModelPoint initial = paper_truth(8);
+  initial.basis.zeta[4] = 2e-3;
+  const ParameterSet set(initial,
+                         Names{"damping", "damping_power", "zeta_3", "gain", "delay", "corner"});
+  EXPECT_EQ(set.start(), (std::vector<double>{1.0, 0.0, initial.basis.zeta[2], 1.0, 0.0, 0.0}));
+  EXPECT_EQ(set.model(set.start()).basis.zeta, initial.basis.zeta);
+  EXPECT_TRUE(set.model(set.start()).sensors.alike());
+  const std::vector<double> x = {1.2, 0.3, 4e-3, 1.02, 2e-6, 4.0};
+  const ModelPoint model = set.model(x);
+  EXPECT_DOUBLE_EQ(model.basis.zeta[4], 2e-3 * 1.2 * std::pow(5.0, 0.3));
+  EXPECT_EQ(model.basis.zeta[2], 4e-3);
+  EXPECT_EQ(model.basis.omega, initial.basis.omega);
+  EXPECT_EQ(model.sensors.gain, 1.02);
+  EXPECT_EQ(model.sensors.delay, 2e-6);
+  EXPECT_DOUBLE_EQ(model.sensors.corner, 8.0 * M_PI);
+  EXPECT_EQ(set[5].variable.unit, "Hz");
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    EXPECT_TRUE(set.frequency_slopes(x, i).empty());
+    std::vector<double> above = x, below = x;
+    const double step = 1e-6 * x[i];
+    above[i] += step;
+    below[i] -= step;
+    std::vector<double> slopes(8, 0.0);
+    for (const auto& [mode, slope] : set.damping_slopes(x, i)) slopes[mode] = slope;
+    for (std::size_t n = 0; n < 8; ++n) {
+      // Rounding of ζ (1e-16 ζ) over the step; the third derivative adds less.
+      const double expected =
+          (set.model(above).basis.zeta[n] - set.model(below).basis.zeta[n]) / (2.0 * step);
+      EXPECT_NEAR(slopes[n], expected, 1e-15 * model.basis.zeta[n] / step + 1e-9 * expected);
+    }
+  }
+}
+
 TEST(ParameterSet, BoundsHoldTheInitialValuesAndKeepTheContactInsideTheString) {
   const ParameterSet set(paper_truth(8, 0.0, 0.002), Names{"f_1", "f0", "B", "x_c"});
   for (const Variable& variable : set.variables()) {
@@ -70,6 +104,10 @@ TEST(ParameterSet, RefusesWrongNamesAndRanges) {
     EXPECT_THROW(ParameterSet(truth, names), InvalidInput) << testing::PrintToString(names);
   }
   EXPECT_THROW(ParameterSet(truth, Names{"f_1"}, {.frequency = 0.0}), InvalidInput);
+  EXPECT_THROW(ParameterSet(truth, Names{"gain"}, {.gain = 1.0}), InvalidInput);
+  EXPECT_THROW(ParameterSet(truth, Names{"delay"}, {.delay = 0.0}), InvalidInput);
+  EXPECT_THROW(ParameterSet(truth, Names{"zeta_9"}), InvalidInput);
+  EXPECT_THROW(ParameterSet(truth, Names{"x_c 2"}), InvalidInput);
   EXPECT_THROW(ParameterSet(paper_truth(8, 0.0, 0.33), Names{"f_1"}), InvalidInput);
   EXPECT_THROW(ParameterSet({truth.basis, std::nan("")}, Names{"f_1"}), InvalidInput);
 }
@@ -79,6 +117,10 @@ TEST(ParameterOptions, NameWhatIsFree) {
   EXPECT_EQ(options.names(2), (Names{"f_1", "f_2", "x_c"}));
   options = {.frequencies = "listed", .modes = {5, 3}, .law = true};
   EXPECT_EQ(options.names(8), (Names{"f_5", "f_3", "f0", "B"}));
+  options = {.contact = true, .damping = "power", .sensors = {"gain", "delay"}};
+  EXPECT_EQ(options.names(8), (Names{"x_c", "damping", "damping_power", "gain", "delay"}));
+  options = {.damping = "each"};
+  EXPECT_EQ(options.names(2), (Names{"zeta_1", "zeta_2"}));
   EXPECT_THROW(ParameterOptions{}.names(8), InvalidInput);
   options = {.frequencies = "all", .modes = {5}};
   EXPECT_THROW(options.names(8), InvalidInput);

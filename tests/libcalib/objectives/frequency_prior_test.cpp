@@ -26,7 +26,7 @@ TEST(FrequencyPrior, IsHalfTheSquareOfTheDistanceInDeviations) {
   const auto prior =
       FrequencyPrior(
           {.modes = {3, 5}, .frequencies = {third + 0.5, fifth - 0.3}, .deviations = {0.25, 0.1}})
-          .bind(any_data(), parameters);
+          .bind_term(any_data(), parameters);
   std::vector<double> r(2);
   double value = 0.0;
   prior->evaluate(parameters.start(), {.value = &value, .residuals = r.data()});

@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Dense>
 #include <cmath>
 #include <numeric>
 
+#include "libcalib/objectives/frequency_prior.hpp"
+#include "libcalib/objectives/weighted_sum.hpp"
 #include "libcalib/optimizers/ceres_optimizer.hpp"
 #include "libsim/base/error.hpp"
 #include "tests/libcalib/likelihood/bowed_case.hpp"
@@ -87,6 +90,93 @@ TEST_F(JointLikelihoodTest, GradientIsTheDifferenceQuotientAndTheJacobiansOwn) {
       EXPECT_NEAR(gradient[i], own, 1e-3 * scale) << parameters[i].variable.name;
     }
   }
+}
+
+TEST_F(JointLikelihoodTest, SlopesOfDampingAndSensorsAreDifferenceQuotients) {
+  ModelPoint start = near_truth();
+  start.sensors = {.gain = 1.01, .delay = 1e-6, .corner = 20.0};
+  const ParameterSet parameters(
+      start, Names{"gain", "damping", "corner", "zeta_3", "damping_power", "delay", "f_5"});
+  for (const double damping : {0.0, 40.0}) {
+    const auto function = objective(damping).bind(data, parameters);
+    const std::vector<double> x = parameters.start();
+    const std::size_t n = x.size();
+    const std::size_t m = function->residual_count();
+    std::vector<double> gradient(n), residuals(m), jacobian(m * n);
+    function->evaluate(
+        x,
+        {.gradient = gradient.data(), .residuals = residuals.data(), .jacobian = jacobian.data()});
+    for (std::size_t i = 0; i < n; ++i) {
+      double own = 0.0, size = 0.0;
+      for (std::size_t j = 0; j < m; ++j) {
+        own += jacobian[j * n + i] * residuals[j];
+        size += jacobian[j * n + i] * jacobian[j * n + i];
+      }
+      // A hundredth of a standard deviation, all else known.
+      const double scale = std::sqrt(size);
+      std::vector<double> above = x, below = x;
+      above[i] += 1e-2 / scale;
+      below[i] -= 1e-2 / scale;
+      const double quotient = (function->value(above) - function->value(below)) * scale / 2e-2;
+      const double tolerance = 2e-3 * scale * std::sqrt(function->value(x));
+      EXPECT_NEAR(gradient[i], quotient, tolerance) << parameters[i].variable.name;
+      EXPECT_NEAR(gradient[i], own, 1e-3 * scale) << parameters[i].variable.name;
+      EXPECT_GT(std::abs(gradient[i]), 10.0 * tolerance) << parameters[i].variable.name;
+    }
+  }
+}
+
+TEST_F(JointLikelihoodTest, FindsDampingAndGain) {
+  ModelPoint start = near_truth();
+  for (double& zeta : start.basis.zeta) zeta *= 1.2;
+  NoisyRecords louder = records;
+  for (double& sample : louder.reactions[1]) sample *= 1.02;
+  louder.deviation[1] *= 1.02;
+  const CalibrationData sensed =
+      CalibrationData::of_records(louder.reactions[0], louder.reactions[1], louder.sample_rate);
+  const ParameterSet parameters(start, Names{"f0", "B", "x_c", "damping", "gain"});
+  const auto function = objective().bind(sensed, parameters);
+  const auto found = CeresOptimizer({}).minimize(*function, parameters.variables(), {});
+  std::vector<double> jacobian(function->residual_count() * 5);
+  function->evaluate(found.x, {.jacobian = jacobian.data()});
+  const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 5, Eigen::RowMajor>> slopes(
+      jacobian.data(), static_cast<Eigen::Index>(function->residual_count()), 5);
+  const Eigen::MatrixXd scale = slopes.colwise().norm().cwiseInverse();
+  const Eigen::MatrixXd scaled = slopes * scale.row(0).asDiagonal();
+  const Eigen::VectorXd sd =
+      ((scaled.transpose() * scaled).inverse().diagonal().cwiseSqrt().array() *
+       scale.row(0).transpose().array());
+  EXPECT_NEAR(found.x[3], 1.0 / 1.2, 6.0 * sd[3]);
+  EXPECT_NEAR(found.x[4], 1.02, 6.0 * sd[4]);
+  EXPECT_LT(sd[3], 0.1);
+  EXPECT_LT(sd[4], 0.01);
+}
+
+TEST_F(JointLikelihoodTest, OthersRefuseWhatTheyCannotFind) {
+  const ParameterSet gain(bowed.truth, Names{"x_c", "gain"});
+  const ParameterSet damping(bowed.truth, Names{"x_c", "damping"});
+  for (const std::string name : {"spectral_peak", "force_mismatch", "contact_location"}) {
+    const auto other = Choice<Objective>(name).make();
+    EXPECT_THROW(other->bind(data, gain), InvalidInput) << name;
+    EXPECT_THROW(other->bind(data, damping), InvalidInput) << name;
+  }
+  const std::vector<std::string> names = {"f0", "B", "x_c", "damping", "gain"};
+  const auto with_prior = [&](const char* first, const std::vector<std::string>& free) {
+    WeightedSum::Options sum;
+    sum.terms.resize(2);
+    sum.terms[0].objective.select(first);
+    sum.terms[1].objective.assign(Choice<Objective>::of<FrequencyPrior>(
+        "frequency_prior", {.modes = {1}, .frequencies = {196.0}, .deviations = {1.0}}));
+    return WeightedSum(sum).bind(data, ParameterSet(bowed.truth, free));
+  };
+  const auto sum = with_prior("joint_likelihood", names);
+  std::vector<double> gradient(5);
+  double value = 0.0;
+  sum->evaluate(ParameterSet(bowed.truth, names).start(),
+                {.value = &value, .gradient = gradient.data()});
+  for (const double slope : gradient) EXPECT_NE(slope, 0.0);
+  EXPECT_THROW(with_prior("spectral_peak", names), InvalidInput);
+  EXPECT_NO_THROW(with_prior("spectral_peak", {"f_1", "x_c"}));
 }
 
 TEST_F(JointLikelihoodTest, LeadsALeastSquaresSearchToTheTruth) {
