@@ -11,12 +11,6 @@ namespace {
 
 constexpr double kEpsilon = 2.220446049250313e-16;
 
-double largest(std::span<const double> values) {
-  double result = 0.0;
-  for (const double value : values) result = std::max(result, std::abs(value));
-  return result;
-}
-
 ReplayedMode replayed_mode(const LineModes& modes, std::size_t n) {
   return {modes.pole[n], modes.quadrature[n], modes.compliance[n], modes.initial[n]};
 }
@@ -87,28 +81,9 @@ void account_contact(const PointRecord& point, const BowRecord& bow, double h, F
   }
 }
 
-double interpolation_bound(const LineModes& modes, const PointRecord& point, double step,
-                           double fastest) {
-  double bends = 0.0, mobility = 0.0;
-  for (std::size_t k = 1; k + 1 < point.force.size(); ++k) {
-    bends += std::abs(point.force[k + 1] - 2.0 * point.force[k] + point.force[k - 1]);
-  }
-  for (std::size_t n = 0; n < modes.size(); ++n) {
-    const double shape = modes.shape[0][n];
-    mobility += shape * shape * modes.inverse_mass[n] * modes.compliance[n];
-  }
-  // Samples further apart than a radian of the fastest mode say nothing of what is between them.
-  if (fastest > 1.0) bends += 2.0 * largest(point.force) * static_cast<double>(point.force.size());
-  return bends * step * (largest(point.velocity) + largest(point.force) * mobility);
-}
-
-void require_records(const LineModes& modes, std::span<const PointRecord> points, ForceHold hold) {
+void require_records(const LineModes& modes, std::span<const PointRecord> points) {
   MODCAL_REQUIRE(points.size() == modes.points(), "{} records for {} contact points", points.size(),
                  modes.points());
-  MODCAL_REQUIRE(hold != ForceHold::kSampled || points.size() == 1,
-                 "{} contact points: what a sampled force does between its samples is bounded for "
-                 "one",
-                 points.size());
   const std::size_t count = points.front().force.size();
   for (const PointRecord& point : points) {
     MODCAL_REQUIRE(count > 0 && point.force.size() == count && point.displacement.size() == count &&
@@ -124,7 +99,7 @@ void require_records(const LineModes& modes, std::span<const PointRecord> points
 EnergyAccount audit_energy(const LineModes& modes, const BowMotion& bow,
                            std::span<const PointRecord> points, double sample_rate,
                            ForceHold hold) {
-  require_records(modes, points, hold);
+  require_records(modes, points);
   const double step = 1.0 / sample_rate;
   const std::size_t count = points.front().force.size();
   EnergyAccount account;
@@ -139,9 +114,6 @@ EnergyAccount audit_energy(const LineModes& modes, const BowMotion& bow,
   account.rounding = 4.0 * kEpsilon * static_cast<double>(count) * (1.0 + fastest) *
                          (account.throughput + account.dissipated + account.largest_stored) +
                      1e-12 * (account.throughput + account.dissipated);
-  if (hold == ForceHold::kSampled) {
-    account.interpolation = interpolation_bound(modes, points[0], step, fastest);
-  }
   return account;
 }
 

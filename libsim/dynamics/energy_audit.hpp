@@ -31,12 +31,6 @@ struct EnergyAccount {
   /// What the balance may miss by rounding: 4·2⁻⁵² of all energy at hand for every step and radian
   /// of the fastest mode in it.
   double rounding = 0.0;
-  /// What it may miss because the force between samples is not known (kSampled): Σ |Δ²f| h (max|v|
-  /// + max|f| Σ φ²/(mω)). A force that bends or jumps between samples is off the straight line by
-  /// |Δ²f| at most; that does the work |Δ²f| h max|v| itself, and its impulse moves the contact by
-  /// Σ φ²/(mω) times it, against max|f|. Samples further apart than a radian of the fastest mode
-  /// say nothing of the force between them: 2 max|f| for every step.
-  double interpolation = 0.0;
   /// string_work − dissipated − stored.
   double residual() const { return string_work - dissipated - stored; }
 };
@@ -46,7 +40,8 @@ struct EnergyAccount {
 /// every mode exactly. The bow may move as it likes; its work is exact where no knot of its gesture
 /// lies inside a step. What the friction law is does not matter.
 /// modes: of the scene, with the points' shapes; points: one record each, of equal length; ≥ 1
-/// sample. kSampled: one point. Throws InvalidInput otherwise.
+/// sample. Throws InvalidInput otherwise. modal_event accounts for itself
+/// (ModalEvent::simulate_audited): its force is not known from samples.
 EnergyAccount audit_energy(const LineModes& modes, const BowMotion& bow,
                            std::span<const PointRecord> points, double sample_rate, ForceHold hold);
 

@@ -8,9 +8,8 @@ namespace modcal {
 
 /// How the force of a record drives the string between two samples.
 enum class ForceHold {
-  kLinear,   ///< it goes straight from one sample to the next (modal_exact)
-  kSampled,  ///< unknown between samples, taken as straight (modal_event)
-  kLagged,   ///< step k feels (f_{k−2} + f_{k−1})/2, trapezoidal rule (newmark_explicit)
+  kLinear,  ///< it goes straight from one sample to the next (modal_exact)
+  kLagged,  ///< step k feels (f_{k−2} + f_{k−1})/2, trapezoidal rule (newmark_explicit)
 };
 
 /// A mode Z' = λ Z + load, Z = p + ζω q + i ω_d q, velocity p = Re Z − κ Im Z, displacement

@@ -92,13 +92,15 @@ void EnergyMeter::part(const ForcePiece& piece) {
   ++sum_.pieces;
   sum_.pieces_and_radians += 1.0 + replay_.fastest() * h;
   if (piece.phase == ContactPhase::kFree) return;
-  double explained = 0.0;
+  double explained = 0.0;  // heat of the contact
   for (std::size_t g = 0; g < rule_.node.size(); ++g) {
     const double theta = rule_.node[g], weight = rule_.weight[g] * h;
     const double f = value_at(piece.force, theta), v = value_at(velocity_, theta);
     const double bow = piece.drive.velocity_at(theta * h), slip = v - bow;
     const double elongation =
-        elongation_ + h * integral_to(velocity_, theta) - piece.drive.travel(theta * h);
+        piece.phase == ContactPhase::kSticking
+            ? elongation_ + h * integral_to(velocity_, theta) - piece.drive.travel(theta * h)
+            : 0.0;
     const double law = law_force(piece, theta, slip, elongation);
     sum_.bow_work += weight * f * bow;
     sum_.string_work += weight * f * v;

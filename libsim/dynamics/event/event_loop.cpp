@@ -251,14 +251,14 @@ class Run {
 
   // What the string held from `tau` for `time` felt.
   void show_held(double tau, double time) {
-    if (time == 0.0) return;
-    const double pieces = sticking_->pieces_of(time), length = time / pieces;
-    for (double k = 0.0; k < pieces; k += 1.0) {
-      const auto force = sticking_->force_piece(before_, tau, k * length, length);
+    const double least = 1e-15 * time;
+    for (double from = 0.0; time - from > least;) {
+      const auto piece = sticking_->force_piece(before_, tau, from, time - from);
       loop_.witness->saw({.phase = ContactPhase::kSticking,
-                          .duration = length,
-                          .force = force,
-                          .drive = sticking_->drive().from(tau + k * length)});
+                          .duration = piece.time,
+                          .force = piece.force,
+                          .drive = sticking_->drive().from(tau + from)});
+      from += piece.time;
     }
   }
   // What the step that slid from x felt.

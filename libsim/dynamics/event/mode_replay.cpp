@@ -32,22 +32,44 @@ HWY_BEFORE_NAMESPACE();
 namespace modcal::event::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
+using Tag = hn::CappedTag<double, kVectorPadding>;
+using Vec = hn::Vec<Tag>;
+
+// Weighted sum of the squares of Σ series[p] θ^p at kNodes points, side by side: a chain of
+// multiply-adds each.
+template <std::size_t kNodes>
+HWY_INLINE Vec Squares(const Vec* series, std::size_t terms, const double* node,
+                       const double* weight) {
+  const Tag d;
+  Vec value[kNodes];
+  for (std::size_t g = 0; g < kNodes; ++g) value[g] = series[terms - 1];
+  for (std::size_t p = terms - 1; p-- > 0;) {
+    for (std::size_t g = 0; g < kNodes; ++g) {
+      value[g] = hn::MulAdd(value[g], hn::Set(d, node[g]), series[p]);
+    }
+  }
+  Vec sum = hn::Zero(d);
+  for (std::size_t g = 0; g < kNodes; ++g) {
+    sum = hn::MulAdd(hn::Mul(value[g], value[g]), hn::Set(d, weight[g]), sum);
+  }
+  return sum;
+}
+
 double ReplayModes(const ReplayTask& task, PlanarVector& state, double* velocity) {
-  const hn::CappedTag<double, kVectorPadding> d;
-  using Vec = hn::Vec<decltype(d)>;
+  const Tag d;
   const std::size_t lanes = hn::Lanes(d);
-  double push[kMostReplayTerms] = {}, inverse[kMostReplayTerms];
+  const double* node = task.rule.node.data();
+  const double* weight = task.rule.weight.data();
+  double push[kMostReplayTerms] = {}, part[kMostReplayTerms];
   for (std::size_t p = 0; p < task.terms; ++p) {
-    inverse[p] = 1.0 / static_cast<double>(p + 1);
-    if (p < task.force.size()) push[p] = task.time * task.force[p] * inverse[p];
+    part[p] = task.time / static_cast<double>(p + 1);
+    if (p < task.force.size()) push[p] = task.force[p] * part[p];
   }
   Vec total[kMostReplayTerms], series[kMostReplayTerms];
   for (std::size_t p = 0; p < task.terms; ++p) total[p] = hn::Zero(d);
   Vec lost = hn::Zero(d);
   for (std::size_t i = 0; i < state.size(); i += lanes) {
-    const Vec time = hn::Set(d, task.time);
-    const Vec x = hn::Mul(hn::Load(d, &task.pole.re[i]), time);
-    const Vec y = hn::Mul(hn::Load(d, &task.pole.im[i]), time);
+    const Vec x = hn::Load(d, &task.pole.re[i]), y = hn::Load(d, &task.pole.im[i]);
     const Vec drive = hn::Load(d, &task.drive[i]), tilt = hn::Load(d, &task.quadrature[i]);
     Vec re = hn::Load(d, &state.re[i]), im = hn::Load(d, &state.im[i]);
     Vec end_re = hn::Zero(d), end_im = end_re;
@@ -56,20 +78,17 @@ double ReplayModes(const ReplayTask& task, PlanarVector& state, double* velocity
       end_im = hn::Add(end_im, im);
       series[p] = hn::NegMulAdd(tilt, im, re);
       total[p] = hn::Add(total[p], series[p]);
-      const Vec scale = hn::Set(d, inverse[p]);
-      const Vec next = hn::Mul(scale, hn::NegMulAdd(y, im, hn::Mul(x, re)));
-      im = hn::Mul(scale, hn::MulAdd(x, im, hn::Mul(y, re)));
-      re = hn::MulAdd(drive, hn::Set(d, push[p]), next);
+      const Vec scale = hn::Set(d, part[p]);
+      const Vec a = hn::Mul(x, scale), b = hn::Mul(y, scale);
+      const Vec forced = hn::MulAdd(drive, hn::Set(d, push[p]), hn::Mul(a, re));
+      const Vec turned = hn::MulAdd(b, re, hn::Mul(a, im));
+      re = hn::NegMulAdd(b, im, forced);
+      im = turned;
     }
     hn::Store(end_re, d, &state.re[i]);
     hn::Store(end_im, d, &state.im[i]);
-    Vec square = hn::Zero(d);
-    for (std::size_t g = 0; g < task.rule.node.size(); ++g) {
-      const Vec theta = hn::Set(d, task.rule.node[g]);
-      Vec value = hn::Zero(d);
-      for (std::size_t p = task.terms; p-- > 0;) value = hn::MulAdd(value, theta, series[p]);
-      square = hn::MulAdd(hn::Mul(value, value), hn::Set(d, task.rule.weight[g]), square);
-    }
+    const Vec square = task.rule.node.size() == 8 ? Squares<8>(series, task.terms, node, weight)
+                                                  : Squares<14>(series, task.terms, node, weight);
     lost = hn::MulAdd(square, hn::Load(d, &task.loss[i]), lost);
   }
   for (std::size_t p = 0; p < task.terms; ++p) {

@@ -204,11 +204,24 @@ std::array<double, Sticking::kTerms> Sticking::force_series(const PlanarVector& 
   return force;
 }
 
-std::array<double, Sticking::kTerms> Sticking::force_piece(const PlanarVector& state, double tau,
-                                                           double offset, double time) {
-  if (offset == 0.0) return force_series(state, tau, time);
+Sticking::ForcePiece Sticking::force_piece(const PlanarVector& state, double tau, double offset,
+                                           double time) {
+  constexpr double kLeftOut = 1e-17;
+  if (last_power_.empty()) {
+    last_power_.resize(fourth_power_.size());
+    for (std::size_t j = 0; j < loop_.roots; ++j) {
+      last_power_[j] = std::pow(std::abs(loop_.pole.at(j)) * series_step_, double{kTerms}) /
+                       std::tgamma(kTerms + 1.0);
+    }
+  }
   advance_by(offset, loop_.pole, state, trial_);
-  return force_series(trial_, tau + offset, time);
+  const double left_out = weighted_size(last_power_, trial_);
+  const double allowed = kLeftOut * limit_.at(tau + offset) * drive_.load_at(tau + offset);
+  const double reach = std::pow(allowed / left_out, 1.0 / double{kTerms});
+  ForcePiece piece;
+  piece.time = std::min(time, series_step_ * std::max(1.0, reach));
+  piece.force = force_series(trial_, tau + offset, piece.time);
+  return piece;
 }
 
 std::optional<Sticking::Advance> Sticking::crossing(double tau, double time) {

@@ -55,15 +55,14 @@ class Sticking {
 
   /// The state to ask force_piece() about later.
   const PlanarVector& state() const { return state_; }
-  /// Number of pieces for which the series of the force converges.
-  double pieces_of(double time) const {
-    return std::max(1.0, std::ceil(time / series_step_ * (1.0 - 1e-12)));
-  }
   static constexpr std::size_t kTerms = 25;
-  /// Powers of θ of the force from `tau` + `offset` on, θ = 1 after `time` ≤ the time of a piece;
-  /// `state` is that of `tau`.
-  std::array<double, kTerms> force_piece(const PlanarVector& state, double tau, double offset,
-                                         double time);
+  struct ForcePiece {
+    double time = 0.0;                   ///< its length [s]
+    std::array<double, kTerms> force{};  ///< powers of θ, θ = 1 at its end
+  };
+  /// The force from `tau` + `offset` on, for `time` or as long as 25 powers tell it to rounding:
+  /// Σ |w_j| (|μ_j| t)²⁵/25! ≤ 1e-17 of the limit. `state` is that of `tau`.
+  ForcePiece force_piece(const PlanarVector& state, double tau, double offset, double time);
   const BowDrive& drive() const { return drive_; }
 
   double force() const { return force_.value; }
@@ -121,6 +120,7 @@ class Sticking {
   int level_ = 0, certified_in_a_row_ = 0;
   PlanarRows series_;           // (μ·series_step)^p/p!
   AlignedVector fourth_power_;  // |μ|⁴
+  AlignedVector last_power_;    // (|μ|·series_step)²⁵/25!, for force_piece()
   // Rows of f, f', v, R₁, R₂ (as many as wanted) for the ends of the kBlock steps.
   enum BlockRow : std::size_t {
     kBlockForce,
