@@ -22,15 +22,21 @@ struct CellResult {
   Outcome outcome = Outcome::kWrong;
   std::string reason;       ///< of a refusal, a report or a wrong outcome
   double unbalanced = 0.0;  ///< |residual| over all energy at hand [1]
-  double allowed = 0.0;     ///< its bound [1]
+  double allowed = 0.0;     ///< its bound [1], below kTightBound
   double passivity = 0.0;   ///< loss at the contact over ∫|f v_c| dt, −1 … 1
-  /// Where the balance says little (allowed ≥ kTightBound): relative L2 distance of y from a run
-  /// with a quarter of the step. NaN: not asked for.
+  /// modal_event: relative L2 distance of y from a run with a quarter of the step. NaN: not known.
   double distance = std::numeric_limits<double>::quiet_NaN();
+  /// Where that is above kSameMotion: how far the run with a quarter of the step moves with the
+  /// initial velocity of every mode 1e-12 m/s higher. NaN: not asked for.
+  double sensitivity = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// A balance that may be off by this share of the energy at hand says little.
-constexpr double kTightBound = 0.01;
+/// A balance whose bound is wider says too little.
+constexpr double kTightBound = 1e-4;
+/// Runs closer than this are one motion.
+constexpr double kSameMotion = 1e-3;
+/// A motion that 1e-12 m/s change by more than this has no digits that a step could miss.
+constexpr double kNoDigits = 1e-4;
 
 /// Simulates `samples` steps of `time_step` [s] and checks what comes out.
 CellResult run_cell(std::string_view simulator, Scene scene, double time_step, std::size_t samples);
