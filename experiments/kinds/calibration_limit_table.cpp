@@ -30,6 +30,7 @@ report::Table row_table(const std::vector<LimitSummary>& levels, const std::stri
                                   {.key = "bias"},
                                   {.key = "crb", .name = "bound"},
                                   {.key = "efficiency"},
+                                  {.key = "attainable_sd", .name = "attainable, force unknown"},
                                   {.key = "ratio_low", .name = "RMSE/bound from"},
                                   {.key = "ratio_high", .name = "to"},
                                   {.key = "reported_sd", .name = "sd reported"},
@@ -43,9 +44,10 @@ report::Table row_table(const std::vector<LimitSummary>& levels, const std::stri
       const RmsInterval interval = interval_of(row.count);
       const double sd_ratio = row.reported / row.rmse;
       table.rows.push_back({row.noise_percent, row.parameter, row.rmse, row.bias, row.bound,
-                            row.bound / row.rmse, row.ratio() * interval.low,
-                            row.ratio() * interval.high, row.reported, sd_ratio / interval.high,
-                            sd_ratio / interval.low, row.count, row.failures + level.broken});
+                            row.bound / row.rmse, number_or_none(row.attainable),
+                            row.ratio() * interval.low, row.ratio() * interval.high, row.reported,
+                            sd_ratio / interval.high, sd_ratio / interval.low, row.count,
+                            row.failures + level.broken});
     }
   }
   return table;

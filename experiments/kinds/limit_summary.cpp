@@ -76,6 +76,7 @@ class LevelReader {
           kLawNames[i], bound_.law[i], [&](const LimitOutcome& o) { return o.law[i] - values[i]; },
           [&](const LimitOutcome& o) { return o.law_deviation[i]; });
       law.law = true;
+      law.attainable = bound_.law_attainable[i];
       summary_.rows.push_back(std::move(law));
     }
   }

@@ -17,6 +17,7 @@ struct LimitRow {
   double noise_percent = 0.0;
   std::string parameter;
   double rmse = kNan, bias = kNan, bound = kNan, reported = kNan;
+  double attainable = kNan;  ///< with the force unknown, of the law alone
   std::size_t count = 0, failures = 0;
   bool law = false;  ///< f_0, B, x_c or the damping factor of the law
 

@@ -20,9 +20,11 @@ ExpectedLimit limit_at(const LimitQuestion& question, double contact, TruthCache
 std::string law_lines(const ExpectedLimit& limit) {
   constexpr const char* kNames[] = {"f0", "B", "x_c", "damping"};
   constexpr const char* kUnits[] = {"Hz", "", "m", "(factor)"};
-  std::string text = "stiff-string law, all modes on it:\n";
+  std::string text =
+      "stiff-string law, all modes on it (in brackets: what an unknown force leaves):\n";
   for (std::size_t i = 0; i < 4; ++i) {
-    text += fmt::format("  {:<8} sd {:.3g} {:<9} correlations", kNames[i], limit.law[i], kUnits[i]);
+    text += fmt::format("  {:<8} sd {:.3g} ({:.3g}) {:<9} correlations", kNames[i], limit.law[i],
+                        limit.law_attainable[i], kUnits[i]);
     for (std::size_t j = 0; j < i; ++j) {
       text += fmt::format(" {} {:+.2f}", kNames[j], limit.law_correlation[i][j]);
     }

@@ -88,6 +88,40 @@ std::vector<double> power_of_excess(const std::vector<double>& excess,
 
 double weight(double signal) { return signal / (1.0 + signal); }
 
+// q/q̄_noise and |h|² of every bin; 1 where nothing, noise included, tells of the unknowns.
+struct SharesOverNoise {
+  std::vector<double> ratio, gain;
+};
+
+SharesOverNoise shares_over_noise(const ProjectedLikelihood& likelihood, const ModelPoint& point,
+                                  const LikelihoodColumns& columns) {
+  const WhitenedRecord& record = likelihood.record();
+  MODCAL_REQUIRE(std::all_of(record.root_weight.begin(),
+                             record.root_weight.begin() + static_cast<long>(record.bins),
+                             [](double root) { return root == 1.0; }),
+                 "weights of {} bins are asked of a likelihood that has some already: give the "
+                 "one without weights",
+                 record.bins);
+  SharesOverNoise result;
+  Eigen::MatrixXd jacobian;
+  const LikelihoodPoint at =
+      likelihood.evaluate(point, columns, {.jacobian = &jacobian, .gain = &result.gain});
+  const Shares shares(at.information);
+  result.ratio = shares.of(jacobian);
+  std::vector<double> noise(result.ratio.size(), 0.0);
+  for (std::size_t r = 0; r < kNoiseRepeats; ++r) {
+    ProjectedLikelihood(record.noise(r)).evaluate(point, columns, {.jacobian = &jacobian});
+    const std::vector<double> draw = shares.of(jacobian);
+    for (std::size_t k = 0; k < noise.size(); ++k) noise[k] += draw[k] / kNoiseRepeats;
+  }
+  const Windows expected(noise);
+  for (std::size_t k = 0; k < noise.size(); ++k) {
+    const double alone = expected.mean(k, kNoiseHalf);
+    result.ratio[k] = alone > 0.0 ? result.ratio[k] / alone : 1.0;
+  }
+  return result;
+}
+
 }  // namespace
 
 std::vector<double> weights_of_excess(const std::vector<double>& excess,
@@ -120,31 +154,16 @@ std::vector<double> signal_weights(const NoisyRecords& records, double sigma, do
 
 std::vector<double> information_weights(const ProjectedLikelihood& likelihood,
                                         const ModelPoint& point, const LikelihoodColumns& columns) {
-  const WhitenedRecord& record = likelihood.record();
-  MODCAL_REQUIRE(std::all_of(record.root_weight.begin(),
-                             record.root_weight.begin() + static_cast<long>(record.bins),
-                             [](double weight) { return weight == 1.0; }),
-                 "weights of {} bins are asked of a likelihood that has some already: give the "
-                 "one without weights",
-                 record.bins);
-  Eigen::MatrixXd jacobian;
-  std::vector<double> gain;
-  const LikelihoodPoint at =
-      likelihood.evaluate(point, columns, {.jacobian = &jacobian, .gain = &gain});
-  const Shares shares(at.information);
-  std::vector<double> excess = shares.of(jacobian);
-  std::vector<double> noise(excess.size(), 0.0);
-  for (std::size_t r = 0; r < kNoiseRepeats; ++r) {
-    ProjectedLikelihood(record.noise(r)).evaluate(point, columns, {.jacobian = &jacobian});
-    const std::vector<double> draw = shares.of(jacobian);
-    for (std::size_t k = 0; k < noise.size(); ++k) noise[k] += draw[k] / kNoiseRepeats;
-  }
-  const Windows expected(noise);
-  for (std::size_t k = 0; k < excess.size(); ++k) {
-    const double alone = expected.mean(k, kNoiseHalf);
-    excess[k] = alone > 0.0 ? excess[k] / alone - 1.0 : 0.0;
-  }
-  return weights_of_excess(excess, gain);
+  auto [ratio, gain] = shares_over_noise(likelihood, point, columns);
+  for (double& excess : ratio) excess -= 1.0;
+  return weights_of_excess(ratio, gain);
+}
+
+std::vector<double> best_weights(const ProjectedLikelihood& clean, const ModelPoint& point,
+                                 const LikelihoodColumns& columns) {
+  std::vector<double> weights = shares_over_noise(clean, point, columns).ratio;
+  for (double& value : weights) value = weight(value);
+  return weights;
 }
 
 }  // namespace modcal

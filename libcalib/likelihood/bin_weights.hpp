@@ -20,8 +20,14 @@ namespace modcal {
 std::vector<double> information_weights(const ProjectedLikelihood& likelihood,
                                         const ModelPoint& point, const LikelihoodColumns& columns);
 
-/// The same with S = |h|²|F|², the force F found in the lightly damped record (σ = `sigma`), in
-/// which no end state confuses it: one evaluation without columns, whatever the unknowns.
+/// The weights of least variance for clean data, w_k = q_k/(q_k + q̄_noise): what
+/// information_weights() would be if it knew every bin's share of the information.
+std::vector<double> best_weights(const ProjectedLikelihood& clean, const ModelPoint& point,
+                                 const LikelihoodColumns& columns);
+
+/// information_weights() with S = |h|²|F|², the force F found in the lightly damped record (σ =
+/// `sigma`), in which no end state confuses it: one evaluation without columns, whatever the
+/// unknowns.
 std::vector<double> signal_weights(const NoisyRecords& records, double sigma, double highest,
                                    const ProjectedLikelihood& target, const ModelPoint& point);
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libcalib/likelihood/bin_weights.hpp"
 #include "libcalib/likelihood/mode_verdict.hpp"
 #include "libcalib/likelihood/newton_fit.hpp"
 #include "libcalib/stiff_string_fit.hpp"
@@ -22,6 +23,22 @@ Eigen::MatrixXd covariance(const Eigen::MatrixXd& information, const Eigen::Matr
 
 Eigen::VectorXd deviations(const Eigen::MatrixXd& matrix) {
   return matrix.diagonal().cwiseMax(0.0).cwiseSqrt();
+}
+
+constexpr std::size_t kNoiseRepeats = 4;
+
+// Under the weights that a calibration would give the bins if it knew what each can tell.
+Eigen::VectorXd attainable(const ProjectedLikelihood& clean, const ModelPoint& truth,
+                           const LikelihoodColumns& columns) {
+  ProjectedLikelihood weighted = clean;
+  weighted.set_weights(best_weights(clean, truth, columns));
+  LikelihoodPoint point = weighted.evaluate(truth, columns, {.twice_weighted = true});
+  for (std::size_t r = 0; r < kNoiseRepeats; ++r) {
+    const ProjectedLikelihood noise(weighted.record().noise(r));
+    point.twice_weighted +=
+        noise.evaluate(truth, columns, {.twice_weighted = true}).twice_weighted / kNoiseRepeats;
+  }
+  return deviations(fit_covariance(point, {}));
 }
 
 }  // namespace
@@ -49,7 +66,12 @@ ExpectedLimit expected_limit(const ModelPoint& truth, const NoisyRecords& record
           law_covariance(i, j) / (law_deviation[i] * law_deviation[j]);
     }
   }
+  const Eigen::VectorXd weighted = attainable(whole, truth, law.columns(law.start()));
+  for (Eigen::Index i = 0; i < 4; ++i) {
+    limit.law_attainable[static_cast<std::size_t>(i)] = weighted[i];
+  }
   limit.law[0] *= fit.fundamental;
+  limit.law_attainable[0] *= fit.fundamental;
 
   const StringUnknowns free = StringUnknowns::frequencies(truth);
   const Eigen::MatrixXd information = whole.evaluate(truth, free.columns(free.start())).information;
