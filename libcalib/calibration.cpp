@@ -119,15 +119,22 @@ CalibrationResult calibrate_to_the_bound(const ModelPoint& initial,
                                          const CalibrationOptions& options,
                                          const SecondsClock& clock) {
   const ParameterOptions& free = options.parameters;
-  MODCAL_REQUIRE(free.law && free.contact && free.frequencies != "listed",
-                 "a continuation frees the law, the contact and no frequency or all of them: state "
-                 "parameters: {{frequencies: all, law: true, contact: true}}");
+  MODCAL_REQUIRE(free.law && free.frequencies != "listed",
+                 "a continuation frees the law and no frequency or all of them: state parameters: "
+                 "{{frequencies: all, law: true, contact: true}}, and what is known of single ones "
+                 "under continuation: {{unknowns: {{fixed: ...}}}}");
+  MODCAL_REQUIRE(free.contact || records.size() == 1,
+                 "contact: false holds the contact of one stroke, and there are {}: state contact: "
+                 "true and the contacts that are known under continuation: {{unknowns: {{fixed: "
+                 "...}}}}",
+                 records.size());
   MODCAL_REQUIRE(free.damping == "fixed" && free.sensors.empty(),
                  "a continuation is told of damping {} and {} sensor parameters in another place: "
                  "state them under continuation: {{unknowns: ...}}, not under parameters",
                  free.damping, free.sensors.size());
   ContinuationOptions continuation = options.continuation;
   continuation.frequencies = free.frequencies == "all";
+  if (!free.contact) continuation.unknowns.fixed.push_back({.parameter = "x_c"});
   const double begin = clock();
   CalibrationResult result;
   std::vector<double> further_contacts;

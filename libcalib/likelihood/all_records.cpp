@@ -29,7 +29,8 @@ double StrokeLikelihood::degrees_of_freedom(const ModelPoint& point) const {
 }
 
 void AllRecords::add(std::shared_ptr<const RecordLikelihood> record, const Eigen::VectorXd& start,
-                     const std::vector<Index>& own) {
+                     const std::vector<Index>& own, std::optional<double> held_contact) {
+  held_contacts_.push_back(held_contact);
   std::vector<Index> places(static_cast<std::size_t>(unknowns_.size()));
   std::iota(places.begin(), places.end(), Index{0});
   if (records_.empty()) {
@@ -49,6 +50,39 @@ Eigen::VectorXd AllRecords::own(const Eigen::VectorXd& theta, std::size_t record
   Eigen::VectorXd part(unknowns_.size());
   for (Index i = 0; i < part.size(); ++i) part[i] = theta[place(i, record)];
   return part;
+}
+
+ModelPoint AllRecords::model(const Eigen::VectorXd& theta, std::size_t record) const {
+  ModelPoint point = unknowns_.model(own(theta, record));
+  if (held_contacts_[record]) point.contact = *held_contacts_[record];
+  return point;
+}
+
+std::vector<AllRecords::Index> AllRecords::held_places() const {
+  std::vector<Index> result;
+  for (Index i = 0; i < unknowns_.size(); ++i) {
+    for (std::size_t r = 0; r < records(); ++r) {
+      const bool first = r == 0 || place(i, r) != place(i, 0);
+      if (first && unknowns_.held(i, r)) result.push_back(place(i, r));
+    }
+  }
+  return result;
+}
+
+AllRecords::Index AllRecords::free_count() const {
+  return size_ - static_cast<Index>(held_places().size());
+}
+
+void AllRecords::hold(PriorEquations& equations) const {
+  unknowns_.hold(equations);
+  for (const Index i : held_places()) equations.hold(i, start_[i]);
+}
+
+void AllRecords::clear_held(Eigen::MatrixXd& covariance) const {
+  for (const Index i : held_places()) {
+    covariance.row(i).setZero();
+    covariance.col(i).setZero();
+  }
 }
 
 bool AllRecords::admits(const Eigen::VectorXd& theta) const {
@@ -76,7 +110,7 @@ LikelihoodPoint AllRecords::evaluate(const Eigen::VectorXd& theta, bool twice_we
   if (twice_weighted) sum.twice_weighted = sum.information;
   for (std::size_t r = 0; r < records(); ++r) {
     const LikelihoodPoint point =
-        records_[r]->evaluate(model(theta, r), unknowns_.columns(own(theta, r)), twice_weighted);
+        records_[r]->evaluate(model(theta, r), unknowns_.columns(own(theta, r), r), twice_weighted);
     sum.cost += point.cost;
     for (Index i = 0; i < unknowns_.size(); ++i) sum.slope[place(i, r)] += point.slope[i];
     add_to(sum.information, point.information, r);
@@ -88,15 +122,15 @@ LikelihoodPoint AllRecords::evaluate(const Eigen::VectorXd& theta, bool twice_we
 Eigen::MatrixXd AllRecords::noise(const Eigen::VectorXd& theta) const {
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(size(), size());
   for (std::size_t r = 0; r < records(); ++r) {
-    add_to(sum, records_[r]->noise_information(model(theta, r), unknowns_.columns(own(theta, r))),
-           r);
+    add_to(sum,
+           records_[r]->noise_information(model(theta, r), unknowns_.columns(own(theta, r), r)), r);
   }
   return sum;
 }
 
 AllRecords::Misfit AllRecords::misfit(const Eigen::VectorXd& theta,
                                       std::span<const double> noise_errors) const {
-  double cost = 0.0, freedom = -static_cast<double>(size()), variance = 0.0;
+  double cost = 0.0, freedom = -static_cast<double>(free_count()), variance = 0.0;
   for (std::size_t r = 0; r < records(); ++r) {
     const ModelPoint point = model(theta, r);
     const double own_freedom = records_[r]->degrees_of_freedom(point);

@@ -35,12 +35,19 @@ class AllRecords {
 
   explicit AllRecords(const StringUnknowns& shared) : unknowns_(shared), size_(shared.size()) {}
 
-  /// start: θ of the record; own: which of it no other record has, ascending. The first record
-  /// owns nothing, all it has is shared.
+  /// held_contact: x_c where it is known exactly [m]. start: θ of the record; own: which of it no
+  /// other record has, ascending. The first record owns nothing, all it has is shared.
   void add(std::shared_ptr<const RecordLikelihood> record, const Eigen::VectorXd& start,
-           const std::vector<Index>& own);
+           const std::vector<Index>& own, std::optional<double> held_contact = {});
 
   Index size() const { return size_; }
+  /// Whether an unknown of a record keeps its start exactly.
+  bool held(Index i, std::size_t record) const { return unknowns_.held(i, record); }
+  /// Number of unknowns that are free.
+  Index free_count() const;
+  void hold(PriorEquations& equations) const;
+  /// Zero where an unknown is held.
+  void clear_held(Eigen::MatrixXd& covariance) const;
   std::size_t records() const { return records_.size(); }
   const StringUnknowns& unknowns() const { return unknowns_; }
   const Eigen::VectorXd& start() const { return start_; }
@@ -50,9 +57,7 @@ class AllRecords {
   }
   /// θ of one record.
   Eigen::VectorXd own(const Eigen::VectorXd& theta, std::size_t record) const;
-  ModelPoint model(const Eigen::VectorXd& theta, std::size_t record) const {
-    return unknowns_.model(own(theta, record));
-  }
+  ModelPoint model(const Eigen::VectorXd& theta, std::size_t record) const;
   bool admits(const Eigen::VectorXd& theta) const;
   /// Coordinate of a prior, see StringUnknowns.
   std::optional<LinearForm> coordinate(const UnknownName& name, const Eigen::VectorXd& theta) const;
@@ -67,6 +72,7 @@ class AllRecords {
   Misfit misfit(const Eigen::VectorXd& theta, std::span<const double> noise_errors) const;
 
  private:
+  std::vector<Index> held_places() const;
   void add_to(Eigen::MatrixXd& sum, const Eigen::MatrixXd& part, std::size_t record) const;
 
   StringUnknowns unknowns_;
@@ -74,6 +80,7 @@ class AllRecords {
   Eigen::VectorXd start_;
   std::vector<std::shared_ptr<const RecordLikelihood>> records_;
   std::vector<std::vector<Index>> places_;
+  std::vector<std::optional<double>> held_contacts_;
 };
 
 }  // namespace modcal

@@ -57,9 +57,13 @@ class Attempt {
         highest_(highest),
         noise_error_(noise_error) {
     std::vector<double> frequencies;
-    for (std::size_t n = 0; n < modes(); ++n) frequencies.push_back(initial.basis.frequency(n));
+    reference_ = with_fixed(initial, options.unknowns);
+    for (std::size_t n = 0; n < modes(); ++n) frequencies.push_back(reference_.basis.frequency(n));
     start_ = fit_stiff_string(frequencies);
-    reference_ = initial;
+    const HeldParameters& held = priors_.held();
+    if (held.contact(0)) reference_.contact = *held.contacts[0];
+    if (held.fundamental) start_.fundamental = *held.fundamental;
+    if (held.inharmonicity) start_.inharmonicity = *held.inharmonicity;
     reference_.sensors = options.unknowns.sensors();
     unit_ = start_.fundamental / 196.0;
   }
@@ -100,14 +104,15 @@ class Attempt {
     options.prior_mean = std::move(prior.mean);
   }
 
-  // Of nine x_c those whose cost is below that of both neighbors: a start between them leads to one
+  // Of the x_c up to `reach` steps away those whose cost is below that of both neighbors: a start between them leads to one
   // of theirs.
   std::vector<Eigen::VectorXd> contact_starts(const ProjectedLikelihood& likelihood,
-                                              const StringUnknowns& unknowns, double step) {
+                                              const StringUnknowns& unknowns, double step,
+                                              int reach) {
     constexpr double kNever = std::numeric_limits<double>::infinity();
     std::vector<Eigen::VectorXd> starts;
     std::vector<double> costs = {kNever};
-    for (int i = -4; i <= 4; ++i) {
+    for (int i = -reach; i <= reach; ++i) {
       starts.push_back(unknowns.start());
       starts.back()[unknowns.contact()] = i * step;
       const bool admitted = unknowns.admits(starts.back());
@@ -125,6 +130,8 @@ class Attempt {
 
   // f_0, B and x_c through the ladder, from the x_c that serves best.
   void follow_law(double shift) {
+    const HeldParameters& held = priors_.held();
+    if (held.fundamental) shift = 0.0;
     const double step = initial_.basis.length / 660.0;
     const ProjectedLikelihood widest = damped(200.0);
     const StringUnknowns unknowns =
@@ -132,7 +139,8 @@ class Attempt {
                             {}, priors_)
             .without_damping_and_sensors();
     NewtonFit best;
-    for (const Eigen::VectorXd& theta : contact_starts(widest, unknowns, step)) {
+    const int reach = held.contact(0) ? 0 : 4;
+    for (const Eigen::VectorXd& theta : contact_starts(widest, unknowns, step, reach)) {
       NewtonFit found = fit(widest, unknowns, theta, with_priors(unknowns, theta, 25, 1e-2));
       if (found.objective < best.objective) best = std::move(found);
     }
@@ -148,6 +156,9 @@ class Attempt {
     ladder_theta_ = law_theta_;
   }
 
+  static double free_count(const StringUnknowns& unknowns) {
+    return static_cast<double>(unknowns.size() - unknowns.held_count());
+  }
   double reduced_chi2(const ModelPoint& point, double taken) {
     ++evaluations_;
     return 2.0 * whole_->cost(point) / (whole_->degrees_of_freedom(0, modes()) - taken);
@@ -157,8 +168,7 @@ class Attempt {
   void finish_law(ContinuationResult& result) {
     whole_.emplace(WhitenedRecord::of(records_, 0.0, highest_));
     result.chi2_deviation = std::hypot(
-        std::sqrt(2.0 / whole_->degrees_of_freedom(static_cast<std::size_t>(law_.size()), modes())),
-        noise_error_);
+        std::sqrt(2.0 / whole_->degrees_of_freedom(free_count(law_), modes())), noise_error_);
     law_theta_ = fit(*whole_, law_, law_theta_, with_priors(law_, law_theta_, 12, 1e-2)).theta;
     NewtonOptions options = with_priors(law_, law_theta_, 4, 1e-4);
     options.noise = prepare_weights(law_, law_theta_);
@@ -177,13 +187,14 @@ class Attempt {
     }
     law.deviation[0] *= law.fundamental;
     law.deviation[3] = law_.damping_deviation(covariance) * law.damping;
-    law.chi2 = result.chi2 = reduced_chi2(result.model, static_cast<double>(law_.size()));
+    law.chi2 = result.chi2 = reduced_chi2(result.model, free_count(law_));
     law.accepted = law.chi2 < 1.0 + 3.0 * result.chi2_deviation;
     result.contact_deviation = law.deviation[2];
     result.damping = law.damping;
     result.damping_deviation = law.deviation[3];
     report_sensors(law_, covariance, result);
     result.modes = law_verdicts(result.model, law.inharmonicity, covariance.topLeftCorner(2, 2));
+    trust_stated_frequencies(priors_, {}, result.modes);
   }
 
   // Weights of the bins and N̄ under them, at θ.
@@ -205,7 +216,9 @@ class Attempt {
   }
   Eigen::MatrixXd covariance_at(const StringUnknowns& unknowns, const Eigen::VectorXd& theta,
                                 const NewtonOptions& options) {
-    return fit_covariance(whole_point(unknowns, theta), options);
+    Eigen::MatrixXd covariance = fit_covariance(whole_point(unknowns, theta), options);
+    unknowns.clear_held(covariance);
+    return covariance;
   }
 
   void free_frequencies(ContinuationResult& result) {
@@ -230,7 +243,8 @@ class Attempt {
     const auto n = static_cast<Eigen::Index>(modes());
     const double estimated = estimate_law_width(theta.head(n), seen.head(n), inharmonicity);
     result.law_width = std::isnan(options_.law_width) ? estimated : options_.law_width;
-    const Eigen::VectorXd widths = prior_widths(seen.head(n), result.law_width, estimated);
+    Eigen::VectorXd widths = prior_widths(seen.head(n), result.law_width, estimated);
+    widen_held(priors_.held(), result.law_width, widths);
     set_prior(unknowns.prior(theta, {widths, inharmonicity}), options);
     options.tolerance = 1e-4;
     theta = fit(*weighted_, unknowns, theta, options).theta;

@@ -33,7 +33,7 @@ struct ContinuationOptions {
 };
 
 /// Where the frequency of a mode comes from.
-enum class ModeSource { kIdentified, kLaw, kPrior, kBlind };
+enum class ModeSource { kIdentified, kLaw, kPrior, kBlind, kFixed };
 /// Why a mode is weak.
 enum class WeakReason { kNone, kNode, kAntinode, kNoise };
 std::string_view name_of(ModeSource source);

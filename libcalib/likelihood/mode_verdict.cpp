@@ -32,6 +32,8 @@ std::string_view name_of(ModeSource source) {
       return "from the prior";
     case ModeSource::kBlind:
       return "blind";
+    case ModeSource::kFixed:
+      return "fixed";
   }
   return "";
 }

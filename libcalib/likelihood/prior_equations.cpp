@@ -54,6 +54,16 @@ void PriorEquations::add_scatter(const LawScatter& law, const Eigen::VectorXd& r
   }
 }
 
+void PriorEquations::hold(Index i, double value) {
+  right_ -= normal_.col(i) * value;
+  normal_.row(i).setZero();
+  normal_.col(i).setZero();
+  right_[i] = 0.0;
+  if (i >= unknowns_) return;
+  normal_(i, i) = 1.0;
+  right_[i] = value;
+}
+
 QuadraticPrior PriorEquations::solve() const {
   Eigen::MatrixXd normal = normal_;
   Eigen::VectorXd right = right_;

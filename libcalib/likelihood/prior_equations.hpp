@@ -42,6 +42,9 @@ class PriorEquations {
   void add(const LinearForm& form, double mean, double deviation);
   /// reference: ln f_n where δ_n, the first unknowns, are zero.
   void add_scatter(const LawScatter& law, const Eigen::VectorXd& reference);
+  /// From here on z_i is known; an unknown of θ keeps a precision of 1 about it, which no other
+  /// shares, so that a Newton step leaves it exactly where it is.
+  void hold(Eigen::Index i, double value);
   /// The mean is of smallest norm where the statements leave a direction of θ open.
   QuadraticPrior solve() const;
 

@@ -66,7 +66,7 @@ class JointFit {
     const double sigma = 3.0 * point.basis.frequency(0) / 196.0;
     weighted.set_weights(signal_weights(noisy, sigma, highest, whole, point));
     all_.add(std::make_shared<StrokeLikelihood>(whole, std::move(weighted)), start,
-             {unknowns().contact()});
+             {unknowns().contact()}, held_contact(all_.records()));
     noise_errors_.push_back(noise_error(noise, stroke.samples));
   }
 
@@ -90,7 +90,9 @@ class JointFit {
       listen_to_plucks();
       free_frequencies(newton);
     }
-    report(fit_covariance(point(true), newton));
+    Eigen::MatrixXd covariance = fit_covariance(point(true), newton);
+    all_.clear_held(covariance);
+    report(covariance);
     const AllRecords::Misfit misfit = all_.misfit(theta_, noise_errors_);
     fit_.chi2 = misfit.chi2;
     fit_.chi2_deviation = misfit.deviation;
@@ -101,6 +103,10 @@ class JointFit {
   const StringUnknowns& unknowns() const { return all_.unknowns(); }
   Index modes() const { return static_cast<Index>(unknowns().modes()); }
   double inharmonicity() const { return fit_.single.front().law.inharmonicity; }
+  std::optional<double> held_contact(std::size_t record) const {
+    const HeldParameters& held = priors_.held();
+    return held.contact(record) ? held.contacts[record] : std::nullopt;
+  }
   LikelihoodPoint point(bool twice_weighted) {
     ++fit_.evaluations;
     return all_.evaluate(theta_, twice_weighted);
@@ -113,6 +119,7 @@ class JointFit {
                   equations);
     unknowns().state_damping_ratios(equations);
     if (widths) equations.add_scatter({*widths, inharmonicity()}, unknowns().log_frequencies());
+    all_.hold(equations);
     QuadraticPrior prior = equations.solve();
     newton.prior = std::move(prior.precision);
     newton.prior_mean = std::move(prior.mean);
@@ -137,7 +144,7 @@ class JointFit {
           std::any_of(fit_.single.begin(), fit_.single.end(), [n](const ContinuationResult& r) {
             return r.modes[n].source == ModeSource::kIdentified;
           });
-      if (!identified) theta_[i] += loudest_shift(n);
+      if (!identified && !unknowns().held(i)) theta_[i] += loudest_shift(n);
     }
   }
 
@@ -183,7 +190,8 @@ class JointFit {
     }
     estimated_ = estimate_law_width(delta, seen_, inharmonicity());
     fit_.law_width = std::isnan(options_.law_width) ? estimated_ : options_.law_width;
-    const Eigen::VectorXd widths = prior_widths(seen_, fit_.law_width, estimated_);
+    Eigen::VectorXd widths = prior_widths(seen_, fit_.law_width, estimated_);
+    widen_held(priors_.held(), fit_.law_width, widths);
     state(&widths, newton);
     search(newton);
   }
@@ -225,11 +233,13 @@ class JointFit {
 
   void report_damping_and_sensors(const Eigen::MatrixXd& covariance,
                                   const Eigen::VectorXd& deviation) {
-    double change = 0.0;
+    double change = 0.0, count = 0.0;
     for (std::size_t n = 0; n < unknowns().modes(); ++n) {
+      if (priors_.held().ratio(n)) continue;
       change += std::log(fit_.model.basis.zeta[n] / initial_.basis.zeta[n]);
+      count += 1.0;
     }
-    fit_.damping = std::exp(change / static_cast<double>(unknowns().modes()));
+    fit_.damping = std::exp(change / std::max(count, 1.0));
     fit_.damping_deviation = fit_.damping * unknowns().damping_deviation(covariance);
     const double unit[] = {fit_.model.sensors.gain, 1.0, 0.5 / std::numbers::pi};
     for (std::size_t i = 0; i < 3; ++i) {

@@ -34,6 +34,21 @@ void require_free(const UnknownsOptions& options, const std::string& parameter, 
                  parameter, damping);
 }
 
+// A factor or power of the damping is measured by the first two ratios.
+void require_not_fixed(const UnknownsOptions& options, const std::string& parameter,
+                       const UnknownName& name) {
+  for (const FixedParameter& fixed : options.fixed) {
+    const std::optional<UnknownName> held = parse_unknown(fixed.parameter);
+    MODCAL_REQUIRE(held != name, "{} has a prior and is fixed: state one of the two", parameter);
+    const bool by_ratio = held && held->kind == UnknownKind::kDampingRatio;
+    MODCAL_REQUIRE(!(by_ratio && held->mode == 0 && name.kind == UnknownKind::kDampingFactor) &&
+                       !(by_ratio && held->mode < 2 && name.kind == UnknownKind::kDampingPower),
+                   "the prior of {} acts through zeta_1 and zeta_2, and {} is fixed: state a prior "
+                   "of another ratio",
+                   parameter, fixed.parameter);
+  }
+}
+
 UnknownName require_prior(const UnknownsOptions& options, const ParameterPrior& prior,
                           std::size_t modes, std::size_t records) {
   const UnknownName name = require_unknown(prior.parameter, modes);
@@ -46,6 +61,7 @@ UnknownName require_prior(const UnknownsOptions& options, const ParameterPrior& 
                  "the prior of \"{}\": {} mode has no power of the mode number", prior.parameter,
                  modes);
   require_free(options, prior.parameter, name.kind);
+  require_not_fixed(options, prior.parameter, name);
   MODCAL_REQUIRE(prior.deviation > 0.0 && std::isfinite(prior.deviation),
                  "the prior of {} has the deviation {:g}: it must be > 0 and finite",
                  prior.parameter, prior.deviation);
@@ -172,6 +188,7 @@ void PriorCorrelation::visit(OptionVisitor& visitor) {
 }
 
 void require_priors(const UnknownsOptions& options, std::size_t modes, std::size_t records) {
+  require_fixed(options, modes, records);
   std::vector<UnknownName> names;
   for (const ParameterPrior& prior : options.priors) {
     const UnknownName name = require_prior(options, prior, modes, records);
@@ -203,6 +220,9 @@ void require_priors(const UnknownsOptions& options, std::size_t modes, std::size
 StatedPriors::StatedPriors(const UnknownsOptions& options, const ModelPoint& initial,
                            std::size_t records) {
   require_priors(options, initial.basis.size(), records);
+  const StiffStringFit law = law_of(with_fixed(initial, options).basis);
+  held_ = held_parameters(options, initial.basis.size(), records, initial.contact, law.fundamental,
+                          law.inharmonicity);
   for (const ParameterPrior& prior : options.priors) {
     entries_.push_back(
         entry_of(prior, require_unknown(prior.parameter, initial.basis.size()), initial));
@@ -246,6 +266,7 @@ Eigen::MatrixXd StatedPriors::covariance(const std::vector<std::size_t>& which) 
 StatedPriors StatedPriors::of_record(std::size_t record) const {
   std::vector<Eigen::Index> kept;
   StatedPriors result;
+  result.held_ = held_.of_record(record);
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     const UnknownName& name = entries_[i].name;
     const bool own = name.kind == UnknownKind::kContact;

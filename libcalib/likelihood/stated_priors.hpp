@@ -1,4 +1,4 @@
-// What is known of the unknowns before the data: one Gaussian.
+// What is known of the unknowns before the data: one Gaussian, and what is known exactly.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "libcalib/likelihood/held_parameters.hpp"
 #include "libcalib/likelihood/prior_equations.hpp"
 #include "libcalib/parameters.hpp"
 #include "libcalib/unknown_name.hpp"
@@ -33,7 +34,8 @@ struct PriorCorrelation {
 struct UnknownsOptions;
 
 /// Throws InvalidInput for a name that is unknown, repeated or of something that is not free, a
-/// deviation or mean out of range, correlations that no Gaussian has. modes: of the string.
+/// deviation or mean out of range, correlations that no Gaussian has; and what require_fixed()
+/// throws. modes: of the string.
 void require_priors(const UnknownsOptions& options, std::size_t modes, std::size_t records = 1);
 
 /// The priors as one Gaussian of coordinates: the logarithm of what is positive (is_positive(),
@@ -52,6 +54,7 @@ class StatedPriors {
   StatedPriors(const UnknownsOptions& options, const ModelPoint& initial, std::size_t records = 1);
 
   const std::vector<Entry>& entries() const { return entries_; }
+  const HeldParameters& held() const { return held_; }
   /// Adds what is stated of the coordinates that there are; the others are unknown.
   void state(const std::function<std::optional<LinearForm>(const UnknownName&)>& coordinate,
              PriorEquations& equations) const;
@@ -62,6 +65,7 @@ class StatedPriors {
  private:
   Eigen::MatrixXd covariance(const std::vector<std::size_t>& which) const;
 
+  HeldParameters held_;
   std::vector<Entry> entries_;
   Eigen::MatrixXd correlation_;
 };

@@ -95,6 +95,7 @@ void StringUnknowns::state_damping_ratios(PriorEquations& equations) const {
   if (damping_kind() != Damping::kEach) return;
   for (std::size_t n = 0; n < modes(); ++n) {
     if (priors_.has({.kind = UnknownKind::kDampingRatio, .mode = n})) continue;
+    if (priors_.held().ratio(n)) continue;
     equations.add(*damping_coordinate(n), std::log(reference_.basis.zeta[n]),
                   options_.damping_width);
   }
@@ -108,13 +109,27 @@ PriorEquations StringUnknowns::stated(const Eigen::VectorXd& theta) const {
 }
 
 QuadraticPrior StringUnknowns::prior(const Eigen::VectorXd& theta) const {
-  return stated(theta).solve();
+  PriorEquations equations = stated(theta);
+  hold(equations);
+  return equations.solve();
 }
 
 QuadraticPrior StringUnknowns::prior(const Eigen::VectorXd& theta, const LawScatter& law) const {
   PriorEquations equations = stated(theta);
   equations.add_scatter(law, log_frequencies());
+  hold(equations);
   return equations.solve();
+}
+
+void StringUnknowns::hold(PriorEquations& equations) const {
+  const Eigen::VectorXd at = start();
+  for (Index i = 0; i < size(); ++i) {
+    if (held(i)) equations.hold(i, at[i]);
+  }
+  const HeldParameters& held = priors_.held();
+  const Index law = equations.unknowns();
+  if (held.fundamental) equations.hold(law, std::log(*held.fundamental));
+  if (held.inharmonicity) equations.hold(law + 1, *held.inharmonicity);
 }
 
 Eigen::VectorXd StringUnknowns::log_frequencies() const {

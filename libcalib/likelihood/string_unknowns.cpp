@@ -95,6 +95,7 @@ double StringUnknowns::fundamental(const Eigen::VectorXd& theta) const {
 
 // ln ζ_n/ζ_n(reference).
 double StringUnknowns::damping_change(std::size_t mode, const Eigen::VectorXd& theta) const {
+  if (priors_.held().ratio(mode)) return 0.0;
   switch (damping_kind()) {
     case Damping::kFixed:
       return 0.0;
@@ -109,9 +110,45 @@ double StringUnknowns::damping_change(std::size_t mode, const Eigen::VectorXd& t
 }
 
 double StringUnknowns::damping_factor(const Eigen::VectorXd& theta) const {
-  double sum = 0.0;
-  for (std::size_t n = 0; n < modes(); ++n) sum += damping_change(n, theta);
-  return std::exp(sum / static_cast<double>(modes()));
+  double sum = 0.0, count = 0.0;
+  for (std::size_t n = 0; n < modes(); ++n) {
+    sum += damping_change(n, theta);
+    count += priors_.held().ratio(n) ? 0.0 : 1.0;
+  }
+  return std::exp(sum / std::max(count, 1.0));
+}
+
+bool StringUnknowns::all_ratios_held() const {
+  for (std::size_t n = 0; n < modes(); ++n) {
+    if (!priors_.held().ratio(n)) return false;
+  }
+  return true;
+}
+
+bool StringUnknowns::held(Index i, std::size_t record) const {
+  const HeldParameters& held = priors_.held();
+  if (i == contact()) return held.contact(record);
+  if (i < contact()) {
+    if (!law_) return held.frequency(static_cast<std::size_t>(i));
+    return i == 0 ? held.fundamental.has_value() : held.inharmonicity.has_value();
+  }
+  if (i >= sensor_begin()) return false;
+  return damping_kind() == Damping::kEach ? held.ratio(static_cast<std::size_t>(i - damping()))
+                                          : all_ratios_held();
+}
+
+Index StringUnknowns::held_count() const {
+  Index count = 0;
+  for (Index i = 0; i < size(); ++i) count += held(i) ? 1 : 0;
+  return count;
+}
+
+void StringUnknowns::clear_held(Eigen::MatrixXd& covariance) const {
+  for (Index i = 0; i < size(); ++i) {
+    if (!held(i)) continue;
+    covariance.row(i).setZero();
+    covariance.col(i).setZero();
+  }
 }
 
 double StringUnknowns::damping_deviation(const Eigen::MatrixXd& covariance) const {
@@ -150,9 +187,11 @@ ModelPoint StringUnknowns::model(const Eigen::VectorXd& theta) const {
   ModelPoint point = reference_;
   for (std::size_t i = 0; i < modes(); ++i) {
     const double n = static_cast<double>(i + 1);
-    point.basis.omega[i] =
-        law_ ? 2.0 * pi * n * fundamental(theta) * std::sqrt(1.0 + theta[1] * n * n)
-             : reference_.basis.omega[i] * std::exp(theta[static_cast<Index>(i)]);
+    if (!priors_.held().frequency(i)) {
+      point.basis.omega[i] =
+          law_ ? 2.0 * pi * n * fundamental(theta) * std::sqrt(1.0 + theta[1] * n * n)
+               : reference_.basis.omega[i] * std::exp(theta[static_cast<Index>(i)]);
+    }
     point.basis.zeta[i] = reference_.basis.zeta[i] * std::exp(damping_change(i, theta));
   }
   point.contact += theta[contact()];
@@ -162,25 +201,33 @@ ModelPoint StringUnknowns::model(const Eigen::VectorXd& theta) const {
   return point;
 }
 
-LikelihoodColumns StringUnknowns::columns(const Eigen::VectorXd& theta) const {
-  LikelihoodColumns columns{.count = static_cast<std::size_t>(size()),
-                            .share_begin = {0},
-                            .contact = static_cast<std::size_t>(contact())};
+// Shares of one mode in the columns of frequencies and damping.
+void StringUnknowns::add_shares(std::size_t mode, const Eigen::VectorXd& theta,
+                                LikelihoodColumns& columns) const {
+  const double n = static_cast<double>(mode + 1);
   const auto first = static_cast<std::size_t>(damping());
-  for (std::size_t i = 0; i < modes(); ++i) {
-    const double n = static_cast<double>(i + 1);
-    if (law_) {
-      columns.shares.push_back({0, 1.0, 0.0});
+  const HeldParameters& held = priors_.held();
+  if (!held.frequency(mode)) {
+    if (!law_) columns.shares.push_back({mode, 1.0, 0.0});
+    if (law_ && !held.fundamental) columns.shares.push_back({0, 1.0, 0.0});
+    if (law_ && !held.inharmonicity) {
       columns.shares.push_back({1, 0.5 * n * n / (1.0 + theta[1] * n * n), 0.0});
-    } else {
-      columns.shares.push_back({i, 1.0, 0.0});
     }
-    const Damping kind = damping_kind();
-    if (kind == Damping::kEach) columns.shares.push_back({first + i, 0.0, 1.0});
-    if (kind == Damping::kFactor || kind == Damping::kPower) {
-      columns.shares.push_back({first, 0.0, 1.0});
-    }
-    if (kind == Damping::kPower) columns.shares.push_back({first + 1, 0.0, std::log(n)});
+  }
+  if (held.ratio(mode)) return;
+  const Damping kind = damping_kind();
+  if (kind == Damping::kEach) columns.shares.push_back({first + mode, 0.0, 1.0});
+  if (kind == Damping::kFactor || kind == Damping::kPower) {
+    columns.shares.push_back({first, 0.0, 1.0});
+  }
+  if (kind == Damping::kPower) columns.shares.push_back({first + 1, 0.0, std::log(n)});
+}
+
+LikelihoodColumns StringUnknowns::columns(const Eigen::VectorXd& theta, std::size_t record) const {
+  LikelihoodColumns columns{.count = static_cast<std::size_t>(size()), .share_begin = {0}};
+  if (!held(contact(), record)) columns.contact = static_cast<std::size_t>(contact());
+  for (std::size_t i = 0; i < modes(); ++i) {
+    add_shares(i, theta, columns);
     columns.share_begin.push_back(columns.shares.size());
   }
   const auto place = [this](std::size_t which) {

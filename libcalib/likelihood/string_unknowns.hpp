@@ -29,6 +29,7 @@ struct UnknownsOptions {
   UnknownOption gain{.value = 1.0};  ///< of the sensor at x = L over that at x = 0 [1]
   UnknownOption delay;               ///< [s]
   UnknownOption corner;              ///< [Hz]
+  std::vector<FixedParameter> fixed;
   std::vector<ParameterPrior> priors;
   std::vector<PriorCorrelation> correlations;
   void visit(OptionVisitor& visitor);
@@ -62,16 +63,22 @@ class StringUnknowns {
   Eigen::Index sensor(std::size_t which) const;
   std::size_t modes() const { return reference_.basis.size(); }
   Eigen::VectorXd start() const;
+  /// Whether unknown i keeps its start exactly; of a further record x_c alone is its own.
+  bool held(Eigen::Index i, std::size_t record = 0) const;
+  Eigen::Index held_count() const;
+  /// Zero where an unknown is held.
+  void clear_held(Eigen::MatrixXd& covariance) const;
   /// f_0 at θ, with the law [Hz].
   double fundamental(const Eigen::VectorXd& theta) const;
-  /// Geometric mean of ζ_n over that of the reference.
+  /// Geometric mean of ζ_n over that of the reference, those aside that are held.
   double damping_factor(const Eigen::VectorXd& theta) const;
   /// Its standard deviation, relative.
   double damping_deviation(const Eigen::MatrixXd& covariance) const;
   /// False where the law, the contact, damping or sensors leave what a string can be.
   bool admits(const Eigen::VectorXd& theta) const;
   ModelPoint model(const Eigen::VectorXd& theta) const;
-  LikelihoodColumns columns(const Eigen::VectorXd& theta) const;
+  /// None of what is held.
+  LikelihoodColumns columns(const Eigen::VectorXd& theta, std::size_t record = 0) const;
   /// Coordinate of a prior (StatedPriors), linear about θ in z = (θ, ln f_0, B), the last two those
   /// of the law where every frequency is free; none where nothing of θ moves it.
   std::optional<LinearForm> coordinate(const UnknownName& name, const Eigen::VectorXd& theta) const;
@@ -83,6 +90,8 @@ class StringUnknowns {
   /// else is stated of it.
   void state_damping_ratios(PriorEquations& equations) const;
   Eigen::VectorXd log_frequencies() const;  ///< ln f_n of the reference
+  /// Holds what is held, the law's f_0 and B among it.
+  void hold(PriorEquations& equations) const;
 
  private:
   enum class Damping { kFixed, kFactor, kPower, kEach };
@@ -96,6 +105,8 @@ class StringUnknowns {
   Eigen::Index sensor_count() const;
   double sensor_change(std::size_t which, const Eigen::VectorXd& theta) const;
   double damping_change(std::size_t mode, const Eigen::VectorXd& theta) const;
+  bool all_ratios_held() const;
+  void add_shares(std::size_t mode, const Eigen::VectorXd& theta, LikelihoodColumns& columns) const;
 
   ModelPoint reference_;
   UnknownsOptions options_;

@@ -46,6 +46,8 @@ void UnknownsOptions::visit(OptionVisitor& visitor) {
                  .meaning = "corner of a high-pass of the sensor at x = L that the other has not",
                  .unit = "Hz"},
                 corner, Range::non_negative());
+  ListOf<FixedParameter> fixed_slot(fixed);
+  visitor.list({.key = "fixed", .meaning = "parameters that are held at a value"}, fixed_slot);
   ListOf<ParameterPrior> prior_slot(priors);
   visitor.list({.key = "priors", .meaning = "Gaussian priors of single parameters"}, prior_slot);
   ListOf<PriorCorrelation> correlation_slot(correlations);
