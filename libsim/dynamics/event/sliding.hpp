@@ -144,12 +144,14 @@ class Sliding {
     return steepest * step > 2.0 * slope_number_ * model_.effective_mass();
   }
 
-  // The powers of the force do not fall fast enough for the polynomial to stand for it.
+  // The powers of the force do not fall fast enough for the polynomial to stand for it. Below 1e-12
+  // of the force they are the rounding of its values at the nodes, whatever the speed.
   bool unresolved(const NodeValues& values, const NodeVector& powers, double step) const {
     double speed = 0.0;
     for (int i = 0; i < nodes(); ++i) speed = std::max(speed, values.speed[i]);
     const double tail = std::abs(powers[static_cast<std::size_t>(nodes() - 1)]);
-    return tail * step > longest_tail_ * (speed + std::abs(drive_.velocity));
+    return tail * step > longest_tail_ * (speed + std::abs(drive_.velocity)) &&
+           tail > 1e-12 * friction_;
   }
 
   // `length`: of the step, in grid steps.

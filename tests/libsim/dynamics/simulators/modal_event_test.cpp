@@ -325,6 +325,19 @@ TEST(ModalEvent, HugeAndTinyInputsEndInAnAnswerOrARefusal) {
   }
 }
 
+// Speeds far below the rounding of the force's values leave nothing to resolve.
+TEST(ModalEvent, ABowOfDenormalSpeedHasNoTailToRefine) {
+  Scene scene = paper_scene();
+  scene.bow.velocity = 1e-310;
+  for (const double step : {1e-7, 1e-6, 1e-4}) {
+    scene.duration = 1000.0 * step;
+    const Simulation run = run_with(scene, {}, 1.0 / step);
+    EXPECT_FALSE(run.diverged_at) << step << ": " << run.explanation;
+    const Simulation free = run_with(scene, {.tail_ratio = 1e3}, 1.0 / step);
+    EXPECT_EQ(run.refined_steps, free.refined_steps) << step;
+  }
+}
+
 TEST(ModalEvent, RefusesOptionsOutOfRange) {
   EXPECT_THROW(ModalEvent({.nodes = 6}), InvalidInput);
   EXPECT_THROW(ModalEvent({.slope_number = 2.0}), InvalidInput);
