@@ -225,18 +225,19 @@ void SubtractDecays(const WhitenedRecord& record, std::size_t block_index, const
 }
 
 void FillDecayColumns(const WhitenedRecord& record, std::size_t block_index,
-                      std::span<const LikelihoodMode> modes, const LikelihoodBlock& block,
-                      double* columns) {
+                      std::span<const LikelihoodMode> modes, std::span<const std::size_t> list,
+                      const LikelihoodBlock& block, double* columns) {
   const Places bins = BinsOf(record, block_index);
   for (std::size_t k = 0; k < kBins; k += hn::Lanes(D())) {
     const C delay = bins.Delay(k);
     const C odd = Load(block.odd, k);
     const C even = Load(block.even, k);
-    for (std::size_t n = 0; n < modes.size(); ++n) {
-      const Decays decays = DecaysAt(modes[n].pole, delay);
-      const C factor = modes[n].even ? even : odd;
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      const LikelihoodMode& mode = modes[list[i]];
+      const Decays decays = DecaysAt(mode.pole, delay);
+      const C factor = mode.even ? even : odd;
       const C difference = Mul(factor, Sub(decays.u, decays.u_conj));
-      double* column = columns + 2 * n * kColumnLength;
+      double* column = columns + 2 * i * kColumnLength;
       StoreColumn(Mul(factor, Add(decays.u, decays.u_conj)), column, k);
       StoreColumn(Make(hn::Neg(difference.im), difference.re), column + kColumnLength, k);
     }
@@ -282,9 +283,9 @@ void fill_decays(const WhitenedRecord& record, std::size_t block_index, const Mo
 }
 
 void fill_decay_columns(const WhitenedRecord& record, std::size_t block_index,
-                        std::span<const LikelihoodMode> modes, const LikelihoodBlock& block,
-                        double* columns) {
-  HWY_DYNAMIC_DISPATCH(FillDecayColumns)(record, block_index, modes, block, columns);
+                        std::span<const LikelihoodMode> modes, std::span<const std::size_t> list,
+                        const LikelihoodBlock& block, double* columns) {
+  HWY_DYNAMIC_DISPATCH(FillDecayColumns)(record, block_index, modes, list, block, columns);
 }
 
 void subtract_decays(const WhitenedRecord& record, std::size_t block_index, const ModeSplit& split,

@@ -46,10 +46,10 @@ void collect_decay_products(const double* sums, std::size_t modes, std::size_t c
 /// Fills odd_decay and even_decay of the block.
 void fill_decays(const WhitenedRecord& record, std::size_t block_index, const ModeSplit& split,
                  std::span<const Complex> amplitudes, LikelihoodBlock& block);
-/// Fills the columns x_n and x'_n of every mode in turn.
+/// Fills the columns x_n and x'_n of the modes in a list in turn.
 void fill_decay_columns(const WhitenedRecord& record, std::size_t block_index,
-                        std::span<const LikelihoodMode> modes, const LikelihoodBlock& block,
-                        double* columns);
+                        std::span<const LikelihoodMode> modes, std::span<const std::size_t> list,
+                        const LikelihoodBlock& block, double* columns);
 /// column −= Σ_n κ_n (a_n U_n + conj(a_n) U'_n).
 void subtract_decays(const WhitenedRecord& record, std::size_t block_index, const ModeSplit& split,
                      std::span<const Complex> amplitudes, const LikelihoodBlock& block,

@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "libcalib/likelihood/column_products.hpp"
+#include "libcalib/likelihood/far_products.hpp"
 #include "libcalib/likelihood/projected_likelihood.hpp"
 #include "libsim/base/task_loop.hpp"
 
@@ -75,8 +76,8 @@ struct LikelihoodEvaluation::Columns {
 
 // Sums over the blocks of a chunk.
 struct LikelihoodEvaluation::Products {
-  RowMatrix own, mixed, plain;
-  AlignedVector decays, state;
+  RowMatrix own, plain;
+  AlignedVector mixed, decays, state;
 };
 
 struct LikelihoodEvaluation::Slopes {
@@ -94,11 +95,11 @@ LikelihoodEvaluation::LikelihoodEvaluation(const WhitenedRecord& record, const M
       plain_(plain_transients(record, point.sensors)),
       end_state_(record, modes_, plain_.size()),
       plain_width_(tiled(plain_.size())),
-      state_width_(tiled(end_state_.size())),
       arrays_(std::move(spare())) {
   if (arrays_.blocks.size() < record.blocks()) arrays_.blocks.resize(record.blocks());
   blocks_ = std::span(arrays_.blocks).first(record.blocks());
   arrays_.first_columns.resize((1 + plain_width_) * kColumnLength * record.blocks());
+  for (std::size_t n = 0; n < modes_.size(); ++n) all_modes_.push_back(n);
   if (!sensors_.alike()) sensor_ = sensor_response(record, sensors_);
   std::vector<EndState::Sums> sums(chunks());
   for_blocks([&](std::size_t chunk, std::size_t b) {
@@ -281,22 +282,50 @@ void LikelihoodEvaluation::fill_columns(std::size_t b, const LikelihoodColumns& 
   }
 }
 
-// All columns of the end state, of one block.
-void LikelihoodEvaluation::fill_state(std::size_t b, AlignedVector& state) {
-  state.resize(state_width_ * kColumnLength);
-  const std::size_t decays = 2 * end_state_.decays();
-  if (decays > 0) fill_decay_columns(*record_, b, modes_, blocks_[b], state.data());
+// Columns of the end state, of one block: decays of the modes in a list, plain transients.
+std::size_t LikelihoodEvaluation::fill_state(std::size_t b, std::span<const std::size_t> list,
+                                             AlignedVector& state) {
+  const std::size_t decays = end_state_.decays() > 0 ? 2 * list.size() : 0;
+  const std::size_t room = tiled(decays + plain_.size()) * kColumnLength;
+  if (state.size() < room) state.resize(room);
+  if (decays > 0) fill_decay_columns(*record_, b, modes_, list, blocks_[b], state.data());
   std::copy_n(plain_of(b), plain_.size() * kColumnLength,
               state.begin() + static_cast<long>(decays * kColumnLength));
+  return decays;
+}
+
+// With the columns of the end state, which are rows here: those of near modes and plain transients
+// in the bins, those of far modes at the nodes.
+void LikelihoodEvaluation::add_state_products(std::size_t b, const LikelihoodColumns& columns,
+                                              double* jacobian, Products& sums) {
+  const ModeSplit split = splits_.of(b);
+  const bool nodes = end_state_.decays() > 0 && split.has_far() && columns.count <= kFarColumns;
+  const std::span<const std::size_t> list = nodes ? split.all_near() : all_modes_;
+  const std::size_t decays = fill_state(b, list, sums.state);
+  const std::size_t rows = decays + plain_.size();
+  const std::size_t stride = product_stride(columns.count);
+  RowMatrix found = RowMatrix::Zero(static_cast<Index>(tiled(rows)), static_cast<Index>(stride));
+  add_products(sums.state.data(), tiled(rows), jacobian, tiled(columns.count), false, found.data(),
+               stride);
+  for (std::size_t i = 0; i < rows; ++i) {
+    const std::size_t row =
+        i < decays ? 2 * list[i / 2] + i % 2 : 2 * end_state_.decays() + i - decays;
+    for (std::size_t j = 0; j < columns.count; ++j) {
+      sums.mixed[row * stride + j] += found(static_cast<Index>(i), static_cast<Index>(j));
+    }
+  }
+  if (!nodes) return;
+  ColumnTask task = column_task(columns);
+  task.jacobian = jacobian;
+  add_far_products(*record_, b, split, blocks_[b], task, sums.mixed.data());
 }
 
 // With the columns of the end state.
-void LikelihoodEvaluation::add_cross_products(std::size_t b, const Columns& work,
-                                              const double* jacobian, Products& sums) {
+void LikelihoodEvaluation::add_cross_products(std::size_t b, const LikelihoodColumns& columns,
+                                              const Columns& work, double* jacobian,
+                                              Products& sums) {
   if (!work.shared()) {
-    fill_state(b, sums.state);
-    add_products(jacobian, work.width, sums.state.data(), state_width_, false, sums.mixed.data(),
-                 state_width_);
+    add_state_products(b, columns, jacobian, sums);
     return;
   }
   if (end_state_.decays() > 0) {
@@ -312,7 +341,10 @@ Eigen::MatrixXd LikelihoodEvaluation::cross_products(const Columns& work,
   const auto n = static_cast<Index>(work.count);
   const auto size = static_cast<Index>(end_state_.size());
   const auto plain = static_cast<Index>(plain_.size());
-  if (!work.shared()) return sums.mixed.topLeftCorner(n, size).transpose();
+  if (!work.shared()) {
+    const auto stride = static_cast<Index>(product_stride(work.count));
+    return Eigen::Map<const RowMatrix>(sums.mixed.data(), size, stride).leftCols(n);
+  }
   RowMatrix cross(size, n);
   if (end_state_.decays() > 0) {
     collect_decay_products(sums.decays.data(), end_state_.decays(), work.count, cross.data());
@@ -335,7 +367,7 @@ LikelihoodPoint LikelihoodEvaluation::differentiate(const LikelihoodColumns& col
       part.decays.resize(end_state_.decays() * 2 * work.count * kSumLanes);
       part.plain = RowMatrix::Zero(width, static_cast<Index>(plain_width_));
     } else {
-      part.mixed = RowMatrix::Zero(width, static_cast<Index>(state_width_));
+      part.mixed.resize(end_state_.size() * product_stride(work.count));
     }
   }
   for_blocks([&](std::size_t chunk, std::size_t b) {
@@ -343,13 +375,13 @@ LikelihoodPoint LikelihoodEvaluation::differentiate(const LikelihoodColumns& col
     fill_columns(b, columns, jacobian);
     add_products(jacobian, work.width, jacobian, work.width, true, parts[chunk].own.data(),
                  work.width);
-    if (work.count > 0) add_cross_products(b, work, jacobian, parts[chunk]);
+    if (work.count > 0) add_cross_products(b, columns, work, jacobian, parts[chunk]);
   });
   Products sum = std::move(parts[0]);
   for (std::size_t c = 1; c < parts.size(); ++c) {
     sum.own += parts[c].own;
-    sum.mixed += parts[c].mixed;
     sum.plain += parts[c].plain;
+    for (std::size_t i = 0; i < sum.mixed.size(); ++i) sum.mixed[i] += parts[c].mixed[i];
     for (std::size_t i = 0; i < sum.decays.size(); ++i) sum.decays[i] += parts[c].decays[i];
   }
   const Eigen::MatrixXd products = symmetric(sum.own, work.count + 1);
@@ -368,7 +400,7 @@ void LikelihoodEvaluation::project_block(std::size_t b, const Eigen::MatrixXd& f
                                          AlignedVector& state) {
   double* jacobian = work.of(0, b);
   if (!work.shared()) {
-    fill_state(b, state);
+    fill_state(b, all_modes_, state);
     subtract_columns(state.data(), end_state_.size(), factors.data(), work.width, jacobian);
     return;
   }

@@ -66,14 +66,16 @@ class LikelihoodEvaluation {
   ColumnTask column_task(const LikelihoodColumns& columns) const;
   void finish(std::size_t b, const std::array<double*, 3>& sensors);
   void fill_columns(std::size_t b, const LikelihoodColumns& columns, double* jacobian);
-  void add_cross_products(std::size_t b, const Columns& work, const double* jacobian,
+  void add_cross_products(std::size_t b, const LikelihoodColumns& columns, const Columns& work,
+                          double* jacobian, Products& sums);
+  void add_state_products(std::size_t b, const LikelihoodColumns& columns, double* jacobian,
                           Products& sums);
   Eigen::MatrixXd cross_products(const Columns& work, const Products& sums) const;
   void project_columns(Columns& work, const Eigen::MatrixXd& fit, const LikelihoodOutputs& outputs,
                        LikelihoodPoint& point);
   void project_block(std::size_t b, const Eigen::MatrixXd& fit, const RowMatrix& factors,
                      Columns& work, AlignedVector& state);
-  void fill_state(std::size_t b, AlignedVector& state);
+  std::size_t fill_state(std::size_t b, std::span<const std::size_t> list, AlignedVector& state);
   void give(const LikelihoodOutputs& outputs);
 
   const WhitenedRecord* record_;
@@ -82,7 +84,8 @@ class LikelihoodEvaluation {
   ModeSplits splits_;
   std::vector<PlainTransient> plain_;
   EndState end_state_;
-  std::size_t plain_width_, state_width_;
+  std::size_t plain_width_;
+  std::vector<std::size_t> all_modes_;
   Arrays arrays_;
   std::span<LikelihoodBlock> blocks_;
   std::optional<PlanarVector> sensor_;              // where the sensors differ

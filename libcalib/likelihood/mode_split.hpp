@@ -20,6 +20,9 @@ struct ModeSplit {
   std::span<const LikelihoodMode> modes;
   std::array<std::span<const std::size_t>, 2> near, far;
 
+  std::size_t near_count() const { return near[0].size() + near[1].size(); }
+  /// Near modes of both parities: the lists lie side by side.
+  std::span<const std::size_t> all_near() const { return {near[0].data(), near_count()}; }
   bool has_far() const { return !far[0].empty() || !far[1].empty(); }
 };
 

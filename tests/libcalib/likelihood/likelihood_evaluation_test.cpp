@@ -25,6 +25,13 @@ class OneSecond : public ::testing::Test {
   static StringUnknowns law(const UnknownsOptions& options = {}) {
     return StringUnknowns::law(bowed.truth, 196.0, 1.39e-4, options);
   }
+  static StringUnknowns every_unknown() {
+    UnknownsOptions options{.damping = "each"};
+    options.gain.free = options.delay.free = options.corner.free = true;
+    options.delay.value = 2e-6;
+    options.corner.value = 3.0;
+    return StringUnknowns::frequencies(bowed.truth, options);
+  }
   // Some standard deviations from the truth, so that the slopes are not those of noise alone.
   static ModelPoint beside(const StringUnknowns& unknowns) {
     Eigen::VectorXd theta = unknowns.start();
@@ -64,7 +71,8 @@ TEST_F(OneSecond, FarModesAtNodesChangeNothing) {
   for (const double noise : {0.001, 0.1}) {
     for (const double sigma : {0.0, 20.0}) {
       const WhitenedRecord whitened = record(sigma, noise);
-      for (const StringUnknowns& unknowns : {law(), StringUnknowns::frequencies(bowed.truth)}) {
+      for (const StringUnknowns& unknowns :
+           {law(), StringUnknowns::frequencies(bowed.truth), every_unknown()}) {
         const ModelPoint point = beside(unknowns);
         const LikelihoodColumns columns = unknowns.columns(unknowns.start());
         const LikelihoodOutputs outputs{.twice_weighted = true};
