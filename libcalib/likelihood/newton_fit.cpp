@@ -35,11 +35,29 @@ Objective2 with_prior(const LikelihoodPoint& point, const Eigen::VectorXd& theta
   return {point.cost + 0.5 * change.dot(pull), 2.0 * point.slope + pull};
 }
 
-// The trial's cost and slope, and its information where that of the last point is not good enough.
-LikelihoodPoint try_point(const FitTarget& target, const Eigen::VectorXd& trial, bool fresh,
-                          NewtonFit& fit) {
+struct Step {
+  Eigen::VectorXd move;
+  double decrease = 0.0;
+};
+
+Step newton_step(const NewtonFit& fit, const Objective2& at, double damping,
+                 const NewtonOptions& options) {
+  Eigen::MatrixXd hessian = debiased_hessian(fit.point.information, options);
+  const Eigen::VectorXd scale = hessian.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  hessian = scale.asDiagonal() * hessian * scale.asDiagonal();
+  hessian.diagonal().array() += damping + 1e-12;
+  Step step{-(scale.asDiagonal() * hessian.ldlt().solve(scale.asDiagonal() * at.gradient))};
+  step.decrease = -step.move.dot(at.gradient);
+  return step;
+}
+
+// A long step is likely to be taken and the information needed where it ends.
+constexpr double kLong = 1.0;
+
+LikelihoodPoint try_point(const FitTarget& target, const Eigen::VectorXd& trial,
+                          bool with_information, NewtonFit& fit) {
   ++fit.evaluations;
-  if (fresh || !target.slope) return target.evaluate(trial);
+  if (with_information || !target.slope) return target.evaluate(trial);
   ++fit.slopes;
   return target.slope(trial);
 }
@@ -79,15 +97,16 @@ NewtonFit newton_fit(const FitTarget& target, const Eigen::VectorXd& start,
   Objective2 at = with_prior(fit.point, start, prior, options.prior_mean);
   fit.objective = at.value;
   double damping = 0.0;
-  double moved = 0.0;  // since the information was found
-  for (std::size_t step = 0; step < options.steps; ++step) {
-    Eigen::MatrixXd hessian = debiased_hessian(fit.point.information, options);
-    const Eigen::VectorXd scale = hessian.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-    hessian = scale.asDiagonal() * hessian * scale.asDiagonal();
-    hessian.diagonal().array() += damping + 1e-12;
-    Eigen::VectorXd move =
-        -(scale.asDiagonal() * hessian.ldlt().solve(scale.asDiagonal() * at.gradient));
-    const double decrease = -move.dot(at.gradient);
+  bool stale = false;  // the information is that of the point before
+  for (std::size_t count = 0; count < options.steps; ++count) {
+    Step step = newton_step(fit, at, damping, options);
+    // Half the tolerance: the information changes less than that in a step.
+    if (stale && !(step.decrease < 0.5 * options.tolerance && damping < 0.1)) {
+      fit.point.information = try_point(target, fit.theta, true, fit).information;
+      stale = false;
+      step = newton_step(fit, at, damping, options);
+    }
+    auto& [move, decrease] = step;
     if (decrease < options.tolerance && damping < 0.1) {
       fit.converged = true;
       break;
@@ -99,14 +118,13 @@ NewtonFit newton_fit(const FitTarget& target, const Eigen::VectorXd& start,
     const Eigen::VectorXd trial = fit.theta + move;
     bool better = false;
     if (target.admits(trial)) {
-      const bool fresh = moved + decrease > kFresh;
-      LikelihoodPoint point = try_point(target, trial, fresh, fit);
+      LikelihoodPoint point = try_point(target, trial, damping == 0.0 && decrease > kLong, fit);
       const Objective2 there = with_prior(point, trial, prior, options.prior_mean);
       // The debiased step may pass the minimum of this draw by a little of its noise.
       better = there.value < at.value + 0.5 * options.tolerance;
       if (better) {
-        moved = point.information.size() > 0 ? 0.0 : moved + decrease;
-        if (point.information.size() == 0) point.information = std::move(fit.point.information);
+        stale = point.information.size() == 0;
+        if (stale) point.information = std::move(fit.point.information);
         fit.theta = trial;
         fit.point = std::move(point);
         at = there;

@@ -19,8 +19,6 @@ struct NewtonOptions {
   Eigen::VectorXd prior_mean;  ///< θ_0; empty: 0
 };
 
-inline constexpr double kFresh = 10.0;
-
 /// What a fit evaluates.
 struct FitTarget {
   std::function<LikelihoodPoint(const Eigen::VectorXd&)> evaluate;
@@ -33,14 +31,14 @@ struct FitTarget {
 struct NewtonFit {
   Eigen::VectorXd theta;
   double objective = std::numeric_limits<double>::infinity();  ///< Σ w|e|² + ½ (θ − θ_0)ᵀQ(θ − θ_0)
-  LikelihoodPoint point;  ///< its information may be that of a point a few deviations before
+  LikelihoodPoint point;  ///< its information may be that of the point before
   std::size_t evaluations = 0;
   std::size_t slopes = 0;  ///< those of cost and slope alone
   bool converged = false;
 };
 
-/// Minimizes Σ w|e|² + ½ (θ − θ_0)ᵀQ(θ − θ_0) from `start`, Hessian 2(JᵀWJ − N̄) + Q. JᵀWJ changes
-/// slowly: it is kept until the steps taken since come to kFresh standard deviations squared.
+/// Minimizes Σ w|e|² + ½ (θ − θ_0)ᵀQ(θ − θ_0) from `start`, Hessian 2(JᵀWJ − N̄) + Q. JᵀWJ is
+/// found where a step starts: not where one is refused, nor where the last one ends.
 NewtonFit newton_fit(const FitTarget& target, const Eigen::VectorXd& start,
                      const NewtonOptions& options);
 /// The same for one record.
