@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "libcalib/likelihood/newton_fit.hpp"
 #include "libcalib/likelihood/string_unknowns.hpp"
 #include "libsim/base/task_loop.hpp"
 #include "tests/libcalib/likelihood/bowed_case.hpp"
@@ -104,6 +105,43 @@ TEST_F(OneSecond, SlopeAloneIsThatOfTheColumns) {
       expect_near(alone, full, 1e-12);
     }
   }
+}
+
+// Information in refused trials and where the last step ends decides nothing.
+TEST_F(OneSecond, NewtonStepsWithoutInformationEndAtTheSameOptimum) {
+  std::size_t slopes = 0;
+  for (const double noise : {0.001, 0.01, 0.1}) {
+    const ProjectedLikelihood likelihood(record(0.0, noise));
+    for (const StringUnknowns& unknowns : {law(), StringUnknowns::frequencies(bowed.truth)}) {
+      Eigen::VectorXd start = unknowns.start();
+      start[0] += 1e-4 * noise;
+      start[unknowns.contact()] += 1e-4 * noise;
+      NewtonOptions options{.steps = 20, .tolerance = 1e-4, .frequency_cap = 1e-3};
+      if (!unknowns.is_law()) {
+        options.prior = Eigen::VectorXd::Constant(50, 1.0 / (2e-3 * 2e-3)).asDiagonal();
+      }
+      FitTarget everywhere{
+          .evaluate =
+              [&](const Eigen::VectorXd& theta) {
+                return likelihood.evaluate(unknowns.model(theta), unknowns.columns(theta));
+              },
+          .admits = [&](const Eigen::VectorXd& theta) { return unknowns.admits(theta); },
+          .capped = unknowns.is_law() ? 0 : 50};
+      const NewtonFit full = newton_fit(everywhere, start, options);
+      const NewtonFit lazy = newton_fit(likelihood, unknowns, start, options);
+      EXPECT_TRUE(full.converged);
+      EXPECT_TRUE(lazy.converged);
+      slopes += lazy.slopes;
+      const LikelihoodPoint at = likelihood.evaluate(
+          unknowns.model(full.theta), unknowns.columns(full.theta), {.twice_weighted = true});
+      const Eigen::VectorXd deviation = fit_covariance(at, options).diagonal().cwiseSqrt();
+      // The decrease left is below half the tolerance in both: 7e-3 each, and convergence is
+      // quadratic, so that the last step leaves less than a seventh of that.
+      const Eigen::VectorXd apart = (full.theta - lazy.theta).cwiseQuotient(deviation);
+      EXPECT_LT(apart.cwiseAbs().maxCoeff(), 1e-3) << noise << ", " << unknowns.size();
+    }
+  }
+  EXPECT_GT(slopes, 0u);
 }
 
 TEST_F(OneSecond, TakesOtherDataOfTheSameModel) {
