@@ -14,6 +14,11 @@ Eigen::MatrixXd padded(const Eigen::MatrixXd& prior, Eigen::Index size) {
   return result;
 }
 
+// The information itself is positive: what is left in any direction is no less than the prior
+// there, save for the scatter of what noise adds. A direction with less than this of it would be
+// said to be worse known than before the record.
+constexpr double kPriorShare = 0.1;
+
 bool positive_definite(const Eigen::MatrixXd& matrix) {
   // Scaled to a unit diagonal, so that units do not decide.
   if ((matrix.diagonal().array() <= 0.0).any()) return false;
@@ -71,7 +76,7 @@ Eigen::MatrixXd debiased_hessian(const Eigen::MatrixXd& information, const Newto
   double share = 1.0;
   for (int i = 0; i < 60; ++i, share *= 0.9) {
     const Eigen::MatrixXd hessian = full - 2.0 * share * options.noise;
-    if (positive_definite(hessian)) return hessian;
+    if (positive_definite(hessian - kPriorShare * prior)) return hessian;
   }
   return full;
 }

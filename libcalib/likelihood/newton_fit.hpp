@@ -45,7 +45,8 @@ NewtonFit newton_fit(const FitTarget& target, const Eigen::VectorXd& start,
 NewtonFit newton_fit(const ProjectedLikelihood& likelihood, const StringUnknowns& unknowns,
                      const Eigen::VectorXd& start, const NewtonOptions& options);
 
-/// 2(JᵀWJ − N̄) + Q, N̄ shrunk by 0.9 as often as it takes to make it positive definite.
+/// 2(JᵀWJ − N̄) + Q, N̄ shrunk by 0.9 as often as it takes to leave 2(JᵀWJ − N̄) + 0.9 Q positive
+/// definite: no direction comes out much worse known than the prior has it.
 Eigen::MatrixXd debiased_hessian(const Eigen::MatrixXd& information, const NewtonOptions& options);
 
 /// H⁻¹(2 JᵀW²J + Q)H⁻¹ of the fit's last point, which must hold `twice_weighted`.

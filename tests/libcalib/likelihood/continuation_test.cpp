@@ -153,6 +153,18 @@ TEST(Continuation, FreesTheModesOfAStringThatLeavesTheLaw) {
   EXPECT_LT(std::abs(result.model.contact - 0.0285), kSix * result.contact_deviation);
 }
 
+TEST(DebiasedHessian, LeavesNoDirectionMuchWorseKnownThanItsPriorHasIt) {
+  // The second direction has less information than noise adds in the mean: the draw's scatter.
+  NewtonOptions options;
+  options.noise = Eigen::Vector2d(0.1, 1.0).asDiagonal();
+  options.prior = Eigen::Vector2d(0.0, 1.0).asDiagonal();
+  const Eigen::MatrixXd information = Eigen::Vector2d(1.0, 0.2).asDiagonal();
+  const Eigen::MatrixXd hessian = debiased_hessian(information, options);
+  // 1.4 − 2·0.9ⁿ falls below 0.1 for n = 4: n = 5 it is.
+  EXPECT_NEAR(hessian(1, 1), 1.4 - 2.0 * std::pow(0.9, 5), 1e-12);
+  EXPECT_NEAR(hessian(0, 0), 2.0 - 0.2 * std::pow(0.9, 5), 1e-12);
+}
+
 TEST(LawWidth, IsThatOfTheScatterBeyondTheErrors) {
   std::vector<double> draw(200);
   fill_standard_normal(StreamKey(1).with("width"), draw);
