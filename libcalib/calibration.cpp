@@ -68,30 +68,66 @@ std::vector<double> frequencies_of(const ModalBasis& basis) {
   return frequencies;
 }
 
-// Law, contacts, damping and sensors before and after.
+// Sensors and damping of one record, `number` behind their names; damping: whether it is wanted.
+void add_values(const RecordValues& values, const UnknownsOptions& unknowns,
+                const std::string& number, bool all, std::vector<CalibratedParameter>& parameters) {
+  const auto wanted = [&](bool free, UnknownKind kind) {
+    return free && (all || unknowns.own(kind));
+  };
+  const auto add = [&](const char* name, const char* unit, double initial, double found,
+                       double deviation) {
+    parameters.push_back({.name = name + number,
+                          .unit = unit,
+                          .initial = initial,
+                          .final = found,
+                          .deviation = deviation});
+  };
+  const auto& sd = values.sensor_deviation;
+  if (wanted(true, UnknownKind::kDampingFactor)) {
+    add("damping", "1", 1.0, values.damping, values.damping_deviation);
+  }
+  if (wanted(unknowns.gain.free, UnknownKind::kGain)) {
+    add("gain", "1", unknowns.gain.value, values.sensors.gain, sd[0]);
+  }
+  if (wanted(unknowns.delay.free, UnknownKind::kDelay)) {
+    add("delay", "s", unknowns.delay.value, values.sensors.delay, sd[1]);
+  }
+  if (wanted(unknowns.corner.free, UnknownKind::kCorner)) {
+    add("corner", "Hz", unknowns.corner.value, 0.5 * values.sensors.corner / std::numbers::pi,
+        sd[2]);
+  }
+}
+
+// Law, contacts, damping and sensors before and after; `records`: null for one stroke.
 std::vector<CalibratedParameter> found_parameters(const ModelPoint& initial,
                                                   const ContinuationResult& found,
-                                                  std::span<const double> further_contacts,
+                                                  const RecordsFit* records,
                                                   const UnknownsOptions& unknowns) {
   const StiffStringFit start = fit_stiff_string(frequencies_of(initial.basis));
+  const auto parameter = [](std::string name, const char* unit, double from, double to,
+                            double deviation) {
+    return CalibratedParameter{.name = std::move(name),
+                               .unit = unit,
+                               .initial = from,
+                               .final = to,
+                               .deviation = deviation};
+  };
   std::vector<CalibratedParameter> parameters = {
-      {"f0", "Hz", start.fundamental, found.law.fundamental},
-      {"B", "1", start.inharmonicity, found.law.inharmonicity},
-      {"x_c", "m", initial.contact, found.model.contact},
-      {"damping", "1", 1.0, found.damping}};
-  for (std::size_t r = 0; r < further_contacts.size(); ++r) {
-    parameters.push_back({fmt::format("x_c {}", r + 2), "m", initial.contact, further_contacts[r]});
-  }
-  const SensorPair& sensors = found.model.sensors;
-  if (unknowns.gain.free) {
-    parameters.push_back({"gain", "1", unknowns.gain.value, sensors.gain});
-  }
-  if (unknowns.delay.free) {
-    parameters.push_back({"delay", "s", unknowns.delay.value, sensors.delay});
-  }
-  if (unknowns.corner.free) {
-    parameters.push_back(
-        {"corner", "Hz", unknowns.corner.value, 0.5 * sensors.corner / std::numbers::pi});
+      parameter("f0", "Hz", start.fundamental, found.law.fundamental, found.law.deviation[0]),
+      parameter("B", "1", start.inharmonicity, found.law.inharmonicity, found.law.deviation[1]),
+      parameter("x_c", "m", initial.contact, found.model.contact, found.contact_deviation)};
+  add_values({.sensors = found.model.sensors,
+              .sensor_deviation = found.sensor_deviation,
+              .damping = found.damping,
+              .damping_deviation = found.damping_deviation},
+             unknowns, "", true, parameters);
+  for (std::size_t r = 1; records && r < records->values.size(); ++r) {
+    const std::string number = fmt::format(" {}", r + 1);
+    if (r < records->contacts.size() && unknowns.own(UnknownKind::kContact)) {
+      parameters.push_back(parameter("x_c" + number, "m", initial.contact, records->contacts[r],
+                                     records->contact_deviations[r]));
+    }
+    add_values(records->values[r], unknowns, number, false, parameters);
   }
   return parameters;
 }
@@ -137,15 +173,14 @@ CalibrationResult calibrate_to_the_bound(const ModelPoint& initial,
   if (!free.contact) continuation.unknowns.fixed.push_back({.parameter = "x_c"});
   const double begin = clock();
   CalibrationResult result;
-  std::vector<double> further_contacts;
+  std::optional<RecordsFit> fit;
   if (records.size() == 1 && plucks.empty()) {
     result.continuation = calibrate_by_continuation(initial, records.front(), continuation);
     result.contact_deviations = {result.continuation->contact_deviation};
   } else {
-    const RecordsFit fit = calibrate_records(initial, records, continuation, plucks);
-    result.continuation = as_continuation(fit);
-    result.contact_deviations = fit.contact_deviations;
-    further_contacts.assign(fit.contacts.begin() + 1, fit.contacts.end());
+    fit = calibrate_records(initial, records, continuation, plucks);
+    result.continuation = as_continuation(*fit);
+    result.contact_deviations = fit->contact_deviations;
   }
   const ContinuationResult& found = *result.continuation;
   result.search.seconds = clock() - begin;
@@ -153,7 +188,8 @@ CalibrationResult calibrate_to_the_bound(const ModelPoint& initial,
   result.search.value = found.chi2;
   result.search.stop = found.right ? StopReason::kConverged : StopReason::kNoProgress;
   result.model = found.model;
-  result.parameters = found_parameters(initial, found, further_contacts, continuation.unknowns);
+  result.parameters =
+      found_parameters(initial, found, fit ? &*fit : nullptr, continuation.unknowns);
   result.modes = found_modes(initial, found, options.excitation_threshold);
   return result;
 }

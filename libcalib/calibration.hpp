@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -39,6 +40,8 @@ struct CalibratedParameter {
   double initial = 0.0;
   double final = 0.0;
   bool at_bound = false;  ///< the search ended on a bound: the optimum may lie beyond
+  /// Standard deviation, with a continuation; NaN: not known.
+  double deviation = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// One mode before and after.
@@ -73,8 +76,8 @@ CalibrationResult calibrate(const ModelPoint& initial, const CalibrationData& da
                             const CalibrationOptions& options,
                             SecondsClock clock = steady_seconds());
 
-/// Several records of one string, each with a contact point of its own (calibrate_records): "x_c
-/// 2", "x_c 3", … follow among the parameters. More than one record needs `continuation`.
+/// Several records of one string (calibrate_records): what each has for itself follows among the
+/// parameters with the number of the record, "x_c 2", "gain 3". More than one needs `continuation`.
 CalibrationResult calibrate(const ModelPoint& initial, std::span<const CalibrationData> records,
                             const CalibrationOptions& options,
                             SecondsClock clock = steady_seconds());

@@ -138,8 +138,8 @@ void run(int draws) {
     }
     errors(i, 50) = fit.contacts[0] - truth.contact;
     reported(i, 50) = fit.contact_deviations[0];
-    errors(i, 51) = std::log(fit.damping);
-    reported(i, 51) = fit.damping_deviation;
+    errors(i, 51) = std::log(fit.values[0].damping);
+    reported(i, 51) = fit.values[0].damping_deviation;
     chi2 += fit.chi2 / draws;
     right += fit.right ? 1 : 0;
   }

@@ -33,8 +33,13 @@ std::vector<Finding> CalibrateExperiment::lint() const {
     const std::size_t strokes =
         1 + options_.further.contacts.size() + options_.further.files.size();
     lint_making(
-        "calibration.continuation.unknowns.priors",
-        [&] { require_priors(calibration.continuation.unknowns, modes, strokes); }, findings);
+        "calibration.continuation.unknowns",
+        [&] {
+          const UnknownsOptions& unknowns = calibration.continuation.unknowns;
+          require_priors(unknowns, modes, strokes + options_.plucks.size());
+          require_contacts(unknowns, strokes);
+        },
+        findings);
   }
   lint_making(
       "calibration.parameters",

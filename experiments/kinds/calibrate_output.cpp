@@ -45,7 +45,8 @@ std::string calibration_json(const CalibrationOutcome& outcome) {
                           {"unit", parameter.unit},
                           {"initial", parameter.initial},
                           {"final", parameter.final},
-                          {"at_bound", parameter.at_bound}});
+                          {"at_bound", parameter.at_bound},
+                          {"sd", number_or_null(parameter.deviation)}});
   }
   Json trace = Json::array();
   for (const TracePoint& point : search.trace) {

@@ -97,8 +97,10 @@ std::string verdict_lines(const ContinuationResult& found) {
   for (std::size_t n = 0; found.frequencies_free && n < found.modes.size(); ++n) {
     const ModeVerdict& mode = found.modes[n];
     if (mode.source == ModeSource::kIdentified) continue;
-    text += fmt::format("mode {}: {} ({}), relative sd {:.2g}\n", n + 1, name_of(mode.source),
-                        name_of(mode.reason), mode.deviation);
+    const std::string reason =
+        mode.reason == WeakReason::kNone ? "" : fmt::format(" ({})", name_of(mode.reason));
+    text += fmt::format("mode {}: {}{}, relative sd {:.2g}\n", n + 1, name_of(mode.source), reason,
+                        mode.deviation);
   }
   return text;
 }
@@ -131,8 +133,10 @@ void add_summary(const CalibrationOutcome& outcome, StudyResult& result) {
   }
   for (const CalibratedParameter& parameter : outcome.result.parameters) {
     if (parameter.name.starts_with("f_")) continue;
-    result.summary += fmt::format("{}: {:.8g} -> {:.8g} {}\n", parameter.name, parameter.initial,
+    result.summary += fmt::format("{}: {:.8g} -> {:.8g} {}", parameter.name, parameter.initial,
                                   parameter.final, parameter.unit);
+    result.summary +=
+        std::isnan(parameter.deviation) ? "\n" : fmt::format(", sd {:.3g}\n", parameter.deviation);
   }
   if (outcome.result.continuation) result.summary += verdict_lines(*outcome.result.continuation);
   result.summary += stroke_lines(outcome);

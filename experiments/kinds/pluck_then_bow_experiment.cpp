@@ -103,6 +103,11 @@ std::vector<Finding> PluckThenBowExperiment::lint() const {
       "contact.objective", [&] { options_.contact.objective.make(); }, findings);
   lint_making(
       "pluck.initial", [&] { options_.pluck.start.make(); }, findings);
+  const auto modes = static_cast<std::size_t>(options_.truth.scene.string.modes);
+  if (options_.has_bound) {
+    lint_making(
+        "bound.unknowns", [&] { require_priors(options_.bound.unknowns, modes); }, findings);
+  }
   if (options_.pluck.start.selected() == "rest") {
     findings.push_back({"pluck.initial", "a string at rest has no free decay: pluck it"});
   }

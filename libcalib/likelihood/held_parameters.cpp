@@ -49,7 +49,7 @@ void require_fixed(const UnknownsOptions& options, std::size_t modes, std::size_
     require_fixable(fixed.parameter, name.kind);
     MODCAL_REQUIRE(name.record < records, "\"{}\" is fixed: there are {} records", fixed.parameter,
                    records);
-    MODCAL_REQUIRE(name.record == 0 || name.kind == UnknownKind::kContact,
+    MODCAL_REQUIRE(name.record == 0 || options.own(name.kind),
                    "\"{}\" is fixed: all records share it, state it without a number",
                    fixed.parameter);
     MODCAL_REQUIRE(std::find(names.begin(), names.end(), name) == names.end(),
@@ -94,6 +94,7 @@ HeldParameters held_parameters(const UnknownsOptions& options, std::size_t modes
     }
     if (name.kind == UnknownKind::kContact) {
       held.contacts[name.record] = initial_or(fixed.value, initial_contact);
+      if (!options.own(name.kind)) held.contacts.assign(records, held.contacts[name.record]);
     }
     if (name.kind == UnknownKind::kFrequency) held.frequencies[name.mode] = true;
     if (name.kind == UnknownKind::kDampingRatio) held.ratios[name.mode] = true;

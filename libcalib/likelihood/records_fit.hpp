@@ -16,6 +16,14 @@ struct PluckRecord {
                               std::numeric_limits<double>::quiet_NaN()};
 };
 
+/// Sensors and damping as one record has them, its own or shared.
+struct RecordValues {
+  SensorPair sensors;
+  std::array<double, 3> sensor_deviation{};  ///< of gain, delay [s], corner [Hz]; 0: not free
+  double damping = 1.0;  ///< geometric mean of ζ_n over that of the initial ones
+  double damping_deviation = 0.0;
+};
+
 struct RecordsFit {
   ModelPoint model;              ///< shared; the contact of the first record
   std::vector<double> contacts;  ///< x_c of every stroke [m]
@@ -25,12 +33,10 @@ struct RecordsFit {
   double fundamental_deviation = 0.0, inharmonicity_deviation = 0.0;
   /// Relative standard deviations of f_n, where every frequency is free.
   std::vector<double> frequency_deviations;
-  std::vector<ModeVerdict> modes;            ///< by all records, where every frequency is free
-  double law_width = 0.0;                    ///< τ, where every frequency is free
-  std::array<double, 3> sensor_deviation{};  ///< as in ContinuationResult
-  double damping = 1.0;                      ///< as in ContinuationResult
-  double damping_deviation = 0.0;
-  double chi2 = 0.0;  ///< reduced, of all records
+  std::vector<ModeVerdict> modes;    ///< by all records, where every frequency is free
+  double law_width = 0.0;            ///< τ, where every frequency is free
+  std::vector<RecordValues> values;  ///< of every stroke, then of every pluck
+  double chi2 = 0.0;                 ///< reduced, of all records
   double chi2_deviation = 0.0;
   bool right = false;                      ///< χ² < 1 + 3 sd
   std::size_t evaluations = 0;             ///< of all records together
@@ -38,13 +44,17 @@ struct RecordsFit {
 };
 
 /// Every stroke by itself (calibrate_by_continuation), then all at σ = 0 in one likelihood, started
-/// from the one χ² contradicts least: frequencies or law, damping and sensors shared, x_c and the
-/// end state of each record its own. Modes that no stroke identifies start where the plucks ring.
-/// Records are independent, so their informations add. Stated noise levels of `options` hold for
-/// all strokes. Throws InvalidInput for no stroke.
+/// from the one χ² contradicts least: frequencies or law shared, the end state of each record its
+/// own, and what `per_record` names of x_c, damping and sensors; the rest of these is shared. Modes
+/// that no stroke identifies start where the plucks ring. Records are independent, so their
+/// informations add. Stated noise levels of `options` hold for all strokes. Throws InvalidInput for
+/// no stroke.
 RecordsFit calibrate_records(const ModelPoint& initial, std::span<const CalibrationData> strokes,
                              const ContinuationOptions& options,
                              std::span<const PluckRecord> plucks = {});
+
+/// Throws InvalidInput for a prior or a fixed value of a contact that no stroke has.
+void require_contacts(const UnknownsOptions& options, std::size_t strokes);
 
 /// The fit in the form of that of one record: model, χ², what is shared and its deviations, the
 /// first record's contact. Where every frequency is free, `law` stays that of the first record.

@@ -54,7 +54,7 @@ UnknownName require_prior(const UnknownsOptions& options, const ParameterPrior& 
   const UnknownName name = require_unknown(prior.parameter, modes);
   MODCAL_REQUIRE(name.record < records, "the prior of \"{}\": there are {} records",
                  prior.parameter, records);
-  MODCAL_REQUIRE(name.record == 0 || name.kind == UnknownKind::kContact,
+  MODCAL_REQUIRE(name.record == 0 || options.own(name.kind),
                  "the prior of \"{}\": all records share it, state it without a number",
                  prior.parameter);
   MODCAL_REQUIRE(name.kind != UnknownKind::kDampingPower || modes > 1,
@@ -188,6 +188,7 @@ void PriorCorrelation::visit(OptionVisitor& visitor) {
 }
 
 void require_priors(const UnknownsOptions& options, std::size_t modes, std::size_t records) {
+  options.require_sharing();
   require_fixed(options, modes, records);
   std::vector<UnknownName> names;
   for (const ParameterPrior& prior : options.priors) {
@@ -220,6 +221,9 @@ void require_priors(const UnknownsOptions& options, std::size_t modes, std::size
 StatedPriors::StatedPriors(const UnknownsOptions& options, const ModelPoint& initial,
                            std::size_t records) {
   require_priors(options, initial.basis.size(), records);
+  for (const std::string& name : options.per_record) own_.push_back(parse_unknown(name)->kind);
+  // The factor of the damping is stated through a ratio.
+  if (options.own(UnknownKind::kDampingFactor)) own_.push_back(UnknownKind::kDampingRatio);
   const StiffStringFit law = law_of(with_fixed(initial, options).basis);
   held_ = held_parameters(options, initial.basis.size(), records, initial.contact, law.fundamental,
                           law.inharmonicity);
@@ -267,9 +271,10 @@ StatedPriors StatedPriors::of_record(std::size_t record) const {
   std::vector<Eigen::Index> kept;
   StatedPriors result;
   result.held_ = held_.of_record(record);
+  result.own_ = own_;
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     const UnknownName& name = entries_[i].name;
-    const bool own = name.kind == UnknownKind::kContact;
+    const bool own = std::find(own_.begin(), own_.end(), name.kind) != own_.end();
     if (own && name.record != record) continue;
     kept.push_back(static_cast<Eigen::Index>(i));
     result.entries_.push_back(entries_[i]);

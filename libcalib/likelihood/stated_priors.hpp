@@ -66,6 +66,7 @@ class StatedPriors {
   Eigen::MatrixXd covariance(const std::vector<std::size_t>& which) const;
 
   HeldParameters held_;
+  std::vector<UnknownKind> own_;  // each record's own
   std::vector<Entry> entries_;
   Eigen::MatrixXd correlation_;
 };

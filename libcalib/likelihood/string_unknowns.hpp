@@ -29,11 +29,17 @@ struct UnknownsOptions {
   UnknownOption gain{.value = 1.0};  ///< of the sensor at x = L over that at x = 0 [1]
   UnknownOption delay;               ///< [s]
   UnknownOption corner;              ///< [Hz]
+  /// What each record has for itself, of x_c, gain, delay, corner and the factor "damping".
+  std::vector<std::string> per_record = {"x_c"};
   std::vector<FixedParameter> fixed;
   std::vector<ParameterPrior> priors;
   std::vector<PriorCorrelation> correlations;
   void visit(OptionVisitor& visitor);
   SensorPair sensors() const;  ///< start
+  /// Whether it is each record's own.
+  bool own(UnknownKind kind) const;
+  /// Throws InvalidInput where per_record names what is fixed, unknown or named twice.
+  void require_sharing() const;
 };
 
 /// θ = (ln f_0, B | δ_1 … δ_N, x_c, damping, sensors) about a reference model, all zero there save

@@ -146,7 +146,7 @@ TEST(RecordsFit, APluckSeesTheModesThatTheStrokeDoesNot) {
   EXPECT_TRUE(fit.right) << fit.chi2;
   expect_modes(fit, truth, {11, 22, 33, 44});
   EXPECT_LT(std::abs(fit.model.contact - 0.03), 6.0 * fit.contact_deviations[0]);
-  EXPECT_LT(std::abs(fit.damping - 1.0), 6.0 * fit.damping_deviation);
+  EXPECT_LT(std::abs(fit.values[0].damping - 1.0), 6.0 * fit.values[0].damping_deviation);
   // Informations add: no mode is known worse than by the stroke alone, noise in JᵀJ aside.
   const RecordsFit alone = calibrate_records(one.start, one.data, one.options);
   for (std::size_t n = 0; n < 50; ++n) {
@@ -182,6 +182,85 @@ TEST(RecordsFit, APluckFindsABlindModeThatLeavesTheLaw) {
   const RecordsFit fit = calibrate_records(one.start, one.data, one.options, plucks);
   EXPECT_TRUE(fit.right) << fit.chi2;
   expect_modes(fit, truth, {11, 22, 33, 44});
+}
+
+TEST(RecordsFit, EachRecordHasTheGainAndDampingThatAreItsOwn) {
+  Strokes two = strokes({0.0285, 0.0291});
+  two.options.frequencies = false;
+  two.options.unknowns.gain.free = true;
+  // The sensor was changed between the strokes: its signal and its noise.
+  CalibrationData& second = two.data[1];
+  for (Complex& bin : second.reactions[1]) bin *= 1.03;
+  two.options.left_noise = two.options.right_noise = NAN;
+  EXPECT_FALSE(calibrate_records(two.start, two.data, two.options).right);
+  two.options.unknowns.per_record = {"x_c", "gain"};
+  const RecordsFit own_gain = calibrate_records(two.start, two.data, two.options);
+  EXPECT_TRUE(own_gain.right) << own_gain.chi2;
+  ASSERT_EQ(own_gain.values.size(), 2u);
+  for (const std::size_t r : {0u, 1u}) {
+    const RecordValues& values = own_gain.values[r];
+    EXPECT_LT(std::abs(values.sensors.gain - (r == 0 ? 1.0 : 1.03)),
+              6.0 * values.sensor_deviation[0]);
+    EXPECT_LT(values.sensor_deviation[0], 2e-3);
+    EXPECT_EQ(values.damping, own_gain.values[0].damping);
+  }
+  two.options.unknowns.per_record = {"x_c", "gain", "damping"};
+  two.options.unknowns.priors = {{"gain 2", 1.03, 1e-7}, {"x_c 2", 0.0291, 1e-9}};
+  const RecordsFit both = calibrate_records(two.start, two.data, two.options);
+  EXPECT_TRUE(both.right) << both.chi2;
+  EXPECT_NEAR(both.values[1].sensors.gain, 1.03, 1e-6);
+  EXPECT_NEAR(both.contacts[1], 0.0291, 1e-8);
+  EXPECT_NE(both.values[0].damping, both.values[1].damping);
+  for (const RecordValues& values : both.values) {
+    EXPECT_LT(std::abs(values.damping - 1.0), 6.0 * values.damping_deviation);
+    EXPECT_GT(values.damping_deviation, 1.1 * own_gain.values[0].damping_deviation);
+  }
+}
+
+TEST(RecordsFit, OneContactMayBeShared) {
+  Strokes two = strokes({0.0285, 0.0285});
+  two.options.frequencies = false;
+  const RecordsFit own = calibrate_records(two.start, two.data, two.options);
+  two.options.unknowns.per_record.clear();
+  const RecordsFit shared = calibrate_records(two.start, two.data, two.options);
+  EXPECT_TRUE(shared.right) << shared.chi2;
+  EXPECT_EQ(shared.contacts[0], shared.contacts[1]);
+  EXPECT_LT(std::abs(shared.contacts[0] - 0.0285), 6.0 * shared.contact_deviations[0]);
+  // Nothing but the noise differs: informations add, that of x_c by itself and with all else. An
+  // x_c of its own profits from the law of both.
+  EXPECT_NEAR(shared.contact_deviations[0] / shared.single[0].law.deviation[2], std::sqrt(0.5),
+              0.05);
+  EXPECT_LT(shared.contact_deviations[0], 0.95 * own.contact_deviations[0]);
+  two.options.unknowns.fixed = {{"x_c", 0.0285}};
+  const RecordsFit held = calibrate_records(two.start, two.data, two.options);
+  EXPECT_EQ(held.contacts, (std::vector<double>{0.0285, 0.0285}));
+}
+
+TEST(RecordsFit, RefusesSharingThatCannotBe) {
+  const auto refused = [](std::vector<std::string> per_record, const std::string& reason) {
+    UnknownsOptions options;
+    options.gain.free = true;
+    options.per_record = std::move(per_record);
+    options.priors = {{"gain 2", 1.0, 0.1}};
+    try {
+      require_priors(options, 3, 2);
+      ADD_FAILURE() << "accepted, not refused for " << reason;
+    } catch (const InvalidInput& error) {
+      EXPECT_NE(std::string(error.what()).find(reason), std::string::npos) << error.what();
+    }
+  };
+  refused({"x_c"}, "all records share it");
+  refused({"f0"}, "cannot be each record's own");
+  refused({"gain", "gain"}, "twice");
+  refused({"gain", "delay"}, "delay: {free: true}");
+  UnknownsOptions power;
+  power.damping = "power";
+  power.per_record = {"damping"};
+  EXPECT_THROW(power.require_sharing(), InvalidInput);
+  UnknownsOptions contact;
+  contact.priors = {{"x_c 2", 0.03, 1e-3}};
+  EXPECT_THROW(require_contacts(contact, 1), InvalidInput);
+  EXPECT_NO_THROW(require_contacts(contact, 2));
 }
 
 TEST(RecordsFit, RefusesNoRecord) { EXPECT_THROW(calibrate_records({}, {}, {}), InvalidInput); }

@@ -1,0 +1,283 @@
+#include "libcalib/likelihood/joint_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "libcalib/likelihood/all_records.hpp"
+#include "libcalib/likelihood/bin_weights.hpp"
+#include "libcalib/likelihood/mode_verdict.hpp"
+#include "libcalib/likelihood/newton_fit.hpp"
+#include "libcalib/likelihood/pluck_search.hpp"
+#include "libcalib/likelihood/stated_verdict.hpp"
+
+namespace modcal {
+namespace {
+
+using Index = Eigen::Index;
+constexpr double kProof = 3.0;
+constexpr double kNodeProof = 10.0;
+constexpr double kNodeShape = 0.05;
+
+// The record to start from has the smallest χ²; its contact is that of the first.
+StringUnknowns shared_unknowns(const RecordsFit& fit, const ContinuationOptions& options,
+                               const StatedPriors& priors) {
+  const auto best = std::min_element(
+      fit.single.begin(), fit.single.end(),
+      [](const ContinuationResult& a, const ContinuationResult& b) { return a.chi2 < b.chi2; });
+  ModelPoint reference = best->model;
+  reference.contact = fit.single.front().model.contact;
+  return options.frequencies
+             ? StringUnknowns::frequencies(reference, options.unknowns, priors)
+             : StringUnknowns::law(reference, best->law.fundamental, best->law.inharmonicity,
+                                   options.unknowns, priors);
+}
+
+// Relative standard deviation of an estimated noise power, see noise_deviation().
+double noise_error(const std::array<double, 2>& stated, std::size_t samples) {
+  const bool estimated = std::isnan(stated[0]) || std::isnan(stated[1]);
+  return estimated ? 1e-2 * std::sqrt(51200.0 / static_cast<double>(samples)) : 0.0;
+}
+
+// The fit of all records, from their gathering to the report.
+class JointFit {
+ public:
+  JointFit(const ModelPoint& initial, const ContinuationOptions& options,
+           const StatedPriors& priors, RecordsFit& fit)
+      : initial_(initial),
+        options_(options),
+        priors_(priors),
+        fit_(fit),
+        all_(shared_unknowns(fit, options, priors)) {}
+
+  void add(const CalibrationData& stroke) {
+    const std::array<double, 2> noise{options_.left_noise, options_.right_noise};
+    const NoisyRecords noisy = NoisyRecords::of_data(stroke, noise);
+    const double highest =
+        likelihood_band(initial_, options_.highest_frequency, stroke.sample_rate);
+    const ProjectedLikelihood whole(WhitenedRecord::of(noisy, 0.0, highest));
+    ProjectedLikelihood weighted = whole;
+    const Eigen::VectorXd start = own_start(fit_.single[all_.records()].model);
+    const ModelPoint point = unknowns().model(start);
+    const double sigma = 3.0 * point.basis.frequency(0) / 196.0;
+    weighted.set_weights(signal_weights(noisy, sigma, highest, whole, point));
+    all_.add(std::make_shared<StrokeLikelihood>(whole, std::move(weighted)), start,
+             own_places(true), held_contact(all_.records()));
+    noise_errors_.push_back(noise_error(noise, stroke.samples));
+  }
+
+  void add(const PluckRecord& pluck) {
+    const NoisyRecords noisy = NoisyRecords::of_data(pluck.data, pluck.noise);
+    const double highest =
+        likelihood_band(initial_, options_.highest_frequency, pluck.data.sample_rate);
+    plucks_.push_back(std::make_shared<PluckLikelihood>(WhitenedRecord::of(noisy, 0.0, highest)));
+    all_.add(plucks_.back(), unknowns().start(), own_places(false));
+    noise_errors_.push_back(noise_error(pluck.noise, pluck.data.samples));
+  }
+
+  void run() {
+    theta_ = all_.start();
+    NewtonOptions newton{.steps = 10, .tolerance = 1e-4, .frequency_cap = 1e-3};
+    if (unknowns().is_law()) {
+      state(nullptr, newton);
+      newton.noise = all_.noise(theta_);
+      search(newton);
+    } else {
+      listen_to_plucks();
+      free_frequencies(newton);
+    }
+    Eigen::MatrixXd covariance = fit_covariance(point(true), newton);
+    all_.clear_held(covariance);
+    report(covariance);
+    const AllRecords::Misfit misfit = all_.misfit(theta_, noise_errors_);
+    fit_.chi2 = misfit.chi2;
+    fit_.chi2_deviation = misfit.deviation;
+    fit_.right = fit_.chi2 < 1.0 + 3.0 * fit_.chi2_deviation;
+  }
+
+ private:
+  const StringUnknowns& unknowns() const { return all_.unknowns(); }
+  Index modes() const { return static_cast<Index>(unknowns().modes()); }
+  double inharmonicity() const { return fit_.single.front().law.inharmonicity; }
+  // Unknowns that are each record's own; a pluck has no contact.
+  std::vector<Index> own_places(bool stroke) const {
+    std::vector<Index> places;
+    const UnknownsOptions& own = options_.unknowns;
+    if (stroke && own.own(UnknownKind::kContact)) places.push_back(unknowns().contact());
+    if (own.own(UnknownKind::kDampingFactor)) places.push_back(unknowns().damping());
+    const UnknownKind sensors[] = {UnknownKind::kGain, UnknownKind::kDelay, UnknownKind::kCorner};
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (own.own(sensors[i])) places.push_back(unknowns().sensor(i));
+    }
+    return places;
+  }
+  // θ of a stroke that was fitted by itself, as far as it is its own.
+  Eigen::VectorXd own_start(const ModelPoint& single) const {
+    const ModelPoint shared = unknowns().model(unknowns().start());
+    Eigen::VectorXd start = unknowns().start();
+    for (const Index i : own_places(true)) {
+      if (i == unknowns().contact()) start[i] = single.contact - shared.contact;
+      if (i == unknowns().damping()) start[i] = mean_damping_change(single, shared);
+      if (i == unknowns().sensor(0)) start[i] = std::log(single.sensors.gain / shared.sensors.gain);
+      if (i == unknowns().sensor(1)) start[i] = single.sensors.delay - shared.sensors.delay;
+      if (i == unknowns().sensor(2)) start[i] = single.sensors.corner - shared.sensors.corner;
+    }
+    return start;
+  }
+  double mean_damping_change(const ModelPoint& point, const ModelPoint& from) const {
+    double change = 0.0, count = 0.0;
+    for (std::size_t n = 0; n < unknowns().modes(); ++n) {
+      if (priors_.held().ratio(n)) continue;
+      change += std::log(point.basis.zeta[n] / from.basis.zeta[n]);
+      count += 1.0;
+    }
+    return change / std::max(count, 1.0);
+  }
+  std::optional<double> held_contact(std::size_t record) const {
+    const HeldParameters& held = priors_.held();
+    return held.contact(record) ? held.contacts[record] : std::nullopt;
+  }
+  LikelihoodPoint point(bool twice_weighted) {
+    ++fit_.evaluations;
+    return all_.evaluate(theta_, twice_weighted);
+  }
+
+  // Priors about θ; widths of the frequencies' scatter about the law, or null.
+  void state(const Eigen::VectorXd* widths, NewtonOptions& newton) const {
+    PriorEquations equations(all_.size());
+    priors_.state([&](const UnknownName& name) { return all_.coordinate(name, theta_); },
+                  equations);
+    unknowns().state_damping_ratios(equations);
+    if (widths) equations.add_scatter({*widths, inharmonicity()}, unknowns().log_frequencies());
+    all_.hold(equations);
+    QuadraticPrior prior = equations.solve();
+    newton.prior = std::move(prior.precision);
+    newton.prior_mean = std::move(prior.mean);
+  }
+
+  void search(const NewtonOptions& newton) {
+    const NewtonFit found = newton_fit(
+        {.evaluate = [this](const Eigen::VectorXd& theta) { return all_.evaluate(theta, false); },
+         .admits = [this](const Eigen::VectorXd& theta) { return all_.admits(theta); },
+         .capped = unknowns().is_law() ? 0 : modes()},
+        theta_, newton);
+    theta_ = found.theta;
+    fit_.evaluations += found.evaluations;
+  }
+
+  // Frequencies that no stroke identifies go where most of the plucks' power is, within ±0.6 %.
+  void listen_to_plucks() {
+    if (plucks_.empty()) return;
+    for (Index i = 0; i < modes(); ++i) {
+      const auto n = static_cast<std::size_t>(i);
+      const bool identified =
+          std::any_of(fit_.single.begin(), fit_.single.end(), [n](const ContinuationResult& r) {
+            return r.modes[n].source == ModeSource::kIdentified;
+          });
+      if (!identified && !unknowns().held(i))
+        theta_[i] += loudest_shift(plucks_, all_.model(theta_, 0), n);
+    }
+  }
+
+  // What the data tell under a prior that only keeps a mode from wandering, then the law's.
+  void free_frequencies(NewtonOptions& newton) {
+    const Eigen::VectorXd wide = Eigen::VectorXd::Constant(modes(), kWidePrior);
+    state(&wide, newton);
+    newton.noise = all_.noise(theta_);
+    search(newton);
+    const LikelihoodPoint at = point(true);
+    seen_ = fit_covariance(at, newton).diagonal().head(modes()).cwiseMax(0.0).cwiseSqrt();
+    deny_noise(at.information, newton.noise);
+    const ModelPoint model = all_.model(theta_, 0);
+    Eigen::VectorXd delta(modes());
+    for (Index i = 0; i < modes(); ++i) {
+      const double n = static_cast<double>(i + 1);
+      delta[i] = std::log(model.basis.omega[static_cast<std::size_t>(i)] /
+                          (n * std::sqrt(1.0 + inharmonicity() * n * n)));
+    }
+    estimated_ = estimate_law_width(delta, seen_, inharmonicity());
+    fit_.law_width = std::isnan(options_.law_width) ? estimated_ : options_.law_width;
+    Eigen::VectorXd widths = prior_widths(seen_, fit_.law_width, estimated_);
+    widen_held(priors_.held(), fit_.law_width, widths);
+    state(&widths, newton);
+    search(newton);
+  }
+
+  // As in the fit of one record; a mode at a node of every contact is no surprise to a pluck.
+  void deny_noise(const Eigen::MatrixXd& information, const Eigen::MatrixXd& noise) {
+    for (Index i = 0; i < modes(); ++i) {
+      bool node = plucks_.empty();
+      for (std::size_t r = 0; node && r < fit_.single.size(); ++r) {
+        const ModelPoint model = all_.model(theta_, r);
+        node =
+            std::abs(model.basis.shape_at(model.contact)[static_cast<std::size_t>(i)]) < kNodeShape;
+      }
+      const double proof = node ? kNodeProof : kProof;
+      if (information(i, i) < proof * noise(i, i)) seen_[i] = std::max(seen_[i], kWidePrior);
+    }
+  }
+
+  void report(const Eigen::MatrixXd& covariance) {
+    const Eigen::VectorXd deviation = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+    fit_.model = all_.model(theta_, 0);
+    for (std::size_t r = 0; r < fit_.single.size(); ++r) {
+      fit_.contacts.push_back(all_.model(theta_, r).contact);
+      fit_.contact_deviations.push_back(deviation[all_.place(unknowns().contact(), r)]);
+    }
+    if (unknowns().is_law()) {
+      fit_.fundamental = unknowns().fundamental(theta_);
+      fit_.inharmonicity = theta_[1];
+      fit_.fundamental_deviation = fit_.fundamental * deviation[0];
+      fit_.inharmonicity_deviation = deviation[1];
+    } else {
+      const auto frequencies = deviation.head(modes());
+      fit_.frequency_deviations.assign(frequencies.begin(), frequencies.end());
+      fit_.modes = free_verdicts(fit_.model, frequencies, seen_, estimated_);
+      trust_stated_frequencies(priors_, deviation, fit_.modes);
+    }
+    for (std::size_t r = 0; r < all_.records(); ++r) report_values(covariance, r);
+  }
+
+  void report_values(const Eigen::MatrixXd& covariance, std::size_t record) {
+    Eigen::MatrixXd own(unknowns().size(), unknowns().size());
+    for (Index i = 0; i < own.rows(); ++i) {
+      for (Index j = 0; j < own.cols(); ++j) {
+        own(i, j) = covariance(all_.place(i, record), all_.place(j, record));
+      }
+    }
+    const ModelPoint model = all_.model(theta_, record);
+    RecordValues values{.sensors = model.sensors,
+                        .damping = std::exp(mean_damping_change(model, initial_))};
+    values.damping_deviation = values.damping * unknowns().damping_deviation(own);
+    const double unit[] = {model.sensors.gain, 1.0, 0.5 / std::numbers::pi};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Index at = unknowns().sensor(i);
+      if (at >= 0) values.sensor_deviation[i] = unit[i] * std::sqrt(std::max(own(at, at), 0.0));
+    }
+    fit_.values.push_back(values);
+  }
+
+  const ModelPoint& initial_;
+  const ContinuationOptions& options_;
+  const StatedPriors& priors_;
+  RecordsFit& fit_;
+  AllRecords all_;
+  std::vector<std::shared_ptr<const PluckLikelihood>> plucks_;
+  std::vector<double> noise_errors_;
+  Eigen::VectorXd theta_;
+  Eigen::VectorXd seen_;    // of δ, under the wide prior
+  double estimated_ = 0.0;  // τ
+};
+
+}  // namespace
+
+void fit_jointly(const ModelPoint& initial, const ContinuationOptions& options,
+                 const StatedPriors& priors, std::span<const CalibrationData> strokes,
+                 std::span<const PluckRecord> plucks, RecordsFit& fit) {
+  JointFit joint(initial, options, priors, fit);
+  for (const CalibrationData& stroke : strokes) joint.add(stroke);
+  for (const PluckRecord& pluck : plucks) joint.add(pluck);
+  joint.run();
+}
+
+}  // namespace modcal
