@@ -13,7 +13,7 @@
 #define MODCAL_EVENT_MODE_REPLAY_TYPES
 namespace modcal::event {
 
-// 4⁵²/52! · 25!/… < 1e-18 behind a force of 25 coefficients.
+// The most that ModeReplay::terms() asks for, at 4 radians, is 35.
 inline constexpr std::size_t kMostReplayTerms = 64;
 
 struct ReplayTask {
