@@ -25,6 +25,8 @@ struct PlannedSimulations {
   double sample_rate = 0.0;
   OutputRequest outputs;
   std::size_t count = 1;  ///< distinct ones
+  /// Those of other scenes: plucks beside strokes.
+  std::vector<PlannedSimulations> others = {};
 };
 
 class Experiment {

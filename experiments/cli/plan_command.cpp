@@ -48,6 +48,11 @@ Plan make_plan(const LoadedExperiment& loaded) {
                                  .stop = interrupt_token()});
   } else if (planned) {
     plan.price = price_of_simulations(*plan.simulation, *planned);
+    for (const PlannedSimulations& other : planned->others) {
+      const SimulationPlan one =
+          plan_simulation(other.scene, *other.simulator.make(), other.sample_rate, other.outputs);
+      plan.price->core_seconds += price_of_simulations(one, other).core_seconds;
+    }
   }
   return plan;
 }

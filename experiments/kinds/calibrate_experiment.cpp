@@ -24,21 +24,16 @@ std::vector<Finding> CalibrateExperiment::lint() const {
       "further_strokes",
       [&] { options_.further.require_fit_to(options_.inversion.observation, calibration); },
       findings);
-  lint_making(
-      "plucks",
-      [&] { require_plucks(options_.plucks, options_.inversion.observation, calibration); },
-      findings);
+  append(findings, lint_plucks(options_.plucks, options_.inversion.observation, calibration));
   const auto modes = static_cast<std::size_t>(options_.inversion.observation.string_model().modes);
   if (calibration.has_continuation) {
     const std::size_t strokes =
         1 + options_.further.contacts.size() + options_.further.files.size();
+    const UnknownsOptions& unknowns = calibration.continuation.unknowns;
+    append(findings, lint_priors("calibration.continuation.unknowns", unknowns, modes,
+                                 strokes + options_.plucks.size()));
     lint_making(
-        "calibration.continuation.unknowns",
-        [&] {
-          const UnknownsOptions& unknowns = calibration.continuation.unknowns;
-          require_priors(unknowns, modes, strokes + options_.plucks.size());
-          require_contacts(unknowns, strokes);
-        },
+        "calibration.continuation.unknowns", [&] { require_contacts(unknowns, strokes); },
         findings);
   }
   lint_making(
@@ -78,8 +73,13 @@ std::vector<std::string> CalibrateExperiment::plan() const {
 }
 
 std::optional<PlannedSimulations> CalibrateExperiment::planned_simulations() const {
-  return planned_truths(options_.inversion.observation, truth_outputs(options_.inversion.figures),
-                        1 + options_.further.contacts.size());
+  const ObservationOptions& first = options_.inversion.observation;
+  auto planned = planned_truths(first, truth_outputs(options_.inversion.figures),
+                                1 + options_.further.contacts.size());
+  for (const PluckRecordOptions& pluck : options_.plucks) {
+    if (planned && pluck.file.empty()) add_planned(pluck.observation(first), *planned);
+  }
+  return planned;
 }
 
 LimitQuestion CalibrateExperiment::limit_question() const {

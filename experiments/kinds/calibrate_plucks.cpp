@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "experiments/kinds/calibrate_study.hpp"
+#include "experiments/kinds/lint.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -46,35 +47,99 @@ void PluckRecordOptions::visit(OptionVisitor& visitor) {
                  right_noise);
 }
 
+ObservationOptions PluckRecordOptions::observation(const ObservationOptions& first) const {
+  ObservationOptions options = first;
+  if (!file.empty()) {
+    options.record.file = file;
+    return options;
+  }
+  Scene& scene = options.truth.scene;
+  scene.bow.velocity = 0.0;
+  scene.bow.normal_force = 0.0;
+  scene.start = start;
+  scene.duration = duration;
+  options.measurement.noise_level = noise_level;
+  options.measurement.sample_rate = sample_rate;
+  return options;
+}
+
+namespace {
+
+// Bins lie 1/T apart and the modes' lines f_0: with two bins a line there are twice as many
+// residuals, four a line for two real unknowns of each decay, as unknowns.
+constexpr double kLeastPeriods = 2.0;
+
+void lint_simulated(const std::string& path, const PluckRecordOptions& pluck,
+                    const StringModel& string, const Scene& scene, std::vector<Finding>& findings) {
+  if (pluck.start.selected() == "rest") {
+    findings.push_back({path + ".initial", "a string at rest has no free decay: pluck it"});
+  }
+  if (!is_known(string)) return;
+  ModalBasis basis;
+  try {
+    basis = make_modal_basis(string);
+  } catch (const InvalidInput&) {
+    return;  // reported with the string
+  }
+  lint_making(
+      path + ".initial", [&] { initial_state(scene, basis); }, findings);
+  const double top =
+      *std::max_element(basis.omega.begin(), basis.omega.end()) / (2.0 * std::numbers::pi);
+  if (!(pluck.sample_rate > 2.0 * top)) {
+    findings.push_back(
+        {path + ".sample_rate",
+         fmt::format("a pluck sampled at {:g} Hz, but the highest mode is at {:g} Hz: sample at "
+                     "more than twice that, or use fewer modes",
+                     pluck.sample_rate, top)});
+  }
+  const double least = kLeastPeriods / basis.frequency(0);
+  if (!(pluck.duration >= least)) {
+    findings.push_back(
+        {path + ".duration",
+         fmt::format("a pluck of {:g} s does not tell modes {:g} Hz apart from each other: record "
+                     "at least {:g} periods of the first mode, {:.3g} s",
+                     pluck.duration, basis.frequency(0), kLeastPeriods, least)});
+  }
+}
+
+}  // namespace
+
+std::vector<Finding> lint_plucks(const std::vector<PluckRecordOptions>& plucks,
+                                 const ObservationOptions& first,
+                                 const CalibrationOptions& calibration) {
+  std::vector<Finding> findings;
+  if (!plucks.empty() && !calibration.has_continuation) {
+    findings.push_back(
+        {"plucks", fmt::format("{} plucks are fitted with the stroke by the joint likelihood "
+                               "alone: state calibration.continuation",
+                               plucks.size())});
+  }
+  for (std::size_t i = 0; i < plucks.size(); ++i) {
+    const PluckRecordOptions& pluck = plucks[i];
+    const std::string path = fmt::format("plucks.{}", i);
+    if (!pluck.file.empty()) {
+      if (first.has_record) continue;
+      findings.push_back(
+          {path + ".record", fmt::format("the recorded pluck {} goes with a recorded stroke: state "
+                                         "record, or pluck the string of the scene",
+                                         pluck.file)});
+    } else if (!first.has_scene) {
+      findings.push_back(
+          {path,
+           fmt::format("{} plucks, this one simulated, but there is no scene: name its record",
+                       plucks.size())});
+    } else {
+      lint_simulated(path, pluck, first.string_model(), pluck.observation(first).truth.scene,
+                     findings);
+    }
+  }
+  return findings;
+}
+
 void require_plucks(const std::vector<PluckRecordOptions>& plucks, const ObservationOptions& first,
                     const CalibrationOptions& calibration) {
-  MODCAL_REQUIRE(plucks.empty() || calibration.has_continuation,
-                 "{} plucks are fitted with the stroke by the joint likelihood alone: state "
-                 "calibration.continuation",
-                 plucks.size());
-  for (const PluckRecordOptions& pluck : plucks) {
-    if (!pluck.file.empty()) {
-      MODCAL_REQUIRE(
-          first.has_record,
-          "the recorded pluck {} goes with a recorded stroke: state record, or pluck the "
-          "string of the scene",
-          pluck.file);
-      continue;
-    }
-    MODCAL_REQUIRE(first.has_scene,
-                   "{} plucks, one of them simulated, but there is no scene: name its record",
-                   plucks.size());
-    MODCAL_REQUIRE(pluck.start.selected() != "rest", "a string at {} has no free decay: pluck it",
-                   pluck.start.selected());
-    pluck.start.make();
-    const ModalBasis basis = make_modal_basis(first.string_model());
-    const double top =
-        *std::max_element(basis.omega.begin(), basis.omega.end()) / (2.0 * std::numbers::pi);
-    MODCAL_REQUIRE(pluck.sample_rate > 2.0 * top,
-                   "a pluck sampled at {:g} Hz, but the highest mode is at {:g} Hz: sample at more "
-                   "than twice that, or use fewer modes",
-                   pluck.sample_rate, top);
-  }
+  const std::vector<Finding> findings = lint_plucks(plucks, first, calibration);
+  if (!findings.empty()) throw InvalidInput(findings.front().text);
 }
 
 std::vector<PluckRecord> observe_plucks(const std::vector<PluckRecordOptions>& plucks,
@@ -83,21 +148,10 @@ std::vector<PluckRecord> observe_plucks(const std::vector<PluckRecordOptions>& p
   std::vector<PluckRecord> records;
   for (const PluckRecordOptions& pluck : plucks) {
     context.throw_if_interrupted();
-    ObservationOptions options = first;
-    if (pluck.file.empty()) {
-      Scene& scene = options.truth.scene;
-      scene.bow.velocity = 0.0;
-      scene.bow.normal_force = 0.0;
-      scene.start = pluck.start;
-      scene.duration = pluck.duration;
-      options.measurement.noise_level = pluck.noise_level;
-      options.measurement.sample_rate = pluck.sample_rate;
-    } else {
-      options.record.file = pluck.file;
-    }
     const StreamKey own = key.with("pluck").with(static_cast<std::uint64_t>(records.size() + 1));
-    const Observation found = observe(options, {.left_reaction = true, .right_reaction = true},
-                                      context.work.truths, own, context.folder);
+    const Observation found =
+        observe(pluck.observation(first), {.left_reaction = true, .right_reaction = true},
+                context.work.truths, own, context.folder);
     records.push_back(
         {.data = calibration_data(found), .noise = {pluck.left_noise, pluck.right_noise}});
   }

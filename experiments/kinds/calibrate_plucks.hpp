@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/experiment.hpp"
 #include "experiments/study/observation.hpp"
 #include "libcalib/likelihood/records_fit.hpp"
 
@@ -25,9 +26,18 @@ struct PluckRecordOptions {
   double left_noise = std::numeric_limits<double>::quiet_NaN();
   double right_noise = std::numeric_limits<double>::quiet_NaN();
   void visit(OptionVisitor& visitor);
+  /// As an observation: the scene of the first stroke without its bow, or the other file.
+  ObservationOptions observation(const ObservationOptions& first) const;
 };
 
-/// Throws InvalidInput where the plucks do not fit to the first stroke or to what is calibrated.
+/// What is wrong with each pluck, at its own place: plucks that do not fit to the first stroke or
+/// to what is calibrated, a plucking point beyond the string, a decay too short to tell its modes
+/// apart.
+std::vector<Finding> lint_plucks(const std::vector<PluckRecordOptions>& plucks,
+                                 const ObservationOptions& first,
+                                 const CalibrationOptions& calibration);
+
+/// Throws InvalidInput with the first of these.
 void require_plucks(const std::vector<PluckRecordOptions>& plucks, const ObservationOptions& first,
                     const CalibrationOptions& calibration);
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "experiments/kinds/lint.hpp"
 #include "experiments/kinds/number_json.hpp"
 #include "experiments/kinds/scene_plan.hpp"
 #include "experiments/study/fingerprint.hpp"
@@ -176,6 +177,8 @@ std::vector<Finding> CalibrationLimitExperiment::lint() const {
                         "a bound needs a truth, which a record does not have: state a "
                         "scene"});
   }
+  const auto modes = static_cast<std::size_t>(options_.observation.string_model().modes);
+  append(findings, lint_priors("continuation.unknowns", options_.continuation.unknowns, modes));
   if (options_.noise_levels.empty()) {
     findings.push_back({"noise_levels", "no noise level is stated"});
   }

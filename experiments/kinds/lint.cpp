@@ -124,6 +124,42 @@ std::vector<Finding> lint_scores(const ScoreOptions& score, const ObservationOpt
   return findings;
 }
 
+std::vector<Finding> lint_priors(const std::string& path, const UnknownsOptions& unknowns,
+                                 std::size_t modes, std::size_t records) {
+  std::vector<Finding> findings;
+  UnknownsOptions sound = unknowns;  // what has passed so far
+  sound.fixed.clear();
+  sound.priors.clear();
+  sound.correlations.clear();
+  std::set<std::string> wrong;
+  const auto passes = [&](const std::string& place) {
+    const std::size_t before = findings.size();
+    lint_making(
+        path + place, [&] { require_priors(sound, modes, records); }, findings);
+    return findings.size() == before;
+  };
+  for (std::size_t i = 0; i < unknowns.fixed.size(); ++i) {
+    sound.fixed.push_back(unknowns.fixed[i]);
+    if (!passes(fmt::format(".fixed.{}", i))) sound.fixed.pop_back();
+  }
+  for (std::size_t i = 0; i < unknowns.priors.size(); ++i) {
+    sound.priors.push_back(unknowns.priors[i]);
+    if (passes(fmt::format(".priors.{}", i))) continue;
+    wrong.insert(unknowns.priors[i].parameter);
+    sound.priors.pop_back();
+  }
+  for (std::size_t i = 0; i < unknowns.correlations.size(); ++i) {
+    const PriorCorrelation& correlation = unknowns.correlations[i];
+    // What is wrong with a prior is said there.
+    const bool follows = std::any_of(correlation.between.begin(), correlation.between.end(),
+                                     [&](const std::string& name) { return wrong.contains(name); });
+    if (follows) continue;
+    sound.correlations.push_back(correlation);
+    if (!passes(fmt::format(".correlations.{}", i))) sound.correlations.pop_back();
+  }
+  return findings;
+}
+
 std::vector<Finding> lint_figures(const std::vector<FigureOptions>& figures,
                                   const std::vector<std::string_view>& contents) {
   std::vector<Finding> findings;

@@ -7,6 +7,7 @@
 #include "experiments/experiment.hpp"
 #include "experiments/study/figure_options.hpp"
 #include "experiments/study/observation.hpp"
+#include "libcalib/likelihood/string_unknowns.hpp"
 
 namespace modcal {
 
@@ -24,6 +25,10 @@ std::vector<Finding> lint_scores(const ScoreOptions& score, const ObservationOpt
 /// Ids used twice, contents that this kind of experiment does not have.
 std::vector<Finding> lint_figures(const std::vector<FigureOptions>& figures,
                                   const std::vector<std::string_view>& contents);
+/// What require_priors() has against each fixed parameter, prior and correlation, at its own place.
+/// path: of the unknowns.
+std::vector<Finding> lint_priors(const std::string& path, const UnknownsOptions& unknowns,
+                                 std::size_t modes, std::size_t records = 1);
 /// A finding at `path` where `make` throws InvalidInput.
 template <typename Make>
 void lint_making(const std::string& path, Make make, std::vector<Finding>& findings) {

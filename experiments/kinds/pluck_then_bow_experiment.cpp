@@ -102,14 +102,19 @@ std::vector<Finding> PluckThenBowExperiment::lint() const {
   lint_making(
       "contact.objective", [&] { options_.contact.objective.make(); }, findings);
   lint_making(
-      "pluck.initial", [&] { options_.pluck.start.make(); }, findings);
-  const auto modes = static_cast<std::size_t>(options_.truth.scene.string.modes);
-  if (options_.has_bound) {
-    lint_making(
-        "bound.unknowns", [&] { require_priors(options_.bound.unknowns, modes); }, findings);
-  }
+      "pluck.initial",
+      [&] {
+        const Scene test = options_.pluck_test(options_.pluck.identification.method).truth.scene;
+        options_.pluck.start.make();
+        if (is_known(test.string)) initial_state(test, make_modal_basis(test.string));
+      },
+      findings);
   if (options_.pluck.start.selected() == "rest") {
     findings.push_back({"pluck.initial", "a string at rest has no free decay: pluck it"});
+  }
+  if (options_.has_bound) {
+    append(findings, lint_priors("bound.unknowns", options_.bound.unknowns,
+                                 static_cast<std::size_t>(options_.truth.scene.string.modes)));
   }
   const ContactSearchOptions& contact = options_.contact;
   if (!(contact.start - contact.range > 0.0 &&
@@ -141,7 +146,13 @@ std::vector<std::string> PluckThenBowExperiment::plan() const {
 }
 
 std::optional<PlannedSimulations> PluckThenBowExperiment::planned_simulations() const {
-  return planned_truths(options_.stroke(), truth_outputs(options_.figures));
+  auto planned = planned_truths(options_.stroke(), truth_outputs(options_.figures));
+  const IdentifyOptions test = options_.pluck_test(options_.pluck.identification.method);
+  ObservationOptions pluck = options_.stroke();
+  pluck.truth = test.truth;
+  pluck.measurement = test.measurement;
+  if (planned) add_planned(pluck, *planned);
+  return planned;
 }
 
 }  // namespace modcal

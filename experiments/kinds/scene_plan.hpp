@@ -9,11 +9,14 @@
 
 namespace modcal {
 
-/// How many simulations of how many samples.
+/// How many simulations of how many samples, others of the run behind them.
 std::string plan_line(const PlannedSimulations& planned);
 
 /// The truth that a run simulates for inversions; nothing for a record.
 std::optional<PlannedSimulations> planned_truths(const ObservationOptions& observation,
                                                  OutputRequest outputs, std::size_t count = 1);
+
+/// Adds a simulation of another scene, once.
+void add_planned(const ObservationOptions& observation, PlannedSimulations& planned);
 
 }  // namespace modcal

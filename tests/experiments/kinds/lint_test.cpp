@@ -1,5 +1,6 @@
 // What validation says about a scene that its simulator cannot simulate: place, value, reason and
 // remedy, before anything runs.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -70,6 +71,118 @@ TEST(LintStrokes, RefusesWhatCannotBeFittedTogether) {
               testing::HasSubstr("name further contacts"));
   EXPECT_EQ(messages_of(strokes(", continuation: {}", "{contacts: [28 mm]}")).find("error"),
             std::string::npos);
+}
+
+// Two priors that are wrong and one that is not, then correlations; each in a line of its own.
+constexpr const char* kUnknowns =
+    "    damping: power\n"
+    "    priors:\n"
+    "      - {parameter: x_c, mean: 30 mm, deviation: 1 mm}\n"
+    "      - {parameter: f_99, deviation: 1 Hz}\n"
+    "      - {parameter: gain, deviation: 1 %}\n"
+    "      - {parameter: damping, deviation: 1 %}\n"
+    "    correlations:\n"
+    "      - {between: [x_c, damping], value: 0.5}\n"
+    "      - {between: [x_c, f_99], value: 0.5}\n"
+    "      - {between: [x_c, f_1], value: 0.5}\n";
+
+constexpr const char* kScene =
+    "scene:\n"
+    "  string: {length: 0.33 m, linear_density: 3.1e-3 kg/m, fundamental: 196 Hz}\n"
+    "  bow: {position: 30 mm}\n"
+    "  duration: 1 s\n";
+
+// first: line of "priors:".
+void expect_mistakes_of_priors(const std::string& messages, std::size_t first) {
+  const auto at = [&](std::size_t line, const char* text) {
+    const std::string place = fmt::format("scene.yaml:{}:", first + line);
+    EXPECT_THAT(messages, testing::ContainsRegex(place + "[0-9]+: error: [^\n]*" + text));
+  };
+  at(2, "f_99");
+  at(3, "gain has a prior and is not free");
+  at(8, "\"f_1\", which has no prior");
+  for (const std::size_t sound : {1u, 4u, 6u, 7u}) {
+    EXPECT_THAT(messages,
+                testing::Not(testing::HasSubstr(fmt::format("scene.yaml:{}:", first + sound))));
+  }
+}
+
+TEST(LintPriors, ReportsEachMistakeAtItsOwnPlaceInEveryKindThatHasPriors) {
+  expect_mistakes_of_priors(
+      messages_of(std::string("kind: calibrate\n") + kScene +
+                  "calibration:\n"
+                  "  parameters: {frequencies: all, law: true, contact: true}\n"
+                  "  continuation:\n   unknowns:\n" +
+                  kUnknowns),
+      11);
+  expect_mistakes_of_priors(messages_of(std::string("kind: calibration_limit\n") + kScene +
+                                        "continuation:\n  unknowns:\n" + kUnknowns),
+                            9);
+  expect_mistakes_of_priors(
+      messages_of(std::string("kind: pluck_then_bow\n") + kScene +
+                  "pluck: {initial: {type: pluck, position: 43 mm, displacement: 1 mm}}\n"
+                  "contact: {start: 30 mm}\n"
+                  "bound:\n  unknowns:\n" +
+                  kUnknowns),
+      11);
+}
+
+TEST(LintPriors, ReportsCorrelationsThatNoGaussianHasAtTheLastOfThem) {
+  const std::string messages = messages_of(std::string("kind: calibration_limit\n") + kScene +
+                                           "continuation:\n"
+                                           "  unknowns:\n"
+                                           "    priors:\n"
+                                           "      - {parameter: x_c, deviation: 1 mm}\n"
+                                           "      - {parameter: f0, deviation: 1 Hz}\n"
+                                           "      - {parameter: B, mean: 0, deviation: 1e-5}\n"
+                                           "    correlations:\n"
+                                           "      - {between: [x_c, f0], value: 0.6}\n"
+                                           "      - {between: [f0, B], value: 0.6}\n"
+                                           "      - {between: [x_c, B], value: -0.9}\n");
+  EXPECT_THAT(messages, testing::ContainsRegex("scene.yaml:15:[0-9]+: error: [^\n]*no Gaussian"));
+  EXPECT_THAT(messages, testing::Not(testing::HasSubstr("scene.yaml:14:")));
+}
+
+std::string plucks(const std::string& first, const std::string& second) {
+  return std::string("kind: calibrate\n") + kScene +
+         "calibration: {parameters: {frequencies: all, law: true, contact: true}, continuation: {}}"
+         "\nplucks:\n  - " +
+         first + "\n  - " + second + "\n";
+}
+
+TEST(LintPlucks, RefusesPlucksBeyondTheStringAndDecaysTooShort) {
+  const std::string messages = messages_of(
+      plucks("{initial: {type: pluck, position: 0.4 m, displacement: 1 mm}, duration: 1 s}",
+             "{initial: {type: pluck, position: 43 mm, displacement: 1 mm}, duration: 5 ms}"));
+  EXPECT_THAT(
+      messages,
+      testing::AllOf(testing::ContainsRegex("scene.yaml:8:[0-9]+: error: [^\n]*0.4 m is not "
+                                            "inside the string[^\n]*0.33"),
+                     testing::ContainsRegex("scene.yaml:9:[0-9]+: error: [^\n]*0.005 s[^\n]*at "
+                                            "least 2 periods[^\n]*0.0102 s")));
+  EXPECT_EQ(messages_of(plucks("{initial: {type: pluck, position: 43 mm, displacement: 1 mm}}",
+                               "{initial: {type: pluck, position: 50 mm, displacement: 1 mm}, "
+                               "duration: 20 ms}"))
+                .find("error"),
+            std::string::npos);
+}
+
+TEST(PlanPlucks, CountsTheirSimulationsOnce) {
+  const std::string one =
+      "{initial: {type: pluck, position: 43 mm, displacement: 1 mm}, duration: 0.5 s}";
+  const std::string other = "{initial: {type: pluck, position: 50 mm, displacement: 1 mm}}";
+  const auto planned_of = [](const std::string& text) {
+    return load_experiment(parse_yaml(text, "scene.yaml")).experiment->planned_simulations();
+  };
+  const auto two = planned_of(plucks(one, other));
+  ASSERT_EQ(two->others.size(), 2u);
+  EXPECT_EQ(two->count, 1u);
+  EXPECT_EQ(two->others[0].scene.duration, 0.5);
+  EXPECT_EQ(two->others[0].scene.bow.normal_force, 0.0);
+  EXPECT_EQ(two->others[1].scene.duration, 1.0);
+  EXPECT_EQ(planned_of(plucks(one, one))->others.size(), 1u);
+  const LoadedExperiment loaded = load_experiment(parse_yaml(plucks(one, other), "scene.yaml"));
+  EXPECT_THAT(loaded.experiment->plan().front(), testing::HasSubstr("1 of 0.5 s"));
 }
 
 }  // namespace
