@@ -5,15 +5,14 @@
 #include <cmath>
 #include <limits>
 
-#include "libcalib/likelihood/expected_limit.hpp"
+#include "experiments/kinds/limit_source.hpp"
+#include "experiments/study/fingerprint.hpp"
 #include "libcalib/stiff_string_fit.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {
 namespace {
-
-constexpr double kLawWidth = 2e-3;  // τ of the prior about the law where none is stated
 
 // Unknowns of the law in the order of ExpectedLimit::law.
 enum Unknown : std::size_t { kFundamental, kInharmonicity, kContact, kDamping, kUnknowns };
@@ -42,9 +41,8 @@ std::vector<double> law_bounds(const ExpectedLimit& limit, const CalibrateOption
       c[i][j] = limit.law_correlation[i][j] * deviation[i] * deviation[j];
     }
   }
-  if (!options.calibration.has_continuation) {
-    know(kDamping, c);
-    if (!options.calibration.parameters.contact) know(kContact, c);
+  if (!options.calibration.has_continuation && !options.calibration.parameters.contact) {
+    know(kContact, c);
   }
   std::vector<double> bounds;
   for (std::size_t n = 1; n <= basis.size(); ++n) {
@@ -74,9 +72,15 @@ std::vector<double> bounds_of(const CalibrateOptions& options, TruthCache& truth
     records.deviation[r] =
         observation.measurement.noise_level * standard_deviation(records.reactions[r]);
   }
-  const ContinuationOptions& continuation = options.calibration.continuation;
-  const double width = std::isnan(continuation.law_width) ? kLawWidth : continuation.law_width;
-  const ExpectedLimit limit = expected_limit(point, records, continuation.highest_frequency, width);
+  LimitQuestion question;
+  question.calibrate_by(options.calibration);
+  const ExpectedLimit limit = expected_limit({.truth = point,
+                                              .strokes = {std::move(records)},
+                                              .contacts = {point.contact},
+                                              .plucks = {},
+                                              .highest_frequency = question.highest_frequency,
+                                              .law_width = question.law_width,
+                                              .unknowns = question.unknowns});
   if (options.calibration.parameters.frequencies == "none") {
     return law_bounds(limit, options, point.basis);
   }
@@ -88,12 +92,16 @@ std::vector<double> bounds_of(const CalibrateOptions& options, TruthCache& truth
 std::string key_of(const CalibrateOptions& options) {
   const ObservationOptions& observation = options.inversion.observation;
   const CalibrationOptions& calibration = options.calibration;
-  return fmt::format("{} {:a} {} {} {} {:a} {:a}",
+  LimitQuestion question;
+  question.calibrate_by(calibration);
+  const std::string unknowns =
+      fingerprint([&](OptionVisitor& visitor) { question.unknowns.visit(visitor); });
+  return fmt::format("{} {:a} {} {} {} {:a} {:a} {}",
                      truth_key(observation.truth, observation.measurement.sample_rate, {}),
                      observation.measurement.noise_level, calibration.parameters.frequencies,
                      calibration.parameters.contact, calibration.has_continuation,
-                     calibration.continuation.highest_frequency,
-                     calibration.continuation.law_width);
+                     calibration.continuation.highest_frequency, calibration.continuation.law_width,
+                     unknowns);
 }
 
 }  // namespace

@@ -18,8 +18,9 @@ class FrequencyBounds {
  public:
   using Bounds = std::shared_ptr<const std::vector<double>>;
   /// Relative standard deviation of f_1 … f_N that no unbiased estimate of both reactions with the
-  /// force unknown goes below: of the stiff-string law where it is free (damping and, unless it is
-  /// searched, x_c known), of every frequency under the law prior where frequencies are free. Null
+  /// force unknown goes below, damping and sensors free as far as they are calibrated: of the
+  /// stiff-string law where it is free (x_c known unless it is calibrated), of every frequency
+  /// under the law prior and what priors are stated where frequencies are free. Null
   /// without noise or where no frequency is free. Throws InvalidInput as expected_limit() does.
   Bounds of(const CalibrateOptions& options, TruthCache& truths);
 

@@ -1,7 +1,5 @@
 #include "experiments/kinds/calibrate_experiment.hpp"
 
-#include <cmath>
-
 #include "experiments/kinds/invert_experiment.hpp"
 #include "experiments/kinds/lint.hpp"
 #include "experiments/kinds/scene_plan.hpp"
@@ -83,11 +81,15 @@ std::optional<PlannedSimulations> CalibrateExperiment::planned_simulations() con
 }
 
 LimitQuestion CalibrateExperiment::limit_question() const {
-  const ContinuationOptions& continuation = options_.calibration.continuation;
-  return {.observation = options_.inversion.observation,
-          .noise_level = options_.inversion.observation.measurement.noise_level,
-          .highest_frequency = continuation.highest_frequency,
-          .law_width = std::isnan(continuation.law_width) ? 2e-3 : continuation.law_width};
+  const ObservationOptions& first = options_.inversion.observation;
+  LimitQuestion question{.observation = first,
+                         .noise_level = first.measurement.noise_level,
+                         .further_contacts = options_.further.contacts};
+  question.calibrate_by(options_.calibration);
+  for (const PluckRecordOptions& pluck : options_.plucks) {
+    question.plucks.push_back(pluck.observation(first));
+  }
+  return question;
 }
 
 }  // namespace modcal

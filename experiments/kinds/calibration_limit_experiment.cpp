@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "experiments/kinds/lint.hpp"
 #include "experiments/kinds/number_json.hpp"
@@ -54,6 +55,9 @@ LimitOutcome outcome_of(const ContinuationResult& found) {
       .law_deviation = found.law.deviation,
       .contact = found.model.contact,
       .contact_deviation = found.contact_deviation,
+      .sensors = {found.model.sensors.gain, found.model.sensors.delay,
+                  0.5 * found.model.sensors.corner / std::numbers::pi},
+      .sensor_deviation = found.sensor_deviation,
       .law_chi2 = found.law.chi2,
       .chi2 = found.chi2,
       .chi2_deviation = found.chi2_deviation,
@@ -127,6 +131,12 @@ void CalibrationLimitOptions::visit(OptionVisitor& visitor) {
       has_inversion, [this](OptionVisitor& members) { inversion.visit(members); });
 }
 
+LimitQuestion limit_question_of(const CalibrationLimitOptions& options, double noise_level) {
+  LimitQuestion question{.observation = options.observation, .noise_level = noise_level};
+  question.calibrate_by(options.continuation);
+  return question;
+}
+
 std::string outcome_text(const LimitOutcome& outcome) {
   if (!outcome.failure.empty()) return json{{"failure", outcome.failure}}.dump();
   return json{{"law", numbers(outcome.law)},
@@ -135,6 +145,8 @@ std::string outcome_text(const LimitOutcome& outcome) {
               {"deviations", numbers(outcome.deviations)},
               {"contact", number_json(outcome.contact)},
               {"contact_deviation", number_json(outcome.contact_deviation)},
+              {"sensors", numbers(outcome.sensors)},
+              {"sensor_deviation", numbers(outcome.sensor_deviation)},
               {"law_chi2", number_json(outcome.law_chi2)},
               {"chi2", number_json(outcome.chi2)},
               {"chi2_deviation", number_json(outcome.chi2_deviation)},
@@ -158,6 +170,10 @@ LimitOutcome read_limit_outcome(const std::string& text) {
     read_numbers(object.at("deviations"), outcome.deviations);
     outcome.contact = read_number(object.at("contact"));
     outcome.contact_deviation = read_number(object.at("contact_deviation"));
+    if (object.contains("sensors")) {
+      read_numbers(object.at("sensors"), outcome.sensors);
+      read_numbers(object.at("sensor_deviation"), outcome.sensor_deviation);
+    }
     outcome.law_chi2 = read_number(object.at("law_chi2"));
     outcome.chi2 = read_number(object.at("chi2"));
     outcome.chi2_deviation = read_number(object.at("chi2_deviation"));
@@ -198,11 +214,7 @@ std::optional<PlannedSimulations> CalibrationLimitExperiment::planned_simulation
 }
 
 LimitQuestion CalibrationLimitExperiment::limit_question() const {
-  const double width = options_.continuation.law_width;
-  return {.observation = options_.observation,
-          .noise_level = options_.noise_levels.front(),
-          .highest_frequency = options_.continuation.highest_frequency,
-          .law_width = std::isnan(width) ? 2e-3 : width};
+  return limit_question_of(options_, options_.noise_levels.front());
 }
 
 std::vector<std::string> CalibrationLimitExperiment::axis_values(std::size_t task) const {

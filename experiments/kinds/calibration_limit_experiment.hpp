@@ -38,6 +38,8 @@ struct LimitOutcome {
   std::array<double, 4> law{}, law_deviation{};  ///< f_0 [Hz], B, x_c [m], damping factor
   std::vector<double> frequencies, deviations;   ///< of every mode [Hz], relative
   double contact = 0.0, contact_deviation = 0.0;
+  /// Gain, delay [s] and corner [Hz] of the sensor at x = L, and standard deviations (0: not free).
+  std::array<double, 3> sensors{1.0, 0.0, 0.0}, sensor_deviation{};
   double law_chi2 = 0.0, chi2 = 0.0;
   double chi2_deviation = 0.0;  ///< of χ², as the calibration states it
   bool right = false;
@@ -55,6 +57,9 @@ struct LimitLevel {
   double noise_level = 0.0;
   std::vector<LimitOutcome> outcomes;
 };
+
+/// The bound of one noise level.
+LimitQuestion limit_question_of(const CalibrationLimitOptions& options, double noise_level);
 
 /// Tables and figure; reads the truth and the bound from the scene.
 StudyResult sum_up_limit(const CalibrationLimitOptions& options,

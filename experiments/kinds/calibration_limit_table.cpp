@@ -149,11 +149,12 @@ void judge(const std::vector<LimitSummary>& levels, bool known_noise, StudyResul
 }
 
 std::string summary_line(const LimitSummary& level) {
-  std::string text = fmt::format(
-      "{:g} %: RMSE/bound f0 {:.2f}, B {:.2f}, x_c {:.2f}, damping {:.2f}, free f_n {:.2f} "
-      "(worst {:.2f}); chi2 {:.4f}; median error {:.2e}",
-      100.0 * level.level, level.rows[0].ratio(), level.rows[1].ratio(), level.rows[2].ratio(),
-      level.rows[3].ratio(), level.free_rms, level.free_worst, level.mean_chi2, level.median_error);
+  std::string text = fmt::format("{:g} %: RMSE/bound", 100.0 * level.level);
+  for (const LimitRow& row : level.rows) {
+    if (row.law) text += fmt::format(" {} {:.2f},", row.parameter, row.ratio());
+  }
+  text += fmt::format(" free f_n {:.2f} (worst {:.2f}); chi2 {:.4f}; median error {:.2e}",
+                      level.free_rms, level.free_worst, level.mean_chi2, level.median_error);
   if (std::isfinite(level.paper_error)) {
     text += fmt::format(", the paper's method {:.2e}", level.paper_error);
   }
@@ -168,15 +169,13 @@ std::string summary_line(const LimitSummary& level) {
 
 StudyResult sum_up_limit(const CalibrationLimitOptions& options,
                          const std::vector<LimitLevel>& levels, const StudyContext& context) {
-  const double width = options.continuation.law_width;
   std::vector<LimitSummary> summaries;
   StudyResult result;
   for (const LimitLevel& level : levels) {
     const LimitTruth truth =
         limit_truth(options.observation, level.noise_level, context.work.truths);
-    const ExpectedLimit bound =
-        expected_limit(truth.point, truth.records, options.continuation.highest_frequency,
-                       std::isnan(width) ? 2e-3 : width);
+    const ExpectedLimit bound = expected_limit(
+        limit_case(limit_question_of(options, level.noise_level), context.work.truths));
     summaries.push_back(summarize_level(level, truth, bound));
     result.failed_tasks += summaries.back().broken;
     result.summary += summary_line(summaries.back());

@@ -86,6 +86,9 @@ report::Figure limit_figure(const std::vector<LimitSummary>& levels, const std::
   add_parameter(levels, "x_c", "x_c", "m", figure);
   add_parameter(levels, "damping", "damping factor", "1", figure);
   add_parameter(levels, "x_c, frequencies free", "x_c, frequencies free", "m", figure);
+  add_parameter(levels, "gain", "sensor gain", "1", figure);
+  add_parameter(levels, "delay", "sensor delay", "s", figure);
+  add_parameter(levels, "corner", "sensor corner", "Hz", figure);
   add_median(levels, figure);
   return figure;
 }

@@ -33,6 +33,7 @@ class LevelReader {
   LimitSummary read() {
     add_law();
     add_frequencies();
+    add_sensors();
     add_means();
     count_wrong();
     return std::move(summary_);
@@ -72,6 +73,7 @@ class LevelReader {
     const StiffStringFit fit = fit_stiff_string(frequencies);
     const double values[] = {fit.fundamental, fit.inharmonicity, truth_.point.contact, 1.0};
     for (std::size_t i = 0; i < 4; ++i) {
+      if (!bound_.find(kLawNames[i])) continue;  // a fixed damping factor
       LimitRow law = row(
           kLawNames[i], bound_.law[i], [&](const LimitOutcome& o) { return o.law[i] - values[i]; },
           [&](const LimitOutcome& o) { return o.law_deviation[i]; });
@@ -105,6 +107,19 @@ class LevelReader {
         "x_c, frequencies free", bound_.contact,
         [&](const LimitOutcome& o) { return o.contact - truth_.point.contact; },
         [](const LimitOutcome& o) { return o.contact_deviation; }));
+  }
+
+  // The scene's sensors are alike.
+  void add_sensors() {
+    constexpr const char* kNames[] = {"gain", "delay", "corner"};
+    constexpr double kTruth[] = {1.0, 0.0, 0.0};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const ParameterLimit* bound = bound_.find(kNames[i]);
+      if (!bound) continue;
+      summary_.rows.push_back(row(
+          kNames[i], bound->free, [&](const LimitOutcome& o) { return o.sensors[i] - kTruth[i]; },
+          [&](const LimitOutcome& o) { return o.sensor_deviation[i]; }));
+    }
   }
 
   void add_means() {

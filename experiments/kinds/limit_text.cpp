@@ -1,34 +1,65 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "experiments/kinds/calibration_limit_experiment.hpp"
 #include "experiments/kinds/limit_source.hpp"
-#include "libcalib/likelihood/expected_limit.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {
 namespace {
 
 ExpectedLimit limit_at(const LimitQuestion& question, double contact, TruthCache& truths) {
-  ObservationOptions observation = question.observation;
-  observation.truth.scene.bow.position = contact;
-  const LimitTruth truth = limit_truth(observation, question.noise_level, truths);
-  return expected_limit(truth.point, truth.records, question.highest_frequency, question.law_width);
+  LimitQuestion there = question;
+  there.observation.truth.scene.bow.position = contact;
+  return expected_limit(limit_case(there, truths));
+}
+
+// "m", "(factor)".
+std::string shown_unit(const std::string& parameter) {
+  if (parameter == "damping") return "(factor)";
+  const std::string unit(unit_of_unknown(parameter));
+  return unit == "1" ? "" : unit;
+}
+
+// Of the column of names.
+std::size_t name_width(const ExpectedLimit& limit) {
+  std::size_t width = 8;
+  for (const ParameterLimit& row : limit.parameters) {
+    width = std::max(width, row.parameter.size());
+  }
+  return width;
 }
 
 std::string law_lines(const ExpectedLimit& limit) {
-  constexpr const char* kNames[] = {"f0", "B", "x_c", "damping"};
-  constexpr const char* kUnits[] = {"Hz", "", "m", "(factor)"};
   std::string text =
       "stiff-string law, all modes on it (in brackets: what an unknown force leaves):\n";
-  for (std::size_t i = 0; i < 4; ++i) {
-    text += fmt::format("  {:<8} sd {:.3g} ({:.3g}) {:<9} correlations", kNames[i], limit.law[i],
-                        limit.law_attainable[i], kUnits[i]);
-    for (std::size_t j = 0; j < i; ++j) {
-      text += fmt::format(" {} {:+.2f}", kNames[j], limit.law_correlation[i][j]);
+  std::vector<std::string> names;
+  for (const ParameterLimit& row : limit.parameters) {
+    if (std::isnan(row.law)) continue;
+    text += fmt::format("  {:<{}} sd {:.3g} ({:.3g}) {:<9} correlations", row.parameter,
+                        name_width(limit), row.law, row.attainable, shown_unit(row.parameter));
+    for (std::size_t j = 0; j < row.correlations.size(); ++j) {
+      text += fmt::format(" {} {:+.2f}", names[j], row.correlations[j]);
     }
     text += "\n";
+    names.push_back(row.parameter);
+  }
+  return text;
+}
+
+// All but x_c of the first stroke and the damping factor, and the damping ratios, which stand with
+// their modes.
+std::string free_lines(const ExpectedLimit& limit) {
+  std::string text;
+  for (const ParameterLimit& row : limit.parameters) {
+    const bool elsewhere =
+        row.parameter == "x_c" || row.parameter == "damping" || row.parameter.starts_with("zeta_");
+    if (elsewhere || std::isnan(row.free)) continue;
+    const std::string unit = shown_unit(row.parameter);
+    text += fmt::format("  {:<{}} sd {:.3g}{}{}\n", row.parameter, name_width(limit), row.free,
+                        unit.empty() ? "" : " ", unit);
   }
   return text;
 }
@@ -42,25 +73,53 @@ std::string singular_values(const ExpectedLimit& limit) {
 }
 
 std::string mode_lines(const ExpectedLimit& limit) {
-  std::string text = fmt::format(
-      "every frequency free: sd of x_c {:.3g} m, of the damping factor {:.3g}\n{}"
-      "  n  f [Hz]      relative sd  verdict\n",
-      limit.contact, limit.damping, singular_values(limit));
+  std::string text = fmt::format("every frequency free: sd of x_c {:.3g} m", limit.contact);
+  if (limit.find("damping")) text += fmt::format(", of the damping factor {:.3g}", limit.damping);
+  const bool ratios = limit.find("zeta_1") != nullptr;
+  text += "\n" + free_lines(limit) + singular_values(limit);
+  text += fmt::format("  n  f [Hz]      relative sd  {}verdict\n", ratios ? "sd of zeta  " : "");
   for (std::size_t n = 0; n < limit.modes.size(); ++n) {
     const ModeVerdict& mode = limit.modes[n];
-    text += fmt::format("{:>3}  {:<10.3f}  {:<11.2e}  {}", n + 1, mode.frequency, mode.deviation,
-                        name_of(mode.source));
+    text += fmt::format("{:>3}  {:<10.3f}  {:<11.2e}  ", n + 1, mode.frequency, mode.deviation);
+    if (ratios) {
+      text += fmt::format("{:<10.2e}  ", limit.find(fmt::format("zeta_{}", n + 1))->free);
+    }
+    text += name_of(mode.source);
     if (mode.reason != WeakReason::kNone) text += fmt::format(" ({})", name_of(mode.reason));
     text += "\n";
   }
   return text;
 }
 
+std::string record_lines(const LimitQuestion& question, const LimitCase& records) {
+  const auto length = [](const NoisyRecords& record) {
+    return fmt::format("{:g} s at {:g} Hz",
+                       static_cast<double>(record.samples()) / record.sample_rate,
+                       record.sample_rate);
+  };
+  std::string text =
+      fmt::format("noise {:g} % of each reaction, {}, x_c = {:g} m\n", 100.0 * question.noise_level,
+                  length(records.strokes[0]), records.contacts[0]);
+  for (std::size_t r = 1; r < records.strokes.size(); ++r) {
+    text += fmt::format("stroke {}: x_c = {:g} m\n", r + 1, records.contacts[r]);
+  }
+  for (std::size_t r = 0; r < records.plucks.size(); ++r) {
+    text +=
+        fmt::format("pluck {}: noise {:g} % of each reaction, {}\n", r + 1,
+                    100.0 * question.plucks[r].measurement.noise_level, length(records.plucks[r]));
+  }
+  return text;
+}
+
 std::string proposals(const LimitQuestion& question, const ExpectedLimit& limit,
                       const ModelPoint& point, TruthCache& truths) {
-  if (limit.blind_modes == 0) return "no mode is blind at this contact point\n";
-  std::string text =
-      fmt::format("{} modes are not identified; contact points nearby:\n", limit.blind_modes);
+  if (limit.blind_modes == 0) {
+    const bool one = question.further_contacts.empty() && question.plucks.empty();
+    return one ? "no mode is blind at this contact point\n" : "no mode is blind to all records\n";
+  }
+  const bool one = question.further_contacts.empty();
+  std::string text = fmt::format("{} modes are not identified; contact points nearby{}:\n",
+                                 limit.blind_modes, one ? "" : " for the first stroke");
   bool any = false;
   for (const double contact :
        contacts_without_blind_modes(point, 0.02 * point.basis.length, 0.1, 4)) {
@@ -100,17 +159,54 @@ LimitTruth limit_truth(const ObservationOptions& observation, double noise_level
   return result;
 }
 
+void LimitQuestion::calibrate_by(const ContinuationOptions& continuation) {
+  highest_frequency = continuation.highest_frequency;
+  law_width = std::isnan(continuation.law_width) ? kLawWidth : continuation.law_width;
+  unknowns = continuation.unknowns;
+}
+
+void LimitQuestion::calibrate_by(const CalibrationOptions& calibration) {
+  calibrate_by(calibration.continuation);
+  if (calibration.has_continuation) return;
+  const ParameterOptions& parameters = calibration.parameters;
+  const auto searched = [&](const char* sensor) {
+    return std::find(parameters.sensors.begin(), parameters.sensors.end(), sensor) !=
+           parameters.sensors.end();
+  };
+  unknowns = {.damping = parameters.damping};
+  unknowns.gain.free = searched("gain");
+  unknowns.delay.free = searched("delay");
+  unknowns.corner.free = searched("corner");
+}
+
+LimitCase limit_case(const LimitQuestion& question, TruthCache& truths) {
+  LimitTruth first = limit_truth(question.observation, question.noise_level, truths);
+  LimitCase result{.truth = first.point,
+                   .strokes = {std::move(first.records)},
+                   .contacts = {first.point.contact},
+                   .plucks = {},
+                   .highest_frequency = question.highest_frequency,
+                   .law_width = question.law_width,
+                   .unknowns = question.unknowns};
+  for (const double contact : question.further_contacts) {
+    ObservationOptions stroke = question.observation;
+    stroke.truth.scene.bow.position = contact;
+    result.strokes.push_back(limit_truth(stroke, question.noise_level, truths).records);
+    result.contacts.push_back(contact);
+  }
+  for (const ObservationOptions& pluck : question.plucks) {
+    result.plucks.push_back(limit_truth(pluck, pluck.measurement.noise_level, truths).records);
+  }
+  return result;
+}
+
 std::string limit_text(const LimitQuestion& question, TruthCache& truths) {
   MODCAL_REQUIRE(question.noise_level > 0.0,
                  "without noise there is no limit: state a noise level > 0");
-  const LimitTruth truth = limit_truth(question.observation, question.noise_level, truths);
-  const ExpectedLimit limit =
-      expected_limit(truth.point, truth.records, question.highest_frequency, question.law_width);
-  return fmt::format("noise {:g} % of each reaction, {:g} s at {:g} Hz, x_c = {:g} m\n",
-                     100.0 * question.noise_level,
-                     static_cast<double>(truth.records.samples()) / truth.records.sample_rate,
-                     truth.records.sample_rate, truth.point.contact) +
-         law_lines(limit) + mode_lines(limit) + proposals(question, limit, truth.point, truths);
+  const LimitCase records = limit_case(question, truths);
+  const ExpectedLimit limit = expected_limit(records);
+  return record_lines(question, records) + law_lines(limit) + mode_lines(limit) +
+         proposals(question, limit, records.truth, truths);
 }
 
 }  // namespace modcal

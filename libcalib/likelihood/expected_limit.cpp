@@ -4,97 +4,124 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libcalib/likelihood/bin_weights.hpp"
+#include "libcalib/likelihood/limit_information.hpp"
 #include "libcalib/likelihood/mode_verdict.hpp"
-#include "libcalib/likelihood/newton_fit.hpp"
+#include "libcalib/likelihood/stated_verdict.hpp"
 #include "libcalib/stiff_string_fit.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
 namespace {
 
-Eigen::MatrixXd covariance(const Eigen::MatrixXd& information, const Eigen::MatrixXd& prior) {
-  NewtonOptions options;
-  options.prior = prior;
-  LikelihoodPoint point{.information = information};
-  point.twice_weighted = information;
-  return fit_covariance(point, options);
-}
-
 Eigen::VectorXd deviations(const Eigen::MatrixXd& matrix) {
   return matrix.diagonal().cwiseMax(0.0).cwiseSqrt();
 }
 
-constexpr std::size_t kNoiseRepeats = 4;
-
-// Under the weights that a calibration would give the bins if it knew what each can tell.
-Eigen::VectorXd attainable(const ProjectedLikelihood& clean, const ModelPoint& truth,
-                           const LikelihoodColumns& columns) {
-  ProjectedLikelihood weighted = clean;
-  weighted.set_weights(best_weights(clean, truth, columns));
-  LikelihoodPoint point = weighted.evaluate(truth, columns, {.twice_weighted = true});
-  for (std::size_t r = 0; r < kNoiseRepeats; ++r) {
-    const ProjectedLikelihood noise(weighted.record().noise(r));
-    point.twice_weighted +=
-        noise.evaluate(truth, columns, {.twice_weighted = true}).twice_weighted / kNoiseRepeats;
+ParameterLimit& entry(const std::string& name, ExpectedLimit& limit) {
+  for (ParameterLimit& known : limit.parameters) {
+    if (known.parameter == name) return known;
   }
-  return deviations(fit_covariance(point, {}));
+  limit.parameters.push_back({.parameter = name});
+  return limit.parameters.back();
+}
+
+void add_law(const LimitInformation& records, const StringUnknowns& unknowns,
+             ExpectedLimit& limit) {
+  const Eigen::MatrixXd prior = records.prior(unknowns, nullptr);
+  const Eigen::MatrixXd covariance = records.covariance(unknowns, prior);
+  const Eigen::MatrixXd attainable = records.attainable(unknowns, prior);
+  const std::vector<ParameterForm> forms = records.forms(unknowns);
+  for (std::size_t i = 0; i < forms.size(); ++i) {
+    const Eigen::VectorXd& slope = forms[i].slope;
+    ParameterLimit& row = entry(forms[i].parameter, limit);
+    row.law = forms[i].deviation(covariance);
+    row.attainable = forms[i].deviation(attainable);
+    for (std::size_t j = 0; j < i; ++j) {
+      row.correlations.push_back(slope.dot(covariance * forms[j].slope) /
+                                 (row.law * forms[j].deviation(covariance)));
+    }
+  }
+  constexpr const char* kNames[] = {"f0", "B", "x_c", "damping"};
+  for (std::size_t i = 0; i < 4; ++i) {
+    limit.law_correlation[i][i] = 1.0;
+    const ParameterLimit* row = limit.find(kNames[i]);
+    if (!row) continue;
+    limit.law[i] = row->law;
+    limit.law_attainable[i] = row->attainable;
+    for (std::size_t j = 0; j < i; ++j) {
+      limit.law_correlation[i][j] = limit.law_correlation[j][i] = row->correlations[j];
+    }
+  }
+}
+
+void add_frequencies(const LimitInformation& records, const StringUnknowns& unknowns,
+                     double inharmonicity, ExpectedLimit& limit) {
+  const LimitCase& question = records.question();
+  const Eigen::MatrixXd information = records.information(unknowns);
+  const auto n = static_cast<Eigen::Index>(unknowns.modes());
+  const Eigen::MatrixXd of_frequencies = 2.0 * information.topLeftCorner(n, n);
+  const Eigen::VectorXd eigenvalues = of_frequencies.selfadjointView<Eigen::Lower>().eigenvalues();
+  for (Eigen::Index i = n - 1; i >= 0; --i) {
+    limit.singular_values.push_back(std::sqrt(std::max(eigenvalues[i], 0.0)));
+  }
+  const auto covariance_under = [&](const Eigen::VectorXd& widths) {
+    const LawScatter scatter{widths, inharmonicity};
+    return covariance_of(information, records.prior(unknowns, &scatter));
+  };
+  const Eigen::VectorXd seen =
+      deviations(covariance_under(Eigen::VectorXd::Constant(n, kWidePrior))).head(n);
+  const Eigen::MatrixXd covariance =
+      covariance_under(prior_widths(seen, question.law_width, kTied));
+  for (const ParameterForm& form : records.forms(unknowns)) {
+    entry(form.parameter, limit).free = form.deviation(covariance);
+  }
+  limit.contact = limit.find("x_c")->free;
+  if (const ParameterLimit* damping = limit.find("damping")) limit.damping = damping->free;
+  const Eigen::VectorXd found = deviations(covariance).head(n);
+  limit.modes = free_verdicts(question.truth, found, seen, question.law_width);
+  trust_stated_frequencies(records.priors(), found, limit.modes);
+  limit.blind_modes = static_cast<std::size_t>(std::count_if(
+      limit.modes.begin(), limit.modes.end(),
+      [](const ModeVerdict& mode) { return mode.source != ModeSource::kIdentified; }));
 }
 
 }  // namespace
 
-ExpectedLimit expected_limit(const ModelPoint& truth, const NoisyRecords& records,
-                             double highest_frequency, double law_width) {
-  MODCAL_REQUIRE(law_width > 0.0, "law width {:g} must be > 0", law_width);
-  const double highest = likelihood_band(truth, highest_frequency, records.sample_rate);
-  const ProjectedLikelihood whole(WhitenedRecord::of(records, 0.0, highest));
+const ParameterLimit* ExpectedLimit::find(const std::string& parameter) const {
+  const auto found =
+      std::find_if(parameters.begin(), parameters.end(),
+                   [&](const ParameterLimit& entry) { return entry.parameter == parameter; });
+  return found == parameters.end() ? nullptr : &*found;
+}
+
+ExpectedLimit expected_limit(const LimitCase& question) {
+  MODCAL_REQUIRE(question.law_width > 0.0, "law width {:g} must be > 0", question.law_width);
+  const LimitInformation records(question);
+  const ModelPoint& truth = question.truth;
   std::vector<double> frequencies;
   for (std::size_t n = 0; n < truth.basis.size(); ++n) {
     frequencies.push_back(truth.basis.frequency(n));
   }
   const StiffStringFit fit = fit_stiff_string(frequencies);
   ExpectedLimit limit;
-
-  const StringUnknowns law = StringUnknowns::law(truth, fit.fundamental, fit.inharmonicity);
-  const Eigen::MatrixXd law_covariance =
-      covariance(whole.evaluate(truth, law.columns(law.start())).information, {});
-  const Eigen::VectorXd law_deviation = deviations(law_covariance);
-  for (Eigen::Index i = 0; i < 4; ++i) {
-    limit.law[static_cast<std::size_t>(i)] = law_deviation[i];
-    for (Eigen::Index j = 0; j < 4; ++j) {
-      limit.law_correlation[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] =
-          law_covariance(i, j) / (law_deviation[i] * law_deviation[j]);
-    }
-  }
-  const Eigen::VectorXd weighted = attainable(whole, truth, law.columns(law.start()));
-  for (Eigen::Index i = 0; i < 4; ++i) {
-    limit.law_attainable[static_cast<std::size_t>(i)] = weighted[i];
-  }
-  limit.law[0] *= fit.fundamental;
-  limit.law_attainable[0] *= fit.fundamental;
-
-  const StringUnknowns free = StringUnknowns::frequencies(truth);
-  const Eigen::MatrixXd information = whole.evaluate(truth, free.columns(free.start())).information;
-  const auto n = static_cast<Eigen::Index>(free.modes());
-  const Eigen::MatrixXd frequency_information = 2.0 * information.topLeftCorner(n, n);
-  const Eigen::VectorXd eigenvalues =
-      frequency_information.selfadjointView<Eigen::Lower>().eigenvalues();
-  for (Eigen::Index i = n - 1; i >= 0; --i) {
-    limit.singular_values.push_back(std::sqrt(std::max(eigenvalues[i], 0.0)));
-  }
-  const Eigen::MatrixXd wide = covariance(
-      information, law_prior(Eigen::VectorXd::Constant(n, kWidePrior), fit.inharmonicity));
-  const Eigen::VectorXd seen = deviations(wide).head(n);
-  const Eigen::VectorXd widths = prior_widths(seen, law_width, kTied);
-  const Eigen::VectorXd found =
-      deviations(covariance(information, law_prior(widths, fit.inharmonicity)));
-  limit.contact = found[free.contact()];
-  limit.damping = found[free.damping()];
-  limit.modes = free_verdicts(truth, found.head(n), seen, law_width);
-  limit.blind_modes = static_cast<std::size_t>(std::count_if(
-      limit.modes.begin(), limit.modes.end(),
-      [](const ModeVerdict& mode) { return mode.source != ModeSource::kIdentified; }));
+  add_law(records,
+          StringUnknowns::law(truth, fit.fundamental, fit.inharmonicity, question.unknowns,
+                              records.priors()),
+          limit);
+  add_frequencies(records, StringUnknowns::frequencies(truth, question.unknowns, records.priors()),
+                  fit.inharmonicity, limit);
   return limit;
+}
+
+ExpectedLimit expected_limit(const ModelPoint& truth, const NoisyRecords& records,
+                             double highest_frequency, double law_width) {
+  return expected_limit({.truth = truth,
+                         .strokes = {records},
+                         .contacts = {truth.contact},
+                         .plucks = {},
+                         .highest_frequency = highest_frequency,
+                         .law_width = law_width,
+                         .unknowns = {}});
 }
 
 std::vector<double> contacts_without_blind_modes(const ModelPoint& point, double reach,

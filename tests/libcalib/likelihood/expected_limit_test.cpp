@@ -6,9 +6,11 @@
 #include <cmath>
 
 #include "libcalib/likelihood/mode_verdict.hpp"
+#include "libcalib/likelihood/pluck_likelihood.hpp"
 #include "libcalib/likelihood/string_unknowns.hpp"
 #include "libsim/base/error.hpp"
 #include "tests/libcalib/likelihood/bowed_case.hpp"
+#include "tests/libcalib/likelihood/pluck_record_case.hpp"
 
 namespace modcal {
 namespace {
@@ -109,7 +111,135 @@ TEST_F(PapersString, ProposesContactsOffTheNodes) {
   }
 }
 
+LimitCase case_of(const BowedCase& bowed, double level) {
+  return {.truth = bowed.truth,
+          .strokes = {noisy(bowed, level, 1, false)},
+          .contacts = {bowed.truth.contact},
+          .plucks = {},
+          .highest_frequency = kAutomatic,
+          .law_width = 2e-3,
+          .unknowns = {}};
+}
+
+double law_of(const ExpectedLimit& limit, const std::string& parameter) {
+  return limit.find(parameter)->law;
+}
+
+TEST_F(PapersString, TwoStrokesHaveTwiceTheInformation) {
+  // Each has an x_c of its own, which leaves of what is shared the same in both: exactly half the
+  // variance. Of its own x_c a stroke knows more by what the other tells of the rest.
+  const LimitCase one = case_of(bowed, 0.01);
+  LimitCase two = one;
+  two.strokes.push_back(two.strokes.front());
+  two.contacts.push_back(two.contacts.front());
+  const ExpectedLimit alone = expected_limit(one), together = expected_limit(two);
+  for (const char* name : {"f0", "B", "damping"}) {
+    EXPECT_NEAR(law_of(together, name) / law_of(alone, name), std::sqrt(0.5), 1e-6) << name;
+  }
+  EXPECT_NEAR(law_of(together, "x_c 2") / law_of(together, "x_c"), 1.0, 1e-6);
+  EXPECT_LE(law_of(together, "x_c"), law_of(alone, "x_c") * (1.0 + 1e-9));
+  EXPECT_GE(law_of(together, "x_c"), std::sqrt(0.5) * law_of(alone, "x_c"));
+  EXPECT_EQ(alone.find("x_c 2"), nullptr);
+  for (std::size_t n = 0; n < 50; ++n) {
+    EXPECT_LE(together.modes[n].deviation, alone.modes[n].deviation * (1.0 + 1e-9)) << n + 1;
+  }
+}
+
+TEST_F(PapersString, APluckLeavesNoModeBlind) {
+  LimitCase both = case_of(bowed, 0.01);
+  EXPECT_GE(expected_limit(both).blind_modes, 4u);
+  both.plucks.push_back(plucked_records(0.0, 0.25, 0.01, 0));
+  const ExpectedLimit limit = expected_limit(both);
+  EXPECT_EQ(limit.blind_modes, 0u);
+  // The same from the likelihoods of both records, their informations added by hand.
+  const double highest = likelihood_band(bowed.truth, kAutomatic, 51200.0);
+  const StringUnknowns free = StringUnknowns::frequencies(bowed.truth);
+  const LikelihoodColumns columns = free.columns(free.start());
+  const ProjectedLikelihood stroke(WhitenedRecord::of(both.strokes[0], 0.0, highest));
+  const PluckLikelihood pluck(WhitenedRecord::of(both.plucks[0], 0.0, highest));
+  const Eigen::MatrixXd information =
+      2.0 * (stroke.evaluate(bowed.truth, columns).information +
+             pluck.evaluate(bowed.truth, columns).information) +
+      free.prior(free.start(), {Eigen::VectorXd::Constant(50, 2e-3), 0.0}).precision;
+  const Eigen::VectorXd scale = information.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
+  const Eigen::VectorXd deviation = scaled.inverse().diagonal().cwiseSqrt().array() * scale.array();
+  for (const std::size_t n : {1u, 11u, 22u, 33u, 44u}) {
+    EXPECT_EQ(limit.modes[n - 1].source, ModeSource::kIdentified) << n;
+    EXPECT_NEAR(limit.modes[n - 1].deviation / deviation[static_cast<Eigen::Index>(n - 1)], 1.0,
+                1e-6);
+  }
+  EXPECT_NEAR(limit.contact / deviation[free.contact()], 1.0, 1e-6);
+}
+
+TEST_F(PapersString, SensorsAndDampingAreExpectedAsTheFitReportsThem) {
+  // Noise in the slopes and the weights are nothing at 0.1 %; four draws of N̄ and the weights' own
+  // scatter leave 2 %.
+  LimitCase question = case_of(bowed, 1e-3);
+  question.unknowns = {.damping = "power"};
+  question.unknowns.gain.free = question.unknowns.delay.free = question.unknowns.corner.free = true;
+  const ExpectedLimit limit = expected_limit(question);
+  const NoisyRecords records = noisy(bowed, 1e-3, 5);
+  const ContinuationResult fit = calibrate_by_continuation(
+      bowed.truth,
+      CalibrationData::of_records(records.reactions[0], records.reactions[1], records.sample_rate),
+      {.law_width = 2e-3,
+       .left_noise = records.deviation[0],
+       .right_noise = records.deviation[1],
+       .unknowns = question.unknowns,
+       .restarts = 0});
+  ASSERT_TRUE(fit.frequencies_free);
+  constexpr const char* kSensors[] = {"gain", "delay", "corner"};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double ratio = limit.find(kSensors[i])->free / fit.sensor_deviation[i];
+    EXPECT_LT(ratio, 1.03) << kSensors[i];
+    // The corner is told by the few lowest bins, whose weights are averages over 121.
+    EXPECT_GT(ratio, i < 2 ? 0.97 : 0.6) << kSensors[i];
+    // Whoever knows that the frequencies follow a law knows more of the sensors.
+    EXPECT_LE(law_of(limit, kSensors[i]), limit.find(kSensors[i])->free) << kSensors[i];
+  }
+  EXPECT_NEAR(limit.find("damping")->free / fit.damping_deviation, 1.0, 0.03);
+  EXPECT_NEAR(limit.find("x_c")->free / fit.contact_deviation, 1.0, 0.03);
+  EXPECT_GT(limit.find("damping_power")->free, 0.0);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_NEAR(limit.law_attainable[i] / fit.law.deviation[i], 1.0, 0.03) << i;
+  }
+}
+
+TEST_F(PapersString, APriorAddsItsInformation) {
+  // A prior as wide as what the data alone tell halves the variance.
+  LimitCase question = case_of(bowed, 0.01);
+  question.unknowns.gain.free = true;
+  const double alone = law_of(expected_limit(question), "gain");
+  question.unknowns.priors = {{.parameter = "gain", .mean = 1.0, .deviation = alone}};
+  EXPECT_NEAR(law_of(expected_limit(question), "gain") / alone, std::sqrt(0.5), 1e-6);
+  question.unknowns.priors = {{.parameter = "delay", .mean = 0.0, .deviation = 1e-6}};
+  EXPECT_THROW(expected_limit(question), InvalidInput);  // it is not free
+}
+
+TEST_F(PapersString, HasARowForWhatIsFreeAlone) {
+  LimitCase question = case_of(bowed, 0.01);
+  question.unknowns.damping = "fixed";
+  const ExpectedLimit fixed = expected_limit(question);
+  EXPECT_EQ(fixed.find("damping"), nullptr);
+  EXPECT_EQ(fixed.law[3], 0.0);
+  question.unknowns.damping = "each";
+  const ExpectedLimit each = expected_limit(question);
+  ASSERT_NE(each.find("zeta_50"), nullptr);
+  for (std::size_t n = 1; n <= 50; ++n) {
+    const ParameterLimit* ratio = each.find("zeta_" + std::to_string(n));
+    EXPECT_TRUE(std::isnan(ratio->law));
+    // Not wider than its prior of 30 % about the stated 1e-3.
+    EXPECT_GT(ratio->free, 0.0);
+    EXPECT_LE(ratio->free, 3e-4 * (1.0 + 1e-9)) << n;
+  }
+  EXPECT_LT(each.find("zeta_1")->free, 1e-4);
+}
+
 TEST_F(PapersString, RefusesWhatIsNoPrior) {
+  LimitCase question = case_of(bowed, 0.01);
+  question.contacts.clear();
+  EXPECT_THROW(expected_limit(question), InvalidInput);
   EXPECT_THROW(expected_limit(bowed.truth, noisy(bowed, 0.01, 1, false), kAutomatic, 0.0),
                InvalidInput);
   EXPECT_THROW(contacts_without_blind_modes(bowed.truth, -1.0, 0.1, 4), InvalidInput);

@@ -1,0 +1,58 @@
+// What all records of a string tell of its unknowns, before any noise is drawn.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "libcalib/likelihood/all_records.hpp"
+#include "libcalib/likelihood/expected_limit.hpp"
+
+namespace modcal {
+
+/// A parameter as a linear form of the unknowns of all records, in the unit of its name.
+struct ParameterForm {
+  std::string parameter;
+  Eigen::VectorXd slope;
+  double deviation(const Eigen::MatrixXd& covariance) const;
+};
+
+/// (2 information + prior)⁻¹.
+Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& information, const Eigen::MatrixXd& prior);
+
+/// The records of a LimitCase, whitened, at the truth. Unknowns are those of AllRecords: the ones
+/// given, then x_c of every further stroke.
+class LimitInformation {
+ public:
+  /// `question` must outlive this.
+  explicit LimitInformation(const LimitCase& question);
+
+  const LimitCase& question() const { return question_; }
+  const StatedPriors& priors() const { return priors_; }
+  /// Re J⊥ᴴJ⊥, summed over the records.
+  Eigen::MatrixXd information(const StringUnknowns& unknowns) const;
+  /// Precision of what is stated of the unknowns; scatter: of the frequencies about the law, or
+  /// null.
+  Eigen::MatrixXd prior(const StringUnknowns& unknowns, const LawScatter* scatter) const;
+  Eigen::MatrixXd covariance(const StringUnknowns& unknowns, const Eigen::MatrixXd& prior) const {
+    return covariance_of(information(unknowns), prior);
+  }
+  /// Covariance under the weights that a calibration would give the bins if it knew what each can
+  /// tell, noise in the slopes counted.
+  Eigen::MatrixXd attainable(const StringUnknowns& unknowns, const Eigen::MatrixXd& prior) const;
+  /// Every parameter save the frequencies.
+  std::vector<ParameterForm> forms(const StringUnknowns& unknowns) const;
+
+ private:
+  AllRecords placed(const StringUnknowns& unknowns) const;
+  ModelPoint point_of(std::size_t record) const;
+  template <typename Evaluate>
+  LikelihoodPoint sum(const StringUnknowns& unknowns, const Evaluate& evaluate) const;
+
+  const LimitCase& question_;
+  StatedPriors priors_;
+  std::vector<ProjectedLikelihood> strokes_;
+  std::vector<std::shared_ptr<const RecordLikelihood>> records_;  // the strokes, then the plucks
+};
+
+}  // namespace modcal
