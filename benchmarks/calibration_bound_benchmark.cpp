@@ -101,8 +101,8 @@ void evaluate(benchmark::State& state, const StringUnknowns& unknowns, What what
               bool interpolate) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
   const NoisyStroke& the = the_case();
-  const NoisyRecords records =
-      NoisyRecords::of_data(the.data, {the.options.left_noise, the.options.right_noise});
+  const NoisyRecords records = NoisyRecords::of_data(
+      the.data, the.truth.basis, {the.options.left_noise, the.options.right_noise});
   const double highest = likelihood_band(the.truth, NAN, kRate);
   const WhitenedRecord whole = WhitenedRecord::of(records, 0.0, highest);
   const LikelihoodColumns columns = unknowns.columns(unknowns.start());

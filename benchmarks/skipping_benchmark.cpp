@@ -46,9 +46,10 @@ double milliseconds(const Work& work) {
 void print_likelihood() {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
   const NoisyStroke the = make_noisy_stroke();
-  const WhitenedRecord whole = WhitenedRecord::of(
-      NoisyRecords::of_data(the.data, {the.options.left_noise, the.options.right_noise}), 0.0,
-      likelihood_band(the.truth, the.options.highest_frequency, kRate));
+  const WhitenedRecord whole =
+      WhitenedRecord::of(NoisyRecords::of_data(the.data, the.truth.basis,
+                                               {the.options.left_noise, the.options.right_noise}),
+                         0.0, likelihood_band(the.truth, the.options.highest_frequency, kRate));
   const auto print_case = [&](const char* what, const StringUnknowns& unknowns) {
     const LikelihoodColumns columns = unknowns.columns(unknowns.start());
     const auto columns_by = [&](bool interpolate) {

@@ -27,6 +27,9 @@ Response Objective::response(ParameterKind kind) const {
   return Response::kNone;
 }
 
+void Objective::require_record(const ModalBasis& /*basis*/, double /*sample_rate*/,
+                               std::size_t /*samples*/) const {}
+
 void Objective::require_moved_by(std::span<const std::string> names) const {
   for (const std::string& name : names) {
     const std::optional<UnknownName> parsed = parse_unknown(name);

@@ -37,6 +37,10 @@ class Objective {
   /// Throws InvalidInput for a parameter (see parse_unknown()) that the objective cannot find.
   void require_moved_by(std::span<const std::string> names) const;
   virtual Response response(ParameterKind kind) const;
+  /// Throws InvalidInput where it cannot work with a record of `samples` at f_s [Hz] of this
+  /// string.
+  virtual void require_record(const ModalBasis& basis, double sample_rate,
+                              std::size_t samples) const;
 
  private:
   virtual std::unique_ptr<const ObjectiveFunction> do_bind(

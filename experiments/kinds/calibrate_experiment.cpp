@@ -1,10 +1,42 @@
 #include "experiments/kinds/calibrate_experiment.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "experiments/kinds/invert_experiment.hpp"
 #include "experiments/kinds/lint.hpp"
 #include "experiments/kinds/scene_plan.hpp"
+#include "libcalib/likelihood/noise_level.hpp"
 
 namespace modcal {
+namespace {
+
+// Whether a simulated record shows the noise levels that are not stated; a file is not read here.
+void lint_noise(const CalibrateOptions& options, std::vector<Finding>& findings) {
+  const ObservationOptions& observation = options.inversion.observation;
+  const bool known = std::none_of(findings.begin(), findings.end(),
+                                  [](const Finding& finding) { return finding.is_error; });
+  if (!known || !observation.has_scene || !is_known(observation.string_model())) return;
+  const CalibrationOptions& calibration = options.calibration;
+  const double rate = observation.measurement.sample_rate;
+  const auto samples =
+      static_cast<std::size_t>(std::round(observation.truth.scene.duration * rate));
+  lint_making(
+      calibration.has_continuation ? "calibration.continuation" : "calibration.objective",
+      [&] {
+        const ModalBasis basis = make_modal_basis(observation.string_model());
+        if (!calibration.has_continuation) {
+          calibration.objective.make()->require_record(basis, rate, samples);
+          return;
+        }
+        const ContinuationOptions& continuation = calibration.continuation;
+        require_noise_known({continuation.left_noise, continuation.right_noise}, basis, rate,
+                            samples);
+      },
+      findings);
+}
+
+}  // namespace
 
 std::vector<Finding> CalibrateExperiment::lint() const {
   std::vector<Finding> findings = lint_inversion(options_.inversion);
@@ -23,6 +55,7 @@ std::vector<Finding> CalibrateExperiment::lint() const {
       [&] { options_.further.require_fit_to(options_.inversion.observation, calibration); },
       findings);
   append(findings, lint_plucks(options_.plucks, options_.inversion.observation, calibration));
+  lint_noise(options_, findings);
   const auto modes = static_cast<std::size_t>(options_.inversion.observation.string_model().modes);
   if (calibration.has_continuation) {
     const std::size_t strokes =

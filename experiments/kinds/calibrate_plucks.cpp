@@ -6,6 +6,7 @@
 
 #include "experiments/kinds/calibrate_study.hpp"
 #include "experiments/kinds/lint.hpp"
+#include "libcalib/likelihood/noise_level.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -91,6 +92,7 @@ void lint_simulated(const std::string& path, const PluckRecordOptions& pluck,
          fmt::format("a pluck sampled at {:g} Hz, but the highest mode is at {:g} Hz: sample at "
                      "more than twice that, or use fewer modes",
                      pluck.sample_rate, top)});
+    return;
   }
   const double least = kLeastPeriods / basis.frequency(0);
   if (!(pluck.duration >= least)) {
@@ -99,7 +101,15 @@ void lint_simulated(const std::string& path, const PluckRecordOptions& pluck,
          fmt::format("a pluck of {:g} s does not tell modes {:g} Hz apart from each other: record "
                      "at least {:g} periods of the first mode, {:.3g} s",
                      pluck.duration, basis.frequency(0), kLeastPeriods, least)});
+    return;
   }
+  lint_making(
+      path + ".sample_rate",
+      [&] {
+        require_noise_known({pluck.left_noise, pluck.right_noise}, basis, pluck.sample_rate,
+                            static_cast<std::size_t>(std::round(pluck.duration * pluck.sample_rate)));
+      },
+      findings);
 }
 
 }  // namespace

@@ -94,6 +94,12 @@ std::string verdict_lines(const ContinuationResult& found) {
       found.right ? "the data do not contradict the fit" : "THE FIT IS WRONG", found.law.chi2,
       found.law.accepted ? "accepted" : "contradicted", found.law.deviation[0],
       found.law.deviation[1], found.contact_deviation, found.damping_deviation);
+  if (found.chi2 < 1.0 - 3.0 * found.chi2_deviation) {
+    text += fmt::format(
+        "noise overstated: the data scatter less than the noise levels say; standard deviations "
+        "are too wide by a factor of {:.3g}\n",
+        1.0 / std::sqrt(found.chi2));
+  }
   for (std::size_t n = 0; found.frequencies_free && n < found.modes.size(); ++n) {
     const ModeVerdict& mode = found.modes[n];
     if (mode.source == ModeSource::kIdentified) continue;

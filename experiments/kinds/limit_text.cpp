@@ -5,6 +5,8 @@
 
 #include "experiments/kinds/calibration_limit_experiment.hpp"
 #include "experiments/kinds/limit_source.hpp"
+#include "libcalib/likelihood/expected_limit.hpp"
+#include "libcalib/likelihood/noise_level.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {
@@ -153,8 +155,10 @@ LimitTruth limit_truth(const ObservationOptions& observation, double noise_level
   for (std::size_t r = 0; r < 2; ++r) {
     remove_mean(result.records.reactions[r]);
     result.records.deviation[r] =
-        noise_level > 0.0 ? noise_level * standard_deviation(result.records.reactions[r])
-                          : noise_deviation(result.records.reactions[r]);
+        noise_level > 0.0
+            ? noise_level * standard_deviation(result.records.reactions[r])
+            : noise_deviation(result.records.reactions[r],
+                              NoiseBand::above(truth->basis, rate, result.records.samples()));
   }
   return result;
 }

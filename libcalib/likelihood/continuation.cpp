@@ -9,6 +9,7 @@
 #include "libcalib/likelihood/mode_verdict.hpp"
 #include "libcalib/likelihood/neighbor_test.hpp"
 #include "libcalib/likelihood/newton_fit.hpp"
+#include "libcalib/likelihood/noise_level.hpp"
 #include "libcalib/likelihood/stated_verdict.hpp"
 #include "libcalib/stiff_string_fit.hpp"
 #include "libsim/base/error.hpp"
@@ -343,12 +344,9 @@ ContinuationResult calibrate_by_continuation(const ModelPoint& initial, const Ca
 ContinuationResult calibrate_by_continuation(const ModelPoint& initial, const CalibrationData& data,
                                              const ContinuationOptions& options,
                                              const StatedPriors& priors) {
-  const NoisyRecords records =
-      NoisyRecords::of_data(data, {options.left_noise, options.right_noise});
-  const bool estimated = std::isnan(options.left_noise) || std::isnan(options.right_noise);
-  // The noise level's own error, 0.7 % at 51 200 samples (see noise_deviation), both ends together.
-  const double noise_error =
-      estimated ? 1e-2 * std::sqrt(51200.0 / static_cast<double>(data.samples)) : 0.0;
+  const std::array<double, 2> noise{options.left_noise, options.right_noise};
+  const NoisyRecords records = NoisyRecords::of_data(data, initial.basis, noise);
+  const double noise_error = noise_power_error(noise, initial.basis, data);
   const double highest = likelihood_band(initial, options.highest_frequency, data.sample_rate);
   constexpr double kShifts[] = {0.0, 4e-3, -4e-3, 8e-3, -8e-3};
   Attempt attempt(initial, records, options, priors, highest, noise_error);

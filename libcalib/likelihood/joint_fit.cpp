@@ -8,6 +8,7 @@
 #include "libcalib/likelihood/bin_weights.hpp"
 #include "libcalib/likelihood/mode_verdict.hpp"
 #include "libcalib/likelihood/newton_fit.hpp"
+#include "libcalib/likelihood/noise_level.hpp"
 #include "libcalib/likelihood/pluck_search.hpp"
 #include "libcalib/likelihood/stated_verdict.hpp"
 
@@ -33,12 +34,6 @@ StringUnknowns shared_unknowns(const RecordsFit& fit, const ContinuationOptions&
                                    options.unknowns, priors);
 }
 
-// Relative standard deviation of an estimated noise power, see noise_deviation().
-double noise_error(const std::array<double, 2>& stated, std::size_t samples) {
-  const bool estimated = std::isnan(stated[0]) || std::isnan(stated[1]);
-  return estimated ? 1e-2 * std::sqrt(51200.0 / static_cast<double>(samples)) : 0.0;
-}
-
 // The fit of all records, from their gathering to the report.
 class JointFit {
  public:
@@ -52,7 +47,7 @@ class JointFit {
 
   void add(const CalibrationData& stroke) {
     const std::array<double, 2> noise{options_.left_noise, options_.right_noise};
-    const NoisyRecords noisy = NoisyRecords::of_data(stroke, noise);
+    const NoisyRecords noisy = NoisyRecords::of_data(stroke, initial_.basis, noise);
     const double highest =
         likelihood_band(initial_, options_.highest_frequency, stroke.sample_rate);
     const ProjectedLikelihood whole(WhitenedRecord::of(noisy, 0.0, highest));
@@ -63,16 +58,16 @@ class JointFit {
     weighted.set_weights(signal_weights(noisy, sigma, highest, whole, point));
     all_.add(std::make_shared<StrokeLikelihood>(whole, std::move(weighted)), start,
              own_places(true), held_contact(all_.records()));
-    noise_errors_.push_back(noise_error(noise, stroke.samples));
+    noise_errors_.push_back(noise_power_error(noise, initial_.basis, stroke));
   }
 
   void add(const PluckRecord& pluck) {
-    const NoisyRecords noisy = NoisyRecords::of_data(pluck.data, pluck.noise);
+    const NoisyRecords noisy = NoisyRecords::of_data(pluck.data, initial_.basis, pluck.noise);
     const double highest =
         likelihood_band(initial_, options_.highest_frequency, pluck.data.sample_rate);
     plucks_.push_back(std::make_shared<PluckLikelihood>(WhitenedRecord::of(noisy, 0.0, highest)));
     all_.add(plucks_.back(), unknowns().start(), own_places(false));
-    noise_errors_.push_back(noise_error(pluck.noise, pluck.data.samples));
+    noise_errors_.push_back(noise_power_error(pluck.noise, initial_.basis, pluck.data));
   }
 
   void run() {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "libcalib/likelihood/noise_level.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/base/random.hpp"
 #include "libsim/signal/statistics.hpp"
@@ -73,29 +74,8 @@ std::span<const double> noise_draw(std::uint64_t seed, std::size_t count) {
 
 }  // namespace
 
-double noise_deviation(std::span<const double> samples) {
-  MODCAL_REQUIRE(samples.size() >= 64, "{} samples are too few to estimate the noise from",
-                 samples.size());
-  const std::size_t count = samples.size();
-  const double mean = modcal::mean(samples);
-  std::vector<double> windowed(count);
-  double energy = 0.0;
-  for (std::size_t j = 0; j < count; ++j) {
-    const double hann =
-        0.5 - 0.5 * std::cos(2.0 * pi * static_cast<double>(j) / static_cast<double>(count));
-    windowed[j] = (samples[j] - mean) * hann;
-    energy += hann * hann;
-  }
-  const std::vector<Complex> spectrum = RealFft(count).forward(windowed);
-  const auto first = static_cast<std::size_t>(0.293 * static_cast<double>(count));
-  const auto last = static_cast<std::size_t>(0.488 * static_cast<double>(count));
-  double power = 0.0;
-  for (std::size_t k = first; k < last; ++k) power += std::norm(spectrum[k]);
-  const double deviation = std::sqrt(power / (static_cast<double>(last - first) * energy));
-  return std::max(deviation, 2e-4 * standard_deviation(samples));
-}
-
-NoisyRecords NoisyRecords::of_data(const CalibrationData& data, std::array<double, 2> deviation) {
+NoisyRecords NoisyRecords::of_data(const CalibrationData& data, const ModalBasis& basis,
+                                   std::array<double, 2> deviation) {
   data.require_valid();
   MODCAL_REQUIRE(data.has_both(),
                  "the joint likelihood compares both reactions, and one is missing");
@@ -104,8 +84,11 @@ NoisyRecords NoisyRecords::of_data(const CalibrationData& data, std::array<doubl
   for (const End end : {End::kLeft, End::kRight}) {
     const auto r = static_cast<std::size_t>(end);
     records.reactions[r] = fft.inverse(data.reaction(end));
-    records.deviation[r] =
-        std::isnan(deviation[r]) ? noise_deviation(records.reactions[r]) : deviation[r];
+    records.deviation[r] = deviation[r];
+    if (std::isnan(deviation[r])) {
+      const NoiseBand band = NoiseBand::above(basis, data.sample_rate, data.samples);
+      records.deviation[r] = noise_deviation(records.reactions[r], band);
+    }
     MODCAL_REQUIRE(records.deviation[r] > 0.0 && std::isfinite(records.deviation[r]),
                    "noise of {:g} N in a reaction: the likelihood needs noise > 0",
                    records.deviation[r]);

@@ -9,6 +9,7 @@
 
 #include "libcalib/calibration_data.hpp"
 #include "libsim/base/aligned_vector.hpp"
+#include "libsim/model/modal_basis.hpp"
 
 namespace modcal {
 
@@ -20,19 +21,13 @@ struct NoisyRecords {
 
   std::size_t samples() const { return reactions[0].size(); }
   /// The records behind spectra of both ends. deviation: s_r [N]; NaN: estimated by
-  /// noise_deviation(). Throws InvalidInput where a reaction is missing or a deviation is not > 0.
-  static NoisyRecords of_data(const CalibrationData& data,
+  /// noise_deviation() above the modes of `basis`. Throws InvalidInput where a reaction is missing,
+  /// a deviation is not > 0, or no band is left to estimate one from.
+  static NoisyRecords of_data(const CalibrationData& data, const ModalBasis& basis,
                               std::array<double, 2> deviation = {
                                   std::numeric_limits<double>::quiet_NaN(),
                                   std::numeric_limits<double>::quiet_NaN()});
 };
-
-/// Standard deviation of white noise [N] from the power between 15 and 25 kHz under a Hann window
-/// (without it the ends of the record leak 0.1–0.5 % of the signal into the band), scaled with f_s
-/// where that is not 51.2 kHz: between 0.29 f_s and 0.49 f_s. Its own relative standard deviation
-/// is about 0.7 % for 51 200 samples. Not below 2e-4 of the signal's standard deviation: aliases of
-/// the force's jumps are no noise.
-double noise_deviation(std::span<const double> samples);
 
 /// Bins k = 1 … of exp(−σt) R_r(t), cut to 8/σ seconds, divided by the standard deviation of their
 /// noise: y_r with noise CN(0, 1). Arrays are padded to whole blocks of kBlock bins; the padding

@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "libcalib/likelihood/continuation.hpp"
+#include "libcalib/likelihood/noise_level.hpp"
 #include "libcalib/likelihood/projected_likelihood.hpp"
 #include "libcalib/likelihood/record_options.hpp"
 #include "libsim/base/error.hpp"
@@ -104,10 +105,15 @@ JointLikelihood::JointLikelihood(const Options& options) : options_(options) {
   MODCAL_REQUIRE(options.damping >= 0.0, "damping {:g} 1/s must be >= 0", options.damping);
 }
 
+void JointLikelihood::require_record(const ModalBasis& basis, double sample_rate,
+                                     std::size_t samples) const {
+  require_noise_known({options_.left_noise, options_.right_noise}, basis, sample_rate, samples);
+}
+
 std::unique_ptr<const ObjectiveFunction> JointLikelihood::do_bind(
     const CalibrationData& data, const ParameterSet& parameters) const {
-  const NoisyRecords records =
-      NoisyRecords::of_data(data, {options_.left_noise, options_.right_noise});
+  const NoisyRecords records = NoisyRecords::of_data(data, parameters.initial().basis,
+                                                     {options_.left_noise, options_.right_noise});
   const double highest =
       likelihood_band(parameters.initial(), options_.highest_frequency, data.sample_rate);
   return std::make_unique<JointLikelihoodFunction>(

@@ -23,6 +23,9 @@ class JointLikelihood final : public Objective {
   };
   explicit JointLikelihood(const Options& options);
   Response response(ParameterKind /*kind*/) const override { return Response::kMoves; }
+  /// Refuses a record in which a noise level that is not stated cannot be seen.
+  void require_record(const ModalBasis& basis, double sample_rate,
+                      std::size_t samples) const override;
 
  private:
   /// Throws InvalidInput where a reaction is missing.

@@ -142,6 +142,13 @@ Response WeightedSum::response(ParameterKind kind) const {
   return response;
 }
 
+void WeightedSum::require_record(const ModalBasis& basis, double sample_rate,
+                                 std::size_t samples) const {
+  for (const Term& term : options_.terms) {
+    term.objective.make()->require_record(basis, sample_rate, samples);
+  }
+}
+
 std::unique_ptr<const ObjectiveFunction> WeightedSum::do_bind(
     const CalibrationData& data, const ParameterSet& parameters) const {
   MODCAL_REQUIRE(!options_.terms.empty(), "a weighted_sum without terms: give at least one");

@@ -185,5 +185,40 @@ TEST(PlanPlucks, CountsTheirSimulationsOnce) {
   EXPECT_THAT(loaded.experiment->plan().front(), testing::HasSubstr("1 of 0.5 s"));
 }
 
+std::string sampled(const std::string& rate, const std::string& calibration,
+                    const std::string& plucks = "[]") {
+  return "kind: calibrate\n"
+         "scene:\n"
+         "  string: {length: 0.33 m, linear_density: 3.1e-3 kg/m, fundamental: 196 Hz, modes: 50}\n"
+         "  bow: {position: 30 mm}\n"
+         "  duration: 1 s\n"
+         "measurement: {sample_rate: " +
+         rate + "}\ncalibration: {parameters: {frequencies: all, law: true, contact: true}, " +
+         calibration + "}\nplucks: " + plucks + "\n";
+}
+
+TEST(LintNoise, RefusesARecordThatDoesNotShowTheNoiseToEstimate) {
+  const auto refused = [](const std::string& line) {
+    return testing::AllOf(testing::HasSubstr("scene.yaml:" + line + ":"),
+                          testing::HasSubstr("22050 Hz"),
+                          testing::HasSubstr("State left_noise and right_noise, or sample faster"));
+  };
+  EXPECT_THAT(messages_of(sampled("22.05 kHz", "continuation: {}")), refused("7"));
+  EXPECT_THAT(messages_of(sampled("22.05 kHz", "objective: joint_likelihood")), refused("7"));
+  EXPECT_THAT(messages_of(sampled("22.05 kHz",
+                                  "objective: {type: weighted_sum, terms: [{weight: "
+                                  "1, objective: joint_likelihood}]}")),
+              refused("7"));
+  const std::string stated = "continuation: {left_noise: 3 mN, right_noise: 4 mN}";
+  EXPECT_EQ(messages_of(sampled("22.05 kHz", stated)).find("error"), std::string::npos);
+  EXPECT_EQ(messages_of(sampled("25.6 kHz", "continuation: {}")).find("error"), std::string::npos);
+  EXPECT_EQ(messages_of(sampled("22.05 kHz", "objective: spectral_peak")).find("error"),
+            std::string::npos);
+  EXPECT_THAT(messages_of(sampled("51.2 kHz", "continuation: {}",
+                                  "[{initial: {type: pluck, position: 0.1 m, displacement: 1 mm}, "
+                                  "sample_rate: 22.05 kHz}]")),
+              refused("8"));
+}
+
 }  // namespace
 }  // namespace modcal

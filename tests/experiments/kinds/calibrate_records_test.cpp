@@ -1,0 +1,103 @@
+// Calibrations of recorded strokes and plucks.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "experiments/kinds/calibrate_study.hpp"
+#include "experiments/loader.hpp"
+#include "experiments/records/csv_writer.hpp"
+#include "libsim/signal/statistics.hpp"
+#include "tests/libsim/dynamics/paper_case.hpp"
+
+namespace modcal {
+namespace {
+
+using nlohmann::json;
+
+class CalibrateRecords : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::temp_directory_path() /
+              (std::string("modcal_calibrate_records_") +
+               testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  StudyContext context() { return {.work = work_, .folder = folder_, .command = "test"}; }
+
+  // The law of the paper's string from a stroke with 1 % noise.
+  static CalibrateOptions simulated(double duration, double sample_rate) {
+    CalibrateOptions options;
+    ObservationOptions& observation = options.inversion.observation;
+    observation.has_scene = true;
+    observation.truth.scene = paper_scene();
+    observation.truth.scene.duration = duration;
+    observation.truth.simulator.select("modal_event");
+    observation.measurement.sample_rate = sample_rate;
+    observation.measurement.noise_level = 0.01;
+    options.calibration.has_continuation = true;
+    options.calibration.parameters.law = true;
+    options.calibration.parameters.contact = true;
+    return options;
+  }
+
+  Observation stroke(const CalibrateOptions& options) {
+    return observe(options.inversion.observation, {.force = true}, work_.truths,
+                   options.inversion.key(), folder_);
+  }
+
+  void write(const std::string& file, const std::vector<Signal>& signals) {
+    write_csv(folder_ / file, signals);
+  }
+
+  StudyResult run(const std::string& calibration, const std::string& further) {
+    const LoadedExperiment loaded = load_experiment(
+        parse_yaml("kind: calibrate\n"
+                   "record: {file: stroke.csv, left: {channel: R1}, right: {channel: R2}, "
+                   "reference: {channel: f_c}}\n"
+                   "string: {length: 0.33 m, linear_density: 3.1e-3 kg/m, fundamental: 196 Hz}\n"
+                   "bow: {position: 30 mm}\n"
+                   "calibration: {parameters: {law: true, contact: true}, continuation: " +
+                       calibration + "}\n" + further,
+                   (folder_ / "experiment.yaml").string()));
+    EXPECT_EQ(format_mistakes(loaded.document, loaded.mistakes), "");
+    return loaded.experiment ? loaded.experiment->run(context()) : StudyResult();
+  }
+
+  std::filesystem::path folder_;
+  SharedWork work_;
+};
+
+json calibration_of(const StudyResult& result) {
+  for (const auto& [name, content] : result.files) {
+    if (name == "calibration.json") return json::parse(content);
+  }
+  return {};
+}
+
+TEST_F(CalibrateRecords, SayWhereTheNoiseStatedIsTooMuch) {
+  const Observation observed = stroke(simulated(0.3, 51200.0));
+  write("stroke.csv",
+        {*observed.reaction(End::kLeft), *observed.reaction(End::kRight), *observed.reference});
+  const double spread[] = {standard_deviation(observed.reaction(End::kLeft)->samples),
+                           standard_deviation(observed.reaction(End::kRight)->samples)};
+  const StudyResult overstated = run(fmt::format("{{left_noise: {:g} N, right_noise: {:g} N}}",
+                                                 0.03 * spread[0], 0.03 * spread[1]),
+                                     "");
+  // Three times the noise there is: within the 2 % to which 0.3 s tell it, three of them.
+  const double chi2 = calibration_of(overstated)["continuation"]["chi2"];
+  EXPECT_NEAR(9.0 * chi2, 1.0, 0.1);
+  EXPECT_THAT(overstated.summary,
+              testing::HasSubstr(fmt::format(
+                  "noise overstated: the data scatter less than the noise levels say; standard "
+                  "deviations are too wide by a factor of {:.3g}",
+                  1.0 / std::sqrt(chi2))));
+  EXPECT_THAT(run("{}", "").summary, testing::Not(testing::HasSubstr("overstated")));
+}
+
+}  // namespace
+}  // namespace modcal
