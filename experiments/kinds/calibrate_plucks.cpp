@@ -12,7 +12,9 @@
 namespace modcal {
 
 void PluckRecordOptions::visit(OptionVisitor& visitor) {
-  visitor.plugin({.key = "initial", .meaning = "how a simulated string is plucked"}, start);
+  visitor.plugin(
+      {.key = "initial", .meaning = "how a simulated string is plucked; a recorded one needs none"},
+      start);
   visitor.number({.key = "duration",
                   .meaning = "length of the simulated free decay",
                   .unit = "s",
@@ -73,7 +75,9 @@ constexpr double kLeastPeriods = 2.0;
 void lint_simulated(const std::string& path, const PluckRecordOptions& pluck,
                     const StringModel& string, const Scene& scene, std::vector<Finding>& findings) {
   if (pluck.start.selected() == "rest") {
-    findings.push_back({path + ".initial", "a string at rest has no free decay: pluck it"});
+    findings.push_back({path + ".initial",
+                        "a string at rest has no free decay: pluck it (initial: {type: pluck, "
+                        "...}), or name the record of its pluck"});
   }
   if (!is_known(string)) return;
   ModalBasis basis;
@@ -106,8 +110,9 @@ void lint_simulated(const std::string& path, const PluckRecordOptions& pluck,
   lint_making(
       path + ".sample_rate",
       [&] {
-        require_noise_known({pluck.left_noise, pluck.right_noise}, basis, pluck.sample_rate,
-                            static_cast<std::size_t>(std::round(pluck.duration * pluck.sample_rate)));
+        require_noise_known(
+            {pluck.left_noise, pluck.right_noise}, basis, pluck.sample_rate,
+            static_cast<std::size_t>(std::round(pluck.duration * pluck.sample_rate)));
       },
       findings);
 }

@@ -17,11 +17,11 @@ struct StudyContext;
 /// One pluck of the string that is calibrated: simulated, the scene without its bow, or a recorded
 /// file laid out as that of the stroke, which begins when the string has been let go.
 struct PluckRecordOptions {
-  Choice<InitialMotion> start{"pluck"};
-  double duration = 1.0;         ///< [s]
-  double noise_level = 0.01;     ///< of a simulated pluck [1]
-  double sample_rate = 51200.0;  ///< of a simulated pluck [Hz]
-  std::string file;              ///< empty: simulated
+  Choice<InitialMotion> start{"rest"};  ///< a simulated one needs to be plucked
+  double duration = 1.0;                ///< [s]
+  double noise_level = 0.01;            ///< of a simulated pluck [1]
+  double sample_rate = 51200.0;         ///< of a simulated pluck [Hz]
+  std::string file;                     ///< empty: simulated
   /// Noise standard deviation of each reaction [N]; NaN: estimated from the record.
   double left_noise = std::numeric_limits<double>::quiet_NaN();
   double right_noise = std::numeric_limits<double>::quiet_NaN();
