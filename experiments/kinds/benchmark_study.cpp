@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/kinds/calibrate_sensors.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/signal/statistics.hpp"
 
@@ -104,7 +105,9 @@ BenchmarkOutcome score(const CalibrateOptions& options, const SuccessOptions& su
   outcome.frequency_error = quantile(errors, 0.5);
   outcome.frequency_rms_error = rms(errors);
   outcome.contact_error = std::abs(calibrated.refined.contact - observation.contact);
-  outcome.correlation = mean_correlation(options, observation, calibrated.refined);
+  outcome.correlation =
+      mean_correlation(options, with_sensors_alike(observation, calibrated.result.model.sensors),
+                       calibrated.refined);
   outcome.success =
       outcome.frequency_error <= success.frequency_error &&
       (!options.calibration.parameters.contact || outcome.contact_error <= success.contact_error);

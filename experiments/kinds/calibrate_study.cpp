@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "experiments/kinds/calibrate_audio.hpp"
+#include "experiments/kinds/calibrate_sensors.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/signal/statistics.hpp"
 
@@ -257,17 +258,19 @@ StudyResult calibrate_study(const CalibrateOptions& options, const StudyContext&
   const InvertOptions& inversion = options.inversion;
   OutputRequest outputs = truth_outputs(inversion.figures);
   if (options.audio) outputs.velocity = true;
-  const Observation observation =
+  const Observation measured =
       observe(inversion.observation, outputs, context.work.truths, inversion.key(), context.folder);
   options.further.require_fit_to(inversion.observation, options.calibration);
   std::vector<Observation> strokes = further_observations(options, context);
-  strokes.insert(strokes.begin(), observation);
+  strokes.insert(strokes.begin(), measured);
   require_plucks(options.plucks, inversion.observation, options.calibration);
   const std::vector<PluckRecord> plucks =
       observe_plucks(options.plucks, inversion.observation, inversion.key(), context);
   const CalibrationOutcome outcome =
       calibrate_strokes(options, strokes, polling_clock(context), plucks);
   context.throw_if_interrupted();
+  const SensorPair& sensors = outcome.result.model.sensors;
+  const Observation observation = with_sensors_alike(measured, sensors);
   const InversionRecipe recipe(inversion.inversion);
   const auto estimator = prepare_estimator(outcome.refined, observation, recipe);
   const auto sides =
@@ -277,6 +280,10 @@ StudyResult calibrate_study(const CalibrateOptions& options, const StudyContext&
   StudyResult result;
   add_summary(outcome, result);
   add_calibration_warnings(outcome, result);
+  if (const std::string text = correction_text(measured, sensors); !text.empty()) {
+    result.summary += text + "\n";
+    result.blocks.emplace_back(report::Text{text, report::Text::Kind::kNote});
+  }
   add_warnings(observation, sides, result);
   for (const FigureOptions& figure : inversion.figures) {
     report::Figure drawn;

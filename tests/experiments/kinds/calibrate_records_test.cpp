@@ -1,4 +1,4 @@
-// Calibrations of recorded strokes and plucks.
+// Calibrations of recorded strokes and plucks, and what follows from the sensors they find.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "experiments/kinds/calibrate_sensors.hpp"
 #include "experiments/kinds/calibrate_study.hpp"
 #include "experiments/loader.hpp"
 #include "experiments/records/csv_writer.hpp"
@@ -137,6 +138,86 @@ TEST_F(CalibrateRecords, SayWhereTheNoiseStatedIsTooMuch) {
                   "deviations are too wide by a factor of {:.3g}",
                   1.0 / std::sqrt(chi2))));
   EXPECT_THAT(run("{}", "").summary, testing::Not(testing::HasSubstr("overstated")));
+}
+
+// Correlation and relative error of the identified forces.
+std::vector<double> scores_of(const StudyResult& result) {
+  std::vector<double> scores;
+  for (const report::Block& block : result.blocks) {
+    const auto* table = std::get_if<report::Table>(&block);
+    if (!table || table->id != "identification") continue;
+    for (std::size_t c = 0; c < table->columns.size(); ++c) {
+      const std::string& key = table->columns[c].key;
+      if (key != "correlation" && key != "relative_rms_error") continue;
+      for (const auto& row : table->rows) scores.push_back(std::get<double>(row[c].value));
+    }
+  }
+  return scores;
+}
+
+TEST_F(CalibrateRecords, IdentifyTheForceThroughTheSensorsTheyFound) {
+  // One sample is 20 us, so that the delay is exact.
+  const Observation observed = stroke(simulated(0.4, 50000.0));
+  const Signal& left = *observed.reaction(End::kLeft);
+  const Signal& right = *observed.reaction(End::kRight);
+  Signal sensed = right;
+  for (std::size_t j = 0; j < sensed.size(); ++j) {
+    sensed.samples[j] = 1.05 * right.samples[j > 0 ? j - 1 : 0];
+  }
+  const std::string unknowns = "{unknowns: {gain: {free: true}, delay: {free: true}}}";
+  for (const char* estimator : {"one_sided", "joint"}) {
+    const std::string inversion = fmt::format("inversion: {{estimator: {}}}\n", estimator);
+    write("stroke.csv", {left, right, *observed.reference});
+    const StudyResult equal = run(unknowns, inversion);
+    write("stroke.csv", {left, sensed, *observed.reference});
+    const StudyResult different = run(unknowns, inversion);
+    EXPECT_THAT(different.summary, testing::HasSubstr("corrected for its sensor"));
+    const std::vector<double> expected = scores_of(equal);
+    const std::vector<double> found = scores_of(different);
+    ASSERT_GE(expected.size(), 2u);
+    ASSERT_EQ(found.size(), expected.size());
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      // Gain and delay are found to 1e-3 and 0.1 us; what is left of 5 % would be ten times this.
+      EXPECT_NEAR(found[i], expected[i], 5e-3) << estimator << " " << i;
+    }
+  }
+}
+
+TEST(SensorCorrection, TakesOutGainDelayAndHighPass) {
+  // A swing that dies out, read through 1.05 exp(-s 20 us) s/(s + 2 pi 4 Hz).
+  constexpr double kRate = 50000.0, kCorner = 8.0 * M_PI;
+  Observation observation{.sample_rate = kRate};
+  Signal truth{.quantity = "R2", .unit = "N", .sample_rate = kRate, .samples = {}};
+  for (std::size_t j = 0; j < 25000; ++j) {
+    const double t = static_cast<double>(j) / kRate;
+    truth.samples.push_back(t * std::exp(-20.0 * t) * std::sin(2.0 * M_PI * 150.0 * t));
+  }
+  Signal sensed = truth;
+  double held = 0.0;  // of the corner's low-pass, which the high-pass takes away
+  for (std::size_t j = 0; j < truth.size(); ++j) {
+    const double now = j > 0 ? truth.samples[j - 1] : 0.0;
+    const double before = j > 1 ? truth.samples[j - 2] : 0.0;
+    const double c = 0.5 * kCorner / kRate;
+    held = ((1.0 - c) * held + c * (now + before)) / (1.0 + c);
+    sensed.samples[j] = 1.05 * (now - held);
+  }
+  remove_mean(sensed.samples);
+  remove_mean(truth.samples);
+  observation.reactions[1] = sensed;
+  const SensorPair sensors{.gain = 1.05, .delay = 1.0 / kRate, .corner = kCorner};
+  const Observation corrected = with_sensors_alike(observation, sensors);
+  double largest = 0.0, difference = 0.0, uncorrected = 0.0;
+  for (std::size_t j = 0; j + 1 < truth.size(); ++j) {
+    largest = std::max(largest, std::abs(truth.samples[j]));
+    difference =
+        std::max(difference, std::abs(corrected.reactions[1]->samples[j] - truth.samples[j]));
+    uncorrected = std::max(uncorrected, std::abs(sensed.samples[j] - truth.samples[j]));
+  }
+  // The line that is taken out also takes the signal's own, which is 1e-3 of it.
+  EXPECT_LT(difference, 5e-3 * largest);
+  EXPECT_GT(uncorrected, 5e-2 * largest);
+  EXPECT_EQ(with_sensors_alike(observation, {}).reactions[1]->samples, sensed.samples);
+  EXPECT_EQ(correction_text(observation, {}), "");
 }
 
 }  // namespace
