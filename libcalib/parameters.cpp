@@ -191,6 +191,8 @@ double ParameterSet::damping_at(std::span<const double> x, std::size_t mode) con
 }
 
 void ParameterSet::set_damping_and_sensors(std::span<const double> x, ModelPoint& point) const {
+  point.sensors.free = has(ParameterKind::kGain) || has(ParameterKind::kDelay) ||
+                       has(ParameterKind::kCorner) || point.sensors.free;
   if (has(ParameterKind::kDampingFactor) || has(ParameterKind::kDampingPower)) {
     for (std::size_t n = 0; n < damped_.size(); ++n) point.basis.zeta[n] *= damping_at(x, n);
   }

@@ -23,8 +23,12 @@ struct SensorPair {
   double gain = 1.0;    ///< > 0 [1]
   double delay = 0.0;   ///< [s]
   double corner = 0.0;  ///< of a high-pass of first order, >= 0 [rad/s]
+  bool free = false;    ///< one of the three is an unknown
 
   bool alike() const { return gain == 1.0 && delay == 0.0 && corner == 0.0; }
+  /// What comes with a difference (see plain_transients()) is there where there may be one, so that
+  /// a search that starts from equal sensors meets no step.
+  bool may_differ() const { return free || !alike(); }
   /// gain exp(−s delay) s/(s + corner) at s != 0 [1/s].
   std::complex<double> response(std::complex<double> s) const {
     return gain * std::exp(-s * delay) * s / (s + corner);

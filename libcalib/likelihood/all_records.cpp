@@ -25,7 +25,7 @@ double StrokeLikelihood::unweighted_cost(const ModelPoint& point) const {
 }
 
 double StrokeLikelihood::degrees_of_freedom(const ModelPoint& point) const {
-  return whole_.degrees_of_freedom(0, point.basis.size());
+  return whole_.degrees_of_freedom(0, point);
 }
 
 void AllRecords::add(std::shared_ptr<const RecordLikelihood> record, const Eigen::VectorXd& start,

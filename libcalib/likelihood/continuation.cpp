@@ -105,8 +105,8 @@ class Attempt {
     options.prior_mean = std::move(prior.mean);
   }
 
-  // Of the x_c up to `reach` steps away those whose cost is below that of both neighbors: a start between them leads to one
-  // of theirs.
+  // Of the x_c up to `reach` steps away those whose cost is below that of both neighbors: a start
+  // between them leads to one of theirs.
   std::vector<Eigen::VectorXd> contact_starts(const ProjectedLikelihood& likelihood,
                                               const StringUnknowns& unknowns, double step,
                                               int reach) {
@@ -162,14 +162,14 @@ class Attempt {
   }
   double reduced_chi2(const ModelPoint& point, double taken) {
     ++evaluations_;
-    return 2.0 * whole_->cost(point) / (whole_->degrees_of_freedom(0, modes()) - taken);
+    return 2.0 * whole_->cost(point) / (whole_->degrees_of_freedom(0, point) - taken);
   }
 
   // σ = 0, end state projected out, then once more with weights and without the noise in JᵀJ.
   void finish_law(ContinuationResult& result) {
     whole_.emplace(WhitenedRecord::of(records_, 0.0, highest_));
     result.chi2_deviation = std::hypot(
-        std::sqrt(2.0 / whole_->degrees_of_freedom(free_count(law_), modes())), noise_error_);
+        std::sqrt(2.0 / whole_->degrees_of_freedom(free_count(law_), reference_)), noise_error_);
     law_theta_ = fit(*whole_, law_, law_theta_, with_priors(law_, law_theta_, 12, 1e-2)).theta;
     NewtonOptions options = with_priors(law_, law_theta_, 4, 1e-4);
     options.noise = prepare_weights(law_, law_theta_);

@@ -93,7 +93,7 @@ using Columns = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dy
 std::vector<PlainTransient> plain_transients(const WhitenedRecord& record,
                                              const SensorPair& sensors) {
   if (record.sigma > 0.0) return {{false, record.offset, {}}, {true, record.offset, {}}};
-  if (sensors.alike()) return {};
+  if (!sensors.may_differ()) return {};
   const std::size_t padded = record.root_weight.size();
   PlainTransient sample{true, PlanarVector(padded), {}};
   PlainTransient decay{true, PlanarVector(padded), PlanarVector(padded)};

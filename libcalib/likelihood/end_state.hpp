@@ -18,7 +18,8 @@ struct PlainTransient {
   PlanarVector by_corner;  ///< ∂numbers/∂corner; empty: none
 };
 /// σ > 0: static offsets of both records. σ = 0: where the sensor at x = L has a delay or a corner
-/// of its own, what it holds at the end of the record, one sample and its own decay.
+/// of its own, or may have one, what it holds at the end of the record: one sample and its own
+/// decay.
 std::vector<PlainTransient> plain_transients(const WhitenedRecord& record,
                                              const SensorPair& sensors);
 

@@ -51,8 +51,10 @@ void ProjectedLikelihood::set_weights(std::span<const double> weights) {
   }
 }
 
-double ProjectedLikelihood::degrees_of_freedom(std::size_t parameters, std::size_t modes) const {
-  const std::size_t projected = record_.sigma == 0.0 ? 2 * modes : 2;
+double ProjectedLikelihood::degrees_of_freedom(std::size_t parameters,
+                                               const ModelPoint& point) const {
+  const std::size_t plain = plain_transients(record_, point.sensors).size();
+  const std::size_t projected = plain + (record_.sigma == 0.0 ? 2 * point.basis.size() : 0);
   return 2.0 * static_cast<double>(record_.bins) - static_cast<double>(projected + parameters);
 }
 

@@ -34,8 +34,8 @@ class ProjectedLikelihood {
 
   const WhitenedRecord& record() const { return record_; }
   void set_weights(std::span<const double> weights);  ///< w_k of the K_b bins, in [0, 1]
-  /// Residuals less unknowns that were projected out.
-  double degrees_of_freedom(std::size_t parameters, std::size_t modes) const;
+  /// Residuals less unknowns that were projected out: end state or offsets, what the sensors hold.
+  double degrees_of_freedom(std::size_t parameters, const ModelPoint& point) const;
 
   double cost(const ModelPoint& point) const;
   /// Cost and slope alone, at a tenth of the price where there are many columns.

@@ -100,7 +100,10 @@ void UnknownsOptions::require_sharing() const {
 }
 
 SensorPair UnknownsOptions::sensors() const {
-  return {.gain = gain.value, .delay = delay.value, .corner = 2.0 * pi * corner.value};
+  return {.gain = gain.value,
+          .delay = delay.value,
+          .corner = 2.0 * pi * corner.value,
+          .free = gain.free || delay.free || corner.free};
 }
 
 }  // namespace modcal

@@ -8,8 +8,9 @@ namespace modcal {
 
 /// Joint likelihood of both reactions, the force eliminated in every bin: r = √2 (Re e, Im e) with
 /// the whitened residual e of ProjectedLikelihood, value ½ ‖r‖²; ‖r‖²/(2K_b − 2N − n) is the
-/// reduced χ², 1 for a right model. The Jacobian is that of e without the turn of its phase and
-/// with the end state projected out; its gradient Jᵀr is exact.
+/// reduced χ², 1 for a right model (two less where a sensor's gain, delay or corner is free: what
+/// the sensor holds when the record ends is projected out). The Jacobian is that of e without the
+/// turn of its phase and with the end state projected out; its gradient Jᵀr is exact.
 class JointLikelihood final : public Objective {
  public:
   struct Options {

@@ -98,7 +98,7 @@ TEST(Continuation, FreesTheDampingItWasToldWrong) {
   const ProjectedLikelihood whole(WhitenedRecord::of(records, 0.0, highest));
   const StringUnknowns law = StringUnknowns::law(damped, 196.0, 1.39e-4, {.damping = "fixed"});
   const NewtonFit held = newton_fit(whole, law, law.start(), {.steps = 10});
-  EXPECT_GT(2.0 * held.point.cost / whole.degrees_of_freedom(3, 50), 1.02);
+  EXPECT_GT(2.0 * held.point.cost / whole.degrees_of_freedom(3, damped), 1.02);
 }
 
 TEST(Continuation, SaysSoWhenTheModelIsWrong) {

@@ -53,10 +53,10 @@ ModelPoint moved(ModelPoint point, std::size_t column, double step) {
 }
 
 TEST(ProjectedLikelihood, LeavesAlmostNothingOfCleanData) {
-  // What is left at the truth is what aliases into the band; the recipe's 1.8e-3 of 1 % noise.
+  // What is left at the truth is what aliases into the band; measured: 1.8e-3 of 1 % noise.
   const BowedCase bowed = bowed_case(0.03, 0.0, 1.0);
   const ProjectedLikelihood clean(WhitenedRecord::of(noisy(bowed, 0.01, 1, false), 0.0, kBand));
-  const double freedom = clean.degrees_of_freedom(0, 50);
+  const double freedom = clean.degrees_of_freedom(0, bowed.truth);
   EXPECT_LT(std::sqrt(2.0 * clean.cost(bowed.truth) / freedom), 3e-3);
   // With noise χ² of 2 K_b − 2N degrees of freedom: sd √(2/20500) = 0.0099, four of them allowed.
   const ProjectedLikelihood noisy_one(WhitenedRecord::of(noisy(bowed, 0.01, 1), 0.0, kBand));

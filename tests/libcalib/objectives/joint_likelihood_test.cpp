@@ -126,6 +126,61 @@ TEST_F(JointLikelihoodTest, SlopesOfDampingAndSensorsAreDifferenceQuotients) {
   }
 }
 
+TEST_F(JointLikelihoodTest, MeetsNoStepWhereTheSensorsBecomeEqual) {
+  // Two unknowns more or less would move the value by about 1, a slope by its standard deviation.
+  const ParameterSet parameters(near_truth(), Names{"gain", "delay", "corner"});
+  for (const double damping : {0.0, 40.0}) {
+    const auto function = objective(damping).bind(data, parameters);
+    const std::size_t m = function->residual_count();
+    const auto at = [&](const std::vector<double>& x, std::vector<double>& gradient,
+                        std::vector<double>& jacobian) {
+      double value = 0.0;
+      gradient.resize(3);
+      jacobian.resize(3 * m);
+      function->evaluate(
+          x, {.value = &value, .gradient = gradient.data(), .jacobian = jacobian.data()});
+      return value;
+    };
+    std::vector<double> gradient, jacobian, beside, other;
+    const std::vector<double> start = parameters.start();
+    ASSERT_EQ(start, (std::vector<double>{1.0, 0.0, 0.0}));
+    const double value = at(start, gradient, jacobian);
+    for (std::size_t i = 0; i < 3; ++i) {
+      double size = 0.0;
+      for (std::size_t j = 0; j < m; ++j) size += jacobian[j * 3 + i] * jacobian[j * 3 + i];
+      // A millionth of a standard deviation: the value moves by less than 1e-6 times the residual's
+      // norm of 90, the slope by 1e-6 of its own standard deviation or, where the columns' change
+      // meets the whole residual, some hundred times that.
+      std::vector<double> x = start;
+      x[i] += 1e-6 / std::sqrt(size);
+      EXPECT_NEAR(at(x, beside, other), value, 1e-3) << i;
+      for (std::size_t j = 0; j < 3; ++j) {
+        double scale = 0.0;
+        for (std::size_t k = 0; k < m; ++k) scale += jacobian[k * 3 + j] * jacobian[k * 3 + j];
+        EXPECT_NEAR(beside[j], gradient[j], 1e-3 * std::sqrt(scale)) << i << j;
+      }
+    }
+  }
+}
+
+TEST_F(JointLikelihoodTest, CornersSlopeAtNoneIsTheDifferenceQuotient) {
+  const ParameterSet parameters(near_truth(), Names{"corner"});
+  const auto function = objective().bind(data, parameters);
+  std::vector<double> gradient(1), residuals(function->residual_count());
+  std::vector<double> jacobian(residuals.size());
+  function->evaluate(std::vector<double>{0.0},
+                     {.gradient = gradient.data(), .jacobian = jacobian.data()});
+  const double scale =
+      std::sqrt(std::inner_product(jacobian.begin(), jacobian.end(), jacobian.begin(), 0.0));
+  // Of one side, the other has no filter: a tenth of a standard deviation, second order below.
+  const double step = 0.1 / scale;
+  const double first = function->value(std::vector<double>{0.0});
+  const double second = function->value(std::vector<double>{step});
+  const double third = function->value(std::vector<double>{2.0 * step});
+  const double quotient = (4.0 * second - third - 3.0 * first) / (2.0 * step);
+  EXPECT_NEAR(gradient[0], quotient, 0.02 * scale);
+}
+
 TEST_F(JointLikelihoodTest, FindsDampingAndGain) {
   ModelPoint start = near_truth();
   for (double& zeta : start.basis.zeta) zeta *= 1.2;
