@@ -39,7 +39,7 @@ struct SensorPair {
 struct ModelPoint {
   ModalBasis basis;
   double contact = std::numeric_limits<double>::quiet_NaN();  ///< x_c [m]
-  SensorPair sensors = {};  ///< known to the joint likelihood alone
+  SensorPair sensors = {};  ///< known to the joint likelihood, of strokes and plucks, alone
 };
 
 using ParameterKind = UnknownKind;

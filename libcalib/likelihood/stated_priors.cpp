@@ -52,8 +52,8 @@ void require_not_fixed(const UnknownsOptions& options, const std::string& parame
 UnknownName require_prior(const UnknownsOptions& options, const ParameterPrior& prior,
                           std::size_t modes, std::size_t records) {
   const UnknownName name = require_unknown(prior.parameter, modes);
-  MODCAL_REQUIRE(name.record < records, "the prior of \"{}\": there are {} records",
-                 prior.parameter, records);
+  MODCAL_REQUIRE(name.record < records, "the prior of \"{}\": there {} {} record{}",
+                 prior.parameter, records == 1 ? "is" : "are", records, records == 1 ? "" : "s");
   MODCAL_REQUIRE(name.record == 0 || options.own(name.kind),
                  "the prior of \"{}\": all records share it, state it without a number",
                  prior.parameter);
@@ -65,6 +65,10 @@ UnknownName require_prior(const UnknownsOptions& options, const ParameterPrior& 
   MODCAL_REQUIRE(prior.deviation > 0.0 && std::isfinite(prior.deviation),
                  "the prior of {} has the deviation {:g}: it must be > 0 and finite",
                  prior.parameter, prior.deviation);
+  MODCAL_REQUIRE(std::isnan(prior.mean) || std::isfinite(prior.mean),
+                 "the prior of {} has the mean {:g}: it must be finite, or left out for the value "
+                 "stated",
+                 prior.parameter, prior.mean);
   MODCAL_REQUIRE(std::isnan(prior.mean) || !is_positive(name.kind) || prior.mean > 0.0,
                  "the prior of {} has the mean {:g}: it must be > 0", prior.parameter, prior.mean);
   return name;

@@ -151,6 +151,9 @@ TEST(StatedPriors, ThatAreNoneAreRefusedWithTheReason) {
   refused(stating({{"f0 2", 196.0, 1.0}}), "all records share it");
   refused(stating({{"f0", 196.0, 0.0}}), "deviation 0");
   refused(stating({{"f0", -196.0, 1.0}}), "mean -196");
+  const double infinite = std::numeric_limits<double>::infinity();
+  refused(stating({{"f0", infinite, 1.0}}), "must be finite");
+  refused(stating({{"delay", -infinite, 1e-6}}), "must be finite");
   refused(stating({{"corner", 4.0, 1.0}}), "corner: {free: true}");
   refused(stating({{"zeta_3", 1e-3, 1e-4}, {"damping_power", 0.0, 0.1}}), "damping: power");
   refused(stating({}, {{{"f0", "B"}, 0.3}}), "priors that are not stated");
