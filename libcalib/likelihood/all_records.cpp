@@ -129,8 +129,8 @@ Eigen::MatrixXd AllRecords::noise(const Eigen::VectorXd& theta) const {
 }
 
 AllRecords::Misfit AllRecords::misfit(const Eigen::VectorXd& theta,
-                                      std::span<const double> noise_errors) const {
-  double cost = 0.0, freedom = -static_cast<double>(free_count()), variance = 0.0;
+                                      std::span<const double> noise_errors, double taken) const {
+  double cost = 0.0, freedom = -taken, variance = 0.0;
   for (std::size_t r = 0; r < records(); ++r) {
     const ModelPoint point = model(theta, r);
     const double own_freedom = records_[r]->degrees_of_freedom(point);

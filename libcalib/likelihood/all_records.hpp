@@ -68,8 +68,10 @@ class AllRecords {
     double chi2 = 0.0;       ///< reduced
     double deviation = 0.0;  ///< its standard deviation
   };
-  /// noise_errors: relative standard deviation of the noise power stated for each record.
-  Misfit misfit(const Eigen::VectorXd& theta, std::span<const double> noise_errors) const;
+  /// noise_errors: relative standard deviation of the noise power stated for each record; taken:
+  /// residuals that the fit takes.
+  Misfit misfit(const Eigen::VectorXd& theta, std::span<const double> noise_errors,
+                double taken) const;
 
  private:
   std::vector<Index> held_places() const;

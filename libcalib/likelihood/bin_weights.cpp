@@ -131,27 +131,6 @@ std::vector<double> weights_of_excess(const std::vector<double>& excess,
   return weights;
 }
 
-std::vector<double> signal_weights(const NoisyRecords& records, double sigma, double highest,
-                                   const ProjectedLikelihood& target, const ModelPoint& point) {
-  const ProjectedLikelihood damped(WhitenedRecord::of(records, sigma, highest));
-  std::vector<Complex> force;
-  std::vector<double> gain, own_gain;
-  damped.evaluate(point, {}, {.force = &force, .gain = &gain});
-  target.evaluate(point, {}, {.gain = &own_gain});
-  std::vector<double> excess(force.size());
-  for (std::size_t k = 0; k < force.size(); ++k) {
-    excess[k] = std::norm(force[k]) * gain[k] - 1.0;
-  }
-  const std::vector<double> power = power_of_excess(excess, gain);
-  std::vector<double> weights(own_gain.size());
-  const double ratio = target.record().spacing / damped.record().spacing;
-  for (std::size_t k = 0; k < weights.size(); ++k) {
-    const auto place = static_cast<std::size_t>(std::lround(static_cast<double>(k + 1) * ratio));
-    weights[k] = weight(own_gain[k] * power[std::clamp<std::size_t>(place, 1, power.size()) - 1]);
-  }
-  return weights;
-}
-
 std::vector<double> information_weights(const ProjectedLikelihood& likelihood,
                                         const ModelPoint& point, const LikelihoodColumns& columns) {
   auto [ratio, gain] = shares_over_noise(likelihood, point, columns);

@@ -25,12 +25,6 @@ std::vector<double> information_weights(const ProjectedLikelihood& likelihood,
 std::vector<double> best_weights(const ProjectedLikelihood& clean, const ModelPoint& point,
                                  const LikelihoodColumns& columns);
 
-/// information_weights() with S = |h|²|F|², the force F found in the lightly damped record (σ =
-/// `sigma`), in which no end state confuses it: one evaluation without columns, whatever the
-/// unknowns.
-std::vector<double> signal_weights(const NoisyRecords& records, double sigma, double highest,
-                                   const ProjectedLikelihood& target, const ModelPoint& point);
-
 /// S/(1 + S) of the excess q/q̄ − 1 of every bin under its gain |h|²; arrays of one length.
 std::vector<double> weights_of_excess(const std::vector<double>& excess,
                                       const std::vector<double>& gain);

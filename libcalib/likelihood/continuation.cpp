@@ -1,9 +1,7 @@
 #include "libcalib/likelihood/continuation.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "libcalib/likelihood/bin_weights.hpp"
 #include "libcalib/likelihood/mode_verdict.hpp"
@@ -19,31 +17,6 @@ namespace {
 
 constexpr std::size_t kNoiseRepeats = 3;
 constexpr double kStepCap = 1e-3;
-constexpr double kProof = 3.0;
-constexpr double kNodeProof = 10.0;
-constexpr double kNodeShape = 0.05;
-
-// A mode that nothing excites has the information of its noise, which scatters about N̄ with few
-// degrees of freedom: less than three times N̄ is no proof of a signal, and near a node of its
-// shape, where a signal would be a surprise, less than ten.
-void deny_noise(const ModelPoint& point, const Eigen::MatrixXd& information,
-                const Eigen::MatrixXd& noise, Eigen::VectorXd& seen) {
-  const std::vector<double> shape = point.basis.shape_at(point.contact);
-  for (std::size_t n = 0; n < shape.size(); ++n) {
-    const auto i = static_cast<Eigen::Index>(n);
-    const double proof = std::abs(shape[n]) < kNodeShape ? kNodeProof : kProof;
-    if (information(i, i) < proof * noise(i, i)) seen[i] = std::max(seen[i], kWidePrior);
-  }
-}
-
-// How many residuals the fit takes, 2 tr H⁻¹JᵀWJ: an unknown that its prior holds takes none.
-double taken_by_fit(const LikelihoodPoint& point, const NewtonOptions& options) {
-  const Eigen::MatrixXd hessian = debiased_hessian(point.information, options);
-  const Eigen::VectorXd scale = hessian.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd scaled = scale.asDiagonal() * hessian * scale.asDiagonal();
-  const Eigen::MatrixXd information = scale.asDiagonal() * point.information * scale.asDiagonal();
-  return 2.0 * scaled.ldlt().solve(information).trace();
-}
 
 // One attempt: everything between a start of f_0 and a verdict by χ².
 class Attempt {
@@ -75,7 +48,8 @@ class Attempt {
     follow_law(shift);
     finish_law(result);
     if (options_.frequencies) free_frequencies(result);
-    result.right = result.chi2 < 1.0 + 3.0 * result.chi2_deviation;
+    result.fits = result.chi2 < 1.0 + 3.0 * result.chi2_deviation;
+    result.right = result.fits && !result.priors.contradicted();
     result.evaluations = evaluations_;
     return result;
   }
@@ -190,10 +164,11 @@ class Attempt {
     law.deviation[3] = law_.damping_deviation(covariance) * law.damping;
     law.chi2 = result.chi2 = reduced_chi2(result.model, free_count(law_));
     law.accepted = law.chi2 < 1.0 + 3.0 * result.chi2_deviation;
+    law.priors = result.priors = law_.prior_misfit(law_theta_);
     result.contact_deviation = law.deviation[2];
     result.damping = law.damping;
     result.damping_deviation = law.deviation[3];
-    report_sensors(law_, covariance, result);
+    result.sensor_deviation = law_.sensor_deviation(result.model, covariance);
     result.modes = law_verdicts(result.model, law.inharmonicity, covariance.topLeftCorner(2, 2));
     trust_stated_frequencies(priors_, {}, result.modes);
   }
@@ -238,22 +213,29 @@ class Attempt {
     options.steps = 5;
     theta = fit(*weighted_, unknowns, theta, options).theta;
     const LikelihoodPoint at = whole_point(unknowns, theta);
-    Eigen::VectorXd seen = fit_covariance(at, options).diagonal().cwiseMax(0.0).cwiseSqrt();
-    deny_noise(unknowns.model(theta), at.information, options.noise, seen);
+    // A prior of a mode's frequency is no sight of it.
+    NewtonOptions unstated = options;
+    set_prior(unknowns.under(priors_.without_frequencies()).prior(theta, {wide, inharmonicity}),
+              unstated);
+    Eigen::VectorXd seen = fit_covariance(at, unstated).diagonal().cwiseMax(0.0).cwiseSqrt();
+    const ModelPoint seen_from = unknowns.model(theta);
+    deny_noise(at.information, options.noise, nodes(seen_from.basis, {seen_from.contact}), seen);
 
     const auto n = static_cast<Eigen::Index>(modes());
     const double estimated = estimate_law_width(theta.head(n), seen.head(n), inharmonicity);
     result.law_width = std::isnan(options_.law_width) ? estimated : options_.law_width;
     Eigen::VectorXd widths = prior_widths(seen.head(n), result.law_width, estimated);
-    widen_held(priors_.held(), result.law_width, widths);
+    widen_stated(priors_, result.law_width, widths);
     set_prior(unknowns.prior(theta, {widths, inharmonicity}), options);
     options.tolerance = 1e-4;
     theta = fit(*weighted_, unknowns, theta, options).theta;
     const LikelihoodPoint last = whole_point(unknowns, theta);
-    const Eigen::MatrixXd covariance = fit_covariance(last, options);
+    Eigen::MatrixXd covariance = fit_covariance(last, options);
+    unknowns.clear_held(covariance);
     const double reference_factor = law_.damping_factor(from_law ? law_theta_ : ladder_theta_);
     report(unknowns, theta, covariance, seen, estimated, reference_factor, result);
     result.chi2 = reduced_chi2(result.model, taken_by_fit(last, options));
+    result.priors = unknowns.prior_misfit(theta, {widths, inharmonicity});
   }
 
   // Free frequencies on damped records, where the law does not hold: wide basins first.
@@ -281,20 +263,10 @@ class Attempt {
     // The law's factor made the reference of the free frequencies.
     result.damping = unknowns.damping_factor(theta) * reference_factor;
     result.damping_deviation = unknowns.damping_deviation(covariance) * result.damping;
-    report_sensors(unknowns, covariance, result);
+    result.sensor_deviation = unknowns.sensor_deviation(result.model, covariance);
     const auto n = static_cast<Eigen::Index>(modes());
     result.modes = free_verdicts(result.model, deviation.head(n), seen.head(n), estimated);
     trust_stated_frequencies(priors_, deviation, result.modes);
-  }
-
-  static void report_sensors(const StringUnknowns& unknowns, const Eigen::MatrixXd& covariance,
-                             ContinuationResult& result) {
-    const double unit[] = {result.model.sensors.gain, 1.0, 0.5 / std::numbers::pi};
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Eigen::Index at = unknowns.sensor(i);
-      result.sensor_deviation[i] =
-          at < 0 ? 0.0 : unit[i] * std::sqrt(std::max(covariance(at, at), 0.0));
-    }
   }
 
   const ModelPoint& initial_;
@@ -326,7 +298,7 @@ ContinuationResult with_misfit_for_noise(const ModelPoint& initial, NoisyRecords
   found.chi2 *= misfit;
   found.law.chi2 *= misfit;
   found.law.accepted = false;
-  found.right = false;
+  found.fits = found.right = false;
   found.restarts = contradicted.restarts;
   found.noise = contradicted.noise;
   return found;
@@ -355,11 +327,10 @@ ContinuationResult calibrate_by_continuation(const ModelPoint& initial, const Ca
     ContinuationResult found = attempt.run(kShifts[i]);
     found.restarts = i;
     if (i == 0 || found.chi2 < best.chi2) best = std::move(found);
-    if (best.right) break;
+    if (best.fits) break;
   }
-  if (best.right || !options.frequencies) return best;
-  return with_misfit_for_noise(initial, records, options, priors, highest, noise_error,
-                               std::move(best));
+  if (best.fits || !options.frequencies) return best;
+  return with_misfit_for_noise(initial, records, options, priors, highest, error, std::move(best));
 }
 
 }  // namespace modcal

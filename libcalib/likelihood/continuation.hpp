@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "libcalib/calibration_data.hpp"
+#include "libcalib/likelihood/prior_misfit.hpp"
 #include "libcalib/likelihood/string_unknowns.hpp"
 #include "libcalib/parameters.hpp"
 #include "libsim/base/options.hpp"
@@ -40,9 +41,11 @@ std::string_view name_of(ModeSource source);
 std::string_view name_of(WeakReason reason);
 
 struct ModeVerdict {
-  double frequency = 0.0;       ///< [Hz]
-  double deviation = 0.0;       ///< relative standard deviation of the frequency reported
-  double data_deviation = 0.0;  ///< the same under a prior of 0.2 % alone
+  double frequency = 0.0;  ///< [Hz]
+  double deviation = 0.0;  ///< relative standard deviation of the frequency reported
+  /// What the data tell of it: the same under 0.2 % about the law and what is stated of anything
+  /// but single frequencies.
+  double data_deviation = 0.0;
   ModeSource source = ModeSource::kIdentified;
   WeakReason reason = WeakReason::kNone;
 };
@@ -53,6 +56,7 @@ struct LawEstimate {
   std::array<double, 4> deviation{};  ///< of the four above, in this order
   double chi2 = 0.0;                  ///< reduced
   bool accepted = false;              ///< χ² does not contradict the law
+  PriorMisfit priors;
 };
 
 struct ContinuationResult {
@@ -68,8 +72,9 @@ struct ContinuationResult {
   double law_width = 0.0;  ///< τ
   double chi2 = 0.0;       ///< reduced, of `model`
   double chi2_deviation = 0.0;
-  /// χ² does not contradict the result: χ² < 1 + 3 sd.
-  bool right = false;
+  bool fits = false;   ///< χ² does not contradict the result: χ² < 1 + 3 sd
+  PriorMisfit priors;  ///< of `model` to what was stated beforehand
+  bool right = false;  ///< neither χ² nor the priors contradict the result
   std::size_t restarts = 0;
   std::size_t moved_modes = 0;  ///< modes found in a neighboring minimum and moved
   std::size_t evaluations = 0;

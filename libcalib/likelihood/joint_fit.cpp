@@ -16,9 +16,6 @@ namespace modcal {
 namespace {
 
 using Index = Eigen::Index;
-constexpr double kProof = 3.0;
-constexpr double kNodeProof = 10.0;
-constexpr double kNodeShape = 0.05;
 
 // The record to start from has the smallest χ²; its contact is that of the first.
 StringUnknowns shared_unknowns(const RecordsFit& fit, const ContinuationOptions& options,
@@ -53,9 +50,8 @@ class JointFit {
     const ProjectedLikelihood whole(WhitenedRecord::of(noisy, 0.0, highest));
     ProjectedLikelihood weighted = whole;
     const Eigen::VectorXd start = own_start(fit_.single[all_.records()].model);
-    const ModelPoint point = unknowns().model(start);
-    const double sigma = 3.0 * point.basis.frequency(0) / 196.0;
-    weighted.set_weights(signal_weights(noisy, sigma, highest, whole, point));
+    weighted.set_weights(information_weights(whole, unknowns().model(start),
+                                             unknowns().columns(start, all_.records())));
     all_.add(std::make_shared<StrokeLikelihood>(whole, std::move(weighted)), start,
              own_places(true), held_contact(all_.records()));
     noise_errors_.push_back(noise_power_error(noise, initial_.basis, stroke));
@@ -74,20 +70,26 @@ class JointFit {
     theta_ = all_.start();
     NewtonOptions newton{.steps = 10, .tolerance = 1e-4, .frequency_cap = 1e-3};
     if (unknowns().is_law()) {
-      state(nullptr, newton);
+      state(equations(priors_, nullptr), newton);
       newton.noise = all_.noise(theta_);
       search(newton);
+      fit_.priors = misfit(PriorEquations(all_.size()));
     } else {
       listen_to_plucks();
       free_frequencies(newton);
     }
-    Eigen::MatrixXd covariance = fit_covariance(point(true), newton);
+    const LikelihoodPoint last = point(true);
+    Eigen::MatrixXd covariance = fit_covariance(last, newton);
     all_.clear_held(covariance);
     report(covariance);
-    const AllRecords::Misfit misfit = all_.misfit(theta_, noise_errors_);
+    // As for one record: the law's unknowns have no prior that takes their place.
+    const double taken =
+        unknowns().is_law() ? static_cast<double>(all_.free_count()) : taken_by_fit(last, newton);
+    const AllRecords::Misfit misfit = all_.misfit(theta_, noise_errors_, taken);
     fit_.chi2 = misfit.chi2;
     fit_.chi2_deviation = misfit.deviation;
-    fit_.right = fit_.chi2 < 1.0 + 3.0 * fit_.chi2_deviation;
+    fit_.fits = fit_.chi2 < 1.0 + 3.0 * fit_.chi2_deviation;
+    fit_.right = fit_.fits && !fit_.priors.contradicted();
   }
 
  private:
@@ -138,13 +140,20 @@ class JointFit {
   }
 
   // Priors about θ; widths of the frequencies' scatter about the law, or null.
-  void state(const Eigen::VectorXd* widths, NewtonOptions& newton) const {
-    PriorEquations equations(all_.size());
-    priors_.state([&](const UnknownName& name) { return all_.coordinate(name, theta_); },
-                  equations);
-    unknowns().state_damping_ratios(equations);
-    if (widths) equations.add_scatter({*widths, inharmonicity()}, unknowns().log_frequencies());
-    all_.hold(equations);
+  PriorEquations equations(const StatedPriors& priors, const Eigen::VectorXd* widths) const {
+    PriorEquations result(all_.size());
+    priors.state([&](const UnknownName& name) { return all_.coordinate(name, theta_); }, result);
+    // About the damping stated: that of the strokes by themselves is in the data already.
+    unknowns().state_damping_ratios(initial_.basis.zeta, result);
+    if (widths) result.add_scatter({*widths, inharmonicity()}, unknowns().log_frequencies());
+    all_.hold(result);
+    return result;
+  }
+  PriorMisfit misfit(const PriorEquations& equations) const {
+    return priors_.misfit([&](const UnknownName& name) { return all_.coordinate(name, theta_); },
+                          equations.completed(theta_));
+  }
+  static void state(const PriorEquations& equations, NewtonOptions& newton) {
     QuadraticPrior prior = equations.solve();
     newton.prior = std::move(prior.precision);
     newton.prior_mean = std::move(prior.mean);
@@ -177,12 +186,15 @@ class JointFit {
   // What the data tell under a prior that only keeps a mode from wandering, then the law's.
   void free_frequencies(NewtonOptions& newton) {
     const Eigen::VectorXd wide = Eigen::VectorXd::Constant(modes(), kWidePrior);
-    state(&wide, newton);
+    state(equations(priors_, &wide), newton);
     newton.noise = all_.noise(theta_);
     search(newton);
     const LikelihoodPoint at = point(true);
-    seen_ = fit_covariance(at, newton).diagonal().head(modes()).cwiseMax(0.0).cwiseSqrt();
-    deny_noise(at.information, newton.noise);
+    // A prior of a mode's frequency is no sight of it.
+    NewtonOptions unstated = newton;
+    state(equations(priors_.without_frequencies(), &wide), unstated);
+    seen_ = fit_covariance(at, unstated).diagonal().head(modes()).cwiseMax(0.0).cwiseSqrt();
+    deny_noise(at.information, newton.noise, nodes_of_all(), seen_);
     const ModelPoint model = all_.model(theta_, 0);
     Eigen::VectorXd delta(modes());
     for (Index i = 0; i < modes(); ++i) {
@@ -193,23 +205,20 @@ class JointFit {
     estimated_ = estimate_law_width(delta, seen_, inharmonicity());
     fit_.law_width = std::isnan(options_.law_width) ? estimated_ : options_.law_width;
     Eigen::VectorXd widths = prior_widths(seen_, fit_.law_width, estimated_);
-    widen_held(priors_.held(), fit_.law_width, widths);
-    state(&widths, newton);
+    widen_stated(priors_, fit_.law_width, widths);
+    state(equations(priors_, &widths), newton);
     search(newton);
+    fit_.priors = misfit(equations(priors_, &widths));
   }
 
-  // As in the fit of one record; a mode at a node of every contact is no surprise to a pluck.
-  void deny_noise(const Eigen::MatrixXd& information, const Eigen::MatrixXd& noise) {
-    for (Index i = 0; i < modes(); ++i) {
-      bool node = plucks_.empty();
-      for (std::size_t r = 0; node && r < fit_.single.size(); ++r) {
-        const ModelPoint model = all_.model(theta_, r);
-        node =
-            std::abs(model.basis.shape_at(model.contact)[static_cast<std::size_t>(i)]) < kNodeShape;
-      }
-      const double proof = node ? kNodeProof : kProof;
-      if (information(i, i) < proof * noise(i, i)) seen_[i] = std::max(seen_[i], kWidePrior);
+  // A mode at a node of every contact is no surprise to a pluck.
+  std::vector<bool> nodes_of_all() const {
+    if (!plucks_.empty()) return std::vector<bool>(unknowns().modes(), false);
+    std::vector<double> contacts;
+    for (std::size_t r = 0; r < fit_.single.size(); ++r) {
+      contacts.push_back(all_.model(theta_, r).contact);
     }
+    return nodes(all_.model(theta_, 0).basis, contacts);
   }
 
   void report(const Eigen::MatrixXd& covariance) {
@@ -244,11 +253,7 @@ class JointFit {
     RecordValues values{.sensors = model.sensors,
                         .damping = std::exp(mean_damping_change(model, initial_))};
     values.damping_deviation = values.damping * unknowns().damping_deviation(own);
-    const double unit[] = {model.sensors.gain, 1.0, 0.5 / std::numbers::pi};
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Index at = unknowns().sensor(i);
-      if (at >= 0) values.sensor_deviation[i] = unit[i] * std::sqrt(std::max(own(at, at), 0.0));
-    }
+    values.sensor_deviation = unknowns().sensor_deviation(model, own);
     fit_.values.push_back(values);
   }
 

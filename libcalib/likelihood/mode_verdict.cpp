@@ -79,6 +79,28 @@ double estimate_law_width(const Eigen::VectorXd& delta, const Eigen::VectorXd& s
   return std::clamp(std::sqrt(variance), kTied, kWidePrior);
 }
 
+std::vector<bool> nodes(const ModalBasis& basis, const std::vector<double>& contacts) {
+  constexpr double kNodeShape = 0.05;
+  std::vector<bool> node(basis.size(), true);
+  for (const double contact : contacts) {
+    const std::vector<double> shape = basis.shape_at(contact);
+    for (std::size_t n = 0; n < node.size(); ++n) {
+      node[n] = node[n] && std::abs(shape[n]) < kNodeShape;
+    }
+  }
+  return node;
+}
+
+void deny_noise(const Eigen::MatrixXd& information, const Eigen::MatrixXd& noise,
+                const std::vector<bool>& node, Eigen::VectorXd& seen) {
+  constexpr double kProof = 3.0, kNodeProof = 10.0;
+  for (std::size_t n = 0; n < node.size(); ++n) {
+    const auto i = static_cast<Eigen::Index>(n);
+    const double proof = node[n] ? kNodeProof : kProof;
+    if (information(i, i) < proof * noise(i, i)) seen[i] = std::max(seen[i], kWidePrior);
+  }
+}
+
 Eigen::VectorXd prior_widths(const Eigen::VectorXd& seen, double width, double estimated) {
   Eigen::VectorXd widths = Eigen::VectorXd::Constant(seen.size(), width);
   for (Eigen::Index i = 0; i < seen.size(); ++i) {

@@ -17,6 +17,15 @@ inline constexpr double kTied = 1e-5;
 double estimate_law_width(const Eigen::VectorXd& delta, const Eigen::VectorXd& seen,
                           double inharmonicity);
 
+/// Modes with |φ_n| < 0.05 at every one of the contacts.
+std::vector<bool> nodes(const ModalBasis& basis, const std::vector<double>& contacts);
+
+/// A mode that nothing excites has the information of its noise, which scatters about N̄ with few
+/// degrees of freedom: less than three times N̄ is no proof of a signal, and near a node, where a
+/// signal would be a surprise, less than ten. Without proof `seen` is no less than kWidePrior.
+void deny_noise(const Eigen::MatrixXd& information, const Eigen::MatrixXd& noise,
+                const std::vector<bool>& node, Eigen::VectorXd& seen);
+
 /// Widths of the prior of every mode: `width`, and for modes whose standard deviation under the
 /// wide prior is that prior's (more than 0.7 of it) no more than the width estimated.
 Eigen::VectorXd prior_widths(const Eigen::VectorXd& seen, double width, double estimated);

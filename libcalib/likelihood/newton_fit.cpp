@@ -56,6 +56,17 @@ Step newton_step(const NewtonFit& fit, const Objective2& at, double damping,
   return step;
 }
 
+// The factor of a matrix scaled to a unit diagonal: units differ by many powers of ten.
+struct UnitDiagonal {
+  explicit UnitDiagonal(const Eigen::MatrixXd& matrix)
+      : scale(matrix.diagonal().cwiseSqrt().cwiseInverse()), factor(scaled(matrix)) {}
+  Eigen::MatrixXd scaled(const Eigen::MatrixXd& matrix) const {
+    return scale.asDiagonal() * matrix * scale.asDiagonal();
+  }
+  Eigen::VectorXd scale;
+  Eigen::LDLT<Eigen::MatrixXd> factor;
+};
+
 // A long step is likely to be taken and the information needed where it ends.
 constexpr double kLong = 1.0;
 
@@ -81,14 +92,16 @@ Eigen::MatrixXd debiased_hessian(const Eigen::MatrixXd& information, const Newto
   return full;
 }
 
+double taken_by_fit(const LikelihoodPoint& point, const NewtonOptions& options) {
+  const UnitDiagonal hessian(debiased_hessian(point.information, options));
+  return 2.0 * hessian.factor.solve(hessian.scaled(point.information)).trace();
+}
+
 Eigen::MatrixXd fit_covariance(const LikelihoodPoint& point, const NewtonOptions& options) {
-  const Eigen::MatrixXd hessian = debiased_hessian(point.information, options);
-  const Eigen::VectorXd scale = hessian.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd scaled = scale.asDiagonal() * hessian * scale.asDiagonal();
-  const Eigen::Index size = hessian.rows();
-  const Eigen::MatrixXd inverse = scale.asDiagonal() *
-                                  scaled.ldlt().solve(Eigen::MatrixXd::Identity(size, size)) *
-                                  scale.asDiagonal();
+  const UnitDiagonal hessian(debiased_hessian(point.information, options));
+  const Eigen::Index size = hessian.scale.size();
+  const Eigen::MatrixXd inverse =
+      hessian.scaled(hessian.factor.solve(Eigen::MatrixXd::Identity(size, size)));
   const Eigen::MatrixXd score = 2.0 * point.twice_weighted + padded(options.prior, size);
   return inverse * score * inverse;
 }

@@ -49,6 +49,9 @@ NewtonFit newton_fit(const ProjectedLikelihood& likelihood, const StringUnknowns
 /// definite: no direction comes out much worse known than the prior has it.
 Eigen::MatrixXd debiased_hessian(const Eigen::MatrixXd& information, const NewtonOptions& options);
 
+/// How many residuals the fit takes, 2 tr H⁻¹JᵀWJ: an unknown that its prior holds takes none.
+double taken_by_fit(const LikelihoodPoint& point, const NewtonOptions& options);
+
 /// H⁻¹(2 JᵀW²J + Q)H⁻¹ of the fit's last point, which must hold `twice_weighted`.
 Eigen::MatrixXd fit_covariance(const LikelihoodPoint& point, const NewtonOptions& options);
 

@@ -64,6 +64,20 @@ void PriorEquations::hold(Index i, double value) {
   right_[i] = value;
 }
 
+Eigen::VectorXd PriorEquations::completed(const Eigen::VectorXd& theta) const {
+  Eigen::VectorXd z = Eigen::VectorXd::Zero(unknowns_ + 2);
+  z.head(unknowns_) = theta;
+  const Eigen::Vector2d right = right_.tail(2) - normal_.bottomRows(2) * z;
+  const Eigen::Matrix2d normal = normal_.bottomRightCorner<2, 2>();
+  const Eigen::Vector2d scale = normal.diagonal().unaryExpr(
+      [](double entry) { return entry > 0.0 ? 1.0 / std::sqrt(entry) : 0.0; });
+  Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix2d> solver;
+  solver.setThreshold(1e-11);
+  solver.compute(scale.asDiagonal() * normal * scale.asDiagonal());
+  z.tail(2) = scale.asDiagonal() * solver.solve(scale.asDiagonal() * right).eval();
+  return z;
+}
+
 QuadraticPrior PriorEquations::solve() const {
   Eigen::MatrixXd normal = normal_;
   Eigen::VectorXd right = right_;

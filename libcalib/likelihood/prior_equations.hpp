@@ -45,6 +45,9 @@ class PriorEquations {
   /// From here on z_i is known; an unknown of θ keeps a precision of 1 about it, which no other
   /// shares, so that a Newton step leaves it exactly where it is.
   void hold(Eigen::Index i, double value);
+  /// z = (θ, ln f_0, B) with the f_0 and B that fit the statements best at θ; 0 for one that no
+  /// statement is about or that is held.
+  Eigen::VectorXd completed(const Eigen::VectorXd& theta) const;
   /// The mean is of smallest norm where the statements leave a direction of θ open.
   QuadraticPrior solve() const;
 

@@ -45,6 +45,8 @@ ContinuationResult as_continuation(const RecordsFit& fit) {
   result.sensor_deviation = first.sensor_deviation;
   result.chi2 = fit.chi2;
   result.chi2_deviation = fit.chi2_deviation;
+  result.fits = fit.fits;
+  result.priors = fit.priors;
   result.right = fit.right;
   if (result.frequencies_free) {
     result.modes = fit.modes;

@@ -38,7 +38,9 @@ struct RecordsFit {
   std::vector<RecordValues> values;  ///< of every stroke, then of every pluck
   double chi2 = 0.0;                 ///< reduced, of all records
   double chi2_deviation = 0.0;
-  bool right = false;                      ///< χ² < 1 + 3 sd
+  bool fits = false;                       ///< χ² < 1 + 3 sd
+  PriorMisfit priors;                      ///< of all records' parameters to what was stated
+  bool right = false;                      ///< neither χ² nor the priors contradict the fit
   std::size_t evaluations = 0;             ///< of all records together
   std::vector<ContinuationResult> single;  ///< every stroke by itself
 };

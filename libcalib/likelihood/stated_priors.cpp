@@ -1,5 +1,6 @@
 #include "libcalib/likelihood/stated_priors.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -47,6 +48,21 @@ void require_not_fixed(const UnknownsOptions& options, const std::string& parame
                    "of another ratio",
                    parameter, fixed.parameter);
   }
+}
+
+// What a mean or a fixed value says of a string; NaN: the initial value, which a string has.
+void require_value_of_string(const std::string& parameter, UnknownKind kind, double value,
+                             std::size_t modes, double length) {
+  if (std::isnan(value)) return;
+  MODCAL_REQUIRE(kind != UnknownKind::kContact || (value > 0.0 && value < length),
+                 "{} is stated as {:g} m: the contact lies on the string, within (0, {:g}) m",
+                 parameter, value, length);
+  // As in StringUnknowns::admits().
+  const double top = static_cast<double>(modes);
+  MODCAL_REQUIRE(kind != UnknownKind::kInharmonicity || 1.0 + value * top * top > 0.25,
+                 "{} is stated as {:g}: with {} modes no string has such a law, it must be above "
+                 "{:.3g}",
+                 parameter, value, modes, -0.75 / (top * top));
 }
 
 UnknownName require_prior(const UnknownsOptions& options, const ParameterPrior& prior,
@@ -140,10 +156,14 @@ double initial_value(const UnknownName& name, const ModelPoint& initial) {
 StatedPriors::Entry entry_of(const ParameterPrior& prior, const UnknownName& name,
                              const ModelPoint& initial) {
   const double mean = std::isnan(prior.mean) ? initial_value(name, initial) : prior.mean;
-  StatedPriors::Entry entry{name, mean, prior.deviation};
-  if (is_positive(name.kind)) entry = {name, std::log(mean), prior.deviation / mean};
+  StatedPriors::Entry entry{name, mean, prior.deviation, prior.parameter};
+  if (is_positive(name.kind)) {
+    entry.mean = std::log(mean);
+    entry.deviation = prior.deviation / mean;
+  }
   if (name.kind == UnknownKind::kCorner) {
-    entry = {name, 2.0 * pi * mean, 2.0 * pi * prior.deviation};
+    entry.mean = 2.0 * pi * mean;
+    entry.deviation = 2.0 * pi * prior.deviation;
   }
   if (name.kind == UnknownKind::kDampingFactor) {
     entry.name.kind = UnknownKind::kDampingRatio;
@@ -191,12 +211,18 @@ void PriorCorrelation::visit(OptionVisitor& visitor) {
                  value);
 }
 
-void require_priors(const UnknownsOptions& options, std::size_t modes, std::size_t records) {
+void require_priors(const UnknownsOptions& options, std::size_t modes, std::size_t records,
+                    double length) {
   options.require_sharing();
   require_fixed(options, modes, records);
+  for (const FixedParameter& fixed : options.fixed) {
+    const UnknownName name = require_unknown(fixed.parameter, modes);
+    require_value_of_string(fixed.parameter, name.kind, fixed.value, modes, length);
+  }
   std::vector<UnknownName> names;
   for (const ParameterPrior& prior : options.priors) {
     const UnknownName name = require_prior(options, prior, modes, records);
+    require_value_of_string(prior.parameter, name.kind, prior.mean, modes, length);
     MODCAL_REQUIRE(std::find(names.begin(), names.end(), name) == names.end(),
                    "\"{}\" has two priors: state one", prior.parameter);
     names.push_back(name);
@@ -224,7 +250,7 @@ void require_priors(const UnknownsOptions& options, std::size_t modes, std::size
 
 StatedPriors::StatedPriors(const UnknownsOptions& options, const ModelPoint& initial,
                            std::size_t records) {
-  require_priors(options, initial.basis.size(), records);
+  require_priors(options, initial.basis.size(), records, initial.basis.length);
   for (const std::string& name : options.per_record) own_.push_back(parse_unknown(name)->kind);
   // The factor of the damping is stated through a ratio.
   if (options.own(UnknownKind::kDampingFactor)) own_.push_back(UnknownKind::kDampingRatio);
@@ -238,23 +264,44 @@ StatedPriors::StatedPriors(const UnknownsOptions& options, const ModelPoint& ini
   correlation_ = correlation_of(options);
 }
 
-void StatedPriors::state(
-    const std::function<std::optional<LinearForm>(const UnknownName&)>& coordinate,
-    PriorEquations& equations) const {
-  std::vector<LinearForm> forms;
-  std::vector<std::size_t> which;
+StatedPriors::Found StatedPriors::found(const Coordinate& coordinate) const {
+  Found result;
   std::vector<double> means;
   for (std::size_t i = 0; i < entries_.size(); ++i) {
-    std::optional<LinearForm> found = coordinate(entries_[i].name);
-    if (!found) continue;
-    forms.push_back(std::move(*found));
-    which.push_back(i);
+    std::optional<LinearForm> form = coordinate(entries_[i].name);
+    if (!form) continue;
+    result.forms.push_back(std::move(*form));
+    result.which.push_back(i);
     means.push_back(entries_[i].mean);
   }
-  equations.add(
-      forms,
-      Eigen::Map<const Eigen::VectorXd>(means.data(), static_cast<Eigen::Index>(means.size())),
-      covariance(which));
+  result.means =
+      Eigen::Map<const Eigen::VectorXd>(means.data(), static_cast<Eigen::Index>(means.size()));
+  return result;
+}
+
+void StatedPriors::state(const Coordinate& coordinate, PriorEquations& equations) const {
+  const Found stated = found(coordinate);
+  equations.add(stated.forms, stated.means, covariance(stated.which));
+}
+
+PriorMisfit StatedPriors::misfit(const Coordinate& coordinate, const Eigen::VectorXd& z) const {
+  const Found stated = found(coordinate);
+  PriorMisfit misfit{.count = stated.forms.size()};
+  if (stated.forms.empty()) return misfit;
+  const Eigen::MatrixXd covariances = covariance(stated.which);
+  Eigen::VectorXd residual(stated.means.size());
+  for (Eigen::Index i = 0; i < residual.size(); ++i) {
+    const LinearForm& form = stated.forms[static_cast<std::size_t>(i)];
+    residual[i] =
+        (form.slope.dot(z) + form.offset - stated.means[i]) / std::sqrt(covariances(i, i));
+    if (i > 0 && !(std::abs(residual[i]) > misfit.deviations)) continue;
+    misfit.deviations = std::abs(residual[i]);
+    misfit.farthest = entries_[stated.which[static_cast<std::size_t>(i)]].parameter;
+  }
+  const Eigen::VectorXd scale = covariances.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd correlation = scale.asDiagonal() * covariances * scale.asDiagonal();
+  misfit.chi2 = residual.dot(correlation.llt().solve(residual));
+  return misfit;
 }
 
 Eigen::MatrixXd StatedPriors::covariance(const std::vector<std::size_t>& which) const {
@@ -271,20 +318,38 @@ Eigen::MatrixXd StatedPriors::covariance(const std::vector<std::size_t>& which) 
   return matrix;
 }
 
-StatedPriors StatedPriors::of_record(std::size_t record) const {
-  std::vector<Eigen::Index> kept;
+StatedPriors StatedPriors::kept(const std::vector<Eigen::Index>& entries) const {
   StatedPriors result;
-  result.held_ = held_.of_record(record);
+  result.held_ = held_;
   result.own_ = own_;
+  for (const Eigen::Index i : entries) {
+    result.entries_.push_back(entries_[static_cast<std::size_t>(i)]);
+  }
+  // What is left of a Gaussian: its marginal.
+  result.correlation_ = correlation_(entries, entries);
+  return result;
+}
+
+StatedPriors StatedPriors::without_frequencies() const {
+  std::vector<Eigen::Index> others;
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    if (entries_[i].name.kind == UnknownKind::kFrequency) continue;
+    others.push_back(static_cast<Eigen::Index>(i));
+  }
+  return kept(others);
+}
+
+StatedPriors StatedPriors::of_record(std::size_t record) const {
+  std::vector<Eigen::Index> known;
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     const UnknownName& name = entries_[i].name;
     const bool own = std::find(own_.begin(), own_.end(), name.kind) != own_.end();
     if (own && name.record != record) continue;
-    kept.push_back(static_cast<Eigen::Index>(i));
-    result.entries_.push_back(entries_[i]);
-    result.entries_.back().name.record = 0;
+    known.push_back(static_cast<Eigen::Index>(i));
   }
-  result.correlation_ = correlation_(kept, kept);
+  StatedPriors result = kept(known);
+  result.held_ = held_.of_record(record);
+  for (Entry& entry : result.entries_) entry.name.record = 0;
   return result;
 }
 

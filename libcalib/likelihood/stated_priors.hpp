@@ -10,6 +10,7 @@
 
 #include "libcalib/likelihood/held_parameters.hpp"
 #include "libcalib/likelihood/prior_equations.hpp"
+#include "libcalib/likelihood/prior_misfit.hpp"
 #include "libcalib/parameters.hpp"
 #include "libcalib/unknown_name.hpp"
 #include "libsim/base/options.hpp"
@@ -35,8 +36,9 @@ struct UnknownsOptions;
 
 /// Throws InvalidInput for a name that is unknown, repeated or of something that is not free, a
 /// deviation or mean out of range, correlations that no Gaussian has; and what require_fixed()
-/// throws. modes: of the string.
-void require_priors(const UnknownsOptions& options, std::size_t modes, std::size_t records = 1);
+/// throws. modes, length [m]: of the string.
+void require_priors(const UnknownsOptions& options, std::size_t modes, std::size_t records = 1,
+                    double length = std::numeric_limits<double>::infinity());
 
 /// The priors as one Gaussian of coordinates: the logarithm of what is positive (is_positive(),
 /// with the relative deviation), else the value itself, a corner in rad/s. The factor of the
@@ -47,7 +49,10 @@ class StatedPriors {
     UnknownName name;
     double mean = 0.0;       ///< of the coordinate
     double deviation = 0.0;  ///< of the coordinate
+    std::string parameter;   ///< as it was stated
   };
+  /// Coordinate of a name; none where nothing that is free moves it.
+  using Coordinate = std::function<std::optional<LinearForm>(const UnknownName&)>;
 
   StatedPriors() = default;
   /// initial: model that "initial" means, damping ratios that a factor is of.
@@ -56,13 +61,23 @@ class StatedPriors {
   const std::vector<Entry>& entries() const { return entries_; }
   const HeldParameters& held() const { return held_; }
   /// Adds what is stated of the coordinates that there are; the others are unknown.
-  void state(const std::function<std::optional<LinearForm>(const UnknownName&)>& coordinate,
-             PriorEquations& equations) const;
+  void state(const Coordinate& coordinate, PriorEquations& equations) const;
+  /// What is stated against z = (θ, ln f_0, B), see PriorEquations::completed().
+  PriorMisfit misfit(const Coordinate& coordinate, const Eigen::VectorXd& z) const;
   /// What is stated of one record and of all of them, as that of a first one.
   StatedPriors of_record(std::size_t record) const;
+  /// All but what is stated of single frequencies.
+  StatedPriors without_frequencies() const;
   bool has(const UnknownName& name) const;
 
  private:
+  struct Found {
+    std::vector<LinearForm> forms;
+    std::vector<std::size_t> which;
+    Eigen::VectorXd means;
+  };
+  Found found(const Coordinate& coordinate) const;
+  StatedPriors kept(const std::vector<Eigen::Index>& entries) const;
   Eigen::MatrixXd covariance(const std::vector<std::size_t>& which) const;
 
   HeldParameters held_;

@@ -18,9 +18,11 @@ void trust_stated_frequencies(const StatedPriors& priors, const Eigen::VectorXd&
   }
 }
 
-void widen_held(const HeldParameters& held, double width, Eigen::VectorXd& widths) {
+void widen_stated(const StatedPriors& priors, double width, Eigen::VectorXd& widths) {
   for (Eigen::Index i = 0; i < widths.size(); ++i) {
-    if (held.frequency(static_cast<std::size_t>(i))) widths[i] = width;
+    const auto n = static_cast<std::size_t>(i);
+    const bool stated = priors.has({.kind = UnknownKind::kFrequency, .mode = n});
+    if (stated || priors.held().frequency(n)) widths[i] = width;
   }
 }
 

@@ -13,7 +13,7 @@ namespace modcal {
 void trust_stated_frequencies(const StatedPriors& priors, const Eigen::VectorXd& deviation,
                               std::vector<ModeVerdict>& modes);
 
-/// A frequency that is held scatters about the law as those do that the data see.
-void widen_held(const HeldParameters& held, double width, Eigen::VectorXd& widths);
+/// A frequency that is held or has a prior scatters about the law as those do that the data see.
+void widen_stated(const StatedPriors& priors, double width, Eigen::VectorXd& widths);
 
 }  // namespace modcal

@@ -91,20 +91,27 @@ std::optional<LinearForm> StringUnknowns::coordinate(const UnknownName& name,
   return std::nullopt;
 }
 
-void StringUnknowns::state_damping_ratios(PriorEquations& equations) const {
+void StringUnknowns::state_damping_ratios(const std::vector<double>& mean,
+                                          PriorEquations& equations) const {
   if (damping_kind() != Damping::kEach) return;
   for (std::size_t n = 0; n < modes(); ++n) {
     if (priors_.has({.kind = UnknownKind::kDampingRatio, .mode = n})) continue;
     if (priors_.held().ratio(n)) continue;
-    equations.add(*damping_coordinate(n), std::log(reference_.basis.zeta[n]),
-                  options_.damping_width);
+    equations.add(*damping_coordinate(n), std::log(mean[n]), options_.damping_width);
   }
 }
 
 PriorEquations StringUnknowns::stated(const Eigen::VectorXd& theta) const {
   PriorEquations equations(size());
   priors_.state([&](const UnknownName& name) { return coordinate(name, theta); }, equations);
-  state_damping_ratios(equations);
+  state_damping_ratios(reference_.basis.zeta, equations);
+  return equations;
+}
+
+PriorEquations StringUnknowns::stated(const Eigen::VectorXd& theta, const LawScatter& law) const {
+  PriorEquations equations = stated(theta);
+  equations.add_scatter(law, log_frequencies());
+  hold(equations);
   return equations;
 }
 
@@ -115,10 +122,28 @@ QuadraticPrior StringUnknowns::prior(const Eigen::VectorXd& theta) const {
 }
 
 QuadraticPrior StringUnknowns::prior(const Eigen::VectorXd& theta, const LawScatter& law) const {
-  PriorEquations equations = stated(theta);
-  equations.add_scatter(law, log_frequencies());
-  hold(equations);
-  return equations.solve();
+  return stated(theta, law).solve();
+}
+
+PriorMisfit StringUnknowns::misfit_at(const Eigen::VectorXd& theta,
+                                      const PriorEquations& equations) const {
+  return priors_.misfit([&](const UnknownName& name) { return coordinate(name, theta); },
+                        equations.completed(theta));
+}
+
+PriorMisfit StringUnknowns::prior_misfit(const Eigen::VectorXd& theta) const {
+  return misfit_at(theta, PriorEquations(size()));
+}
+
+PriorMisfit StringUnknowns::prior_misfit(const Eigen::VectorXd& theta,
+                                         const LawScatter& law) const {
+  return misfit_at(theta, stated(theta, law));
+}
+
+StringUnknowns StringUnknowns::under(StatedPriors priors) const {
+  StringUnknowns result = *this;
+  result.priors_ = std::move(priors);
+  return result;
 }
 
 void StringUnknowns::hold(PriorEquations& equations) const {

@@ -165,6 +165,17 @@ double StringUnknowns::damping_deviation(const Eigen::MatrixXd& covariance) cons
   return std::sqrt(std::max(variance, 0.0));
 }
 
+std::array<double, 3> StringUnknowns::sensor_deviation(const ModelPoint& model,
+                                                       const Eigen::MatrixXd& covariance) const {
+  const double unit[] = {model.sensors.gain, 1.0, 0.5 / pi};
+  std::array<double, 3> result{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Index at = sensor(i);
+    if (at >= 0) result[i] = unit[i] * std::sqrt(std::max(covariance(at, at), 0.0));
+  }
+  return result;
+}
+
 bool StringUnknowns::admits(const Eigen::VectorXd& theta) const {
   if (!theta.allFinite()) return false;
   const double x = reference_.contact + theta[contact()];

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -80,6 +81,9 @@ class StringUnknowns {
   double damping_factor(const Eigen::VectorXd& theta) const;
   /// Its standard deviation, relative.
   double damping_deviation(const Eigen::MatrixXd& covariance) const;
+  /// Those of gain, delay [s] and corner [Hz] of the model; 0: not free.
+  std::array<double, 3> sensor_deviation(const ModelPoint& model,
+                                         const Eigen::MatrixXd& covariance) const;
   /// False where the law, the contact, damping or sensors leave what a string can be.
   bool admits(const Eigen::VectorXd& theta) const;
   ModelPoint model(const Eigen::VectorXd& theta) const;
@@ -92,9 +96,14 @@ class StringUnknowns {
   QuadraticPrior prior(const Eigen::VectorXd& theta) const;
   /// The same with frequencies about the law.
   QuadraticPrior prior(const Eigen::VectorXd& theta, const LawScatter& law) const;
-  /// Adds the priors of every ζ_n about that of the reference, where each is free, unless something
-  /// else is stated of it.
-  void state_damping_ratios(PriorEquations& equations) const;
+  /// Adds the priors of every ζ_n about `mean`, where each is free, unless something else is stated
+  /// of it.
+  void state_damping_ratios(const std::vector<double>& mean, PriorEquations& equations) const;
+  /// What is stated against θ; with the law's scatter where every frequency is free.
+  PriorMisfit prior_misfit(const Eigen::VectorXd& theta) const;
+  PriorMisfit prior_misfit(const Eigen::VectorXd& theta, const LawScatter& law) const;
+  /// The same unknowns with other priors.
+  StringUnknowns under(StatedPriors priors) const;
   Eigen::VectorXd log_frequencies() const;  ///< ln f_n of the reference
   /// Holds what is held, the law's f_0 and B among it.
   void hold(PriorEquations& equations) const;
@@ -108,6 +117,8 @@ class StringUnknowns {
   std::optional<LinearForm> damping_coordinate(std::size_t mode) const;
   LinearForm form(double offset) const;
   PriorEquations stated(const Eigen::VectorXd& theta) const;
+  PriorEquations stated(const Eigen::VectorXd& theta, const LawScatter& law) const;
+  PriorMisfit misfit_at(const Eigen::VectorXd& theta, const PriorEquations& equations) const;
   Eigen::Index sensor_count() const;
   double sensor_change(std::size_t which, const Eigen::VectorXd& theta) const;
   double damping_change(std::size_t mode, const Eigen::VectorXd& theta) const;

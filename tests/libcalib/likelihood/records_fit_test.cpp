@@ -217,6 +217,46 @@ TEST(RecordsFit, EachRecordHasTheGainAndDampingThatAreItsOwn) {
   }
 }
 
+TEST(RecordsFit, AModeThatOnlyItsPriorHoldsIsNotIdentified) {
+  Strokes one = blind_stroke();
+  const double stated = 11.0 * 196.0 * 1.0005;
+  one.options.unknowns.priors = {{"f_11", stated, 1e-4 * stated}};
+  const RecordsFit fit = calibrate_records(one.start, one.data, one.options);
+  EXPECT_TRUE(fit.right) << fit.chi2;
+  for (const ModeVerdict& mode : {fit.modes[10], fit.single[0].modes[10]}) {
+    EXPECT_EQ(mode.source, ModeSource::kPrior);
+    EXPECT_EQ(mode.reason, WeakReason::kNode);
+    EXPECT_GT(mode.data_deviation, 1e-3);
+    // The scatter of 0.2 % about the law moves it by 1/400 of what it is from the law.
+    EXPECT_NEAR(mode.frequency / stated, 1.0, 2e-5);
+    EXPECT_NEAR(mode.deviation, 1e-4, 1e-5);
+  }
+}
+
+TEST(RecordsFit, FindsAPriorThatTheDataContradict) {
+  Strokes two = strokes({0.0285, 0.0291});
+  two.options.frequencies = false;
+  two.options.unknowns.priors = {{"x_c", 0.0285, 1e-3}, {"x_c 2", 0.035, 1e-3}};
+  const RecordsFit fit = calibrate_records(two.start, two.data, two.options);
+  EXPECT_TRUE(fit.fits) << fit.chi2;
+  EXPECT_FALSE(fit.right);
+  EXPECT_EQ(fit.priors.count, 2u);
+  EXPECT_EQ(fit.priors.farthest, "x_c 2");
+  EXPECT_NEAR(fit.priors.deviations, 5.9, 0.02);
+  EXPECT_FALSE(as_continuation(fit).right);
+}
+
+TEST(RecordsFit, HasEveryDampingRatioAboutTheStatedOne) {
+  Strokes one = strokes({0.0285});
+  one.options.unknowns.damping = "each";
+  one.options.unknowns.damping_width = 1e-6;
+  for (double& zeta : one.start.basis.zeta) zeta *= 1.05;
+  const RecordsFit fit = calibrate_records(one.start, one.data, one.options);
+  for (std::size_t n = 0; n < 50; ++n) {
+    EXPECT_NEAR(fit.model.basis.zeta[n] / one.start.basis.zeta[n], 1.0, 1e-4) << n + 1;
+  }
+}
+
 TEST(RecordsFit, OneContactMayBeShared) {
   Strokes two = strokes({0.0285, 0.0285});
   two.options.frequencies = false;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "libcalib/likelihood/continuation.hpp"
 #include "libcalib/likelihood/newton_fit.hpp"
 #include "libsim/base/error.hpp"
 #include "tests/libcalib/likelihood/bowed_case.hpp"
@@ -134,10 +135,89 @@ TEST_F(Posterior, OfWhatTheDataDoNotTellIsThePrior) {
   EXPECT_NEAR(model.basis.zeta[2], 1.2e-3, 1e-7);
 }
 
+TEST(PriorMisfit, IsMeasuredByTheCovarianceStated) {
+  const UnknownsOptions options =
+      stating({{"gain", 1.0, 0.02}, {"delay", 0.0, 2e-6}}, {{{"gain", "delay"}, 0.5}});
+  const ModelPoint point = stiff_string();
+  const StringUnknowns unknowns =
+      StringUnknowns::law(point, 196.0, kInharmonicity, options, StatedPriors(options, point));
+  Eigen::VectorXd theta = unknowns.start();
+  EXPECT_EQ(unknowns.prior_misfit(theta).chi2, 0.0);
+  theta[unknowns.sensor(0)] = 0.02;
+  theta[unknowns.sensor(1)] = -4e-6;
+  const PriorMisfit misfit = unknowns.prior_misfit(theta);
+  // (1, −2) under correlation 0.5: (1 + 2 + 4)/(1 − 0.25).
+  EXPECT_NEAR(misfit.chi2, 28.0 / 3.0, 1e-10);
+  EXPECT_EQ(misfit.count, 2u);
+  EXPECT_EQ(misfit.farthest, "delay");
+  EXPECT_NEAR(misfit.deviations, 2.0, 1e-12);
+}
+
+TEST(PriorMisfit, ContradictsBeyondThreeDeviationsOfOne) {
+  EXPECT_FALSE((PriorMisfit{.chi2 = 8.99, .count = 1}.contradicted()));
+  EXPECT_TRUE((PriorMisfit{.chi2 = 9.01, .count = 1}.contradicted()));
+  EXPECT_FALSE((PriorMisfit{.chi2 = 9.01, .count = 2}.contradicted()));
+  EXPECT_TRUE((PriorMisfit{.chi2 = NAN, .count = 1}.contradicted()));
+  EXPECT_FALSE(PriorMisfit{}.contradicted());
+}
+
+TEST(PriorMisfit, OfFreeFrequenciesAsksTheLawTheyScatterAbout) {
+  // Frequencies of the law with f0 and B exactly: the law through them is that one.
+  const UnknownsOptions options = stating({{"f0", 196.2, 0.1}, {"B", kInharmonicity, 1e-6}});
+  const ModelPoint point = stiff_string();
+  const StringUnknowns unknowns =
+      StringUnknowns::frequencies(point, options, StatedPriors(options, point));
+  const LawScatter scatter{Eigen::VectorXd::Constant(50, 1e-6), kInharmonicity};
+  const PriorMisfit misfit = unknowns.prior_misfit(unknowns.start(), scatter);
+  // Fifty modes at 1e-6 tell f0 a thousand times better than its prior does.
+  EXPECT_EQ(misfit.farthest, "f0");
+  EXPECT_NEAR(misfit.deviations, 2.0 * (1.0 + 0.5 * 0.2 / 196.2), 1e-3);
+  EXPECT_NEAR(misfit.chi2, 4.0, 1e-2);
+}
+
+TEST(PriorMisfit, IsFoundWhereTheDataDoNotContradictTheFit) {
+  const BowedCase bowed = bowed_case(0.0285, kInharmonicity, 0.5);
+  const NoisyRecords records = noisy(bowed, 0.02, 5);
+  const CalibrationData data =
+      CalibrationData::of_records(records.reactions[0], records.reactions[1], records.sample_rate);
+  ContinuationOptions options{
+      .law_width = 2e-3, .left_noise = records.deviation[0], .right_noise = records.deviation[1]};
+  for (const bool frequencies : {false, true}) {
+    options.frequencies = frequencies;
+    options.unknowns.priors = {{"x_c", 0.04, 1e-3}, {"f0", 196.5, 1.0}};
+    const ContinuationResult wrong = calibrate_by_continuation(bowed.truth, data, options);
+    EXPECT_TRUE(wrong.fits) << wrong.chi2;
+    EXPECT_FALSE(wrong.right);
+    EXPECT_EQ(wrong.restarts, 0u);
+    EXPECT_EQ(wrong.priors.count, 2u);
+    EXPECT_EQ(wrong.priors.farthest, "x_c");
+    // (28.5 − 40) mm; the data know x_c to less than a thousandth of that.
+    EXPECT_NEAR(wrong.priors.deviations, 11.5, 0.02);
+    EXPECT_TRUE(wrong.law.priors.contradicted());
+    options.unknowns.priors[0].mean = 0.0275;
+    EXPECT_TRUE(calibrate_by_continuation(bowed.truth, data, options).right);
+  }
+}
+
+TEST(StatedPriors, WithoutThoseOfSingleFrequenciesKeepTheRest) {
+  const UnknownsOptions options =
+      stating({{"f_3", 588.0, 0.1}, {"gain", 1.0, 0.02}, {"delay", 0.0, 2e-6}},
+              {{{"gain", "delay"}, 0.5}, {{"f_3", "gain"}, 0.4}});
+  const ModelPoint point = stiff_string();
+  const StatedPriors rest = StatedPriors(options, point).without_frequencies();
+  const StringUnknowns unknowns = StringUnknowns::law(point, 196.0, 0.0, options, rest);
+  const Eigen::Index at = unknowns.sensor(0);
+  const Eigen::Matrix2d covariance =
+      unknowns.prior(unknowns.start()).precision.block<2, 2>(at, at).inverse();
+  EXPECT_NEAR(covariance(0, 0), 0.02 * 0.02, 1e-12);
+  EXPECT_NEAR(covariance(0, 1), 0.5 * 0.02 * 2e-6, 1e-15);
+  EXPECT_FALSE(rest.has({.kind = UnknownKind::kFrequency, .mode = 2}));
+}
+
 TEST(StatedPriors, ThatAreNoneAreRefusedWithTheReason) {
   const auto refused = [](const UnknownsOptions& options, const std::string& reason) {
     try {
-      require_priors(options, 50, 2);
+      require_priors(options, 50, 2, 0.33);
       ADD_FAILURE() << "accepted, not refused for " << reason;
     } catch (const InvalidInput& error) {
       EXPECT_NE(std::string(error.what()).find(reason), std::string::npos) << error.what();
@@ -154,6 +234,14 @@ TEST(StatedPriors, ThatAreNoneAreRefusedWithTheReason) {
   const double infinite = std::numeric_limits<double>::infinity();
   refused(stating({{"f0", infinite, 1.0}}), "must be finite");
   refused(stating({{"delay", -infinite, 1e-6}}), "must be finite");
+  refused(stating({{"x_c", 0.4, 1e-3}}), "within (0, 0.33) m");
+  refused(stating({{"x_c", -0.03, 1e-3}}), "within (0, 0.33) m");
+  refused(stating({{"B", -4e-4, 1e-4}}), "must be above -0.0003");
+  UnknownsOptions fixed;
+  fixed.fixed = {{"B", -1e-3}};
+  refused(fixed, "no string has such a law");
+  fixed.fixed = {{"x_c", 0.33}};
+  refused(fixed, "within (0, 0.33) m");
   refused(stating({{"corner", 4.0, 1.0}}), "corner: {free: true}");
   refused(stating({{"zeta_3", 1e-3, 1e-4}, {"damping_power", 0.0, 0.1}}), "damping: power");
   refused(stating({}, {{{"f0", "B"}, 0.3}}), "priors that are not stated");
