@@ -1,6 +1,7 @@
 #include "experiments/kinds/identify_experiment.hpp"
 
 #include "experiments/kinds/lint.hpp"
+#include "libinverse/pluck/decay_length.hpp"
 
 namespace modcal {
 
@@ -10,14 +11,19 @@ std::vector<Finding> IdentifyExperiment::lint() const {
   if (options_.truth.scene.start.selected() == "rest") {
     findings.push_back({"scene.initial", "a string at rest has no free decay: pluck it"});
   }
-  if (!(options_.identification.highest_frequency < 0.5 * options_.measurement.sample_rate)) {
-    findings.push_back(
-        {"identification.highest_frequency",
-         fmt::format("{:g} Hz lie above half the sample rate {:g} Hz",
-                     options_.identification.highest_frequency, options_.measurement.sample_rate)});
-  }
-  if (!(options_.identification.skip < options_.truth.scene.duration)) {
-    findings.push_back({"identification.skip", "the whole record is left out"});
+  const double rate = options_.measurement.sample_rate;
+  if (!(options_.identification.highest_frequency < 0.5 * rate)) {
+    findings.push_back({"identification.highest_frequency",
+                        fmt::format("{:g} Hz lie above half the sample rate {:g} Hz",
+                                    options_.identification.highest_frequency, rate)});
+  } else if (findings.empty()) {
+    lint_making(
+        "scene.duration",
+        [&] {
+          require_decay_length(sample_count(options_.truth.scene.duration, rate), rate,
+                               options_.identification);
+        },
+        findings);
   }
   return findings;
 }

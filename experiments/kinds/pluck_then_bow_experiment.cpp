@@ -2,6 +2,7 @@
 
 #include "experiments/kinds/lint.hpp"
 #include "experiments/kinds/scene_plan.hpp"
+#include "libinverse/pluck/decay_length.hpp"
 
 namespace modcal {
 
@@ -112,6 +113,14 @@ std::vector<Finding> PluckThenBowExperiment::lint() const {
   if (options_.pluck.start.selected() == "rest") {
     findings.push_back({"pluck.initial", "a string at rest has no free decay: pluck it"});
   }
+  lint_making(
+      "pluck.duration",
+      [&] {
+        const double rate = options_.measurement.sample_rate;
+        require_decay_length(sample_count(options_.pluck.duration, rate), rate,
+                             options_.pluck.identification);
+      },
+      findings);
   if (options_.has_bound) {
     append(findings, lint_priors("bound.unknowns", options_.bound.unknowns,
                                  static_cast<std::size_t>(options_.truth.scene.string.modes)));

@@ -167,6 +167,30 @@ TEST(LintPlucks, RefusesPlucksBeyondTheStringAndDecaysTooShort) {
             std::string::npos);
 }
 
+TEST(LintPlucks, RefusesAPluckTestTooShortForItsIdentification) {
+  const auto test_of = [](const std::string& pluck) {
+    return messages_of(std::string("kind: pluck_then_bow\n") + kScene +
+                       "contact: {start: 30 mm}\n" + "pluck: " + pluck + "\n");
+  };
+  const std::string start = "{initial: {type: pluck, position: 43 mm, displacement: 1 mm}";
+  EXPECT_THAT(
+      test_of(start + ", duration: 1 ms}"),
+      testing::ContainsRegex("scene.yaml:7:[0-9]+: error: the first 0.002 s[^\n]*0.000996 s"));
+  EXPECT_THAT(test_of(start + ", duration: 30 ms}"),
+              testing::ContainsRegex("scene.yaml:7:[0-9]+: error: a decay of 0.03 s leaves [0-9]+ "
+                                     "samples[^\n]*150 block rows: record"));
+  EXPECT_EQ(test_of(start + ", duration: 0.2 s}").find("error"), std::string::npos);
+  EXPECT_THAT(
+      messages_of("kind: identify\nscene:\n"
+                  "  string: {length: 0.33 m, linear_density: 3.1e-3 kg/m, fundamental: 196 Hz}\n"
+                  "  bow: {position: 30 mm, velocity: 0 m/s, normal_force: 0 N}\n"
+                  "  initial: {type: pluck, position: 43 mm, displacement: 1 mm}\n"
+                  "  duration: 30 ms\n"),
+      testing::ContainsRegex("scene.yaml:6:[0-9]+: error: a decay of 0.03 s leaves"));
+  EXPECT_THAT(test_of("{initial: {type: pluck, position: 0.4 m, displacement: 1 mm}}"),
+              testing::ContainsRegex("scene.yaml:7:[0-9]+: error: [^\n]*0.4 m is not inside"));
+}
+
 TEST(PlanPlucks, CountsTheirSimulationsOnce) {
   const std::string one =
       "{initial: {type: pluck, position: 43 mm, displacement: 1 mm}, duration: 0.5 s}";
