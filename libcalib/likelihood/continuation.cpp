@@ -330,7 +330,7 @@ ContinuationResult calibrate_by_continuation(const ModelPoint& initial, const Ca
     if (best.fits) break;
   }
   if (best.fits || !options.frequencies) return best;
-  return with_misfit_for_noise(initial, records, options, priors, highest, error, std::move(best));
+  return with_misfit_for_noise(initial, records, options, priors, highest, noise_error, std::move(best));
 }
 
 }  // namespace modcal

@@ -28,7 +28,7 @@ ParameterLimit& entry(const std::string& name, ExpectedLimit& limit) {
 void add_law(const LimitInformation& records, const StringUnknowns& unknowns,
              ExpectedLimit& limit) {
   const Eigen::MatrixXd prior = records.prior(unknowns, nullptr);
-  const Eigen::MatrixXd covariance = records.covariance(unknowns, prior);
+  const Eigen::MatrixXd covariance = records.covariance(unknowns, records.information(unknowns), prior);
   const Eigen::MatrixXd attainable = records.attainable(unknowns, prior);
   const std::vector<ParameterForm> forms = records.forms(unknowns);
   for (std::size_t i = 0; i < forms.size(); ++i) {
@@ -37,8 +37,9 @@ void add_law(const LimitInformation& records, const StringUnknowns& unknowns,
     row.law = forms[i].deviation(covariance);
     row.attainable = forms[i].deviation(attainable);
     for (std::size_t j = 0; j < i; ++j) {
-      row.correlations.push_back(slope.dot(covariance * forms[j].slope) /
-                                 (row.law * forms[j].deviation(covariance)));
+      const double scale = row.law * forms[j].deviation(covariance);  // 0 of what is held
+      row.correlations.push_back(scale > 0.0 ? slope.dot(covariance * forms[j].slope) / scale
+                                             : 0.0);
     }
   }
   constexpr const char* kNames[] = {"f0", "B", "x_c", "damping"};
@@ -66,7 +67,7 @@ void add_frequencies(const LimitInformation& records, const StringUnknowns& unkn
   }
   const auto covariance_under = [&](const Eigen::VectorXd& widths) {
     const LawScatter scatter{widths, inharmonicity};
-    return covariance_of(information, records.prior(unknowns, &scatter));
+    return records.covariance(unknowns, information, records.prior(unknowns, &scatter));
   };
   const Eigen::VectorXd seen =
       deviations(covariance_under(Eigen::VectorXd::Constant(n, kWidePrior))).head(n);

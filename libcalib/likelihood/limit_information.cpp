@@ -129,7 +129,17 @@ Eigen::MatrixXd LimitInformation::attainable(const StringUnknowns& unknowns,
   };
   NewtonOptions options;
   options.prior = prior;
-  return fit_covariance(sum(unknowns, evaluate), options);
+  Eigen::MatrixXd covariance = fit_covariance(sum(unknowns, evaluate), options);
+  placed(unknowns).clear_held(covariance);
+  return covariance;
+}
+
+Eigen::MatrixXd LimitInformation::covariance(const StringUnknowns& unknowns,
+                                             const Eigen::MatrixXd& information,
+                                             const Eigen::MatrixXd& prior) const {
+  Eigen::MatrixXd covariance = covariance_of(information, prior);
+  placed(unknowns).clear_held(covariance);
+  return covariance;
 }
 
 Eigen::MatrixXd LimitInformation::prior(const StringUnknowns& unknowns,
@@ -138,8 +148,9 @@ Eigen::MatrixXd LimitInformation::prior(const StringUnknowns& unknowns,
   PriorEquations equations(all.size());
   priors_.state([&](const UnknownName& name) { return all.coordinate(name, all.start()); },
                 equations);
-  unknowns.state_damping_ratios(equations);
+  unknowns.state_damping_ratios(question_.truth.basis.zeta, equations);
   if (scatter) equations.add_scatter(*scatter, unknowns.log_frequencies());
+  all.hold(equations);
   return equations.solve().precision;
 }
 

@@ -34,9 +34,9 @@ class LimitInformation {
   /// Precision of what is stated of the unknowns; scatter: of the frequencies about the law, or
   /// null.
   Eigen::MatrixXd prior(const StringUnknowns& unknowns, const LawScatter* scatter) const;
-  Eigen::MatrixXd covariance(const StringUnknowns& unknowns, const Eigen::MatrixXd& prior) const {
-    return covariance_of(information(unknowns), prior);
-  }
+  /// covariance_of(), zero where an unknown is held.
+  Eigen::MatrixXd covariance(const StringUnknowns& unknowns, const Eigen::MatrixXd& information,
+                             const Eigen::MatrixXd& prior) const;
   /// Covariance under the weights that a calibration would give the bins if it knew what each can
   /// tell, noise in the slopes counted.
   Eigen::MatrixXd attainable(const StringUnknowns& unknowns, const Eigen::MatrixXd& prior) const;
