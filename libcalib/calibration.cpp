@@ -83,7 +83,7 @@ void add_values(const RecordValues& values, const UnknownsOptions& unknowns,
                           .deviation = deviation});
   };
   const auto& sd = values.sensor_deviation;
-  if (wanted(true, UnknownKind::kDampingFactor)) {
+  if (wanted(unknowns.damping != "fixed", UnknownKind::kDampingFactor)) {
     add("damping", "1", 1.0, values.damping, values.damping_deviation);
   }
   if (wanted(unknowns.gain.free, UnknownKind::kGain)) {
@@ -96,6 +96,26 @@ void add_values(const RecordValues& values, const UnknownsOptions& unknowns,
     add("corner", "Hz", unknowns.corner.value, 0.5 * values.sensors.corner / std::numbers::pi,
         sd[2]);
   }
+}
+
+// Every ζ_n that is free by itself, in the place of one factor; or the power of n.
+void add_damping(const ModelPoint& initial, const ContinuationResult& found,
+                 std::vector<CalibratedParameter>& parameters) {
+  for (std::size_t n = 0; n < found.ratio_deviations.size(); ++n) {
+    const double ratio = found.model.basis.zeta[n];
+    if (found.ratio_deviations[n] == 0.0) continue;
+    parameters.push_back({.name = fmt::format("zeta_{}", n + 1),
+                          .unit = "1",
+                          .initial = initial.basis.zeta[n],
+                          .final = ratio,
+                          .deviation = ratio * found.ratio_deviations[n]});
+  }
+  if (found.damping_power_deviation == 0.0) return;
+  parameters.push_back({.name = "damping_power",
+                        .unit = "1",
+                        .initial = 0.0,
+                        .final = found.damping_power,
+                        .deviation = found.damping_power_deviation});
 }
 
 // Law, contacts, damping and sensors before and after; `records`: null for one stroke.
@@ -121,6 +141,10 @@ std::vector<CalibratedParameter> found_parameters(const ModelPoint& initial,
               .damping = found.damping,
               .damping_deviation = found.damping_deviation},
              unknowns, "", true, parameters);
+  if (!found.ratio_deviations.empty()) {
+    std::erase_if(parameters, [](const CalibratedParameter& p) { return p.name == "damping"; });
+  }
+  add_damping(initial, found, parameters);
   for (std::size_t r = 1; records && r < records->values.size(); ++r) {
     const std::string number = fmt::format(" {}", r + 1);
     if (r < records->contacts.size() && unknowns.own(UnknownKind::kContact)) {

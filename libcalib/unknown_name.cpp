@@ -11,16 +11,20 @@ struct Word {
   std::string_view text;
   UnknownKind kind;
   std::string_view unit;
+  std::string_view meaning;
 };
 
-constexpr Word kWords[] = {{"f0", UnknownKind::kFundamental, "Hz"},
-                           {"B", UnknownKind::kInharmonicity, "1"},
-                           {"x_c", UnknownKind::kContact, "m"},
-                           {"damping", UnknownKind::kDampingFactor, "1"},
-                           {"damping_power", UnknownKind::kDampingPower, "1"},
-                           {"gain", UnknownKind::kGain, "1"},
-                           {"delay", UnknownKind::kDelay, "s"},
-                           {"corner", UnknownKind::kCorner, "Hz"}};
+constexpr Word kWords[] = {
+    {"f0", UnknownKind::kFundamental, "Hz", "fundamental of the string without its stiffness"},
+    {"B", UnknownKind::kInharmonicity, "1", "inharmonicity: f_n = n f0 sqrt(1 + B n^2)"},
+    {"x_c", UnknownKind::kContact, "m", "position of the bow"},
+    {"damping", UnknownKind::kDampingFactor, "1",
+     "factor c of the damping ratios: zeta_n = c n^p zeta_n(initial)"},
+    {"damping_power", UnknownKind::kDampingPower, "1",
+     "exponent p of the damping ratios: zeta_n = c n^p zeta_n(initial)"},
+    {"gain", UnknownKind::kGain, "1", "gain of the sensor at x = L over that at x = 0"},
+    {"delay", UnknownKind::kDelay, "s", "delay of the sensor at x = L after that at x = 0"},
+    {"corner", UnknownKind::kCorner, "Hz", "corner of the high pass of the sensor at x = L"}};
 
 // A number >= 1 that is all of the text; 0 for other text.
 std::size_t number_of(std::string_view text) {
@@ -70,6 +74,17 @@ std::string_view unit_of_unknown(std::string_view text) {
     if (word.kind == name->kind) return word.unit;
   }
   return "1";
+}
+
+std::string_view meaning_of_unknown(std::string_view text) {
+  const std::optional<UnknownName> name = parse_unknown(text);
+  if (!name) return "";
+  if (name->kind == UnknownKind::kFrequency) return "frequency of one mode";
+  if (name->kind == UnknownKind::kDampingRatio) return "damping ratio of one mode";
+  for (const Word& word : kWords) {
+    if (word.kind == name->kind) return word.meaning;
+  }
+  return "";
 }
 
 bool is_positive(UnknownKind kind) {

@@ -14,7 +14,7 @@ enum class UnknownKind {
   kContact,        ///< x_c [m]
   kFrequency,      ///< f_n [Hz]
   kDampingRatio,   ///< zeta_n [1]
-  kDampingFactor,  ///< damping: factor of all stated ζ_n [1]
+  kDampingFactor,  ///< damping: factor of all stated ζ_n [1], that of ζ_1 where there is a power
   kDampingPower,   ///< damping_power: exponent p of n in ζ_n = factor nᵖ ζ_n(stated) [1]
   kGain,           ///< gain [1]
   kDelay,          ///< delay [s]
@@ -35,6 +35,8 @@ std::optional<UnknownName> parse_unknown(std::string_view text);
 UnknownName require_unknown(std::string_view text, std::size_t modes);
 /// SI unit of its values; "1" for other text.
 std::string_view unit_of_unknown(std::string_view text);
+/// What it is, in words; empty for other text.
+std::string_view meaning_of_unknown(std::string_view text);
 /// Whether its values are > 0: its prior acts on the logarithm.
 bool is_positive(UnknownKind kind);
 

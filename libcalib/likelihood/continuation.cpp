@@ -168,6 +168,8 @@ class Attempt {
     result.contact_deviation = law.deviation[2];
     result.damping = law.damping;
     result.damping_deviation = law.deviation[3];
+    result.damping_power = law_.damping_power(law_theta_);
+    result.damping_power_deviation = law_.damping_power_deviation(covariance);
     result.sensor_deviation = law_.sensor_deviation(result.model, covariance);
     result.modes = law_verdicts(result.model, law.inharmonicity, covariance.topLeftCorner(2, 2));
     trust_stated_frequencies(priors_, {}, result.modes);
@@ -232,8 +234,8 @@ class Attempt {
     const LikelihoodPoint last = whole_point(unknowns, theta);
     Eigen::MatrixXd covariance = fit_covariance(last, options);
     unknowns.clear_held(covariance);
-    const double reference_factor = law_.damping_factor(from_law ? law_theta_ : ladder_theta_);
-    report(unknowns, theta, covariance, seen, estimated, reference_factor, result);
+    report(unknowns, theta, covariance, seen, estimated, from_law ? law_theta_ : ladder_theta_,
+           result);
     result.chi2 = reduced_chi2(result.model, taken_by_fit(last, options));
     result.priors = unknowns.prior_misfit(theta, {widths, inharmonicity});
   }
@@ -255,13 +257,16 @@ class Attempt {
 
   void report(const StringUnknowns& unknowns, const Eigen::VectorXd& theta,
               const Eigen::MatrixXd& covariance, const Eigen::VectorXd& seen, double estimated,
-              double reference_factor, ContinuationResult& result) {
+              const Eigen::VectorXd& law_theta, ContinuationResult& result) {
     result.frequencies_free = true;
     result.model = unknowns.model(theta);
     const Eigen::VectorXd deviation = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
     result.contact_deviation = deviation[unknowns.contact()];
-    // The law's factor made the reference of the free frequencies.
-    result.damping = unknowns.damping_factor(theta) * reference_factor;
+    // The law's damping made the reference of the free frequencies.
+    result.damping = unknowns.damping_factor(theta) * law_.damping_factor(law_theta);
+    result.damping_power = unknowns.damping_power(theta) + law_.damping_power(law_theta);
+    result.damping_power_deviation = unknowns.damping_power_deviation(covariance);
+    result.ratio_deviations = unknowns.ratio_deviations(covariance);
     result.damping_deviation = unknowns.damping_deviation(covariance) * result.damping;
     result.sensor_deviation = unknowns.sensor_deviation(result.model, covariance);
     const auto n = static_cast<Eigen::Index>(modes());

@@ -65,8 +65,12 @@ struct ContinuationResult {
   bool frequencies_free = false;
   std::vector<ModeVerdict> modes;
   double contact_deviation = 0.0;  ///< [m]
-  double damping = 1.0;            ///< geometric mean of ζ_n over that of the initial ones
+  /// Factor of all initial ζ_n that are free; where each is, their geometric mean.
+  double damping = 1.0;
   double damping_deviation = 0.0;
+  double damping_power = 0.0;  ///< exponent p in ζ_n = factor nᵖ ζ_n(initial)
+  double damping_power_deviation = 0.0;
+  std::vector<double> ratio_deviations;  ///< of every ζ_n, relative; empty unless each is free
   /// Of gain, delay [s] and corner [Hz] of model.sensors; 0: not free.
   std::array<double, 3> sensor_deviation{};
   double law_width = 0.0;  ///< τ

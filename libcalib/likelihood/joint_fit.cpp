@@ -90,6 +90,10 @@ class JointFit {
     fit_.chi2_deviation = misfit.deviation;
     fit_.fits = fit_.chi2 < 1.0 + 3.0 * fit_.chi2_deviation;
     fit_.right = fit_.fits && !fit_.priors.contradicted();
+    if (!unknowns().is_law()) return;
+    fit_.law.chi2 = fit_.chi2;
+    fit_.law.accepted = fit_.fits;
+    fit_.law.priors = fit_.priors;
   }
 
  private:
@@ -129,6 +133,23 @@ class JointFit {
       count += 1.0;
     }
     return change / std::max(count, 1.0);
+  }
+  // Factor and exponent p of ζ_n = factor nᵖ ζ_n(initial), those aside that are held.
+  std::pair<double, double> damping_line(const ModelPoint& point) const {
+    std::vector<std::pair<double, double>> changes;  // (ln n, ln ζ_n/ζ_n(initial))
+    for (std::size_t n = 0; n < unknowns().modes(); ++n) {
+      if (priors_.held().ratio(n)) continue;
+      changes.emplace_back(std::log(static_cast<double>(n + 1)),
+                           std::log(point.basis.zeta[n] / initial_.basis.zeta[n]));
+    }
+    if (options_.unknowns.damping != "power" || changes.size() < 2) {
+      return {std::exp(mean_damping_change(point, initial_)), 0.0};
+    }
+    // All lie on one line.
+    const auto& [a, low] = changes.front();
+    const auto& [b, high] = changes.back();
+    const double power = (high - low) / (b - a);
+    return {std::exp(low - power * a), power};
   }
   std::optional<double> held_contact(std::size_t record) const {
     const HeldParameters& held = priors_.held();
@@ -229,10 +250,8 @@ class JointFit {
       fit_.contact_deviations.push_back(deviation[all_.place(unknowns().contact(), r)]);
     }
     if (unknowns().is_law()) {
-      fit_.fundamental = unknowns().fundamental(theta_);
-      fit_.inharmonicity = theta_[1];
-      fit_.fundamental_deviation = fit_.fundamental * deviation[0];
-      fit_.inharmonicity_deviation = deviation[1];
+      fit_.modes = law_verdicts(fit_.model, theta_[1], covariance.topLeftCorner(2, 2));
+      trust_stated_frequencies(priors_, {}, fit_.modes);
     } else {
       const auto frequencies = deviation.head(modes());
       fit_.frequency_deviations.assign(frequencies.begin(), frequencies.end());
@@ -240,6 +259,21 @@ class JointFit {
       trust_stated_frequencies(priors_, deviation, fit_.modes);
     }
     for (std::size_t r = 0; r < all_.records(); ++r) report_values(covariance, r);
+    // Shared by all: the first record's unknowns stand first.
+    fit_.damping_power = damping_line(fit_.model).second;
+    fit_.damping_power_deviation = unknowns().damping_power_deviation(covariance);
+    fit_.ratio_deviations = unknowns().ratio_deviations(covariance);
+    if (unknowns().is_law()) report_law(deviation);
+  }
+
+  void report_law(const Eigen::VectorXd& deviation) {
+    const RecordValues& first = fit_.values.front();
+    fit_.law = {.fundamental = unknowns().fundamental(theta_),
+                .inharmonicity = theta_[1],
+                .contact = fit_.model.contact,
+                .damping = first.damping};
+    fit_.law.deviation = {fit_.law.fundamental * deviation[0], deviation[1],
+                          fit_.contact_deviations.front(), first.damping_deviation};
   }
 
   void report_values(const Eigen::MatrixXd& covariance, std::size_t record) {
@@ -250,8 +284,7 @@ class JointFit {
       }
     }
     const ModelPoint model = all_.model(theta_, record);
-    RecordValues values{.sensors = model.sensors,
-                        .damping = std::exp(mean_damping_change(model, initial_))};
+    RecordValues values{.sensors = model.sensors, .damping = damping_line(model).first};
     values.damping_deviation = values.damping * unknowns().damping_deviation(own);
     values.sensor_deviation = unknowns().sensor_deviation(model, own);
     fit_.values.push_back(values);
@@ -269,15 +302,29 @@ class JointFit {
   double estimated_ = 0.0;  // τ
 };
 
+void run_fit(const ModelPoint& initial, const ContinuationOptions& options,
+             const StatedPriors& priors, std::span<const CalibrationData> strokes,
+             std::span<const PluckRecord> plucks, RecordsFit& fit) {
+  JointFit joint(initial, options, priors, fit);
+  for (const CalibrationData& stroke : strokes) joint.add(stroke);
+  for (const PluckRecord& pluck : plucks) joint.add(pluck);
+  joint.run();
+}
+
 }  // namespace
 
 void fit_jointly(const ModelPoint& initial, const ContinuationOptions& options,
                  const StatedPriors& priors, std::span<const CalibrationData> strokes,
                  std::span<const PluckRecord> plucks, RecordsFit& fit) {
-  JointFit joint(initial, options, priors, fit);
-  for (const CalibrationData& stroke : strokes) joint.add(stroke);
-  for (const PluckRecord& pluck : plucks) joint.add(pluck);
-  joint.run();
+  run_fit(initial, options, priors, strokes, plucks, fit);
+  if (!options.frequencies) return;
+  // Frequencies that are free say what the law is only as far as they may leave it.
+  ContinuationOptions law_alone = options;
+  law_alone.frequencies = false;
+  RecordsFit alone{.single = fit.single};
+  run_fit(initial, law_alone, priors, strokes, plucks, alone);
+  fit.law = alone.law;
+  fit.evaluations += alone.evaluations;
 }
 
 }  // namespace modcal

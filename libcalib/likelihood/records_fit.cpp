@@ -42,26 +42,18 @@ ContinuationResult as_continuation(const RecordsFit& fit) {
   const RecordValues& first = fit.values.front();
   result.damping = first.damping;
   result.damping_deviation = first.damping_deviation;
+  result.damping_power = fit.damping_power;
+  result.damping_power_deviation = fit.damping_power_deviation;
+  result.ratio_deviations = fit.ratio_deviations;
   result.sensor_deviation = first.sensor_deviation;
   result.chi2 = fit.chi2;
   result.chi2_deviation = fit.chi2_deviation;
   result.fits = fit.fits;
   result.priors = fit.priors;
   result.right = fit.right;
-  if (result.frequencies_free) {
-    result.modes = fit.modes;
-    result.law_width = fit.law_width;
-  } else {
-    result.law.fundamental = fit.fundamental;
-    result.law.inharmonicity = fit.inharmonicity;
-    result.law.contact = fit.model.contact;
-    result.law.damping = first.damping;
-    result.law.deviation = {fit.fundamental_deviation, fit.inharmonicity_deviation,
-                            result.contact_deviation, first.damping_deviation};
-    for (std::size_t n = 0; n < result.modes.size(); ++n) {
-      result.modes[n].frequency = fit.model.basis.frequency(n);
-    }
-  }
+  result.law = fit.law;
+  result.modes = fit.modes;
+  result.law_width = fit.law_width;
   result.evaluations = fit.evaluations;
   for (const ContinuationResult& single : fit.single) result.evaluations += single.evaluations;
   return result;

@@ -20,7 +20,8 @@ struct PluckRecord {
 struct RecordValues {
   SensorPair sensors;
   std::array<double, 3> sensor_deviation{};  ///< of gain, delay [s], corner [Hz]; 0: not free
-  double damping = 1.0;  ///< geometric mean of ζ_n over that of the initial ones
+  /// Factor of all initial ζ_n that are free; where each is, their geometric mean.
+  double damping = 1.0;
   double damping_deviation = 0.0;
 };
 
@@ -28,20 +29,23 @@ struct RecordsFit {
   ModelPoint model;              ///< shared; the contact of the first record
   std::vector<double> contacts;  ///< x_c of every stroke [m]
   std::vector<double> contact_deviations;
-  /// f_0 [Hz] and B where the law alone is fitted, and their standard deviations.
-  double fundamental = 0.0, inharmonicity = 0.0;
-  double fundamental_deviation = 0.0, inharmonicity_deviation = 0.0;
+  /// The law as all records have it, fitted by itself where every frequency is free too; the
+  /// contact of the first record.
+  LawEstimate law;
   /// Relative standard deviations of f_n, where every frequency is free.
   std::vector<double> frequency_deviations;
-  std::vector<ModeVerdict> modes;    ///< by all records, where every frequency is free
-  double law_width = 0.0;            ///< τ, where every frequency is free
-  std::vector<RecordValues> values;  ///< of every stroke, then of every pluck
-  double chi2 = 0.0;                 ///< reduced, of all records
+  std::vector<ModeVerdict> modes;  ///< by all records
+  double damping_power = 0.0;      ///< exponent of n, see ContinuationResult
+  double damping_power_deviation = 0.0;
+  std::vector<double> ratio_deviations;  ///< of every ζ_n, relative; empty unless each is free
+  double law_width = 0.0;                ///< τ, where every frequency is free
+  std::vector<RecordValues> values;      ///< of every stroke, then of every pluck
+  double chi2 = 0.0;                     ///< reduced, of all records
   double chi2_deviation = 0.0;
   bool fits = false;                       ///< χ² < 1 + 3 sd
   PriorMisfit priors;                      ///< of all records' parameters to what was stated
   bool right = false;                      ///< neither χ² nor the priors contradict the fit
-  std::size_t evaluations = 0;             ///< of all records together
+  std::size_t evaluations = 0;             ///< of all records together, the law's among them
   std::vector<ContinuationResult> single;  ///< every stroke by itself
 };
 
@@ -58,8 +62,8 @@ RecordsFit calibrate_records(const ModelPoint& initial, std::span<const Calibrat
 /// Throws InvalidInput for a prior or a fixed value of a contact that no stroke has.
 void require_contacts(const UnknownsOptions& options, std::size_t strokes);
 
-/// The fit in the form of that of one record: model, χ², what is shared and its deviations, the
-/// first record's contact. Where every frequency is free, `law` stays that of the first record.
+/// The fit in the form of that of one record: model, law, modes, χ² and what is shared are those of
+/// all records, contact and what is each record's own those of the first.
 ContinuationResult as_continuation(const RecordsFit& fit);
 
 }  // namespace modcal

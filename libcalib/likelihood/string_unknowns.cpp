@@ -110,12 +110,32 @@ double StringUnknowns::damping_change(std::size_t mode, const Eigen::VectorXd& t
 }
 
 double StringUnknowns::damping_factor(const Eigen::VectorXd& theta) const {
+  if (damping_kind() == Damping::kPower) return std::exp(theta[damping()]);
   double sum = 0.0, count = 0.0;
   for (std::size_t n = 0; n < modes(); ++n) {
     sum += damping_change(n, theta);
     count += priors_.held().ratio(n) ? 0.0 : 1.0;
   }
   return std::exp(sum / std::max(count, 1.0));
+}
+
+double StringUnknowns::damping_power(const Eigen::VectorXd& theta) const {
+  return damping_kind() == Damping::kPower ? theta[damping() + 1] : 0.0;
+}
+
+double StringUnknowns::damping_power_deviation(const Eigen::MatrixXd& covariance) const {
+  if (damping_kind() != Damping::kPower) return 0.0;
+  return std::sqrt(std::max(covariance(damping() + 1, damping() + 1), 0.0));
+}
+
+std::vector<double> StringUnknowns::ratio_deviations(const Eigen::MatrixXd& covariance) const {
+  std::vector<double> result;
+  for (Index i = 0; damping_kind() == Damping::kEach && i < damping_count(); ++i) {
+    const double variance = covariance(damping() + i, damping() + i);
+    const bool known = priors_.held().ratio(static_cast<std::size_t>(i));
+    result.push_back(known ? 0.0 : std::sqrt(std::max(variance, 0.0)));
+  }
+  return result;
 }
 
 bool StringUnknowns::all_ratios_held() const {

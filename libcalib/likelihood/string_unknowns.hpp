@@ -77,9 +77,14 @@ class StringUnknowns {
   void clear_held(Eigen::MatrixXd& covariance) const;
   /// f_0 at θ, with the law [Hz].
   double fundamental(const Eigen::VectorXd& theta) const;
-  /// Geometric mean of ζ_n over that of the reference, those aside that are held.
+  /// Factor of ζ_n/ζ_n(reference), those aside that are held; with "each" their geometric mean.
   double damping_factor(const Eigen::VectorXd& theta) const;
-  /// Its standard deviation, relative.
+  /// Exponent of n in ζ_n/ζ_n(reference).
+  double damping_power(const Eigen::VectorXd& theta) const;
+  double damping_power_deviation(const Eigen::MatrixXd& covariance) const;
+  /// Relative standard deviation of every ζ_n, 0 where it is held; empty unless each is free.
+  std::vector<double> ratio_deviations(const Eigen::MatrixXd& covariance) const;
+  /// Standard deviation of the factor, relative.
   double damping_deviation(const Eigen::MatrixXd& covariance) const;
   /// Those of gain, delay [s] and corner [Hz] of the model; 0: not free.
   std::array<double, 3> sensor_deviation(const ModelPoint& model,

@@ -120,8 +120,8 @@ TEST_F(HeldParameters, ContactsOfFurtherStrokesAreHeldEach) {
   with.frequencies = false;
   const RecordsFit first = calibrate_records(start(), strokes, with);
   EXPECT_EQ(first.contacts[0], 0.0285);
-  EXPECT_EQ(first.fundamental, 196.0);
-  EXPECT_EQ(first.fundamental_deviation, 0.0);
+  EXPECT_EQ(first.law.fundamental, 196.0);
+  EXPECT_EQ(first.law.deviation[0], 0.0);
   EXPECT_GT(first.contact_deviations[1], 0.0);
   EXPECT_LT(std::abs(first.contacts[1] - 0.0291), 6.0 * first.contact_deviations[1]);
 }

@@ -48,17 +48,26 @@ TEST(RecordsFit, FourStrokesHalveTheDeviationsAndKeepTheirContacts) {
   four.options.frequencies = false;
   const RecordsFit fit = calibrate_records(four.start, four.data, four.options);
   EXPECT_TRUE(fit.right) << fit.chi2;
-  EXPECT_LT(std::abs(fit.fundamental - 196.0), 6.0 * fit.fundamental_deviation);
-  EXPECT_LT(std::abs(fit.inharmonicity - kInharmonicity), 6.0 * fit.inharmonicity_deviation);
+  EXPECT_LT(std::abs(fit.law.fundamental - 196.0), 6.0 * fit.law.deviation[0]);
+  EXPECT_LT(std::abs(fit.law.inharmonicity - kInharmonicity), 6.0 * fit.law.deviation[1]);
   double information = 0.0;
   for (std::size_t r = 0; r < contacts.size(); ++r) {
     EXPECT_LT(std::abs(fit.contacts[r] - contacts[r]), 6.0 * fit.contact_deviations[r]) << r;
     information += std::pow(fit.single[r].law.deviation[0], -2);
   }
+  EXPECT_TRUE(fit.law.accepted);
+  EXPECT_EQ(fit.law.chi2, fit.chi2);
+  const ContinuationResult as_one = as_continuation(fit);
+  for (std::size_t n = 0; n < 50; ++n) {
+    const ModeVerdict& mode = as_one.modes[n];
+    EXPECT_EQ(mode.frequency, fit.model.basis.frequency(n));
+    EXPECT_EQ(mode.source, ModeSource::kLaw);
+    EXPECT_LT(mode.deviation, 0.65 * fit.single[0].modes[n].deviation) << n + 1;
+  }
   // Informations add; that of f0 alone knows of x_c and the rest, which are the records' own but
   // for the damping: a few percent. Noise in JᵀJ and weights are another.
-  EXPECT_NEAR(fit.fundamental_deviation * std::sqrt(information), 1.0, 0.1);
-  EXPECT_LT(fit.fundamental_deviation, 0.65 * fit.single[0].law.deviation[0]);
+  EXPECT_NEAR(fit.law.deviation[0] * std::sqrt(information), 1.0, 0.1);
+  EXPECT_LT(fit.law.deviation[0], 0.65 * fit.single[0].law.deviation[0]);
 }
 
 TEST(RecordsFit, EveryFrequencyProfits) {
@@ -66,6 +75,13 @@ TEST(RecordsFit, EveryFrequencyProfits) {
   const RecordsFit fit = calibrate_records(two.start, two.data, two.options);
   EXPECT_TRUE(fit.right) << fit.chi2;
   ASSERT_EQ(fit.frequency_deviations.size(), 50u);
+  // The law is that of both, not of one.
+  const LawEstimate law = as_continuation(fit).law;
+  EXPECT_TRUE(law.accepted) << law.chi2;
+  EXPECT_NE(law.chi2, fit.single[0].law.chi2);
+  EXPECT_NEAR(law.deviation[0] / fit.single[0].law.deviation[0], std::sqrt(0.5), 0.1);
+  EXPECT_LT(std::abs(law.fundamental - 196.0), 6.0 * law.deviation[0]);
+  EXPECT_LT(std::abs(law.inharmonicity - kInharmonicity), 6.0 * law.deviation[1]);
   const ModelPoint truth = bowed_case(0.0285, kInharmonicity, 0.02).truth;
   double square = 0.0, count = 0.0;
   for (std::size_t n = 0; n < 50; ++n) {
@@ -95,7 +111,7 @@ TEST(RecordsFit, IsACalibrationWithAContactForEveryStroke) {
   }();
   EXPECT_EQ(result.contact_deviations, fit.contact_deviations);
   EXPECT_EQ(result.continuation->chi2, fit.chi2);
-  EXPECT_EQ(result.continuation->law.deviation[0], fit.fundamental_deviation);
+  EXPECT_EQ(result.continuation->law.deviation[0], fit.law.deviation[0]);
   EXPECT_EQ(result.model.basis.omega, fit.model.basis.omega);
   std::vector<double> found;
   for (const CalibratedParameter& parameter : result.parameters) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "libcalib/calibration.hpp"
 #include "libcalib/likelihood/continuation.hpp"
 #include "libcalib/likelihood/newton_fit.hpp"
 #include "libsim/base/error.hpp"
@@ -197,6 +198,85 @@ TEST(PriorMisfit, IsFoundWhereTheDataDoNotContradictTheFit) {
     options.unknowns.priors[0].mean = 0.0275;
     EXPECT_TRUE(calibrate_by_continuation(bowed.truth, data, options).right);
   }
+}
+
+// The parameters of a calibration by their names.
+const CalibratedParameter* named(const CalibrationResult& result, const std::string& name) {
+  for (const CalibratedParameter& parameter : result.parameters) {
+    if (parameter.name == name) return &parameter;
+  }
+  return nullptr;
+}
+
+TEST(FreedUnknowns, ComeBackUnderTheNamesOfTheirPriorsWithDeviations) {
+  const BowedCase bowed = bowed_case(0.0285, kInharmonicity, 0.5);
+  const NoisyRecords records = noisy(bowed, 0.01, 5);
+  const std::vector<CalibrationData> data(
+      2,
+      CalibrationData::of_records(records.reactions[0], records.reactions[1], records.sample_rate));
+  ModelPoint start = bowed.truth;
+  for (std::size_t n = 0; n < 50; ++n) {
+    start.basis.zeta[n] *= 1.1 * std::pow(static_cast<double>(n + 1), 0.05);
+  }
+  CalibrationOptions options{.has_continuation = true,
+                             .continuation = {.law_width = 2e-3,
+                                              .left_noise = records.deviation[0],
+                                              .right_noise = records.deviation[1],
+                                              .restarts = 0}};
+  options.parameters.law = options.parameters.contact = true;
+  options.parameters.frequencies = "all";
+  UnknownsOptions& unknowns = options.continuation.unknowns;
+  unknowns.damping = "power";
+  unknowns.gain.free = unknowns.delay.free = true;
+  for (const std::size_t strokes : {1u, 2u}) {
+    const CalibrationResult found = calibrate(start, std::span(data).first(strokes), options);
+    // What the names say: zeta_n = damping n^damping_power zeta_n(initial).
+    const double truths[] = {1.0 / 1.1, -0.05, 1.0, 0.0};
+    const char* names[] = {"damping", "damping_power", "gain", "delay"};
+    for (std::size_t i = 0; i < 4; ++i) {
+      const CalibratedParameter* parameter = named(found, names[i]);
+      ASSERT_NE(parameter, nullptr) << names[i];
+      EXPECT_GT(parameter->deviation, 0.0) << names[i];
+      EXPECT_LT(std::abs(parameter->final - truths[i]), 6.0 * parameter->deviation) << names[i];
+    }
+    const double factor = named(found, "damping")->final;
+    const double power = named(found, "damping_power")->final;
+    for (const std::size_t n : {1u, 7u, 50u}) {
+      const double ratio = found.model.basis.zeta[n - 1] / start.basis.zeta[n - 1];
+      EXPECT_NEAR(ratio, factor * std::pow(static_cast<double>(n), power), 1e-9) << n;
+    }
+  }
+}
+
+TEST(FreedUnknowns, AmongThemEveryDampingRatio) {
+  const BowedCase bowed = bowed_case(0.0285, kInharmonicity, 0.5);
+  const NoisyRecords records = noisy(bowed, 0.01, 5);
+  const CalibrationData data =
+      CalibrationData::of_records(records.reactions[0], records.reactions[1], records.sample_rate);
+  CalibrationOptions options{.has_continuation = true,
+                             .continuation = {.law_width = 2e-3,
+                                              .left_noise = records.deviation[0],
+                                              .right_noise = records.deviation[1],
+                                              .restarts = 0}};
+  options.parameters.law = options.parameters.contact = true;
+  options.parameters.frequencies = "all";
+  options.continuation.unknowns.damping = "each";
+  options.continuation.unknowns.fixed = {{"zeta_5", 1e-3}};
+  const CalibrationResult found = calibrate(bowed.truth, data, options);
+  EXPECT_EQ(named(found, "damping"), nullptr);
+  EXPECT_EQ(named(found, "zeta_5"), nullptr);
+  std::size_t count = 0;
+  for (std::size_t n = 0; n < 50; ++n) {
+    const CalibratedParameter* ratio = named(found, fmt::format("zeta_{}", n + 1));
+    if (ratio == nullptr) continue;
+    ++count;
+    EXPECT_EQ(ratio->final, found.model.basis.zeta[n]);
+    EXPECT_GT(ratio->deviation, 0.0);
+    // No worse than the prior of 30 % in the logarithm, what noise adds to JᵀJ aside.
+    EXPECT_LT(ratio->deviation, 0.5 * ratio->final) << n + 1;
+    EXPECT_LT(std::abs(ratio->final - bowed.truth.basis.zeta[n]), 6.0 * ratio->deviation) << n + 1;
+  }
+  EXPECT_EQ(count, 49u);
 }
 
 TEST(StatedPriors, WithoutThoseOfSingleFrequenciesKeepTheRest) {
