@@ -20,6 +20,7 @@ using Covariance = std::array<std::array<double, kUnknowns>, kUnknowns>;
 
 // Covariance of the others where one unknown is known after all.
 void know(Unknown known, Covariance& c) {
+  if (!(c[known][known] > 0.0)) return;  // fixed already
   const Covariance before = c;
   for (std::size_t i = 0; i < kUnknowns; ++i) {
     for (std::size_t j = 0; j < kUnknowns; ++j) {

@@ -103,6 +103,7 @@ class LevelReader {
     }
     summary_.free_rms = std::sqrt(square / count);
     summary_.median_bound = quantile(bounds, 0.5);
+    if (!bound_.find("x_c")) return;  // fixed
     summary_.rows.push_back(row(
         "x_c, frequencies free", bound_.contact,
         [&](const LimitOutcome& o) { return o.contact - truth_.point.contact; },

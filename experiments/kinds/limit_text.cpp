@@ -75,17 +75,19 @@ std::string singular_values(const ExpectedLimit& limit) {
 }
 
 std::string mode_lines(const ExpectedLimit& limit) {
-  std::string text = fmt::format("every frequency free: sd of x_c {:.3g} m", limit.contact);
+  std::string text = "every frequency free";
+  if (limit.find("x_c")) text += fmt::format(": sd of x_c {:.3g} m", limit.contact);
   if (limit.find("damping")) text += fmt::format(", of the damping factor {:.3g}", limit.damping);
-  const bool ratios = limit.find("zeta_1") != nullptr;
+  const bool ratios =
+      std::any_of(limit.parameters.begin(), limit.parameters.end(),
+                  [](const ParameterLimit& row) { return row.parameter.starts_with("zeta_"); });
   text += "\n" + free_lines(limit) + singular_values(limit);
   text += fmt::format("  n  f [Hz]      relative sd  {}verdict\n", ratios ? "sd of zeta  " : "");
   for (std::size_t n = 0; n < limit.modes.size(); ++n) {
     const ModeVerdict& mode = limit.modes[n];
     text += fmt::format("{:>3}  {:<10.3f}  {:<11.2e}  ", n + 1, mode.frequency, mode.deviation);
-    if (ratios) {
-      text += fmt::format("{:<10.2e}  ", limit.find(fmt::format("zeta_{}", n + 1))->free);
-    }
+    const ParameterLimit* ratio = limit.find(fmt::format("zeta_{}", n + 1));
+    if (ratios) text += fmt::format("{:<10.2e}  ", ratio ? ratio->free : 0.0);
     text += name_of(mode.source);
     if (mode.reason != WeakReason::kNone) text += fmt::format(" ({})", name_of(mode.reason));
     text += "\n";

@@ -27,8 +27,9 @@ ParameterLimit& entry(const std::string& name, ExpectedLimit& limit) {
 
 void add_law(const LimitInformation& records, const StringUnknowns& unknowns,
              ExpectedLimit& limit) {
-  const Eigen::MatrixXd prior = records.prior(unknowns, nullptr);
-  const Eigen::MatrixXd covariance = records.covariance(unknowns, records.information(unknowns), prior);
+  const Eigen::MatrixXd prior = records.prior(unknowns, records.priors(), nullptr);
+  const Eigen::MatrixXd covariance =
+      records.covariance(unknowns, records.information(unknowns), prior);
   const Eigen::MatrixXd attainable = records.attainable(unknowns, prior);
   const std::vector<ParameterForm> forms = records.forms(unknowns);
   for (std::size_t i = 0; i < forms.size(); ++i) {
@@ -37,9 +38,8 @@ void add_law(const LimitInformation& records, const StringUnknowns& unknowns,
     row.law = forms[i].deviation(covariance);
     row.attainable = forms[i].deviation(attainable);
     for (std::size_t j = 0; j < i; ++j) {
-      const double scale = row.law * forms[j].deviation(covariance);  // 0 of what is held
-      row.correlations.push_back(scale > 0.0 ? slope.dot(covariance * forms[j].slope) / scale
-                                             : 0.0);
+      row.correlations.push_back(slope.dot(covariance * forms[j].slope) /
+                                 (row.law * forms[j].deviation(covariance)));
     }
   }
   constexpr const char* kNames[] = {"f0", "B", "x_c", "damping"};
@@ -49,8 +49,11 @@ void add_law(const LimitInformation& records, const StringUnknowns& unknowns,
     if (!row) continue;
     limit.law[i] = row->law;
     limit.law_attainable[i] = row->attainable;
-    for (std::size_t j = 0; j < i; ++j) {
-      limit.law_correlation[i][j] = limit.law_correlation[j][i] = row->correlations[j];
+    for (std::size_t j = 0; j < row->correlations.size(); ++j) {
+      for (std::size_t k = 0; k < i; ++k) {
+        if (limit.parameters[j].parameter != kNames[k]) continue;
+        limit.law_correlation[i][k] = limit.law_correlation[k][i] = row->correlations[j];
+      }
     }
   }
 }
@@ -65,25 +68,29 @@ void add_frequencies(const LimitInformation& records, const StringUnknowns& unkn
   for (Eigen::Index i = n - 1; i >= 0; --i) {
     limit.singular_values.push_back(std::sqrt(std::max(eigenvalues[i], 0.0)));
   }
-  const auto covariance_under = [&](const Eigen::VectorXd& widths) {
+  const auto covariance_under = [&](const StatedPriors& priors, const Eigen::VectorXd& widths) {
     const LawScatter scatter{widths, inharmonicity};
-    return records.covariance(unknowns, information, records.prior(unknowns, &scatter));
+    return records.covariance(unknowns, information, records.prior(unknowns, priors, &scatter));
   };
+  // What the data tell of a frequency, with what is stated of anything but single ones.
+  const Eigen::VectorXd wide = Eigen::VectorXd::Constant(n, kWidePrior);
   const Eigen::VectorXd seen =
-      deviations(covariance_under(Eigen::VectorXd::Constant(n, kWidePrior))).head(n);
-  const Eigen::MatrixXd covariance =
-      covariance_under(prior_widths(seen, question.law_width, kTied));
+      deviations(covariance_under(records.priors().without_frequencies(), wide)).head(n);
+  Eigen::VectorXd widths = prior_widths(seen, question.law_width, kTied);
+  widen_stated(records.priors(), question.law_width, widths);
+  const Eigen::MatrixXd covariance = covariance_under(records.priors(), widths);
   for (const ParameterForm& form : records.forms(unknowns)) {
     entry(form.parameter, limit).free = form.deviation(covariance);
   }
-  limit.contact = limit.find("x_c")->free;
+  if (const ParameterLimit* contact = limit.find("x_c")) limit.contact = contact->free;
   if (const ParameterLimit* damping = limit.find("damping")) limit.damping = damping->free;
   const Eigen::VectorXd found = deviations(covariance).head(n);
   limit.modes = free_verdicts(question.truth, found, seen, question.law_width);
   trust_stated_frequencies(records.priors(), found, limit.modes);
-  limit.blind_modes = static_cast<std::size_t>(std::count_if(
-      limit.modes.begin(), limit.modes.end(),
-      [](const ModeVerdict& mode) { return mode.source != ModeSource::kIdentified; }));
+  limit.blind_modes = static_cast<std::size_t>(
+      std::count_if(limit.modes.begin(), limit.modes.end(), [](const ModeVerdict& mode) {
+        return mode.source != ModeSource::kIdentified && mode.source != ModeSource::kFixed;
+      }));
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ struct LimitCase {
 };
 
 /// Standard deviations of one parameter, in the unit of its name (unit_of_unknown); NaN where it is
-/// not free. "damping" is the geometric mean of all ζ_n over the stated ones.
+/// not free. "damping" is the factor of all ζ_n; where each is free, their geometric mean.
 struct ParameterLimit {
   static constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   std::string parameter;

@@ -32,7 +32,7 @@ LikelihoodPoint under_best_weights(const ProjectedLikelihood& clean, const Model
 StatedPriors priors_of(const LimitCase& question) {
   ModelPoint stated = question.truth;
   stated.sensors = question.unknowns.sensors();
-  return StatedPriors(question.unknowns, stated, question.strokes.size());
+  return StatedPriors(question.unknowns, stated, question.strokes.size() + question.plucks.size());
 }
 
 }  // namespace
@@ -41,12 +41,16 @@ double ParameterForm::deviation(const Eigen::MatrixXd& covariance) const {
   return std::sqrt(std::max(slope.dot(covariance * slope), 0.0));
 }
 
-Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& information, const Eigen::MatrixXd& prior) {
+Eigen::MatrixXd LimitInformation::covariance(const StringUnknowns& unknowns,
+                                             const Eigen::MatrixXd& information,
+                                             const Eigen::MatrixXd& prior) const {
   NewtonOptions options;
   options.prior = prior;
   LikelihoodPoint point{.information = information};
   point.twice_weighted = information;
-  return fit_covariance(point, options);
+  Eigen::MatrixXd result = fit_covariance(point, options);
+  placed(unknowns).clear_held(result);
+  return result;
 }
 
 LimitInformation::LimitInformation(const LimitCase& question)
@@ -69,14 +73,31 @@ LimitInformation::LimitInformation(const LimitCase& question)
   }
 }
 
+// As the joint fit places them; a pluck has no contact.
+std::vector<Index> LimitInformation::own_places(const StringUnknowns& unknowns,
+                                                std::size_t record) const {
+  const UnknownsOptions& own = question_.unknowns;
+  std::vector<Index> places;
+  if (record < strokes_.size() && own.own(UnknownKind::kContact)) {
+    places.push_back(unknowns.contact());
+  }
+  if (own.own(UnknownKind::kDampingFactor)) places.push_back(unknowns.damping());
+  const UnknownKind sensors[] = {UnknownKind::kGain, UnknownKind::kDelay, UnknownKind::kCorner};
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (own.own(sensors[i])) places.push_back(unknowns.sensor(i));
+  }
+  return places;
+}
+
 AllRecords LimitInformation::placed(const StringUnknowns& unknowns) const {
   AllRecords all(unknowns);
+  const HeldParameters& held = priors_.held();
   for (std::size_t r = 0; r < records_.size(); ++r) {
-    const bool own_contact = r < strokes_.size();
     Eigen::VectorXd start = unknowns.start();
     start[unknowns.contact()] = point_of(r).contact - question_.truth.contact;
-    all.add(records_[r], start,
-            own_contact ? std::vector<Index>{unknowns.contact()} : std::vector<Index>());
+    const bool known = r < strokes_.size() && held.contact(r);
+    all.add(records_[r], start, own_places(unknowns, r),
+            known ? std::optional<double>(point_of(r).contact) : std::nullopt);
   }
   return all;
 }
@@ -96,7 +117,7 @@ LikelihoodPoint LimitInformation::sum(const StringUnknowns& unknowns,
   total.twice_weighted = total.information;
   for (std::size_t r = 0; r < records_.size(); ++r) {
     const LikelihoodPoint part =
-        evaluate(r, point_of(r), unknowns.columns(all.own(all.start(), r)));
+        evaluate(r, point_of(r), unknowns.columns(all.own(all.start(), r), r));
     for (Index i = 0; i < unknowns.size(); ++i) {
       for (Index j = 0; j < unknowns.size(); ++j) {
         const Index row = all.place(i, r), column = all.place(j, r);
@@ -129,25 +150,17 @@ Eigen::MatrixXd LimitInformation::attainable(const StringUnknowns& unknowns,
   };
   NewtonOptions options;
   options.prior = prior;
-  Eigen::MatrixXd covariance = fit_covariance(sum(unknowns, evaluate), options);
-  placed(unknowns).clear_held(covariance);
-  return covariance;
+  Eigen::MatrixXd result = fit_covariance(sum(unknowns, evaluate), options);
+  placed(unknowns).clear_held(result);
+  return result;
 }
 
-Eigen::MatrixXd LimitInformation::covariance(const StringUnknowns& unknowns,
-                                             const Eigen::MatrixXd& information,
-                                             const Eigen::MatrixXd& prior) const {
-  Eigen::MatrixXd covariance = covariance_of(information, prior);
-  placed(unknowns).clear_held(covariance);
-  return covariance;
-}
-
-Eigen::MatrixXd LimitInformation::prior(const StringUnknowns& unknowns,
+Eigen::MatrixXd LimitInformation::prior(const StringUnknowns& unknowns, const StatedPriors& priors,
                                         const LawScatter* scatter) const {
   const AllRecords all = placed(unknowns);
   PriorEquations equations(all.size());
-  priors_.state([&](const UnknownName& name) { return all.coordinate(name, all.start()); },
-                equations);
+  priors.state([&](const UnknownName& name) { return all.coordinate(name, all.start()); },
+               equations);
   unknowns.state_damping_ratios(question_.truth.basis.zeta, equations);
   if (scatter) equations.add_scatter(*scatter, unknowns.log_frequencies());
   all.hold(equations);
@@ -158,35 +171,45 @@ std::vector<ParameterForm> LimitInformation::forms(const StringUnknowns& unknown
   const AllRecords all = placed(unknowns);
   const std::string& damping = question_.unknowns.damping;
   std::vector<ParameterForm> forms;
-  const auto add = [&](std::string name, Index place, double factor) {
-    forms.push_back({std::move(name), Eigen::VectorXd::Zero(all.size())});
-    forms.back().slope[place] = factor;
+  // Unknown i of a record, with what follows it in a sum; nothing of what is held or shared.
+  const auto add = [&](const std::string& name, Index i, std::size_t r,
+                       const Eigen::VectorXd& sum) {
+    const bool own = r == 0 || all.place(i, r) != all.place(i, 0);
+    if (!own || (sum.size() == 1 && all.held(i, r))) return;
+    forms.push_back(
+        {r == 0 ? name : fmt::format("{} {}", name, r + 1), Eigen::VectorXd::Zero(all.size())});
+    for (Index j = 0; j < sum.size(); ++j) forms.back().slope[all.place(i + j, r)] += sum[j];
   };
-  if (unknowns.is_law()) {
-    add("f0", 0, unknowns.fundamental(unknowns.start()));
-    add("B", 1, 1.0);
-  }
-  add("x_c", unknowns.contact(), 1.0);
-  if (unknowns.damping_count() > 0) {
-    add("damping", unknowns.damping(), 0.0);
-    for (Index i = 0; i < unknowns.damping_count(); ++i) {
+  const auto one = [](double factor) { return Eigen::VectorXd::Constant(1, factor); };
+  const auto add_damping = [&](std::size_t r) {
+    Eigen::VectorXd mean(unknowns.damping_count());
+    for (Index i = 0; i < mean.size(); ++i) {
       Eigen::VectorXd theta = Eigen::VectorXd::Zero(unknowns.size());
       theta[unknowns.damping() + i] = 1.0;
-      forms.back().slope[unknowns.damping() + i] = std::log(unknowns.damping_factor(theta));
+      mean[i] = std::log(unknowns.damping_factor(theta));
     }
+    if (mean.size() > 0 && mean.any()) add("damping", unknowns.damping(), r, mean);
+  };
+  if (unknowns.is_law()) {
+    add("f0", 0, 0, one(unknowns.fundamental(unknowns.start())));
+    add("B", 1, 0, one(1.0));
   }
-  for (std::size_t r = 1; r < strokes_.size(); ++r) {
-    add(fmt::format("x_c {}", r + 1), all.place(unknowns.contact(), r), 1.0);
-  }
-  if (damping == "power") add("damping_power", unknowns.damping() + 1, 1.0);
+  add("x_c", unknowns.contact(), 0, one(1.0));
+  add_damping(0);
+  for (std::size_t r = 1; r < strokes_.size(); ++r) add("x_c", unknowns.contact(), r, one(1.0));
+  for (std::size_t r = 1; r < records_.size(); ++r) add_damping(r);
+  if (damping == "power") add("damping_power", unknowns.damping() + 1, 0, one(1.0));
   constexpr const char* kSensors[] = {"gain", "delay", "corner"};
   const double units[] = {question_.truth.sensors.gain, 1.0, 0.5 / std::numbers::pi};
   for (std::size_t i = 0; i < 3; ++i) {
-    if (unknowns.sensor(i) >= 0) add(kSensors[i], unknowns.sensor(i), units[i]);
+    if (unknowns.sensor(i) < 0) continue;
+    for (std::size_t r = 0; r < records_.size(); ++r) {
+      add(kSensors[i], unknowns.sensor(i), r, one(units[i]));
+    }
   }
   for (std::size_t n = 0; damping == "each" && !unknowns.is_law() && n < unknowns.modes(); ++n) {
-    add(fmt::format("zeta_{}", n + 1), unknowns.damping() + static_cast<Index>(n),
-        question_.truth.basis.zeta[n]);
+    add(fmt::format("zeta_{}", n + 1), unknowns.damping() + static_cast<Index>(n), 0,
+        one(question_.truth.basis.zeta[n]));
   }
   return forms;
 }

@@ -17,11 +17,8 @@ struct ParameterForm {
   double deviation(const Eigen::MatrixXd& covariance) const;
 };
 
-/// (2 information + prior)⁻¹.
-Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& information, const Eigen::MatrixXd& prior);
-
 /// The records of a LimitCase, whitened, at the truth. Unknowns are those of AllRecords: the ones
-/// given, then x_c of every further stroke.
+/// given, then what every further record has for itself. What is fixed has no covariance.
 class LimitInformation {
  public:
   /// `question` must outlive this.
@@ -31,10 +28,10 @@ class LimitInformation {
   const StatedPriors& priors() const { return priors_; }
   /// Re J⊥ᴴJ⊥, summed over the records.
   Eigen::MatrixXd information(const StringUnknowns& unknowns) const;
-  /// Precision of what is stated of the unknowns; scatter: of the frequencies about the law, or
-  /// null.
-  Eigen::MatrixXd prior(const StringUnknowns& unknowns, const LawScatter* scatter) const;
-  /// covariance_of(), zero where an unknown is held.
+  /// Precision of `priors`; scatter: of the frequencies about the law, or null.
+  Eigen::MatrixXd prior(const StringUnknowns& unknowns, const StatedPriors& priors,
+                        const LawScatter* scatter) const;
+  /// (2 information + prior)⁻¹.
   Eigen::MatrixXd covariance(const StringUnknowns& unknowns, const Eigen::MatrixXd& information,
                              const Eigen::MatrixXd& prior) const;
   /// Covariance under the weights that a calibration would give the bins if it knew what each can
@@ -44,6 +41,7 @@ class LimitInformation {
   std::vector<ParameterForm> forms(const StringUnknowns& unknowns) const;
 
  private:
+  std::vector<Eigen::Index> own_places(const StringUnknowns& unknowns, std::size_t record) const;
   AllRecords placed(const StringUnknowns& unknowns) const;
   ModelPoint point_of(std::size_t record) const;
   template <typename Evaluate>

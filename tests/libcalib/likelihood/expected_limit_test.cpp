@@ -200,7 +200,7 @@ TEST_F(PapersString, SensorsAndDampingAreExpectedAsTheFitReportsThem) {
   }
   EXPECT_NEAR(limit.find("damping")->free / fit.damping_deviation, 1.0, 0.03);
   EXPECT_NEAR(limit.find("x_c")->free / fit.contact_deviation, 1.0, 0.03);
-  EXPECT_GT(limit.find("damping_power")->free, 0.0);
+  EXPECT_NEAR(limit.find("damping_power")->free / fit.damping_power_deviation, 1.0, 0.03);
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_NEAR(limit.law_attainable[i] / fit.law.deviation[i], 1.0, 0.03) << i;
   }
@@ -234,6 +234,41 @@ TEST_F(PapersString, HasARowForWhatIsFreeAlone) {
     EXPECT_LE(ratio->free, 3e-4 * (1.0 + 1e-9)) << n;
   }
   EXPECT_LT(each.find("zeta_1")->free, 1e-4);
+}
+
+TEST_F(PapersString, WhatIsFixedHasNoRowAndIsKnownToTheOthers) {
+  LimitCase question = case_of(bowed, 0.01);
+  const ExpectedLimit all = expected_limit(question);
+  question.unknowns.fixed = {{.parameter = "x_c", .value = 0.03},
+                             {.parameter = "f0", .value = 196.0}};
+  const ExpectedLimit known = expected_limit(question);
+  EXPECT_EQ(known.find("x_c"), nullptr);
+  EXPECT_EQ(known.find("f0"), nullptr);
+  EXPECT_EQ(known.law[2], 0.0);
+  // A Gaussian's conditional variance.
+  const auto& rho = all.law_correlation;
+  const double explained =
+      (rho[0][1] * rho[0][1] + rho[1][2] * rho[1][2] - 2.0 * rho[0][1] * rho[1][2] * rho[0][2]) /
+      (1.0 - rho[0][2] * rho[0][2]);
+  EXPECT_NEAR(known.law[1] / all.law[1], std::sqrt(1.0 - explained), 1e-6);
+  question.unknowns.fixed = {{.parameter = "f_11", .value = 11.0 * 196.0}};
+  const ExpectedLimit one = expected_limit(question);
+  EXPECT_EQ(one.modes[10].source, ModeSource::kFixed);
+  EXPECT_EQ(one.blind_modes + 1, all.blind_modes);
+}
+
+TEST_F(PapersString, ARecordsOwnSensorsHaveARowEach) {
+  LimitCase question = case_of(bowed, 0.01);
+  question.plucks.push_back(plucked_records(0.0, 0.25, 0.01, 0));
+  question.unknowns.gain.free = true;
+  const ExpectedLimit shared = expected_limit(question);
+  question.unknowns.per_record = {"x_c", "gain"};
+  const ExpectedLimit own = expected_limit(question);
+  EXPECT_EQ(shared.find("gain 2"), nullptr);
+  ASSERT_NE(own.find("gain 2"), nullptr);
+  // Whoever takes the pluck's gain for the stroke's knows it better than either record.
+  EXPECT_LT(law_of(shared, "gain"), law_of(own, "gain"));
+  EXPECT_LT(law_of(shared, "gain"), law_of(own, "gain 2"));
 }
 
 TEST_F(PapersString, RefusesWhatIsNoPrior) {
