@@ -61,7 +61,8 @@ std::vector<Finding> CalibrateExperiment::lint() const {
     const std::size_t strokes =
         1 + options_.further.contacts.size() + options_.further.files.size();
     const UnknownsOptions& unknowns = calibration.continuation.unknowns;
-    append(findings, lint_priors("calibration.continuation.unknowns", unknowns, modes,
+    append(findings, lint_priors("calibration.continuation.unknowns", unknowns,
+                                 options_.inversion.observation.string_model(),
                                  strokes + options_.plucks.size()));
     lint_making(
         "calibration.continuation.unknowns", [&] { require_contacts(unknowns, strokes); },

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/kinds/calibrate_study.hpp"
+#include "libcalib/unknown_name.hpp"
 
 namespace modcal {
 namespace {
@@ -17,7 +18,23 @@ double refined_frequency(const CalibrationOutcome& outcome, std::size_t n) {
   return outcome.refined.basis.frequency(n - 1);
 }
 
+Json misfit_json(const PriorMisfit& misfit) {
+  return {{"chi2", number_or_null(misfit.chi2)},
+          {"count", misfit.count},
+          {"contradicted", misfit.contradicted()},
+          {"farthest", misfit.farthest},
+          {"deviations", number_or_null(misfit.deviations)}};
+}
+
 }  // namespace
+
+std::string prior_lines(const PriorMisfit& misfit, std::string_view stage) {
+  if (misfit.count == 0) return "";
+  const std::string verdict = misfit.contradicted() ? "THE PRIORS ARE CONTRADICTED BY THE DATA"
+                                                    : "the data do not contradict the priors";
+  return fmt::format("{}: prior chi2 {:.4g} of {}: {}; farthest: {} by {:.3g} deviations\n", stage,
+                     misfit.chi2, misfit.count, verdict, misfit.farthest, misfit.deviations);
+}
 
 std::string calibration_json(const CalibrationOutcome& outcome) {
   const OptimizationResult& search = outcome.result.search;
@@ -46,7 +63,8 @@ std::string calibration_json(const CalibrationOutcome& outcome) {
                           {"initial", parameter.initial},
                           {"final", parameter.final},
                           {"at_bound", parameter.at_bound},
-                          {"sd", number_or_null(parameter.deviation)}});
+                          {"sd", number_or_null(parameter.deviation)},
+                          {"meaning", meaning_of_unknown(parameter.name)}});
   }
   Json trace = Json::array();
   for (const TracePoint& point : search.trace) {
@@ -73,10 +91,13 @@ std::string calibration_json(const CalibrationOutcome& outcome) {
   if (outcome.result.continuation) {
     const ContinuationResult& found = *outcome.result.continuation;
     document["continuation"] = {{"right", found.right},
+                                {"fits", found.fits},
                                 {"chi2", number_or_null(found.chi2)},
                                 {"chi2_sd", number_or_null(found.chi2_deviation)},
                                 {"law_chi2", number_or_null(found.law.chi2)},
                                 {"law_accepted", found.law.accepted},
+                                {"priors", misfit_json(found.priors)},
+                                {"law_priors", misfit_json(found.law.priors)},
                                 {"law_width", number_or_null(found.law_width)},
                                 {"f0_sd_hz", number_or_null(found.law.deviation[0])},
                                 {"B_sd", number_or_null(found.law.deviation[1])},
@@ -113,6 +134,26 @@ report::Table search_table(const CalibrationOutcome& outcome, const std::string&
       .command = command};
 }
 
+report::Table parameter_table(const CalibrationOutcome& outcome, const std::string& command) {
+  report::Table table{.id = "parameters",
+                      .title = "Parameters",
+                      .columns = {{.key = "name"},
+                                  {.key = "initial", .format = "{:.8g}"},
+                                  {.key = "final", .format = "{:.8g}"},
+                                  {.key = "sd", .name = "standard deviation", .format = "{:.3g}"},
+                                  {.key = "unit"},
+                                  {.key = "meaning"}},
+                      .command = command};
+  for (const CalibratedParameter& parameter : outcome.result.parameters) {
+    if (parameter.name.starts_with("f_")) continue;
+    report::Cell sd;
+    if (std::isfinite(parameter.deviation)) sd = parameter.deviation;
+    table.rows.push_back({parameter.name, parameter.initial, parameter.final, sd, parameter.unit,
+                          std::string(meaning_of_unknown(parameter.name))});
+  }
+  return table;
+}
+
 report::Table mode_table(const CalibrationOutcome& outcome, const std::string& command) {
   report::Table table{
       .id = "modes",
@@ -122,6 +163,7 @@ report::Table mode_table(const CalibrationOutcome& outcome, const std::string& c
                   {.key = "f_initial_hz", .name = "initial", .unit = "Hz", .format = "{:.3f}"},
                   {.key = "f_hz", .name = "refined", .unit = "Hz", .format = "{:.3f}"},
                   {.key = "relative_error", .name = "relative error", .format = "{:.2e}"},
+                  {.key = "relative_sd", .name = "relative sd", .format = "{:.2e}"},
                   {.key = "excited"},
                   {.key = "shape_at_contact",
                    .name = "mode shape at the contact",
@@ -129,13 +171,16 @@ report::Table mode_table(const CalibrationOutcome& outcome, const std::string& c
       .command = command};
   for (const CalibratedMode& mode : outcome.result.modes) {
     const double refined = refined_frequency(outcome, mode.number);
-    report::Cell truth, error;
+    report::Cell truth, error, deviation;
+    if (outcome.result.continuation) {
+      deviation = outcome.result.continuation->modes[mode.number - 1].deviation;
+    }
     if (!outcome.true_frequencies.empty()) {
       truth = outcome.true_frequencies[mode.number - 1];
       error = refined / outcome.true_frequencies[mode.number - 1] - 1.0;
     }
-    table.rows.push_back(
-        {mode.number, truth, mode.initial_frequency, refined, error, mode.excited, mode.shape});
+    table.rows.push_back({mode.number, truth, mode.initial_frequency, refined, error, deviation,
+                          mode.excited, mode.shape});
   }
   return table;
 }

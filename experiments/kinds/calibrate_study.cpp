@@ -92,7 +92,7 @@ std::string verdict_lines(const ContinuationResult& found) {
       "reduced chi2 {:.4f} (sd {:.4f}): {}; law alone {:.4f}: {}\nsd: f0 {:.3g} Hz, B {:.3g}, x_c "
       "{:.3g} m, damping factor {:.3g}\n",
       found.chi2, found.chi2_deviation,
-      found.right ? "the data do not contradict the fit" : "THE FIT IS WRONG", found.law.chi2,
+      found.fits ? "the data do not contradict the fit" : "THE FIT IS WRONG", found.law.chi2,
       found.law.accepted ? "accepted" : "contradicted", found.law.deviation[0],
       found.law.deviation[1], found.contact_deviation, found.damping_deviation);
   if (found.chi2 < 1.0 - 3.0 * found.chi2_deviation) {
@@ -101,6 +101,8 @@ std::string verdict_lines(const ContinuationResult& found) {
         "are too wide by a factor of {:.3g}\n",
         1.0 / std::sqrt(found.chi2));
   }
+  text += prior_lines(found.law.priors, "law");
+  if (found.frequencies_free) text += prior_lines(found.priors, "every frequency");
   for (std::size_t n = 0; found.frequencies_free && n < found.modes.size(); ++n) {
     const ModeVerdict& mode = found.modes[n];
     if (mode.source == ModeSource::kIdentified) continue;
@@ -303,6 +305,7 @@ StudyResult calibrate_study(const CalibrateOptions& options, const StudyContext&
     result.blocks.emplace_back(calibration_audio(options, observation, outcome.refined));
   }
   result.blocks.emplace_back(search_table(outcome, context.command));
+  result.blocks.emplace_back(parameter_table(outcome, context.command));
   result.blocks.emplace_back(mode_table(outcome, context.command));
   result.blocks.emplace_back(identification_table(sides, context.command));
   result.files.emplace_back("calibration.json", calibration_json(outcome));

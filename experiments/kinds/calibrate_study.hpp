@@ -63,8 +63,13 @@ SecondsClock polling_clock(const StudyContext& context);
 
 StudyResult calibrate_study(const CalibrateOptions& options, const StudyContext& context);
 
+/// What a stage's fit says of the priors; empty where none was stated.
+std::string prior_lines(const PriorMisfit& misfit, std::string_view stage);
+
 /// calibration.json.
 std::string calibration_json(const CalibrationOutcome& outcome);
+/// What was searched beside frequencies, with standard deviations where they are known.
+report::Table parameter_table(const CalibrationOutcome& outcome, const std::string& command);
 report::Table mode_table(const CalibrationOutcome& outcome, const std::string& command);
 report::Table search_table(const CalibrationOutcome& outcome, const std::string& command);
 /// Objective over the candidates of the first modes, initial, chosen and true value marked (paper,

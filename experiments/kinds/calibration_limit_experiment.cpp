@@ -193,8 +193,8 @@ std::vector<Finding> CalibrationLimitExperiment::lint() const {
                         "a bound needs a truth, which a record does not have: state a "
                         "scene"});
   }
-  const auto modes = static_cast<std::size_t>(options_.observation.string_model().modes);
-  append(findings, lint_priors("continuation.unknowns", options_.continuation.unknowns, modes));
+  append(findings, lint_priors("continuation.unknowns", options_.continuation.unknowns,
+                               options_.observation.string_model()));
   if (options_.noise_levels.empty()) {
     findings.push_back({"noise_levels", "no noise level is stated"});
   }

@@ -125,7 +125,8 @@ std::vector<Finding> lint_scores(const ScoreOptions& score, const ObservationOpt
 }
 
 std::vector<Finding> lint_priors(const std::string& path, const UnknownsOptions& unknowns,
-                                 std::size_t modes, std::size_t records) {
+                                 const StringModel& string, std::size_t records) {
+  const auto modes = static_cast<std::size_t>(string.modes);
   std::vector<Finding> findings;
   UnknownsOptions sound = unknowns;  // what has passed so far
   sound.fixed.clear();
@@ -135,7 +136,7 @@ std::vector<Finding> lint_priors(const std::string& path, const UnknownsOptions&
   const auto passes = [&](const std::string& place) {
     const std::size_t before = findings.size();
     lint_making(
-        path + place, [&] { require_priors(sound, modes, records); }, findings);
+        path + place, [&] { require_priors(sound, modes, records, string.length); }, findings);
     return findings.size() == before;
   };
   for (std::size_t i = 0; i < unknowns.fixed.size(); ++i) {

@@ -28,7 +28,7 @@ std::vector<Finding> lint_figures(const std::vector<FigureOptions>& figures,
 /// What require_priors() has against each fixed parameter, prior and correlation, at its own place.
 /// path: of the unknowns.
 std::vector<Finding> lint_priors(const std::string& path, const UnknownsOptions& unknowns,
-                                 std::size_t modes, std::size_t records = 1);
+                                 const StringModel& string, std::size_t records = 1);
 /// A finding at `path` where `make` throws InvalidInput.
 template <typename Make>
 void lint_making(const std::string& path, Make make, std::vector<Finding>& findings) {

@@ -122,8 +122,8 @@ std::vector<Finding> PluckThenBowExperiment::lint() const {
       },
       findings);
   if (options_.has_bound) {
-    append(findings, lint_priors("bound.unknowns", options_.bound.unknowns,
-                                 static_cast<std::size_t>(options_.truth.scene.string.modes)));
+    append(findings,
+           lint_priors("bound.unknowns", options_.bound.unknowns, options_.truth.scene.string));
   }
   const ContactSearchOptions& contact = options_.contact;
   if (!(contact.start - contact.range > 0.0 &&
