@@ -47,8 +47,8 @@ void require_fixed(const UnknownsOptions& options, std::size_t modes, std::size_
   for (const FixedParameter& fixed : options.fixed) {
     const UnknownName name = require_unknown(fixed.parameter, modes);
     require_fixable(fixed.parameter, name.kind);
-    MODCAL_REQUIRE(name.record < records, "\"{}\" is fixed: there are {} records", fixed.parameter,
-                   records);
+    MODCAL_REQUIRE(name.record < records, "\"{}\" is fixed: there {} {} record{}", fixed.parameter,
+                   records == 1 ? "is" : "are", records, records == 1 ? "" : "s");
     MODCAL_REQUIRE(name.record == 0 || options.own(name.kind),
                    "\"{}\" is fixed: all records share it, state it without a number",
                    fixed.parameter);
