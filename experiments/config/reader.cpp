@@ -7,6 +7,8 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <set>
+#include <tuple>
 
 #include "experiments/config/nearest_name.hpp"
 #include "experiments/config/scalar.hpp"
@@ -297,28 +299,36 @@ void YamlReader::list(const OptionInfo& info, ListSlot& slot) {
   }
 }
 
-void YamlReader::read_cells(const SweepTable& table, SweepSlot& slot) {
-  std::vector<Mistake> found;
-  for (std::size_t cell = 0; cell < table.values.size(); ++cell) {
-    YamlDocument variant;
-    variant.root = node_;
-    for (std::size_t i = 0; i < table.paths.size(); ++i) {
-      const YamlNode* value = table.values[cell][i];
-      if (value != nullptr) set_value(variant, table.paths[i], *value, table.places[i]);
-    }
-    found.insert(found.end(), variant.mistakes.begin(), variant.mistakes.end());
-    YamlReader reader(variant.root, found);
-    reader.allow_all_known(*this);
-    slot.visit_cell(cell, reader);
-    reader.finish();
+std::vector<Mistake> YamlReader::read_cell(const YamlNode& base, const SweepTable& table,
+                                           std::size_t cell, SweepSlot& slot) const {
+  YamlDocument variant;
+  variant.root = base;
+  for (std::size_t i = 0; i < table.paths.size(); ++i) {
+    const YamlNode* value = table.values[cell][i];
+    if (value != nullptr) set_value(variant, table.paths[i], *value, table.places[i]);
   }
+  std::vector<Mistake> found = std::move(variant.mistakes);
+  YamlReader reader(variant.root, found);
+  reader.allow_all_known(*this);
+  slot.visit_cell(cell, reader);
+  reader.finish();
+  return found;
+}
+
+void YamlReader::read_cells(std::string_view key, const SweepTable& table, SweepSlot& slot) {
+  // Every cell starts from a copy of all but the sweep, which is as long as there are cells.
+  YamlNode base = node_;
+  std::erase_if(base.members, [&](const YamlNode::Member& member) { return member.key == key; });
   // A value is read once per cell that holds it; its mistake is one mistake.
-  for (Mistake& mistake : found) {
-    const bool known = std::any_of(mistakes_.begin(), mistakes_.end(), [&](const Mistake& other) {
-      return other.text == mistake.text && other.position.line == mistake.position.line &&
-             other.position.column == mistake.position.column;
-    });
-    if (!known) mistakes_.push_back(std::move(mistake));
+  std::set<std::tuple<std::size_t, std::size_t, std::string>> known;
+  const auto is_new = [&known](const Mistake& mistake) {
+    return known.emplace(mistake.position.line, mistake.position.column, mistake.text).second;
+  };
+  for (const Mistake& mistake : mistakes_) is_new(mistake);
+  for (std::size_t cell = 0; cell < table.values.size(); ++cell) {
+    for (Mistake& mistake : read_cell(base, table, cell, slot)) {
+      if (is_new(mistake)) mistakes_.push_back(std::move(mistake));
+    }
   }
 }
 
@@ -328,7 +338,7 @@ void YamlReader::sweep(const OptionInfo& info, SweepSlot& slot) {
   const SweepTable table = read_sweep(*node, info.key, mistakes_);
   if (table.values.empty()) return;
   slot.set_cells(table.plan, table.cells());
-  read_cells(table, slot);
+  read_cells(info.key, table, slot);
 }
 
 void read_options(const YamlNode& node, const std::function<void(OptionVisitor&)>& visit,

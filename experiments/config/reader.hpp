@@ -55,7 +55,9 @@ class YamlReader final : public OptionVisitor {
   bool read_integer(const OptionInfo& info, const YamlNode& node, std::int64_t& value);
   bool read_text(const OptionInfo& info, const YamlNode& node, std::string& value);
   void select(const OptionInfo& info, const YamlNode& name, PluginSlot& slot);
-  void read_cells(const SweepTable& table, SweepSlot& slot);
+  std::vector<Mistake> read_cell(const YamlNode& base, const SweepTable& table, std::size_t cell,
+                                 SweepSlot& slot) const;
+  void read_cells(std::string_view key, const SweepTable& table, SweepSlot& slot);
   template <typename Value, typename Read>
   void read_list(const OptionInfo& info, std::vector<Value>& values, Read read);
 
