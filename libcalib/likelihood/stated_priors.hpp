@@ -40,6 +40,10 @@ struct UnknownsOptions;
 void require_priors(const UnknownsOptions& options, std::size_t modes, std::size_t records = 1,
                     double length = std::numeric_limits<double>::infinity());
 
+/// Correlations of the priors in their order. Throws InvalidInput for one of a parameter that has
+/// no prior, of one with itself, twice the same and outside (−1, 1).
+Eigen::MatrixXd prior_correlation(const UnknownsOptions& options);
+
 /// The priors as one Gaussian of coordinates: the logarithm of what is positive (is_positive(),
 /// with the relative deviation), else the value itself, a corner in rad/s. The factor of the
 /// damping is stated through ζ_1; the exponent through ln ζ_2/ζ_1.
