@@ -456,6 +456,7 @@ void LikelihoodEvaluation::give(const LikelihoodOutputs& outputs) {
     outputs.amplitudes->assign(end_state_.amplitudes().begin(), end_state_.amplitudes().end());
   }
   if (outputs.residuals) {
+    outputs.residuals->resize(2 * record_->bins);
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
       for_rows(b, record_->bins, [&](std::size_t row, std::size_t at) {
         (*outputs.residuals)[row] = residual_of(b)[at];
