@@ -50,8 +50,7 @@ class JointFit {
     const ProjectedLikelihood whole(WhitenedRecord::of(noisy, 0.0, highest));
     ProjectedLikelihood weighted = whole;
     const Eigen::VectorXd start = own_start(fit_.single[all_.records()].model);
-    weighted.set_weights(information_weights(whole, unknowns().model(start),
-                                             unknowns().columns(start, all_.records())));
+    weighted.set_weights(weights(whole, start));
     all_.add(std::make_shared<StrokeLikelihood>(whole, std::move(weighted)), start,
              own_places(true), held_contact(all_.records()));
     noise_errors_.push_back(noise_power_error(noise, initial_.basis, stroke));
@@ -98,6 +97,19 @@ class JointFit {
 
  private:
   const StringUnknowns& unknowns() const { return all_.unknowns(); }
+  // As for one record: where the law holds, its unknowns say what the bins of the next record tell.
+  // A mode in a node of the contact, free, would take the bins that tell the contact for its own.
+  std::vector<double> weights(const ProjectedLikelihood& whole,
+                              const Eigen::VectorXd& start) const {
+    const std::size_t record = all_.records();
+    const ContinuationResult& single = fit_.single[record];
+    if (unknowns().is_law() || !single.law.accepted) {
+      return information_weights(whole, unknowns().model(start), unknowns().columns(start, record));
+    }
+    const StringUnknowns law = StringUnknowns::law(
+        single.model, single.law.fundamental, single.law.inharmonicity, options_.unknowns, priors_);
+    return information_weights(whole, law.model(law.start()), law.columns(law.start(), record));
+  }
   Index modes() const { return static_cast<Index>(unknowns().modes()); }
   double inharmonicity() const { return fit_.single.front().law.inharmonicity; }
   // Unknowns that are each record's own; a pluck has no contact.
