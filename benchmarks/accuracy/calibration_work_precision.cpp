@@ -5,6 +5,7 @@
 //
 //     calibration_work_precision > calibration_work_precision.csv
 #include <fmt/format.h>
+#include <tbb/global_control.h>
 
 #include <cmath>
 #include <ctime>
@@ -169,6 +170,8 @@ double bound(const StiffStroke& stroke) {
 }
 
 int print_all() {
+  // Processor time of a search is not to hold that of threads which wait for work.
+  const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
   const StiffStroke stroke = stiff_stroke(kModes, kDuration, kNoise, 1);
   ModelPoint start = stroke.truth;
   for (std::size_t n = 1; n <= start.basis.size(); ++n) {
