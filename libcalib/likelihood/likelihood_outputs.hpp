@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -17,6 +18,8 @@ struct LikelihoodColumns {
   std::vector<std::size_t> share_begin;  ///< N + 1 numbers: where those of mode n begin
   std::optional<std::size_t> contact = {};
   std::optional<std::size_t> gain = {}, delay = {}, corner = {};
+  /// Gain, delay and corner in this order.
+  std::array<std::optional<std::size_t>, 3> sensors() const { return {gain, delay, corner}; }
 };
 
 /// One evaluation at a model.
