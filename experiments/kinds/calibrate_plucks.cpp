@@ -7,6 +7,7 @@
 #include "experiments/kinds/calibrate_study.hpp"
 #include "experiments/kinds/lint.hpp"
 #include "libcalib/likelihood/noise_level.hpp"
+#include "libcalib/likelihood/record_options.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -36,18 +37,7 @@ void PluckRecordOptions::visit(OptionVisitor& visitor) {
        .meaning = "a recorded file in the place of a simulated pluck, with the channels of "
                   "the stroke's; it begins when the string has been let go"},
       file);
-  visitor.number({.key = "left_noise",
-                  .meaning = "noise standard deviation of the reaction at x = 0",
-                  .unit = "N",
-                  .range = Range::positive(),
-                  .word = "estimated"},
-                 left_noise);
-  visitor.number({.key = "right_noise",
-                  .meaning = "noise standard deviation of the reaction at x = L",
-                  .unit = "N",
-                  .range = Range::positive(),
-                  .word = "estimated"},
-                 right_noise);
+  visit_noise_levels(visitor, left_noise, right_noise);
 }
 
 ObservationOptions PluckRecordOptions::observation(const ObservationOptions& first) const {

@@ -10,6 +10,10 @@ void visit_record_options(OptionVisitor& visitor, double& highest_frequency, dou
                   .range = Range::positive(),
                   .word = "automatic"},
                  highest_frequency);
+  visit_noise_levels(visitor, left_noise, right_noise);
+}
+
+void visit_noise_levels(OptionVisitor& visitor, double& left_noise, double& right_noise) {
   visitor.number({.key = "left_noise",
                   .meaning = "noise standard deviation of the reaction at x = 0",
                   .unit = "N",

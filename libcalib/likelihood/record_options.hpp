@@ -9,4 +9,7 @@ namespace modcal {
 void visit_record_options(OptionVisitor& visitor, double& highest_frequency, double& left_noise,
                           double& right_noise);
 
+/// Visits left_noise and right_noise [N] alone.
+void visit_noise_levels(OptionVisitor& visitor, double& left_noise, double& right_noise);
+
 }  // namespace modcal
