@@ -36,8 +36,9 @@ std::string prior_lines(const PriorMisfit& misfit, std::string_view stage) {
                      misfit.chi2, misfit.count, verdict, misfit.farthest, misfit.deviations);
 }
 
-std::string calibration_json(const CalibrationOutcome& outcome) {
-  const OptimizationResult& search = outcome.result.search;
+namespace {
+
+Json modes_json(const CalibrationOutcome& outcome) {
   Json modes = Json::array();
   for (const CalibratedMode& mode : outcome.result.modes) {
     const Json truth = outcome.true_frequencies.empty()
@@ -56,8 +57,12 @@ std::string calibration_json(const CalibrationOutcome& outcome) {
     modes.back()["source"] = name_of(verdict.source);
     modes.back()["reason"] = name_of(verdict.reason);
   }
+  return modes;
+}
+
+Json parameters_json(const std::vector<CalibratedParameter>& found) {
   Json parameters = Json::array();
-  for (const CalibratedParameter& parameter : outcome.result.parameters) {
+  for (const CalibratedParameter& parameter : found) {
     parameters.push_back({{"name", parameter.name},
                           {"unit", parameter.unit},
                           {"initial", parameter.initial},
@@ -66,12 +71,40 @@ std::string calibration_json(const CalibrationOutcome& outcome) {
                           {"sd", number_or_null(parameter.deviation)},
                           {"meaning", meaning_of_unknown(parameter.name)}});
   }
+  return parameters;
+}
+
+Json continuation_json(const ContinuationResult& found,
+                       const std::vector<double>& contact_deviations) {
+  return {{"right", found.right},
+          {"fits", found.fits},
+          {"chi2", number_or_null(found.chi2)},
+          {"chi2_sd", number_or_null(found.chi2_deviation)},
+          {"law_chi2", number_or_null(found.law.chi2)},
+          {"law_accepted", found.law.accepted},
+          {"priors", misfit_json(found.priors)},
+          {"law_priors", misfit_json(found.law.priors)},
+          {"law_width", number_or_null(found.law_width)},
+          {"f0_sd_hz", number_or_null(found.law.deviation[0])},
+          {"B_sd", number_or_null(found.law.deviation[1])},
+          {"x_c_sd_m", number_or_null(found.contact_deviation)},
+          {"damping_sd", number_or_null(found.damping_deviation)},
+          {"noise_left_n", number_or_null(found.noise[0])},
+          {"noise_right_n", number_or_null(found.noise[1])},
+          {"restarts", found.restarts},
+          {"x_c_sd_of_strokes_m", contact_deviations}};
+}
+
+}  // namespace
+
+std::string calibration_json(const CalibrationOutcome& outcome) {
+  const OptimizationResult& search = outcome.result.search;
   Json trace = Json::array();
   for (const TracePoint& point : search.trace) {
     trace.push_back({point.evaluations, number_or_null(point.value)});
   }
   Json document = {
-      {"modes", std::move(modes)},
+      {"modes", modes_json(outcome)},
       {"loops", search.loops},
       {"evaluations", search.evaluations},
       {"seconds", search.seconds},
@@ -79,7 +112,7 @@ std::string calibration_json(const CalibrationOutcome& outcome) {
       {"objective_initial", number_or_null(search.initial_value)},
       {"objective", number_or_null(search.value)},
       {"median_relative_error_excited", number_or_null(median_relative_error(outcome))},
-      {"parameters", std::move(parameters)},
+      {"parameters", parameters_json(outcome.result.parameters)},
       {"trace", std::move(trace)}};
   if (outcome.law) {
     document["stiff_string_law"] = {
@@ -89,24 +122,8 @@ std::string calibration_json(const CalibrationOutcome& outcome) {
         {"B_sd", number_or_null(outcome.law->inharmonicity_deviation)}};
   }
   if (outcome.result.continuation) {
-    const ContinuationResult& found = *outcome.result.continuation;
-    document["continuation"] = {{"right", found.right},
-                                {"fits", found.fits},
-                                {"chi2", number_or_null(found.chi2)},
-                                {"chi2_sd", number_or_null(found.chi2_deviation)},
-                                {"law_chi2", number_or_null(found.law.chi2)},
-                                {"law_accepted", found.law.accepted},
-                                {"priors", misfit_json(found.priors)},
-                                {"law_priors", misfit_json(found.law.priors)},
-                                {"law_width", number_or_null(found.law_width)},
-                                {"f0_sd_hz", number_or_null(found.law.deviation[0])},
-                                {"B_sd", number_or_null(found.law.deviation[1])},
-                                {"x_c_sd_m", number_or_null(found.contact_deviation)},
-                                {"damping_sd", number_or_null(found.damping_deviation)},
-                                {"noise_left_n", number_or_null(found.noise[0])},
-                                {"noise_right_n", number_or_null(found.noise[1])},
-                                {"restarts", found.restarts},
-                                {"x_c_sd_of_strokes_m", outcome.result.contact_deviations}};
+    document["continuation"] =
+        continuation_json(*outcome.result.continuation, outcome.result.contact_deviations);
   }
   return document.dump(1) + "\n";
 }
