@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "libcalib/calibration_data.hpp"
+#include "libcalib/likelihood/law_followers.hpp"
 #include "libcalib/likelihood/prior_misfit.hpp"
 #include "libcalib/likelihood/string_unknowns.hpp"
 #include "libcalib/parameters.hpp"
@@ -36,7 +37,7 @@ struct ContinuationOptions {
 /// Where the frequency of a mode comes from.
 enum class ModeSource { kIdentified, kLaw, kPrior, kBlind, kFixed };
 /// Why a mode is weak.
-enum class WeakReason { kNone, kNode, kAntinode, kNoise };
+enum class WeakReason { kNone, kNode, kAntinode, kNoise, kDoubt };
 std::string_view name_of(ModeSource source);
 std::string_view name_of(WeakReason reason);
 
@@ -48,6 +49,8 @@ struct ModeVerdict {
   double data_deviation = 0.0;
   ModeSource source = ModeSource::kIdentified;
   WeakReason reason = WeakReason::kNone;
+  LawTie tie = LawTie::kFollows;  ///< whether it was found to follow the law of the others
+  double departure = 0.0;         ///< frequency beyond the law's, relative; where all are free
 };
 
 /// f_0 [Hz], B [1], x_c [m] and the factor of all damping ratios, with standard deviations.
@@ -93,8 +96,9 @@ double likelihood_band(const ModelPoint& point, double highest_frequency, double
 /// f_0/196 Hz) on records cut to 8/σ, started from the law fitted to the initial frequencies and
 /// nine x_c within 0.6 % of L; then σ = 0 with the end state projected out and bins weighted by
 /// S/(1 + S). Where χ² contradicts the law: free frequencies through σ ≈ 40, 20, 10, each mode
-/// tested against its neighboring minima. Last, free frequencies at σ = 0 under the law prior,
-/// modes the data do not see tied to the law. The records must begin at rest.
+/// tested against its neighboring minima. Last, free frequencies at σ = 0, each tested again, under
+/// the law prior, modes the data do not see tied to the law and modes that leave it set free; where
+/// some do, the law is fitted once more without them. The records must begin at rest.
 ContinuationResult calibrate_by_continuation(const ModelPoint& initial, const CalibrationData& data,
                                              const ContinuationOptions& options);
 /// The same with these priors in the place of those among the options.

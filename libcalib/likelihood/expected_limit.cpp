@@ -85,7 +85,8 @@ void add_frequencies(const LimitInformation& records, const StringUnknowns& unkn
   if (const ParameterLimit* contact = limit.find("x_c")) limit.contact = contact->free;
   if (const ParameterLimit* damping = limit.find("damping")) limit.damping = damping->free;
   const Eigen::VectorXd found = deviations(covariance).head(n);
-  limit.modes = free_verdicts(question.truth, found, seen, question.law_width);
+  limit.modes =
+      free_verdicts(question.truth, found, seen, LawFollowers::all(n, question.law_width));
   trust_stated_frequencies(records.priors(), found, limit.modes);
   limit.blind_modes = static_cast<std::size_t>(
       std::count_if(limit.modes.begin(), limit.modes.end(), [](const ModeVerdict& mode) {

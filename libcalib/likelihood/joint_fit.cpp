@@ -226,8 +226,8 @@ class JointFit {
     // A prior of a mode's frequency is no sight of it.
     NewtonOptions unstated = newton;
     state(equations(priors_.without_frequencies(), &wide), unstated);
-    seen_ = fit_covariance(at, unstated).diagonal().head(modes()).cwiseMax(0.0).cwiseSqrt();
-    deny_noise(at.information, newton.noise, nodes_of_all(), seen_);
+    const Eigen::VectorXd deviation =
+        fit_covariance(at, unstated).diagonal().head(modes()).cwiseMax(0.0).cwiseSqrt();
     const ModelPoint model = all_.model(theta_, 0);
     Eigen::VectorXd delta(modes());
     for (Index i = 0; i < modes(); ++i) {
@@ -235,10 +235,13 @@ class JointFit {
       delta[i] = std::log(model.basis.omega[static_cast<std::size_t>(i)] /
                           (n * std::sqrt(1.0 + inharmonicity() * n * n)));
     }
-    estimated_ = estimate_law_width(delta, seen_, inharmonicity());
-    fit_.law_width = std::isnan(options_.law_width) ? estimated_ : options_.law_width;
-    Eigen::VectorXd widths = prior_widths(seen_, fit_.law_width, estimated_);
+    ModeSight sight = sight_of(delta, deviation, at.information, newton.noise, nodes_of_all());
+    followers_ = find_followers(sight, inharmonicity(), options_.law_width);
+    fit_.law_width = followers_.prior_width;
+    Eigen::VectorXd widths = prior_widths(sight.seen, fit_.law_width, followers_.width);
     widen_stated(priors_, fit_.law_width, widths);
+    release(followers_, sight, widths);
+    seen_ = sight.seen;
     state(equations(priors_, &widths), newton);
     search(newton);
     fit_.priors = misfit(equations(priors_, &widths));
@@ -267,7 +270,7 @@ class JointFit {
     } else {
       const auto frequencies = deviation.head(modes());
       fit_.frequency_deviations.assign(frequencies.begin(), frequencies.end());
-      fit_.modes = free_verdicts(fit_.model, frequencies, seen_, estimated_);
+      fit_.modes = free_verdicts(fit_.model, frequencies, seen_, followers_);
       trust_stated_frequencies(priors_, deviation, fit_.modes);
     }
     for (std::size_t r = 0; r < all_.records(); ++r) report_values(covariance, r);
@@ -310,8 +313,8 @@ class JointFit {
   std::vector<std::shared_ptr<const PluckLikelihood>> plucks_;
   std::vector<double> noise_errors_;
   Eigen::VectorXd theta_;
-  Eigen::VectorXd seen_;    // of δ, under the wide prior
-  double estimated_ = 0.0;  // τ
+  Eigen::VectorXd seen_;  // of δ, under the wide prior
+  LawFollowers followers_;
 };
 
 void run_fit(const ModelPoint& initial, const ContinuationOptions& options,
@@ -334,9 +337,16 @@ void fit_jointly(const ModelPoint& initial, const ContinuationOptions& options,
   ContinuationOptions law_alone = options;
   law_alone.frequencies = false;
   RecordsFit alone{.single = fit.single};
-  run_fit(initial, law_alone, priors, strokes, plucks, alone);
+  const std::vector<std::size_t> leaving = leaving_modes(fit.modes);
+  for (ContinuationResult& single : alone.single) {
+    for (const std::size_t n : leaving) {
+      single.model.basis.omega[n] = fit.model.basis.omega[n];
+    }
+  }
+  run_fit(initial, law_alone, priors.holding(leaving), strokes, plucks, alone);
   fit.law = alone.law;
   fit.evaluations += alone.evaluations;
+  report_departures(fit.law, fit.modes);
 }
 
 }  // namespace modcal

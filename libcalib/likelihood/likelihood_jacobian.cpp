@@ -255,13 +255,18 @@ void LikelihoodEvaluation::give(const LikelihoodOutputs& outputs) {
       });
     }
   }
-  if (outputs.force) {
-    outputs.force->resize(record_->bins);
+  const auto give_bins = [this](std::vector<Complex>* numbers,
+                                LikelihoodBlock::Planar LikelihoodBlock::*member) {
+    if (!numbers) return;
+    numbers->resize(record_->bins);
     for (std::size_t k = 0; k < record_->bins; ++k) {
-      const LikelihoodBlock::Planar& force = blocks_[k / kBins].force;
-      (*outputs.force)[k] = {force.re[k % kBins], force.im[k % kBins]};
+      const LikelihoodBlock::Planar& of_block = blocks_[k / kBins].*member;
+      (*numbers)[k] = {of_block.re[k % kBins], of_block.im[k % kBins]};
     }
-  }
+  };
+  give_bins(outputs.force, &LikelihoodBlock::force);
+  give_bins(outputs.left, &LikelihoodBlock::left);
+  give_bins(outputs.right, &LikelihoodBlock::right);
   if (!outputs.gain) return;
   outputs.gain->resize(record_->bins);
   for (std::size_t k = 0; k < record_->bins; ++k) {

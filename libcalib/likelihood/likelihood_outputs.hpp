@@ -38,6 +38,8 @@ struct LikelihoodOutputs {
   std::vector<Complex>* force = nullptr;     ///< F̂, whitened like y_r, K_b numbers
   std::vector<double>* gain = nullptr;       ///< |h|², K_b numbers
   std::vector<Complex>* amplitudes = nullptr;
+  std::vector<Complex>* left = nullptr;   ///< h_1, K_b numbers
+  std::vector<Complex>* right = nullptr;  ///< h_2
 };
 
 }  // namespace modcal

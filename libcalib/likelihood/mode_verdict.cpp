@@ -48,35 +48,10 @@ std::string_view name_of(WeakReason reason) {
       return "antinode";
     case WeakReason::kNoise:
       return "noise";
+    case WeakReason::kDoubt:
+      return "data and law disagree";
   }
   return "";
-}
-
-double estimate_law_width(const Eigen::VectorXd& delta, const Eigen::VectorXd& seen,
-                          double inharmonicity) {
-  const Eigen::MatrixXd slopes = law_slopes(delta.size(), inharmonicity);
-  double variance = 0.0;
-  for (int round = 0; round < 8; ++round) {
-    Eigen::VectorXd weight = Eigen::VectorXd::Zero(delta.size());
-    double count = 0.0;
-    for (Eigen::Index i = 0; i < delta.size(); ++i) {
-      if (seen[i] >= 5e-4) continue;
-      weight[i] = 1.0 / (seen[i] * seen[i] + variance);
-      count += 1.0;
-    }
-    if (count < 4.0) return kWidePrior;
-    const Eigen::MatrixXd normal = slopes.transpose() * weight.asDiagonal() * slopes;
-    const Eigen::VectorXd law =
-        normal.ldlt().solve(slopes.transpose() * weight.asDiagonal() * delta);
-    const Eigen::VectorXd rest = delta - slopes * law;
-    // Σ w(r² − s²) over Σ w, two degrees of freedom spent on the law.
-    const double excess =
-        (weight.array() * (rest.array().square() * (count / (count - 2.0)) -
-                           (weight.array() > 0.0).select(seen.array().square(), 0.0)))
-            .sum();
-    variance = std::max(0.0, excess / weight.sum());
-  }
-  return std::clamp(std::sqrt(variance), kTied, kWidePrior);
 }
 
 std::vector<bool> nodes(const ModalBasis& basis, const std::vector<double>& contacts) {
@@ -91,13 +66,27 @@ std::vector<bool> nodes(const ModalBasis& basis, const std::vector<double>& cont
   return node;
 }
 
-void deny_noise(const Eigen::MatrixXd& information, const Eigen::MatrixXd& noise,
-                const std::vector<bool>& node, Eigen::VectorXd& seen) {
+ModeSight sight_of(const Eigen::VectorXd& delta, const Eigen::VectorXd& deviation,
+                   const Eigen::MatrixXd& information, const Eigen::MatrixXd& noise,
+                   const std::vector<bool>& node) {
   constexpr double kProof = 3.0, kNodeProof = 10.0;
+  ModeSight sight{.delta = delta, .seen = deviation, .error = deviation};
   for (std::size_t n = 0; n < node.size(); ++n) {
     const auto i = static_cast<Eigen::Index>(n);
     const double proof = node[n] ? kNodeProof : kProof;
-    if (information(i, i) < proof * noise(i, i)) seen[i] = std::max(seen[i], kWidePrior);
+    const bool proven = information(i, i) >= proof * noise(i, i);
+    if (!proven) sight.seen[i] = std::max(deviation[i], kWidePrior);
+    if (!proven || node[n]) sight.error[i] = 2.0 * deviation[i];
+  }
+  return sight;
+}
+
+void doubt_rivals(const std::vector<Neighbor>& neighbors, ModeSight& sight) {
+  for (std::size_t n = 0; n < neighbors.size(); ++n) {
+    if (!neighbors[n].is_rival()) continue;
+    const auto i = static_cast<Eigen::Index>(n);
+    sight.seen[i] = std::max(sight.seen[i], kWidePrior);
+    sight.error[i] = std::max(sight.error[i], std::abs(neighbors[n].shift));
   }
 }
 
@@ -107,6 +96,14 @@ Eigen::VectorXd prior_widths(const Eigen::VectorXd& seen, double width, double e
     if (seen[i] > 0.7 * kWidePrior) widths[i] = std::min(width, estimated);
   }
   return widths;
+}
+
+void release(const LawFollowers& followers, ModeSight& sight, Eigen::VectorXd& widths) {
+  for (Eigen::Index i = 0; i < widths.size(); ++i) {
+    if (followers.ties[static_cast<std::size_t>(i)] != LawTie::kLeaves) continue;
+    widths[i] = kLeft;
+    sight.seen[i] = std::min(sight.seen[i], sight.error[i]);
+  }
 }
 
 WeakReason weak_reason(const ModelPoint& model, std::size_t index) {
@@ -134,20 +131,28 @@ std::vector<ModeVerdict> law_verdicts(const ModelPoint& model, double inharmonic
 }
 
 std::vector<ModeVerdict> free_verdicts(const ModelPoint& model, const Eigen::VectorXd& deviation,
-                                       const Eigen::VectorXd& seen, double law_width) {
+                                       const Eigen::VectorXd& seen, const LawFollowers& followers) {
   std::vector<ModeVerdict> verdicts(model.basis.size());
   const std::vector<double> shape = model.basis.shape_at(model.contact);
+  const double law_width = followers.width;
   for (std::size_t n = 0; n < verdicts.size(); ++n) {
     const auto i = static_cast<Eigen::Index>(n);
     ModeVerdict& verdict = verdicts[n];
     verdict.frequency = model.basis.frequency(n);
     verdict.deviation = deviation[i];
     verdict.data_deviation = seen[i];
-    if (seen[i] < kIdentified) continue;
+    verdict.tie = followers.ties[n];
+    const bool doubtful = verdict.tie == LawTie::kDoubtful;
+    if (seen[i] < kIdentified && !doubtful) continue;
     verdict.reason = weak_reason(model, n);
     // The law speaks for a mode where the other modes follow it closer than the mode is needed.
-    verdict.deviation = std::max(deviation[i], std::min(law_width, kWidePrior));
-    const bool law_holds = law_width < 0.5 * kIdentified;
+    const bool law_holds = law_width < 0.5 * kIdentified && verdict.tie != LawTie::kLeaves;
+    if (doubtful) {
+      verdict.reason = WeakReason::kDoubt;
+      verdict.deviation = std::hypot(deviation[i], followers.rest[i]);
+    } else if (verdict.tie == LawTie::kFollows) {
+      verdict.deviation = std::max(deviation[i], std::min(law_width, kWidePrior));
+    }
     if (law_holds) {
       verdict.source = ModeSource::kLaw;
     } else {
@@ -155,6 +160,23 @@ std::vector<ModeVerdict> free_verdicts(const ModelPoint& model, const Eigen::Vec
     }
   }
   return verdicts;
+}
+
+std::vector<std::size_t> leaving_modes(const std::vector<ModeVerdict>& modes) {
+  std::vector<std::size_t> leaving;
+  for (std::size_t n = 0; n < modes.size(); ++n) {
+    if (modes[n].tie == LawTie::kLeaves) leaving.push_back(n);
+  }
+  return leaving.size() + 2 > modes.size() ? std::vector<std::size_t>{} : leaving;
+}
+
+void report_departures(const LawEstimate& law, std::vector<ModeVerdict>& modes) {
+  for (std::size_t n = 0; n < modes.size(); ++n) {
+    const double number = static_cast<double>(n + 1);
+    const double frequency =
+        number * law.fundamental * std::sqrt(1.0 + law.inharmonicity * number * number);
+    modes[n].departure = modes[n].frequency / frequency - 1.0;
+  }
 }
 
 }  // namespace modcal

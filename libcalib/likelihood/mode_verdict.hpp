@@ -4,39 +4,45 @@
 #include <Eigen/Core>
 
 #include "libcalib/likelihood/continuation.hpp"
+#include "libcalib/likelihood/law_followers.hpp"
+#include "libcalib/likelihood/neighbor_test.hpp"
 
 namespace modcal {
-
-/// Width of the prior about the law that only keeps a mode from wandering [1].
-inline constexpr double kWidePrior = 2e-3;
-/// Width that ties a mode to the law where the string follows it [1].
-inline constexpr double kTied = 1e-5;
-
-/// τ by moments from the modes seen to 5e-4: their scatter δ about the law beyond their own
-/// standard deviations; not below kTied.
-double estimate_law_width(const Eigen::VectorXd& delta, const Eigen::VectorXd& seen,
-                          double inharmonicity);
 
 /// Modes with |φ_n| < 0.05 at every one of the contacts.
 std::vector<bool> nodes(const ModalBasis& basis, const std::vector<double>& contacts);
 
 /// A mode that nothing excites has the information of its noise, which scatters about N̄ with few
 /// degrees of freedom: less than three times N̄ is no proof of a signal, and near a node, where a
-/// signal would be a surprise, less than ten. Without proof `seen` is no less than kWidePrior.
-void deny_noise(const Eigen::MatrixXd& information, const Eigen::MatrixXd& noise,
-                const std::vector<bool>& node, Eigen::VectorXd& seen);
+/// signal would be a surprise, less than ten. deviation: of δ under the wide prior.
+ModeSight sight_of(const Eigen::VectorXd& delta, const Eigen::VectorXd& deviation,
+                   const Eigen::MatrixXd& information, const Eigen::MatrixXd& noise,
+                   const std::vector<bool>& node);
+
+/// A mode that has a rival minimum is not seen: its error reaches there.
+void doubt_rivals(const std::vector<Neighbor>& neighbors, ModeSight& sight);
 
 /// Widths of the prior of every mode: `width`, and for modes whose standard deviation under the
 /// wide prior is that prior's (more than 0.7 of it) no more than the width estimated.
 Eigen::VectorXd prior_widths(const Eigen::VectorXd& seen, double width, double estimated);
 
+/// A mode that leaves the law has the width kLeft, and is seen as far as its information says.
+void release(const LawFollowers& followers, ModeSight& sight, Eigen::VectorXd& widths);
+
 /// All modes by the law with the covariance of (ln f_0, B).
 std::vector<ModeVerdict> law_verdicts(const ModelPoint& model, double inharmonicity,
                                       const Eigen::Matrix2d& covariance);
 
-/// deviation: sd of ln f_n; seen: the same under the wide prior alone.
+/// deviation: sd of ln f_n; seen: the same under the wide prior alone. A doubtful mode is where the
+/// law has it, and its standard deviation reaches to where the data have it.
 std::vector<ModeVerdict> free_verdicts(const ModelPoint& model, const Eigen::VectorXd& deviation,
-                                       const Eigen::VectorXd& seen, double law_width);
+                                       const Eigen::VectorXd& seen, const LawFollowers& followers);
+
+/// Modes that leave the law, by index; none where fewer than two would be left to find it by.
+std::vector<std::size_t> leaving_modes(const std::vector<ModeVerdict>& modes);
+
+/// Fills how far every mode is from n f_0 √(1 + Bn²).
+void report_departures(const LawEstimate& law, std::vector<ModeVerdict>& modes);
 
 /// Node where |φ_n(x_c)| < 0.1, antinode where |cos(nπx_c/L)| < 0.2 (both ends then react alike,
 /// whatever ω_n is), else noise.

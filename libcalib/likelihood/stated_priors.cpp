@@ -196,6 +196,24 @@ StatedPriors StatedPriors::without_frequencies() const {
   return kept(others);
 }
 
+StatedPriors StatedPriors::holding(const std::vector<std::size_t>& modes) const {
+  std::vector<Eigen::Index> others;
+  std::vector<bool> held = held_.frequencies;
+  for (const std::size_t n : modes) {
+    if (held.size() <= n) held.resize(n + 1);
+    held[n] = true;
+  }
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    const UnknownName& name = entries_[i].name;
+    const bool of_held = name.mode < held.size() && held[name.mode];
+    if (name.kind == UnknownKind::kFrequency && of_held) continue;
+    others.push_back(static_cast<Eigen::Index>(i));
+  }
+  StatedPriors result = kept(others);
+  result.held_.frequencies = std::move(held);
+  return result;
+}
+
 StatedPriors StatedPriors::of_record(std::size_t record) const {
   std::vector<Eigen::Index> known;
   for (std::size_t i = 0; i < entries_.size(); ++i) {

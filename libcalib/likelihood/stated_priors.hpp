@@ -72,6 +72,8 @@ class StatedPriors {
   StatedPriors of_record(std::size_t record) const;
   /// All but what is stated of single frequencies.
   StatedPriors without_frequencies() const;
+  /// The same with the frequencies of these modes held where the reference has them.
+  StatedPriors holding(const std::vector<std::size_t>& modes) const;
   bool has(const UnknownName& name) const;
 
  private:

@@ -1,0 +1,48 @@
+// Which modes follow the law of the string, how closely, and which leave it.
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+#include <vector>
+
+namespace modcal {
+
+/// Width of the prior about the law that only keeps a mode from wandering [1].
+inline constexpr double kWidePrior = 2e-3;
+/// Width that ties a mode to the law where the string follows it [1].
+inline constexpr double kTied = 1e-5;
+/// Width of the prior of a mode that leaves the law: nothing beside the data tells where it is [1].
+inline constexpr double kLeft = 1e-2;
+
+/// What the data tell of the frequencies under the wide prior alone.
+struct ModeSight {
+  Eigen::VectorXd delta;  ///< δ_n, relative to a model near the law
+  Eigen::VectorXd seen;   ///< its standard deviation; no less than kWidePrior without proof
+  Eigen::VectorXd error;  ///< the same, of modes without proof twice what their information says
+};
+
+enum class LawTie { kFollows, kDoubtful, kLeaves };
+
+struct LawFollowers {
+  double width = kWidePrior;  ///< τ, relative scatter about the law of the modes that follow it
+  double prior_width = kWidePrior;  ///< the same, or what is known of it beforehand
+  std::vector<LawTie> ties;
+  Eigen::VectorXd rest;  ///< δ_n beyond the law of those that follow it
+
+  static LawFollowers all(Eigen::Index modes, double width);
+  std::size_t leaving() const;
+};
+
+/// The law (ln f_0, B) through the modes seen to 5e-4 that follow it, with τ by the moments of
+/// their scatter beyond their own errors, between kTied and kWidePrior. Mode n is tested by
+///
+///     z_n = (δ_n − law)/√(error_n² + τ² + law's own variance),
+///
+/// doubtful beyond |z| = 3; it leaves where Student's t of that many followers less two, were all N
+/// to follow, would have one such mode in one of 370 strings (0.27 %/N each). The first law is
+/// robust: Huber's weights and τ by the median. width: τ known beforehand; NaN: estimated. Fewer
+/// than eight modes seen: none is tested; fewer than four: τ = kWidePrior.
+LawFollowers find_followers(const ModeSight& sight, double inharmonicity,
+                            double width = std::numeric_limits<double>::quiet_NaN());
+
+}  // namespace modcal

@@ -1,0 +1,73 @@
+#include "libcalib/likelihood/stroke_fit.hpp"
+
+#include <utility>
+
+#include "libcalib/likelihood/bin_weights.hpp"
+
+namespace modcal {
+namespace {
+
+constexpr std::size_t kNoiseRepeats = 3;
+
+}  // namespace
+
+void set_prior(QuadraticPrior prior, NewtonOptions& options) {
+  options.prior = std::move(prior.precision);
+  options.prior_mean = std::move(prior.mean);
+}
+
+ProjectedLikelihood StrokeFit::damped(double sigma) const {
+  return ProjectedLikelihood(WhitenedRecord::of(input_.records, sigma * unit_, input_.highest));
+}
+
+const ProjectedLikelihood& StrokeFit::whole() {
+  if (!whole_) whole_.emplace(WhitenedRecord::of(input_.records, 0.0, input_.highest));
+  return *whole_;
+}
+
+NewtonFit StrokeFit::fit(const ProjectedLikelihood& likelihood, const StringUnknowns& unknowns,
+                         const Eigen::VectorXd& theta, const NewtonOptions& options) {
+  NewtonFit result = newton_fit(likelihood, unknowns, theta, options);
+  evaluations_ += result.evaluations;
+  return result;
+}
+
+double StrokeFit::cost(const ProjectedLikelihood& likelihood, const ModelPoint& point) {
+  ++evaluations_;
+  return likelihood.cost(point);
+}
+
+double StrokeFit::reduced_chi2(const ModelPoint& point, double taken) {
+  return 2.0 * cost(whole(), point) / (whole().degrees_of_freedom(0, point) - taken);
+}
+
+Eigen::MatrixXd StrokeFit::prepare_weights(const StringUnknowns& unknowns,
+                                           const Eigen::VectorXd& theta) {
+  const ModelPoint point = unknowns.model(theta);
+  weighted_ = whole();
+  weighted_->set_weights(information_weights(whole(), point, unknowns.columns(theta)));
+  return noise_at(unknowns, theta);
+}
+
+Eigen::MatrixXd StrokeFit::noise_at(const StringUnknowns& unknowns,
+                                    const Eigen::VectorXd& theta) const {
+  return weighted_->noise_information(unknowns.model(theta), unknowns.columns(theta),
+                                      kNoiseRepeats);
+}
+
+LikelihoodPoint StrokeFit::weighted_point(const StringUnknowns& unknowns,
+                                          const Eigen::VectorXd& theta) {
+  ++evaluations_;
+  return weighted_->evaluate(unknowns.model(theta), unknowns.columns(theta),
+                             {.twice_weighted = true});
+}
+
+Eigen::MatrixXd StrokeFit::covariance_at(const StringUnknowns& unknowns,
+                                         const Eigen::VectorXd& theta,
+                                         const NewtonOptions& options) {
+  Eigen::MatrixXd covariance = fit_covariance(weighted_point(unknowns, theta), options);
+  unknowns.clear_held(covariance);
+  return covariance;
+}
+
+}  // namespace modcal
