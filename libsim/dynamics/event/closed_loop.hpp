@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "libsim/dynamics/contact_modes.hpp"
-#include "libsim/dynamics/event/modal_kernels.hpp"
+#include "libsim/dynamics/event/pole_map.hpp"
 
 namespace modcal::event {
 

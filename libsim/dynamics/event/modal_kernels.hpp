@@ -3,32 +3,11 @@
 #pragma once
 
 #include <array>
-#include <complex>
-#include <cstddef>
 #include <span>
 
-#include "libsim/base/aligned_vector.hpp"
+#include "libsim/dynamics/event/planar_rows.hpp"
 
 namespace modcal::event {
-
-/// Tables of `count` planar rows of one length behind each other.
-struct PlanarRows {
-  std::size_t count = 0;
-  std::size_t size = 0;
-  AlignedVector data;
-
-  PlanarRows() = default;
-  PlanarRows(std::size_t rows, std::size_t columns)
-      : count(rows), size(padded_size(columns)), data(2 * rows * size) {}
-  double* re(std::size_t row) { return data.data() + 2 * row * size; }
-  double* im(std::size_t row) { return re(row) + size; }
-  const double* re(std::size_t row) const { return data.data() + 2 * row * size; }
-  const double* im(std::size_t row) const { return re(row) + size; }
-  void set(std::size_t row, std::size_t column, std::complex<double> value) {
-    re(row)[column] = value.real();
-    im(row)[column] = value.imag();
-  }
-};
 
 /// Re Σ w and Re Σ μ w.
 struct SumAndRate {
@@ -66,21 +45,5 @@ void advance_driven_by(double time, double largest, const PlanarVector& pole,
 using Octet = std::array<double, kVectorPadding>;
 void polynomials(std::span<const Octet> table, const std::array<double, 4>& x,
                  std::array<Octet, 4>& out);
-
-/// Real-linear map between complex vectors whose matrix is a product of poles' differences:
-/// out_j = p_j Σ_n A_n M_nj + q_j Σ_n B_n M_nj with A = Re(a ∘ in), B = Re(b ∘ in).
-/// Where the matrix would not fit into the caches (or the memory) it is computed entry by entry
-/// from the poles λ of the open loop and the roots μ = anchor + offset of the closed one, which
-/// costs no more than reading it: 1/((μ − λ)(μ − λ̄)) towards the roots, 1/((λ − μ)(λ − μ̄)) towards
-/// the poles.
-struct PoleMap {
-  PlanarVector a, b;
-  PlanarRows matrix;  ///< one row an input; empty: computed
-  PlanarVector p, q;
-  bool towards_roots = false;
-  PlanarVector pole, anchor, offset;   ///< of a computed matrix
-  AlignedVector scratch_a, scratch_b;  ///< A and B of the running call
-};
-void apply(PoleMap& map, std::size_t inputs, const PlanarVector& in, PlanarVector& out);
 
 }  // namespace modcal::event

@@ -10,6 +10,7 @@
 
 #include "libsim/dynamics/event/bow_path.hpp"
 #include "libsim/dynamics/event/closed_loop.hpp"
+#include "libsim/dynamics/event/modal_kernels.hpp"
 #include "libsim/dynamics/event/motion.hpp"
 #include "libsim/dynamics/event/static_limit.hpp"
 

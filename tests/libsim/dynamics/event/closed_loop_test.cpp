@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libsim/dynamics/event/modal_kernels.hpp"
 #include "libsim/dynamics/event/secular_roots.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
