@@ -70,13 +70,15 @@ class Sliding {
     return any_step(x, end, state, values, from_tables);
   }
 
-  /// The force that drove the last step that moved, as powers of θ, and its length in grid steps.
+  /// The force that drove the last step that moved, as `powers` powers of θ.
   struct LastStep {
-    double length = 0.0;
+    double duration = 0.0;  ///< [s]
     NodeVector force{};
+    std::size_t powers = 0;
   };
   LastStep last_step() const {
-    LastStep step{attached_part_ * last_length_, powers_};
+    LastStep step{attached_part_ * last_length_ * model_.grid_step(), powers_,
+                  static_cast<std::size_t>(nodes())};
     double scale = -side_;
     for (double& c : step.force) {
       c *= scale;
