@@ -157,6 +157,12 @@ bool is_complete(const ContactModes& modes, ClosedLoop& loop) {
 
 }  // namespace
 
+PlanarVector ClosedLoop::propagator(double time) const {
+  PlanarVector result(roots);
+  for (std::size_t j = 0; j < roots; ++j) result.set(j, std::exp(pole.at(j) * time));
+  return result;
+}
+
 SlowForce ClosedLoop::slow_force(double bow_velocity, double bow_acceleration,
                                  double rest_point) const {
   const double inverse = 1.0 / (1.0 + stiffness * displacement.value);

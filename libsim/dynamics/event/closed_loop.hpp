@@ -56,6 +56,9 @@ struct ClosedLoop {
   ///   (1 + K S₀) f₂ = K a,   (1 + K S₀) f₁ = K v_b + C a − (K S₁ + C S₀) f₂,
   ///   (1 + K S₀) f₀ = K y_a + C v_b − (K S₁ + C S₀) f₁ − (K S₂ + C S₁) f₂.
   SlowForce slow_force(double bow_velocity, double bow_acceleration, double rest_point) const;
+
+  /// e^{μ_j time}.
+  PlanarVector propagator(double time) const;
 };
 
 /// Nothing where the roots are not found, or two are so close that the coordinates lose more than 8
