@@ -11,6 +11,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace modcal::event::HWY_NAMESPACE {
 
+// Residual over what the terms of its equation amount to: nothing but rounding.
+constexpr double kTight = 1e-15;
+
 // Elimination of column k and all later ones; A is I + (small), so that its diagonal serves as
 // pivots. Recursive, so that every index is a constant. False where a pivot vanishes.
 template <int k, int kSize>
@@ -137,11 +140,29 @@ struct LawValues {
   }
 };
 
+// The residual that a Newton step leaves is ½ coupling g'' step²; where it is below the tight bound
+// (and the parabola's own remainder with it) the law need not be computed again. A step from far
+// off leaves the rounding of what it started from. `size`: Σ |coupling| of the equation, `scale`:
+// what its terms amount to.
+template <int kUnknowns>
+HWY_INLINE bool LeavesRounding(const LawValues<kUnknowns>& at, const double (&step)[kUnknowns],
+                               const double (&size)[kUnknowns], const double (&scale)[kUnknowns]) {
+  double bend = 0.0;
+  for (int j = 0; j < kUnknowns; ++j) {
+    bend = std::max(bend, 0.5 * std::abs(at.curvature[j]) * step[j] * step[j]);
+  }
+  bool rounding = true;
+  for (int i = 0; i < kUnknowns; ++i) {
+    rounding = rounding && size[i] * bend <= kTight * scale[i] && std::abs(step[i]) <= scale[i];
+  }
+  return rounding;
+}
+
 template <int kNodes, typename Law>
 bool SolveNodesOf(const Law& law, const NodeMatrix& coupling, const NodeVector& free,
                   NodeValues& values) {
   constexpr int kMaxIterations = 25, kUnknowns = kNodes - 1;
-  constexpr double kTight = 1e-15, kAcceptable = 1e-13;
+  constexpr double kAcceptable = 1e-13;
   double speed[kUnknowns], scale[kUnknowns], known[kUnknowns], size[kUnknowns];
   for (int i = 0; i < kUnknowns; ++i) {
     known[i] = free[i + 1] - coupling[i + 1][0] * values.friction[0];
@@ -182,17 +203,7 @@ bool SolveNodesOf(const Law& law, const NodeMatrix& coupling, const NodeVector& 
       }
     }
     if (!NewtonStep(jacobian, step, speed)) return false;
-    // The residual that this step leaves is ½ coupling g'' step²; where it is below the tight bound
-    // (and the parabola's own remainder with it) the law need not be computed again. A step from
-    // far off leaves the rounding of what it started from.
-    double bend = 0.0;
-    for (int j = 0; j < kUnknowns; ++j) {
-      bend = std::max(bend, 0.5 * std::abs(at.curvature[j]) * step[j] * step[j]);
-    }
-    solved = true;
-    for (int i = 0; i < kUnknowns; ++i) {
-      solved = solved && size[i] * bend <= kTight * scale[i] && std::abs(step[i]) <= scale[i];
-    }
+    solved = LeavesRounding(at, step, size, scale);
     if (solved) at.shift(step);
     if (iteration + 1 == kMaxIterations && !solved) return false;
   }

@@ -7,6 +7,7 @@
 #include "libsim/dynamics/event/bow_path.hpp"
 #include "libsim/dynamics/event/contact_friction.hpp"
 #include "libsim/dynamics/event/first_crossing.hpp"
+#include "libsim/dynamics/event/node_polynomial.hpp"
 
 namespace modcal::event {
 
@@ -88,7 +89,6 @@ class Sliding {
   }
 
   double side() const { return side_; }
-  double speed() const { return speed_; }
   double force() const { return -side_ * friction_; }
   /// Steps that were taken back for shorter ones.
   std::size_t refined_steps() const { return refined_; }
@@ -121,23 +121,6 @@ class Sliding {
   // Sliding speed of a string with velocity v at a node.
   double sliding_speed(double velocity, double step, int node) const {
     return side_ * (velocity - drive_.velocity_at(step * model_.rule().node[node]));
-  }
-
-  // Speeds to start the solution from: as if the friction at node i were the polynomial's at
-  // θ = from + scale·c_i.
-  void guess(const NodeVector& free, const NodeMatrix& coupling, const NodeVector& powers,
-             double from, double scale, NodeValues& values) const {
-    NodeVector friction{};
-    friction[0] = friction_;
-    for (int i = 1; i < nodes(); ++i) {
-      const double theta = from + scale * model_.rule().node[i];
-      for (int k = nodes(); k-- > 0;) friction[i] = friction[i] * theta + powers[k];
-    }
-    for (int i = 1; i < nodes(); ++i) {
-      double sum = 0.0;
-      for (int j = 0; j < nodes(); ++j) sum += coupling[i][j] * friction[j];
-      values.speed[i] = free[i] - sum;
-    }
   }
 
   bool steep(const NodeValues& values, double step) const {
@@ -182,17 +165,6 @@ class Sliding {
     return {x, Outcome::kRefined};
   }
 
-  // Power coefficients in θ of the friction through the nodes.
-  NodeVector friction_powers(const NodeValues& values) const {
-    NodeVector powers{};
-    for (int j = 0; j < nodes(); ++j) {
-      for (int k = 0; k < nodes(); ++k) {
-        powers[k] += values.friction[j] * model_.rule().power[j][k];
-      }
-    }
-    return powers;
-  }
-
   // A dyadic step from the tables. Nothing where it may hold a switch: the series decide then, for
   // which `values` holds the solution.
   std::optional<Advance> grid_step(const SlidingTable& table, double end, PlanarVector& state,
@@ -202,11 +174,12 @@ class Sliding {
     real_products(table.rows, state, std::span(free).subspan(1, unknowns));
     for (int i = 1; i < nodes(); ++i) free[i] = sliding_speed(free[i], table.step, i);
     const double length = table.step / model_.grid_step();
-    guess(free, table.coupling, powers_, 1.0, extrapolation(length), values);
+    guess_speeds(model_.rule(), table.coupling, free, {powers_, 1.0, extrapolation(length)},
+                 values);
     if (!law_.solve(table.coupling, free, table.step, values) || steep(values, table.step)) {
       return refined(end - length);
     }
-    const NodeVector powers = friction_powers(values);
+    const NodeVector powers = friction_powers(model_.rule(), values);
     if (unresolved(values, powers, table.step)) return refined(end - length);
     if (!stays_sliding(table, values, powers, state)) return std::nullopt;
     NodeVector force{};
@@ -219,14 +192,7 @@ class Sliding {
   // Bézier hull of the interpolated speed beyond its interpolation error: u > 0 throughout.
   bool stays_sliding(const SlidingTable& table, const NodeValues& values, const NodeVector& powers,
                      const PlanarVector& state) const {
-    double lowest = HUGE_VAL;
-    for (int i = 0; i < nodes(); ++i) {
-      double control = 0.0;
-      for (int j = 0; j < nodes(); ++j) {
-        control += model_.rule().bernstein[i][j] * values.speed[j];
-      }
-      lowest = std::min(lowest, control);
-    }
+    const double lowest = lowest_control(model_.rule(), values.speed);
     if (!(lowest > 0.0)) return false;
     double remainder = table.free_remainder * model_.free_derivative_bound(state);
     for (int k = 0; k < nodes(); ++k) remainder += table.forced_remainder[k] * std::abs(powers[k]);
@@ -259,7 +225,7 @@ class Sliding {
         return refined(x);
       }
       solved = false;
-      powers = friction_powers(values);
+      powers = friction_powers(model_.rule(), values);
       if (unresolved(values, powers, step)) return refined(x);
       NodeVector force;
       for (std::size_t k = 0; k < force.size(); ++k) force[k] = -side_ * powers[k];
@@ -296,7 +262,7 @@ class Sliding {
     const double step = ratio * model_.series_step();
     for (int i = 1; i < nodes(); ++i) free[i] = sliding_speed(velocity[i], step, i);
     const NodeMatrix coupling = model_.coupling(ratio);
-    guess(free, coupling, powers, from, scale, values);
+    guess_speeds(model_.rule(), coupling, free, {powers, from, scale}, values);
     return law_.solve(coupling, free, step, values);
   }
 
@@ -322,8 +288,7 @@ class Sliding {
   double slope_number_;
   double longest_tail_;  // m_eff r^{s−1}
   BowDrive drive_;       // from the start of the running step
-  double side_ = -1.0;
-  double speed_ = 0.0, friction_ = 0.0, slope_ = 0.0;
+  double side_ = -1.0, speed_ = 0.0, friction_ = 0.0, slope_ = 0.0;
   // Power coefficients of the friction on the last step, and its length in grid steps; none: 0.
   NodeVector powers_{};
   double last_length_ = 0.0;
