@@ -10,6 +10,7 @@
 
 #include "libinverse/model_based/gain_search.hpp"
 #include "libinverse/model_based/innovation_fit.hpp"
+#include "libinverse/model_based/result_judgement.hpp"
 #include "libinverse/model_based/start_values.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/base/task_loop.hpp"
@@ -38,7 +39,6 @@ constexpr std::size_t kNoiseDraws = 16;  // the deviation of the motion is known
 // 2 and 5 % noise hold the truth 83 to 88 % of the time.
 constexpr double kParameterShare = 1.4;
 constexpr std::uint64_t kNoiseSeed = 0x6f627376;  // fixed: the result depends on the record alone
-constexpr std::array kEnds = {End::kLeft, End::kRight};
 constexpr double kQuietNoise = 0.015;  // noise over signal below which a narrower gain pays
 
 // Samples of a signal without content above half the rate from its means m_k over [t_k, t_{k+1}]:
@@ -224,68 +224,10 @@ class Estimation {
       result.gain_share[gain] += 1.0 / static_cast<double>(schedule.size());
     }
     result.runs = run_count_;
-    judge_misfit(schedule, result);
-    result.static_part = static_recovery(result);
-    add_warnings(result);
+    judge_misfit(record_, schedule, runs_->quiet_misfit(), result);
+    result.static_part = static_recovery(record_, result);
+    add_warnings(options_, record_, offset_deviation_, result);
     return result;
-  }
-
-  // What the gain lets in of the noise, by the share of the blocks each gain serves; the scatter of
-  // the median over blocks, √(π/2) that of the mean, and that of the noise levels it is relative
-  // to.
-  void judge_misfit(const GainSchedule& schedule, ModelBasedResult& result) const {
-    double quiet = 0.0, level = 0.0, relative = 0.0;
-    for (const std::size_t gain : schedule) quiet += runs_->quiet_misfit()[gain];
-    for (int r = 0; r < 2; ++r) {
-      const double share = record_.raw_noise[r] / record_.noise[r];
-      level += 0.5 * share * share;
-      relative += 0.25 * record_.noise_deviation[r] * record_.noise_deviation[r];
-    }
-    result.expected_misfit = level * quiet / static_cast<double>(schedule.size());
-    const double samples = 2.0 * static_cast<double>(record_.samples());
-    result.misfit_deviation =
-        result.expected_misfit * std::sqrt(relative + std::numbers::pi / samples);
-  }
-
-  // A steady force F lifts R₁ by −(1 − x_c/L) F and R₂ by −(x_c/L) F: both offsets measure it.
-  StaticRecovery static_recovery(const ModelBasedResult& result) const {
-    const double xi = record_.contact / record_.basis.length;
-    const double share[2] = {1.0 - xi, xi};
-    double precision = 0.0;
-    for (int r = 0; r < 2; ++r) {
-      const double weight =
-          share[r] / silent_deviation(record_, kEnds[r], result.parameters.bow_velocity);
-      precision += weight * weight;
-    }
-    return {mean(result.force), 1.0 / std::sqrt(precision)};
-  }
-
-  void add_warnings(ModelBasedResult& result) const {
-    // Below the floor under the noise the observer's own discretization is all there is to see.
-    const double calibrated = std::max(1.0, result.expected_misfit) + 4.0 * result.misfit_deviation;
-    const double limit = std::isnan(options_.misfit_limit) ? calibrated : options_.misfit_limit;
-    if (!(result.steady_misfit <= limit)) {
-      result.warnings.push_back(fmt::format(
-          "innovation misfit {:.4g} (median over blocks) is above {:.4g}, a right model leaves "
-          "{:.3f} ± {:.3f}: the model does not explain the reactions to their noise; compare with "
-          "the linear estimate, and free what may differ (force_knots, velocity_knots, laws, "
-          "delay, "
-          "gain, contact, frequencies)",
-          result.steady_misfit, limit, result.expected_misfit, result.misfit_deviation));
-    }
-    for (int r = 0; r < 2; ++r) {
-      const double level = std::abs(mean(std::span(record_.reaction[r]).first(record_.silent[r])) -
-                                    result.parameters.offset[r]);
-      const double deviation =
-          std::max(offset_deviation_[r],
-                   silent_deviation(record_, kEnds[r], result.parameters.bow_velocity));
-      if (level > 5.0 * deviation) {
-        result.warnings.push_back(fmt::format(
-            "the fitted offset of the reaction at {} is {:.3g} N away from its level before the "
-            "first wave, {:.2g} standard deviations: the record may not start at rest",
-            r == 0 ? "x = 0" : "x = L", level, level / deviation));
-      }
-    }
   }
 
   const ModelBasedOptions& options_;
