@@ -1,5 +1,4 @@
 // Tables, figures and files of a Schelleng diagram.
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -208,39 +207,7 @@ std::string summary_of(const report::Table& counts, const Spread& lowest, const 
   return text + line("lowest", lowest) + line("highest", highest);
 }
 
-// First and one past the last row of the longest run of Helmholtz cells of a column.
-std::pair<std::size_t, std::size_t> longest_run(const SchellengOptions& options,
-                                                const CellOutcomes& outcomes, std::size_t column) {
-  const auto columns = static_cast<std::size_t>(options.positions.count);
-  const auto rows = static_cast<std::size_t>(options.forces.count);
-  std::pair<std::size_t, std::size_t> best{0, 0};
-  std::size_t begin = 0;
-  for (std::size_t row = 0; row <= rows; ++row) {
-    const bool inside = row < rows && has_regime(outcomes[row * columns + column]) &&
-                        outcomes[row * columns + column]->regime == StringRegime::kHelmholtz;
-    if (inside) continue;
-    if (row - begin > best.second - best.first) best = {begin, row};
-    begin = row + 1;
-  }
-  return best;
-}
-
 }  // namespace
-
-std::vector<BorderRatios> border_ratios(const SchellengOptions& options,
-                                        const CellOutcomes& outcomes) {
-  const std::vector<double> edges = options.forces.edges();
-  std::vector<BorderRatios> ratios;
-  for (std::size_t column = 0; column < static_cast<std::size_t>(options.positions.count);
-       ++column) {
-    const auto [begin, end] = longest_run(options, outcomes, column);
-    const BowForceLimits limits = limits_at(options, column);
-    const bool is_there = begin < end;
-    ratios.push_back({is_there && begin > 0 ? edges[begin] / limits.lowest : kNaN,
-                      is_there && end + 1 < edges.size() ? edges[end] / limits.highest : kNaN});
-  }
-  return ratios;
-}
 
 StudyResult sum_up_map(const SchellengOptions& options, const CellOutcomes& outcomes,
                        const StudyContext& context) {
