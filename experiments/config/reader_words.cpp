@@ -1,0 +1,32 @@
+#include "experiments/config/reader_words.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "experiments/config/nearest_name.hpp"
+#include "experiments/config/reader.hpp"
+
+namespace modcal {
+
+std::vector<std::string> strings_of(const std::vector<std::string_view>& views) {
+  return {views.begin(), views.end()};
+}
+
+std::string_view kind_name(const YamlNode& node) {
+  switch (node.kind) {
+    case YamlNode::Kind::kMap:
+      return "a map";
+    case YamlNode::Kind::kSequence:
+      return "a list";
+    default:
+      return node.text.empty() && !node.quoted ? "nothing" : "a single value";
+  }
+}
+
+std::string suggestion(std::string_view text, const std::vector<std::string>& names) {
+  const std::string nearest = nearest_name(text, names);
+  if (!nearest.empty()) return fmt::format("; did you mean \"{}\"?", nearest);
+  return names.empty() ? std::string() : fmt::format("; known: {}", fmt::join(names, ", "));
+}
+
+}  // namespace modcal
