@@ -15,9 +15,9 @@
 #include "libinverse/water_level.hpp"
 #include "libinverse/water_level_clip.hpp"
 #include "libsim/base/error.hpp"
-#include "libsim/base/random.hpp"
 #include "libsim/model/constant_damping.hpp"
 #include "libsim/signal/statistics.hpp"
+#include "tests/libinverse/safe_problem.hpp"
 #include "tests/refusal.hpp"
 
 namespace modcal {
@@ -41,46 +41,11 @@ ModalBasis violin_g() {
   return make_modal_basis(string);
 }
 
-std::vector<double> noise(std::size_t length, std::uint64_t seed) {
-  std::vector<double> samples(length);
-  fill_standard_normal(StreamKey(seed), samples);
-  return samples;
-}
-
-double norm(std::span<const double> x) {
-  double sum = 0.0;
-  for (const double value : x) sum += value * value;
-  return std::sqrt(sum);
-}
-
 double largest_difference(std::span<const double> x, std::span<const double> y) {
   double largest = 0.0;
   for (std::size_t i = 0; i < x.size(); ++i) largest = std::max(largest, std::abs(x[i] - y[i]));
   return x.size() == y.size() ? largest : std::numeric_limits<double>::infinity();
 }
-
-// A problem of any length with |H| in [0.3, 3], where every bin is safe.
-struct SafeProblem {
-  explicit SafeProblem(std::size_t samples)
-      : fft(samples), transfer(fft.bins()), receptance(fft.bins()), force(noise(samples, 1)) {
-    const std::vector<double> draw = noise(4 * fft.bins(), 2);
-    for (std::size_t k = 0; k < fft.bins(); ++k) {
-      transfer[k] = std::polar(std::pow(3.0, std::tanh(draw[4 * k])), draw[4 * k + 1]);
-      receptance[k] = Complex{draw[4 * k + 2], draw[4 * k + 3]};
-    }
-    remove_mean(force);
-  }
-  // Response of sampled signals: at K/2 the real part of the transfer function is what shows.
-  std::vector<double> response(std::span<const Complex> h) const {
-    std::vector<Complex> spectrum = fft.forward(force);
-    for (std::size_t k = 0; k < spectrum.size(); ++k) spectrum[k] *= h[k];
-    return fft.inverse(spectrum);
-  }
-  RealFft fft;
-  std::vector<Complex> transfer;
-  std::vector<Complex> receptance;
-  std::vector<double> force;
-};
 
 class EveryLength : public testing::TestWithParam<std::size_t> {};
 INSTANTIATE_TEST_SUITE_P(OneSidedInversion, EveryLength,
@@ -173,48 +138,6 @@ TEST(OneSidedInversion, WaterLevelsWorkOnTheBinsBelowThem) {
     EXPECT_NEAR(std::abs(clipped.force_spectrum[k] - expected_clipped[k]), 0.0, 1e-15) << k;
   }
   EXPECT_NEAR(zeroed.choice.kept_share, 4.0 / 7.0, 1e-15);  // bins 1, 3 of 2, 2, 2, 1
-}
-
-// The curve against one inversion in the time domain per parameter.
-class BruteForce : public testing::TestWithParam<std::tuple<std::string, std::size_t>> {};
-INSTANTIATE_TEST_SUITE_P(Curve, BruteForce,
-                         testing::Combine(testing::Values("water_level", "water_level_clip",
-                                                          "tikhonov"),
-                                          testing::Values(250, 257)));
-
-TEST_P(BruteForce, FindsTheNormsOfTheCurve) {
-  const auto& [name, samples] = GetParam();
-  const auto regularizer = Choice<Regularizer>(name).make();
-  const SafeProblem safe(samples);
-  const OneSidedInversion inversion(safe.transfer, safe.receptance, samples, kRate);
-  std::vector<double> reaction = noise(samples, 5);
-  remove_mean(reaction);
-  const MinimalProduct rule({.curve = {.points = 40}});
-  const auto curve = inversion.invert(reaction, {*regularizer, rule}).choice.curve;
-  const FrequencyGrid grid = FrequencyGrid::of_record(samples, kRate);
-  std::vector<Complex> transfer = safe.transfer;
-  if (samples % 2 == 0) transfer.back() = transfer.back().real();
-  for (const CurvePoint& point : curve) {
-    const FixedParameter fixed({.value = point.parameter, .curve = {.points = 0}});
-    std::vector<Complex> force =
-        inversion.invert(reaction, {*regularizer, fixed, kEverything}).force_spectrum;
-    std::vector<Complex> modeled(force.size()), derivative(force.size());
-    double power = 0.0;  // of dF/dt, by Parseval: bin K/2 of a derivative has no samples
-    for (std::size_t k = 0; k < force.size(); ++k) {
-      modeled[k] = transfer[k] * force[k];
-      power += bin_multiplicity(k, samples) * std::norm(grid.omega(k) * force[k]);
-    }
-    std::vector<double> residual = safe.fft.inverse(modeled);
-    for (std::size_t j = 0; j < samples; ++j) residual[j] -= reaction[j];
-    // The residual is a difference of signals of norm ‖R‖: it carries 1e-14 of that. Compacted
-    // sums (Tikhonov) keep 1e-11.
-    EXPECT_NEAR(point.residual_norm, norm(residual),
-                1e-13 * norm(reaction) + 1e-11 * norm(residual));
-    const double solution = std::sqrt(power / static_cast<double>(samples));
-    EXPECT_NEAR(point.solution_norm, solution, 1e-11 * solution);
-    EXPECT_NEAR(point.criterion, point.residual_norm * point.solution_norm,
-                1e-15 * point.criterion);
-  }
 }
 
 TEST(OneSidedInversion, StatesBinsWithoutTransfer) {
