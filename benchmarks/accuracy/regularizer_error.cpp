@@ -125,12 +125,14 @@ void print_row(const std::string& problem, const std::string& filter_name,
 double best_of(const Invert& invert, std::size_t draws, double largest, const char* measure) {
   std::vector<double> best(draws, 1e300);
   for (std::size_t draw = 0; draw < draws; ++draw) {
-    for (double level = largest; level > 1e-10 * largest; level *= 0.85) {
+    double level = largest;
+    while (level > 1e-10 * largest) {
       CurveOptions none;
       none.points = 0;
       none.measure = measure;
       const FixedParameter fixed({.value = level, .curve = none});
       best[draw] = std::min(best[draw], invert(fixed, draw).error);
+      level *= 0.85;
     }
   }
   return quantile(best, 0.5);

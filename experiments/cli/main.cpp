@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <exception>
 
 #include "experiments/cli/command.hpp"
 #include "experiments/cli/guarded.hpp"
@@ -60,4 +61,12 @@ int main_of(int argc, char** argv) {
 }  // namespace
 }  // namespace modcal
 
-int main(int argc, char** argv) { return modcal::main_of(argc, argv); }
+// What fails outside a command: memory, or a message that cannot be written.
+int main(int argc, char** argv) {
+  try {
+    return modcal::main_of(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "internal error: %s\n", error.what());
+    return static_cast<int>(modcal::ExitCode::kInternal);
+  }
+}

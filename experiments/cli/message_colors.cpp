@@ -47,7 +47,8 @@ std::string with_color_codes(const std::string& text) {
     } else if (mark(line, "warning:", kYellow)) {
       color = kYellow;
     } else if (is_caret(line)) {
-      line = std::string(color) + line + std::string(kEnd);
+      line.insert(0, color);
+      line += kEnd;
     }
     result += line;
     if (end < text.size()) result += '\n';

@@ -97,4 +97,6 @@ int main_of(int argc, char** argv) {
 }  // namespace
 }  // namespace modcal
 
+// An exception that nobody catches aborts, and the launcher ends the other ranks.
+// NOLINTNEXTLINE(bugprone-exception-escape)
 int main(int argc, char** argv) { return modcal::main_of(argc, argv); }

@@ -33,7 +33,7 @@ std::vector<std::filesystem::path> yaml_files(const std::filesystem::path& folde
 
 // "paper": every file of configs/paper; "table1": that one of them.
 std::vector<std::filesystem::path> files_of(const ReproduceArguments& arguments) {
-  const auto all = yaml_files(std::filesystem::path(arguments.configs) / "paper");
+  auto all = yaml_files(std::filesystem::path(arguments.configs) / "paper");
   MODCAL_REQUIRE(!all.empty(), "no experiment stands in {}/paper: name the folder with --configs",
                  arguments.configs);
   if (arguments.target == "paper") return all;
