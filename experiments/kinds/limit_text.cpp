@@ -75,9 +75,13 @@ std::string singular_values(const ExpectedLimit& limit) {
 }
 
 std::string mode_lines(const ExpectedLimit& limit) {
+  std::vector<std::string> known;
+  if (limit.find("x_c")) known.push_back(fmt::format("of x_c {:.3g} m", limit.contact));
+  if (limit.find("damping")) {
+    known.push_back(fmt::format("of the damping factor {:.3g}", limit.damping));
+  }
   std::string text = "every frequency free";
-  if (limit.find("x_c")) text += fmt::format(": sd of x_c {:.3g} m", limit.contact);
-  if (limit.find("damping")) text += fmt::format(", of the damping factor {:.3g}", limit.damping);
+  if (!known.empty()) text += fmt::format(": sd {}", fmt::join(known, ", "));
   const bool ratios =
       std::any_of(limit.parameters.begin(), limit.parameters.end(),
                   [](const ParameterLimit& row) { return row.parameter.starts_with("zeta_"); });
@@ -156,6 +160,10 @@ LimitTruth limit_truth(const ObservationOptions& observation, double noise_level
                               truth->simulation.right_reaction.samples};
   for (std::size_t r = 0; r < 2; ++r) {
     remove_mean(result.records.reactions[r]);
+    MODCAL_REQUIRE(standard_deviation(result.records.reactions[r]) > 0.0,
+                   "reaction {} of the scene is constant: nothing moves the string and no record "
+                   "tells of it; bow it with a normal force > 0 or pluck it",
+                   r + 1);
     result.records.deviation[r] =
         noise_level > 0.0
             ? noise_level * standard_deviation(result.records.reactions[r])
@@ -207,8 +215,10 @@ LimitCase limit_case(const LimitQuestion& question, TruthCache& truths) {
 }
 
 std::string limit_text(const LimitQuestion& question, TruthCache& truths) {
-  MODCAL_REQUIRE(question.noise_level > 0.0,
-                 "without noise there is no limit: state a noise level > 0");
+  MODCAL_REQUIRE(
+      question.noise_level > 0.0,
+      "without noise there is no limit: state measurement.noise_level (noise_levels of a "
+      "calibration_limit) > 0");
   const LimitCase records = limit_case(question, truths);
   const ExpectedLimit limit = expected_limit(records);
   return record_lines(question, records) + law_lines(limit) + mode_lines(limit) +

@@ -5,6 +5,7 @@
 
 #include "experiments/kinds/limit_source.hpp"
 #include "experiments/loader.hpp"
+#include "libsim/base/error.hpp"
 
 namespace modcal {
 namespace {
@@ -71,6 +72,25 @@ TEST(LimitText, HasARowForEveryFreeParameterInBothStages) {
   }
   EXPECT_THAT(limit_of(config(", unknowns: {damping: each}", "")),
               testing::HasSubstr("relative sd  sd of zeta  verdict"));
+}
+
+TEST(LimitText, NamesNoFixedContactAmongTheDeviations) {
+  const std::string fixed = limit_of(
+      config(", unknowns: {damping: factor, fixed: [{parameter: x_c, value: 66 mm}]}", ""));
+  EXPECT_THAT(fixed, testing::HasSubstr("every frequency free: sd of the damping factor "));
+  EXPECT_THAT(limit_of(config("", "")),
+              testing::ContainsRegex("every frequency free: sd of x_c [^\n]* m, of the damping"));
+}
+
+TEST(LimitText, RefusesAStringThatNothingMoves) {
+  std::string silent = config("", "");
+  silent.replace(silent.find("normal_force: 1 N"), 17, "normal_force: 0 N");
+  try {
+    limit_of(silent);
+    FAIL();
+  } catch (const InvalidInput& refusal) {
+    EXPECT_THAT(refusal.what(), testing::HasSubstr("normal force > 0"));
+  }
 }
 
 }  // namespace
