@@ -89,7 +89,8 @@ struct ContinuationResult {
 };
 
 /// Highest ω of the likelihood's bins [rad/s]: highest_frequency [Hz], or 1.05 times the highest
-/// mode where that is NaN; below 0.4 f_s.
+/// mode where that is NaN; below 0.4 f_s. Throws InvalidInput where fewer than two modes lie below
+/// a stated one.
 double likelihood_band(const ModelPoint& point, double highest_frequency, double sample_rate);
 
 /// Law (f_0, B, x_c, then one damping factor) through σ ≈ 200, 100, 50, 20 1/s (in proportion to

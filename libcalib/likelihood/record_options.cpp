@@ -4,12 +4,14 @@ namespace modcal {
 
 void visit_record_options(OptionVisitor& visitor, double& highest_frequency, double& left_noise,
                           double& right_noise) {
-  visitor.number({.key = "highest_frequency",
-                  .meaning = "highest frequency used; automatic: 5 % above the highest mode",
-                  .unit = "Hz",
-                  .range = Range::positive(),
-                  .word = "automatic"},
-                 highest_frequency);
+  visitor.number(
+      {.key = "highest_frequency",
+       .meaning = "highest frequency used, not above 0.4 sampling rates; automatic: 5 % above "
+                  "the highest mode",
+       .unit = "Hz",
+       .range = Range::positive(),
+       .word = "automatic"},
+      highest_frequency);
   visit_noise_levels(visitor, left_noise, right_noise);
 }
 
