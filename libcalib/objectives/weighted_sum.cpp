@@ -133,6 +133,9 @@ WeightedSum::WeightedSum(const Options& options) : options_(options) {
 }
 
 Response WeightedSum::response(ParameterKind kind) const {
+  MODCAL_REQUIRE(!options_.terms.empty(),
+                 "a weighted_sum without terms: state terms: [{{weight: 1, objective: "
+                 "joint_likelihood}}, ...]");
   Response response = Response::kNone;
   for (const Term& term : options_.terms) {
     const Response own = term.objective.make()->response(kind);

@@ -114,6 +114,16 @@ TEST(WeightedSum, GivesOnlyWhatAllTermsGive) {
   expect_slopes_match(*sum, given.parameters.variables(), given.parameters.start(), 1e-6, 1e-4);
 }
 
+TEST(WeightedSum, WithoutTermsSaysThatItHasNone) {
+  const std::vector<std::string> names = {"f0"};
+  try {
+    sum_of({}).require_moved_by(names);
+    FAIL();
+  } catch (const InvalidInput& refusal) {
+    EXPECT_THAT(refusal.what(), testing::HasSubstr("without terms"));
+  }
+}
+
 TEST(WeightedSum, ScansTheSumOfTheParts) {
   const Case given;
   const ParameterSet parameters(paper_truth(12), Names{"f_4", "x_c"});
