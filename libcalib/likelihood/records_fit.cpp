@@ -11,8 +11,9 @@ void require_contacts(const UnknownsOptions& options, std::size_t strokes) {
   const auto require = [strokes](const std::string& parameter) {
     const std::optional<UnknownName> name = parse_unknown(parameter);
     MODCAL_REQUIRE(!name || name->kind != UnknownKind::kContact || name->record < strokes,
-                   "\"{}\" is stated, but {} records have a contact, the strokes: plucks have none",
-                   parameter, strokes);
+                   "\"{}\" is stated, but only strokes have a contact, and there {}: name one of "
+                   "theirs, or state further_strokes",
+                   parameter, strokes == 1 ? "is one" : fmt::format("are {}", strokes));
   };
   for (const ParameterPrior& prior : options.priors) require(prior.parameter);
   for (const FixedParameter& fixed : options.fixed) require(fixed.parameter);

@@ -142,8 +142,8 @@ void require_priors(const UnknownsOptions& options, std::size_t modes, std::size
       "damping and zeta_1 both have priors: the factor is that of zeta_{}, state one", 1);
   if (options.priors.empty()) {
     MODCAL_REQUIRE(options.correlations.empty(),
-                   "{} correlations of priors that are not stated: list them under priors",
-                   options.correlations.size());
+                   "{} have a correlation and no priors: list both under priors",
+                   fmt::join(options.correlations.front().between, " and "));
     return;
   }
   const double least =

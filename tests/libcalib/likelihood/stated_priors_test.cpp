@@ -324,7 +324,7 @@ TEST(StatedPriors, ThatAreNoneAreRefusedWithTheReason) {
   refused(fixed, "within (0, 0.33) m");
   refused(stating({{"corner", 4.0, 1.0}}), "corner: {free: true}");
   refused(stating({{"zeta_3", 1e-3, 1e-4}, {"damping_power", 0.0, 0.1}}), "damping: power");
-  refused(stating({}, {{{"f0", "B"}, 0.3}}), "priors that are not stated");
+  refused(stating({}, {{{"f0", "B"}, 0.3}}), "f0 and B have a correlation and no priors");
   const std::vector<ParameterPrior> three = {
       {"f0", 196.0, 1.0}, {"B", 1e-4, 1e-5}, {"x_c", 0.03, 1e-3}};
   refused(stating(three, {{{"f0", "gain"}, 0.3}}), "\"gain\", which has no prior");
