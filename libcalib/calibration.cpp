@@ -159,7 +159,7 @@ std::vector<CalibratedParameter> found_parameters(const ModelPoint& initial,
 std::vector<CalibratedMode> found_modes(const ModelPoint& initial, const ContinuationResult& found,
                                         double excitation_threshold) {
   const std::vector<bool> excited = excited_modes(found.model, excitation_threshold);
-  const std::vector<double> shape = initial.basis.shape_at(initial.contact);
+  const std::vector<double> shape = found.model.basis.shape_at(found.model.contact);
   std::vector<CalibratedMode> modes;
   for (std::size_t i = 0; i < found.modes.size(); ++i) {
     modes.push_back({.number = i + 1,

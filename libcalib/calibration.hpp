@@ -49,9 +49,9 @@ struct CalibratedMode {
   std::size_t number = 0;          ///< n
   double initial_frequency = 0.0;  ///< [Hz]
   double frequency = 0.0;          ///< [Hz]
-  double shape = 0.0;              ///< φ_n at the initial contact
-  bool excited = false;            ///< |φ_n| ≥ the threshold
-  bool searched = false;           ///< its frequency was a free parameter of its own
+  double shape = 0.0;     ///< φ_n at the initial contact; of a continuation at the one found
+  bool excited = false;   ///< |φ_n| ≥ the threshold
+  bool searched = false;  ///< its frequency was a free parameter of its own
 };
 
 struct CalibrationResult {

@@ -28,6 +28,12 @@ Json misfit_json(const PriorMisfit& misfit) {
 
 }  // namespace
 
+std::string verdict_text(const ModeVerdict& mode) {
+  const std::string source(name_of(mode.source));
+  if (mode.reason == WeakReason::kNone) return source;
+  return fmt::format("{} ({})", source, name_of(mode.reason));
+}
+
 std::string prior_lines(const PriorMisfit& misfit, std::string_view stage) {
   if (misfit.count == 0) return "";
   const std::string verdict = misfit.contradicted() ? "THE PRIORS ARE CONTRADICTED BY THE DATA"
@@ -181,6 +187,7 @@ report::Table mode_table(const CalibrationOutcome& outcome, const std::string& c
                   {.key = "f_hz", .name = "refined", .unit = "Hz", .format = "{:.3f}"},
                   {.key = "relative_error", .name = "relative error", .format = "{:.2e}"},
                   {.key = "relative_sd", .name = "relative sd", .format = "{:.2e}"},
+                  {.key = "verdict"},
                   {.key = "excited"},
                   {.key = "shape_at_contact",
                    .name = "mode shape at the contact",
@@ -188,16 +195,18 @@ report::Table mode_table(const CalibrationOutcome& outcome, const std::string& c
       .command = command};
   for (const CalibratedMode& mode : outcome.result.modes) {
     const double refined = refined_frequency(outcome, mode.number);
-    report::Cell truth, error, deviation;
+    report::Cell truth, error, deviation, verdict;
     if (outcome.result.continuation) {
-      deviation = outcome.result.continuation->modes[mode.number - 1].deviation;
+      const ModeVerdict& found = outcome.result.continuation->modes[mode.number - 1];
+      deviation = found.deviation;
+      verdict = verdict_text(found);
     }
     if (!outcome.true_frequencies.empty()) {
       truth = outcome.true_frequencies[mode.number - 1];
       error = refined / outcome.true_frequencies[mode.number - 1] - 1.0;
     }
     table.rows.push_back({mode.number, truth, mode.initial_frequency, refined, error, deviation,
-                          mode.excited, mode.shape});
+                          verdict, mode.excited, mode.shape});
   }
   return table;
 }

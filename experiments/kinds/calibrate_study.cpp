@@ -179,6 +179,10 @@ StudyResult calibrate_study(const CalibrateOptions& options, const StudyContext&
     result.summary += text + "\n";
     result.blocks.emplace_back(report::Text{text, report::Text::Kind::kNote});
   }
+  if (const auto& found = outcome.result.continuation) {
+    result.blocks.emplace_back(report::Text{
+        chi2_line(*found), found->fits ? report::Text::Kind::kNote : report::Text::Kind::kFailure});
+  }
   add_warnings(observation, sides, result);
   for (const FigureOptions& figure : inversion.figures) {
     report::Figure drawn;

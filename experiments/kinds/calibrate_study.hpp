@@ -63,6 +63,8 @@ SecondsClock polling_clock(const StudyContext& context);
 
 StudyResult calibrate_study(const CalibrateOptions& options, const StudyContext& context);
 
+/// Where a mode's frequency comes from and why: "from the law (node)".
+std::string verdict_text(const ModeVerdict& mode);
 /// What a stage's fit says of the priors; empty where none was stated.
 std::string prior_lines(const PriorMisfit& misfit, std::string_view stage);
 

@@ -8,16 +8,21 @@
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {
+
+std::string chi2_line(const ContinuationResult& found) {
+  return fmt::format("reduced chi2 {:.4f} (sd {:.4f}): {}; law alone {:.4f}: {}", found.chi2,
+                     found.chi2_deviation,
+                     found.fits ? "the data do not contradict the fit" : "THE FIT IS WRONG",
+                     found.law.chi2, found.law.accepted ? "accepted" : "contradicted");
+}
+
 namespace {
 
 std::string verdict_lines(const ContinuationResult& found) {
-  std::string text = fmt::format(
-      "reduced chi2 {:.4f} (sd {:.4f}): {}; law alone {:.4f}: {}\nsd: f0 {:.3g} Hz, B {:.3g}, x_c "
-      "{:.3g} m, damping factor {:.3g}\n",
-      found.chi2, found.chi2_deviation,
-      found.fits ? "the data do not contradict the fit" : "THE FIT IS WRONG", found.law.chi2,
-      found.law.accepted ? "accepted" : "contradicted", found.law.deviation[0],
-      found.law.deviation[1], found.contact_deviation, found.damping_deviation);
+  std::string text =
+      fmt::format("{}\nsd: f0 {:.3g} Hz, B {:.3g}, x_c {:.3g} m, damping factor {:.3g}\n",
+                  chi2_line(found), found.law.deviation[0], found.law.deviation[1],
+                  found.contact_deviation, found.damping_deviation);
   if (found.chi2 < 1.0 - 3.0 * found.chi2_deviation) {
     text += fmt::format(
         "noise overstated: the data scatter less than the noise levels say; standard deviations "
@@ -29,10 +34,8 @@ std::string verdict_lines(const ContinuationResult& found) {
   for (std::size_t n = 0; found.frequencies_free && n < found.modes.size(); ++n) {
     const ModeVerdict& mode = found.modes[n];
     if (mode.source == ModeSource::kIdentified) continue;
-    const std::string reason =
-        mode.reason == WeakReason::kNone ? "" : fmt::format(" ({})", name_of(mode.reason));
-    text += fmt::format("mode {}: {}{}, relative sd {:.2g}\n", n + 1, name_of(mode.source), reason,
-                        mode.deviation);
+    text +=
+        fmt::format("mode {}: {}, relative sd {:.2g}\n", n + 1, verdict_text(mode), mode.deviation);
   }
   return text;
 }

@@ -72,6 +72,9 @@ TEST(CalibrateOutput, TablesHaveDeviationsWhereTheyAreKnown) {
   EXPECT_EQ(std::get<double>(parameters.rows[0][3].value), 2e-3);
   EXPECT_TRUE(std::holds_alternative<std::monostate>(parameters.rows[1][3].value));
   EXPECT_EQ(std::get<double>(modes.rows[0][5].value), 2e-6);
+  EXPECT_EQ(std::get<std::string>(modes.rows[0][6].value), "identified");
+  EXPECT_EQ(verdict_text({.source = ModeSource::kLaw, .reason = WeakReason::kNode}),
+            "from the law (node)");
 }
 
 }  // namespace

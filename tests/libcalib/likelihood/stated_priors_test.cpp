@@ -277,6 +277,8 @@ TEST(FreedUnknowns, AmongThemEveryDampingRatio) {
     EXPECT_LT(std::abs(ratio->final - bowed.truth.basis.zeta[n]), 6.0 * ratio->deviation) << n + 1;
   }
   EXPECT_EQ(count, 49u);
+  const std::vector<double> shape = found.model.basis.shape_at(found.model.contact);
+  for (const CalibratedMode& mode : found.modes) EXPECT_EQ(mode.shape, shape[mode.number - 1]);
 }
 
 TEST(StatedPriors, WithoutThoseOfSingleFrequenciesKeepTheRest) {
