@@ -178,20 +178,8 @@ CalibrationResult calibrate_to_the_bound(const ModelPoint& initial,
                                          std::span<const PluckRecord> plucks,
                                          const CalibrationOptions& options,
                                          const SecondsClock& clock) {
+  require_continuation_parameters(options.parameters, records.size());
   const ParameterOptions& free = options.parameters;
-  MODCAL_REQUIRE(free.law && free.frequencies != "listed",
-                 "a continuation frees the law and no frequency or all of them: state parameters: "
-                 "{{frequencies: all, law: true, contact: true}}, and what is known of single ones "
-                 "under continuation: {{unknowns: {{fixed: ...}}}}");
-  MODCAL_REQUIRE(free.contact || records.size() == 1,
-                 "contact: false holds the contact of one stroke, and there are {}: state contact: "
-                 "true and the contacts that are known under continuation: {{unknowns: {{fixed: "
-                 "...}}}}",
-                 records.size());
-  MODCAL_REQUIRE(free.damping == "fixed" && free.sensors.empty(),
-                 "a continuation is told of damping {} and {} sensor parameters in another place: "
-                 "state them under continuation: {{unknowns: ...}}, not under parameters",
-                 free.damping, free.sensors.size());
   ContinuationOptions continuation = options.continuation;
   continuation.frequencies = free.frequencies == "all";
   if (!free.contact) continuation.unknowns.fixed.push_back({.parameter = "x_c"});
@@ -235,6 +223,26 @@ void CalibrationOptions::visit(OptionVisitor& visitor) {
                   .unit = "1",
                   .range = Range::closed(0.0, 1.0)},
                  excitation_threshold);
+}
+
+void require_continuation_parameters(const ParameterOptions& free, std::size_t strokes) {
+  MODCAL_REQUIRE(free.law && free.frequencies != "listed",
+                 "a continuation frees the law and no frequency or all of them: state parameters: "
+                 "{{frequencies: all, law: true, contact: true}}, and what is known of single ones "
+                 "under continuation: {{unknowns: {{fixed: ...}}}}");
+  MODCAL_REQUIRE(free.contact || strokes == 1,
+                 "contact: false holds the contact of one stroke, and there are {}: state contact: "
+                 "true and the contacts that are known under continuation: {{unknowns: {{fixed: "
+                 "...}}}}",
+                 strokes);
+  MODCAL_REQUIRE(free.damping == "fixed",
+                 "a continuation does not read damping: {} here: state it under continuation: "
+                 "{{unknowns: {{damping: {}}}}}",
+                 free.damping, free.damping);
+  MODCAL_REQUIRE(free.sensors.empty(),
+                 "a continuation does not read sensors: [{}] here: state {}: {{free: true}} under "
+                 "continuation: {{unknowns: ...}}",
+                 fmt::join(free.sensors, ", "), free.sensors.front());
 }
 
 std::vector<bool> excited_modes(const ModelPoint& point, double threshold) {

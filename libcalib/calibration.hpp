@@ -69,6 +69,9 @@ struct CalibrationResult {
 /// Marks the modes with |φ_n(x_c)| ≥ threshold.
 std::vector<bool> excited_modes(const ModelPoint& point, double threshold);
 
+/// Throws InvalidInput for parameters that a continuation over `strokes` strokes does not read.
+void require_continuation_parameters(const ParameterOptions& parameters, std::size_t strokes);
+
 /// Minimizes the objective over the parameters asked for, save the frequencies of blind modes.
 /// Throws InvalidInput where objective, optimizer, data and parameters do not fit together, before
 /// the first evaluation.

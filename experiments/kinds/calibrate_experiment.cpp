@@ -30,10 +30,33 @@ void lint_noise(const CalibrateOptions& options, std::vector<Finding>& findings)
           return;
         }
         const ContinuationOptions& continuation = calibration.continuation;
+        likelihood_band({basis, 0.0}, continuation.highest_frequency, rate);
         require_noise_known({continuation.left_noise, continuation.right_noise}, basis, rate,
                             samples);
       },
       findings);
+}
+
+// What stands in the file and a continuation, which ends by itself, does not read.
+void lint_unread(const CalibrationOptions& calibration, std::vector<Finding>& findings) {
+  const CalibrationOptions plain;
+  const auto add = [&findings](std::string key, std::string_view reason) {
+    findings.push_back({"calibration." + key,
+                        fmt::format("a continuation does not read {}: {}; leave it out, or leave "
+                                    "continuation out",
+                                    key, reason)});
+  };
+  if (calibration.objective.selected() != plain.objective.selected()) {
+    add("objective", "it minimizes the joint likelihood");
+  }
+  if (calibration.optimizer.selected() != plain.optimizer.selected()) {
+    add("optimizer", "it takes Newton steps of its own");
+  }
+  const Budget& budget = calibration.budget;
+  if (budget.evaluations != plain.budget.evaluations || !std::isnan(budget.seconds) ||
+      !std::isnan(budget.target)) {
+    add("budget", "it takes some 50 to 400 evaluations and ends by itself");
+  }
 }
 
 }  // namespace
@@ -61,6 +84,10 @@ std::vector<Finding> CalibrateExperiment::lint() const {
     const std::size_t strokes =
         1 + options_.further.contacts.size() + options_.further.files.size();
     const UnknownsOptions& unknowns = calibration.continuation.unknowns;
+    lint_unread(calibration, findings);
+    lint_making(
+        "calibration.parameters",
+        [&] { require_continuation_parameters(calibration.parameters, strokes); }, findings);
     append(findings, lint_priors("calibration.continuation.unknowns", unknowns,
                                  options_.inversion.observation.string_model(),
                                  strokes + options_.plucks.size()));

@@ -73,6 +73,39 @@ TEST(LintStrokes, RefusesWhatCannotBeFittedTogether) {
             std::string::npos);
 }
 
+TEST(LintContinuation, RefusesWhatItWouldNotRead) {
+  const auto messages = [](const std::string& calibration) {
+    return messages_of(strokes(", continuation: {}" + calibration, "{contacts: [28 mm]}"));
+  };
+  EXPECT_THAT(messages(", budget: {evaluations: 10}"),
+              testing::ContainsRegex("scene.yaml:6:[0-9]+: error: a continuation does not read "
+                                     "budget: [^\n]*leave it out"));
+  EXPECT_THAT(messages(", objective: force_mismatch"),
+              testing::HasSubstr("a continuation does not read objective"));
+  EXPECT_THAT(messages(", optimizer: ceres"),
+              testing::HasSubstr("a continuation does not read optimizer"));
+  // What a run writes down of the defaults can be run again.
+  EXPECT_EQ(messages(", budget: {evaluations: 100000}, objective: spectral_peak").find("error"),
+            std::string::npos);
+}
+
+TEST(LintContinuation, SaysWhereItsParametersAndItsBandAreStated) {
+  const auto messages = [](const std::string& parameters, const std::string& continuation) {
+    std::string text = strokes(", continuation: " + continuation, "{contacts: [28 mm]}");
+    const std::string plain = "{frequencies: all, law: true, contact: true}";
+    return messages_of(text.replace(text.find(plain), plain.size(), parameters));
+  };
+  EXPECT_THAT(messages("{law: true, contact: true, sensors: [gain, delay]}", "{}"),
+              testing::ContainsRegex("scene.yaml:6:[0-9]+: error: [^\n]*gain: .free: true."));
+  EXPECT_THAT(messages("{law: true, contact: true, damping: each}", "{}"),
+              testing::HasSubstr("unknowns: {damping: each}"));
+  const std::string all = "{frequencies: all, law: true, contact: true}";
+  EXPECT_THAT(messages(all, "{highest_frequency: 300}"),
+              testing::ContainsRegex("scene.yaml:6:[0-9]+: error: highest_frequency 300 Hz: below "
+                                     "it lie fewer than the 2 modes[^\n]*more than 392 Hz"));
+  EXPECT_EQ(messages(all, "{highest_frequency: 400}").find("error"), std::string::npos);
+}
+
 // Two priors that are wrong and one that is not, then correlations; each in a line of its own.
 constexpr const char* kUnknowns =
     "    damping: power\n"
