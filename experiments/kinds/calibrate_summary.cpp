@@ -80,8 +80,9 @@ void add_calibration_summary(const CalibrationOutcome& outcome, StudyResult& res
   }
   for (const CalibratedParameter& parameter : outcome.result.parameters) {
     if (parameter.name.starts_with("f_")) continue;
-    result.summary += fmt::format("{}: {:.8g} -> {:.8g} {}", parameter.name, parameter.initial,
-                                  parameter.final, parameter.unit);
+    result.summary +=
+        fmt::format("{}: {:.8g} -> {:.8g}{}", parameter.name, parameter.initial, parameter.final,
+                    parameter.unit == "1" ? "" : " " + parameter.unit);
     result.summary +=
         std::isnan(parameter.deviation) ? "\n" : fmt::format(", sd {:.3g}\n", parameter.deviation);
   }
