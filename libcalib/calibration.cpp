@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "libcalib/covariance.hpp"
 #include "libcalib/stiff_string_fit.hpp"
 #include "libsim/base/error.hpp"
 
@@ -42,6 +43,25 @@ std::vector<CalibratedParameter> report_parameters(const std::vector<Variable>& 
                       .at_bound = x[i] <= variable.lower || x[i] >= variable.upper});
   }
   return result;
+}
+
+bool at_optimum(StopReason stop) {
+  return stop == StopReason::kConverged || stop == StopReason::kSmallStep ||
+         stop == StopReason::kSmallDecrease || stop == StopReason::kRoundoff;
+}
+
+// Standard deviations of what was searched, where (JᵀJ)⁻¹ is the covariance.
+void add_deviations(const Objective& objective, const ObjectiveFunction& function,
+                    const std::vector<Variable>& variables, CalibrationResult& result) {
+  const bool bounded =
+      std::any_of(result.parameters.begin(), result.parameters.end(),
+                  [](const CalibratedParameter& parameter) { return parameter.at_bound; });
+  const bool known = objective.whitened() && function.capabilities().least_squares;
+  if (!known || bounded || !at_optimum(result.search.stop)) return;
+  const Covariance covariance = covariance_at(function, variables, result.search.x);
+  for (std::size_t i = 0; i < result.parameters.size(); ++i) {
+    result.parameters[i].deviation = covariance.standard_deviation(i);
+  }
 }
 
 std::vector<CalibratedMode> report_modes(const ParameterSet& parameters, const ModelPoint& model,
@@ -261,7 +281,8 @@ CalibrationResult calibrate(const ModelPoint& initial, const CalibrationData& da
   const std::vector<bool> excited = excited_modes(initial, options.excitation_threshold);
   Names names = split_names(options, excited);
   const ParameterSet parameters(initial, names.free, options.parameters.ranges);
-  const auto function = options.objective.make()->bind(data, parameters);
+  const auto objective = options.objective.make();
+  const auto function = objective->bind(data, parameters);
   const std::vector<Variable> variables = parameters.variables();
   CalibrationResult result;
   result.search =
@@ -270,6 +291,7 @@ CalibrationResult calibrate(const ModelPoint& initial, const CalibrationData& da
   result.model = parameters.model(result.search.x);
   result.parameters = report_parameters(variables, result.search.x);
   result.modes = report_modes(parameters, result.model, excited);
+  add_deviations(*objective, *function, variables, result);
   return result;
 }
 

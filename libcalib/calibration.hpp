@@ -40,7 +40,9 @@ struct CalibratedParameter {
   double initial = 0.0;
   double final = 0.0;
   bool at_bound = false;  ///< the search ended on a bound: the optimum may lie beyond
-  /// Standard deviation, with a continuation; NaN: not known.
+  /// Standard deviation: of a continuation; of a search that reached an optimum of a whitened
+  /// objective by its residuals, within the bounds (covariance_at(), which counts noise as
+  /// information: too small where the data tell little). NaN: not known.
   double deviation = std::numeric_limits<double>::quiet_NaN();
 };
 

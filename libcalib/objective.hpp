@@ -37,6 +37,9 @@ class Objective {
   /// Throws InvalidInput for a parameter (see parse_unknown()) that the objective cannot find.
   void require_moved_by(std::span<const std::string> names) const;
   virtual Response response(ParameterKind kind) const;
+  /// Whether its residuals are independent and of variance 1 for a right model, so that (JᵀJ)⁻¹ at
+  /// the optimum is the covariance of the parameters.
+  virtual bool whitened() const { return false; }
   /// Throws InvalidInput where it cannot work with a record of `samples` at f_s [Hz] of this
   /// string.
   virtual void require_record(const ModalBasis& basis, double sample_rate,

@@ -24,6 +24,7 @@ class FrequencyPrior final : public Objective {
   /// frequencies and deviations that are not finite and > 0.
   explicit FrequencyPrior(const Options& options);
   Response response(ParameterKind kind) const override;
+  bool whitened() const override { return true; }
 
  private:
   /// Throws InvalidInput for no mode and for one that the model does not have.

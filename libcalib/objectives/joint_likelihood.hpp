@@ -24,6 +24,8 @@ class JointLikelihood final : public Objective {
   };
   explicit JointLikelihood(const Options& options);
   Response response(ParameterKind /*kind*/) const override { return Response::kMoves; }
+  /// Damped records have correlated bins.
+  bool whitened() const override { return options_.damping == 0.0; }
   /// Refuses a record in which a noise level that is not stated cannot be seen.
   void require_record(const ModalBasis& basis, double sample_rate,
                       std::size_t samples) const override;

@@ -145,6 +145,12 @@ Response WeightedSum::response(ParameterKind kind) const {
   return response;
 }
 
+bool WeightedSum::whitened() const {
+  return std::all_of(options_.terms.begin(), options_.terms.end(), [](const Term& term) {
+    return term.weight == 1.0 && term.objective.make()->whitened();
+  });
+}
+
 void WeightedSum::require_record(const ModalBasis& basis, double sample_rate,
                                  std::size_t samples) const {
   for (const Term& term : options_.terms) {

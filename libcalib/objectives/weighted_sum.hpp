@@ -41,6 +41,8 @@ class WeightedSum final : public Objective {
   explicit WeightedSum(const Options& options);
   /// Moved by what moves one of the terms.
   Response response(ParameterKind kind) const override;
+  /// All terms are, each with the weight 1.
+  bool whitened() const override;
   void require_record(const ModalBasis& basis, double sample_rate,
                       std::size_t samples) const override;
 

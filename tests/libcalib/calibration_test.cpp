@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "libcalib/objectives/joint_likelihood.hpp"
 #include "libcalib/optimizers/grid.hpp"
 #include "libcalib/optimizers/mode_by_mode.hpp"
 #include "libcalib/stiff_string_fit.hpp"
@@ -80,6 +83,36 @@ TEST(Calibrate, ReportsParametersWithUnitsAndBounds) {
   EXPECT_TRUE(result.parameters[0].at_bound);
   EXPECT_EQ(result.model.contact, result.parameters[0].final);
   EXPECT_EQ(result.search.scans.at(0).values.size(), 11u);
+}
+
+CalibrationOptions contact_by(Choice<Objective> objective, const char* optimizer) {
+  CalibrationOptions options;
+  options.parameters.contact = true;
+  options.parameters.ranges.contact = 1e-4;
+  options.objective = std::move(objective);
+  options.optimizer = Choice<Optimizer>(optimizer);
+  return options;
+}
+
+TEST(Calibrate, HasStandardDeviationsWhereResidualsAreWhite) {
+  const CalibrationData data = bowed_data(1.0, 0.01, 4e-6);
+  ModelPoint initial = paper_truth(50);
+  initial.contact += 1e-6;
+  const auto likelihood = [](double damping) {
+    return Choice<Objective>::of<JointLikelihood>("joint_likelihood", {.damping = damping});
+  };
+  const CalibrationResult found = calibrate(initial, data, contact_by(likelihood(0.0), "ceres"));
+  // The bound of x_c at 1 %, 0.294 µm, to which f0, B and damping are hardly correlated; what is
+  // left is the trajectory, another one by its step.
+  const CalibratedParameter& contact = found.parameters.at(0);
+  EXPECT_NEAR(contact.deviation, 2.94e-7, 0.1 * 2.94e-7);
+  EXPECT_LT(std::abs(contact.final - 0.03), 6.0 * contact.deviation);
+  for (const CalibrationOptions& without :
+       {contact_by(likelihood(20.0), "ceres"),                        // correlated bins
+        contact_by(likelihood(0.0), "grid"),                          // no optimum
+        contact_by(Choice<Objective>("force_mismatch"), "ceres")}) {  // no unit of noise
+    EXPECT_TRUE(std::isnan(calibrate(initial, data, without).parameters.at(0).deviation));
+  }
 }
 
 TEST(Calibrate, RefusesWhatCannotBeCalibrated) {

@@ -114,6 +114,12 @@ TEST(WeightedSum, GivesOnlyWhatAllTermsGive) {
   expect_slopes_match(*sum, given.parameters.variables(), given.parameters.start(), 1e-6, 1e-4);
 }
 
+TEST(WeightedSum, IsWhiteWhereAllItsTermsAreWithTheWeightOne) {
+  EXPECT_TRUE(sum_of({{1.0, "joint_likelihood"}, {1.0, "frequency_prior"}}).whitened());
+  EXPECT_FALSE(sum_of({{1.0, "joint_likelihood"}, {2.0, "frequency_prior"}}).whitened());
+  EXPECT_FALSE(sum_of({{1.0, "joint_likelihood"}, {1.0, "force_mismatch"}}).whitened());
+}
+
 TEST(WeightedSum, WithoutTermsSaysThatItHasNone) {
   const std::vector<std::string> names = {"f0"};
   try {
