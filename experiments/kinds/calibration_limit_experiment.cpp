@@ -1,5 +1,6 @@
 #include "experiments/kinds/calibration_limit_experiment.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -91,6 +92,32 @@ double force_correlation(const LimitTruth& truth, double level, const ModelPoint
   return sides.front().whole.correlation;
 }
 
+// The farthest starts that a seed may draw, and the band of the calibration.
+void lint_start(const CalibrationLimitOptions& options, std::vector<Finding>& findings) {
+  const Scene& scene = options.observation.truth.scene;
+  const bool sound = std::none_of(findings.begin(), findings.end(),
+                                  [](const Finding& finding) { return finding.is_error; });
+  if (!sound || !is_known(scene.string)) return;
+  const ModalBasis basis = make_modal_basis(scene.string);
+  lint_making(
+      "model_error",
+      [&] {
+        for (const double sign : {1.0, -1.0}) {
+          ModelErrorOptions errors = options.model_error;
+          errors.contact *= sign;
+          with_errors(basis, scene.bow.position, errors, StreamKey(1));
+        }
+      },
+      findings);
+  lint_making(
+      "continuation",
+      [&] {
+        likelihood_band({basis, scene.bow.position}, options.continuation.highest_frequency,
+                        options.observation.measurement.sample_rate);
+      },
+      findings);
+}
+
 }  // namespace
 
 void CalibrationLimitOptions::visit(OptionVisitor& visitor) {
@@ -130,6 +157,11 @@ std::vector<Finding> CalibrationLimitExperiment::lint() const {
     findings.push_back({"record",
                         "a bound needs a truth, which a record does not have: state a "
                         "scene"});
+  } else {
+    const ObservationOptions& observation = options_.observation;
+    append(findings, lint_scene(observation.truth.scene, observation.truth.simulator,
+                                observation.measurement));
+    lint_start(options_, findings);
   }
   append(findings, lint_priors("continuation.unknowns", options_.continuation.unknowns,
                                options_.observation.string_model()));

@@ -106,6 +106,29 @@ TEST(LintContinuation, SaysWhereItsParametersAndItsBandAreStated) {
   EXPECT_EQ(messages(all, "{highest_frequency: 400}").find("error"), std::string::npos);
 }
 
+std::string limit_of(const std::string& bow, const std::string& rest) {
+  return "kind: calibration_limit\n"
+         "scene:\n"
+         "  string: {length: 0.33 m, linear_density: 3.1e-3 kg/m, fundamental: 196 Hz}\n"
+         "  bow: " +
+         bow + "\n  duration: 1 s\n" + rest;
+}
+
+TEST(LintCalibrationLimit, FindsWhatEveryTaskWouldFailOf) {
+  using testing::HasSubstr;
+  const std::string bow = "{position: 30 mm}";
+  EXPECT_EQ(messages_of(limit_of(bow, "model_error: {contact: 29 mm}\n")), "");
+  EXPECT_THAT(messages_of(limit_of("{position: 0.4 m}", "")),
+              testing::AllOf(HasSubstr("scene.yaml:4:"), HasSubstr("0.4 m is outside the string")));
+  EXPECT_THAT(messages_of(limit_of(bow, "measurement: {sample_rate: 8 kHz}\n")),
+              HasSubstr("is not below half the sample rate"));
+  // The draws lie on both sides of the contact point.
+  EXPECT_THAT(messages_of(limit_of(bow, "model_error: {contact: 31 mm}\n")),
+              testing::AllOf(HasSubstr("scene.yaml:6:"), HasSubstr("not inside the string")));
+  EXPECT_THAT(messages_of(limit_of(bow, "continuation: {highest_frequency: 300}\n")),
+              testing::AllOf(HasSubstr("scene.yaml:6:"), HasSubstr("more than 392 Hz")));
+}
+
 // Two priors that are wrong and one that is not, then correlations; each in a line of its own.
 constexpr const char* kUnknowns =
     "    damping: power\n"
