@@ -181,7 +181,7 @@ StudyResult calibrate_study(const CalibrateOptions& options, const StudyContext&
   }
   if (const auto& found = outcome.result.continuation) {
     result.blocks.emplace_back(report::Text{
-        chi2_line(*found), found->fits ? report::Text::Kind::kNote : report::Text::Kind::kFailure});
+        chi2_text(*found), found->fits ? report::Text::Kind::kNote : report::Text::Kind::kFailure});
   }
   add_warnings(observation, sides, result);
   for (const FigureOptions& figure : inversion.figures) {

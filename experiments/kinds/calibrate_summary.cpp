@@ -9,11 +9,18 @@
 
 namespace modcal {
 
-std::string chi2_line(const ContinuationResult& found) {
-  return fmt::format("reduced chi2 {:.4f} (sd {:.4f}): {}; law alone {:.4f}: {}", found.chi2,
-                     found.chi2_deviation,
-                     found.fits ? "the data do not contradict the fit" : "THE FIT IS WRONG",
-                     found.law.chi2, found.law.accepted ? "accepted" : "contradicted");
+std::string chi2_text(const ContinuationResult& found) {
+  std::string text = fmt::format(
+      "reduced chi2 {:.4f} (sd {:.4f}): {}; law alone {:.4f}: {}", found.chi2, found.chi2_deviation,
+      found.fits ? "the data do not contradict the fit" : "THE FIT IS WRONG", found.law.chi2,
+      found.law.accepted ? "accepted" : "contradicted");
+  if (found.chi2 < 1.0 - 3.0 * found.chi2_deviation) {
+    text += fmt::format(
+        "\nnoise overstated: the data scatter less than the noise levels say; standard deviations "
+        "are too wide by a factor of {:.3g}",
+        1.0 / std::sqrt(found.chi2));
+  }
+  return text;
 }
 
 namespace {
@@ -21,14 +28,8 @@ namespace {
 std::string verdict_lines(const ContinuationResult& found) {
   std::string text =
       fmt::format("{}\nsd: f0 {:.3g} Hz, B {:.3g}, x_c {:.3g} m, damping factor {:.3g}\n",
-                  chi2_line(found), found.law.deviation[0], found.law.deviation[1],
+                  chi2_text(found), found.law.deviation[0], found.law.deviation[1],
                   found.contact_deviation, found.damping_deviation);
-  if (found.chi2 < 1.0 - 3.0 * found.chi2_deviation) {
-    text += fmt::format(
-        "noise overstated: the data scatter less than the noise levels say; standard deviations "
-        "are too wide by a factor of {:.3g}\n",
-        1.0 / std::sqrt(found.chi2));
-  }
   text += prior_lines(found.law.priors, "law");
   if (found.frequencies_free) text += prior_lines(found.priors, "every frequency");
   for (std::size_t n = 0; found.frequencies_free && n < found.modes.size(); ++n) {

@@ -13,6 +13,6 @@ void add_calibration_summary(const CalibrationOutcome& outcome, StudyResult& res
 void add_calibration_warnings(const CalibrationOutcome& outcome, StudyResult& result);
 
 /// What χ² says of a continuation's fit, in words.
-std::string chi2_line(const ContinuationResult& found);
+std::string chi2_text(const ContinuationResult& found);
 
 }  // namespace modcal
