@@ -215,6 +215,8 @@ LimitCase limit_case(const LimitQuestion& question, TruthCache& truths) {
 }
 
 std::string limit_text(const LimitQuestion& question, TruthCache& truths) {
+  MODCAL_REQUIRE(question.observation.has_scene,
+                 "a limit is computed from a simulated truth: state a scene, not a record");
   MODCAL_REQUIRE(
       question.noise_level > 0.0,
       "without noise there is no limit: state measurement.noise_level (noise_levels of a "

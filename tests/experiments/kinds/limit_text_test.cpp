@@ -93,5 +93,17 @@ TEST(LimitText, RefusesAStringThatNothingMoves) {
   }
 }
 
+TEST(LimitText, OfARecordAsksForASceneBeforeAnythingElse) {
+  TruthCache truths;
+  LimitQuestion question;
+  question.observation.has_record = true;
+  try {
+    limit_text(question, truths);
+    FAIL();
+  } catch (const InvalidInput& refusal) {
+    EXPECT_THAT(refusal.what(), testing::HasSubstr("state a scene, not a record"));
+  }
+}
+
 }  // namespace
 }  // namespace modcal
