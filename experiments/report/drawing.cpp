@@ -123,17 +123,19 @@ struct Extent {
     high = std::max(high, value);
   }
   bool empty() const { return low > high; }
+  /// No wider than rounding: the ten digits written of an axis' ends must tell them apart.
+  bool one_value() const { return high - low <= 1e-8 * std::max(std::abs(low), std::abs(high)); }
 };
 
 // The extent with a margin of `share` of its width on both sides.
 std::array<double, 2> widened(const Extent& extent, double share, bool logarithmic) {
   if (extent.empty()) return logarithmic ? std::array{1.0, 10.0} : std::array{0.0, 1.0};
   if (logarithmic) {
-    const double ratio = extent.low == extent.high ? 10.0 : extent.high / extent.low;
-    const double margin = std::pow(ratio, extent.low == extent.high ? 0.5 : share);
+    const double ratio = extent.one_value() ? 10.0 : extent.high / extent.low;
+    const double margin = std::pow(ratio, extent.one_value() ? 0.5 : share);
     return {extent.low / margin, extent.high * margin};
   }
-  if (extent.low == extent.high) {
+  if (extent.one_value()) {
     const double margin = extent.low == 0.0 ? 1.0 : std::abs(extent.low) / 10.0;
     return {extent.low - margin, extent.high + margin};
   }

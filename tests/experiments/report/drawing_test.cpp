@@ -103,6 +103,18 @@ TEST(DrawFigure, OneValueHasAWindowAroundIt) {
   }
 }
 
+// gnuplot refuses a range that is empty in the digits written.
+TEST(DrawFigure, ValuesEqualToRoundingHaveAWindowAroundThem) {
+  for (const bool logarithmic : {false, true}) {
+    const Figure figure =
+        figure_of({.label = "a", .x = {1, 2, 3}, .y = {0.4812, 0.4812 * (1.0 + 1e-14), 0.4812}},
+                  false, logarithmic);
+    const DrawnPanel panel = draw_figure(figure, 100).panels[0];
+    EXPECT_LT(panel.y_window[0], 0.45);
+    EXPECT_GT(panel.y_window[1], 0.51);
+  }
+}
+
 TEST(DrawFigure, LongSeriesAreThinnedAndSaidToBe) {
   const Figure figure = long_figure();
   const DrawnFigure drawn = draw_figure(figure, 300);
