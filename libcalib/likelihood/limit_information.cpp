@@ -104,6 +104,8 @@ AllRecords LimitInformation::placed(const StringUnknowns& unknowns) const {
 
 ModelPoint LimitInformation::point_of(std::size_t record) const {
   ModelPoint point = question_.truth;
+  // Equal sensors that may differ take from the data what those that do differ take.
+  point.sensors.free = point.sensors.free || question_.unknowns.sensors().free;
   if (record < strokes_.size()) point.contact = question_.contacts[record];
   return point;
 }

@@ -119,72 +119,130 @@ ModelPoint law_point(ModelPoint point, double fundamental, double inharmonicity)
   return point;
 }
 
-TEST(FisherMatrix, IsThatOfTheSamplesWithForceAndInitialStateFree) {
+// The paper's string with stiffness, 40 ms, at rest before.
+struct FisherCase {
+  ModelPoint truth;
+  std::vector<double> force;
+  NoisyRecords records{.sample_rate = kRate};
+  Eigen::VectorXd clean;  ///< both reactions over their noise, means in them
+};
+
+FisherCase fisher_case() {
   Scene scene = paper_scene();
   scene.bow.position = 0.0285;
   scene.string.inharmonicity = 1.39e-4;
   scene.duration = static_cast<double>(kSamples) / kRate;
   const Simulation run = ModalEvent({}).simulate(scene, kRate, {.force = true});
-  const ModelPoint truth{make_modal_basis(scene.string), 0.0285};
-  std::vector<double> force = run.force.samples;
-  force.resize(kSamples);
-
+  FisherCase result{.truth = {make_modal_basis(scene.string), 0.0285}, .force = run.force.samples};
+  result.force.resize(kSamples);
   const std::array<double, 2> one{1.0, 1.0};
-  const Eigen::VectorXd clean = respond(truth, force, one);
-  NoisyRecords records{.sample_rate = kRate};
+  result.clean = respond(result.truth, result.force, one);
   for (std::size_t r = 0; r < 2; ++r) {
-    const auto part = clean.segment(static_cast<Index>(r) * kSamples, kSamples);
-    records.reactions[r].assign(part.begin(), part.end());
-    remove_mean(records.reactions[r]);
-    records.deviation[r] = 0.01 * standard_deviation(records.reactions[r]);
+    auto part = result.clean.segment(static_cast<Index>(r) * kSamples, kSamples);
+    result.records.reactions[r].assign(part.begin(), part.end());
+    remove_mean(result.records.reactions[r]);
+    result.records.deviation[r] = 0.01 * standard_deviation(result.records.reactions[r]);
+    part /= result.records.deviation[r];
   }
+  return result;
+}
 
-  // Columns of ln f0, B, x_c and ln ζ, by central differences.
+// Columns of ln f0, B, x_c and ln ζ, by central differences.
+Eigen::MatrixXd string_slopes(const FisherCase& the) {
   const double steps[] = {1e-6, 1e-8, 1e-7, 1e-4};
   const auto at = [&](int parameter, double step) {
-    ModelPoint point = law_point(truth, 196.0 * std::exp(parameter == 0 ? step : 0.0),
+    ModelPoint point = law_point(the.truth, 196.0 * std::exp(parameter == 0 ? step : 0.0),
                                  1.39e-4 + (parameter == 1 ? step : 0.0));
     if (parameter == 2) point.contact += step;
     if (parameter == 3) {
       for (double& zeta : point.basis.zeta) zeta *= std::exp(step);
     }
-    return respond(point, force, records.deviation);
+    return respond(point, the.force, the.records.deviation);
   };
   Eigen::MatrixXd slopes(2 * kSamples, 4);
   for (int i = 0; i < 4; ++i) {
     slopes.col(i) = (at(i, steps[i]) - at(i, -steps[i])) / (2.0 * steps[i]);
   }
-  const Eigen::VectorXd norms = slopes.colwise().norm();
-  const Eigen::MatrixXd nuisance = free_columns(truth, records.deviation);
-  Eigen::MatrixXd columns(2 * kSamples, nuisance.cols() + 4);
-  columns << nuisance, slopes * norms.cwiseInverse().asDiagonal();
+  return slopes;
+}
 
+// Covariance of what `slopes` belong to, every sample of the force and what `nuisance` belongs to
+// being free.
+Eigen::MatrixXd time_domain_covariance(const FisherCase& the, const Eigen::MatrixXd& slopes,
+                                       const Eigen::MatrixXd& nuisance) {
+  const Eigen::VectorXd norms = slopes.colwise().norm();
+  const Index count = slopes.cols();
+  Eigen::MatrixXd columns(2 * kSamples, nuisance.cols() + count);
+  columns << nuisance, slopes * norms.cwiseInverse().asDiagonal();
   // A unit of force at one sample is a triangle, which begins a sample earlier.
   std::vector<double> unit(static_cast<std::size_t>(kSamples), 0.0);
   unit[0] = 1.0;
-  const ForceNormal normal = force_normal(respond(truth, unit, records.deviation), columns);
+  const ForceNormal normal = force_normal(respond(the.truth, unit, the.records.deviation), columns);
   const Eigen::LLT<Eigen::MatrixXd> factor(normal.own);
-  ASSERT_EQ(factor.info(), Eigen::Success);
+  EXPECT_EQ(factor.info(), Eigen::Success);
   const Eigen::MatrixXd half = factor.matrixL().solve(normal.mixed);
   Eigen::MatrixXd rest = columns.transpose() * columns - half.transpose() * half;
   const Index other = nuisance.cols();
   Eigen::MatrixXd state = rest.topLeftCorner(other, other);
   state.diagonal().array() += 1e-13;
-  const Eigen::MatrixXd cross = rest.topRightCorner(other, 4);
+  const Eigen::MatrixXd cross = rest.topRightCorner(other, count);
   const Eigen::MatrixXd direct =
-      rest.bottomRightCorner(4, 4) - cross.transpose() * state.ldlt().solve(cross);
-  const Eigen::MatrixXd expected =
-      norms.cwiseInverse().asDiagonal() * direct.inverse() * norms.cwiseInverse().asDiagonal();
+      rest.bottomRightCorner(count, count) - cross.transpose() * state.ldlt().solve(cross);
+  return norms.cwiseInverse().asDiagonal() * direct.inverse() * norms.cwiseInverse().asDiagonal();
+}
 
+Eigen::MatrixXd likelihood_covariance(const FisherCase& the, const UnknownsOptions& unknowns) {
   const ProjectedLikelihood likelihood(
-      WhitenedRecord::of(records, 0.0, 0.98 * std::numbers::pi * kRate));
-  const StringUnknowns law = StringUnknowns::law(truth, 196.0, 1.39e-4);
-  const Eigen::MatrixXd found =
-      (2.0 * likelihood.evaluate(truth, law.columns(law.start())).information).inverse();
+      WhitenedRecord::of(the.records, 0.0, 0.98 * std::numbers::pi * kRate));
+  ModelPoint point = the.truth;
+  point.sensors = unknowns.sensors();
+  const StringUnknowns law = StringUnknowns::law(point, 196.0, 1.39e-4, unknowns);
+  return (2.0 * likelihood.evaluate(point, law.columns(law.start())).information).inverse();
+}
+
+TEST(FisherMatrix, IsThatOfTheSamplesWithForceAndInitialStateFree) {
+  const FisherCase the = fisher_case();
+  const Eigen::MatrixXd expected = time_domain_covariance(
+      the, string_slopes(the), free_columns(the.truth, the.records.deviation));
+  const Eigen::MatrixXd found = likelihood_covariance(the, {});
   for (Index i = 0; i < 4; ++i) {
     // What separates the two is how the force runs between the samples.
     EXPECT_NEAR(std::sqrt(found(i, i) / expected(i, i)), 1.0, 1e-3) << "parameter " << i;
   }
+}
+
+TEST(FisherMatrix, KnowsTheCornerOfASensorAsFarAsTheMeanIsNotMeasured) {
+  // Gain and corner of the sensor at x = L, at equal sensors: ∂R₂ = R₂ ∂ln g − ∂ω_h ∫R₂ dt. The
+  // mean of R₂ is not measured, so that the integral holds a ramp of any slope.
+  const FisherCase the = fisher_case();
+  Eigen::MatrixXd slopes = Eigen::MatrixXd::Zero(2 * kSamples, 6);
+  slopes.leftCols(4) = string_slopes(the);
+  const Eigen::MatrixXd known = free_columns(the.truth, the.records.deviation);
+  Eigen::MatrixXd nuisance = Eigen::MatrixXd::Zero(2 * kSamples, known.cols() + 2);
+  nuisance.leftCols(known.cols()) = known;
+  double integral = 0.0, before = 0.0;
+  for (Index k = 0; k < kSamples; ++k) {
+    const double now = the.clean[kSamples + k];
+    integral += 0.5 * (before + now) / kRate;
+    before = now;
+    slopes(kSamples + k, 4) = now;
+    slopes(kSamples + k, 5) = -integral;
+    nuisance(kSamples + k, known.cols()) = static_cast<double>(k) / static_cast<double>(kSamples);
+  }
+  nuisance(kSamples, known.cols() + 1) = 1.0;  // a sample that the delay would bring in
+  nuisance.rightCols(2).colwise().normalize();
+  UnknownsOptions unknowns;
+  unknowns.gain.free = unknowns.corner.free = true;
+  const Eigen::MatrixXd expected = time_domain_covariance(the, slopes, nuisance);
+  const Eigen::MatrixXd found = likelihood_covariance(the, unknowns);
+  for (Index i = 0; i < 6; ++i) {
+    EXPECT_NEAR(std::sqrt(found(i, i) / expected(i, i)), 1.0, 1e-3) << "parameter " << i;
+  }
+  // Whoever knew the mean would know the corner by far better from a record this short.
+  Eigen::MatrixXd without(2 * kSamples, known.cols() + 1);
+  without << known, nuisance.rightCols(1);
+  const Eigen::MatrixXd wrong = time_domain_covariance(the, slopes, without);
+  EXPECT_LT(std::sqrt(wrong(5, 5)), 0.9 * std::sqrt(found(5, 5)));
 }
 
 }  // namespace
