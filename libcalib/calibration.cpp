@@ -218,7 +218,7 @@ CalibrationResult calibrate_to_the_bound(const ModelPoint& initial,
   result.search.seconds = clock() - begin;
   result.search.evaluations = static_cast<std::int64_t>(found.evaluations);
   result.search.value = found.chi2;
-  result.search.stop = found.right ? StopReason::kConverged : StopReason::kNoProgress;
+  result.search.stop = found.fits ? StopReason::kConverged : StopReason::kNoProgress;
   result.model = found.model;
   result.parameters =
       found_parameters(initial, found, fit ? &*fit : nullptr, continuation.unknowns);

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "experiments/kinds/fit_verdict.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {
@@ -112,12 +113,19 @@ void add_calibration_warnings(const CalibrationOutcome& outcome, StudyResult& re
                      fmt::join(outcome.result.blind, ", "),
                      outcome.law ? "come from the stiff-string law" : "keep their initial values"));
   }
+  const auto fail = [&](std::string text) {
+    warn(std::move(text));
+    result.failed_tasks = 1;
+    result.status = report::Status::kFailed;
+  };
+  if (const auto& found = outcome.result.continuation) {
+    if (!found->right) fail(contradiction(*found));
+    return;
+  }
   const StopReason stop = outcome.result.search.stop;
   if (stop == StopReason::kNotFinite || stop == StopReason::kNoProgress ||
       stop == StopReason::kNotRun) {
-    warn("the search failed: " + std::string(explain(stop)));
-    result.failed_tasks = 1;
-    result.status = report::Status::kFailed;
+    fail("the search failed: " + std::string(explain(stop)));
   }
 }
 

@@ -59,7 +59,8 @@ LimitOutcome outcome_of(const ContinuationResult& found) {
       .law_chi2 = found.law.chi2,
       .chi2 = found.chi2,
       .chi2_deviation = found.chi2_deviation,
-      .right = found.right,
+      .fits = found.fits,
+      .priors_hold = !found.priors.contradicted(),
       .paper_error = kNan,
       .force_correlation = kNan};
   for (const ModeVerdict& mode : found.modes) {

@@ -42,7 +42,9 @@ struct LimitOutcome {
   std::array<double, 3> sensors{1.0, 0.0, 0.0}, sensor_deviation{};
   double law_chi2 = 0.0, chi2 = 0.0;
   double chi2_deviation = 0.0;  ///< of χ², as the calibration states it
-  bool right = false;
+  bool fits = false;            ///< χ² does not contradict it
+  bool priors_hold = true;      ///< nor do the data the priors stated
+  bool right() const { return fits && priors_hold; }
   double paper_error = 0.0;  ///< median relative error of the paper's method; NaN: not run
   /// Of the force identified with the calibrated model, from 10 % to 95 % of the record; NaN: not
   /// asked for.

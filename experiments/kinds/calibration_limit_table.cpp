@@ -85,6 +85,7 @@ report::Table level_table(const std::vector<LimitSummary>& levels, const std::st
                   {.key = "failures", .name = "wrong"},
                   {.key = "silent", .name = "wrong and not contradicted"},
                   {.key = "rejected", .name = "contradicted by chi2"},
+                  {.key = "priors_rejected", .name = "priors contradicted"},
                   {.key = "mean_chi2", .name = "mean reduced chi2", .format = "{:.4f}"},
                   {.key = "chi2_scatter", .name = "its scatter", .format = "{:.4f}"},
                   {.key = "chi2_deviation", .name = "as stated", .format = "{:.4f}"},
@@ -97,11 +98,12 @@ report::Table level_table(const std::vector<LimitSummary>& levels, const std::st
                   {.key = "force_correlation", .name = "correlation of the identified force"}},
       .command = command};
   for (const LimitSummary& level : levels) {
-    table.rows.push_back(
-        {100.0 * level.level, level.runs, level.wrong, level.silent, level.contradicted,
-         level.mean_chi2, level.chi2_scatter, level.chi2_deviation, level.mean_law_chi2,
-         level.free_rms, level.free_worst, level.median_error, level.median_bound,
-         number_or_none(level.paper_error), number_or_none(level.force_correlation)});
+    table.rows.push_back({100.0 * level.level, level.runs, level.wrong, level.silent,
+                          level.contradicted, level.priors_contradicted, level.mean_chi2,
+                          level.chi2_scatter, level.chi2_deviation, level.mean_law_chi2,
+                          level.free_rms, level.free_worst, level.median_error, level.median_bound,
+                          number_or_none(level.paper_error),
+                          number_or_none(level.force_correlation)});
   }
   return table;
 }
@@ -161,8 +163,12 @@ std::string summary_line(const LimitSummary& level) {
   if (std::isfinite(level.force_correlation)) {
     text += fmt::format("; force identified with correlation {:.3f}", level.force_correlation);
   }
-  return text + fmt::format("; {} runs, {} wrong, {} of them unsaid, {} contradicted\n", level.runs,
-                            level.wrong, level.silent, level.contradicted);
+  text += fmt::format("; {} runs, {} wrong, {} of them unsaid, {} contradicted", level.runs,
+                      level.wrong, level.silent, level.contradicted);
+  if (level.priors_contradicted > 0) {
+    text += fmt::format(", the priors of {}", level.priors_contradicted);
+  }
+  return text + "\n";
 }
 
 }  // namespace

@@ -34,7 +34,9 @@ std::string outcome_text(const LimitOutcome& outcome) {
               {"law_chi2", number_json(outcome.law_chi2)},
               {"chi2", number_json(outcome.chi2)},
               {"chi2_deviation", number_json(outcome.chi2_deviation)},
-              {"right", outcome.right},
+              {"right", outcome.right()},
+              {"fits", outcome.fits},
+              {"priors_hold", outcome.priors_hold},
               {"paper_error", number_json(outcome.paper_error)},
               {"force_correlation", number_json(outcome.force_correlation)}}
       .dump();
@@ -61,7 +63,8 @@ LimitOutcome read_limit_outcome(const std::string& text) {
     outcome.law_chi2 = read_number(object.at("law_chi2"));
     outcome.chi2 = read_number(object.at("chi2"));
     outcome.chi2_deviation = read_number(object.at("chi2_deviation"));
-    outcome.right = object.at("right").get<bool>();
+    outcome.fits = object.value("fits", object.at("right").get<bool>());
+    outcome.priors_hold = object.value("priors_hold", true);
     outcome.paper_error = read_number(object.at("paper_error"));
     outcome.force_correlation = read_number(object.at("force_correlation"));
     return outcome;

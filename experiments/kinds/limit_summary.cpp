@@ -23,7 +23,8 @@ class LevelReader {
         ++summary_.broken;
       } else {
         outcomes_.push_back(outcome);
-        if (!outcome.right) ++summary_.contradicted;
+        if (!outcome.fits) ++summary_.contradicted;
+        if (!outcome.priors_hold) ++summary_.priors_contradicted;
       }
     }
     summary_.runs = outcomes_.size();
@@ -154,7 +155,7 @@ class LevelReader {
     for (std::size_t i = 0; i < outcomes_.size(); ++i) {
       if (!beyond_[i]) continue;
       ++summary_.wrong;
-      if (outcomes_[i].right) ++summary_.silent;
+      if (outcomes_[i].right()) ++summary_.silent;
     }
   }
 

@@ -34,7 +34,8 @@ struct PooledRow {
 };
 
 /// A run is wrong where an error of the law, of a well-seen f_n or of x_c exceeds 7.8 bounds
-/// (another minimum, not noise) or where it broke, contradicted where χ² speaks against its result.
+/// (another minimum, not noise) or where it broke, contradicted where χ² or a stated prior speaks
+/// against its result.
 struct LimitSummary {
   static constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   double level = 0.0;
@@ -44,9 +45,11 @@ struct LimitSummary {
   double free_rms = kNan, free_worst = kNan;  ///< RMSE/bound over the modes with a bound < 5e-4
   double median_error = kNan, paper_error = kNan, median_bound = kNan;
   double force_correlation = kNan;  ///< mean of that of the identified force
-  std::size_t runs = 0, broken = 0, contradicted = 0;
-  std::size_t wrong = 0;   ///< broken ones included
-  std::size_t silent = 0;  ///< wrong and not contradicted
+  std::size_t runs = 0, broken = 0;
+  std::size_t contradicted = 0;         ///< by χ²
+  std::size_t priors_contradicted = 0;  ///< priors that the data contradict
+  std::size_t wrong = 0;                ///< broken ones included
+  std::size_t silent = 0;               ///< wrong and not contradicted
 
   const LimitRow* find(const std::string& parameter) const;
 };

@@ -206,6 +206,8 @@ std::string pluck_then_bow_json(const PluckThenBowOptions& options,
     document["bound_steps"] = std::move(bound);
     document["bound_chi2"] = number_or_null(outcome.bound.chi2);
     document["bound_right"] = outcome.bound.right;
+    document["bound_fits"] = outcome.bound.fits;
+    document["bound_priors_contradicted"] = outcome.bound.priors.contradicted();
     document["bound_identification"] = sides_json(outcome.bound_sides);
   }
   return document.dump(1) + "\n";

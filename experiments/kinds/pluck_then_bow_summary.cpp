@@ -68,9 +68,13 @@ StudyResult pluck_then_bow_study(const PluckThenBowOptions& options, const Study
     result.summary += line_of(options, outcome, stage);
   }
   if (outcome.has_bound) {
-    result.summary += fmt::format(
-        "reduced chi2 {:.4f}: {}\n", outcome.bound.chi2,
-        outcome.bound.right ? "the data do not contradict the fit" : "THE FIT IS WRONG");
+    result.summary +=
+        fmt::format("reduced chi2 {:.4f}: {}\n", outcome.bound.chi2,
+                    outcome.bound.fits ? "the data do not contradict the fit" : "THE FIT IS WRONG");
+    result.summary += prior_lines(outcome.bound.law.priors, "law");
+    if (outcome.bound.frequencies_free) {
+      result.summary += prior_lines(outcome.bound.priors, "every frequency");
+    }
     result.summary += "correlation with the true force, by side:" + sides_line(outcome.bound_sides);
   }
   add_distance_warning(options, outcome, result);

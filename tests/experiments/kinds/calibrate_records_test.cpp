@@ -120,6 +120,20 @@ TEST_F(CalibrateRecords, FindFromARecordedPluckWhatASimulatedOneTells) {
   EXPECT_NEAR(recorded["continuation"]["chi2"], direct["continuation"]["chi2"].get<double>(), 1e-7);
 }
 
+TEST_F(CalibrateRecords, FailByThePriorsWhereTheFitIsNotWrong) {
+  // x_c is known to half a micrometer; this prior, ten deviations off, moves it by a fortieth of
+  // one.
+  CalibrateOptions options = simulated(0.3, 51200.0);
+  options.calibration.continuation.unknowns.priors = {
+      {.parameter = "x_c", .mean = 30.1e-3, .deviation = 1e-5}};
+  const StudyResult result = calibrate_study(options, context());
+  EXPECT_TRUE(calibration_of(result)["continuation"]["fits"].get<bool>());
+  EXPECT_EQ(result.status, report::Status::kFailed);
+  EXPECT_THAT(result.summary, testing::HasSubstr("warning: the data contradict the priors stated"));
+  EXPECT_THAT(result.summary, testing::Not(testing::HasSubstr("search failed")));
+  EXPECT_THAT(result.summary, testing::Not(testing::HasSubstr("FIT IS WRONG")));
+}
+
 TEST_F(CalibrateRecords, SayWhereTheNoiseStatedIsTooMuch) {
   const Observation observed = stroke(simulated(0.3, 51200.0));
   write("stroke.csv",

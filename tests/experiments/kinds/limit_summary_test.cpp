@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 namespace modcal {
 namespace {
@@ -40,6 +41,53 @@ TEST(PooledRows, CountErrorsInBounds) {
 TEST(PooledRows, AreNoneWithoutRuns) {
   EXPECT_TRUE(pooled_rows({}).empty());
   EXPECT_TRUE(pooled_rows({level_of(0.1, 1.0, 0.0, 1.0, 0)}).empty());
+}
+
+LimitOutcome found(bool fits, bool priors_hold, double fundamental) {
+  return {.law = {fundamental, 0.0, 0.03, 1.0},
+          .law_deviation = {1e-3, 1e-8, 1e-6, 1e-2},
+          .frequencies = {fundamental, 2.0 * fundamental},
+          .deviations = {1e-5, 1e-5},
+          .contact = 0.03,
+          .contact_deviation = 1e-6,
+          .fits = fits,
+          .priors_hold = priors_hold};
+}
+
+TEST(SummarizeLevel, TellsWhatChi2ContradictsFromWhatPriorsDo) {
+  constexpr double kF0 = 196.0;
+  const ModalBasis basis{.length = 0.33,
+                         .tension = 51.9,
+                         .omega = {2.0 * std::numbers::pi * kF0, 4.0 * std::numbers::pi * kF0},
+                         .zeta = {1e-3, 1e-3},
+                         .mass = {5e-4, 5e-4}};
+  ExpectedLimit bound;
+  bound.parameters = {{.parameter = "f0"}};
+  bound.law = {1e-3, 1e-8, 1e-6, 1e-2};
+  bound.modes = {{.frequency = kF0, .deviation = 1e-5},
+                 {.frequency = 2.0 * kF0, .deviation = 1e-5}};
+  // One Hz is a thousand bounds.
+  const LimitLevel level{.noise_level = 0.01,
+                         .outcomes = {found(true, true, kF0), found(true, true, kF0 + 1.0),
+                                      found(true, false, kF0), found(true, false, kF0 + 1.0),
+                                      found(false, true, kF0 + 1.0), found(false, false, kF0)}};
+  const LimitSummary summary = summarize_level(level, {.point = {basis, 0.03}}, bound);
+  EXPECT_EQ(summary.runs, 6u);
+  EXPECT_EQ(summary.contradicted, 2u);
+  EXPECT_EQ(summary.priors_contradicted, 3u);
+  EXPECT_EQ(summary.wrong, 3u);
+  EXPECT_EQ(summary.silent, 1u);
+}
+
+TEST(OutcomeOfALimit, KeepsWhatContradictsIt) {
+  for (const bool fits : {false, true}) {
+    for (const bool priors_hold : {false, true}) {
+      LimitOutcome outcome = found(fits, priors_hold, 196.0);
+      const LimitOutcome read = read_limit_outcome(outcome_text(outcome));
+      EXPECT_EQ(read.fits, fits);
+      EXPECT_EQ(read.priors_hold, priors_hold);
+    }
+  }
 }
 
 TEST(OutcomeOfALimit, KeepsTheDeviationOfChi2) {

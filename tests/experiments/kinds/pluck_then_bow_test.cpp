@@ -96,6 +96,25 @@ TEST(PluckThenBow, ThePluckTestSharpensTheCalibrationToTheBound) {
   EXPECT_LT(posterior["f0_sd_hz"].get<double>(), 0.5 * bound["f0_sd_hz"].get<double>());
 }
 
+TEST(PluckThenBow, TellsWrongPriorsFromAWrongFit) {
+  // The stroke knows x_c to a micrometer; this prior, ten deviations off, moves it by a tenth of
+  // one, which χ² does not see.
+  YamlDocument document = small_case();
+  apply_assignment(
+      document, "bound.unknowns={priors: [{parameter: x_c, mean: 28.6 mm, deviation: 10 um}]}", 9);
+  const LoadedExperiment loaded = load_experiment(std::move(document));
+  ASSERT_EQ(format_mistakes(loaded.document, loaded.mistakes), "");
+  const StudyResult result = run(loaded);
+  const json outcome = outcome_of(result);
+  EXPECT_FALSE(outcome["bound_right"].get<bool>());
+  EXPECT_TRUE(outcome["bound_fits"].get<bool>());
+  EXPECT_TRUE(outcome["bound_priors_contradicted"].get<bool>());
+  EXPECT_THAT(result.summary, testing::HasSubstr("the data do not contradict the fit"));
+  EXPECT_THAT(result.summary,
+              testing::HasSubstr("THE PRIORS ARE CONTRADICTED BY THE DATA; farthest: x_c"));
+  EXPECT_THAT(result.summary, testing::Not(testing::HasSubstr("THE FIT IS WRONG")));
+}
+
 TEST(PluckThenBow, RefusesWhatCannotBeDone) {
   YamlDocument document = small_case();
   apply_assignment(document, "pluck.initial=rest", 9);
