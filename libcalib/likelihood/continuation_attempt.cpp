@@ -63,7 +63,7 @@ class Attempt {
   }
 
   // Of the x_c up to `reach` steps away those whose cost is below that of both neighbors: a start
-  // between them leads to one of theirs.
+  // between them leads to one of theirs. Priors join in the fits that start there.
   std::vector<Eigen::VectorXd> contact_starts(const ProjectedLikelihood& likelihood,
                                               const StringUnknowns& unknowns, double step,
                                               int reach) {
