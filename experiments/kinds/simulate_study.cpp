@@ -70,11 +70,12 @@ report::Table run_table(const Simulation& simulation, const std::string& command
           .title = "Simulation",
           .columns = {{.key = "time_step", .name = "time step taken", .unit = "s"},
                       {.key = "steps", .name = "steps"},
+                      {.key = "refined_steps", .name = "taken back for shorter ones"},
                       {.key = "attachments", .name = "attachments"},
                       {.key = "releases", .name = "releases"},
                       {.key = "modes_moved", .name = "modes moved"}},
-          .rows = {{simulation.time_step, simulation.steps, simulation.attachments,
-                    simulation.releases, simulation.modes_moved}},
+          .rows = {{simulation.time_step, simulation.steps, simulation.refined_steps,
+                    simulation.attachments, simulation.releases, simulation.modes_moved}},
           .command = command};
 }
 
@@ -117,9 +118,14 @@ StudyResult simulate_study(const SimulateOptions& options, const StudyContext& c
   for (const std::string& format : options.files) {
     result.signal_files.push_back({"signals." + format, signals, options.wav_full_scale});
   }
-  result.summary = fmt::format("{} steps of {:.6g} s, {} attachments, {} signals of {} samples\n",
-                               simulation.steps, simulation.time_step, simulation.attachments,
-                               signals.size(), signals.empty() ? 0 : signals[0].size());
+  const std::string refined =
+      simulation.refined_steps == 0
+          ? ""
+          : fmt::format(" ({} taken back for shorter ones)", simulation.refined_steps);
+  result.summary =
+      fmt::format("{} steps of {:.6g} s{}, {} attachments, {} signals of {} samples\n",
+                  simulation.steps, simulation.time_step, refined, simulation.attachments,
+                  signals.size(), signals.empty() ? 0 : signals[0].size());
   return result;
 }
 
