@@ -71,6 +71,8 @@ class Estimator {
   std::shared_ptr<const PreparedEstimator> prepare(const EstimationModel& model) const {
     return do_prepare(model);
   }
+  /// How the sensors read, as far as the estimator is told.
+  virtual SensorOptions sensors() const { return {}; }
 
  private:
   virtual std::shared_ptr<const PreparedEstimator> do_prepare(

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/kinds/calibrate_sensors.hpp"
 #include "experiments/kinds/invert_experiment.hpp"
 #include "experiments/kinds/lint.hpp"
 #include "experiments/kinds/scene_plan.hpp"
@@ -10,6 +11,19 @@
 
 namespace modcal {
 namespace {
+
+// Sensors stated to the estimator that the calibration's correction has taken out before.
+void lint_sensors(const CalibrateOptions& options, std::vector<Finding>& findings) {
+  std::shared_ptr<const Estimator> estimator;
+  try {
+    estimator = options.inversion.inversion.estimator.make();
+  } catch (const InvalidInput&) {
+    return;  // the inversion's finding
+  }
+  lint_making(
+      "inversion.estimator", [&] { require_sensors_once(options.calibration, *estimator); },
+      findings);
+}
 
 // Whether a simulated record shows the noise levels that are not stated; a file is not read here.
 void lint_noise(const CalibrateOptions& options, std::vector<Finding>& findings) {
@@ -63,6 +77,7 @@ void lint_unread(const CalibrationOptions& calibration, std::vector<Finding>& fi
 
 std::vector<Finding> CalibrateExperiment::lint() const {
   std::vector<Finding> findings = lint_inversion(options_.inversion);
+  lint_sensors(options_, findings);
   append(findings,
          lint_figures(options_.inversion.figures, {"waveforms", "spectra", "parameter_curves",
                                                    "objectives", "frequency_errors"}));

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "experiments/records/time_shift.hpp"
+#include "libsim/base/error.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {
@@ -51,6 +52,19 @@ Observation with_sensors_alike(Observation observation, const SensorPair& sensor
   for (double& sample : samples) sample /= sensors.gain;
   if (sensors.corner != 0.0) undo_high_pass(samples, sensors.corner, observation.sample_rate);
   return observation;
+}
+
+void require_sensors_once(const CalibrationOptions& calibration, const Estimator& estimator) {
+  const bool corrected = calibration.has_continuation
+                             ? calibration.continuation.unknowns.sensors().may_differ()
+                             : !calibration.parameters.sensors.empty();
+  const SensorOptions stated = estimator.sensors();
+  MODCAL_REQUIRE(
+      !corrected || stated.alike(),
+      "the reaction at x = L is corrected for its sensor as the calibration has it before "
+      "the estimator sees it: gain2 {:g} and delay2 {:g} s would take it out once more; "
+      "leave them out, or state those of x = 0 (gain1 {:g}, delay1 {:g} s)",
+      stated.gain[1], stated.delay[1], stated.gain[0], stated.delay[0]);
 }
 
 std::string correction_text(const Observation& observation, const SensorPair& sensors) {

@@ -4,7 +4,8 @@
 #include <string>
 
 #include "experiments/study/observation.hpp"
-#include "libcalib/parameters.hpp"
+#include "libcalib/calibration.hpp"
+#include "libinverse/estimator.hpp"
 
 namespace modcal {
 
@@ -13,6 +14,11 @@ namespace modcal {
 /// (see advanced()). A high-pass is undone as y + corner ∫ y dt; without the level that the sensor
 /// lost, a line is left over the record, and it is taken out. Equal sensors: unchanged.
 Observation with_sensors_alike(Observation observation, const SensorPair& sensors);
+
+/// Throws InvalidInput where the estimator is told of sensors that differ and the calibration finds
+/// or is told how they do, too: with_sensors_alike() has then taken out what the estimator takes
+/// out.
+void require_sensors_once(const CalibrationOptions& calibration, const Estimator& estimator);
 
 /// What was taken out, for a report; empty for equal sensors or where x = L was not recorded.
 std::string correction_text(const Observation& observation, const SensorPair& sensors);

@@ -156,6 +156,7 @@ StudyResult calibrate_study(const CalibrateOptions& options, const StudyContext&
   const Observation measured =
       observe(inversion.observation, outputs, context.work.truths, inversion.key(), context.folder);
   options.further.require_fit_to(inversion.observation, options.calibration);
+  require_sensors_once(options.calibration, *inversion.inversion.estimator.make());
   std::vector<Observation> strokes = further_observations(options, context);
   strokes.insert(strokes.begin(), measured);
   require_plucks(options.plucks, inversion.observation, options.calibration);

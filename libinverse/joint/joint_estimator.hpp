@@ -17,6 +17,7 @@ class JointEstimator final : public Estimator {
   };
   /// Throws InvalidInput for options out of range.
   explicit JointEstimator(const Options& options);
+  SensorOptions sensors() const override { return joint_.sensors; }
 
  private:
   std::shared_ptr<const PreparedEstimator> do_prepare(const EstimationModel& model) const override;

@@ -17,6 +17,7 @@ class LinearLimitEstimator final : public Estimator {
   };
   /// Throws InvalidInput for options out of range.
   explicit LinearLimitEstimator(const Options& options);
+  SensorOptions sensors() const override { return joint_.sensors; }
 
  private:
   std::shared_ptr<const PreparedEstimator> do_prepare(const EstimationModel& model) const override;

@@ -28,6 +28,7 @@ struct SensorOptions {
   double gain[2] = {1.0, 1.0};   ///< [1]
   double delay[2] = {0.0, 0.0};  ///< [s]
 
+  bool alike() const { return gain[0] == gain[1] && delay[0] == delay[1]; }
   void visit(OptionVisitor& visitor);
 };
 
