@@ -69,7 +69,11 @@ class Evaluator {
   void refresh_scan() { scanner_->refresh(); }
   void record(CoordinateScan scan) { result_.scans.push_back(std::move(scan)); }
   std::vector<CoordinateScan>& recorded_scans() { return result_.scans; }
-  void count_loop() { ++result_.loops; }
+  bool reaches(std::size_t j, std::size_t i) const { return scanner_->reaches(j, i); }
+  void count_loop(std::size_t searched) {
+    ++result_.loops;
+    result_.searched.push_back(static_cast<std::int64_t>(searched));
+  }
 
   /// Ends the search: throws what the objective threw, else gives the result. A reason the
   /// evaluator had to stop for goes before the back end's.

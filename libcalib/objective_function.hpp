@@ -41,6 +41,9 @@ class CoordinateScanner {
                     std::span<double> values) = 0;
   /// Moves variable i of the current point.
   virtual void move(std::size_t i, double value) = 0;
+  /// Whether a step of variable j may move the candidate of variable i whose part is least; true
+  /// where that is not known. Both at the current point.
+  virtual bool reaches(std::size_t /*j*/, std::size_t /*i*/) const { return true; }
   /// Computes afresh what scan() and move() keep up to date, so that rounding does not gather.
   virtual void refresh() {}
 };

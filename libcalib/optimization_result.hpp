@@ -37,6 +37,15 @@ struct OptimizationResult {
   /// How many of them went into slopes that the objective does not give.
   std::int64_t difference_evaluations = 0;
   std::int64_t loops = 0;  ///< of a search that repeats itself over the variables
+  /// How many variables each completed loop searched: all, save those that were left out as
+  /// settled.
+  std::vector<std::int64_t> searched;
+  /// Searches of a variable left out in all loops; the first loop searches all.
+  std::int64_t left_out() const {
+    std::int64_t count = 0;
+    for (const std::int64_t made : searched) count += searched.front() - made;
+    return count;
+  }
   double seconds = 0.0;
   std::vector<TracePoint> trace;
   std::vector<CoordinateScan> scans;  ///< of the first and of the last loop

@@ -112,6 +112,7 @@ std::string calibration_json(const CalibrationOutcome& outcome) {
   Json document = {
       {"modes", modes_json(outcome)},
       {"loops", search.loops},
+      {"searched_by_loop", search.searched},
       {"evaluations", search.evaluations},
       {"seconds", search.seconds},
       {"stop_reason", name_of(search.stop)},

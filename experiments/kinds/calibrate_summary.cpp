@@ -76,6 +76,10 @@ void add_calibration_summary(const CalibrationOutcome& outcome, StudyResult& res
           : fmt::format("objective {:.6g} -> {:.6g}", search.initial_value, search.value);
   result.summary += fmt::format("{} evaluations, {} loops, {:.3f} s; {}; {}\n", search.evaluations,
                                 search.loops, search.seconds, values, explain(search.stop));
+  if (search.left_out() > 0) {
+    result.summary += fmt::format("{} of {} searches of a parameter left out, it had settled\n",
+                                  search.left_out(), search.loops * search.searched.front());
+  }
   if (!outcome.true_frequencies.empty()) {
     result.summary += fmt::format("median relative frequency error of the excited modes: {:.3g}\n",
                                   median_relative_error(outcome));

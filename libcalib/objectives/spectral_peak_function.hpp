@@ -23,6 +23,7 @@ class SpectralPeakFunction final : public ObjectiveFunction {
 
   const ParameterSet& parameters() const { return parameters_; }
   const FrequencyGrid& grid() const { return grid_; }
+  double half_band() const { return half_band_; }
   /// Bins within ω (1 ± half_band) [rad/s].
   BinRange band_about(double omega) const;
   /// |R_r| Δω/f_s of all bins; empty where the reaction is missing. Index: End.

@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 namespace modcal {
@@ -85,6 +86,14 @@ void SpectralPeakScanner::scan(std::size_t i, std::span<const double> candidates
   }
   std::fill(values.begin(), values.end(), 0.0);
   for (std::size_t j = 0; j < partial_.size(); ++j) values[j % candidates.size()] += partial_[j];
+}
+
+bool SpectralPeakScanner::reaches(std::size_t j, std::size_t i) const {
+  const Parameter& from = function_.parameters()[j];
+  const Parameter& to = function_.parameters()[i];
+  if (from.kind != ParameterKind::kFrequency || to.kind != ParameterKind::kFrequency) return true;
+  const double center = terms_[to.mode].omega;
+  return std::abs(terms_[from.mode].omega - center) <= 2.0 * function_.half_band() * center;
 }
 
 void SpectralPeakScanner::move(std::size_t i, double value) {

@@ -13,11 +13,15 @@ namespace modcal {
 /// |F_r| is |R_r| |D| / |S_r D + a_r|. Blocks of bins are spread over the cores and added up in
 /// their order; the bits do not depend on the number of cores. Other parameters are scanned by
 /// evaluations of the whole objective.
+///
+/// Of the frequencies, those within twice the half band h of f_n reach it: a resonance farther away
+/// that shifts by a share s of its frequency changes its term by s/h at most in the bins of f_n.
 class SpectralPeakScanner final : public EvaluatingScanner {
  public:
   SpectralPeakScanner(const SpectralPeakFunction& function, std::span<const double> x);
   void scan(std::size_t i, std::span<const double> candidates, std::span<double> values) override;
   void move(std::size_t i, double value) override;
+  bool reaches(std::size_t j, std::size_t i) const override;
   void refresh() override;
 
  private:

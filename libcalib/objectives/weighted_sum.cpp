@@ -34,6 +34,10 @@ class SumScanner final : public CoordinateScanner {
   void move(std::size_t i, double value) override {
     for (const auto& scanner : scanners_) scanner->move(i, value);
   }
+  bool reaches(std::size_t j, std::size_t i) const override {
+    return std::any_of(scanners_.begin(), scanners_.end(),
+                       [&](const auto& scanner) { return scanner->reaches(j, i); });
+  }
   void refresh() override {
     for (const auto& scanner : scanners_) scanner->refresh();
   }

@@ -22,6 +22,10 @@ void ModeByMode::Options::visit(OptionVisitor& visitor) {
                    .meaning = "how often all variables are searched",
                    .range = Range::closed(1, 1000000)},
                   loops);
+  visitor.flag({.key = "skip_settled",
+                .meaning = "leave out searches whose answer no longer changes, save in the last "
+                           "loop"},
+               skip_settled);
 }
 
 ModeByMode::ModeByMode(const Options& options) : options_(options) {
@@ -32,20 +36,36 @@ ModeByMode::ModeByMode(const Options& options) : options_(options) {
   MODCAL_REQUIRE(options.loops >= 1, "{} loops: at least one is needed", options.loops);
 }
 
-CoordinateScan ModeByMode::search_variable(Evaluator& evaluator, std::size_t i,
-                                           std::int64_t loop) const {
-  const Variable& variable = evaluator.variables()[i];
+void ModeByMode::place_candidates(const Variable& variable, double center,
+                                  std::vector<double>& candidates) const {
+  const double reach = options_.half_range * std::abs(center);
+  candidates.resize(static_cast<std::size_t>(options_.candidates));
+  space_evenly(std::max(variable.lower, center - reach), std::min(variable.upper, center + reach),
+               candidates);
+}
+
+CoordinateScan ModeByMode::search_variable(Evaluator& evaluator, std::size_t i, std::int64_t loop,
+                                           SettledVariables& settled) const {
   CoordinateScan scan{.variable = i, .loop = loop, .center = evaluator.position()[i]};
-  const double reach = options_.half_range * std::abs(scan.center);
-  scan.candidates.resize(static_cast<std::size_t>(options_.candidates));
+  place_candidates(evaluator.variables()[i], scan.center, scan.candidates);
   scan.values.resize(scan.candidates.size());
-  space_evenly(std::max(variable.lower, scan.center - reach),
-               std::min(variable.upper, scan.center + reach), scan.candidates);
   evaluator.scan(i, scan.candidates, scan.values);
   const auto best = std::min_element(scan.values.begin(), scan.values.end());
-  scan.chosen = scan.candidates[static_cast<std::size_t>(best - scan.values.begin())];
+  const auto place = static_cast<std::size_t>(best - scan.values.begin());
+  scan.chosen = scan.candidates[place];
+  const double step = scan.candidates[1] - scan.candidates[0];
+  settled.searched(i, evaluator.position(), {.place = place, .step = step}, scan.chosen);
   evaluator.move(i, scan.chosen);
   return scan;
+}
+
+// Variable i goes where a search is expected to put it.
+void ModeByMode::leave_out(Evaluator& evaluator, std::size_t i, SettledVariables& settled) const {
+  std::vector<double> candidates;
+  place_candidates(evaluator.variables()[i], evaluator.position()[i], candidates);
+  const double expected = candidates[settled.expected_place(i)];
+  settled.left_out(i, expected);
+  evaluator.move(i, expected);
 }
 
 void ModeByMode::require_feasible(const Evaluator& evaluator) const {
@@ -62,18 +82,29 @@ StopReason ModeByMode::search(Evaluator& evaluator) const {
   evaluator.open_scan();
   const std::size_t n = evaluator.dimension();
   std::vector<CoordinateScan>& kept = evaluator.recorded_scans();
+  SettledVariables settled(evaluator.position());
+  bool every = false;  // nothing moved in the loop before, which left some out
   for (std::int64_t loop = 1; loop <= options_.loops; ++loop) {
+    every = every || !options_.skip_settled || loop == options_.loops;
     bool moved = false;
     std::vector<CoordinateScan> scans;
     for (std::size_t i = 0; i < n; ++i) {
-      scans.push_back(search_variable(evaluator, i, loop));
-      moved = moved || scans.back().chosen != scans.back().center;
+      const double before = evaluator.position()[i];
+      const auto reaches = [&](std::size_t j) { return evaluator.reaches(j, i); };
+      if (!every && settled.is_settled(i, evaluator.position(), reaches)) {
+        leave_out(evaluator, i, settled);
+      } else {
+        scans.push_back(search_variable(evaluator, i, loop, settled));
+      }
+      moved = moved || evaluator.position()[i] != before;
     }
+    const std::size_t searched = scans.size();
     if (kept.size() > n) kept.resize(n);
     kept.insert(kept.end(), std::make_move_iterator(scans.begin()),
                 std::make_move_iterator(scans.end()));
-    evaluator.count_loop();
-    if (!moved) return StopReason::kConverged;
+    evaluator.count_loop(searched);
+    if (!moved && searched == n) return StopReason::kConverged;
+    every = !moved;
     if (loop < options_.loops) evaluator.refresh_scan();
   }
   return StopReason::kSearchCompleted;

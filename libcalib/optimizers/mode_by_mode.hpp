@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "libcalib/optimizer.hpp"
+#include "libcalib/optimizers/settled_variables.hpp"
 
 namespace modcal {
 
@@ -11,12 +12,18 @@ namespace modcal {
 /// section 6: 50 candidates within ±3 %, 10 loops). Each loop starts from the configuration the
 /// last one left, so that ranges follow the current values. A best candidate at the end of the
 /// range is taken like any other: the next loop looks further.
+///
+/// skip_settled: a variable whose answer no longer changes (settled_variables.hpp) takes the answer
+/// it is expected to give, unsearched, until something that reaches it moves by more than a step.
+/// The last loop searches every variable: what the search ends with is always the best of its
+/// candidates, where the budget allows all loops.
 class ModeByMode final : public Optimizer {
  public:
   struct Options {
     std::int64_t candidates = 50;
     double half_range = 0.03;  ///< relative to the current value [1]
     std::int64_t loops = 10;
+    bool skip_settled = false;
     void visit(OptionVisitor& visitor);
   };
   explicit ModeByMode(const Options& options);
@@ -28,7 +35,11 @@ class ModeByMode final : public Optimizer {
   /// Keeps the scans of the first and of the last completed loop. Ends early where a loop moves
   /// nothing.
   StopReason search(Evaluator& evaluator) const override;
-  CoordinateScan search_variable(Evaluator& evaluator, std::size_t i, std::int64_t loop) const;
+  void place_candidates(const Variable& variable, double center,
+                        std::vector<double>& candidates) const;
+  CoordinateScan search_variable(Evaluator& evaluator, std::size_t i, std::int64_t loop,
+                                 SettledVariables& settled) const;
+  void leave_out(Evaluator& evaluator, std::size_t i, SettledVariables& settled) const;
 
   Options options_;
 };

@@ -118,22 +118,62 @@ TEST(SpectralPeak, GradientIsThatOfTheValue) {
   }
 }
 
+// 10 lies 11 % above 9, 28 lies 6.7 % below 30, and the half band is 4 %.
+TEST(SpectralPeak, ReachOfAFrequencyIsTwiceTheHalfBand) {
+  const CalibrationData data = exact_data(paper_truth(30), 25600, 25600.0, 196.0);
+  const ParameterSet parameters(paper_truth(30), Names{"f_9", "f_10", "f_28", "f_30", "x_c"});
+  const auto function = kPaper.bind(data, parameters);
+  const auto scanner = function->scanner(parameters.start());
+  EXPECT_FALSE(scanner->reaches(1, 0));
+  EXPECT_TRUE(scanner->reaches(2, 3));
+  EXPECT_TRUE(scanner->reaches(4, 0));
+  EXPECT_TRUE(scanner->reaches(0, 4));
+  scanner->move(2, 0.918 * 30 * 196.0);  // 8.2 % below f_30
+  EXPECT_FALSE(scanner->reaches(2, 3));
+}
+
+TEST(SpectralPeak, SearchWithoutSettledModesEndsOnTheBestCandidateOfEveryMode) {
+  const ModelPoint truth = paper_truth(30);
+  const CalibrationData data = exact_data(truth, 25600, 25600.0, 196.0);
+  const ModelPoint initial = with_frequency_errors(truth, 0.02, 1);
+  const ParameterSet parameters(initial, all_frequencies(30));
+  const auto function = kPaper.bind(data, parameters);
+  const auto search = [&](bool skip) {
+    return ModeByMode({.skip_settled = skip}).minimize(*function, parameters.variables(), {});
+  };
+  const OptimizationResult whole = search(false), result = search(true);
+  // Modes settle within five loops or so, the last one searches all.
+  EXPECT_LT(result.evaluations, 0.75 * static_cast<double>(whole.evaluations));
+  EXPECT_EQ(result.searched.back(), 30);
+  ASSERT_EQ(result.scans.size(), 60u);
+  for (std::size_t i = 0; i < 30; ++i) {
+    const CoordinateScan& last = result.scans[30 + i];
+    EXPECT_EQ(last.chosen, result.x[i]);
+    // Half a step is 0.06 %: the two places between which a settled mode goes to and fro.
+    EXPECT_NEAR(result.x[i], whole.x[i], 1.01 * 0.06 / 49.0 * whole.x[i]) << "mode " << i + 1;
+  }
+}
+
 TEST(SpectralPeak, SearchHasTheSameBitsForAnyNumberOfThreads) {
   const CalibrationData data = exact_data(paper_truth(30), 25600, 25600.0, 196.0);
   const ModelPoint initial = with_frequency_errors(paper_truth(30), 0.02, 1);
   const ParameterSet parameters(initial, all_frequencies(30));
   const auto function = kPaper.bind(data, parameters);
-  const auto search = [&](std::size_t threads) {
-    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
-    return ModeByMode({.loops = 2}).minimize(*function, parameters.variables(), {});
-  };
-  const OptimizationResult serial = search(1);
-  for (const std::size_t threads : {2, 3}) {
-    const OptimizationResult parallel = search(threads);
-    EXPECT_EQ(parallel.x, serial.x);
-    EXPECT_EQ(parallel.value, serial.value);
-    for (std::size_t i = 0; i < serial.scans.size(); ++i) {
-      EXPECT_EQ(parallel.scans[i].values, serial.scans[i].values);
+  for (const ModeByMode::Options& options :
+       {ModeByMode::Options{.loops = 2}, {.loops = 6, .skip_settled = true}}) {
+    const auto search = [&](std::size_t threads) {
+      const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+      return ModeByMode(options).minimize(*function, parameters.variables(), {});
+    };
+    const OptimizationResult serial = search(1);
+    for (const std::size_t threads : {2, 3}) {
+      const OptimizationResult parallel = search(threads);
+      EXPECT_EQ(parallel.x, serial.x);
+      EXPECT_EQ(parallel.value, serial.value);
+      EXPECT_EQ(parallel.searched, serial.searched);
+      for (std::size_t i = 0; i < serial.scans.size(); ++i) {
+        EXPECT_EQ(parallel.scans[i].values, serial.scans[i].values);
+      }
     }
   }
 }
