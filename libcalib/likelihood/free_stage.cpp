@@ -56,14 +56,14 @@ class FreeStage {
                                     : stroke_.prepare_weights(unknowns_, theta_);
     newton_.steps = 5;
     search(stroke_.weighted());
-    const LikelihoodPoint at = stroke_.weighted_point(unknowns_, theta_);
+    at_ = stroke_.weighted_point(unknowns_, theta_);
     // A prior of a mode's frequency is no sight of it.
     NewtonOptions unstated = newton_;
     set_prior(unknowns_.under(priors_.without_frequencies()).prior(theta_, {wide, inharmonicity_}),
               unstated);
-    const Eigen::VectorXd deviation = fit_covariance(at, unstated).diagonal().cwiseMax(0.0);
+    const Eigen::VectorXd deviation = fit_covariance(at_, unstated).diagonal().cwiseMax(0.0);
     const ModelPoint point = unknowns_.model(theta_);
-    sight_ = sight_of(theta_.head(modes()), deviation.head(modes()).cwiseSqrt(), at.information,
+    sight_ = sight_of(theta_.head(modes()), deviation.head(modes()).cwiseSqrt(), at_.information,
                       newton_.noise, nodes(point.basis, {point.contact}));
     doubt_rivals(left, sight_);
   }
@@ -101,12 +101,15 @@ class FreeStage {
     widths_ = prior_widths(sight_.seen, followers_.prior_width, followers_.width);
     widen_stated(priors_, followers_.prior_width, widths_);
     release(followers_, sight_, widths_);
+    newton_.at_start = &at_;
     if (start_.from_law && followers_.leaving() > 0) {
       newton_.noise = stroke_.prepare_weights(unknowns_, theta_);
+      newton_.at_start = nullptr;
     }
     set_prior(unknowns_.prior(theta_, {widths_, inharmonicity_}), newton_);
     newton_.tolerance = 1e-4;
     search(stroke_.weighted());
+    newton_.at_start = nullptr;
   }
 
   void report(const Eigen::MatrixXd& covariance) {
@@ -134,6 +137,7 @@ class FreeStage {
   double inharmonicity_;
   NewtonOptions newton_{.steps = 10, .tolerance = 1e-2, .frequency_cap = kStepCap};
   Eigen::VectorXd theta_, widths_;
+  LikelihoodPoint at_;  // where the modes were seen, with the weights of then
   ModeSight sight_;
   LawFollowers followers_;
   ContinuationResult& result_;

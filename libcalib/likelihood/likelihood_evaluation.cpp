@@ -170,6 +170,23 @@ void LikelihoodEvaluation::finish(std::size_t b, const std::array<double*, 3>& s
                   blocks_[b]);
 }
 
+Eigen::VectorXd LikelihoodEvaluation::mode_products(const double* sums,
+                                                    const LikelihoodColumns& columns) const {
+  Eigen::VectorXd products = Eigen::VectorXd::Zero(static_cast<Index>(columns.count));
+  if (columns.count == 0) return products;
+  std::vector<ModeSlopes> slopes(modes_.size());
+  collect_mode_slopes(sums, modes_, column_task(columns), slopes);
+  for (std::size_t n = 0; n < modes_.size(); ++n) {
+    for (std::size_t i = columns.share_begin[n]; i < columns.share_begin[n + 1]; ++i) {
+      const ColumnShare& share = columns.shares[i];
+      products[static_cast<Index>(share.column)] +=
+          share.frequency * slopes[n].by_frequency + share.damping * slopes[n].by_damping;
+    }
+    if (columns.contact) products[static_cast<Index>(*columns.contact)] += slopes[n].by_contact;
+  }
+  return products;
+}
+
 LikelihoodPoint LikelihoodEvaluation::slope(const LikelihoodColumns& columns) {
   const auto sensors = columns.sensors();
   std::vector<Slopes> parts(chunks());
@@ -199,19 +216,7 @@ LikelihoodPoint LikelihoodEvaluation::slope(const LikelihoodColumns& columns) {
     for (std::size_t i = 0; i < 3; ++i) sum.sensors[i] += parts[c].sensors[i];
     for (std::size_t i = 0; i < sum.modes.size(); ++i) sum.modes[i] += parts[c].modes[i];
   }
-  LikelihoodPoint point{.cost = sum.cost,
-                        .slope = Eigen::VectorXd::Zero(static_cast<Index>(columns.count))};
-  if (columns.count == 0) return point;
-  std::vector<ModeSlopes> slopes(modes_.size());
-  collect_mode_slopes(sum.modes.data(), modes_, column_task(columns), slopes);
-  for (std::size_t n = 0; n < modes_.size(); ++n) {
-    for (std::size_t i = columns.share_begin[n]; i < columns.share_begin[n + 1]; ++i) {
-      const ColumnShare& share = columns.shares[i];
-      point.slope[static_cast<Index>(share.column)] +=
-          share.frequency * slopes[n].by_frequency + share.damping * slopes[n].by_damping;
-    }
-    if (columns.contact) point.slope[static_cast<Index>(*columns.contact)] += slopes[n].by_contact;
-  }
+  LikelihoodPoint point{.cost = sum.cost, .slope = mode_products(sum.modes.data(), columns)};
   for (std::size_t i = 0; i < 3; ++i) {
     if (sensors[i]) point.slope[static_cast<Index>(*sensors[i])] = sum.sensors[i];
   }

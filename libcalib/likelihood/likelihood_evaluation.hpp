@@ -38,6 +38,10 @@ class LikelihoodEvaluation {
   LikelihoodPoint differentiate(const LikelihoodColumns& columns, const LikelihoodOutputs& outputs);
   /// Cost and slope alone; no column is formed.
   LikelihoodPoint slope(const LikelihoodColumns& columns);
+  /// Cost, slope and, as rows of `information`, those of the information of the unknowns `wanted`:
+  /// some, and few enough for that to be worth while (may_give_rows()).
+  LikelihoodPoint rows(const LikelihoodColumns& columns, std::span<const std::size_t> wanted);
+  static bool may_give_rows(const LikelihoodColumns& columns, std::span<const std::size_t> wanted);
 
  private:
   using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -66,6 +70,12 @@ class LikelihoodEvaluation {
   ColumnTask column_task(const LikelihoodColumns& columns) const;
   void finish(std::size_t b, const std::array<double*, 3>& sensors);
   void fill_columns(std::size_t b, const LikelihoodColumns& columns, double* jacobian);
+  Products multiply_columns(const LikelihoodColumns& columns, Columns& work,
+                            const std::function<void(std::size_t, std::size_t)>& also);
+  Eigen::MatrixXd project_rows(Columns& work, const Eigen::MatrixXd& fit, std::size_t count,
+                               const LikelihoodColumns& columns);
+  /// Products with what every unknown's column is made of, from the sums of add_mode_slopes().
+  Eigen::VectorXd mode_products(const double* sums, const LikelihoodColumns& columns) const;
   void add_cross_products(std::size_t b, const LikelihoodColumns& columns, const Columns& work,
                           double* jacobian, Products& sums);
   void add_state_products(std::size_t b, const LikelihoodColumns& columns, double* jacobian,

@@ -6,6 +6,7 @@
 #include "libcalib/likelihood/column_products.hpp"
 #include "libcalib/likelihood/far_products.hpp"
 #include "libcalib/likelihood/likelihood_evaluation.hpp"
+#include "libcalib/likelihood/likelihood_work.hpp"
 
 namespace modcal {
 namespace {
@@ -13,11 +14,6 @@ namespace {
 constexpr std::size_t kBins = LikelihoodBlock::kBins;
 
 using Index = Eigen::Index;
-
-Eigen::MatrixXd symmetric(const auto& lower, std::size_t count) {
-  const auto n = static_cast<Index>(count);
-  return Eigen::MatrixXd(lower.topLeftCorner(n, n)).template selfadjointView<Eigen::Lower>();
-}
 
 // Calls give(row, real or imaginary part's place in the block's column) for the bins of a block.
 template <typename Give>
@@ -30,29 +26,6 @@ void for_rows(std::size_t b, std::size_t bins, Give give) {
 }
 
 }  // namespace
-
-// The Jacobian's columns, the residual behind them; where they are not kept, one block a chunk.
-struct LikelihoodEvaluation::Columns {
-  Columns(std::size_t column_count, std::size_t pieces, bool keep, AlignedVector& room)
-      : count(column_count), width(tiled(column_count + 1)), kept(keep) {
-    if (room.size() < width * kColumnLength * pieces) room.resize(width * kColumnLength * pieces);
-    numbers = room.data();
-  }
-  double* of(std::size_t chunk, std::size_t b) {
-    return numbers + (kept ? b : chunk) * width * kColumnLength;
-  }
-  bool shared() const { return count <= kSharedColumns; }
-
-  std::size_t count, width;
-  bool kept;
-  double* numbers;
-};
-
-// Sums over the blocks of a chunk.
-struct LikelihoodEvaluation::Products {
-  RowMatrix own, plain;
-  AlignedVector mixed, decays, state;
-};
 
 void LikelihoodEvaluation::fill_columns(std::size_t b, const LikelihoodColumns& columns,
                                         double* jacobian) {
@@ -145,12 +118,10 @@ Eigen::MatrixXd LikelihoodEvaluation::cross_products(const Columns& work,
   return cross;
 }
 
-LikelihoodPoint LikelihoodEvaluation::differentiate(const LikelihoodColumns& columns,
-                                                    const LikelihoodOutputs& outputs) {
-  assert(columns.count == 0 || columns.share_begin.size() == modes_.size() + 1);
-  const bool keep = outputs.jacobian || outputs.twice_weighted;
-  Columns work(columns.count, keep ? blocks_.size() : chunks(), keep, arrays_.columns);
-  const auto n = static_cast<Index>(work.count);
+// Forms the columns of every block, adds up their products, and calls also(chunk, block).
+LikelihoodEvaluation::Products LikelihoodEvaluation::multiply_columns(
+    const LikelihoodColumns& columns, Columns& work,
+    const std::function<void(std::size_t, std::size_t)>& also) {
   const auto width = static_cast<Index>(work.width);
   std::vector<Products> parts(chunks());
   for (Products& part : parts) {
@@ -168,6 +139,7 @@ LikelihoodPoint LikelihoodEvaluation::differentiate(const LikelihoodColumns& col
     add_products(jacobian, work.width, jacobian, work.width, true, parts[chunk].own.data(),
                  work.width);
     if (work.count > 0) add_cross_products(b, columns, work, jacobian, parts[chunk]);
+    also(chunk, b);
   });
   Products sum = std::move(parts[0]);
   for (std::size_t c = 1; c < parts.size(); ++c) {
@@ -176,6 +148,16 @@ LikelihoodPoint LikelihoodEvaluation::differentiate(const LikelihoodColumns& col
     for (std::size_t i = 0; i < sum.mixed.size(); ++i) sum.mixed[i] += parts[c].mixed[i];
     for (std::size_t i = 0; i < sum.decays.size(); ++i) sum.decays[i] += parts[c].decays[i];
   }
+  return sum;
+}
+
+LikelihoodPoint LikelihoodEvaluation::differentiate(const LikelihoodColumns& columns,
+                                                    const LikelihoodOutputs& outputs) {
+  assert(columns.count == 0 || columns.share_begin.size() == modes_.size() + 1);
+  const bool keep = outputs.jacobian || outputs.twice_weighted;
+  Columns work(columns.count, keep ? blocks_.size() : chunks(), keep, arrays_.columns);
+  const auto n = static_cast<Index>(work.count);
+  const Products sum = multiply_columns(columns, work, [](std::size_t, std::size_t) {});
   const Eigen::MatrixXd products = symmetric(sum.own, work.count + 1);
   LikelihoodPoint point{.cost = products(n, n), .slope = products.col(n).head(n)};
   give(outputs);

@@ -58,6 +58,7 @@ HWY_INLINE void AddShared(const ModeSplit& split, std::span<const std::size_t> l
                           const ColumnTask& task, const Bins& bins, C delay, SharedSums& sums) {
   const bool contact = task.contact < task.count;
   for (const std::size_t n : list) {
+    if (!contact && task.share_begin[n] == task.share_begin[n + 1]) continue;
     const ModeTerms terms = TermsOf(split.modes[n], n, task, bins, delay);
     if (contact) {
       C& sum = sums.of[task.contact].drive;

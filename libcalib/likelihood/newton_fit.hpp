@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <functional>
 #include <limits>
+#include <span>
 
 #include "libcalib/likelihood/string_unknowns.hpp"
 
@@ -17,6 +18,8 @@ struct NewtonOptions {
   Eigen::MatrixXd noise;       ///< N̄; empty: none is subtracted
   Eigen::MatrixXd prior;       ///< precision Q; empty: none
   Eigen::VectorXd prior_mean;  ///< θ_0; empty: 0
+  /// What the target gives at the start, where that is known; null: it is evaluated.
+  const LikelihoodPoint* at_start = nullptr;
 };
 
 /// What a fit evaluates.
@@ -26,19 +29,26 @@ struct FitTarget {
   Eigen::Index capped = 0;  ///< leading unknowns that frequency_cap holds
   /// Cost and slope alone; empty: evaluate.
   std::function<LikelihoodPoint(const Eigen::VectorXd&)> slope = {};
+  /// Cost, slope and, as its rows, those of the information of some unknowns, or all of it; empty:
+  /// evaluate.
+  std::function<LikelihoodPoint(const Eigen::VectorXd&, std::span<const std::size_t> wanted)> rows =
+      {};
 };
 
 struct NewtonFit {
   Eigen::VectorXd theta;
   double objective = std::numeric_limits<double>::infinity();  ///< Σ w|e|² + ½ (θ − θ_0)ᵀQ(θ − θ_0)
-  LikelihoodPoint point;  ///< its information may be that of the point before
+  LikelihoodPoint point;  ///< rows of its information may be those of points before
   std::size_t evaluations = 0;
-  std::size_t slopes = 0;  ///< those of cost and slope alone
+  std::size_t slopes = 0;   ///< those of cost and slope alone
+  std::size_t partial = 0;  ///< those of some rows of the information
   bool converged = false;
 };
 
 /// Minimizes Σ w|e|² + ½ (θ − θ_0)ᵀQ(θ − θ_0) from `start`, Hessian 2(JᵀWJ − N̄) + Q. JᵀWJ is
-/// found where a step starts: not where one is refused, nor where the last one ends.
+/// found where a step starts: not where one is refused, nor where the last one ends. Unknowns that
+/// have moved by less than a fifth of their standard deviation since their row of it was found keep
+/// that row, save what they share with one that has moved.
 NewtonFit newton_fit(const FitTarget& target, const Eigen::VectorXd& start,
                      const NewtonOptions& options);
 /// The same for one record.

@@ -67,6 +67,17 @@ LikelihoodPoint ProjectedLikelihood::slope(const ModelPoint& point,
   return LikelihoodEvaluation(record_, point).slope(columns);
 }
 
+LikelihoodPoint ProjectedLikelihood::rows(const ModelPoint& point, const LikelihoodColumns& columns,
+                                          std::span<const std::size_t> wanted) const {
+  if (wanted.empty()) {
+    LikelihoodPoint none = slope(point, columns);
+    none.information.resize(0, static_cast<Eigen::Index>(columns.count));
+    return none;
+  }
+  if (!LikelihoodEvaluation::may_give_rows(columns, wanted)) return evaluate(point, columns);
+  return LikelihoodEvaluation(record_, point).rows(columns, wanted);
+}
+
 LikelihoodPoint ProjectedLikelihood::evaluate(const ModelPoint& point,
                                               const LikelihoodColumns& columns,
                                               const Outputs& outputs) const {

@@ -42,6 +42,11 @@ class ProjectedLikelihood {
   LikelihoodPoint slope(const ModelPoint& point, const LikelihoodColumns& columns) const;
   LikelihoodPoint evaluate(const ModelPoint& point, const LikelihoodColumns& columns,
                            const Outputs& outputs) const;
+  /// Cost, slope and the rows of the information that belong to the unknowns `wanted`, in their
+  /// order: the columns of these alone, and their products by modes, where they are few; else all
+  /// rows. One to four of 52 rows take 0.3 to 0.6 of the time of all.
+  LikelihoodPoint rows(const ModelPoint& point, const LikelihoodColumns& columns,
+                       std::span<const std::size_t> wanted) const;
   LikelihoodPoint evaluate(const ModelPoint& point, const LikelihoodColumns& columns) const {
     return evaluate(point, columns, Outputs{});
   }
