@@ -29,9 +29,14 @@ Json misfit_json(const PriorMisfit& misfit) {
 }  // namespace
 
 std::string verdict_text(const ModeVerdict& mode) {
-  const std::string source(name_of(mode.source));
-  if (mode.reason == WeakReason::kNone) return source;
-  return fmt::format("{} ({})", source, name_of(mode.reason));
+  std::string text(name_of(mode.source));
+  if (mode.tie == LawTie::kLeaves) {
+    text += fmt::format(", leaves the law by {:+.3g} %", 100.0 * mode.departure);
+  } else if (mode.source == ModeSource::kIdentified && mode.deviation < 0.5 * mode.data_deviation) {
+    text += fmt::format(", drawn to the law (data alone {:.2g})", mode.data_deviation);
+  }
+  if (mode.reason != WeakReason::kNone) text += fmt::format(" ({})", name_of(mode.reason));
+  return text;
 }
 
 std::string prior_lines(const PriorMisfit& misfit, std::string_view stage) {
@@ -62,6 +67,9 @@ Json modes_json(const CalibrationOutcome& outcome) {
     modes.back()["relative_sd"] = number_or_null(verdict.deviation);
     modes.back()["source"] = name_of(verdict.source);
     modes.back()["reason"] = name_of(verdict.reason);
+    modes.back()["data_sd"] = number_or_null(verdict.data_deviation);
+    modes.back()["law"] = name_of(verdict.tie);
+    modes.back()["beyond_law"] = number_or_null(verdict.departure);
   }
   return modes;
 }
@@ -98,6 +106,7 @@ Json continuation_json(const ContinuationResult& found,
           {"noise_left_n", number_or_null(found.noise[0])},
           {"noise_right_n", number_or_null(found.noise[1])},
           {"restarts", found.restarts},
+          {"moved_modes", found.moved_modes},
           {"x_c_sd_of_strokes_m", contact_deviations}};
 }
 

@@ -169,6 +169,11 @@ LawFollowers followers_of(LawLine line, double width) {
 
 }  // namespace
 
+std::string_view name_of(LawTie tie) {
+  constexpr std::string_view kNames[] = {"follows", "doubtful", "leaves"};
+  return kNames[static_cast<std::size_t>(tie)];
+}
+
 LawFollowers LawFollowers::all(Eigen::Index modes, double width) {
   return {.width = width,
           .prior_width = width,

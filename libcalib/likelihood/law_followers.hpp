@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <limits>
+#include <string_view>
 #include <vector>
 
 namespace modcal {
@@ -22,6 +23,7 @@ struct ModeSight {
 };
 
 enum class LawTie { kFollows, kDoubtful, kLeaves };
+std::string_view name_of(LawTie tie);  ///< follows, doubtful, leaves
 
 struct LawFollowers {
   double width = kWidePrior;  ///< τ, relative scatter about the law of the modes that follow it

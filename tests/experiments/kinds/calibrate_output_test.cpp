@@ -77,5 +77,18 @@ TEST(CalibrateOutput, TablesHaveDeviationsWhereTheyAreKnown) {
             "from the law (node)");
 }
 
+TEST(CalibrateOutput, SaysWhichModesLeaveTheLawAndWhichAreDrawnToIt) {
+  EXPECT_EQ(
+      verdict_text(
+          {.deviation = 6e-4, .data_deviation = 6e-4, .tie = LawTie::kLeaves, .departure = 4e-3}),
+      "identified, leaves the law by +0.4 %");
+  EXPECT_EQ(verdict_text({.deviation = 1e-5, .data_deviation = 6e-4}),
+            "identified, drawn to the law (data alone 0.0006)");
+  EXPECT_EQ(
+      verdict_text(
+          {.source = ModeSource::kLaw, .reason = WeakReason::kDoubt, .tie = LawTie::kDoubtful}),
+      "from the law (data and law disagree)");
+}
+
 }  // namespace
 }  // namespace modcal
