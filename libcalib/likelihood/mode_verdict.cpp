@@ -150,8 +150,10 @@ std::vector<ModeVerdict> free_verdicts(const ModelPoint& model, const Eigen::Vec
     if (doubtful) {
       verdict.reason = WeakReason::kDoubt;
       verdict.deviation = std::hypot(deviation[i], followers.rest[i]);
-    } else if (verdict.tie == LawTie::kFollows) {
-      verdict.deviation = std::max(deviation[i], std::min(law_width, kWidePrior));
+    } else {
+      // Where neither law nor data have it, it is anywhere that its prior admits.
+      const double width = verdict.tie == LawTie::kLeaves ? kLeft : std::min(law_width, kWidePrior);
+      verdict.deviation = std::max(deviation[i], width);
     }
     if (law_holds) {
       verdict.source = ModeSource::kLaw;
