@@ -99,7 +99,8 @@ double likelihood_band(const ModelPoint& point, double highest_frequency, double
 /// S/(1 + S). Where χ² contradicts the law: free frequencies through σ ≈ 40, 20, 10, each mode
 /// tested against its neighboring minima. Last, free frequencies at σ = 0, each tested again, under
 /// the law prior, modes the data do not see tied to the law and modes that leave it set free; where
-/// some do, the law is fitted once more without them. The records must begin at rest.
+/// some do or are doubtful, the law is fitted once more without them. The records must begin at
+/// rest.
 ContinuationResult calibrate_by_continuation(const ModelPoint& initial, const CalibrationData& data,
                                              const ContinuationOptions& options);
 /// The same with these priors in the place of those among the options.

@@ -164,14 +164,14 @@ class Attempt {
     trust_stated_frequencies(priors_, {}, result.modes);
   }
 
-  // The law once more without the modes that leave it: they stay where they were found.
+  // The law once more without the modes that do not follow it: they stay where they were found.
   void leave_out(ContinuationResult& result) {
-    const std::vector<std::size_t> leaving = leaving_modes(result.modes);
-    if (leaving.empty()) return;
-    for (const std::size_t n : leaving) {
+    const std::vector<std::size_t> others = not_following(result.modes);
+    if (others.empty()) return;
+    for (const std::size_t n : others) {
       reference_.basis.omega[n] = result.model.basis.omega[n];
     }
-    law_ = law(priors_.holding(leaving));
+    law_ = law(priors_.holding(others));
     finish_law(result);
   }
 

@@ -337,13 +337,13 @@ void fit_jointly(const ModelPoint& initial, const ContinuationOptions& options,
   ContinuationOptions law_alone = options;
   law_alone.frequencies = false;
   RecordsFit alone{.single = fit.single};
-  const std::vector<std::size_t> leaving = leaving_modes(fit.modes);
+  const std::vector<std::size_t> others = not_following(fit.modes);
   for (ContinuationResult& single : alone.single) {
-    for (const std::size_t n : leaving) {
+    for (const std::size_t n : others) {
       single.model.basis.omega[n] = fit.model.basis.omega[n];
     }
   }
-  run_fit(initial, law_alone, priors.holding(leaving), strokes, plucks, alone);
+  run_fit(initial, law_alone, priors.holding(others), strokes, plucks, alone);
   fit.law = alone.law;
   fit.evaluations += alone.evaluations;
   report_departures(fit.law, fit.modes);

@@ -100,9 +100,10 @@ Eigen::VectorXd prior_widths(const Eigen::VectorXd& seen, double width, double e
 
 void release(const LawFollowers& followers, ModeSight& sight, Eigen::VectorXd& widths) {
   for (Eigen::Index i = 0; i < widths.size(); ++i) {
-    if (followers.ties[static_cast<std::size_t>(i)] != LawTie::kLeaves) continue;
-    widths[i] = kLeft;
-    sight.seen[i] = std::min(sight.seen[i], sight.error[i]);
+    const LawTie tie = followers.ties[static_cast<std::size_t>(i)];
+    if (tie == LawTie::kFollows) continue;
+    widths[i] = std::max(widths[i], tie == LawTie::kLeaves ? kLeft : kWidePrior);
+    if (tie == LawTie::kLeaves) sight.seen[i] = std::min(sight.seen[i], sight.error[i]);
   }
 }
 
@@ -142,20 +143,19 @@ std::vector<ModeVerdict> free_verdicts(const ModelPoint& model, const Eigen::Vec
     verdict.deviation = deviation[i];
     verdict.data_deviation = seen[i];
     verdict.tie = followers.ties[n];
-    const bool doubtful = verdict.tie == LawTie::kDoubtful;
-    if (seen[i] < kIdentified && !doubtful) continue;
-    verdict.reason = weak_reason(model, n);
-    // The law speaks for a mode where the other modes follow it closer than the mode is needed.
-    const bool law_holds = law_width < 0.5 * kIdentified && verdict.tie != LawTie::kLeaves;
-    if (doubtful) {
+    if (verdict.tie == LawTie::kDoubtful) {
       verdict.reason = WeakReason::kDoubt;
       verdict.deviation = std::hypot(deviation[i], followers.rest[i]);
-    } else {
+    }
+    if (seen[i] < kIdentified) continue;
+    if (verdict.tie != LawTie::kDoubtful) {
+      verdict.reason = weak_reason(model, n);
       // Where neither law nor data have it, it is anywhere that its prior admits.
       const double width = verdict.tie == LawTie::kLeaves ? kLeft : std::min(law_width, kWidePrior);
       verdict.deviation = std::max(deviation[i], width);
     }
-    if (law_holds) {
+    // The law speaks for a mode where the other modes follow it closer than the mode is needed.
+    if (verdict.tie == LawTie::kFollows && law_width < 0.5 * kIdentified) {
       verdict.source = ModeSource::kLaw;
     } else {
       verdict.source = std::abs(shape[n]) < 0.02 ? ModeSource::kBlind : ModeSource::kPrior;
@@ -164,12 +164,12 @@ std::vector<ModeVerdict> free_verdicts(const ModelPoint& model, const Eigen::Vec
   return verdicts;
 }
 
-std::vector<std::size_t> leaving_modes(const std::vector<ModeVerdict>& modes) {
-  std::vector<std::size_t> leaving;
+std::vector<std::size_t> not_following(const std::vector<ModeVerdict>& modes) {
+  std::vector<std::size_t> found;
   for (std::size_t n = 0; n < modes.size(); ++n) {
-    if (modes[n].tie == LawTie::kLeaves) leaving.push_back(n);
+    if (modes[n].tie != LawTie::kFollows) found.push_back(n);
   }
-  return leaving.size() + 2 > modes.size() ? std::vector<std::size_t>{} : leaving;
+  return found.size() + 2 > modes.size() ? std::vector<std::size_t>{} : found;
 }
 
 void report_departures(const LawEstimate& law, std::vector<ModeVerdict>& modes) {

@@ -26,20 +26,22 @@ void doubt_rivals(const std::vector<Neighbor>& neighbors, ModeSight& sight);
 /// wide prior is that prior's (more than 0.7 of it) no more than the width estimated.
 Eigen::VectorXd prior_widths(const Eigen::VectorXd& seen, double width, double estimated);
 
-/// A mode that leaves the law has the width kLeft, and is seen as far as its information says.
+/// A mode that leaves the law has the width kLeft and is seen as far as its information says, a
+/// doubtful one kWidePrior at least: tied to where it is not, it would push the others away.
 void release(const LawFollowers& followers, ModeSight& sight, Eigen::VectorXd& widths);
 
 /// All modes by the law with the covariance of (ln f_0, B).
 std::vector<ModeVerdict> law_verdicts(const ModelPoint& model, double inharmonicity,
                                       const Eigen::Matrix2d& covariance);
 
-/// deviation: sd of ln f_n; seen: the same under the wide prior alone. A doubtful mode is where the
-/// law has it, and its standard deviation reaches to where the data have it.
+/// deviation: sd of ln f_n; seen: the same under the wide prior alone. The standard deviation of a
+/// doubtful mode reaches from where the data have it to the law.
 std::vector<ModeVerdict> free_verdicts(const ModelPoint& model, const Eigen::VectorXd& deviation,
                                        const Eigen::VectorXd& seen, const LawFollowers& followers);
 
-/// Modes that leave the law, by index; none where fewer than two would be left to find it by.
-std::vector<std::size_t> leaving_modes(const std::vector<ModeVerdict>& modes);
+/// Modes that leave the law or are doubtful, by index; none where fewer than two would be left to
+/// find the law by.
+std::vector<std::size_t> not_following(const std::vector<ModeVerdict>& modes);
 
 /// Fills how far every mode is from n f_0 √(1 + Bn²).
 void report_departures(const LawEstimate& law, std::vector<ModeVerdict>& modes);

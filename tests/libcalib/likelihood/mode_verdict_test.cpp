@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/libsim/dynamics/paper_case.hpp"
 
 namespace modcal {
@@ -36,12 +38,18 @@ TEST(FreeVerdicts, IdentifyWhatTheDataSee) {
 
 TEST(FreeVerdicts, DoubtWhereDataAndLawDisagree) {
   Found found;
-  found.followers.ties[2] = LawTie::kDoubtful;
-  found.followers.rest[2] = -3e-4;
-  const ModeVerdict verdict = found.verdicts()[2];
-  EXPECT_EQ(verdict.source, ModeSource::kLaw);
-  EXPECT_EQ(verdict.reason, WeakReason::kDoubt);
-  EXPECT_DOUBLE_EQ(verdict.deviation, std::hypot(2e-5, 3e-4));
+  for (const std::size_t n : {2u, 5u}) {
+    found.followers.ties[n] = LawTie::kDoubtful;
+    found.followers.rest[static_cast<Eigen::Index>(n)] = -3e-4;
+  }
+  found.seen[5] = 1.5e-3;
+  const std::vector<ModeVerdict> verdicts = found.verdicts();
+  EXPECT_EQ(verdicts[2].source, ModeSource::kIdentified);
+  EXPECT_EQ(verdicts[5].source, ModeSource::kPrior);
+  for (const std::size_t n : {2u, 5u}) {
+    EXPECT_EQ(verdicts[n].reason, WeakReason::kDoubt);
+    EXPECT_DOUBLE_EQ(verdicts[n].deviation, std::hypot(2e-5, 3e-4));
+  }
 }
 
 TEST(FreeVerdicts, KnowAModeThatLeavesTheLawByTheDataAlone) {
@@ -54,12 +62,13 @@ TEST(FreeVerdicts, KnowAModeThatLeavesTheLawByTheDataAlone) {
   // Neither law nor data have it.
   EXPECT_EQ(verdicts[4].source, ModeSource::kPrior);
   EXPECT_EQ(verdicts[4].deviation, kLeft);
-  EXPECT_EQ(leaving_modes(verdicts), (std::vector<std::size_t>{1, 4}));
+  EXPECT_EQ(not_following(verdicts), (std::vector<std::size_t>{1, 4}));
 }
 
 TEST(Release, OpensThePriorOfAModeThatLeaves) {
   Found found;
   found.followers.ties[1] = LawTie::kLeaves;
+  found.followers.ties[2] = LawTie::kDoubtful;
   ModeSight sight{.delta = found.deviation, .seen = found.seen, .error = found.seen};
   sight.seen[1] = kWidePrior;  // unproven, until it left
   sight.error[1] = 2e-4;
@@ -69,6 +78,11 @@ TEST(Release, OpensThePriorOfAModeThatLeaves) {
   EXPECT_EQ(widths[1], kLeft);
   EXPECT_EQ(sight.seen[1], 2e-4);
   EXPECT_EQ(widths[0], 2e-3);
+
+  widths = prior_widths(sight.seen, 1e-5, 1e-5);
+  release(found.followers, sight, widths);
+  EXPECT_EQ(widths[2], kWidePrior);
+  EXPECT_EQ(widths[0], 1e-5);
 }
 
 TEST(Departures, AreThoseFromTheLaw) {
