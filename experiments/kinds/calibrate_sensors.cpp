@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
-#include "experiments/records/time_shift.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/signal/statistics.hpp"
+#include "libsim/signal/time_shift.hpp"
 
 namespace modcal {
 namespace {

@@ -7,9 +7,9 @@
 #include "experiments/config/units.hpp"
 #include "experiments/records/csv_reader.hpp"
 #include "experiments/records/levels.hpp"
-#include "experiments/records/time_shift.hpp"
 #include "experiments/records/wav_reader.hpp"
 #include "libsim/base/error.hpp"
+#include "libsim/signal/time_shift.hpp"
 
 namespace modcal {
 namespace {

@@ -9,6 +9,7 @@
 #include "libsim/base/error.hpp"
 #include "libsim/signal/fft.hpp"
 #include "libsim/signal/statistics.hpp"
+#include "libsim/signal/time_shift.hpp"
 
 namespace modcal {
 namespace {
@@ -27,6 +28,26 @@ double offset_deviation(const ObservedRecord& record, int r) {
   return std::hypot(noise, 0.003 * standard_deviation(record.reaction[r]));
 }
 
+// What a shift in time makes up at the end of a record fades as 1/n² with the distance n from it.
+constexpr double kFaded = 16.0;
+
+// Samples that no delay within the bounds brings to the end of the record.
+std::size_t kept_samples(const CalibrationData& data, const ParameterSet& parameters) {
+  double longest = std::abs(parameters.initial().sensors.delay);
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    if (parameters[i].kind != ParameterKind::kDelay) continue;
+    const Variable& variable = parameters[i].variable;
+    longest = std::max({longest, std::abs(variable.lower), std::abs(variable.upper)});
+  }
+  if (longest == 0.0) return data.samples;
+  const double lost = std::ceil(longest * data.sample_rate) + kFaded;
+  MODCAL_REQUIRE(2.0 * lost < static_cast<double>(data.samples),
+                 "a delay of up to {:g} s leaves nothing of a record of {} samples: narrow its "
+                 "range or take a longer record",
+                 longest, data.samples);
+  return data.samples - static_cast<std::size_t>(lost);
+}
+
 class Function final : public ObjectiveFunction {
  public:
   Function(const CalibrationData& data, ParameterSet parameters,
@@ -35,33 +56,61 @@ class Function final : public ObjectiveFunction {
         options_(options),
         sample_rate_(data.sample_rate),
         left_(samples_of(data, End::kLeft)),
-        right_(samples_of(data, End::kRight)) {
+        right_(samples_of(data, End::kRight)),
+        kept_(kept_samples(data, parameters_)) {
     const ModelPoint& initial = parameters_.initial();
     const ModelBasedResult start =
         ModelBasedEstimator({.substeps = options.substeps, .rounds = 0})
-            .estimate(initial.basis, initial.contact, sample_rate_, left_, right_);
+            .estimate(initial.basis, initial.contact, sample_rate_, left(), right(initial.sensors));
     friction_ = start.parameters;
     negated_ = start.negated;
     static_force_ = friction_.sliding.dynamic_force + friction_.sliding.force_drop;
   }
   std::string_view name() const override { return "innovation_misfit"; }
   std::size_t dimension() const override { return parameters_.size(); }
-  std::size_t residual_count() const override { return 2 * left_.size(); }
+  std::size_t residual_count() const override { return 2 * kept_; }
   Capabilities capabilities() const override { return {.residuals = true}; }
 
  private:
+  std::span<const double> left() const { return std::span(left_).first(kept_); }
+
+  // The reaction at x = L from what its sensor reads: R₂ = R₂'/S. The high-pass is undone as
+  // y + corner ∫ y dt by the trapezoidal rule.
+  std::vector<double> right(const SensorPair& sensors) const {
+    std::vector<double> samples =
+        sensors.delay == 0.0 ? right_ : advanced(right_, sensors.delay, sample_rate_);
+    samples.resize(kept_);
+    const double half = 0.5 * sensors.corner / sample_rate_;
+    double integral = 0.0, last = 0.0;
+    for (double& sample : samples) {
+      integral += half * (sample + last);
+      last = sample;
+      sample = (sample + integral) / sensors.gain;
+    }
+    return samples;
+  }
+
+  // The noise is read from the reactions as corrected, so that a gain scales it along with the
+  // signal and ν/s stays in units of the noise measured: a gain is not paid for by its noise.
   ObservedRecord record_at(const ModelPoint& point) const {
-    ObservedRecord record =
-        observer::observe_record(point.basis, point.contact, sample_rate_, left_, right_);
+    ObservedRecord record = observer::observe_record(point.basis, point.contact, sample_rate_,
+                                                     left(), right(point.sensors));
     if (negated_) observer::negate(record);
     return record;
   }
 
-  ObserverParameters fitted(const observer::ObserverRuns& runs, double contact) const {
+  // Where the sensors may differ the level of R₂ as fitted at bind is that of another sensor: it is
+  // read from the silent samples again.
+  ObserverParameters fitted(const observer::ObserverRuns& runs, const ModelPoint& point) const {
     ObserverParameters start = friction_;
-    start.contact = contact;
+    start.contact = point.contact;
+    start.level_growth = point.sensors.corner;
     const ObservedRecord& record = runs.record();
-    const double deviation[2] = {offset_deviation(record, 0), offset_deviation(record, 1)};
+    double deviation[2] = {offset_deviation(record, 0), offset_deviation(record, 1)};
+    if (point.sensors.may_differ()) {
+      start.offset[1] = record.offset[1];
+      deviation[1] = observer::silent_deviation(record, End::kRight, start.bow_velocity);
+    }
     const observer::ParameterSpace space(start,
                                          observer::basic_parameters(static_force_, deviation));
     if (options_.iterations == 0) return start;
@@ -77,7 +126,7 @@ class Function final : public ObjectiveFunction {
         record, {options_.force_noise * static_force_},
         {.coarse = static_cast<std::size_t>(options_.substeps), .fine = 16});
     const observer::Innovations innovations =
-        runs.innovations(fitted(runs, point.contact), {0}, record.samples());
+        runs.innovations(fitted(runs, point), {0}, record.samples());
     double value = 0.0;
     std::size_t row = 0;
     for (const auto& scaled : innovations.scaled) {
@@ -96,6 +145,7 @@ class Function final : public ObjectiveFunction {
   InnovationMisfit::Options options_;
   double sample_rate_;
   std::vector<double> left_, right_;
+  std::size_t kept_;             // samples predicted
   ObserverParameters friction_;  // fitted with the initial model
   bool negated_ = false;
   double static_force_ = 0.0;
@@ -128,10 +178,7 @@ InnovationMisfit::InnovationMisfit(const Options& options) : options_(options) {
                  "force noise {:g} must be > 0", options.force_noise);
 }
 
-Response InnovationMisfit::response(ParameterKind kind) const {
-  const Response response = Objective::response(kind);
-  return response == Response::kRefused ? Response::kMoves : response;
-}
+Response InnovationMisfit::response(ParameterKind /*kind*/) const { return Response::kMoves; }
 
 std::unique_ptr<const ObjectiveFunction> InnovationMisfit::do_bind(
     const CalibrationData& data, const ParameterSet& parameters) const {

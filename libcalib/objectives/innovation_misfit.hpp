@@ -12,7 +12,9 @@ namespace modcal {
 /// samples is the misfit J under one gain: 1.1 to 1.3 where model and noise are right, twice that
 /// for x_c off by 0.1 mm at 2 % noise. At bind the friction is fitted with
 /// the initial model (ModelBasedEstimator); each evaluation fits it again with its own model, a few
-/// steps from there: friction, bow, adherence and offsets are eliminated. No slopes of its own.
+/// steps from there: friction, bow, adherence and offsets are eliminated. The reaction at x = L is
+/// taken back through its sensor, R₂ = R₂'/S (SensorPair), before it is predicted; with a delay the
+/// last samples, which it reaches beyond the record, are left out. No slopes of its own.
 /// One evaluation takes iterations × 15 simulations of the record.
 class InnovationMisfit final : public Objective {
  public:
@@ -26,7 +28,8 @@ class InnovationMisfit final : public Objective {
   };
   /// Throws InvalidInput for fewer than one substep, negative iterations, a force noise not > 0.
   explicit InnovationMisfit(const Options& options);
-  /// The observer has the damping of the model, and takes both sensors to read alike.
+  /// All of them: the observer has the damping of the model and reads R₂ as its sensor's gain,
+  /// delay and corner say.
   Response response(ParameterKind kind) const override;
 
  private:

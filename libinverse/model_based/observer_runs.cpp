@@ -176,6 +176,11 @@ PreparedObserver ObserverRuns::prepare(const ObserverParameters& p) const {
   if (p.delay != 0.0 || p.gain != 1.0) {
     observer.left_ = corrected(record_.reaction[0], record_.sample_rate, p.delay, p.gain);
   }
+  if (p.level_growth != 0.0) {
+    const double slope = p.offset[1] * p.level_growth / record_.sample_rate;
+    observer.right_ = record_.reaction[1];
+    for (std::size_t k = 0; k < samples; ++k) observer.right_[k] -= slope * static_cast<double>(k);
+  }
   return observer;
 }
 

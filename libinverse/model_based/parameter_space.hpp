@@ -25,6 +25,9 @@ struct ObserverParameters {
   double gain = 1.0;                   ///< of the reaction at x = 0 over the other [1]
   double contact = 0.0;                ///< x_c [m]
   std::vector<double> detuning;        ///< ω_n over the model's, minus 1; empty: the model's
+  /// Growth of the level of the reaction at x = L, b (1 + growth t) [1/s]: a high-pass of that
+  /// corner has been undone, which integrates a level along with the reaction.
+  double level_growth = 0.0;
 };
 
 /// What one coordinate moves.

@@ -65,6 +65,9 @@ TEST_P(Configs, RunsSmall) {
     apply_assignment(document, "seeds=1", 1);
     document.root.find("noise_levels")->items.resize(1);
   }
+  if (GetParam().find("simulator_in_the_loop") != std::string::npos) {
+    apply_assignment(document, "calibration.budget.evaluations=20", 1);
+  }
   if (full.kind == "pluck_then_bow") {
     apply_assignment(document, "scene.string.modes=14", 1);
     apply_assignment(document, "refinement.optimizer.loops=1", 2);

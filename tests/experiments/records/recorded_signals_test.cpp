@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "experiments/records/csv_writer.hpp"
-#include "experiments/records/time_shift.hpp"
 #include "experiments/records/wav_writer.hpp"
+#include "libsim/signal/time_shift.hpp"
 #include "tests/experiments/records/record_folder.hpp"
 
 namespace modcal {

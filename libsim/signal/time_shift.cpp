@@ -1,4 +1,4 @@
-#include "experiments/records/time_shift.hpp"
+#include "libsim/signal/time_shift.hpp"
 
 #include <algorithm>
 #include <cmath>
