@@ -7,6 +7,15 @@
 #include "libsim/base/error.hpp"
 
 namespace modcal {
+namespace {
+
+double& nearest_of(std::vector<double>& candidates, double value) {
+  return *std::min_element(candidates.begin(), candidates.end(), [value](double a, double b) {
+    return std::abs(a - value) < std::abs(b - value);
+  });
+}
+
+}  // namespace
 
 void ModeByMode::Options::visit(OptionVisitor& visitor) {
   visitor.integer({.key = "candidates",
@@ -36,10 +45,10 @@ ModeByMode::ModeByMode(const Options& options) : options_(options) {
   MODCAL_REQUIRE(options.loops >= 1, "{} loops: at least one is needed", options.loops);
 }
 
-void ModeByMode::place_candidates(const Variable& variable, double center,
+void ModeByMode::place_candidates(const Variable& variable, double center, std::int64_t count,
                                   std::vector<double>& candidates) const {
   const double reach = options_.half_range * std::abs(center);
-  candidates.resize(static_cast<std::size_t>(options_.candidates));
+  candidates.resize(static_cast<std::size_t>(count));
   space_evenly(std::max(variable.lower, center - reach), std::min(variable.upper, center + reach),
                candidates);
 }
@@ -47,8 +56,13 @@ void ModeByMode::place_candidates(const Variable& variable, double center,
 CoordinateScan ModeByMode::search_variable(Evaluator& evaluator, std::size_t i, std::int64_t loop,
                                            SettledVariables& settled) const {
   CoordinateScan scan{.variable = i, .loop = loop, .center = evaluator.position()[i]};
-  place_candidates(evaluator.variables()[i], scan.center, scan.candidates);
+  const std::int64_t left = evaluator.evaluations_left();
+  // A lone candidate compares with nothing: scan() ends the search.
+  const std::int64_t count = left < 2 ? options_.candidates : std::min(options_.candidates, left);
+  place_candidates(evaluator.variables()[i], scan.center, count, scan.candidates);
   scan.values.resize(scan.candidates.size());
+  // Fewer candidates may all be worse than the current value, which then stays.
+  if (count < options_.candidates) nearest_of(scan.candidates, scan.center) = scan.center;
   evaluator.scan(i, scan.candidates, scan.values);
   const auto best = std::min_element(scan.values.begin(), scan.values.end());
   const auto place = static_cast<std::size_t>(best - scan.values.begin());
@@ -62,7 +76,8 @@ CoordinateScan ModeByMode::search_variable(Evaluator& evaluator, std::size_t i, 
 // Variable i goes where a search is expected to put it.
 void ModeByMode::leave_out(Evaluator& evaluator, std::size_t i, SettledVariables& settled) const {
   std::vector<double> candidates;
-  place_candidates(evaluator.variables()[i], evaluator.position()[i], candidates);
+  place_candidates(evaluator.variables()[i], evaluator.position()[i], options_.candidates,
+                   candidates);
   const double expected = candidates[settled.expected_place(i)];
   settled.left_out(i, expected);
   evaluator.move(i, expected);

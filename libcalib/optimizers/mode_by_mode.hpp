@@ -11,7 +11,9 @@ namespace modcal {
 /// value, a move to the best of them, and the whole repeated (Debut, Delaune and Antunes, 2010,
 /// section 6: 50 candidates within ±3 %, 10 loops). Each loop starts from the configuration the
 /// last one left, so that ranges follow the current values. A best candidate at the end of the
-/// range is taken like any other: the next loop looks further.
+/// range is taken like any other: the next loop looks further. What is left of the budget when it
+/// does not hold all candidates of a variable goes into that many, from end to end of its range and
+/// with the current value among them; then the budget ends the search.
 ///
 /// skip_settled: a variable whose answer no longer changes (settled_variables.hpp) takes the answer
 /// it is expected to give, unsearched, until something that reaches it moves by more than a step.
@@ -35,7 +37,7 @@ class ModeByMode final : public Optimizer {
   /// Keeps the scans of the first and of the last completed loop. Ends early where a loop moves
   /// nothing.
   StopReason search(Evaluator& evaluator) const override;
-  void place_candidates(const Variable& variable, double center,
+  void place_candidates(const Variable& variable, double center, std::int64_t count,
                         std::vector<double>& candidates) const;
   CoordinateScan search_variable(Evaluator& evaluator, std::size_t i, std::int64_t loop,
                                  SettledVariables& settled) const;

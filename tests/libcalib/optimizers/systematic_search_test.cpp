@@ -80,6 +80,40 @@ TEST(ModeByMode, MovesEachVariableToTheBestOfItsCandidatesInEveryLoop) {
   EXPECT_EQ(result.scans[3].chosen, result.x[1]);
 }
 
+TEST(ModeByMode, SpendsWhatIsLeftOfTheBudgetAndNeverMore) {
+  // Budgets below, at and above the first scan's candidates and those of a loop.
+  for (const std::int64_t budget : {1, 2, 3, 4, 20, 50, 51, 52, 60, 101, 102, 103, 120}) {
+    const ValueOnly function(
+        2, [](std::span<const double> x) { return std::abs(x[0] - 1.02) + std::abs(x[1] - 0.98); });
+    std::int64_t calls = 0;
+    const ValueOnly counted(2, [&](std::span<const double> x) {
+      ++calls;
+      return function.value(x);
+    });
+    const auto result = ModeByMode(ModeByMode::Options{})
+                            .minimize(counted, box(1.0, 1.0, 0.5, 1.5), {.evaluations = budget});
+    EXPECT_EQ(result.stop, StopReason::kEvaluationBudget) << budget;
+    EXPECT_EQ(result.evaluations, calls) << budget;
+    EXPECT_LE(calls, budget);
+    // One for the initial point; less than two left compare nothing; one is kept for the answer.
+    EXPECT_GE(calls, budget < 4 ? 1 : budget - 2) << budget;
+    EXPECT_LE(result.value, result.initial_value) << budget;
+    // Three candidates and more reach to both sides: 3 % of 1 either way, steps of 6 % / (n − 1).
+    if (budget >= 20) {
+      EXPECT_LT(result.value, 0.6 * result.initial_value) << budget;
+    }
+  }
+}
+
+TEST(ModeByMode, AScanCutShortKeepsTheCurrentValueWhereItIsBest) {
+  const ValueOnly function(1, [](std::span<const double> x) { return std::abs(x[0] - 1.0); });
+  const std::vector<Variable> line = {{"x", "1", 1.0, 0.5, 1.5, 0.1}};
+  const auto result =
+      ModeByMode(ModeByMode::Options{}).minimize(function, line, {.evaluations = 12});
+  EXPECT_EQ(result.x, (std::vector<double>{1.0}));
+  EXPECT_EQ(result.value, 0.0);
+}
+
 TEST(ModeByMode, StaysWithinBoundsAndRefusesAVariableThatStartsAtZero) {
   const ValueOnly function(2, [](std::span<const double> x) { return -x[0] - x[1]; });
   const ModeByMode optimizer(ModeByMode::Options{});
