@@ -11,10 +11,18 @@ void ParameterRanges::visit(OptionVisitor& visitor) {
                   .range = Range::open(0.0, 1.0)},
                  frequency);
   visitor.number({.key = "inharmonicity_range",
-                  .meaning = "how far B may rise",
+                  .meaning = "how far B may move",
                   .unit = "1",
                   .range = Range::positive()},
                  inharmonicity);
+  visitor.number(
+      {.key = "lowest_inharmonicity",
+       .meaning = "smallest B: the estimate of a string without stiffness scatters about "
+                  "0; automatic: half of what the law of the highest mode allows",
+       .unit = "1",
+       .range = Range::closed(-1.0, 0.0),
+       .word = "automatic"},
+      lowest_inharmonicity);
   visitor.number({.key = "contact_range",
                   .meaning = "how far x_c may move",
                   .unit = "m",

@@ -39,6 +39,17 @@ void require_ranges(const ParameterRanges& ranges) {
   }
 }
 
+double lowest_inharmonicity(const ParameterRanges& ranges, std::size_t modes) {
+  const double highest = static_cast<double>(modes);
+  const double end = -1.0 / (highest * highest);  // 1 + B n² = 0
+  if (std::isnan(ranges.lowest_inharmonicity)) return 0.5 * end;
+  MODCAL_REQUIRE(ranges.lowest_inharmonicity > end && ranges.lowest_inharmonicity <= 0.0,
+                 "lowest inharmonicity {:g} must lie in ({:g}, 0]: below, 1 + B n^2 of mode {} is "
+                 "not positive",
+                 ranges.lowest_inharmonicity, end, modes);
+  return ranges.lowest_inharmonicity;
+}
+
 }  // namespace
 
 ParameterSet::ParameterSet(ModelPoint initial, std::span<const std::string> names,
@@ -60,7 +71,8 @@ ParameterSet::ParameterSet(ModelPoint initial, std::span<const std::string> name
       frequencies[n] = initial_.basis.frequency(n);
     }
     const StiffStringFit fit = fit_stiff_string(frequencies);
-    law_ = {fit.fundamental, std::max(fit.inharmonicity, 0.0)};
+    law_ = {fit.fundamental,
+            std::max(fit.inharmonicity, lowest_inharmonicity(ranges, frequencies.size()))};
     std::fill(follows_.begin(), follows_.end(), true);
   }
   for (const std::string& name : names) {
@@ -80,11 +92,15 @@ Parameter ParameterSet::parameter(const std::string& name, const ParameterRanges
   switch (of.kind) {
     case ParameterKind::kFundamental:
       return {within_share(name, "Hz", law_.fundamental, ranges.frequency), of.kind};
-    case ParameterKind::kInharmonicity:
+    case ParameterKind::kInharmonicity: {
       // The highest mode moves by 0.5 B N² of its frequency: a step of 1e-5 is sensible for any N
       // up to some hundred.
-      return {{name, "1", law_.inharmonicity, 0.0, law_.inharmonicity + ranges.inharmonicity, 1e-5},
-              of.kind};
+      const double lower = std::max(law_.inharmonicity - ranges.inharmonicity,
+                                    lowest_inharmonicity(ranges, initial_.basis.size()));
+      return {
+          {name, "1", law_.inharmonicity, lower, law_.inharmonicity + ranges.inharmonicity, 1e-5},
+          of.kind};
+    }
     case ParameterKind::kContact: {
       const double x = initial_.contact;
       // Ends of the string are no contact: nothing is excited there.

@@ -39,7 +39,7 @@ struct SensorPair {
 struct ModelPoint {
   ModalBasis basis;
   double contact = std::numeric_limits<double>::quiet_NaN();  ///< x_c [m]
-  SensorPair sensors = {};  ///< known to the joint likelihood, of strokes and plucks, alone
+  SensorPair sensors = {};  ///< known to the joint likelihood and the innovation misfit
 };
 
 using ParameterKind = UnknownKind;
@@ -53,13 +53,17 @@ struct Parameter {
 /// How far parameters may go from their initial values.
 struct ParameterRanges {
   double frequency = 0.04;      ///< f_n and f0: share of the initial value [1]
-  double inharmonicity = 1e-3;  ///< B: from 0 to the initial value plus this [1]
-  double contact = 5e-3;        ///< x_c: distance [m], kept inside the string
-  double damping = 0.5;         ///< ζ_n and their factor: share of the initial value [1]
-  double power = 1.0;           ///< exponent of n in ζ_n: distance [1]
-  double gain = 0.1;            ///< share of the initial value [1]
-  double delay = 5e-5;          ///< distance [s]
-  double corner = 20.0;         ///< from 0 to the initial value plus this [Hz]
+  double inharmonicity = 1e-3;  ///< B: distance [1], kept above lowest_inharmonicity
+  /// B: smallest value, ≤ 0; NaN: −1/(2N²), where the highest of N modes is at 0.7 of its harmonic
+  /// and the law ends at −1/N² [1]. A string has B ≥ 0, its estimate scatters about it: a bound at
+  /// 0 would bias it.
+  double lowest_inharmonicity = std::numeric_limits<double>::quiet_NaN();
+  double contact = 5e-3;  ///< x_c: distance [m], kept inside the string
+  double damping = 0.5;   ///< ζ_n and their factor: share of the initial value [1]
+  double power = 1.0;     ///< exponent of n in ζ_n: distance [1]
+  double gain = 0.1;      ///< share of the initial value [1]
+  double delay = 5e-5;    ///< distance [s]
+  double corner = 20.0;   ///< from 0 to the initial value plus this [Hz]
   void visit(OptionVisitor& visitor);
 };
 

@@ -94,7 +94,29 @@ TEST(ParameterSet, BoundsHoldTheInitialValuesAndKeepTheContactInsideTheString) {
   EXPECT_GT(set[3].variable.lower, 0.0);
   EXPECT_EQ(set[3].variable.unit, "m");
   EXPECT_DOUBLE_EQ(set[0].variable.upper, 196.0 * 1.04);
-  EXPECT_EQ(set[2].variable.lower, 0.0);
+}
+
+TEST(ParameterSet, LetsInharmonicityFallBelowZeroAsFarAsTheLawOfTheHighestModeAllows) {
+  const auto lower = [](double inharmonicity, const ParameterRanges& ranges) {
+    return ParameterSet(paper_truth(8, inharmonicity), Names{"f0", "B"}, ranges)[1].variable.lower;
+  };
+  // 1 + B n² = 0 at −1/64: half of it.
+  EXPECT_DOUBLE_EQ(lower(0.0, {.inharmonicity = 0.1}), -0.5 / 64.0);
+  EXPECT_NEAR(lower(0.0, {.inharmonicity = 1e-3}), -1e-3, 1e-12);
+  EXPECT_NEAR(lower(4e-4, {.inharmonicity = 1e-3}), -6e-4, 1e-12);
+  EXPECT_EQ(lower(4e-4, {.inharmonicity = 1e-3, .lowest_inharmonicity = 0.0}), 0.0);
+  EXPECT_THROW(lower(0.0, {.lowest_inharmonicity = -1.0 / 64.0}), InvalidInput);
+  EXPECT_THROW(lower(0.0, {.lowest_inharmonicity = 1e-4}), InvalidInput);
+  // A law that starts below 0 is kept, and every frequency at the bound is one.
+  ModelPoint soft = paper_truth(8);
+  for (std::size_t n = 0; n < 8; ++n) {
+    const auto order = static_cast<double>(n + 1);
+    soft.basis.omega[n] *= std::sqrt(1.0 - 1e-3 * order * order);
+  }
+  const ParameterSet set(soft, Names{"f0", "B"}, {.inharmonicity = 0.1});
+  EXPECT_NEAR(set[1].variable.initial, -1e-3, 1e-9);
+  const ModelPoint lowest = set.model(std::vector<double>{196.0, set[1].variable.lower});
+  EXPECT_NEAR(lowest.basis.frequency(7), 8 * 196.0 * std::sqrt(0.5), 1e-9);
 }
 
 TEST(ParameterSet, RefusesWrongNamesAndRanges) {

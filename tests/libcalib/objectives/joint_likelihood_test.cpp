@@ -6,9 +6,11 @@
 #include <cmath>
 #include <numeric>
 
+#include "libcalib/covariance.hpp"
 #include "libcalib/objectives/frequency_prior.hpp"
 #include "libcalib/objectives/weighted_sum.hpp"
 #include "libcalib/optimizers/ceres_optimizer.hpp"
+#include "libcalib/optimizers/tiny_least_squares.hpp"
 #include "libsim/base/error.hpp"
 #include "tests/libcalib/likelihood/bowed_case.hpp"
 
@@ -205,6 +207,34 @@ TEST_F(JointLikelihoodTest, FindsDampingAndGain) {
   EXPECT_NEAR(found.x[4], 1.02, 6.0 * sd[4]);
   EXPECT_LT(sd[3], 0.1);
   EXPECT_LT(sd[4], 0.01);
+}
+
+// A bound at B = 0 would put every second estimate on it.
+TEST(JointLikelihoodOfAStringWithoutStiffness, ScattersAboutZero) {
+  const BowedCase bowed = bowed_case(0.03, 0.0, 0.08);
+  constexpr int kDraws = 8;
+  double sum = 0.0;
+  int below = 0;
+  for (std::uint64_t seed = 1; seed <= kDraws; ++seed) {
+    const NoisyRecords records = noisy(bowed, 0.02, seed);
+    const CalibrationData data = CalibrationData::of_records(
+        records.reactions[0], records.reactions[1], records.sample_rate);
+    const JointLikelihood objective(
+        {.left_noise = records.deviation[0], .right_noise = records.deviation[1]});
+    const ParameterSet parameters(bowed.truth, Names{"f0", "B", "x_c"});
+    const auto variables = parameters.variables();
+    const auto function = objective.bind(data, parameters);
+    const auto found = TinyLeastSquares({}).minimize(*function, variables, {});
+    const double deviation = covariance_at(*function, variables, found.x).standard_deviation(1);
+    EXPECT_GT(found.x[1], variables[1].lower + 4.0 * deviation);
+    EXPECT_NEAR(found.x[1], 0.0, 4.0 * deviation) << seed;
+    sum += found.x[1] / deviation;
+    below += found.x[1] < 0.0;
+  }
+  // Mean of 8 standard normals, three of its deviations; all on one side once in 128 times.
+  EXPECT_LT(std::abs(sum / kDraws), 3.0 / std::sqrt(kDraws));
+  EXPECT_GT(below, 0);
+  EXPECT_LT(below, kDraws);
 }
 
 TEST_F(JointLikelihoodTest, OthersRefuseWhatTheyCannotFind) {
