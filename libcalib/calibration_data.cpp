@@ -54,6 +54,22 @@ void CalibrationData::require_valid() const {
   }
 }
 
+void CalibrationData::require_motion() const {
+  for (const End end : kEnds) {
+    if (!has(end)) continue;
+    const std::vector<Complex>& bins = reaction(end);
+    // A constant record leaves rounding in the other bins.
+    const double rounding = 1e-13 * std::abs(bins.front());
+    const bool moves = std::any_of(bins.begin() + 1, bins.end(),
+                                   [&](Complex bin) { return std::abs(bin) > rounding; });
+    MODCAL_REQUIRE(moves,
+                   "the {} reaction is silent: all of its {} samples are {:g} N; check its sensor, "
+                   "channel and scale, or leave that reaction out where the method works with one",
+                   name_of(end), samples,
+                   bins.front().real() / static_cast<double>(std::max<std::size_t>(samples, 1)));
+  }
+}
+
 BinRange bins_between(const FrequencyGrid& grid, double low, double high) {
   const double top = static_cast<double>(grid.bins);
   const auto first =

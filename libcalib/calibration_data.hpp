@@ -31,6 +31,8 @@ struct CalibrationData {
   }
   /// Throws InvalidInput unless there is a reaction and every one present has K/2 + 1 finite bins.
   void require_valid() const;
+  /// Throws InvalidInput for a reaction that never moves: zeros, or one level throughout.
+  void require_motion() const;
 };
 
 /// Bins k of a half spectrum, first ≤ k < last.

@@ -58,6 +58,7 @@ std::unique_ptr<const ObjectiveFunction> Objective::bind(const CalibrationData& 
 std::unique_ptr<const ObjectiveFunction> Objective::bind_term(
     const CalibrationData& data, const ParameterSet& parameters) const {
   data.require_valid();
+  data.require_motion();
   const ModalBasis& basis = parameters.initial().basis;
   for (std::size_t n = 0; n < basis.size(); ++n) {
     MODCAL_REQUIRE(basis.zeta[n] > 0.0,

@@ -77,6 +77,7 @@ std::span<const double> noise_draw(std::uint64_t seed, std::size_t count) {
 NoisyRecords NoisyRecords::of_data(const CalibrationData& data, const ModalBasis& basis,
                                    std::array<double, 2> deviation) {
   data.require_valid();
+  data.require_motion();
   MODCAL_REQUIRE(data.has_both(),
                  "the joint likelihood compares both reactions, and one is missing");
   NoisyRecords records{.sample_rate = data.sample_rate};
@@ -90,8 +91,9 @@ NoisyRecords NoisyRecords::of_data(const CalibrationData& data, const ModalBasis
       records.deviation[r] = noise_deviation(records.reactions[r], band);
     }
     MODCAL_REQUIRE(records.deviation[r] > 0.0 && std::isfinite(records.deviation[r]),
-                   "noise of {:g} N in a reaction: the likelihood needs noise > 0",
-                   records.deviation[r]);
+                   "noise of {:g} N in the {} reaction: the likelihood needs noise > 0; state "
+                   "{}_noise or record at a higher rate, whose band above the modes shows it",
+                   records.deviation[r], r == 0 ? "left" : "right", r == 0 ? "left" : "right");
   }
   return records;
 }

@@ -1,5 +1,6 @@
 #include "libcalib/calibration_data.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -9,6 +10,25 @@
 
 namespace modcal {
 namespace {
+
+TEST(CalibrationData, NamesAReactionThatNeverMoves) {
+  const std::vector<double> moving = {1.0, 0.5, -1.0, 0.0, 2.0, 0.0};
+  const std::vector<double> zeros(6, 0.0), level(6, 0.3);
+  EXPECT_NO_THROW(CalibrationData::of_records(moving, {}, 600.0).require_motion());
+  const auto message = [](const CalibrationData& data) -> std::string {
+    try {
+      data.require_motion();
+    } catch (const InvalidInput& error) {
+      return error.what();
+    }
+    return "";
+  };
+  using testing::HasSubstr;
+  EXPECT_THAT(message(CalibrationData::of_records(moving, zeros, 600.0)),
+              AllOf(HasSubstr("the right reaction is silent"), HasSubstr("check its sensor")));
+  EXPECT_THAT(message(CalibrationData::of_records(level, moving, 600.0)),
+              AllOf(HasSubstr("the left reaction is silent"), HasSubstr("are 0.3 N")));
+}
 
 TEST(CalibrationData, TransformsTheRecordsThatAreThere) {
   const std::vector<double> record = {1.0, 0.0, 0.0, 0.0, 0.0, 0.0};
