@@ -5,9 +5,10 @@
 
 namespace modcal {
 
-/// Half the square of contact_location, as residuals: r_k = √2 (F_1 − F_2)(ω_k)/√(‖F_1‖² + ‖F_2‖²),
-/// real and imaginary part of every bin in turn, value ½ ‖r‖² [1]. Its minimum is that of
-/// contact_location, where that has a kink (for data the model explains exactly) and this has none.
+/// Smooth variant of contact_location, half its square, as residuals: r_k = √2 (F_1 −
+/// F_2)(ω_k)/√(‖F_1‖² + ‖F_2‖²), real and imaginary part of every bin in turn, value ½ ‖r‖² [1].
+/// Its minimum is that of contact_location, where that has a kink (for data the model explains
+/// exactly) and this has none.
 class ContactLocationSquares final : public Objective {
  public:
   struct Options {

@@ -16,8 +16,8 @@ Registry<Objective> Objective::registry() {
   static constexpr std::array kTable = {
       entry_of<Objective, ContactLocation>(
           "contact_location", "relative difference of the two identified force waveforms"),
-      entry_of<Objective, ContactLocationSquares>("contact_location_squares",
-                                                  "the same squared and smooth, as residuals"),
+      entry_of<Objective, ContactLocationSquares>(
+          "contact_location_squares", "smooth variant of contact_location, as residuals"),
       entry_of<Objective, ForceMismatch>("force_mismatch",
                                          "least squares of the two identified force spectra"),
       entry_of<Objective, FrequencyPrior>(
