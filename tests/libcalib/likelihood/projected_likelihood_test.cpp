@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/QR>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -217,6 +219,173 @@ TEST_F(AtShortRecord, JacobianIsThatOfAutomaticDifferentiation) {
   EXPECT_LT((information - at.information).cwiseAbs().maxCoeff(),
             1e-6 * at.information.cwiseAbs().maxCoeff());
   EXPECT_NEAR(r.squaredNorm(), at.cost, 1e-9 * at.cost);
+}
+
+// The record with a sensor at x = L, in dual numbers of ln gain, delay and corner, with its own
+// least squares for the end state.
+class SensorOracle {
+ public:
+  SensorOracle(const ModelPoint& point, const WhitenedRecord& record)
+      : point_(point), record_(record) {
+    const auto rows = static_cast<Eigen::Index>(2 * record.bins);
+    const auto modes = static_cast<Eigen::Index>(point.basis.size());
+    columns_.resize(rows, 2 * modes + 2);
+    data_.resize(rows);
+    residual_.resize(rows);
+    slopes_.resize(rows, 3);
+    for (std::size_t k = 0; k < record.bins; ++k) add_bin(k);
+    const Eigen::MatrixXd state = fit(-data_);
+    for (std::size_t k = 0; k < record.bins; ++k) differentiate(k, state);
+    residual_ = data_ + columns_ * state;
+    projected_ = slopes_ - columns_ * fit(slopes_);
+  }
+  const Eigen::VectorXd& residual() const { return residual_; }
+  const Eigen::MatrixXd& columns() const { return slopes_; }
+  const Eigen::MatrixXd& jacobian() const { return projected_; }  ///< end state projected out
+
+ private:
+  struct Bin {
+    Dual left, right, sensor, held;  // h_1, S h_2, S and the decay that the sensor holds
+    Jet scale;                       // 1/|h|
+    Complex delay;
+  };
+
+  // Least squares with the ridge of 1e-9 on normalized columns, without normal equations.
+  Eigen::MatrixXd fit(const Eigen::MatrixXd& right) const {
+    const Eigen::Index rows = columns_.rows(), count = columns_.cols();
+    const Eigen::VectorXd norms = columns_.colwise().norm();
+    Eigen::MatrixXd all(rows + count, count);
+    all.topRows(rows) = columns_ * norms.cwiseInverse().asDiagonal();
+    all.bottomRows(count) = std::sqrt(1e-9) * Eigen::MatrixXd::Identity(count, count);
+    Eigen::MatrixXd values = Eigen::MatrixXd::Zero(rows + count, right.cols());
+    values.topRows(rows) = right;
+    return norms.cwiseInverse().asDiagonal() *
+           Eigen::MatrixXd(Eigen::HouseholderQR<Eigen::MatrixXd>(all).solve(values));
+  }
+
+  Bin bin(std::size_t k) const {
+    const double w = record_.spacing * static_cast<double>(k + 1);
+    const ModalBasis& basis = point_.basis;
+    Complex left = 0.0, right = 0.0;
+    for (std::size_t i = 0; i < basis.size(); ++i) {
+      const double n = static_cast<double>(i + 1), omega = basis.omega[i];
+      const double gain = basis.tension * n * pi / basis.length / basis.mass[i] *
+                          std::sin(n * pi / basis.length * point_.contact);
+      const Complex term = gain / Complex(omega * omega - w * w, 2.0 * w * basis.zeta[i] * omega);
+      left -= term / record_.deviation[0];
+      right += (i % 2 == 1 ? term : -term) / record_.deviation[1];
+    }
+    const Jet gain = point_.sensors.gain * exp(Jet(0.0, 0));
+    const Jet turn = Jet(point_.sensors.delay, 1) * w;
+    const Jet corner(point_.sensors.corner, 2);
+    Bin result{.left = dual(left), .delay = record_.delay.at(k)};
+    // g e^(−iωτ) iω/(iω + ω_h).
+    result.sensor =
+        gain * (Dual{cos(turn), -sin(turn)} * Dual{Jet(0.0), Jet(w)} * inverse({corner, Jet(w)}));
+    result.right = result.sensor * dual(right);
+    const Jet pole = exp(-corner / record_.sample_rate);
+    result.held = inverse(dual(1.0) - pole * dual(result.delay));
+    const Dual& l = result.left;
+    const Dual& r = result.right;
+    result.scale = Jet(1.0) / sqrt(l.re * l.re + l.im * l.im + r.re * r.re + r.im * r.im);
+    return result;
+  }
+
+  // Decays of mode i from the amplitudes 1 and i.
+  std::array<Complex, 2> decays(std::size_t i, Complex delay) const {
+    const double omega = point_.basis.omega[i], zeta = point_.basis.zeta[i];
+    const Complex pole =
+        std::exp(Complex(-zeta, std::sqrt(1.0 - zeta * zeta)) * omega / record_.sample_rate);
+    const Complex one = 1.0 / (1.0 - pole * delay), two = 1.0 / (1.0 - std::conj(pole) * delay);
+    return {one + two, Complex(0.0, 1.0) * (one - two)};
+  }
+
+  void set(Eigen::Index column, std::size_t k, Complex number) {
+    columns_(static_cast<Eigen::Index>(2 * k), column) = number.real();
+    columns_(static_cast<Eigen::Index>(2 * k + 1), column) = number.imag();
+  }
+
+  void add_bin(std::size_t k) {
+    const Bin at = bin(k);
+    const Complex left = value(at.left), right = value(at.right), sensor = value(at.sensor);
+    const double scale = at.scale.a;
+    const Complex data = scale * (right * record_.left.at(k) - left * record_.right.at(k));
+    data_[static_cast<Eigen::Index>(2 * k)] = data.real();
+    data_[static_cast<Eigen::Index>(2 * k + 1)] = data.imag();
+    const Eigen::Index plain = columns_.cols() - 2;
+    for (std::size_t i = 0; i < point_.basis.size(); ++i) {
+      const double parity = i % 2 == 1 ? 1.0 : -1.0;
+      const Complex both =
+          right / record_.deviation[0] + parity * left * sensor / record_.deviation[1];
+      const auto pair = decays(i, at.delay);
+      for (int j = 0; j < 2; ++j) {
+        set(static_cast<Eigen::Index>(2 * i) + j, k,
+            scale * both * pair[static_cast<std::size_t>(j)]);
+      }
+    }
+    set(plain, k, scale * left);
+    set(plain + 1, k, scale * left * value(at.held));
+  }
+
+  // ∂e/∂θ at this end state, less the turn of the residual's phase.
+  void differentiate(std::size_t k, const Eigen::VectorXd& state) {
+    const Bin at = bin(k);
+    Complex odd = 0.0, even = 0.0;
+    for (std::size_t i = 0; i < point_.basis.size(); ++i) {
+      const auto pair = decays(i, at.delay);
+      const auto column = static_cast<Eigen::Index>(2 * i);
+      (i % 2 == 1 ? even : odd) += state[column] * pair[0] + state[column + 1] * pair[1];
+    }
+    const Eigen::Index plain = columns_.cols() - 2;
+    const Dual from_left = dual(record_.left.at(k) + (odd + even) / record_.deviation[0]);
+    const Dual from_right = dual(record_.right.at(k)) +
+                            at.sensor * dual((odd - even) / record_.deviation[1]) -
+                            dual(state[plain]) - Jet(state[plain + 1]) * at.held;
+    const Dual e = at.scale * (at.right * from_left - at.left * from_right);
+    for (int i = 0; i < 3; ++i) {
+      const double turn = (std::conj(value(at.left)) * slope(at.left, i) +
+                           std::conj(value(at.right)) * slope(at.right, i))
+                              .imag() *
+                          at.scale.a * at.scale.a;
+      const Complex own = slope(e, i) - value(e) * Complex(0.0, turn);
+      slopes_(static_cast<Eigen::Index>(2 * k), i) = own.real();
+      slopes_(static_cast<Eigen::Index>(2 * k + 1), i) = own.imag();
+    }
+  }
+
+  const ModelPoint& point_;
+  const WhitenedRecord& record_;
+  Eigen::MatrixXd columns_, slopes_, projected_;
+  Eigen::VectorXd data_, residual_;
+};
+
+TEST_F(AtShortRecord, SensorsColumnsAreThoseOfAutomaticDifferentiation) {
+  ModelPoint off = point();
+  off.sensors = {.gain = 1.04, .delay = 7e-6, .corner = 2.0 * pi * 6.0, .free = true};
+  const WhitenedRecord record = WhitenedRecord::of(noisy(bowed, 0.02, 3), 0.0, kBand);
+  const ProjectedLikelihood likelihood(record);
+  const LikelihoodColumns columns{.count = 3,
+                                  .share_begin = std::vector<std::size_t>(51, 0),
+                                  .gain = 0,
+                                  .delay = 1,
+                                  .corner = 2};
+  std::vector<double> residuals;
+  Eigen::MatrixXd jacobian;
+  const LikelihoodPoint at =
+      likelihood.evaluate(off, columns, {.residuals = &residuals, .jacobian = &jacobian});
+  const SensorOracle oracle(off, record);
+  const Eigen::Map<const Eigen::VectorXd> r(residuals.data(), static_cast<long>(residuals.size()));
+  ASSERT_EQ(r.size(), oracle.residual().size());
+  // Normal equations of condition up to 1e9 against none: 1e-7 and some of the whole.
+  EXPECT_LT((r - oracle.residual()).norm(), 1e-6 * r.norm());
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const double size = oracle.jacobian().col(i).norm();
+    EXPECT_GT(size, 0.0);
+    EXPECT_LT((jacobian.col(i) - oracle.jacobian().col(i)).norm(), 1e-6 * size) << i;
+    EXPECT_NEAR(at.slope[i], oracle.columns().col(i).dot(oracle.residual()),
+                1e-6 * oracle.columns().col(i).norm() * r.norm())
+        << i;
+  }
 }
 
 TEST_F(AtShortRecord, NoiseAddsItsOwnInformation) {
