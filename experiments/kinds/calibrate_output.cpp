@@ -2,6 +2,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "experiments/kinds/calibrate_covariance.hpp"
 #include "experiments/kinds/calibrate_study.hpp"
 #include "libcalib/unknown_name.hpp"
 
@@ -107,6 +108,8 @@ Json continuation_json(const ContinuationResult& found,
           {"noise_right_n", number_or_null(found.noise[1])},
           {"restarts", found.restarts},
           {"moved_modes", found.moved_modes},
+          {"covariance", covariance_json(found.covariance)},
+          {"law_covariance", covariance_json(found.law.covariance)},
           {"x_c_sd_of_strokes_m", contact_deviations}};
 }
 

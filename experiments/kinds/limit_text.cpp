@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "experiments/kinds/calibration_limit_experiment.hpp"
+#include "experiments/kinds/correlation_text.hpp"
 #include "experiments/kinds/limit_source.hpp"
 #include "libcalib/likelihood/expected_limit.hpp"
 #include "libcalib/likelihood/noise_level.hpp"
@@ -16,13 +17,6 @@ ExpectedLimit limit_at(const LimitQuestion& question, double contact, TruthCache
   LimitQuestion there = question;
   there.observation.truth.scene.bow.position = contact;
   return expected_limit(limit_case(there, truths));
-}
-
-// "m", "(factor)".
-std::string shown_unit(const std::string& parameter) {
-  if (parameter == "damping") return "(factor)";
-  const std::string unit(unit_of_unknown(parameter));
-  return unit == "1" ? "" : unit;
 }
 
 // Of the column of names.
@@ -40,12 +34,9 @@ std::string law_lines(const ExpectedLimit& limit) {
   std::vector<std::string> names;
   for (const ParameterLimit& row : limit.parameters) {
     if (std::isnan(row.law)) continue;
-    text += fmt::format("  {:<{}} sd {:.3g} ({:.3g}) {:<9} correlations", row.parameter,
-                        name_width(limit), row.law, row.attainable, shown_unit(row.parameter));
-    for (std::size_t j = 0; j < row.correlations.size(); ++j) {
-      text += fmt::format(" {} {:+.2f}", names[j], row.correlations[j]);
-    }
-    text += "\n";
+    text += fmt::format("  {:<{}} sd {:.3g} ({:.3g}) {:<9} {}\n", row.parameter, name_width(limit),
+                        row.law, row.attainable, shown_unit(row.parameter),
+                        correlations_with(names, row.correlations));
     names.push_back(row.parameter);
   }
   return text;

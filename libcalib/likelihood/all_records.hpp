@@ -36,7 +36,8 @@ class AllRecords {
   explicit AllRecords(const StringUnknowns& shared) : unknowns_(shared), size_(shared.size()) {}
 
   /// held_contact: x_c where it is known exactly [m]. start: θ of the record; own: which of it no
-  /// other record has, ascending. The first record owns nothing, all it has is shared.
+  /// other record has, ascending. The first record owns nothing, all it has is shared. A record of
+  /// which only the places are asked may be null.
   void add(std::shared_ptr<const RecordLikelihood> record, const Eigen::VectorXd& start,
            const std::vector<Index>& own, std::optional<double> held_contact = {});
 

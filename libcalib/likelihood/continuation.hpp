@@ -11,6 +11,7 @@
 
 #include "libcalib/calibration_data.hpp"
 #include "libcalib/likelihood/law_followers.hpp"
+#include "libcalib/likelihood/named_covariance.hpp"
 #include "libcalib/likelihood/prior_misfit.hpp"
 #include "libcalib/likelihood/string_unknowns.hpp"
 #include "libcalib/parameters.hpp"
@@ -60,6 +61,7 @@ struct LawEstimate {
   double chi2 = 0.0;                  ///< reduced
   bool accepted = false;              ///< χ² does not contradict the law
   PriorMisfit priors;
+  NamedCovariance covariance;  ///< of f0, B, x_c, damping and sensors, as far as they are free
 };
 
 struct ContinuationResult {
@@ -76,6 +78,10 @@ struct ContinuationResult {
   std::vector<double> ratio_deviations;  ///< of every ζ_n, relative; empty unless each is free
   /// Of gain, delay [s] and corner [Hz] of model.sensors; 0: not free.
   std::array<double, 3> sensor_deviation{};
+  /// Of all that is free in `model`: f_n or f0 and B, x_c, damping, sensors. The roots of its
+  /// diagonal are the deviations reported; what a verdict adds to that of a frequency, in its place
+  /// alone.
+  NamedCovariance covariance;
   double law_width = 0.0;  ///< τ
   double chi2 = 0.0;       ///< reduced, of `model`
   double chi2_deviation = 0.0;

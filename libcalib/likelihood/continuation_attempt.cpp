@@ -6,6 +6,7 @@
 
 #include "libcalib/likelihood/free_stage.hpp"
 #include "libcalib/likelihood/mode_verdict.hpp"
+#include "libcalib/likelihood/parameter_forms.hpp"
 #include "libcalib/likelihood/stated_verdict.hpp"
 #include "libcalib/stiff_string_fit.hpp"
 #include "libsim/base/error.hpp"
@@ -142,6 +143,8 @@ class Attempt {
     }
     law.deviation[0] *= law.fundamental;
     law.deviation[3] = law_.damping_deviation(covariance) * law.damping;
+    law.covariance =
+        named_covariance(law_, input_.options.unknowns, law_theta_, law.damping, covariance);
     law.chi2 = stroke_.reduced_chi2(model, free_count);
     law.accepted = law.chi2 < 1.0 + 3.0 * result.chi2_deviation;
     law.priors = law_.prior_misfit(law_theta_);
@@ -152,6 +155,7 @@ class Attempt {
   void report_law(const Eigen::MatrixXd& covariance, ContinuationResult& result) const {
     const LawEstimate& law = result.law;
     result.model = law_.model(law_theta_);
+    result.covariance = law.covariance;
     result.chi2 = law.chi2;
     result.priors = law.priors;
     result.contact_deviation = law.deviation[2];

@@ -4,6 +4,7 @@
 
 #include "libcalib/likelihood/mode_verdict.hpp"
 #include "libcalib/likelihood/neighbor_test.hpp"
+#include "libcalib/likelihood/parameter_forms.hpp"
 #include "libcalib/likelihood/stated_verdict.hpp"
 
 namespace modcal {
@@ -127,6 +128,9 @@ class FreeStage {
     result_.sensor_deviation = unknowns_.sensor_deviation(result_.model, covariance);
     result_.modes = free_verdicts(result_.model, deviation.head(modes()), sight_.seen, followers_);
     trust_stated_frequencies(priors_, deviation, result_.modes);
+    result_.covariance =
+        named_covariance(unknowns_, options_.unknowns, theta_, result_.damping, covariance);
+    raise_to_verdicts(result_.modes, result_.covariance);
   }
 
   const StatedPriors& priors_;

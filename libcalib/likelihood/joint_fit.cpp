@@ -9,6 +9,7 @@
 #include "libcalib/likelihood/mode_verdict.hpp"
 #include "libcalib/likelihood/newton_fit.hpp"
 #include "libcalib/likelihood/noise_level.hpp"
+#include "libcalib/likelihood/parameter_forms.hpp"
 #include "libcalib/likelihood/pluck_search.hpp"
 #include "libcalib/likelihood/stated_verdict.hpp"
 
@@ -278,7 +279,19 @@ class JointFit {
     fit_.damping_power = damping_line(fit_.model).second;
     fit_.damping_power_deviation = unknowns().damping_power_deviation(covariance);
     fit_.ratio_deviations = unknowns().ratio_deviations(covariance);
+    report_covariance(covariance);
     if (unknowns().is_law()) report_law(deviation);
+  }
+
+  void report_covariance(const Eigen::MatrixXd& covariance) {
+    FormPoint at{.models = {}, .damping = {}, .strokes = fit_.single.size()};
+    if (unknowns().is_law()) at.fundamental = unknowns().fundamental(theta_);
+    for (std::size_t r = 0; r < all_.records(); ++r) {
+      at.models.push_back(all_.model(theta_, r));
+      at.damping.push_back(fit_.values[r].damping);
+    }
+    fit_.covariance = named_covariance(all_, options_.unknowns, at, covariance);
+    raise_to_verdicts(fit_.modes, fit_.covariance);
   }
 
   void report_law(const Eigen::VectorXd& deviation) {
@@ -289,6 +302,7 @@ class JointFit {
                 .damping = first.damping};
     fit_.law.deviation = {fit_.law.fundamental * deviation[0], deviation[1],
                           fit_.contact_deviations.front(), first.damping_deviation};
+    fit_.law.covariance = fit_.covariance;
   }
 
   void report_values(const Eigen::MatrixXd& covariance, std::size_t record) {

@@ -1,9 +1,5 @@
 #include "libcalib/likelihood/limit_information.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-
 #include "libcalib/likelihood/bin_weights.hpp"
 #include "libcalib/likelihood/newton_fit.hpp"
 #include "libcalib/likelihood/pluck_likelihood.hpp"
@@ -36,10 +32,6 @@ StatedPriors priors_of(const LimitCase& question) {
 }
 
 }  // namespace
-
-double ParameterForm::deviation(const Eigen::MatrixXd& covariance) const {
-  return std::sqrt(std::max(slope.dot(covariance * slope), 0.0));
-}
 
 Eigen::MatrixXd LimitInformation::covariance(const StringUnknowns& unknowns,
                                              const Eigen::MatrixXd& information,
@@ -170,50 +162,12 @@ Eigen::MatrixXd LimitInformation::prior(const StringUnknowns& unknowns, const St
 }
 
 std::vector<ParameterForm> LimitInformation::forms(const StringUnknowns& unknowns) const {
-  const AllRecords all = placed(unknowns);
-  const std::string& damping = question_.unknowns.damping;
-  std::vector<ParameterForm> forms;
-  // Unknown i of a record, with what follows it in a sum; nothing of what is held or shared.
-  const auto add = [&](const std::string& name, Index i, std::size_t r,
-                       const Eigen::VectorXd& sum) {
-    const bool own = r == 0 || all.place(i, r) != all.place(i, 0);
-    if (!own || (sum.size() == 1 && all.held(i, r))) return;
-    forms.push_back(
-        {r == 0 ? name : fmt::format("{} {}", name, r + 1), Eigen::VectorXd::Zero(all.size())});
-    for (Index j = 0; j < sum.size(); ++j) forms.back().slope[all.place(i + j, r)] += sum[j];
-  };
-  const auto one = [](double factor) { return Eigen::VectorXd::Constant(1, factor); };
-  const auto add_damping = [&](std::size_t r) {
-    Eigen::VectorXd mean(unknowns.damping_count());
-    for (Index i = 0; i < mean.size(); ++i) {
-      Eigen::VectorXd theta = Eigen::VectorXd::Zero(unknowns.size());
-      theta[unknowns.damping() + i] = 1.0;
-      mean[i] = std::log(unknowns.damping_factor(theta));
-    }
-    if (mean.size() > 0 && mean.any()) add("damping", unknowns.damping(), r, mean);
-  };
-  if (unknowns.is_law()) {
-    add("f0", 0, 0, one(unknowns.fundamental(unknowns.start())));
-    add("B", 1, 0, one(1.0));
-  }
-  add("x_c", unknowns.contact(), 0, one(1.0));
-  add_damping(0);
-  for (std::size_t r = 1; r < strokes_.size(); ++r) add("x_c", unknowns.contact(), r, one(1.0));
-  for (std::size_t r = 1; r < records_.size(); ++r) add_damping(r);
-  if (damping == "power") add("damping_power", unknowns.damping() + 1, 0, one(1.0));
-  constexpr const char* kSensors[] = {"gain", "delay", "corner"};
-  const double units[] = {question_.truth.sensors.gain, 1.0, 0.5 / std::numbers::pi};
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (unknowns.sensor(i) < 0) continue;
-    for (std::size_t r = 0; r < records_.size(); ++r) {
-      add(kSensors[i], unknowns.sensor(i), r, one(units[i]));
-    }
-  }
-  for (std::size_t n = 0; damping == "each" && !unknowns.is_law() && n < unknowns.modes(); ++n) {
-    add(fmt::format("zeta_{}", n + 1), unknowns.damping() + static_cast<Index>(n), 0,
-        one(question_.truth.basis.zeta[n]));
-  }
-  return forms;
+  FormPoint at{.models = {},
+               .damping = std::vector<double>(records_.size(), 1.0),
+               .fundamental = unknowns.fundamental(unknowns.start()),
+               .strokes = strokes_.size()};
+  for (std::size_t r = 0; r < records_.size(); ++r) at.models.push_back(point_of(r));
+  return parameter_forms(placed(unknowns), question_.unknowns, at);
 }
 
 }  // namespace modcal

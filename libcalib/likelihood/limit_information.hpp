@@ -7,15 +7,9 @@
 
 #include "libcalib/likelihood/all_records.hpp"
 #include "libcalib/likelihood/expected_limit.hpp"
+#include "libcalib/likelihood/parameter_forms.hpp"
 
 namespace modcal {
-
-/// A parameter as a linear form of the unknowns of all records, in the unit of its name.
-struct ParameterForm {
-  std::string parameter;
-  Eigen::VectorXd slope;
-  double deviation(const Eigen::MatrixXd& covariance) const;
-};
 
 /// The records of a LimitCase, whitened, at the truth. Unknowns are those of AllRecords: the ones
 /// given, then what every further record has for itself. What is fixed has no covariance.

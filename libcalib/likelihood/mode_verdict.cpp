@@ -1,5 +1,7 @@
 #include "libcalib/likelihood/mode_verdict.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -162,6 +164,12 @@ std::vector<ModeVerdict> free_verdicts(const ModelPoint& model, const Eigen::Vec
     }
   }
   return verdicts;
+}
+
+void raise_to_verdicts(const std::vector<ModeVerdict>& modes, NamedCovariance& covariance) {
+  for (std::size_t n = 0; n < modes.size(); ++n) {
+    covariance.raise(fmt::format("f_{}", n + 1), modes[n].frequency * modes[n].deviation);
+  }
 }
 
 std::vector<std::size_t> not_following(const std::vector<ModeVerdict>& modes) {

@@ -54,6 +54,7 @@ ContinuationResult as_continuation(const RecordsFit& fit) {
   result.right = fit.right;
   result.law = fit.law;
   result.modes = fit.modes;
+  result.covariance = fit.covariance;
   result.law_width = fit.law_width;
   result.evaluations = fit.evaluations;
   for (const ContinuationResult& single : fit.single) result.evaluations += single.evaluations;

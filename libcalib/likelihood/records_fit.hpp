@@ -38,9 +38,11 @@ struct RecordsFit {
   double damping_power = 0.0;      ///< exponent of n, see ContinuationResult
   double damping_power_deviation = 0.0;
   std::vector<double> ratio_deviations;  ///< of every ζ_n, relative; empty unless each is free
-  double law_width = 0.0;                ///< τ, where every frequency is free
-  std::vector<RecordValues> values;      ///< of every stroke, then of every pluck
-  double chi2 = 0.0;                     ///< reduced, of all records
+  /// As that of ContinuationResult; "x_c 2": of the second record.
+  NamedCovariance covariance;
+  double law_width = 0.0;            ///< τ, where every frequency is free
+  std::vector<RecordValues> values;  ///< of every stroke, then of every pluck
+  double chi2 = 0.0;                 ///< reduced, of all records
   double chi2_deviation = 0.0;
   bool fits = false;                       ///< χ² < 1 + 3 sd
   PriorMisfit priors;                      ///< of all records' parameters to what was stated
