@@ -203,14 +203,15 @@ CalibrationResult calibrate_to_the_bound(const ModelPoint& initial,
   ContinuationOptions continuation = options.continuation;
   continuation.frequencies = free.frequencies == "all";
   if (!free.contact) continuation.unknowns.fixed.push_back({.parameter = "x_c"});
+  const FitPoll poll = [&clock] { clock(); };
   const double begin = clock();
   CalibrationResult result;
   std::optional<RecordsFit> fit;
   if (records.size() == 1 && plucks.empty()) {
-    result.continuation = calibrate_by_continuation(initial, records.front(), continuation);
+    result.continuation = calibrate_by_continuation(initial, records.front(), continuation, poll);
     result.contact_deviations = {result.continuation->contact_deviation};
   } else {
-    fit = calibrate_records(initial, records, continuation, plucks);
+    fit = calibrate_records(initial, records, continuation, plucks, poll);
     result.continuation = as_continuation(*fit);
     result.contact_deviations = fit->contact_deviations;
   }

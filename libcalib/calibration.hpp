@@ -86,7 +86,8 @@ CalibrationResult calibrate(const ModelPoint& initial, const CalibrationData& da
 CalibrationResult calibrate(const ModelPoint& initial, std::span<const CalibrationData> records,
                             const CalibrationOptions& options,
                             SecondsClock clock = steady_seconds());
-/// The same with plucks of that string, which need `continuation` too.
+/// The same with plucks of that string, which need `continuation` too. The clock is read before
+/// every evaluation of a continuation as of a search.
 CalibrationResult calibrate(const ModelPoint& initial, std::span<const CalibrationData> strokes,
                             std::span<const PluckRecord> plucks, const CalibrationOptions& options,
                             SecondsClock clock = steady_seconds());

@@ -17,8 +17,10 @@ ContinuationResult with_misfit_for_noise(const AttemptInput& input,
   if (!(misfit > 1.0)) return contradicted;
   NoisyRecords records = input.records;
   for (double& deviation : records.deviation) deviation *= std::sqrt(misfit);
-  ContinuationResult found = attempt_continuation(
-      {input.initial, records, input.options, input.priors, input.highest, input.noise_error}, 0.0);
+  ContinuationResult found =
+      attempt_continuation({input.initial, records, input.options, input.priors, input.highest,
+                            input.noise_error, input.poll},
+                           0.0);
   found.chi2 *= misfit;
   found.law.chi2 *= misfit;
   found.law.accepted = false;
@@ -31,21 +33,23 @@ ContinuationResult with_misfit_for_noise(const AttemptInput& input,
 }  // namespace
 
 ContinuationResult calibrate_by_continuation(const ModelPoint& initial, const CalibrationData& data,
-                                             const ContinuationOptions& options) {
+                                             const ContinuationOptions& options,
+                                             const FitPoll& poll) {
   ModelPoint stated = initial;
   stated.sensors = options.unknowns.sensors();
-  return calibrate_by_continuation(initial, data, options, StatedPriors(options.unknowns, stated));
+  return calibrate_by_continuation(initial, data, options, StatedPriors(options.unknowns, stated),
+                                   poll);
 }
 
 ContinuationResult calibrate_by_continuation(const ModelPoint& initial, const CalibrationData& data,
                                              const ContinuationOptions& options,
-                                             const StatedPriors& priors) {
+                                             const StatedPriors& priors, const FitPoll& poll) {
   const std::array<double, 2> noise{options.left_noise, options.right_noise};
   const NoisyRecords records = NoisyRecords::of_data(data, initial.basis, noise);
   const double noise_error = noise_power_error(noise, initial.basis, data);
   const double highest = likelihood_band(initial, options.highest_frequency, data.sample_rate);
   constexpr double kShifts[] = {0.0, 4e-3, -4e-3, 8e-3, -8e-3};
-  const AttemptInput input{initial, records, options, priors, highest, noise_error};
+  const AttemptInput input{initial, records, options, priors, highest, noise_error, poll};
   ContinuationResult best;
   std::size_t evaluations = 0;
   for (std::size_t i = 0; i <= static_cast<std::size_t>(options.restarts); ++i) {

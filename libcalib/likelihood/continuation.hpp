@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "libcalib/calibration_data.hpp"
+#include "libcalib/likelihood/fit_poll.hpp"
 #include "libcalib/likelihood/law_followers.hpp"
 #include "libcalib/likelihood/named_covariance.hpp"
 #include "libcalib/likelihood/prior_misfit.hpp"
@@ -106,12 +107,13 @@ double likelihood_band(const ModelPoint& point, double highest_frequency, double
 /// tested against its neighboring minima. Last, free frequencies at σ = 0, each tested again, under
 /// the law prior, modes the data do not see tied to the law and modes that leave it set free; where
 /// some do or are doubtful, the law is fitted once more without them. The records must begin at
-/// rest.
+/// rest. What `poll` throws comes out within one evaluation.
 ContinuationResult calibrate_by_continuation(const ModelPoint& initial, const CalibrationData& data,
-                                             const ContinuationOptions& options);
+                                             const ContinuationOptions& options,
+                                             const FitPoll& poll = {});
 /// The same with these priors in the place of those among the options.
 ContinuationResult calibrate_by_continuation(const ModelPoint& initial, const CalibrationData& data,
                                              const ContinuationOptions& options,
-                                             const StatedPriors& priors);
+                                             const StatedPriors& priors, const FitPoll& poll = {});
 
 }  // namespace modcal

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "libcalib/likelihood/continuation.hpp"
+#include "libcalib/likelihood/fit_poll.hpp"
 #include "libcalib/likelihood/whitened_record.hpp"
 
 namespace modcal {
@@ -14,6 +15,7 @@ struct AttemptInput {
   const StatedPriors& priors;
   double highest = 0.0;      ///< ω of the highest bin [rad/s]
   double noise_error = 0.0;  ///< relative standard deviation of the noise power
+  FitPoll poll = {};
 };
 
 /// From ln f_0 of the start `shift` higher [1]; evaluations: those spent before, which count too.

@@ -80,6 +80,7 @@ class FreeStage {
   // Until no mode has a better neighboring minimum, or moving it did not serve. Returns what is
   // left.
   std::vector<Neighbor> leave_neighbors(const ProjectedLikelihood& likelihood) {
+    stroke_.poll();
     std::vector<Neighbor> found = neighbors(likelihood, unknowns_, prior(), theta_);
     for (std::size_t round = 0; round < kNeighborRounds; ++round) {
       Eigen::VectorXd start = theta_;

@@ -36,14 +36,16 @@ StringUnknowns shared_unknowns(const RecordsFit& fit, const ContinuationOptions&
 class JointFit {
  public:
   JointFit(const ModelPoint& initial, const ContinuationOptions& options,
-           const StatedPriors& priors, RecordsFit& fit)
+           const StatedPriors& priors, const FitPoll& poll, RecordsFit& fit)
       : initial_(initial),
         options_(options),
         priors_(priors),
+        poll_(poll),
         fit_(fit),
         all_(shared_unknowns(fit, options, priors)) {}
 
   void add(const CalibrationData& stroke) {
+    poll();
     const std::array<double, 2> noise{options_.left_noise, options_.right_noise};
     const NoisyRecords noisy = NoisyRecords::of_data(stroke, initial_.basis, noise);
     const double highest =
@@ -58,6 +60,7 @@ class JointFit {
   }
 
   void add(const PluckRecord& pluck) {
+    poll();
     const NoisyRecords noisy = NoisyRecords::of_data(pluck.data, initial_.basis, pluck.noise);
     const double highest =
         likelihood_band(initial_, options_.highest_frequency, pluck.data.sample_rate);
@@ -168,7 +171,11 @@ class JointFit {
     const HeldParameters& held = priors_.held();
     return held.contact(record) ? held.contacts[record] : std::nullopt;
   }
+  void poll() const {
+    if (poll_) poll_();
+  }
   LikelihoodPoint point(bool twice_weighted) {
+    poll();
     ++fit_.evaluations;
     return all_.evaluate(theta_, twice_weighted);
   }
@@ -197,7 +204,8 @@ class JointFit {
     const NewtonFit found = newton_fit(
         {.evaluate = [this](const Eigen::VectorXd& theta) { return all_.evaluate(theta, false); },
          .admits = [this](const Eigen::VectorXd& theta) { return all_.admits(theta); },
-         .capped = unknowns().is_law() ? 0 : modes()},
+         .capped = unknowns().is_law() ? 0 : modes(),
+         .poll = poll_},
         theta_, newton);
     theta_ = found.theta;
     fit_.evaluations += found.evaluations;
@@ -322,6 +330,7 @@ class JointFit {
   const ModelPoint& initial_;
   const ContinuationOptions& options_;
   const StatedPriors& priors_;
+  const FitPoll& poll_;
   RecordsFit& fit_;
   AllRecords all_;
   std::vector<std::shared_ptr<const PluckLikelihood>> plucks_;
@@ -333,8 +342,8 @@ class JointFit {
 
 void run_fit(const ModelPoint& initial, const ContinuationOptions& options,
              const StatedPriors& priors, std::span<const CalibrationData> strokes,
-             std::span<const PluckRecord> plucks, RecordsFit& fit) {
-  JointFit joint(initial, options, priors, fit);
+             std::span<const PluckRecord> plucks, const FitPoll& poll, RecordsFit& fit) {
+  JointFit joint(initial, options, priors, poll, fit);
   for (const CalibrationData& stroke : strokes) joint.add(stroke);
   for (const PluckRecord& pluck : plucks) joint.add(pluck);
   joint.run();
@@ -344,8 +353,8 @@ void run_fit(const ModelPoint& initial, const ContinuationOptions& options,
 
 void fit_jointly(const ModelPoint& initial, const ContinuationOptions& options,
                  const StatedPriors& priors, std::span<const CalibrationData> strokes,
-                 std::span<const PluckRecord> plucks, RecordsFit& fit) {
-  run_fit(initial, options, priors, strokes, plucks, fit);
+                 std::span<const PluckRecord> plucks, const FitPoll& poll, RecordsFit& fit) {
+  run_fit(initial, options, priors, strokes, plucks, poll, fit);
   if (!options.frequencies) return;
   // Frequencies that are free say what the law is only as far as they may leave it.
   ContinuationOptions law_alone = options;
@@ -357,7 +366,7 @@ void fit_jointly(const ModelPoint& initial, const ContinuationOptions& options,
       single.model.basis.omega[n] = fit.model.basis.omega[n];
     }
   }
-  run_fit(initial, law_alone, priors.holding(others), strokes, plucks, alone);
+  run_fit(initial, law_alone, priors.holding(others), strokes, plucks, poll, alone);
   fit.law = alone.law;
   fit.evaluations += alone.evaluations;
   report_departures(fit.law, fit.modes);

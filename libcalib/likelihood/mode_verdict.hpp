@@ -42,9 +42,9 @@ std::vector<ModeVerdict> free_verdicts(const ModelPoint& model, const Eigen::Vec
 /// Modes that leave the law or are doubtful, by index; none where fewer than two would be left to
 /// find the law by.
 std::vector<std::size_t> not_following(const std::vector<ModeVerdict>& modes);
+
 /// Raises the variances of the frequencies to the deviations that the verdicts report.
 void raise_to_verdicts(const std::vector<ModeVerdict>& modes, NamedCovariance& covariance);
-
 
 /// Fills how far every mode is from n f_0 √(1 + Bn²).
 void report_departures(const LawEstimate& law, std::vector<ModeVerdict>& modes);

@@ -114,6 +114,7 @@ Trial with_rows(LikelihoodPoint point, const Eigen::VectorXd& theta,
 }
 
 Trial try_slope(const FitTarget& target, const Eigen::VectorXd& theta, NewtonFit& fit) {
+  if (target.poll) target.poll();
   ++fit.evaluations;
   if (!target.slope) return {target.evaluate(theta), theta};
   ++fit.slopes;
@@ -128,6 +129,7 @@ Trial try_information(const FitTarget& target, const Eigen::VectorXd& theta,
     moved = moved_unknowns(theta - formed, fit.point, options);
     if (moved.empty() && theta == fit.theta) return {.point = fit.point, .formed = formed};
   }
+  if (target.poll) target.poll();
   ++fit.evaluations;
   LikelihoodPoint point = target.rows ? target.rows(theta, moved) : target.evaluate(theta);
   if (point.information.rows() == point.information.cols()) return {std::move(point), theta};
@@ -167,6 +169,7 @@ NewtonFit newton_fit(const FitTarget& target, const Eigen::VectorXd& start,
                      const NewtonOptions& options) {
   const Eigen::MatrixXd prior = padded(options.prior, start.size());
   NewtonFit fit{.theta = start};
+  if (target.poll) target.poll();
   fit.point = options.at_start ? *options.at_start : target.evaluate(start);
   fit.evaluations = options.at_start ? 0 : 1;
   Eigen::VectorXd formed = start;
@@ -219,7 +222,8 @@ NewtonFit newton_fit(const FitTarget& target, const Eigen::VectorXd& start,
 }
 
 NewtonFit newton_fit(const ProjectedLikelihood& likelihood, const StringUnknowns& unknowns,
-                     const Eigen::VectorXd& start, const NewtonOptions& options) {
+                     const Eigen::VectorXd& start, const NewtonOptions& options,
+                     const FitPoll& poll) {
   FitTarget target{.evaluate =
                        [&](const Eigen::VectorXd& theta) {
                          return likelihood.evaluate(unknowns.model(theta), unknowns.columns(theta));
@@ -229,7 +233,8 @@ NewtonFit newton_fit(const ProjectedLikelihood& likelihood, const StringUnknowns
                    .slope =
                        [&](const Eigen::VectorXd& theta) {
                          return likelihood.slope(unknowns.model(theta), unknowns.columns(theta));
-                       }};
+                       },
+                   .poll = poll};
   // The law's few columns cost less than some of their rows.
   if (!unknowns.is_law()) {
     target.rows = [&](const Eigen::VectorXd& theta, std::span<const std::size_t> wanted) {

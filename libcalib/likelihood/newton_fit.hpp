@@ -6,6 +6,7 @@
 #include <limits>
 #include <span>
 
+#include "libcalib/likelihood/fit_poll.hpp"
 #include "libcalib/likelihood/string_unknowns.hpp"
 
 namespace modcal {
@@ -33,6 +34,7 @@ struct FitTarget {
   /// evaluate.
   std::function<LikelihoodPoint(const Eigen::VectorXd&, std::span<const std::size_t> wanted)> rows =
       {};
+  FitPoll poll = {};
 };
 
 struct NewtonFit {
@@ -53,7 +55,8 @@ NewtonFit newton_fit(const FitTarget& target, const Eigen::VectorXd& start,
                      const NewtonOptions& options);
 /// The same for one record.
 NewtonFit newton_fit(const ProjectedLikelihood& likelihood, const StringUnknowns& unknowns,
-                     const Eigen::VectorXd& start, const NewtonOptions& options);
+                     const Eigen::VectorXd& start, const NewtonOptions& options,
+                     const FitPoll& poll = {});
 
 /// 2(JᵀWJ − N̄) + Q, N̄ shrunk by 0.9 as often as it takes to leave 2(JᵀWJ − N̄) + 0.9 Q positive
 /// definite: no direction comes out much worse known than the prior has it.

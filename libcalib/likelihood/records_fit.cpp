@@ -21,7 +21,7 @@ void require_contacts(const UnknownsOptions& options, std::size_t strokes) {
 
 RecordsFit calibrate_records(const ModelPoint& initial, std::span<const CalibrationData> strokes,
                              const ContinuationOptions& options,
-                             std::span<const PluckRecord> plucks) {
+                             std::span<const PluckRecord> plucks, const FitPoll& poll) {
   MODCAL_REQUIRE(!strokes.empty(), "a fit of several records needs at least {} stroke", 1);
   require_contacts(options.unknowns, strokes.size());
   ModelPoint stated = initial;
@@ -30,9 +30,9 @@ RecordsFit calibrate_records(const ModelPoint& initial, std::span<const Calibrat
   RecordsFit fit;
   for (std::size_t r = 0; r < strokes.size(); ++r) {
     fit.single.push_back(
-        calibrate_by_continuation(initial, strokes[r], options, priors.of_record(r)));
+        calibrate_by_continuation(initial, strokes[r], options, priors.of_record(r), poll));
   }
-  fit_jointly(initial, options, priors, strokes, plucks, fit);
+  fit_jointly(initial, options, priors, strokes, plucks, poll, fit);
   return fit;
 }
 

@@ -56,10 +56,10 @@ struct RecordsFit {
 /// own, and what `per_record` names of x_c, damping and sensors; the rest of these is shared. Modes
 /// that no stroke identifies start where the plucks ring. Records are independent, so their
 /// informations add. Stated noise levels of `options` hold for all strokes. Throws InvalidInput for
-/// no stroke.
+/// no stroke. What `poll` throws comes out within one evaluation.
 RecordsFit calibrate_records(const ModelPoint& initial, std::span<const CalibrationData> strokes,
                              const ContinuationOptions& options,
-                             std::span<const PluckRecord> plucks = {});
+                             std::span<const PluckRecord> plucks = {}, const FitPoll& poll = {});
 
 /// Throws InvalidInput for a prior or a fixed value of a contact that no stroke has.
 void require_contacts(const UnknownsOptions& options, std::size_t strokes);

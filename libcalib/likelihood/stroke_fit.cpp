@@ -17,22 +17,26 @@ void set_prior(QuadraticPrior prior, NewtonOptions& options) {
 }
 
 ProjectedLikelihood StrokeFit::damped(double sigma) const {
+  poll();
   return ProjectedLikelihood(WhitenedRecord::of(input_.records, sigma * unit_, input_.highest));
 }
 
 const ProjectedLikelihood& StrokeFit::whole() {
-  if (!whole_) whole_.emplace(WhitenedRecord::of(input_.records, 0.0, input_.highest));
+  if (whole_) return *whole_;
+  poll();
+  whole_.emplace(WhitenedRecord::of(input_.records, 0.0, input_.highest));
   return *whole_;
 }
 
 NewtonFit StrokeFit::fit(const ProjectedLikelihood& likelihood, const StringUnknowns& unknowns,
                          const Eigen::VectorXd& theta, const NewtonOptions& options) {
-  NewtonFit result = newton_fit(likelihood, unknowns, theta, options);
+  NewtonFit result = newton_fit(likelihood, unknowns, theta, options, input_.poll);
   evaluations_ += result.evaluations;
   return result;
 }
 
 double StrokeFit::cost(const ProjectedLikelihood& likelihood, const ModelPoint& point) {
+  poll();
   ++evaluations_;
   return likelihood.cost(point);
 }
@@ -45,18 +49,21 @@ Eigen::MatrixXd StrokeFit::prepare_weights(const StringUnknowns& unknowns,
                                            const Eigen::VectorXd& theta) {
   const ModelPoint point = unknowns.model(theta);
   weighted_ = whole();
+  poll();
   weighted_->set_weights(information_weights(whole(), point, unknowns.columns(theta)));
   return noise_at(unknowns, theta);
 }
 
 Eigen::MatrixXd StrokeFit::noise_at(const StringUnknowns& unknowns,
                                     const Eigen::VectorXd& theta) const {
+  poll();
   return weighted_->noise_information(unknowns.model(theta), unknowns.columns(theta),
                                       kNoiseRepeats);
 }
 
 LikelihoodPoint StrokeFit::weighted_point(const StringUnknowns& unknowns,
                                           const Eigen::VectorXd& theta) {
+  poll();
   ++evaluations_;
   return weighted_->evaluate(unknowns.model(theta), unknowns.columns(theta),
                              {.twice_weighted = true});

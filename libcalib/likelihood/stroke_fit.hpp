@@ -16,6 +16,10 @@ class StrokeFit {
       : input_(input), evaluations_(evaluations) {}
 
   std::size_t evaluations() const { return evaluations_; }
+  /// Called by all that takes the time of an evaluation.
+  void poll() const {
+    if (input_.poll) input_.poll();
+  }
   /// σ [1/s] of a string of 196 Hz, in proportion to f_0 on others.
   void scale_damping(double fundamental) { unit_ = fundamental / 196.0; }
   ProjectedLikelihood damped(double sigma) const;
