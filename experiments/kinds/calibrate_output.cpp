@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/kinds/calibrate_covariance.hpp"
+#include "experiments/kinds/calibrate_fit_stages.hpp"
 #include "experiments/kinds/calibrate_study.hpp"
 #include "libcalib/unknown_name.hpp"
 
@@ -110,6 +111,7 @@ Json continuation_json(const ContinuationResult& found,
           {"moved_modes", found.moved_modes},
           {"covariance", covariance_json(found.covariance)},
           {"law_covariance", covariance_json(found.law.covariance)},
+          {"stages", stages_json(found.stages)},
           {"x_c_sd_of_strokes_m", contact_deviations}};
 }
 

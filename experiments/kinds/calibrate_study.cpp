@@ -2,6 +2,7 @@
 
 #include "experiments/kinds/calibrate_audio.hpp"
 #include "experiments/kinds/calibrate_covariance.hpp"
+#include "experiments/kinds/calibrate_fit_stages.hpp"
 #include "experiments/kinds/calibrate_sensors.hpp"
 #include "experiments/kinds/calibrate_summary.hpp"
 #include "libsim/base/error.hpp"
@@ -204,6 +205,7 @@ StudyResult calibrate_study(const CalibrateOptions& options, const StudyContext&
     result.blocks.emplace_back(calibration_audio(options, observation, outcome.refined));
   }
   result.blocks.emplace_back(search_table(outcome, context.command));
+  add_stages(outcome, context.command, result);
   result.blocks.emplace_back(parameter_table(outcome, context.command));
   add_covariance(outcome, context.command, result);
   result.blocks.emplace_back(mode_table(outcome, context.command));

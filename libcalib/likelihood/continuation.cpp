@@ -1,5 +1,7 @@
 #include "libcalib/likelihood/continuation.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <utility>
 
@@ -25,6 +27,10 @@ ContinuationResult with_misfit_for_noise(const AttemptInput& input,
   found.law.chi2 *= misfit;
   found.law.accepted = false;
   found.fits = found.right = false;
+  for (FitStage& stage : found.stages) stage.chi2 *= misfit;
+  found.evaluations += contradicted.evaluations;
+  append_stages(found.stages, "misfit for noise: ", contradicted.evaluations, contradicted.stages);
+  found.stages = std::move(contradicted.stages);
   found.restarts = contradicted.restarts;
   found.noise = contradicted.noise;
   return found;
@@ -52,13 +58,17 @@ ContinuationResult calibrate_by_continuation(const ModelPoint& initial, const Ca
   const AttemptInput input{initial, records, options, priors, highest, noise_error, poll};
   ContinuationResult best;
   std::size_t evaluations = 0;
+  std::vector<FitStage> stages;
   for (std::size_t i = 0; i <= static_cast<std::size_t>(options.restarts); ++i) {
     ContinuationResult found = attempt_continuation(input, kShifts[i], evaluations);
     evaluations = found.evaluations;
+    append_stages(found.stages, i == 0 ? "" : fmt::format("restart {}: ", i), 0, stages);
     found.restarts = i;
     if (i == 0 || found.chi2 < best.chi2) best = std::move(found);
     if (best.fits) break;
   }
+  best.evaluations = evaluations;
+  best.stages = std::move(stages);
   if (best.fits || !options.frequencies) return best;
   return with_misfit_for_noise(input, std::move(best));
 }

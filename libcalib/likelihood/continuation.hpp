@@ -11,6 +11,7 @@
 
 #include "libcalib/calibration_data.hpp"
 #include "libcalib/likelihood/fit_poll.hpp"
+#include "libcalib/likelihood/fit_stage.hpp"
 #include "libcalib/likelihood/law_followers.hpp"
 #include "libcalib/likelihood/named_covariance.hpp"
 #include "libcalib/likelihood/prior_misfit.hpp"
@@ -92,6 +93,7 @@ struct ContinuationResult {
   std::size_t restarts = 0;
   std::size_t moved_modes = 0;  ///< modes found in a neighboring minimum and moved
   std::size_t evaluations = 0;
+  std::vector<FitStage> stages;   ///< of all starts, in order
   std::array<double, 2> noise{};  ///< s_r [N]
 };
 

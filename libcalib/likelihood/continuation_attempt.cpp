@@ -36,7 +36,7 @@ class Attempt {
     ContinuationResult result;
     result.noise = input_.records.deviation;
     follow_law();
-    const Eigen::MatrixXd covariance = finish_law(result);
+    const Eigen::MatrixXd covariance = finish_law("law", result);
     report_law(covariance, result);
     if (options().frequencies) {
       const bool accepted = result.law.accepted;
@@ -48,6 +48,7 @@ class Attempt {
     result.fits = result.chi2 < 1.0 + 3.0 * result.chi2_deviation;
     result.right = result.fits && !result.priors.contradicted();
     result.evaluations = stroke_.evaluations();
+    result.stages = stroke_.stages();
     return result;
   }
 
@@ -104,32 +105,36 @@ class Attempt {
       if (found.objective < best.objective) best = std::move(found);
     }
     MODCAL_REQUIRE(best.theta.size() > 0, "the initial frequencies follow no law of a string");
+    stroke_.end_stage(stroke_.damped_name("law", 200.0), widest, unknowns, best);
     for (const double sigma : {100.0, 50.0}) {
-      best = stroke_.fit(stroke_.damped(sigma), unknowns, best.theta,
-                         with_priors(unknowns, best.theta, 20, 1e-2));
+      best = stroke_.fit_stage(stroke_.damped_name("law", sigma), stroke_.damped(sigma), unknowns,
+                               best.theta, with_priors(unknowns, best.theta, 20, 1e-2));
     }
     law_ = law(priors_);
     law_theta_ = Eigen::VectorXd::Zero(law_.size());
     law_theta_.head(3) = best.theta;
-    law_theta_ =
-        stroke_.fit(stroke_.damped(20.0), law_, law_theta_, with_priors(law_, law_theta_, 20, 1e-3))
-            .theta;
+    law_theta_ = stroke_
+                     .fit_stage(stroke_.damped_name("law", 20.0), stroke_.damped(20.0), law_,
+                                law_theta_, with_priors(law_, law_theta_, 20, 1e-3))
+                     .theta;
     ladder_theta_ = law_theta_;
   }
 
   // σ = 0, end state projected out, then once more with weights and without the noise in JᵀJ.
   // Returns the covariance.
-  Eigen::MatrixXd finish_law(ContinuationResult& result) {
+  Eigen::MatrixXd finish_law(const std::string& name, ContinuationResult& result) {
     const auto free_count = static_cast<double>(law_.size() - law_.held_count());
     result.chi2_deviation =
         std::hypot(std::sqrt(2.0 / stroke_.whole().degrees_of_freedom(free_count, reference_)),
                    input_.noise_error);
-    law_theta_ =
-        stroke_.fit(stroke_.whole(), law_, law_theta_, with_priors(law_, law_theta_, 12, 1e-2))
-            .theta;
+    law_theta_ = stroke_
+                     .fit_stage(name + ", whole record", stroke_.whole(), law_, law_theta_,
+                                with_priors(law_, law_theta_, 12, 1e-2))
+                     .theta;
     NewtonOptions options = with_priors(law_, law_theta_, 4, 1e-4);
     options.noise = stroke_.prepare_weights(law_, law_theta_);
-    law_theta_ = stroke_.fit(stroke_.weighted(), law_, law_theta_, options).theta;
+    const NewtonFit last = stroke_.fit(stroke_.weighted(), law_, law_theta_, options);
+    law_theta_ = last.theta;
     const Eigen::MatrixXd covariance = stroke_.covariance_at(law_, law_theta_, options);
     const ModelPoint model = law_.model(law_theta_);
     LawEstimate& law = result.law;
@@ -146,6 +151,7 @@ class Attempt {
     law.covariance =
         named_covariance(law_, input_.options.unknowns, law_theta_, law.damping, covariance);
     law.chi2 = stroke_.reduced_chi2(model, free_count);
+    stroke_.end_stage(name + ", weighted bins", last.objective, law.chi2);
     law.accepted = law.chi2 < 1.0 + 3.0 * result.chi2_deviation;
     law.priors = law_.prior_misfit(law_theta_);
     return covariance;
@@ -176,7 +182,7 @@ class Attempt {
       reference_.basis.omega[n] = result.model.basis.omega[n];
     }
     law_ = law(priors_.holding(others));
-    finish_law(result);
+    finish_law("law without the modes that do not follow it", result);
   }
 
   const AttemptInput& input_;

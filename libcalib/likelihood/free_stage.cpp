@@ -1,6 +1,10 @@
 #include "libcalib/likelihood/free_stage.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <limits>
+#include <utility>
 
 #include "libcalib/likelihood/mode_verdict.hpp"
 #include "libcalib/likelihood/neighbor_test.hpp"
@@ -35,13 +39,19 @@ class FreeStage {
     unknowns_.clear_held(covariance);
     report(covariance);
     result_.chi2 = stroke_.reduced_chi2(result_.model, taken_by_fit(last, newton_));
+    stroke_.end_stage("free, prior as wide as the law's followers", objective_, result_.chi2);
     result_.priors = unknowns_.prior_misfit(theta_, {widths_, inharmonicity_});
   }
 
  private:
   Eigen::Index modes() const { return static_cast<Eigen::Index>(unknowns_.modes()); }
-  void search(const ProjectedLikelihood& likelihood) {
-    theta_ = stroke_.fit(likelihood, unknowns_, theta_, newton_).theta;
+  void search(std::string name, const ProjectedLikelihood& likelihood) {
+    theta_ = stroke_.fit_stage(std::move(name), likelihood, unknowns_, theta_, newton_).theta;
+  }
+  void search_weighted() {
+    const NewtonFit found = stroke_.fit(stroke_.weighted(), unknowns_, theta_, newton_);
+    theta_ = found.theta;
+    objective_ = found.objective;
   }
   QuadraticPrior prior() const { return {newton_.prior, newton_.prior_mean}; }
 
@@ -50,13 +60,14 @@ class FreeStage {
     const Eigen::VectorXd wide = Eigen::VectorXd::Constant(modes(), kWidePrior);
     set_prior(unknowns_.prior(theta_, {wide, inharmonicity_}), newton_);
     if (!start_.from_law) descend();
-    search(stroke_.whole());
+    search("free, whole record", stroke_.whole());
     const std::vector<Neighbor> left = leave_neighbors(stroke_.whole());
     // Where the law holds, its weights serve: a bin tells of every unknown by what force is in it.
     newton_.noise = start_.from_law ? stroke_.noise_at(unknowns_, theta_)
                                     : stroke_.prepare_weights(unknowns_, theta_);
     newton_.steps = 5;
-    search(stroke_.weighted());
+    search_weighted();
+    stroke_.end_stage("free, weighted bins", objective_, std::numeric_limits<double>::quiet_NaN());
     at_ = stroke_.weighted_point(unknowns_, theta_);
     // A prior of a mode's frequency is no sight of it.
     NewtonOptions unstated = newton_;
@@ -71,9 +82,11 @@ class FreeStage {
 
   // Free frequencies on damped records, where the law does not hold: wide basins first.
   void descend() {
-    for (const double sigma : {40.0, 20.0}) search(stroke_.damped(sigma));
+    for (const double sigma : {40.0, 20.0}) {
+      search(stroke_.damped_name("free", sigma), stroke_.damped(sigma));
+    }
     const ProjectedLikelihood last = stroke_.damped(10.0);
-    search(last);
+    search(stroke_.damped_name("free", 10.0), last);
     leave_neighbors(last);
   }
 
@@ -90,6 +103,7 @@ class FreeStage {
       const NewtonFit there = stroke_.fit(likelihood, unknowns_, start, newton_);
       if (!(there.objective < here)) break;
       theta_ = there.theta;
+      stroke_.end_stage(fmt::format("free, {} modes moved", moved), likelihood, unknowns_, there);
       result_.moved_modes += moved;
       found = neighbors(likelihood, unknowns_, prior(), theta_);
     }
@@ -110,7 +124,7 @@ class FreeStage {
     }
     set_prior(unknowns_.prior(theta_, {widths_, inharmonicity_}), newton_);
     newton_.tolerance = 1e-4;
-    search(stroke_.weighted());
+    search_weighted();
     newton_.at_start = nullptr;
   }
 
@@ -142,7 +156,8 @@ class FreeStage {
   double inharmonicity_;
   NewtonOptions newton_{.steps = 10, .tolerance = 1e-2, .frequency_cap = kStepCap};
   Eigen::VectorXd theta_, widths_;
-  LikelihoodPoint at_;  // where the modes were seen, with the weights of then
+  LikelihoodPoint at_;      // where the modes were seen, with the weights of then
+  double objective_ = 0.0;  // of the last fit with weights
   ModeSight sight_;
   LawFollowers followers_;
   ContinuationResult& result_;

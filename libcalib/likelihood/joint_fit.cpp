@@ -75,7 +75,7 @@ class JointFit {
     if (unknowns().is_law()) {
       state(equations(priors_, nullptr), newton);
       newton.noise = all_.noise(theta_);
-      search(newton);
+      search("law", newton);
       fit_.priors = misfit(PriorEquations(all_.size()));
     } else {
       listen_to_plucks();
@@ -89,7 +89,7 @@ class JointFit {
     const double taken =
         unknowns().is_law() ? static_cast<double>(all_.free_count()) : taken_by_fit(last, newton);
     const AllRecords::Misfit misfit = all_.misfit(theta_, noise_errors_, taken);
-    fit_.chi2 = misfit.chi2;
+    fit_.chi2 = fit_.stages.back().chi2 = misfit.chi2;
     fit_.chi2_deviation = misfit.deviation;
     fit_.fits = fit_.chi2 < 1.0 + 3.0 * fit_.chi2_deviation;
     fit_.right = fit_.fits && !fit_.priors.contradicted();
@@ -200,7 +200,7 @@ class JointFit {
     newton.prior_mean = std::move(prior.mean);
   }
 
-  void search(const NewtonOptions& newton) {
+  void search(const char* stage, const NewtonOptions& newton) {
     const NewtonFit found = newton_fit(
         {.evaluate = [this](const Eigen::VectorXd& theta) { return all_.evaluate(theta, false); },
          .admits = [this](const Eigen::VectorXd& theta) { return all_.admits(theta); },
@@ -209,6 +209,8 @@ class JointFit {
         theta_, newton);
     theta_ = found.theta;
     fit_.evaluations += found.evaluations;
+    fit_.stages.push_back(
+        {.name = stage, .evaluations = fit_.evaluations, .objective = found.objective});
   }
 
   // Frequencies that no stroke identifies go where most of the plucks' power is, within ±0.6 %.
@@ -230,7 +232,7 @@ class JointFit {
     const Eigen::VectorXd wide = Eigen::VectorXd::Constant(modes(), kWidePrior);
     state(equations(priors_, &wide), newton);
     newton.noise = all_.noise(theta_);
-    search(newton);
+    search("free, weighted bins", newton);
     const LikelihoodPoint at = point(true);
     // A prior of a mode's frequency is no sight of it.
     NewtonOptions unstated = newton;
@@ -252,7 +254,7 @@ class JointFit {
     release(followers_, sight, widths);
     seen_ = sight.seen;
     state(equations(priors_, &widths), newton);
-    search(newton);
+    search("free, prior as wide as the law's followers", newton);
     fit_.priors = misfit(equations(priors_, &widths));
   }
 
@@ -368,6 +370,7 @@ void fit_jointly(const ModelPoint& initial, const ContinuationOptions& options,
   }
   run_fit(initial, law_alone, priors.holding(others), strokes, plucks, poll, alone);
   fit.law = alone.law;
+  append_stages(alone.stages, "", fit.evaluations, fit.stages);
   fit.evaluations += alone.evaluations;
   report_departures(fit.law, fit.modes);
 }

@@ -56,8 +56,15 @@ ContinuationResult as_continuation(const RecordsFit& fit) {
   result.modes = fit.modes;
   result.covariance = fit.covariance;
   result.law_width = fit.law_width;
-  result.evaluations = fit.evaluations;
-  for (const ContinuationResult& single : fit.single) result.evaluations += single.evaluations;
+  result.evaluations = 0;
+  result.stages.clear();
+  for (std::size_t r = 0; r < fit.single.size(); ++r) {
+    append_stages(fit.single[r].stages, fmt::format("stroke {}: ", r + 1), result.evaluations,
+                  result.stages);
+    result.evaluations += fit.single[r].evaluations;
+  }
+  append_stages(fit.stages, "all records: ", result.evaluations, result.stages);
+  result.evaluations += fit.evaluations;
   return result;
 }
 

@@ -48,6 +48,7 @@ struct RecordsFit {
   PriorMisfit priors;                      ///< of all records' parameters to what was stated
   bool right = false;                      ///< neither χ² nor the priors contradict the fit
   std::size_t evaluations = 0;             ///< of all records together, the law's among them
+  std::vector<FitStage> stages;            ///< likewise
   std::vector<ContinuationResult> single;  ///< every stroke by itself
 };
 

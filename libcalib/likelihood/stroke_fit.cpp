@@ -1,5 +1,7 @@
 #include "libcalib/likelihood/stroke_fit.hpp"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "libcalib/likelihood/bin_weights.hpp"
@@ -21,6 +23,10 @@ ProjectedLikelihood StrokeFit::damped(double sigma) const {
   return ProjectedLikelihood(WhitenedRecord::of(input_.records, sigma * unit_, input_.highest));
 }
 
+std::string StrokeFit::damped_name(std::string_view unknowns, double sigma) const {
+  return fmt::format("{}, sigma = {:.3g} 1/s", unknowns, sigma * unit_);
+}
+
 const ProjectedLikelihood& StrokeFit::whole() {
   if (whole_) return *whole_;
   poll();
@@ -33,6 +39,25 @@ NewtonFit StrokeFit::fit(const ProjectedLikelihood& likelihood, const StringUnkn
   NewtonFit result = newton_fit(likelihood, unknowns, theta, options, input_.poll);
   evaluations_ += result.evaluations;
   return result;
+}
+
+NewtonFit StrokeFit::fit_stage(std::string name, const ProjectedLikelihood& likelihood,
+                               const StringUnknowns& unknowns, const Eigen::VectorXd& theta,
+                               const NewtonOptions& options) {
+  NewtonFit found = fit(likelihood, unknowns, theta, options);
+  end_stage(std::move(name), likelihood, unknowns, found);
+  return found;
+}
+
+void StrokeFit::end_stage(std::string name, const ProjectedLikelihood& likelihood,
+                          const StringUnknowns& unknowns, const NewtonFit& found) {
+  const auto free_count = static_cast<std::size_t>(unknowns.size() - unknowns.held_count());
+  const double freedom = likelihood.degrees_of_freedom(free_count, unknowns.model(found.theta));
+  end_stage(std::move(name), found.objective, 2.0 * found.point.cost / freedom);
+}
+
+void StrokeFit::end_stage(std::string name, double objective, double chi2) {
+  stages_.push_back({std::move(name), evaluations_, objective, chi2});
 }
 
 double StrokeFit::cost(const ProjectedLikelihood& likelihood, const ModelPoint& point) {

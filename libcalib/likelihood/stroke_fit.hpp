@@ -2,6 +2,9 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "libcalib/likelihood/continuation_attempt.hpp"
 #include "libcalib/likelihood/newton_fit.hpp"
@@ -22,6 +25,8 @@ class StrokeFit {
   }
   /// σ [1/s] of a string of 196 Hz, in proportion to f_0 on others.
   void scale_damping(double fundamental) { unit_ = fundamental / 196.0; }
+  /// "law, sigma = 200 1/s".
+  std::string damped_name(std::string_view unknowns, double sigma) const;
   ProjectedLikelihood damped(double sigma) const;
   /// σ = 0, the end state projected out; made once.
   const ProjectedLikelihood& whole();
@@ -30,6 +35,16 @@ class StrokeFit {
 
   NewtonFit fit(const ProjectedLikelihood& likelihood, const StringUnknowns& unknowns,
                 const Eigen::VectorXd& theta, const NewtonOptions& options);
+  /// The same as a stage of its own, on a record without weights.
+  NewtonFit fit_stage(std::string name, const ProjectedLikelihood& likelihood,
+                      const StringUnknowns& unknowns, const Eigen::VectorXd& theta,
+                      const NewtonOptions& options);
+  /// Ends a stage with this fit on a record without weights.
+  void end_stage(std::string name, const ProjectedLikelihood& likelihood,
+                 const StringUnknowns& unknowns, const NewtonFit& found);
+  /// Ends a stage with weights; chi2: of the whole record, NaN where it was not asked for.
+  void end_stage(std::string name, double objective, double chi2);
+  const std::vector<FitStage>& stages() const { return stages_; }
   double cost(const ProjectedLikelihood& likelihood, const ModelPoint& point);
   /// Reduced χ² of the whole record; taken: residuals that the fit took.
   double reduced_chi2(const ModelPoint& point, double taken);
@@ -47,6 +62,7 @@ class StrokeFit {
   std::optional<ProjectedLikelihood> whole_, weighted_;
   double unit_ = 1.0;
   std::size_t evaluations_;
+  std::vector<FitStage> stages_;
 };
 
 /// Takes the place of the prior among the options.
