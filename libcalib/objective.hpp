@@ -37,6 +37,8 @@ class Objective {
   /// Throws InvalidInput for a parameter (see parse_unknown()) that the objective cannot find.
   void require_moved_by(std::span<const std::string> names) const;
   virtual Response response(ParameterKind kind) const;
+  /// What its functions can compute, known before there are data. Most have slopes and residuals.
+  virtual Capabilities capabilities() const { return {.gradient = true, .least_squares = true}; }
   /// Whether its residuals are independent and of variance 1 for a right model, so that (JᵀJ)⁻¹ at
   /// the optimum is the covariance of the parameters.
   virtual bool whitened() const { return false; }

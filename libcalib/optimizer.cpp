@@ -24,13 +24,16 @@ std::string optimizers_for(const Capabilities& has) {
 }  // namespace
 
 std::string Optimizer::explain_unsatisfied(const ObjectiveFunction& function) const {
-  const Capabilities needed = needs();
-  const Capabilities known = function.capabilities();
-  if (satisfied(needed, known)) return {};
+  return explain_unsatisfied(function.name(), function.capabilities());
+}
+
+std::string Optimizer::explain_unsatisfied(std::string_view objective,
+                                           const Capabilities& known) const {
+  if (satisfied(needs(), known)) return {};
   return fmt::format(
       "optimizer \"{}\" needs residuals, which objective \"{}\" does not have: it is no sum of "
       "squares; with their default options these optimizers can minimize it: {}",
-      name(), function.name(), optimizers_for(known));
+      name(), objective, optimizers_for(known));
 }
 
 OptimizationResult Optimizer::minimize(const ObjectiveFunction& function,

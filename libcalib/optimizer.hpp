@@ -22,6 +22,8 @@ class Optimizer {
 
   /// Why this optimizer cannot minimize the objective, with a remedy; empty where it can.
   std::string explain_unsatisfied(const ObjectiveFunction& function) const;
+  /// The same for an objective of that name that can compute so much.
+  std::string explain_unsatisfied(std::string_view objective, const Capabilities& known) const;
 
   /// Minimizes the function within the bounds of the variables, from their initial values. Throws
   /// InvalidInput where explain_unsatisfied() has something to say, before the first evaluation,

@@ -51,6 +51,23 @@ void lint_noise(const CalibrateOptions& options, std::vector<Finding>& findings)
       findings);
 }
 
+// Whether the optimizer can minimize the objective, where both can be made at all.
+void lint_pairing(const CalibrationOptions& calibration, std::vector<Finding>& findings) {
+  const auto stands = [&findings](std::string_view path) {
+    return std::any_of(findings.begin(), findings.end(),
+                       [path](const Finding& finding) { return finding.path.starts_with(path); });
+  };
+  if (stands("calibration.objective") || stands("calibration.optimizer")) return;
+  lint_making(
+      "calibration.optimizer",
+      [&] {
+        const std::string mismatch = calibration.optimizer.make()->explain_unsatisfied(
+            calibration.objective.selected(), calibration.objective.make()->capabilities());
+        MODCAL_REQUIRE(mismatch.empty(), "{}", mismatch);
+      },
+      findings);
+}
+
 // What stands in the file and a continuation, which ends by itself, does not read.
 void lint_unread(const CalibrationOptions& calibration, std::vector<Finding>& findings) {
   const CalibrationOptions plain;
@@ -86,6 +103,7 @@ std::vector<Finding> CalibrateExperiment::lint() const {
       "calibration.objective", [&] { calibration.objective.make(); }, findings);
   lint_making(
       "calibration.optimizer", [&] { calibration.optimizer.make(); }, findings);
+  if (!calibration.has_continuation) lint_pairing(calibration, findings);
   lint_making(
       "calibration.budget", [&] { calibration.budget.require_valid(); }, findings);
   lint_making(

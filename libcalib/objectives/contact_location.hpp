@@ -20,6 +20,9 @@ class ContactLocation final : public Objective {
   };
   explicit ContactLocation(const Options& options) : options_(options) {}
 
+  /// A norm, not its square: no residuals. contact_location_squares has them.
+  Capabilities capabilities() const override { return {.gradient = true}; }
+
  private:
   /// Throws InvalidInput where a reaction is missing or x_c is not free.
   std::unique_ptr<const ObjectiveFunction> do_bind(const CalibrationData& data,

@@ -31,6 +31,7 @@ class InnovationMisfit final : public Objective {
   /// All of them: the observer has the damping of the model and reads R₂ as its sensor's gain,
   /// delay and corner say.
   Response response(ParameterKind kind) const override;
+  Capabilities capabilities() const override { return {.residuals = true}; }
 
  private:
   /// Throws InvalidInput where a reaction is missing and where the record shows no stick and slip

@@ -20,6 +20,9 @@ class SpectralPeak final : public Objective {
   };
   explicit SpectralPeak(const Options& options);
 
+  /// A sum of magnitudes: no residuals. smooth_spectral_peak has them.
+  Capabilities capabilities() const override { return {.gradient = true}; }
+
  private:
   /// Throws InvalidInput where a band holds no bin.
   std::unique_ptr<const ObjectiveFunction> do_bind(const CalibrationData& data,

@@ -47,17 +47,22 @@ class SumScanner final : public CoordinateScanner {
   std::vector<std::unique_ptr<CoordinateScanner>> scanners_;
 };
 
+constexpr Capabilities kAll{.gradient = true, .least_squares = true, .residuals = true};
+
+Capabilities common(const Capabilities& a, const Capabilities& b) {
+  return {.gradient = a.gradient && b.gradient,
+          .least_squares = a.least_squares && b.least_squares,
+          .residuals = a.sum_of_squares() && b.sum_of_squares()};
+}
+
 class Function final : public ObjectiveFunction {
  public:
   explicit Function(std::vector<BoundTerm> terms) : terms_(std::move(terms)) {
-    capabilities_ = {.gradient = true, .least_squares = true};
     for (const BoundTerm& term : terms_) {
-      const Capabilities known = term.function->capabilities();
-      capabilities_.gradient = capabilities_.gradient && known.gradient;
-      capabilities_.least_squares = capabilities_.least_squares && known.least_squares;
+      capabilities_ = common(capabilities_, term.function->capabilities());
       residual_count_ += term.function->residual_count();
     }
-    if (!capabilities_.least_squares) residual_count_ = 0;
+    if (!capabilities_.sum_of_squares()) residual_count_ = 0;
   }
   std::string_view name() const override { return kName; }
   std::size_t dimension() const override { return terms_.front().function->dimension(); }
@@ -94,7 +99,7 @@ class Function final : public ObjectiveFunction {
   }
 
   std::vector<BoundTerm> terms_;
-  Capabilities capabilities_;
+  Capabilities capabilities_ = kAll;
   std::size_t residual_count_ = 0;
 };
 
@@ -147,6 +152,12 @@ Response WeightedSum::response(ParameterKind kind) const {
     if (own == Response::kMoves) response = own;
   }
   return response;
+}
+
+Capabilities WeightedSum::capabilities() const {
+  Capabilities all = kAll;
+  for (const Term& term : options_.terms) all = common(all, term.objective.make()->capabilities());
+  return all;
 }
 
 bool WeightedSum::whitened() const {

@@ -7,9 +7,9 @@
 
 namespace modcal {
 
-/// Σ_j w_j J_j of other objectives on the same data and parameters, w_j > 0. It has a gradient and
-/// residuals, √w_j r_j one below the other, where all its terms have them. Units are the user's:
-/// weights turn newtons and ratios into one number.
+/// Σ_j w_j J_j of other objectives on the same data and parameters, w_j > 0. It has a gradient,
+/// residuals, √w_j r_j one below the other, and their Jacobian where all its terms have them. Units
+/// are the user's: weights turn newtons and ratios into one number.
 class WeightedSum final : public Objective {
  public:
   /// An objective that is no sum itself: a sum of sums is one longer sum.
@@ -41,6 +41,8 @@ class WeightedSum final : public Objective {
   explicit WeightedSum(const Options& options);
   /// Moved by what moves one of the terms.
   Response response(ParameterKind kind) const override;
+  /// What all terms have.
+  Capabilities capabilities() const override;
   /// All terms are, each with the weight 1.
   bool whitened() const override;
   void require_record(const ModalBasis& basis, double sample_rate,

@@ -61,6 +61,34 @@ std::string strokes(const std::string& calibration, const std::string& further) 
          calibration + "}\nfurther_strokes: " + further + "\n";
 }
 
+std::string search(const std::string& objective, const std::string& optimizer) {
+  return "kind: calibrate\n"
+         "scene:\n"
+         "  string: {length: 0.33 m, linear_density: 3.1e-3 kg/m, fundamental: 196 Hz}\n"
+         "  bow: {position: 30 mm}\n"
+         "  duration: 0.1 s\n"
+         "calibration:\n"
+         "  parameters: {contact: true}\n"
+         "  objective: " +
+         objective + "\n  optimizer: " + optimizer + "\n";
+}
+
+TEST(LintSearch, SaysWhereAnOptimizerCannotMinimizeTheObjective) {
+  for (const std::string objective :
+       {"spectral_peak", "contact_location",
+        "{type: weighted_sum, terms: [{objective: force_mismatch}, {objective: spectral_peak}]}"}) {
+    EXPECT_THAT(messages_of(search(objective, "ceres")),
+                testing::AllOf(testing::HasSubstr("scene.yaml:9:"),
+                               testing::HasSubstr("\"ceres\" needs residuals"),
+                               testing::HasSubstr("nlopt")))
+        << objective;
+    EXPECT_EQ(messages_of(search(objective, "nlopt")).find("error"), std::string::npos);
+  }
+  for (const std::string objective : {"contact_location_squares", "innovation_misfit"}) {
+    EXPECT_EQ(messages_of(search(objective, "ceres")).find("error"), std::string::npos);
+  }
+}
+
 TEST(LintStrokes, RefusesWhatCannotBeFittedTogether) {
   EXPECT_THAT(messages_of(strokes("", "{contacts: [28 mm]}")),
               testing::AllOf(testing::HasSubstr("scene.yaml:7:"),

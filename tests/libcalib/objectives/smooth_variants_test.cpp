@@ -114,6 +114,42 @@ TEST(WeightedSum, GivesOnlyWhatAllTermsGive) {
   expect_slopes_match(*sum, given.parameters.variables(), given.parameters.start(), 1e-6, 1e-4);
 }
 
+void expect_same(const Capabilities& stated, const Capabilities& bound, std::string_view name) {
+  EXPECT_EQ(stated.gradient, bound.gradient) << name;
+  EXPECT_EQ(stated.least_squares, bound.least_squares) << name;
+  EXPECT_EQ(stated.sum_of_squares(), bound.sum_of_squares()) << name;
+}
+
+TEST(Objectives, SayBeforehandWhatTheirFunctionsCompute) {
+  const Case given;
+  for (const std::string name : {"contact_location", "contact_location_squares", "force_mismatch",
+                                 "smooth_spectral_peak", "spectral_peak"}) {
+    const auto objective = Choice<Objective>(name).make();
+    expect_same(objective->capabilities(),
+                objective->bind(given.data, given.parameters)->capabilities(), name);
+    for (const std::string other : {"force_mismatch", "spectral_peak"}) {
+      const WeightedSum sum = sum_of({{1.0, name}, {2.0, other}});
+      expect_same(sum.capabilities(), sum.bind(given.data, given.parameters)->capabilities(), name);
+    }
+  }
+  // Residuals without slopes stay residuals in a sum.
+  const Capabilities mixed =
+      sum_of({{1.0, "innovation_misfit"}, {1.0, "frequency_prior"}}).capabilities();
+  EXPECT_TRUE(mixed.sum_of_squares());
+  EXPECT_FALSE(mixed.least_squares);
+  EXPECT_FALSE(mixed.gradient);
+}
+
+TEST(Objectives, SmoothVariantsNameWhatTheyAreVariantsOf) {
+  for (const std::string name : {"contact_location", "spectral_peak"}) {
+    bool found = false;
+    for (const auto& entry : Objective::registry()) {
+      found = found || entry.summary.find("smooth variant of " + name) != std::string_view::npos;
+    }
+    EXPECT_TRUE(found) << name;
+  }
+}
+
 TEST(WeightedSum, IsWhiteWhereAllItsTermsAreWithTheWeightOne) {
   EXPECT_TRUE(sum_of({{1.0, "joint_likelihood"}, {1.0, "frequency_prior"}}).whitened());
   EXPECT_FALSE(sum_of({{1.0, "joint_likelihood"}, {2.0, "frequency_prior"}}).whitened());
