@@ -33,4 +33,5 @@ for objective in dict.fromkeys(row["objective"] for row in rows):
         arrivals.append((steps[after][0], name))
     arrivals.sort()
     first = ", ".join(f"`{name}` {time:.1f} ms" for time, name in arrivals[:3])
-    print(f"| `{objective}` | {floor:.1e} | {floor / bound:.0f} | {len(arrivals)} of {len(own)} | {first} |")
+    ratio = floor / bound
+    print(f"| `{objective}` | {floor:.1e} | {ratio:.{0 if ratio > 10 else 1}f} | {len(arrivals)} of {len(own)} | {first} |")
