@@ -100,14 +100,14 @@ struct Labeled {
 };
 
 /// An evaluation of the innovation misfit is 45 simulations of the record, a third of a second
-/// where the others take less than a millisecond: one or two of every family, fewer evaluations.
+/// where the others take a millisecond or less: one or two of every family, fewer evaluations.
 constexpr std::int64_t kFewEvaluations = 60;
 const std::vector<std::string> kFewOptimizers = {"tiny_least_squares", "ceres_levenberg_marquardt",
                                                  "nlopt_LN_BOBYQA",    "nlopt_LN_SBPLX",
                                                  "nlopt_LD_LBFGS",     "nlopt_GN_CRS2_LM"};
 
-/// The likelihood beside frequencies measured otherwise: ten times its own bound wide, so that the
-/// bound drawn, which knows the record alone, holds for the sum too.
+/// The likelihood beside frequencies measured otherwise, which know the law a hundredth as well:
+/// the bound drawn, of the record alone, holds for the sum too.
 std::shared_ptr<const Objective> with_frequency_prior(const StiffStroke& stroke,
                                                       const JointLikelihood::Options& likelihood) {
   FrequencyPrior::Options prior;
