@@ -6,10 +6,10 @@
 
 #include "libcalib/likelihood/all_records.hpp"
 #include "libcalib/likelihood/bin_weights.hpp"
+#include "libcalib/likelihood/joint_report.hpp"
 #include "libcalib/likelihood/mode_verdict.hpp"
 #include "libcalib/likelihood/newton_fit.hpp"
 #include "libcalib/likelihood/noise_level.hpp"
-#include "libcalib/likelihood/parameter_forms.hpp"
 #include "libcalib/likelihood/pluck_search.hpp"
 #include "libcalib/likelihood/stated_verdict.hpp"
 
@@ -84,7 +84,14 @@ class JointFit {
     const LikelihoodPoint last = point(true);
     Eigen::MatrixXd covariance = fit_covariance(last, newton);
     all_.clear_held(covariance);
-    report(covariance);
+    report_joint_fit({.all = all_,
+                      .initial = initial_,
+                      .options = options_,
+                      .priors = priors_,
+                      .theta = theta_,
+                      .seen = seen_,
+                      .followers = followers_},
+                     covariance, fit_);
     // As for one record: the law's unknowns have no prior that takes their place.
     const double taken =
         unknowns().is_law() ? static_cast<double>(all_.free_count()) : taken_by_fit(last, newton);
@@ -134,38 +141,14 @@ class JointFit {
     Eigen::VectorXd start = unknowns().start();
     for (const Index i : own_places(true)) {
       if (i == unknowns().contact()) start[i] = single.contact - shared.contact;
-      if (i == unknowns().damping()) start[i] = mean_damping_change(single, shared);
+      if (i == unknowns().damping()) {
+        start[i] = mean_damping_change(priors_.held(), single, shared);
+      }
       if (i == unknowns().sensor(0)) start[i] = std::log(single.sensors.gain / shared.sensors.gain);
       if (i == unknowns().sensor(1)) start[i] = single.sensors.delay - shared.sensors.delay;
       if (i == unknowns().sensor(2)) start[i] = single.sensors.corner - shared.sensors.corner;
     }
     return start;
-  }
-  double mean_damping_change(const ModelPoint& point, const ModelPoint& from) const {
-    double change = 0.0, count = 0.0;
-    for (std::size_t n = 0; n < unknowns().modes(); ++n) {
-      if (priors_.held().ratio(n)) continue;
-      change += std::log(point.basis.zeta[n] / from.basis.zeta[n]);
-      count += 1.0;
-    }
-    return change / std::max(count, 1.0);
-  }
-  // Factor and exponent p of ζ_n = factor nᵖ ζ_n(initial), those aside that are held.
-  std::pair<double, double> damping_line(const ModelPoint& point) const {
-    std::vector<std::pair<double, double>> changes;  // (ln n, ln ζ_n/ζ_n(initial))
-    for (std::size_t n = 0; n < unknowns().modes(); ++n) {
-      if (priors_.held().ratio(n)) continue;
-      changes.emplace_back(std::log(static_cast<double>(n + 1)),
-                           std::log(point.basis.zeta[n] / initial_.basis.zeta[n]));
-    }
-    if (options_.unknowns.damping != "power" || changes.size() < 2) {
-      return {std::exp(mean_damping_change(point, initial_)), 0.0};
-    }
-    // All lie on one line.
-    const auto& [a, low] = changes.front();
-    const auto& [b, high] = changes.back();
-    const double power = (high - low) / (b - a);
-    return {std::exp(low - power * a), power};
   }
   std::optional<double> held_contact(std::size_t record) const {
     const HeldParameters& held = priors_.held();
@@ -266,67 +249,6 @@ class JointFit {
       contacts.push_back(all_.model(theta_, r).contact);
     }
     return nodes(all_.model(theta_, 0).basis, contacts);
-  }
-
-  void report(const Eigen::MatrixXd& covariance) {
-    const Eigen::VectorXd deviation = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
-    fit_.model = all_.model(theta_, 0);
-    for (std::size_t r = 0; r < fit_.single.size(); ++r) {
-      fit_.contacts.push_back(all_.model(theta_, r).contact);
-      fit_.contact_deviations.push_back(deviation[all_.place(unknowns().contact(), r)]);
-    }
-    if (unknowns().is_law()) {
-      fit_.modes = law_verdicts(fit_.model, theta_[1], covariance.topLeftCorner(2, 2));
-      trust_stated_frequencies(priors_, {}, fit_.modes);
-    } else {
-      const auto frequencies = deviation.head(modes());
-      fit_.frequency_deviations.assign(frequencies.begin(), frequencies.end());
-      fit_.modes = free_verdicts(fit_.model, frequencies, seen_, followers_);
-      trust_stated_frequencies(priors_, deviation, fit_.modes);
-    }
-    for (std::size_t r = 0; r < all_.records(); ++r) report_values(covariance, r);
-    // Shared by all: the first record's unknowns stand first.
-    fit_.damping_power = damping_line(fit_.model).second;
-    fit_.damping_power_deviation = unknowns().damping_power_deviation(covariance);
-    fit_.ratio_deviations = unknowns().ratio_deviations(covariance);
-    report_covariance(covariance);
-    if (unknowns().is_law()) report_law(deviation);
-  }
-
-  void report_covariance(const Eigen::MatrixXd& covariance) {
-    FormPoint at{.models = {}, .damping = {}, .strokes = fit_.single.size()};
-    if (unknowns().is_law()) at.fundamental = unknowns().fundamental(theta_);
-    for (std::size_t r = 0; r < all_.records(); ++r) {
-      at.models.push_back(all_.model(theta_, r));
-      at.damping.push_back(fit_.values[r].damping);
-    }
-    fit_.covariance = named_covariance(all_, options_.unknowns, at, covariance);
-    raise_to_verdicts(fit_.modes, fit_.covariance);
-  }
-
-  void report_law(const Eigen::VectorXd& deviation) {
-    const RecordValues& first = fit_.values.front();
-    fit_.law = {.fundamental = unknowns().fundamental(theta_),
-                .inharmonicity = theta_[1],
-                .contact = fit_.model.contact,
-                .damping = first.damping};
-    fit_.law.deviation = {fit_.law.fundamental * deviation[0], deviation[1],
-                          fit_.contact_deviations.front(), first.damping_deviation};
-    fit_.law.covariance = fit_.covariance;
-  }
-
-  void report_values(const Eigen::MatrixXd& covariance, std::size_t record) {
-    Eigen::MatrixXd own(unknowns().size(), unknowns().size());
-    for (Index i = 0; i < own.rows(); ++i) {
-      for (Index j = 0; j < own.cols(); ++j) {
-        own(i, j) = covariance(all_.place(i, record), all_.place(j, record));
-      }
-    }
-    const ModelPoint model = all_.model(theta_, record);
-    RecordValues values{.sensors = model.sensors, .damping = damping_line(model).first};
-    values.damping_deviation = values.damping * unknowns().damping_deviation(own);
-    values.sensor_deviation = unknowns().sensor_deviation(model, own);
-    fit_.values.push_back(values);
   }
 
   const ModelPoint& initial_;
