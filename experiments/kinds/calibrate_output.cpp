@@ -35,7 +35,7 @@ std::string verdict_text(const ModeVerdict& mode) {
   if (mode.tie == LawTie::kLeaves) {
     text += fmt::format(", leaves the law by {:+.3g} %", 100.0 * mode.departure);
   } else if (mode.source == ModeSource::kIdentified && mode.deviation < 0.5 * mode.data_deviation) {
-    text += fmt::format(", drawn to the law (data alone {:.2g})", mode.data_deviation);
+    text += ", drawn to the law";
   }
   if (mode.reason != WeakReason::kNone) text += fmt::format(" ({})", name_of(mode.reason));
   return text;
@@ -201,7 +201,8 @@ report::Table mode_table(const CalibrationOutcome& outcome, const std::string& c
                   {.key = "f_initial_hz", .name = "initial", .unit = "Hz", .format = "{:.3f}"},
                   {.key = "f_hz", .name = "refined", .unit = "Hz", .format = "{:.3f}"},
                   {.key = "relative_error", .name = "relative error", .format = "{:.2e}"},
-                  {.key = "relative_sd", .name = "relative sd", .format = "{:.2e}"},
+                  {.key = "relative_sd", .name = "relative sd", .format = "{:.1e}"},
+                  {.key = "data_sd", .name = "by its data alone", .format = "{:.1e}"},
                   {.key = "verdict"},
                   {.key = "excited"},
                   {.key = "shape_at_contact",
@@ -210,10 +211,11 @@ report::Table mode_table(const CalibrationOutcome& outcome, const std::string& c
       .command = command};
   for (const CalibratedMode& mode : outcome.result.modes) {
     const double refined = refined_frequency(outcome, mode.number);
-    report::Cell truth, error, deviation, verdict;
+    report::Cell truth, error, deviation, data_deviation, verdict;
     if (outcome.result.continuation) {
       const ModeVerdict& found = outcome.result.continuation->modes[mode.number - 1];
       deviation = found.deviation;
+      data_deviation = found.data_deviation;
       verdict = verdict_text(found);
     }
     if (!outcome.true_frequencies.empty()) {
@@ -221,7 +223,7 @@ report::Table mode_table(const CalibrationOutcome& outcome, const std::string& c
       error = refined / outcome.true_frequencies[mode.number - 1] - 1.0;
     }
     table.rows.push_back({mode.number, truth, mode.initial_frequency, refined, error, deviation,
-                          verdict, mode.excited, mode.shape});
+                          data_deviation, verdict, mode.excited, mode.shape});
   }
   return table;
 }

@@ -35,7 +35,7 @@ std::string verdict_lines(const ContinuationResult& found) {
   if (found.frequencies_free) text += prior_lines(found.priors, "every frequency");
   for (std::size_t n = 0; found.frequencies_free && n < found.modes.size(); ++n) {
     const ModeVerdict& mode = found.modes[n];
-    if (mode.source == ModeSource::kIdentified && mode.tie != LawTie::kLeaves) continue;
+    if (mode.source == ModeSource::kIdentified && mode.tie == LawTie::kFollows) continue;
     text +=
         fmt::format("mode {}: {}, relative sd {:.2g}\n", n + 1, verdict_text(mode), mode.deviation);
   }

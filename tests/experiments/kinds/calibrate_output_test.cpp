@@ -72,7 +72,7 @@ TEST(CalibrateOutput, TablesHaveDeviationsWhereTheyAreKnown) {
   EXPECT_EQ(std::get<double>(parameters.rows[0][3].value), 2e-3);
   EXPECT_TRUE(std::holds_alternative<std::monostate>(parameters.rows[1][3].value));
   EXPECT_EQ(std::get<double>(modes.rows[0][5].value), 2e-6);
-  EXPECT_EQ(std::get<std::string>(modes.rows[0][6].value), "identified");
+  EXPECT_EQ(std::get<std::string>(modes.rows[0][7].value), "identified");
   EXPECT_EQ(verdict_text({.source = ModeSource::kLaw, .reason = WeakReason::kNode}),
             "from the law (node)");
 }
@@ -83,7 +83,7 @@ TEST(CalibrateOutput, SaysWhichModesLeaveTheLawAndWhichAreDrawnToIt) {
           {.deviation = 6e-4, .data_deviation = 6e-4, .tie = LawTie::kLeaves, .departure = 4e-3}),
       "identified, leaves the law by +0.4 %");
   EXPECT_EQ(verdict_text({.deviation = 1e-5, .data_deviation = 6e-4}),
-            "identified, drawn to the law (data alone 0.0006)");
+            "identified, drawn to the law");
   EXPECT_EQ(
       verdict_text(
           {.source = ModeSource::kLaw, .reason = WeakReason::kDoubt, .tie = LawTie::kDoubtful}),
