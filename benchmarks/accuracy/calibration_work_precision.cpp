@@ -3,7 +3,7 @@
 // law and contact are free. Prints the improvements of the objective, thinned to one a quarter of
 // the time spent, and the Cramér–Rao bound of the same error.
 //
-//     calibration_work_precision > calibration_work_precision.csv
+//     calibration_work_precision [OBJECTIVE] > calibration_work_precision.csv
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
@@ -96,15 +96,11 @@ struct Labeled {
   std::string label;
   std::shared_ptr<const Objective> objective;
   std::int64_t evaluations = kEvaluations;
-  std::vector<std::string> optimizers = {};  ///< empty: all
 };
 
 /// An evaluation of the innovation misfit is 45 simulations of the record, a third of a second
-/// where the others take a millisecond or less: one or two of every family, fewer evaluations.
+/// where the others take a millisecond or less.
 constexpr std::int64_t kFewEvaluations = 60;
-const std::vector<std::string> kFewOptimizers = {"tiny_least_squares", "ceres_levenberg_marquardt",
-                                                 "nlopt_LN_BOBYQA",    "nlopt_LN_SBPLX",
-                                                 "nlopt_LD_LBFGS",     "nlopt_GN_CRS2_LM"};
 
 /// The likelihood beside frequencies measured otherwise, which know the law a hundredth as well:
 /// the bound drawn, of the record alone, holds for the sum too.
@@ -145,8 +141,8 @@ std::vector<Labeled> objectives(const StiffStroke& stroke) {
       all.push_back({"joint_likelihood + frequency_prior", with_frequency_prior(stroke, options)});
     }
   }
-  all.push_back({"innovation_misfit", Choice<Objective>("innovation_misfit").make(),
-                 kFewEvaluations, kFewOptimizers});
+  all.push_back(
+      {"innovation_misfit", Choice<Objective>("innovation_misfit").make(), kFewEvaluations});
   return all;
 }
 
@@ -171,10 +167,6 @@ std::string_view family_of(const OptimizerCase& entry) {
 void print_search(const Labeled& objective, const OptimizerCase& entry,
                   const ObjectiveFunction& function, const ParameterSet& parameters,
                   const StiffStroke& stroke) {
-  const auto& chosen = objective.optimizers;
-  if (!chosen.empty() && std::find(chosen.begin(), chosen.end(), entry.label) == chosen.end()) {
-    return;
-  }
   const Noted noted(function, parameters, stroke.truth);
   if (!entry.optimizer->explain_unsatisfied(noted).empty()) return;
   try {
@@ -211,7 +203,8 @@ double bound(const StiffStroke& stroke) {
   return 0.6745 * quantile(deviations, 0.5);
 }
 
-int print_all() {
+// only: one objective; empty: all.
+int print_all(std::string_view only) {
   // Processor time of a search is not to hold that of threads which wait for work.
   const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
   const StiffStroke stroke = stiff_stroke(kModes, kDuration, kNoise, 1);
@@ -227,10 +220,13 @@ int print_all() {
   fmt::print(
       "objective,optimizer,family,milliseconds,evaluations,frequency_error,contact_error,"
       "stop\n");
-  std::vector<OptimizerCase> optimizers = optimizer_cases();
-  // The default grid has more points than the budget; one of its size has this many a variable.
-  optimizers.push_back({"grid_6", Way::kSystematic, std::make_shared<Grid>(Grid::Options{6})});
   for (const Labeled& objective : objectives(stroke)) {
+    if (!only.empty() && objective.label != only) continue;
+    // The default grid has more points than the budget; one of its size has this many a variable.
+    const std::int64_t points = objective.evaluations < kEvaluations ? 3 : 6;
+    std::vector<OptimizerCase> optimizers = optimizer_cases();
+    optimizers.push_back({fmt::format("grid_{}", points), Way::kSystematic,
+                          std::make_shared<Grid>(Grid::Options{points})});
     const auto function = objective.objective->bind(stroke.data, parameters);
     for (const OptimizerCase& entry : optimizers) {
       print_search(objective, entry, *function, parameters, stroke);
@@ -242,4 +238,4 @@ int print_all() {
 }  // namespace
 }  // namespace modcal
 
-int main() { return modcal::print_all(); }
+int main(int count, char** arguments) { return modcal::print_all(count > 1 ? arguments[1] : ""); }
