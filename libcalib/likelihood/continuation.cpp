@@ -21,7 +21,7 @@ ContinuationResult with_misfit_for_noise(const AttemptInput& input,
   for (double& deviation : records.deviation) deviation *= std::sqrt(misfit);
   ContinuationResult found =
       attempt_continuation({input.initial, records, input.options, input.priors, input.highest,
-                            input.noise_error, input.poll},
+                            input.noise_error, true, input.poll},
                            0.0);
   found.chi2 *= misfit;
   found.law.chi2 *= misfit;
@@ -55,7 +55,7 @@ ContinuationResult calibrate_by_continuation(const ModelPoint& initial, const Ca
   const double noise_error = noise_power_error(noise, initial.basis, data);
   const double highest = likelihood_band(initial, options.highest_frequency, data.sample_rate);
   constexpr double kShifts[] = {0.0, 4e-3, -4e-3, 8e-3, -8e-3};
-  const AttemptInput input{initial, records, options, priors, highest, noise_error, poll};
+  const AttemptInput input{initial, records, options, priors, highest, noise_error, false, poll};
   ContinuationResult best;
   std::size_t evaluations = 0;
   std::vector<FitStage> stages;

@@ -15,6 +15,8 @@ struct AttemptInput {
   const StatedPriors& priors;
   double highest = 0.0;      ///< ω of the highest bin [rad/s]
   double noise_error = 0.0;  ///< relative standard deviation of the noise power
+  /// The noise is what a wrong model leaves: no mode is said to leave a law by it.
+  bool misfit_for_noise = false;
   FitPoll poll = {};
 };
 

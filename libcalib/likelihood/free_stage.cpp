@@ -23,6 +23,7 @@ class FreeStage {
             ContinuationResult& result)
       : priors_(input.priors),
         options_(input.options),
+        misfit_for_noise_(input.misfit_for_noise),
         start_(start),
         stroke_(stroke),
         unknowns_(StringUnknowns::frequencies(start.law.model(start.theta), input.options.unknowns,
@@ -113,6 +114,7 @@ class FreeStage {
   // The prior about the law, as wide as the modes say.
   void follow_law() {
     followers_ = find_followers(sight_, inharmonicity_, options_.law_width);
+    if (misfit_for_noise_) followers_.follow_all();
     result_.law_width = followers_.prior_width;
     widths_ = prior_widths(sight_.seen, followers_.prior_width, followers_.width);
     widen_stated(priors_, followers_.prior_width, widths_);
@@ -150,6 +152,7 @@ class FreeStage {
 
   const StatedPriors& priors_;
   const ContinuationOptions& options_;
+  bool misfit_for_noise_;
   const FreeStart& start_;
   StrokeFit& stroke_;
   StringUnknowns unknowns_;

@@ -32,6 +32,7 @@ struct LawFollowers {
   Eigen::VectorXd rest;  ///< δ_n beyond the law of those that follow it
 
   static LawFollowers all(Eigen::Index modes, double width);
+  void follow_all() { ties.assign(ties.size(), LawTie::kFollows); }
   std::size_t leaving() const;
 };
 
