@@ -28,12 +28,10 @@ struct ReplayTask {
 }  // namespace modcal::event
 #endif
 
+#include "libsim/dynamics/event/planar_lanes-inl.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace modcal::event::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
-
-using Tag = hn::CappedTag<double, kVectorPadding>;
-using Vec = hn::Vec<Tag>;
 
 // Weighted sum of the squares of Σ series[p] θ^p at kNodes points, side by side: a chain of
 // multiply-adds each.
