@@ -28,29 +28,6 @@ Json misfit_json(const PriorMisfit& misfit) {
           {"deviations", number_or_null(misfit.deviations)}};
 }
 
-}  // namespace
-
-std::string verdict_text(const ModeVerdict& mode) {
-  std::string text(name_of(mode.source));
-  if (mode.tie == LawTie::kLeaves) {
-    text += fmt::format(", leaves the law by {:+.3g} %", 100.0 * mode.departure);
-  } else if (mode.source == ModeSource::kIdentified && mode.deviation < 0.5 * mode.data_deviation) {
-    text += ", drawn to the law";
-  }
-  if (mode.reason != WeakReason::kNone) text += fmt::format(" ({})", name_of(mode.reason));
-  return text;
-}
-
-std::string prior_lines(const PriorMisfit& misfit, std::string_view stage) {
-  if (misfit.count == 0) return "";
-  const std::string verdict = misfit.contradicted() ? "THE PRIORS ARE CONTRADICTED BY THE DATA"
-                                                    : "the data do not contradict the priors";
-  return fmt::format("{}: prior chi2 {:.4g} of {}: {}; farthest: {} by {:.3g} deviations\n", stage,
-                     misfit.chi2, misfit.count, verdict, misfit.farthest, misfit.deviations);
-}
-
-namespace {
-
 Json modes_json(const CalibrationOutcome& outcome) {
   Json modes = Json::array();
   for (const CalibratedMode& mode : outcome.result.modes) {

@@ -110,6 +110,25 @@ std::vector<Observation> further_observations(const CalibrateOptions& options,
   return strokes;
 }
 
+// Objectives over their candidates and errors of the frequencies, as asked for.
+void add_search_figures(const std::vector<FigureOptions>& figures,
+                        const CalibrationOutcome& outcome, const std::string& command,
+                        StudyResult& result) {
+  for (const FigureOptions& figure : figures) {
+    report::Figure drawn;
+    if (figure.content == "objectives") {
+      drawn = objective_figure(figure, outcome);
+    } else if (figure.content == "frequency_errors") {
+      drawn = frequency_error_figure(figure, outcome);
+    } else {
+      continue;
+    }
+    if (drawn.panels.empty()) continue;  // only a systematic search has candidates to draw
+    drawn.command = command;
+    result.blocks.emplace_back(std::move(drawn));
+  }
+}
+
 }  // namespace
 
 CalibrationData calibration_data(const Observation& observation) {
@@ -187,19 +206,7 @@ StudyResult calibrate_study(const CalibrateOptions& options, const StudyContext&
         chi2_text(*found), found->fits ? report::Text::Kind::kNote : report::Text::Kind::kFailure});
   }
   add_warnings(observation, sides, result);
-  for (const FigureOptions& figure : inversion.figures) {
-    report::Figure drawn;
-    if (figure.content == "objectives") {
-      drawn = objective_figure(figure, outcome);
-    } else if (figure.content == "frequency_errors") {
-      drawn = frequency_error_figure(figure, outcome);
-    } else {
-      continue;
-    }
-    if (drawn.panels.empty()) continue;  // only a systematic search has candidates to draw
-    drawn.command = context.command;
-    result.blocks.emplace_back(std::move(drawn));
-  }
+  add_search_figures(inversion.figures, outcome, context.command, result);
   add_identification_figures(inversion.figures, observation, sides, context.command, result);
   if (options.audio) {
     result.blocks.emplace_back(calibration_audio(options, observation, outcome.refined));

@@ -10,6 +10,25 @@
 
 namespace modcal {
 
+std::string verdict_text(const ModeVerdict& mode) {
+  std::string text(name_of(mode.source));
+  if (mode.tie == LawTie::kLeaves) {
+    text += fmt::format(", leaves the law by {:+.3g} %", 100.0 * mode.departure);
+  } else if (mode.source == ModeSource::kIdentified && mode.deviation < 0.5 * mode.data_deviation) {
+    text += ", drawn to the law";
+  }
+  if (mode.reason != WeakReason::kNone) text += fmt::format(" ({})", name_of(mode.reason));
+  return text;
+}
+
+std::string prior_lines(const PriorMisfit& misfit, std::string_view stage) {
+  if (misfit.count == 0) return "";
+  const std::string verdict = misfit.contradicted() ? "THE PRIORS ARE CONTRADICTED BY THE DATA"
+                                                    : "the data do not contradict the priors";
+  return fmt::format("{}: prior chi2 {:.4g} of {}: {}; farthest: {} by {:.3g} deviations\n", stage,
+                     misfit.chi2, misfit.count, verdict, misfit.farthest, misfit.deviations);
+}
+
 std::string chi2_text(const ContinuationResult& found) {
   std::string text = fmt::format(
       "reduced chi2 {:.4f} (sd {:.4f}): {}; law alone {:.4f}: {}", found.chi2, found.chi2_deviation,
