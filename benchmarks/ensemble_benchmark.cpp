@@ -12,10 +12,10 @@
 #include <ctime>
 #include <thread>
 
-#include "libsim/dynamics/ensemble.hpp"
-#include "libsim/dynamics/helmholtz_motion.hpp"
-#include "libsim/dynamics/simulators/modal_event.hpp"
-#include "libsim/dynamics/string_regime.hpp"
+#include "libsim/dynamics/scene/ensemble.hpp"
+#include "libsim/dynamics/scene/helmholtz_motion.hpp"
+#include "libsim/dynamics/event/modal_event.hpp"
+#include "libsim/dynamics/scene/string_regime.hpp"
 #include "libsim/signal/statistics.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 

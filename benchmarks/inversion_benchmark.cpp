@@ -10,8 +10,8 @@
 
 #include "libinverse/joint/joint_inversion.hpp"
 #include "libinverse/joint/priors.hpp"
-#include "libinverse/minimal_product.hpp"
-#include "libinverse/one_sided_inversion.hpp"
+#include "libinverse/spectral/choices/minimal_product.hpp"
+#include "libinverse/spectral/one_sided/one_sided_inversion.hpp"
 #include "libsim/base/random.hpp"
 #include "libsim/model/constant_damping.hpp"
 

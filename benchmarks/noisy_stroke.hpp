@@ -5,9 +5,9 @@
 #include <string_view>
 #include <vector>
 
-#include "libcalib/likelihood/continuation.hpp"
+#include "libcalib/optimizers/staged/continuation.hpp"
 #include "libsim/base/random.hpp"
-#include "libsim/dynamics/simulators/modal_event.hpp"
+#include "libsim/dynamics/event/modal_event.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {

@@ -8,9 +8,9 @@
 #include <ctime>
 
 #include "benchmarks/vector_throughput.hpp"
-#include "libsim/dynamics/simulators/modal_event.hpp"
-#include "libsim/dynamics/simulators/modal_exact.hpp"
-#include "libsim/dynamics/simulators/newmark_explicit.hpp"
+#include "libsim/dynamics/event/modal_event.hpp"
+#include "libsim/dynamics/fixed_step/modal_exact.hpp"
+#include "libsim/dynamics/fixed_step/newmark_explicit.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
 namespace modcal {

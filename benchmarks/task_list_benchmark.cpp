@@ -12,8 +12,8 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "experiments/store/results_database.hpp"
-#include "experiments/task_experiment.hpp"
+#include "experiments/runs/results_database.hpp"
+#include "experiments/runs/task_experiment.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {

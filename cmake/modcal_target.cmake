@@ -24,10 +24,16 @@ if(MODCAL_TIDY)
   set(CMAKE_CXX_CLANG_TIDY clang-tidy)
 endif()
 
-# modcal_library(model SOURCES a.cpp b.cpp LINK fmt::fmt) makes the static library modcal_model with
-# the alias modcal::model.
+# modcal_library(model FOLDERS base model LINK fmt::fmt) makes the static library modcal_model with the
+# alias modcal::model of every source file in and below these folders, save those EXCEPT names.
 function(modcal_library name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LINK;PRIVATE_LINK" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "FOLDERS;EXCEPT;SOURCES;LINK;PRIVATE_LINK" ${ARGN})
+  foreach(folder IN LISTS ARG_FOLDERS)
+    file(GLOB_RECURSE found CONFIGURE_DEPENDS ${folder}/*.cpp)
+    list(APPEND ARG_SOURCES ${found})
+  endforeach()
+  list(TRANSFORM ARG_EXCEPT PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
+  list(REMOVE_ITEM ARG_SOURCES ${ARG_EXCEPT})
   add_library(modcal_${name} STATIC ${ARG_SOURCES})
   add_library(modcal::${name} ALIAS modcal_${name})
   target_link_libraries(modcal_${name} PUBLIC modcal_flags ${ARG_LINK} PRIVATE ${ARG_PRIVATE_LINK})

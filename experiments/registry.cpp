@@ -1,15 +1,15 @@
 #include <array>
 
 #include "experiments/experiment.hpp"
-#include "experiments/kinds/benchmark_experiment.hpp"
-#include "experiments/kinds/calibrate_experiment.hpp"
-#include "experiments/kinds/calibration_limit_experiment.hpp"
-#include "experiments/kinds/identify_experiment.hpp"
-#include "experiments/kinds/invert_experiment.hpp"
-#include "experiments/kinds/pluck_then_bow_experiment.hpp"
-#include "experiments/kinds/schelleng_experiment.hpp"
-#include "experiments/kinds/simulate_experiment.hpp"
-#include "experiments/kinds/sweep_experiment.hpp"
+#include "experiments/kinds/benchmark/benchmark_experiment.hpp"
+#include "experiments/kinds/calibrate/calibrate_experiment.hpp"
+#include "experiments/kinds/limit/calibration_limit_experiment.hpp"
+#include "experiments/kinds/identify/identify_experiment.hpp"
+#include "experiments/kinds/invert/invert_experiment.hpp"
+#include "experiments/kinds/section7/pluck_then_bow_experiment.hpp"
+#include "experiments/kinds/schelleng/schelleng_experiment.hpp"
+#include "experiments/kinds/simulate/simulate_experiment.hpp"
+#include "experiments/kinds/sweep/sweep_experiment.hpp"
 
 namespace modcal {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "libcalib/covariance.hpp"
-#include "libcalib/stiff_string_fit.hpp"
+#include "libcalib/problem/covariance.hpp"
+#include "libcalib/parameters/stiff_string_fit.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {

@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "libcalib/budget.hpp"
-#include "libcalib/calibration_data.hpp"
-#include "libcalib/likelihood/records_fit.hpp"
+#include "libcalib/problem/budget.hpp"
+#include "libcalib/problem/calibration_data.hpp"
+#include "libcalib/optimizers/staged/records_fit.hpp"
 #include "libcalib/objective.hpp"
-#include "libcalib/optimization_result.hpp"
+#include "libcalib/problem/optimization_result.hpp"
 #include "libcalib/optimizer.hpp"
-#include "libcalib/parameters.hpp"
+#include "libcalib/parameters/parameters.hpp"
 
 namespace modcal {
 

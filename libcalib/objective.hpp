@@ -6,9 +6,9 @@
 #include <string>
 #include <string_view>
 
-#include "libcalib/calibration_data.hpp"
-#include "libcalib/objective_function.hpp"
-#include "libcalib/parameters.hpp"
+#include "libcalib/problem/calibration_data.hpp"
+#include "libcalib/problem/objective_function.hpp"
+#include "libcalib/parameters/parameters.hpp"
 #include "libsim/base/registry.hpp"
 
 namespace modcal {

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "libcalib/evaluator.hpp"
+#include "libcalib/problem/evaluator.hpp"
 #include "libsim/base/registry.hpp"
 
 namespace modcal {

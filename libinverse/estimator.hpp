@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "libinverse/joint/sensor_noise.hpp"
-#include "libinverse/one_sided_inversion.hpp"
+#include "libinverse/spectral/one_sided/one_sided_inversion.hpp"
 #include "libsim/base/registry.hpp"
 
 namespace modcal {

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "libinverse/estimator.hpp"
-#include "libinverse/one_sided_inversion.hpp"
+#include "libinverse/spectral/one_sided/one_sided_inversion.hpp"
 
 namespace modcal {
 

@@ -12,7 +12,7 @@
 #include <ctime>
 
 #include "benchmarks/accuracy/stiff_stroke.hpp"
-#include "libcalib/likelihood/expected_limit.hpp"
+#include "libcalib/identifiability/expected_limit.hpp"
 #include "libcalib/objective.hpp"
 #include "libcalib/objectives/force_mismatch.hpp"
 #include "libcalib/objectives/frequency_prior.hpp"

@@ -8,10 +8,10 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "libcalib/likelihood/continuation.hpp"
+#include "libcalib/optimizers/staged/continuation.hpp"
 #include "libsim/base/random.hpp"
 #include "libsim/base/task_loop.hpp"
-#include "libsim/dynamics/simulators/modal_event.hpp"
+#include "libsim/dynamics/event/modal_event.hpp"
 #include "libsim/model/transfer.hpp"
 #include "libsim/signal/fft.hpp"
 #include "libsim/signal/statistics.hpp"

@@ -13,7 +13,7 @@
 #include <cstdlib>
 #include <vector>
 
-#include "libsim/dynamics/simulators/modal_event.hpp"
+#include "libsim/dynamics/event/modal_event.hpp"
 
 namespace modcal {
 namespace {

@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "libcalib/calibration_data.hpp"
-#include "libcalib/parameters.hpp"
+#include "libcalib/problem/calibration_data.hpp"
+#include "libcalib/parameters/parameters.hpp"
 #include "libsim/base/random.hpp"
-#include "libsim/dynamics/simulators/modal_event.hpp"
+#include "libsim/dynamics/event/modal_event.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {

@@ -11,8 +11,8 @@
 #include "benchmarks/noisy_stroke.hpp"
 #include "libcalib/likelihood/all_records.hpp"
 #include "libcalib/likelihood/pluck_likelihood.hpp"
-#include "libcalib/likelihood/records_fit.hpp"
-#include "libsim/dynamics/initial/pluck.hpp"
+#include "libcalib/optimizers/staged/records_fit.hpp"
+#include "libsim/dynamics/scene/pluck.hpp"
 
 namespace modcal {
 namespace {

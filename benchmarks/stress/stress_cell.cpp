@@ -6,13 +6,13 @@
 #include <cmath>
 
 #include "libsim/base/error.hpp"
-#include "libsim/dynamics/energy_audit.hpp"
-#include "libsim/dynamics/first_order_hold.hpp"
-#include "libsim/dynamics/simulators/line_step.hpp"
-#include "libsim/dynamics/simulators/modal_event.hpp"
-#include "libsim/dynamics/simulators/modal_exact.hpp"
-#include "libsim/dynamics/simulators/newmark_explicit.hpp"
-#include "libsim/dynamics/simulators/scene_setup.hpp"
+#include "libsim/dynamics/energy/energy_audit.hpp"
+#include "libsim/dynamics/fixed_step/first_order_hold.hpp"
+#include "libsim/dynamics/fixed_step/line_step.hpp"
+#include "libsim/dynamics/event/modal_event.hpp"
+#include "libsim/dynamics/fixed_step/modal_exact.hpp"
+#include "libsim/dynamics/fixed_step/newmark_explicit.hpp"
+#include "libsim/dynamics/fixed_step/scene_setup.hpp"
 
 namespace modcal {
 namespace {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "libsim/dynamics/scene.hpp"
+#include "libsim/dynamics/scene/scene.hpp"
 
 namespace modcal {
 

@@ -4,7 +4,7 @@
 
 #include "experiments/cli/command.hpp"
 #include "experiments/cli/message_colors.hpp"
-#include "experiments/kinds/limit_source.hpp"
+#include "experiments/kinds/calibrate/limit_source.hpp"
 #include "experiments/loader.hpp"
 
 namespace modcal {

@@ -5,7 +5,7 @@
 #include "experiments/cli/command.hpp"
 #include "experiments/cli/message_colors.hpp"
 #include "experiments/cli/stored_run.hpp"
-#include "experiments/store/results_database.hpp"
+#include "experiments/runs/results_database.hpp"
 
 namespace modcal {
 namespace {

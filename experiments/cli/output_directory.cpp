@@ -7,7 +7,7 @@
 #include <fstream>
 #include <system_error>
 
-#include "experiments/records/signal_file.hpp"
+#include "libsim/records/signal_file.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {

@@ -9,8 +9,8 @@
 #include "experiments/cli/interrupt.hpp"
 #include "experiments/cli/message_colors.hpp"
 #include "experiments/loader.hpp"
-#include "experiments/price.hpp"
-#include "experiments/task_experiment.hpp"
+#include "experiments/runs/price.hpp"
+#include "experiments/runs/task_experiment.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {

@@ -8,13 +8,13 @@
 #include "libcalib/optimizer.hpp"
 #include "libinverse/estimator.hpp"
 #include "libinverse/joint/force_prior.hpp"
-#include "libinverse/parameter_choice.hpp"
-#include "libinverse/regularizer.hpp"
+#include "libinverse/spectral/choices/parameter_choice.hpp"
+#include "libinverse/spectral/regularizers/regularizer.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/dynamics/friction/friction_law.hpp"
-#include "libsim/dynamics/gesture.hpp"
-#include "libsim/dynamics/initial/initial_motion.hpp"
-#include "libsim/dynamics/simulator.hpp"
+#include "libsim/dynamics/gestures/gesture.hpp"
+#include "libsim/dynamics/scene/initial_motion.hpp"
+#include "libsim/dynamics/scene/simulator.hpp"
 #include "libsim/model/damping.hpp"
 
 namespace modcal {

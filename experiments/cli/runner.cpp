@@ -13,10 +13,10 @@
 #include "experiments/cli/progress.hpp"
 #include "experiments/cli/provenance.hpp"
 #include "experiments/cli/shell_word.hpp"
-#include "experiments/records/csv_writer.hpp"
-#include "experiments/records/wav_writer.hpp"
+#include "libsim/records/csv_writer.hpp"
+#include "libsim/records/wav_writer.hpp"
 #include "experiments/report/write_report.hpp"
-#include "experiments/task_experiment.hpp"
+#include "experiments/runs/task_experiment.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {

@@ -7,7 +7,7 @@
 
 #include "experiments/cli/exit_code.hpp"
 #include "experiments/loader.hpp"
-#include "experiments/store/shard.hpp"
+#include "experiments/runs/shard.hpp"
 #include "experiments/study/study.hpp"
 
 namespace modcal {

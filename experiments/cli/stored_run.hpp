@@ -8,7 +8,7 @@
 
 #include "experiments/cli/exit_code.hpp"
 #include "experiments/loader.hpp"
-#include "experiments/task_experiment.hpp"
+#include "experiments/runs/task_experiment.hpp"
 
 namespace modcal {
 

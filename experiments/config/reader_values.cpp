@@ -6,7 +6,7 @@
 #include <charconv>
 #include <limits>
 
-#include "experiments/config/nearest_name.hpp"
+#include "libsim/base/nearest_name.hpp"
 #include "experiments/config/reader.hpp"
 #include "experiments/config/reader_words.hpp"
 #include "experiments/config/scalar.hpp"

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "experiments/config/nearest_name.hpp"
+#include "libsim/base/nearest_name.hpp"
 #include "experiments/config/reader.hpp"
 
 namespace modcal {

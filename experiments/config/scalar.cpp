@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "experiments/config/units.hpp"
+#include "libsim/base/units.hpp"
 
 namespace modcal {
 namespace {

@@ -4,10 +4,10 @@
 #include <cctype>
 #include <cmath>
 
-#include "experiments/config/units.hpp"
-#include "experiments/records/csv_reader.hpp"
-#include "experiments/records/recorded_signals.hpp"
-#include "experiments/records/wav_reader.hpp"
+#include "libsim/base/units.hpp"
+#include "libsim/records/csv_reader.hpp"
+#include "libsim/records/recorded_signals.hpp"
+#include "libsim/records/wav_reader.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "experiments/records/levels.hpp"
-#include "experiments/records/record_options.hpp"
+#include "libsim/records/levels.hpp"
+#include "libsim/records/record_options.hpp"
 
 namespace modcal {
 

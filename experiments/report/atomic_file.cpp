@@ -4,7 +4,7 @@
 #include <cstring>
 #include <fstream>
 
-#include "experiments/records/signal_file.hpp"
+#include "libsim/records/signal_file.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal::report {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "experiments/study/identification.hpp"
-#include "libinverse/model_based/model_based_estimator.hpp"
+#include "libinverse/observer/model_based_estimator.hpp"
 
 namespace modcal {
 

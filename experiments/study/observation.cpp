@@ -1,6 +1,6 @@
 #include "experiments/study/observation.hpp"
 
-#include "experiments/records/recorded_signals.hpp"
+#include "libsim/records/recorded_signals.hpp"
 #include "experiments/study/scoring.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/signal/statistics.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/records/record_options.hpp"
+#include "libsim/records/record_options.hpp"
 #include "experiments/study/truth.hpp"
 #include "libsim/base/random.hpp"
 #include "libsim/model/transfer.hpp"

@@ -7,7 +7,7 @@
 #include <mutex>
 #include <string>
 
-#include "libsim/dynamics/simulator.hpp"
+#include "libsim/dynamics/scene/simulator.hpp"
 #include "libsim/model/modal_basis.hpp"
 
 namespace modcal {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "libcalib/likelihood/decay_kernel.hpp"
-#include "libcalib/parameters.hpp"
+#include "libcalib/parameters/parameters.hpp"
 
 namespace modcal {
 

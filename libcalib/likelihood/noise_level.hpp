@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <span>
 
-#include "libcalib/calibration_data.hpp"
+#include "libcalib/problem/calibration_data.hpp"
 #include "libsim/model/modal_basis.hpp"
 
 namespace modcal {

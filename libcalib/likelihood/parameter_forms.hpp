@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "libcalib/likelihood/all_records.hpp"
-#include "libcalib/likelihood/named_covariance.hpp"
+#include "libcalib/parameters/named_covariance.hpp"
 
 namespace modcal {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "libcalib/likelihood/likelihood_outputs.hpp"
-#include "libcalib/parameters.hpp"
+#include "libcalib/parameters/parameters.hpp"
 
 namespace modcal {
 

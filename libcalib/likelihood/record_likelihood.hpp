@@ -2,7 +2,7 @@
 #pragma once
 
 #include "libcalib/likelihood/likelihood_outputs.hpp"
-#include "libcalib/parameters.hpp"
+#include "libcalib/parameters/parameters.hpp"
 
 namespace modcal {
 

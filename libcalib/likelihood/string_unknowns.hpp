@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "libcalib/likelihood/prior_equations.hpp"
+#include "libcalib/parameters/prior_equations.hpp"
 #include "libcalib/likelihood/projected_likelihood.hpp"
-#include "libcalib/likelihood/stated_priors.hpp"
+#include "libcalib/parameters/stated_priors.hpp"
 #include "libsim/base/options.hpp"
 
 namespace modcal {

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "libcalib/calibration_data.hpp"
+#include "libcalib/problem/calibration_data.hpp"
 #include "libsim/base/aligned_vector.hpp"
 #include "libsim/model/modal_basis.hpp"
 

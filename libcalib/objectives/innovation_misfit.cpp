@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libinverse/model_based/innovation_fit.hpp"
-#include "libinverse/model_based/model_based_estimator.hpp"
-#include "libinverse/model_based/observer_runs.hpp"
+#include "libinverse/observer/innovation_fit.hpp"
+#include "libinverse/observer/model_based_estimator.hpp"
+#include "libinverse/observer/observer_runs.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/signal/fft.hpp"
 #include "libsim/signal/statistics.hpp"

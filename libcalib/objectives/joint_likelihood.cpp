@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-#include "libcalib/likelihood/continuation.hpp"
+#include "libcalib/optimizers/staged/continuation.hpp"
 #include "libcalib/likelihood/noise_level.hpp"
 #include "libcalib/likelihood/projected_likelihood.hpp"
 #include "libcalib/likelihood/record_options.hpp"

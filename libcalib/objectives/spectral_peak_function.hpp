@@ -5,10 +5,10 @@
 #include <memory>
 #include <vector>
 
-#include "libcalib/calibration_data.hpp"
-#include "libcalib/objective_function.hpp"
+#include "libcalib/problem/calibration_data.hpp"
+#include "libcalib/problem/objective_function.hpp"
 #include "libcalib/objectives/two_sided_terms.hpp"
-#include "libcalib/parameters.hpp"
+#include "libcalib/parameters/parameters.hpp"
 
 namespace modcal {
 

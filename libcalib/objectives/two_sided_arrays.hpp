@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "libcalib/calibration_data.hpp"
+#include "libcalib/problem/calibration_data.hpp"
 #include "libcalib/objectives/spectral_peak_kernel.hpp"
 
 namespace modcal {

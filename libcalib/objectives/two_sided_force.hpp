@@ -7,10 +7,10 @@
 #include <span>
 #include <vector>
 
-#include "libcalib/calibration_data.hpp"
+#include "libcalib/problem/calibration_data.hpp"
 #include "libcalib/objectives/two_sided_terms.hpp"
-#include "libcalib/parameters.hpp"
-#include "libinverse/regularizer.hpp"
+#include "libcalib/parameters/parameters.hpp"
+#include "libinverse/spectral/regularizers/regularizer.hpp"
 
 namespace modcal {
 

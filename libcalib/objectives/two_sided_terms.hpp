@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "libcalib/parameters.hpp"
+#include "libcalib/parameters/parameters.hpp"
 #include "libsim/signal/fft.hpp"
 
 namespace modcal {

@@ -4,7 +4,7 @@
 #include <ceres/types.h>
 #include <glog/logging.h>
 
-#include "libcalib/stop_reason.hpp"
+#include "libcalib/problem/stop_reason.hpp"
 
 namespace modcal {
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "libcalib/evaluator.hpp"
+#include "libcalib/problem/evaluator.hpp"
 
 namespace modcal {
 

@@ -12,7 +12,7 @@
 #include "libinverse/joint/sensor_noise.hpp"
 #include "libinverse/joint/string_transfer.hpp"
 #include "libinverse/joint/transient_fit.hpp"
-#include "libinverse/one_sided_inversion.hpp"
+#include "libinverse/spectral/one_sided/one_sided_inversion.hpp"
 #include "libsim/signal/in_place_fft.hpp"
 
 namespace modcal {

@@ -10,8 +10,8 @@
 #include <variant>
 
 #include "libsim/base/error.hpp"
-#include "libsim/dynamics/contact_modes.hpp"
-#include "libsim/dynamics/simulators/scene_setup.hpp"
+#include "libsim/dynamics/scene/contact_modes.hpp"
+#include "libsim/dynamics/fixed_step/scene_setup.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "libsim/dynamics/simulator.hpp"
+#include "libsim/dynamics/scene/simulator.hpp"
 
 namespace modcal {
 

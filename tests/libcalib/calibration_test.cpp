@@ -8,7 +8,7 @@
 #include "libcalib/objectives/joint_likelihood.hpp"
 #include "libcalib/optimizers/grid.hpp"
 #include "libcalib/optimizers/mode_by_mode.hpp"
-#include "libcalib/stiff_string_fit.hpp"
+#include "libcalib/parameters/stiff_string_fit.hpp"
 #include "libsim/base/error.hpp"
 #include "tests/libcalib/calibration_case.hpp"
 

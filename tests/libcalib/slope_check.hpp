@@ -6,8 +6,8 @@
 #include <cmath>
 #include <vector>
 
-#include "libcalib/objective_function.hpp"
-#include "libcalib/variable.hpp"
+#include "libcalib/problem/objective_function.hpp"
+#include "libcalib/problem/variable.hpp"
 
 namespace modcal {
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "libcalib/objective_function.hpp"
+#include "libcalib/problem/objective_function.hpp"
 
 namespace modcal {
 

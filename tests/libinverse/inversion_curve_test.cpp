@@ -5,9 +5,9 @@
 #include <string>
 #include <tuple>
 
-#include "libinverse/fixed_parameter.hpp"
-#include "libinverse/minimal_product.hpp"
-#include "libinverse/one_sided_inversion.hpp"
+#include "libinverse/spectral/choices/fixed_parameter.hpp"
+#include "libinverse/spectral/choices/minimal_product.hpp"
+#include "libinverse/spectral/one_sided/one_sided_inversion.hpp"
 #include "tests/libinverse/safe_problem.hpp"
 
 namespace modcal {

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "libinverse/fixed_parameter.hpp"
-#include "libinverse/no_regularization.hpp"
-#include "libinverse/one_sided_inversion.hpp"
-#include "libinverse/tikhonov.hpp"
+#include "libinverse/spectral/choices/fixed_parameter.hpp"
+#include "libinverse/spectral/regularizers/no_regularization.hpp"
+#include "libinverse/spectral/one_sided/one_sided_inversion.hpp"
+#include "libinverse/spectral/regularizers/tikhonov.hpp"
 #include "libsim/base/error.hpp"
 #include "tests/libinverse/joint/joint_case.hpp"
 

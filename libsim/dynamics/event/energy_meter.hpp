@@ -7,7 +7,7 @@
 
 #include "libsim/dynamics/event/event_energy.hpp"
 #include "libsim/dynamics/event/event_loop.hpp"
-#include "libsim/dynamics/event/mode_replay.hpp"
+#include "libsim/dynamics/event/modes/mode_replay.hpp"
 
 namespace modcal::event {
 

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <utility>
 
-#include "libsim/dynamics/event/bow_clock.hpp"
+#include "libsim/dynamics/event/modes/bow_clock.hpp"
 #include "libsim/dynamics/event/event_start.hpp"
 #include "libsim/dynamics/event/sample_writer.hpp"
 #include "libsim/dynamics/event/shown_pieces.hpp"
-#include "libsim/dynamics/event/sliding.hpp"
+#include "libsim/dynamics/event/sliding/sliding.hpp"
 #include "libsim/dynamics/event/sticking.hpp"
 
 namespace modcal::event {

@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "libsim/base/stop_token.hpp"
-#include "libsim/dynamics/event/bow_path.hpp"
-#include "libsim/dynamics/event/closed_loop.hpp"
+#include "libsim/dynamics/event/modes/bow_path.hpp"
+#include "libsim/dynamics/event/modes/closed_loop.hpp"
 #include "libsim/dynamics/event/force_witness.hpp"
 #include "libsim/dynamics/friction/stateful_laws.hpp"
-#include "libsim/dynamics/step_loop.hpp"
-#include "libsim/dynamics/switch.hpp"
+#include "libsim/dynamics/fixed_step/step_loop.hpp"
+#include "libsim/dynamics/scene/switch.hpp"
 
 namespace modcal::event {
 

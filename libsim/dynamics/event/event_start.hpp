@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "libsim/dynamics/event/bow_path.hpp"
+#include "libsim/dynamics/event/modes/bow_path.hpp"
 #include "libsim/dynamics/event/event_loop.hpp"
 #include "libsim/dynamics/event/sticking.hpp"
 

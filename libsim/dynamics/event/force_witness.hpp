@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "libsim/dynamics/event/bow_path.hpp"
+#include "libsim/dynamics/event/modes/bow_path.hpp"
 
 namespace modcal::event {
 

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "libsim/dynamics/event/motion.hpp"
+#include "libsim/dynamics/event/modes/motion.hpp"
 #include "libsim/dynamics/event/sticking.hpp"
-#include "libsim/dynamics/step_loop.hpp"
+#include "libsim/dynamics/fixed_step/step_loop.hpp"
 
 namespace modcal::event {
 

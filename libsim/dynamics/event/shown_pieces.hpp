@@ -5,7 +5,7 @@
 #include <span>
 
 #include "libsim/dynamics/event/force_witness.hpp"
-#include "libsim/dynamics/event/sliding.hpp"
+#include "libsim/dynamics/event/sliding/sliding.hpp"
 #include "libsim/dynamics/event/sticking.hpp"
 
 namespace modcal::event {

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "libsim/dynamics/event/first_crossing.hpp"
+#include "libsim/dynamics/event/modes/first_crossing.hpp"
 
 namespace modcal::event {
 namespace {

@@ -8,11 +8,11 @@
 #include <optional>
 #include <vector>
 
-#include "libsim/dynamics/event/bow_path.hpp"
-#include "libsim/dynamics/event/closed_loop.hpp"
-#include "libsim/dynamics/event/modal_kernels.hpp"
-#include "libsim/dynamics/event/motion.hpp"
-#include "libsim/dynamics/event/static_limit.hpp"
+#include "libsim/dynamics/event/modes/bow_path.hpp"
+#include "libsim/dynamics/event/modes/closed_loop.hpp"
+#include "libsim/dynamics/event/modes/modal_kernels.hpp"
+#include "libsim/dynamics/event/modes/motion.hpp"
+#include "libsim/dynamics/event/sliding/static_limit.hpp"
 
 namespace modcal::event {
 

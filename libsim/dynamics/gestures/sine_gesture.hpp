@@ -1,6 +1,6 @@
 #pragma once
 
-#include "libsim/dynamics/gesture.hpp"
+#include "libsim/dynamics/gestures/gesture.hpp"
 
 namespace modcal {
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "libsim/dynamics/gesture.hpp"
+#include "libsim/dynamics/gestures/gesture.hpp"
 
 namespace modcal {
 

@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-#include "experiments/config/units.hpp"
+#include "libsim/base/units.hpp"
 
 namespace modcal {
 namespace {

@@ -6,11 +6,11 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "experiments/kinds/calibrate_sensors.hpp"
-#include "experiments/kinds/calibrate_study.hpp"
+#include "experiments/kinds/calibrate/calibrate_sensors.hpp"
+#include "experiments/kinds/calibrate/calibrate_study.hpp"
 #include "experiments/loader.hpp"
-#include "experiments/records/csv_writer.hpp"
-#include "libsim/dynamics/initial/pluck.hpp"
+#include "libsim/records/csv_writer.hpp"
+#include "libsim/dynamics/scene/pluck.hpp"
 #include "libsim/signal/statistics.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 

@@ -6,12 +6,12 @@
 #include <filesystem>
 #include <fstream>
 
-#include "experiments/kinds/invert_study.hpp"
-#include "experiments/kinds/simulate_study.hpp"
+#include "experiments/kinds/invert/invert_study.hpp"
+#include "experiments/kinds/simulate/simulate_study.hpp"
 #include "experiments/loader.hpp"
-#include "experiments/records/csv_writer.hpp"
+#include "libsim/records/csv_writer.hpp"
 #include "experiments/records/inspection.hpp"
-#include "experiments/records/wav_writer.hpp"
+#include "libsim/records/wav_writer.hpp"
 
 namespace modcal {
 namespace {

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/kinds/schelleng_experiment.hpp"
-#include "experiments/kinds/schelleng_study.hpp"
-#include "libsim/dynamics/ensemble.hpp"
-#include "libsim/dynamics/simulators/modal_event.hpp"
+#include "experiments/kinds/schelleng/schelleng_experiment.hpp"
+#include "experiments/kinds/schelleng/schelleng_study.hpp"
+#include "libsim/dynamics/scene/ensemble.hpp"
+#include "libsim/dynamics/event/modal_event.hpp"
 #include "libsim/signal/statistics.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 

@@ -6,7 +6,7 @@
 #include <exception>
 #include <numbers>
 
-#include "experiments/kinds/benchmark_report.hpp"
+#include "experiments/kinds/benchmark/benchmark_report.hpp"
 #include "experiments/report/write_report.hpp"
 #include "libsim/base/random.hpp"
 

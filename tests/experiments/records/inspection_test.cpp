@@ -8,11 +8,11 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "experiments/records/csv_writer.hpp"
-#include "experiments/records/recorded_signals.hpp"
-#include "experiments/records/wav_writer.hpp"
+#include "libsim/records/csv_writer.hpp"
+#include "libsim/records/recorded_signals.hpp"
+#include "libsim/records/wav_writer.hpp"
 #include "libsim/base/random.hpp"
-#include "tests/experiments/records/record_folder.hpp"
+#include "tests/libsim/records/record_folder.hpp"
 
 namespace modcal {
 namespace {

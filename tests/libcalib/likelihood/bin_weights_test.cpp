@@ -5,7 +5,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "libcalib/likelihood/continuation.hpp"
+#include "libcalib/optimizers/staged/continuation.hpp"
 #include "libcalib/likelihood/string_unknowns.hpp"
 #include "libsim/base/error.hpp"
 #include "tests/libcalib/likelihood/bowed_case.hpp"

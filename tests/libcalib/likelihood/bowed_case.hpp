@@ -5,7 +5,7 @@
 
 #include "libcalib/likelihood/projected_likelihood.hpp"
 #include "libsim/base/random.hpp"
-#include "libsim/dynamics/simulators/modal_event.hpp"
+#include "libsim/dynamics/event/modal_event.hpp"
 #include "libsim/signal/statistics.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "libcalib/likelihood/newton_fit.hpp"
+#include "libcalib/optimizers/staged/newton_fit.hpp"
 #include "libcalib/likelihood/string_unknowns.hpp"
 #include "libsim/base/task_loop.hpp"
 #include "tests/libcalib/likelihood/bowed_case.hpp"

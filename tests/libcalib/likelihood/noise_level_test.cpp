@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "libcalib/likelihood/continuation.hpp"
+#include "libcalib/optimizers/staged/continuation.hpp"
 #include "tests/libcalib/likelihood/bowed_case.hpp"
 #include "tests/refusal.hpp"
 

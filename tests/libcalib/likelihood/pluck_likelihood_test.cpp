@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "libcalib/likelihood/newton_fit.hpp"
+#include "libcalib/optimizers/staged/newton_fit.hpp"
 #include "libsim/base/error.hpp"
 #include "tests/libcalib/likelihood/pluck_record_case.hpp"
 

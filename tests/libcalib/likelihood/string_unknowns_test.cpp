@@ -7,8 +7,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "libcalib/likelihood/continuation.hpp"
-#include "libcalib/likelihood/newton_fit.hpp"
+#include "libcalib/optimizers/staged/continuation.hpp"
+#include "libcalib/optimizers/staged/newton_fit.hpp"
 #include "libsim/base/error.hpp"
 #include "tests/libcalib/likelihood/bowed_case.hpp"
 

@@ -4,9 +4,9 @@
 
 #include "libcalib/optimizers/grid.hpp"
 #include "libcalib/optimizers/nlopt_optimizer.hpp"
-#include "libinverse/fixed_parameter.hpp"
-#include "libinverse/one_sided_inversion.hpp"
-#include "libinverse/tikhonov.hpp"
+#include "libinverse/spectral/choices/fixed_parameter.hpp"
+#include "libinverse/spectral/one_sided/one_sided_inversion.hpp"
+#include "libinverse/spectral/regularizers/tikhonov.hpp"
 #include "libsim/base/error.hpp"
 #include "tests/libcalib/calibration_case.hpp"
 #include "tests/libcalib/slope_check.hpp"

@@ -6,12 +6,12 @@
 #include <numbers>
 #include <numeric>
 
-#include "libcalib/covariance.hpp"
+#include "libcalib/problem/covariance.hpp"
 #include "libcalib/objectives/joint_likelihood.hpp"
 #include "libcalib/optimizers/tiny_least_squares.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/signal/time_shift.hpp"
-#include "tests/libinverse/model_based/bowed_record.hpp"
+#include "tests/libinverse/observer/bowed_record.hpp"
 
 namespace modcal {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "libcalib/covariance.hpp"
+#include "libcalib/problem/covariance.hpp"
 #include "libcalib/objectives/frequency_prior.hpp"
 #include "libcalib/objectives/weighted_sum.hpp"
 #include "libcalib/optimizers/ceres_optimizer.hpp"

@@ -6,7 +6,7 @@
 
 #include "libinverse/joint/joint_estimator.hpp"
 #include "libsim/base/random.hpp"
-#include "libsim/dynamics/simulators/modal_event.hpp"
+#include "libsim/dynamics/event/modal_event.hpp"
 #include "libsim/signal/statistics.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 

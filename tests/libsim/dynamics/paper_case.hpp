@@ -1,7 +1,7 @@
 // The paper's simulated case (Debut, Delaune and Antunes, 2010, section 2.3).
 #pragma once
 
-#include "libsim/dynamics/scene.hpp"
+#include "libsim/dynamics/scene/scene.hpp"
 
 namespace modcal {
 

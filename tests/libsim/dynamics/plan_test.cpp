@@ -6,12 +6,12 @@
 
 #include <cmath>
 
-#include "libsim/dynamics/contact_rule.hpp"
+#include "libsim/dynamics/fixed_step/contact_rule.hpp"
 #include "libsim/dynamics/friction/coulomb_exponential.hpp"
 #include "libsim/dynamics/friction/thermal.hpp"
-#include "libsim/dynamics/simulators/modal_event.hpp"
-#include "libsim/dynamics/simulators/modal_exact.hpp"
-#include "libsim/dynamics/simulators/newmark_explicit.hpp"
+#include "libsim/dynamics/event/modal_event.hpp"
+#include "libsim/dynamics/fixed_step/modal_exact.hpp"
+#include "libsim/dynamics/fixed_step/newmark_explicit.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
 namespace modcal {

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "libsim/dynamics/simulators/modal_event.hpp"
-#include "libsim/dynamics/simulators/modal_exact.hpp"
+#include "libsim/dynamics/event/modal_event.hpp"
+#include "libsim/dynamics/fixed_step/modal_exact.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
 namespace modcal {

@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "libsim/dynamics/gestures/table_gesture.hpp"
-#include "libsim/dynamics/initial/pluck.hpp"
-#include "libsim/dynamics/simulators/modal_event.hpp"
-#include "libsim/dynamics/simulators/scene_setup.hpp"
+#include "libsim/dynamics/scene/pluck.hpp"
+#include "libsim/dynamics/event/modal_event.hpp"
+#include "libsim/dynamics/fixed_step/scene_setup.hpp"
 #include "libsim/model/constant_damping.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 

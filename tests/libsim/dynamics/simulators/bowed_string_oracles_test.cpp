@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "libsim/dynamics/friction/coulomb_exponential.hpp"
-#include "libsim/dynamics/simulator.hpp"
+#include "libsim/dynamics/scene/simulator.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
 namespace modcal {

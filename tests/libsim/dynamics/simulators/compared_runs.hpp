@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libsim/dynamics/simulators/modal_event.hpp"
-#include "libsim/dynamics/simulators/modal_exact.hpp"
+#include "libsim/dynamics/event/modal_event.hpp"
+#include "libsim/dynamics/fixed_step/modal_exact.hpp"
 
 namespace modcal {
 

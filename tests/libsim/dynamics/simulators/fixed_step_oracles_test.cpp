@@ -6,11 +6,11 @@
 #include <complex>
 #include <vector>
 
-#include "libsim/dynamics/first_order_hold.hpp"
-#include "libsim/dynamics/simulators/modal_exact.hpp"
-#include "libsim/dynamics/simulators/newmark_explicit.hpp"
-#include "libsim/dynamics/simulators/scene_setup.hpp"
-#include "libsim/dynamics/step_loop.hpp"
+#include "libsim/dynamics/fixed_step/first_order_hold.hpp"
+#include "libsim/dynamics/fixed_step/modal_exact.hpp"
+#include "libsim/dynamics/fixed_step/newmark_explicit.hpp"
+#include "libsim/dynamics/fixed_step/scene_setup.hpp"
+#include "libsim/dynamics/fixed_step/step_loop.hpp"
 #include "tests/libsim/dynamics/block_on_belt.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 

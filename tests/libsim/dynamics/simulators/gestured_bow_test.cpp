@@ -6,7 +6,7 @@
 #include "libsim/dynamics/friction/coulomb_exponential.hpp"
 #include "libsim/dynamics/gestures/ramp_gesture.hpp"
 #include "libsim/dynamics/gestures/table_gesture.hpp"
-#include "libsim/dynamics/simulators/modal_exact.hpp"
+#include "libsim/dynamics/fixed_step/modal_exact.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
 namespace modcal {

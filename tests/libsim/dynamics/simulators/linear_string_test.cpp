@@ -5,8 +5,8 @@
 #include <complex>
 
 #include "libsim/dynamics/friction/coulomb_exponential.hpp"
-#include "libsim/dynamics/initial/pluck.hpp"
-#include "libsim/dynamics/simulators/modal_exact.hpp"
+#include "libsim/dynamics/scene/pluck.hpp"
+#include "libsim/dynamics/fixed_step/modal_exact.hpp"
 #include "libsim/model/constant_damping.hpp"
 #include "libsim/model/transfer.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "libsim/dynamics/gestures/table_gesture.hpp"
-#include "libsim/dynamics/simulators/modal_event.hpp"
+#include "libsim/dynamics/event/modal_event.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 #include "tests/libsim/dynamics/simulators/compared_runs.hpp"
 

@@ -8,7 +8,7 @@
 
 #include "libsim/base/random.hpp"
 #include "libsim/dynamics/event/event_loop.hpp"
-#include "libsim/dynamics/event/static_limit.hpp"
+#include "libsim/dynamics/event/sliding/static_limit.hpp"
 #include "libsim/dynamics/friction/coulomb_exponential.hpp"
 #include "libsim/dynamics/friction/thermal.hpp"
 #include "libsim/dynamics/gestures/table_gesture.hpp"

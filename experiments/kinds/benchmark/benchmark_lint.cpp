@@ -1,0 +1,188 @@
+// Whether the methods of a benchmark have equal chances.
+#include "experiments/kinds/benchmark/benchmark_lint.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "experiments/study/fingerprint.hpp"
+#include "libsim/base/error.hpp"
+
+namespace modcal {
+namespace {
+
+// What differs between the tasks of one method, as texts.
+struct MethodFacts {
+  std::set<std::string> problems, replicates, budgets, ranges, starts, noise;
+  CalibrateOptions first;
+};
+
+template <typename Section>
+std::string text_of(Section section) {
+  return fingerprint([&section](OptionVisitor& visitor) { section.visit(visitor); });
+}
+
+std::map<std::string, MethodFacts> facts_of(const std::vector<FairnessTask>& tasks,
+                                            const CellOptions& options_of) {
+  std::map<std::string, MethodFacts> facts;
+  for (const FairnessTask& task : tasks) {
+    const CalibrateOptions options = options_of(task.task);
+    const auto [place, is_new] = facts.try_emplace(task.method);
+    MethodFacts& ours = place->second;
+    if (is_new) ours.first = options;
+    ours.problems.insert(task.condition + " / " + task.replicate);
+    ours.replicates.insert(task.replicate);
+    ours.budgets.insert(text_of(options.calibration.budget));
+    ours.ranges.insert(text_of(options.calibration.parameters.ranges));
+    ours.starts.insert(text_of(options.inversion.model_error));
+    ours.noise.insert(text_of(options.inversion.observation.measurement));
+  }
+  return facts;
+}
+
+class Warnings {
+ public:
+  void add(std::string path, std::string text) {
+    findings.push_back({std::move(path), std::move(text), false});
+  }
+  std::vector<Finding> findings;
+};
+
+// The first method whose facts differ from those of the first one; null: none.
+using Methods = std::map<std::string, MethodFacts>;
+const std::string* odd_one(const Methods& methods, std::set<std::string> MethodFacts::*fact) {
+  for (const auto& [name, facts] : methods) {
+    if (facts.*fact != methods.begin()->second.*fact) return &name;
+  }
+  return nullptr;
+}
+
+void lint_problems(const Methods& methods, Warnings& warnings) {
+  const std::string& first = methods.begin()->first;
+  const auto warn = [&](const char* path, std::set<std::string> MethodFacts::*fact,
+                        const char* differ) {
+    const std::string* odd = odd_one(methods, fact);
+    if (odd != nullptr) {
+      warnings.add(path, fmt::format("{} and {} have different {}", *odd, first, differ));
+    }
+  };
+  warn("model_error", &MethodFacts::starts, "starts: errors of another size are another problem");
+  warn("measurement", &MethodFacts::noise, "noise: more of it is another problem");
+  warn("calibration.budget", &MethodFacts::budgets, "budgets: what costs more wins");
+  warn("calibration.parameters", &MethodFacts::ranges,
+       "bounds: the narrower range is a head start");
+  const std::string* odd = odd_one(methods, &MethodFacts::problems);
+  if (odd == nullptr) return;
+  warnings.add(
+      "sweep",
+      fmt::format("{} meets {} problems, {} meets {}: methods are compared on the problems "
+                  "they share",
+                  *odd, methods.at(*odd).problems.size(), first,
+                  methods.begin()->second.problems.size()));
+}
+
+void lint_draws(const Methods& methods, Warnings& warnings) {
+  constexpr std::size_t kEnough = 10;
+  std::size_t fewest = kEnough;
+  for (const auto& [name, facts] : methods) fewest = std::min(fewest, facts.replicates.size());
+  if (methods.size() < 2 || fewest >= kEnough) return;
+  warnings.add("sweep",
+               fmt::format("{} draws a condition tell methods apart only where they differ "
+                           "grossly: take {} seeds or more",
+                           fewest, kEnough));
+}
+
+// ½ Σ (x_i − 1.1)²: no search has an easier task.
+class Bowl final : public ObjectiveFunction {
+ public:
+  explicit Bowl(std::size_t dimension) : dimension_(dimension) {}
+  std::string_view name() const override { return "bowl"; }
+  std::size_t dimension() const override { return dimension_; }
+  std::size_t residual_count() const override { return dimension_; }
+  Capabilities capabilities() const override { return {.gradient = true, .least_squares = true}; }
+
+ private:
+  void do_evaluate(std::span<const double> x, const ObjectiveOutputs& outputs) const override {
+    if (outputs.value) *outputs.value = 0.0;
+    for (std::size_t i = 0; i < dimension_; ++i) {
+      const double r = x[i] - 1.1;
+      if (outputs.value) *outputs.value += 0.5 * r * r;
+      if (outputs.gradient) outputs.gradient[i] = r;
+      if (outputs.residuals) outputs.residuals[i] = r;
+      for (std::size_t j = 0; outputs.jacobian && j < dimension_; ++j) {
+        outputs.jacobian[i * dimension_ + j] = i == j ? 1.0 : 0.0;
+      }
+    }
+  }
+  std::size_t dimension_;
+};
+
+enum class Ending { kFinished, kCut, kRefused };
+
+Ending ending_of(const Optimizer& optimizer, std::size_t dimension, Budget budget) {
+  const std::vector<Variable> variables(
+      dimension, {.name = "x", .initial = 0.7, .lower = 0.5, .upper = 1.7, .scale = 0.1});
+  budget.target = std::numeric_limits<double>::quiet_NaN();
+  budget.seconds = std::numeric_limits<double>::quiet_NaN();
+  try {
+    const OptimizationResult result = optimizer.minimize(Bowl(dimension), variables, budget);
+    // With half of the way behind it the search did begin, whatever it still has to polish.
+    const bool near = result.value <= 0.25 * result.initial_value;
+    return result.stop == StopReason::kEvaluationBudget && !near ? Ending::kCut : Ending::kFinished;
+  } catch (const InvalidInput&) {
+    return Ending::kRefused;
+  }
+}
+
+// A search that gets to the bottom of a bowl, but nowhere near it within the budget.
+bool is_cut_everywhere(const CalibrateOptions& options) {
+  constexpr std::int64_t kMore = 20;
+  constexpr std::int64_t kMostEvaluations = 20000;  // a glance, not a study
+  if (options.calibration.has_continuation) return false;
+  Budget budget = options.calibration.budget;
+  if (budget.evaluations > kMostEvaluations) return false;
+  try {
+    const auto modes = static_cast<std::size_t>(options.inversion.observation.string_model().modes);
+    const std::size_t dimension = options.calibration.parameters.names(modes).size();
+    const auto optimizer = options.calibration.optimizer.make();
+    if (ending_of(*optimizer, dimension, budget) == Ending::kFinished) return false;
+    budget.evaluations = std::min(kMore * budget.evaluations, kMostEvaluations);
+    return ending_of(*optimizer, dimension, budget) == Ending::kFinished;
+  } catch (const InvalidInput&) {
+    return false;  // another finding says so
+  }
+}
+
+}  // namespace
+
+std::vector<Finding> lint_fairness(const std::vector<FairnessTask>& tasks,
+                                   const CellOptions& options_of) {
+  const Methods methods = facts_of(tasks, options_of);
+  Warnings warnings;
+  if (methods.empty()) return {};
+  lint_problems(methods, warnings);
+  lint_draws(methods, warnings);
+  std::map<std::string, bool> probed;  // what the answer depends on
+  for (const auto& [name, facts] : methods) {
+    CalibrationOptions calibration = facts.first.calibration;
+    const std::string key =
+        fingerprint([&](OptionVisitor& visitor) {
+          visitor.plugin({.key = "optimizer", .meaning = ""}, calibration.optimizer);
+        }) +
+        text_of(calibration.budget) + text_of(calibration.parameters);
+    const auto [place, is_new] = probed.try_emplace(key, false);
+    if (!is_new) continue;
+    if (is_cut_everywhere(facts.first)) {
+      warnings.add(
+          "calibration.budget",
+          fmt::format("{} does not come half the way to the minimum of a parabola within {} "
+                      "evaluations: the budget cuts it everywhere",
+                      name, facts.first.calibration.budget.evaluations));
+    }
+  }
+  return warnings.findings;
+}
+
+}  // namespace modcal

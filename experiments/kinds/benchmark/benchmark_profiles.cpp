@@ -1,0 +1,147 @@
+// Data profile, performance profile and waterfall of a benchmark.
+#include <algorithm>
+#include <map>
+
+#include "experiments/kinds/benchmark/benchmark_drawing.hpp"
+
+namespace modcal {
+namespace {
+
+using report::SeriesStyle;
+
+// Points of a curve: enough for the eye, few enough for a page of 2 MB.
+constexpr std::size_t kMostShown = 100;
+constexpr std::size_t kMostHidden = 24;
+
+std::size_t most_points(const report::Series& series) {
+  return series.hidden ? kMostHidden : kMostShown;
+}
+
+// A value with the task it comes from.
+struct TaskValue {
+  double value = 0.0;
+  std::size_t task = 0;
+  bool operator<(const TaskValue& other) const {
+    return value != other.value ? value < other.value : task < other.task;
+  }
+};
+
+bool belongs(const BenchmarkTask& task, std::size_t method, std::size_t condition) {
+  return task.method == method && (condition == kAllConditions || task.condition == condition);
+}
+
+using ValueOf = std::function<std::optional<double>(const BenchmarkTask&)>;
+
+struct Values {
+  std::vector<TaskValue> known;
+  std::size_t all = 0;  ///< tasks, with and without a value
+};
+
+Values values_of(const BenchmarkGrid& grid, std::size_t method, std::size_t condition,
+                 const ValueOf& value_of) {
+  Values values;
+  for (const BenchmarkTask& task : grid.tasks) {
+    if (!belongs(task, method, condition)) continue;
+    ++values.all;
+    if (const auto value = value_of(task)) values.known.push_back({*value, task.task});
+  }
+  std::sort(values.known.begin(), values.known.end());
+  return values;
+}
+
+// Share of all tasks that each rising value brings, as steps.
+void add_steps(const Values& values, report::Series& series) {
+  double before = 0.0;
+  for (const std::size_t i : spread_indices(values.known.size(), most_points(series))) {
+    const double after = static_cast<double>(i + 1) / static_cast<double>(values.all);
+    series.x.insert(series.x.end(), 2, values.known[i].value);
+    series.y.insert(series.y.end(), {before, after});
+    series.tasks.insert(series.tasks.end(), 2, static_cast<std::int64_t>(values.known[i].task));
+    before = after;
+  }
+}
+
+report::Figure profile(const BenchmarkGrid& grid, report::Figure figure, const report::Axis& x,
+                       const report::Axis& y, const ValueOf& value_of) {
+  std::vector<report::Panel> panels =
+      objective_panels(grid, x, y, [&](std::size_t method, report::Panel& panel) {
+        for (const std::size_t condition : condition_choices(grid)) {
+          report::Series series = method_series(grid, method, condition, SeriesStyle::kLine);
+          add_steps(values_of(grid, method, condition, value_of), series);
+          if (!series.x.empty()) panel.series.push_back(std::move(series));
+        }
+      });
+  return panel_figure(figure.id, figure.title, figure.caption, std::move(panels));
+}
+
+using Problem = std::pair<std::size_t, std::string>;  // condition and replicate
+
+std::map<Problem, double> fewest_evaluations(const BenchmarkGrid& grid) {
+  std::map<Problem, double> fewest;
+  for (const BenchmarkTask& task : grid.tasks) {
+    if (!task.outcome.success) continue;
+    const auto spent = static_cast<double>(task.outcome.evaluations);
+    const auto [known, is_new] = fewest.try_emplace({task.condition, task.replicate}, spent);
+    if (!is_new) known->second = std::min(known->second, spent);
+  }
+  return fewest;
+}
+
+}  // namespace
+
+report::Figure data_profile(const BenchmarkGrid& grid) {
+  return profile(grid,
+                 {.id = "data_profile",
+                  .title = "Tasks solved against evaluations",
+                  .caption = "Data profile. Solved: right by the truth, when the search ended."},
+                 {.label = "evaluations", .logarithmic = true},
+                 {.label = "share of tasks solved", .range = {{0.0, 1.0}}},
+                 [](const BenchmarkTask& task) -> std::optional<double> {
+                   if (!task.outcome.success) return std::nullopt;
+                   return static_cast<double>(task.outcome.evaluations);
+                 });
+}
+
+report::Figure performance_profile(const BenchmarkGrid& grid) {
+  const std::map<Problem, double> fewest = fewest_evaluations(grid);
+  return profile(grid,
+                 {.id = "performance_profile",
+                  .title = "Problems solved against the fastest method",
+                  .caption = "Performance profile: the method with the fewest evaluations among "
+                             "all objectives and optimizers that solve the problem stands at 1."},
+                 {.label = "evaluations / those of the fastest method", .logarithmic = true},
+                 {.label = "share of problems solved", .range = {{0.0, 1.0}}},
+                 [&fewest](const BenchmarkTask& task) -> std::optional<double> {
+                   if (!task.outcome.success) return std::nullopt;
+                   return static_cast<double>(task.outcome.evaluations) /
+                          fewest.at({task.condition, task.replicate});
+                 });
+}
+
+report::Figure waterfall_figure(const BenchmarkGrid& grid) {
+  const auto error_of = [](const BenchmarkTask& task) -> std::optional<double> {
+    if (!(task.outcome.frequency_error > 0.0)) return std::nullopt;
+    return task.outcome.frequency_error;
+  };
+  std::vector<report::Panel> panels = objective_panels(
+      grid, {.label = "share of starts", .range = {{0.0, 1.0}}},
+      {.label = "relative frequency error", .logarithmic = true},
+      [&](std::size_t method, report::Panel& panel) {
+        for (const std::size_t condition : condition_choices(grid)) {
+          const Values values = values_of(grid, method, condition, error_of);
+          report::Series series = method_series(grid, method, condition, SeriesStyle::kLine);
+          for (const std::size_t i : spread_indices(values.known.size(), most_points(series))) {
+            series.x.push_back(static_cast<double>(i + 1) / static_cast<double>(values.all));
+            series.y.push_back(values.known[i].value);
+            series.tasks.push_back(static_cast<std::int64_t>(values.known[i].task));
+          }
+          if (!series.x.empty()) panel.series.push_back(std::move(series));
+        }
+      });
+  return panel_figure("waterfall", "Errors of all starts, in rising order",
+                      "Waterfall: every seed is another wrong start and another noise. A step: so "
+                      "many starts end in one minimum.",
+                      std::move(panels));
+}
+
+}  // namespace modcal

@@ -1,0 +1,136 @@
+#include "experiments/kinds/benchmark/benchmark_study.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "experiments/kinds/calibrate/calibrate_sensors.hpp"
+#include "libsim/base/error.hpp"
+#include "libsim/signal/statistics.hpp"
+
+namespace modcal {
+
+void SuccessOptions::visit(OptionVisitor& visitor) {
+  visitor.number({.key = "frequency_error",
+                  .meaning = "largest median relative frequency error of the excited modes",
+                  .unit = "1",
+                  .range = Range::positive()},
+                 frequency_error);
+  visitor.number({.key = "contact_error",
+                  .meaning = "largest error of the contact point, where it is free",
+                  .unit = "m",
+                  .range = Range::positive()},
+                 contact_error);
+}
+
+namespace {
+
+// Relative frequency errors of the excited modes.
+std::vector<double> errors_of(const CalibrationOutcome& outcome, bool initial) {
+  std::vector<double> errors;
+  for (const CalibratedMode& mode : outcome.result.modes) {
+    if (!mode.excited) continue;
+    const double truth = outcome.true_frequencies[mode.number - 1];
+    errors.push_back(std::abs((initial ? mode.initial_frequency : mode.frequency) / truth - 1.0));
+  }
+  return errors;
+}
+
+double rms(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value * value;
+  return std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+// The objective where the model is right: one evaluation with the truth as initial model.
+double value_at_truth(const CalibrateOptions& options, const Observation& observation) {
+  CalibrateOptions at_truth = options;
+  at_truth.inversion.model_error = {};
+  at_truth.calibration.optimizer = Choice<Optimizer>("nlopt");
+  at_truth.calibration.budget = {.evaluations = 1};
+  return calibrate_observation(at_truth, observation).result.search.initial_value;
+}
+
+// NaN where the bound does not exist: the calibration is scored all the same.
+double bound_of(const CalibrateOptions& options, const CalibrationOutcome& calibrated,
+                FrequencyBounds& bounds, TruthCache& truths) {
+  std::vector<std::size_t> modes;
+  for (const CalibratedMode& mode : calibrated.result.modes) {
+    if (mode.excited) modes.push_back(mode.number);
+  }
+  try {
+    return rms_bound(bounds.of(options, truths), modes);
+  } catch (const InvalidInput&) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
+double mean_correlation(const CalibrateOptions& options, const Observation& observation,
+                        const AssumedModel& refined) {
+  const InversionRecipe recipe(options.inversion.inversion);
+  const auto estimator = prepare_estimator(refined, observation, recipe);
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (const SideIdentification& side :
+       identify(observation, *estimator, recipe, {.force = true}, &options.inversion.score)) {
+    for (const WindowScore& score : side.scores) {
+      sum += score.correlation;
+      ++count;
+    }
+  }
+  return sum / static_cast<double>(count);
+}
+
+// The first, the last and evenly spaced ones between.
+std::vector<std::pair<std::int64_t, double>> thinned(const std::vector<TracePoint>& trace) {
+  constexpr std::size_t kMost = 100;
+  std::vector<std::pair<std::int64_t, double>> points;
+  const std::size_t count = std::min(trace.size(), kMost);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t at = count == 1 ? 0 : i * (trace.size() - 1) / (count - 1);
+    points.emplace_back(trace[at].evaluations, trace[at].value);
+  }
+  return points;
+}
+
+BenchmarkOutcome score(const CalibrateOptions& options, const SuccessOptions& success,
+                       const Observation& observation, const CalibrationOutcome& calibrated) {
+  const OptimizationResult& search = calibrated.result.search;
+  BenchmarkOutcome outcome{.stop = search.stop,
+                           .evaluations = search.evaluations,
+                           .initial_value = search.initial_value,
+                           .value = search.value};
+  outcome.truth_value = value_at_truth(options, observation);
+  const std::vector<double> errors = errors_of(calibrated, false);
+  outcome.initial_error = quantile(errors_of(calibrated, true), 0.5);
+  outcome.frequency_error = quantile(errors, 0.5);
+  outcome.frequency_rms_error = rms(errors);
+  outcome.contact_error = std::abs(calibrated.refined.contact - observation.contact);
+  outcome.correlation =
+      mean_correlation(options, with_sensors_alike(observation, calibrated.result.model.sensors),
+                       calibrated.refined);
+  outcome.success =
+      outcome.frequency_error <= success.frequency_error &&
+      (!options.calibration.parameters.contact || outcome.contact_error <= success.contact_error);
+  outcome.trace = thinned(search.trace);
+  return outcome;
+}
+
+}  // namespace
+
+BenchmarkOutcome run_benchmark_cell(const CalibrateOptions& options, const SuccessOptions& success,
+                                    FrequencyBounds& bounds, const StudyContext& context) {
+  try {
+    const InvertOptions& inversion = options.inversion;
+    const Observation observation = observe(inversion.observation, {.force = true},
+                                            context.work.truths, inversion.key(), context.folder);
+    const CalibrationOutcome calibrated =
+        calibrate_observation(options, observation, polling_clock(context));
+    BenchmarkOutcome outcome = score(options, success, observation, calibrated);
+    outcome.frequency_bound = bound_of(options, calibrated, bounds, context.work.truths);
+    return outcome;
+  } catch (const InvalidInput& error) {
+    return {.failure = error.what()};
+  }
+}
+
+}  // namespace modcal

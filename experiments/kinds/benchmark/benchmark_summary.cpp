@@ -1,0 +1,211 @@
+#include "experiments/kinds/benchmark/benchmark_summary.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "experiments/study/paired_bootstrap.hpp"
+#include "libsim/base/task_loop.hpp"
+#include "libsim/signal/statistics.hpp"
+
+namespace modcal {
+namespace {
+
+// Stands for an error without bound, finite so that quantiles between two of them exist.
+constexpr double kNoEstimate = 1e300;
+
+// What draws are compared by: worse than anything where there is no estimate.
+double loss_of(const BenchmarkOutcome& outcome) {
+  const bool none = !outcome.failure.empty() || !std::isfinite(outcome.frequency_error);
+  return none ? kNoEstimate : outcome.frequency_error;
+}
+
+using Losses = std::map<std::string, double>;  // by replicate
+
+std::vector<double> values_of(const Losses& losses) {
+  std::vector<double> values;
+  for (const auto& [replicate, loss] : losses) values.push_back(loss);
+  return values;
+}
+
+bool have_the_same_draws(const std::vector<const Losses*>& losses) {
+  return std::all_of(losses.begin(), losses.end(), [&losses](const Losses* theirs) {
+    return std::equal(theirs->begin(), theirs->end(), losses.front()->begin(),
+                      losses.front()->end(),
+                      [](const auto& a, const auto& b) { return a.first == b.first; });
+  });
+}
+
+int sign_of(const MedianRatio& ratio) {
+  return ratio.is_below_one() ? -1 : ratio.is_above_one() ? 1 : 0;
+}
+
+// −1: ours are smaller beyond doubt, 1: theirs are, 0: nobody knows.
+int compared(const Losses& ours, const Losses& theirs) {
+  std::vector<double> a, b;
+  for (const auto& [replicate, loss] : ours) {
+    const auto other = theirs.find(replicate);
+    if (other == theirs.end()) continue;
+    a.push_back(loss);
+    b.push_back(other->second);
+  }
+  return a.empty() ? 0 : sign_of(median_ratio(a, b));
+}
+
+void count_reasons(const std::vector<const BenchmarkTask*>& tasks, BenchmarkCell& cell) {
+  std::map<std::string, std::size_t> counts;
+  for (const BenchmarkTask* task : tasks) {
+    const std::string reason = reason_of(task->outcome);
+    if (!reason.empty()) ++counts[reason];
+  }
+  for (const auto& [reason, count] : counts) {
+    if (count <= cell.reason_count) continue;
+    cell.reason = reason;
+    cell.reason_count = count;
+  }
+}
+
+// NaN of nothing.
+double mean_of(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+std::int64_t median_task(std::vector<const BenchmarkTask*> tasks) {
+  std::erase_if(tasks, [](const BenchmarkTask* task) {
+    return !std::isfinite(task->outcome.frequency_error) || !task->outcome.failure.empty();
+  });
+  if (tasks.empty()) return -1;
+  const auto middle = tasks.begin() + static_cast<std::ptrdiff_t>(tasks.size() / 2);
+  std::nth_element(tasks.begin(), middle, tasks.end(), [](const auto* a, const auto* b) {
+    return a->outcome.frequency_error < b->outcome.frequency_error;
+  });
+  return static_cast<std::int64_t>((*middle)->task);
+}
+
+BenchmarkCell sum_up(const std::vector<const BenchmarkTask*>& tasks) {
+  BenchmarkCell cell{.n = tasks.size()};
+  std::vector<double> errors, rms_errors, squares, bound_squares;
+  std::vector<double> contact_errors, correlations, evaluations, seconds;
+  for (const BenchmarkTask* task : tasks) {
+    seconds.push_back(task->seconds);
+    const BenchmarkOutcome& outcome = task->outcome;
+    if (!outcome.failure.empty()) {
+      ++cell.failures;
+      continue;
+    }
+    if (outcome.success) ++cell.successes;
+    errors.push_back(outcome.frequency_error);
+    rms_errors.push_back(outcome.frequency_rms_error);
+    squares.push_back(outcome.frequency_rms_error * outcome.frequency_rms_error);
+    bound_squares.push_back(outcome.frequency_bound * outcome.frequency_bound);
+    contact_errors.push_back(outcome.contact_error);
+    correlations.push_back(outcome.correlation);
+    evaluations.push_back(static_cast<double>(outcome.evaluations));
+  }
+  cell.success = success_share(cell.successes, cell.n);
+  cell.error = quantile(errors, 0.5);
+  cell.error_q10 = quantile(errors, 0.1);
+  cell.error_q90 = quantile(errors, 0.9);
+  cell.rms = quantile(rms_errors, 0.5);
+  cell.rms_q10 = quantile(rms_errors, 0.1);
+  cell.rms_q90 = quantile(rms_errors, 0.9);
+  cell.rmse = std::sqrt(mean_of(squares));
+  cell.bound = std::sqrt(mean_of(bound_squares));
+  cell.bound_ratio = cell.rmse / cell.bound;
+  cell.task = median_task(tasks);
+  cell.contact_error = quantile(contact_errors, 0.5);
+  cell.correlation = quantile(correlations, 0.5);
+  cell.evaluations = quantile(evaluations, 0.5);
+  cell.seconds = quantile(seconds, 0.5);
+  count_reasons(tasks, cell);
+  return cell;
+}
+
+void rank(const std::vector<const Losses*>& losses, std::vector<BenchmarkCell*>& cells) {
+  for (BenchmarkCell* cell : cells) cell->rank = 1;
+  // While a run goes on, methods may have different draws; then every pair is resampled by itself.
+  std::vector<BootstrapMedians> medians;
+  if (have_the_same_draws(losses)) {
+    for (const Losses* own : losses) medians.emplace_back(values_of(*own));
+  }
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const int order = medians.empty() ? compared(*losses[i], *losses[j])
+                                        : sign_of(median_ratio(medians[i], medians[j]));
+      if (order != 0) ++cells[order < 0 ? j : i]->rank;
+    }
+  }
+}
+
+}  // namespace
+
+SuccessShare success_share(std::size_t successes, std::size_t n) {
+  if (n == 0) return {0.0, 0.0, 1.0};
+  constexpr double kZ = 1.959963984540054;  // 97.5 % quantile of the normal distribution
+  const double count = static_cast<double>(n);
+  const double share = static_cast<double>(successes) / count;
+  const double scale = 1.0 / (1.0 + kZ * kZ / count);
+  const double center = (share + kZ * kZ / (2.0 * count)) * scale;
+  const double half =
+      kZ * scale * std::sqrt(share * (1.0 - share) / count + kZ * kZ / (4.0 * count * count));
+  return {share, std::max(0.0, center - half), std::min(1.0, center + half)};
+}
+
+std::vector<BenchmarkCell> benchmark_cells(const BenchmarkGrid& grid) {
+  std::map<std::pair<std::size_t, std::size_t>, std::vector<const BenchmarkTask*>> groups;
+  for (const BenchmarkTask& task : grid.tasks) {
+    groups[{task.condition, task.method}].push_back(&task);
+  }
+  std::vector<BenchmarkCell> cells;
+  std::vector<Losses> losses;
+  for (const auto& [key, tasks] : groups) {
+    cells.push_back(sum_up(tasks));
+    cells.back().condition = key.first;
+    cells.back().method = key.second;
+    losses.emplace_back();
+    for (const BenchmarkTask* task : tasks) {
+      losses.back()[task->replicate] = loss_of(task->outcome);
+    }
+  }
+  // A condition a task: its cells are its own.
+  for_each_task(grid.conditions.size(), [&](std::size_t condition) {
+    std::vector<BenchmarkCell*> together;
+    std::vector<const Losses*> their_losses;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      if (cells[i].condition != condition) continue;
+      together.push_back(&cells[i]);
+      their_losses.push_back(&losses[i]);
+    }
+    rank(their_losses, together);
+  });
+  return cells;
+}
+
+std::vector<std::string> distinct(const std::vector<std::string>& values) {
+  std::vector<std::string> result;
+  for (const std::string& value : values) {
+    if (std::find(result.begin(), result.end(), value) == result.end()) result.push_back(value);
+  }
+  return result;
+}
+
+std::string short_label(const std::string& value) {
+  std::string label;
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    const char letter = value[i];
+    if (letter == '{' || letter == '}' || letter == '"' || letter == '\'') continue;
+    if (letter == ',') continue;
+    if (letter == ':') {
+      // The key is dropped: what it says is in the value or in the experiment.
+      const std::size_t start = label.find_last_of(' ');
+      label.resize(start == std::string::npos ? 0 : start);
+      continue;
+    }
+    label += letter;
+  }
+  const std::size_t first = label.find_first_not_of(' ');
+  return first == std::string::npos ? std::string() : label.substr(first);
+}
+
+}  // namespace modcal

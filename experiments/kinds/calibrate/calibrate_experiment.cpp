@@ -1,0 +1,189 @@
+#include "experiments/kinds/calibrate/calibrate_experiment.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "experiments/kinds/calibrate/calibrate_sensors.hpp"
+#include "experiments/kinds/invert/invert_experiment.hpp"
+#include "experiments/kinds/lint.hpp"
+#include "experiments/kinds/scene_plan.hpp"
+#include "libcalib/likelihood/noise_level.hpp"
+
+namespace modcal {
+namespace {
+
+// Sensors stated to the estimator that the calibration's correction has taken out before.
+void lint_sensors(const CalibrateOptions& options, std::vector<Finding>& findings) {
+  std::shared_ptr<const Estimator> estimator;
+  try {
+    estimator = options.inversion.inversion.estimator.make();
+  } catch (const InvalidInput&) {
+    return;  // the inversion's finding
+  }
+  lint_making(
+      "inversion.estimator", [&] { require_sensors_once(options.calibration, *estimator); },
+      findings);
+}
+
+// Whether a simulated record shows the noise levels that are not stated; a file is not read here.
+void lint_noise(const CalibrateOptions& options, std::vector<Finding>& findings) {
+  const ObservationOptions& observation = options.inversion.observation;
+  const bool known = std::none_of(findings.begin(), findings.end(),
+                                  [](const Finding& finding) { return finding.is_error; });
+  if (!known || !observation.has_scene || !is_known(observation.string_model())) return;
+  const CalibrationOptions& calibration = options.calibration;
+  const double rate = observation.measurement.sample_rate;
+  const auto samples =
+      static_cast<std::size_t>(std::round(observation.truth.scene.duration * rate));
+  lint_making(
+      calibration.has_continuation ? "calibration.continuation" : "calibration.objective",
+      [&] {
+        const ModalBasis basis = make_modal_basis(observation.string_model());
+        if (!calibration.has_continuation) {
+          calibration.objective.make()->require_record(basis, rate, samples);
+          return;
+        }
+        const ContinuationOptions& continuation = calibration.continuation;
+        likelihood_band({basis, 0.0}, continuation.highest_frequency, rate);
+        require_noise_known({continuation.left_noise, continuation.right_noise}, basis, rate,
+                            samples);
+      },
+      findings);
+}
+
+// Whether the optimizer can minimize the objective, where both can be made at all.
+void lint_pairing(const CalibrationOptions& calibration, std::vector<Finding>& findings) {
+  const auto stands = [&findings](std::string_view path) {
+    return std::any_of(findings.begin(), findings.end(),
+                       [path](const Finding& finding) { return finding.path.starts_with(path); });
+  };
+  if (stands("calibration.objective") || stands("calibration.optimizer")) return;
+  lint_making(
+      "calibration.optimizer",
+      [&] {
+        const std::string mismatch = calibration.optimizer.make()->explain_unsatisfied(
+            calibration.objective.selected(), calibration.objective.make()->capabilities());
+        MODCAL_REQUIRE(mismatch.empty(), "{}", mismatch);
+      },
+      findings);
+}
+
+// What stands in the file and a continuation, which ends by itself, does not read.
+void lint_unread(const CalibrationOptions& calibration, std::vector<Finding>& findings) {
+  const CalibrationOptions plain;
+  const auto add = [&findings](std::string key, std::string_view reason) {
+    findings.push_back({"calibration." + key,
+                        fmt::format("a continuation does not read {}: {}; leave it out, or leave "
+                                    "continuation out",
+                                    key, reason)});
+  };
+  if (calibration.objective.selected() != plain.objective.selected()) {
+    add("objective", "it minimizes the joint likelihood");
+  }
+  if (calibration.optimizer.selected() != plain.optimizer.selected()) {
+    add("optimizer", "it takes Newton steps of its own");
+  }
+  const Budget& budget = calibration.budget;
+  if (budget.evaluations != plain.budget.evaluations || !std::isnan(budget.seconds) ||
+      !std::isnan(budget.target)) {
+    add("budget", "it takes some 50 to 400 evaluations and ends by itself");
+  }
+}
+
+}  // namespace
+
+std::vector<Finding> CalibrateExperiment::lint() const {
+  std::vector<Finding> findings = lint_inversion(options_.inversion);
+  lint_sensors(options_, findings);
+  append(findings,
+         lint_figures(options_.inversion.figures, {"waveforms", "spectra", "parameter_curves",
+                                                   "objectives", "frequency_errors"}));
+  const CalibrationOptions& calibration = options_.calibration;
+  lint_making(
+      "calibration.objective", [&] { calibration.objective.make(); }, findings);
+  lint_making(
+      "calibration.optimizer", [&] { calibration.optimizer.make(); }, findings);
+  if (!calibration.has_continuation) lint_pairing(calibration, findings);
+  lint_making(
+      "calibration.budget", [&] { calibration.budget.require_valid(); }, findings);
+  lint_making(
+      "further_strokes",
+      [&] { options_.further.require_fit_to(options_.inversion.observation, calibration); },
+      findings);
+  append(findings, lint_plucks(options_.plucks, options_.inversion.observation, calibration));
+  lint_noise(options_, findings);
+  const auto modes = static_cast<std::size_t>(options_.inversion.observation.string_model().modes);
+  if (calibration.has_continuation) {
+    const std::size_t strokes =
+        1 + options_.further.contacts.size() + options_.further.files.size();
+    const UnknownsOptions& unknowns = calibration.continuation.unknowns;
+    lint_unread(calibration, findings);
+    lint_making(
+        "calibration.parameters",
+        [&] { require_continuation_parameters(calibration.parameters, strokes); }, findings);
+    append(findings, lint_priors("calibration.continuation.unknowns", unknowns,
+                                 options_.inversion.observation.string_model(),
+                                 strokes + options_.plucks.size()));
+    lint_making(
+        "calibration.continuation.unknowns", [&] { require_contacts(unknowns, strokes); },
+        findings);
+  }
+  lint_making(
+      "calibration.parameters",
+      [&] {
+        const std::vector<std::string> names = calibration.parameters.names(modes);
+        if (!calibration.has_continuation) calibration.objective.make()->require_moved_by(names);
+      },
+      findings);
+  return findings;
+}
+
+std::vector<std::string> CalibrateExperiment::plan() const {
+  std::vector<std::string> lines;
+  const ObservationOptions& observation = options_.inversion.observation;
+  const auto planned = planned_simulations();
+  lines.push_back(planned ? plan_line(*planned) : "record: " + observation.record.file);
+  const auto modes = static_cast<std::size_t>(observation.string_model().modes);
+  const CalibrationOptions& calibration = options_.calibration;
+  if (calibration.has_continuation) {
+    lines.push_back(
+        "calibration: continuation of the joint likelihood, law first; objective and optimizer "
+        "are not used");
+    const std::size_t further = options_.further.contacts.size() + options_.further.files.size();
+    if (further > 0) lines.push_back(fmt::format("strokes fitted together: {}", further + 1));
+    if (!options_.plucks.empty()) {
+      lines.push_back(fmt::format("plucks fitted with them: {}", options_.plucks.size()));
+    }
+    return lines;
+  }
+  lines.push_back(
+      fmt::format("calibration: {} parameters asked for, objective {}, optimizer {}, at "
+                  "most {} evaluations",
+                  calibration.parameters.names(modes).size(), calibration.objective.selected(),
+                  calibration.optimizer.selected(), calibration.budget.evaluations));
+  return lines;
+}
+
+std::optional<PlannedSimulations> CalibrateExperiment::planned_simulations() const {
+  const ObservationOptions& first = options_.inversion.observation;
+  auto planned = planned_truths(first, truth_outputs(options_.inversion.figures),
+                                1 + options_.further.contacts.size());
+  for (const PluckRecordOptions& pluck : options_.plucks) {
+    if (planned && pluck.file.empty()) add_planned(pluck.observation(first), *planned);
+  }
+  return planned;
+}
+
+LimitQuestion CalibrateExperiment::limit_question() const {
+  const ObservationOptions& first = options_.inversion.observation;
+  LimitQuestion question{.observation = first,
+                         .noise_level = first.measurement.noise_level,
+                         .further_contacts = options_.further.contacts};
+  question.calibrate_by(options_.calibration);
+  for (const PluckRecordOptions& pluck : options_.plucks) {
+    question.plucks.push_back(pluck.observation(first));
+  }
+  return question;
+}
+
+}  // namespace modcal

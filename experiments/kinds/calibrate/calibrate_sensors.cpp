@@ -1,0 +1,78 @@
+#include "experiments/kinds/calibrate/calibrate_sensors.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+#include <span>
+#include <vector>
+
+#include "libsim/base/error.hpp"
+#include "libsim/signal/statistics.hpp"
+#include "libsim/signal/time_shift.hpp"
+
+namespace modcal {
+namespace {
+
+// Least squares, mean included.
+void remove_line(std::span<double> samples) {
+  remove_mean(samples);
+  const double middle = 0.5 * static_cast<double>(samples.size() - 1);
+  double product = 0.0, square = 0.0;
+  for (std::size_t j = 0; j < samples.size(); ++j) {
+    const double place = static_cast<double>(j) - middle;
+    product += place * samples[j];
+    square += place * place;
+  }
+  const double slope = square > 0.0 ? product / square : 0.0;
+  for (std::size_t j = 0; j < samples.size(); ++j) {
+    samples[j] -= slope * (static_cast<double>(j) - middle);
+  }
+}
+
+// y + corner ∫ y dt by the trapezoidal rule: the bilinear transform of (s + corner)/s.
+void undo_high_pass(std::vector<double>& samples, double corner, double sample_rate) {
+  const double half = 0.5 * corner / sample_rate;
+  double integral = 0.0, last = 0.0;
+  for (double& sample : samples) {
+    integral += half * (sample + last);
+    last = sample;
+    sample += integral;
+  }
+  remove_line(samples);
+}
+
+}  // namespace
+
+Observation with_sensors_alike(Observation observation, const SensorPair& sensors) {
+  std::optional<Signal>& reaction = observation.reactions[static_cast<int>(End::kRight)];
+  if (sensors.alike() || !reaction) return observation;
+  std::vector<double>& samples = reaction->samples;
+  if (sensors.delay != 0.0) samples = advanced(samples, sensors.delay, observation.sample_rate);
+  for (double& sample : samples) sample /= sensors.gain;
+  if (sensors.corner != 0.0) undo_high_pass(samples, sensors.corner, observation.sample_rate);
+  return observation;
+}
+
+void require_sensors_once(const CalibrationOptions& calibration, const Estimator& estimator) {
+  const bool corrected = calibration.has_continuation
+                             ? calibration.continuation.unknowns.sensors().may_differ()
+                             : !calibration.parameters.sensors.empty();
+  const SensorOptions stated = estimator.sensors();
+  MODCAL_REQUIRE(
+      !corrected || stated.alike(),
+      "the reaction at x = L is corrected for its sensor as the calibration has it before "
+      "the estimator sees it: gain2 {:g} and delay2 {:g} s would take it out once more; "
+      "leave them out, or state those of x = 0 (gain1 {:g}, delay1 {:g} s)",
+      stated.gain[1], stated.delay[1], stated.gain[0], stated.delay[0]);
+}
+
+std::string correction_text(const Observation& observation, const SensorPair& sensors) {
+  if (sensors.alike() || !observation.reaction(End::kRight)) return "";
+  return fmt::format(
+      "The reaction at x = L was corrected for its sensor before the identification: gain {:.5g}, "
+      "delay {:.4g} s, corner {:.3g} Hz.",
+      sensors.gain, sensors.delay, 0.5 * sensors.corner / std::numbers::pi);
+}
+
+}  // namespace modcal

@@ -1,0 +1,227 @@
+#include "experiments/kinds/calibrate/calibrate_study.hpp"
+
+#include "experiments/kinds/calibrate/calibrate_audio.hpp"
+#include "experiments/kinds/calibrate/calibrate_covariance.hpp"
+#include "experiments/kinds/calibrate/calibrate_fit_stages.hpp"
+#include "experiments/kinds/calibrate/calibrate_sensors.hpp"
+#include "experiments/kinds/calibrate/calibrate_summary.hpp"
+#include "libsim/base/error.hpp"
+
+namespace modcal {
+
+void FurtherStrokes::visit(OptionVisitor& visitor) {
+  visitor.numbers({.key = "contacts",
+                   .meaning = "contact points x_c of further simulated strokes",
+                   .unit = "m",
+                   .range = Range::positive()},
+                  contacts);
+  visitor.texts({.key = "records",
+                 .meaning = "further recorded files with the channels of the first; each stroke's "
+                            "contact point is found by itself, started from the bow's"},
+                files);
+}
+
+void FurtherStrokes::require_fit_to(const ObservationOptions& first,
+                                    const CalibrationOptions& calibration) const {
+  if (contacts.empty() && files.empty()) return;
+  MODCAL_REQUIRE(calibration.has_continuation,
+                 "{} further strokes are fitted together by the joint likelihood alone: state "
+                 "calibration.continuation",
+                 contacts.size() + files.size());
+  MODCAL_REQUIRE(contacts.empty() || first.has_scene,
+                 "{} further contacts are simulated, but there is no scene: name further records",
+                 contacts.size());
+  MODCAL_REQUIRE(files.empty() || first.has_record,
+                 "{} further records go with a first one: state record, or name further contacts",
+                 files.size());
+  const double length = first.string_model().length;
+  for (const double contact : contacts) {
+    MODCAL_REQUIRE(contact < length, "contact at {} m is not on the string of {} m", contact,
+                   length);
+  }
+}
+
+void CalibrateOptions::visit(OptionVisitor& visitor) {
+  inversion.visit(visitor);
+  visitor.section({.key = "calibration",
+                   .meaning = "what is refined, by which objective and optimizer",
+                   .required = true},
+                  calibration);
+  visitor.section({.key = "further_strokes",
+                   .meaning = "strokes of the same string that are fitted together with the first"},
+                  further);
+  ListOf<PluckRecordOptions> pluck_slot(plucks);
+  visitor.list({.key = "plucks",
+                .meaning = "plucks of the same string that are fitted together with the strokes"},
+               pluck_slot);
+  visitor.flag({.key = "fill_blind_modes",
+                .meaning = "give blind modes the frequencies of the stiff-string law fitted to the "
+                           "others"},
+               fill_blind_modes);
+  visitor.flag(
+      {.key = "audio",
+       .meaning = "players in the report for the true, one-sided and joint force and string "
+                  "velocity"},
+      audio);
+}
+
+namespace {
+
+std::vector<double> frequencies_of(const ModalBasis& basis) {
+  std::vector<double> frequencies(basis.size());
+  for (std::size_t n = 0; n < basis.size(); ++n) frequencies[n] = basis.frequency(n);
+  return frequencies;
+}
+
+void fill_blind(CalibrationOutcome& outcome) {
+  std::vector<bool> excited;
+  std::vector<double> weights;
+  for (const CalibratedMode& mode : outcome.result.modes) {
+    excited.push_back(mode.excited);
+    weights.push_back(mode.excited ? 1.0 : 0.0);
+  }
+  const std::vector<double> refined = frequencies_of(outcome.refined.basis);
+  outcome.law = fit_stiff_string(refined, weights);
+  outcome.refined.basis =
+      with_frequencies(outcome.refined.basis, fill_unexcited_modes(refined, excited, *outcome.law));
+}
+
+// Strokes after the first: the same scene bowed elsewhere, or other files; noise of their own.
+std::vector<Observation> further_observations(const CalibrateOptions& options,
+                                              const StudyContext& context) {
+  std::vector<Observation> strokes;
+  const OutputRequest reactions{.left_reaction = true, .right_reaction = true};
+  const auto add = [&](const ObservationOptions& stroke) {
+    context.throw_if_interrupted();
+    const StreamKey key =
+        options.inversion.key().with("stroke").with(static_cast<std::uint64_t>(strokes.size() + 2));
+    strokes.push_back(observe(stroke, reactions, context.work.truths, key, context.folder));
+  };
+  for (const double contact : options.further.contacts) {
+    ObservationOptions stroke = options.inversion.observation;
+    stroke.truth.scene.bow.position = contact;
+    add(stroke);
+  }
+  for (const std::string& file : options.further.files) {
+    ObservationOptions stroke = options.inversion.observation;
+    stroke.record.file = file;
+    add(stroke);
+  }
+  return strokes;
+}
+
+// Objectives over their candidates and errors of the frequencies, as asked for.
+void add_search_figures(const std::vector<FigureOptions>& figures,
+                        const CalibrationOutcome& outcome, const std::string& command,
+                        StudyResult& result) {
+  for (const FigureOptions& figure : figures) {
+    report::Figure drawn;
+    if (figure.content == "objectives") {
+      drawn = objective_figure(figure, outcome);
+    } else if (figure.content == "frequency_errors") {
+      drawn = frequency_error_figure(figure, outcome);
+    } else {
+      continue;
+    }
+    if (drawn.panels.empty()) continue;  // only a systematic search has candidates to draw
+    drawn.command = command;
+    result.blocks.emplace_back(std::move(drawn));
+  }
+}
+
+}  // namespace
+
+CalibrationData calibration_data(const Observation& observation) {
+  const auto samples = [&observation](End end) -> std::span<const double> {
+    const auto& reaction = observation.reaction(end);
+    return reaction ? std::span<const double>(reaction->samples) : std::span<const double>();
+  };
+  return CalibrationData::of_records(samples(End::kLeft), samples(End::kRight),
+                                     observation.sample_rate);
+}
+
+SecondsClock polling_clock(const StudyContext& context) {
+  return [&context, clock = steady_seconds()] {
+    context.throw_if_interrupted();
+    return clock();
+  };
+}
+
+CalibrationOutcome calibrate_observation(const CalibrateOptions& options,
+                                         const Observation& observation, SecondsClock clock) {
+  return calibrate_strokes(options, std::span(&observation, 1), std::move(clock));
+}
+
+CalibrationOutcome calibrate_strokes(const CalibrateOptions& options,
+                                     std::span<const Observation> strokes, SecondsClock clock,
+                                     std::span<const PluckRecord> plucks) {
+  const Observation& observation = strokes.front();
+  CalibrationOutcome outcome;
+  outcome.initial =
+      with_errors(observation.basis, observation.contact, options.inversion.model_error,
+                  options.inversion.key().with("model error"));
+  std::vector<CalibrationData> data;
+  for (const Observation& stroke : strokes) data.push_back(calibration_data(stroke));
+  outcome.result = calibrate({outcome.initial.basis, outcome.initial.contact}, data, plucks,
+                             options.calibration, std::move(clock));
+  outcome.refined = {outcome.result.model.basis, outcome.result.model.contact};
+  if (observation.truth) outcome.true_frequencies = frequencies_of(observation.basis);
+  if (options.fill_blind_modes) fill_blind(outcome);
+  return outcome;
+}
+
+StudyResult calibrate_study(const CalibrateOptions& options, const StudyContext& context) {
+  const InvertOptions& inversion = options.inversion;
+  OutputRequest outputs = truth_outputs(inversion.figures);
+  if (options.audio) outputs.velocity = true;
+  const Observation measured =
+      observe(inversion.observation, outputs, context.work.truths, inversion.key(), context.folder);
+  options.further.require_fit_to(inversion.observation, options.calibration);
+  require_sensors_once(options.calibration, *inversion.inversion.estimator.make());
+  std::vector<Observation> strokes = further_observations(options, context);
+  strokes.insert(strokes.begin(), measured);
+  require_plucks(options.plucks, inversion.observation, options.calibration);
+  const std::vector<PluckRecord> plucks =
+      observe_plucks(options.plucks, inversion.observation, inversion.key(), context);
+  const CalibrationOutcome outcome =
+      calibrate_strokes(options, strokes, polling_clock(context), plucks);
+  context.throw_if_interrupted();
+  const SensorPair& sensors = outcome.result.model.sensors;
+  const Observation observation = with_sensors_alike(measured, sensors);
+  const InversionRecipe recipe(inversion.inversion);
+  const auto estimator = prepare_estimator(outcome.refined, observation, recipe);
+  const auto sides =
+      identify(observation, *estimator, recipe,
+               inversion_outputs(inversion.figures, inversion.write_signals), &inversion.score);
+
+  StudyResult result;
+  add_calibration_summary(outcome, result);
+  add_calibration_warnings(outcome, result);
+  if (const std::string text = correction_text(measured, sensors); !text.empty()) {
+    result.summary += text + "\n";
+    result.blocks.emplace_back(report::Text{text, report::Text::Kind::kNote});
+  }
+  if (const auto& found = outcome.result.continuation) {
+    result.blocks.emplace_back(report::Text{
+        chi2_text(*found), found->fits ? report::Text::Kind::kNote : report::Text::Kind::kFailure});
+  }
+  add_warnings(observation, sides, result);
+  add_search_figures(inversion.figures, outcome, context.command, result);
+  add_identification_figures(inversion.figures, observation, sides, context.command, result);
+  if (options.audio) {
+    result.blocks.emplace_back(calibration_audio(options, observation, outcome.refined));
+  }
+  result.blocks.emplace_back(search_table(outcome, context.command));
+  add_stages(outcome, context.command, result);
+  result.blocks.emplace_back(parameter_table(outcome, context.command));
+  add_covariance(outcome, context.command, result);
+  result.blocks.emplace_back(mode_table(outcome, context.command));
+  result.blocks.emplace_back(identification_table(sides, context.command));
+  result.files.emplace_back("calibration.json", calibration_json(outcome));
+  if (inversion.write_signals) {
+    result.signal_files.push_back(identified_signals(observation, sides));
+  }
+  return result;
+}
+
+}  // namespace modcal

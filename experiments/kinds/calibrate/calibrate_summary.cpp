@@ -1,0 +1,155 @@
+#include "experiments/kinds/calibrate/calibrate_summary.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+
+#include "experiments/kinds/calibrate/fit_verdict.hpp"
+#include "libsim/signal/statistics.hpp"
+
+namespace modcal {
+
+std::string verdict_text(const ModeVerdict& mode) {
+  std::string text(name_of(mode.source));
+  if (mode.tie == LawTie::kLeaves) {
+    text += fmt::format(", leaves the law by {:+.3g} %", 100.0 * mode.departure);
+  } else if (mode.source == ModeSource::kIdentified && mode.deviation < 0.5 * mode.data_deviation) {
+    text += ", drawn to the law";
+  }
+  if (mode.reason != WeakReason::kNone) text += fmt::format(" ({})", name_of(mode.reason));
+  return text;
+}
+
+std::string prior_lines(const PriorMisfit& misfit, std::string_view stage) {
+  if (misfit.count == 0) return "";
+  const std::string verdict = misfit.contradicted() ? "THE PRIORS ARE CONTRADICTED BY THE DATA"
+                                                    : "the data do not contradict the priors";
+  return fmt::format("{}: prior chi2 {:.4g} of {}: {}; farthest: {} by {:.3g} deviations\n", stage,
+                     misfit.chi2, misfit.count, verdict, misfit.farthest, misfit.deviations);
+}
+
+std::string chi2_text(const ContinuationResult& found) {
+  std::string text = fmt::format(
+      "reduced chi2 {:.4f} (sd {:.4f}): {}; law alone {:.4f}: {}", found.chi2, found.chi2_deviation,
+      found.fits ? "the data do not contradict the fit" : "THE FIT IS WRONG", found.law.chi2,
+      found.law.accepted ? "accepted" : "contradicted");
+  if (found.chi2 < 1.0 - 3.0 * found.chi2_deviation) {
+    text += fmt::format(
+        "\nnoise overstated: the data scatter less than the noise levels say; standard deviations "
+        "are too wide by a factor of {:.3g}",
+        1.0 / std::sqrt(found.chi2));
+  }
+  return text;
+}
+
+namespace {
+
+std::string verdict_lines(const ContinuationResult& found) {
+  std::string text =
+      fmt::format("{}\nsd: f0 {:.3g} Hz, B {:.3g}, x_c {:.3g} m, damping factor {:.3g}\n",
+                  chi2_text(found), found.law.deviation[0], found.law.deviation[1],
+                  found.contact_deviation, found.damping_deviation);
+  text += prior_lines(found.law.priors, "law");
+  if (found.frequencies_free) text += prior_lines(found.priors, "every frequency");
+  for (std::size_t n = 0; found.frequencies_free && n < found.modes.size(); ++n) {
+    const ModeVerdict& mode = found.modes[n];
+    if (mode.source == ModeSource::kIdentified && mode.tie == LawTie::kFollows) continue;
+    text +=
+        fmt::format("mode {}: {}, relative sd {:.2g}\n", n + 1, verdict_text(mode), mode.deviation);
+  }
+  return text;
+}
+
+std::string stroke_lines(const CalibrationOutcome& outcome) {
+  std::string text;
+  const std::vector<double>& deviations = outcome.result.contact_deviations;
+  std::size_t stroke = 0;
+  for (const CalibratedParameter& parameter : outcome.result.parameters) {
+    if (deviations.size() < 2 || !parameter.name.starts_with("x_c")) continue;
+    text += fmt::format("stroke {}: x_c {:.6g} m, sd {:.3g} m\n", stroke + 1, parameter.final,
+                        deviations[stroke]);
+    ++stroke;
+  }
+  return text;
+}
+
+}  // namespace
+
+double median_relative_error(const CalibrationOutcome& outcome) {
+  std::vector<double> errors;
+  for (const CalibratedMode& mode : outcome.result.modes) {
+    if (!mode.excited || outcome.true_frequencies.empty()) continue;
+    const double truth = outcome.true_frequencies[mode.number - 1];
+    errors.push_back(std::abs(mode.frequency / truth - 1.0));
+  }
+  return quantile(std::move(errors), 0.5);
+}
+
+void add_calibration_summary(const CalibrationOutcome& outcome, StudyResult& result) {
+  const OptimizationResult& search = outcome.result.search;
+  // A continuation starts on another record than it ends on: its first value says nothing.
+  const std::string values =
+      outcome.result.continuation
+          ? fmt::format("reduced chi2 {:.6g}", search.value)
+          : fmt::format("objective {:.6g} -> {:.6g}", search.initial_value, search.value);
+  result.summary += fmt::format("{} evaluations, {} loops, {:.3f} s; {}; {}\n", search.evaluations,
+                                search.loops, search.seconds, values, explain(search.stop));
+  if (search.left_out() > 0) {
+    result.summary += fmt::format("{} of {} searches of a parameter left out, it had settled\n",
+                                  search.left_out(), search.loops * search.searched.front());
+  }
+  if (!outcome.true_frequencies.empty()) {
+    result.summary += fmt::format("median relative frequency error of the excited modes: {:.3g}\n",
+                                  median_relative_error(outcome));
+  }
+  for (const CalibratedParameter& parameter : outcome.result.parameters) {
+    if (parameter.name.starts_with("f_")) continue;
+    result.summary +=
+        fmt::format("{}: {:.8g} -> {:.8g}{}", parameter.name, parameter.initial, parameter.final,
+                    parameter.unit == "1" ? "" : " " + parameter.unit);
+    result.summary +=
+        std::isnan(parameter.deviation) ? "\n" : fmt::format(", sd {:.3g}\n", parameter.deviation);
+  }
+  if (outcome.result.continuation) result.summary += verdict_lines(*outcome.result.continuation);
+  result.summary += stroke_lines(outcome);
+  if (outcome.law) {
+    result.summary += fmt::format("stiff-string law: f0 = {:.6g} Hz, B = {:.4g}\n",
+                                  outcome.law->fundamental, outcome.law->inharmonicity);
+  }
+}
+
+void add_calibration_warnings(const CalibrationOutcome& outcome, StudyResult& result) {
+  std::vector<std::string> bound;
+  for (const CalibratedParameter& parameter : outcome.result.parameters) {
+    if (parameter.at_bound) bound.push_back(parameter.name);
+  }
+  const auto warn = [&result](std::string text) {
+    result.summary += "warning: " + text + "\n";
+    result.blocks.emplace_back(report::Text{std::move(text), report::Text::Kind::kWarning});
+  };
+  if (!bound.empty()) {
+    warn(fmt::format("{} ended on a bound: the optimum may lie beyond", fmt::join(bound, ", ")));
+  }
+  if (!outcome.result.blind.empty()) {
+    warn(fmt::format("{} cannot be seen from this contact point and {}",
+                     fmt::join(outcome.result.blind, ", "),
+                     outcome.law ? "come from the stiff-string law" : "keep their initial values"));
+  }
+  const auto fail = [&](std::string text) {
+    warn(std::move(text));
+    result.failed_tasks = 1;
+    result.status = report::Status::kFailed;
+  };
+  if (const auto& found = outcome.result.continuation) {
+    if (!found->right) fail(contradiction(*found));
+    return;
+  }
+  const StopReason stop = outcome.result.search.stop;
+  if (stop == StopReason::kNotFinite || stop == StopReason::kNoProgress ||
+      stop == StopReason::kNotRun) {
+    fail("the search failed: " + std::string(explain(stop)));
+  }
+}
+
+}  // namespace modcal

@@ -1,0 +1,108 @@
+// Kind "calibration_limit": calibration error over noise beside the Cramér–Rao bound.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "experiments/kinds/calibrate/limit_source.hpp"
+#include "experiments/study/identification.hpp"
+#include "experiments/study/model_error.hpp"
+#include "experiments/study/observation.hpp"
+#include "experiments/runs/task_experiment.hpp"
+#include "libcalib/optimizers/staged/continuation.hpp"
+#include "libcalib/likelihood/whitened_record.hpp"
+
+namespace modcal {
+
+struct CalibrationLimitOptions {
+  ObservationOptions observation;
+  /// Bounds of the start's errors: uniform and independent, x_c included.
+  ModelErrorOptions model_error;
+  ContinuationOptions continuation;
+  std::vector<double> noise_levels = {0.001, 0.003, 0.01, 0.02, 0.05, 0.08, 0.1};
+  std::int64_t seeds = 50;
+  std::int64_t seed = 1;
+  bool known_noise = true;   ///< the calibration is told the noise level, where there is any
+  bool paper_method = true;  ///< the spectral-peak search from the same starts beside it
+  /// Identify the force with the calibrated model and compare it with the true one.
+  bool has_inversion = false;
+  InversionOptions inversion;
+  void visit(OptionVisitor& visitor);
+};
+
+/// One calibration of one noise draw, scored on the truth.
+struct LimitOutcome {
+  std::string failure;
+  std::array<double, 4> law{}, law_deviation{};  ///< f_0 [Hz], B, x_c [m], damping factor
+  std::vector<double> frequencies, deviations;   ///< of every mode [Hz], relative
+  double contact = 0.0, contact_deviation = 0.0;
+  /// Gain, delay [s] and corner [Hz] of the sensor at x = L, and standard deviations (0: not free).
+  std::array<double, 3> sensors{1.0, 0.0, 0.0}, sensor_deviation{};
+  double law_chi2 = 0.0, chi2 = 0.0;
+  double chi2_deviation = 0.0;  ///< of χ², as the calibration states it
+  bool fits = false;            ///< χ² does not contradict it
+  bool priors_hold = true;      ///< nor do the data the priors stated
+  bool right() const { return fits && priors_hold; }
+  double paper_error = 0.0;  ///< median relative error of the paper's method; NaN: not run
+  /// Of the force identified with the calibrated model, from 10 % to 95 % of the record; NaN: not
+  /// asked for.
+  double force_correlation = 0.0;
+};
+std::string outcome_text(const LimitOutcome& outcome);
+/// Throws InvalidInput for a text that outcome_text did not write.
+LimitOutcome read_limit_outcome(const std::string& text);
+
+/// Outcomes of one noise level.
+struct LimitLevel {
+  double noise_level = 0.0;
+  std::vector<LimitOutcome> outcomes;
+};
+
+/// The bound of one noise level.
+LimitQuestion limit_question_of(const CalibrationLimitOptions& options, double noise_level);
+
+/// Tables and figure; reads the truth and the bound from the scene.
+StudyResult sum_up_limit(const CalibrationLimitOptions& options,
+                         const std::vector<LimitLevel>& levels, const StudyContext& context);
+
+/// Clean reactions of the scene with the noise expected at a level; at zero the noise a calibration
+/// takes the aliases of clean records for.
+struct LimitTruth {
+  ModelPoint point;
+  NoisyRecords records;
+  std::shared_ptr<const Truth> simulated;
+};
+LimitTruth limit_truth(const ObservationOptions& observation, double noise_level,
+                       TruthCache& truths, bool force = false);
+
+class CalibrationLimitExperiment final : public TaskExperiment, public LimitSource {
+ public:
+  using Options = CalibrationLimitOptions;
+  explicit CalibrationLimitExperiment(Options options) : options_(std::move(options)) {}
+  std::vector<Finding> lint() const override;
+  std::vector<std::string> plan() const override;
+  std::optional<PlannedSimulations> planned_simulations() const override;
+  LimitQuestion limit_question() const override;
+
+  std::size_t task_count() const override {
+    return options_.noise_levels.size() * static_cast<std::size_t>(options_.seeds);
+  }
+  std::vector<std::string> axes() const override { return {"noise_level", "seed"}; }
+  std::vector<std::string> axis_values(std::size_t task) const override;
+  std::string fingerprint(std::size_t task, const std::filesystem::path& folder) const override;
+  std::string run_task(std::size_t task, const StudyContext& context) const override;
+  std::string failure_in(const std::string& outcome) const override;
+  StudyResult sum_up(const TaskOutcomes& outcomes, const StudyContext& context) const override;
+  StudyResult replay(std::size_t task, const StudyContext& context) const override;
+
+ private:
+  LimitOutcome calibrate_draw(double level, std::uint64_t draw, TruthCache& truths) const;
+  double level_of(std::size_t task) const {
+    return options_.noise_levels[task / static_cast<std::size_t>(options_.seeds)];
+  }
+  Options options_;
+};
+
+}  // namespace modcal

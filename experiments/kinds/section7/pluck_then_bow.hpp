@@ -1,0 +1,133 @@
+// Kind "pluck_then_bow": the route of section 7 of Debut, Delaune and Antunes (2010) on synthetic
+// data, and the calibration to the bound beside it.
+#pragma once
+
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "experiments/kinds/calibrate/calibrate_study.hpp"
+#include "experiments/kinds/identify/identify_study.hpp"
+#include "libsim/model/damping_fit.hpp"
+
+namespace modcal {
+
+/// The pluck test before the stroke: the string of the scene without its bow.
+struct PluckTestOptions {
+  Choice<InitialMotion> start{"pluck"};
+  double duration = 1.0;
+  double noise_level = 0.01;
+  PluckOptions identification;
+  std::int64_t damping_degree = 2;  ///< of the polynomial that extrapolates the damping
+  void visit(OptionVisitor& visitor);
+};
+
+/// How the frequencies are refined on the bowed record.
+struct RefinementOptions {
+  std::int64_t first_modes = 5;  ///< plucked modes that are refined before the law is fitted
+  std::int64_t law_modes = 11;   ///< modes that the first law is fitted to
+  Choice<Objective> objective{"spectral_peak"};
+  Choice<Optimizer> optimizer{"mode_by_mode"};
+  Budget budget;
+  double excitation_threshold = 0.1;  ///< modes with a smaller |φ_n(x_c)| come from the law [1]
+  void visit(OptionVisitor& visitor);
+};
+
+/// How the contact point is adjusted.
+struct ContactSearchOptions {
+  double start = std::numeric_limits<double>::quiet_NaN();  ///< [m]
+  double range = 3e-3;                                      ///< to either side [m]
+  std::int64_t points = 61;                                 ///< of the curve that brackets it
+  Choice<Objective> objective{"contact_location"};
+  void visit(OptionVisitor& visitor);
+};
+
+struct PluckThenBowOptions {
+  TruthOptions truth;
+  Measurement measurement;
+  PluckTestOptions pluck;
+  RefinementOptions refinement;
+  ContactSearchOptions contact;
+  bool has_bound = false;  ///< the continuation of the joint likelihood from the same pluck test
+  ContinuationOptions bound;
+  InversionOptions inversion;
+  ScoreOptions score;
+  std::vector<FigureOptions> figures;
+  std::int64_t seed = 1;
+  void visit(OptionVisitor& visitor);
+
+  StreamKey key() const { return StreamKey(static_cast<std::uint64_t>(seed)); }
+  /// The pluck test as an experiment of its own.
+  IdentifyOptions pluck_test(std::string_view method) const;
+  /// The stroke as an observation.
+  ObservationOptions stroke() const;
+};
+
+/// The model after a step of the route.
+struct ModelStage {
+  std::string key;    ///< for files: "refined"
+  std::string title;  ///< for tables and figures
+  AssumedModel model;
+  StiffStringFit law;  ///< deviations NaN where the step gives none
+  double contact_deviation = std::numeric_limits<double>::quiet_NaN();  ///< [m]
+  std::vector<double> deviation;  ///< relative, by mode; empty: not known
+  std::int64_t evaluations = 0;
+};
+
+/// Objective against the contact point.
+struct ContactCurve {
+  std::vector<double> positions;  ///< [m]
+  std::vector<double> values;
+};
+
+struct PluckThenBowOutcome {
+  IdentifyOutcome pluck;       ///< poles by the method of the options
+  IdentifyOutcome likelihood;  ///< by maximum likelihood, with error bars
+  DampingFit damping;
+  Observation stroke;
+  CalibrationOutcome first;  ///< search of the first modes
+  CalibrationOutcome all;    ///< search of all modes
+  ContactCurve curve;
+  std::vector<ModelStage> stages;  ///< in the order of the route
+  std::vector<SideIdentification> sides;
+  bool has_bound = false;
+  ContinuationResult bound;
+  std::vector<ModelStage> bound_stages;  ///< from the law of the pluck test to the posterior
+  std::vector<SideIdentification> bound_sides;
+};
+
+/// Throws InvalidInput where the pluck test gives too few modes to go on.
+PluckThenBowOutcome pluck_then_bow(const PluckThenBowOptions& options, const StudyContext& context);
+
+/// Starts of the calibration to the bound, the continuation and its posterior under the pluck test.
+void add_bound_stages(const PluckThenBowOptions& options, const StudyContext& context,
+                      PluckThenBowOutcome& outcome);
+/// A basis of `modes` modes that follow the law, damped by the polynomial.
+ModalBasis law_basis(const PluckThenBowOptions& options, const StiffStringFit& law,
+                     const DampingFit& damping, std::size_t modes);
+StiffStringFit law_of_basis(const ModalBasis& basis, std::size_t modes);
+DampingFit damping_of(const PluckIdentification& found, std::int64_t degree);
+
+/// Median and largest |f_n/f_n(truth) − 1| over the modes the contact excites.
+struct FrequencyErrors {
+  double median = 0.0;
+  double largest = 0.0;
+};
+FrequencyErrors errors_of(const PluckThenBowOptions& options, const PluckThenBowOutcome& outcome,
+                          const ModelStage& stage);
+
+StudyResult pluck_then_bow_study(const PluckThenBowOptions& options, const StudyContext& context);
+
+std::vector<report::Figure> pluck_then_bow_figures(const PluckThenBowOptions& options,
+                                                   const PluckThenBowOutcome& outcome,
+                                                   const std::string& command);
+/// Tables and figures of all steps, in the order of the route.
+std::vector<report::Block> pluck_then_bow_blocks(const PluckThenBowOptions& options,
+                                                 const PluckThenBowOutcome& outcome,
+                                                 const std::string& command);
+/// pluck_then_bow.json.
+std::string pluck_then_bow_json(const PluckThenBowOptions& options,
+                                const PluckThenBowOutcome& outcome);
+
+}  // namespace modcal

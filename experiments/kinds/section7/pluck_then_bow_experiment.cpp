@@ -1,0 +1,167 @@
+#include "experiments/kinds/section7/pluck_then_bow_experiment.hpp"
+
+#include "experiments/kinds/lint.hpp"
+#include "experiments/kinds/scene_plan.hpp"
+#include "libinverse/modes/decay_length.hpp"
+
+namespace modcal {
+
+void PluckTestOptions::visit(OptionVisitor& visitor) {
+  visitor.plugin({.key = "initial", .meaning = "how the string is plucked"}, start);
+  visitor.number({.key = "duration",
+                  .meaning = "length of the free decay",
+                  .unit = "s",
+                  .range = Range::positive()},
+                 duration);
+  visitor.number({.key = "noise_level",
+                  .meaning = "standard deviation of the noise, relative to that of each reaction",
+                  .unit = "1",
+                  .range = Range::non_negative()},
+                 noise_level);
+  visitor.section({.key = "identification", .meaning = "how its modes are found"}, identification);
+  visitor.integer({.key = "damping_degree",
+                   .meaning = "degree of the polynomial that extrapolates the damping ratios",
+                   .range = Range::closed(0, 4)},
+                  damping_degree);
+}
+
+void RefinementOptions::visit(OptionVisitor& visitor) {
+  visitor.integer({.key = "first_modes",
+                   .meaning = "plucked modes that are refined before the first law is fitted",
+                   .range = Range::closed(2, 1000)},
+                  first_modes);
+  visitor.integer({.key = "law_modes",
+                   .meaning = "modes that the first law is fitted to; those beyond first_modes as "
+                              "plucked",
+                   .range = Range::closed(2, 1000)},
+                  law_modes);
+  visitor.plugin({.key = "objective", .meaning = "what is minimized"}, objective);
+  visitor.plugin({.key = "optimizer", .meaning = "how it is minimized"}, optimizer);
+  visitor.section({.key = "budget", .meaning = "what each search may spend"}, budget);
+  visitor.number({.key = "excitation_threshold",
+                  .meaning = "modes with a smaller |phi_n(x_c)| get their frequency from the law",
+                  .unit = "1",
+                  .range = Range::closed(0.0, 1.0)},
+                 excitation_threshold);
+}
+
+void ContactSearchOptions::visit(OptionVisitor& visitor) {
+  visitor.number({.key = "start",
+                  .meaning = "contact point as measured on the string",
+                  .unit = "m",
+                  .range = Range::positive(),
+                  .required = true},
+                 start);
+  visitor.number({.key = "range",
+                  .meaning = "how far the search reaches to either side",
+                  .unit = "m",
+                  .range = Range::positive()},
+                 range);
+  visitor.integer({.key = "points",
+                   .meaning = "points of the curve that brackets the minimum",
+                   .range = Range::closed(5, 100000)},
+                  points);
+  visitor.plugin({.key = "objective", .meaning = "what is minimized"}, objective);
+}
+
+void PluckThenBowOptions::visit(OptionVisitor& visitor) {
+  visitor.section({.key = "scene", .meaning = "string and bow stroke", .required = true},
+                  truth.scene);
+  visitor.plugin({.key = "simulator", .meaning = "how pluck and stroke are simulated"},
+                 truth.simulator);
+  visitor.section({.key = "measurement", .meaning = "sampling and noise of the stroke"},
+                  measurement);
+  visitor.section({.key = "pluck", .meaning = "pluck test before the stroke", .required = true},
+                  pluck);
+  visitor.section({.key = "refinement", .meaning = "search of the frequencies on the stroke"},
+                  refinement);
+  visitor.section({.key = "contact", .meaning = "search of the contact point", .required = true},
+                  contact);
+  visitor.optional_group(
+      {.key = "bound", .meaning = "calibrate to the bound from the same pluck test, too"},
+      has_bound, [this](OptionVisitor& members) { bound.visit(members); });
+  visitor.section({.key = "inversion", .meaning = "how the reactions are inverted"}, inversion);
+  visitor.section({.key = "score", .meaning = "where identified and true force are compared"},
+                  score);
+  visitor.integer({.key = "seed", .meaning = "key of the noise", .range = Range::non_negative()},
+                  seed);
+  ListOf<FigureOptions> list(figures);
+  visitor.list({.key = "figures", .meaning = "what is drawn of the identification"}, list);
+}
+
+std::vector<Finding> PluckThenBowExperiment::lint() const {
+  const ObservationOptions stroke = options_.stroke();
+  std::vector<Finding> findings = lint_observation(stroke);
+  append(findings, lint_scores(options_.score, stroke));
+  append(findings, lint_figures(options_.figures, {"waveforms", "spectra", "parameter_curves"}));
+  lint_making(
+      "inversion", [&] { InversionRecipe recipe(options_.inversion); }, findings);
+  lint_making(
+      "refinement.objective", [&] { options_.refinement.objective.make(); }, findings);
+  lint_making(
+      "refinement.optimizer", [&] { options_.refinement.optimizer.make(); }, findings);
+  lint_making(
+      "contact.objective", [&] { options_.contact.objective.make(); }, findings);
+  lint_making(
+      "pluck.initial",
+      [&] {
+        const Scene test = options_.pluck_test(options_.pluck.identification.method).truth.scene;
+        options_.pluck.start.make();
+        if (is_known(test.string)) initial_state(test, make_modal_basis(test.string));
+      },
+      findings);
+  if (options_.pluck.start.selected() == "rest") {
+    findings.push_back({"pluck.initial", "a string at rest has no free decay: pluck it"});
+  }
+  lint_making(
+      "pluck.duration",
+      [&] {
+        const double rate = options_.measurement.sample_rate;
+        require_decay_length(sample_count(options_.pluck.duration, rate), rate,
+                             options_.pluck.identification);
+      },
+      findings);
+  if (options_.has_bound) {
+    append(findings,
+           lint_priors("bound.unknowns", options_.bound.unknowns, options_.truth.scene.string));
+  }
+  const ContactSearchOptions& contact = options_.contact;
+  if (!(contact.start - contact.range > 0.0 &&
+        contact.start + contact.range < options_.truth.scene.string.length)) {
+    findings.push_back({"contact.range", "the search leaves the string: narrow it"});
+  }
+  return findings;
+}
+
+std::vector<std::string> PluckThenBowExperiment::plan() const {
+  const RefinementOptions& refinement = options_.refinement;
+  std::vector<std::string> lines = {fmt::format("pluck test of {:g} s, modes up to {:g} Hz",
+                                                options_.pluck.duration,
+                                                options_.pluck.identification.highest_frequency)};
+  lines.push_back(plan_line(*planned_simulations()));
+  lines.push_back(
+      fmt::format("modes 1 to {} refined by objective {}, optimizer {}; law through modes 1 to {}; "
+                  "all {} modes "
+                  "refined; law again; contact by {}",
+                  refinement.first_modes, refinement.objective.selected(),
+                  refinement.optimizer.selected(), refinement.law_modes,
+                  options_.truth.scene.string.modes, options_.contact.objective.selected()));
+  if (options_.has_bound) {
+    lines.emplace_back(
+        "from the same pluck test: continuation of the joint likelihood, then its posterior under "
+        "the plucked frequencies");
+  }
+  return lines;
+}
+
+std::optional<PlannedSimulations> PluckThenBowExperiment::planned_simulations() const {
+  auto planned = planned_truths(options_.stroke(), truth_outputs(options_.figures));
+  const IdentifyOptions test = options_.pluck_test(options_.pluck.identification.method);
+  ObservationOptions pluck = options_.stroke();
+  pluck.truth = test.truth;
+  pluck.measurement = test.measurement;
+  if (planned) add_planned(pluck, *planned);
+  return planned;
+}
+
+}  // namespace modcal

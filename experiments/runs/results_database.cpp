@@ -1,0 +1,199 @@
+#include "experiments/runs/results_database.hpp"
+
+#include <fmt/format.h>
+#include <sqlite3.h>
+#include <unistd.h>
+
+#include <memory>
+#include <optional>
+#include <system_error>
+
+#include "libsim/base/error.hpp"
+
+namespace modcal {
+namespace {
+
+// "name" quoted as SQL wants an identifier.
+std::string identifier(const std::string& name) {
+  std::string quoted = "\"";
+  for (const char letter : name) {
+    quoted += letter;
+    if (letter == '"') quoted += letter;
+  }
+  return quoted + "\"";
+}
+
+class Database {
+ public:
+  explicit Database(const std::filesystem::path& file) : file_(file) {
+    sqlite3* handle = nullptr;
+    const int code = sqlite3_open(file.c_str(), &handle);
+    handle_.reset(handle);
+    check(code);
+  }
+  void execute(const std::string& sql) {
+    check(sqlite3_exec(handle_.get(), sql.c_str(), nullptr, nullptr, nullptr));
+  }
+  void check(int code) const {
+    MODCAL_REQUIRE(code == SQLITE_OK || code == SQLITE_DONE || code == SQLITE_ROW,
+                   "{}: the database cannot be written: {}", file_.string(),
+                   sqlite3_errmsg(handle_.get()));
+  }
+  sqlite3* handle() const { return handle_.get(); }
+
+ private:
+  struct Close {
+    void operator()(sqlite3* handle) const { sqlite3_close(handle); }
+  };
+  std::filesystem::path file_;
+  std::unique_ptr<sqlite3, Close> handle_;
+};
+
+class Insert {
+ public:
+  Insert(Database& database, const std::string& table, std::size_t columns) : database_(database) {
+    std::string sql = "INSERT INTO " + table + " VALUES (?";
+    for (std::size_t i = 1; i < columns; ++i) sql += ",?";
+    sqlite3_stmt* statement = nullptr;
+    database_.check(
+        sqlite3_prepare_v2(database.handle(), (sql + ")").c_str(), -1, &statement, nullptr));
+    statement_.reset(statement);
+  }
+  Insert& number(std::uint64_t value) {
+    database_.check(
+        sqlite3_bind_int64(statement_.get(), ++column_, static_cast<sqlite3_int64>(value)));
+    return *this;
+  }
+  Insert& real(double value) {
+    database_.check(sqlite3_bind_double(statement_.get(), ++column_, value));
+    return *this;
+  }
+  Insert& text(const std::string& value) {
+    database_.check(sqlite3_bind_text64(statement_.get(), ++column_, value.data(), value.size(),
+                                        SQLITE_STATIC, SQLITE_UTF8));
+    return *this;
+  }
+  Insert& text_or_null(const std::string& value) {
+    if (!value.empty()) return text(value);
+    database_.check(sqlite3_bind_null(statement_.get(), ++column_));
+    return *this;
+  }
+  void end_row() {
+    database_.check(sqlite3_step(statement_.get()));
+    database_.check(sqlite3_reset(statement_.get()));
+    column_ = 0;
+  }
+
+ private:
+  struct Finalize {
+    void operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
+  };
+  Database& database_;
+  std::unique_ptr<sqlite3_stmt, Finalize> statement_;
+  int column_ = 0;
+};
+
+}  // namespace
+
+class ResultsDatabase::Writer {
+ public:
+  Writer(const std::filesystem::path& file, const std::vector<std::string>& axes)
+      : database_(file) {
+    // Not shared, and thrown away where it is not finished: no journal of its own is needed.
+    database_.execute("PRAGMA journal_mode=OFF");
+    database_.execute("PRAGMA synchronous=OFF");
+    database_.execute("BEGIN");
+    std::string columns;
+    for (const std::string& axis : axes) columns += identifier(axis) + " TEXT, ";
+    database_.execute("CREATE TABLE tasks (task INTEGER PRIMARY KEY, " + columns +
+                      "failure TEXT, outcome TEXT)");
+    database_.execute("CREATE TABLE timing (task INTEGER PRIMARY KEY, seconds REAL)");
+    database_.execute("CREATE TABLE run (name TEXT PRIMARY KEY, value TEXT)");
+    task_.emplace(database_, "tasks", axes.size() + 3);
+    timing_.emplace(database_, "timing", 2);
+  }
+  void add(const ResultRow& row) {
+    task_->number(row.task);
+    for (const std::string& value : row.axis_values) task_->text(value);
+    task_->text_or_null(row.failure).text(row.outcome).end_row();
+    timing_->number(row.task).real(row.seconds).end_row();
+  }
+  void finish(const std::vector<std::pair<std::string, std::string>>& facts) {
+    task_.reset();
+    timing_.reset();
+    {
+      Insert fact(database_, "run", 2);
+      for (const auto& [name, value] : facts) fact.text(name).text(value).end_row();
+    }
+    database_.execute("COMMIT");
+  }
+
+ private:
+  Database database_;
+  std::optional<Insert> task_, timing_;
+};
+
+RowsDigest::RowsDigest(const std::vector<std::string>& axes) {
+  for (const std::string& axis : axes) add(axis);
+}
+
+// Lengths before texts: no two tables give one line of bytes.
+void RowsDigest::add(const std::string& part) {
+  digest_.add(fmt::format("{}:", part.size()));
+  digest_.add(part);
+}
+
+void RowsDigest::add(const ResultRow& row) {
+  digest_.add(fmt::format("\n{}:", row.task));
+  for (const std::string& value : row.axis_values) add(value);
+  add(row.failure);
+  add(row.outcome);
+}
+
+std::string digest_of_rows(const std::vector<std::string>& axes,
+                           const std::vector<ResultRow>& rows) {
+  RowsDigest digest(axes);
+  for (const ResultRow& row : rows) digest.add(row);
+  return digest.text();
+}
+
+ResultsDatabase::ResultsDatabase(std::filesystem::path file, const std::vector<std::string>& axes)
+    : file_(std::move(file)), temporary_(file_), digest_(axes) {
+  temporary_ += fmt::format(".{}.part", getpid());
+  std::error_code error;
+  std::filesystem::remove(temporary_, error);
+  writer_ = std::make_unique<Writer>(temporary_, axes);
+}
+
+ResultsDatabase::~ResultsDatabase() {
+  writer_.reset();
+  std::error_code error;
+  std::filesystem::remove(temporary_, error);
+}
+
+void ResultsDatabase::add(const ResultRow& row) {
+  digest_.add(row);
+  writer_->add(row);
+}
+
+std::string ResultsDatabase::finish(std::vector<std::pair<std::string, std::string>> facts) {
+  const std::string digest = digest_.text();
+  facts.emplace_back("digest", digest);
+  writer_->finish(facts);
+  writer_.reset();
+  std::error_code error;
+  std::filesystem::rename(temporary_, file_, error);
+  MODCAL_REQUIRE(!error, "{} cannot be put in place: {}", file_.string(), error.message());
+  return digest;
+}
+
+std::string write_results_database(const std::filesystem::path& file,
+                                   const std::vector<std::string>& axes,
+                                   const std::vector<ResultRow>& rows,
+                                   const std::vector<std::pair<std::string, std::string>>& facts) {
+  ResultsDatabase database(file, axes);
+  for (const ResultRow& row : rows) database.add(row);
+  return database.finish(facts);
+}
+
+}  // namespace modcal

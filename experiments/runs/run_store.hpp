@@ -1,0 +1,96 @@
+// The store of one run: what is finished, and where more is put.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "experiments/runs/journal.hpp"
+#include "experiments/runs/run_lock.hpp"
+#include "experiments/runs/shard.hpp"
+
+namespace modcal {
+
+/// Where a record stands in the journals of a folder; a list keeps these, not the records.
+struct RecordPlace {
+  std::uint64_t offset = 0;
+  std::uint32_t length = 0;  ///< 0: nowhere
+  std::uint32_t file = 0;
+
+  bool is_known() const { return length > 0; }
+};
+
+/// Reads single records of journals; safe to use from several threads.
+class JournalReader {
+ public:
+  JournalReader() = default;
+  ~JournalReader();
+  JournalReader(const JournalReader&) = delete;
+  JournalReader& operator=(const JournalReader&) = delete;
+
+  /// Number of the file in places. Throws InvalidInput where it cannot be opened.
+  std::uint32_t add(const std::filesystem::path& file);
+  /// Throws InvalidInput where the line cannot be read or is not what it was.
+  JournalRecord read(const RecordPlace& place) const;
+
+ private:
+  std::vector<std::pair<std::filesystem::path, int>> files_;  // with their descriptors
+};
+
+/// Finished tasks by their keys: 48 bytes or so a task, the outcomes stay in the journals.
+class FinishedTasks {
+ public:
+  /// Scans the journals below a folder of results. `program` names what computes: the results of
+  /// another program are not ours. Throws InvalidInput where a journal cannot be read.
+  FinishedTasks(const std::filesystem::path& folder, std::string program);
+
+  /// Key of a task with this fingerprint, under this program.
+  std::string key_of(std::string_view fingerprint) const;
+  /// Unknown: not finished when the journals were scanned.
+  RecordPlace find(const std::string& key) const;
+  JournalRecord read(const RecordPlace& place) const { return reader_->read(place); }
+  const std::vector<JournalDamage>& damages() const { return damages_; }
+  JournalReader& reader() const { return *reader_; }
+
+ private:
+  // The 128 bits of a key.
+  using Bits = std::array<std::uint64_t, 2>;
+  struct BitsHash {
+    std::size_t operator()(const Bits& bits) const { return bits[0]; }
+  };
+  static std::optional<Bits> bits_of(std::string_view key);
+
+  std::string program_;
+  std::unordered_map<Bits, RecordPlace, BitsHash> places_;
+  std::vector<JournalDamage> damages_;
+  std::unique_ptr<JournalReader> reader_ = std::make_unique<JournalReader>();
+};
+
+/// Opened by the run that computes. Safe to use from several threads.
+class RunStore {
+ public:
+  /// Locks the folder, scans what is finished, opens this shard's journal. Throws InvalidInput
+  /// where another run works there or the journal cannot be written.
+  RunStore(const std::filesystem::path& folder, const Shard& shard, const std::string& program);
+
+  const FinishedTasks& finished() const { return finished_; }
+  RecordPlace append(const JournalRecord& record);
+
+ private:
+  std::filesystem::path journals_;
+  RunLock lock_;
+  FinishedTasks finished_;
+  JournalWriter writer_;
+  std::uint32_t own_file_;
+};
+
+/// Where the journals of a folder of results stand.
+std::filesystem::path journal_folder(const std::filesystem::path& folder);
+
+}  // namespace modcal

@@ -1,0 +1,84 @@
+#include "experiments/runs/task_experiment.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+
+#include "libsim/base/task_loop.hpp"
+
+namespace modcal {
+namespace {
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+// Looks up every task among the finished ones, over threads.
+void find_finished(const TaskExperiment& experiment, const FinishedTasks& finished,
+                   const std::filesystem::path& folder, const StopToken& stop,
+                   TaskOutcomes& outcomes) {
+  const auto find = [&](std::size_t task) {
+    const RecordPlace place = finished.find(finished.key_of(experiment.fingerprint(task, folder)));
+    if (place.is_known()) outcomes.put(task, place);
+  };
+  for_each_task(outcomes.size(), find, stop);
+}
+
+}  // namespace
+
+TaskOutcomes::TaskOutcomes(std::size_t tasks, const FinishedTasks* finished)
+    : finished_(finished),
+      places_(finished != nullptr ? tasks : 0),
+      kept_(finished != nullptr ? 0 : tasks) {}
+
+std::optional<FinishedTask> TaskOutcomes::operator[](std::size_t task) const {
+  if (finished_ == nullptr) return kept_[task];
+  if (!places_[task].is_known()) return std::nullopt;
+  JournalRecord record = finished_->read(places_[task]);
+  return FinishedTask{std::move(record.outcome), record.seconds};
+}
+
+TaskOutcomes stored_outcomes(const TaskExperiment& experiment, const FinishedTasks& finished,
+                             const std::filesystem::path& folder) {
+  TaskOutcomes outcomes(experiment.task_count(), &finished);
+  find_finished(experiment, finished, folder, {}, outcomes);
+  return outcomes;
+}
+
+TaskOutcomes run_tasks(const TaskExperiment& experiment, const StudyContext& context,
+                       RunStore* store, const Shard& shard) {
+  const FinishedTasks* finished = store != nullptr ? &store->finished() : nullptr;
+  TaskOutcomes outcomes(experiment.task_count(), finished);
+  if (finished != nullptr) {
+    find_finished(experiment, *finished, context.folder, context.stop, outcomes);
+  }
+  std::vector<std::uint32_t> pending;
+  for (std::size_t task = 0; task < outcomes.size(); ++task) {
+    if (shard.holds(task) && !outcomes.has(task)) {
+      pending.push_back(static_cast<std::uint32_t>(task));
+    }
+  }
+  const auto all = static_cast<double>(shard.size(outcomes.size()));
+  std::atomic<std::size_t> left{pending.size()};
+  const auto run = [&](std::size_t i) {
+    const std::size_t task = pending[i];
+    const auto start = std::chrono::steady_clock::now();
+    std::string outcome = experiment.run_task(task, context);
+    const double seconds = seconds_since(start);
+    if (store == nullptr) {
+      outcomes.put(task, FinishedTask{std::move(outcome), seconds});
+    } else {
+      std::string key = finished->key_of(experiment.fingerprint(task, context.folder));
+      outcomes.put(task, store->append({std::move(key), task, seconds, std::move(outcome)}));
+    }
+    context.progress(1.0 - static_cast<double>(--left) / all);
+  };
+  for_each_task(pending.size(), run, context.stop);
+  return outcomes;
+}
+
+StudyResult TaskExperiment::run(const StudyContext& context) const {
+  return sum_up(run_tasks(*this, context, nullptr, Shard{}), context);
+}
+
+}  // namespace modcal

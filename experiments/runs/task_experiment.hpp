@@ -1,0 +1,87 @@
+// An experiment that is a list of tasks: it can be stopped, resumed, split over machines and asked
+// for a single task again.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "experiments/experiment.hpp"
+#include "experiments/runs/run_store.hpp"
+
+namespace modcal {
+
+/// What one task has left.
+struct FinishedTask {
+  std::string outcome;   ///< JSON on one line
+  double seconds = 0.0;  ///< time it took; the only part that differs between runs
+};
+
+/// Outcomes of a list by task. With a store they stay in its journals, 16 bytes a task are kept
+/// here, and each is read when it is asked for.
+class TaskOutcomes {
+ public:
+  /// Nothing is finished. `finished` null: outcomes are kept here.
+  explicit TaskOutcomes(std::size_t tasks, const FinishedTasks* finished = nullptr);
+
+  std::size_t size() const { return finished_ != nullptr ? places_.size() : kept_.size(); }
+  bool has(std::size_t task) const {
+    return finished_ != nullptr ? places_[task].is_known() : kept_[task].has_value();
+  }
+  /// nullopt: not run yet.
+  std::optional<FinishedTask> operator[](std::size_t task) const;
+
+  /// Different tasks may be put from different threads.
+  void put(std::size_t task, const RecordPlace& place) { places_[task] = place; }
+  void put(std::size_t task, FinishedTask finished) { kept_[task] = std::move(finished); }
+
+ private:
+  const FinishedTasks* finished_;
+  std::vector<RecordPlace> places_;
+  std::vector<std::optional<FinishedTask>> kept_;
+};
+
+class TaskExperiment : public Experiment {
+ public:
+  virtual std::size_t task_count() const = 0;
+  /// Paths of the options that differ between tasks.
+  virtual std::vector<std::string> axes() const = 0;
+  /// Their values in one task, as written in the file.
+  virtual std::vector<std::string> axis_values(std::size_t task) const = 0;
+  /// Text that is equal for tasks with equal outcomes and says everything an outcome depends on
+  /// but the program. `folder`: where relative paths start.
+  virtual std::string fingerprint(std::size_t task, const std::filesystem::path& folder) const = 0;
+
+  /// Outcome of one task as JSON on one line; a task that cannot be done has the reason in its
+  /// outcome. Safe to call from several threads.
+  virtual std::string run_task(std::size_t task, const StudyContext& context) const = 0;
+  /// The reason in an outcome why its task failed; empty where it did not.
+  virtual std::string failure_in(const std::string& outcome) const = 0;
+  /// What loss_in() measures, for people; empty: tasks of this kind have no score.
+  virtual std::string loss_name() const { return {}; }
+  /// How wrong an outcome is, > 0; nullopt where its task failed.
+  virtual std::optional<double> loss_in(const std::string& /*outcome*/) const { return {}; }
+  /// Tables, figures and acceptance of the outcomes there are; nullopt: not run yet.
+  virtual StudyResult sum_up(const TaskOutcomes& outcomes, const StudyContext& context) const = 0;
+  /// One task again, with everything drawn and written that can be.
+  virtual StudyResult replay(std::size_t task, const StudyContext& context) const = 0;
+
+  /// Runs every task over threads, without a store.
+  StudyResult run(const StudyContext& context) const final;
+};
+
+/// Outcomes of all tasks of the experiment that are finished once the shard's tasks are: those the
+/// store holds already are not run again, the others are put into it as they finish. The results
+/// stand in the order of the tasks whatever the threads. `store` may be null, otherwise it must
+/// outlive the outcomes. Throws Interrupted where the context says so; what has finished by then is
+/// in the store.
+TaskOutcomes run_tasks(const TaskExperiment& experiment, const StudyContext& context,
+                       RunStore* store, const Shard& shard);
+
+/// Outcomes of what the store had finished when it was scanned; `finished` must outlive them.
+TaskOutcomes stored_outcomes(const TaskExperiment& experiment, const FinishedTasks& finished,
+                             const std::filesystem::path& folder);
+
+}  // namespace modcal

@@ -1,0 +1,125 @@
+#include "libcalib/identifiability/joint_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "libcalib/identifiability/mode_verdict.hpp"
+#include "libcalib/likelihood/parameter_forms.hpp"
+#include "libcalib/identifiability/stated_verdict.hpp"
+
+namespace modcal {
+namespace {
+
+using Index = Eigen::Index;
+
+class JointReport {
+ public:
+  JointReport(const JointEstimate& estimate, RecordsFit& fit) : at_(estimate), fit_(fit) {}
+
+  void report(const Eigen::MatrixXd& covariance) {
+    const Eigen::VectorXd deviation = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+    fit_.model = at_.all.model(at_.theta, 0);
+    for (std::size_t r = 0; r < fit_.single.size(); ++r) {
+      fit_.contacts.push_back(at_.all.model(at_.theta, r).contact);
+      fit_.contact_deviations.push_back(deviation[at_.all.place(unknowns().contact(), r)]);
+    }
+    if (unknowns().is_law()) {
+      fit_.modes = law_verdicts(fit_.model, at_.theta[1], covariance.topLeftCorner(2, 2));
+      trust_stated_frequencies(at_.priors, {}, fit_.modes);
+    } else {
+      const auto frequencies = deviation.head(modes());
+      fit_.frequency_deviations.assign(frequencies.begin(), frequencies.end());
+      fit_.modes = free_verdicts(fit_.model, frequencies, at_.seen, at_.followers);
+      trust_stated_frequencies(at_.priors, deviation, fit_.modes);
+    }
+    for (std::size_t r = 0; r < at_.all.records(); ++r) report_values(covariance, r);
+    // Shared by all: the first record's unknowns stand first.
+    fit_.damping_power = damping_line(fit_.model).second;
+    fit_.damping_power_deviation = unknowns().damping_power_deviation(covariance);
+    fit_.ratio_deviations = unknowns().ratio_deviations(covariance);
+    report_covariance(covariance);
+    if (unknowns().is_law()) report_law(deviation);
+  }
+
+ private:
+  const StringUnknowns& unknowns() const { return at_.all.unknowns(); }
+  Index modes() const { return static_cast<Index>(unknowns().modes()); }
+  // Factor and exponent p of ζ_n = factor nᵖ ζ_n(initial), those aside that are held.
+  std::pair<double, double> damping_line(const ModelPoint& point) const {
+    std::vector<std::pair<double, double>> changes;  // (ln n, ln ζ_n/ζ_n(initial))
+    for (std::size_t n = 0; n < unknowns().modes(); ++n) {
+      if (at_.priors.held().ratio(n)) continue;
+      changes.emplace_back(std::log(static_cast<double>(n + 1)),
+                           std::log(point.basis.zeta[n] / at_.initial.basis.zeta[n]));
+    }
+    if (at_.options.unknowns.damping != "power" || changes.size() < 2) {
+      return {std::exp(mean_damping_change(at_.priors.held(), point, at_.initial)), 0.0};
+    }
+    // All lie on one line.
+    const auto& [a, low] = changes.front();
+    const auto& [b, high] = changes.back();
+    const double power = (high - low) / (b - a);
+    return {std::exp(low - power * a), power};
+  }
+
+  void report_covariance(const Eigen::MatrixXd& covariance) {
+    FormPoint at{.models = {}, .damping = {}, .strokes = fit_.single.size()};
+    if (unknowns().is_law()) at.fundamental = unknowns().fundamental(at_.theta);
+    for (std::size_t r = 0; r < at_.all.records(); ++r) {
+      at.models.push_back(at_.all.model(at_.theta, r));
+      at.damping.push_back(fit_.values[r].damping);
+    }
+    fit_.covariance = named_covariance(at_.all, at_.options.unknowns, at, covariance);
+    raise_to_verdicts(fit_.modes, fit_.covariance);
+  }
+
+  void report_law(const Eigen::VectorXd& deviation) {
+    const RecordValues& first = fit_.values.front();
+    fit_.law = {.fundamental = unknowns().fundamental(at_.theta),
+                .inharmonicity = at_.theta[1],
+                .contact = fit_.model.contact,
+                .damping = first.damping};
+    fit_.law.deviation = {fit_.law.fundamental * deviation[0], deviation[1],
+                          fit_.contact_deviations.front(), first.damping_deviation};
+    fit_.law.covariance = fit_.covariance;
+  }
+
+  void report_values(const Eigen::MatrixXd& covariance, std::size_t record) {
+    Eigen::MatrixXd own(unknowns().size(), unknowns().size());
+    for (Index i = 0; i < own.rows(); ++i) {
+      for (Index j = 0; j < own.cols(); ++j) {
+        own(i, j) = covariance(at_.all.place(i, record), at_.all.place(j, record));
+      }
+    }
+    const ModelPoint model = at_.all.model(at_.theta, record);
+    RecordValues values{.sensors = model.sensors, .damping = damping_line(model).first};
+    values.damping_deviation = values.damping * unknowns().damping_deviation(own);
+    values.sensor_deviation = unknowns().sensor_deviation(model, own);
+    fit_.values.push_back(values);
+  }
+
+  const JointEstimate& at_;
+  RecordsFit& fit_;
+};
+
+}  // namespace
+
+double mean_damping_change(const HeldParameters& held, const ModelPoint& point,
+                           const ModelPoint& from) {
+  double change = 0.0, count = 0.0;
+  for (std::size_t n = 0; n < point.basis.size(); ++n) {
+    if (held.ratio(n)) continue;
+    change += std::log(point.basis.zeta[n] / from.basis.zeta[n]);
+    count += 1.0;
+  }
+  return change / std::max(count, 1.0);
+}
+
+void report_joint_fit(const JointEstimate& estimate, const Eigen::MatrixXd& covariance,
+                      RecordsFit& fit) {
+  JointReport(estimate, fit).report(covariance);
+}
+
+}  // namespace modcal

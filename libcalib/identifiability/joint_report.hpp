@@ -1,0 +1,30 @@
+// What a fit of several records says of the string, of each record and of every mode.
+#pragma once
+
+#include "libcalib/likelihood/all_records.hpp"
+#include "libcalib/identifiability/law_followers.hpp"
+#include "libcalib/optimizers/staged/records_fit.hpp"
+
+namespace modcal {
+
+/// Where the fit of all records ended; all must outlive this.
+struct JointEstimate {
+  const AllRecords& all;
+  const ModelPoint& initial;
+  const ContinuationOptions& options;
+  const StatedPriors& priors;
+  const Eigen::VectorXd& theta;
+  const Eigen::VectorXd& seen;  ///< of δ, under the wide prior; where frequencies are free
+  const LawFollowers& followers;
+};
+
+/// Mean of ln ζ_n/ζ_n(from) over the damping ratios that are not held.
+double mean_damping_change(const HeldParameters& held, const ModelPoint& point,
+                           const ModelPoint& from);
+
+/// Fills model, contacts, verdicts, values of the records and covariance of `fit`; of a law that is
+/// fitted, its estimate too.
+void report_joint_fit(const JointEstimate& estimate, const Eigen::MatrixXd& covariance,
+                      RecordsFit& fit);
+
+}  // namespace modcal

@@ -1,0 +1,192 @@
+#include "libcalib/identifiability/mode_verdict.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace modcal {
+namespace {
+
+constexpr double kIdentified = 1e-3;
+
+Eigen::MatrixXd law_slopes(Eigen::Index count, double inharmonicity) {
+  Eigen::MatrixXd slopes(count, 2);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const double n2 = static_cast<double>((i + 1) * (i + 1));
+    slopes(i, 0) = 1.0;
+    slopes(i, 1) = 0.5 * n2 / (1.0 + inharmonicity * n2);
+  }
+  return slopes;
+}
+
+}  // namespace
+
+std::string_view name_of(ModeSource source) {
+  switch (source) {
+    case ModeSource::kIdentified:
+      return "identified";
+    case ModeSource::kLaw:
+      return "from the law";
+    case ModeSource::kPrior:
+      return "from the prior";
+    case ModeSource::kBlind:
+      return "blind";
+    case ModeSource::kFixed:
+      return "fixed";
+  }
+  return "";
+}
+
+std::string_view name_of(WeakReason reason) {
+  switch (reason) {
+    case WeakReason::kNone:
+      return "";
+    case WeakReason::kNode:
+      return "node";
+    case WeakReason::kAntinode:
+      return "antinode";
+    case WeakReason::kNoise:
+      return "noise";
+    case WeakReason::kDoubt:
+      return "data and law disagree";
+  }
+  return "";
+}
+
+std::vector<bool> nodes(const ModalBasis& basis, const std::vector<double>& contacts) {
+  constexpr double kNodeShape = 0.05;
+  std::vector<bool> node(basis.size(), true);
+  for (const double contact : contacts) {
+    const std::vector<double> shape = basis.shape_at(contact);
+    for (std::size_t n = 0; n < node.size(); ++n) {
+      node[n] = node[n] && std::abs(shape[n]) < kNodeShape;
+    }
+  }
+  return node;
+}
+
+ModeSight sight_of(const Eigen::VectorXd& delta, const Eigen::VectorXd& deviation,
+                   const Eigen::MatrixXd& information, const Eigen::MatrixXd& noise,
+                   const std::vector<bool>& node) {
+  constexpr double kProof = 3.0, kNodeProof = 10.0;
+  ModeSight sight{.delta = delta, .seen = deviation, .error = deviation};
+  for (std::size_t n = 0; n < node.size(); ++n) {
+    const auto i = static_cast<Eigen::Index>(n);
+    const double proof = node[n] ? kNodeProof : kProof;
+    const bool proven = information(i, i) >= proof * noise(i, i);
+    if (!proven) sight.seen[i] = std::max(deviation[i], kWidePrior);
+    if (!proven || node[n]) sight.error[i] = 2.0 * deviation[i];
+  }
+  return sight;
+}
+
+void doubt_rivals(const std::vector<Neighbor>& neighbors, ModeSight& sight) {
+  for (std::size_t n = 0; n < neighbors.size(); ++n) {
+    if (!neighbors[n].is_rival()) continue;
+    const auto i = static_cast<Eigen::Index>(n);
+    sight.seen[i] = std::max(sight.seen[i], kWidePrior);
+    sight.error[i] = std::max(sight.error[i], std::abs(neighbors[n].shift));
+  }
+}
+
+Eigen::VectorXd prior_widths(const Eigen::VectorXd& seen, double width, double estimated) {
+  Eigen::VectorXd widths = Eigen::VectorXd::Constant(seen.size(), width);
+  for (Eigen::Index i = 0; i < seen.size(); ++i) {
+    if (seen[i] > 0.7 * kWidePrior) widths[i] = std::min(width, estimated);
+  }
+  return widths;
+}
+
+void release(const LawFollowers& followers, ModeSight& sight, Eigen::VectorXd& widths) {
+  for (Eigen::Index i = 0; i < widths.size(); ++i) {
+    const LawTie tie = followers.ties[static_cast<std::size_t>(i)];
+    if (tie == LawTie::kFollows) continue;
+    widths[i] = std::max(widths[i], tie == LawTie::kLeaves ? kLeft : kWidePrior);
+    if (tie == LawTie::kLeaves) sight.seen[i] = std::min(sight.seen[i], sight.error[i]);
+  }
+}
+
+WeakReason weak_reason(const ModelPoint& model, std::size_t index) {
+  const double turn =
+      static_cast<double>(index + 1) * std::numbers::pi * model.contact / model.basis.length;
+  if (std::abs(std::sin(turn)) < 0.1) return WeakReason::kNode;
+  if (std::abs(std::cos(turn)) < 0.2) return WeakReason::kAntinode;
+  return WeakReason::kNoise;
+}
+
+std::vector<ModeVerdict> law_verdicts(const ModelPoint& model, double inharmonicity,
+                                      const Eigen::Matrix2d& covariance) {
+  const auto count = static_cast<Eigen::Index>(model.basis.size());
+  const Eigen::MatrixXd slopes = law_slopes(count, inharmonicity);
+  std::vector<ModeVerdict> verdicts(model.basis.size());
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const double variance = slopes.row(i) * covariance * slopes.row(i).transpose();
+    ModeVerdict& verdict = verdicts[static_cast<std::size_t>(i)];
+    verdict.frequency = model.basis.frequency(static_cast<std::size_t>(i));
+    verdict.deviation = std::sqrt(std::max(variance, 0.0));
+    verdict.data_deviation = verdict.deviation;
+    verdict.source = ModeSource::kLaw;
+  }
+  return verdicts;
+}
+
+std::vector<ModeVerdict> free_verdicts(const ModelPoint& model, const Eigen::VectorXd& deviation,
+                                       const Eigen::VectorXd& seen, const LawFollowers& followers) {
+  std::vector<ModeVerdict> verdicts(model.basis.size());
+  const std::vector<double> shape = model.basis.shape_at(model.contact);
+  const double law_width = followers.width;
+  for (std::size_t n = 0; n < verdicts.size(); ++n) {
+    const auto i = static_cast<Eigen::Index>(n);
+    ModeVerdict& verdict = verdicts[n];
+    verdict.frequency = model.basis.frequency(n);
+    verdict.deviation = deviation[i];
+    verdict.data_deviation = seen[i];
+    verdict.tie = followers.ties[n];
+    if (verdict.tie == LawTie::kDoubtful) {
+      verdict.reason = WeakReason::kDoubt;
+      verdict.deviation = std::hypot(deviation[i], followers.rest[i]);
+    }
+    if (seen[i] < kIdentified) continue;
+    if (verdict.tie != LawTie::kDoubtful) {
+      verdict.reason = weak_reason(model, n);
+      // Where neither law nor data have it, it is anywhere that its prior admits.
+      const double width = verdict.tie == LawTie::kLeaves ? kLeft : std::min(law_width, kWidePrior);
+      verdict.deviation = std::max(deviation[i], width);
+    }
+    // The law speaks for a mode where the other modes follow it closer than the mode is needed.
+    if (verdict.tie == LawTie::kFollows && law_width < 0.5 * kIdentified) {
+      verdict.source = ModeSource::kLaw;
+    } else {
+      verdict.source = std::abs(shape[n]) < 0.02 ? ModeSource::kBlind : ModeSource::kPrior;
+    }
+  }
+  return verdicts;
+}
+
+void raise_to_verdicts(const std::vector<ModeVerdict>& modes, NamedCovariance& covariance) {
+  for (std::size_t n = 0; n < modes.size(); ++n) {
+    covariance.raise(fmt::format("f_{}", n + 1), modes[n].frequency * modes[n].deviation);
+  }
+}
+
+std::vector<std::size_t> not_following(const std::vector<ModeVerdict>& modes) {
+  std::vector<std::size_t> found;
+  for (std::size_t n = 0; n < modes.size(); ++n) {
+    if (modes[n].tie != LawTie::kFollows) found.push_back(n);
+  }
+  return found.size() + 2 > modes.size() ? std::vector<std::size_t>{} : found;
+}
+
+void report_departures(const LawEstimate& law, std::vector<ModeVerdict>& modes) {
+  for (std::size_t n = 0; n < modes.size(); ++n) {
+    const double number = static_cast<double>(n + 1);
+    const double frequency =
+        number * law.fundamental * std::sqrt(1.0 + law.inharmonicity * number * number);
+    modes[n].departure = modes[n].frequency / frequency - 1.0;
+  }
+}
+
+}  // namespace modcal

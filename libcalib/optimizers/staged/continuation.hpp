@@ -1,0 +1,121 @@
+// Calibration to the bound of the whole record: continuation in σ, the law first, then every
+// frequency.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "libcalib/problem/calibration_data.hpp"
+#include "libcalib/optimizers/staged/fit_poll.hpp"
+#include "libcalib/optimizers/staged/fit_stage.hpp"
+#include "libcalib/identifiability/law_followers.hpp"
+#include "libcalib/parameters/named_covariance.hpp"
+#include "libcalib/parameters/prior_misfit.hpp"
+#include "libcalib/likelihood/string_unknowns.hpp"
+#include "libcalib/parameters/parameters.hpp"
+#include "libsim/base/options.hpp"
+
+namespace modcal {
+
+struct ContinuationOptions {
+  /// Free every f_n after the law; false: the law alone.
+  bool frequencies = true;
+  /// Relative width τ of the prior of f_n about the law; NaN: estimated from the well-seen modes
+  /// [1].
+  double law_width = std::numeric_limits<double>::quiet_NaN();
+  /// Highest frequency used [Hz]; NaN: 1.05 times that of the highest mode.
+  double highest_frequency = std::numeric_limits<double>::quiet_NaN();
+  /// Noise standard deviation of each reaction [N]; NaN: estimated from the record.
+  double left_noise = std::numeric_limits<double>::quiet_NaN();
+  double right_noise = std::numeric_limits<double>::quiet_NaN();
+  UnknownsOptions unknowns;   ///< damping and sensors
+  std::int64_t restarts = 4;  ///< other starts tried while χ² says that the fit is wrong
+  void visit(OptionVisitor& visitor);
+};
+
+/// Where the frequency of a mode comes from.
+enum class ModeSource { kIdentified, kLaw, kPrior, kBlind, kFixed };
+/// Why a mode is weak.
+enum class WeakReason { kNone, kNode, kAntinode, kNoise, kDoubt };
+std::string_view name_of(ModeSource source);
+std::string_view name_of(WeakReason reason);
+
+struct ModeVerdict {
+  double frequency = 0.0;  ///< [Hz]
+  double deviation = 0.0;  ///< relative standard deviation of the frequency reported
+  /// What the data tell of it: the same under 0.2 % about the law and what is stated of anything
+  /// but single frequencies.
+  double data_deviation = 0.0;
+  ModeSource source = ModeSource::kIdentified;
+  WeakReason reason = WeakReason::kNone;
+  LawTie tie = LawTie::kFollows;  ///< whether it was found to follow the law of the others
+  double departure = 0.0;         ///< frequency beyond the law's, relative; where all are free
+};
+
+/// f_0 [Hz], B [1], x_c [m] and the factor of all damping ratios, with standard deviations.
+struct LawEstimate {
+  double fundamental = 0.0, inharmonicity = 0.0, contact = 0.0, damping = 1.0;
+  std::array<double, 4> deviation{};  ///< of the four above, in this order
+  double chi2 = 0.0;                  ///< reduced
+  bool accepted = false;              ///< χ² does not contradict the law
+  PriorMisfit priors;
+  NamedCovariance covariance;  ///< of f0, B, x_c, damping and sensors, as far as they are free
+};
+
+struct ContinuationResult {
+  ModelPoint model;
+  LawEstimate law;
+  bool frequencies_free = false;
+  std::vector<ModeVerdict> modes;
+  double contact_deviation = 0.0;  ///< [m]
+  /// Factor of all initial ζ_n that are free; where each is, their geometric mean.
+  double damping = 1.0;
+  double damping_deviation = 0.0;
+  double damping_power = 0.0;  ///< exponent p in ζ_n = factor nᵖ ζ_n(initial)
+  double damping_power_deviation = 0.0;
+  std::vector<double> ratio_deviations;  ///< of every ζ_n, relative; empty unless each is free
+  /// Of gain, delay [s] and corner [Hz] of model.sensors; 0: not free.
+  std::array<double, 3> sensor_deviation{};
+  /// Of all that is free in `model`: f_n or f0 and B, x_c, damping, sensors. The roots of its
+  /// diagonal are the deviations reported; what a verdict adds to that of a frequency, in its place
+  /// alone.
+  NamedCovariance covariance;
+  double law_width = 0.0;  ///< τ
+  double chi2 = 0.0;       ///< reduced, of `model`
+  double chi2_deviation = 0.0;
+  bool fits = false;   ///< χ² does not contradict the result: χ² < 1 + 3 sd
+  PriorMisfit priors;  ///< of `model` to what was stated beforehand
+  bool right = false;  ///< neither χ² nor the priors contradict the result
+  std::size_t restarts = 0;
+  std::size_t moved_modes = 0;  ///< modes found in a neighboring minimum and moved
+  std::size_t evaluations = 0;
+  std::vector<FitStage> stages;   ///< of all starts, in order
+  std::array<double, 2> noise{};  ///< s_r [N]
+};
+
+/// Highest ω of the likelihood's bins [rad/s]: highest_frequency [Hz], or 1.05 times the highest
+/// mode where that is NaN; below 0.4 f_s. Throws InvalidInput where fewer than two modes lie below
+/// a stated one.
+double likelihood_band(const ModelPoint& point, double highest_frequency, double sample_rate);
+
+/// Law (f_0, B, x_c, then one damping factor) through σ ≈ 200, 100, 50, 20 1/s (in proportion to
+/// f_0/196 Hz) on records cut to 8/σ, started from the law fitted to the initial frequencies and
+/// nine x_c within 0.6 % of L; then σ = 0 with the end state projected out and bins weighted by
+/// S/(1 + S). Where χ² contradicts the law: free frequencies through σ ≈ 40, 20, 10, each mode
+/// tested against its neighboring minima. Last, free frequencies at σ = 0, each tested again, under
+/// the law prior, modes the data do not see tied to the law and modes that leave it set free; where
+/// some do or are doubtful, the law is fitted once more without them. The records must begin at
+/// rest. What `poll` throws comes out within one evaluation.
+ContinuationResult calibrate_by_continuation(const ModelPoint& initial, const CalibrationData& data,
+                                             const ContinuationOptions& options,
+                                             const FitPoll& poll = {});
+/// The same with these priors in the place of those among the options.
+ContinuationResult calibrate_by_continuation(const ModelPoint& initial, const CalibrationData& data,
+                                             const ContinuationOptions& options,
+                                             const StatedPriors& priors, const FitPoll& poll = {});
+
+}  // namespace modcal

@@ -1,0 +1,204 @@
+#include "libcalib/optimizers/staged/continuation_attempt.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "libcalib/optimizers/staged/free_stage.hpp"
+#include "libcalib/identifiability/mode_verdict.hpp"
+#include "libcalib/likelihood/parameter_forms.hpp"
+#include "libcalib/identifiability/stated_verdict.hpp"
+#include "libcalib/parameters/stiff_string_fit.hpp"
+#include "libsim/base/error.hpp"
+
+namespace modcal {
+namespace {
+
+// One attempt: everything between a start of f_0 and a verdict by χ².
+class Attempt {
+ public:
+  Attempt(const AttemptInput& input, std::size_t evaluations)
+      : input_(input), priors_(input.priors), stroke_(input, evaluations) {
+    std::vector<double> frequencies;
+    reference_ = with_fixed(input.initial, options().unknowns);
+    for (std::size_t n = 0; n < modes(); ++n) frequencies.push_back(reference_.basis.frequency(n));
+    start_ = fit_stiff_string(frequencies);
+    const HeldParameters& held = priors_.held();
+    if (held.contact(0)) reference_.contact = *held.contacts[0];
+    if (held.fundamental) start_.fundamental = *held.fundamental;
+    if (held.inharmonicity) start_.inharmonicity = *held.inharmonicity;
+    reference_.sensors = options().unknowns.sensors();
+    stroke_.scale_damping(start_.fundamental);
+  }
+
+  ContinuationResult run(double shift) {
+    if (!priors_.held().fundamental) start_.fundamental *= std::exp(shift);
+    ContinuationResult result;
+    result.noise = input_.records.deviation;
+    follow_law();
+    const Eigen::MatrixXd covariance = finish_law("law", result);
+    report_law(covariance, result);
+    if (options().frequencies) {
+      const bool accepted = result.law.accepted;
+      free_frequencies(input_, {law_, accepted ? law_theta_ : ladder_theta_, accepted}, stroke_,
+                       result);
+      leave_out(result);
+      report_departures(result.law, result.modes);
+    }
+    result.fits = result.chi2 < 1.0 + 3.0 * result.chi2_deviation;
+    result.right = result.fits && !result.priors.contradicted();
+    result.evaluations = stroke_.evaluations();
+    result.stages = stroke_.stages();
+    return result;
+  }
+
+ private:
+  const ContinuationOptions& options() const { return input_.options; }
+  std::size_t modes() const { return input_.initial.basis.size(); }
+
+  // About θ, where the fit starts.
+  static NewtonOptions with_priors(const StringUnknowns& unknowns, const Eigen::VectorXd& theta,
+                                   std::size_t steps, double tolerance) {
+    NewtonOptions options{.steps = steps, .tolerance = tolerance};
+    set_prior(unknowns.prior(theta), options);
+    return options;
+  }
+
+  // Of the x_c up to `reach` steps away those whose cost is below that of both neighbors: a start
+  // between them leads to one of theirs. Priors join in the fits that start there.
+  std::vector<Eigen::VectorXd> contact_starts(const ProjectedLikelihood& likelihood,
+                                              const StringUnknowns& unknowns, double step,
+                                              int reach) {
+    constexpr double kNever = std::numeric_limits<double>::infinity();
+    std::vector<Eigen::VectorXd> starts;
+    std::vector<double> costs = {kNever};
+    for (int i = -reach; i <= reach; ++i) {
+      starts.push_back(unknowns.start());
+      starts.back()[unknowns.contact()] = i * step;
+      const bool admitted = unknowns.admits(starts.back());
+      costs.push_back(admitted ? stroke_.cost(likelihood, unknowns.model(starts.back())) : kNever);
+    }
+    costs.push_back(kNever);
+    std::vector<Eigen::VectorXd> lowest;
+    for (std::size_t i = 0; i < starts.size(); ++i) {
+      const double cost = costs[i + 1];
+      if (cost < kNever && cost <= costs[i] && cost <= costs[i + 2]) lowest.push_back(starts[i]);
+    }
+    return lowest;
+  }
+
+  StringUnknowns law(const StatedPriors& priors) const {
+    return StringUnknowns::law(reference_, start_.fundamental, start_.inharmonicity,
+                               options().unknowns, priors);
+  }
+
+  // f_0, B and x_c through the ladder, from the x_c that serves best.
+  void follow_law() {
+    const double step = reference_.basis.length / 660.0;
+    const ProjectedLikelihood widest = stroke_.damped(200.0);
+    const StringUnknowns unknowns = law(priors_).without_damping_and_sensors();
+    NewtonFit best;
+    const int reach = priors_.held().contact(0) ? 0 : 4;
+    for (const Eigen::VectorXd& theta : contact_starts(widest, unknowns, step, reach)) {
+      NewtonFit found =
+          stroke_.fit(widest, unknowns, theta, with_priors(unknowns, theta, 25, 1e-2));
+      if (found.objective < best.objective) best = std::move(found);
+    }
+    MODCAL_REQUIRE(best.theta.size() > 0, "the initial frequencies follow no law of a string");
+    stroke_.end_stage(stroke_.damped_name("law", 200.0), widest, unknowns, best);
+    for (const double sigma : {100.0, 50.0}) {
+      best = stroke_.fit_stage(stroke_.damped_name("law", sigma), stroke_.damped(sigma), unknowns,
+                               best.theta, with_priors(unknowns, best.theta, 20, 1e-2));
+    }
+    law_ = law(priors_);
+    law_theta_ = Eigen::VectorXd::Zero(law_.size());
+    law_theta_.head(3) = best.theta;
+    law_theta_ = stroke_
+                     .fit_stage(stroke_.damped_name("law", 20.0), stroke_.damped(20.0), law_,
+                                law_theta_, with_priors(law_, law_theta_, 20, 1e-3))
+                     .theta;
+    ladder_theta_ = law_theta_;
+  }
+
+  // σ = 0, end state projected out, then once more with weights and without the noise in JᵀJ.
+  // Returns the covariance.
+  Eigen::MatrixXd finish_law(const std::string& name, ContinuationResult& result) {
+    const auto free_count = static_cast<double>(law_.size() - law_.held_count());
+    result.chi2_deviation =
+        std::hypot(std::sqrt(2.0 / stroke_.whole().degrees_of_freedom(free_count, reference_)),
+                   input_.noise_error);
+    law_theta_ = stroke_
+                     .fit_stage(name + ", whole record", stroke_.whole(), law_, law_theta_,
+                                with_priors(law_, law_theta_, 12, 1e-2))
+                     .theta;
+    NewtonOptions options = with_priors(law_, law_theta_, 4, 1e-4);
+    options.noise = stroke_.prepare_weights(law_, law_theta_);
+    const NewtonFit last = stroke_.fit(stroke_.weighted(), law_, law_theta_, options);
+    law_theta_ = last.theta;
+    const Eigen::MatrixXd covariance = stroke_.covariance_at(law_, law_theta_, options);
+    const ModelPoint model = law_.model(law_theta_);
+    LawEstimate& law = result.law;
+    law.fundamental = law_.fundamental(law_theta_);
+    law.inharmonicity = law_theta_[1];
+    law.contact = model.contact;
+    law.damping = law_.damping_factor(law_theta_);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto j = static_cast<Eigen::Index>(i);
+      law.deviation[i] = std::sqrt(std::max(covariance(j, j), 0.0));
+    }
+    law.deviation[0] *= law.fundamental;
+    law.deviation[3] = law_.damping_deviation(covariance) * law.damping;
+    law.covariance =
+        named_covariance(law_, input_.options.unknowns, law_theta_, law.damping, covariance);
+    law.chi2 = stroke_.reduced_chi2(model, free_count);
+    stroke_.end_stage(name + ", weighted bins", last.objective, law.chi2);
+    law.accepted = law.chi2 < 1.0 + 3.0 * result.chi2_deviation;
+    law.priors = law_.prior_misfit(law_theta_);
+    return covariance;
+  }
+
+  // The law's model as the result.
+  void report_law(const Eigen::MatrixXd& covariance, ContinuationResult& result) const {
+    const LawEstimate& law = result.law;
+    result.model = law_.model(law_theta_);
+    result.covariance = law.covariance;
+    result.chi2 = law.chi2;
+    result.priors = law.priors;
+    result.contact_deviation = law.deviation[2];
+    result.damping = law.damping;
+    result.damping_deviation = law.deviation[3];
+    result.damping_power = law_.damping_power(law_theta_);
+    result.damping_power_deviation = law_.damping_power_deviation(covariance);
+    result.sensor_deviation = law_.sensor_deviation(result.model, covariance);
+    result.modes = law_verdicts(result.model, law.inharmonicity, covariance.topLeftCorner(2, 2));
+    trust_stated_frequencies(priors_, {}, result.modes);
+  }
+
+  // The law once more without the modes that do not follow it: they stay where they were found.
+  void leave_out(ContinuationResult& result) {
+    const std::vector<std::size_t> others = not_following(result.modes);
+    if (others.empty()) return;
+    for (const std::size_t n : others) {
+      reference_.basis.omega[n] = result.model.basis.omega[n];
+    }
+    law_ = law(priors_.holding(others));
+    finish_law("law without the modes that do not follow it", result);
+  }
+
+  const AttemptInput& input_;
+  const StatedPriors& priors_;
+  StrokeFit stroke_;
+  ModelPoint reference_;  // the initial model with what is fixed and the sensors stated
+  StiffStringFit start_;
+  StringUnknowns law_;
+  Eigen::VectorXd law_theta_, ladder_theta_;
+};
+
+}  // namespace
+
+ContinuationResult attempt_continuation(const AttemptInput& input, double shift,
+                                        std::size_t evaluations) {
+  return Attempt(input, evaluations).run(shift);
+}
+
+}  // namespace modcal

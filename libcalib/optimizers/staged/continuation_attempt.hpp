@@ -1,0 +1,27 @@
+// One attempt of a continuation: everything between a start of f_0 and a verdict by χ².
+#pragma once
+
+#include "libcalib/optimizers/staged/continuation.hpp"
+#include "libcalib/optimizers/staged/fit_poll.hpp"
+#include "libcalib/likelihood/whitened_record.hpp"
+
+namespace modcal {
+
+/// What all attempts at one record have in common; all must outlive them.
+struct AttemptInput {
+  const ModelPoint& initial;
+  const NoisyRecords& records;
+  const ContinuationOptions& options;
+  const StatedPriors& priors;
+  double highest = 0.0;      ///< ω of the highest bin [rad/s]
+  double noise_error = 0.0;  ///< relative standard deviation of the noise power
+  /// The noise is what a wrong model leaves: no mode is said to leave a law by it.
+  bool misfit_for_noise = false;
+  FitPoll poll = {};
+};
+
+/// From ln f_0 of the start `shift` higher [1]; evaluations: those spent before, which count too.
+ContinuationResult attempt_continuation(const AttemptInput& input, double shift,
+                                        std::size_t evaluations = 0);
+
+}  // namespace modcal

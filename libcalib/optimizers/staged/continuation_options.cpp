@@ -1,0 +1,40 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "libcalib/optimizers/staged/continuation.hpp"
+#include "libcalib/likelihood/record_options.hpp"
+#include "libsim/base/error.hpp"
+
+namespace modcal {
+
+void ContinuationOptions::visit(OptionVisitor& visitor) {
+  visitor.number({.key = "law_width",
+                  .meaning = "relative width of the prior of f_n about the law",
+                  .unit = "1",
+                  .range = Range::positive(),
+                  .word = "estimated"},
+                 law_width);
+  visit_record_options(visitor, highest_frequency, left_noise, right_noise);
+  visitor.section({.key = "unknowns", .meaning = "what is free of damping and sensors"}, unknowns);
+  visitor.integer({.key = "restarts",
+                   .meaning = "other starts tried while the fit is contradicted by the data",
+                   .range = Range::closed(0.0, 4.0)},
+                  restarts);
+}
+
+double likelihood_band(const ModelPoint& point, double highest_frequency, double sample_rate) {
+  std::vector<double> omega = point.basis.omega;
+  std::sort(omega.begin(), omega.end());
+  const double highest = std::isnan(highest_frequency) ? 1.05 * omega.back()
+                                                       : 2.0 * std::numbers::pi * highest_frequency;
+  const std::size_t needed = std::min<std::size_t>(2, omega.size());
+  MODCAL_REQUIRE(omega[needed - 1] < highest,
+                 "highest_frequency {:g} Hz: below it lie fewer than the {} modes that tell f0 and "
+                 "B; state automatic, or more than {:g} Hz",
+                 highest_frequency, needed, 0.5 * omega[needed - 1] / std::numbers::pi);
+  // Above 0.4 f_s the aliases of the force's jumps are no longer small.
+  return std::min(highest, 0.8 * std::numbers::pi * sample_rate);
+}
+
+}  // namespace modcal

@@ -1,0 +1,300 @@
+#include "libcalib/optimizers/staged/joint_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "libcalib/likelihood/all_records.hpp"
+#include "libcalib/likelihood/bin_weights.hpp"
+#include "libcalib/identifiability/joint_report.hpp"
+#include "libcalib/identifiability/mode_verdict.hpp"
+#include "libcalib/optimizers/staged/newton_fit.hpp"
+#include "libcalib/likelihood/noise_level.hpp"
+#include "libcalib/optimizers/staged/pluck_search.hpp"
+#include "libcalib/identifiability/stated_verdict.hpp"
+
+namespace modcal {
+namespace {
+
+using Index = Eigen::Index;
+
+// The record to start from has the smallest χ²; its contact is that of the first.
+StringUnknowns shared_unknowns(const RecordsFit& fit, const ContinuationOptions& options,
+                               const StatedPriors& priors) {
+  const auto best = std::min_element(
+      fit.single.begin(), fit.single.end(),
+      [](const ContinuationResult& a, const ContinuationResult& b) { return a.chi2 < b.chi2; });
+  ModelPoint reference = best->model;
+  reference.contact = fit.single.front().model.contact;
+  return options.frequencies
+             ? StringUnknowns::frequencies(reference, options.unknowns, priors)
+             : StringUnknowns::law(reference, best->law.fundamental, best->law.inharmonicity,
+                                   options.unknowns, priors);
+}
+
+// The fit of all records, from their gathering to the report.
+class JointFit {
+ public:
+  JointFit(const ModelPoint& initial, const ContinuationOptions& options,
+           const StatedPriors& priors, const FitPoll& poll, RecordsFit& fit)
+      : initial_(initial),
+        options_(options),
+        priors_(priors),
+        poll_(poll),
+        fit_(fit),
+        all_(shared_unknowns(fit, options, priors)) {}
+
+  void add(const CalibrationData& stroke) {
+    poll();
+    const std::array<double, 2> noise{options_.left_noise, options_.right_noise};
+    const NoisyRecords noisy = NoisyRecords::of_data(stroke, initial_.basis, noise);
+    const double highest =
+        likelihood_band(initial_, options_.highest_frequency, stroke.sample_rate);
+    const ProjectedLikelihood whole(WhitenedRecord::of(noisy, 0.0, highest));
+    ProjectedLikelihood weighted = whole;
+    const Eigen::VectorXd start = own_start(fit_.single[all_.records()].model);
+    weighted.set_weights(weights(whole, start));
+    all_.add(std::make_shared<StrokeLikelihood>(whole, std::move(weighted)), start,
+             own_places(true), held_contact(all_.records()));
+    noise_errors_.push_back(noise_power_error(noise, initial_.basis, stroke));
+  }
+
+  void add(const PluckRecord& pluck) {
+    poll();
+    const NoisyRecords noisy = NoisyRecords::of_data(pluck.data, initial_.basis, pluck.noise);
+    const double highest =
+        likelihood_band(initial_, options_.highest_frequency, pluck.data.sample_rate);
+    plucks_.push_back(std::make_shared<PluckLikelihood>(WhitenedRecord::of(noisy, 0.0, highest)));
+    all_.add(plucks_.back(), unknowns().start(), own_places(false));
+    noise_errors_.push_back(noise_power_error(pluck.noise, initial_.basis, pluck.data));
+  }
+
+  void run() {
+    theta_ = all_.start();
+    NewtonOptions newton{.steps = 10, .tolerance = 1e-4, .frequency_cap = 1e-3};
+    if (unknowns().is_law()) {
+      state(equations(priors_, nullptr), newton);
+      newton.noise = all_.noise(theta_);
+      search("law", newton);
+      fit_.priors = misfit(PriorEquations(all_.size()));
+    } else {
+      listen_to_plucks();
+      free_frequencies(newton);
+    }
+    const LikelihoodPoint last = point(true);
+    Eigen::MatrixXd covariance = fit_covariance(last, newton);
+    all_.clear_held(covariance);
+    report_joint_fit({.all = all_,
+                      .initial = initial_,
+                      .options = options_,
+                      .priors = priors_,
+                      .theta = theta_,
+                      .seen = seen_,
+                      .followers = followers_},
+                     covariance, fit_);
+    // As for one record: the law's unknowns have no prior that takes their place.
+    const double taken =
+        unknowns().is_law() ? static_cast<double>(all_.free_count()) : taken_by_fit(last, newton);
+    const AllRecords::Misfit misfit = all_.misfit(theta_, noise_errors_, taken);
+    fit_.chi2 = fit_.stages.back().chi2 = misfit.chi2;
+    fit_.chi2_deviation = misfit.deviation;
+    fit_.fits = fit_.chi2 < 1.0 + 3.0 * fit_.chi2_deviation;
+    fit_.right = fit_.fits && !fit_.priors.contradicted();
+    if (!unknowns().is_law()) return;
+    fit_.law.chi2 = fit_.chi2;
+    fit_.law.accepted = fit_.fits;
+    fit_.law.priors = fit_.priors;
+  }
+
+ private:
+  const StringUnknowns& unknowns() const { return all_.unknowns(); }
+  // As for one record: where the law holds, its unknowns say what the bins of the next record tell.
+  // A mode in a node of the contact, free, would take the bins that tell the contact for its own.
+  std::vector<double> weights(const ProjectedLikelihood& whole,
+                              const Eigen::VectorXd& start) const {
+    const std::size_t record = all_.records();
+    const ContinuationResult& single = fit_.single[record];
+    if (unknowns().is_law() || !single.law.accepted) {
+      return information_weights(whole, unknowns().model(start), unknowns().columns(start, record));
+    }
+    const StringUnknowns law = StringUnknowns::law(
+        single.model, single.law.fundamental, single.law.inharmonicity, options_.unknowns, priors_);
+    return information_weights(whole, law.model(law.start()), law.columns(law.start(), record));
+  }
+  Index modes() const { return static_cast<Index>(unknowns().modes()); }
+  double inharmonicity() const { return fit_.single.front().law.inharmonicity; }
+  // Unknowns that are each record's own; a pluck has no contact.
+  std::vector<Index> own_places(bool stroke) const {
+    std::vector<Index> places;
+    const UnknownsOptions& own = options_.unknowns;
+    if (stroke && own.own(UnknownKind::kContact)) places.push_back(unknowns().contact());
+    if (own.own(UnknownKind::kDampingFactor)) places.push_back(unknowns().damping());
+    const UnknownKind sensors[] = {UnknownKind::kGain, UnknownKind::kDelay, UnknownKind::kCorner};
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (own.own(sensors[i])) places.push_back(unknowns().sensor(i));
+    }
+    return places;
+  }
+  // θ of a stroke that was fitted by itself, as far as it is its own.
+  Eigen::VectorXd own_start(const ModelPoint& single) const {
+    const ModelPoint shared = unknowns().model(unknowns().start());
+    Eigen::VectorXd start = unknowns().start();
+    for (const Index i : own_places(true)) {
+      if (i == unknowns().contact()) start[i] = single.contact - shared.contact;
+      if (i == unknowns().damping()) {
+        start[i] = mean_damping_change(priors_.held(), single, shared);
+      }
+      if (i == unknowns().sensor(0)) start[i] = std::log(single.sensors.gain / shared.sensors.gain);
+      if (i == unknowns().sensor(1)) start[i] = single.sensors.delay - shared.sensors.delay;
+      if (i == unknowns().sensor(2)) start[i] = single.sensors.corner - shared.sensors.corner;
+    }
+    return start;
+  }
+  std::optional<double> held_contact(std::size_t record) const {
+    const HeldParameters& held = priors_.held();
+    return held.contact(record) ? held.contacts[record] : std::nullopt;
+  }
+  void poll() const {
+    if (poll_) poll_();
+  }
+  LikelihoodPoint point(bool twice_weighted) {
+    poll();
+    ++fit_.evaluations;
+    return all_.evaluate(theta_, twice_weighted);
+  }
+
+  // Priors about θ; widths of the frequencies' scatter about the law, or null.
+  PriorEquations equations(const StatedPriors& priors, const Eigen::VectorXd* widths) const {
+    PriorEquations result(all_.size());
+    priors.state([&](const UnknownName& name) { return all_.coordinate(name, theta_); }, result);
+    // About the damping stated: that of the strokes by themselves is in the data already.
+    unknowns().state_damping_ratios(initial_.basis.zeta, result);
+    if (widths) result.add_scatter({*widths, inharmonicity()}, unknowns().log_frequencies());
+    all_.hold(result);
+    return result;
+  }
+  PriorMisfit misfit(const PriorEquations& equations) const {
+    return priors_.misfit([&](const UnknownName& name) { return all_.coordinate(name, theta_); },
+                          equations.completed(theta_));
+  }
+  static void state(const PriorEquations& equations, NewtonOptions& newton) {
+    QuadraticPrior prior = equations.solve();
+    newton.prior = std::move(prior.precision);
+    newton.prior_mean = std::move(prior.mean);
+  }
+
+  void search(const char* stage, const NewtonOptions& newton) {
+    const NewtonFit found = newton_fit(
+        {.evaluate = [this](const Eigen::VectorXd& theta) { return all_.evaluate(theta, false); },
+         .admits = [this](const Eigen::VectorXd& theta) { return all_.admits(theta); },
+         .capped = unknowns().is_law() ? 0 : modes(),
+         .poll = poll_},
+        theta_, newton);
+    theta_ = found.theta;
+    fit_.evaluations += found.evaluations;
+    fit_.stages.push_back(
+        {.name = stage, .evaluations = fit_.evaluations, .objective = found.objective});
+  }
+
+  // Frequencies that no stroke identifies go where most of the plucks' power is, within ±0.6 %.
+  void listen_to_plucks() {
+    if (plucks_.empty()) return;
+    for (Index i = 0; i < modes(); ++i) {
+      const auto n = static_cast<std::size_t>(i);
+      const bool identified =
+          std::any_of(fit_.single.begin(), fit_.single.end(), [n](const ContinuationResult& r) {
+            return r.modes[n].source == ModeSource::kIdentified;
+          });
+      if (!identified && !unknowns().held(i))
+        theta_[i] += loudest_shift(plucks_, all_.model(theta_, 0), n);
+    }
+  }
+
+  // What the data tell under a prior that only keeps a mode from wandering, then the law's.
+  void free_frequencies(NewtonOptions& newton) {
+    const Eigen::VectorXd wide = Eigen::VectorXd::Constant(modes(), kWidePrior);
+    state(equations(priors_, &wide), newton);
+    newton.noise = all_.noise(theta_);
+    search("free, weighted bins", newton);
+    const LikelihoodPoint at = point(true);
+    // A prior of a mode's frequency is no sight of it.
+    NewtonOptions unstated = newton;
+    state(equations(priors_.without_frequencies(), &wide), unstated);
+    const Eigen::VectorXd deviation =
+        fit_covariance(at, unstated).diagonal().head(modes()).cwiseMax(0.0).cwiseSqrt();
+    const ModelPoint model = all_.model(theta_, 0);
+    Eigen::VectorXd delta(modes());
+    for (Index i = 0; i < modes(); ++i) {
+      const double n = static_cast<double>(i + 1);
+      delta[i] = std::log(model.basis.omega[static_cast<std::size_t>(i)] /
+                          (n * std::sqrt(1.0 + inharmonicity() * n * n)));
+    }
+    ModeSight sight = sight_of(delta, deviation, at.information, newton.noise, nodes_of_all());
+    followers_ = find_followers(sight, inharmonicity(), options_.law_width);
+    fit_.law_width = followers_.prior_width;
+    Eigen::VectorXd widths = prior_widths(sight.seen, fit_.law_width, followers_.width);
+    widen_stated(priors_, fit_.law_width, widths);
+    release(followers_, sight, widths);
+    seen_ = sight.seen;
+    state(equations(priors_, &widths), newton);
+    search("free, prior as wide as the law's followers", newton);
+    fit_.priors = misfit(equations(priors_, &widths));
+  }
+
+  // A mode at a node of every contact is no surprise to a pluck.
+  std::vector<bool> nodes_of_all() const {
+    if (!plucks_.empty()) return std::vector<bool>(unknowns().modes(), false);
+    std::vector<double> contacts;
+    for (std::size_t r = 0; r < fit_.single.size(); ++r) {
+      contacts.push_back(all_.model(theta_, r).contact);
+    }
+    return nodes(all_.model(theta_, 0).basis, contacts);
+  }
+
+  const ModelPoint& initial_;
+  const ContinuationOptions& options_;
+  const StatedPriors& priors_;
+  const FitPoll& poll_;
+  RecordsFit& fit_;
+  AllRecords all_;
+  std::vector<std::shared_ptr<const PluckLikelihood>> plucks_;
+  std::vector<double> noise_errors_;
+  Eigen::VectorXd theta_;
+  Eigen::VectorXd seen_;  // of δ, under the wide prior
+  LawFollowers followers_;
+};
+
+void run_fit(const ModelPoint& initial, const ContinuationOptions& options,
+             const StatedPriors& priors, std::span<const CalibrationData> strokes,
+             std::span<const PluckRecord> plucks, const FitPoll& poll, RecordsFit& fit) {
+  JointFit joint(initial, options, priors, poll, fit);
+  for (const CalibrationData& stroke : strokes) joint.add(stroke);
+  for (const PluckRecord& pluck : plucks) joint.add(pluck);
+  joint.run();
+}
+
+}  // namespace
+
+void fit_jointly(const ModelPoint& initial, const ContinuationOptions& options,
+                 const StatedPriors& priors, std::span<const CalibrationData> strokes,
+                 std::span<const PluckRecord> plucks, const FitPoll& poll, RecordsFit& fit) {
+  run_fit(initial, options, priors, strokes, plucks, poll, fit);
+  if (!options.frequencies) return;
+  // Frequencies that are free say what the law is only as far as they may leave it.
+  ContinuationOptions law_alone = options;
+  law_alone.frequencies = false;
+  RecordsFit alone{.single = fit.single};
+  const std::vector<std::size_t> others = not_following(fit.modes);
+  for (ContinuationResult& single : alone.single) {
+    for (const std::size_t n : others) {
+      single.model.basis.omega[n] = fit.model.basis.omega[n];
+    }
+  }
+  run_fit(initial, law_alone, priors.holding(others), strokes, plucks, poll, alone);
+  fit.law = alone.law;
+  append_stages(alone.stages, "", fit.evaluations, fit.stages);
+  fit.evaluations += alone.evaluations;
+  report_departures(fit.law, fit.modes);
+}
+
+}  // namespace modcal

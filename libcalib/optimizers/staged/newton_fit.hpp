@@ -1,0 +1,71 @@
+// Damped Newton steps on the joint likelihood with the information freed of its noise.
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <limits>
+#include <span>
+
+#include "libcalib/optimizers/staged/fit_poll.hpp"
+#include "libcalib/likelihood/string_unknowns.hpp"
+
+namespace modcal {
+
+struct NewtonOptions {
+  std::size_t steps = 15;
+  /// Ends when gᵀH⁻¹g is below this: the step is then below its root in standard deviations.
+  double tolerance = 1e-4;
+  double frequency_cap = std::numeric_limits<double>::infinity();  ///< of one δ_n in one step
+  Eigen::MatrixXd noise;       ///< N̄; empty: none is subtracted
+  Eigen::MatrixXd prior;       ///< precision Q; empty: none
+  Eigen::VectorXd prior_mean;  ///< θ_0; empty: 0
+  /// What the target gives at the start, where that is known; null: it is evaluated.
+  const LikelihoodPoint* at_start = nullptr;
+};
+
+/// What a fit evaluates.
+struct FitTarget {
+  std::function<LikelihoodPoint(const Eigen::VectorXd&)> evaluate;
+  std::function<bool(const Eigen::VectorXd&)> admits;
+  Eigen::Index capped = 0;  ///< leading unknowns that frequency_cap holds
+  /// Cost and slope alone; empty: evaluate.
+  std::function<LikelihoodPoint(const Eigen::VectorXd&)> slope = {};
+  /// Cost, slope and, as its rows, those of the information of some unknowns, or all of it; empty:
+  /// evaluate.
+  std::function<LikelihoodPoint(const Eigen::VectorXd&, std::span<const std::size_t> wanted)> rows =
+      {};
+  FitPoll poll = {};
+};
+
+struct NewtonFit {
+  Eigen::VectorXd theta;
+  double objective = std::numeric_limits<double>::infinity();  ///< Σ w|e|² + ½ (θ − θ_0)ᵀQ(θ − θ_0)
+  LikelihoodPoint point;  ///< rows of its information may be those of points before
+  std::size_t evaluations = 0;
+  std::size_t slopes = 0;   ///< those of cost and slope alone
+  std::size_t partial = 0;  ///< those of some rows of the information
+  bool converged = false;
+};
+
+/// Minimizes Σ w|e|² + ½ (θ − θ_0)ᵀQ(θ − θ_0) from `start`, Hessian 2(JᵀWJ − N̄) + Q. JᵀWJ is
+/// found where a step starts: not where one is refused, nor where the last one ends. Unknowns that
+/// have moved by less than a fifth of their standard deviation since their row of it was found keep
+/// that row, save what they share with one that has moved.
+NewtonFit newton_fit(const FitTarget& target, const Eigen::VectorXd& start,
+                     const NewtonOptions& options);
+/// The same for one record.
+NewtonFit newton_fit(const ProjectedLikelihood& likelihood, const StringUnknowns& unknowns,
+                     const Eigen::VectorXd& start, const NewtonOptions& options,
+                     const FitPoll& poll = {});
+
+/// 2(JᵀWJ − N̄) + Q, N̄ shrunk by 0.9 as often as it takes to leave 2(JᵀWJ − N̄) + 0.9 Q positive
+/// definite: no direction comes out much worse known than the prior has it.
+Eigen::MatrixXd debiased_hessian(const Eigen::MatrixXd& information, const NewtonOptions& options);
+
+/// How many residuals the fit takes, 2 tr H⁻¹JᵀWJ: an unknown that its prior holds takes none.
+double taken_by_fit(const LikelihoodPoint& point, const NewtonOptions& options);
+
+/// H⁻¹(2 JᵀW²J + Q)H⁻¹ of the fit's last point, which must hold `twice_weighted`.
+Eigen::MatrixXd fit_covariance(const LikelihoodPoint& point, const NewtonOptions& options);
+
+}  // namespace modcal

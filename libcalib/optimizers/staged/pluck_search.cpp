@@ -1,0 +1,35 @@
+#include "libcalib/optimizers/staged/pluck_search.hpp"
+
+#include <cmath>
+
+namespace modcal {
+namespace {
+
+constexpr double kReach = 6e-3;
+constexpr double kMargin = 20.0;  // of the largest of some tens of places with noise alone
+
+}  // namespace
+
+double loudest_shift(std::span<const std::shared_ptr<const PluckLikelihood>> plucks,
+                     const ModelPoint& model, std::size_t mode) {
+  const double zeta = model.basis.zeta[mode];
+  const auto power = [&](double shift) {
+    const double omega = model.basis.omega[mode] * std::exp(shift);
+    double sum = 0.0;
+    for (const auto& pluck : plucks) {
+      const Complex rate(-zeta * omega, omega * std::sqrt(1.0 - zeta * zeta));
+      sum += pluck->power_about(std::exp(rate / pluck->record().sample_rate), omega);
+    }
+    return sum;
+  };
+  double best = power(0.0) + kMargin, found = 0.0;
+  for (double shift = -kReach; shift <= kReach; shift += 0.5 * zeta) {
+    if (const double value = power(shift); value > best) {
+      best = value;
+      found = shift;
+    }
+  }
+  return found;
+}
+
+}  // namespace modcal

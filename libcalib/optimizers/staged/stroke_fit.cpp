@@ -1,0 +1,105 @@
+#include "libcalib/optimizers/staged/stroke_fit.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "libcalib/likelihood/bin_weights.hpp"
+
+namespace modcal {
+namespace {
+
+constexpr std::size_t kNoiseRepeats = 3;
+
+}  // namespace
+
+void set_prior(QuadraticPrior prior, NewtonOptions& options) {
+  options.prior = std::move(prior.precision);
+  options.prior_mean = std::move(prior.mean);
+}
+
+ProjectedLikelihood StrokeFit::damped(double sigma) const {
+  poll();
+  return ProjectedLikelihood(WhitenedRecord::of(input_.records, sigma * unit_, input_.highest));
+}
+
+std::string StrokeFit::damped_name(std::string_view unknowns, double sigma) const {
+  return fmt::format("{}, sigma = {:.3g} 1/s", unknowns, sigma * unit_);
+}
+
+const ProjectedLikelihood& StrokeFit::whole() {
+  if (whole_) return *whole_;
+  poll();
+  whole_.emplace(WhitenedRecord::of(input_.records, 0.0, input_.highest));
+  return *whole_;
+}
+
+NewtonFit StrokeFit::fit(const ProjectedLikelihood& likelihood, const StringUnknowns& unknowns,
+                         const Eigen::VectorXd& theta, const NewtonOptions& options) {
+  NewtonFit result = newton_fit(likelihood, unknowns, theta, options, input_.poll);
+  evaluations_ += result.evaluations;
+  return result;
+}
+
+NewtonFit StrokeFit::fit_stage(std::string name, const ProjectedLikelihood& likelihood,
+                               const StringUnknowns& unknowns, const Eigen::VectorXd& theta,
+                               const NewtonOptions& options) {
+  NewtonFit found = fit(likelihood, unknowns, theta, options);
+  end_stage(std::move(name), likelihood, unknowns, found);
+  return found;
+}
+
+void StrokeFit::end_stage(std::string name, const ProjectedLikelihood& likelihood,
+                          const StringUnknowns& unknowns, const NewtonFit& found) {
+  const auto free_count = static_cast<std::size_t>(unknowns.size() - unknowns.held_count());
+  const double freedom = likelihood.degrees_of_freedom(free_count, unknowns.model(found.theta));
+  end_stage(std::move(name), found.objective, 2.0 * found.point.cost / freedom);
+}
+
+void StrokeFit::end_stage(std::string name, double objective, double chi2) {
+  stages_.push_back({std::move(name), evaluations_, objective, chi2});
+}
+
+double StrokeFit::cost(const ProjectedLikelihood& likelihood, const ModelPoint& point) {
+  poll();
+  ++evaluations_;
+  return likelihood.cost(point);
+}
+
+double StrokeFit::reduced_chi2(const ModelPoint& point, double taken) {
+  return 2.0 * cost(whole(), point) / (whole().degrees_of_freedom(0, point) - taken);
+}
+
+Eigen::MatrixXd StrokeFit::prepare_weights(const StringUnknowns& unknowns,
+                                           const Eigen::VectorXd& theta) {
+  const ModelPoint point = unknowns.model(theta);
+  weighted_ = whole();
+  poll();
+  weighted_->set_weights(information_weights(whole(), point, unknowns.columns(theta)));
+  return noise_at(unknowns, theta);
+}
+
+Eigen::MatrixXd StrokeFit::noise_at(const StringUnknowns& unknowns,
+                                    const Eigen::VectorXd& theta) const {
+  poll();
+  return weighted_->noise_information(unknowns.model(theta), unknowns.columns(theta),
+                                      kNoiseRepeats);
+}
+
+LikelihoodPoint StrokeFit::weighted_point(const StringUnknowns& unknowns,
+                                          const Eigen::VectorXd& theta) {
+  poll();
+  ++evaluations_;
+  return weighted_->evaluate(unknowns.model(theta), unknowns.columns(theta),
+                             {.twice_weighted = true});
+}
+
+Eigen::MatrixXd StrokeFit::covariance_at(const StringUnknowns& unknowns,
+                                         const Eigen::VectorXd& theta,
+                                         const NewtonOptions& options) {
+  Eigen::MatrixXd covariance = fit_covariance(weighted_point(unknowns, theta), options);
+  unknowns.clear_held(covariance);
+  return covariance;
+}
+
+}  // namespace modcal

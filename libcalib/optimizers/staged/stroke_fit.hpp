@@ -1,0 +1,71 @@
+// Fits of one stroke: on damped records, on the whole one, and on the whole one with weights.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "libcalib/optimizers/staged/continuation_attempt.hpp"
+#include "libcalib/optimizers/staged/newton_fit.hpp"
+
+namespace modcal {
+
+/// The likelihoods of a stroke's record and how often they were evaluated.
+class StrokeFit {
+ public:
+  /// input must outlive this; evaluations: those spent before.
+  StrokeFit(const AttemptInput& input, std::size_t evaluations)
+      : input_(input), evaluations_(evaluations) {}
+
+  std::size_t evaluations() const { return evaluations_; }
+  /// Called by all that takes the time of an evaluation.
+  void poll() const {
+    if (input_.poll) input_.poll();
+  }
+  /// σ [1/s] of a string of 196 Hz, in proportion to f_0 on others.
+  void scale_damping(double fundamental) { unit_ = fundamental / 196.0; }
+  /// "law, sigma = 200 1/s".
+  std::string damped_name(std::string_view unknowns, double sigma) const;
+  ProjectedLikelihood damped(double sigma) const;
+  /// σ = 0, the end state projected out; made once.
+  const ProjectedLikelihood& whole();
+  /// The same with the weights prepared last.
+  const ProjectedLikelihood& weighted() const { return *weighted_; }
+
+  NewtonFit fit(const ProjectedLikelihood& likelihood, const StringUnknowns& unknowns,
+                const Eigen::VectorXd& theta, const NewtonOptions& options);
+  /// The same as a stage of its own, on a record without weights.
+  NewtonFit fit_stage(std::string name, const ProjectedLikelihood& likelihood,
+                      const StringUnknowns& unknowns, const Eigen::VectorXd& theta,
+                      const NewtonOptions& options);
+  /// Ends a stage with this fit on a record without weights.
+  void end_stage(std::string name, const ProjectedLikelihood& likelihood,
+                 const StringUnknowns& unknowns, const NewtonFit& found);
+  /// Ends a stage with weights; chi2: of the whole record, NaN where it was not asked for.
+  void end_stage(std::string name, double objective, double chi2);
+  const std::vector<FitStage>& stages() const { return stages_; }
+  double cost(const ProjectedLikelihood& likelihood, const ModelPoint& point);
+  /// Reduced χ² of the whole record; taken: residuals that the fit took.
+  double reduced_chi2(const ModelPoint& point, double taken);
+
+  /// Weights of the bins and N̄ under them, at θ.
+  Eigen::MatrixXd prepare_weights(const StringUnknowns& unknowns, const Eigen::VectorXd& theta);
+  Eigen::MatrixXd noise_at(const StringUnknowns& unknowns, const Eigen::VectorXd& theta) const;
+  /// The weighted record at θ, with what its covariance takes.
+  LikelihoodPoint weighted_point(const StringUnknowns& unknowns, const Eigen::VectorXd& theta);
+  Eigen::MatrixXd covariance_at(const StringUnknowns& unknowns, const Eigen::VectorXd& theta,
+                                const NewtonOptions& options);
+
+ private:
+  const AttemptInput& input_;
+  std::optional<ProjectedLikelihood> whole_, weighted_;
+  double unit_ = 1.0;
+  std::size_t evaluations_;
+  std::vector<FitStage> stages_;
+};
+
+/// Takes the place of the prior among the options.
+void set_prior(QuadraticPrior prior, NewtonOptions& options);
+
+}  // namespace modcal

@@ -1,0 +1,101 @@
+#include "libcalib/parameters/prior_equations.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+#include <cmath>
+
+namespace modcal {
+
+using Index = Eigen::Index;
+
+PriorEquations::PriorEquations(Index unknowns)
+    : unknowns_(unknowns),
+      normal_(Eigen::MatrixXd::Zero(unknowns + 2, unknowns + 2)),
+      right_(Eigen::VectorXd::Zero(unknowns + 2)) {}
+
+void PriorEquations::add(const std::vector<LinearForm>& forms, const Eigen::VectorXd& means,
+                         const Eigen::MatrixXd& covariance) {
+  if (forms.empty()) return;
+  const auto count = static_cast<Index>(forms.size());
+  Eigen::MatrixXd slopes = Eigen::MatrixXd::Zero(count, unknowns_ + 2);
+  Eigen::VectorXd targets(count);
+  // Deviations differ by many powers of ten: whitened by those first.
+  const Eigen::VectorXd scale = covariance.diagonal().cwiseSqrt().cwiseInverse();
+  for (Index i = 0; i < count; ++i) {
+    const LinearForm& form = forms[static_cast<std::size_t>(i)];
+    const Index own = form.slope.size() - 2;
+    slopes.row(i).head(own) = scale[i] * form.slope.head(own).transpose();
+    slopes.row(i).tail(2) = scale[i] * form.slope.tail(2).transpose();
+    targets[i] = scale[i] * (means[i] - form.offset);
+  }
+  const Eigen::LLT<Eigen::MatrixXd> factor(scale.asDiagonal() * covariance * scale.asDiagonal());
+  factor.matrixL().solveInPlace(slopes);
+  factor.matrixL().solveInPlace(targets);
+  normal_ += slopes.transpose() * slopes;
+  right_ += slopes.transpose() * targets;
+}
+
+void PriorEquations::add(const LinearForm& form, double mean, double deviation) {
+  add({form}, Eigen::VectorXd::Constant(1, mean),
+      Eigen::MatrixXd::Constant(1, 1, deviation * deviation));
+}
+
+void PriorEquations::add_scatter(const LawScatter& law, const Eigen::VectorXd& reference) {
+  for (Index i = 0; i < law.widths.size(); ++i) {
+    const double n = static_cast<double>(i + 1);
+    const double stiff = 1.0 + law.inharmonicity * n * n;
+    const double slope = 0.5 * n * n / stiff;
+    LinearForm form{.slope = Eigen::VectorXd::Zero(unknowns_ + 2)};
+    form.slope[i] = 1.0;
+    form.slope[unknowns_] = -1.0;
+    form.slope[unknowns_ + 1] = -slope;
+    form.offset = reference[i] - std::log(n * std::sqrt(stiff)) + slope * law.inharmonicity;
+    add(form, 0.0, law.widths[i]);
+  }
+}
+
+void PriorEquations::hold(Index i, double value) {
+  right_ -= normal_.col(i) * value;
+  normal_.row(i).setZero();
+  normal_.col(i).setZero();
+  right_[i] = 0.0;
+  if (i >= unknowns_) return;
+  normal_(i, i) = 1.0;
+  right_[i] = value;
+}
+
+Eigen::VectorXd PriorEquations::completed(const Eigen::VectorXd& theta) const {
+  Eigen::VectorXd z = Eigen::VectorXd::Zero(unknowns_ + 2);
+  z.head(unknowns_) = theta;
+  const Eigen::Vector2d right = right_.tail(2) - normal_.bottomRows(2) * z;
+  const Eigen::Matrix2d normal = normal_.bottomRightCorner<2, 2>();
+  const Eigen::Vector2d scale = normal.diagonal().unaryExpr(
+      [](double entry) { return entry > 0.0 ? 1.0 / std::sqrt(entry) : 0.0; });
+  Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix2d> solver;
+  solver.setThreshold(1e-11);
+  solver.compute(scale.asDiagonal() * normal * scale.asDiagonal());
+  z.tail(2) = scale.asDiagonal() * solver.solve(scale.asDiagonal() * right).eval();
+  return z;
+}
+
+QuadraticPrior PriorEquations::solve() const {
+  Eigen::MatrixXd normal = normal_;
+  Eigen::VectorXd right = right_;
+  for (const Index law : {unknowns_, unknowns_ + 1}) {
+    const double pivot = normal(law, law);
+    if (!(pivot > 1e-12 * normal_(law, law))) continue;
+    const Eigen::VectorXd column = normal.col(law) / pivot;
+    right -= column * right[law];
+    normal -= column * normal.row(law).eval();
+  }
+  QuadraticPrior prior{.precision = normal.topLeftCorner(unknowns_, unknowns_)};
+  const Eigen::VectorXd scale = prior.precision.diagonal().unaryExpr(
+      [](double entry) { return entry > 0.0 ? 1.0 / std::sqrt(entry) : 0.0; });
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
+  solver.setThreshold(1e-11);
+  solver.compute(scale.asDiagonal() * prior.precision * scale.asDiagonal());
+  prior.mean = scale.asDiagonal() * solver.solve(scale.asDiagonal() * right.head(unknowns_));
+  return prior;
+}
+
+}  // namespace modcal

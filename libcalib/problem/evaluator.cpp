@@ -1,0 +1,196 @@
+#include "libcalib/problem/evaluator.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "libsim/base/error.hpp"
+
+namespace modcal {
+namespace {
+
+void require_valid(const Variable& variable) {
+  MODCAL_REQUIRE(variable.lower <= variable.initial && variable.initial <= variable.upper &&
+                     std::isfinite(variable.lower) && std::isfinite(variable.upper),
+                 "initial value {:g} {} of \"{}\" must lie in its finite bounds [{:g}, {:g}]",
+                 variable.initial, variable.unit, variable.name, variable.lower, variable.upper);
+  MODCAL_REQUIRE(variable.lower < variable.upper,
+                 "\"{}\" has no room between its bounds {:g} and {:g} {}: leave it out of the free "
+                 "parameters or widen its range",
+                 variable.name, variable.lower, variable.upper, variable.unit);
+  MODCAL_REQUIRE(variable.scale > 0.0 && std::isfinite(variable.scale),
+                 "scale {:g} of \"{}\" must be > 0", variable.scale, variable.name);
+}
+
+bool all_finite(const double* values, std::size_t count) {
+  return std::all_of(values, values + count, [](double value) { return std::isfinite(value); });
+}
+
+}  // namespace
+
+Evaluator::Evaluator(const ObjectiveFunction& function, std::span<const Variable> variables,
+                     const Budget& budget, SecondsClock clock)
+    : function_(function),
+      variables_(variables.begin(), variables.end()),
+      budget_(budget),
+      clock_(std::move(clock)),
+      begin_(clock_()),
+      best_value_(std::numeric_limits<double>::infinity()) {
+  budget_.require_valid();
+  MODCAL_REQUIRE(variables.size() == function.dimension() && !variables.empty(),
+                 "objective \"{}\" has {} variables, {} are described", function.name(),
+                 function.dimension(), variables.size());
+  for (const Variable& variable : variables_) {
+    require_valid(variable);
+    lower_.push_back((variable.lower - variable.initial) / variable.scale);
+    upper_.push_back((variable.upper - variable.initial) / variable.scale);
+    x_.push_back(variable.initial);
+  }
+  // So that searches that allocate nothing are not made to.
+  result_.trace.reserve(256);
+  best_.reserve(x_.size());
+}
+
+std::int64_t Evaluator::evaluations_left() const {
+  const std::int64_t kept = scanner_ ? 1 : 0;
+  return std::max<std::int64_t>(0, budget_.evaluations - kept - result_.evaluations);
+}
+
+void Evaluator::stop(StopReason reason) {
+  stop_ = reason;
+  throw Stopped{};
+}
+
+void Evaluator::require_budget(std::int64_t evaluations) {
+  if (stopped()) throw Stopped{};
+  if (evaluations > evaluations_left()) stop(StopReason::kEvaluationBudget);
+  if (seconds() >= budget_.seconds) stop(StopReason::kTimeBudget);
+}
+
+void Evaluator::to_user(std::span<const double> z) {
+  for (std::size_t i = 0; i < x_.size(); ++i) {
+    const Variable& variable = variables_[i];
+    x_[i] = std::clamp(variable.initial + variable.scale * z[i], variable.lower, variable.upper);
+  }
+}
+
+void Evaluator::to_scaled(const ObjectiveOutputs& outputs) const {
+  const std::size_t n = dimension();
+  for (std::size_t i = 0; i < n; ++i) {
+    if (outputs.gradient) outputs.gradient[i] *= variables_[i].scale;
+    if (!outputs.jacobian) continue;
+    for (std::size_t j = 0; j < residual_count(); ++j) {
+      outputs.jacobian[j * n + i] *= variables_[i].scale;
+    }
+  }
+}
+
+void Evaluator::note(double value) {
+  if (!(value < best_value_)) return;
+  best_value_ = value;
+  best_ = x_;
+  result_.trace.push_back({result_.evaluations, seconds(), value});
+}
+
+void Evaluator::evaluate(std::span<const double> z, const ObjectiveOutputs& outputs) {
+  const Capabilities known = function_.capabilities();
+  const bool gradient_missing = outputs.gradient && !known.gradient;
+  if (gradient_missing && known.least_squares) {
+    gradient_from_residuals(z, outputs);
+  } else if (gradient_missing || (outputs.jacobian && !known.least_squares)) {
+    evaluate_with_differences(z, outputs);
+  } else {
+    evaluate_given(z, outputs);
+  }
+}
+
+void Evaluator::evaluate_given(std::span<const double> z, const ObjectiveOutputs& outputs) {
+  assert(z.size() == dimension());
+  require_budget(1);
+  if (!all_finite(z.data(), z.size())) stop(StopReason::kNotFinite);
+  to_user(z);
+  double value = 0.0;
+  ObjectiveOutputs asked = outputs;
+  asked.value = &value;
+  ++result_.evaluations;
+  function_.evaluate(x_, asked);
+  if (outputs.value) *outputs.value = value;
+  const std::size_t n = dimension();
+  const bool slopes_finite = (!asked.gradient || all_finite(asked.gradient, n)) &&
+                             (!asked.jacobian || all_finite(asked.jacobian, n * residual_count()));
+  if (std::isnan(value) || !slopes_finite) stop(StopReason::kNotFinite);
+  to_scaled(asked);
+  note(value);
+  if (value <= budget_.target) stop(StopReason::kTargetReached);
+}
+
+double Evaluator::value(std::span<const double> z) {
+  double result = 0.0;
+  evaluate(z, {.value = &result});
+  return result;
+}
+
+bool Evaluator::try_evaluate(std::span<const double> z, const ObjectiveOutputs& outputs) noexcept {
+  try {
+    double value = 0.0;
+    ObjectiveOutputs asked = outputs;
+    asked.value = outputs.value ? outputs.value : &value;
+    evaluate(z, asked);
+    if (std::isfinite(*asked.value)) return true;
+    stop_ = StopReason::kNotFinite;
+  } catch (const Stopped&) {
+  } catch (...) {
+    error_ = std::current_exception();
+  }
+  return false;
+}
+
+void Evaluator::begin() {
+  assert(result_.evaluations == 0);
+  // Not by the value returned: a target reached at once throws.
+  evaluate(start(), {.value = &result_.initial_value});
+}
+
+void Evaluator::open_scan() {
+  position_.clear();
+  for (const Variable& variable : variables_) position_.push_back(variable.initial);
+  scanner_ = function_.scanner(position_);
+}
+
+void Evaluator::scan(std::size_t i, std::span<const double> candidates, std::span<double> values) {
+  assert(scanner_ && i < dimension() && candidates.size() == values.size());
+  require_budget(static_cast<std::int64_t>(candidates.size()));
+  result_.evaluations += static_cast<std::int64_t>(candidates.size());
+  scanner_->scan(i, candidates, values);
+  for (const double value : values) {
+    if (std::isnan(value)) stop(StopReason::kNotFinite);
+  }
+}
+
+void Evaluator::move(std::size_t i, double x) {
+  moved_ = true;
+  position_[i] = std::clamp(x, variables_[i].lower, variables_[i].upper);
+  scanner_->move(i, position_[i]);
+}
+
+OptimizationResult Evaluator::finish(StopReason reason) {
+  if (error_) std::rethrow_exception(error_);
+  if (scanner_) {
+    // Nothing moved: the value is known, and the budget may not allow another evaluation.
+    best_ = position_;
+    best_value_ = moved_ ? function_.value(position_) : result_.initial_value;
+    if (moved_) result_.trace.push_back({++result_.evaluations, seconds(), best_value_});
+  }
+  result_.stop = stop_ == StopReason::kNotRun ? reason : stop_;
+  if (best_.empty()) {
+    // Nothing better than infinity was met: the initial point stands.
+    for (const Variable& variable : variables_) best_.push_back(variable.initial);
+    best_value_ = result_.initial_value;
+  }
+  result_.x = best_;
+  result_.value = best_value_;
+  result_.seconds = seconds();
+  return std::move(result_);
+}
+
+}  // namespace modcal

@@ -1,0 +1,118 @@
+// The one door between optimizers and objectives.
+#pragma once
+
+#include <cstddef>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "libcalib/problem/budget.hpp"
+#include "libcalib/problem/objective_function.hpp"
+#include "libcalib/problem/optimization_result.hpp"
+#include "libcalib/problem/variable.hpp"
+
+namespace modcal {
+
+/// Counts, times, scales, bounds and traces evaluations, keeps the best point and enforces the
+/// budget, so that no optimizer does. Optimizers see z = (x − initial)/scale in a box; what leaves
+/// the box is put back onto it. One evaluator serves one search in one thread.
+class Evaluator {
+ public:
+  /// Thrown where the search must end; caught by Optimizer::minimize.
+  struct Stopped {};
+
+  /// Throws InvalidInput for an invalid budget and for variables whose bounds do not hold the
+  /// initial value or leave no room, or whose scale is not positive. function must outlive the
+  /// evaluator.
+  Evaluator(const ObjectiveFunction& function, std::span<const Variable> variables,
+            const Budget& budget, SecondsClock clock = steady_seconds());
+
+  std::size_t dimension() const { return variables_.size(); }
+  std::size_t residual_count() const { return function_.residual_count(); }
+  std::span<const Variable> variables() const { return variables_; }
+  std::span<const double> lower() const { return lower_; }  ///< scaled
+  std::span<const double> upper() const { return upper_; }  ///< scaled
+  std::vector<double> start() const { return std::vector<double>(dimension(), 0.0); }
+  /// Evaluations the budget still allows.
+  std::int64_t evaluations_left() const;
+
+  /// Evaluates at the initial point, which counts like any other and is the first to beat. Throws
+  /// like evaluate().
+  void begin();
+  /// Evaluates at z; outputs in scaled variables. Throws Stopped where the search is over, and what
+  /// the objective throws.
+  ///
+  /// A gradient the objective does not give is Jᵀr where it has a Jacobian; else it and a Jacobian
+  /// are differences over h = ε^⅓ max(1, |z_i|), ε the machine's: central ones, wrong by h² times
+  /// a third derivative, or (−3 f(z) + 4 f(z ± h) − f(z ± 2h))/(±2h) where a bound is nearer than
+  /// h. They cost two evaluations a variable, which count like any other.
+  void evaluate(std::span<const double> z, const ObjectiveOutputs& outputs);
+  double value(std::span<const double> z);
+  /// The same for callbacks of libraries, which exceptions must not cross and infinite values
+  /// upset: false where the search is over, an infinite value included; an exception is kept and
+  /// thrown by finish().
+  bool try_evaluate(std::span<const double> z, const ObjectiveOutputs& outputs) noexcept;
+  bool stopped() const { return stop_ != StopReason::kNotRun || error_ != nullptr; }
+
+  /// Stepping along single variables, in user units, from the initial point and after begin(). The
+  /// point it stands at is the search's answer, because values of parts cannot be compared over
+  /// variables. One evaluation of the budget is kept for the value of the answer.
+  void open_scan();
+  /// Current point of the scan.
+  std::span<const double> position() const { return position_; }
+  /// Every candidate counts as one evaluation. Throws Stopped, with nothing evaluated, where the
+  /// budget does not allow all of them.
+  void scan(std::size_t i, std::span<const double> candidates, std::span<double> values);
+  void move(std::size_t i, double x);
+  void refresh_scan() { scanner_->refresh(); }
+  void record(CoordinateScan scan) { result_.scans.push_back(std::move(scan)); }
+  std::vector<CoordinateScan>& recorded_scans() { return result_.scans; }
+  bool reaches(std::size_t j, std::size_t i) const { return scanner_->reaches(j, i); }
+  void count_loop(std::size_t searched) {
+    ++result_.loops;
+    result_.searched.push_back(static_cast<std::int64_t>(searched));
+  }
+
+  /// Ends the search: throws what the objective threw, else gives the result. A reason the
+  /// evaluator had to stop for goes before the back end's.
+  OptimizationResult finish(StopReason reason);
+
+ private:
+  /// What the difference rule applies to: the value (one number) or the residuals.
+  using Sample = std::function<void(std::span<const double> z, double* numbers)>;
+
+  [[noreturn]] void stop(StopReason reason);
+  void require_budget(std::int64_t evaluations);
+  double seconds() const { return clock_() - begin_; }
+  void to_user(std::span<const double> z);
+  void to_scaled(const ObjectiveOutputs& outputs) const;
+  void note(double value);
+  /// Evaluates what the objective itself gives.
+  void evaluate_given(std::span<const double> z, const ObjectiveOutputs& outputs);
+  void evaluate_with_differences(std::span<const double> z, const ObjectiveOutputs& outputs);
+  void gradient_from_residuals(std::span<const double> z, const ObjectiveOutputs& outputs);
+  /// Slopes of `count` numbers, row-major count × n, from their values at z.
+  void difference(std::span<const double> z, const Sample& sample, std::span<const double> numbers,
+                  double* slopes);
+
+  const ObjectiveFunction& function_;
+  std::vector<Variable> variables_;
+  Budget budget_;
+  SecondsClock clock_;
+  double begin_;
+  std::vector<double> lower_;
+  std::vector<double> upper_;
+  std::vector<double> x_;  // point of the current evaluation
+  double best_value_;
+  std::vector<double> best_;
+  StopReason stop_ = StopReason::kNotRun;
+  std::exception_ptr error_;
+  std::unique_ptr<CoordinateScanner> scanner_;
+  std::vector<double> position_;
+  bool moved_ = false;
+  OptimizationResult result_;
+};
+
+}  // namespace modcal

@@ -1,0 +1,121 @@
+#include "libinverse/modes/pluck_identification.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "libinverse/modes/decimated_decay.hpp"
+#include "libsim/base/error.hpp"
+
+namespace modcal {
+namespace {
+
+DecayRecord after(const DecayRecord& record, double skip) {
+  const auto first = static_cast<std::size_t>(std::ceil(skip * record.sample_rate));
+  MODCAL_REQUIRE(first < record.samples(), "{:g} s are left out of a record of {:g} s", skip,
+                 static_cast<double>(record.samples()) / record.sample_rate);
+  DecayRecord rest{.sample_rate = record.sample_rate};
+  for (const auto& channel : record.channels) {
+    rest.channels.emplace_back(channel.begin() + static_cast<std::ptrdiff_t>(first), channel.end());
+  }
+  return rest;
+}
+
+double size_of(const DecayMode& mode) {
+  double size = 0.0;
+  for (const auto& amplitude : mode.amplitude) size += std::norm(amplitude);
+  return size;
+}
+
+// Amplitudes come from the fit for both methods; for era the poles are left where they are.
+std::vector<DecayMode> modes_of(const DecimatedDecay& decay, const std::vector<StablePole>& stable,
+                                const PluckOptions& options, PluckIdentification& result) {
+  std::vector<DecayPole> start;
+  for (const StablePole& pole : stable) start.push_back(pole.pole);
+  const bool likelihood = options.method == "maximum_likelihood";
+  const DampedSinusoidFit fit =
+      fit_damped_sinusoids(decay.record, start,
+                           {.iterations = likelihood ? std::size_t{50} : std::size_t{0},
+                            .in_band_variance = decay.in_band_variance()});
+  result.converged = fit.converged || !likelihood;
+  result.full_rank = fit.full_rank && likelihood;
+  if (likelihood) {
+    for (const double noise : fit.noise) {
+      result.noise.push_back(noise * std::sqrt(decay.in_band_variance()));
+    }
+  }
+  std::vector<DecayMode> modes = fit.modes;
+  for (std::size_t k = 0; k < modes.size(); ++k) {
+    if (!likelihood) modes[k].deviation = stable[k].spread;
+    const std::complex<double> gain = decay.gain(modes[k].pole.exponent());
+    for (auto& amplitude : modes[k].amplitude) amplitude /= gain;
+  }
+  return modes;
+}
+
+}  // namespace
+
+void PluckOptions::visit(OptionVisitor& visitor) {
+  visitor.number({.key = "highest_frequency",
+                  .meaning = "upper end of the band in which modes are looked for",
+                  .unit = "Hz",
+                  .range = Range::positive()},
+                 highest_frequency);
+  visitor.text({.key = "method",
+                .meaning = "realization alone, or followed by a fit of all damped sinusoids",
+                .choices = {"era", "maximum_likelihood"}},
+               method);
+  visitor.number({.key = "skip",
+                  .meaning = "time left out after the pluck",
+                  .unit = "s",
+                  .range = Range::non_negative()},
+                 skip);
+  visitor.integer({.key = "block_rows",
+                   .meaning = "samples in a column of the Hankel matrix",
+                   .range = Range::closed(2, 5000)},
+                  block_rows);
+  visitor.integer({.key = "columns",
+                   .meaning = "columns of the Hankel matrix, spread over the record",
+                   .range = Range::closed(2, 5000)},
+                  columns);
+  visitor.section({.key = "stabilization", .meaning = "which poles count as modes"}, stabilization);
+}
+
+PluckIdentification identify_pluck(const DecayRecord& record, double fundamental,
+                                   const PluckOptions& options) {
+  record.require_valid();
+  MODCAL_REQUIRE(fundamental > 0.0 && std::isfinite(fundamental),
+                 "fundamental {:g} Hz must be > 0: it numbers the modes", fundamental);
+  MODCAL_REQUIRE(options.method == "era" || options.method == "maximum_likelihood",
+                 "unknown method \"{}\": era and maximum_likelihood are available", options.method);
+  const DecimatedDecay decay = decimate(after(record, options.skip), options.highest_frequency);
+  const EigensystemRealization realization(decay.record,
+                                           static_cast<std::size_t>(options.block_rows),
+                                           static_cast<std::size_t>(options.columns));
+  PluckIdentification result;
+  const Eigen::VectorXd& sigma = realization.singular_values();
+  result.singular_values.assign(sigma.begin(), sigma.end());
+  result.diagram = stabilization_diagram(realization, options.stabilization);
+  const std::vector<StablePole> stable = stable_poles(result.diagram, options.stabilization);
+  if (stable.empty()) return result;
+  std::map<std::size_t, DecayMode> numbered;
+  for (DecayMode& mode : modes_of(decay, stable, options, result)) {
+    if (mode.pole.frequency > options.highest_frequency || !(mode.pole.damping_ratio > 0.0)) {
+      continue;
+    }
+    const auto number = static_cast<std::size_t>(std::lround(mode.pole.frequency / fundamental));
+    if (number == 0) continue;
+    const auto [place, fresh] = numbered.try_emplace(number, mode);
+    if (!fresh && size_of(mode) > size_of(place->second)) place->second = std::move(mode);
+  }
+  for (auto& [number, mode] : numbered) {
+    for (std::size_t n = result.modes.empty() ? 1 : result.modes.back().number + 1; n < number;
+         ++n) {
+      result.missing.push_back(n);
+    }
+    result.modes.push_back({number, std::move(mode)});
+  }
+  return result;
+}
+
+}  // namespace modcal

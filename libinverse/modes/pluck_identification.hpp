@@ -1,0 +1,50 @@
+// From a plucked string's reactions to its modes.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "libinverse/modes/damped_sinusoid_fit.hpp"
+#include "libinverse/modes/stabilization.hpp"
+#include "libsim/base/options.hpp"
+
+namespace modcal {
+
+struct PluckOptions {
+  double highest_frequency = 2300.0;          ///< modes above are left alone [Hz]
+  std::string method = "maximum_likelihood";  ///< or era
+  double skip = 2e-3;                         ///< time left out after the pluck [s]
+  std::int64_t block_rows = 150;              ///< of the Hankel matrix
+  std::int64_t columns = 400;                 ///< of the Hankel matrix
+  StabilizationOptions stabilization;
+  void visit(OptionVisitor& visitor);
+};
+
+/// A mode with its number.
+struct PluckedMode {
+  std::size_t number = 0;  ///< n
+  DecayMode mode;
+};
+
+struct PluckIdentification {
+  std::vector<PluckedMode> modes;  ///< ascending, one a number
+  std::vector<StabilizationPoint> diagram;
+  std::vector<double> singular_values;  ///< of the Hankel matrix
+  std::vector<std::size_t> missing;     ///< numbers below the highest with no mode
+  std::vector<double> noise;            ///< residual of each channel within the band; empty for era
+  bool converged = false;               ///< the fit; true for era
+  bool full_rank = false;               ///< error bars are known
+};
+
+/// Modes of a free decay: low-pass to the band, poles by the eigensystem realization algorithm (the
+/// paper's route, section 7.1), those kept that are stable over the orders, and for
+/// maximum_likelihood all of them fitted together as damped sinusoids. Deviations are the
+/// Cramér–Rao bound for maximum_likelihood; the spread over the orders, no error bar, for era.
+/// A mode has the number n nearest to f/fundamental; of two with one number the one with the larger
+/// amplitude is kept. fundamental: f₀ to about 1 % [Hz]. Throws InvalidInput for an invalid or too
+/// short record, a fundamental that is not positive, an unknown method.
+PluckIdentification identify_pluck(const DecayRecord& record, double fundamental,
+                                   const PluckOptions& options = {});
+
+}  // namespace modcal

@@ -1,0 +1,272 @@
+#include "libinverse/observer/observer_runs.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include "libsim/base/task_loop.hpp"
+#include "libsim/signal/fft.hpp"
+#include "libsim/signal/statistics.hpp"
+
+namespace modcal::observer {
+namespace {
+
+// Values between equally spaced knots, the first and last at the ends of the record.
+double between_knots(std::span<const double> knots, std::size_t k, std::size_t samples) {
+  if (knots.size() == 1) return knots[0];
+  const double place = static_cast<double>(k) * static_cast<double>(knots.size() - 1) /
+                       static_cast<double>(std::max<std::size_t>(samples, 2) - 1);
+  const auto left = std::min(static_cast<std::size_t>(place), knots.size() - 2);
+  const double share = place - static_cast<double>(left);
+  return (1.0 - share) * knots[left] + share * knots[left + 1];
+}
+
+// z(t + delay)/gain by a linear phase, about the mean.
+std::vector<double> corrected(std::span<const double> z, double sample_rate, double delay,
+                              double gain) {
+  std::vector<double> samples(z.begin(), z.end());
+  const double level = mean(samples);
+  for (double& value : samples) value -= level;
+  const RealFft fft(samples.size());
+  std::vector<Complex> spectrum = fft.forward(samples);
+  const double turn = 2.0 * std::numbers::pi * sample_rate / static_cast<double>(samples.size());
+  for (std::size_t k = 0; k < spectrum.size(); ++k) {
+    spectrum[k] *= std::polar(1.0, turn * static_cast<double>(k) * delay);
+  }
+  fft.inverse(spectrum, samples);
+  for (double& value : samples) value = (value + level) / gain;
+  return samples;
+}
+
+ModalBasis detuned(ModalBasis basis, const std::vector<double>& detuning) {
+  for (std::size_t n = 0; n < detuning.size(); ++n) basis.omega[n] *= 1.0 + detuning[n];
+  return basis;
+}
+
+}  // namespace
+
+double huber(double r) {
+  constexpr double kCorner = 3.0;
+  const double size = std::abs(r);
+  return size <= kCorner ? 0.5 * r * r : kCorner * (size - 0.5 * kCorner);
+}
+
+double misfit(const Innovations& innovations) {
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (const auto& scaled : innovations.scaled) {
+    for (const double r : scaled) sum += 2.0 * huber(r);
+    count += scaled.size();
+  }
+  return sum / static_cast<double>(count);
+}
+
+std::vector<double> block_costs(const Innovations& innovations) {
+  const std::size_t samples = innovations.scaled[0].size();
+  std::vector<double> blocks;
+  for (std::size_t first = 0; first + kBlock <= samples; first += kBlock) {
+    double sum = 0.0;
+    for (const auto& scaled : innovations.scaled) {
+      for (std::size_t k = first; k < first + kBlock; ++k) sum += 2.0 * huber(scaled[k]);
+    }
+    blocks.push_back(sum);
+  }
+  return blocks;
+}
+
+double steady_misfit(const Innovations& innovations) {
+  const std::vector<double> blocks = block_costs(innovations);
+  if (blocks.empty()) return misfit(innovations);
+  return quantile(blocks, 0.5) / static_cast<double>(2 * kBlock);
+}
+
+ObserverState PreparedObserver::initial_state() const {
+  ObserverState state = ObserverState::at_rest(string_->size());
+  state.force = force_scale_[0] * contact_.sliding.at(bow_velocity_[0]).force;
+  return state;
+}
+
+ObserverSignals PreparedObserver::with_inputs(const ObserverSignals& outputs,
+                                              std::size_t first) const {
+  ObserverSignals signals = outputs;
+  signals.left = (left_.empty() ? z_left_ : left_.data()) + first;
+  signals.right = (right_.empty() ? z_right_ : right_.data()) + first;
+  signals.force_scale = force_scale_.data() + first;
+  signals.bow_velocity = bow_velocity_.data() + first;
+  return signals;
+}
+
+void PreparedObserver::run(std::size_t gain, std::size_t first, std::size_t last,
+                           ObserverState& state, const ObserverSignals& outputs) const {
+  run_observer(*string_, contact_, (*gains_)[gain], with_inputs(outputs, 0), first, last, state);
+}
+
+void PreparedObserver::run_block(std::size_t gain, std::size_t first, std::size_t last,
+                                 ObserverState& state, const ObserverSignals& outputs) const {
+  run_observer(*string_, contact_, (*gains_)[gain], with_inputs(outputs, first), 0, last - first,
+               state);
+}
+
+ObserverRuns::ObserverRuns(const ObservedRecord& record, std::vector<double> force_noise,
+                           Substeps substeps)
+    : record_(record), force_noise_(std::move(force_noise)), substeps_(substeps) {
+  string_ = std::make_shared<const StringTables>(
+      make_string_tables(record.basis, record.contact, record.sample_rate, substeps));
+  for (const double q : force_noise_) {
+    SteadyGain gain =
+        steady_gain(record.basis, record.contact, record.sample_rate, q, record.noise);
+    nominal_.push_back(std::move(gain.gain));
+    quiet_misfit_.push_back(gain.quiet_misfit);
+  }
+  gains_ = std::make_shared<const std::vector<GainTable>>(nominal_);
+}
+
+std::shared_ptr<const StringTables> ObserverRuns::tables_of(
+    const ObserverParameters& parameters) const {
+  if (parameters.contact == record_.contact && parameters.detuning.empty()) return string_;
+  return std::make_shared<const StringTables>(
+      make_string_tables(detuned(record_.basis, parameters.detuning), parameters.contact,
+                         record_.sample_rate, substeps_));
+}
+
+// The gains of the record's model in Z/φ, applied to the modes of another one.
+std::vector<GainTable> ObserverRuns::gains_for(const StringTables& string) const {
+  std::vector<GainTable> result;
+  for (const GainTable& nominal : nominal_) {
+    GainTable table{PlanarVector(string.mode.size()), PlanarVector(string.mode.size())};
+    for (std::size_t n = 0, m = 0; n < string.mode.size(); ++n) {
+      while (m < string_->mode.size() && string_->mode[m] < string.mode[n]) ++m;
+      if (m == string_->mode.size() || string_->mode[m] != string.mode[n]) continue;
+      const double scale = string.shape[n] / string_->shape[m];
+      table.left.set(n, scale * nominal.left.at(m));
+      table.right.set(n, scale * nominal.right.at(m));
+    }
+    result.push_back(std::move(table));
+  }
+  return result;
+}
+
+PreparedObserver ObserverRuns::prepare(const ObserverParameters& p) const {
+  PreparedObserver observer;
+  observer.string_ = tables_of(p);
+  observer.gains_ =
+      observer.string_ == string_
+          ? gains_
+          : std::make_shared<const std::vector<GainTable>>(gains_for(*observer.string_));
+  observer.contact_.sliding = p.sliding;
+  observer.contact_.stiffness = p.stiffness;
+  observer.contact_.damping =
+      p.damping_ratio * 2.0 * std::sqrt(p.stiffness * observer.string_->effective_mass);
+  observer.contact_.offset[0] = p.offset[0];
+  observer.contact_.offset[1] = p.offset[1];
+  const std::size_t samples = record_.samples();
+  observer.force_scale_.assign(samples, 1.0);
+  observer.bow_velocity_.assign(samples, p.bow_velocity);
+  for (std::size_t k = 0; k < samples; ++k) {
+    if (!p.force_knots.empty()) {
+      observer.force_scale_[k] = std::exp(between_knots(p.force_knots, k, samples));
+    }
+    if (!p.velocity_knots.empty()) {
+      observer.bow_velocity_[k] *= 1.0 + between_knots(p.velocity_knots, k, samples);
+    }
+  }
+  observer.z_left_ = record_.reaction[0].data();
+  observer.z_right_ = record_.reaction[1].data();
+  if (p.delay != 0.0 || p.gain != 1.0) {
+    observer.left_ = corrected(record_.reaction[0], record_.sample_rate, p.delay, p.gain);
+  }
+  if (p.level_growth != 0.0) {
+    const double slope = p.offset[1] * p.level_growth / record_.sample_rate;
+    observer.right_ = record_.reaction[1];
+    for (std::size_t k = 0; k < samples; ++k) observer.right_[k] -= slope * static_cast<double>(k);
+  }
+  return observer;
+}
+
+void ObserverRuns::run_schedule(const PreparedObserver& observer, const GainSchedule& schedule,
+                                std::size_t samples, Innovations& innovations,
+                                ObserverMotion* motion) const {
+  for (auto& scaled : innovations.scaled) scaled.resize(samples);
+  ObserverSignals outputs;
+  outputs.left_innovation = innovations.scaled[0].data();
+  outputs.right_innovation = innovations.scaled[1].data();
+  if (motion) {
+    for (auto* signal :
+         {&motion->force, &motion->velocity, &motion->displacement, &motion->mean_force}) {
+      signal->resize(samples);
+    }
+    outputs.force = motion->force.data();
+    outputs.velocity = motion->velocity.data();
+    outputs.displacement = motion->displacement.data();
+    outputs.mean_force = motion->mean_force.data();
+  }
+  ObserverState state = observer.initial_state();
+  const std::size_t block = schedule.size() == 1 ? samples : kBlock;
+  for (std::size_t first = 0, i = 0; first < samples; first += block, ++i) {
+    observer.run(schedule[std::min(i, schedule.size() - 1)], first,
+                 std::min(samples, first + block), state, outputs);
+  }
+  for (int r = 0; r < 2; ++r) {
+    const double scale = 1.0 / record_.noise[r];
+    for (double& value : innovations.scaled[r]) value *= scale;
+  }
+}
+
+Innovations ObserverRuns::innovations(const ObserverParameters& parameters,
+                                      const GainSchedule& schedule, std::size_t samples) const {
+  Innovations result;
+  run_schedule(prepare(parameters), schedule, samples, result, nullptr);
+  return result;
+}
+
+PreparedObserver ObserverRuns::disturbed(const ObserverParameters& parameters,
+                                         const StreamKey& key) const {
+  PreparedObserver observer = prepare(parameters);
+  for (int r = 0; r < 2; ++r) {
+    std::vector<double>& z = r == 0 ? observer.left_ : observer.right_;
+    if (z.empty()) z = record_.reaction[r];
+    std::vector<double> noise(z.size());
+    fill_standard_normal(key.with(r == 0 ? "R1" : "R2"), noise);
+    for (std::size_t k = 0; k < z.size(); ++k) z[k] += record_.raw_noise[r] * noise[k];
+  }
+  return observer;
+}
+
+MotionDeviation ObserverRuns::deviation(const ObserverParameters& parameters,
+                                        const GainSchedule& schedule, std::size_t draws,
+                                        const StreamKey& key) const {
+  const std::size_t samples = record_.samples();
+  Innovations unused;
+  ObserverMotion plain;
+  run_schedule(prepare(parameters), schedule, samples, unused, &plain);
+  std::vector<ObserverMotion> motions(draws);
+  for_each_task(draws, [&](std::size_t i) {
+    Innovations own;
+    run_schedule(disturbed(parameters, key.with(static_cast<std::uint64_t>(i))), schedule, samples,
+                 own, &motions[i]);
+  });
+  MotionDeviation result{std::vector<double>(samples, 0.0), std::vector<double>(samples, 0.0)};
+  const auto rms = [&](std::vector<double> ObserverMotion::*signal,
+                       std::vector<double>& deviation) {
+    for (std::size_t k = 0; k < samples; ++k) {
+      for (const ObserverMotion& motion : motions) {
+        const double change = (motion.*signal)[k] - (plain.*signal)[k];
+        deviation[k] += change * change;
+      }
+      deviation[k] = std::sqrt(deviation[k] / static_cast<double>(draws));
+    }
+  };
+  rms(&ObserverMotion::force, result.force);
+  rms(&ObserverMotion::velocity, result.velocity);
+  return result;
+}
+
+Innovations ObserverRuns::identify(const ObserverParameters& parameters,
+                                   const GainSchedule& schedule, ObserverMotion& motion) const {
+  Innovations result;
+  run_schedule(prepare(parameters), schedule, record_.samples(), result, &motion);
+  return result;
+}
+
+}  // namespace modcal::observer

@@ -1,0 +1,99 @@
+// Parameter choices: which amount of regularization suits the data.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "libinverse/spectral/regularizers/regularizer.hpp"
+
+namespace modcal {
+
+enum class ChoiceStatus {
+  kNotComputed,        ///< nothing has been chosen yet
+  kChosen,             ///< the rule's condition is met inside the searched range
+  kGiven,              ///< the parameter was given, not chosen
+  kNoParameter,        ///< the regularizer has no parameter, or no component holds any signal
+  kEdgeOfRange,        ///< the rule points to the edge of the searched range or beyond it
+  kNoInteriorMinimum,  ///< the product curve has no local minimum inside the searched range
+  kNotReached,         ///< no parameter searched meets the rule's condition
+};
+
+/// The status as a word for results: "chosen", "no_interior_minimum", …
+std::string_view name_of(ChoiceStatus status);
+
+/// Outcome of a parameter choice. A status other than kChosen, kGiven and kNoParameter says that
+/// the parameter is a stand-in: the end of the range that regularizes least, or the edge named.
+struct ChosenParameter {
+  ChoiceStatus status = ChoiceStatus::kNotComputed;
+  std::string explanation;  ///< one sentence with the figures behind the status
+  CurvePoint point;         ///< the chosen parameter with its norms and criterion
+  double kept_share = 0.0;  ///< effective share of the degrees of freedom kept, in [0, 1]; for
+                            ///< a water level that zeroes: share of kept bins
+  std::vector<CurvePoint> curve;  ///< every parameter searched, rising
+  /// What to beware of: a parameter that stands in for one the rule did not find, or other rules
+  /// that would have chosen one more than a decade away (rule_disagreement.hpp).
+  std::vector<std::string> warnings;
+
+  double parameter() const { return point.parameter; }
+};
+
+/// A sentence for a parameter that stands in for one the rule did not find; empty for a chosen one.
+std::string warning_of(const ChosenParameter& choice);
+
+/// Parameters searched and the measure of the solution: options that every choice has.
+struct CurveOptions {
+  std::int64_t points = 400;  ///< logarithmically spaced
+  /// Range in the unit of the singular values (N/N for reactions). NaN: from the smallest singular
+  /// value > 0, but at most 8 decades down, to the largest.
+  double lowest = std::numeric_limits<double>::quiet_NaN();
+  double highest = std::numeric_limits<double>::quiet_NaN();
+  std::string measure = "derivative";  ///< derivative: ‖dF/dt‖; solution: ‖F‖
+
+  void visit(OptionVisitor& visitor);
+};
+
+class ParameterChoice {
+ public:
+  static constexpr std::string_view kKind = "parameter_choice";
+  static Registry<ParameterChoice> registry();
+
+  virtual ~ParameterChoice() = default;
+
+  /// Traces the regularizer's curve over the searched range and chooses on it.
+  /// Throws InvalidInput where the data do not allow the rule (no derivative, unknown noise) or the
+  /// range is empty.
+  ChosenParameter choose(const Regularizer& regularizer, const SpectralData& data) const;
+
+ protected:
+  /// Throws InvalidInput for fewer than `least_points` points, an empty range, an unknown measure.
+  explicit ParameterChoice(CurveOptions options, std::int64_t least_points = 3);
+
+  struct Pick {
+    double parameter = 0.0;
+    ChoiceStatus status = ChoiceStatus::kNotComputed;
+    std::string explanation;
+  };
+  Measure measure() const { return measure_; }
+  /// The point of the smallest criterion; at either end of where the criterion is
+  /// defined the status is kEdgeOfRange.
+  static Pick smallest_criterion(std::span<const CurvePoint> curve, std::string_view what);
+
+ private:
+  /// Fills the criterion of every point of the regularizer's curve and picks a parameter. The curve
+  /// has at least one point, unless the constructor allowed none.
+  virtual Pick pick(const Regularizer& regularizer, const SpectralData& data,
+                    std::span<CurvePoint> curve) const = 0;
+
+  std::vector<double> search_grid(std::span<const double> falling_sigma) const;
+  CurvePoint point_at(double parameter, const Regularizer& regularizer, const SpectralData& data,
+                      std::span<const CurvePoint> curve) const;
+
+  CurveOptions options_;
+  Measure measure_;
+};
+
+}  // namespace modcal

@@ -1,0 +1,48 @@
+#include "libinverse/spectral/one_sided/one_sided_estimator.hpp"
+
+#include <memory>
+
+namespace modcal {
+namespace {
+
+class PreparedOneSided final : public PreparedEstimator {
+ public:
+  explicit PreparedOneSided(const EstimationModel& model)
+      : sides_{OneSidedInversion(model.basis, model.contact, End::kLeft, model.samples,
+                                 model.sample_rate),
+               OneSidedInversion(model.basis, model.contact, End::kRight, model.samples,
+                                 model.sample_rate)} {}
+
+  std::vector<Estimate> estimate(const EstimationRecord& record,
+                                 const InversionMethod& method) const override {
+    static constexpr const char* kNames[] = {"1", "2"};
+    static constexpr const char* kLabels[] = {"from R1 (x = 0)", "from R2 (x = L)"};
+    std::vector<Estimate> estimates;
+    for (std::size_t r = 0; r < 2; ++r) {
+      if (record.reactions[r].empty()) continue;
+      InversionMethod of_side = method;
+      of_side.noise_rms = record.stated_noise[r];
+      Estimate estimate;
+      estimate.side = kNames[r];
+      estimate.label = kLabels[r];
+      estimate.result = sides_[r].invert(record.reactions[r], of_side);
+      const auto sigma = sides_[r].problem().sigma();
+      estimate.largest_transfer = sigma.empty() ? 0.0 : sigma[0];
+      estimate.warnings = estimate.result.choice.warnings;
+      estimates.push_back(std::move(estimate));
+    }
+    return estimates;
+  }
+
+ private:
+  OneSidedInversion sides_[2];
+};
+
+}  // namespace
+
+std::shared_ptr<const PreparedEstimator> OneSidedEstimator::do_prepare(
+    const EstimationModel& model) const {
+  return std::make_shared<const PreparedOneSided>(model);
+}
+
+}  // namespace modcal

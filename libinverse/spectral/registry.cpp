@@ -1,0 +1,60 @@
+#include <array>
+
+#include "libinverse/spectral/choices/cumulative_periodogram.hpp"
+#include "libinverse/spectral/choices/discrepancy.hpp"
+#include "libinverse/spectral/choices/evidence.hpp"
+#include "libinverse/spectral/choices/fixed_parameter.hpp"
+#include "libinverse/spectral/choices/generalized_cross_validation.hpp"
+#include "libinverse/spectral/choices/l_curve.hpp"
+#include "libinverse/spectral/choices/l_curve_adaptive.hpp"
+#include "libinverse/spectral/choices/minimal_product.hpp"
+#include "libinverse/spectral/regularizers/no_regularization.hpp"
+#include "libinverse/spectral/choices/predictive_risk.hpp"
+#include "libinverse/spectral/choices/quasi_optimality.hpp"
+#include "libinverse/spectral/choices/robust_cross_validation.hpp"
+#include "libinverse/spectral/regularizers/tikhonov.hpp"
+#include "libinverse/spectral/regularizers/truncated_svd.hpp"
+#include "libinverse/spectral/regularizers/water_level.hpp"
+#include "libinverse/spectral/regularizers/water_level_clip.hpp"
+#include "libinverse/spectral/regularizers/wiener.hpp"
+
+namespace modcal {
+
+Registry<Regularizer> Regularizer::registry() {
+  static constexpr std::array kTable = {
+      entry_of<Regularizer, NoRegularization>("none", "direct inversion"),
+      entry_of<Regularizer, Tikhonov>("tikhonov", "Tikhonov regularization of order 0, 1 or 2"),
+      entry_of<Regularizer, TruncatedSvd>("truncated_svd", "largest singular values alone"),
+      entry_of<Regularizer, WaterLevel>("water_level",
+                                        "water level that zeroes: nothing is inverted below it"),
+      entry_of<Regularizer, WaterLevelClip>(
+          "water_level_clip", "water level that clips: |H| is raised to it, its phase kept"),
+      entry_of<Regularizer, WienerFilter>("wiener", "Wiener filter for a force that jumps"),
+  };
+  return kTable;
+}
+
+Registry<ParameterChoice> ParameterChoice::registry() {
+  static constexpr std::array kTable = {
+      entry_of<ParameterChoice, Discrepancy>("discrepancy", "residual as large as the known noise"),
+      entry_of<ParameterChoice, Evidence>("evidence", "largest Bayesian evidence"),
+      entry_of<ParameterChoice, FixedParameter>("fixed", "a parameter given by the user"),
+      entry_of<ParameterChoice, GeneralizedCrossValidation>("gcv", "generalized cross validation"),
+      entry_of<ParameterChoice, LCurve>("l_curve", "largest curvature of the L-curve"),
+      entry_of<ParameterChoice, LCurveAdaptive>("l_curve_adaptive",
+                                                "corner of the L-curve by adaptive pruning"),
+      entry_of<ParameterChoice, MinimalProduct>(
+          "minimal_product", "interior local minimum of residual norm times solution norm"),
+      entry_of<ParameterChoice, CumulativePeriodogram>(
+          "ncp", "residual most like white noise: normalized cumulative periodogram"),
+      entry_of<ParameterChoice, QuasiOptimality>("quasi_optimality",
+                                                 "solution that changes least with the parameter"),
+      entry_of<ParameterChoice, RobustCrossValidation>("robust_gcv",
+                                                       "robust generalized cross validation"),
+      entry_of<ParameterChoice, PredictiveRisk>(
+          "upre", "unbiased predictive risk estimate with known noise"),
+  };
+  return kTable;
+}
+
+}  // namespace modcal

@@ -1,0 +1,282 @@
+#include "libsim/records/csv_reader.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <optional>
+
+#include "libsim/base/units.hpp"
+#include "libsim/records/csv_grammar.hpp"
+#include "libsim/records/csv_number.hpp"
+#include "libsim/records/time_axis.hpp"
+#include "libsim/base/error.hpp"
+
+namespace modcal {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kRateTolerance = 1e-3;
+
+std::string lower_case(std::string text) {
+  for (char& letter : text) {
+    letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  }
+  return text;
+}
+
+bool is_time(const ColumnHeading& heading) {
+  const std::string name = lower_case(heading.name);
+  return (heading.unit.empty() && (name == "t" || name == "time")) || is_unit_of(heading.unit, "s");
+}
+
+/// Line of every row; comments and blank lines between rows are the exception.
+class RowLines {
+ public:
+  void add(std::size_t row, std::size_t line) {
+    if (starts_.empty() || line - row != starts_.back().second - starts_.back().first) {
+      starts_.emplace_back(row, line);
+    }
+  }
+  std::size_t line(std::size_t row) const {
+    auto after = std::upper_bound(starts_.begin(), starts_.end(), row,
+                                  [](std::size_t r, const auto& start) { return r < start.first; });
+    --after;
+    return after->second + row - after->first;
+  }
+
+ private:
+  std::vector<std::pair<std::size_t, std::size_t>> starts_;
+};
+
+class CsvReader final : public CsvHandler {
+ public:
+  CsvReader(const std::filesystem::path& path, const CsvReadOptions& options)
+      : file_(path), options_(options) {}
+
+  Recording read() {
+    file_.parse(*this);
+    MODCAL_REQUIRE(!columns_.empty(),
+                   "{}: no header; the first row must name the columns, such as t [s],R1 [N]",
+                   file_.name());
+    MODCAL_REQUIRE(rows_ > 0, "{}: there is a header but no row of samples", file_.name());
+    settle_sample_rate();
+    record_.format =
+        fmt::format("CSV, separated by {}",
+                    file_.separator() == '\t' ? "tabs" : fmt::format("'{}'", file_.separator()));
+    for (const std::size_t index : kept_) {
+      record_.channels.push_back(std::move(columns_[index].channel));
+    }
+    if (!options_.survey) record_.refuse_problems();
+    return std::move(record_);
+  }
+
+  void comment(std::string_view text) override;
+  void field(std::size_t index, std::string_view text) override;
+  void end_row(std::size_t fields) override;
+
+ private:
+  struct Column {
+    RecordedChannel channel;
+    bool read = false;
+  };
+
+  void settle_columns();
+  void choose_columns();
+  void settle_sample_rate();
+  void check_stated_rate(double from_axis);
+  void use_time_axis(double stated);
+  void report_ragged_row(std::size_t fields);
+  void report_sample(std::size_t index, NumberKind kind, std::string_view text);
+
+  CsvFile file_;
+  const CsvReadOptions& options_;
+  Recording record_;
+  std::vector<std::string> headings_;
+  std::vector<Column> columns_;
+  std::vector<std::size_t> kept_;
+  std::optional<std::size_t> time_;
+  PrintedDigits time_digits_;
+  RowLines row_lines_;
+  std::size_t rows_ = 0;
+  double commented_rate_ = kNaN;
+  std::size_t commented_rate_line_ = 0;
+};
+
+void CsvReader::comment(std::string_view text) {
+  const std::size_t colon = text.find(':');
+  if (colon == std::string_view::npos) return;
+  std::string key = lower_case(parse_heading(text.substr(0, colon)).name);
+  std::replace(key.begin(), key.end(), ' ', '_');
+  if (key != "sample_rate") return;
+  const std::string value = parse_heading(text.substr(colon + 1)).name;
+  const std::size_t number_end = std::min(value.find(' '), value.size());
+  const ParsedNumber number = parse_number(std::string_view(value).substr(0, number_end));
+  const std::string unit = parse_heading(std::string_view(value).substr(number_end)).name;
+  const bool usable = number.kind == NumberKind::kNumber && number.value > 0.0 &&
+                      (unit.empty() || is_unit_of(unit, "Hz"));
+  MODCAL_REQUIRE(usable,
+                 "{}:{}: \"{}\" is no sample rate; write a positive number of hertz, such as "
+                 "# sample_rate: 51200 Hz",
+                 file_.name(), file_.line(), value);
+  commented_rate_ = unit.empty() ? number.value : to_si(number.value, unit, "Hz");
+  commented_rate_line_ = file_.line();
+}
+
+void CsvReader::field(std::size_t index, std::string_view text) {
+  if (columns_.empty()) {
+    headings_.emplace_back(text);
+    return;
+  }
+  if (index >= columns_.size() || !columns_[index].read) return;
+  const ParsedNumber number = parse_number(text);
+  if (number.kind != NumberKind::kNumber) report_sample(index, number.kind, text);
+  if (index == time_) time_digits_.add(text);
+  columns_[index].channel.samples.push_back(number.value);
+}
+
+void CsvReader::end_row(std::size_t fields) {
+  if (columns_.empty()) {
+    settle_columns();
+    return;
+  }
+  row_lines_.add(rows_, file_.line());
+  ++rows_;
+  if (fields == columns_.size()) return;
+  report_ragged_row(fields);
+  for (std::size_t i = fields; i < columns_.size(); ++i) {
+    if (columns_[i].read) columns_[i].channel.samples.push_back(kNaN);
+  }
+}
+
+void CsvReader::report_sample(std::size_t index, NumberKind kind, std::string_view text) {
+  record_.add_problem(fmt::format("{}: sample {} of {}: {}", file_.place(index), rows_,
+                                  columns_[index].channel.name, describe_bad_number(kind, text)));
+}
+
+void CsvReader::report_ragged_row(std::size_t fields) {
+  const bool decimal_commas = file_.separator() == ',' && fields > columns_.size();
+  record_.add_problem(
+      fmt::format("{}:{}:1: the row has {} field{}, the header names {} column{}; {}", file_.name(),
+                  file_.line(), fields, fields == 1 ? "" : "s", columns_.size(),
+                  columns_.size() == 1 ? "" : "s",
+                  decimal_commas ? "if these are decimal commas, write decimal points"
+                                 : "give every row one number per column"));
+}
+
+void CsvReader::settle_columns() {
+  const bool only_numbers = std::all_of(headings_.begin(), headings_.end(), [](const auto& text) {
+    return parse_number(text).kind != NumberKind::kText;
+  });
+  MODCAL_REQUIRE(!only_numbers,
+                 "{}: the first row holds numbers; put a row of names before it, such as "
+                 "t [s],R1 [N] (with numpy.savetxt: comments=\"\")",
+                 file_.place(0));
+  columns_.resize(headings_.size());
+  for (std::size_t i = 0; i < headings_.size(); ++i) {
+    const ColumnHeading heading = parse_heading(headings_[i]);
+    MODCAL_REQUIRE(!heading.name.empty(), "{}: column {} has no name; name every column",
+                   file_.place(i), i + 1);
+    for (std::size_t j = 0; j < i; ++j) {
+      MODCAL_REQUIRE(columns_[j].channel.name != heading.name,
+                     "{}: columns {} and {} are both named \"{}\"; give them different names",
+                     file_.place(i), j + 1, i + 1, heading.name);
+    }
+    columns_[i].channel.name = heading.name;
+    columns_[i].channel.unit = heading.unit;
+    if (!time_ && is_time(heading)) time_ = i;
+  }
+  choose_columns();
+}
+
+void CsvReader::choose_columns() {
+  std::vector<std::string> names;
+  for (const Column& column : columns_) names.push_back(column.channel.name);
+  kept_ = find_channels(names, options_.columns, fmt::format("{}:{}", file_.name(), file_.line()));
+  for (std::size_t i = 0; options_.columns.empty() && i < columns_.size(); ++i) {
+    if (i != time_) kept_.push_back(i);
+  }
+  MODCAL_REQUIRE(!kept_.empty(), "{}: there is a time column but no channel", file_.place(0));
+  for (const std::size_t index : kept_) {
+    MODCAL_REQUIRE(index != time_, "{}: column \"{}\" is the time column, not a channel",
+                   file_.place(index), names[index]);
+    columns_[index].read = true;
+  }
+  if (time_) columns_[*time_].read = true;
+}
+
+void CsvReader::settle_sample_rate() {
+  const bool given = std::isfinite(options_.sample_rate);
+  record_.sample_rate = given ? options_.sample_rate : commented_rate_;
+  if (given) {
+    record_.rate_source = "as stated by the user";
+    check_stated_rate(commented_rate_);
+  } else if (std::isfinite(commented_rate_)) {
+    record_.rate_source = fmt::format("comment on line {}", commented_rate_line_);
+  }
+  if (time_) use_time_axis(record_.sample_rate);
+  if (!std::isfinite(record_.sample_rate) && record_.problem_count == 0) {
+    record_.add_problem(
+        fmt::format("{}: the sample rate is not known; state sample_rate, add a comment line "
+                    "\"# sample_rate: 51200 Hz\", or a column t [s] with two instants or more",
+                    file_.name()));
+  }
+}
+
+void CsvReader::check_stated_rate(double from_file) {
+  if (std::abs(from_file / options_.sample_rate - 1.0) > kRateTolerance) {
+    record_.warnings.push_back(
+        fmt::format("{}: the file says {:.9g} Hz, the stated {:.9g} Hz is used", file_.name(),
+                    from_file, options_.sample_rate));
+  }
+}
+
+void CsvReader::use_time_axis(double stated) {
+  Column& column = columns_[*time_];
+  std::vector<double>& t = column.channel.samples;
+  const auto finite = [](double value) { return std::isfinite(value); };
+  if (!std::all_of(t.begin(), t.end(), finite)) return;  // reported where it was read
+  double largest = 0.0;
+  for (const double value : t) largest = std::max(largest, std::abs(value));
+  double resolution = time_digits_.resolution(largest);
+  if (!column.channel.unit.empty()) {
+    const double second = to_si(1.0, column.channel.unit, "s");
+    for (double& value : t) value *= second;
+    resolution *= second;
+  }
+  const TimeAxis axis = examine_time_axis(t, resolution);
+  record_.time_jitter = axis.jitter;
+  const bool given = std::isfinite(options_.sample_rate);
+  if (axis.coarse && !std::isfinite(stated)) {
+    record_.add_problem(fmt::format(
+        "{}: column {} is printed to {:.3g} s, too coarsely to tell the sample rate; print it with "
+        "more digits or state sample_rate",
+        file_.name(), column.channel.name, resolution));
+  }
+  for (const TimeFinding& finding : axis.findings) {
+    std::string text = fmt::format("{}:{}: sample {}: {}", file_.name(),
+                                   row_lines_.line(finding.sample), finding.sample, finding.text);
+    given ? record_.warnings.push_back(std::move(text)) : record_.add_problem(std::move(text));
+  }
+  if (given) {
+    check_stated_rate(axis.sample_rate);
+  } else if (!std::isfinite(stated)) {
+    record_.sample_rate = axis.sample_rate;
+    record_.rate_source = fmt::format("column {}", column.channel.name);
+  } else if (axis.findings.empty() && std::abs(axis.sample_rate / stated - 1.0) > kRateTolerance) {
+    record_.add_problem(fmt::format(
+        "{}:{}: the comment says {:.9g} Hz, column {} says {:.9g} Hz; correct one of them or state "
+        "sample_rate",
+        file_.name(), commented_rate_line_, stated, column.channel.name, axis.sample_rate));
+  }
+}
+
+}  // namespace
+
+Recording read_csv(const std::filesystem::path& path, const CsvReadOptions& options) {
+  const bool usable = std::isnan(options.sample_rate) ||
+                      (options.sample_rate > 0.0 && std::isfinite(options.sample_rate));
+  MODCAL_REQUIRE(usable, "sample_rate = {} Hz cannot be used: it must be > 0", options.sample_rate);
+  return CsvReader(path, options).read();
+}
+
+}  // namespace modcal

@@ -1,0 +1,58 @@
+#include "libsim/records/recording.hpp"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+
+#include "libsim/base/nearest_name.hpp"
+#include "libsim/base/error.hpp"
+
+namespace modcal {
+
+namespace {
+
+std::size_t find_channel(const std::vector<std::string>& names, std::string_view text,
+                         std::string_view where) {
+  const auto found = std::find(names.begin(), names.end(), text);
+  if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+  std::size_t number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const bool is_number = error == std::errc() && end == text.data() + text.size();
+  if (is_number && number >= 1 && number <= names.size()) return number - 1;
+  const std::string nearest = nearest_name(text, names);
+  throw_invalid_input("{}: there is no channel \"{}\"{}; the file has {} channel{}: {}", where,
+                      text, nearest.empty() ? "" : fmt::format(", did you mean \"{}\"?", nearest),
+                      names.size(), names.size() == 1 ? "" : "s", fmt::join(names, ", "));
+}
+
+}  // namespace
+
+void Recording::add_problem(std::string text) {
+  if (problem_count++ < kMaxProblems) problems.push_back(std::move(text));
+}
+
+void Recording::refuse_problems() const {
+  if (problem_count == 0) return;
+  std::string text = fmt::format("{}", fmt::join(problems, "\n"));
+  if (problem_count > problems.size()) {
+    text += fmt::format("\n… and {} more of this file", problem_count - problems.size());
+  }
+  throw InvalidInput(text);
+}
+
+std::vector<std::size_t> find_channels(const std::vector<std::string>& names,
+                                       const std::vector<std::string>& wanted,
+                                       std::string_view where) {
+  std::vector<std::size_t> result;
+  for (const std::string& text : wanted) {
+    const std::size_t index = find_channel(names, text, where);
+    MODCAL_REQUIRE(std::find(result.begin(), result.end(), index) == result.end(),
+                   "{}: channel \"{}\" is asked for twice; give every role a channel of its own",
+                   where, names[index]);
+    result.push_back(index);
+  }
+  return result;
+}
+
+}  // namespace modcal

@@ -1,0 +1,62 @@
+#include "libsim/records/signal_file.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <system_error>
+
+#include "libsim/base/error.hpp"
+
+namespace modcal {
+
+void require_one_record(std::span<const Signal> signals, std::string_view file) {
+  MODCAL_REQUIRE(!signals.empty(), "{}: there is no signal to write", file);
+  const Signal& first = signals.front();
+  MODCAL_REQUIRE(first.sample_rate > 0.0 && std::isfinite(first.sample_rate),
+                 "{}: a sample rate of {} Hz cannot be written: it must be > 0", file,
+                 first.sample_rate);
+  MODCAL_REQUIRE(first.size() > 0, "{}: signal {} has no samples to write", file, first.quantity);
+  for (std::size_t i = 0; i < signals.size(); ++i) {
+    const Signal& signal = signals[i];
+    MODCAL_REQUIRE(!signal.quantity.empty(), "{}: signal {} has no name", file, i + 1);
+    MODCAL_REQUIRE(signal.sample_rate == first.sample_rate && signal.size() == first.size(),
+                   "{}: {} has {} samples at {} Hz, {} has {} at {} Hz: signals of one file need "
+                   "one rate and one length; write them to separate files",
+                   file, first.quantity, first.size(), first.sample_rate, signal.quantity,
+                   signal.size(), signal.sample_rate);
+    for (std::size_t j = 0; j < i; ++j) {
+      MODCAL_REQUIRE(signals[j].quantity != signal.quantity,
+                     "{}: two signals are named {}; give them different names", file,
+                     signal.quantity);
+    }
+    const auto bad = std::find_if_not(signal.samples.begin(), signal.samples.end(),
+                                      [](double value) { return std::isfinite(value); });
+    MODCAL_REQUIRE(bad == signal.samples.end(),
+                   "{}: sample {} of {} is {}; only numbers are written", file,
+                   bad - signal.samples.begin(), signal.quantity, *bad);
+  }
+}
+
+void replace_file(const std::filesystem::path& path,
+                  const std::function<void(const std::filesystem::path&)>& write) {
+  std::filesystem::path temporary = path;
+  // Several processes may write the same file: each under a name of its own.
+  temporary += fmt::format(".{}.part", getpid());
+  std::error_code error;
+  try {
+    write(temporary);
+  } catch (...) {
+    std::filesystem::remove(temporary, error);
+    throw;
+  }
+  std::filesystem::rename(temporary, path, error);
+  if (error) {
+    const std::string reason = error.message();
+    std::filesystem::remove(temporary, error);
+    throw_invalid_input("{}: cannot be written: {}", path.string(), reason);
+  }
+}
+
+}  // namespace modcal

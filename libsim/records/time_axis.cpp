@@ -1,0 +1,95 @@
+#include "libsim/records/time_axis.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace modcal {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kGap = 1.5;           // median steps
+constexpr double kJitter = 0.01;       // steps
+constexpr double kCoarse = 0.25;       // steps; beyond, a missing sample cannot be told
+constexpr std::size_t kFindings = 10;  // enough to see what is wrong
+
+double median_step(std::span<const double> t) {
+  std::vector<double> steps(t.size() - 1);
+  for (std::size_t i = 0; i + 1 < t.size(); ++i) steps[i] = t[i + 1] - t[i];
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  return *middle;
+}
+
+void find_gaps(std::span<const double> t, double mean_step, double resolution, bool coarse,
+               std::vector<TimeFinding>& findings) {
+  const double nominal = median_step(t);
+  const double longest = kGap * (nominal > 0.0 ? nominal : mean_step) + resolution;
+  for (std::size_t i = 1; i < t.size() && findings.size() < kFindings; ++i) {
+    const double step = t[i] - t[i - 1];
+    // Coarse printing makes neighbors equal.
+    if (!(coarse ? step >= 0.0 : step > 0.0)) {
+      findings.push_back({i, fmt::format("time goes from {:.9g} s to {:.9g} s; sampling instants "
+                                         "must increase",
+                                         t[i - 1], t[i])});
+    } else if (step > longest) {
+      findings.push_back(
+          {i, fmt::format("a gap of {:.6g} s before {:.9g} s where the steps are {:.6g} s; crop "
+                          "the record before or behind the gap",
+                          step, t[i], nominal)});
+    }
+  }
+}
+
+void measure_jitter(std::span<const double> t, double step, TimeAxis& axis) {
+  axis.jitter = 0.0;
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    const double deviation = std::abs(t[i] - t.front() - static_cast<double>(i) * step);
+    if (deviation > axis.jitter) {
+      axis.jitter = deviation;
+      axis.jitter_sample = i;
+    }
+  }
+}
+
+double snapped_rate(double step, double duration, double resolution) {
+  const double rate = 1.0 / step;
+  const double whole = std::round(rate);
+  const double uncertainty = resolution / duration + 8 * std::numeric_limits<double>::epsilon();
+  return whole >= 1.0 && std::abs(rate - whole) <= uncertainty * rate ? whole : rate;
+}
+
+}  // namespace
+
+TimeAxis examine_time_axis(std::span<const double> t, double resolution) {
+  TimeAxis axis{kNaN, kNaN, 0, false, {}};
+  if (t.size() < 2) return axis;
+  const double duration = t.back() - t.front();
+  const double step = duration / static_cast<double>(t.size() - 1);
+  if (!(step > 0.0)) {
+    find_gaps(t, step, resolution, false, axis.findings);
+    return axis;
+  }
+  measure_jitter(t, step, axis);
+  axis.coarse = resolution > kCoarse * step && axis.jitter > kJitter * step;
+  find_gaps(t, step, resolution, axis.coarse, axis.findings);
+  axis.coarse = axis.coarse && axis.findings.empty();
+  if (axis.coarse) return axis;
+  // Rounding of i Δt and of the differences; matters for instants far from zero.
+  const double rounding = 4 * std::numeric_limits<double>::epsilon() *
+                          std::max(std::abs(t.front()), std::abs(t.back()));
+  axis.sample_rate = snapped_rate(step, duration, resolution + rounding);
+  if (axis.findings.empty() && axis.jitter > kJitter * step + resolution + rounding) {
+    axis.findings.push_back(
+        {axis.jitter_sample,
+         fmt::format("sampling is not uniform: {:.9g} s is {:.3g} s ({:.3g} sampling periods) off "
+                     "the uniform grid; resample the record, or state sample_rate if its time "
+                     "column is not to be trusted",
+                     t[axis.jitter_sample], axis.jitter, axis.jitter / step)});
+  }
+  return axis;
+}
+
+}  // namespace modcal

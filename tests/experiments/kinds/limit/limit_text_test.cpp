@@ -1,0 +1,109 @@
+// What `modcal limit` says of a file: rows of all that is free, blind modes by all records
+// together.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "experiments/kinds/calibrate/limit_source.hpp"
+#include "experiments/loader.hpp"
+#include "libsim/base/error.hpp"
+
+namespace modcal {
+namespace {
+
+// Bowed at a fifth of its length, a node of modes 5 and 10.
+std::string config(const std::string& continuation, const std::string& rest) {
+  return "kind: calibrate\n"
+         "scene:\n"
+         "  string: {length: 0.33 m, linear_density: 3.1e-3 kg/m, fundamental: 196 Hz, modes: 11}\n"
+         "  bow: {position: 66 mm, velocity: 0.1 m/s, normal_force: 1 N}\n"
+         "  friction: {type: coulomb_exponential, static: 0.4, dynamic: 0.2, decay: 5 s/m}\n"
+         "  duration: 0.3 s\n"
+         "simulator: modal_event\n"
+         "measurement: {sample_rate: 12.5 kHz, noise_level: 0.5 %}\n"
+         "calibration:\n"
+         "  parameters: {frequencies: all, law: true, contact: true}\n"
+         "  continuation: {law_width: 0.2 %" +
+         continuation + "}\n" + rest;
+}
+
+std::string limit_of(const std::string& text) {
+  const LoadedExperiment loaded = load_experiment(parse_yaml(text, "scene.yaml"));
+  EXPECT_FALSE(loaded.has_errors()) << format_mistakes(loaded.document, loaded.mistakes);
+  TruthCache truths;
+  return limit_text(dynamic_cast<const LimitSource&>(*loaded.experiment).limit_question(), truths);
+}
+
+TEST(LimitText, NamesBlindModesAndContactsWithoutThem) {
+  const std::string text = limit_of(config("", ""));
+  EXPECT_THAT(text, testing::ContainsRegex("  5  980.000 [^\n]*blind \\(node\\)"));
+  EXPECT_THAT(text,
+              testing::HasSubstr("2 modes are not identified; contact points nearby:\n  x_c"));
+  EXPECT_THAT(text, testing::Not(testing::HasSubstr("gain")));
+}
+
+TEST(LimitText, APluckThatSeesThemLeavesNothingToPropose) {
+  const std::string text = limit_of(
+      config("",
+             "plucks: [{initial: {type: pluck, position: 43 mm, displacement: 1 mm, width: 3 mm}, "
+             "duration: 0.3 s, noise_level: 1 %, sample_rate: 12.5 kHz}]\n"));
+  EXPECT_THAT(text, testing::HasSubstr("pluck 1: noise 1 % of each reaction, 0.3 s at 12500 Hz"));
+  EXPECT_THAT(text, testing::ContainsRegex("  5  980.000 [^\n]*identified"));
+  EXPECT_THAT(text, testing::HasSubstr("no mode is blind to all records"));
+  EXPECT_THAT(text, testing::Not(testing::HasSubstr("contact points nearby")));
+}
+
+TEST(LimitText, FurtherStrokesHaveContactsOfTheirOwn) {
+  const std::string text = limit_of(config("", "further_strokes: {contacts: [62 mm]}\n"));
+  EXPECT_THAT(text, testing::HasSubstr("stroke 2: x_c = 0.062 m"));
+  EXPECT_THAT(text, testing::ContainsRegex("  x_c 2 +sd [^\n]* m "));
+  EXPECT_THAT(text, testing::HasSubstr("no mode is blind to all records"));
+}
+
+TEST(LimitText, HasARowForEveryFreeParameterInBothStages) {
+  const std::string text =
+      limit_of(config(", unknowns: {damping: power, gain: {free: true}, delay: {free: true}}", ""));
+  const std::size_t free = text.find("every frequency free");
+  ASSERT_NE(free, std::string::npos);
+  for (const std::string& stage : {text.substr(0, free), text.substr(free)}) {
+    EXPECT_THAT(stage, testing::ContainsRegex("gain +sd [0-9]"));
+    EXPECT_THAT(stage, testing::ContainsRegex("delay +sd [0-9][^\n]* s"));
+    EXPECT_THAT(stage, testing::ContainsRegex("damping_power +sd [0-9]"));
+    EXPECT_THAT(stage, testing::Not(testing::HasSubstr("corner")));
+  }
+  EXPECT_THAT(limit_of(config(", unknowns: {damping: each}", "")),
+              testing::HasSubstr("relative sd  sd of zeta  verdict"));
+}
+
+TEST(LimitText, NamesNoFixedContactAmongTheDeviations) {
+  const std::string fixed = limit_of(
+      config(", unknowns: {damping: factor, fixed: [{parameter: x_c, value: 66 mm}]}", ""));
+  EXPECT_THAT(fixed, testing::HasSubstr("every frequency free: sd of the damping factor "));
+  EXPECT_THAT(limit_of(config("", "")),
+              testing::ContainsRegex("every frequency free: sd of x_c [^\n]* m, of the damping"));
+}
+
+TEST(LimitText, RefusesAStringThatNothingMoves) {
+  std::string silent = config("", "");
+  silent.replace(silent.find("normal_force: 1 N"), 17, "normal_force: 0 N");
+  try {
+    limit_of(silent);
+    FAIL();
+  } catch (const InvalidInput& refusal) {
+    EXPECT_THAT(refusal.what(), testing::HasSubstr("normal force > 0"));
+  }
+}
+
+TEST(LimitText, OfARecordAsksForASceneBeforeAnythingElse) {
+  TruthCache truths;
+  LimitQuestion question;
+  question.observation.has_record = true;
+  try {
+    limit_text(question, truths);
+    FAIL();
+  } catch (const InvalidInput& refusal) {
+    EXPECT_THAT(refusal.what(), testing::HasSubstr("state a scene, not a record"));
+  }
+}
+
+}  // namespace
+}  // namespace modcal

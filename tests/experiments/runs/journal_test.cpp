@@ -1,0 +1,160 @@
+#include "experiments/runs/journal.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <limits>
+#include <sstream>
+
+#include "experiments/runs/task_key.hpp"
+#include "libsim/base/error.hpp"
+
+namespace modcal {
+namespace {
+
+using ::testing::HasSubstr;
+
+class Journal : public ::testing::Test {
+ protected:
+  Journal() {
+    std::string name = (std::filesystem::temp_directory_path() / "modcal-journal-XXXXXX").string();
+    folder_ = mkdtemp(name.data());
+  }
+  ~Journal() override { std::filesystem::remove_all(folder_); }
+
+  std::filesystem::path file() const { return folder_ / "one.journal"; }
+  const std::filesystem::path& folder() const { return folder_; }
+
+  static JournalRecord record(std::uint64_t task) {
+    return {"0123456789abcdef0123456789abcde" + std::to_string(task % 10), task,
+            0.1 * static_cast<double>(task),
+            R"({"value": "a b", "task": )" + std::to_string(task) + "}"};
+  }
+  void write_records(std::uint64_t first, std::uint64_t last) const {
+    JournalWriter writer(file(), "program 1");
+    for (std::uint64_t task = first; task <= last; ++task) writer.append(record(task));
+  }
+  std::string bytes() const {
+    std::ostringstream text;
+    text << std::ifstream(file(), std::ios::binary).rdbuf();
+    return text.str();
+  }
+  void replace(const std::string& bytes) const {
+    std::ofstream(file(), std::ios::binary | std::ios::trunc) << bytes;
+  }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+void expect_equal(const JournalRecord& a, const JournalRecord& b) {
+  EXPECT_EQ(a.key, b.key);
+  EXPECT_EQ(a.task, b.task);
+  EXPECT_EQ(a.seconds, b.seconds);
+  EXPECT_EQ(a.outcome, b.outcome);
+}
+
+TEST_F(Journal, GivesBackWhatWasAppendedInSeveralRuns) {
+  write_records(0, 2);
+  write_records(3, 4);
+  const JournalContents contents = read_journal(file());
+  EXPECT_TRUE(contents.damages.empty());
+  ASSERT_EQ(contents.records.size(), 5u);
+  for (std::uint64_t task = 0; task < 5; ++task) expect_equal(contents.records[task], record(task));
+}
+
+TEST_F(Journal, CutAnywhereLosesAtMostTheRecordThatIsCutAndNamesIt) {
+  write_records(0, 3);
+  const std::string whole = bytes();
+  for (std::size_t cut = 0; cut < whole.size(); ++cut) {
+    replace(whole.substr(0, cut));
+    const JournalContents contents = read_journal(file());
+    // Lines that are complete in what is left, with or without their end; the first is the header.
+    const bool between_lines = cut == 0 || whole[cut - 1] == '\n' || whole[cut] == '\n';
+    const auto lines = static_cast<std::size_t>(
+        std::count(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(cut), '\n') +
+        (whole[cut] == '\n' ? 1 : 0));
+    ASSERT_EQ(contents.records.size(), lines == 0 ? 0 : lines - 1) << cut;
+    ASSERT_EQ(contents.damages.size(), between_lines ? 0u : 1u) << cut;
+    if (between_lines) continue;
+    EXPECT_EQ(contents.damages[0].line, lines + 1);
+    EXPECT_THAT(message_of(contents.damages[0]),
+                HasSubstr("is cut off; its task will be run again"));
+  }
+}
+
+TEST_F(Journal, GoesOnAfterACutWithoutHarmToWhatFollows) {
+  write_records(0, 3);
+  const std::string whole = bytes();
+  for (std::size_t cut = 0; cut <= whole.size(); ++cut) {
+    replace(whole.substr(0, cut));
+    const std::size_t before = read_journal(file()).records.size();
+    write_records(7, 8);
+    const JournalContents contents = read_journal(file());
+    ASSERT_EQ(contents.records.size(), before + 2) << cut;
+    expect_equal(contents.records[before], record(7));
+    expect_equal(contents.records[before + 1], record(8));
+  }
+}
+
+TEST_F(Journal, NoticesAChangedByteAnywhere) {
+  write_records(0, 3);
+  const std::string whole = bytes();
+  const std::size_t first_record = whole.find('\n') + 1;
+  for (std::size_t i = first_record; i < whole.size(); ++i) {
+    std::string changed = whole;
+    changed[i] = static_cast<char>(changed[i] ^ 1);
+    replace(changed);
+    const JournalContents contents = read_journal(file());
+    // A changed line end joins two lines or, at the last one, leaves one without an end.
+    ASSERT_GE(contents.records.size(), whole[i] == '\n' ? 2u : 3u) << i;
+    ASSERT_EQ(contents.damages.size(), 1u) << i;
+  }
+}
+
+TEST_F(Journal, SaysWhatWroteItAndRefusesTheFormatOfAnotherVersion) {
+  write_records(0, 0);
+  EXPECT_THAT(bytes(), HasSubstr(" modcal-journal 1 program 1\n"));
+  const std::string header = "modcal-journal 2 program 9";
+  replace(checksum_of(header) + " " + header + "\n");
+  EXPECT_THROW(read_journal(file()), InvalidInput);
+}
+
+TEST_F(Journal, ReadsAllJournalsOfAFolderInTheOrderOfTheirNames) {
+  { JournalWriter(folder() / "b.journal", "p").append(record(1)); }
+  { JournalWriter(folder() / "a.journal", "p").append(record(2)); }
+  std::ofstream(folder() / "c.lock") << "not a journal";
+  const JournalContents contents = read_journals(folder());
+  ASSERT_EQ(contents.records.size(), 2u);
+  EXPECT_EQ(contents.records[0].task, 2u);
+  EXPECT_TRUE(read_journals(folder() / "missing").records.empty());
+}
+
+TEST_F(Journal, SaysWhatAFullDiskMeans) {
+  std::filesystem::create_symlink("/dev/full", file());
+  try {
+    JournalWriter writer(file(), "program");
+    writer.append(record(0));
+    FAIL() << "a full disk goes unnoticed";
+  } catch (const InvalidInput& error) {
+    EXPECT_THAT(error.what(), HasSubstr("No space left on device"));
+    EXPECT_THAT(error.what(), HasSubstr("what the journal holds is not repeated"));
+  }
+}
+
+TEST_F(Journal, KeepsUnusualTimesAndLongOutcomes) {
+  JournalRecord unusual = record(5);
+  unusual.seconds = std::numeric_limits<double>::denorm_min();
+  unusual.task = std::numeric_limits<std::uint64_t>::max();
+  unusual.outcome = std::string(100000, 'x');
+  { JournalWriter(file(), "p").append(unusual); }
+  const JournalContents contents = read_journal(file());
+  ASSERT_EQ(contents.records.size(), 1u);
+  expect_equal(contents.records[0], unusual);
+}
+
+}  // namespace
+}  // namespace modcal

@@ -1,0 +1,99 @@
+#include "libcalib/identifiability/mode_verdict.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/libsim/dynamics/paper_case.hpp"
+
+namespace modcal {
+namespace {
+
+struct Found {
+  ModelPoint model;
+  Eigen::VectorXd deviation, seen;
+  LawFollowers followers;
+
+  Found() : model{make_modal_basis(paper_scene().string), 0.0285} {
+    const auto modes = static_cast<Eigen::Index>(model.basis.size());
+    deviation = Eigen::VectorXd::Constant(modes, 2e-5);
+    seen = Eigen::VectorXd::Constant(modes, 1e-4);
+    followers = LawFollowers::all(modes, 1e-5);
+  }
+  std::vector<ModeVerdict> verdicts() const {
+    return free_verdicts(model, deviation, seen, followers);
+  }
+};
+
+TEST(FreeVerdicts, IdentifyWhatTheDataSee) {
+  Found found;
+  found.seen[3] = 1.5e-3;
+  const std::vector<ModeVerdict> verdicts = found.verdicts();
+  EXPECT_EQ(verdicts[0].source, ModeSource::kIdentified);
+  EXPECT_EQ(verdicts[0].deviation, 2e-5);
+  EXPECT_EQ(verdicts[0].data_deviation, 1e-4);
+  EXPECT_EQ(verdicts[3].source, ModeSource::kLaw);
+  EXPECT_EQ(verdicts[3].deviation, 2e-5);
+}
+
+TEST(FreeVerdicts, DoubtWhereDataAndLawDisagree) {
+  Found found;
+  for (const std::size_t n : {2u, 5u}) {
+    found.followers.ties[n] = LawTie::kDoubtful;
+    found.followers.rest[static_cast<Eigen::Index>(n)] = -3e-4;
+  }
+  found.seen[5] = 1.5e-3;
+  const std::vector<ModeVerdict> verdicts = found.verdicts();
+  EXPECT_EQ(verdicts[2].source, ModeSource::kIdentified);
+  EXPECT_EQ(verdicts[5].source, ModeSource::kPrior);
+  for (const std::size_t n : {2u, 5u}) {
+    EXPECT_EQ(verdicts[n].reason, WeakReason::kDoubt);
+    EXPECT_DOUBLE_EQ(verdicts[n].deviation, std::hypot(2e-5, 3e-4));
+  }
+}
+
+TEST(FreeVerdicts, KnowAModeThatLeavesTheLawByTheDataAlone) {
+  Found found;
+  for (const std::size_t n : {1u, 4u}) found.followers.ties[n] = LawTie::kLeaves;
+  found.seen[4] = 1.5e-3;
+  const std::vector<ModeVerdict> verdicts = found.verdicts();
+  EXPECT_EQ(verdicts[1].source, ModeSource::kIdentified);
+  EXPECT_EQ(verdicts[1].deviation, 2e-5);
+  // Neither law nor data have it.
+  EXPECT_EQ(verdicts[4].source, ModeSource::kPrior);
+  EXPECT_EQ(verdicts[4].deviation, kLeft);
+  EXPECT_EQ(not_following(verdicts), (std::vector<std::size_t>{1, 4}));
+}
+
+TEST(Release, OpensThePriorOfAModeThatLeaves) {
+  Found found;
+  found.followers.ties[1] = LawTie::kLeaves;
+  found.followers.ties[2] = LawTie::kDoubtful;
+  ModeSight sight{.delta = found.deviation, .seen = found.seen, .error = found.seen};
+  sight.seen[1] = kWidePrior;  // unproven, until it left
+  sight.error[1] = 2e-4;
+  Eigen::VectorXd widths = prior_widths(sight.seen, 2e-3, 1e-5);
+  EXPECT_EQ(widths[1], 1e-5);
+  release(found.followers, sight, widths);
+  EXPECT_EQ(widths[1], kLeft);
+  EXPECT_EQ(sight.seen[1], 2e-4);
+  EXPECT_EQ(widths[0], 2e-3);
+
+  widths = prior_widths(sight.seen, 1e-5, 1e-5);
+  release(found.followers, sight, widths);
+  EXPECT_EQ(widths[2], kWidePrior);
+  EXPECT_EQ(widths[0], 1e-5);
+}
+
+TEST(Departures, AreThoseFromTheLaw) {
+  Found found;
+  std::vector<ModeVerdict> verdicts = found.verdicts();
+  verdicts[9].frequency *= 1.004;
+  report_departures({.fundamental = 196.0, .inharmonicity = 0.0}, verdicts);
+  // The basis has f_n = n·196 Hz to rounding.
+  EXPECT_NEAR(verdicts[9].departure, 4e-3, 1e-12);
+  EXPECT_NEAR(verdicts[8].departure, 0.0, 1e-12);
+}
+
+}  // namespace
+}  // namespace modcal

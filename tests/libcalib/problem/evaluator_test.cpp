@@ -1,0 +1,207 @@
+#include "libcalib/problem/evaluator.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "libsim/base/error.hpp"
+#include "tests/libcalib/test_functions.hpp"
+
+namespace modcal {
+namespace {
+
+using Point = std::vector<double>;
+
+TEST(Evaluator, ScalesVariablesGradientAndJacobian) {
+  const Quadratic quadratic;
+  // Start (1, 2), scale 0.5: z = (2, −2) is (2, 1).
+  Evaluator evaluator(quadratic, box(1.0, 2.0, -10.0, 10.0, 0.5), {});
+  EXPECT_EQ(evaluator.lower()[0], -22.0);
+  EXPECT_EQ(evaluator.upper()[1], 16.0);
+  double value = 0.0;
+  double gradient[2], residuals[2], jacobian[4];
+  evaluator.evaluate(Point{2.0, -2.0}, {&value, gradient, residuals, jacobian});
+  EXPECT_EQ(value, 0.5 * (1.0 + 16.0));
+  EXPECT_EQ(gradient[0], -1.0 * 0.5);
+  EXPECT_EQ(gradient[1], 8.0 * 0.5);
+  EXPECT_EQ(residuals[1], 4.0);
+  EXPECT_EQ(jacobian[0], 0.5);
+  EXPECT_EQ(jacobian[3], 1.0);
+}
+
+TEST(Evaluator, FormsMissingSlopesByDifferencesAndCountsThem) {
+  const Rosenbrock full;
+  const Without values(full, {});
+  const Point z = {-1.2, 1.0};
+  // The second variable sits on its bound.
+  Evaluator exact(full, box(0.0, 0.0, -2.0, 1.0), {});
+  Evaluator by_values(values, box(0.0, 0.0, -2.0, 1.0), {});
+  double expected[2], gradient[2];
+  exact.evaluate(z, {.gradient = expected});
+  full.calls = 0;
+  by_values.evaluate(z, {.gradient = gradient});
+  EXPECT_EQ(full.calls, 5);
+  const OptimizationResult result = by_values.finish(StopReason::kConverged);
+  EXPECT_EQ(result.evaluations, 5);
+  EXPECT_EQ(result.difference_evaluations, 4);
+  // h = 6.1e-6·1.2: h²/6 times the third derivative, 1200·1.2, is 1e-8; rounding ε·12/h is 5e-10.
+  EXPECT_NEAR(gradient[0], expected[0], 3e-8);
+  // Quadratic in y: the one-sided rule is exact but for rounding, 8·ε·12/h.
+  EXPECT_NEAR(gradient[1], expected[1], 1e-8);
+
+  const Without residuals(full, {.residuals = true});
+  Evaluator by_residuals(residuals, box(0.0, 0.0, -2.0, 1.0), {});
+  double jacobian[4], exact_jacobian[4], r[2];
+  exact.evaluate(z, {.residuals = r, .jacobian = exact_jacobian});
+  by_residuals.evaluate(z, {.gradient = gradient, .jacobian = jacobian});
+  for (int k = 0; k < 4; ++k) EXPECT_NEAR(jacobian[k], exact_jacobian[k], 1e-8);
+  EXPECT_NEAR(gradient[0], expected[0], 3e-8);
+
+  const Without no_gradient(full, {.least_squares = true});
+  Evaluator by_jacobian(no_gradient, box(0.0, 0.0, -2.0, 1.0), {});
+  by_jacobian.evaluate(z, {.gradient = gradient});
+  EXPECT_DOUBLE_EQ(gradient[0], expected[0]);
+  EXPECT_EQ(by_jacobian.finish(StopReason::kConverged).evaluations, 1);
+}
+
+TEST(Evaluator, PutsPointsOutsideTheBoxOntoIt) {
+  const Quadratic quadratic;
+  Evaluator evaluator(quadratic, box(0.0, 0.0, -1.0, 1.0), {});
+  EXPECT_EQ(evaluator.value(Point{5.0, -5.0}), 0.5 * 4.0);
+}
+
+TEST(Evaluator, KeepsTheBestPointAndTracesOnlyProgress) {
+  const Quadratic quadratic;
+  Evaluator evaluator(quadratic, box(0.0, 0.0, -9.0, 9.0), {});
+  evaluator.begin();
+  evaluator.value(Point{2.0, -1.0});
+  evaluator.value(Point{5.0, 5.0});
+  const OptimizationResult result = evaluator.finish(StopReason::kConverged);
+  EXPECT_EQ(result.x, (Point{2.0, -1.0}));
+  EXPECT_EQ(result.value, 0.5);
+  EXPECT_EQ(result.initial_value, 0.5 * (9.0 + 4.0));
+  EXPECT_EQ(result.evaluations, 3);
+  ASSERT_EQ(result.trace.size(), 2u);
+  EXPECT_EQ(result.trace[1].evaluations, 2);
+  EXPECT_EQ(result.stop, StopReason::kConverged);
+}
+
+TEST(Evaluator, AllowsExactlyTheEvaluationsOfTheBudget) {
+  const Quadratic quadratic;
+  Evaluator evaluator(quadratic, box(0.0, 0.0, -9.0, 9.0), {.evaluations = 2});
+  evaluator.value(Point{0.0, 0.0});
+  evaluator.value(Point{1.0, 0.0});
+  EXPECT_THROW(evaluator.value(Point{3.0, -1.0}), Evaluator::Stopped);
+  EXPECT_FALSE(evaluator.try_evaluate(Point{3.0, -1.0}, {}));
+  EXPECT_EQ(quadratic.calls, 2);
+  const OptimizationResult result = evaluator.finish(StopReason::kConverged);
+  EXPECT_EQ(result.stop, StopReason::kEvaluationBudget);
+  EXPECT_EQ(result.evaluations, 2);
+}
+
+TEST(Evaluator, StartsNoEvaluationAfterTheTimeIsUp) {
+  const Quadratic quadratic;
+  double now = 100.0;
+  Evaluator evaluator(quadratic, box(0.0, 0.0, -9.0, 9.0), {.seconds = 2.0}, [&] { return now; });
+  evaluator.value(Point{0.0, 0.0});
+  now = 101.9;
+  evaluator.value(Point{1.0, 0.0});
+  now = 102.0;
+  EXPECT_THROW(evaluator.value(Point{3.0, -1.0}), Evaluator::Stopped);
+  const OptimizationResult result = evaluator.finish(StopReason::kNotRun);
+  EXPECT_EQ(result.stop, StopReason::kTimeBudget);
+  EXPECT_EQ(result.seconds, 2.0);
+  EXPECT_NEAR(result.trace.back().seconds, 1.9, 1e-12);
+}
+
+TEST(Evaluator, EndsAtTheTarget) {
+  const Quadratic quadratic;
+  Evaluator evaluator(quadratic, box(0.0, 0.0, -9.0, 9.0), {.target = 0.5});
+  EXPECT_TRUE(evaluator.try_evaluate(Point{0.0, 0.0}, {}));
+  EXPECT_FALSE(evaluator.try_evaluate(Point{2.0, -1.0}, {}));
+  const OptimizationResult result = evaluator.finish(StopReason::kNoProgress);
+  EXPECT_EQ(result.stop, StopReason::kTargetReached);
+  EXPECT_EQ(result.value, 0.5);
+}
+
+TEST(Evaluator, NotANumberEndsTheSearchAndIsNeverTheBest) {
+  const ValueOnly function(1, [](std::span<const double> x) {
+    return x[0] > 0.5 ? std::numeric_limits<double>::quiet_NaN() : x[0];
+  });
+  const std::vector<Variable> line = {{"x", "1", 0.0, -1.0, 1.0, 1.0}};
+  Evaluator evaluator(function, line, {});
+  evaluator.value(Point{0.25});
+  EXPECT_THROW(evaluator.value(Point{0.75}), Evaluator::Stopped);
+  const OptimizationResult result = evaluator.finish(StopReason::kConverged);
+  EXPECT_EQ(result.stop, StopReason::kNotFinite);
+  EXPECT_EQ(result.x, Point{0.25});
+
+  Evaluator steps(function, line, {});
+  EXPECT_FALSE(steps.try_evaluate(Point{std::numeric_limits<double>::quiet_NaN()}, {}));
+  EXPECT_EQ(steps.finish(StopReason::kConverged).evaluations, 0);
+}
+
+TEST(Evaluator, CarriesExceptionsThroughCallbacks) {
+  const Throwing function(2);
+  Evaluator evaluator(function, box(0.0, 0.0, -9.0, 9.0), {});
+  EXPECT_TRUE(evaluator.try_evaluate(Point{0.0, 0.0}, {}));
+  EXPECT_FALSE(evaluator.try_evaluate(Point{1.0, 0.0}, {}));
+  EXPECT_FALSE(evaluator.try_evaluate(Point{1.0, 0.0}, {}));
+  EXPECT_EQ(function.calls, 2);
+  EXPECT_THROW(evaluator.finish(StopReason::kConverged), Boom);
+}
+
+TEST(Evaluator, ScansWithinTheBudgetAndKeepsOneEvaluationForTheAnswer) {
+  const Quadratic quadratic;
+  Evaluator evaluator(quadratic, box(0.0, 0.0, -9.0, 9.0), {.evaluations = 5});
+  evaluator.begin();
+  evaluator.open_scan();
+  EXPECT_EQ(evaluator.evaluations_left(), 3);
+  Point values(3);
+  evaluator.scan(0, Point{1.0, 3.0, 5.0}, values);
+  EXPECT_EQ(values[1], 0.5 * 4.0);
+  evaluator.move(0, 3.0);
+  EXPECT_THROW(evaluator.scan(1, Point{-1.0}, std::span(values).first(1)), Evaluator::Stopped);
+  const OptimizationResult result = evaluator.finish(StopReason::kSearchCompleted);
+  EXPECT_EQ(result.evaluations, 5);
+  EXPECT_EQ(quadratic.calls, 5);
+  EXPECT_EQ(result.x, (Point{3.0, 0.0}));
+  EXPECT_EQ(result.value, 2.0);
+  EXPECT_EQ(result.stop, StopReason::kEvaluationBudget);
+}
+
+TEST(Evaluator, ABudgetOfOneEvaluationIsSpentOnTheInitialPoint) {
+  const Quadratic quadratic;
+  Evaluator evaluator(quadratic, box(0.0, 0.0, -9.0, 9.0), {.evaluations = 1});
+  evaluator.begin();
+  evaluator.open_scan();
+  Point values(1);
+  EXPECT_THROW(evaluator.scan(0, Point{1.0}, values), Evaluator::Stopped);
+  const OptimizationResult result = evaluator.finish(StopReason::kSearchCompleted);
+  EXPECT_EQ(quadratic.calls, 1);
+  EXPECT_EQ(result.value, 6.5);
+}
+
+TEST(Evaluator, RefusesWhatCannotBeSearched) {
+  const Quadratic quadratic;
+  EXPECT_THROW(Evaluator(quadratic, box(5.0, 0.0, -1.0, 1.0), {}), InvalidInput);
+  EXPECT_THROW(Evaluator(quadratic, box(0.0, 0.0, -1.0, 1.0, 0.0), {}), InvalidInput);
+  EXPECT_THROW(Evaluator(quadratic, box(1.0, 1.0, 1.0, 1.0), {}), InvalidInput);
+  EXPECT_THROW(Evaluator(quadratic, box(0.0, 0.0, -1.0, 1.0), {.evaluations = 0}), InvalidInput);
+  EXPECT_THROW(Evaluator(quadratic, box(0.0, 0.0, -1.0, 1.0), {.seconds = 0.0}), InvalidInput);
+  const auto one = box(0.0, 0.0, -1.0, 1.0);
+  EXPECT_THROW(Evaluator(quadratic, std::span(one).first(1), {}), InvalidInput);
+}
+
+TEST(StopReason, EveryReasonHasAWordAndASentenceOfItsOwn) {
+  std::vector<std::string_view> words;
+  for (int i = 0; i <= static_cast<int>(StopReason::kNoProgress); ++i) {
+    const auto reason = static_cast<StopReason>(i);
+    EXPECT_TRUE(explain(reason).ends_with("."));
+    for (const auto word : words) EXPECT_NE(word, name_of(reason));
+    words.push_back(name_of(reason));
+  }
+}
+
+}  // namespace
+}  // namespace modcal

@@ -1,0 +1,285 @@
+#include "libsim/records/csv_reader.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "tests/libsim/records/record_folder.hpp"
+
+namespace modcal {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class CsvReader : public RecordFolder {
+ protected:
+  Recording read(std::string_view content, const CsvReadOptions& options = {}) const {
+    return read_csv(write("r.csv", content), options);
+  }
+  /// The message for this content, with the folder cut off.
+  std::string error(std::string_view content, const CsvReadOptions& options = {}) const {
+    std::string text = refusal([&] { read(content, options); });
+    const std::string prefix = folder().string() + "/";
+    for (std::size_t at; (at = text.find(prefix)) != std::string::npos;) {
+      text.erase(at, prefix.size());
+    }
+    return text;
+  }
+};
+
+constexpr std::string_view kPlain = "t [s],R1 [N],R2 (mN)\n0,1,-4\n0.5,2.5,5e-1\n1,+3,6\n";
+
+void expect_plain(const Recording& record) {
+  ASSERT_EQ(record.channels.size(), 2u);
+  EXPECT_EQ(record.channels[0].name, "R1");
+  EXPECT_EQ(record.channels[0].unit, "N");
+  EXPECT_EQ(record.channels[1].name, "R2");
+  EXPECT_EQ(record.channels[1].unit, "mN");
+  EXPECT_THAT(record.channels[0].samples, ElementsAre(1.0, 2.5, 3.0));
+  EXPECT_THAT(record.channels[1].samples, ElementsAre(-4.0, 0.5, 6.0));
+  EXPECT_EQ(record.sample_rate, 2.0);
+}
+
+std::string replaced(std::string_view text, std::string_view from, std::string_view to) {
+  std::string result;
+  while (true) {
+    const std::size_t at = text.find(from);
+    result += text.substr(0, at);
+    if (at == std::string_view::npos) return result;
+    result += to;
+    text.remove_prefix(at + from.size());
+  }
+}
+
+TEST_F(CsvReader, ReadsNamedColumnsWithUnits) { expect_plain(read(kPlain)); }
+
+TEST_F(CsvReader, DetectsSeparators) {
+  expect_plain(read(replaced(kPlain, ",", ";")));
+  expect_plain(read(replaced(kPlain, ",", "\t")));
+  expect_plain(read(replaced(kPlain, ",", " , ")));
+}
+
+TEST_F(CsvReader, TakesEveryLineEndAndAMissingLastOne) {
+  expect_plain(read(replaced(kPlain, "\n", "\r\n")));
+  expect_plain(read(replaced(kPlain, "\n", "\r")));
+  expect_plain(read(kPlain.substr(0, kPlain.size() - 1)));
+  expect_plain(read(replaced(kPlain, "\n", "\r\n").substr(0, kPlain.size() + 2)));
+}
+
+TEST_F(CsvReader, SkipsByteOrderMarkCommentsAndBlankLines) {
+  expect_plain(read("\xEF\xBB\xBF" + std::string(kPlain)));
+  expect_plain(read("# made by hand\n\n  # another, with \"quotes\n" +
+                    replaced(kPlain, "1,+3,6", "\n# in the middle\n   \n1,+3,6\n\n")));
+}
+
+TEST_F(CsvReader, UnderstandsQuotedHeadings) {
+  expect_plain(read(replaced(kPlain, "R1 [N]", "\"R1 [N]\"")));
+  const Recording record = read("t;\"left; \"\"bridge\"\"\nside [N]\"\n0;1\n0.5;2\n");
+  ASSERT_EQ(record.channels.size(), 1u);
+  EXPECT_EQ(record.channels[0].name, "left; \"bridge\"\nside");
+  EXPECT_EQ(record.channels[0].unit, "N");
+  EXPECT_EQ(record.sample_rate, 2.0);
+}
+
+TEST_F(CsvReader, ReadsExtremeNumbersExactly) {
+  const Recording record = read(
+      "# sample_rate: 1 Hz\nx\n1.7976931348623157e308\n4.9406564584124654e-324\n-0.0\n"
+      "2.2250738585072011e-308\n0.1\n");
+  const auto& x = record.channels[0].samples;
+  ASSERT_EQ(x.size(), 5u);
+  EXPECT_EQ(x[0], std::numeric_limits<double>::max());
+  EXPECT_EQ(x[1], std::numeric_limits<double>::denorm_min());
+  EXPECT_TRUE(x[2] == 0.0 && std::signbit(x[2]));
+  EXPECT_EQ(x[3], 2.2250738585072011e-308);
+  EXPECT_EQ(x[4], 0.1);
+}
+
+TEST_F(CsvReader, ChoosesColumnsByNameOrNumberInTheOrderAsked) {
+  const std::string_view text = "t,a,note,b\n0,1,hello,3\n1,4,,6\n";
+  const Recording record = read(text, {.columns = {"4", "a"}});
+  ASSERT_EQ(record.channels.size(), 2u);
+  EXPECT_THAT(record.channels[0].samples, ElementsAre(3.0, 6.0));
+  EXPECT_THAT(record.channels[1].samples, ElementsAre(1.0, 4.0));
+}
+
+TEST_F(CsvReader, TakesTheSampleRateFromAComment) {
+  EXPECT_EQ(read("# sample_rate: 51.2 kHz\nR1\n1\n").sample_rate, 51200.0);
+  EXPECT_EQ(read("#Sample Rate: 100\nR1\n1\n").sample_rate, 100.0);
+}
+
+TEST_F(CsvReader, TakesTheSampleRateOfTheUserFirst) {
+  const Recording record = read("# sample_rate: 10 Hz\nR1\n1\n2\n", {.sample_rate = 20.0});
+  EXPECT_EQ(record.sample_rate, 20.0);
+  EXPECT_THAT(record.warnings,
+              ElementsAre(HasSubstr("the file says 10 Hz, the stated 20 Hz is used")));
+}
+
+TEST_F(CsvReader, ConvertsTheUnitOfTime) {
+  EXPECT_EQ(read("time [ms],R1\n0,1\n0.5,2\n1.0,3\n").sample_rate, 2000.0);
+}
+
+TEST_F(CsvReader, ForgivesTheRoundingOfPrintedInstants) {
+  // 51.2 kHz printed to 1 µs: instants are off by up to 0.5 µs, 2.6 % of a period.
+  std::string text = "t,R1\n";
+  for (int i = 0; i < 5120; ++i) text += fmt::format("{:.6f},0\n", i / 51200.0);
+  const Recording fixed = read(text);
+  // End instants are off by 0.5 µs each in 0.1 s: 1e-5 relative, 0.5 Hz; whole numbers are taken.
+  EXPECT_NEAR(fixed.sample_rate, 51200.0, 0.52);
+  EXPECT_LE(fixed.time_jitter, 1.5e-6);
+  // Six significant digits: 10 µs at t > 1 s would be too coarse, below 1 s they are 1 µs.
+  text = "t,R1\n";
+  for (int i = 0; i < 5120; ++i) text += fmt::format("{:.6g},0\n", i / 51200.0);
+  EXPECT_NEAR(read(text).sample_rate, 51200.0, 0.52);
+}
+
+TEST_F(CsvReader, ReportsInstantsPrintedTooCoarsely) {
+  std::string text = "t,R1\n";
+  for (int i = 0; i < 100; ++i) text += fmt::format("{:.5f},0\n", i / 51200.0);
+  EXPECT_EQ(error(text),
+            "r.csv: column t is printed to 1e-05 s, too coarsely to tell the sample rate; print it "
+            "with more digits or state sample_rate");
+  EXPECT_EQ(read(text, {.sample_rate = 51200.0}).sample_rate, 51200.0);
+}
+
+TEST_F(CsvReader, ReportsGapsJitterAndReturnsInTime) {
+  EXPECT_EQ(error("t,R1\n0,1\n0.1,1\n# pause\n0.4,1\n0.5,1\n0.6,1\n"),
+            "r.csv:5: sample 2: a gap of 0.3 s before 0.4 s where the steps are 0.1 s; crop the "
+            "record before or behind the gap");
+  EXPECT_EQ(error("t,R1\n0,1\n0.10000,1\n0.21000,1\n0.3,1\n0.4,1\n"),
+            "r.csv:4: sample 2: sampling is not uniform: 0.21 s is 0.01 s (0.1 sampling periods) "
+            "off the uniform grid; resample the record, or state sample_rate if its time column is "
+            "not to be trusted");
+  EXPECT_EQ(error("t,R1\n0,1\n0.10,1\n0.20,1\n0.20,1\n0.45,1\n"),
+            "r.csv:5: sample 3: time goes from 0.2 s to 0.2 s; sampling instants must increase\n"
+            "r.csv:6: sample 4: a gap of 0.25 s before 0.45 s where the steps are 0.1 s; crop the "
+            "record before or behind the gap");
+  const std::string_view gap = "t,R1\n0,1\n0.1,1\n0.4,1\n0.5,1\n0.6,1\n";
+  EXPECT_EQ(read(gap, {.sample_rate = 10.0}).warnings.size(), 2u);  // the gap, and 5 / 0.6 s ≠ 10
+}
+
+TEST_F(CsvReader, ReportsAFileThatContradictsItself) {
+  EXPECT_EQ(error("# sample_rate: 20 Hz\nt,R1\n0,1\n0.1,1\n0.2,1\n"),
+            "r.csv:1: the comment says 20 Hz, column t says 10 Hz; correct one of them or state "
+            "sample_rate");
+}
+
+TEST_F(CsvReader, ReportsAnUnknownSampleRate) {
+  const std::string remedy =
+      "the sample rate is not known; state sample_rate, add a comment line \"# sample_rate: 51200 "
+      "Hz\", or a column t [s] with two instants or more";
+  EXPECT_EQ(error("R1\n1\n2\n"), "r.csv: " + remedy);
+  EXPECT_EQ(error("t,R1\n0,1\n"), "r.csv: " + remedy);
+  EXPECT_EQ(read("t,R1\n0,1\n", {.sample_rate = 5.0}).frames(), 1u);
+  EXPECT_EQ(error("# sample_rate: -3 Hz\nR1\n1\n"),
+            "r.csv:1: \"-3 Hz\" is no sample rate; write a positive number of hertz, such as # "
+            "sample_rate: 51200 Hz");
+  EXPECT_THAT(error("# sample_rate: 3 kg\nR1\n1\n"), HasSubstr("\"3 kg\" is no sample rate"));
+  EXPECT_EQ(error("R1\n1\n", {.sample_rate = -1.0}),
+            "sample_rate = -1 Hz cannot be used: it must be > 0");
+}
+
+TEST_F(CsvReader, ReportsFieldsThatAreNoNumbers) {
+  EXPECT_EQ(
+      error("t,R1 [N]\n0,1\n1, abc\n2,3\n"),
+      "r.csv:3:4: sample 1 of R1: \"abc\" is not a number; write digits with a decimal point, "
+      "such as -0.25 or 1e-3");
+  EXPECT_EQ(error("t,R1\n0,\n1,2\n"),
+            "r.csv:2:3: sample 0 of R1: the field is empty; every row needs a number in every "
+            "column");
+  EXPECT_EQ(error("t,R1\n0,1\n1,nan\n2,-inf\n"),
+            "r.csv:3:3: sample 1 of R1: \"nan\" is no usable sample; repair the record or crop it "
+            "away\n"
+            "r.csv:4:3: sample 2 of R1: \"-inf\" is no usable sample; repair the record or crop it "
+            "away");
+  EXPECT_EQ(error("t,R1\n0,1e400\n1,1e-400\n"),
+            "r.csv:2:3: sample 0 of R1: \"1e400\" is outside the range of double precision "
+            "(4.9e-324 … 1.8e308)\n"
+            "r.csv:3:3: sample 1 of R1: \"1e-400\" is outside the range of double precision "
+            "(4.9e-324 … 1.8e308)");
+  EXPECT_THAT(error("t,R1\n0,0x10\n1,2\n"), HasSubstr("\"0x10\" is not a number"));
+  EXPECT_THAT(error("# sample_rate: 1 Hz\na b\n1 2\n"),
+              HasSubstr("\"1 2\" is not a number; separate columns by commas, semicolons or tabs"));
+}
+
+TEST_F(CsvReader, RecognizesDecimalCommas) {
+  EXPECT_EQ(error("t;R1\n0;1\n1;0,25\n"),
+            "r.csv:3:3: sample 1 of R1: \"0,25\" has a decimal comma; write a decimal point: 0.25");
+  EXPECT_EQ(error("t,R1\n0,0,1,5\n"),
+            "r.csv:2:1: the row has 4 fields, the header names 2 columns; if these are decimal "
+            "commas, write decimal points");
+}
+
+TEST_F(CsvReader, ReportsRaggedRows) {
+  EXPECT_EQ(
+      error("t,R1,R2\n0,1,2\n1,2\n2,3,4\n"),
+      "r.csv:3:1: the row has 2 fields, the header names 3 columns; give every row one number "
+      "per column");
+}
+
+TEST_F(CsvReader, CountsProblemsBeyondTheFirstTen) {
+  std::string text = "# sample_rate: 1 Hz\nR1\n";
+  for (int i = 0; i < 25; ++i) text += "x\n";
+  const std::string message = error(text);
+  EXPECT_EQ(std::count(message.begin(), message.end(), '\n'), 10);
+  EXPECT_THAT(message, testing::EndsWith("\n… and 15 more of this file"));
+}
+
+TEST_F(CsvReader, SurveyKeepsGoing) {
+  const Recording record =
+      read("t,R1,R2\n0,1,2\n1,x\n2,nan,3\n", {.columns = {}, .sample_rate = 1.0, .survey = true});
+  EXPECT_EQ(record.problem_count, 3u);
+  EXPECT_EQ(record.frames(), 3u);
+  EXPECT_TRUE(std::isnan(record.channels[0].samples[1]));
+  EXPECT_TRUE(std::isnan(record.channels[1].samples[1]));
+  EXPECT_EQ(record.channels[1].samples[2], 3.0);
+}
+
+TEST_F(CsvReader, ReportsBadHeaders) {
+  EXPECT_EQ(error("t,R1,R1 [N]\n0,1,2\n"),
+            "r.csv:1:6: columns 2 and 3 are both named \"R1\"; give them different names");
+  EXPECT_EQ(error("t,,R1\n0,1,2\n"), "r.csv:1:3: column 2 has no name; name every column");
+  EXPECT_EQ(error("0,1\n1,2\n"),
+            "r.csv:1:1: the first row holds numbers; put a row of names before it, such as t "
+            "[s],R1 [N] (with numpy.savetxt: comments=\"\")");
+  EXPECT_EQ(error("t\n0\n1\n"), "r.csv:1:1: there is a time column but no channel");
+}
+
+TEST_F(CsvReader, ReportsMissingColumns) {
+  const std::string_view text = "t,Reaction1,R2\n0,1,2\n1,2,3\n";
+  EXPECT_EQ(error(text, {.columns = {"reaktion1"}}),
+            "r.csv:1: there is no channel \"reaktion1\", did you mean \"Reaction1\"?; the file has "
+            "3 channels: t, Reaction1, R2");
+  EXPECT_EQ(error(text, {.columns = {"4"}}),
+            "r.csv:1: there is no channel \"4\", did you mean \"t\"?; the file has 3 channels: t, "
+            "Reaction1, R2");
+  EXPECT_EQ(error(text, {.columns = {"R2", "3"}}),
+            "r.csv:1: channel \"R2\" is asked for twice; give every role a channel of its own");
+  EXPECT_EQ(error(text, {.columns = {"t"}}),
+            "r.csv:1:1: column \"t\" is the time column, not a channel");
+}
+
+TEST_F(CsvReader, ReportsFilesThatHoldNoRecord) {
+  EXPECT_EQ(error(""), "r.csv: the file is empty; a record needs a header and samples");
+  EXPECT_EQ(error("# only\n# comments\n"),
+            "r.csv: no header; the first row must name the columns, such as t [s],R1 [N]");
+  EXPECT_EQ(error("t,R1\n"), "r.csv: there is a header but no row of samples");
+  EXPECT_THAT(error(std::string_view("R\0i\0f\0f\0", 8)), HasSubstr("this is not 8-bit text"));
+  EXPECT_THAT(error("\xFF\xFEt"), HasSubstr("save it as UTF-8 text"));
+  EXPECT_THAT(refusal([&] { read_csv(path("missing.csv")); }),
+              HasSubstr("missing.csv: cannot be opened: No such file or directory"));
+  EXPECT_THAT(refusal([&] { read_csv(folder()); }), HasSubstr("this is a folder, not a file"));
+}
+
+TEST_F(CsvReader, ReportsMisplacedQuotes) {
+  EXPECT_EQ(error("t,R1\n0,\"1\n1,2\n"),
+            "r.csv:2: the quote opened on this line is never closed; add the missing \"");
+  EXPECT_EQ(error("t,R1\n0,1\"2\n"),
+            "r.csv:2: a quote stands inside a field; a field with quotes is written \"a "
+            "\"\"quoted\"\" word\"");
+}
+
+}  // namespace
+}  // namespace modcal

@@ -1,0 +1,115 @@
+#include "libsim/records/csv_writer.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "libsim/records/csv_reader.hpp"
+#include "libsim/base/random.hpp"
+#include "tests/libsim/records/record_folder.hpp"
+
+namespace modcal {
+namespace {
+
+using testing::HasSubstr;
+
+class CsvWriter : public RecordFolder {};
+
+Signal noise(std::string quantity, std::string unit, double rate, std::size_t size) {
+  Signal signal{quantity, unit, rate, std::vector<double>(size)};
+  fill_standard_normal(StreamKey(1).with(quantity), signal.samples);
+  return signal;
+}
+
+std::string content(const std::filesystem::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
+}
+
+TEST_F(CsvWriter, RoundTripKeepsEveryBit) {
+  // A rate without a short decimal form, names that need quotes, numbers of all magnitudes.
+  std::vector<Signal> signals{noise("R1", "N", 48000.0 / 7, 4000),
+                              noise("left; \"2\"", "m/s", 48000.0 / 7, 4000)};
+  for (std::size_t i = 0; i < 4000; ++i) {
+    signals[1].samples[i] *= std::pow(10.0, static_cast<double>(i % 600) - 300.0);
+  }
+  signals[0].samples[0] = -0.0;
+  signals[0].samples[1] = std::numeric_limits<double>::denorm_min();
+  signals[0].samples[2] = -std::numeric_limits<double>::max();
+  for (const bool time_column : {true, false}) {
+    write_csv(path("a.csv"), signals,
+              {.time_column = time_column, .provenance = {"seed: 1\nmade"}});
+    const Recording record = read_csv(path("a.csv"));
+    EXPECT_EQ(record.sample_rate, signals[0].sample_rate);
+    ASSERT_EQ(record.channels.size(), 2u);
+    for (std::size_t c = 0; c < 2; ++c) {
+      EXPECT_EQ(record.channels[c].name, signals[c].quantity);
+      EXPECT_EQ(record.channels[c].unit, signals[c].unit);
+      ASSERT_EQ(record.channels[c].samples.size(), 4000u);
+      for (std::size_t i = 0; i < 4000; ++i) {
+        ASSERT_EQ(std::bit_cast<std::uint64_t>(record.channels[c].samples[i]),
+                  std::bit_cast<std::uint64_t>(signals[c].samples[i]));
+      }
+    }
+  }
+}
+
+TEST_F(CsvWriter, TimeColumnAloneGivesTheRateBack) {
+  // 120 000 rows: several blocks of output.
+  const std::vector<Signal> signals{noise("R1", "N", 51200.0, 120000)};
+  write_csv(path("a.csv"), signals);
+  std::string text = content(path("a.csv"));
+  text.erase(0, text.find('\n') + 1);
+  const Recording record = read_csv(write("b.csv", text));
+  EXPECT_EQ(record.sample_rate, 51200.0);
+  EXPECT_EQ(record.rate_source, "column t");
+  EXPECT_EQ(record.channels[0].samples, signals[0].samples);
+}
+
+TEST_F(CsvWriter, WritesHeaderUnitsAndProvenance) {
+  const std::vector<Signal> signals{{"R1", "N", 4.0, {0.1, 1e-300}}};
+  write_csv(path("a.csv"), signals, {.time_column = true, .provenance = {"made: here"}});
+  EXPECT_EQ(content(path("a.csv")),
+            "# sample_rate: 4 Hz\n# made: here\nt [s],R1 [N]\n0,0.1\n0.25,1e-300\n");
+}
+
+TEST_F(CsvWriter, RefusesWhatCannotBeOneRecord) {
+  const Signal good{"R1", "N", 4.0, {1.0, 2.0}};
+  const auto message = [&](std::vector<Signal> signals) {
+    return refusal([&] { write_csv(path("a.csv"), signals); });
+  };
+  EXPECT_THAT(message({}), HasSubstr("there is no signal to write"));
+  EXPECT_THAT(message({{"R1", "N", 0.0, {1.0}}}), HasSubstr("a sample rate of 0 Hz"));
+  EXPECT_THAT(message({{"R1", "N", 4.0, {}}}), HasSubstr("signal R1 has no samples to write"));
+  EXPECT_THAT(message({{"", "N", 4.0, {1.0}}}), HasSubstr("signal 1 has no name"));
+  EXPECT_THAT(message({good, {"R2", "N", 4.0, {1.0}}}),
+              HasSubstr("R1 has 2 samples at 4 Hz, R2 has 1 at 4 Hz: signals of one file need one "
+                        "rate and one length; write them to separate files"));
+  EXPECT_THAT(message({good, good}), HasSubstr("two signals are named R1"));
+  EXPECT_THAT(message({{"R1", "N", 4.0, {1.0, NAN}}}),
+              HasSubstr("sample 1 of R1 is nan; only numbers are written"));
+  EXPECT_THAT(message({{"R1 [x]", "", 4.0, {1.0}}}), HasSubstr("cannot be told from its heading"));
+  EXPECT_THAT(refusal([&] { write_csv(path("no/a.csv"), std::vector{good}); }),
+              HasSubstr("cannot be written: No such file or directory"));
+  EXPECT_FALSE(std::filesystem::exists(path("a.csv")));
+}
+
+TEST_F(CsvWriter, LeavesAnExistingFileAloneWhenItFails) {
+  write("a.csv", "kept");
+  std::filesystem::create_directory(
+      path(fmt::format("a.csv.{}.part", getpid())));  // in the way of the temporary file
+  EXPECT_THAT(refusal([&] {
+                write_csv(path("a.csv"), std::vector{Signal{"R1", "N", 4.0, {1.0}}});
+              }),
+              HasSubstr("a.csv: cannot be written"));
+  EXPECT_EQ(content(path("a.csv")), "kept");
+}
+
+}  // namespace
+}  // namespace modcal
