@@ -24,10 +24,27 @@ if(MODCAL_TIDY)
   set(CMAKE_CXX_CLANG_TIDY clang-tidy)
 endif()
 
+# clang-tidy cannot read GCC's precompiled headers.
+if(MODCAL_TIDY)
+  set(CMAKE_DISABLE_PRECOMPILE_HEADERS ON)
+endif()
+
+# modcal_precompiled(json LINK ...): headers of cmake/precompiled that targets of these flags share.
+function(modcal_precompiled name)
+  cmake_parse_arguments(ARG "" "" "LINK" ${ARGN})
+  set(empty ${PROJECT_BINARY_DIR}/generated/precompiled_${name}.cpp)
+  file(CONFIGURE OUTPUT ${empty} CONTENT "")
+  add_library(modcal_precompiled_${name} OBJECT EXCLUDE_FROM_ALL ${empty})
+  target_link_libraries(modcal_precompiled_${name} PRIVATE modcal_flags ${ARG_LINK})
+  target_precompile_headers(modcal_precompiled_${name} PRIVATE
+                            ${PROJECT_SOURCE_DIR}/cmake/precompiled/${name}.hpp)
+endfunction()
+
 # modcal_library(model FOLDERS base model LINK fmt::fmt) makes the static library modcal_model with the
 # alias modcal::model of every source file in and below these folders, save those EXCEPT names.
+# PRECOMPILED: which of cmake/precompiled its files include; standard where it is left out.
 function(modcal_library name)
-  cmake_parse_arguments(ARG "" "" "FOLDERS;EXCEPT;SOURCES;LINK;PRIVATE_LINK" ${ARGN})
+  cmake_parse_arguments(ARG "" "PRECOMPILED" "FOLDERS;EXCEPT;SOURCES;LINK;PRIVATE_LINK" ${ARGN})
   foreach(folder IN LISTS ARG_FOLDERS)
     file(GLOB_RECURSE found CONFIGURE_DEPENDS ${folder}/*.cpp)
     list(APPEND ARG_SOURCES ${found})
@@ -37,4 +54,8 @@ function(modcal_library name)
   add_library(modcal_${name} STATIC ${ARG_SOURCES})
   add_library(modcal::${name} ALIAS modcal_${name})
   target_link_libraries(modcal_${name} PUBLIC modcal_flags ${ARG_LINK} PRIVATE ${ARG_PRIVATE_LINK})
+  if(NOT ARG_PRECOMPILED)
+    set(ARG_PRECOMPILED standard)
+  endif()
+  target_precompile_headers(modcal_${name} REUSE_FROM modcal_precompiled_${ARG_PRECOMPILED})
 endfunction()

@@ -1,0 +1,6 @@
+// The same with JSON.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "standard.hpp"

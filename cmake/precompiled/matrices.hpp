@@ -1,0 +1,6 @@
+// The same with Eigen.
+#pragma once
+
+#include <Eigen/Dense>
+
+#include "standard.hpp"
