@@ -1,4 +1,5 @@
-# Flags every target of the project shares. No -march: kernels choose their instruction set at run
+# Flags that every target of the project is compiled with, and no target of a user's: libraries link
+# modcal_flags privately and do not export it. No -march: kernels choose their instruction set at run
 # time. -fcx-limited-range: std::complex products and quotients without the slow library routine
 # for infinities; NaN still propagates.
 add_library(modcal_flags INTERFACE)
@@ -40,11 +41,15 @@ function(modcal_precompiled name)
                             ${PROJECT_SOURCE_DIR}/cmake/precompiled/${name}.hpp)
 endfunction()
 
-# modcal_library(model FOLDERS base model LINK fmt::fmt) makes the static library modcal_model with the
-# alias modcal::model of every source file in and below these folders, save those EXCEPT names.
-# PRECOMPILED: which of cmake/precompiled its files include; standard where it is left out.
+# modcal_library(model COMPONENT model FOLDERS base model LINK fmt::fmt) makes the static library
+# modcal_model with the alias modcal::model of every source file in and below these folders, save those
+# EXCEPT names. LINK: what its headers include; PRIVATE_LINK: what its sources include; BUILD_WITH: the
+# same where it is headers only, which an installed library no longer needs. COMPONENT: part of the
+# package that it is installed with. PRECOMPILED: which of cmake/precompiled its files include; standard
+# where it is left out.
 function(modcal_library name)
-  cmake_parse_arguments(ARG "" "PRECOMPILED" "FOLDERS;EXCEPT;SOURCES;LINK;PRIVATE_LINK" ${ARGN})
+  cmake_parse_arguments(ARG "" "PRECOMPILED;COMPONENT"
+                        "FOLDERS;EXCEPT;SOURCES;LINK;PRIVATE_LINK;BUILD_WITH" ${ARGN})
   foreach(folder IN LISTS ARG_FOLDERS)
     file(GLOB_RECURSE found CONFIGURE_DEPENDS ${folder}/*.cpp)
     list(APPEND ARG_SOURCES ${found})
@@ -53,9 +58,20 @@ function(modcal_library name)
   list(REMOVE_ITEM ARG_SOURCES ${ARG_EXCEPT})
   add_library(modcal_${name} STATIC ${ARG_SOURCES})
   add_library(modcal::${name} ALIAS modcal_${name})
-  target_link_libraries(modcal_${name} PUBLIC modcal_flags ${ARG_LINK} PRIVATE ${ARG_PRIVATE_LINK})
+  target_compile_features(modcal_${name} PUBLIC cxx_std_20)
+  target_include_directories(
+    modcal_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+                          $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/modcal>)
+  list(TRANSFORM ARG_BUILD_WITH REPLACE "(.+)" "$<BUILD_INTERFACE:\\1>")
+  target_link_libraries(
+    modcal_${name} PUBLIC ${ARG_LINK}
+    PRIVATE ${ARG_PRIVATE_LINK} ${ARG_BUILD_WITH} $<BUILD_INTERFACE:modcal_flags>)
   if(NOT ARG_PRECOMPILED)
     set(ARG_PRECOMPILED standard)
   endif()
   target_precompile_headers(modcal_${name} REUSE_FROM modcal_precompiled_${ARG_PRECOMPILED})
+  if(ARG_COMPONENT AND MODCAL_INSTALL)
+    set_target_properties(modcal_${name} PROPERTIES EXPORT_NAME ${name})
+    install(TARGETS modcal_${name} EXPORT modcal-${ARG_COMPONENT})
+  endif()
 endfunction()
