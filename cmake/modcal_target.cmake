@@ -64,8 +64,10 @@ function(modcal_library name)
                           $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/modcal>)
   list(TRANSFORM ARG_BUILD_WITH REPLACE "(.+)" "$<BUILD_INTERFACE:\\1>")
   target_link_libraries(
-    modcal_${name} PUBLIC ${ARG_LINK}
-    PRIVATE ${ARG_PRIVATE_LINK} ${ARG_BUILD_WITH} $<BUILD_INTERFACE:modcal_flags>)
+    modcal_${name}
+    PRIVATE $<BUILD_INTERFACE:modcal_flags>
+    PUBLIC ${ARG_LINK}
+    PRIVATE ${ARG_PRIVATE_LINK} ${ARG_BUILD_WITH})
   if(NOT ARG_PRECOMPILED)
     set(ARG_PRECOMPILED standard)
   endif()
