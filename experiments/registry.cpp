@@ -3,12 +3,13 @@
 #include "experiments/experiment.hpp"
 #include "experiments/kinds/benchmark/benchmark_experiment.hpp"
 #include "experiments/kinds/calibrate/calibrate_experiment.hpp"
-#include "experiments/kinds/limit/calibration_limit_experiment.hpp"
-#include "experiments/kinds/identify/identify_experiment.hpp"
+#include "experiments/kinds/identify/identify_study.hpp"
 #include "experiments/kinds/invert/invert_experiment.hpp"
-#include "experiments/kinds/section7/pluck_then_bow_experiment.hpp"
+#include "experiments/kinds/limit/calibration_limit_experiment.hpp"
 #include "experiments/kinds/schelleng/schelleng_experiment.hpp"
+#include "experiments/kinds/section7/pluck_then_bow_experiment.hpp"
 #include "experiments/kinds/simulate/simulate_experiment.hpp"
+#include "experiments/kinds/study_experiment.hpp"
 #include "experiments/kinds/sweep/sweep_experiment.hpp"
 
 namespace modcal {
@@ -21,8 +22,8 @@ Registry<Experiment> Experiment::registry() {
           "calibrate", "refine the modal model, then identify force and motion with it"),
       entry_of<Experiment, CalibrationLimitExperiment>(
           "calibration_limit", "calibration error against noise beside the Cramer-Rao bound"),
-      entry_of<Experiment, IdentifyExperiment>("identify",
-                                               "modes of a plucked string from its end reactions"),
+      entry_of<Experiment, StudyExperiment<IdentifyOptions>>(
+          "identify", "modes of a plucked string from its end reactions"),
       entry_of<Experiment, InvertExperiment>(
           "invert", "contact force and motion from simulated or recorded reactions"),
       entry_of<Experiment, PluckThenBowExperiment>(

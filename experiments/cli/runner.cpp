@@ -13,11 +13,11 @@
 #include "experiments/cli/progress.hpp"
 #include "experiments/cli/provenance.hpp"
 #include "experiments/cli/shell_word.hpp"
-#include "libsim/records/csv_writer.hpp"
-#include "libsim/records/wav_writer.hpp"
 #include "experiments/report/write_report.hpp"
 #include "experiments/runs/task_experiment.hpp"
 #include "libsim/base/error.hpp"
+#include "libsim/records/csv_writer.hpp"
+#include "libsim/records/wav_writer.hpp"
 
 namespace modcal {
 namespace {
@@ -44,11 +44,13 @@ template <typename Work>
 auto with_context(const LoadedExperiment& loaded, const std::filesystem::path& folder,
                   const std::string& command, SharedWork& shared, const Work& work) {
   Progress progress(title_of(loaded));
-  return work(StudyContext{.work = shared,
-                           .folder = folder,
-                           .command = command,
-                           .progress = [&progress](double share) { progress.report(share); },
-                           .stop = interrupt_token()});
+  auto result = work(StudyContext{.work = shared,
+                                  .folder = folder,
+                                  .command = command,
+                                  .progress = [&progress](double share) { progress.report(share); },
+                                  .stop = interrupt_token()});
+  if constexpr (requires { result.state_command(command); }) result.state_command(command);
+  return result;
 }
 
 void write_signal_file(const OutputDirectory& out, const SignalFile& file) {

@@ -61,6 +61,16 @@ struct Series {
   /// Number of the task behind each sample, −1: none; empty or as long as x. The page shows the
   /// command that replays it.
   std::vector<std::int64_t> tasks = {};
+
+  void add(double at, double value) {
+    x.push_back(at);
+    y.push_back(value);
+  }
+  void add(double at, double value, double low, double high) {
+    add(at, value);
+    y_low.push_back(low);
+    y_high.push_back(high);
+  }
 };
 
 struct Axis {

@@ -53,6 +53,7 @@ void JsonWriter::list(const ResultField& field, std::size_t size, const Resize& 
 }
 
 const Json* JsonReader::find(const ResultField& field) const {
+  if (field.shown == kInTables) return nullptr;
   if (field.key.empty()) return here_;
   const auto found = here_->find(field.key);
   if (found != here_->end()) return &*found;

@@ -5,7 +5,6 @@ namespace {
 
 class TablesWriter final : public ResultVisitor {
  public:
-  explicit TablesWriter(const std::string& command) : command_(command) {}
   std::vector<Table> tables = {};
 
   void number(const ResultField& /*field*/, double& /*value*/) override {}
@@ -14,12 +13,13 @@ class TablesWriter final : public ResultVisitor {
   void text(const ResultField& /*field*/, std::string& /*value*/) override {}
   bool is_known(const ResultField& /*field*/, bool known) override { return known; }
   void group(const ResultField& field, const VisitMembers& visit_members) override {
+    if (field.shown == kInJson) return;
     if (field.table.empty()) return visit_members(*this);
     add_row(begin(field), visit_members);
   }
   void list(const ResultField& field, std::size_t size, const Resize& /*resize*/,
             const VisitItem& visit_item) override {
-    if (field.table.empty() || size == 0) return;
+    if (field.shown == kInJson || field.table.empty() || size == 0) return;
     Table& table = begin(field);
     for (std::size_t i = 0; i < size; ++i) {
       add_row(table, [&](RowWriter& row) { visit_item(row, i); });
@@ -30,11 +30,8 @@ class TablesWriter final : public ResultVisitor {
   Table& begin(const ResultField& field) {
     return tables.emplace_back(Table{.id = std::string(field.table),
                                      .title = std::string(field.name),
-                                     .caption = std::string(field.meaning),
-                                     .command = command_});
+                                     .caption = std::string(field.meaning)});
   }
-
-  const std::string& command_;
 };
 
 }  // namespace
@@ -57,8 +54,8 @@ void RowWriter::group(const ResultField& field, const VisitMembers& visit_member
   if (field.shown != kInJson) visit_members(*this);
 }
 
-std::vector<Table> tables_of(const ResultVisitor::VisitMembers& visit, const std::string& command) {
-  TablesWriter writer(command);
+std::vector<Table> tables_of(const ResultVisitor::VisitMembers& visit) {
+  TablesWriter writer;
   visit(writer);
   return std::move(writer.tables);
 }

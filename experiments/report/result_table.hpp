@@ -50,7 +50,14 @@ Table table_of(Table head, const Items& items, VisitRow visit_row) {
   return head;
 }
 
-/// Tables of the lists and groups that name one, in the order of the visit; they state `command`.
-std::vector<Table> tables_of(const ResultVisitor::VisitMembers& visit, const std::string& command);
+/// Tables of the lists and groups that name one, in the order of the visit.
+std::vector<Table> tables_of(const ResultVisitor::VisitMembers& visit);
+
+/// Those of anything with visit().
+template <typename Result>
+requires requires(const Result& result, ResultVisitor& visitor) { result.visit(visitor); }
+std::vector<Table> tables_of(const Result& result) {
+  return tables_of([&result](ResultVisitor& visitor) { result.visit(visitor); });
+}
 
 }  // namespace modcal::report

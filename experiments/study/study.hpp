@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <iterator>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -51,6 +52,17 @@ struct StudyResult {
   std::size_t pending_tasks = 0;  ///< not run yet: the figures stand on the others
   /// Accepted figures that were missed, one sentence each.
   std::vector<std::string> missed;
+
+  /// Figures and tables that state no command of their own were made by this one.
+  void state_command(const std::string& command);
+  void add(std::vector<report::Table> tables) {
+    std::move(tables.begin(), tables.end(), std::back_inserter(blocks));
+  }
+  /// A line of the summary and a box of the report.
+  void warn(const std::string& text) {
+    summary += "warning: " + text + "\n";
+    blocks.emplace_back(report::Text{text, report::Text::Kind::kWarning});
+  }
 };
 
 }  // namespace modcal

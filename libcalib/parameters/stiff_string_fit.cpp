@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "libsim/base/error.hpp"
+#include "libsim/base/result_visitor.hpp"
 #include "libsim/model/string_model.hpp"
 
 namespace modcal {
@@ -140,6 +141,15 @@ std::vector<double> fill_unexcited_modes(std::span<const double> frequencies,
     if (!excited[i]) filled[i] = fit.frequency(i + 1);
   }
   return filled;
+}
+
+void StiffStringFit::visit(ResultVisitor& visitor) const {
+  visitor({.key = "f0_hz", .name = "f_0", .unit = "Hz", .format = "{:.4f}"}, fundamental);
+  visitor({.key = "f0_sd_hz", .name = "its deviation", .unit = "Hz", .format = "{:.2g}"},
+          known(fundamental_deviation));
+  visitor({.key = "B", .format = "{:.4e}"}, inharmonicity);
+  visitor({.key = "B_sd", .name = "its deviation ", .format = "{:.2g}"},
+          known(inharmonicity_deviation));
 }
 
 }  // namespace modcal

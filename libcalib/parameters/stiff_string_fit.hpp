@@ -8,6 +8,8 @@
 
 namespace modcal {
 
+class ResultVisitor;
+
 /// Outcome of a fit of f_n = n f₀ √(1 + B n²).
 struct StiffStringFit {
   double fundamental = std::numeric_limits<double>::quiet_NaN();    ///< f₀ [Hz]
@@ -22,6 +24,8 @@ struct StiffStringFit {
 
   /// f_n of the law [Hz], n ≥ 1.
   double frequency(std::size_t n) const;
+  /// f₀ and B with their deviations.
+  void visit(ResultVisitor& visitor) const;
 };
 
 /// Minimum of Σ_n w_n (f_n − n f₀ √(1 + B n²))² (Debut, Delaune and Antunes, 2010, eq. 18, with the

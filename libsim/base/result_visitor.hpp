@@ -2,6 +2,7 @@
 // of each value in one place. JSON (both ways) and tables with their CSV are visitors.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -30,6 +31,11 @@ struct ResultField {
   /// Left out of JSON where it is empty, and left as it is where JSON does not have it.
   bool optional = false;
 };
+
+/// The number where it is finite; a table says nothing in the place of another, JSON null.
+inline std::optional<double> known(double value) {
+  return std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
 
 /// Writers look at the values, readers set them. visit() of a result that is only written is const
 /// and may hand over values that it computes.

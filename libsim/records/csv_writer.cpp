@@ -39,7 +39,7 @@ void append_preamble(fmt::memory_buffer& out, std::span<const Signal> signals,
                      const CsvWriteOptions& options) {
   append_comment(out, fmt::format("sample_rate: {} Hz", signals.front().sample_rate));
   for (const std::string& line : options.provenance) append_comment(out, line);
-  std::string separator;
+  std::string_view separator;
   if (options.time_column) {
     out.append(std::string_view("t [s]"));
     separator = ",";

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "experiments/kinds/lint.hpp"
+#include "libinverse/modes/decay_length.hpp"
 #include "libsim/base/random.hpp"
 
 namespace modcal {
@@ -15,6 +17,41 @@ void IdentifyOptions::visit(OptionVisitor& visitor) {
   visitor.section({.key = "identification", .meaning = "how the modes are found"}, identification);
   visitor.integer({.key = "seed", .meaning = "key of the noise", .range = Range::non_negative()},
                   seed);
+}
+
+std::vector<Finding> IdentifyOptions::lint() const {
+  std::vector<Finding> findings = lint_scene(truth.scene, truth.simulator, measurement);
+  if (truth.scene.start.selected() == "rest") {
+    findings.push_back({"scene.initial", "a string at rest has no free decay: pluck it"});
+  }
+  const double rate = measurement.sample_rate;
+  if (!(identification.highest_frequency < 0.5 * rate)) {
+    findings.push_back({"identification.highest_frequency",
+                        fmt::format("{:g} Hz lie above half the sample rate {:g} Hz",
+                                    identification.highest_frequency, rate)});
+  } else if (findings.empty()) {
+    lint_making(
+        "scene.duration",
+        [&] {
+          require_decay_length(sample_count(truth.scene.duration, rate), rate, identification);
+        },
+        findings);
+  }
+  return findings;
+}
+
+std::vector<std::string> IdentifyOptions::plan() const {
+  return {fmt::format("identify modes up to {:g} Hz by {}, orders {} to {}",
+                      identification.highest_frequency, identification.method,
+                      identification.stabilization.lowest_order,
+                      identification.stabilization.highest_order)};
+}
+
+std::optional<PlannedSimulations> IdentifyOptions::planned_simulations() const {
+  return PlannedSimulations{.scene = truth.scene,
+                            .simulator = truth.simulator,
+                            .sample_rate = measurement.sample_rate,
+                            .outputs = {.left_reaction = true, .right_reaction = true}};
 }
 
 namespace {
@@ -42,18 +79,6 @@ std::optional<StiffStringFit> law_of(const PluckIdentification& found) {
   return fit_stiff_string(frequencies, weights);
 }
 
-std::string sentence_of(const IdentifyOutcome& outcome) {
-  std::string text = fmt::format("{} modes identified", outcome.found.modes.size());
-  if (!outcome.found.missing.empty()) {
-    text += fmt::format(", {} missing below the highest", outcome.found.missing.size());
-  }
-  if (outcome.law) {
-    text += fmt::format("; f0 = {:.6g} Hz, B = {:.4g}", outcome.law->fundamental,
-                        outcome.law->inharmonicity);
-  }
-  return text + "\n";
-}
-
 }  // namespace
 
 IdentifyOutcome identify_outcome(const IdentifyOptions& options, const StudyContext& context) {
@@ -66,25 +91,6 @@ IdentifyOutcome identify_outcome(const IdentifyOptions& options, const StudyCont
       .truth = truth};
   outcome.law = law_of(outcome.found);
   return outcome;
-}
-
-StudyResult identify_study(const IdentifyOptions& options, const StudyContext& context) {
-  const IdentifyOutcome outcome = identify_outcome(options, context);
-  StudyResult result;
-  result.blocks.emplace_back(identified_modes_table(outcome, context.command));
-  result.blocks.emplace_back(stabilization_figure(outcome, context.command));
-  if (!outcome.found.modes.empty()) {
-    result.blocks.emplace_back(identified_errors_figure(outcome, context.command));
-  }
-  result.files.emplace_back("identification.json", identification_json(outcome));
-  result.summary = sentence_of(outcome);
-  if (outcome.found.modes.empty() || !outcome.found.converged) {
-    result.status = report::Status::kFailed;
-    result.summary += outcome.found.modes.empty()
-                          ? "no pole is stable over the orders: nothing was identified\n"
-                          : "the fit did not converge: its modes and error bars are not final\n";
-  }
-  return result;
 }
 
 }  // namespace modcal

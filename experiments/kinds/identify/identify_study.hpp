@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "experiments/study/study.hpp"
+#include "experiments/experiment.hpp"
 #include "libcalib/parameters/stiff_string_fit.hpp"
 #include "libinverse/modes/pluck_identification.hpp"
 #include "libsim/signal/measurement.hpp"
@@ -18,6 +18,11 @@ struct IdentifyOptions {
   PluckOptions identification;
   std::int64_t seed = 1;
   void visit(OptionVisitor& visitor);
+
+  std::vector<Finding> lint() const;
+  std::vector<std::string> plan() const;
+  std::optional<PlannedSimulations> planned_simulations() const;
+  StudyResult run(const StudyContext& context) const;
 };
 
 struct IdentifyOutcome {
@@ -26,19 +31,14 @@ struct IdentifyOutcome {
   /// Law through the frequencies, weighted by their deviations where they have some; empty with
   /// fewer than two modes.
   std::optional<StiffStringFit> law;
+  /// Modes, law and noise.
+  void visit(ResultVisitor& visitor) const;
 };
 
 /// Simulates, measures and identifies.
 IdentifyOutcome identify_outcome(const IdentifyOptions& options, const StudyContext& context);
 
-/// Modes, law and noise as a JSON document.
-std::string identification_json(const IdentifyOutcome& outcome);
-report::Table identified_modes_table(const IdentifyOutcome& outcome, const std::string& command);
 /// Poles over the order of the realization, stable ones apart.
-report::Figure stabilization_figure(const IdentifyOutcome& outcome, const std::string& command);
-/// Relative errors of the frequencies with their deviations, against the mode number.
-report::Figure identified_errors_figure(const IdentifyOutcome& outcome, const std::string& command);
-
-StudyResult identify_study(const IdentifyOptions& options, const StudyContext& context);
+report::Figure stabilization_figure(const IdentifyOutcome& outcome);
 
 }  // namespace modcal

@@ -163,7 +163,7 @@ std::vector<report::Figure> pluck_then_bow_figures(const PluckThenBowOptions& op
                                                    const PluckThenBowOutcome& outcome,
                                                    const std::string& command) {
   std::vector<report::Figure> figures;
-  report::Figure diagram = stabilization_figure(outcome.pluck, command);
+  report::Figure diagram = stabilization_figure(outcome.pluck);
   diagram.title = "1. Stabilization diagram of the pluck test";
   figures.push_back(std::move(diagram));
   figures.push_back(damping_figure(outcome, command));

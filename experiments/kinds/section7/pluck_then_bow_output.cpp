@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "experiments/report/result_json.hpp"
 #include "experiments/kinds/section7/pluck_then_bow.hpp"
 #include "libsim/signal/statistics.hpp"
 
@@ -197,8 +198,8 @@ std::string pluck_then_bow_json(const PluckThenBowOptions& options,
                     {{"f0_hz", string.fundamental},
                      {"B", string.inharmonicity},
                      {"x_c_m", outcome.stroke.contact}}},
-                   {"pluck", Json::parse(identification_json(outcome.pluck))},
-                   {"pluck_likelihood", Json::parse(identification_json(outcome.likelihood))},
+                   {"pluck", report::json_of(outcome.pluck)},
+                   {"pluck_likelihood", report::json_of(outcome.likelihood)},
                    {"damping_polynomial", outcome.damping.coefficients},
                    {"steps", std::move(stages)},
                    {"identification", sides_json(outcome.sides)}};

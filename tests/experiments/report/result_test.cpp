@@ -89,14 +89,13 @@ TEST(JsonOfAResult, IsRefusedWhereAValueIsMissingOrUnknown) {
 
 TEST(TablesOfAResult, AreThoseThatItNames) {
   Found found = example();
-  const auto tables = tables_of([&](ResultVisitor& visitor) { found.visit(visitor); }, "again");
+  const auto tables = tables_of([&](ResultVisitor& visitor) { found.visit(visitor); });
   ASSERT_EQ(tables.size(), 2u);
   EXPECT_EQ(table_csv(tables[0]), "right,value [N]\ntrue,0.3333333333333333\n");
   EXPECT_EQ(table_csv(tables[1]),
             "n,f_hz [Hz],sd,f_sd_hz [Hz]\n1,100,computed,0.5\n2,inf,computed,\n");
   EXPECT_EQ(tables[1].title, "Modes");
   EXPECT_EQ(tables[1].caption, "All of them.");
-  EXPECT_EQ(tables[1].command, "again");
   EXPECT_EQ(cell_text(tables[1].rows[0][1], tables[1].columns[1]), "100.0");
 }
 
