@@ -24,12 +24,13 @@ class Function final : public ceres::FirstOrderFunction {
   int NumParameters() const override { return static_cast<int>(search_.dimension()); }
   bool Evaluate(const double* const u, double* value, double* gradient) const override {
     const std::size_t n = search_.dimension();
-    if (search_.try_evaluate({u, n}, {.value = value, .gradient = gradient})) {
+    const auto trial = search_.try_evaluate({u, n}, {.value = value, .gradient = gradient});
+    if (trial != Evaluator::Trial::kOver) {
       last_value_ = *value;
       return true;
     }
-    // A failed evaluation makes Ceres retry and write to the error log: a flat function ends it
-    // silently instead. Its result is not used.
+    // A failed evaluation makes Ceres retry, or give the line search up: a flat function ends it.
+    // Its result is not used.
     *value = last_value_;
     if (gradient) std::fill_n(gradient, n, 0.0);
     return true;

@@ -24,12 +24,11 @@ class Residuals final : public ceres::CostFunction {
     double* jacobian = jacobians ? jacobians[0] : nullptr;
     const std::size_t n = evaluator_.dimension();
     const std::size_t m = evaluator_.residual_count();
-    if (evaluator_.try_evaluate({parameters[0], n},
-                                {.residuals = residuals, .jacobian = jacobian})) {
-      return true;
-    }
-    // A failed evaluation makes Ceres retry and write to the error log: a flat, perfect fit ends it
-    // silently instead. Its result is not used.
+    const auto trial =
+        evaluator_.try_evaluate({parameters[0], n}, {.residuals = residuals, .jacobian = jacobian});
+    if (trial == Evaluator::Trial::kFinite) return true;
+    if (trial == Evaluator::Trial::kRejected) return false;  // Ceres takes a shorter step
+    // A failed evaluation makes Ceres go on: a flat, perfect fit ends it. Its result is not used.
     std::fill_n(residuals, m, 0.0);
     if (jacobian) std::fill_n(jacobian, m * n, 0.0);
     return true;

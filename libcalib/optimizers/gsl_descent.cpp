@@ -3,7 +3,9 @@
 #include <gsl/gsl_math.h>
 #include <gsl/gsl_multimin.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "libcalib/optimizers/gsl_handles.hpp"
 #include "libcalib/optimizers/gsl_searches.hpp"
@@ -13,17 +15,32 @@ namespace {
 
 using Minimizer = GslHandle<gsl_multimin_fdfminimizer, gsl_multimin_fdfminimizer_free>;
 
+/// The search with the best point met, which the library forgets where a line search fails.
+struct Descent {
+  UnboundedSearch& search;
+  double best_value = std::numeric_limits<double>::infinity();
+  GslVector best;
+
+  double value_at(const gsl_vector* u, double* gradient) {
+    double value = 0.0;
+    const auto trial =
+        search.try_evaluate({u->data, u->size}, {.value = &value, .gradient = gradient});
+    if (trial == Evaluator::Trial::kOver) return GSL_NAN;
+    if (value < best_value) {
+      best_value = value;
+      gsl_vector_memcpy(best.get(), u);
+    }
+    return value;
+  }
+};
+
 void both_at(const gsl_vector* u, void* data, double* value, gsl_vector* gradient) {
-  auto& search = *static_cast<UnboundedSearch*>(data);
-  if (search.try_evaluate({u->data, u->size}, {.value = value, .gradient = gradient->data})) return;
-  *value = GSL_NAN;
   gsl_vector_set_zero(gradient);
+  *value = static_cast<Descent*>(data)->value_at(u, gradient->data);
 }
 
 double value_at(const gsl_vector* u, void* data) {
-  double value = 0.0;
-  auto& search = *static_cast<UnboundedSearch*>(data);
-  return search.try_evaluate({u->data, u->size}, {.value = &value}) ? value : GSL_NAN;
+  return static_cast<Descent*>(data)->value_at(u, nullptr);
 }
 
 void gradient_at(const gsl_vector* u, void* data, gsl_vector* gradient) {
@@ -73,21 +90,28 @@ class Progress {
 
 StopReason gsl_descent(UnboundedSearch& search, const GslOptimizer::Options& options) {
   const std::size_t n = search.dimension();
-  gsl_multimin_function_fdf function{value_at, gradient_at, both_at, n, &search};
-  const GslVector start = gsl_vector_of(n, 0.0);
+  Descent descent{.search = search, .best = gsl_vector_of(n, 0.0)};
+  gsl_multimin_function_fdf function{value_at, gradient_at, both_at, n, &descent};
   const auto minimizer =
       gsl_owned<Minimizer>(gsl_multimin_fdfminimizer_alloc(type_of(options.algorithm), n));
   // The manual's recommended accuracy of line searches.
   constexpr double kLineTolerance = 0.1;
-  gsl_multimin_fdfminimizer_set(minimizer.get(), &function, start.get(), options.initial_step,
-                                kLineTolerance);
+  const auto start_at_the_best = [&] {
+    const GslVector start = gsl_vector_of(n, 0.0);
+    gsl_vector_memcpy(start.get(), descent.best.get());
+    gsl_multimin_fdfminimizer_set(minimizer.get(), &function, start.get(), options.initial_step,
+                                  kLineTolerance);
+  };
+  start_at_the_best();
   Progress progress(minimizer.get(), options);
   bool restarted = false;
   while (!search.stopped()) {
     const double before = minimizer->f;
     const int status = gsl_multimin_fdfminimizer_iterate(minimizer.get());
     if (search.stopped()) break;
-    if (status == GSL_SUCCESS) {
+    // A line search that fails may have found better points, which the library drops.
+    const bool better = descent.best_value < std::min(before, minimizer->f);
+    if (status == GSL_SUCCESS && !better) {
       const StopReason reason = progress.after_iteration();
       if (reason != StopReason::kNotRun) return reason;
       if (minimizer->f < before) restarted = false;
@@ -97,8 +121,10 @@ StopReason gsl_descent(UnboundedSearch& search, const GslOptimizer::Options& opt
       return StopReason::kConverged;
     }
     // A direction built up over many steps may lead nowhere: the gradient itself is tried once.
-    if (status != GSL_ENOPROG || restarted) return StopReason::kRoundoff;
-    gsl_multimin_fdfminimizer_restart(minimizer.get());
+    if ((status != GSL_SUCCESS && status != GSL_ENOPROG) || (restarted && !better)) {
+      return StopReason::kRoundoff;
+    }
+    start_at_the_best();
     restarted = true;
   }
   return StopReason::kNoProgress;

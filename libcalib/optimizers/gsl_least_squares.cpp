@@ -14,15 +14,15 @@ using Workspace = GslHandle<gsl_multifit_nlinear_workspace, gsl_multifit_nlinear
 
 int residuals_at(const gsl_vector* u, void* data, gsl_vector* residuals) {
   auto& search = *static_cast<UnboundedSearch*>(data);
-  const bool going = search.try_evaluate({u->data, u->size}, {.residuals = residuals->data});
-  return going ? GSL_SUCCESS : GSL_EBADFUNC;
+  const auto trial = search.try_evaluate({u->data, u->size}, {.residuals = residuals->data});
+  return trial == Evaluator::Trial::kOver ? GSL_EBADFUNC : GSL_SUCCESS;
 }
 
 // The library's matrices are row-major without gaps, like ours.
 int jacobian_at(const gsl_vector* u, void* data, gsl_matrix* jacobian) {
   auto& search = *static_cast<UnboundedSearch*>(data);
-  const bool going = search.try_evaluate({u->data, u->size}, {.jacobian = jacobian->data});
-  return going ? GSL_SUCCESS : GSL_EBADFUNC;
+  const auto trial = search.try_evaluate({u->data, u->size}, {.jacobian = jacobian->data});
+  return trial == Evaluator::Trial::kFinite ? GSL_SUCCESS : GSL_EBADFUNC;
 }
 
 gsl_multifit_nlinear_parameters parameters_of(std::string_view algorithm) {

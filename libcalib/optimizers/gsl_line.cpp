@@ -16,7 +16,8 @@ using Minimizer = GslHandle<gsl_min_fminimizer, gsl_min_fminimizer_free>;
 double value_at(double u, void* data) {
   double value = 0.0;
   auto& search = *static_cast<UnboundedSearch*>(data);
-  return search.try_evaluate({&u, 1}, {.value = &value}) ? value : GSL_NAN;
+  const auto trial = search.try_evaluate({&u, 1}, {.value = &value});
+  return trial == Evaluator::Trial::kOver ? GSL_NAN : value;
 }
 
 /// Three points with the lowest value in the middle.

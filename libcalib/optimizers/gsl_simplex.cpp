@@ -13,7 +13,8 @@ using Minimizer = GslHandle<gsl_multimin_fminimizer, gsl_multimin_fminimizer_fre
 double value_at(const gsl_vector* u, void* data) {
   double value = 0.0;
   auto& search = *static_cast<UnboundedSearch*>(data);
-  return search.try_evaluate({u->data, u->size}, {.value = &value}) ? value : GSL_NAN;
+  const auto trial = search.try_evaluate({u->data, u->size}, {.value = &value});
+  return trial == Evaluator::Trial::kOver ? GSL_NAN : value;
 }
 
 const gsl_multimin_fminimizer_type* type_of(std::string_view algorithm) {

@@ -66,7 +66,7 @@ CoordinateScan ModeByMode::search_variable(Evaluator& evaluator, std::size_t i, 
   evaluator.scan(i, scan.candidates, scan.values);
   const auto best = std::min_element(scan.values.begin(), scan.values.end());
   const auto place = static_cast<std::size_t>(best - scan.values.begin());
-  scan.chosen = scan.candidates[place];
+  scan.chosen = std::isfinite(*best) ? scan.candidates[place] : scan.center;
   const double step = scan.candidates[1] - scan.candidates[0];
   settled.searched(i, evaluator.position(), {.place = place, .step = step}, scan.chosen);
   evaluator.move(i, scan.chosen);

@@ -54,9 +54,9 @@ double evaluate(unsigned n, const double* z, double* gradient, void* data) {
   auto& callback = *static_cast<Callback*>(data);
   double value = 0.0;
   const ObjectiveOutputs outputs{.value = &value, .gradient = gradient};
-  const bool going = callback.unbounded ? callback.unbounded->try_evaluate({z, n}, outputs)
+  const auto trial = callback.unbounded ? callback.unbounded->try_evaluate({z, n}, outputs)
                                         : callback.evaluator.try_evaluate({z, n}, outputs);
-  if (going) return callback.last_value = value;
+  if (trial != Evaluator::Trial::kOver) return callback.last_value = value;
   nlopt_force_stop(callback.optimizer);
   // Some algorithms work on for a while: with an infinite value LN_NEWUOA_BOUND does so for
   // seconds.

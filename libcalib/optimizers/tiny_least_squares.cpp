@@ -97,10 +97,9 @@ StopReason TinyLeastSquares::search(Evaluator& evaluator) const {
   constexpr double kHopeless = 1e20;
   while (damping < kHopeless) {
     if (moved) {
-      if (!unbounded.try_evaluate(span_of(work.u), {.residuals = work.residuals.data(),
-                                                    .jacobian = work.jacobian.data()})) {
-        return StopReason::kNoProgress;
-      }
+      const auto trial = unbounded.try_evaluate(
+          span_of(work.u), {.residuals = work.residuals.data(), .jacobian = work.jacobian.data()});
+      if (trial != Evaluator::Trial::kFinite) return StopReason::kNoProgress;
       value = half_square(work.residuals);
       form_normal_equations(work);
     }
@@ -112,10 +111,9 @@ StopReason TinyLeastSquares::search(Evaluator& evaluator) const {
       const double small = options_.step_tolerance * (work.u.norm() + options_.step_tolerance);
       if (work.step.norm() <= small) return StopReason::kSmallStep;
       work.trial = work.u + work.step;
-      if (!unbounded.try_evaluate(span_of(work.trial),
-                                  {.residuals = work.trial_residuals.data()})) {
-        return StopReason::kNoProgress;
-      }
+      const auto trial =
+          unbounded.try_evaluate(span_of(work.trial), {.residuals = work.trial_residuals.data()});
+      if (trial == Evaluator::Trial::kOver) return StopReason::kNoProgress;
       const double decrease = value - half_square(work.trial_residuals);
       // ½ δᵀ(μ D δ − g) with (JᵀJ + μ D) δ = −g.
       double predicted = -0.5 * work.step.dot(work.gradient);

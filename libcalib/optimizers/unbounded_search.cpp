@@ -20,8 +20,8 @@ UnboundedSearch::UnboundedSearch(Evaluator& evaluator)
   }
 }
 
-bool UnboundedSearch::try_evaluate(std::span<const double> u,
-                                   const ObjectiveOutputs& outputs) noexcept {
+Evaluator::Trial UnboundedSearch::try_evaluate(std::span<const double> u,
+                                               const ObjectiveOutputs& outputs) noexcept {
   assert(u.size() == dimension());
   const std::size_t n = dimension();
   for (std::size_t i = 0; i < n; ++i) {
@@ -29,12 +29,13 @@ bool UnboundedSearch::try_evaluate(std::span<const double> u,
     z_[i] = center_[i] + half_width_[i] * std::sin(angle);
     slope_[i] = half_width_[i] * rate_[i] * std::cos(angle);
   }
-  if (!evaluator_.try_evaluate(z_, outputs)) return false;
+  const Evaluator::Trial trial = evaluator_.try_evaluate(z_, outputs);
+  if (trial != Evaluator::Trial::kFinite) return trial;
   for (std::size_t i = 0; outputs.gradient && i < n; ++i) outputs.gradient[i] *= slope_[i];
   for (std::size_t j = 0; outputs.jacobian && j < residual_count(); ++j) {
     for (std::size_t i = 0; i < n; ++i) outputs.jacobian[j * n + i] *= slope_[i];
   }
-  return true;
+  return trial;
 }
 
 }  // namespace modcal

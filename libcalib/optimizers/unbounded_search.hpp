@@ -19,8 +19,9 @@ class UnboundedSearch {
   std::size_t dimension() const { return phase_.size(); }
   std::size_t residual_count() const { return evaluator_.residual_count(); }
   bool stopped() const { return evaluator_.stopped(); }
-  /// Evaluator::try_evaluate at u, slopes with respect to u; false where the search is over.
-  bool try_evaluate(std::span<const double> u, const ObjectiveOutputs& outputs) noexcept;
+  /// Evaluator::try_evaluate at u, slopes with respect to u.
+  Evaluator::Trial try_evaluate(std::span<const double> u,
+                                const ObjectiveOutputs& outputs) noexcept;
 
  private:
   Evaluator& evaluator_;

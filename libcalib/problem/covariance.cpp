@@ -40,7 +40,8 @@ std::vector<double> scaled_jacobian(const ObjectiveFunction& function,
   for (std::size_t i = 0; i < here.size(); ++i) here[i].initial = x[i];
   Evaluator evaluator(function, here, {});
   std::vector<double> jacobian(function.residual_count() * here.size());
-  const bool finite = evaluator.try_evaluate(evaluator.start(), {.jacobian = jacobian.data()});
+  const bool finite = evaluator.try_evaluate(evaluator.start(), {.jacobian = jacobian.data()}) ==
+                      Evaluator::Trial::kFinite;
   if (!finite) jacobian.clear();
   evaluator.finish(StopReason::kConverged);  // throws what the objective threw
   return jacobian;

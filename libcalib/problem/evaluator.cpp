@@ -35,7 +35,8 @@ Evaluator::Evaluator(const ObjectiveFunction& function, std::span<const Variable
       budget_(budget),
       clock_(std::move(clock)),
       begin_(clock_()),
-      best_value_(std::numeric_limits<double>::infinity()) {
+      best_value_(std::numeric_limits<double>::infinity()),
+      worst_value_(-best_value_) {
   budget_.require_valid();
   MODCAL_REQUIRE(variables.size() == function.dimension() && !variables.empty(),
                  "objective \"{}\" has {} variables, {} are described", function.name(),
@@ -86,25 +87,32 @@ void Evaluator::to_scaled(const ObjectiveOutputs& outputs) const {
 }
 
 void Evaluator::note(double value) {
+  if (std::isfinite(value)) worst_value_ = std::max(worst_value_, value);
   if (!(value < best_value_)) return;
   best_value_ = value;
   best_ = x_;
   result_.trace.push_back({result_.evaluations, seconds(), value});
 }
 
-void Evaluator::evaluate(std::span<const double> z, const ObjectiveOutputs& outputs) {
+bool Evaluator::evaluate(std::span<const double> z, const ObjectiveOutputs& outputs) {
   const Capabilities known = function_.capabilities();
   const bool gradient_missing = outputs.gradient && !known.gradient;
-  if (gradient_missing && known.least_squares) {
-    gradient_from_residuals(z, outputs);
-  } else if (gradient_missing || (outputs.jacobian && !known.least_squares)) {
-    evaluate_with_differences(z, outputs);
-  } else {
-    evaluate_given(z, outputs);
+  if (gradient_missing && known.least_squares) return gradient_from_residuals(z, outputs);
+  if (gradient_missing || (outputs.jacobian && !known.least_squares)) {
+    return evaluate_with_differences(z, outputs);
   }
+  return evaluate_given(z, outputs);
 }
 
-void Evaluator::evaluate_given(std::span<const double> z, const ObjectiveOutputs& outputs) {
+bool Evaluator::finite(const ObjectiveOutputs& outputs) const {
+  const std::size_t n = dimension();
+  const std::size_t m = residual_count();
+  return (!outputs.gradient || all_finite(outputs.gradient, n)) &&
+         (!outputs.residuals || all_finite(outputs.residuals, m)) &&
+         (!outputs.jacobian || all_finite(outputs.jacobian, n * m));
+}
+
+bool Evaluator::evaluate_given(std::span<const double> z, const ObjectiveOutputs& outputs) {
   assert(z.size() == dimension());
   require_budget(1);
   if (!all_finite(z.data(), z.size())) stop(StopReason::kNotFinite);
@@ -114,14 +122,15 @@ void Evaluator::evaluate_given(std::span<const double> z, const ObjectiveOutputs
   asked.value = &value;
   ++result_.evaluations;
   function_.evaluate(x_, asked);
+  if (!std::isfinite(value) || !finite(asked)) {
+    if (outputs.value) *outputs.value = std::numeric_limits<double>::infinity();
+    return false;
+  }
   if (outputs.value) *outputs.value = value;
-  const std::size_t n = dimension();
-  const bool slopes_finite = (!asked.gradient || all_finite(asked.gradient, n)) &&
-                             (!asked.jacobian || all_finite(asked.jacobian, n * residual_count()));
-  if (std::isnan(value) || !slopes_finite) stop(StopReason::kNotFinite);
   to_scaled(asked);
   note(value);
   if (value <= budget_.target) stop(StopReason::kTargetReached);
+  return true;
 }
 
 double Evaluator::value(std::span<const double> z) {
@@ -130,25 +139,50 @@ double Evaluator::value(std::span<const double> z) {
   return result;
 }
 
-bool Evaluator::try_evaluate(std::span<const double> z, const ObjectiveOutputs& outputs) noexcept {
+Evaluator::Trial Evaluator::try_evaluate(std::span<const double> z,
+                                         const ObjectiveOutputs& outputs) noexcept {
+  const bool slopes = outputs.gradient || outputs.jacobian;
   try {
-    double value = 0.0;
-    ObjectiveOutputs asked = outputs;
-    asked.value = outputs.value ? outputs.value : &value;
-    evaluate(z, asked);
-    if (std::isfinite(*asked.value)) return true;
-    stop_ = StopReason::kNotFinite;
+    if (evaluate(z, outputs)) {
+      slopes_known_ = slopes_known_ || slopes;
+      return Trial::kFinite;
+    }
+    if (!std::isfinite(best_value_) || (slopes && !slopes_known_)) stop(StopReason::kNotFinite);
+    fill_rejected(outputs);
+    return Trial::kRejected;
   } catch (const Stopped&) {
   } catch (...) {
     error_ = std::current_exception();
   }
-  return false;
+  return Trial::kOver;
+}
+
+// Interpolating line searches and models are led astray by a value far above the others.
+void Evaluator::fill_rejected(const ObjectiveOutputs& outputs) const {
+  const double above = std::max({worst_value_ - best_value_, std::abs(worst_value_), 1e-300});
+  const double value = std::min(worst_value_ + above, std::numeric_limits<double>::max());
+  const std::size_t n = dimension();
+  const std::size_t m = residual_count();
+  if (outputs.value) *outputs.value = value;
+  if (outputs.gradient) std::fill_n(outputs.gradient, n, 0.0);
+  if (outputs.residuals) {
+    std::fill_n(outputs.residuals, m, std::sqrt(value / static_cast<double>(m)) * std::sqrt(2.0));
+  }
+  if (outputs.jacobian) std::fill_n(outputs.jacobian, m * n, 0.0);
 }
 
 void Evaluator::begin() {
   assert(result_.evaluations == 0);
-  // Not by the value returned: a target reached at once throws.
-  evaluate(start(), {.value = &result_.initial_value});
+  double value = 0.0;
+  require_budget(1);
+  to_user(start());
+  ++result_.evaluations;
+  function_.evaluate(x_, {.value = &value});
+  result_.initial_value = value;
+  // What starts at +∞ can still be searched point by point.
+  if (!(value > -std::numeric_limits<double>::infinity())) stop(StopReason::kNotFinite);
+  note(value);
+  if (value <= budget_.target) stop(StopReason::kTargetReached);
 }
 
 void Evaluator::open_scan() {
@@ -162,9 +196,9 @@ void Evaluator::scan(std::size_t i, std::span<const double> candidates, std::spa
   require_budget(static_cast<std::int64_t>(candidates.size()));
   result_.evaluations += static_cast<std::int64_t>(candidates.size());
   scanner_->scan(i, candidates, values);
-  for (const double value : values) {
-    if (std::isnan(value)) stop(StopReason::kNotFinite);
-  }
+  std::replace_if(
+      values.begin(), values.end(), [](double value) { return !std::isfinite(value); },
+      std::numeric_limits<double>::infinity());
 }
 
 void Evaluator::move(std::size_t i, double x) {

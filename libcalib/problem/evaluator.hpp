@@ -22,6 +22,8 @@ class Evaluator {
  public:
   /// Thrown where the search must end; caught by Optimizer::minimize.
   struct Stopped {};
+  /// What came of an evaluation: kOver ends the search.
+  enum class Trial { kFinite, kRejected, kOver };
 
   /// Throws InvalidInput for an invalid budget and for variables whose bounds do not hold the
   /// initial value or leave no room, or whose scale is not positive. function must outlive the
@@ -39,21 +41,24 @@ class Evaluator {
   std::int64_t evaluations_left() const;
 
   /// Evaluates at the initial point, which counts like any other and is the first to beat. Throws
-  /// like evaluate().
+  /// like evaluate(), and Stopped where the value is not a number.
   void begin();
   /// Evaluates at z; outputs in scaled variables. Throws Stopped where the search is over, and what
-  /// the objective throws.
+  /// the objective throws. Where the value, a residual or a slope is not finite the step is to be
+  /// rejected: the result is false and the value +∞.
   ///
   /// A gradient the objective does not give is Jᵀr where it has a Jacobian; else it and a Jacobian
   /// are differences over h = ε^⅓ max(1, |z_i|), ε the machine's: central ones, wrong by h² times
   /// a third derivative, or (−3 f(z) + 4 f(z ± h) − f(z ± 2h))/(±2h) where a bound is nearer than
-  /// h. They cost two evaluations a variable, which count like any other.
-  void evaluate(std::span<const double> z, const ObjectiveOutputs& outputs);
+  /// h or the objective is not finite on one side. They cost two evaluations a variable, and two
+  /// more where a side is not finite, which count like any other.
+  bool evaluate(std::span<const double> z, const ObjectiveOutputs& outputs);
   double value(std::span<const double> z);
   /// The same for callbacks of libraries, which exceptions must not cross and infinite values
-  /// upset: false where the search is over, an infinite value included; an exception is kept and
-  /// thrown by finish().
-  bool try_evaluate(std::span<const double> z, const ObjectiveOutputs& outputs) noexcept;
+  /// upset. An exception is kept and thrown by finish(). A rejected step gets a finite value above
+  /// all that were met, residuals of that half square, and slopes of 0; before a finite value, or
+  /// finite slopes where these are asked for, there is nothing to go back to: the search is over.
+  Trial try_evaluate(std::span<const double> z, const ObjectiveOutputs& outputs) noexcept;
   bool stopped() const { return stop_ != StopReason::kNotRun || error_ != nullptr; }
 
   /// Stepping along single variables, in user units, from the initial point and after begin(). The
@@ -81,7 +86,7 @@ class Evaluator {
 
  private:
   /// What the difference rule applies to: the value (one number) or the residuals.
-  using Sample = std::function<void(std::span<const double> z, double* numbers)>;
+  using Sample = std::function<bool(std::span<const double> z, double* numbers)>;
 
   [[noreturn]] void stop(StopReason reason);
   void require_budget(std::int64_t evaluations);
@@ -89,11 +94,13 @@ class Evaluator {
   void to_user(std::span<const double> z);
   void to_scaled(const ObjectiveOutputs& outputs) const;
   void note(double value);
+  bool finite(const ObjectiveOutputs& outputs) const;
+  void fill_rejected(const ObjectiveOutputs& outputs) const;
   /// Evaluates what the objective itself gives.
-  void evaluate_given(std::span<const double> z, const ObjectiveOutputs& outputs);
-  void evaluate_with_differences(std::span<const double> z, const ObjectiveOutputs& outputs);
-  void gradient_from_residuals(std::span<const double> z, const ObjectiveOutputs& outputs);
-  /// Slopes of `count` numbers, row-major count × n, from their values at z.
+  bool evaluate_given(std::span<const double> z, const ObjectiveOutputs& outputs);
+  bool evaluate_with_differences(std::span<const double> z, const ObjectiveOutputs& outputs);
+  bool gradient_from_residuals(std::span<const double> z, const ObjectiveOutputs& outputs);
+  /// Slopes of the numbers, row-major count × n, from their values at z.
   void difference(std::span<const double> z, const Sample& sample, std::span<const double> numbers,
                   double* slopes);
 
@@ -106,6 +113,8 @@ class Evaluator {
   std::vector<double> upper_;
   std::vector<double> x_;  // point of the current evaluation
   double best_value_;
+  double worst_value_;
+  bool slopes_known_ = false;
   std::vector<double> best_;
   StopReason stop_ = StopReason::kNotRun;
   std::exception_ptr error_;

@@ -17,18 +17,35 @@ struct Stencil {
   double center = 0.0;  ///< weight of f(z)
 };
 
+double wanted_step(double z) {
+  return std::cbrt(std::numeric_limits<double>::epsilon()) * std::max(1.0, std::abs(z));
+}
+
+// Forward or backward, by the sign of room, which is how far it is to the bound.
+Stencil one_sided(double z, double room) {
+  const double step = std::copysign(std::min(wanted_step(z), 0.5 * std::abs(room)), room);
+  return {{step, 2.0 * step}, {2.0 / step, -0.5 / step}, -1.5 / step};
+}
+
 Stencil stencil_at(double z, double lower, double upper) {
-  const double wanted =
-      std::cbrt(std::numeric_limits<double>::epsilon()) * std::max(1.0, std::abs(z));
+  const double wanted = wanted_step(z);
   if (wanted <= z - lower && wanted <= upper - z) {
     // What is added to z is rounded: the step that is made counts.
     const double above = (z + wanted) - z;
     const double below = z - (z - wanted);
     return {{above, -below}, {1.0 / (above + below), -1.0 / (above + below)}, 0.0};
   }
-  const double room = upper - z >= z - lower ? upper - z : lower - z;
-  const double step = std::copysign(std::min(wanted, 0.5 * std::abs(room)), room);
-  return {{step, 2.0 * step}, {2.0 / step, -0.5 / step}, -1.5 / step};
+  return one_sided(z, upper - z >= z - lower ? upper - z : lower - z);
+}
+
+// Jᵀr, J row-major.
+void gradient_of(std::span<const double> jacobian, std::span<const double> residuals,
+                 double* gradient) {
+  const std::size_t n = jacobian.size() / residuals.size();
+  std::fill_n(gradient, n, 0.0);
+  for (std::size_t j = 0; j < residuals.size(); ++j) {
+    for (std::size_t i = 0; i < n; ++i) gradient[i] += jacobian[j * n + i] * residuals[j];
+  }
 }
 
 }  // namespace
@@ -41,23 +58,36 @@ void Evaluator::difference(std::span<const double> z, const Sample& sample,
   std::vector<double> shifted(numbers.size());
   for (std::size_t i = 0; i < n; ++i) {
     const double at = moved[i];
-    const Stencil stencil = stencil_at(at, lower_[i], upper_[i]);
-    for (std::size_t j = 0; j < numbers.size(); ++j) {
-      slopes[j * n + i] = stencil.center == 0.0 ? 0.0 : stencil.center * numbers[j];
-    }
-    for (std::size_t side = 0; side < 2; ++side) {
-      moved[i] = at + stencil.step[side];
-      sample(moved, shifted.data());
-      ++result_.difference_evaluations;
+    // The step after which the objective was not finite; 0 where all was well.
+    const auto fill_column = [&](const Stencil& stencil) {
       for (std::size_t j = 0; j < numbers.size(); ++j) {
-        slopes[j * n + i] += stencil.weight[side] * shifted[j];
+        slopes[j * n + i] = stencil.center == 0.0 ? 0.0 : stencil.center * numbers[j];
+      }
+      double failed = 0.0;
+      for (std::size_t side = 0; side < 2 && failed == 0.0; ++side) {
+        moved[i] = at + stencil.step[side];
+        if (!sample(moved, shifted.data())) failed = stencil.step[side];
+        ++result_.difference_evaluations;
+        for (std::size_t j = 0; j < numbers.size(); ++j) {
+          slopes[j * n + i] += stencil.weight[side] * shifted[j];
+        }
+      }
+      moved[i] = at;
+      return failed;
+    };
+    const Stencil first = stencil_at(at, lower_[i], upper_[i]);
+    const double failed = fill_column(first);
+    if (failed == 0.0) continue;
+    const double room = failed > 0.0 ? lower_[i] - at : upper_[i] - at;
+    if (room == 0.0 || fill_column(one_sided(at, room)) != 0.0) {
+      for (std::size_t j = 0; j < numbers.size(); ++j) {
+        slopes[j * n + i] = std::numeric_limits<double>::quiet_NaN();
       }
     }
-    moved[i] = at;
   }
 }
 
-void Evaluator::evaluate_with_differences(std::span<const double> z,
+bool Evaluator::evaluate_with_differences(std::span<const double> z,
                                           const ObjectiveOutputs& outputs) {
   double value = 0.0;
   ObjectiveOutputs given = outputs;
@@ -68,31 +98,29 @@ void Evaluator::evaluate_with_differences(std::span<const double> z,
   if (by_residuals) given.residuals = residuals.data();
   if (!known.gradient) given.gradient = nullptr;
   if (!known.least_squares) given.jacobian = nullptr;
-  evaluate_given(z, given);
+  const bool base_finite = evaluate_given(z, given);
   if (outputs.value) *outputs.value = value;
+  if (!base_finite) return false;
   if (!by_residuals) {
     const Sample sample = [this](std::span<const double> at, double* number) {
-      evaluate_given(at, {.value = number});
+      return evaluate_given(at, {.value = number});
     };
     difference(z, sample, {&value, 1}, outputs.gradient);
-    return;
+    return finite(outputs);
   }
   if (outputs.residuals) std::copy(residuals.begin(), residuals.end(), outputs.residuals);
   const Sample sample = [this](std::span<const double> at, double* numbers) {
-    evaluate_given(at, {.residuals = numbers});
+    return evaluate_given(at, {.residuals = numbers});
   };
   const std::size_t n = dimension();
   std::vector<double> slopes(residuals.size() * n);
   difference(z, sample, residuals, slopes.data());
   if (outputs.jacobian) std::copy(slopes.begin(), slopes.end(), outputs.jacobian);
-  if (!outputs.gradient || known.gradient) return;
-  std::fill_n(outputs.gradient, n, 0.0);
-  for (std::size_t j = 0; j < residuals.size(); ++j) {
-    for (std::size_t i = 0; i < n; ++i) outputs.gradient[i] += slopes[j * n + i] * residuals[j];
-  }
+  if (outputs.gradient && !known.gradient) gradient_of(slopes, residuals, outputs.gradient);
+  return finite(outputs);
 }
 
-void Evaluator::gradient_from_residuals(std::span<const double> z,
+bool Evaluator::gradient_from_residuals(std::span<const double> z,
                                         const ObjectiveOutputs& outputs) {
   const std::size_t n = dimension();
   const std::size_t m = residual_count();
@@ -102,13 +130,9 @@ void Evaluator::gradient_from_residuals(std::span<const double> z,
   given.gradient = nullptr;
   if (!given.residuals) given.residuals = residuals.data();
   if (!given.jacobian) given.jacobian = jacobian.data();
-  evaluate_given(z, given);
-  std::fill_n(outputs.gradient, n, 0.0);
-  for (std::size_t j = 0; j < m; ++j) {
-    for (std::size_t i = 0; i < n; ++i) {
-      outputs.gradient[i] += given.jacobian[j * n + i] * given.residuals[j];
-    }
-  }
+  if (!evaluate_given(z, given)) return false;
+  gradient_of({given.jacobian, m * n}, {given.residuals, m}, outputs.gradient);
+  return finite(outputs);
 }
 
 }  // namespace modcal

@@ -31,7 +31,8 @@ Words words_of(StopReason reason) {
     case StopReason::kRoundoff:
       return {"roundoff", "Rounding errors keep the optimizer from progress."};
     case StopReason::kNotFinite:
-      return {"not_finite", "The objective or a step of the optimizer is not a number."};
+      return {"not_finite",
+              "The objective at the initial point or a step of the optimizer is not finite."};
     case StopReason::kNoProgress:
       return {"no_progress", "The optimizer gave up without reaching an optimum."};
   }

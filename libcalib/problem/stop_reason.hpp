@@ -15,7 +15,7 @@ enum class StopReason {
   kEvaluationBudget,  ///< no evaluation is left
   kTimeBudget,        ///< the time is used up
   kRoundoff,          ///< rounding errors keep the back end from progress
-  kNotFinite,         ///< the objective or a step is not a number
+  kNotFinite,         ///< the objective at the start or a step is not finite
   kNoProgress,        ///< the back end gave up without an optimum
 };
 

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "tests/libcalib/any_optimizer.hpp"
 
@@ -49,6 +50,50 @@ TEST_P(AnyOptimizer, SolvesTheQuadratic) {
   EXPECT_NEAR(result.x[0], 3.0, tolerance);
   EXPECT_NEAR(one_variable() ? -1.0 : result.x[1], -1.0, tolerance);
   EXPECT_NE(result.stop, StopReason::kNoProgress);
+}
+
+/// The quadratic, which is not a number at the n-th point other than the first.
+class OnceUndefined final : public LeastSquaresProblem {
+ public:
+  explicit OnceUndefined(int at) : at_(at) {}
+
+ private:
+  std::array<double, 2> residuals(double x, double y) const override {
+    const std::array point = {x, y};
+    if (calls > 1 && point != last_ && points_++ == at_) undefined_ = point;
+    last_ = point;
+    if (point == undefined_) return {std::numeric_limits<double>::quiet_NaN(), 0.0};
+    return {x - 3.0, 2.0 * (y + 1.0)};
+  }
+  std::array<double, 4> jacobian(double /*x*/, double /*y*/) const override {
+    return {1.0, 0.0, 0.0, 2.0};
+  }
+  int at_;
+  mutable int points_ = 1;
+  mutable std::array<double, 2> last_ = {0.0, 0.0}, undefined_ = {1e300, 1e300};
+};
+
+/// What is promised where a value above all others stands in for one that is not finite.
+double rejected_step_digits(Way way) {
+  // Quasi-Newton matrices and interpolated models take the stand-in in and forget it by and by.
+  if (way == Way::kGradient) return 2e-6;
+  if (way == Way::kSimplex) return 5e-5;
+  return way == Way::kGlobal ? 0.1 : quadratic_digits(way);
+}
+
+TEST_P(AnyOptimizer, OneValueThatIsNotFiniteIsARejectedStepAndNotTheEnd) {
+  if (way() == Way::kSystematic) return;
+  for (const int at : {1, 2, 4}) {
+    const OnceUndefined function(at);
+    const Problem problem(function, box(0.0, 0.0, -5.0, 5.0), one_variable());
+    const auto result = problem.minimize(optimizer(), enough());
+    EXPECT_NE(result.stop, StopReason::kNotFinite);
+    // To a bracket in one variable the point is a wall.
+    if (one_variable()) continue;
+    const double tolerance = rejected_step_digits(way());
+    EXPECT_NEAR(result.x[0], 3.0, tolerance) << "not finite at point " << at;
+    EXPECT_NEAR(result.x[1], -1.0, tolerance) << "not finite at point " << at;
+  }
 }
 
 TEST_P(AnyOptimizer, SolvesRosenbrocksProblem) {

@@ -81,7 +81,7 @@ TEST_P(AnyOptimizer, AThrowingClockInterruptsTheSearch) {
   EXPECT_THROW(problem.minimize(optimizer(), {}, clock), Interrupted);
 }
 
-TEST_P(AnyOptimizer, NotANumberEndsTheSearchAndIsReported) {
+TEST_P(AnyOptimizer, NotANumberIsARejectedStep) {
   const ValueOnly function(2, [](std::span<const double> x) {
     return x[0] < 0.9999 ? std::numeric_limits<double>::quiet_NaN() : x[0] + x[1] * x[1];
   });
@@ -90,8 +90,8 @@ TEST_P(AnyOptimizer, NotANumberEndsTheSearchAndIsReported) {
     return;
   }
   const Problem problem(function, box(1.0, 1.0, -2.0, 2.0), one_variable());
-  const OptimizationResult result = problem.minimize(optimizer(), {});
-  EXPECT_EQ(result.stop, StopReason::kNotFinite);
+  const OptimizationResult result = problem.minimize(optimizer(), enough());
+  EXPECT_NE(result.stop, StopReason::kNotFinite);
   EXPECT_TRUE(std::isfinite(result.value));
   EXPECT_GE(result.x[0], 0.9999);
 }
@@ -106,13 +106,20 @@ class HalfUndefined final : public LeastSquaresProblem {
   }
 };
 
-TEST_P(AnyOptimizer, ResidualsThatAreNoNumbersEndTheSearchAndAreReported) {
+TEST_P(AnyOptimizer, ResidualsThatAreNoNumbersAreARejectedStep) {
   const HalfUndefined function;
   const Problem problem(function, box(1.0, 1.0, -5.0, 5.0), one_variable());
-  const OptimizationResult result = problem.minimize(optimizer(), {});
-  EXPECT_EQ(result.stop, StopReason::kNotFinite);
+  const OptimizationResult result = problem.minimize(optimizer(), enough());
+  EXPECT_NE(result.stop, StopReason::kNotFinite);
   EXPECT_TRUE(std::isfinite(result.value));
   EXPECT_GE(result.x[0], 0.9);
+}
+
+TEST_P(AnyOptimizer, NotANumberAtTheInitialPointEndsTheSearchAndIsReported) {
+  const HalfUndefined function;
+  const Problem problem(function, box(0.5, 1.0, -5.0, 5.0), one_variable());
+  EXPECT_EQ(problem.minimize(optimizer(), {}).stop, StopReason::kNotFinite);
+  EXPECT_EQ(function.calls, 1);
 }
 
 TEST_P(AnyOptimizer, AnInfiniteValueIsNeverTheAnswer) {
@@ -121,7 +128,7 @@ TEST_P(AnyOptimizer, AnInfiniteValueIsNeverTheAnswer) {
     return x[0] < 0.9 ? std::numeric_limits<double>::infinity() : x[0] + x[1] * x[1];
   });
   const Problem problem(function, box(1.0, 1.0, -2.0, 2.0), one_variable());
-  const auto result = problem.minimize(optimizer(), {});
+  const auto result = problem.minimize(optimizer(), enough());
   EXPECT_LE(result.value, 2.0);
   EXPECT_GE(result.x[0], 0.9);
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "libsim/base/error.hpp"
@@ -11,6 +12,8 @@ namespace modcal {
 namespace {
 
 using Point = std::vector<double>;
+using Trial = Evaluator::Trial;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 TEST(Evaluator, ScalesVariablesGradientAndJacobian) {
   const Quadratic quadratic;
@@ -92,7 +95,7 @@ TEST(Evaluator, AllowsExactlyTheEvaluationsOfTheBudget) {
   evaluator.value(Point{0.0, 0.0});
   evaluator.value(Point{1.0, 0.0});
   EXPECT_THROW(evaluator.value(Point{3.0, -1.0}), Evaluator::Stopped);
-  EXPECT_FALSE(evaluator.try_evaluate(Point{3.0, -1.0}, {}));
+  EXPECT_EQ(evaluator.try_evaluate(Point{3.0, -1.0}, {}), Trial::kOver);
   EXPECT_EQ(quadratic.calls, 2);
   const OptimizationResult result = evaluator.finish(StopReason::kConverged);
   EXPECT_EQ(result.stop, StopReason::kEvaluationBudget);
@@ -117,36 +120,88 @@ TEST(Evaluator, StartsNoEvaluationAfterTheTimeIsUp) {
 TEST(Evaluator, EndsAtTheTarget) {
   const Quadratic quadratic;
   Evaluator evaluator(quadratic, box(0.0, 0.0, -9.0, 9.0), {.target = 0.5});
-  EXPECT_TRUE(evaluator.try_evaluate(Point{0.0, 0.0}, {}));
-  EXPECT_FALSE(evaluator.try_evaluate(Point{2.0, -1.0}, {}));
+  EXPECT_EQ(evaluator.try_evaluate(Point{0.0, 0.0}, {}), Trial::kFinite);
+  EXPECT_EQ(evaluator.try_evaluate(Point{2.0, -1.0}, {}), Trial::kOver);
   const OptimizationResult result = evaluator.finish(StopReason::kNoProgress);
   EXPECT_EQ(result.stop, StopReason::kTargetReached);
   EXPECT_EQ(result.value, 0.5);
 }
 
-TEST(Evaluator, NotANumberEndsTheSearchAndIsNeverTheBest) {
-  const ValueOnly function(1, [](std::span<const double> x) {
-    return x[0] > 0.5 ? std::numeric_limits<double>::quiet_NaN() : x[0];
-  });
+TEST(Evaluator, NotANumberIsARejectedStepAndNeverTheBest) {
+  const ValueOnly function(1, [](std::span<const double> x) { return x[0] > 0.5 ? kNan : x[0]; });
   const std::vector<Variable> line = {{"x", "1", 0.0, -1.0, 1.0, 1.0}};
   Evaluator evaluator(function, line, {});
-  evaluator.value(Point{0.25});
-  EXPECT_THROW(evaluator.value(Point{0.75}), Evaluator::Stopped);
+  evaluator.begin();
+  EXPECT_EQ(evaluator.value(Point{0.75}), std::numeric_limits<double>::infinity());
+  double value = 0.0;
+  evaluator.value(Point{-0.25});
+  EXPECT_EQ(evaluator.try_evaluate(Point{0.75}, {.value = &value}), Trial::kRejected);
+  EXPECT_EQ(value, 0.25);  // as far above the worst, 0, as the best lies below it
   const OptimizationResult result = evaluator.finish(StopReason::kConverged);
-  EXPECT_EQ(result.stop, StopReason::kNotFinite);
-  EXPECT_EQ(result.x, Point{0.25});
+  EXPECT_EQ(result.stop, StopReason::kConverged);
+  EXPECT_EQ(result.x, Point{-0.25});
+  EXPECT_EQ(result.evaluations, 4);
+}
 
+TEST(Evaluator, NotANumberAtTheStartOrAsAStepEndsTheSearch) {
+  const ValueOnly nowhere(1, [](std::span<const double>) { return kNan; });
+  const std::vector<Variable> line = {{"x", "1", 0.0, -1.0, 1.0, 1.0}};
+  Evaluator evaluator(nowhere, line, {});
+  EXPECT_THROW(evaluator.begin(), Evaluator::Stopped);
+  EXPECT_EQ(evaluator.finish(StopReason::kConverged).stop, StopReason::kNotFinite);
+
+  const ValueOnly function(1, [](std::span<const double> x) { return x[0]; });
   Evaluator steps(function, line, {});
-  EXPECT_FALSE(steps.try_evaluate(Point{std::numeric_limits<double>::quiet_NaN()}, {}));
+  EXPECT_EQ(steps.try_evaluate(Point{kNan}, {}), Trial::kOver);
   EXPECT_EQ(steps.finish(StopReason::kConverged).evaluations, 0);
+}
+
+TEST(Evaluator, RejectedResidualsHaveTheHalfSquareOfTheRejectedValue) {
+  class Undefined final : public LeastSquaresProblem {
+    std::array<double, 2> residuals(double x, double y) const override {
+      return {x > 2.0 ? kNan : x - 3.0, 2.0 * (y + 1.0)};
+    }
+    std::array<double, 4> jacobian(double x, double /*y*/) const override {
+      return {x > 1.0 ? kNan : 1.0, 0.0, 0.0, 2.0};
+    }
+  };
+  const Undefined function;
+  double value = 0.0, gradient[2], residuals[2], jacobian[4];
+  const ObjectiveOutputs all{&value, gradient, residuals, jacobian};
+  Evaluator evaluator(function, box(0.0, 0.0, -9.0, 9.0), {});
+  evaluator.begin();
+  EXPECT_EQ(evaluator.try_evaluate(Point{0.0, 0.0}, all), Trial::kFinite);
+  for (const double x : {1.5, 2.5}) {  // the slopes alone; all
+    EXPECT_EQ(evaluator.try_evaluate(Point{x, 0.0}, all), Trial::kRejected);
+    EXPECT_EQ(value, 2.0 * 6.5);
+    EXPECT_DOUBLE_EQ(residuals[0] * residuals[0] + residuals[1] * residuals[1], 2.0 * value);
+    for (const double slope : {gradient[0], gradient[1], jacobian[0]}) EXPECT_EQ(slope, 0.0);
+  }
+
+  Evaluator blind(function, box(1.5, 0.0, -9.0, 9.0), {});
+  blind.begin();
+  EXPECT_EQ(blind.try_evaluate(Point{0.0, 0.0}, all), Trial::kOver);
+  EXPECT_EQ(blind.finish(StopReason::kConverged).stop, StopReason::kNotFinite);
+}
+
+TEST(Evaluator, DifferencesTakeTheSideWhereTheObjectiveIsFinite) {
+  const ValueOnly function(2, [](std::span<const double> x) {
+    return std::sqrt(x[0]) + std::pow(x[0], 2) + std::sqrt(-x[1]) + std::pow(x[1], 2);
+  });
+  Evaluator evaluator(function, box(0.0, 0.0, -9.0, 9.0), {});
+  double gradient[2];
+  EXPECT_TRUE(evaluator.evaluate(Point{1e-6, -1e-6}, {.gradient = gradient}));
+  // Steps of 6e-6 are coarse for √x at 1e-6, whose slope is 500.
+  EXPECT_NEAR(gradient[0], 500.0, 350.0);
+  EXPECT_NEAR(gradient[1], -500.0, 350.0);
 }
 
 TEST(Evaluator, CarriesExceptionsThroughCallbacks) {
   const Throwing function(2);
   Evaluator evaluator(function, box(0.0, 0.0, -9.0, 9.0), {});
-  EXPECT_TRUE(evaluator.try_evaluate(Point{0.0, 0.0}, {}));
-  EXPECT_FALSE(evaluator.try_evaluate(Point{1.0, 0.0}, {}));
-  EXPECT_FALSE(evaluator.try_evaluate(Point{1.0, 0.0}, {}));
+  EXPECT_EQ(evaluator.try_evaluate(Point{0.0, 0.0}, {}), Trial::kFinite);
+  EXPECT_EQ(evaluator.try_evaluate(Point{1.0, 0.0}, {}), Trial::kOver);
+  EXPECT_EQ(evaluator.try_evaluate(Point{1.0, 0.0}, {}), Trial::kOver);
   EXPECT_EQ(function.calls, 2);
   EXPECT_THROW(evaluator.finish(StopReason::kConverged), Boom);
 }
