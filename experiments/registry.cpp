@@ -4,11 +4,11 @@
 #include "experiments/kinds/benchmark/benchmark_experiment.hpp"
 #include "experiments/kinds/calibrate/calibrate_experiment.hpp"
 #include "experiments/kinds/identify/identify_study.hpp"
-#include "experiments/kinds/invert/invert_experiment.hpp"
+#include "experiments/kinds/invert/invert_study.hpp"
 #include "experiments/kinds/limit/calibration_limit_experiment.hpp"
 #include "experiments/kinds/schelleng/schelleng_experiment.hpp"
 #include "experiments/kinds/section7/pluck_then_bow_experiment.hpp"
-#include "experiments/kinds/simulate/simulate_experiment.hpp"
+#include "experiments/kinds/simulate/simulate_study.hpp"
 #include "experiments/kinds/study_experiment.hpp"
 #include "experiments/kinds/sweep/sweep_experiment.hpp"
 
@@ -24,14 +24,14 @@ Registry<Experiment> Experiment::registry() {
           "calibration_limit", "calibration error against noise beside the Cramer-Rao bound"),
       entry_of<Experiment, StudyExperiment<IdentifyOptions>>(
           "identify", "modes of a plucked string from its end reactions"),
-      entry_of<Experiment, InvertExperiment>(
+      entry_of<Experiment, StudyExperiment<InvertOptions>>(
           "invert", "contact force and motion from simulated or recorded reactions"),
       entry_of<Experiment, PluckThenBowExperiment>(
           "pluck_then_bow", "pluck test, law, refinement and contact on a stroke, identification"),
       entry_of<Experiment, SchellengExperiment>(
           "schelleng", "which motion a steady bow stroke settles in, over positions and forces"),
-      entry_of<Experiment, SimulateExperiment>("simulate",
-                                               "a bowed string, its signals and figures"),
+      entry_of<Experiment, StudyExperiment<SimulateOptions>>(
+          "simulate", "a bowed string, its signals and figures"),
       entry_of<Experiment, SweepExperiment>(
           "sweep", "the same inversion over axes of settings, summed up in a table"),
   };

@@ -178,6 +178,14 @@ std::vector<Finding> lint_figures(const std::vector<FigureOptions>& figures,
     if (figure.quantities.empty()) {
       findings.push_back({"figures", fmt::format("figure {} has no quantities", figure.id)});
     }
+    const bool identified =
+        std::find(contents.begin(), contents.end(), "spectra") != contents.end();
+    for (const std::string& name : figure.quantities) {
+      if (!identified || (name != "R1" && name != "R2")) continue;
+      findings.push_back({"figures", fmt::format("figure {} draws {}, which is measured, not "
+                                                 "identified: use y, v or f_c",
+                                                 figure.id, name)});
+    }
     if (std::find(contents.begin(), contents.end(), figure.content) == contents.end()) {
       findings.push_back({"figures", fmt::format("figure {}: this kind of experiment has no {}",
                                                  figure.id, figure.content)});

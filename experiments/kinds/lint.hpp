@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "experiments/experiment.hpp"
-#include "experiments/study/figure_options.hpp"
+#include "experiments/study/figures.hpp"
 #include "experiments/study/observation.hpp"
 #include "libcalib/likelihood/string_unknowns.hpp"
 

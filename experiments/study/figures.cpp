@@ -3,13 +3,73 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <optional>
 
 #include "libsim/base/error.hpp"
+#include "libsim/signal/fft.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {
+
+void TimeWindow::visit(OptionVisitor& visitor) {
+  visitor.number(
+      {.key = "start", .meaning = "first instant", .unit = "s", .range = Range::non_negative()},
+      start);
+  visitor.number({.key = "stop",
+                  .meaning = "last instant",
+                  .unit = "s",
+                  .range = Range::positive(),
+                  .word = "end"},
+                 stop);
+}
+
+void FigureOptions::visit(OptionVisitor& visitor) {
+  visitor.text({.key = "id", .meaning = "name of the figure's files", .required = true}, id);
+  visitor.text({.key = "title", .meaning = "title; empty: that of the experiment"}, title);
+  visitor.text(
+      {.key = "content",
+       .meaning = "what is drawn",
+       .choices = {"waveforms", "spectra", "parameter_curves", "objectives", "frequency_errors"}},
+      content);
+  visitor.texts({.key = "quantities",
+                 .meaning = "rows of waveforms and spectra",
+                 .choices = {"y", "v", "f_c", "R1", "R2"}},
+                quantities);
+  ListOf<TimeWindow> list(windows);
+  visitor.list({.key = "windows", .meaning = "parts of the record; none: all of it"}, list);
+  visitor.integer({.key = "modes",
+                   .meaning = "number of modes whose objective is drawn",
+                   .range = Range::closed(1, 5000)},
+                  modes);
+  visitor.number({.key = "lowest_frequency",
+                  .meaning = "left end of a spectrum",
+                  .unit = "Hz",
+                  .range = Range::non_negative()},
+                 lowest_frequency);
+  visitor.number({.key = "highest_frequency",
+                  .meaning = "right end of a spectrum; top_mode: 1.1 times the highest mode",
+                  .unit = "Hz",
+                  .range = Range::positive(),
+                  .word = "top_mode"},
+                 highest_frequency);
+}
+
+const Quantity& quantity_of(std::string_view name) {
+  const auto* const found =
+      std::find_if(std::begin(kQuantities), std::end(kQuantities),
+                   [name](const Quantity& quantity) { return quantity.name == name; });
+  MODCAL_REQUIRE(found != std::end(kQuantities), "no signal has the name \"{}\"", name);
+  return *found;
+}
+
+OutputRequest request_of(const std::vector<std::string>& names) {
+  OutputRequest request;
+  for (const std::string& name : names) request.*quantity_of(name).wanted = true;
+  return request;
+}
+
 namespace {
 
 using report::ColorRole;
@@ -18,20 +78,28 @@ using report::Panel;
 using report::Series;
 using report::SeriesStyle;
 
-report::Axis quantity_axis(std::string_view quantity) {
-  if (quantity == "y") return {.label = "y", .unit = "m"};
-  if (quantity == "v") return {.label = "v", .unit = "m/s"};
-  if (quantity == "f_c") return {.label = "f_c", .unit = "N"};
-  return {.label = std::string(quantity), .unit = "N"};
-}
+// One curve of a panel.
+struct Trace {
+  std::string label;
+  const std::vector<double>* samples = nullptr;
+  SeriesStyle style = SeriesStyle::kLine;
+  ColorRole color = ColorRole::kFirst;
+};
 
-Figure empty_figure(const FigureOptions& options, std::size_t columns) {
-  Figure figure;
-  figure.id = options.id;
-  figure.title = options.title;
-  figure.columns = columns;
-  return figure;
-}
+// What stands in the panel of one quantity and one column.
+using TraceLookup =
+    std::function<std::vector<Trace>(const std::string& quantity, std::size_t column)>;
+
+struct Layout {
+  const FigureOptions& options;
+  std::vector<std::string> columns;  // their labels
+  double sample_rate = 0.0;
+  double duration = 0.0;
+
+  Figure empty() const {
+    return {.id = options.id, .title = options.title, .columns = columns.size()};
+  }
+};
 
 std::vector<TimeWindow> windows_or_all(const FigureOptions& options, double duration) {
   std::vector<TimeWindow> windows = options.windows;
@@ -46,13 +114,17 @@ std::vector<TimeWindow> windows_or_all(const FigureOptions& options, double dura
   return windows;
 }
 
+report::Axis axis_of(const std::string& quantity) {
+  if (quantity == "reaction") return {.label = quantity, .unit = "N"};
+  return {.label = quantity, .unit = std::string(quantity_of(quantity).unit)};
+}
+
 Series window_series(const Trace& trace, const TimeWindow& window, double rate) {
   Series series{.label = trace.label, .style = trace.style, .color = trace.color};
   const auto first = static_cast<std::size_t>(std::ceil(window.start * rate));
   const auto last = static_cast<std::size_t>(std::floor(window.stop * rate)) + 1;
   for (std::size_t k = first; k < std::min(last, trace.samples->size()); ++k) {
-    series.x.push_back(static_cast<double>(k) / rate);
-    series.y.push_back((*trace.samples)[k]);
+    series.add(static_cast<double>(k) / rate, (*trace.samples)[k]);
   }
   return series;
 }
@@ -78,25 +150,87 @@ Series spectrum_series(const Trace& trace, double rate, double lowest, double hi
   const std::vector<Complex> spectrum = fft.forward(*trace.samples);
   for (std::size_t k = 1; k < spectrum.size(); ++k) {
     const double f = static_cast<double>(k) * rate / static_cast<double>(fft.length());
-    if (f < lowest || f > highest) continue;
-    series.x.push_back(f);
-    series.y.push_back(std::abs(spectrum[k]) / rate);
+    if (f >= lowest && f <= highest) series.add(f, std::abs(spectrum[k]) / rate);
   }
   return series;
 }
 
-const Signal& simulated(const Simulation& simulation, std::string_view quantity) {
-  if (quantity == "y") return simulation.displacement;
-  if (quantity == "v") return simulation.velocity;
-  if (quantity == "f_c") return simulation.force;
-  if (quantity == "R1") return simulation.left_reaction;
-  return simulation.right_reaction;
+Figure waveform_figure(const Layout& layout, const TraceLookup& traces) {
+  Figure figure = layout.empty();
+  for (const std::string& quantity : layout.options.quantities) {
+    for (const TimeWindow& window : windows_or_all(layout.options, layout.duration)) {
+      for (std::size_t column = 0; column < layout.columns.size(); ++column) {
+        Panel panel{.title = layout.columns[column],
+                    .x = {.label = "time", .unit = "s"},
+                    .y = axis_of(quantity)};
+        for (const Trace& trace : traces(quantity, column)) {
+          panel.series.push_back(window_series(trace, window, layout.sample_rate));
+        }
+        panel.y.range = central_range(panel.series);
+        if (panel.y.range) {
+          figure.caption = "Spikes at the ends of the record (truncation) run off the axes.";
+        }
+        figure.panels.push_back(std::move(panel));
+      }
+    }
+  }
+  return figure;
 }
 
-const std::vector<double>& identified(const InversionResult& result, std::string_view quantity) {
-  if (quantity == "y") return result.displacement;
-  if (quantity == "v") return result.velocity;
-  return result.force;
+Figure spectrum_figure(const Layout& layout, double highest, const TraceLookup& traces) {
+  Figure figure = layout.empty();
+  if (!std::isnan(layout.options.highest_frequency)) highest = layout.options.highest_frequency;
+  for (const std::string& quantity : layout.options.quantities) {
+    for (std::size_t column = 0; column < layout.columns.size(); ++column) {
+      const report::Axis axis = axis_of(quantity);
+      Panel panel{
+          .title = layout.columns[column],
+          .x = {.label = "frequency", .unit = "Hz"},
+          .y = {.label = "|" + axis.label + "(f)|", .unit = axis.unit + " s", .logarithmic = true}};
+      for (const Trace& trace : traces(quantity, column)) {
+        panel.series.push_back(
+            spectrum_series(trace, layout.sample_rate, layout.options.lowest_frequency, highest));
+      }
+      figure.panels.push_back(std::move(panel));
+    }
+  }
+  return figure;
+}
+
+// A curve over the parameter and the point that was chosen on it.
+std::vector<Series> curve_with_choice(const ChosenParameter& choice, std::string name,
+                                      double CurvePoint::*x, double CurvePoint::*y) {
+  Series curve{.label = std::move(name)};
+  for (const CurvePoint& point : choice.curve) curve.add(point.*x, point.*y);
+  Series chosen{.label = fmt::format("chosen: {:.3g}", choice.point.parameter),
+                .style = SeriesStyle::kPoints,
+                .color = ColorRole::kSecond};
+  chosen.add(choice.point.*x, choice.point.*y);
+  return {std::move(curve), std::move(chosen)};
+}
+
+Figure parameter_curve_figure(const Layout& layout, const std::vector<SideIdentification>& sides) {
+  Figure figure = layout.empty();
+  for (const SideIdentification& side : sides) {
+    const auto& [label, name] = std::pair(side.estimate.label, side.estimate.side);
+    figure.panels.push_back(
+        {.title = label,
+         .x = {.label = fmt::format("||R_{0} - H_{0} F({0})||", name),
+               .unit = "N",
+               .logarithmic = true},
+         .y = {.label = fmt::format("||dF({})/dt||", name), .unit = "N/s", .logarithmic = true},
+         .series = curve_with_choice(side.estimate.result.choice, "all parameters",
+                                     &CurvePoint::residual_norm, &CurvePoint::solution_norm)});
+  }
+  for (const SideIdentification& side : sides) {
+    figure.panels.push_back(
+        {.title = side.estimate.label,
+         .x = {.label = "epsilon", .unit = "N/N", .logarithmic = true},
+         .y = {.label = "criterion", .unit = "1", .logarithmic = true},
+         .series = curve_with_choice(side.estimate.result.choice, "criterion",
+                                     &CurvePoint::parameter, &CurvePoint::criterion)});
+  }
+  return figure;
 }
 
 std::vector<double> zero_mean(std::vector<double> samples) {
@@ -106,151 +240,60 @@ std::vector<double> zero_mean(std::vector<double> samples) {
 
 }  // namespace
 
-Figure waveform_figure(const FigureOptions& options, double sample_rate, double duration,
-                       const std::vector<std::string>& column_labels, const TraceLookup& traces) {
-  Figure figure = empty_figure(options, column_labels.size());
-  bool clipped = false;
-  for (const std::string& quantity : options.quantities) {
-    for (const TimeWindow& window : windows_or_all(options, duration)) {
-      for (std::size_t column = 0; column < column_labels.size(); ++column) {
-        Panel panel;
-        panel.title = column_labels[column];
-        panel.x = {.label = "time", .unit = "s"};
-        panel.y = quantity_axis(quantity);
-        for (const Trace& trace : traces(quantity, column)) {
-          panel.series.push_back(window_series(trace, window, sample_rate));
-        }
-        panel.y.range = central_range(panel.series);
-        if (panel.y.range) clipped = true;
-        figure.panels.push_back(std::move(panel));
-      }
-    }
-  }
-  if (clipped) figure.caption = "Spikes at the ends of the record (truncation) run off the axes.";
-  return figure;
-}
-
-Figure spectrum_figure(const FigureOptions& options, double sample_rate, double highest_frequency,
-                       const std::vector<std::string>& column_labels, const TraceLookup& traces) {
-  Figure figure = empty_figure(options, column_labels.size());
-  const double highest =
-      std::isnan(options.highest_frequency) ? highest_frequency : options.highest_frequency;
-  for (const std::string& quantity : options.quantities) {
-    for (std::size_t column = 0; column < column_labels.size(); ++column) {
-      Panel panel;
-      panel.title = column_labels[column];
-      panel.x = {.label = "frequency", .unit = "Hz"};
-      panel.y = quantity_axis(quantity);
-      panel.y.label = "|" + panel.y.label + "(f)|";
-      panel.y.unit += " s";
-      panel.y.logarithmic = true;
-      for (const Trace& trace : traces(quantity, column)) {
-        panel.series.push_back(
-            spectrum_series(trace, sample_rate, options.lowest_frequency, highest));
-      }
-      figure.panels.push_back(std::move(panel));
-    }
-  }
-  return figure;
-}
-
-Figure parameter_curve_figure(const FigureOptions& options,
-                              const std::vector<SideIdentification>& sides) {
-  Figure figure = empty_figure(options, sides.size());
-  std::vector<Panel> criteria;
-  for (const SideIdentification& side : sides) {
-    const std::string& name = side.estimate.side;
-    const std::string superscript = fmt::format("({})", name);
-    Panel corner;
-    corner.title = side.estimate.label;
-    corner.x = {.label = fmt::format("||R_{} - H_{} F{}||", name, name, superscript),
-                .unit = "N",
-                .logarithmic = true};
-    corner.y = {.label = "||dF" + superscript + "/dt||", .unit = "N/s", .logarithmic = true};
-    Panel criterion;
-    criterion.title = corner.title;
-    criterion.x = {.label = "epsilon", .unit = "N/N", .logarithmic = true};
-    criterion.y = {.label = "criterion", .unit = "1", .logarithmic = true};
-    Series l_curve{.label = "all parameters"};
-    Series product{.label = "criterion"};
-    for (const CurvePoint& point : side.estimate.result.choice.curve) {
-      l_curve.x.push_back(point.residual_norm);
-      l_curve.y.push_back(point.solution_norm);
-      product.x.push_back(point.parameter);
-      product.y.push_back(point.criterion);
-    }
-    const CurvePoint& chosen = side.estimate.result.choice.point;
-    const std::string label = fmt::format("chosen: {:.3g}", chosen.parameter);
-    corner.series = {l_curve, Series{.label = label,
-                                     .x = {chosen.residual_norm},
-                                     .y = {chosen.solution_norm},
-                                     .style = SeriesStyle::kPoints,
-                                     .color = ColorRole::kSecond}};
-    criterion.series = {product, Series{.label = label,
-                                        .x = {chosen.parameter},
-                                        .y = {chosen.criterion},
-                                        .style = SeriesStyle::kPoints,
-                                        .color = ColorRole::kSecond}};
-    figure.panels.push_back(std::move(corner));
-    criteria.push_back(std::move(criterion));
-  }
-  std::move(criteria.begin(), criteria.end(), std::back_inserter(figure.panels));
-  return figure;
-}
-
 Figure simulation_figure(const FigureOptions& options, const Simulation& simulation) {
-  FigureOptions layout = options;
+  FigureOptions rows = options;
   const bool reactions = std::all_of(options.quantities.begin(), options.quantities.end(),
                                      [](const std::string& q) { return q == "R1" || q == "R2"; });
   // Reactions stand side by side: one row a window, one column an end.
-  std::vector<std::string> columns = {""};
-  if (reactions) {
-    columns = options.quantities;
-    layout.quantities = {"reaction"};
-  }
-  const Signal& any = simulated(simulation, options.quantities.front());
-  Figure figure = waveform_figure(layout, any.sample_rate, any.duration(), columns,
-                                  [&](std::string_view quantity, std::size_t column) {
-                                    const std::string& name = options.quantities[column];
-                                    const Signal& signal =
-                                        simulated(simulation, reactions ? name : quantity);
-                                    return std::vector<Trace>{{"simulated", &signal.samples}};
-                                  });
-  return figure;
+  if (reactions) rows.quantities = {"reaction"};
+  const auto simulated = [&simulation](const std::string& name) -> const Signal& {
+    return simulation.*quantity_of(name).simulated;
+  };
+  const Signal& any = simulated(options.quantities.front());
+  return waveform_figure({.options = rows,
+                          .columns = reactions ? options.quantities : std::vector<std::string>{""},
+                          .sample_rate = any.sample_rate,
+                          .duration = any.duration()},
+                         [&](const std::string& quantity, std::size_t column) {
+                           const std::string& name =
+                               reactions ? options.quantities[column] : quantity;
+                           return std::vector<Trace>{{"simulated", &simulated(name).samples}};
+                         });
 }
 
 Figure identification_figure(const FigureOptions& options, const Observation& observation,
                              const std::vector<SideIdentification>& sides) {
-  std::vector<std::string> columns;
-  for (const SideIdentification& side : sides) {
-    columns.push_back(side.estimate.label);
-  }
+  const double rate = observation.sample_rate;
+  Layout layout{.options = options,
+                .sample_rate = rate,
+                .duration = static_cast<double>(observation.samples()) / rate};
+  for (const SideIdentification& side : sides) layout.columns.push_back(side.estimate.label);
+  if (options.content == "parameter_curves") return parameter_curve_figure(layout, sides);
   // The identified signals have no static part, so the true ones are shown without theirs.
-  std::map<std::string, std::vector<double>, std::less<>> truth;
-  for (const std::string& quantity : options.quantities) {
+  std::map<std::string, std::vector<double>> truth;
+  for (const std::string& name : options.quantities) {
+    MODCAL_REQUIRE(quantity_of(name).identified != nullptr,
+                   "figure {} draws {}, which is measured, not identified: use y, v or f_c",
+                   options.id, name);
     if (observation.truth) {
-      truth[quantity] = zero_mean(simulated(observation.truth->simulation, quantity).samples);
-    } else if (quantity == "f_c" && observation.reference) {
-      truth[quantity] = zero_mean(observation.reference->samples);
+      truth[name] = zero_mean((observation.truth->simulation.*quantity_of(name).simulated).samples);
+    } else if (name == "f_c" && observation.reference) {
+      truth[name] = zero_mean(observation.reference->samples);
     }
   }
-  const TraceLookup traces = [&](std::string_view quantity, std::size_t column) {
+  const TraceLookup traces = [&](const std::string& name, std::size_t column) {
     std::vector<Trace> result = {
-        {"identified", &identified(sides[column].estimate.result, quantity), SeriesStyle::kLine,
-         column == 0 ? ColorRole::kFirst : ColorRole::kSecond}};
-    const auto known = truth.find(quantity);
-    if (known != truth.end() && !known->second.empty()) {
-      result.push_back({"true", &known->second, SeriesStyle::kDotted, ColorRole::kReference});
+        {"identified", &(sides[column].estimate.result.*quantity_of(name).identified),
+         SeriesStyle::kLine, column == 0 ? ColorRole::kFirst : ColorRole::kSecond}};
+    const auto known_truth = truth.find(name);
+    if (known_truth != truth.end() && !known_truth->second.empty()) {
+      result.push_back({"true", &known_truth->second, SeriesStyle::kDotted, ColorRole::kReference});
     }
     return result;
   };
-  const double rate = observation.sample_rate;
-  if (options.content == "spectra") {
-    const double top = 1.1 * observation.basis.frequency(observation.basis.size() - 1);
-    return spectrum_figure(options, rate, top, columns, traces);
-  }
-  const double duration = static_cast<double>(observation.samples()) / rate;
-  return waveform_figure(options, rate, duration, columns, traces);
+  if (options.content != "spectra") return waveform_figure(layout, traces);
+  const double top = 1.1 * observation.basis.frequency(observation.basis.size() - 1);
+  return spectrum_figure(layout, top, traces);
 }
 
 }  // namespace modcal

@@ -1,50 +1,68 @@
-// Figures of simulated and identified records, laid out as the paper has them.
+// Figures of simulated and identified records as an experiment asks for them, laid out as the paper
+// has them.
 #pragma once
 
-#include <functional>
+#include <cstdint>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "experiments/report/figure.hpp"
-#include "experiments/study/figure_options.hpp"
 #include "experiments/study/identification.hpp"
+#include "libsim/base/options.hpp"
 
 namespace modcal {
 
-/// One curve of a waveform panel.
-struct Trace {
-  std::string label;
-  const std::vector<double>* samples = nullptr;
-  report::SeriesStyle style = report::SeriesStyle::kLine;
-  report::ColorRole color = report::ColorRole::kFirst;
+/// A signal of a bowed string: its name in figures and files, and where it stands.
+struct Quantity {
+  std::string_view name;
+  std::string_view unit;
+  bool OutputRequest::*wanted;
+  Signal Simulation::*simulated;
+  std::vector<double> InversionResult::*identified;  ///< null: measured, not identified
+};
+inline constexpr Quantity kQuantities[] = {
+    {"y", "m", &OutputRequest::displacement, &Simulation::displacement,
+     &InversionResult::displacement},
+    {"v", "m/s", &OutputRequest::velocity, &Simulation::velocity, &InversionResult::velocity},
+    {"f_c", "N", &OutputRequest::force, &Simulation::force, &InversionResult::force},
+    {"R1", "N", &OutputRequest::left_reaction, &Simulation::left_reaction, nullptr},
+    {"R2", "N", &OutputRequest::right_reaction, &Simulation::right_reaction, nullptr},
+};
+/// The one of this name.
+const Quantity& quantity_of(std::string_view name);
+/// The outputs of these names.
+OutputRequest request_of(const std::vector<std::string>& names);
+
+/// Interval of the time axis [s].
+struct TimeWindow {
+  double start = 0.0;
+  double stop = std::numeric_limits<double>::quiet_NaN();
+  void visit(OptionVisitor& visitor);
 };
 
-/// What stands in the panel of one quantity ("y", "v", "f_c", "R1", "R2") and one column.
-using TraceLookup =
-    std::function<std::vector<Trace>(std::string_view quantity, std::size_t column)>;
-
-/// Rows: quantities × windows; columns as labeled.
-report::Figure waveform_figure(const FigureOptions& options, double sample_rate, double duration,
-                               const std::vector<std::string>& column_labels,
-                               const TraceLookup& traces);
-
-/// Moduli of the spectra |X(ω)| (unscaled sum over f_s) of the same traces.
-report::Figure spectrum_figure(const FigureOptions& options, double sample_rate,
-                               double highest_frequency,
-                               const std::vector<std::string>& column_labels,
-                               const TraceLookup& traces);
-
-/// L-curves (first row) and criterion curves (second row) of both sides (paper, figs. 9 and 21).
-report::Figure parameter_curve_figure(const FigureOptions& options,
-                                      const std::vector<SideIdentification>& sides);
+/// One figure: what it shows and of which part. Rows are quantities × windows, columns the two
+/// ends.
+struct FigureOptions {
+  std::string id;
+  std::string title;
+  std::string content = "waveforms";
+  std::vector<std::string> quantities = {"y", "v", "f_c"};
+  std::vector<TimeWindow> windows;
+  std::int64_t modes = 12;
+  double lowest_frequency = 20.0;
+  double highest_frequency = std::numeric_limits<double>::quiet_NaN();
+  void visit(OptionVisitor& visitor);
+};
 
 /// Simulated reactions side by side, or the motion at the contact in one column (paper, figs. 2,
-/// 3).
+/// 3): rows are quantities × windows.
 report::Figure simulation_figure(const FigureOptions& options, const Simulation& simulation);
 
-/// Identified (solid) and true (dotted) signals, one column a side (paper, figs. 4–8, 10–12,
-/// 15–17).
+/// Of identified (solid) and true (dotted) signals, one column a side, the waveforms or the moduli
+/// of the spectra |X(ω)| (unscaled sum over f_s) (paper, figs. 4–8, 10–12, 15–17); or L-curves
+/// (first row) and criterion curves (second row) (figs. 9 and 21).
 report::Figure identification_figure(const FigureOptions& options, const Observation& observation,
                                      const std::vector<SideIdentification>& sides);
 

@@ -54,12 +54,15 @@ EstimationRecord record_of(const Observation& observation) {
 
 }  // namespace
 
-ScoreReference reference_of(const Observation& observation) {
-  MODCAL_REQUIRE(observation.reference.has_value(), "no true force to score against");
-  return {.truth = *observation.reference,
-          .anti_aliased = observation.anti_aliased,
-          .anti_alias_cut = observation.anti_alias_cut,
-          .fundamental = observation.fundamental};
+ForceScores scores_of(const Observation& observation, std::span<const double> force,
+                      const ScoreOptions* score, std::span<const double> unaliased) {
+  if (score == nullptr || !observation.reference) return {};
+  return score_force(force,
+                     {.truth = *observation.reference,
+                      .anti_aliased = observation.anti_aliased,
+                      .anti_alias_cut = observation.anti_alias_cut,
+                      .fundamental = observation.fundamental},
+                     *score, unaliased);
 }
 
 InversionCache::Prepared prepare_estimator(const AssumedModel& model,
@@ -93,15 +96,9 @@ std::vector<SideIdentification> identify(const Observation& observation,
                                          const ScoreOptions* score) {
   std::vector<SideIdentification> sides;
   for (Estimate& estimate : estimator.estimate(record_of(observation), recipe.method(outputs))) {
-    SideIdentification side;
-    side.estimate = std::move(estimate);
-    if (score && observation.reference) {
-      const Signal force{"f_c", "N", observation.sample_rate, side.estimate.result.force};
-      const ScoreReference reference = reference_of(observation);
-      side.scores = score_windows(force, reference, *score, side.estimate.unaliased_force);
-      side.whole = score_whole(force, reference, *score, side.estimate.unaliased_force);
-    }
-    sides.push_back(std::move(side));
+    const ForceScores scores =
+        scores_of(observation, estimate.result.force, score, estimate.unaliased_force);
+    sides.push_back({scores, std::move(estimate)});
   }
   return sides;
 }

@@ -16,10 +16,8 @@
 namespace modcal {
 
 /// One estimate of a record with its scores; empty without a reference.
-struct SideIdentification {
+struct SideIdentification : ForceScores {
   Estimate estimate;
-  std::vector<WindowScore> scores;  ///< of the force, window by window
-  WindowScore whole;                ///< over the stated part of the record
 };
 
 /// Estimators prepared for one model and record length, shared by the cells of a sweep that assume
@@ -41,9 +39,10 @@ InversionCache::Prepared prepare_estimator(const AssumedModel& model,
                                            const Observation& observation,
                                            const InversionRecipe& recipe);
 
-/// What identified forces of an observation are held against; it must outlive the result. Throws
-/// InvalidInput where the observation has no reference.
-ScoreReference reference_of(const Observation& observation);
+/// Scores of an identified force of the observation; none where `score` is null or the observation
+/// has no reference.
+ForceScores scores_of(const Observation& observation, std::span<const double> force,
+                      const ScoreOptions* score, std::span<const double> unaliased = {});
 
 /// Inverts the reactions of the observation; `score` null: no scores.
 std::vector<SideIdentification> identify(const Observation& observation,

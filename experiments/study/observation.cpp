@@ -1,8 +1,8 @@
 #include "experiments/study/observation.hpp"
 
-#include "libsim/records/recorded_signals.hpp"
 #include "experiments/study/scoring.hpp"
 #include "libsim/base/error.hpp"
+#include "libsim/records/recorded_signals.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {
@@ -38,6 +38,15 @@ std::size_t Observation::samples() const {
     if (signal) return signal->size();
   }
   return 0;
+}
+
+void require_both_reactions(const Observation& observation, std::string_view what,
+                            std::string_view option) {
+  for (const End end : kEnds) {
+    MODCAL_REQUIRE(observation.reaction(end).has_value(),
+                   "{} needs both reactions: the one at {} is missing; leave out {} or record it",
+                   what, label_of(end), option);
+  }
 }
 
 std::string_view label_of(End end) { return end == End::kLeft ? "x = 0" : "x = L"; }

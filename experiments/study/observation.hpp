@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "libsim/records/record_options.hpp"
 #include "experiments/study/truth.hpp"
 #include "libsim/base/random.hpp"
 #include "libsim/model/transfer.hpp"
+#include "libsim/records/record_options.hpp"
 #include "libsim/signal/measurement.hpp"
 
 namespace modcal {
@@ -59,6 +59,10 @@ struct Observation {
 Observation observe(const ObservationOptions& options, const OutputRequest& truth_outputs,
                     TruthCache& cache, const StreamKey& key, const std::filesystem::path& folder,
                     std::int64_t oversampling = 1);
+
+/// Throws InvalidInput where a reaction is missing that `what` needs, which `option` asks for.
+void require_both_reactions(const Observation& observation, std::string_view what,
+                            std::string_view option);
 
 /// "x = 0" or "x = L".
 std::string_view label_of(End end);

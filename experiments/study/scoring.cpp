@@ -33,74 +33,62 @@ void ScoreOptions::visit(OptionVisitor& visitor) {
                   oversampling);
 }
 
-namespace {
-
-struct Interval {
-  double start = 0.0;
-  std::size_t first = 0;
-  std::size_t length = 0;
-};
-
-WindowScore score(std::span<const double> identified, std::span<const double> smooth,
-                  const ScoreReference& reference, const Interval& interval) {
-  const auto part = [&interval](std::span<const double> samples) {
-    return samples.subspan(interval.first, interval.length);
-  };
-  const std::span<const double> truth = part(reference.truth.samples);
-  WindowScore result{.start = interval.start,
-                     .correlation = correlation(part(identified), truth),
-                     .relative_rms_error = relative_rms_error(part(identified), truth)};
-  if (!smooth.empty()) {
-    result.anti_aliased = correlation(part(smooth), part(reference.anti_aliased->samples));
-  }
-  return result;
+void WindowScore::visit(ResultVisitor& visitor) const {
+  visitor({.key = "window_start", .name = "window from", .unit = "s"}, known(start));
+  visitor({.key = "correlation", .name = "correlation R"}, known(correlation));
+  visitor({.key = "relative_rms_error", .name = "relative rms error"}, known(relative_rms_error));
+  visitor({.key = "anti_aliased", .name = "R, anti-aliased"}, known(anti_aliased));
 }
 
-std::vector<double> smooth_estimate(const Signal& identified, const ScoreReference& reference,
-                                    std::span<const double> unaliased) {
-  if (!reference.anti_aliased) return {};
-  const std::span<const double> samples = unaliased.empty() ? identified.samples : unaliased;
-  return low_passed(samples, identified.sample_rate, reference.anti_alias_cut);
+std::string WindowScore::text() const {
+  return fmt::format("window from {:g} s: R = {:.4f}, relative rms error {:.4f}", start,
+                     correlation, relative_rms_error);
 }
 
-}  // namespace
-
-std::vector<WindowScore> score_windows(const Signal& identified, const ScoreReference& reference,
-                                       const ScoreOptions& options,
-                                       std::span<const double> unaliased) {
+ForceScores score_force(std::span<const double> identified, const ScoreReference& reference,
+                        const ScoreOptions& options, std::span<const double> unaliased) {
   const Signal& truth = reference.truth;
   const double rate = truth.sample_rate;
-  const auto length =
-      static_cast<std::size_t>(std::round(options.periods / reference.fundamental * rate));
-  const std::vector<double> smooth = smooth_estimate(identified, reference, unaliased);
-  std::vector<WindowScore> scores;
-  if (options.windows.empty()) {
-    scores.push_back(score(identified.samples, smooth, reference, {0.0, 0, truth.size()}));
+  std::vector<double> smooth;
+  if (reference.anti_aliased) {
+    smooth = low_passed(unaliased.empty() ? identified : unaliased, rate, reference.anti_alias_cut);
   }
+  const auto place = [rate](double time) {
+    return static_cast<std::size_t>(std::round(time * rate));
+  };
+  const auto score = [&](double start, std::size_t length) {
+    const auto part = [first = place(start), length](std::span<const double> samples) {
+      return samples.subspan(first, length);
+    };
+    const std::span<const double> exact = part(truth.samples);
+    WindowScore result{.start = start,
+                       .correlation = correlation(part(identified), exact),
+                       .relative_rms_error = relative_rms_error(part(identified), exact)};
+    if (!smooth.empty()) {
+      result.anti_aliased = correlation(part(smooth), part(reference.anti_aliased->samples));
+    }
+    return result;
+  };
+
+  ForceScores found;
+  const std::size_t length = place(options.periods / reference.fundamental);
+  if (options.windows.empty()) found.scores.push_back(score(0.0, truth.size()));
   for (const double start : options.windows) {
-    const auto first = static_cast<std::size_t>(std::round(start * rate));
-    MODCAL_REQUIRE(length >= 2 && first + length <= truth.size(),
+    MODCAL_REQUIRE(length >= 2 && place(start) + length <= truth.size(),
                    "the score window from {:g} s over {:g} periods ({} samples) is not inside the "
                    "record of {:g} s",
                    start, options.periods, length, truth.duration());
-    scores.push_back(score(identified.samples, smooth, reference, {start, first, length}));
+    found.scores.push_back(score(start, length));
   }
-  return scores;
-}
-
-WindowScore score_whole(const Signal& identified, const ScoreReference& reference,
-                        const ScoreOptions& options, std::span<const double> unaliased) {
-  if (options.whole.empty()) return {};
+  if (options.whole.empty()) return found;
   MODCAL_REQUIRE(options.whole.size() == 2, "the long window has {} ends: start and stop are two",
                  options.whole.size());
-  const Signal& truth = reference.truth;
-  const auto first = static_cast<std::size_t>(std::round(options.whole[0] * truth.sample_rate));
-  const auto last = static_cast<std::size_t>(std::round(options.whole[1] * truth.sample_rate));
+  const std::size_t first = place(options.whole[0]), last = place(options.whole[1]);
   MODCAL_REQUIRE(first + 2 <= last && last <= truth.size(),
                  "the long window from {:g} s to {:g} s is not inside the record of {:g} s",
                  options.whole[0], options.whole[1], truth.duration());
-  return score(identified.samples, smooth_estimate(identified, reference, unaliased), reference,
-               {options.whole[0], first, last - first});
+  found.whole = score(options.whole[0], last - first);
+  return found;
 }
 
 std::vector<double> low_passed(std::span<const double> samples, double sample_rate, double cut,

@@ -5,9 +5,11 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "libsim/base/options.hpp"
+#include "libsim/base/result_visitor.hpp"
 #include "libsim/signal/signal.hpp"
 
 namespace modcal {
@@ -29,6 +31,15 @@ struct WindowScore {
   /// before it was sampled): one re-sticking jump on the wrong side of a sample weighs no more than
   /// it lasts.
   double anti_aliased = std::numeric_limits<double>::quiet_NaN();
+
+  void visit(ResultVisitor& visitor) const;
+  /// "window from 0.78 s: R = 0.9876, relative rms error 0.1234".
+  std::string text() const;
+};
+
+struct ForceScores {
+  std::vector<WindowScore> scores;  ///< window by window
+  WindowScore whole;                ///< over the long window; NaN where none is asked for
 };
 
 /// What an identified force is held against.
@@ -39,16 +50,11 @@ struct ScoreReference {
   double fundamental = 0.0;                   ///< f₀ [Hz]
 };
 
-/// Scores over every window of `periods`/`fundamental` seconds. `unaliased`: the identified force
-/// where sampling has not folded it back, for the anti-aliased score; empty: the samples, of which
-/// nothing was above half the rate. Throws InvalidInput where a window leaves the record.
-std::vector<WindowScore> score_windows(const Signal& identified, const ScoreReference& reference,
-                                       const ScoreOptions& options,
-                                       std::span<const double> unaliased = {});
-
-/// Score over the long window; NaN where none is asked for. Throws InvalidInput where it is not two
-/// rising instants inside the record.
-WindowScore score_whole(const Signal& identified, const ScoreReference& reference,
+/// Scores over every window of `periods`/`fundamental` seconds and over the long one. `unaliased`:
+/// the identified force where sampling has not folded it back, for the anti-aliased score; empty:
+/// the samples, of which nothing was above half the rate. Throws InvalidInput where a window leaves
+/// the record or the long one is not two rising instants inside it.
+ForceScores score_force(std::span<const double> identified, const ScoreReference& reference,
                         const ScoreOptions& options, std::span<const double> unaliased = {});
 
 /// The part below `cut` [Hz] of a signal, sampled at every `step`-th instant.

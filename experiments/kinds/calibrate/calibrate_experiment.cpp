@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "experiments/kinds/calibrate/calibrate_sensors.hpp"
-#include "experiments/kinds/invert/invert_experiment.hpp"
+#include "experiments/kinds/invert/invert_study.hpp"
 #include "experiments/kinds/lint.hpp"
 #include "experiments/kinds/scene_plan.hpp"
 #include "libcalib/likelihood/noise_level.hpp"

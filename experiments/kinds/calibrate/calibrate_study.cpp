@@ -207,7 +207,7 @@ StudyResult calibrate_study(const CalibrateOptions& options, const StudyContext&
   }
   add_warnings(observation, sides, result);
   add_search_figures(inversion.figures, outcome, context.command, result);
-  add_identification_figures(inversion.figures, observation, sides, context.command, result);
+  add_identification_figures(inversion.figures, observation, sides, result);
   if (options.audio) {
     result.blocks.emplace_back(calibration_audio(options, observation, outcome.refined));
   }
@@ -216,7 +216,7 @@ StudyResult calibrate_study(const CalibrateOptions& options, const StudyContext&
   result.blocks.emplace_back(parameter_table(outcome, context.command));
   add_covariance(outcome, context.command, result);
   result.blocks.emplace_back(mode_table(outcome, context.command));
-  result.blocks.emplace_back(identification_table(sides, context.command));
+  result.blocks.emplace_back(identification_table(sides));
   result.files.emplace_back("calibration.json", calibration_json(outcome));
   if (inversion.write_signals) {
     result.signal_files.push_back(identified_signals(observation, sides));

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/kinds/invert/model_based_output.hpp"
-#include "experiments/kinds/invert/wave_output.hpp"
-#include "experiments/study/figures.hpp"
+#include "experiments/kinds/invert/invert_output.hpp"
+#include "experiments/kinds/lint.hpp"
+#include "experiments/kinds/scene_plan.hpp"
+#include "experiments/report/result_table.hpp"
 
 namespace modcal {
 
@@ -32,96 +33,98 @@ void InvertOptions::visit(OptionVisitor& visitor) {
   visitor.list({.key = "figures", .meaning = "what is drawn"}, list);
 }
 
-namespace {
-
-bool any_quantity(const std::vector<FigureOptions>& figures, std::string_view quantity) {
-  return std::any_of(figures.begin(), figures.end(), [quantity](const FigureOptions& figure) {
-    const bool signals = figure.content == "waveforms" || figure.content == "spectra";
-    return signals && std::find(figure.quantities.begin(), figure.quantities.end(), quantity) !=
-                          figure.quantities.end();
-  });
+std::vector<Finding> lint_inversion(const InvertOptions& options) {
+  std::vector<Finding> findings = lint_observation(options.observation);
+  lint_making(
+      "inversion", [&] { InversionRecipe recipe(options.inversion); }, findings);
+  append(findings, lint_scores(options.score, options.observation));
+  if (findings.empty() && is_known(options.observation.string_model())) {
+    lint_making(
+        "model_error",
+        [&] {
+          with_errors(make_modal_basis(options.observation.string_model()),
+                      options.observation.contact_point(), options.model_error,
+                      options.key().with("model error"));
+        },
+        findings);
+  }
+  return findings;
 }
 
-report::Cell number_or_none(double value) {
-  return std::isnan(value) ? report::Cell() : report::Cell(value);
+std::vector<Finding> InvertOptions::lint() const {
+  std::vector<Finding> findings = lint_inversion(*this);
+  append(findings, lint_figures(figures, {"waveforms", "spectra", "parameter_curves"}));
+  return findings;
 }
 
-}  // namespace
+std::vector<std::string> InvertOptions::plan() const {
+  std::vector<std::string> lines;
+  const auto planned = planned_simulations();
+  lines.push_back(planned ? plan_line(*planned) : "record: " + observation.record.file);
+  const InversionOutputs outputs = inversion_outputs(figures, write_signals);
+  if (!outputs.displacement)
+    lines.push_back("skipped: identified displacement, which nobody reads");
+  if (!outputs.velocity) lines.push_back("skipped: identified velocity, which nobody reads");
+  return lines;
+}
+
+std::optional<PlannedSimulations> InvertOptions::planned_simulations() const {
+  return planned_truths(observation, truth_outputs(figures));
+}
+
+OutputRequest truth_outputs(const std::vector<FigureOptions>& figures) {
+  OutputRequest request{.force = true, .left_reaction = true, .right_reaction = true};
+  for (const FigureOptions& figure : figures) {
+    if (figure.content != "waveforms" && figure.content != "spectra") continue;
+    for (const std::string& name : figure.quantities) request.*quantity_of(name).wanted = true;
+  }
+  return request;
+}
+
+InversionOutputs inversion_outputs(const std::vector<FigureOptions>& figures, bool all) {
+  const OutputRequest drawn = truth_outputs(figures);
+  return {
+      .force = true, .displacement = all || drawn.displacement, .velocity = all || drawn.velocity};
+}
 
 report::Cell side_cell(const std::string& side) {
   if (side == "1" || side == "2") return side[0] - '0';
   return side;
 }
 
-OutputRequest truth_outputs(const std::vector<FigureOptions>& figures) {
-  return {.displacement = any_quantity(figures, "y"),
-          .velocity = any_quantity(figures, "v"),
-          .force = true,
-          .left_reaction = true,
-          .right_reaction = true};
-}
-
-InversionOutputs inversion_outputs(const std::vector<FigureOptions>& figures, bool all) {
-  return {.force = true,
-          .displacement = all || any_quantity(figures, "y"),
-          .velocity = all || any_quantity(figures, "v")};
-}
-
-report::Table identification_table(const std::vector<SideIdentification>& sides,
-                                   const std::string& command) {
-  report::Table table{.id = "identification",
-                      .title = "Identification",
-                      .columns = {{.key = "side"},
-                                  {.key = "parameter", .unit = "N/N"},
-                                  {.key = "relative_parameter", .name = "parameter / max|H|"},
-                                  {.key = "kept_share", .name = "share of bins kept"},
-                                  {.key = "choice", .name = "parameter choice"},
-                                  {.key = "window_start", .name = "window from", .unit = "s"},
-                                  {.key = "correlation", .name = "correlation R"},
-                                  {.key = "relative_rms_error", .name = "relative rms error"},
-                                  {.key = "anti_aliased", .name = "R, anti-aliased"},
-                                  {.key = "force_deviation",
-                                   .name = "standard deviation of the force, posterior",
-                                   .unit = "N"}},
-                      .command = command};
-  for (const SideIdentification& side : sides) {
+report::Table identification_table(const std::vector<SideIdentification>& sides) {
+  report::Table table{.id = "identification", .title = "Identification"};
+  const auto add = [&table](const SideIdentification& side, const WindowScore& score) {
     const ChosenParameter& choice = side.estimate.result.choice;
     const bool free = choice.status == ChoiceStatus::kNoParameter;
-    const std::vector<report::Cell> head = {
-        side_cell(side.estimate.side), free ? report::Cell() : report::Cell(choice.parameter()),
-        free ? report::Cell() : report::Cell(choice.parameter() / side.estimate.largest_transfer),
-        choice.kept_share, std::string(name_of(choice.status))};
-    if (side.scores.empty()) {
-      std::vector<report::Cell> row = head;
-      row.resize(table.columns.size());
-      table.rows.push_back(std::move(row));
-    }
-    for (const WindowScore& score : side.scores) {
-      std::vector<report::Cell> row = head;
-      row.insert(row.end(), {score.start, score.correlation, score.relative_rms_error,
-                             number_or_none(score.anti_aliased),
-                             number_or_none(side.estimate.force_deviation)});
-      table.rows.push_back(std::move(row));
-    }
+    const auto parameter = free ? std::nullopt : std::optional(choice.parameter());
+    report::add_row(table, [&](report::RowWriter& row) {
+      row.cell({.key = "side"}, side_cell(side.estimate.side));
+      row({.key = "parameter", .unit = "N/N"}, parameter);
+      row({.key = "relative_parameter", .name = "parameter / max|H|"},
+          free ? parameter : *parameter / side.estimate.largest_transfer);
+      row({.key = "kept_share", .name = "share of bins kept"}, choice.kept_share);
+      row({.key = "choice", .name = "parameter choice"}, name_of(choice.status));
+      row({}, score);
+      row({.key = "force_deviation",
+           .name = "standard deviation of the force, posterior",
+           .unit = "N"},
+          known(side.estimate.force_deviation));
+    });
+  };
+  for (const SideIdentification& side : sides) {
+    if (side.scores.empty()) add(side, {.start = std::nan("")});
+    for (const WindowScore& score : side.scores) add(side, score);
   }
   return table;
 }
 
 void add_identification_figures(const std::vector<FigureOptions>& figures,
                                 const Observation& observation,
-                                const std::vector<SideIdentification>& sides,
-                                const std::string& command, StudyResult& result) {
-  for (const FigureOptions& options : figures) {
-    report::Figure figure;
-    if (options.content == "parameter_curves") {
-      figure = parameter_curve_figure(options, sides);
-    } else if (options.content == "waveforms" || options.content == "spectra") {
-      figure = identification_figure(options, observation, sides);
-    } else {
-      continue;
-    }
-    figure.command = command;
-    result.blocks.emplace_back(std::move(figure));
+                                const std::vector<SideIdentification>& sides, StudyResult& result) {
+  for (const FigureOptions& figure : figures) {
+    if (figure.content == "objectives" || figure.content == "frequency_errors") continue;
+    result.blocks.emplace_back(identification_figure(figure, observation, sides));
   }
 }
 
@@ -129,72 +132,54 @@ SignalFile identified_signals(const Observation& observation,
                               const std::vector<SideIdentification>& sides) {
   SignalFile file{.name = "identified.csv"};
   for (const SideIdentification& side : sides) {
-    const auto add = [&](std::string_view name, std::string_view unit,
-                         const std::vector<double>& samples) {
-      if (samples.empty()) return;
-      const bool numbered = side.estimate.side.size() == 1;
+    const bool numbered = side.estimate.side.size() == 1;
+    for (const std::string_view name : {"f_c", "y", "v"}) {
+      const Quantity& quantity = quantity_of(name);
+      const std::vector<double>& samples = side.estimate.result.*quantity.identified;
+      if (samples.empty()) continue;
       file.signals.push_back({fmt::format("{}{}{}", name, numbered ? "" : "_", side.estimate.side),
-                              std::string(unit), observation.sample_rate, samples});
-    };
-    add("f_c", "N", side.estimate.result.force);
-    add("y", "m", side.estimate.result.displacement);
-    add("v", "m/s", side.estimate.result.velocity);
+                              std::string(quantity.unit), observation.sample_rate, samples});
+    }
   }
   return file;
 }
 
 void add_warnings(const Observation& observation, const std::vector<SideIdentification>& sides,
                   StudyResult& result) {
-  for (const std::string& warning : observation.warnings) {
-    result.blocks.emplace_back(report::Text{warning, report::Text::Kind::kWarning});
-    result.summary += "warning: " + warning + "\n";
-  }
+  for (const std::string& warning : observation.warnings) result.warn(warning);
   for (const SideIdentification& side : sides) {
     for (const std::string& warning : side.estimate.warnings) {
-      const std::string text = fmt::format("Estimate {}: {}", side.estimate.label, warning);
-      result.blocks.emplace_back(report::Text{text, report::Text::Kind::kWarning});
-      result.summary += "warning: " + text + "\n";
+      result.warn(fmt::format("Estimate {}: {}", side.estimate.label, warning));
     }
   }
 }
 
-StudyResult invert_study(const InvertOptions& options, const StudyContext& context) {
-  const StreamKey key = options.key();
-  const Observation observation =
-      observe(options.observation, truth_outputs(options.figures), context.work.truths, key,
-              context.folder, options.score.oversampling);
-  const AssumedModel model = with_errors(observation.basis, observation.contact,
-                                         options.model_error, key.with("model error"));
-  const InversionRecipe recipe(options.inversion);
-  const auto estimator = context.work.inversions.get(model, observation, options.inversion, recipe);
+StudyResult InvertOptions::run(const StudyContext& context) const {
+  const Observation observed = observe(observation, truth_outputs(figures), context.work.truths,
+                                       key(), context.folder, score.oversampling);
+  const AssumedModel model =
+      with_errors(observed.basis, observed.contact, model_error, key().with("model error"));
+  const InversionRecipe recipe(inversion);
+  const auto estimator = context.work.inversions.get(model, observed, inversion, recipe);
   const auto sides =
-      identify(observation, *estimator, recipe,
-               inversion_outputs(options.figures, options.write_signals), &options.score);
+      identify(observed, *estimator, recipe, inversion_outputs(figures, write_signals), &score);
 
   StudyResult result;
-  add_warnings(observation, sides, result);
-  add_identification_figures(options.figures, observation, sides, context.command, result);
-  result.blocks.emplace_back(identification_table(sides, context.command));
-  if (options.write_signals) result.signal_files.push_back(identified_signals(observation, sides));
-  if (options.wave_based) {
-    add_wave_based(observation, model, options.score, context.command, result);
-  }
-  if (options.has_model_based) {
-    const ModelIdentification by_model =
-        identify_by_model(observation, model, options.model_based, &options.score,
-                          [&] { return context.stop.requested(); });
-    add_model_based(observation, by_model, options.score, context.command, result);
-    if (options.write_signals) {
-      add_model_signals(observation, by_model, result.signal_files.back());
-    }
+  add_warnings(observed, sides, result);
+  add_identification_figures(figures, observed, sides, result);
+  result.add({identification_table(sides)});
+  if (write_signals) result.signal_files.push_back(identified_signals(observed, sides));
+  if (wave_based) add_wave_based(observed, model, score, result);
+  if (has_model_based) {
+    const ModelIdentification by_model = identify_by_model(
+        observed, model, model_based, score, [&] { return context.stop.requested(); });
+    add_model_based(observed, by_model, score, result);
+    if (write_signals) add_model_signals(observed, by_model.result, result.signal_files.back());
   }
   for (const SideIdentification& side : sides) {
-    for (const WindowScore& score : side.scores) {
-      result.summary += fmt::format(
-          "side {}  parameter {:.4g} N/N  window from {:g} s: R = {:.4f}, relative rms error "
-          "{:.4f}\n",
-          side.estimate.side, side.estimate.result.choice.parameter(), score.start,
-          score.correlation, score.relative_rms_error);
+    for (const WindowScore& window : side.scores) {
+      result.summary += fmt::format("side {}  parameter {:.4g} N/N  {}\n", side.estimate.side,
+                                    side.estimate.result.choice.parameter(), window.text());
     }
   }
   return result;

@@ -4,9 +4,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "experiments/study/figure_options.hpp"
-#include "experiments/study/model_based.hpp"
-#include "experiments/study/study.hpp"
+#include "experiments/experiment.hpp"
+#include "experiments/study/figures.hpp"
+#include "experiments/study/model_error.hpp"
+#include "libinverse/observer/model_based_estimator.hpp"
 
 namespace modcal {
 
@@ -24,22 +25,26 @@ struct InvertOptions {
   void visit(OptionVisitor& visitor);
   std::int64_t& seed_slot() { return seed; }
   StreamKey key() const { return StreamKey(static_cast<std::uint64_t>(seed)); }
+
+  std::vector<Finding> lint() const;
+  std::vector<std::string> plan() const;
+  std::optional<PlannedSimulations> planned_simulations() const;
+  StudyResult run(const StudyContext& context) const;
 };
 
-StudyResult invert_study(const InvertOptions& options, const StudyContext& context);
+/// Findings about an inversion, without its figures.
+std::vector<Finding> lint_inversion(const InvertOptions& options);
 
 /// Signals of the truth that the figures and scores need.
 OutputRequest truth_outputs(const std::vector<FigureOptions>& figures);
 /// What an inversion has to compute for them.
 InversionOutputs inversion_outputs(const std::vector<FigureOptions>& figures, bool all);
 /// One row a side and window: parameter, share of bins kept, correlation, relative rms error.
-report::Table identification_table(const std::vector<SideIdentification>& sides,
-                                   const std::string& command);
+report::Table identification_table(const std::vector<SideIdentification>& sides);
 /// Draws the waveforms, spectra and parameter curves among the figures asked for.
 void add_identification_figures(const std::vector<FigureOptions>& figures,
                                 const Observation& observation,
-                                const std::vector<SideIdentification>& sides,
-                                const std::string& command, StudyResult& result);
+                                const std::vector<SideIdentification>& sides, StudyResult& result);
 /// A side in a table: 1 and 2 are numbers, as the paper counts them.
 report::Cell side_cell(const std::string& side);
 /// identified.csv: every identified signal.

@@ -1,58 +1,59 @@
-#include "experiments/kinds/invert/model_based_output.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-namespace modcal {
+#include "experiments/kinds/invert/invert_output.hpp"
+#include "experiments/report/result_table.hpp"
+#include "libsim/base/error.hpp"
 
+namespace modcal {
 namespace {
 
-report::Cell number_or_none(double value) {
-  return std::isnan(value) ? report::Cell() : report::Cell(value);
-}
-
-}  // namespace
-
-report::Table model_score_table(const ModelIdentification& identification,
-                                const std::string& command) {
-  report::Table table{
-      .id = "model_based",
-      .title = "Model-based estimate",
-      .caption =
-          "R and relative rms error of f_c at the samples; anti-aliased: of what is "
-          "below the highest mode, not folded back by sampling. Linear: the joint "
-          "linear estimate that the observer starts from.",
-      .columns = {{.key = "window"},
-                  {.key = "R", .format = "{:.4f}"},
-                  {.key = "relative_rms_error", .name = "relative rms error"},
-                  {.key = "R_anti_aliased", .name = "R, anti-aliased", .format = "{:.4f}"},
-                  {.key = "R_linear", .name = "R, linear", .format = "{:.4f}"},
-                  {.key = "relative_rms_error_linear", .name = "relative rms error, linear"},
-                  {.key = "R_anti_aliased_linear",
-                   .name = "R, anti-aliased, linear",
-                   .format = "{:.4f}"}},
-      .command = command};
-  for (const ModelScore& score : identification.scores) {
-    std::vector<report::Cell> row = {score.window};
-    for (const WindowScore* part : {&score.model, &score.linear}) {
-      row.insert(row.end(),
-                 {part->correlation, part->relative_rms_error, number_or_none(part->anti_aliased)});
-    }
-    table.rows.push_back(std::move(row));
+std::vector<ModelScore> model_scores(const ModelBasedResult& result, const Observation& observation,
+                                     const ScoreOptions& options) {
+  const ForceScores model = scores_of(observation, result.force, &options, result.unaliased_force);
+  const ForceScores linear = scores_of(observation, result.linear_force, &options);
+  std::vector<ModelScore> scores;
+  for (std::size_t i = 0; i < model.scores.size(); ++i) {
+    const bool all = options.windows.empty();
+    scores.push_back({all ? "all" : fmt::format("{:g} s", model.scores[i].start), model.scores[i],
+                      linear.scores[i]});
   }
-  return table;
+  if (!scores.empty() && !options.whole.empty()) {
+    scores.push_back({fmt::format("{:g} s to {:g} s", options.whole[0], options.whole[1]),
+                      model.whole, linear.whole});
+  }
+  return scores;
 }
 
-report::Table model_parameter_table(const ModelIdentification& identification,
-                                    const std::string& command) {
-  const ModelBasedResult& r = identification.result;
+report::Table score_table(const std::vector<ModelScore>& scores) {
+  return report::table_of(
+      {.id = "model_based",
+       .title = "Model-based estimate",
+       .caption = "R and relative rms error of f_c at the samples; anti-aliased: of what is "
+                  "below the highest mode, not folded back by sampling. Linear: the joint "
+                  "linear estimate that the observer starts from."},
+      scores, [](ResultVisitor& row, const ModelScore& score) {
+        row({.key = "window"}, score.window);
+        row({.key = "R", .format = "{:.4f}"}, score.model.correlation);
+        row({.key = "relative_rms_error", .name = "relative rms error"},
+            score.model.relative_rms_error);
+        row({.key = "R_anti_aliased", .name = "R, anti-aliased", .format = "{:.4f}"},
+            known(score.model.anti_aliased));
+        row({.key = "R_linear", .name = "R, linear", .format = "{:.4f}"}, score.linear.correlation);
+        row({.key = "relative_rms_error_linear", .name = "relative rms error, linear"},
+            score.linear.relative_rms_error);
+        row({.key = "R_anti_aliased_linear", .name = "R, anti-aliased, linear", .format = "{:.4f}"},
+            known(score.linear.anti_aliased));
+      });
+}
+
+report::Table parameter_table(const ModelBasedResult& r) {
   const observer::ObserverParameters& p = r.parameters;
   const double sign = r.negated ? -1.0 : 1.0;
   report::Table table{.id = "model_parameters",
                       .title = "Fitted model",
-                      .columns = {{.key = "quantity"}, {.key = "value"}, {.key = "unit"}},
-                      .command = command};
+                      .columns = {{.key = "quantity"}, {.key = "value"}, {.key = "unit"}}};
   const auto row = [&](const char* name, double value, const char* unit) {
     table.rows.push_back({name, value, unit});
   };
@@ -87,94 +88,96 @@ report::Table model_parameter_table(const ModelIdentification& identification,
   return table;
 }
 
-report::Table friction_law_table(const ModelIdentification& identification,
-                                 const std::string& command) {
-  const auto& laws = identification.result.laws;
-  report::Table table{
-      .id = "friction_laws",
-      .title = "Friction laws",
-      .caption =
-          "BIC over the innovations of both reactions. The first law is named: it has the "
-          "fewest parameters of those that the record does not tell from the least "
-          "BIC (Vuong's z below 3). Hyperbolic: F_D + drop/(1 + C u). Thermal: F_D + "
-          "drop/(1 + exp((T - 1)/width)), T' = heating |f| u - (cooling + carried u) "
-          "T, T in units of the softening temperature.",
-      .columns = {{.key = "law"},
-                  {.key = "bic_difference", .name = "BIC above the least"},
-                  {.key = "distance", .name = "Vuong's z to the least BIC"},
-                  {.key = "misfit", .name = "J"},
-                  {.key = "free_parameters"},
-                  {.key = "dynamic_force", .unit = "N"},
-                  {.key = "force_drop", .unit = "N"},
-                  {.key = "decay", .unit = "s/m"},
-                  {.key = "heating", .unit = "1/J"},
-                  {.key = "cooling", .unit = "1/s"},
-                  {.key = "carried", .unit = "1/m"},
-                  {.key = "width"}},
-      .command = command};
+report::Table law_table(const std::vector<observer::FrictionCandidate>& laws) {
   double least = std::numeric_limits<double>::infinity();
   for (const observer::FrictionCandidate& law : laws) least = std::min(least, law.criterion);
-  for (const observer::FrictionCandidate& law : laws) {
-    const observer::BlendedSliding& sliding = law.parameters.sliding;
-    std::vector<report::Cell> row = {
-        law.law,           law.criterion - least, law.distance,
-        law.misfit,        law.free_parameters,   sliding.dynamic_force,
-        sliding.force_drop};
-    if (!sliding.thermal) row.emplace_back(sliding.decay);
-    row.resize(sliding.thermal ? 8 : table.columns.size());
-    if (sliding.thermal) {
-      row.insert(row.end(), {sliding.heating, sliding.cooling, sliding.carried, sliding.width});
-    }
-    table.rows.push_back(std::move(row));
-  }
-  return table;
+  return report::table_of(
+      {.id = "friction_laws",
+       .title = "Friction laws",
+       .caption = "BIC over the innovations of both reactions. The first law is named: it has the "
+                  "fewest parameters of those that the record does not tell from the least "
+                  "BIC (Vuong's z below 3). Hyperbolic: F_D + drop/(1 + C u). Thermal: F_D + "
+                  "drop/(1 + exp((T - 1)/width)), T' = heating |f| u - (cooling + carried u) "
+                  "T, T in units of the softening temperature."},
+      laws, [least](ResultVisitor& row, const observer::FrictionCandidate& law) {
+        const observer::BlendedSliding& sliding = law.parameters.sliding;
+        const auto where = [](bool shown, double value) {
+          return shown ? std::optional(value) : std::nullopt;
+        };
+        const bool thermal = sliding.thermal;
+        row({.key = "law"}, law.law);
+        row({.key = "bic_difference", .name = "BIC above the least"}, law.criterion - least);
+        row({.key = "distance", .name = "Vuong's z to the least BIC"}, law.distance);
+        row({.key = "misfit", .name = "J"}, law.misfit);
+        row({.key = "free_parameters"}, law.free_parameters);
+        row({.key = "dynamic_force", .unit = "N"}, sliding.dynamic_force);
+        row({.key = "force_drop", .unit = "N"}, sliding.force_drop);
+        row({.key = "decay", .unit = "s/m"}, where(!thermal, sliding.decay));
+        row({.key = "heating", .unit = "1/J"}, where(thermal, sliding.heating));
+        row({.key = "cooling", .unit = "1/s"}, where(thermal, sliding.cooling));
+        row({.key = "carried", .unit = "1/m"}, where(thermal, sliding.carried));
+        row({.key = "width"}, where(thermal, sliding.width));
+      });
 }
 
-void add_model_signals(const Observation& observation, const ModelIdentification& identification,
+std::string law_line(const std::vector<observer::FrictionCandidate>& laws) {
+  std::string text = fmt::format("model  friction law: {}", laws[0].law);
+  for (std::size_t i = 1; i < laws.size(); ++i) {
+    text += fmt::format("{} {} (BIC {:+.4g}, z {:.2g})", i == 1 ? "; others:" : ",", laws[i].law,
+                        laws[i].criterion - laws[0].criterion, laws[i].distance - laws[0].distance);
+  }
+  return text + "\n";
+}
+
+}  // namespace
+
+ModelIdentification identify_by_model(const Observation& observation, const AssumedModel& model,
+                                      const ModelBasedOptions& options, const ScoreOptions& score,
+                                      const std::function<bool()>& interrupted) {
+  require_both_reactions(observation, "the model-based estimate", "model_based");
+  ModelIdentification identification;
+  identification.result = ModelBasedEstimator(options).estimate(
+      model.basis, model.contact, observation.sample_rate,
+      observation.reaction(End::kLeft)->samples, observation.reaction(End::kRight)->samples,
+      interrupted);
+  identification.scores = model_scores(identification.result, observation, score);
+  return identification;
+}
+
+void add_model_signals(const Observation& observation, const ModelBasedResult& model,
                        SignalFile& file) {
-  const ModelBasedResult& r = identification.result;
-  file.signals.push_back({"f_c_model", "N", observation.sample_rate, r.force});
-  file.signals.push_back({"v_model", "m/s", observation.sample_rate, r.velocity});
-  file.signals.push_back({"y_model", "m", observation.sample_rate, r.displacement});
-  file.signals.push_back({"f_c_model_deviation", "N", observation.sample_rate, r.force_deviation});
-  file.signals.push_back(
-      {"v_model_deviation", "m/s", observation.sample_rate, r.velocity_deviation});
+  const auto add = [&](const char* name, const char* unit, const std::vector<double>& samples) {
+    file.signals.push_back({name, unit, observation.sample_rate, samples});
+  };
+  add("f_c_model", "N", model.force);
+  add("v_model", "m/s", model.velocity);
+  add("y_model", "m", model.displacement);
+  add("f_c_model_deviation", "N", model.force_deviation);
+  add("v_model_deviation", "m/s", model.velocity_deviation);
 }
 
 void add_model_based(const Observation& observation, const ModelIdentification& identification,
-                     const ScoreOptions& score, const std::string& command, StudyResult& result) {
+                     const ScoreOptions& score, StudyResult& result) {
   const ModelBasedResult& r = identification.result;
-  for (const std::string& warning : r.warnings) {
-    const std::string text = "Model-based estimate: " + warning;
-    result.blocks.emplace_back(report::Text{text, report::Text::Kind::kWarning});
-    result.summary += "warning: " + text + "\n";
-  }
-  const double length = score.periods / observation.fundamental;
+  for (const std::string& warning : r.warnings) result.warn("Model-based estimate: " + warning);
   const double duration = static_cast<double>(r.force.size()) / observation.sample_rate;
   const double start = score.windows.empty() ? 0.5 * duration : score.windows.front();
-  result.blocks.emplace_back(
-      model_force_figure(observation, identification, start, length, command));
-  result.blocks.emplace_back(friction_figure(observation, identification, start, length, command));
+  const double length = score.periods / observation.fundamental;
+  result.blocks.emplace_back(model_force_figure(observation, r, start, length));
+  result.blocks.emplace_back(friction_figure(observation, r, start, length));
   if (r.laws.size() > 1) {
-    result.blocks.emplace_back(friction_law_table(identification, command));
-    result.summary += fmt::format("model  friction law: {}", r.laws[0].law);
-    for (std::size_t i = 1; i < r.laws.size(); ++i) {
-      result.summary += fmt::format("{} {} (BIC {:+.4g}, z {:.2g})", i == 1 ? "; others:" : ",",
-                                    r.laws[i].law, r.laws[i].criterion - r.laws[0].criterion,
-                                    r.laws[i].distance - r.laws[0].distance);
-    }
-    result.summary += "\n";
+    result.add({law_table(r.laws)});
+    result.summary += law_line(r.laws);
   }
-  if (!identification.scores.empty()) {
-    result.blocks.emplace_back(model_score_table(identification, command));
-  }
-  result.blocks.emplace_back(model_parameter_table(identification, command));
-  for (const ModelScore& window : identification.scores) {
+  if (!identification.scores.empty()) result.add({score_table(identification.scores)});
+  result.add({parameter_table(r)});
+  for (const ModelScore& window_score : identification.scores) {
+    const WindowScore& model = window_score.model;
     result.summary +=
         fmt::format("model  J {:.3f}  window {}: R = {:.4f}, relative rms error {:.4f}", r.misfit,
-                    window.window, window.model.correlation, window.model.relative_rms_error);
-    if (!std::isnan(window.model.anti_aliased)) {
-      result.summary += fmt::format(", anti-aliased R = {:.4f}", window.model.anti_aliased);
+                    window_score.window, model.correlation, model.relative_rms_error);
+    if (!std::isnan(model.anti_aliased)) {
+      result.summary += fmt::format(", anti-aliased R = {:.4f}", model.anti_aliased);
     }
     result.summary += "\n";
   }

@@ -2,11 +2,11 @@
 #include <cmath>
 
 #include "experiments/kinds/section7/pluck_then_bow.hpp"
-#include "libcalib/problem/covariance.hpp"
 #include "libcalib/objectives/frequency_prior.hpp"
 #include "libcalib/objectives/joint_likelihood.hpp"
 #include "libcalib/objectives/weighted_sum.hpp"
 #include "libcalib/optimizers/ceres_optimizer.hpp"
+#include "libcalib/problem/covariance.hpp"
 
 namespace modcal {
 namespace {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "experiments/report/result_json.hpp"
 #include "experiments/kinds/section7/pluck_then_bow.hpp"
+#include "experiments/report/result_json.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {
@@ -113,7 +113,8 @@ report::Table stages_table(const PluckThenBowOptions& options, const PluckThenBo
 report::Table sides_table(std::string id, std::string title,
                           const std::vector<SideIdentification>& sides,
                           const std::string& command) {
-  report::Table table = identification_table(sides, command);
+  report::Table table = identification_table(sides);
+  table.command = command;
   table.id = std::move(id);
   table.title = std::move(title);
   if (sides.size() == 2) {

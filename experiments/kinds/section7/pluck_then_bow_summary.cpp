@@ -81,8 +81,7 @@ StudyResult pluck_then_bow_study(const PluckThenBowOptions& options, const Study
   for (report::Block& block : pluck_then_bow_blocks(options, outcome, context.command)) {
     result.blocks.push_back(std::move(block));
   }
-  add_identification_figures(options.figures, outcome.stroke, outcome.sides, context.command,
-                             result);
+  add_identification_figures(options.figures, outcome.stroke, outcome.sides, result);
   result.files.emplace_back("pluck_then_bow.json", pluck_then_bow_json(options, outcome));
   return result;
 }

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
-#include "experiments/study/figures.hpp"
+#include "experiments/kinds/lint.hpp"
+#include "experiments/kinds/scene_plan.hpp"
+#include "experiments/report/result_table.hpp"
 #include "libsim/base/random.hpp"
 #include "libsim/signal/statistics.hpp"
 
@@ -33,90 +35,93 @@ void SimulateOptions::visit(OptionVisitor& visitor) {
   visitor.list({.key = "figures", .meaning = "what is drawn"}, list);
 }
 
-OutputRequest request_of(const std::vector<std::string>& outputs) {
-  const auto wanted = [&outputs](std::string_view name) {
-    return std::find(outputs.begin(), outputs.end(), name) != outputs.end();
-  };
-  return {.displacement = wanted("y"),
-          .velocity = wanted("v"),
-          .force = wanted("f_c"),
-          .left_reaction = wanted("R1"),
-          .right_reaction = wanted("R2")};
+std::vector<Finding> SimulateOptions::lint() const {
+  std::vector<Finding> findings = lint_scene(truth.scene, truth.simulator, measurement);
+  append(findings, lint_figures(figures, {"waveforms"}));
+  for (const FigureOptions& figure : figures) {
+    for (const std::string& quantity : figure.quantities) {
+      if (std::find(outputs.begin(), outputs.end(), quantity) != outputs.end()) continue;
+      findings.push_back(
+          {"outputs",
+           fmt::format("figure {} draws {}, which is not among the outputs", figure.id, quantity)});
+    }
+  }
+  return findings;
+}
+
+std::vector<std::string> SimulateOptions::plan() const {
+  return {plan_line(*planned_simulations())};
+}
+
+std::optional<PlannedSimulations> SimulateOptions::planned_simulations() const {
+  return PlannedSimulations{.scene = truth.scene,
+                            .simulator = truth.simulator,
+                            .sample_rate = measurement.sample_rate,
+                            .outputs = request_of(outputs)};
 }
 
 namespace {
 
 // Reactions go through the sensor; motion and force at the contact are the truth.
-Simulation measured(Simulation simulation, const Measurement& measurement, const StreamKey& key) {
-  const StreamKey noise = key.with("measurement noise");
-  for (Signal* reaction : {&simulation.left_reaction, &simulation.right_reaction}) {
-    if (reaction->samples.empty()) continue;
-    *reaction = measure(*reaction, measurement, noise.with(reaction->quantity));
-  }
-  return simulation;
-}
-
-std::vector<Signal> signals_of(const Simulation& simulation) {
+std::vector<Signal> measured(const Simulation& simulation, const SimulateOptions& options) {
+  const StreamKey noise =
+      StreamKey(static_cast<std::uint64_t>(options.seed)).with("measurement noise");
   std::vector<Signal> signals;
-  for (const Signal* signal : {&simulation.displacement, &simulation.velocity, &simulation.force,
-                               &simulation.left_reaction, &simulation.right_reaction}) {
-    if (!signal->samples.empty()) signals.push_back(*signal);
+  for (const Quantity& quantity : kQuantities) {
+    const Signal& signal = simulation.*quantity.simulated;
+    if (signal.samples.empty()) continue;
+    const bool reaction = quantity.identified == nullptr;
+    signals.push_back(reaction ? measure(signal, options.measurement, noise.with(signal.quantity))
+                               : signal);
   }
   return signals;
 }
 
-report::Table run_table(const Simulation& simulation, const std::string& command) {
-  return {.id = "simulation",
-          .title = "Simulation",
-          .columns = {{.key = "time_step", .name = "time step taken", .unit = "s"},
-                      {.key = "steps", .name = "steps"},
-                      {.key = "refined_steps", .name = "taken back for shorter ones"},
-                      {.key = "attachments", .name = "attachments"},
-                      {.key = "releases", .name = "releases"},
-                      {.key = "modes_moved", .name = "modes moved"}},
-          .rows = {{simulation.time_step, simulation.steps, simulation.refined_steps,
-                    simulation.attachments, simulation.releases, simulation.modes_moved}},
-          .command = command};
+report::Table run_table(const Simulation& simulation) {
+  report::Table table{.id = "simulation", .title = "Simulation"};
+  report::add_row(table, [&simulation](ResultVisitor& row) {
+    row({.key = "time_step", .name = "time step taken", .unit = "s"}, simulation.time_step);
+    row({.key = "steps"}, simulation.steps);
+    row({.key = "refined_steps", .name = "taken back for shorter ones"}, simulation.refined_steps);
+    row({.key = "attachments"}, simulation.attachments);
+    row({.key = "releases"}, simulation.releases);
+    row({.key = "modes_moved", .name = "modes moved"}, simulation.modes_moved);
+  });
+  return table;
 }
 
-report::Table level_table(const std::vector<Signal>& signals, const std::string& command) {
-  report::Table table{.id = "levels",
-                      .title = "Levels",
-                      .columns = {{.key = "signal"},
-                                  {.key = "unit"},
-                                  {.key = "mean"},
-                                  {.key = "std"},
-                                  {.key = "lowest"},
-                                  {.key = "highest"}},
-                      .command = command};
-  for (const Signal& signal : signals) {
-    const auto [low, high] = std::minmax_element(signal.samples.begin(), signal.samples.end());
-    table.rows.push_back({signal.quantity, signal.unit, mean(signal.samples),
-                          standard_deviation(signal.samples), *low, *high});
-  }
-  return table;
+report::Table level_table(const std::vector<Signal>& signals) {
+  return report::table_of(
+      {.id = "levels", .title = "Levels"}, signals, [](ResultVisitor& row, const Signal& signal) {
+        const auto [low, high] = std::minmax_element(signal.samples.begin(), signal.samples.end());
+        row({.key = "signal"}, signal.quantity);
+        row({.key = "unit"}, signal.unit);
+        row({.key = "mean"}, mean(signal.samples));
+        row({.key = "std"}, standard_deviation(signal.samples));
+        row({.key = "lowest"}, *low);
+        row({.key = "highest"}, *high);
+      });
 }
 
 }  // namespace
 
-StudyResult simulate_study(const SimulateOptions& options, const StudyContext& context) {
-  const OutputRequest request = request_of(options.outputs);
-  const auto truth =
-      context.work.truths.get(options.truth, options.measurement.sample_rate, request);
-  const StreamKey key(static_cast<std::uint64_t>(options.seed));
-  const Simulation simulation = measured(truth->simulation, options.measurement, key);
-  const std::vector<Signal> signals = signals_of(simulation);
+StudyResult SimulateOptions::run(const StudyContext& context) const {
+  const auto truth_found =
+      context.work.truths.get(truth, measurement.sample_rate, request_of(outputs));
+  Simulation simulation = truth_found->simulation;
+  const std::vector<Signal> signals = measured(simulation, *this);
+  for (const Signal& signal : signals) {
+    simulation.*quantity_of(signal.quantity).simulated = signal;
+  }
 
   StudyResult result;
-  for (const FigureOptions& figure : options.figures) {
-    report::Figure drawn = simulation_figure(figure, simulation);
-    drawn.command = context.command;
-    result.blocks.emplace_back(std::move(drawn));
+  for (const FigureOptions& figure : figures) {
+    result.blocks.emplace_back(simulation_figure(figure, simulation));
   }
-  result.blocks.emplace_back(run_table(simulation, context.command));
-  result.blocks.emplace_back(level_table(signals, context.command));
-  for (const std::string& format : options.files) {
-    result.signal_files.push_back({"signals." + format, signals, options.wav_full_scale});
+  result.add({run_table(simulation)});
+  if (!signals.empty()) result.add({level_table(signals)});
+  for (const std::string& format : files) {
+    result.signal_files.push_back({"signals." + format, signals, wav_full_scale});
   }
   const std::string refined =
       simulation.refined_steps == 0

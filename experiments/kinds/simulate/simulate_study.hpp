@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "experiments/study/figure_options.hpp"
-#include "experiments/study/study.hpp"
+#include "experiments/experiment.hpp"
+#include "experiments/study/figures.hpp"
 #include "libsim/signal/measurement.hpp"
 
 namespace modcal {
@@ -20,11 +20,11 @@ struct SimulateOptions {
   std::vector<FigureOptions> figures;
   std::int64_t seed = 1;
   void visit(OptionVisitor& visitor);
+
+  std::vector<Finding> lint() const;
+  std::vector<std::string> plan() const;
+  std::optional<PlannedSimulations> planned_simulations() const;
+  StudyResult run(const StudyContext& context) const;
 };
-
-/// The outputs by their names: y, v, f_c, R1, R2.
-OutputRequest request_of(const std::vector<std::string>& outputs);
-
-StudyResult simulate_study(const SimulateOptions& options, const StudyContext& context);
 
 }  // namespace modcal

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "experiments/kinds/invert/invert_experiment.hpp"
+#include "experiments/kinds/invert/invert_study.hpp"
 #include "experiments/kinds/lint.hpp"
 #include "experiments/kinds/scene_plan.hpp"
 #include "experiments/study/fingerprint.hpp"
@@ -145,7 +145,7 @@ StudyResult SweepExperiment::replay(std::size_t task, const StudyContext& contex
   InvertOptions options = options_.cells[task];
   options.write_signals = true;
   options.figures = replay_figures();
-  return invert_study(options, context);
+  return options.run(context);
 }
 
 }  // namespace modcal

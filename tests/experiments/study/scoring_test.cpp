@@ -22,8 +22,9 @@ Signal sine(double phase, double offset) {
 std::vector<WindowScore> score(const Signal& identified, const Signal& truth,
                                const ScoreOptions& options) {
   const std::optional<Signal> none;
-  return score_windows(identified, {.truth = truth, .anti_aliased = none, .fundamental = 10.0},
-                       options);
+  return score_force(identified.samples,
+                     {.truth = truth, .anti_aliased = none, .fundamental = 10.0}, options)
+      .scores;
 }
 
 TEST(ScoreWindows, SeesPhaseAndNotTheStaticPart) {
@@ -60,12 +61,12 @@ TEST(ScoreWhole, ComparesTheLongWindowBelowTheCut) {
   const std::optional<Signal> smooth = truth;
   const ScoreReference reference{
       .truth = truth, .anti_aliased = smooth, .anti_alias_cut = 100.0, .fundamental = 10.0};
-  const WindowScore whole = score_whole(identified, reference, {.whole = {0.1, 0.9}});
+  const WindowScore whole = score_force(identified.samples, reference, {.whole = {0.1, 0.9}}).whole;
   EXPECT_NEAR(whole.correlation, std::sqrt(0.5), 1e-12);
   EXPECT_NEAR(whole.anti_aliased, 1.0, 1e-12);
-  EXPECT_TRUE(std::isnan(score_whole(identified, reference, {}).correlation));
-  EXPECT_THROW(score_whole(identified, reference, {.whole = {0.5, 0.1}}), InvalidInput);
-  EXPECT_THROW(score_whole(identified, reference, {.whole = {0.5, 1.1}}), InvalidInput);
+  EXPECT_TRUE(std::isnan(score_force(identified.samples, reference, {}).whole.correlation));
+  EXPECT_THROW(score_force(identified.samples, reference, {.whole = {0.5, 0.1}}), InvalidInput);
+  EXPECT_THROW(score_force(identified.samples, reference, {.whole = {0.5, 1.1}}), InvalidInput);
 }
 
 // Where sampling has folded a tone back below the cut, the force before it was sampled counts.
@@ -80,11 +81,13 @@ TEST(ScoreWhole, TakesTheUnaliasedForceWhereThereIsOne) {
   const ScoreReference reference{
       .truth = truth, .anti_aliased = smooth, .anti_alias_cut = 100.0, .fundamental = 10.0};
   const ScoreOptions options{.windows = {0.1}, .whole = {0.1, 0.9}};
-  EXPECT_NEAR(score_whole(identified, reference, options).anti_aliased, std::sqrt(0.5), 1e-12);
-  const WindowScore whole = score_whole(identified, reference, options, truth.samples);
+  EXPECT_NEAR(score_force(identified.samples, reference, options).whole.anti_aliased,
+              std::sqrt(0.5), 1e-12);
+  const WindowScore whole =
+      score_force(identified.samples, reference, options, truth.samples).whole;
   EXPECT_NEAR(whole.anti_aliased, 1.0, 1e-12);
   EXPECT_NEAR(whole.correlation, std::sqrt(0.5), 1e-12);
-  const auto windows = score_windows(identified, reference, options, truth.samples);
+  const auto windows = score_force(identified.samples, reference, options, truth.samples).scores;
   EXPECT_NEAR(windows[0].anti_aliased, 1.0, 1e-12);
 }
 
