@@ -12,9 +12,8 @@
 #include <ctime>
 #include <thread>
 
-#include "libsim/dynamics/scene/ensemble.hpp"
-#include "libsim/dynamics/scene/helmholtz_motion.hpp"
 #include "libsim/dynamics/event/modal_event.hpp"
+#include "libsim/dynamics/scene/simulator.hpp"
 #include "libsim/dynamics/scene/string_regime.hpp"
 #include "libsim/signal/statistics.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"

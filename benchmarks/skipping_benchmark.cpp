@@ -11,11 +11,11 @@
 
 #include "benchmarks/noisy_stroke.hpp"
 #include "libcalib/likelihood/likelihood_evaluation.hpp"
-#include "libcalib/optimizers/staged/newton_fit.hpp"
 #include "libcalib/likelihood/string_unknowns.hpp"
-#include "libsim/dynamics/plan.hpp"
+#include "libcalib/optimizers/staged/newton_fit.hpp"
 #include "libsim/dynamics/event/modal_event.hpp"
-#include "libsim/dynamics/fixed_step/modal_exact.hpp"
+#include "libsim/dynamics/fixed_step/fixed_step.hpp"
+#include "libsim/dynamics/plan.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
 namespace modcal {

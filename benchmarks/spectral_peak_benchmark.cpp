@@ -12,7 +12,7 @@
 #include "libcalib/calibration.hpp"
 #include "libcalib/optimizers/mode_by_mode.hpp"
 #include "libsim/base/random.hpp"
-#include "libsim/dynamics/fixed_step/modal_exact.hpp"
+#include "libsim/dynamics/fixed_step/fixed_step.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {

@@ -10,9 +10,9 @@
 #include <cmath>
 #include <string>
 
-#include "libsim/dynamics/scene/contact_modes.hpp"
-#include "libsim/dynamics/friction/coulomb_exponential.hpp"
 #include "libsim/dynamics/event/modal_event.hpp"
+#include "libsim/dynamics/friction/friction_law.hpp"
+#include "libsim/dynamics/scene/contact_modes.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
 namespace modcal {

@@ -12,7 +12,7 @@
 #include "libcalib/likelihood/all_records.hpp"
 #include "libcalib/likelihood/pluck_likelihood.hpp"
 #include "libcalib/optimizers/staged/records_fit.hpp"
-#include "libsim/dynamics/scene/pluck.hpp"
+#include "libsim/dynamics/scene/initial_motion.hpp"
 
 namespace modcal {
 namespace {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "benchmarks/stress/stress_cell.hpp"
-#include "libsim/dynamics/friction/coulomb_exponential.hpp"
+#include "libsim/dynamics/friction/friction_law.hpp"
 #include "libsim/model/constant_damping.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 

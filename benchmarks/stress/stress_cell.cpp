@@ -6,13 +6,10 @@
 #include <cmath>
 
 #include "libsim/base/error.hpp"
-#include "libsim/dynamics/energy/energy_audit.hpp"
-#include "libsim/dynamics/fixed_step/first_order_hold.hpp"
-#include "libsim/dynamics/fixed_step/line_step.hpp"
+#include "libsim/dynamics/energy/energy_account.hpp"
 #include "libsim/dynamics/event/modal_event.hpp"
-#include "libsim/dynamics/fixed_step/modal_exact.hpp"
-#include "libsim/dynamics/fixed_step/newmark_explicit.hpp"
-#include "libsim/dynamics/fixed_step/scene_setup.hpp"
+#include "libsim/dynamics/fixed_step/fixed_step.hpp"
+#include "libsim/dynamics/scene/contact_modes.hpp"
 
 namespace modcal {
 namespace {
@@ -27,10 +24,8 @@ struct CellRun {
 CellRun simulate_wide(const Scene& scene, double step, bool is_explicit) {
   CellRun cell;
   const OutputRequest outputs{.displacement = true, .velocity = true, .force = true};
-  cell.simulation =
-      simulate_line(scene, 1.0 / step, outputs, {}, step,
-                    is_explicit ? ForceTiming::kPreviousStep : ForceTiming::kImplicit,
-                    is_explicit ? trapezoidal_weights : first_order_hold_weights, &cell.points);
+  cell.simulation = simulate_fixed_step(scene, 1.0 / step, outputs, {}, step,
+                                        is_explicit ? kNewmarkScheme : kExactScheme, &cell.points);
   return cell;
 }
 
@@ -132,10 +127,11 @@ Balance sampled_balance(const Scene& scene, const CellRun& cell, double step, Fo
   const EnergyAccount energy =
       audit_energy(scene_line_modes(scene), bow, records, 1.0 / step, hold);
   const double at_hand = energy.throughput + energy.dissipated + energy.largest_stored + kNoEnergy;
-  Balance balance{.shares = {{std::abs(energy.residual()) / at_hand, energy.rounding / at_hand}},
-                  .contact_loss = energy.contact_loss,
-                  .contact_throughput = energy.contact_throughput,
-                  .contact_may_give = energy.rounding};
+  Balance balance{
+      .shares = {{std::abs(energy.string_residual()) / at_hand, energy.rounding / at_hand}},
+      .contact_loss = energy.contact_loss(),
+      .contact_throughput = energy.contact_throughput,
+      .contact_may_give = energy.rounding};
   const double limit = force_limit(scene, *scene.friction.make(), bow.normal_force.highest());
   for (const PointMotion& point : cell.points) {
     balance.contact_may_give += switching_tolerance(point, bow, limit, step);

@@ -1,7 +1,7 @@
 #include "benchmarks/stress/stress_cell.hpp"
-#include "libsim/dynamics/friction/elasto_plastic.hpp"
-#include "libsim/dynamics/gestures/table_gesture.hpp"
-#include "libsim/dynamics/scene/pluck.hpp"
+#include "libsim/dynamics/friction/friction_law.hpp"
+#include "libsim/dynamics/gestures/gesture.hpp"
+#include "libsim/dynamics/scene/initial_motion.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
 namespace modcal {

@@ -1,7 +1,7 @@
 // Ctrl-C and termination, as a wish that the work polls.
 #pragma once
 
-#include "libsim/base/stop_token.hpp"
+#include "libsim/base/task_loop.hpp"
 
 namespace modcal {
 

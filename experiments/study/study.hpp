@@ -12,7 +12,7 @@
 #include "experiments/report/report.hpp"
 #include "experiments/study/identification.hpp"
 #include "experiments/study/truth.hpp"
-#include "libsim/base/stop_token.hpp"
+#include "libsim/base/task_loop.hpp"
 
 namespace modcal {
 

@@ -8,8 +8,8 @@
 #include "libinverse/observer/observer_runs.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/signal/fft.hpp"
+#include "libsim/signal/measurement.hpp"
 #include "libsim/signal/statistics.hpp"
-#include "libsim/signal/time_shift.hpp"
 
 namespace modcal {
 namespace {

@@ -13,7 +13,7 @@
 #include "libinverse/joint/string_transfer.hpp"
 #include "libinverse/joint/transient_fit.hpp"
 #include "libinverse/spectral/one_sided/one_sided_inversion.hpp"
-#include "libsim/signal/in_place_fft.hpp"
+#include "libsim/signal/fft.hpp"
 
 namespace modcal {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "libinverse/joint/string_transfer.hpp"
-#include "libsim/signal/in_place_fft.hpp"
+#include "libsim/signal/fft.hpp"
 
 namespace modcal {
 

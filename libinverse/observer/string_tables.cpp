@@ -1,8 +1,8 @@
 #include "libinverse/observer/string_tables.hpp"
 
 #include "libsim/base/error.hpp"
+#include "libsim/dynamics/fixed_step/fixed_step.hpp"
 #include "libsim/dynamics/scene/contact_modes.hpp"
-#include "libsim/dynamics/fixed_step/first_order_hold.hpp"
 
 namespace modcal::observer {
 namespace {

@@ -11,7 +11,6 @@
 
 #include "libsim/base/error.hpp"
 #include "libsim/dynamics/scene/contact_modes.hpp"
-#include "libsim/dynamics/fixed_step/scene_setup.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {

@@ -1,8 +1,7 @@
 #include <array>
 
 #include "libsim/dynamics/event/modal_event.hpp"
-#include "libsim/dynamics/fixed_step/modal_exact.hpp"
-#include "libsim/dynamics/fixed_step/newmark_explicit.hpp"
+#include "libsim/dynamics/fixed_step/fixed_step.hpp"
 
 namespace modcal {
 

@@ -4,12 +4,12 @@
 #include <cctype>
 #include <cmath>
 
+#include "libsim/base/error.hpp"
 #include "libsim/base/units.hpp"
 #include "libsim/records/csv_reader.hpp"
 #include "libsim/records/levels.hpp"
 #include "libsim/records/wav_reader.hpp"
-#include "libsim/base/error.hpp"
-#include "libsim/signal/time_shift.hpp"
+#include "libsim/signal/measurement.hpp"
 
 namespace modcal {
 namespace {

@@ -9,7 +9,6 @@
 #include <mutex>
 
 #include "libsim/base/error.hpp"
-#include "libsim/signal/in_place_fft.hpp"
 
 namespace modcal {
 

@@ -1,6 +1,9 @@
 // What a sensor and its recorder make of a signal.
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "libsim/base/options.hpp"
 #include "libsim/base/random.hpp"
 #include "libsim/signal/signal.hpp"
@@ -18,5 +21,11 @@ struct Measurement {
 /// drawn from `key`, then the mean removed where asked for (Debut, Delaune and Antunes, 2010,
 /// sections 2.3 and 5). The signal must be sampled at the measurement's rate.
 Signal measure(const Signal& signal, const Measurement& measurement, const StreamKey& key);
+
+/// x(t_i + delay), band-limited: whole periods by index, the rest by the phase of the spectrum of
+/// the record continued by its mirror image (so that it has no jump; the error fades as 1/n² with
+/// the distance n from the ends). Instants outside the record repeat its first or last sample.
+/// Throws InvalidInput unless |delay| is shorter than the record.
+std::vector<double> advanced(std::span<const double> samples, double delay, double sample_rate);
 
 }  // namespace modcal

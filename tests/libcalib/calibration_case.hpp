@@ -6,11 +6,11 @@
 #include <numbers>
 #include <vector>
 
-#include "libcalib/problem/calibration_data.hpp"
 #include "libcalib/parameters/parameters.hpp"
+#include "libcalib/problem/calibration_data.hpp"
 #include "libsim/base/random.hpp"
+#include "libsim/dynamics/fixed_step/fixed_step.hpp"
 #include "libsim/dynamics/scene/simulator.hpp"
-#include "libsim/dynamics/fixed_step/modal_exact.hpp"
 #include "libsim/model/modal_basis.hpp"
 #include "libsim/signal/measurement.hpp"
 #include "libsim/signal/statistics.hpp"

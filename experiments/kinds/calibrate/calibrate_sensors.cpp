@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "libsim/base/error.hpp"
+#include "libsim/signal/measurement.hpp"
 #include "libsim/signal/statistics.hpp"
-#include "libsim/signal/time_shift.hpp"
 
 namespace modcal {
 namespace {

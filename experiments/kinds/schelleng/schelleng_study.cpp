@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libsim/base/error.hpp"
-#include "libsim/dynamics/scene/helmholtz_motion.hpp"
+#include "libsim/dynamics/scene/string_regime.hpp"
 
 namespace modcal {
 

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "experiments/study/study.hpp"
-#include "libsim/dynamics/scene/bow_force_limits.hpp"
 #include "libsim/dynamics/scene/string_regime.hpp"
 
 namespace modcal {

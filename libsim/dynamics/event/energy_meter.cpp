@@ -50,7 +50,7 @@ EnergyMeter::EnergyMeter(const EventLoop& loop, const ContactModes& modes, const
       start_energy_(replay_.energy(start.modes)),
       start_spring_(spring_energy()) {}
 
-void EnergyMeter::saw(const ForcePiece& piece) {
+void EnergyMeter::piece(const ForcePiece& piece) {
   if (!(piece.duration > 0.0)) return;
   const double phase = replay_.fastest() * piece.duration;
   if (phase > ModeReplay::kLongestPhase) return divide(piece, phase);
@@ -88,18 +88,19 @@ double EnergyMeter::law_force(const ForcePiece& piece, double theta, double slip
 
 void EnergyMeter::part(const ForcePiece& piece) {
   const double h = piece.duration;
-  sum_.dissipated += replay_.advance(h, piece.force, velocity_);
+  sum_.dissipated += replay_.advance(h, {&piece.force, 1}, velocities_);
+  const std::vector<double>& velocity = velocities_[0];
   ++sum_.pieces;
   sum_.pieces_and_radians += 1.0 + replay_.fastest() * h;
   if (piece.phase == ContactPhase::kFree) return;
   double explained = 0.0;  // heat of the contact
   for (std::size_t g = 0; g < rule_.node.size(); ++g) {
     const double theta = rule_.node[g], weight = rule_.weight[g] * h;
-    const double f = value_at(piece.force, theta), v = value_at(velocity_, theta);
+    const double f = value_at(piece.force, theta), v = value_at(velocity, theta);
     const double bow = piece.drive.velocity_at(theta * h), slip = v - bow;
     const double elongation =
         piece.phase == ContactPhase::kSticking
-            ? elongation_ + h * integral_to(velocity_, theta) - piece.drive.travel(theta * h)
+            ? elongation_ + h * integral_to(velocity, theta) - piece.drive.travel(theta * h)
             : 0.0;
     const double law = law_force(piece, theta, slip, elongation);
     sum_.bow_work += weight * f * bow;
@@ -120,7 +121,7 @@ void EnergyMeter::part(const ForcePiece& piece) {
     }
   }
   if (piece.phase == ContactPhase::kSticking) {
-    elongation_ += h * integral_to(velocity_, 1.0) - piece.drive.travel(h);
+    elongation_ += h * integral_to(velocity, 1.0) - piece.drive.travel(h);
   } else if (thermal_) {
     const double change = value_at(piece.rise, 1.0) - value_at(piece.rise, 0.0);
     sum_.heat_residual += std::abs(thermal_->capacity * change - explained);

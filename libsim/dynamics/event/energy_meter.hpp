@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "libsim/dynamics/event/event_energy.hpp"
+#include "libsim/dynamics/energy/energy_account.hpp"
+#include "libsim/dynamics/energy/mode_replay.hpp"
 #include "libsim/dynamics/event/event_loop.hpp"
-#include "libsim/dynamics/event/modes/mode_replay.hpp"
 
 namespace modcal::event {
 
@@ -15,12 +15,12 @@ namespace modcal::event {
 /// the velocity that comes out of it for everything: works are integrals of polynomials in time,
 /// the law's own force is computed anew at 14 Gauss points of every piece, elongation is the
 /// integral of v_c from the attachment on.
-class EnergyMeter final : public ForceWitness {
+class EnergyMeter final : public ForceObserver {
  public:
   /// The contact of `loop` and the state that the run starts from.
   EnergyMeter(const EventLoop& loop, const ContactModes& modes, const EventState& start);
 
-  void saw(const ForcePiece& piece) override;
+  void piece(const ForcePiece& piece) override;
   void attached(double elongation) override;
   void released() override;
   /// The account up to the integrator's final state.
@@ -37,7 +37,7 @@ class EnergyMeter final : public ForceWitness {
   std::optional<ThermalSliding> thermal_;
   ModeReplay replay_;
   GaussRule rule_;
-  std::vector<double> velocity_;  // powers of θ of v on the running piece
+  PointPowers velocities_;  // powers of θ of v on the running piece
   bool sticking_ = false;
   double elongation_ = 0.0;
   double start_energy_ = 0.0, start_spring_ = 0.0;

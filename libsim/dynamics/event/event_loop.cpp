@@ -5,12 +5,11 @@
 #include <cmath>
 #include <utility>
 
-#include "libsim/dynamics/event/modes/bow_clock.hpp"
-#include "libsim/dynamics/event/event_start.hpp"
-#include "libsim/dynamics/event/sample_writer.hpp"
-#include "libsim/dynamics/event/shown_pieces.hpp"
+#include "libsim/dynamics/event/modes/bow_path.hpp"
+#include "libsim/dynamics/event/modes/force_observer.hpp"
 #include "libsim/dynamics/event/sliding/sliding.hpp"
 #include "libsim/dynamics/event/sticking.hpp"
+#include "libsim/dynamics/scene/simulation.hpp"
 
 namespace modcal::event {
 namespace {
@@ -29,8 +28,9 @@ class Run {
       const ContactModes& modes, std::optional<Sticking> sticking, EventState& state)
       : loop_(loop),
         state_(state),
-        clock_(bow_knots(loop), loop.grid_step),
-        writer_(loop.targets),
+        clock_(loop.bow.empty() ? std::vector<BowKnot>{{.velocity = loop.contact.bow_velocity}}
+                                : loop.bow,
+               loop.grid_step),
         model_(modes, rule, loop.grid_step),
         sliding_(model_, friction, loop.slope_number, loop.tail_ratio),
         sticking_(std::move(sticking)) {}
@@ -63,7 +63,7 @@ class Run {
       clock_.mark_base(0.0);
       return;
     }
-    const Motion motion = model_.observe(state_.modes, {});
+    const MotionSample motion = model_.observe(state_.modes, {});
     const BowDrive drive = clock_.drive_at(0.0);
     if (state_.sticking) {
       sticking_->attach(drive, state_.modes, motion.displacement, state_.elongation, state_.rise);
@@ -102,7 +102,7 @@ class Run {
       law().set_rise(sticking_->rise(clock_.since_base(x)));
       sticking_->detach(clock_.since_base(x), state_.modes);
       state_.sticking = false;
-      if (loop_.witness != nullptr) loop_.witness->released();
+      if (loop_.observer != nullptr) loop_.observer->released();
     }
     clock_.mark_base(x);
   }
@@ -110,14 +110,14 @@ class Run {
   // The bow comes back: it holds the string where both move alike, else the string slides.
   void touch_down(double x) {
     law().cool(clock_.since_base(x));
-    const Motion motion = model_.observe(state_.modes, {.reactions = false});
+    const MotionSample motion = model_.observe(state_.modes, {.reactions = false});
     const BowDrive drive = clock_.drive();
     const double slip = motion.velocity - drive.velocity;
     state_.sticking = slip == 0.0;
     if (state_.sticking) {
       sticking_->attach(drive, state_.modes, motion.displacement, 0.0, law().rise());
       clock_.mark_base(x);
-      if (loop_.witness != nullptr) loop_.witness->attached(0.0);
+      if (loop_.observer != nullptr) loop_.observer->attached(0.0);
     } else {
       sliding_.start(slip < 0.0 ? -1.0 : 1.0, std::abs(slip), drive.load);
     }
@@ -153,7 +153,7 @@ class Run {
   // From x to `last` at most.
   double part(double x, double last, bool sampled) {
     if (in_contact_) return state_.sticking ? stick(x, last, sampled) : slide(x, last);
-    if (loop_.witness != nullptr) loop_.witness->saw({.duration = (last - x) * loop_.grid_step});
+    if (loop_.observer != nullptr) loop_.observer->piece({.duration = (last - x) * loop_.grid_step});
     if (x == 0.0 && last == 1.0) {
       model_.advance_free(state_.modes);
     } else {
@@ -168,13 +168,12 @@ class Run {
     if (loop_.samples - sample < Sticking::kBlock) return 0;
     if (clock_.cut_within(Sticking::kBlock)) return 0;
     const double tau = clock_.since_base(0.0);
-    if (loop_.witness != nullptr) before_ = sticking_->state();
+    if (loop_.observer != nullptr) before_ = sticking_->state();
     const std::size_t held = sticking_->advance_block(tau, block_);
-    if (loop_.witness != nullptr) {
-      show_held(*sticking_, before_, tau, static_cast<double>(held) * loop_.grid_step,
-                *loop_.witness);
+    if (loop_.observer != nullptr) {
+      sticking_->show(before_, tau, static_cast<double>(held) * loop_.grid_step, *loop_.observer);
     }
-    writer_.write(sample, block_, held);
+    block_.write(loop_.targets, sample, held);
     counts_.steps += held;
     clock_.pass(held);
     return held;
@@ -182,10 +181,10 @@ class Run {
 
   double stick(double x, double last, bool sampled) {
     const double remaining = (last - x) * loop_.grid_step;
-    if (loop_.witness != nullptr) before_ = sticking_->state();
+    if (loop_.observer != nullptr) before_ = sticking_->state();
     const auto result = sticking_->advance(clock_.since_base(x), remaining, sampled && last == 1.0);
-    if (loop_.witness != nullptr) {
-      show_held(*sticking_, before_, clock_.since_base(x), result.time, *loop_.witness);
+    if (loop_.observer != nullptr) {
+      sticking_->show(before_, clock_.since_base(x), result.time, *loop_.observer);
     }
     if (!std::isfinite(sticking_->force())) {
       fail(x, "the contact force is not a finite number");
@@ -199,8 +198,8 @@ class Run {
   double slide(double x, double last) {
     using Outcome = typename Sliding<Friction>::Outcome;
     const auto result = sliding_.advance(x, last, clock_.drive_at(x), state_.modes);
-    if (loop_.witness != nullptr && result.position > x) {
-      show_slid(sliding_, clock_.drive_at(x), *loop_.witness);
+    if (loop_.observer != nullptr && result.position > x) {
+      sliding_.show(clock_.drive_at(x), *loop_.observer);
     }
     if (result.outcome == Outcome::kFailed) {
       fail(x,
@@ -219,7 +218,7 @@ class Run {
     const double force = -sliding_.side() * law().at(0.0, drive.load).friction;
     const double elongation = continuous ? -force / loop_.contact.stiffness : 0.0;
     sticking_->attach(drive, state_.modes, y, elongation, law().rise());
-    if (loop_.witness != nullptr) loop_.witness->attached(elongation);
+    if (loop_.observer != nullptr) loop_.observer->attached(elongation);
     clock_.mark_base(x);
     list_switch(x, y, true);
     state_.sticking = true;
@@ -230,8 +229,8 @@ class Run {
   void release(double x, int limit) {
     sticking_->detach(clock_.since_base(x), state_.modes);
     law().set_rise(sticking_->rise(clock_.since_base(x)));
-    if (loop_.witness != nullptr) loop_.witness->released();
-    const Motion motion = model_.observe(state_.modes, {.reactions = false});
+    if (loop_.observer != nullptr) loop_.observer->released();
+    const MotionSample motion = model_.observe(state_.modes, {.reactions = false});
     const double v = motion.velocity;
     list_switch(x, motion.displacement, false);
     const BowDrive drive = clock_.drive_at(x);
@@ -257,44 +256,62 @@ class Run {
   }
 
   void store(std::size_t sample) {
-    Motion motion;
+    MotionSample motion;
     if (state_.sticking && in_contact_) {
       motion = sticking_->observe(clock_.since_base(0.0));
     } else {
-      motion = model_.observe(state_.modes, writer_.wanted());
+      motion = model_.observe(state_.modes, loop_.targets.wanted());
       if (in_contact_) motion.force = sliding_.force();
     }
     if (!std::isfinite(motion.velocity) || !std::isfinite(motion.force)) {
       return fail(0.0, "the motion is not a finite number");
     }
-    writer_.write(sample, motion);
+    loop_.targets.write(sample, motion);
   }
 
   const EventLoop& loop_;
   EventState& state_;
   BowClock clock_;
-  SampleWriter writer_;
   SlidingModel model_;
   Sliding<Friction> sliding_;
   std::optional<Sticking> sticking_;
   bool in_contact_ = false;
   EventCounts counts_;
   Sticking::Block block_;  // the samples of a held block
-  PlanarVector before_;    // what the held string was when it moved on, for the witness
+  PlanarVector before_;    // what the held string was when it moved on, for the observer
 };
 
 }  // namespace
 
+EventState initial_state(const ContactModes& modes, double bow_velocity) {
+  EventState state;
+  state.modes = PlanarVector(modes.size());
+  double velocity = 0.0;
+  for (std::size_t n = 0; n < modes.size(); ++n) {
+    state.modes.set(n, modes.initial[n]);
+    velocity += modes.initial[n].real() - modes.quadrature[n] * modes.initial[n].imag();
+  }
+  state.sticking = velocity == bow_velocity;
+  state.side = velocity < bow_velocity ? -1.0 : 1.0;
+  return state;
+}
+
 EventCounts run_event_loop(const EventLoop& loop, const ContactModes& modes, EventState& state) {
   const LobattoRule rule = lobatto_rule(loop.nodes);
+  const double mass = modes.effective_mass();
+  // A bow that cannot carry any force is not there: without contact and switches.
+  std::optional<Sticking> sticking;
+  if (loop.contact.static_limit > 0.0) {
+    sticking = held_string(
+        modes, loop.contact,
+        loop.thermal ? StaticLimit(*loop.thermal) : StaticLimit(loop.contact.static_limit),
+        loop.grid_step, loop.targets.wanted());
+  }
   const auto run = [&](auto friction) {
-    return Run<decltype(friction)>(loop, friction, rule, modes, held_string(loop, modes), state)
-        .run();
+    return Run<decltype(friction)>(loop, friction, rule, modes, std::move(sticking), state).run();
   };
-  if (loop.thermal) return run(ThermalFriction(*loop.thermal, rule, modes.effective_mass()));
-  return std::visit(
-      [&](const auto& law) { return run(CurveFriction(law, rule, modes.effective_mass())); },
-      loop.law);
+  if (loop.thermal) return run(ThermalFriction(*loop.thermal, rule, mass));
+  return std::visit([&](const auto& law) { return run(CurveFriction(law, rule, mass)); }, loop.law);
 }
 
 }  // namespace modcal::event

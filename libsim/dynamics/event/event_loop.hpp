@@ -6,13 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "libsim/base/stop_token.hpp"
+#include "libsim/base/task_loop.hpp"
 #include "libsim/dynamics/event/modes/bow_path.hpp"
 #include "libsim/dynamics/event/modes/closed_loop.hpp"
-#include "libsim/dynamics/event/force_witness.hpp"
-#include "libsim/dynamics/friction/stateful_laws.hpp"
+#include "libsim/dynamics/event/modes/force_observer.hpp"
 #include "libsim/dynamics/fixed_step/step_loop.hpp"
-#include "libsim/dynamics/scene/switch.hpp"
+#include "libsim/dynamics/friction/stateful_laws.hpp"
+#include "libsim/dynamics/scene/simulation.hpp"
 
 namespace modcal::event {
 
@@ -43,8 +43,8 @@ struct EventLoop {
   /// temperature; `bow` then tells the normal force [N] as the load. The contact starts with
   /// EventState::rise.
   std::optional<ThermalSliding> thermal;
-  /// Motion of the bow; empty: steady at contact.bow_velocity. Otherwise its velocity stands in the
-  /// place of that one, and law and contact.static_limit are those of load 1.
+  /// MotionSample of the bow; empty: steady at contact.bow_velocity. Otherwise its velocity stands
+  /// in the place of that one, and law and contact.static_limit are those of load 1.
   std::vector<BowKnot> bow;
   AttachRule attach = AttachRule::kLiteral;
   int nodes = 5;               ///< Lobatto nodes of a sliding step, 2 … 5: order 2(nodes − 1)
@@ -56,7 +56,7 @@ struct EventLoop {
   SampleTargets targets;    ///< sample j is taken after j·steps_per_sample grid steps
   SwitchList switches;
   /// Sees every piece of the force and every switch; null: nobody does, at no cost.
-  ForceWitness* witness = nullptr;
+  ForceObserver* observer = nullptr;
   StopToken stop;  ///< polled between samples
 };
 

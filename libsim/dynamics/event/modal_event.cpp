@@ -8,7 +8,7 @@
 
 #include "libsim/base/error.hpp"
 #include "libsim/dynamics/event/energy_meter.hpp"
-#include "libsim/dynamics/fixed_step/scene_setup.hpp"
+#include "libsim/dynamics/scene/contact_modes.hpp"
 
 namespace modcal {
 
@@ -140,14 +140,12 @@ Simulation ModalEvent::run(const Scene& scene, double sample_rate, const OutputR
                         .switches = {&result.switches, outputs.switches_from},
                         .stop = stop};
   std::optional<event::EnergyMeter> meter;
-  if (energy_ != nullptr) loop.witness = &meter.emplace(loop, modes, state);
+  if (energy_ != nullptr) loop.observer = &meter.emplace(loop, modes, state);
   const event::EventCounts counts = event::run_event_loop(loop, modes, state);
   if (meter && !counts.failure) *energy_ = meter->account(state);
 
   if (counts.failure) {
-    result = empty_simulation(0, sample_rate, {});
-    result.diverged_at = counts.failed_at;
-    result.explanation = *counts.failure;
+    result.diverge(counts.failed_at, *counts.failure);
   }
   result.time_step = plan.time_step;
   result.steps = counts.steps;

@@ -4,7 +4,7 @@
 #include <limits>
 #include <string>
 
-#include "libsim/dynamics/event/event_energy.hpp"
+#include "libsim/dynamics/energy/energy_account.hpp"
 #include "libsim/dynamics/scene/simulator.hpp"
 
 namespace modcal {

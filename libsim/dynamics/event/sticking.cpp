@@ -181,26 +181,6 @@ std::array<double, Sticking::kTerms> Sticking::force_series(const PlanarVector& 
   return force;
 }
 
-Sticking::ForcePiece Sticking::force_piece(const PlanarVector& state, double tau, double offset,
-                                           double time) {
-  constexpr double kLeftOut = 1e-17;
-  if (last_power_.empty()) {
-    last_power_.resize(fourth_power_.size());
-    for (std::size_t j = 0; j < loop_.roots; ++j) {
-      last_power_[j] = std::pow(std::abs(loop_.pole.at(j)) * series_step_, double{kTerms}) /
-                       std::tgamma(kTerms + 1.0);
-    }
-  }
-  advance_by(offset, loop_.pole, state, trial_);
-  const double left_out = weighted_size(last_power_, trial_);
-  const double allowed = kLeftOut * limit_.at(tau + offset) * drive_.load_at(tau + offset);
-  const double reach = std::pow(allowed / left_out, 1.0 / double{kTerms});
-  ForcePiece piece;
-  piece.time = std::min(time, series_step_ * std::max(1.0, reach));
-  piece.force = force_series(trial_, tau + offset, piece.time);
-  return piece;
-}
-
 std::optional<Sticking::Advance> Sticking::crossing(double tau, double time) {
   const std::array<double, kTerms> force = force_series(state_, tau, time);
   double swing = 0.0;
@@ -263,9 +243,9 @@ Sticking::Advance Sticking::advance(double tau, double time, bool observed) {
   return result;
 }
 
-Motion Sticking::motion_at(double tau, double force,
-                           const std::array<double, ClosedLoop::kRows>& seen) const {
-  Motion motion;
+MotionSample Sticking::motion_at(double tau, double force,
+                                 const std::array<double, ClosedLoop::kRows>& seen) const {
+  MotionSample motion;
   motion.force = force;
   motion.velocity = seen[ClosedLoop::kVelocity] + loop_.displacement.value * slow_.rate_at(tau) +
                     loop_.displacement.rate * slow_.curvature;
@@ -277,7 +257,7 @@ Motion Sticking::motion_at(double tau, double force,
   return motion;
 }
 
-Motion Sticking::observe(double tau) {
+MotionSample Sticking::observe(double tau) {
   if (!seen_is_valid_) real_products(loop_.observed, state_, std::span(seen_).first(rows()));
   seen_is_valid_ = true;
   return motion_at(tau, force_.value, seen_);

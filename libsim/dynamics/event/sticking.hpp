@@ -10,9 +10,10 @@
 
 #include "libsim/dynamics/event/modes/bow_path.hpp"
 #include "libsim/dynamics/event/modes/closed_loop.hpp"
+#include "libsim/dynamics/event/modes/force_observer.hpp"
 #include "libsim/dynamics/event/modes/modal_kernels.hpp"
-#include "libsim/dynamics/event/modes/motion.hpp"
 #include "libsim/dynamics/event/sliding/static_limit.hpp"
+#include "libsim/dynamics/scene/simulation.hpp"
 
 namespace modcal::event {
 
@@ -49,22 +50,31 @@ class Sticking {
   struct Block {
     using Row = std::array<double, kBlock>;
     Row displacement, velocity, force, left, right;
+
+    /// Writes the first `count` of them, from `sample` on.
+    void write(const SampleTargets& to, std::size_t sample, std::size_t count) const {
+      const auto copy = [&](const Row& row, double* target) {
+        if (target == nullptr) return;
+        if (count == kBlock) {  // known to the compiler: no call
+          std::copy_n(row.begin(), kBlock, target + sample);
+        } else {
+          std::copy_n(row.begin(), count, target + sample);
+        }
+      };
+      copy(displacement, to.displacement);
+      copy(velocity, to.velocity);
+      copy(force, to.force);
+      copy(left, to.left_reaction);
+      copy(right, to.right_reaction);
+    }
   };
   /// Advances from τ by as many longest steps, at most kBlock, as are certified free of events, and
   /// tells what happens at their ends. Possibly none: advance() decides then.
   std::size_t advance_block(double tau, Block& out);
 
-  /// The state to ask force_piece() about later.
   const PlanarVector& state() const { return state_; }
-  static constexpr std::size_t kTerms = 25;
-  struct ForcePiece {
-    double time = 0.0;                   ///< its length [s]
-    std::array<double, kTerms> force{};  ///< powers of θ, θ = 1 at its end
-  };
-  /// The force from `tau` + `offset` on, for `time` or as long as 25 powers tell it to rounding:
-  /// Σ |w_j| (|μ_j| t)²⁵/25! ≤ 1e-17 of the limit. `state` is that of `tau`.
-  ForcePiece force_piece(const PlanarVector& state, double tau, double offset, double time);
-  const BowDrive& drive() const { return drive_; }
+  /// Shows the force from τ on for `time` [s] piece by piece; `before`: the state at τ.
+  void show(const PlanarVector& before, double tau, double time, ForceObserver& observer);
 
   double force() const { return force_.value; }
   /// Temperature rise at τ [K].
@@ -73,9 +83,10 @@ class Sticking {
   double elongation(double tau, double displacement) const {
     return displacement - rest_point_ - drive_.travel(tau);
   }
-  Motion observe(double tau);
+  MotionSample observe(double tau);
 
  private:
+  static constexpr std::size_t kTerms = 25;
   struct ForceJet {
     double value = 0.0;
     double rate = 0.0;
@@ -94,6 +105,7 @@ class Sticking {
   ForceJet jet_at(double tau, const SumAndRate& sums) const {
     return {slow_.value_at(tau) + sums.sum, slow_.rate_at(tau) + sums.rate};
   }
+  double series_time(const PlanarVector& state, double tau, double time);
   void add_slow(double factor, double tau);
   void restart();
   std::size_t rows() const;
@@ -110,8 +122,8 @@ class Sticking {
   std::size_t certified_steps(double tau, const BlockForce& force) const;
   void fill_motions(double tau, const double* seen, Block& out) const;
   double step_of(int level) const { return std::ldexp(longest_step_, -level); }
-  Motion motion_at(double tau, double force,
-                   const std::array<double, ClosedLoop::kRows>& seen) const;
+  MotionSample motion_at(double tau, double force,
+                         const std::array<double, ClosedLoop::kRows>& seen) const;
 
   ClosedLoop loop_;
   StaticLimit limit_;
@@ -121,7 +133,7 @@ class Sticking {
   int level_ = 0, certified_in_a_row_ = 0;
   PlanarRows series_;           // (μ·series_step)^p/p!
   AlignedVector fourth_power_;  // |μ|⁴
-  AlignedVector last_power_;    // (|μ|·series_step)²⁵/25!, for force_piece()
+  AlignedVector last_power_;    // (|μ|·series_step)²⁵/25!, for show()
   // Rows of f, f', v, R₁, R₂ (as many as wanted) for the ends of the kBlock steps.
   enum BlockRow : std::size_t {
     kBlockForce,
@@ -144,5 +156,10 @@ class Sticking {
   // Just attached with the force at its upper, its lower limit: that root is no release.
   bool starts_at_upper_ = false, starts_at_lower_ = false;
 };
+
+/// The string held by a contact. Throws InvalidInput where its closed loop has a double root, or
+/// one that turns by more than 1e4 rad in a step.
+Sticking held_string(const ContactModes& modes, const ContactParameters& contact,
+                     const StaticLimit& static_limit, double longest_step, MotionRequest wanted);
 
 }  // namespace modcal::event

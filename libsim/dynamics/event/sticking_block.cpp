@@ -1,12 +1,64 @@
-// Some steps of the held string at once.
+// The held string beside its single steps: how it is made and shown, some steps at once.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <complex>
+#include <utility>
 
+#include "libsim/base/error.hpp"
 #include "libsim/dynamics/event/sticking.hpp"
 
 namespace modcal::event {
+namespace {
+
+constexpr double kMaxPhase = 1e4;
+
+}  // namespace
+
+Sticking held_string(const ContactModes& modes, const ContactParameters& contact,
+                     const StaticLimit& static_limit, double longest_step, MotionRequest wanted) {
+  auto closed = make_closed_loop(modes, contact.stiffness, contact.damping);
+  MODCAL_REQUIRE(closed.has_value(),
+                 "adherence of {:g} N/m and {:g} N s/m gives the held string a double root, which "
+                 "its exact propagator cannot resolve; change the damping slightly",
+                 contact.stiffness, contact.damping);
+  MODCAL_REQUIRE(closed->largest_pole * longest_step <= kMaxPhase,
+                 "adherence of {:g} N/m and {:g} N s/m has a pole of {:g} 1/s: more than {:g} "
+                 "radians in a step of {:g} s; shorten the step or soften the contact",
+                 contact.stiffness, contact.damping, closed->largest_pole, kMaxPhase, longest_step);
+  return {std::move(*closed), static_limit, longest_step, wanted};
+}
+
+// How much of `time` from the state at τ on the series of the force tells to rounding:
+// Σ |w_j| (|μ_j| t)²⁵/25! ≤ 1e-17 of the limit.
+double Sticking::series_time(const PlanarVector& state, double tau, double time) {
+  constexpr double kLeftOut = 1e-17;
+  if (last_power_.empty()) {
+    last_power_.resize(fourth_power_.size());
+    for (std::size_t j = 0; j < loop_.roots; ++j) {
+      last_power_[j] = std::pow(std::abs(loop_.pole.at(j)) * series_step_, double{kTerms}) /
+                       std::tgamma(kTerms + 1.0);
+    }
+  }
+  const double left_out = weighted_size(last_power_, state);
+  const double allowed = kLeftOut * limit_.at(tau) * drive_.load_at(tau);
+  const double reach = std::pow(allowed / left_out, 1.0 / double{kTerms});
+  return std::min(time, series_step_ * std::max(1.0, reach));
+}
+
+void Sticking::show(const PlanarVector& before, double tau, double time, ForceObserver& observer) {
+  const double least = 1e-15 * time;
+  for (double from = 0.0; time - from > least;) {
+    advance_by(from, loop_.pole, before, trial_);
+    const double length = series_time(trial_, tau + from, time - from);
+    const auto force = force_series(trial_, tau + from, length);
+    observer.piece({.phase = ContactPhase::kSticking,
+                    .duration = length,
+                    .force = force,
+                    .drive = drive_.from(tau + from)});
+    from += length;
+  }
+}
 
 void Sticking::fill_block() {
   block_ = PlanarRows((kBlockVelocity + rows()) * kBlock, loop_.roots);

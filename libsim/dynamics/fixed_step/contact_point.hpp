@@ -9,9 +9,9 @@
 #include <cmath>
 #include <cstdint>
 
-#include "libsim/dynamics/gestures/bow_cursor.hpp"
-#include "libsim/dynamics/friction/stateful_laws.hpp"
 #include "libsim/dynamics/fixed_step/step_loop.hpp"
+#include "libsim/dynamics/friction/stateful_laws.hpp"
+#include "libsim/dynamics/gestures/bow.hpp"
 
 namespace modcal {
 

@@ -26,13 +26,9 @@ class ContactRule {
     restart(std::abs(slip));
   }
 
-  /// Response of v and y to the newest force of a step (`newest`) and to the one before (`older`),
-  /// for implicit_force() and the steps that go on as before.
-  struct Response {
-    double velocity = 0.0;      // [m/(N s)]
-    double displacement = 0.0;  // [m/N]
-  };
-  void set_response(const Response& newest, const Response& older) {
+  /// Response of v [m/(N s)] and y [m/N] to the newest force of a step (`newest`) and to the one
+  /// before (`older`), for implicit_force() and the steps that go on as before.
+  void set_response(const MotionSample& newest, const MotionSample& older) {
     b_ = newest.velocity;
     b_y_ = newest.displacement;
     older_ = older;
@@ -261,7 +257,7 @@ class ContactRule {
   double rest_force_;  // g(0)
   double b_ = 0.0, b_y_ = 0.0, caught_ = 1.0;
   double held_stiffness_ = 0.0, held_damping_ = 0.0, held_older_ = 0.0;
-  Response older_;
+  MotionSample older_;
   bool sticking_ = false;
   double side_ = -1.0;
   double attach_displacement_ = 0.0;
@@ -275,18 +271,16 @@ class ContactRule {
   SwitchList switch_list_;
 };
 
-/// The rule of a loop, and in `coefficients` the spring that the loop asks of the modes.
+/// The rule of a run, and in `coefficients` the spring that the loop asks of the modes.
 template <typename Law>
-ContactRule<Law> make_rule(const StepLoop& loop, const Law& law, StepCoefficients& coefficients) {
-  ContactRule<Law> rule(loop.contact, law, loop.time_step, loop.initial_displacement,
-                        loop.initial_velocity);
-  rule.list_switches(loop.switches);
-  const auto& direct = coefficients.direct_response;
-  const auto& deferred = coefficients.deferred_response;
-  rule.set_response({direct.velocity, direct.displacement},
-                    {deferred.velocity, deferred.displacement});
+ContactRule<Law> make_rule(const FixedStepRun& run, const SteadyContact& contact, const Law& law,
+                           StepCoefficients& coefficients) {
+  ContactRule<Law> rule(contact.parameters, law, run.time_step, contact.initial_displacement,
+                        contact.initial_velocity);
+  rule.list_switches(run.switches);
+  rule.set_response(coefficients.direct_response, coefficients.deferred_response);
   const auto spring =
-      loop.timing == ForceTiming::kImplicit ? rule.implicit_spring() : rule.explicit_spring();
+      run.timing == ForceTiming::kImplicit ? rule.implicit_spring() : rule.explicit_spring();
   coefficients.hold(spring.stiffness, spring.damping);
   return rule;
 }

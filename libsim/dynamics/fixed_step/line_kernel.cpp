@@ -51,6 +51,7 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace modcal {
+
 HWY_EXPORT(AdvanceLine);
 
 namespace {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "libsim/base/aligned_vector.hpp"
-#include "libsim/dynamics/fixed_step/line_modes.hpp"
 #include "libsim/dynamics/fixed_step/step_coefficients.hpp"
+#include "libsim/dynamics/scene/contact_modes.hpp"
 
 namespace modcal {
 

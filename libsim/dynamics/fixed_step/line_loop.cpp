@@ -17,28 +17,29 @@ double sum_of_products(const AlignedVector& a, const AlignedVector& b) {
 template <typename Point>
 class Run {
  public:
-  Run(const LineLoop& loop, const LineModes& modes, const SchemeWeights& weights)
-      : loop_(loop),
+  Run(const FixedStepRun& run, const BowMotion& bow, const LineModes& modes,
+      const SchemeWeights& weights)
+      : run_(run),
         modes_(modes),
         arrays_(make_line_arrays(modes, weights)),
         direct_(direct_response(modes, weights)),
         newer_(weights.newer),
-        cursor_(loop.bow),
+        cursor_(bow),
         size_(modes.points()),
         forces_(direct_) {}
 
   template <typename MakePoint>
-  LineCounts run(MakePoint make_point) {
+  LoopCounts run(MakePoint make_point) {
     start(make_point);
-    LineCounts counts;
+    LoopCounts counts;
     std::uint64_t step = 0;
-    for (std::size_t sample = 1; sample < loop_.samples; ++sample) {
-      for (std::size_t inner = loop_.steps_per_sample; inner > 0; --inner) {
+    for (std::size_t sample = 1; sample < run_.samples; ++sample) {
+      for (std::size_t inner = run_.steps_per_sample; inner > 0; --inner) {
         ++step;
-        if (!advance(loop_.time_step * static_cast<double>(step))) counts.settled = false;
+        if (!advance(run_.time_step * static_cast<double>(step))) counts.settled = false;
       }
       store(sample);
-      if (loop_.stop.requested()) break;
+      if (run_.stop.requested()) break;
       if (!counts.settled || !is_finite()) {
         counts.first_bad_sample = sample;
         break;
@@ -52,7 +53,7 @@ class Run {
   }
 
  private:
-  bool implicit() const { return loop_.timing == ForceTiming::kImplicit; }
+  bool implicit() const { return run_.timing == ForceTiming::kImplicit; }
 
   BowInstant bow_at(double t) {
     BowInstant bow = cursor_.at(t);
@@ -75,7 +76,7 @@ class Run {
       motion_.displacement[j] = y;
       driving_[j] = implicit() ? forces_.force()[j] : 0.0;
     }
-    store_start();
+    store(0);
     // S holds Z without the newest force.
     for (std::size_t n = 0; n < modes_.size(); ++n) {
       double load = 0.0;
@@ -95,7 +96,7 @@ class Run {
     std::copy_n(forces_.force(), size_, driving_);
     add_direct();
     if (!implicit()) forces_.follow(motion_, bow);
-    forces_.end_step(loop_.time_step, motion_, bow);
+    forces_.end_step(run_.time_step, motion_, bow);
     for (std::size_t j = 0; j < size_; ++j) list_switch(j, t);
     return settled;
   }
@@ -103,10 +104,10 @@ class Run {
   void list_switch(std::size_t j, double t) {
     const Switches now{forces_.points()[j].attachments(), forces_.points()[j].releases()};
     if (now.attachments != counted_[j].attachments) {
-      loop_.switches.add({.time = t, .displacement = motion_.displacement[j], .attaches = true});
+      run_.switches.add({.time = t, .displacement = motion_.displacement[j], .attaches = true});
     }
     if (now.releases != counted_[j].releases) {
-      loop_.switches.add({.time = t, .displacement = motion_.displacement[j], .attaches = false});
+      run_.switches.add({.time = t, .displacement = motion_.displacement[j], .attaches = false});
     }
     counted_[j] = now;
   }
@@ -130,39 +131,28 @@ class Run {
     for (std::size_t j = 0; j < size_; ++j) sum += values[j];
     return sum / static_cast<double>(size_);
   }
-  void store_contact(std::size_t sample) {
-    const SampleTargets& to = loop_.targets;
-    if (to.displacement) to.displacement[sample] = mean(motion_.displacement);
-    if (to.velocity) to.velocity[sample] = mean(motion_.velocity);
-    if (to.force) to.force[sample] = mean(forces_.force()) * static_cast<double>(size_);
-    for (std::size_t j = 0; j < loop_.point_targets.size(); ++j) {
-      loop_.point_targets[j].displacement[sample] = motion_.displacement[j];
-      loop_.point_targets[j].velocity[sample] = motion_.velocity[j];
-      loop_.point_targets[j].force[sample] = forces_.force()[j];
-    }
-  }
-  void store_start() {
-    store_contact(0);
-    const SampleTargets& to = loop_.targets;
-    if (to.left_reaction)
-      to.left_reaction[0] = sum_of_products(arrays_.left_gain, arrays_.state_im);
-    if (to.right_reaction)
-      to.right_reaction[0] = sum_of_products(arrays_.right_gain, arrays_.state_im);
-  }
+  // At t = 0 S still holds all of Z.
   void store(std::size_t sample) {
-    store_contact(sample);
-    const SampleTargets& to = loop_.targets;
-    if (to.left_reaction) {
-      to.left_reaction[sample] =
-          sum_of_products(arrays_.left_gain, arrays_.state_im) + dot(direct_.left, driving_, size_);
-    }
-    if (to.right_reaction) {
-      to.right_reaction[sample] = sum_of_products(arrays_.right_gain, arrays_.state_im) +
-                                  dot(direct_.right, driving_, size_);
+    const SampleTargets& to = run_.targets;
+    const auto reaction = [&](const double* wanted, const AlignedVector& gain,
+                              const double* direct) {
+      if (wanted == nullptr) return 0.0;
+      const double sum = sum_of_products(gain, arrays_.state_im);
+      return sample == 0 ? sum : sum + dot(direct, driving_, size_);
+    };
+    to.write(sample, {.displacement = mean(motion_.displacement),
+                      .velocity = mean(motion_.velocity),
+                      .force = mean(forces_.force()) * static_cast<double>(size_),
+                      .left = reaction(to.left_reaction, arrays_.left_gain, direct_.left),
+                      .right = reaction(to.right_reaction, arrays_.right_gain, direct_.right)});
+    for (std::size_t j = 0; j < run_.point_targets.size(); ++j) {
+      run_.point_targets[j].write(sample, {.displacement = motion_.displacement[j],
+                                           .velocity = motion_.velocity[j],
+                                           .force = forces_.force()[j]});
     }
   }
 
-  const LineLoop& loop_;
+  const FixedStepRun& run_;
   const LineModes& modes_;
   LineArrays arrays_;
   DirectResponse direct_;
@@ -178,35 +168,34 @@ class Run {
   double driving_[kMostPoints] = {};  // newest forces that Z holds
 };
 
-template <typename Law>
-LineCounts run_coulomb(const LineLoop& loop, const LineModes& modes, const SchemeWeights& weights,
-                       const Law& law, double share) {
-  const PointAdherence adherence{share * loop.friction.stiffness, share * loop.friction.damping};
-  return Run<CoulombPoint<Law>>(loop, modes, weights)
-      .run([&](double y, double v, const BowInstant& bow) {
-        return CoulombPoint<Law>(law, adherence, y, v, bow);
-      });
-}
-
 }  // namespace
 
-LineCounts run_line_loop(const LineLoop& loop, const LineModes& modes,
-                         const SchemeWeights& weights) {
+LoopCounts run_line_loop(const FixedStepRun& run, const GeneralContact& contact,
+                         const LineModes& modes, const SchemeWeights& weights) {
   const double share = 1.0 / static_cast<double>(modes.points());
-  if (const auto* thermal = std::get_if<ThermalSliding>(&loop.friction.stateful)) {
-    return run_coulomb(loop, modes, weights, thermal->share(share), share);
+  const ContactParameters& whole = contact.parameters;
+  const auto run_coulomb = [&](const auto& law) {
+    using Point = CoulombPoint<std::decay_t<decltype(law)>>;
+    const PointAdherence adherence{share * whole.stiffness, share * whole.damping};
+    return Run<Point>(run, contact.bow, modes, weights)
+        .run([&](double y, double v, const BowInstant& bow) {
+          return Point(law, adherence, y, v, bow);
+        });
+  };
+  const StatefulLaw& stateful = contact.friction.stateful();
+  if (const auto* thermal = std::get_if<ThermalSliding>(&stateful)) {
+    return run_coulomb(thermal->share(share));
   }
-  if (const auto* bristle = std::get_if<BristleFriction>(&loop.friction.stateful)) {
+  if (const auto* bristle = std::get_if<BristleFriction>(&stateful)) {
     BristleFriction law = *bristle;
-    law.damping = loop.friction.damping;
+    law.damping = whole.damping;
     law = law.share(share);
-    return Run<BristlePoint>(loop, modes, weights)
+    return Run<BristlePoint>(run, contact.bow, modes, weights)
         .run([&](double /*y*/, double v, const BowInstant& bow) {
-          return BristlePoint(law, loop.time_step, v, bow);
+          return BristlePoint(law, run.time_step, v, bow);
         });
   }
-  return std::visit([&](const auto& law) { return run_coulomb(loop, modes, weights, law, share); },
-                    loop.friction.coefficient);
+  return std::visit(run_coulomb, contact.friction.sliding(1.0));
 }
 
 double contact_response(const LineModes& modes, const SchemeWeights& weights) {
@@ -218,12 +207,6 @@ double contact_response(const LineModes& modes, const SchemeWeights& weights) {
     most = std::max(most, row);
   }
   return most / static_cast<double>(modes.points());
-}
-
-double steepest_fall(const LineLoop& loop) {
-  if (loop.friction.stateful.index() != 0) return 0.0;
-  return loop.bow.normal_force.highest() *
-         std::visit([](const auto& law) { return law.steepest_fall(); }, loop.friction.coefficient);
 }
 
 }  // namespace modcal

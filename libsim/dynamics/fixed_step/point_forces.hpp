@@ -5,9 +5,9 @@
 #include <cmath>
 #include <vector>
 
-#include "libsim/dynamics/gestures/bow_cursor.hpp"
 #include "libsim/dynamics/fixed_step/contact_point.hpp"
 #include "libsim/dynamics/fixed_step/line_kernel.hpp"
+#include "libsim/dynamics/gestures/bow.hpp"
 
 namespace modcal {
 

@@ -17,19 +17,19 @@ AlignedVector padded(std::size_t size, double filling, Value value) {
 }
 
 // What a state Z of mode n is of velocity, displacement and reactions.
-double velocity_of(const ContactModes& modes, std::size_t n, Complex z) {
-  return z.real() - modes.quadrature[n] * z.imag();
-}
-double displacement_of(const ContactModes& modes, std::size_t n, Complex z) {
-  return modes.compliance[n] * z.imag();
-}
-double left_of(const ContactModes& modes, std::size_t n, Complex z) {
-  return modes.left_gain[n] * z.imag();
-}
-double right_of(const ContactModes& modes, std::size_t n, Complex z) {
-  return modes.right_gain[n] * z.imag();
-}
 using Quantity = double (*)(const ContactModes&, std::size_t, Complex);
+constexpr Quantity kVelocity = [](const ContactModes& modes, std::size_t n, Complex z) {
+  return z.real() - modes.quadrature[n] * z.imag();
+};
+constexpr Quantity kDisplacement = [](const ContactModes& modes, std::size_t n, Complex z) {
+  return modes.compliance[n] * z.imag();
+};
+constexpr Quantity kLeft = [](const ContactModes& modes, std::size_t n, Complex z) {
+  return modes.left_gain[n] * z.imag();
+};
+constexpr Quantity kRight = [](const ContactModes& modes, std::size_t n, Complex z) {
+  return modes.right_gain[n] * z.imag();
+};
 
 double total(const AlignedVector& values) {
   return std::accumulate(values.begin(), values.end(), 0.0);
@@ -48,18 +48,18 @@ ModeSum sum_of(Quantity quantity, const ContactModes& modes, const ComplexVector
   return sum;
 }
 
-StepCoefficients::Response response_of(const ContactModes& modes, const ComplexVector& state) {
-  StepCoefficients::Response sum;
+}  // namespace
+
+MotionSample motion_of(const ContactModes& modes, const std::vector<std::complex<double>>& state) {
+  MotionSample sum;
   for (std::size_t n = 0; n < modes.size(); ++n) {
-    sum.velocity += velocity_of(modes, n, state[n]);
-    sum.displacement += displacement_of(modes, n, state[n]);
-    sum.left += left_of(modes, n, state[n]);
-    sum.right += right_of(modes, n, state[n]);
+    sum.displacement += kDisplacement(modes, n, state[n]);
+    sum.velocity += kVelocity(modes, n, state[n]);
+    sum.left += kLeft(modes, n, state[n]);
+    sum.right += kRight(modes, n, state[n]);
   }
   return sum;
 }
-
-}  // namespace
 
 void StepCoefficients::hold(double stiffness, double damping) {
   const auto mixed = [stiffness, damping](const AlignedVector& y, const AlignedVector& v) {
@@ -100,12 +100,12 @@ StepCoefficients make_step_coefficients(const ContactModes& modes, const SchemeW
   c.first = padded(size, 0.0, [&](std::size_t n) { return state[n].imag() / r[n].imag(); });
   c.second = padded(
       size, 0.0, [&](std::size_t n) { return state[n].real() - (1.0 - r[n].real()) * c.first[n]; });
-  c.velocity = sum_of(velocity_of, modes, r, gain);
-  c.displacement = sum_of(displacement_of, modes, r, gain);
-  c.left = sum_of(left_of, modes, r, gain);
-  c.right = sum_of(right_of, modes, r, gain);
-  c.deferred_response = response_of(modes, deferred);
-  c.direct_response = response_of(modes, direct);
+  c.velocity = sum_of(kVelocity, modes, r, gain);
+  c.displacement = sum_of(kDisplacement, modes, r, gain);
+  c.left = sum_of(kLeft, modes, r, gain);
+  c.right = sum_of(kRight, modes, r, gain);
+  c.deferred_response = motion_of(modes, deferred);
+  c.direct_response = motion_of(modes, direct);
   return c;
 }
 

@@ -6,6 +6,7 @@
 
 #include "libsim/base/aligned_vector.hpp"
 #include "libsim/dynamics/scene/contact_modes.hpp"
+#include "libsim/dynamics/scene/simulation.hpp"
 
 namespace modcal {
 
@@ -35,15 +36,14 @@ struct StepCoefficients {
   ModeSum velocity, displacement, left, right;
   ModeSum held;  ///< stiffness·displacement + damping·velocity, set by hold()
   // Σ over modes: response of velocity, displacement and reactions to D and to d₁.
-  struct Response {
-    double velocity = 0.0, displacement = 0.0, left = 0.0, right = 0.0;
-  };
-  Response deferred_response;
-  Response direct_response;
+  MotionSample deferred_response, direct_response;
 
   /// Makes `held` the force of a spring [N/m] and a damper [N s/m] at the contact.
   void hold(double stiffness, double damping);
 };
+
+/// Motion of the contact and reactions of the ends in the state Z of the modes.
+MotionSample motion_of(const ContactModes& modes, const std::vector<std::complex<double>>& state);
 
 /// Whether x₁ and x₂ can be told apart, |Im r| ≥ 0.05 |1 − r|, and forces reach them,
 /// |r d₁ + d₀| ≥ 1e-3 (|d₀| + |d₁|), for every mode: not where a mode does a whole number of half

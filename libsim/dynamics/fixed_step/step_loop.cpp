@@ -128,48 +128,44 @@ HWY_INLINE void StepAcross(Rule& rule, const StepCoefficients& c, const Weights&
 // The step that is sampled, without the force that drives it: S where it is asked for, and the
 // velocity, which tells whether the motion is finite.
 template <ForceTiming kTiming, typename Modes>
-HWY_INLINE StepCoefficients::Response Observe(const SampleTargets& to, const StepCoefficients& c,
-                                              const LeadingString<Modes>& string,
-                                              const LastForces& forces) {
+HWY_INLINE MotionSample Observe(const SampleTargets& to, const StepCoefficients& c,
+                                const LeadingString<Modes>& string, const LastForces& forces) {
   const double taken = forces.Taken<kTiming>();
   const auto sum = [&](bool wanted, const ModeSum& of, double response) HWY_ATTR {
     return wanted ? string.Sum(SumWeights(of)) + response * taken : 0.0;
   };
-  const StepCoefficients::Response& response = c.deferred_response;
-  return {.velocity = sum(true, c.velocity, response.velocity),
-          .displacement = sum(to.displacement, c.displacement, response.displacement),
+  const MotionSample& response = c.deferred_response;
+  return {.displacement = sum(to.displacement, c.displacement, response.displacement),
+          .velocity = sum(true, c.velocity, response.velocity),
           .left = sum(to.left_reaction, c.left, response.left),
           .right = sum(to.right_reaction, c.right, response.right)};
 }
 
 // Stores the sample; false where it is not finite.
 HWY_INLINE bool StoreSample(const SampleTargets& to, std::size_t sample, const StepCoefficients& c,
-                            const StepCoefficients::Response& observed, double driving,
-                            double force) {
-  const StepCoefficients::Response& direct = c.direct_response;
+                            const MotionSample& observed, double driving, double force) {
+  const MotionSample& direct = c.direct_response;
   const double velocity = observed.velocity + direct.velocity * driving;
-  if (to.left_reaction) to.left_reaction[sample] = observed.left + direct.left * driving;
-  if (to.right_reaction) to.right_reaction[sample] = observed.right + direct.right * driving;
-  if (to.displacement) {
-    to.displacement[sample] = observed.displacement + direct.displacement * driving;
-  }
-  if (to.velocity) to.velocity[sample] = velocity;
-  if (to.force) to.force[sample] = force;
+  to.write(sample, {.displacement = observed.displacement + direct.displacement * driving,
+                    .velocity = velocity,
+                    .force = force,
+                    .left = observed.left + direct.left * driving,
+                    .right = observed.right + direct.right * driving});
   return std::isfinite(velocity) && std::isfinite(force);
 }
 
 template <ForceTiming kTiming, typename Modes, typename Law>
-LoopCounts Loop(const StepLoop& loop, ContactRule<Law>& rule, StepCoefficients& c) {
+LoopCounts Loop(const FixedStepRun& run, ContactRule<Law>& rule, StepCoefficients& c) {
   const Weights weights(c);
   LastForces forces{.newest = rule.initial_force()};
   LeadingString<Modes> string{Modes(c)};
   string.base = string.modes.Sum(weights.For(rule.sticking()));
   std::uint64_t step = 0;
   LoopCounts counts;
-  for (std::size_t sample = 1; sample < loop.samples && !loop.stop.requested(); ++sample) {
-    StepCoefficients::Response observed;
-    for (std::size_t left = loop.steps_per_sample; left > 0;) {
-      if (left == 1) observed = Observe<kTiming>(loop.targets, c, string, forces);
+  for (std::size_t sample = 1; sample < run.samples && !run.stop.requested(); ++sample) {
+    MotionSample observed;
+    for (std::size_t left = run.steps_per_sample; left > 0;) {
+      if (left == 1) observed = Observe<kTiming>(run.targets, c, string, forces);
       const std::size_t wanted = left == 1 ? 1 : left - 1;
       const std::size_t gone = GoOn<kTiming>(rule, weights, step, wanted, string, forces);
       step += gone;
@@ -179,7 +175,7 @@ LoopCounts Loop(const StepLoop& loop, ContactRule<Law>& rule, StepCoefficients& 
       --left;
     }
     const double driving = kTiming == ForceTiming::kImplicit ? forces.newest : forces.older;
-    if (!StoreSample(loop.targets, sample, c, observed, driving, forces.newest)) {
+    if (!StoreSample(run.targets, sample, c, observed, driving, forces.newest)) {
       counts.first_bad_sample = sample;
       break;
     }
@@ -190,46 +186,46 @@ LoopCounts Loop(const StepLoop& loop, ContactRule<Law>& rule, StepCoefficients& 
 }
 
 template <typename Modes, typename Law>
-LoopCounts LoopOf(const StepLoop& loop, ContactRule<Law>& rule, StepCoefficients& c) {
-  return loop.timing == ForceTiming::kImplicit
-             ? Loop<ForceTiming::kImplicit, Modes>(loop, rule, c)
-             : Loop<ForceTiming::kPreviousStep, Modes>(loop, rule, c);
+LoopCounts LoopOf(const FixedStepRun& run, ContactRule<Law>& rule, StepCoefficients& c) {
+  return run.timing == ForceTiming::kImplicit
+             ? Loop<ForceTiming::kImplicit, Modes>(run, rule, c)
+             : Loop<ForceTiming::kPreviousStep, Modes>(run, rule, c);
 }
 
 template <typename Law>
-LoopCounts LoopOfLaw(const StepLoop& loop, ContactRule<Law>& rule, StepCoefficients& c) {
+LoopCounts LoopOfLaw(const FixedStepRun& run, ContactRule<Law>& rule, StepCoefficients& c) {
 #if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
   switch (c.first.size() / kVectorPadding) {
     case 1:
-      return LoopOf<ResidentModes<1>>(loop, rule, c);
+      return LoopOf<ResidentModes<1>>(run, rule, c);
     case 2:
-      return LoopOf<ResidentModes<2>>(loop, rule, c);
+      return LoopOf<ResidentModes<2>>(run, rule, c);
     case 3:
-      return LoopOf<ResidentModes<3>>(loop, rule, c);
+      return LoopOf<ResidentModes<3>>(run, rule, c);
     case 4:
-      return LoopOf<ResidentModes<4>>(loop, rule, c);
+      return LoopOf<ResidentModes<4>>(run, rule, c);
     case 5:
-      return LoopOf<ResidentModes<5>>(loop, rule, c);
+      return LoopOf<ResidentModes<5>>(run, rule, c);
     case 6:
-      return LoopOf<ResidentModes<6>>(loop, rule, c);
+      return LoopOf<ResidentModes<6>>(run, rule, c);
     case 7:
-      return LoopOf<ResidentModes<7>>(loop, rule, c);
+      return LoopOf<ResidentModes<7>>(run, rule, c);
     case 8:
-      return LoopOf<ResidentModes<8>>(loop, rule, c);
+      return LoopOf<ResidentModes<8>>(run, rule, c);
     default:
       break;
   }
 #endif
-  return LoopOf<StreamedModes>(loop, rule, c);
+  return LoopOf<StreamedModes>(run, rule, c);
 }
 
-LoopCounts RunStepLoop(const StepLoop& loop, StepCoefficients& c) {
+LoopCounts RunStepLoop(const FixedStepRun& run, const SteadyContact& contact, StepCoefficients& c) {
   return std::visit(
       [&](const auto& law) {
-        auto rule = make_rule(loop, law, c);
-        return LoopOfLaw(loop, rule, c);
+        auto rule = make_rule(run, contact, law, c);
+        return LoopOfLaw(run, rule, c);
       },
-      loop.law);
+      contact.law);
 }
 
 }  // namespace modcal::HWY_NAMESPACE
@@ -237,10 +233,22 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace modcal {
+
 HWY_EXPORT(RunStepLoop);
 
-LoopCounts run_step_loop(const StepLoop& loop, StepCoefficients& coefficients) {
-  return HWY_DYNAMIC_DISPATCH(RunStepLoop)(loop, coefficients);
+LoopCounts run_step_loop(const FixedStepRun& run, const SteadyContact& contact,
+                         StepCoefficients& coefficients) {
+  return HWY_DYNAMIC_DISPATCH(RunStepLoop)(run, contact, coefficients);
+}
+
+double initial_force(const SteadyContact& contact) {
+  return std::visit(
+      [&contact](const auto& law) {
+        return ContactRule(contact.parameters, law, 0.0, contact.initial_displacement,
+                           contact.initial_velocity)
+            .initial_force();
+      },
+      contact.law);
 }
 
 }  // namespace modcal

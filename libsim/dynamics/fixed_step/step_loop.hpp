@@ -12,10 +12,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "libsim/base/stop_token.hpp"
-#include "libsim/dynamics/friction/sliding_laws.hpp"
+#include "libsim/base/task_loop.hpp"
 #include "libsim/dynamics/fixed_step/step_coefficients.hpp"
-#include "libsim/dynamics/scene/switch.hpp"
+#include "libsim/dynamics/friction/sliding_laws.hpp"
+#include "libsim/dynamics/scene/simulation.hpp"
 
 namespace modcal {
 
@@ -25,44 +25,42 @@ enum class ForceTiming {
   kImplicit,      ///< the force at the end of the step is solved for together with the velocity
 };
 
-struct ContactParameters {
-  double bow_velocity = 0.0;  ///< [m/s]
-  double static_limit = 0.0;  ///< μ_S F_N [N]
-  double stiffness = 0.0;     ///< K_a [N/m]
-  double damping = 0.0;       ///< C_a [N s/m]
-};
-
-/// Where the samples go; null: not asked for. Sample j is taken after j·steps_per_sample steps.
-struct SampleTargets {
-  double* displacement = nullptr;
-  double* velocity = nullptr;
-  double* force = nullptr;
-  double* left_reaction = nullptr;
-  double* right_reaction = nullptr;
+/// The time grid of a run and where its results go.
+struct FixedStepRun {
+  ForceTiming timing = ForceTiming::kImplicit;
+  double time_step = 0.0;  ///< [s]
+  std::size_t steps_per_sample = 1;
+  std::size_t samples = 0;
+  /// Sample j is taken after j·steps_per_sample steps.
+  SampleTargets targets;
+  /// Displacement, velocity and force of every contact point; empty: not asked for.
+  std::vector<SampleTargets> point_targets;
+  SwitchList switches;
+  StopToken stop;  ///< polled between samples
 };
 
 struct LoopCounts {
   std::uint64_t attachments = 0;
   std::uint64_t releases = 0;
-  /// First sample at which the state is not finite; SIZE_MAX: none.
+  /// First sample at which the state is not finite or the forces of the points do not settle;
+  /// SIZE_MAX: none.
   std::size_t first_bad_sample = static_cast<std::size_t>(-1);
+  bool settled = true;  ///< false: the forces of several points did not settle
 };
 
-struct StepLoop {
-  ForceTiming timing = ForceTiming::kImplicit;
-  double time_step = 0.0;
-  std::size_t steps_per_sample = 1;
-  std::size_t samples = 0;
-  ContactParameters contact;
+/// One contact point under a steady bow.
+struct SteadyContact {
+  ContactParameters parameters;
   SlidingLaw law;
   double initial_displacement = 0.0;  ///< y at t = 0 [m]
   double initial_velocity = 0.0;      ///< v at t = 0 [m/s]
-  SampleTargets targets;
-  SwitchList switches;
-  StopToken stop;  ///< polled between samples
 };
 
-/// Runs all steps. Sample 0 is the state at t = 0.
-LoopCounts run_step_loop(const StepLoop& loop, StepCoefficients& coefficients);
+/// Runs all steps. Sample 0, the state at t = 0, is the caller's.
+LoopCounts run_step_loop(const FixedStepRun& run, const SteadyContact& contact,
+                         StepCoefficients& coefficients);
+
+/// Force of the contact at t = 0 [N].
+double initial_force(const SteadyContact& contact);
 
 }  // namespace modcal

@@ -1,15 +1,134 @@
 #include "libsim/dynamics/gestures/gesture.hpp"
 
+#include <array>
 #include <cmath>
+#include <numbers>
 
 #include "libsim/base/error.hpp"
+#include "libsim/base/random.hpp"
 
 namespace modcal {
+namespace {
+
+constexpr std::size_t kLobes = 8;   // of the window on either side
+constexpr std::size_t kPieces = 8;  // straight pieces between two draws of noise
+
+double sinc(double x) {
+  const double angle = std::numbers::pi * x;
+  return x == 0.0 ? 1.0 : std::sin(angle) / angle;
+}
+
+double lanczos(double x) {
+  return std::abs(x) < kLobes ? sinc(x) * sinc(x / static_cast<double>(kLobes)) : 0.0;
+}
+
+}  // namespace
 
 PiecewiseLinear Gesture::over(double duration) const {
   MODCAL_REQUIRE(duration > 0.0 && std::isfinite(duration),
                  "a gesture over {:g} s: the duration must be > 0", duration);
   return factor(duration);
+}
+
+Registry<Gesture> Gesture::registry() {
+  static constexpr std::array kTable = {
+      entry_of<Gesture, RampGesture>("ramp", "linear change from one factor to another"),
+      entry_of<Gesture, SineGesture>("sine", "sinusoidal change about a mean"),
+      entry_of<Gesture, SteadyGesture>("steady", "no change"),
+      entry_of<Gesture, TableGesture>("table", "straight lines through points in time"),
+  };
+  return kTable;
+}
+
+void TableGesture::Options::visit(OptionVisitor& visitor) {
+  visitor.numbers({.key = "times",
+                   .meaning = "times of the points, strictly rising",
+                   .unit = "s",
+                   .required = true},
+                  times);
+  visitor.numbers({.key = "factors", .meaning = "factors at these times", .required = true},
+                  factors);
+}
+
+void RampGesture::Options::visit(OptionVisitor& visitor) {
+  visitor.number({.key = "from", .meaning = "factor before the ramp"}, from);
+  visitor.number({.key = "to", .meaning = "factor after the ramp"}, to);
+  visitor.number({.key = "start",
+                  .meaning = "time at which the ramp starts",
+                  .unit = "s",
+                  .range = Range::non_negative()},
+                 start);
+  visitor.number(
+      {.key = "duration", .meaning = "length of the ramp", .unit = "s", .range = Range::positive()},
+      duration);
+}
+
+PiecewiseLinear RampGesture::factor(double /*duration*/) const {
+  return {{options_.start, options_.start + options_.duration}, {options_.from, options_.to}};
+}
+
+void SineGesture::Options::visit(OptionVisitor& visitor) {
+  visitor.number({.key = "mean", .meaning = "mean factor"}, mean);
+  visitor.number({.key = "amplitude", .meaning = "amplitude of the sine"}, amplitude);
+  visitor.number({.key = "frequency",
+                  .meaning = "frequency of the sine",
+                  .unit = "Hz",
+                  .range = Range::positive()},
+                 frequency);
+  visitor.number({.key = "phase", .meaning = "phase at t = 0", .unit = "rad"}, phase);
+}
+
+PiecewiseLinear SineGesture::factor(double duration) const {
+  constexpr double kPiecesPerPeriod = 128.0;
+  const double step = 1.0 / (kPiecesPerPeriod * options_.frequency);
+  const double count = std::ceil(duration / step);
+  MODCAL_REQUIRE(count <= 1e7, "a gesture of {:g} Hz over {:g} s takes {:g} pieces: at most 1e7",
+                 options_.frequency, duration, count);
+  std::vector<double> times, values;
+  for (std::size_t i = 0; i <= static_cast<std::size_t>(count); ++i) {
+    const double periods = static_cast<double>(i) / kPiecesPerPeriod;
+    times.push_back(static_cast<double>(i) * step);
+    values.push_back(options_.mean +
+                     options_.amplitude *
+                         std::sin(2.0 * std::numbers::pi * periods + options_.phase));
+  }
+  return {std::move(times), std::move(values)};
+}
+
+void GestureNoise::visit(OptionVisitor& visitor) {
+  visitor.number({.key = "level",
+                  .meaning = "standard deviation over the nominal value",
+                  .range = Range::non_negative()},
+                 level);
+  visitor.number({.key = "cutoff",
+                  .meaning = "frequency above which there is no noise",
+                  .unit = "Hz",
+                  .range = Range::positive()},
+                 cutoff);
+  visitor.integer({.key = "seed", .meaning = "seed of the draws", .range = Range::non_negative()},
+                  seed);
+}
+
+PiecewiseLinear GestureNoise::factor(double duration, std::string_view role) const {
+  if (!present || level == 0.0) return PiecewiseLinear(1.0);
+  const double pieces = std::ceil(duration * 2.0 * cutoff * static_cast<double>(kPieces));
+  MODCAL_REQUIRE(pieces <= 1e7, "noise up to {:g} Hz over {:g} s takes {:g} pieces: at most 1e7",
+                 cutoff, duration, pieces);
+  const auto count = static_cast<std::size_t>(pieces) + 1;
+  std::vector<double> draws((count - 1) / kPieces + 2 * kLobes + 1);
+  fill_standard_normal(StreamKey(static_cast<std::uint64_t>(seed)).with(role), draws);
+  std::vector<double> times(count), values(count, 1.0);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t whole = i / kPieces;
+    const double part = static_cast<double>(i % kPieces) / static_cast<double>(kPieces);
+    times[i] = static_cast<double>(i) / (2.0 * cutoff * static_cast<double>(kPieces));
+    // Draw j stands at the time (j − kLobes)/(2 f_cut).
+    for (std::size_t j = 0; j <= 2 * kLobes; ++j) {
+      const double distance = part + static_cast<double>(kLobes) - static_cast<double>(j);
+      values[i] += level * draws[whole + j] * lanczos(distance);
+    }
+  }
+  return {std::move(times), std::move(values)};
 }
 
 }  // namespace modcal

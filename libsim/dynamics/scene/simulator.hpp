@@ -2,71 +2,17 @@
 #pragma once
 
 #include <cstddef>
-#include <limits>
-#include <optional>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "libsim/base/registry.hpp"
-#include "libsim/base/stop_token.hpp"
+#include "libsim/base/task_loop.hpp"
 #include "libsim/dynamics/scene/scene.hpp"
-#include "libsim/dynamics/scene/switch.hpp"
-#include "libsim/signal/signal.hpp"
+#include "libsim/dynamics/scene/simulation.hpp"
 
 namespace modcal {
-
-/// What is computed and kept: nothing else is.
-struct OutputRequest {
-  bool displacement = false;    ///< y(x_c) [m]
-  bool velocity = false;        ///< v(x_c) [m/s]
-  bool force = false;           ///< f_c [N]
-  bool left_reaction = false;   ///< R₁ at x = 0 [N]
-  bool right_reaction = false;  ///< R₂ at x = L [N]
-  /// Time from which the switches are listed [s]; infinite: none.
-  double switches_from = std::numeric_limits<double>::infinity();
-
-  static OutputRequest all() {
-    return {.displacement = true,
-            .velocity = true,
-            .force = true,
-            .left_reaction = true,
-            .right_reaction = true};
-  }
-};
-
-/// Sampled result. A signal that was not asked for has no samples.
-struct Simulation {
-  Signal displacement;
-  Signal velocity;
-  Signal force;
-  Signal left_reaction;
-  Signal right_reaction;
-
-  double time_step = 0.0;       ///< the step taken [s]: divides the sampling period
-  std::size_t steps = 0;        ///< steps taken
-  std::size_t attachments = 0;  ///< changes from sliding to sticking
-  std::size_t releases = 0;     ///< changes from sticking to sliding
-  /// Steps that the simulator took back for shorter ones because its own checks did not hold.
-  std::size_t refined_steps = 0;
-  std::size_t modes_moved = 0;   ///< modes that the contact force reaches
-  std::vector<Switch> switches;  ///< in the order of time, from OutputRequest::switches_from on
-  /// Time at which the simulation could not go on [s]; such a result holds no signals.
-  std::optional<double> diverged_at;
-  /// Why it could not; empty otherwise.
-  std::string explanation;
-};
-
-/// Number of samples of a record: duration·f_s rounded to the nearest, at t = 0, 1/f_s, …
-/// Throws InvalidInput where that is no positive number up to 2³¹.
-std::size_t sample_count(double duration, double sample_rate);
-
-/// Largest time step ≤ the wanted one that divides the sampling period a whole number of times.
-struct StepPlan {
-  double time_step = 0.0;            ///< [s]
-  std::size_t steps_per_sample = 0;  ///< m, f_s·m·Δt = 1
-};
-StepPlan plan_steps(double wanted_time_step, double sample_rate);
 
 /// Why a simulator cannot simulate a scene.
 struct SceneRefusal {
@@ -94,5 +40,39 @@ class Simulator {
   virtual Simulation run(const Scene& scene, double sample_rate, const OutputRequest& outputs,
                          const StopToken& stop) const = 0;
 };
+
+/// Scenes by their number, made when they are simulated, and what is computed of each.
+struct Ensemble {
+  std::size_t size = 0;
+  std::function<Scene(std::size_t)> scene;  ///< called from any thread
+  double sample_rate = 0.0;                 ///< [Hz]
+  OutputRequest outputs;
+};
+
+/// Simulates every scene of an ensemble over threads (for_each_task) and hands each result over as
+/// soon as it is there: take(i, simulation) is called once for every i, from any thread and in any
+/// order. Only the records that are being computed are held, one a thread. A scene that diverges is
+/// a result; one that cannot be simulated throws. Throws Interrupted where `stop` was requested,
+/// also in the middle of a scene.
+void simulate_ensemble(const Simulator& simulator, const Ensemble& ensemble,
+                       const std::function<void(std::size_t, Simulation)>& take,
+                       const StopToken& stop = {});
+
+/// reduce(i, simulation) of every scene, in their order: the same bits for any number of threads.
+template <typename Reduced>
+std::vector<Reduced> reduce_ensemble(
+    const Simulator& simulator, const Ensemble& ensemble,
+    const std::function<Reduced(std::size_t, const Simulation&)>& reduce,
+    const StopToken& stop = {}) {
+  static_assert(!std::is_same_v<Reduced, bool>, "std::vector<bool> cannot be written by threads");
+  std::vector<Reduced> results(ensemble.size);
+  simulate_ensemble(
+      simulator, ensemble,
+      [&](std::size_t index, const Simulation& simulation) {
+        results[index] = reduce(index, simulation);
+      },
+      stop);
+  return results;
+}
 
 }  // namespace modcal

@@ -3,15 +3,33 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <span>
+#include <variant>
 #include <vector>
 
 #include "libsim/base/error.hpp"
-#include "libsim/dynamics/scene/helmholtz_motion.hpp"
+#include "libsim/dynamics/scene/contact_modes.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {
 namespace {
+
+// μ_S − μ at the slip speed.
+double friction_fall(const FrictionLaw& law, double slip_speed) {
+  const double sliding = std::visit(
+      [slip_speed](const auto& unit) { return unit.at(slip_speed).force; }, law.sliding(1.0));
+  return law.static_limit(1.0) - sliding;
+}
+
+// Σ ζ_n/n over the odd modes that Helmholtz motion needs: 1/β of them shape its slip.
+double loss_sum(const ModalBasis& basis, double beta) {
+  double sum = 0.0;
+  for (std::size_t n = 1; n <= basis.size() && static_cast<double>(n) * beta <= 1.0; n += 2) {
+    sum += basis.zeta[n - 1] / static_cast<double>(n);
+  }
+  return sum;
+}
 
 constexpr double kShortestPeriod = 0.8;
 constexpr double kLongestPeriod = 1.25;
@@ -89,6 +107,42 @@ SlipCount count_slips(std::span<const Switch> switches, double start, double end
 constexpr double kSparePeriods = 1.5;
 
 }  // namespace
+
+double relative_bow_position(double contact, double length) {
+  MODCAL_REQUIRE(contact > 0.0 && contact < length,
+                 "bow position {:g} m is not inside the string: it must lie in (0, {:g}) m",
+                 contact, length);
+  return std::min(contact, length - contact) / length;
+}
+
+double helmholtz_velocity_rms(double relative_position, double bow_velocity) {
+  return std::abs(bow_velocity) * std::sqrt((1.0 - relative_position) / relative_position);
+}
+
+ModalState helmholtz_motion(const ModalBasis& basis, double contact, double bow_velocity) {
+  const double beta = relative_bow_position(contact, basis.length);
+  const bool near_left = contact <= 0.5 * basis.length;
+  const std::vector<double> shape = basis.shape_at(contact);
+  ModalState state{std::vector<double>(basis.size()), std::vector<double>(basis.size())};
+  for (std::size_t n = 1; n <= basis.size(); ++n) {
+    if (is_node(shape[n - 1])) continue;
+    const double sign = near_left && n % 2 == 0 ? -1.0 : 1.0;
+    state.velocity[n - 1] =
+        sign * 2.0 * bow_velocity / (beta * static_cast<double>(n) * std::numbers::pi);
+  }
+  return state;
+}
+
+BowForceLimits schelleng_limits(const Scene& scene) {
+  const StringModel& string = scene.string;
+  const double beta = relative_bow_position(scene.bow.position, string.length);
+  const double speed = std::abs(scene.bow.velocity);
+  const double impedance = std::sqrt(string.tension() * string.linear_density);
+  const double fall = friction_fall(*scene.friction.make(), speed * (1.0 - beta) / beta);
+  const double loss = loss_sum(make_modal_basis(string), beta);
+  return {.lowest = 4.0 * impedance * speed * loss / (std::numbers::pi * beta * beta * fall),
+          .highest = 2.0 * impedance * speed / (beta * fall)};
+}
 
 void RegimeCriteria::visit(OptionVisitor& visitor) {
   visitor.number({.key = "periods",

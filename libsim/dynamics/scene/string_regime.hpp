@@ -1,12 +1,45 @@
-// What kind of motion a bowed string has settled in.
+// Helmholtz motion, the bow forces that keep it up, and what kind of motion a string has settled
+// in.
 #pragma once
 
 #include <string_view>
 
 #include "libsim/base/options.hpp"
+#include "libsim/dynamics/scene/scene.hpp"
 #include "libsim/dynamics/scene/simulator.hpp"
+#include "libsim/model/modal_basis.hpp"
 
 namespace modcal {
+
+/// Helmholtz motion with the bow velocity v_b [m/s] at the contact x_c [m], in the middle of its
+/// stick phase: the corner is at the far end, the string is straight and turns about the near one,
+/// q_n = 0, q̇_n = ±2 v_b/(β nπ) (x_c = βL: (−1)^{n+1}; x_c = L − βL: +), β ≤ 1/2 (Helmholtz, 1863;
+/// Schelleng, 1973). Modes with a node at the contact are at rest: no bow there keeps them up.
+ModalState helmholtz_motion(const ModalBasis& basis, double contact, double bow_velocity);
+
+/// Distance of the contact from the nearer end over the length, β in (0, 1/2].
+double relative_bow_position(double contact, double length);
+
+/// Standard deviation over time of the contact's velocity in ideal Helmholtz motion,
+/// v_b √((1 − β)/β) [m/s].
+double helmholtz_velocity_rms(double relative_position, double bow_velocity);
+
+struct BowForceLimits {
+  double lowest = 0.0;   ///< below it the string slips more than once a period [N]
+  double highest = 0.0;  ///< above it the corner cannot release the string [N]
+};
+
+/// Schelleng's bow-force limits (Schelleng, 1973), with β = x_c/L, the characteristic
+/// impedance Z₀ = √(T ρ_L) and Δμ = μ_S − μ(v_b(1 − β)/β), the friction coefficient's fall from its
+/// static value to the one at the slip speed of Helmholtz motion:
+///   highest = 2 Z₀ v_b/(β Δμ),      lowest = Z₀² v_b/(2 R β² Δμ).
+/// His loss, a resistance R at the bridge, gives every mode the damping ratio ζ_n = Z₀/(π n R).
+/// Carried out for any damping ratios his argument (the force that feeds each harmonic of Helmholtz
+/// motion, half a period after the slip against the one in it) reads
+///   lowest = 4 Z₀ v_b/(π β² Δμ) Σ_{n odd ≤ 1/β} ζ_n/n,
+/// which is his for his loss since Σ_{n odd} 1/n² = π²/8.
+/// Throws InvalidInput for a contact outside the string. Infinite where Δμ = 0.
+BowForceLimits schelleng_limits(const Scene& scene);
 
 enum class StringRegime {
   kHelmholtz,     ///< periodic, one slip a period

@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "libsim/dynamics/friction/coulomb_exponential.hpp"
+#include "libsim/dynamics/friction/friction_law.hpp"
 #include "libsim/model/constant_damping.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 

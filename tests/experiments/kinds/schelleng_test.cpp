@@ -6,8 +6,8 @@
 
 #include "experiments/kinds/schelleng/schelleng_experiment.hpp"
 #include "experiments/kinds/schelleng/schelleng_study.hpp"
-#include "libsim/dynamics/scene/ensemble.hpp"
 #include "libsim/dynamics/event/modal_event.hpp"
+#include "libsim/dynamics/scene/simulator.hpp"
 #include "libsim/signal/statistics.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 

@@ -6,11 +6,11 @@
 #include <numbers>
 #include <numeric>
 
-#include "libcalib/problem/covariance.hpp"
 #include "libcalib/objectives/joint_likelihood.hpp"
 #include "libcalib/optimizers/tiny_least_squares.hpp"
+#include "libcalib/problem/covariance.hpp"
 #include "libsim/base/error.hpp"
-#include "libsim/signal/time_shift.hpp"
+#include "libsim/signal/measurement.hpp"
 #include "tests/libinverse/observer/bowed_record.hpp"
 
 namespace modcal {

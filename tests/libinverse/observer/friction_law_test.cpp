@@ -1,3 +1,5 @@
+#include "libsim/dynamics/friction/friction_law.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -5,9 +7,8 @@
 #include "libinverse/observer/friction_curve.hpp"
 #include "libinverse/observer/model_based_estimator.hpp"
 #include "libsim/base/error.hpp"
-#include "libsim/dynamics/friction/hyperbolic.hpp"
+#include "libsim/dynamics/fixed_step/fixed_step.hpp"
 #include "libsim/dynamics/friction/stateful_laws.hpp"
-#include "libsim/dynamics/fixed_step/modal_exact.hpp"
 #include "tests/libinverse/observer/bowed_record.hpp"
 
 namespace modcal {

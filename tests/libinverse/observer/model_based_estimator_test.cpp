@@ -5,8 +5,7 @@
 #include <tbb/global_control.h>
 
 #include "libsim/base/error.hpp"
-#include "libsim/dynamics/gestures/ramp_gesture.hpp"
-#include "libsim/dynamics/gestures/sine_gesture.hpp"
+#include "libsim/dynamics/gestures/gesture.hpp"
 #include "libsim/signal/statistics.hpp"
 #include "tests/libinverse/observer/bowed_record.hpp"
 

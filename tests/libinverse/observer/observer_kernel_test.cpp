@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "libinverse/observer/steady_gain.hpp"
-#include "libsim/dynamics/friction/thermal.hpp"
-#include "libsim/dynamics/fixed_step/modal_exact.hpp"
+#include "libsim/dynamics/fixed_step/fixed_step.hpp"
+#include "libsim/dynamics/friction/friction_law.hpp"
 #include "libsim/signal/statistics.hpp"
 #include "tests/libinverse/observer/bowed_record.hpp"
 

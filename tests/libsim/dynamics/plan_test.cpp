@@ -6,12 +6,10 @@
 
 #include <cmath>
 
-#include "libsim/dynamics/fixed_step/contact_rule.hpp"
-#include "libsim/dynamics/friction/coulomb_exponential.hpp"
-#include "libsim/dynamics/friction/thermal.hpp"
 #include "libsim/dynamics/event/modal_event.hpp"
-#include "libsim/dynamics/fixed_step/modal_exact.hpp"
-#include "libsim/dynamics/fixed_step/newmark_explicit.hpp"
+#include "libsim/dynamics/fixed_step/contact_rule.hpp"
+#include "libsim/dynamics/fixed_step/fixed_step.hpp"
+#include "libsim/dynamics/friction/friction_law.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
 namespace modcal {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "libsim/dynamics/event/modal_event.hpp"
-#include "libsim/dynamics/fixed_step/modal_exact.hpp"
+#include "libsim/dynamics/fixed_step/fixed_step.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
 namespace modcal {

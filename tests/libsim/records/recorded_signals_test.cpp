@@ -8,7 +8,7 @@
 
 #include "libsim/records/csv_writer.hpp"
 #include "libsim/records/wav_writer.hpp"
-#include "libsim/signal/time_shift.hpp"
+#include "libsim/signal/measurement.hpp"
 #include "tests/libsim/records/record_folder.hpp"
 
 namespace modcal {

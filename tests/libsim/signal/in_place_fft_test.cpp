@@ -1,11 +1,10 @@
-#include "libsim/signal/in_place_fft.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "libsim/base/error.hpp"
 #include "libsim/base/random.hpp"
+#include "libsim/signal/fft.hpp"
 
 namespace modcal {
 namespace {

@@ -4,8 +4,8 @@
 #include <array>
 #include <optional>
 
-#include "libsim/dynamics/scene/contact_modes.hpp"
 #include "libsim/dynamics/event/modes/pole_map.hpp"
+#include "libsim/dynamics/scene/contact_modes.hpp"
 
 namespace modcal::event {
 

@@ -8,7 +8,7 @@
 #define MODCAL_PLANAR_LANES_INL
 #endif
 
-#include "libsim/dynamics/event/modes/planar_rows.hpp"
+#include "libsim/dynamics/event/modes/modal_kernels.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace modcal::event::HWY_NAMESPACE {

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "libsim/dynamics/event/modes/planar_rows.hpp"
+#include "libsim/dynamics/event/modes/modal_kernels.hpp"
 
 namespace modcal::event {
 

@@ -28,4 +28,27 @@ struct NodeValues {
 bool solve_nodes(const SlidingLaw& law, int nodes, const NodeMatrix& coupling,
                  const NodeVector& free, NodeValues& values);
 
+/// A polynomial of the friction that node i of the step at hand finds at θ = from + scale·c_i.
+struct FrictionGuess {
+  const NodeVector& powers;
+  double from, scale;
+};
+
+/// Speeds of the nodes 2…s to start the solution from: as if the friction there were the guess's;
+/// `values` gives that of node 1.
+inline void guess_speeds(const LobattoRule& rule, const NodeMatrix& coupling,
+                         const NodeVector& free, const FrictionGuess& guess, NodeValues& values) {
+  NodeVector friction{};
+  friction[0] = values.friction[0];
+  for (int i = 1; i < rule.nodes; ++i) {
+    const double theta = guess.from + guess.scale * rule.node[i];
+    for (int k = rule.nodes; k-- > 0;) friction[i] = friction[i] * theta + guess.powers[k];
+  }
+  for (int i = 1; i < rule.nodes; ++i) {
+    double sum = 0.0;
+    for (int j = 0; j < rule.nodes; ++j) sum += coupling[i][j] * friction[j];
+    values.speed[i] = free[i] - sum;
+  }
+}
+
 }  // namespace modcal::event

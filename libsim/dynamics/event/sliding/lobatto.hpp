@@ -1,7 +1,9 @@
 // Lobatto nodes on [0, 1] and what collocation at them needs.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace modcal::event {
 
@@ -19,6 +21,24 @@ struct LobattoRule {
   /// max |Π (θ − c_i)|/s!: |x − interpolant| ≤ remainder · max |x^(s)| (Cauchy).
   double remainder = 0.0;
 
+  /// Power coefficients in θ of the polynomial through the node values.
+  Row powers_of(const Row& value) const {
+    Row powers{};
+    for (int j = 0; j < nodes; ++j) {
+      for (int k = 0; k < nodes; ++k) powers[k] += value[j] * power[j][k];
+    }
+    return powers;
+  }
+  /// Lowest control point of its Bézier polygon: no value in between is below.
+  double lowest_control(const Row& value) const {
+    double lowest = HUGE_VAL;
+    for (int i = 0; i < nodes; ++i) {
+      double control = 0.0;
+      for (int j = 0; j < nodes; ++j) control += bernstein[i][j] * value[j];
+      lowest = std::min(lowest, control);
+    }
+    return lowest;
+  }
   /// Bound of |θ^m − its interpolant| on [0, 1]: remainder · m!/(m − s)!.
   double power_remainder(int m) const;
 };

@@ -5,9 +5,10 @@
 #include <cmath>
 
 #include "libsim/dynamics/event/modes/bow_path.hpp"
-#include "libsim/dynamics/event/sliding/contact_friction.hpp"
 #include "libsim/dynamics/event/modes/first_crossing.hpp"
-#include "libsim/dynamics/event/sliding/node_polynomial.hpp"
+#include "libsim/dynamics/event/modes/force_observer.hpp"
+#include "libsim/dynamics/event/sliding/collocation.hpp"
+#include "libsim/dynamics/event/sliding/contact_friction.hpp"
 
 namespace modcal::event {
 
@@ -71,21 +72,20 @@ class Sliding {
     return any_step(x, end, state, values, from_tables);
   }
 
-  /// The force that drove the last step that moved, as `powers` powers of θ.
-  struct LastStep {
-    double duration = 0.0;  ///< [s]
-    NodeVector force{};
-    std::size_t powers = 0;
-  };
-  LastStep last_step() const {
-    LastStep step{attached_part_ * last_length_ * model_.grid_step(), powers_,
-                  static_cast<std::size_t>(nodes())};
+  /// Shows the force of the last step that moved, at whose start the bow's drive was `drive`.
+  void show(const BowDrive& drive, ForceObserver& observer) const {
+    NodeVector force = powers_;
     double scale = -side_;
-    for (double& c : step.force) {
+    for (double& c : force) {
       c *= scale;
       scale *= attached_part_;
     }
-    return step;
+    observer.piece({.phase = ContactPhase::kSliding,
+                    .duration = attached_part_ * last_length_ * model_.grid_step(),
+                    .force = std::span(force).first(static_cast<std::size_t>(nodes())),
+                    .drive = drive,
+                    .side = side_,
+                    .rise = law_.rise_powers()});
   }
 
   double side() const { return side_; }
@@ -179,7 +179,7 @@ class Sliding {
     if (!law_.solve(table.coupling, free, table.step, values) || steep(values, table.step)) {
       return refined(end - length);
     }
-    const NodeVector powers = friction_powers(model_.rule(), values);
+    const NodeVector powers = model_.rule().powers_of(values.friction);
     if (unresolved(values, powers, table.step)) return refined(end - length);
     if (!stays_sliding(table, values, powers, state)) return std::nullopt;
     NodeVector force{};
@@ -192,7 +192,7 @@ class Sliding {
   // Bézier hull of the interpolated speed beyond its interpolation error: u > 0 throughout.
   bool stays_sliding(const SlidingTable& table, const NodeValues& values, const NodeVector& powers,
                      const PlanarVector& state) const {
-    const double lowest = lowest_control(model_.rule(), values.speed);
+    const double lowest = model_.rule().lowest_control(values.speed);
     if (!(lowest > 0.0)) return false;
     double remainder = table.free_remainder * model_.free_derivative_bound(state);
     for (int k = 0; k < nodes(); ++k) remainder += table.forced_remainder[k] * std::abs(powers[k]);
@@ -225,7 +225,7 @@ class Sliding {
         return refined(x);
       }
       solved = false;
-      powers = friction_powers(model_.rule(), values);
+      powers = model_.rule().powers_of(values.friction);
       if (unresolved(values, powers, step)) return refined(x);
       NodeVector force;
       for (std::size_t k = 0; k < force.size(); ++k) force[k] = -side_ * powers[k];

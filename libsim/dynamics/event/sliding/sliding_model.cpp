@@ -147,7 +147,7 @@ double SlidingModel::free_derivative_bound(const PlanarVector& state) const {
   return weighted_size(derivative_weight_, state);
 }
 
-Motion SlidingModel::observe(const PlanarVector& state, MotionRequest wanted) const {
+MotionSample SlidingModel::observe(const PlanarVector& state, MotionRequest wanted) const {
   std::array<double, kRows> row{};
   std::size_t rows = wanted.contact ? std::size_t{kLeft} : 0;
   if (wanted.reactions) rows = kRows;

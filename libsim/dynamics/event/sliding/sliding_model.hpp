@@ -7,10 +7,10 @@
 #include <span>
 #include <vector>
 
-#include "libsim/dynamics/scene/contact_modes.hpp"
-#include "libsim/dynamics/event/sliding/lobatto.hpp"
 #include "libsim/dynamics/event/modes/modal_kernels.hpp"
-#include "libsim/dynamics/event/modes/motion.hpp"
+#include "libsim/dynamics/event/sliding/lobatto.hpp"
+#include "libsim/dynamics/scene/contact_modes.hpp"
+#include "libsim/dynamics/scene/simulation.hpp"
 
 namespace modcal::event {
 
@@ -59,7 +59,7 @@ class SlidingModel {
   void advance_free_by(double time, PlanarVector& state);
   /// Σ |a λ^s||Z|, within a factor √2.
   double free_derivative_bound(const PlanarVector& state) const;
-  Motion observe(const PlanarVector& state, MotionRequest wanted) const;
+  MotionSample observe(const PlanarVector& state, MotionRequest wanted) const;
 
  private:
   enum Row : std::size_t { kVelocity, kDisplacement, kLeft, kRight, kRows };

@@ -4,10 +4,10 @@
 
 #include <cmath>
 
-#include "libsim/dynamics/gestures/table_gesture.hpp"
-#include "libsim/dynamics/scene/pluck.hpp"
 #include "libsim/dynamics/event/modal_event.hpp"
-#include "libsim/dynamics/fixed_step/scene_setup.hpp"
+#include "libsim/dynamics/gestures/gesture.hpp"
+#include "libsim/dynamics/scene/contact_modes.hpp"
+#include "libsim/dynamics/scene/initial_motion.hpp"
 #include "libsim/model/constant_damping.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
@@ -135,16 +135,16 @@ TEST(EnergyMeter, OfAFreeDecayIsTheClosedForm) {
 }
 
 // Passes a run on to a meter, wrongly.
-class WrongWitness final : public event::ForceWitness {
+class WrongObserver final : public event::ForceObserver {
  public:
   enum class Error { kNone, kSkippedPiece, kForgottenSpring, kWoundSpring, kLongerPiece };
-  WrongWitness(event::EnergyMeter& meter, Error error) : meter_(meter), error_(error) {}
-  void saw(const event::ForcePiece& piece) override {
+  WrongObserver(event::EnergyMeter& meter, Error error) : meter_(meter), error_(error) {}
+  void piece(const event::ForcePiece& piece) override {
     const bool here = ++pieces_ == 700;
     if (here && error_ == Error::kSkippedPiece) return;
     event::ForcePiece changed = piece;
     if (here && error_ == Error::kLongerPiece) changed.duration *= 1.0 + 1e-6;
-    meter_.saw(changed);
+    meter_.piece(changed);
   }
   void attached(double elongation) override {
     meter_.attached(error_ == Error::kWoundSpring ? elongation + 1e-9 : elongation);
@@ -176,11 +176,11 @@ struct Watched {
   }
   // What a meter that believes in other modes or another contact makes of the run.
   EventEnergy measured(const event::EventLoop& believed, const ContactModes& believed_modes,
-                       WrongWitness::Error error = WrongWitness::Error::kNone) {
+                       WrongObserver::Error error = WrongObserver::Error::kNone) {
     event::EnergyMeter meter(believed, believed_modes, state);
-    WrongWitness witness(meter, error);
+    WrongObserver observer(meter, error);
     event::EventLoop run = loop;
-    run.witness = &witness;
+    run.observer = &observer;
     event::EventState end = state;
     EXPECT_FALSE(run_event_loop(run, modes, end).failure);
     return meter.account(end);
@@ -219,7 +219,7 @@ TEST(EnergyMeter, SeesAForceThatTheLawDoesNotGive) {
 }
 
 TEST(EnergyMeter, SeesWrongJumps) {
-  using Error = WrongWitness::Error;
+  using Error = WrongObserver::Error;
   Watched watched(short_scene(0.03));
   const EventEnergy right = watched.measured(watched.loop, watched.modes);
   const auto contact_is_open = [&](const EventEnergy& energy) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "libsim/dynamics/event/sticking.hpp"
-#include "libsim/dynamics/fixed_step/scene_setup.hpp"
+#include "libsim/dynamics/scene/contact_modes.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
 namespace modcal::event {

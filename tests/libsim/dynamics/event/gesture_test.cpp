@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "libsim/dynamics/event/event_loop.hpp"
-#include "libsim/dynamics/fixed_step/scene_setup.hpp"
+#include "libsim/dynamics/scene/contact_modes.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 #include "tests/libsim/dynamics/simulators/long_double_twin.hpp"
 

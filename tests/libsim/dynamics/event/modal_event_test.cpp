@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "libsim/base/error.hpp"
-#include "libsim/dynamics/friction/hyperbolic.hpp"
-#include "libsim/dynamics/scene/pluck.hpp"
+#include "libsim/dynamics/friction/friction_law.hpp"
+#include "libsim/dynamics/scene/initial_motion.hpp"
 #include "tests/libsim/dynamics/random_scenes.hpp"
 #include "tests/libsim/dynamics/simulators/compared_runs.hpp"
 #include "tests/libsim/dynamics/simulators/long_double_twin.hpp"

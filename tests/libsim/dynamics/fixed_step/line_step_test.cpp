@@ -1,16 +1,13 @@
-#include "libsim/dynamics/fixed_step/line_step.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
 #include "libsim/base/error.hpp"
-#include "libsim/dynamics/friction/coulomb_exponential.hpp"
-#include "libsim/dynamics/gestures/table_gesture.hpp"
-#include "libsim/dynamics/scene/pluck.hpp"
-#include "libsim/dynamics/fixed_step/modal_exact.hpp"
-#include "libsim/dynamics/fixed_step/newmark_explicit.hpp"
+#include "libsim/dynamics/fixed_step/fixed_step.hpp"
+#include "libsim/dynamics/friction/friction_law.hpp"
+#include "libsim/dynamics/gestures/gesture.hpp"
+#include "libsim/dynamics/scene/initial_motion.hpp"
 #include "libsim/model/constant_damping.hpp"
 #include "libsim/model/transfer.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"

@@ -4,8 +4,7 @@
 
 #include "libsim/base/error.hpp"
 #include "libsim/base/random.hpp"
-#include "libsim/dynamics/friction/coulomb_exponential.hpp"
-#include "libsim/dynamics/friction/hyperbolic.hpp"
+#include "libsim/dynamics/friction/friction_law.hpp"
 
 namespace modcal {
 namespace {

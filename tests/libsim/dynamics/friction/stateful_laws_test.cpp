@@ -6,8 +6,7 @@
 
 #include "libsim/base/error.hpp"
 #include "libsim/base/random.hpp"
-#include "libsim/dynamics/friction/elasto_plastic.hpp"
-#include "libsim/dynamics/friction/thermal.hpp"
+#include "libsim/dynamics/friction/friction_law.hpp"
 
 namespace modcal {
 namespace {

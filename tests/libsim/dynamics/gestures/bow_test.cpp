@@ -6,9 +6,7 @@
 #include <numbers>
 
 #include "libsim/base/error.hpp"
-#include "libsim/dynamics/gestures/ramp_gesture.hpp"
-#include "libsim/dynamics/gestures/sine_gesture.hpp"
-#include "libsim/dynamics/gestures/table_gesture.hpp"
+#include "libsim/dynamics/gestures/gesture.hpp"
 
 namespace modcal {
 namespace {

@@ -1,13 +1,11 @@
-#include "libsim/dynamics/scene/bow_force_limits.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
 #include "libsim/base/error.hpp"
-#include "libsim/dynamics/friction/coulomb_exponential.hpp"
-#include "libsim/dynamics/scene/helmholtz_motion.hpp"
+#include "libsim/dynamics/friction/friction_law.hpp"
+#include "libsim/dynamics/scene/string_regime.hpp"
 #include "libsim/model/constant_damping.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 

@@ -1,5 +1,3 @@
-#include "libsim/dynamics/scene/ensemble.hpp"
-
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
@@ -8,6 +6,7 @@
 
 #include "libsim/base/error.hpp"
 #include "libsim/dynamics/event/modal_event.hpp"
+#include "libsim/dynamics/scene/simulator.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
 namespace modcal {

@@ -1,10 +1,9 @@
-#include "libsim/dynamics/scene/pluck.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "libsim/base/error.hpp"
+#include "libsim/dynamics/scene/initial_motion.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
 namespace modcal {

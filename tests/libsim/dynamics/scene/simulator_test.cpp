@@ -5,10 +5,9 @@
 #include <cmath>
 
 #include "libsim/base/error.hpp"
-#include "libsim/dynamics/friction/coulomb_exponential.hpp"
-#include "libsim/dynamics/gestures/ramp_gesture.hpp"
-#include "libsim/dynamics/fixed_step/modal_exact.hpp"
-#include "libsim/dynamics/fixed_step/newmark_explicit.hpp"
+#include "libsim/dynamics/fixed_step/fixed_step.hpp"
+#include "libsim/dynamics/friction/friction_law.hpp"
+#include "libsim/dynamics/gestures/gesture.hpp"
 #include "libsim/model/constant_damping.hpp"
 #include "libsim/signal/statistics.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"

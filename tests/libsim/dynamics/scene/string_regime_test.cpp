@@ -7,7 +7,6 @@
 
 #include "libsim/base/error.hpp"
 #include "libsim/base/random.hpp"
-#include "libsim/dynamics/scene/helmholtz_motion.hpp"
 #include "libsim/dynamics/event/modal_event.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 

@@ -5,7 +5,7 @@
 #include <complex>
 #include <numbers>
 
-#include "libsim/dynamics/friction/coulomb_exponential.hpp"
+#include "libsim/dynamics/friction/friction_law.hpp"
 #include "libsim/dynamics/scene/simulator.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "libsim/dynamics/event/modal_event.hpp"
-#include "libsim/dynamics/fixed_step/modal_exact.hpp"
+#include "libsim/dynamics/fixed_step/fixed_step.hpp"
 
 namespace modcal {
 

@@ -6,11 +6,9 @@
 #include <complex>
 #include <vector>
 
-#include "libsim/dynamics/fixed_step/first_order_hold.hpp"
-#include "libsim/dynamics/fixed_step/modal_exact.hpp"
-#include "libsim/dynamics/fixed_step/newmark_explicit.hpp"
-#include "libsim/dynamics/fixed_step/scene_setup.hpp"
+#include "libsim/dynamics/fixed_step/fixed_step.hpp"
 #include "libsim/dynamics/fixed_step/step_loop.hpp"
+#include "libsim/dynamics/scene/contact_modes.hpp"
 #include "tests/libsim/dynamics/block_on_belt.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
@@ -52,25 +50,30 @@ Motion run(ContactModes modes, ForceTiming timing, double h, std::size_t samples
   const SchemeWeights weights = scheme_weights(modes.pole, h, weights_of(timing));
   Motion motion{
       std::vector<double>(samples), std::vector<double>(samples), std::vector<double>(samples), {}};
-  StepLoop loop{
-      .timing = timing,
-      .time_step = h,
-      .steps_per_sample = stride,
-      .samples = samples,
-      .contact = {.bow_velocity = 0.05, .static_limit = 0.4, .stiffness = 1e4, .damping = kDamping},
-      .law = ExponentialSliding{.dynamic_force = 0.3},
-      .initial_displacement = y,
-      .initial_velocity = v,
-      .targets = {.displacement = motion.displacement.data(),
-                  .velocity = motion.velocity.data(),
-                  .force = motion.force.data()}};
+  const FixedStepRun plan{.timing = timing,
+                          .time_step = h,
+                          .steps_per_sample = stride,
+                          .samples = samples,
+                          .targets = {.displacement = motion.displacement.data(),
+                                      .velocity = motion.velocity.data(),
+                                      .force = motion.force.data()},
+                          .point_targets = {},
+                          .switches = {},
+                          .stop = {}};
+  const SteadyContact contact{.parameters = {.bow_velocity = 0.05,
+                                             .static_limit = 0.4,
+                                             .stiffness = 1e4,
+                                             .damping = kDamping},
+                              .law = ExponentialSliding{.dynamic_force = 0.3},
+                              .initial_displacement = y,
+                              .initial_velocity = v};
   // Z = v + i ω y (ζ = 0, φ = 1), and what the force before leaves of it: r Z' = r Z + d₀ f.
   modes.initial[0] = std::complex<double>(v, modes.pole[0].imag() * y) +
                      weights.older[0] / weights.propagate[0] * modes.drive[0] * force_before;
   const double side = v < 0.05 ? 1.0 : -1.0;
   StepCoefficients coefficients =
       make_step_coefficients(modes, weights, timing == ForceTiming::kImplicit ? side * 0.3 : 0.0);
-  motion.counts = run_step_loop(loop, coefficients);
+  motion.counts = run_step_loop(plan, contact, coefficients);
   return motion;
 }
 

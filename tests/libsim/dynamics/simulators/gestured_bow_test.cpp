@@ -3,10 +3,9 @@
 
 #include <cmath>
 
-#include "libsim/dynamics/friction/coulomb_exponential.hpp"
-#include "libsim/dynamics/gestures/ramp_gesture.hpp"
-#include "libsim/dynamics/gestures/table_gesture.hpp"
-#include "libsim/dynamics/fixed_step/modal_exact.hpp"
+#include "libsim/dynamics/fixed_step/fixed_step.hpp"
+#include "libsim/dynamics/friction/friction_law.hpp"
+#include "libsim/dynamics/gestures/gesture.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
 namespace modcal {

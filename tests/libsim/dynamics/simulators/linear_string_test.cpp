@@ -4,9 +4,9 @@
 #include <cmath>
 #include <complex>
 
-#include "libsim/dynamics/friction/coulomb_exponential.hpp"
-#include "libsim/dynamics/scene/pluck.hpp"
-#include "libsim/dynamics/fixed_step/modal_exact.hpp"
+#include "libsim/dynamics/fixed_step/fixed_step.hpp"
+#include "libsim/dynamics/friction/friction_law.hpp"
+#include "libsim/dynamics/scene/initial_motion.hpp"
 #include "libsim/model/constant_damping.hpp"
 #include "libsim/model/transfer.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"

@@ -1,8 +1,8 @@
 // The event-driven simulator under gestures of the bow.
 #include <gtest/gtest.h>
 
-#include "libsim/dynamics/gestures/table_gesture.hpp"
 #include "libsim/dynamics/event/modal_event.hpp"
+#include "libsim/dynamics/gestures/gesture.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 #include "tests/libsim/dynamics/simulators/compared_runs.hpp"
 

@@ -7,9 +7,7 @@
 #include <numeric>
 #include <string>
 
-#include "libsim/dynamics/gestures/ramp_gesture.hpp"
-#include "libsim/dynamics/gestures/sine_gesture.hpp"
-#include "libsim/dynamics/gestures/table_gesture.hpp"
+#include "libsim/dynamics/gestures/gesture.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 #include "tests/libsim/dynamics/simulators/compared_runs.hpp"
 

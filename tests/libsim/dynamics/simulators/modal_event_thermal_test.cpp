@@ -9,9 +9,8 @@
 #include "libsim/base/random.hpp"
 #include "libsim/dynamics/event/event_loop.hpp"
 #include "libsim/dynamics/event/sliding/static_limit.hpp"
-#include "libsim/dynamics/friction/coulomb_exponential.hpp"
-#include "libsim/dynamics/friction/thermal.hpp"
-#include "libsim/dynamics/gestures/table_gesture.hpp"
+#include "libsim/dynamics/friction/friction_law.hpp"
+#include "libsim/dynamics/gestures/gesture.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 #include "tests/libsim/dynamics/simulators/compared_runs.hpp"
 

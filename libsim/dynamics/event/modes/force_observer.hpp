@@ -21,10 +21,10 @@ struct ForcePiece {
 };
 
 /// Pieces follow each other without a gap from t = 0 on.
-class ForceWitness {
+class ForceObserver {
  public:
-  virtual ~ForceWitness() = default;
-  virtual void saw(const ForcePiece& piece) = 0;
+  virtual ~ForceObserver() = default;
+  virtual void piece(const ForcePiece& piece) = 0;
   /// The string sticks from here on, the spring being stretched by `elongation` [m].
   virtual void attached(double elongation) = 0;
   /// The spring is let go.

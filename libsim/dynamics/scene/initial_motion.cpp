@@ -1,6 +1,7 @@
-#include "libsim/dynamics/scene/pluck.hpp"
+#include "libsim/dynamics/scene/initial_motion.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -33,7 +34,7 @@ void Pluck::Options::visit(OptionVisitor& visitor) {
                  width);
 }
 
-ModalState Pluck::make_state(const ModalBasis& basis) const {
+ModalState Pluck::state(const ModalBasis& basis) const {
   const double length = basis.length, x = options_.position;
   MODCAL_REQUIRE(x > 0.0 && x < length,
                  "plucking point {:g} m is not inside the string: it must lie in (0, {:g}) m", x,
@@ -54,6 +55,14 @@ ModalState Pluck::make_state(const ModalBasis& basis) const {
                                  (n * n));
   }
   return state;
+}
+
+Registry<InitialMotion> InitialMotion::registry() {
+  static constexpr std::array kTable = {
+      entry_of<InitialMotion, Pluck>("pluck", "released from a triangle"),
+      entry_of<InitialMotion, Rest>("rest", "straight and at rest"),
+  };
+  return kTable;
 }
 
 }  // namespace modcal

@@ -1,0 +1,167 @@
+#include "libsim/dynamics/energy/energy_account.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "libsim/base/error.hpp"
+#include "libsim/dynamics/energy/mode_replay.hpp"
+
+namespace modcal {
+namespace {
+
+constexpr double kEpsilon = 2.220446049250313e-16;
+
+using PointSamples = std::vector<std::vector<double>>;  // points × samples
+
+// Mean force of the step after sample k for kLagged; no force is known before t = 0.
+double lagged_force(std::span<const double> force, std::size_t k) {
+  return 0.5 * (force[k] + (k > 0 ? force[k - 1] : 0.0));
+}
+
+// The string under forces straight between the samples; returns the velocity of every point that
+// they explain.
+PointSamples replay_linear(const LineModes& modes, std::span<const PointRecord> points, double step,
+                           EnergyAccount& account) {
+  ModeReplay replay(modes);
+  const double parts =
+      std::max(1.0, std::ceil(replay.fastest() * step / ModeReplay::kLongestPhase));
+  const double part = step / parts;
+  const std::size_t count = points.front().force.size();
+  PointSamples replayed(points.size(), std::vector<double>(count));
+  PointPowers force(points.size(), std::vector<double>(2)), velocity;
+  const std::vector<std::span<const double>> pushes(force.begin(), force.end());
+  const double start = replay.energy(replay.state());
+  for (std::size_t k = 0; k + 1 < count; ++k) {
+    for (double p = 0.0; p < parts; p += 1.0) {
+      for (std::size_t j = 0; j < points.size(); ++j) {
+        const double change = points[j].force[k + 1] - points[j].force[k];
+        force[j] = {points[j].force[k] + change * (p / parts), change / parts};
+      }
+      account.dissipated += replay.advance(part, pushes, velocity);
+      for (std::size_t j = 0; j < points.size(); ++j) {
+        if (k == 0 && p == 0.0) replayed[j][0] = velocity[j][0];
+        replayed[j][k + 1] = 0.0;
+        for (std::size_t i = 0; i < velocity[j].size(); ++i) {
+          const auto power = static_cast<double>(i);
+          replayed[j][k + 1] += velocity[j][i];
+          account.string_work +=
+              part * velocity[j][i] * (force[j][0] / (power + 1.0) + force[j][1] / (power + 2.0));
+        }
+      }
+    }
+  }
+  const double end = replay.energy(replay.state());
+  account.stored = end - start;
+  account.largest_stored = std::max(start, end);
+  return replayed;
+}
+
+// The string by the trapezoidal rule under the forces of the steps before.
+void replay_lagged(const LineModes& modes, std::span<const PointRecord> points, double h,
+                   EnergyAccount& account) {
+  const std::size_t count = points.front().force.size();
+  std::vector<double> load(count);
+  double start = 0.0, end = 0.0;
+  for (std::size_t n = 0; n < modes.size(); ++n) {
+    std::fill(load.begin(), load.end(), 0.0);
+    for (std::size_t j = 0; j < points.size(); ++j) {
+      const double drive = modes.shape[j][n] * modes.inverse_mass[n];
+      for (std::size_t k = 0; k < count; ++k) load[k] += drive * points[j].force[k];
+    }
+    const double mass = 1.0 / modes.inverse_mass[n], decay = -modes.pole[n].real() * h;
+    const double square = std::norm(modes.pole[n]), quarter = 0.25 * square * h * h;
+    double v = modes.initial[n].real() - modes.quadrature[n] * modes.initial[n].imag();
+    double y = modes.compliance[n] * modes.initial[n].imag();
+    start += 0.5 * mass * (v * v + square * y * y);
+    for (std::size_t k = 0; k + 1 < count; ++k) {
+      const double push = h * (lagged_force(load, k) - square * y);
+      const double next = (v * (1.0 - decay - quarter) + push) / (1.0 + decay + quarter);
+      const double mean = 0.5 * (v + next);
+      y += h * mean;
+      v = next;
+      account.dissipated += 2.0 * decay * mass * mean * mean;
+    }
+    end += 0.5 * mass * (v * v + square * y * y);
+  }
+  account.stored = end - start;
+  account.largest_stored = std::max(start, end);
+}
+
+// What the samples of a point say themselves: works of the steps and magnitudes. `replayed`: the
+// velocity that the force explains; none for kLagged.
+void account_contact(const PointRecord& point, const PiecewiseLinear& bow, double h,
+                     const std::vector<double>* replayed, EnergyAccount& account) {
+  for (std::size_t k = 0; k + 1 < point.force.size(); ++k) {
+    const double t = static_cast<double>(k) * h, next = static_cast<double>(k + 1) * h;
+    const double travel = bow.integral(next) - bow.integral(t);
+    double force = 0.0, velocity = 0.0;
+    if (replayed == nullptr) {
+      force = lagged_force(point.force, k);
+      velocity = (point.displacement[k + 1] - point.displacement[k]) / h;
+      account.string_work += force * velocity * h;
+    } else {
+      force = 0.5 * (point.force[k] + point.force[k + 1]);
+      velocity = 0.5 * (point.velocity[k] + point.velocity[k + 1]);
+      // The replayed modes have done the work under their own velocity: the rest is the
+      // simulator's.
+      account.string_work += force * h * (velocity - 0.5 * ((*replayed)[k] + (*replayed)[k + 1]));
+      account.bow_work +=
+          (point.force[k + 1] - point.force[k]) * (bow.at(next) - bow.at(t)) * h / 12.0;
+    }
+    account.bow_work += force * travel;
+    account.throughput += std::abs(force * velocity) * h;
+    account.contact_throughput += std::abs(force * (velocity * h - travel));
+  }
+}
+
+void require_records(const LineModes& modes, std::span<const PointRecord> points) {
+  MODCAL_REQUIRE(points.size() == modes.points(), "{} records for {} contact points", points.size(),
+                 modes.points());
+  const std::size_t count = points.front().force.size();
+  for (const PointRecord& point : points) {
+    MODCAL_REQUIRE(count > 0 && point.force.size() == count && point.displacement.size() == count &&
+                       point.velocity.size() == count,
+                   "an energy account needs displacement, velocity and force, but they have {}, {} "
+                   "and {} samples: ask the simulator for all three",
+                   point.displacement.size(), point.velocity.size(), point.force.size());
+  }
+}
+
+}  // namespace
+
+EnergyAccount audit_energy(const LineModes& modes, const BowMotion& bow,
+                           std::span<const PointRecord> points, double sample_rate,
+                           ForceHold hold) {
+  require_records(modes, points);
+  const double step = 1.0 / sample_rate;
+  EnergyAccount account;
+  PointSamples replayed;
+  if (hold == ForceHold::kLagged) {
+    replay_lagged(modes, points, step, account);
+  } else {
+    replayed = replay_linear(modes, points, step, account);
+  }
+  for (std::size_t j = 0; j < points.size(); ++j) {
+    account_contact(points[j], bow.velocity, step, replayed.empty() ? nullptr : &replayed[j],
+                    account);
+  }
+  double fastest = 0.0;
+  for (const auto& pole : modes.pole) fastest = std::max(fastest, std::abs(pole) * step);
+  account.rounding = 4.0 * kEpsilon * static_cast<double>(points.front().force.size()) *
+                         (1.0 + fastest) * account.string_at_hand() +
+                     1e-12 * (account.throughput + account.dissipated);
+  return account;
+}
+
+EnergyAccount audit_energy(const Scene& scene, const Simulation& run, ForceHold hold) {
+  MODCAL_REQUIRE(scene.bow.points == 1,
+                 "{} contact points: a simulation holds their mean motion only; audit the records "
+                 "of every point",
+                 scene.bow.points);
+  const PointRecord point{run.displacement.samples, run.velocity.samples, run.force.samples};
+  return audit_energy(scene_line_modes(scene), bow_motion(scene.bow, scene.duration), {&point, 1},
+                      run.force.sample_rate, hold);
+}
+
+}  // namespace modcal
