@@ -7,7 +7,7 @@
 #include "experiments/kinds/invert/invert_study.hpp"
 #include "experiments/kinds/limit/calibration_limit_experiment.hpp"
 #include "experiments/kinds/schelleng/schelleng_experiment.hpp"
-#include "experiments/kinds/section7/pluck_then_bow_experiment.hpp"
+#include "experiments/kinds/section7/pluck_then_bow.hpp"
 #include "experiments/kinds/simulate/simulate_study.hpp"
 #include "experiments/kinds/study_experiment.hpp"
 #include "experiments/kinds/sweep/sweep_experiment.hpp"
@@ -26,7 +26,7 @@ Registry<Experiment> Experiment::registry() {
           "identify", "modes of a plucked string from its end reactions"),
       entry_of<Experiment, StudyExperiment<InvertOptions>>(
           "invert", "contact force and motion from simulated or recorded reactions"),
-      entry_of<Experiment, PluckThenBowExperiment>(
+      entry_of<Experiment, StudyExperiment<PluckThenBowOptions>>(
           "pluck_then_bow", "pluck test, law, refinement and contact on a stroke, identification"),
       entry_of<Experiment, SchellengExperiment>(
           "schelleng", "which motion a steady bow stroke settles in, over positions and forces"),

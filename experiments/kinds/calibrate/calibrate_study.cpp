@@ -65,13 +65,13 @@ void CalibrateOptions::visit(OptionVisitor& visitor) {
       audio);
 }
 
-namespace {
-
 std::vector<double> frequencies_of(const ModalBasis& basis) {
   std::vector<double> frequencies(basis.size());
   for (std::size_t n = 0; n < basis.size(); ++n) frequencies[n] = basis.frequency(n);
   return frequencies;
 }
+
+namespace {
 
 void fill_blind(CalibrationOutcome& outcome) {
   std::vector<bool> excited;

@@ -57,6 +57,11 @@ struct PluckThenBowOptions {
   std::int64_t seed = 1;
   void visit(OptionVisitor& visitor);
 
+  std::vector<Finding> lint() const;
+  std::vector<std::string> plan() const;
+  std::optional<PlannedSimulations> planned_simulations() const;
+  StudyResult run(const StudyContext& context) const;
+
   StreamKey key() const { return StreamKey(static_cast<std::uint64_t>(seed)); }
   /// The pluck test as an experiment of its own.
   IdentifyOptions pluck_test(std::string_view method) const;
@@ -73,6 +78,10 @@ struct ModelStage {
   double contact_deviation = std::numeric_limits<double>::quiet_NaN();  ///< [m]
   std::vector<double> deviation;  ///< relative, by mode; empty: not known
   std::int64_t evaluations = 0;
+  /// |f_n/f_n(truth) − 1| over the modes the contact excites; NaN of the truth itself.
+  double median_error = std::numeric_limits<double>::quiet_NaN();
+  double largest_error = std::numeric_limits<double>::quiet_NaN();
+  void visit(ResultVisitor& visitor) const;
 };
 
 /// Objective against the contact point.
@@ -95,6 +104,8 @@ struct PluckThenBowOutcome {
   ContinuationResult bound;
   std::vector<ModelStage> bound_stages;  ///< from the law of the pluck test to the posterior
   std::vector<SideIdentification> bound_sides;
+  ModelStage truth;
+  void visit(ResultVisitor& visitor) const;
 };
 
 /// Throws InvalidInput where the pluck test gives too few modes to go on.
@@ -109,25 +120,7 @@ ModalBasis law_basis(const PluckThenBowOptions& options, const StiffStringFit& l
 StiffStringFit law_of_basis(const ModalBasis& basis, std::size_t modes);
 DampingFit damping_of(const PluckIdentification& found, std::int64_t degree);
 
-/// Median and largest |f_n/f_n(truth) − 1| over the modes the contact excites.
-struct FrequencyErrors {
-  double median = 0.0;
-  double largest = 0.0;
-};
-FrequencyErrors errors_of(const PluckThenBowOptions& options, const PluckThenBowOutcome& outcome,
-                          const ModelStage& stage);
-
-StudyResult pluck_then_bow_study(const PluckThenBowOptions& options, const StudyContext& context);
-
 std::vector<report::Figure> pluck_then_bow_figures(const PluckThenBowOptions& options,
-                                                   const PluckThenBowOutcome& outcome,
-                                                   const std::string& command);
-/// Tables and figures of all steps, in the order of the route.
-std::vector<report::Block> pluck_then_bow_blocks(const PluckThenBowOptions& options,
-                                                 const PluckThenBowOutcome& outcome,
-                                                 const std::string& command);
-/// pluck_then_bow.json.
-std::string pluck_then_bow_json(const PluckThenBowOptions& options,
-                                const PluckThenBowOutcome& outcome);
+                                                   const PluckThenBowOutcome& outcome);
 
 }  // namespace modcal

@@ -10,47 +10,32 @@ namespace {
 using report::ColorRole;
 using report::SeriesStyle;
 
-report::Figure damping_figure(const PluckThenBowOutcome& outcome, const std::string& command) {
+// y = value(n) over n = 1 … modes.
+template <typename Value>
+report::Series mode_series(std::string label, ColorRole color, SeriesStyle style, std::size_t modes,
+                           Value value) {
+  report::Series series{.label = std::move(label), .style = style, .color = color};
+  for (std::size_t n = 1; n <= modes; ++n) series.add(static_cast<double>(n), value(n));
+  return series;
+}
+
+report::Figure damping_figure(const PluckThenBowOutcome& outcome) {
+  const ModalBasis& basis = outcome.stroke.basis;
   report::Series measured{.label = "pluck test", .style = SeriesStyle::kPoints};
-  report::Series fitted{.label = "polynomial", .color = ColorRole::kSecond};
-  report::Series truth{
-      .label = "true", .style = SeriesStyle::kDotted, .color = ColorRole::kReference};
   for (const auto& [number, mode] : outcome.pluck.found.modes) {
-    measured.x.push_back(static_cast<double>(number));
-    measured.y.push_back(mode.pole.damping_ratio);
-  }
-  for (std::size_t n = 1; n <= outcome.stroke.basis.size(); ++n) {
-    fitted.x.push_back(static_cast<double>(n));
-    fitted.y.push_back(outcome.damping.ratio(n));
-    truth.x.push_back(static_cast<double>(n));
-    truth.y.push_back(outcome.stroke.basis.zeta[n - 1]);
+    measured.add(static_cast<double>(number), mode.pole.damping_ratio);
   }
   return {.id = "damping",
           .title = "1. Damping extrapolated to all modes",
-          .panels = {{.x = {.label = "mode number n"},
-                      .y = {.label = "damping ratio"},
-                      .series = {std::move(truth), std::move(fitted), std::move(measured)}}},
-          .command = command};
-}
-
-report::Series law_series(const StiffStringFit& law, std::size_t modes, double reference,
-                          std::string label, ColorRole color) {
-  report::Series series{.label = std::move(label), .color = color};
-  for (std::size_t n = 1; n <= modes; ++n) {
-    series.x.push_back(static_cast<double>(n));
-    series.y.push_back(law.frequency(n) / (static_cast<double>(n) * reference));
-  }
-  return series;
-}
-
-report::Series mode_series(const ModalBasis& basis, double reference, std::string label,
-                           ColorRole color, SeriesStyle style) {
-  report::Series series{.label = std::move(label), .style = style, .color = color};
-  for (std::size_t n = 1; n <= basis.size(); ++n) {
-    series.x.push_back(static_cast<double>(n));
-    series.y.push_back(basis.frequency(n - 1) / (static_cast<double>(n) * reference));
-  }
-  return series;
+          .panels = {
+              {.x = {.label = "mode number n"},
+               .y = {.label = "damping ratio"},
+               .series = {
+                   mode_series("true", ColorRole::kReference, SeriesStyle::kDotted, basis.size(),
+                               [&](std::size_t n) { return basis.zeta[n - 1]; }),
+                   mode_series("polynomial", ColorRole::kSecond, SeriesStyle::kLine, basis.size(),
+                               [&](std::size_t n) { return outcome.damping.ratio(n); }),
+                   std::move(measured)}}}};
 }
 
 // Stages by key; the route always has them.
@@ -59,44 +44,54 @@ const ModelStage& stage_of(const std::vector<ModelStage>& stages, std::string_vi
                        [key](const ModelStage& stage) { return stage.key == key; });
 }
 
-report::Figure law_figure(const PluckThenBowOutcome& outcome, const std::string& command) {
+report::Figure law_figure(const PluckThenBowOutcome& outcome) {
   const Observation& stroke = outcome.stroke;
-  const double reference = stroke.fundamental;
   const ModelStage& first = stage_of(outcome.stages, "first_refined");
-  const ModelStage& law = stage_of(outcome.stages, "law");
-  const ModelStage& again = stage_of(outcome.stages, "law_again");
-  const std::size_t plucked = first.model.basis.size();
-  report::Panel low{.title = "plucked modes",
-                    .x = {.label = "mode number n"},
-                    .y = {.label = "f_n / (n f_0), true f_0"}};
-  low.series = {
-      mode_series(stroke.basis, reference, "true", ColorRole::kReference, SeriesStyle::kDotted),
-      mode_series(stage_of(outcome.stages, "pluck").model.basis, reference, "plucked",
-                  ColorRole::kFirst, SeriesStyle::kPoints),
-      mode_series(first.model.basis, reference, "first modes refined", ColorRole::kSecond,
-                  SeriesStyle::kPoints),
-      law_series(first.law, plucked, reference, "eq. 18 through these alone", ColorRole::kMuted),
-      law_series(law.law, plucked, reference, "eq. 18", ColorRole::kSecond)};
-  low.series.front().x.resize(plucked);
-  low.series.front().y.resize(plucked);
-  const std::size_t all = stroke.basis.size();
+  const StiffStringFit& law = stage_of(outcome.stages, "law").law;
+  const std::size_t plucked = first.model.basis.size(), all = stroke.basis.size();
+  const auto over_harmonic = [&stroke](double frequency, std::size_t n) {
+    return frequency / (static_cast<double>(n) * stroke.fundamental);
+  };
+  const auto by_law = [&](const StiffStringFit& fit, std::size_t modes, const char* label,
+                          ColorRole color) {
+    return mode_series(label, color, SeriesStyle::kLine, modes,
+                       [&](std::size_t n) { return over_harmonic(fit.frequency(n), n); });
+  };
+  const auto of = [&](const ModalBasis& basis, std::size_t modes, const char* label,
+                      ColorRole color, SeriesStyle style) {
+    return mode_series(label, color, style, modes,
+                       [&](std::size_t n) { return over_harmonic(basis.frequency(n - 1), n); });
+  };
+  const ModalBasis& from_pluck = stage_of(outcome.stages, "pluck").model.basis;
+  report::Panel low{
+      .title = "plucked modes",
+      .x = {.label = "mode number n"},
+      .y = {.label = "f_n / (n f_0), true f_0"},
+      .series = {
+          of(stroke.basis, plucked, "true", ColorRole::kReference, SeriesStyle::kDotted),
+          of(from_pluck, from_pluck.size(), "plucked", ColorRole::kFirst, SeriesStyle::kPoints),
+          of(first.model.basis, plucked, "first modes refined", ColorRole::kSecond,
+             SeriesStyle::kPoints),
+          by_law(first.law, plucked, "eq. 18 through these alone", ColorRole::kMuted),
+          by_law(law, plucked, "eq. 18", ColorRole::kSecond)}};
+  const ModalBasis& refined = outcome.all.refined.basis;
   report::Panel high{
-      .title = "all modes", .x = {.label = "mode number n"}, .y = {.label = "f_n / (n f_0)"}};
-  high.series = {
-      mode_series(stroke.basis, reference, "true", ColorRole::kReference, SeriesStyle::kDotted),
-      law_series(law.law, all, reference, "eq. 18", ColorRole::kSecond),
-      mode_series(outcome.all.refined.basis, reference, "refined", ColorRole::kFirst,
-                  SeriesStyle::kPoints),
-      law_series(again.law, all, reference, "eq. 18 again", ColorRole::kThird)};
+      .title = "all modes",
+      .x = {.label = "mode number n"},
+      .y = {.label = "f_n / (n f_0)"},
+      .series = {of(stroke.basis, all, "true", ColorRole::kReference, SeriesStyle::kDotted),
+                 by_law(law, all, "eq. 18", ColorRole::kSecond),
+                 of(refined, refined.size(), "refined", ColorRole::kFirst, SeriesStyle::kPoints),
+                 by_law(stage_of(outcome.stages, "law_again").law, all, "eq. 18 again",
+                        ColorRole::kThird)}};
   return {.id = "law",
           .title = "3. and 6. The stiff-string law (eq. 18)",
           .columns = 2,
-          .panels = {std::move(low), std::move(high)},
-          .command = command};
+          .panels = {std::move(low), std::move(high)}};
 }
 
-report::Figure errors_figure(const PluckThenBowOptions& options, const PluckThenBowOutcome& outcome,
-                             const std::string& command) {
+report::Figure errors_figure(const PluckThenBowOptions& options,
+                             const PluckThenBowOutcome& outcome) {
   const ModalBasis& truth = outcome.stroke.basis;
   const std::vector<bool> excited =
       excited_modes({truth, outcome.stroke.contact}, options.refinement.excitation_threshold);
@@ -104,8 +99,8 @@ report::Figure errors_figure(const PluckThenBowOptions& options, const PluckThen
     report::Series series{.label = stage.title, .style = SeriesStyle::kPoints, .color = color};
     for (std::size_t n = 0; n < truth.size(); ++n) {
       if (!excited[n]) continue;
-      series.x.push_back(static_cast<double>(n + 1));
-      series.y.push_back(std::abs(stage.model.basis.omega[n] / truth.omega[n] - 1.0));
+      series.add(static_cast<double>(n + 1),
+                 std::abs(stage.model.basis.omega[n] / truth.omega[n] - 1.0));
     }
     return series;
   };
@@ -120,12 +115,11 @@ report::Figure errors_figure(const PluckThenBowOptions& options, const PluckThen
   return {.id = "frequency_errors",
           .title = "5. Errors of the modal frequencies",
           .caption = "Modes that the contact excites.",
-          .panels = {std::move(panel)},
-          .command = command};
+          .panels = {std::move(panel)}};
 }
 
 report::Figure contact_figure(const PluckThenBowOptions& options,
-                              const PluckThenBowOutcome& outcome, const std::string& command) {
+                              const PluckThenBowOutcome& outcome) {
   report::Series curve{.label = std::string(options.contact.objective.selected()),
                        .y = outcome.curve.values,
                        .style = SeriesStyle::kLineWithPoints};
@@ -140,43 +134,37 @@ report::Figure contact_figure(const PluckThenBowOptions& options,
            .label = "found",
            .color = ColorRole::kFirst},
           {.value = 1e3 * options.contact.start, .label = "start", .color = ColorRole::kMuted}}};
-  return {.id = "contact",
-          .title = "7. The contact point",
-          .panels = {std::move(panel)},
-          .command = command};
+  return {.id = "contact", .title = "7. The contact point", .panels = {std::move(panel)}};
 }
 
 report::Figure candidates_figure(std::string id, std::string title, std::int64_t modes,
-                                 const CalibrationOutcome& outcome, const std::string& command) {
+                                 const CalibrationOutcome& outcome) {
   FigureOptions options;
   options.id = std::move(id);
   options.title = std::move(title);
   options.modes = modes;
-  report::Figure figure = objective_figure(options, outcome);
-  figure.command = command;
-  return figure;
+  return objective_figure(options, outcome);
 }
 
 }  // namespace
 
 std::vector<report::Figure> pluck_then_bow_figures(const PluckThenBowOptions& options,
-                                                   const PluckThenBowOutcome& outcome,
-                                                   const std::string& command) {
+                                                   const PluckThenBowOutcome& outcome) {
   std::vector<report::Figure> figures;
   report::Figure diagram = stabilization_figure(outcome.pluck);
   diagram.title = "1. Stabilization diagram of the pluck test";
   figures.push_back(std::move(diagram));
-  figures.push_back(damping_figure(outcome, command));
+  figures.push_back(damping_figure(outcome));
   // Only the systematic search keeps its candidates.
   if (!outcome.first.result.search.scans.empty()) {
     figures.push_back(candidates_figure("first_objectives", "2. The first modes refined",
-                                        options.refinement.first_modes, outcome.first, command));
-    figures.push_back(candidates_figure("objectives", "5. All modes refined (paper, fig. 20)", 12,
-                                        outcome.all, command));
+                                        options.refinement.first_modes, outcome.first));
+    figures.push_back(
+        candidates_figure("objectives", "5. All modes refined (paper, fig. 20)", 12, outcome.all));
   }
-  figures.push_back(law_figure(outcome, command));
-  figures.push_back(errors_figure(options, outcome, command));
-  figures.push_back(contact_figure(options, outcome, command));
+  figures.push_back(law_figure(outcome));
+  figures.push_back(errors_figure(options, outcome));
+  figures.push_back(contact_figure(options, outcome));
   return figures;
 }
 

@@ -1,20 +1,14 @@
-// Tables and JSON of the route from a pluck test to the identified force.
+// What the route from a pluck test to the identified force found: tables, JSON, words.
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "experiments/kinds/section7/pluck_then_bow.hpp"
 #include "experiments/report/result_json.hpp"
+#include "experiments/report/result_table.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {
 namespace {
-
-using Json = nlohmann::ordered_json;
-using report::Cell;
-
-Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-Cell number_or_none(double value) { return std::isfinite(value) ? Cell(value) : Cell(); }
 
 /// The mode of the same number; null where that fit has none.
 const DecayMode* find_mode(const PluckIdentification& found, std::size_t number) {
@@ -23,98 +17,50 @@ const DecayMode* find_mode(const PluckIdentification& found, std::size_t number)
   return place == found.modes.end() ? nullptr : &place->mode;
 }
 
-report::Table pluck_table(const PluckThenBowOutcome& outcome, const std::string& command) {
-  report::Table table{
-      .id = "pluck",
-      .title = "1. Modes of the pluck test",
-      .caption =
-          "Left: the poles that the route goes on with. Right: maximum likelihood with its "
-          "standard deviations, the prior of the calibration to the bound.",
-      .columns =
-          {{.key = "n", .name = "mode"},
-           {.key = "f_hz", .name = "frequency", .unit = "Hz", .format = "{:.7g}"},
-           {.key = "zeta", .name = "damping ratio"},
-           {.key = "f_likelihood_hz", .name = "likelihood", .unit = "Hz", .format = "{:.7g}"},
-           {.key = "f_sd_hz", .name = "its deviation", .unit = "Hz", .format = "{:.2g}"},
-           {.key = "zeta_likelihood", .name = "damping ratio, likelihood"},
-           {.key = "zeta_sd", .name = "its deviation", .format = "{:.2g}"},
-           {.key = "f_true_hz", .name = "true", .unit = "Hz", .format = "{:.7g}"},
-           {.key = "zeta_true", .name = "true damping ratio"}},
-      .command = command};
+/// Left: the poles that the route goes on with.
+void visit_plucked_mode(const PluckThenBowOutcome& outcome, const PluckedMode& plucked,
+                        ResultVisitor& row) {
+  const auto& [number, mode] = plucked;
+  const DecayMode* const fitted = find_mode(outcome.likelihood.found, number);
+  const DecayMode other = fitted != nullptr ? *fitted : DecayMode{};
+  const auto likelihood = [fitted](double value) {
+    return fitted != nullptr ? known(value) : std::nullopt;
+  };
   const ModalBasis& truth = outcome.stroke.basis;
-  for (const auto& [number, mode] : outcome.pluck.found.modes) {
-    std::vector<Cell> row = {number, mode.pole.frequency, mode.pole.damping_ratio};
-    if (const DecayMode* fitted = find_mode(outcome.likelihood.found, number)) {
-      row.insert(row.end(),
-                 {fitted->pole.frequency, number_or_none(fitted->deviation.frequency),
-                  fitted->pole.damping_ratio, number_or_none(fitted->deviation.damping_ratio)});
-    } else {
-      row.resize(row.size() + 4);
-    }
-    const bool known = number <= truth.size();
-    row.push_back(known ? Cell(truth.frequency(number - 1)) : Cell());
-    row.push_back(known ? Cell(truth.zeta[number - 1]) : Cell());
-    table.rows.push_back(std::move(row));
-  }
-  return table;
+  const bool is_known = number <= truth.size();
+  const auto of_truth = [is_known](double value) {
+    return is_known ? std::optional(value) : std::nullopt;
+  };
+  const std::size_t n = is_known ? number - 1 : 0;
+  row({.key = "n", .name = "mode"}, number);
+  row({.key = "f_hz", .name = "frequency", .unit = "Hz", .format = "{:.7g}"}, mode.pole.frequency);
+  row({.key = "zeta", .name = "damping ratio"}, mode.pole.damping_ratio);
+  row({.key = "f_likelihood_hz", .name = "likelihood", .unit = "Hz", .format = "{:.7g}"},
+      likelihood(other.pole.frequency));
+  row({.key = "f_sd_hz", .name = "its deviation", .unit = "Hz", .format = "{:.2g}"},
+      likelihood(other.deviation.frequency));
+  row({.key = "zeta_likelihood", .name = "damping ratio, likelihood"},
+      likelihood(other.pole.damping_ratio));
+  row({.key = "zeta_sd", .name = "its deviation", .format = "{:.2g}"},
+      likelihood(other.deviation.damping_ratio));
+  row({.key = "f_true_hz", .name = "true", .unit = "Hz", .format = "{:.7g}"},
+      of_truth(truth.frequency(n)));
+  row({.key = "zeta_true", .name = "true damping ratio"}, of_truth(truth.zeta[n]));
 }
 
-std::vector<Cell> stage_row(const PluckThenBowOptions& options, const PluckThenBowOutcome& outcome,
-                            const ModelStage& stage) {
-  const FrequencyErrors errors = errors_of(options, outcome, stage);
-  const StiffStringFit& law = stage.law;
-  return {stage.title,
-          stage.model.basis.size(),
-          law.fundamental,
-          number_or_none(law.fundamental_deviation),
-          law.inharmonicity,
-          number_or_none(law.inharmonicity_deviation),
-          1e3 * stage.model.contact,
-          number_or_none(1e3 * stage.contact_deviation),
-          errors.median,
-          errors.largest,
-          stage.evaluations};
-}
-
-report::Table stages_table(const PluckThenBowOptions& options, const PluckThenBowOutcome& outcome,
-                           const std::string& command) {
-  report::Table table{
-      .id = "stages",
-      .title = "Model after every step",
-      .caption =
-          "Errors: over the modes that the contact excites. Deviations of fitted laws: from "
-          "the scatter about them.",
-      .columns = {{.key = "step"},
-                  {.key = "modes"},
-                  {.key = "f0_hz", .name = "f_0", .unit = "Hz", .format = "{:.4f}"},
-                  {.key = "f0_sd_hz", .name = "its deviation", .unit = "Hz", .format = "{:.2g}"},
-                  {.key = "B", .format = "{:.4e}"},
-                  {.key = "B_sd", .name = "its deviation ", .format = "{:.2g}"},
-                  {.key = "x_c_mm", .name = "x_c", .unit = "mm", .format = "{:.4f}"},
-                  {.key = "x_c_sd_mm", .name = " its deviation", .unit = "mm", .format = "{:.2g}"},
-                  {.key = "median_error", .name = "median error of f_n", .format = "{:.2g}"},
-                  {.key = "largest_error", .name = "largest", .format = "{:.2g}"},
-                  {.key = "evaluations"}},
-      .command = command};
-  for (const ModelStage& stage : outcome.stages) {
-    table.rows.push_back(stage_row(options, outcome, stage));
-  }
-  for (const ModelStage& stage : outcome.bound_stages) {
-    table.rows.push_back(stage_row(options, outcome, stage));
-  }
-  const Observation& stroke = outcome.stroke;
-  const StringModel& string = options.truth.scene.string;
-  table.rows.push_back({"truth", stroke.basis.size(), string.fundamental, Cell(),
-                        string.inharmonicity, Cell(), 1e3 * stroke.contact, Cell(), Cell(), Cell(),
-                        Cell()});
-  return table;
+void visit_side(ResultVisitor& row, const SideIdentification& side) {
+  row({.key = "side"}, side.estimate.side);
+  row({.key = "parameter"}, side.estimate.result.choice.parameter());
+  row.rows({.key = "scores"}, side.scores, [](ResultVisitor& score, const WindowScore& window) {
+    score({.key = "start_s"}, window.start);
+    score({.key = "correlation"}, window.correlation);
+    score({.key = "relative_rms_error"}, window.relative_rms_error);
+  });
 }
 
 report::Table sides_table(std::string id, std::string title,
-                          const std::vector<SideIdentification>& sides,
-                          const std::string& command) {
+                          const std::vector<SideIdentification>& sides) {
   report::Table table = identification_table(sides);
-  table.command = command;
   table.id = std::move(id);
   table.title = std::move(title);
   if (sides.size() == 2) {
@@ -125,94 +71,152 @@ report::Table sides_table(std::string id, std::string title,
   return table;
 }
 
-Json stage_json(const PluckThenBowOptions& options, const PluckThenBowOutcome& outcome,
-                const ModelStage& stage) {
-  const FrequencyErrors errors = errors_of(options, outcome, stage);
-  Json frequencies = Json::array(), deviations = Json::array();
-  for (std::size_t n = 0; n < stage.model.basis.size(); ++n) {
-    frequencies.push_back(stage.model.basis.frequency(n));
-  }
-  for (const double deviation : stage.deviation) deviations.push_back(number_or_null(deviation));
-  return {{"step", stage.key},
-          {"title", stage.title},
-          {"f0_hz", stage.law.fundamental},
-          {"f0_sd_hz", number_or_null(stage.law.fundamental_deviation)},
-          {"B", stage.law.inharmonicity},
-          {"B_sd", number_or_null(stage.law.inharmonicity_deviation)},
-          {"x_c_m", stage.model.contact},
-          {"x_c_sd_m", number_or_null(stage.contact_deviation)},
-          {"median_relative_error_excited", errors.median},
-          {"largest_relative_error_excited", errors.largest},
-          {"evaluations", stage.evaluations},
-          {"f_hz", std::move(frequencies)},
-          {"relative_sd", std::move(deviations)}};
+std::string line_of(const ModelStage& stage) {
+  return fmt::format(
+      "{:<44} f0 {:.4f} Hz, B {:.4g}, x_c {:.3f} mm, frequencies off by {:.2g} "
+      "(largest {:.2g})\n",
+      stage.title, stage.law.fundamental, stage.law.inharmonicity, 1e3 * stage.model.contact,
+      stage.median_error, stage.largest_error);
 }
 
-Json sides_json(const std::vector<SideIdentification>& sides) {
-  Json list = Json::array();
-  for (const SideIdentification& side : sides) {
-    Json scores = Json::array();
-    for (const WindowScore& score : side.scores) {
-      scores.push_back({{"start_s", score.start},
-                        {"correlation", number_or_null(score.correlation)},
-                        {"relative_rms_error", number_or_null(score.relative_rms_error)}});
-    }
-    list.push_back({{"side", side.estimate.side},
-                    {"parameter", number_or_null(side.estimate.result.choice.parameter())},
-                    {"scores", std::move(scores)}});
+/// Rms distance of the first refined frequencies from those of the pluck test, in its standard
+/// deviations; NaN where these are not known.
+double distance_from_pluck(const PluckThenBowOutcome& outcome, std::size_t first_modes) {
+  double sum = 0.0, count = 0.0;
+  for (const auto& [number, mode] : outcome.likelihood.found.modes) {
+    if (number > first_modes) continue;
+    const double refined = outcome.first.refined.basis.frequency(number - 1);
+    sum += std::pow((refined - mode.pole.frequency) / mode.deviation.frequency, 2);
+    count += 1.0;
   }
-  return list;
+  return std::sqrt(sum / count);
+}
+
+void add_distance_warning(const PluckThenBowOptions& options, const PluckThenBowOutcome& outcome,
+                          StudyResult& result) {
+  const auto modes = static_cast<std::size_t>(options.refinement.first_modes);
+  const double distance = distance_from_pluck(outcome, modes);
+  constexpr double kContradicted = 5.0;
+  if (!(distance > kContradicted)) return;
+  const std::string text = fmt::format(
+      "the first {} frequencies refined by {} lie {:.3g} standard deviations (rms) off the pluck "
+      "test's: one string cannot have both; believe the pluck test",
+      modes, options.refinement.objective.selected(), distance);
+  result.warn(text);
+}
+
+std::string sides_line(const std::vector<SideIdentification>& sides) {
+  std::string text;
+  for (const SideIdentification& side : sides) {
+    for (const WindowScore& score : side.scores) {
+      text += fmt::format(" {} {:.3f}", side.estimate.side, score.correlation);
+    }
+  }
+  return text + "\n";
 }
 
 }  // namespace
 
-std::vector<report::Block> pluck_then_bow_blocks(const PluckThenBowOptions& options,
-                                                 const PluckThenBowOutcome& outcome,
-                                                 const std::string& command) {
-  std::vector<report::Block> blocks;
-  blocks.emplace_back(stages_table(options, outcome, command));
-  blocks.emplace_back(pluck_table(outcome, command));
-  for (report::Figure& figure : pluck_then_bow_figures(options, outcome, command)) {
-    blocks.emplace_back(std::move(figure));
-  }
-  blocks.emplace_back(
-      sides_table("identification", "8. Identification from either end", outcome.sides, command));
-  if (outcome.has_bound) {
-    blocks.emplace_back(sides_table("identification_bound",
-                                    "Identification with the model at the bound",
-                                    outcome.bound_sides, command));
-  }
-  return blocks;
+void ModelStage::visit(ResultVisitor& visitor) const {
+  constexpr auto kInJson = ResultVisitor::kInJson, kInTables = ResultVisitor::kInTables;
+  visitor({.key = "step", .shown = kInJson}, key);
+  visitor({.key = "title", .shown = kInJson}, title);
+  visitor({.key = "step", .shown = kInTables}, title);
+  visitor({.key = "modes", .shown = kInTables}, model.basis.size());
+  visitor({}, law);
+  visitor({.key = "x_c_m", .shown = kInJson}, model.contact);
+  visitor({.key = "x_c_sd_m", .shown = kInJson}, contact_deviation);
+  visitor({.key = "x_c_mm", .name = "x_c", .unit = "mm", .format = "{:.4f}", .shown = kInTables},
+          1e3 * model.contact);
+  visitor({.key = "x_c_sd_mm",
+           .name = " its deviation",
+           .unit = "mm",
+           .format = "{:.2g}",
+           .shown = kInTables},
+          known(1e3 * contact_deviation));
+  visitor(
+      {.key = "median_relative_error_excited", .name = "median error of f_n", .format = "{:.2g}"},
+      known(median_error));
+  visitor({.key = "largest_relative_error_excited", .name = "largest", .format = "{:.2g}"},
+          known(largest_error));
+  visitor({.key = "evaluations"}, evaluations);
+  visitor({.key = "f_hz"}, frequencies_of(model.basis));
+  visitor({.key = "relative_sd"}, deviation);
 }
 
-std::string pluck_then_bow_json(const PluckThenBowOptions& options,
-                                const PluckThenBowOutcome& outcome) {
-  Json stages = Json::array(), bound = Json::array();
+void PluckThenBowOutcome::visit(ResultVisitor& visitor) const {
+  std::vector<ModelStage> all_stages = stages;
+  all_stages.insert(all_stages.end(), bound_stages.begin(), bound_stages.end());
+  all_stages.push_back(truth);
+  visitor({.table = "stages",
+           .name = "Model after every step",
+           .meaning = "Errors: over the modes that the contact excites. Deviations of fitted laws: "
+                      "from the scatter about them.",
+           .shown = ResultVisitor::kInTables},
+          all_stages);
+  visitor.rows({.table = "pluck",
+                .name = "1. Modes of the pluck test",
+                .meaning = "Left: the poles that the route goes on with. Right: maximum likelihood "
+                           "with its standard deviations, the prior of the calibration to the "
+                           "bound.",
+                .shown = ResultVisitor::kInTables},
+               pluck.found.modes, [this](ResultVisitor& row, const PluckedMode& mode) {
+                 visit_plucked_mode(*this, mode, row);
+               });
+  visitor.group({.key = "truth"}, [this](ResultVisitor& members) {
+    members({.key = "f0_hz"}, truth.law.fundamental);
+    members({.key = "B"}, truth.law.inharmonicity);
+    members({.key = "x_c_m"}, truth.model.contact);
+  });
+  visitor({.key = "pluck", .shown = ResultVisitor::kInJson}, pluck);
+  visitor({.key = "pluck_likelihood", .shown = ResultVisitor::kInJson}, likelihood);
+  visitor({.key = "damping_polynomial"}, damping.coefficients);
+  visitor({.key = "steps"}, stages);
+  visitor.rows({.key = "identification"}, sides, visit_side);
+  if (!has_bound) return;
+  visitor({.key = "bound_steps"}, bound_stages);
+  visitor({.key = "bound_chi2"}, bound.chi2);
+  visitor({.key = "bound_right"}, bound.right);
+  visitor({.key = "bound_fits"}, bound.fits);
+  visitor({.key = "bound_priors_contradicted"}, bound.priors.contradicted());
+  visitor.rows({.key = "bound_identification"}, bound_sides, visit_side);
+}
+
+StudyResult PluckThenBowOptions::run(const StudyContext& context) const {
+  const PluckThenBowOutcome outcome = pluck_then_bow(*this, context);
+  StudyResult result;
+  result.summary =
+      fmt::format("{} modes identified in the pluck test\n", outcome.pluck.found.modes.size());
   for (const ModelStage& stage : outcome.stages) {
-    stages.push_back(stage_json(options, outcome, stage));
+    result.summary += line_of(stage);
   }
+  result.summary += "correlation with the true force, by side:" + sides_line(outcome.sides);
   for (const ModelStage& stage : outcome.bound_stages) {
-    bound.push_back(stage_json(options, outcome, stage));
+    result.summary += line_of(stage);
   }
-  const StringModel& string = options.truth.scene.string;
-  Json document = {{"truth",
-                    {{"f0_hz", string.fundamental},
-                     {"B", string.inharmonicity},
-                     {"x_c_m", outcome.stroke.contact}}},
-                   {"pluck", report::json_of(outcome.pluck)},
-                   {"pluck_likelihood", report::json_of(outcome.likelihood)},
-                   {"damping_polynomial", outcome.damping.coefficients},
-                   {"steps", std::move(stages)},
-                   {"identification", sides_json(outcome.sides)}};
   if (outcome.has_bound) {
-    document["bound_steps"] = std::move(bound);
-    document["bound_chi2"] = number_or_null(outcome.bound.chi2);
-    document["bound_right"] = outcome.bound.right;
-    document["bound_fits"] = outcome.bound.fits;
-    document["bound_priors_contradicted"] = outcome.bound.priors.contradicted();
-    document["bound_identification"] = sides_json(outcome.bound_sides);
+    result.summary +=
+        fmt::format("reduced chi2 {:.4f}: {}\n", outcome.bound.chi2,
+                    outcome.bound.fits ? "the data do not contradict the fit" : "THE FIT IS WRONG");
+    result.summary += prior_lines(outcome.bound.law.priors, "law");
+    if (outcome.bound.frequencies_free) {
+      result.summary += prior_lines(outcome.bound.priors, "every frequency");
+    }
+    result.summary += "correlation with the true force, by side:" + sides_line(outcome.bound_sides);
   }
-  return document.dump(1) + "\n";
+  add_distance_warning(*this, outcome, result);
+  result.add(report::tables_of(outcome));
+  for (report::Figure& figure : pluck_then_bow_figures(*this, outcome)) {
+    result.blocks.emplace_back(std::move(figure));
+  }
+  result.add({sides_table("identification", "8. Identification from either end", outcome.sides)});
+  if (outcome.has_bound) {
+    result.add({sides_table("identification_bound", "Identification with the model at the bound",
+                            outcome.bound_sides)});
+  }
+  add_identification_figures(figures, outcome.stroke, outcome.sides, result);
+  result.files.emplace_back("pluck_then_bow.json", report::json_file(report::json_of(outcome)));
+  return result;
 }
 
 }  // namespace modcal

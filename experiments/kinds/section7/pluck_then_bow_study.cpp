@@ -8,26 +8,6 @@
 
 namespace modcal {
 
-IdentifyOptions PluckThenBowOptions::pluck_test(std::string_view method) const {
-  IdentifyOptions test{.truth = truth, .measurement = measurement, .seed = seed};
-  Scene& scene = test.truth.scene;
-  scene.bow = {.position = truth.scene.bow.position, .velocity = 0.0, .normal_force = 0.0};
-  scene.start = pluck.start;
-  scene.duration = pluck.duration;
-  test.measurement.noise_level = pluck.noise_level;
-  test.identification = pluck.identification;
-  test.identification.method = method;
-  return test;
-}
-
-ObservationOptions PluckThenBowOptions::stroke() const {
-  ObservationOptions observation;
-  observation.has_scene = true;
-  observation.truth = truth;
-  observation.measurement = measurement;
-  return observation;
-}
-
 DampingFit damping_of(const PluckIdentification& found, std::int64_t degree) {
   std::vector<std::size_t> numbers;
   std::vector<double> ratios;
@@ -65,12 +45,6 @@ StiffStringFit law_of_basis(const ModalBasis& basis, std::size_t modes) {
 }
 
 namespace {
-
-std::vector<double> frequencies_of(const ModalBasis& basis) {
-  std::vector<double> frequencies;
-  for (std::size_t n = 0; n < basis.size(); ++n) frequencies.push_back(basis.frequency(n));
-  return frequencies;
-}
 
 /// The modes of the pluck test; a mode that it missed follows the law of the others.
 ModalBasis plucked_basis(const PluckThenBowOptions& options, const PluckThenBowOutcome& outcome) {
@@ -207,18 +181,22 @@ void take_paper_route(const PluckThenBowOptions& options, const StudyContext& co
 
 }  // namespace
 
-FrequencyErrors errors_of(const PluckThenBowOptions& options, const PluckThenBowOutcome& outcome,
-                          const ModelStage& stage) {
-  const Observation& stroke = outcome.stroke;
+namespace {
+
+// Median and largest |f_n/f_n(truth) − 1| over the modes the contact excites.
+void set_errors(const Observation& stroke, double excitation_threshold, ModelStage& stage) {
   const std::vector<bool> excited =
-      excited_modes({stroke.basis, stroke.contact}, options.refinement.excitation_threshold);
+      excited_modes({stroke.basis, stroke.contact}, excitation_threshold);
   std::vector<double> errors;
   for (std::size_t n = 0; n < stage.model.basis.size(); ++n) {
     if (!excited[n]) continue;
     errors.push_back(std::abs(stage.model.basis.omega[n] / stroke.basis.omega[n] - 1.0));
   }
-  return {quantile(errors, 0.5), *std::max_element(errors.begin(), errors.end())};
+  stage.median_error = quantile(errors, 0.5);
+  stage.largest_error = *std::max_element(errors.begin(), errors.end());
 }
+
+}  // namespace
 
 PluckThenBowOutcome pluck_then_bow(const PluckThenBowOptions& options,
                                    const StudyContext& context) {
@@ -239,6 +217,17 @@ PluckThenBowOutcome pluck_then_bow(const PluckThenBowOptions& options,
     add_bound_stages(options, context, outcome);
     outcome.bound_sides = identified(options, outcome.stroke, outcome.bound_stages.back().model);
   }
+  for (auto* stages : {&outcome.stages, &outcome.bound_stages}) {
+    for (ModelStage& stage : *stages) {
+      set_errors(outcome.stroke, options.refinement.excitation_threshold, stage);
+    }
+  }
+  const StringModel& string = options.truth.scene.string;
+  outcome.truth = {
+      .key = "truth",
+      .title = "truth",
+      .model = {outcome.stroke.basis, outcome.stroke.contact},
+      .law = {.fundamental = string.fundamental, .inharmonicity = string.inharmonicity}};
   return outcome;
 }
 

@@ -1,7 +1,6 @@
-#include "experiments/kinds/section7/pluck_then_bow_experiment.hpp"
-
 #include "experiments/kinds/lint.hpp"
 #include "experiments/kinds/scene_plan.hpp"
+#include "experiments/kinds/section7/pluck_then_bow.hpp"
 #include "libinverse/modes/decay_length.hpp"
 
 namespace modcal {
@@ -89,64 +88,58 @@ void PluckThenBowOptions::visit(OptionVisitor& visitor) {
   visitor.list({.key = "figures", .meaning = "what is drawn of the identification"}, list);
 }
 
-std::vector<Finding> PluckThenBowExperiment::lint() const {
-  const ObservationOptions stroke = options_.stroke();
-  std::vector<Finding> findings = lint_observation(stroke);
-  append(findings, lint_scores(options_.score, stroke));
-  append(findings, lint_figures(options_.figures, {"waveforms", "spectra", "parameter_curves"}));
+std::vector<Finding> PluckThenBowOptions::lint() const {
+  std::vector<Finding> findings = lint_observation(stroke());
+  append(findings, lint_scores(score, stroke()));
+  append(findings, lint_figures(figures, {"waveforms", "spectra", "parameter_curves"}));
   lint_making(
-      "inversion", [&] { InversionRecipe recipe(options_.inversion); }, findings);
+      "inversion", [&] { InversionRecipe recipe(inversion); }, findings);
   lint_making(
-      "refinement.objective", [&] { options_.refinement.objective.make(); }, findings);
+      "refinement.objective", [&] { refinement.objective.make(); }, findings);
   lint_making(
-      "refinement.optimizer", [&] { options_.refinement.optimizer.make(); }, findings);
+      "refinement.optimizer", [&] { refinement.optimizer.make(); }, findings);
   lint_making(
-      "contact.objective", [&] { options_.contact.objective.make(); }, findings);
+      "contact.objective", [&] { contact.objective.make(); }, findings);
   lint_making(
       "pluck.initial",
       [&] {
-        const Scene test = options_.pluck_test(options_.pluck.identification.method).truth.scene;
-        options_.pluck.start.make();
+        const Scene test = pluck_test(pluck.identification.method).truth.scene;
+        pluck.start.make();
         if (is_known(test.string)) initial_state(test, make_modal_basis(test.string));
       },
       findings);
-  if (options_.pluck.start.selected() == "rest") {
+  if (pluck.start.selected() == "rest") {
     findings.push_back({"pluck.initial", "a string at rest has no free decay: pluck it"});
   }
   lint_making(
       "pluck.duration",
       [&] {
-        const double rate = options_.measurement.sample_rate;
-        require_decay_length(sample_count(options_.pluck.duration, rate), rate,
-                             options_.pluck.identification);
+        const double rate = measurement.sample_rate;
+        require_decay_length(sample_count(pluck.duration, rate), rate, pluck.identification);
       },
       findings);
-  if (options_.has_bound) {
-    append(findings,
-           lint_priors("bound.unknowns", options_.bound.unknowns, options_.truth.scene.string));
+  if (has_bound) {
+    append(findings, lint_priors("bound.unknowns", bound.unknowns, truth.scene.string));
   }
-  const ContactSearchOptions& contact = options_.contact;
   if (!(contact.start - contact.range > 0.0 &&
-        contact.start + contact.range < options_.truth.scene.string.length)) {
+        contact.start + contact.range < truth.scene.string.length)) {
     findings.push_back({"contact.range", "the search leaves the string: narrow it"});
   }
   return findings;
 }
 
-std::vector<std::string> PluckThenBowExperiment::plan() const {
-  const RefinementOptions& refinement = options_.refinement;
+std::vector<std::string> PluckThenBowOptions::plan() const {
   std::vector<std::string> lines = {fmt::format("pluck test of {:g} s, modes up to {:g} Hz",
-                                                options_.pluck.duration,
-                                                options_.pluck.identification.highest_frequency)};
+                                                pluck.duration,
+                                                pluck.identification.highest_frequency)};
   lines.push_back(plan_line(*planned_simulations()));
-  lines.push_back(
-      fmt::format("modes 1 to {} refined by objective {}, optimizer {}; law through modes 1 to {}; "
-                  "all {} modes "
-                  "refined; law again; contact by {}",
-                  refinement.first_modes, refinement.objective.selected(),
-                  refinement.optimizer.selected(), refinement.law_modes,
-                  options_.truth.scene.string.modes, options_.contact.objective.selected()));
-  if (options_.has_bound) {
+  lines.push_back(fmt::format(
+      "modes 1 to {} refined by objective {}, optimizer {}; law through modes 1 to {}; "
+      "all {} modes "
+      "refined; law again; contact by {}",
+      refinement.first_modes, refinement.objective.selected(), refinement.optimizer.selected(),
+      refinement.law_modes, truth.scene.string.modes, contact.objective.selected()));
+  if (has_bound) {
     lines.emplace_back(
         "from the same pluck test: continuation of the joint likelihood, then its posterior under "
         "the plucked frequencies");
@@ -154,14 +147,34 @@ std::vector<std::string> PluckThenBowExperiment::plan() const {
   return lines;
 }
 
-std::optional<PlannedSimulations> PluckThenBowExperiment::planned_simulations() const {
-  auto planned = planned_truths(options_.stroke(), truth_outputs(options_.figures));
-  const IdentifyOptions test = options_.pluck_test(options_.pluck.identification.method);
-  ObservationOptions pluck = options_.stroke();
-  pluck.truth = test.truth;
-  pluck.measurement = test.measurement;
-  if (planned) add_planned(pluck, *planned);
+std::optional<PlannedSimulations> PluckThenBowOptions::planned_simulations() const {
+  auto planned = planned_truths(stroke(), truth_outputs(figures));
+  const IdentifyOptions test = pluck_test(pluck.identification.method);
+  ObservationOptions plucked = stroke();
+  plucked.truth = test.truth;
+  plucked.measurement = test.measurement;
+  if (planned) add_planned(plucked, *planned);
   return planned;
+}
+
+IdentifyOptions PluckThenBowOptions::pluck_test(std::string_view method) const {
+  IdentifyOptions test{.truth = truth, .measurement = measurement, .seed = seed};
+  Scene& scene = test.truth.scene;
+  scene.bow = {.position = truth.scene.bow.position, .velocity = 0.0, .normal_force = 0.0};
+  scene.start = pluck.start;
+  scene.duration = pluck.duration;
+  test.measurement.noise_level = pluck.noise_level;
+  test.identification = pluck.identification;
+  test.identification.method = method;
+  return test;
+}
+
+ObservationOptions PluckThenBowOptions::stroke() const {
+  ObservationOptions observation;
+  observation.has_scene = true;
+  observation.truth = truth;
+  observation.measurement = measurement;
+  return observation;
 }
 
 }  // namespace modcal
