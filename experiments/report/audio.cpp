@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "experiments/report/chart_data.hpp"
+#include "experiments/report/encoding.hpp"
 #include "experiments/report/figure.hpp"
 #include "libsim/base/error.hpp"
 

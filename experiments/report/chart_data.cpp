@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "experiments/report/encoding.hpp"
 #include "experiments/report/palette.hpp"
 
 namespace modcal::report {
@@ -183,22 +184,6 @@ std::string chart_data_json(std::span<const DrawnFigure> figures, const std::str
 
 std::string tags_text(const Tags& tags) {
   return tags_json(tags).dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
-std::string base64(std::span<const unsigned char> bytes) {
-  static constexpr std::string_view kDigits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-    unsigned group = 0;
-    for (std::size_t j = 0; j < 3; ++j) group = group << 8 | (j < count ? bytes[i + j] : 0u);
-    for (std::size_t j = 0; j < 4; ++j) {
-      text += j <= count ? kDigits[group >> (18 - 6 * j) & 63u] : '=';
-    }
-  }
-  return text;
 }
 
 }  // namespace modcal::report

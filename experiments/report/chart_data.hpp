@@ -17,7 +17,4 @@ std::string chart_data_json(std::span<const DrawnFigure> figures, const std::str
 /// Tags as a JSON object: {"noise": ["all", "5 %"]}.
 std::string tags_text(const Tags& tags);
 
-/// RFC 4648 with padding.
-std::string base64(std::span<const unsigned char> bytes);
-
 }  // namespace modcal::report

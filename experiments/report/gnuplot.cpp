@@ -1,17 +1,18 @@
 #include "experiments/report/gnuplot.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <sys/wait.h>
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
 #include <fstream>
 #include <iterator>
 #include <system_error>
 #include <vector>
 
-#include "experiments/report/atomic_file.hpp"
-#include "experiments/report/gnuplot_script.hpp"
-#include "experiments/report/process.hpp"
+#include "experiments/report/encoding.hpp"
 
 namespace modcal::report {
 namespace {
@@ -49,7 +50,26 @@ bool publish(const fs::path& file, std::string_view ending) {
   return false;
 }
 
+// What the shell ends with where it cannot run a program.
+constexpr int kNotExecutable = 126, kNotFound = 127;
+
 }  // namespace
+
+ProcessOutcome run_process(const std::vector<std::string>& arguments, const fs::path& directory) {
+  const auto word = [](const std::string& text) { return quoted(text, '\'', "'\\''"); };
+  std::string line = "cd " + word(directory.string()) + " && exec";
+  for (const std::string& argument : arguments) line += ' ' + word(argument);
+  ProcessOutcome outcome;
+  std::FILE* const pipe = ::popen((line + " 2>&1 </dev/null").c_str(), "re");
+  if (pipe == nullptr) return outcome;
+  for (int letter = std::fgetc(pipe); letter != EOF; letter = std::fgetc(pipe)) {
+    outcome.output += static_cast<char>(letter);
+  }
+  const int status = ::pclose(pipe);
+  outcome.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  outcome.started = outcome.exit_code != kNotFound && outcome.exit_code != kNotExecutable;
+  return outcome;
+}
 
 std::string draw_with_gnuplot(std::span<const DrawnFigure> figures, const fs::path& directory,
                               const std::string& program) {

@@ -1,10 +1,10 @@
-#include "experiments/report/gnuplot_script.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/report/encoding.hpp"
+#include "experiments/report/gnuplot.hpp"
 #include "experiments/report/palette.hpp"
 
 namespace modcal::report {
@@ -283,12 +283,10 @@ std::string gnuplot_data(const DrawnFigure& figure) {
 }
 
 std::string gnuplot_quoted(std::string_view text) {
-  std::string quoted = "'";
-  for (const char c : text) {
-    if (c == '\'') quoted += '\'';
-    quoted += c == '\n' || c == '\r' ? ' ' : c;
-  }
-  return quoted + "'";
+  std::string line(text);
+  std::replace_if(
+      line.begin(), line.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  return quoted(line, '\'', "''");
 }
 
 }  // namespace modcal::report

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "experiments/report/chart_data.hpp"
-#include "experiments/report/html_text.hpp"
+#include "experiments/report/encoding.hpp"
 #include "experiments/report/palette.hpp"
 
 namespace modcal::report {

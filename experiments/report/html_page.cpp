@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "experiments/report/encoding.hpp"
 #include "experiments/report/html_blocks.hpp"
-#include "experiments/report/html_text.hpp"
 #include "experiments/report/page_assets.hpp"
 #include "experiments/report/palette.hpp"
 

@@ -1,11 +1,11 @@
 #include "experiments/report/table.hpp"
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <set>
 
-#include "experiments/report/csv_field.hpp"
+#include "experiments/report/encoding.hpp"
 #include "experiments/report/figure.hpp"
+#include "experiments/report/result_json.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal::report {
@@ -20,28 +20,26 @@ void check_column(const Column& column, const Table& table) {
   }
 }
 
+template <typename... Functions>
+struct Overloaded : Functions... {
+  using Functions::operator()...;
+};
+template <typename... Functions>
+Overloaded(Functions...) -> Overloaded<Functions...>;
+
 std::string csv_cell(const Cell& cell) {
-  struct Writer {
-    std::string operator()(std::monostate) const { return {}; }
-    std::string operator()(bool flag) const { return flag ? "true" : "false"; }
-    std::string operator()(std::int64_t number) const { return std::to_string(number); }
-    std::string operator()(double number) const { return csv_field(number); }
-    std::string operator()(const std::string& text) const { return csv_field(text); }
-  };
-  return std::visit(Writer{}, cell.value);
+  return std::visit(Overloaded{[](std::monostate) { return std::string(); },
+                               [](bool flag) { return std::string(flag ? "true" : "false"); },
+                               [](std::int64_t number) { return std::to_string(number); },
+                               [](const auto& value) { return csv_field(value); }},
+                    cell.value);
 }
 
-nlohmann::ordered_json json_cell(const Cell& cell) {
-  struct Writer {
-    nlohmann::ordered_json operator()(std::monostate) const { return nullptr; }
-    nlohmann::ordered_json operator()(double number) const {
-      return std::isfinite(number) ? nlohmann::ordered_json(number) : nlohmann::ordered_json();
-    }
-    nlohmann::ordered_json operator()(bool flag) const { return flag; }
-    nlohmann::ordered_json operator()(std::int64_t number) const { return number; }
-    nlohmann::ordered_json operator()(const std::string& text) const { return text; }
-  };
-  return std::visit(Writer{}, cell.value);
+Json json_cell(const Cell& cell) {
+  return std::visit(Overloaded{[](std::monostate) { return Json(); },
+                               [](double number) { return number_json(number); },
+                               [](const auto& value) { return Json(value); }},
+                    cell.value);
 }
 
 }  // namespace
@@ -67,43 +65,35 @@ void check_table(const Table& table) {
 }
 
 std::string cell_text(const Cell& cell, const Column& column) {
-  struct Writer {
-    const Column& column;
-    std::string operator()(std::monostate) const { return "–"; }
-    std::string operator()(bool flag) const { return flag ? "yes" : "no"; }
-    std::string operator()(std::int64_t number) const { return std::to_string(number); }
-    std::string operator()(double number) const {
-      return std::isnan(number) ? "NaN" : fmt::format(fmt::runtime(column.format), number);
-    }
-    std::string operator()(const std::string& text) const { return text; }
-  };
-  return std::visit(Writer{column}, cell.value);
+  return std::visit(Overloaded{[](std::monostate) { return std::string("–"); },
+                               [](bool flag) { return std::string(flag ? "yes" : "no"); },
+                               [](std::int64_t number) { return std::to_string(number); },
+                               [&](double number) {
+                                 return std::isnan(number)
+                                            ? "NaN"
+                                            : fmt::format(fmt::runtime(column.format), number);
+                               },
+                               [](const std::string& text) { return text; }},
+                    cell.value);
 }
 
 std::string table_csv(const Table& table) {
-  std::string text;
-  for (std::size_t j = 0; j < table.columns.size(); ++j) {
-    const Axis heading{.label = table.columns[j].key, .unit = table.columns[j].unit};
-    text += (j == 0 ? "" : ",") + csv_field(heading.text());
+  std::vector<std::string> headings;
+  for (const Column& column : table.columns) {
+    headings.push_back(Axis{.label = column.key, .unit = column.unit}.text());
   }
-  text += '\n';
-  for (const auto& row : table.rows) {
-    for (std::size_t j = 0; j < row.size(); ++j) text += (j == 0 ? "" : ",") + csv_cell(row[j]);
-    text += '\n';
-  }
-  return text;
+  return csv_text(headings, table.rows.size(),
+                  [&](std::size_t i, std::size_t j) { return csv_cell(table.rows[i][j]); });
 }
 
 std::string table_json(const Table& table) {
-  auto rows = nlohmann::ordered_json::array();
+  Json rows = Json::array();
   for (const auto& row : table.rows) {
-    auto object = nlohmann::ordered_json::object();
-    for (std::size_t j = 0; j < row.size(); ++j) {
-      object[table.columns[j].key] = json_cell(row[j]);
-    }
+    Json object = Json::object();
+    for (std::size_t j = 0; j < row.size(); ++j) object[table.columns[j].key] = json_cell(row[j]);
     rows.push_back(std::move(object));
   }
-  return rows.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';
+  return json_file(rows);
 }
 
 }  // namespace modcal::report

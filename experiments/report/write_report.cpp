@@ -5,9 +5,9 @@
 #include <set>
 #include <system_error>
 
-#include "experiments/report/atomic_file.hpp"
 #include "experiments/report/chart_data.hpp"
 #include "experiments/report/drawing.hpp"
+#include "experiments/report/encoding.hpp"
 #include "experiments/report/figure_csv.hpp"
 #include "experiments/report/gnuplot.hpp"
 #include "experiments/report/html_page.hpp"

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "experiments/report/encoding.hpp"
 #include "tests/experiments/report/sample_report.hpp"
 
 namespace modcal::report {

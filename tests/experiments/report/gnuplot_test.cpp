@@ -8,8 +8,6 @@
 #include <fstream>
 #include <iterator>
 
-#include "experiments/report/gnuplot_script.hpp"
-#include "experiments/report/process.hpp"
 #include "tests/experiments/report/sample_report.hpp"
 
 namespace modcal::report {

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "experiments/report/chart_data.hpp"
-#include "experiments/report/html_text.hpp"
+#include "experiments/report/encoding.hpp"
 #include "tests/experiments/report/sample_report.hpp"
 
 namespace modcal::report {

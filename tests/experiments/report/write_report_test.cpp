@@ -7,7 +7,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "experiments/report/atomic_file.hpp"
+#include "experiments/report/encoding.hpp"
 #include "libsim/base/error.hpp"
 #include "tests/experiments/report/sample_report.hpp"
 
