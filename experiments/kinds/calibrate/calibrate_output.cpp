@@ -1,208 +1,196 @@
-// Tables, figures and JSON of a calibration.
+// What a calibration found, described once for its tables and its JSON, and its figures.
 #include <cmath>
-#include <nlohmann/json.hpp>
 
-#include "experiments/kinds/calibrate/calibrate_covariance.hpp"
-#include "experiments/kinds/calibrate/calibrate_fit_stages.hpp"
-#include "experiments/kinds/calibrate/calibrate_study.hpp"
+#include "experiments/kinds/calibrate/calibrate_summary.hpp"
 #include "libcalib/parameters/unknown_name.hpp"
 
 namespace modcal {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using report::ColorRole;
 using report::SeriesStyle;
 
-Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+constexpr auto kInJson = ResultVisitor::kInJson;
+constexpr auto kInTables = ResultVisitor::kInTables;
+constexpr std::size_t kPairsShown = 20;
 
 double refined_frequency(const CalibrationOutcome& outcome, std::size_t n) {
   return outcome.refined.basis.frequency(n - 1);
 }
 
-Json misfit_json(const PriorMisfit& misfit) {
-  return {{"chi2", number_or_null(misfit.chi2)},
-          {"count", misfit.count},
-          {"contradicted", misfit.contradicted()},
-          {"farthest", misfit.farthest},
-          {"deviations", number_or_null(misfit.deviations)}};
+void visit_parameter(ResultVisitor& row, const CalibratedParameter& parameter) {
+  row({.key = "name"}, parameter.name);
+  row({.key = "initial", .format = "{:.8g}"}, parameter.initial);
+  row({.key = "final", .format = "{:.8g}"}, parameter.final);
+  row({.key = "at_bound", .shown = kInJson}, parameter.at_bound);
+  row({.key = "sd", .name = "standard deviation", .format = "{:.3g}"}, known(parameter.deviation));
+  row({.key = "unit"}, parameter.unit);
+  row({.key = "meaning"}, meaning_of_unknown(parameter.name));
 }
 
-Json modes_json(const CalibrationOutcome& outcome) {
-  Json modes = Json::array();
-  for (const CalibratedMode& mode : outcome.result.modes) {
-    const Json truth = outcome.true_frequencies.empty()
-                           ? Json(nullptr)
-                           : Json(outcome.true_frequencies[mode.number - 1]);
-    modes.push_back({{"n", mode.number},
-                     {"f_true_hz", truth},
-                     {"f_initial_hz", mode.initial_frequency},
-                     {"f_hz", refined_frequency(outcome, mode.number)},
-                     {"excited", mode.excited},
-                     {"searched", mode.searched},
-                     {"shape_at_contact", mode.shape}});
-    if (!outcome.result.continuation) continue;
-    const ModeVerdict& verdict = outcome.result.continuation->modes[mode.number - 1];
-    modes.back()["relative_sd"] = number_or_null(verdict.deviation);
-    modes.back()["source"] = name_of(verdict.source);
-    modes.back()["reason"] = name_of(verdict.reason);
-    modes.back()["data_sd"] = number_or_null(verdict.data_deviation);
-    modes.back()["law"] = name_of(verdict.tie);
-    modes.back()["beyond_law"] = number_or_null(verdict.departure);
+void visit_verdict(ResultVisitor& row, const ModeVerdict& found) {
+  row({.key = "relative_sd", .name = "relative sd", .format = "{:.1e}"}, found.deviation);
+  row({.key = "data_sd", .name = "by its data alone", .format = "{:.1e}"}, found.data_deviation);
+  row({.key = "verdict", .shown = kInTables}, verdict_text(found));
+  row({.key = "source", .shown = kInJson}, name_of(found.source));
+  row({.key = "reason", .shown = kInJson}, name_of(found.reason));
+  row({.key = "law", .shown = kInJson}, name_of(found.tie));
+  row({.key = "beyond_law", .shown = kInJson}, found.departure);
+}
+
+void visit_mode(ResultVisitor& row, const CalibrationOutcome& outcome, const CalibratedMode& mode) {
+  const double refined = refined_frequency(outcome, mode.number);
+  std::optional<double> truth, error;
+  if (!outcome.true_frequencies.empty()) {
+    truth = outcome.true_frequencies[mode.number - 1];
+    error = refined / *truth - 1.0;
   }
-  return modes;
-}
-
-Json parameters_json(const std::vector<CalibratedParameter>& found) {
-  Json parameters = Json::array();
-  for (const CalibratedParameter& parameter : found) {
-    parameters.push_back({{"name", parameter.name},
-                          {"unit", parameter.unit},
-                          {"initial", parameter.initial},
-                          {"final", parameter.final},
-                          {"at_bound", parameter.at_bound},
-                          {"sd", number_or_null(parameter.deviation)},
-                          {"meaning", meaning_of_unknown(parameter.name)}});
+  row({.key = "n"}, mode.number);
+  row({.key = "f_true_hz", .name = "true", .unit = "Hz", .format = "{:.3f}"}, truth);
+  row({.key = "f_initial_hz", .name = "initial", .unit = "Hz", .format = "{:.3f}"},
+      mode.initial_frequency);
+  row({.key = "f_hz", .name = "refined", .unit = "Hz", .format = "{:.3f}"}, refined);
+  row({.key = "relative_error", .name = "relative error", .format = "{:.2e}", .shown = kInTables},
+      error);
+  if (const auto& found = outcome.result.continuation) {
+    visit_verdict(row, found->modes[mode.number - 1]);
   }
-  return parameters;
+  row({.key = "excited"}, mode.excited);
+  row({.key = "searched", .shown = kInJson}, mode.searched);
+  row({.key = "shape_at_contact", .name = "mode shape at the contact", .format = "{:.3f}"},
+      mode.shape);
 }
 
-Json continuation_json(const ContinuationResult& found,
-                       const std::vector<double>& contact_deviations) {
-  return {{"right", found.right},
-          {"fits", found.fits},
-          {"chi2", number_or_null(found.chi2)},
-          {"chi2_sd", number_or_null(found.chi2_deviation)},
-          {"law_chi2", number_or_null(found.law.chi2)},
-          {"law_accepted", found.law.accepted},
-          {"priors", misfit_json(found.priors)},
-          {"law_priors", misfit_json(found.law.priors)},
-          {"law_width", number_or_null(found.law_width)},
-          {"f0_sd_hz", number_or_null(found.law.deviation[0])},
-          {"B_sd", number_or_null(found.law.deviation[1])},
-          {"x_c_sd_m", number_or_null(found.contact_deviation)},
-          {"damping_sd", number_or_null(found.damping_deviation)},
-          {"noise_left_n", number_or_null(found.noise[0])},
-          {"noise_right_n", number_or_null(found.noise[1])},
-          {"restarts", found.restarts},
-          {"moved_modes", found.moved_modes},
-          {"covariance", covariance_json(found.covariance)},
-          {"law_covariance", covariance_json(found.law.covariance)},
-          {"stages", stages_json(found.stages)},
-          {"x_c_sd_of_strokes_m", contact_deviations}};
+void visit_stage(ResultVisitor& row, const FitStage& stage) {
+  row({.key = "name", .name = "stage"}, stage.name);
+  row({.key = "evaluations", .name = "evaluations so far"}, stage.evaluations);
+  row({.key = "objective", .format = "{:.6g}"}, stage.objective);
+  row({.key = "chi2", .name = "reduced chi2", .format = "{:.4f}"}, known(stage.chi2));
+}
+
+void visit_misfit(ResultVisitor& visitor, const PriorMisfit& misfit) {
+  visitor({.key = "chi2"}, misfit.chi2);
+  visitor({.key = "count"}, misfit.count);
+  visitor({.key = "contradicted"}, misfit.contradicted());
+  visitor({.key = "farthest"}, misfit.farthest);
+  visitor({.key = "deviations"}, misfit.deviations);
+}
+
+void visit_covariance(ResultVisitor& visitor, const NamedCovariance& covariance) {
+  std::vector<std::string_view> units;
+  std::vector<double> deviations;
+  std::vector<std::vector<double>> correlations(covariance.size());
+  const Eigen::MatrixXd matrix = covariance.correlations();
+  for (std::size_t i = 0; i < covariance.size(); ++i) {
+    units.push_back(unit_of_unknown(covariance.names[i]));
+    deviations.push_back(covariance.deviation(i));
+    const auto row = matrix.row(static_cast<Eigen::Index>(i));
+    correlations[i].assign(row.begin(), row.end());
+  }
+  visitor({.key = "names"}, covariance.names);
+  visitor({.key = "units"}, units);
+  visitor({.key = "sd"}, deviations);
+  visitor({.key = "correlations"}, correlations);
+  visitor({.key = "singular_values"}, covariance.singular_values());
+  visitor({.key = "condition"}, covariance.condition());
+}
+
+// The strongest correlations of the law and of all that is free.
+void visit_pairs(ResultVisitor& visitor, const ContinuationResult& found) {
+  const NamedCovariance& law = found.law.covariance;
+  std::vector<CorrelatedPair> pairs =
+      strongest_correlations(law, std::vector<bool>(law.size(), true), kPairsShown);
+  const std::size_t of_law = pairs.size();
+  if (found.frequencies_free) {
+    const auto more = strongest_correlations(found.covariance, told_by_data(found), kPairsShown);
+    pairs.insert(pairs.end(), more.begin(), more.end());
+  }
+  visitor.list({.table = "correlations",
+                .name = "Strongest correlations",
+                .meaning = "Of the law fitted by itself and, where every frequency is free, of all "
+                           "that the data identify; calibration.json has them all.",
+                .shown = kInTables},
+               pairs.size(), {}, [&](ResultVisitor& row, std::size_t i) {
+                 const auto& names = (i < of_law ? law : found.covariance).names;
+                 row({.key = "fit"}, i < of_law ? "law" : "every frequency");
+                 row({.key = "parameter"}, names[pairs[i].first]);
+                 row({.key = "with"}, names[pairs[i].second]);
+                 row({.key = "correlation", .format = "{:+.3f}"}, pairs[i].correlation);
+               });
+}
+
+void visit_continuation(ResultVisitor& visitor, const ContinuationResult& found,
+                        const std::vector<double>& contact_deviations) {
+  const auto group = [&visitor](std::string_view key, auto visit, const auto& value) {
+    visitor.group({.key = key}, [&](ResultVisitor& members) { visit(members, value); });
+  };
+  visitor({.key = "right"}, found.right);
+  visitor({.key = "fits"}, found.fits);
+  visitor({.key = "chi2"}, found.chi2);
+  visitor({.key = "chi2_sd"}, found.chi2_deviation);
+  visitor({.key = "law_chi2"}, found.law.chi2);
+  visitor({.key = "law_accepted"}, found.law.accepted);
+  group("priors", visit_misfit, found.priors);
+  group("law_priors", visit_misfit, found.law.priors);
+  visitor({.key = "law_width"}, found.law_width);
+  visitor({.key = "f0_sd_hz"}, found.law.deviation[0]);
+  visitor({.key = "B_sd"}, found.law.deviation[1]);
+  visitor({.key = "x_c_sd_m"}, found.contact_deviation);
+  visitor({.key = "damping_sd"}, found.damping_deviation);
+  visitor({.key = "noise_left_n"}, found.noise[0]);
+  visitor({.key = "noise_right_n"}, found.noise[1]);
+  visitor({.key = "restarts"}, found.restarts);
+  visitor({.key = "moved_modes"}, found.moved_modes);
+  group("covariance", visit_covariance, found.covariance);
+  group("law_covariance", visit_covariance, found.law.covariance);
+  visitor.rows({.key = "stages"}, found.stages, visit_stage);
+  visitor({.key = "x_c_sd_of_strokes_m"}, contact_deviations);
 }
 
 }  // namespace
 
-std::string calibration_json(const CalibrationOutcome& outcome) {
-  const OptimizationResult& search = outcome.result.search;
-  Json trace = Json::array();
-  for (const TracePoint& point : search.trace) {
-    trace.push_back({point.evaluations, number_or_null(point.value)});
+void CalibrationOutcome::visit(ResultVisitor& visitor) const {
+  const OptimizationResult& search = result.search;
+  const auto& found = result.continuation;
+  visitor.group({.table = "search", .name = "Search"}, [&](ResultVisitor& row) {
+    row({.key = "stop_reason", .name = "ended because"}, name_of(search.stop));
+    row({.key = "evaluations"}, search.evaluations);
+    row({.key = "loops"}, search.loops);
+    row({.key = "seconds", .unit = "s"}, search.seconds);
+    row({.key = "objective_initial", .name = "objective, initial"}, known(search.initial_value));
+    row({.key = "objective", .name = "objective, final"}, search.value);
+    row({.key = "median_relative_error_excited",
+         .name = "median relative error, excited modes",
+         .format = "{:.3g}"},
+        known(median_relative_error(*this)));
+  });
+  visitor({.key = "searched_by_loop"}, search.searched);
+  if (found) {
+    visitor.rows(
+        {.table = "stages",
+         .name = "Stages of the continuation",
+         .meaning = "Every stage has a record of its own: damped by sigma, whole, or whole with "
+                    "weighted bins. Objectives of different stages do not compare.",
+         .shown = kInTables},
+        found->stages, visit_stage);
   }
-  Json document = {
-      {"modes", modes_json(outcome)},
-      {"loops", search.loops},
-      {"searched_by_loop", search.searched},
-      {"evaluations", search.evaluations},
-      {"seconds", search.seconds},
-      {"stop_reason", name_of(search.stop)},
-      {"objective_initial", number_or_null(search.initial_value)},
-      {"objective", number_or_null(search.value)},
-      {"median_relative_error_excited", number_or_null(median_relative_error(outcome))},
-      {"parameters", parameters_json(outcome.result.parameters)},
-      {"trace", std::move(trace)}};
-  if (outcome.law) {
-    document["stiff_string_law"] = {
-        {"f0_hz", outcome.law->fundamental},
-        {"B", outcome.law->inharmonicity},
-        {"f0_sd_hz", number_or_null(outcome.law->fundamental_deviation)},
-        {"B_sd", number_or_null(outcome.law->inharmonicity_deviation)}};
-  }
-  if (outcome.result.continuation) {
-    document["continuation"] =
-        continuation_json(*outcome.result.continuation, outcome.result.contact_deviations);
-  }
-  return document.dump(1) + "\n";
-}
-
-report::Table search_table(const CalibrationOutcome& outcome, const std::string& command) {
-  const OptimizationResult& search = outcome.result.search;
-  const double error = median_relative_error(outcome);
-  return {
-      .id = "search",
-      .title = "Search",
-      .columns = {{.key = "stop_reason", .name = "ended because"},
-                  {.key = "evaluations"},
-                  {.key = "loops"},
-                  {.key = "seconds", .unit = "s"},
-                  {.key = "objective_initial", .name = "objective, initial"},
-                  {.key = "objective", .name = "objective, final"},
-                  {.key = "median_relative_error_excited",
-                   .name = "median relative error, excited modes",
-                   .format = "{:.3g}"}},
-      .rows = {{std::string(name_of(search.stop)), search.evaluations, search.loops, search.seconds,
-                std::isfinite(search.initial_value) || !outcome.result.continuation
-                    ? report::Cell(search.initial_value)
-                    : report::Cell(),
-                search.value, std::isfinite(error) ? report::Cell(error) : report::Cell()}},
-      .command = command};
-}
-
-report::Table parameter_table(const CalibrationOutcome& outcome, const std::string& command) {
-  report::Table table{.id = "parameters",
-                      .title = "Parameters",
-                      .columns = {{.key = "name"},
-                                  {.key = "initial", .format = "{:.8g}"},
-                                  {.key = "final", .format = "{:.8g}"},
-                                  {.key = "sd", .name = "standard deviation", .format = "{:.3g}"},
-                                  {.key = "unit"},
-                                  {.key = "meaning"}},
-                      .command = command};
-  for (const CalibratedParameter& parameter : outcome.result.parameters) {
-    if (parameter.name.starts_with("f_")) continue;
-    report::Cell sd;
-    if (std::isfinite(parameter.deviation)) sd = parameter.deviation;
-    table.rows.push_back({parameter.name, parameter.initial, parameter.final, sd, parameter.unit,
-                          std::string(meaning_of_unknown(parameter.name))});
-  }
-  return table;
-}
-
-report::Table mode_table(const CalibrationOutcome& outcome, const std::string& command) {
-  report::Table table{
-      .id = "modes",
-      .title = "Modal frequencies",
-      .columns = {{.key = "n"},
-                  {.key = "f_true_hz", .name = "true", .unit = "Hz", .format = "{:.3f}"},
-                  {.key = "f_initial_hz", .name = "initial", .unit = "Hz", .format = "{:.3f}"},
-                  {.key = "f_hz", .name = "refined", .unit = "Hz", .format = "{:.3f}"},
-                  {.key = "relative_error", .name = "relative error", .format = "{:.2e}"},
-                  {.key = "relative_sd", .name = "relative sd", .format = "{:.1e}"},
-                  {.key = "data_sd", .name = "by its data alone", .format = "{:.1e}"},
-                  {.key = "verdict"},
-                  {.key = "excited"},
-                  {.key = "shape_at_contact",
-                   .name = "mode shape at the contact",
-                   .format = "{:.3f}"}},
-      .command = command};
-  for (const CalibratedMode& mode : outcome.result.modes) {
-    const double refined = refined_frequency(outcome, mode.number);
-    report::Cell truth, error, deviation, data_deviation, verdict;
-    if (outcome.result.continuation) {
-      const ModeVerdict& found = outcome.result.continuation->modes[mode.number - 1];
-      deviation = found.deviation;
-      data_deviation = found.data_deviation;
-      verdict = verdict_text(found);
-    }
-    if (!outcome.true_frequencies.empty()) {
-      truth = outcome.true_frequencies[mode.number - 1];
-      error = refined / outcome.true_frequencies[mode.number - 1] - 1.0;
-    }
-    table.rows.push_back({mode.number, truth, mode.initial_frequency, refined, error, deviation,
-                          data_deviation, verdict, mode.excited, mode.shape});
-  }
-  return table;
+  visitor.rows({.key = "parameters", .shown = kInJson}, result.parameters, visit_parameter);
+  std::vector<CalibratedParameter> beside_frequencies = result.parameters;
+  std::erase_if(beside_frequencies, [](const auto& one) { return one.name.starts_with("f_"); });
+  visitor.rows({.table = "parameters", .name = "Parameters", .shown = kInTables},
+               beside_frequencies, visit_parameter);
+  if (found) visit_pairs(visitor, *found);
+  visitor.rows(
+      {.key = "modes", .table = "modes", .name = "Modal frequencies"}, result.modes,
+      [this](ResultVisitor& row, const CalibratedMode& mode) { visit_mode(row, *this, mode); });
+  visitor.rows({.key = "trace"}, search.trace, [](ResultVisitor& item, const TracePoint& point) {
+    item({}, std::pair(point.evaluations, point.value));
+  });
+  visitor({.key = "stiff_string_law", .optional = true}, law);
+  if (!found) return;
+  visitor.group({.key = "continuation", .shown = kInJson}, [&](ResultVisitor& members) {
+    visit_continuation(members, *found, result.contact_deviations);
+  });
 }
 
 report::Figure objective_figure(const FigureOptions& options, const CalibrationOutcome& outcome) {
@@ -249,15 +237,12 @@ report::Figure frequency_error_figure(const FigureOptions& options,
   for (const CalibratedMode& mode : outcome.result.modes) {
     const std::size_t group = mode.excited ? 0 : 1;
     const auto n = static_cast<double>(mode.number);
-    shape[group].x.push_back(n);
-    shape[group].y.push_back(std::abs(mode.shape));
+    shape[group].add(n, std::abs(mode.shape));
     if (outcome.true_frequencies.empty()) continue;
     const double truth = outcome.true_frequencies[mode.number - 1];
     const double error = refined_frequency(outcome, mode.number) - truth;
-    absolute[group].x.push_back(n);
-    absolute[group].y.push_back(std::abs(error));
-    relative[group].x.push_back(n);
-    relative[group].y.push_back(100.0 * std::abs(error) / truth);
+    absolute[group].add(n, std::abs(error));
+    relative[group].add(n, 100.0 * std::abs(error) / truth);
   }
   const auto add = [&figure](report::Series* series, report::Axis y) {
     report::Panel panel;

@@ -1,10 +1,10 @@
 #include "experiments/kinds/calibrate/calibrate_study.hpp"
 
 #include "experiments/kinds/calibrate/calibrate_audio.hpp"
-#include "experiments/kinds/calibrate/calibrate_covariance.hpp"
-#include "experiments/kinds/calibrate/calibrate_fit_stages.hpp"
 #include "experiments/kinds/calibrate/calibrate_sensors.hpp"
 #include "experiments/kinds/calibrate/calibrate_summary.hpp"
+#include "experiments/report/result_json.hpp"
+#include "experiments/report/result_table.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -112,8 +112,7 @@ std::vector<Observation> further_observations(const CalibrateOptions& options,
 
 // Objectives over their candidates and errors of the frequencies, as asked for.
 void add_search_figures(const std::vector<FigureOptions>& figures,
-                        const CalibrationOutcome& outcome, const std::string& command,
-                        StudyResult& result) {
+                        const CalibrationOutcome& outcome, StudyResult& result) {
   for (const FigureOptions& figure : figures) {
     report::Figure drawn;
     if (figure.content == "objectives") {
@@ -124,7 +123,6 @@ void add_search_figures(const std::vector<FigureOptions>& figures,
       continue;
     }
     if (drawn.panels.empty()) continue;  // only a systematic search has candidates to draw
-    drawn.command = command;
     result.blocks.emplace_back(std::move(drawn));
   }
 }
@@ -206,18 +204,17 @@ StudyResult calibrate_study(const CalibrateOptions& options, const StudyContext&
         chi2_text(*found), found->fits ? report::Text::Kind::kNote : report::Text::Kind::kFailure});
   }
   add_warnings(observation, sides, result);
-  add_search_figures(inversion.figures, outcome, context.command, result);
+  add_search_figures(inversion.figures, outcome, result);
   add_identification_figures(inversion.figures, observation, sides, result);
   if (options.audio) {
     result.blocks.emplace_back(calibration_audio(options, observation, outcome.refined));
   }
-  result.blocks.emplace_back(search_table(outcome, context.command));
-  add_stages(outcome, context.command, result);
-  result.blocks.emplace_back(parameter_table(outcome, context.command));
-  add_covariance(outcome, context.command, result);
-  result.blocks.emplace_back(mode_table(outcome, context.command));
-  result.blocks.emplace_back(identification_table(sides));
-  result.files.emplace_back("calibration.json", calibration_json(outcome));
+  if (const auto& found = outcome.result.continuation) {
+    result.summary += covariance_text(*found);
+  }
+  result.add(report::tables_of(outcome));
+  result.add({identification_table(sides)});
+  result.files.emplace_back("calibration.json", report::json_file(report::json_of(outcome)));
   if (inversion.write_signals) {
     result.signal_files.push_back(identified_signals(observation, sides));
   }

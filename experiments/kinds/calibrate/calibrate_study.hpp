@@ -43,6 +43,9 @@ struct CalibrationOutcome {
   CalibrationResult result;
   std::optional<StiffStringFit> law;     ///< where blind modes were filled
   std::vector<double> true_frequencies;  ///< [Hz]; empty for a record
+
+  /// Tables of the report and calibration.json.
+  void visit(ResultVisitor& visitor) const;
 };
 
 CalibrationOutcome calibrate_observation(const CalibrateOptions& options,
@@ -71,12 +74,6 @@ std::string verdict_text(const ModeVerdict& mode);
 /// What a stage's fit says of the priors; empty where none was stated.
 std::string prior_lines(const PriorMisfit& misfit, std::string_view stage);
 
-/// calibration.json.
-std::string calibration_json(const CalibrationOutcome& outcome);
-/// What was searched beside frequencies, with standard deviations where they are known.
-report::Table parameter_table(const CalibrationOutcome& outcome, const std::string& command);
-report::Table mode_table(const CalibrationOutcome& outcome, const std::string& command);
-report::Table search_table(const CalibrationOutcome& outcome, const std::string& command);
 /// Objective over the candidates of the first modes, initial, chosen and true value marked (paper,
 /// figs. 13 and 20).
 report::Figure objective_figure(const FigureOptions& options, const CalibrationOutcome& outcome);

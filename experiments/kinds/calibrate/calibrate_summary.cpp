@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "experiments/kinds/calibrate/fit_verdict.hpp"
+#include "experiments/kinds/calibrate/correlation_text.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {
@@ -41,6 +41,56 @@ std::string chi2_text(const ContinuationResult& found) {
         1.0 / std::sqrt(found.chi2));
   }
   return text;
+}
+
+std::string contradiction(const ContinuationResult& found) {
+  std::string text;
+  if (!found.fits) {
+    text = fmt::format("the fit is wrong: reduced chi2 {:.4f}, where {:.4f} would scatter from 1",
+                       found.chi2, found.chi2_deviation);
+  }
+  if (!found.priors.contradicted()) return text;
+  if (!text.empty()) text += "; ";
+  return text +
+         fmt::format("the data contradict the priors stated, that of {} most ({:.3g} deviations)",
+                     found.priors.farthest, found.priors.deviations);
+}
+
+std::vector<bool> told_by_data(const ContinuationResult& found) {
+  std::vector<bool> told(found.covariance.size(), true);
+  for (std::size_t n = 0; found.frequencies_free && n < found.modes.size(); ++n) {
+    const auto place = found.covariance.find(fmt::format("f_{}", n + 1));
+    if (place) told[*place] = found.modes[n].source == ModeSource::kIdentified;
+  }
+  return told;
+}
+
+namespace {
+
+constexpr std::size_t kPairsShown = 6;
+
+std::string condition_text(const NamedCovariance& covariance) {
+  const std::vector<double> values = covariance.singular_values();
+  if (values.empty()) return "";
+  return fmt::format("singular values in standard deviations {:.3g} to {:.3g}, condition {:.3g}\n",
+                     values.front(), values.back(), covariance.condition());
+}
+
+}  // namespace
+
+std::string covariance_text(const ContinuationResult& found) {
+  std::string text = "stiff-string law:\n" + correlation_lines(found.law.covariance) + "  " +
+                     condition_text(found.law.covariance);
+  if (!found.frequencies_free) return text;
+  text += "every frequency free, strongest correlations:";
+  for (const CorrelatedPair& pair :
+       strongest_correlations(found.covariance, told_by_data(found), kPairsShown)) {
+    const auto& names = found.covariance.names;
+    text += fmt::format("{}{} with {}", text.back() == ':' ? " " : ", ", names[pair.second],
+                        names[pair.first]);
+    text += fmt::format(" {:+.2f}", pair.correlation);
+  }
+  return text + "\n  " + condition_text(found.covariance);
 }
 
 namespace {
@@ -124,20 +174,17 @@ void add_calibration_warnings(const CalibrationOutcome& outcome, StudyResult& re
   for (const CalibratedParameter& parameter : outcome.result.parameters) {
     if (parameter.at_bound) bound.push_back(parameter.name);
   }
-  const auto warn = [&result](std::string text) {
-    result.summary += "warning: " + text + "\n";
-    result.blocks.emplace_back(report::Text{std::move(text), report::Text::Kind::kWarning});
-  };
   if (!bound.empty()) {
-    warn(fmt::format("{} ended on a bound: the optimum may lie beyond", fmt::join(bound, ", ")));
+    result.warn(
+        fmt::format("{} ended on a bound: the optimum may lie beyond", fmt::join(bound, ", ")));
   }
   if (!outcome.result.blind.empty()) {
-    warn(fmt::format("{} cannot be seen from this contact point and {}",
-                     fmt::join(outcome.result.blind, ", "),
-                     outcome.law ? "come from the stiff-string law" : "keep their initial values"));
+    result.warn(fmt::format(
+        "{} cannot be seen from this contact point and {}", fmt::join(outcome.result.blind, ", "),
+        outcome.law ? "come from the stiff-string law" : "keep their initial values"));
   }
-  const auto fail = [&](std::string text) {
-    warn(std::move(text));
+  const auto fail = [&result](const std::string& text) {
+    result.warn(text);
     result.failed_tasks = 1;
     result.status = report::Status::kFailed;
   };

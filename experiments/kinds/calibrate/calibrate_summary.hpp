@@ -15,4 +15,15 @@ void add_calibration_warnings(const CalibrationOutcome& outcome, StudyResult& re
 /// What χ² says of a continuation's fit, in words.
 std::string chi2_text(const ContinuationResult& found);
 
+/// What contradicts a result that is not right: χ², the priors stated, or both; else empty.
+std::string contradiction(const ContinuationResult& found);
+
+/// Which parameters the data identify. A frequency that the law or a prior holds moves with the
+/// others by that alone.
+std::vector<bool> told_by_data(const ContinuationResult& found);
+
+/// The law's parameters with correlations and condition number, as `modcal limit` has them; where
+/// every frequency is free the strongest correlations of what the data identify, too.
+std::string covariance_text(const ContinuationResult& found);
+
 }  // namespace modcal

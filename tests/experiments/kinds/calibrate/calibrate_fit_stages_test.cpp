@@ -1,10 +1,12 @@
 // What a calibration says of the stages of its continuation.
-#include "experiments/kinds/calibrate/calibrate_fit_stages.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "experiments/kinds/calibrate/calibrate_study.hpp"
-#include "experiments/study/study.hpp"
+#include "experiments/report/result_json.hpp"
+#include "experiments/report/result_table.hpp"
 
 namespace modcal {
 namespace {
@@ -14,8 +16,14 @@ std::vector<FitStage> stages() {
           {.name = "free, weighted bins", .evaluations = 40, .objective = 700.0}};
 }
 
+CalibrationOutcome outcome_with_stages() {
+  CalibrationOutcome outcome;
+  outcome.result.continuation.emplace().stages = stages();
+  return outcome;
+}
+
 TEST(CalibrateStages, AreInTheFile) {
-  const auto list = stages_json(stages());
+  const auto list = report::json_of(outcome_with_stages()).at("continuation").at("stages");
   ASSERT_EQ(list.size(), 2u);
   EXPECT_EQ(list[0].at("name").get<std::string>(), "law, sigma = 200 1/s");
   EXPECT_EQ(list[0].at("evaluations").get<int>(), 15);
@@ -25,18 +33,16 @@ TEST(CalibrateStages, AreInTheFile) {
 }
 
 TEST(CalibrateStages, AreATableOfTheReport) {
-  CalibrationOutcome outcome;
-  StudyResult result;
-  add_stages(outcome, "test", result);
-  EXPECT_TRUE(result.blocks.empty());
-  outcome.result.continuation.emplace().stages = stages();
-  add_stages(outcome, "test", result);
-  ASSERT_EQ(result.blocks.size(), 1u);
-  const auto& table = std::get<report::Table>(result.blocks[0]);
-  check_table(table);
-  ASSERT_EQ(table.rows.size(), 2u);
-  EXPECT_EQ(std::get<double>(table.rows[0][3].value), 1.25);
-  EXPECT_TRUE(std::holds_alternative<std::monostate>(table.rows[1][3].value));
+  const auto is_of_stages = [](const report::Table& table) { return table.id == "stages"; };
+  const std::vector<report::Table> without = report::tables_of(CalibrationOutcome());
+  EXPECT_TRUE(std::none_of(without.begin(), without.end(), is_of_stages));
+  const std::vector<report::Table> tables = report::tables_of(outcome_with_stages());
+  const auto found = std::find_if(tables.begin(), tables.end(), is_of_stages);
+  ASSERT_NE(found, tables.end());
+  check_table(*found);
+  ASSERT_EQ(found->rows.size(), 2u);
+  EXPECT_EQ(std::get<double>(found->rows[0][3].value), 1.25);
+  EXPECT_TRUE(std::holds_alternative<std::monostate>(found->rows[1][3].value));
 }
 
 }  // namespace

@@ -2,10 +2,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
-#include <nlohmann/json.hpp>
 
 #include "experiments/kinds/calibrate/calibrate_study.hpp"
+#include "experiments/report/result_json.hpp"
+#include "experiments/report/result_table.hpp"
 
 namespace modcal {
 namespace {
@@ -46,7 +48,7 @@ TEST(CalibrateOutput, SaysThatThePriorsAreContradicted) {
 }
 
 TEST(CalibrateOutput, HasThePriorsMisfitAndTheDeviationsInItsFile) {
-  const auto document = nlohmann::json::parse(calibration_json(outcome_of(far_off())));
+  const report::Json document = report::json_of(outcome_of(far_off()));
   const auto& continuation = document.at("continuation");
   EXPECT_FALSE(continuation.at("right").get<bool>());
   EXPECT_TRUE(continuation.at("fits").get<bool>());
@@ -62,9 +64,14 @@ TEST(CalibrateOutput, HasThePriorsMisfitAndTheDeviationsInItsFile) {
 
 TEST(CalibrateOutput, TablesHaveDeviationsWhereTheyAreKnown) {
   const CalibrationOutcome outcome = outcome_of({});
-  const report::Table parameters = parameter_table(outcome, "test");
+  const std::vector<report::Table> tables = report::tables_of(outcome);
+  const auto table_called = [&tables](std::string_view id) {
+    return *std::find_if(tables.begin(), tables.end(),
+                         [id](const report::Table& table) { return table.id == id; });
+  };
+  const report::Table parameters = table_called("parameters");
   ASSERT_EQ(parameters.rows.size(), 2u);
-  const report::Table modes = mode_table(outcome, "test");
+  const report::Table modes = table_called("modes");
   ASSERT_EQ(modes.rows.size(), 1u);
   for (const report::Table& table : {parameters, modes}) {
     for (const auto& row : table.rows) EXPECT_EQ(row.size(), table.columns.size());

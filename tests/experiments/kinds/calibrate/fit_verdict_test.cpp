@@ -1,7 +1,7 @@
-#include "experiments/kinds/calibrate/fit_verdict.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "experiments/kinds/calibrate/calibrate_summary.hpp"
 
 namespace modcal {
 namespace {
