@@ -30,13 +30,16 @@ std::string csv_field(double value) { return std::isnan(value) ? "nan" : fmt::fo
 std::string csv_text(const std::vector<std::string>& headings, std::size_t rows,
                      const std::function<std::string(std::size_t, std::size_t)>& field) {
   std::string text;
-  for (std::size_t j = 0; j < headings.size(); ++j) {
-    text += (j == 0 ? "" : ",") + csv_field(headings[j]);
-  }
-  text += '\n';
-  for (std::size_t i = 0; i < rows; ++i) {
-    for (std::size_t j = 0; j < headings.size(); ++j) text += (j == 0 ? "" : ",") + field(i, j);
+  const auto add_line = [&](const auto& cell) {
+    for (std::size_t j = 0; j < headings.size(); ++j) {
+      if (j > 0) text += ',';
+      text += cell(j);
+    }
     text += '\n';
+  };
+  add_line([&](std::size_t j) { return csv_field(headings[j]); });
+  for (std::size_t i = 0; i < rows; ++i) {
+    add_line([&](std::size_t j) { return field(i, j); });
   }
   return text;
 }
