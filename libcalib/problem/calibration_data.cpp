@@ -70,13 +70,4 @@ void CalibrationData::require_motion() const {
   }
 }
 
-BinRange bins_between(const FrequencyGrid& grid, double low, double high) {
-  const double top = static_cast<double>(grid.bins);
-  const auto first =
-      static_cast<std::size_t>(std::clamp(std::ceil(low / grid.spacing), 1.0, std::max(top, 1.0)));
-  const auto last = static_cast<std::size_t>(
-      std::clamp(std::floor(high / grid.spacing) + 1.0, 1.0, std::max(top, 1.0)));
-  return {first, std::max(first, last)};
-}
-
 }  // namespace modcal

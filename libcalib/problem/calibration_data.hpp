@@ -35,16 +35,4 @@ struct CalibrationData {
   void require_motion() const;
 };
 
-/// Bins k of a half spectrum, first ≤ k < last.
-struct BinRange {
-  std::size_t first = 0;
-  std::size_t last = 0;
-
-  std::size_t size() const { return last - first; }
-  bool operator==(const BinRange&) const = default;
-};
-
-/// Bins k ≥ 1 of the grid with low ≤ ω_k ≤ high [rad/s]; may be empty.
-BinRange bins_between(const FrequencyGrid& grid, double low, double high);
-
 }  // namespace modcal

@@ -39,9 +39,8 @@ ContourInversions::ContourInversions(const EstimationModel& model, const JointOp
       sample_rate_(model.sample_rate),
       options_(options),
       truncation_(truncation_of(options.truncation)),
-      remainder_(options.transfer.has_remainder(model.recorded)),
-      noise_(basis_, contact_, samples_, sample_rate_, remainder_, options.transfer.bending,
-             options.sensors) {}
+      support_(options.transfer.support(model.recorded)),
+      noise_(basis_, contact_, samples_, sample_rate_, support_, options.sensors) {}
 
 SensorNoiseLevel ContourInversions::noise_of(const EstimationRecord& record) const {
   SensorNoise::Workspace workspace;
@@ -84,8 +83,7 @@ const JointInversion& ContourInversions::of(const ReactionPair& reactions,
     slot = std::make_unique<const JointInversion>(basis_, contact_, samples_, sample_rate_,
                                                   JointModel{.truncation = truncation_,
                                                              .sigma = sigma,
-                                                             .static_remainder = remainder_,
-                                                             .bending = options_.transfer.bending,
+                                                             .support = support_,
                                                              .sensors = options_.sensors},
                                                   static_cast<std::size_t>(options_.points));
   }

@@ -34,7 +34,7 @@ class ContourInversions {
   double sample_rate_;
   JointOptions options_;
   Truncation truncation_;
-  bool remainder_;
+  StringSupport support_;
   SensorNoise noise_;
   mutable std::mutex mutex_;
   mutable std::map<double, std::unique_ptr<const JointInversion>> by_sigma_;

@@ -76,8 +76,7 @@ JointInversion::JointInversion(const ModalBasis& basis, double contact, std::siz
     : fft_(samples), sample_rate_(sample_rate), model_(model), curve_(points) {
   require_contour(model);
   const FrequencyGrid grid = contour_grid(samples, sample_rate, model.sigma);
-  StringTransfer transfer =
-      string_transfer(basis, contact, grid, model.static_remainder, model.bending, model.sensors);
+  StringTransfer transfer = string_transfer(basis, contact, grid, model.support, model.sensors);
   receptance_ = transfer.receptance;
   mobility_ = std::move(transfer.receptance);
   for (std::size_t k = 0; k < mobility_.size(); ++k) {
@@ -110,7 +109,7 @@ JointInversion::JointInversion(const ModalBasis& basis, double contact, std::siz
   }
   grid_ = {.bins = fft_.bins(), .samples = samples, .sample_rate = sample_rate};
   if (model.truncation == Truncation::kTransient) {
-    transient_ = TransientFit(basis, grid, sample_rate, model.bending, model.sensors);
+    transient_ = TransientFit(basis, grid, sample_rate, model.support.bending, model.sensors);
   }
 }
 

@@ -34,8 +34,7 @@ enum class OffsetRule {
 struct JointModel {
   Truncation truncation = Truncation::kShiftedContour;
   double sigma = 0.0;  ///< real part of the contour [1/s]; 0 unless the contour is shifted
-  bool static_remainder = false;
-  bool bending = false;
+  StringSupport support = {};
   SensorOptions sensors = {};
 };
 

@@ -29,7 +29,7 @@ double rms_of(std::span<const double> samples) {
 }  // namespace
 
 SensorNoise::SensorNoise(const ModalBasis& basis, double contact, std::size_t samples,
-                         double sample_rate, bool static_remainder, bool bending,
+                         double sample_rate, const StringSupport& support,
                          const SensorOptions& sensors)
     : fft_(std::clamp<std::size_t>(samples, 1, kSegment)), samples_(samples) {
   const std::size_t length = fft_.length();
@@ -46,8 +46,7 @@ SensorNoise::SensorNoise(const ModalBasis& basis, double contact, std::size_t sa
   const double from = std::min(1.2 * top, 0.5 * (top + nyquist));
   first_ = static_cast<std::size_t>(std::ceil(from / grid.spacing));
   last_ = static_cast<std::size_t>(0.97 * nyquist / grid.spacing);
-  StringTransfer transfer =
-      string_transfer(basis, contact, grid, static_remainder, bending, sensors);
+  const StringTransfer transfer = string_transfer(basis, contact, grid, support, sensors);
   for (std::size_t k = first_; k < last_; ++k) {
     const Complex left = transfer.reaction[0][k], right = transfer.reaction[1][k];
     const double scale = 1.0 / std::sqrt(power_of(left) + power_of(right));

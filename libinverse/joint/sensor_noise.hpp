@@ -28,7 +28,7 @@ class SensorNoise {
  public:
   /// Transfer functions as the inversion's, on the frequency axis.
   SensorNoise(const ModalBasis& basis, double contact, std::size_t samples, double sample_rate,
-              bool static_remainder, bool bending, const SensorOptions& sensors);
+              const StringSupport& support, const SensorOptions& sensors);
 
   struct Workspace {
     std::vector<Complex> spectrum[2];

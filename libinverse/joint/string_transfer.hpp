@@ -18,8 +18,10 @@ struct TransferOptions {
   bool bending = false;
 
   void visit(OptionVisitor& visitor);
-  bool has_remainder(bool recorded) const {
-    return static_remainder == "on" || (static_remainder == "auto" && recorded);
+  /// `recorded`: the data are no simulation.
+  StringSupport support(bool recorded) const {
+    return {.static_remainder = static_remainder == "on" || (static_remainder == "auto" && recorded),
+            .bending = bending};
   }
 };
 
@@ -32,22 +34,6 @@ struct SensorOptions {
   void visit(OptionVisitor& visitor);
 };
 
-/// B of ω_n = n ω₀ √(1 + B n²), ω₀ from tension and mass: least squares of (ω_n/(n ω₀))² − 1 over
-/// B n², 0 where that is negative.
-double inharmonicity_of(const ModalBasis& basis);
-
-/// Static response of all modes, 1 … ∞, to a force at ξ = x_c/L.
-struct StaticResponse {
-  double reaction[2] = {0.0, 0.0};  ///< [N/N]
-  double compliance = 0.0;          ///< [m/N]
-};
-
-/// Closed form: −(1 − ξ), −ξ and L ξ(1 − ξ)/T for B = 0 (or, reactions, with the bending part),
-/// else with sinh and cosh of π/√B (Gradshteyn and Ryzhik, 2007, 1.445).
-StaticResponse static_response(const ModalBasis& basis, double contact, bool bending);
-/// The part of it that the modes of the basis hold, B as in the law.
-StaticResponse static_response_of_modes(const ModalBasis& basis, double contact, bool bending);
-
 struct StringTransfer {
   std::vector<Complex> reaction[2];  ///< by End [N/N]
   std::vector<Complex> receptance;   ///< [m/N]
@@ -55,6 +41,6 @@ struct StringTransfer {
 
 /// H_1, H_2 and the receptance at s_k of the grid; x_c in [0, L] [m]. Throws InvalidInput outside.
 StringTransfer string_transfer(const ModalBasis& basis, double contact, const FrequencyGrid& grid,
-                               bool static_remainder, bool bending, const SensorOptions& sensors);
+                               const StringSupport& support, const SensorOptions& sensors);
 
 }  // namespace modcal

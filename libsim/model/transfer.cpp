@@ -1,63 +1,168 @@
 #include "libsim/model/transfer.hpp"
 
 #include <cassert>
+#include <cmath>
 #include <numbers>
 
 #include "libsim/base/error.hpp"
-#include "libsim/model/transfer_kernel.hpp"
 
 namespace modcal {
+namespace {
 
-FrequencyGrid FrequencyGrid::of_record(std::size_t samples, double sample_rate) {
-  MODCAL_REQUIRE(samples >= 1 && sample_rate > 0.0,
-                 "a record of {} samples at {:g} Hz has no frequency grid", samples, sample_rate);
-  return {.spacing = 2.0 * std::numbers::pi * sample_rate / static_cast<double>(samples),
-          .bins = samples / 2 + 1,
-          .sigma = 0.0};
+constexpr double kPi = std::numbers::pi;
+
+ModalModel model_with(const ModalBasis& basis, std::vector<SensorKind> sensors) {
+  ModalModel model{.sensors = std::move(sensors)};
+  for (std::size_t i = 0; i < basis.size(); ++i) {
+    model.poles.push_back({basis.omega[i], basis.zeta[i]});
+  }
+  return model;
 }
+
+double ideal_omega(const ModalBasis& basis, std::size_t n) {
+  const double density = 2.0 * basis.mass[n - 1] / basis.length;
+  return static_cast<double>(n) * kPi / basis.length * std::sqrt(basis.tension / density);
+}
+
+double stiffening(double inharmonicity, std::size_t n) {
+  return 1.0 + inharmonicity * static_cast<double>(n * n);
+}
+
+// sinh(a x)/sinh(a π) and cosh(a x)/sinh(a π) for 0 <= x <= π without overflow.
+double sinh_ratio(double a, double x) {
+  return std::exp(a * (x - kPi)) * std::expm1(-2.0 * a * x) / std::expm1(-2.0 * a * kPi);
+}
+double cosh_ratio(double a, double x) {
+  return -std::exp(a * (x - kPi)) * (1.0 + std::exp(-2.0 * a * x)) / std::expm1(-2.0 * a * kPi);
+}
+
+// Σ_n sin(nx)/(n (1 + B n²)), 0 <= x <= π.
+double sine_series(double x, double inharmonicity) {
+  if (x <= 0.0) return 0.0;
+  const double ideal = 0.5 * (kPi - x);
+  if (inharmonicity == 0.0) return ideal;
+  return ideal - 0.5 * kPi * sinh_ratio(1.0 / std::sqrt(inharmonicity), kPi - x);
+}
+
+// Σ_n cos(ny)/(n² (1 + B n²)), 0 <= y <= 2π.
+double cosine_series(double y, double inharmonicity) {
+  const double ideal = kPi * kPi / 6.0 - 0.5 * kPi * y + 0.25 * y * y;
+  if (inharmonicity == 0.0) return ideal;
+  const double a = 1.0 / std::sqrt(inharmonicity);
+  return ideal - 0.5 * kPi / a * cosh_ratio(a, std::abs(kPi - y)) + 0.5 / (a * a);
+}
+
+}  // namespace
 
 std::vector<double> reaction_gains(const ModalBasis& basis, End end) {
   std::vector<double> gains(basis.size());
   for (std::size_t i = 0; i < gains.size(); ++i) {
-    const double slope =
-        basis.tension * static_cast<double>(i + 1) * std::numbers::pi / basis.length;
+    const double slope = basis.tension * static_cast<double>(i + 1) * kPi / basis.length;
     const bool odd = i % 2 == 0;  // mode number n = i + 1
     gains[i] = end == End::kLeft || odd ? -slope : slope;
   }
   return gains;
 }
 
-void modal_sum(const ModalBasis& basis, std::span<const double> numerator,
-               const FrequencyGrid& grid, std::span<Complex> out) {
-  assert(numerator.size() == basis.size() && out.size() == grid.bins);
-  std::vector<ModalTerm> terms;
-  terms.reserve(basis.size());
-  for (std::size_t i = 0; i < basis.size(); ++i) {
-    if (numerator[i] == 0.0) continue;
-    terms.push_back({.residue = numerator[i] / basis.mass[i],
-                     .omega_squared = basis.omega[i] * basis.omega[i],
-                     .two_zeta_omega = 2.0 * basis.zeta[i] * basis.omega[i]});
+ModalModel end_reactions(const ModalBasis& basis, std::span<const double> shape) {
+  assert(shape.size() == basis.size());
+  ModalModel model = model_with(basis, {SensorKind::kForce, SensorKind::kForce});
+  for (const End end : {End::kLeft, End::kRight}) {
+    const std::vector<double> gains = reaction_gains(basis, end);
+    for (std::size_t i = 0; i < gains.size(); ++i) {
+      model.constants.push_back(gains[i] * (shape[i] / basis.mass[i]));
+    }
   }
-  sum_modal_terms(terms, grid.spacing, grid.sigma, out);
+  return model;
+}
+
+ModalModel end_reactions(const ModalBasis& basis, double contact) {
+  return end_reactions(basis, basis.shape_at(contact));
+}
+
+ModalModel end_reaction_slopes(const ModalBasis& basis, double contact) {
+  std::vector<double> slope(basis.size());
+  for (std::size_t i = 0; i < slope.size(); ++i) {
+    const double n = static_cast<double>(i + 1);
+    const double half_turns = std::remainder(n * contact / basis.length, 2.0);
+    slope[i] = n * kPi / basis.length * std::cos(kPi * half_turns);
+  }
+  return end_reactions(basis, slope);
+}
+
+ModalModel string_model(const ModalBasis& basis, double contact, const StringSupport& support) {
+  const std::vector<double> shape = basis.shape_at(contact);
+  ModalModel model = end_reactions(basis, shape);
+  if (support.bending) {
+    const double law = inharmonicity_of(basis);
+    for (std::size_t i = 0; i < model.constants.size(); ++i) {
+      model.constants[i] *= stiffening(law, i % basis.size() + 1);
+    }
+  }
+  model.sensors.push_back(SensorKind::kDisplacement);
+  for (std::size_t i = 0; i < shape.size(); ++i) {
+    model.constants.push_back(shape[i] * (shape[i] / basis.mass[i]));
+  }
+  if (!support.static_remainder) return model;
+  const StaticResponse all = static_response(basis, contact, support.bending);
+  const StaticResponse kept = static_response_of_modes(basis, contact, support.bending);
+  for (std::size_t r = 0; r < 2; ++r) {
+    model.residuals.push_back({.constant = all.reaction[r] - kept.reaction[r]});
+  }
+  model.residuals.push_back({.constant = all.compliance - kept.compliance});
+  return model;
 }
 
 std::vector<Complex> reaction_transfer(const ModalBasis& basis, double contact, End end,
                                        const FrequencyGrid& grid) {
-  std::vector<double> numerator = reaction_gains(basis, end);
-  const std::vector<double> shape = basis.shape_at(contact);
-  for (std::size_t i = 0; i < numerator.size(); ++i) numerator[i] *= shape[i];
-  std::vector<Complex> transfer(grid.bins);
-  modal_sum(basis, numerator, grid, transfer);
-  return transfer;
+  const auto sensor = static_cast<std::size_t>(end);
+  return end_reactions(basis, contact).with_sensors({sensor}).transfer(grid)[0];
 }
 
 std::vector<Complex> contact_receptance(const ModalBasis& basis, double contact,
                                         const FrequencyGrid& grid) {
-  std::vector<double> numerator = basis.shape_at(contact);
-  for (double& value : numerator) value *= value;
-  std::vector<Complex> receptance(grid.bins);
-  modal_sum(basis, numerator, grid, receptance);
-  return receptance;
+  return string_model(basis, contact).with_sensors({2}).transfer(grid)[0];
+}
+
+double inharmonicity_of(const ModalBasis& basis) {
+  double product = 0.0, square = 0.0;
+  for (std::size_t n = 1; n <= basis.size(); ++n) {
+    const double ratio = basis.omega[n - 1] / ideal_omega(basis, n);
+    const double n_squared = static_cast<double>(n * n);
+    product += (ratio * ratio - 1.0) * n_squared;
+    square += n_squared * n_squared;
+  }
+  const double fitted = square > 0.0 ? product / square : 0.0;
+  // Rounding of the frequencies is no stiffness.
+  return fitted > 1e-14 ? fitted : 0.0;
+}
+
+StaticResponse static_response(const ModalBasis& basis, double contact, bool bending) {
+  const double law = inharmonicity_of(basis);
+  const double of_reactions = bending ? 0.0 : law;
+  const double x = kPi * contact / basis.length;
+  StaticResponse response;
+  response.reaction[0] = -2.0 / kPi * sine_series(x, of_reactions);
+  response.reaction[1] = -2.0 / kPi * sine_series(kPi - x, of_reactions);
+  // Σ φ²/(m ω_n²) with m ω_n² = T π² n² (1 + B n²)/(2 L) and φ² = (1 − cos 2nx)/2.
+  response.compliance = basis.length / (basis.tension * kPi * kPi) *
+                        (cosine_series(0.0, law) - cosine_series(2.0 * x, law));
+  return response;
+}
+
+StaticResponse static_response_of_modes(const ModalBasis& basis, double contact, bool bending) {
+  const double law = inharmonicity_of(basis);
+  const std::vector<double> shape = basis.shape_at(contact);
+  const std::array gains = {reaction_gains(basis, End::kLeft), reaction_gains(basis, End::kRight)};
+  StaticResponse response;
+  for (std::size_t n = 1; n <= basis.size(); ++n) {
+    const double ideal = ideal_omega(basis, n);
+    const double stiffness = basis.mass[n - 1] * ideal * ideal * stiffening(law, n);
+    const double factor = (bending ? stiffening(law, n) : 1.0) * shape[n - 1] / stiffness;
+    for (std::size_t r = 0; r < 2; ++r) response.reaction[r] += gains[r][n - 1] * factor;
+    response.compliance += shape[n - 1] * shape[n - 1] / stiffness;
+  }
+  return response;
 }
 
 }  // namespace modcal

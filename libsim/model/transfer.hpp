@@ -1,24 +1,15 @@
-// Transfer functions of the modal model from the contact force.
+// The string as a structure: its modal model from the contact force to the reactions at its ends.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
 
 #include "libsim/model/modal_basis.hpp"
-#include "libsim/signal/fft.hpp"
+#include "libsim/model/modal_model.hpp"
 
 namespace modcal {
-
-/// Bins of a record's half spectrum: s_k = σ + i 2π k f_s/K, k = 0 … K/2.
-struct FrequencyGrid {
-  double spacing = 0.0;  ///< angular frequency step 2π f_s/K [rad/s]
-  std::size_t bins = 0;  ///< K/2 + 1
-  double sigma = 0.0;    ///< real part of s [1/s]; 0 on the frequency axis
-
-  static FrequencyGrid of_record(std::size_t samples, double sample_rate);
-  double omega(std::size_t k) const { return spacing * static_cast<double>(k); }
-};
 
 /// The end of the string whose reaction is meant.
 enum class End { kLeft = 0, kRight = 1 };  // x = 0, x = L
@@ -27,18 +18,46 @@ enum class End { kLeft = 0, kRight = 1 };  // x = 0, x = L
 /// (Debut, Delaune and Antunes, 2010, eq. 9).
 std::vector<double> reaction_gains(const ModalBasis& basis, End end);
 
-/// Σ_n numerator_n / (m_n (ω_n² + s² + 2 ζ_n ω_n s)) on the grid. numerator: N values, out: bins.
-void modal_sum(const ModalBasis& basis, std::span<const double> numerator,
-               const FrequencyGrid& grid, std::span<Complex> out);
+/// Two sensors of force at the ends, H_r(s) = Σ_n g_rn φ_n/(m_n D_n(s)) [N/N] (Debut, Delaune and
+/// Antunes, 2010, eq. 11), for modes that the contact reaches by φ_n = `shape`.
+ModalModel end_reactions(const ModalBasis& basis, std::span<const double> shape);
+/// The same for a contact at x_c in [0, L] [m]. Throws InvalidInput outside.
+ModalModel end_reactions(const ModalBasis& basis, double contact);
+/// ∂H_r/∂x_c of it: φ_n replaced by dφ_n/dx = (nπ/L) cos(nπx_c/L).
+ModalModel end_reaction_slopes(const ModalBasis& basis, double contact);
 
-/// Force-to-reaction transfer function H_r(s) = Σ_n g_rn φ_n(x_c)/(m_n (ω_n² + s² + 2 ζ_n ω_n s))
-/// [N/N], x_c in [0, L] (Debut, Delaune and Antunes, 2010, eq. 11).
+/// What a transfer function of a string holds besides the stated modes.
+struct StringSupport {
+  bool static_remainder = false;  ///< modes above the highest stated one answer statically
+  /// The support feels T y_x − E I y_xxx instead of T y_x: g_rn times (1 + B n²).
+  bool bending = false;
+};
+
+/// end_reactions() and, third, a sensor of displacement at the contact: the receptance
+/// Y/F = Σ_n φ_n²/(m_n D_n(s)) [m/N], the paper's eq. 13. The mobility is s times it.
+ModalModel string_model(const ModalBasis& basis, double contact, const StringSupport& support = {});
+
+/// H_r of end_reactions() at all bins [N/N].
 std::vector<Complex> reaction_transfer(const ModalBasis& basis, double contact, End end,
                                        const FrequencyGrid& grid);
-
-/// Receptance at the contact Y/F = Σ_n φ_n(x_c)²/(m_n (ω_n² + s² + 2 ζ_n ω_n s)) [m/N]; the paper's
-/// eq. 13. The mobility is s times this.
+/// The receptance of string_model() at all bins [m/N].
 std::vector<Complex> contact_receptance(const ModalBasis& basis, double contact,
                                         const FrequencyGrid& grid);
+
+/// B of ω_n = n ω₀ √(1 + B n²), ω₀ from tension and mass: least squares of (ω_n/(n ω₀))² − 1 over
+/// B n², 0 where that is negative.
+double inharmonicity_of(const ModalBasis& basis);
+
+/// Static response of all modes, 1 … ∞, to a force at ξ = x_c/L.
+struct StaticResponse {
+  std::array<double, 2> reaction = {0.0, 0.0};  ///< [N/N]
+  double compliance = 0.0;                      ///< [m/N]
+};
+
+/// Closed form: −(1 − ξ), −ξ and L ξ(1 − ξ)/T for B = 0 (or, reactions, with the bending part),
+/// else with sinh and cosh of π/√B (Gradshteyn and Ryzhik, 2007, 1.445).
+StaticResponse static_response(const ModalBasis& basis, double contact, bool bending);
+/// The part of it that the modes of the basis hold, B as in the law.
+StaticResponse static_response_of_modes(const ModalBasis& basis, double contact, bool bending);
 
 }  // namespace modcal

@@ -7,11 +7,13 @@ namespace {
 
 class PreparedOneSided final : public PreparedEstimator {
  public:
-  explicit PreparedOneSided(const EstimationModel& model)
-      : sides_{OneSidedInversion(model.basis, model.contact, End::kLeft, model.samples,
-                                 model.sample_rate),
-               OneSidedInversion(model.basis, model.contact, End::kRight, model.samples,
-                                 model.sample_rate)} {}
+  explicit PreparedOneSided(const EstimationModel& model) {
+    const FrequencyGrid grid = FrequencyGrid::of_record(model.samples, model.sample_rate);
+    const auto transfer = string_model(model.basis, model.contact).transfer(grid);
+    for (std::size_t r = 0; r < 2; ++r) {
+      sides_.emplace_back(transfer[r], transfer[2], model.samples, model.sample_rate);
+    }
+  }
 
   std::vector<Estimate> estimate(const EstimationRecord& record,
                                  const InversionMethod& method) const override {
@@ -35,7 +37,7 @@ class PreparedOneSided final : public PreparedEstimator {
   }
 
  private:
-  OneSidedInversion sides_[2];
+  std::vector<OneSidedInversion> sides_;
 };
 
 }  // namespace

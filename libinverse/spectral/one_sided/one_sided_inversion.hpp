@@ -84,6 +84,8 @@ class OneSidedInversion {
               InversionWorkspace& workspace, InversionResult& result) const;
 
  private:
+  OneSidedInversion(std::vector<std::vector<Complex>> transfer, std::size_t samples,
+                    double sample_rate);
   void require_record(std::span<const double> reaction) const;
   SpectralData data_of(std::span<const Complex> spectrum, std::vector<double>& power) const;
   void apply_filter(const Regularizer& regularizer, double parameter,

@@ -65,7 +65,7 @@ inline DrivenString drive(const ModalBasis& basis, double contact, std::vector<d
   FrequencyGrid grid = FrequencyGrid::of_record(padded, kRate);
   grid.sigma = 32.0 * kRate / static_cast<double>(padded);
   const StringTransfer transfer =
-      string_transfer(basis, contact, grid, remainder, bending, sensors);
+      string_transfer(basis, contact, grid, {remainder, bending}, sensors);
   const auto weight = [&](std::size_t j) {
     return std::exp(-grid.sigma * static_cast<double>(j) / kRate);
   };

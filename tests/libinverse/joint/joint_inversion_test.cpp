@@ -77,8 +77,8 @@ TEST(JointInversion, KnowsGainDelayRemainderAndBending) {
   const DrivenString string =
       drive(basis, kPosition, jumping_force(samples, StreamKey(4)), sensors, true, true);
   JointModel model = contour_at(4.0, samples);
-  model.static_remainder = true;
-  model.bending = true;
+  model.support.static_remainder = true;
+  model.support.bending = true;
   model.sensors = sensors;
   const SensorNoiseLevel noise{.rms = {1e-9, 1e-9}};
   const auto error_of = [&](const JointModel& supposed) {
@@ -91,7 +91,7 @@ TEST(JointInversion, KnowsGainDelayRemainderAndBending) {
   EXPECT_LT(right, 0.05);
   for (const auto& change : {+[](JointModel& m) { m.sensors.gain[0] = 1.0; },
                              +[](JointModel& m) { m.sensors.delay[0] = 0.0; },
-                             +[](JointModel& m) { m.static_remainder = false; }}) {
+                             +[](JointModel& m) { m.support.static_remainder = false; }}) {
     JointModel wrong = model;
     change(wrong);
     EXPECT_GT(error_of(wrong), 1.5 * right);
@@ -104,7 +104,7 @@ TEST(JointInversion, KnowsGainDelayRemainderAndBending) {
 TEST(JointInversion, NinetyFivePercentBandHoldsTheTruth) {
   const std::size_t samples = 8192, edge = samples / 8;
   const ModalBasis basis = violin_g();
-  const SensorNoise sensors(basis, kPosition, samples, kRate, false, false, {});
+  const SensorNoise sensors(basis, kPosition, samples, kRate, {}, {});
   const JointInversion inversion(basis, kPosition, samples, kRate, contour_at(2.0, samples));
   JointWorkspace workspace;
   JointResult result;

@@ -14,7 +14,7 @@ namespace {
 TEST(SensorNoise, IsMeasuredFromTheRecordAlone) {
   const std::size_t samples = 16384;
   const ModalBasis basis = violin_g();
-  const SensorNoise sensors(basis, kPosition, samples, kRate, false, false, {});
+  const SensorNoise sensors(basis, kPosition, samples, kRate, {}, {});
   for (const double level : {0.01, 0.1}) {
     DrivenString string = drive(basis, kPosition, jumping_force(samples, StreamKey(10)));
     SensorNoiseLevel truth;
