@@ -14,7 +14,7 @@
 #include "benchmarks/accuracy/stiff_stroke.hpp"
 #include "libcalib/identifiability/expected_limit.hpp"
 #include "libcalib/objective.hpp"
-#include "libcalib/objectives/force_mismatch.hpp"
+#include "libcalib/objectives/force_difference.hpp"
 #include "libcalib/objectives/frequency_prior.hpp"
 #include "libcalib/objectives/joint_likelihood.hpp"
 #include "libcalib/objectives/weighted_sum.hpp"

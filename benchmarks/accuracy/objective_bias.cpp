@@ -12,8 +12,7 @@
 #include <string_view>
 
 #include "benchmarks/accuracy/stiff_stroke.hpp"
-#include "libcalib/objectives/contact_location.hpp"
-#include "libcalib/objectives/force_mismatch.hpp"
+#include "libcalib/objectives/force_difference.hpp"
 #include "libcalib/objectives/joint_likelihood.hpp"
 #include "libcalib/objectives/smooth_spectral_peak.hpp"
 #include "libcalib/objectives/spectral_peak.hpp"

@@ -1,8 +1,6 @@
 #include <array>
 
-#include "libcalib/objectives/contact_location.hpp"
-#include "libcalib/objectives/contact_location_squares.hpp"
-#include "libcalib/objectives/force_mismatch.hpp"
+#include "libcalib/objectives/force_difference.hpp"
 #include "libcalib/objectives/frequency_prior.hpp"
 #include "libcalib/objectives/innovation_misfit.hpp"
 #include "libcalib/objectives/joint_likelihood.hpp"

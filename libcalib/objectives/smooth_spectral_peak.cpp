@@ -3,30 +3,21 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libcalib/objectives/spectral_peak_function.hpp"
-#include "libcalib/objectives/two_sided_arrays.hpp"
+#include "libcalib/objectives/peak_bands.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
 namespace {
 
-using Pair = std::array<std::vector<Complex>, 2>;
-
 class Function final : public ObjectiveFunction {
  public:
-  Function(const CalibrationData& data, const ParameterSet& parameters, double half_band,
-           double softening)
-      : peak_(data, parameters, half_band) {
-    const Pair transfer = sums_of(two_sided_terms(parameters.model(parameters.start())));
+  Function(PeakBands bands, double softening) : bands_(std::move(bands)) {
+    const ForceKernel::State state = bands_.force(bands_.parameters().start());
     double sum = 0.0, count = 0.0;
-    for (std::size_t r = 0; r < 2; ++r) {
-      if (peak_.magnitudes()[r].empty()) continue;
-      for (std::size_t k = 0; k < bins(); ++k) {
-        if (peak_.band_count()[k] == 0.0) continue;
-        sum += std::sqrt(force_square(r, k, transfer[r][k]));
-        count += 1.0;
-      }
-    }
+    for_each_bin([&](std::size_t r, std::size_t k) {
+      sum += std::sqrt(force_square(state, r, k));
+      count += 1.0;
+    });
     const double delta = softening * sum / count;
     MODCAL_REQUIRE(delta > 0.0 && std::isfinite(delta),
                    "the force identified with the initial parameters vanishes in the bands: "
@@ -34,76 +25,52 @@ class Function final : public ObjectiveFunction {
     floor_ = delta * delta;
   }
   std::string_view name() const override { return "smooth_spectral_peak"; }
-  std::size_t dimension() const override { return peak_.dimension(); }
+  std::size_t dimension() const override { return bands_.parameters().size(); }
   std::size_t residual_count() const override { return 2 * bins(); }
   Capabilities capabilities() const override { return {.gradient = true, .least_squares = true}; }
 
  private:
-  std::size_t bins() const { return peak_.covered().size(); }
+  std::size_t bins() const { return bands_.count().size(); }
 
-  double force_square(std::size_t r, std::size_t k, Complex transfer) const {
-    const double magnitude = peak_.magnitudes()[r][peak_.covered().first + k];
-    return magnitude * magnitude / std::norm(transfer);
+  // Bins of a band, of the reactions that are there.
+  template <class Visit>
+  void for_each_bin(const Visit& visit) const {
+    for (std::size_t r = 0; r < 2; ++r) {
+      for (std::size_t k = 0; bands_.has(r) && k < bins(); ++k) {
+        if (bands_.count()[k] != 0.0) visit(r, k);
+      }
+    }
   }
 
-  Pair sums_of(const std::vector<TwoSidedTerm>& terms) const {
-    TwoSidedArrays storage;
-    const TwoSidedSums sums = storage.view(peak_.covered());
-    add_up_terms_in_parallel(terms, peak_.grid().spacing, sums);
-    Pair result;
-    for (std::size_t r = 0; r < 2; ++r) {
-      result[r].resize(bins());
-      for (std::size_t k = 0; k < bins(); ++k) result[r][k] = {sums.real[r][k], sums.imag[r][k]};
-    }
-    return result;
+  double force_square(const ForceKernel::State& state, std::size_t r, std::size_t k) const {
+    return bands_.scale() * bands_.scale() * std::norm(state.force[r][k]);
   }
 
   void do_evaluate(std::span<const double> x, const ObjectiveOutputs& outputs) const override {
-    const ModelPoint point = peak_.parameters().model(x);
-    const std::vector<TwoSidedTerm> terms = two_sided_terms(point);
-    const Pair transfer = sums_of(terms);
+    const ForceKernel::State state = bands_.force(x);
     std::vector<double> residuals(residual_count(), 0.0);
     // dr/dθ = weight · dH/dθ, real part: −(r/2) |F|²/(|F|² + δ²)/H.
-    Pair weights;
+    SensorSpectra weights(2, std::vector<Complex>(bins(), 0.0));
     double value = 0.0;
-    for (std::size_t r = 0; r < 2; ++r) {
-      weights[r].assign(bins(), 0.0);
-      if (peak_.magnitudes()[r].empty()) continue;
-      for (std::size_t k = 0; k < bins(); ++k) {
-        if (peak_.band_count()[k] == 0.0) continue;
-        const double square = force_square(r, k, transfer[r][k]);
-        double& residual = residuals[r * bins() + k];
-        residual = std::sqrt(2.0 * peak_.band_count()[k]) * std::pow(square + floor_, 0.25);
-        value += 0.5 * residual * residual;
-        weights[r][k] = -0.5 * residual * square / (square + floor_) / transfer[r][k];
-      }
-    }
+    for_each_bin([&](std::size_t r, std::size_t k) {
+      const double square = force_square(state, r, k);
+      double& residual = residuals[r * bins() + k];
+      residual = std::sqrt(2.0 * bands_.count()[k]) * std::pow(square + floor_, 0.25);
+      value += 0.5 * residual * residual;
+      weights[r][k] = -0.5 * residual * square / (square + floor_) * state.inverse[r][k];
+    });
     if (outputs.value) *outputs.value = value;
     if (outputs.residuals) std::copy(residuals.begin(), residuals.end(), outputs.residuals);
     if (!outputs.gradient && !outputs.jacobian) return;
-    const Pair contact = sums_of(contact_slope_terms(point));
+    const ModelSlopes slopes = bands_.slopes(x);
+    SensorSpectra slope;
     for (std::size_t i = 0; i < dimension(); ++i) {
-      write_slopes(i, transfer_slope(x, i, terms, contact), weights, residuals, outputs);
+      slopes.write(i, slope);
+      write_slopes(i, slope, weights, residuals, outputs);
     }
   }
 
-  Pair transfer_slope(std::span<const double> x, std::size_t i,
-                      const std::vector<TwoSidedTerm>& terms, const Pair& contact) const {
-    if (peak_.parameters()[i].kind == ParameterKind::kContact) return contact;
-    Pair slope;
-    for (auto& values : slope) values.assign(bins(), 0.0);
-    for (const auto& [mode, omega_slope] : peak_.parameters().frequency_slopes(x, i)) {
-      const TwoSidedTerm& term = terms[mode];
-      for (std::size_t k = 0; k < bins(); ++k) {
-        const double omega = peak_.grid().omega(peak_.covered().first + k);
-        const Complex change = omega_slope * term.inverse_slope(omega);
-        for (std::size_t r = 0; r < 2; ++r) slope[r][k] += term.residue[r] * change;
-      }
-    }
-    return slope;
-  }
-
-  void write_slopes(std::size_t i, const Pair& slope, const Pair& weights,
+  void write_slopes(std::size_t i, const SensorSpectra& slope, const SensorSpectra& weights,
                     const std::vector<double>& residuals, const ObjectiveOutputs& outputs) const {
     double gradient = 0.0;
     for (std::size_t r = 0; r < 2; ++r) {
@@ -117,7 +84,7 @@ class Function final : public ObjectiveFunction {
     if (outputs.gradient) outputs.gradient[i] = gradient;
   }
 
-  SpectralPeakFunction peak_;
+  PeakBands bands_;
   double floor_ = 0.0;  // δ²
 };
 
@@ -145,7 +112,8 @@ SmoothSpectralPeak::SmoothSpectralPeak(const Options& options) : options_(option
 
 std::unique_ptr<const ObjectiveFunction> SmoothSpectralPeak::do_bind(
     const CalibrationData& data, const ParameterSet& parameters) const {
-  return std::make_unique<Function>(data, parameters, options_.half_band, options_.softening);
+  return std::make_unique<Function>(PeakBands(data, parameters, options_.half_band),
+                                    options_.softening);
 }
 
 }  // namespace modcal

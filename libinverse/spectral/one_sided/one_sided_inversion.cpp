@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "libinverse/spectral/one_sided/force_kernel.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -59,13 +60,16 @@ std::vector<Complex> inverses_of(std::span<const Complex> transfer,
 
 }  // namespace
 
+OneSidedInversion::OneSidedInversion(std::vector<std::vector<Complex>> transfer,
+                                     std::size_t samples, double sample_rate)
+    : OneSidedInversion(std::move(transfer[0]), std::move(transfer[1]), samples, sample_rate) {}
+
 OneSidedInversion::OneSidedInversion(const ModalBasis& basis, double contact, End end,
                                      std::size_t samples, double sample_rate)
-    : OneSidedInversion(
-          modcal::reaction_transfer(basis, contact, end,
-                                    FrequencyGrid::of_record(samples, sample_rate)),
-          contact_receptance(basis, contact, FrequencyGrid::of_record(samples, sample_rate)),
-          samples, sample_rate) {}
+    : OneSidedInversion(string_model(basis, contact)
+                            .with_sensors({static_cast<std::size_t>(end), 2})
+                            .transfer(FrequencyGrid::of_record(samples, sample_rate)),
+                        samples, sample_rate) {}
 
 OneSidedInversion::OneSidedInversion(std::vector<Complex> reaction_transfer,
                                      std::vector<Complex> receptance, std::size_t samples,
@@ -126,9 +130,8 @@ void OneSidedInversion::apply_filter(const Regularizer& regularizer, double para
     regularizer.filter_factors(problem_.sigma_as_given(), parameter, workspace.factors);
   }
   workspace.force[0] = 0.0;
-  for (std::size_t k = 1; k < workspace.force.size(); ++k) {
-    workspace.force[k] *= workspace.factors[k - 1] * inverse_[k];
-  }
+  identify_force(workspace.factors, std::span(inverse_).subspan(1),
+                 std::span(workspace.force).subspan(1));
   // The transform of a real record is real there, up to the library's rounding.
   if (samples() % 2 == 0) workspace.force.back() = workspace.force.back().real();
 }

@@ -1,4 +1,4 @@
-#include "libcalib/objectives/contact_location.hpp"
+#include "libcalib/objectives/force_difference.hpp"
 
 #include <gtest/gtest.h>
 

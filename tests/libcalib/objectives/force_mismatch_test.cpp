@@ -1,4 +1,4 @@
-#include "libcalib/objectives/force_mismatch.hpp"
+#include "libcalib/objectives/force_difference.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

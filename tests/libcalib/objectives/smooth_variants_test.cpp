@@ -5,9 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "libcalib/objectives/contact_location.hpp"
-#include "libcalib/objectives/contact_location_squares.hpp"
-#include "libcalib/objectives/force_mismatch.hpp"
+#include "libcalib/objectives/force_difference.hpp"
 #include "libcalib/objectives/smooth_spectral_peak.hpp"
 #include "libcalib/objectives/spectral_peak.hpp"
 #include "libcalib/objectives/weighted_sum.hpp"
