@@ -5,6 +5,7 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <functional>
+#include <memory>
 
 #include "experiments/cli/exit_code.hpp"
 
@@ -14,20 +15,23 @@ using Action = std::function<ExitCode()>;
 /// Called with the chosen command's action while the command line is being parsed.
 using Chosen = std::function<void(Action)>;
 
-void add_run_command(CLI::App& app, const Chosen& chosen);
-void add_validate_command(CLI::App& app, const Chosen& chosen);
+/// A command of the line: `declare` says what it reads, `act` what it does with that.
+template <typename Arguments>
+void add_command(CLI::App& app, const Chosen& chosen, const char* name, const char* meaning,
+                 void (*declare)(CLI::App& command, Arguments& arguments),
+                 ExitCode (*act)(const Arguments& arguments)) {
+  CLI::App* command = app.add_subcommand(name, meaning);
+  auto arguments = std::make_shared<Arguments>();
+  declare(*command, *arguments);
+  command->callback([=] { chosen([=] { return act(*arguments); }); });
+}
+
+void add_experiment_commands(CLI::App& app, const Chosen& chosen);
 void add_plan_command(CLI::App& app, const Chosen& chosen);
-void add_limit_command(CLI::App& app, const Chosen& chosen);
-void add_list_command(CLI::App& app, const Chosen& chosen);
-void add_describe_command(CLI::App& app, const Chosen& chosen);
-void add_schema_command(CLI::App& app, const Chosen& chosen);
+void add_plugin_commands(CLI::App& app, const Chosen& chosen);
 void add_inspect_command(CLI::App& app, const Chosen& chosen);
 void add_reproduce_command(CLI::App& app, const Chosen& chosen);
-void add_status_command(CLI::App& app, const Chosen& chosen);
-void add_merge_command(CLI::App& app, const Chosen& chosen);
-void add_report_command(CLI::App& app, const Chosen& chosen);
-void add_replay_command(CLI::App& app, const Chosen& chosen);
-void add_compare_command(CLI::App& app, const Chosen& chosen);
+void add_stored_commands(CLI::App& app, const Chosen& chosen);
 void add_submit_command(CLI::App& app, const Chosen& chosen);
 
 }  // namespace modcal

@@ -20,18 +20,19 @@ ExitCode print_inspection(const InspectArguments& arguments) {
   return report.problem_count == 0 ? ExitCode::kOk : ExitCode::kInvalidInput;
 }
 
+void declare(CLI::App& command, InspectArguments& arguments) {
+  command.add_option("file", arguments.file, "CSV or sound file")->required();
+  command.add_option("--format", arguments.options.format, "auto, csv or wav");
+  command.add_option("--sample-rate", arguments.options.sample_rate,
+                     "[Hz], where the file has none");
+  command.add_flag("--json", arguments.json, "as JSON");
+}
+
 }  // namespace
 
 void add_inspect_command(CLI::App& app, const Chosen& chosen) {
-  CLI::App* command =
-      app.add_subcommand("inspect", "Show what a recorded file holds and the YAML to use it");
-  auto arguments = std::make_shared<InspectArguments>();
-  command->add_option("file", arguments->file, "CSV or sound file")->required();
-  command->add_option("--format", arguments->options.format, "auto, csv or wav");
-  command->add_option("--sample-rate", arguments->options.sample_rate,
-                      "[Hz], where the file has none");
-  command->add_flag("--json", arguments->json, "as JSON");
-  command->callback([=] { chosen([=] { return print_inspection(*arguments); }); });
+  add_command(app, chosen, "inspect", "Show what a recorded file holds and the YAML to use it",
+              declare, print_inspection);
 }
 
 }  // namespace modcal

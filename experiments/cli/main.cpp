@@ -33,20 +33,12 @@ int main_of(int argc, char** argv) {
   app.require_subcommand(1);
   Action action;
   const Chosen chosen = [&action](Action chosen_action) { action = std::move(chosen_action); };
-  add_run_command(app, chosen);
-  add_validate_command(app, chosen);
+  add_experiment_commands(app, chosen);
   add_plan_command(app, chosen);
-  add_limit_command(app, chosen);
-  add_list_command(app, chosen);
-  add_describe_command(app, chosen);
-  add_schema_command(app, chosen);
+  add_plugin_commands(app, chosen);
   add_inspect_command(app, chosen);
   add_reproduce_command(app, chosen);
-  add_status_command(app, chosen);
-  add_merge_command(app, chosen);
-  add_report_command(app, chosen);
-  add_replay_command(app, chosen);
-  add_compare_command(app, chosen);
+  add_stored_commands(app, chosen);
   add_submit_command(app, chosen);
   if (is_unknown_command(app, argc, argv)) return static_cast<int>(ExitCode::kUsage);
   try {

@@ -8,22 +8,15 @@
 #include <CLI/Formatter.hpp>
 #include <cstdio>
 
+#include "experiments/cli/experiment_arguments.hpp"
 #include "experiments/cli/guarded.hpp"
 #include "experiments/cli/interrupt.hpp"
 #include "experiments/cli/message_colors.hpp"
 #include "experiments/cli/runner.hpp"
-#include "experiments/cli/shell_word.hpp"
 #include "experiments/cli/stored_run.hpp"
 
 namespace modcal {
 namespace {
-
-struct MpiArguments {
-  std::string file;
-  std::string out;
-  std::vector<std::string> assignments;
-  int threads = 1;
-};
 
 // MPI_Finalize whichever way the program is left.
 class MpiSession {
@@ -47,33 +40,28 @@ class MpiSession {
   }
 };
 
-ExitCode run_shard(const MpiArguments& arguments, const std::string& out, const Shard& shard) {
+ExitCode run_shard(const ExperimentArguments& arguments, const Shard& shard) {
   const LoadedExperiment loaded = load_experiment(arguments.file, arguments.assignments);
   if (shard.index == 1) {
     fmt::print(stderr, "{}", colored(format_mistakes(loaded.document, loaded.mistakes)));
   }
   if (loaded.has_errors()) return ExitCode::kInvalidInput;
-  std::string command =
-      fmt::format("modcal run {} --out {}", shell_word(arguments.file), shell_word(out));
-  for (const std::string& assignment : arguments.assignments) {
-    command += " --set " + shell_word(assignment);
-  }
-  return run_one(
-      loaded,
-      {.out = out, .threads = arguments.threads, .command = std::move(command), .shard = shard});
+  ExperimentArguments whole = arguments;
+  whole.threads = 0;
+  return run_one(loaded, {.out = arguments.folder(),
+                          .threads = std::max(1, arguments.threads),
+                          .command = whole.command(),
+                          .shard = shard});
 }
 
 int main_of(int argc, char** argv) {
   const MpiSession session(&argc, &argv);
   CLI::App app("modcal-mpi: runs a list of tasks over the ranks of an MPI job");
-  MpiArguments arguments;
+  ExperimentArguments arguments;
   CLI::App* run = app.add_subcommand("run", "Run an experiment");
-  run->add_option("file", arguments.file, "YAML file")->required();
-  run->add_option("--out", arguments.out, "folder of the results, seen by all ranks");
-  run->add_option("--set", arguments.assignments, "key.path=value, overrides the file")
-      ->allow_extra_args(false);
-  run->add_option("--threads", arguments.threads, "threads of a rank; default 1")
-      ->check(CLI::Range(1, 4096));
+  arguments.declare_file(*run);
+  arguments.declare_out(*run, "ranks");
+  declare_threads(*run, arguments.threads, "threads of a rank; default 1");
   app.require_subcommand(1);
   try {
     app.parse(argc, argv);
@@ -82,14 +70,10 @@ int main_of(int argc, char** argv) {
   }
   catch_interrupts();
   const Shard shard = session.shard();
-  const std::string out =
-      arguments.out.empty()
-          ? (std::filesystem::path("out") / std::filesystem::path(arguments.file).stem()).string()
-          : arguments.out;
-  ExitCode code = MpiSession::worst(guarded([&] { return run_shard(arguments, out, shard); }));
+  ExitCode code = MpiSession::worst(guarded([&] { return run_shard(arguments, shard); }));
   const bool complete = code == ExitCode::kOk || code == ExitCode::kSomeTasksFailed;
   if (complete && !shard.is_whole() && shard.index == 1) {
-    code = guarded([&out] { return report_stored_run(out); });
+    code = guarded([&] { return report_stored_run(arguments.folder().string()); });
   }
   return static_cast<int>(MpiSession::worst(code));
 }

@@ -7,8 +7,8 @@
 #include <fstream>
 #include <system_error>
 
-#include "libsim/records/signal_file.hpp"
 #include "libsim/base/error.hpp"
+#include "libsim/records/signal_file.hpp"
 
 namespace modcal {
 

@@ -1,14 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
-#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "experiments/cli/command.hpp"
+#include "experiments/cli/experiment_arguments.hpp"
 #include "experiments/cli/interrupt.hpp"
-#include "experiments/cli/message_colors.hpp"
-#include "experiments/loader.hpp"
 #include "experiments/runs/price.hpp"
 #include "experiments/runs/task_experiment.hpp"
 #include "libsim/base/error.hpp"
@@ -16,9 +13,7 @@
 namespace modcal {
 namespace {
 
-struct PlanArguments {
-  std::string file;
-  std::vector<std::string> assignments;
+struct PlanArguments : ExperimentArguments {
   bool json = false;
 };
 
@@ -86,7 +81,7 @@ void print_text(const Plan& plan, std::size_t threads) {
   }
 }
 
-void print_json(const LoadedExperiment& loaded, const Plan& plan, std::size_t threads) {
+void print_plan_json(const LoadedExperiment& loaded, const Plan& plan, std::size_t threads) {
   nlohmann::ordered_json object = {
       {"kind", loaded.kind}, {"title", loaded.title}, {"lines", plan.lines}};
   if (plan.simulation) {
@@ -119,37 +114,35 @@ void print_json(const LoadedExperiment& loaded, const Plan& plan, std::size_t th
                        {"basis", price.basis}};
     if (price.disk_bytes) object["price"]["disk_bytes"] = *price.disk_bytes;
   }
-  fmt::print("{}\n", object.dump(2));
+  print_json(object);
 }
 
 ExitCode plan(const PlanArguments& arguments) {
-  const LoadedExperiment loaded = load_experiment(arguments.file, arguments.assignments);
-  fmt::print(stderr, "{}", colored(format_mistakes(loaded.document, loaded.mistakes)));
-  if (loaded.has_errors()) return ExitCode::kInvalidInput;
-  const Plan made = make_plan(loaded);
+  const auto loaded = load_and_print_mistakes(arguments.file, arguments.assignments);
+  if (!loaded) return ExitCode::kInvalidInput;
+  const Plan made = make_plan(*loaded);
   // A run that is no list of tasks simulates on one thread.
-  const auto* list = dynamic_cast<const TaskExperiment*>(loaded.experiment.get());
+  const auto* list = dynamic_cast<const TaskExperiment*>(loaded->experiment.get());
   const std::size_t tasks = list != nullptr ? list->task_count() : 1;
   const std::size_t threads = std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1,
                                                       std::max<std::size_t>(tasks, 1));
   if (arguments.json) {
-    print_json(loaded, made, threads);
+    print_plan_json(*loaded, made, threads);
   } else {
     print_text(made, threads);
   }
   return ExitCode::kOk;
 }
 
+void declare(CLI::App& command, PlanArguments& arguments) {
+  arguments.declare_file(command);
+  command.add_flag("--json", arguments.json, "as JSON");
+}
+
 }  // namespace
 
 void add_plan_command(CLI::App& app, const Chosen& chosen) {
-  CLI::App* command = app.add_subcommand("plan", "Say what a run would do, skip and cost");
-  auto arguments = std::make_shared<PlanArguments>();
-  command->add_option("file", arguments->file, "YAML file")->required();
-  command->add_option("--set", arguments->assignments, "key.path=value, overrides the file")
-      ->allow_extra_args(false);
-  command->add_flag("--json", arguments->json, "as JSON");
-  command->callback([=] { chosen([=] { return plan(*arguments); }); });
+  add_command(app, chosen, "plan", "Say what a run would do, skip and cost", declare, plan);
 }
 
 }  // namespace modcal

@@ -1,11 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 
 #include "experiments/cli/build_info.hpp"
 #include "experiments/cli/command.hpp"
-#include "experiments/cli/message_colors.hpp"
+#include "experiments/cli/experiment_arguments.hpp"
 #include "experiments/cli/runner.hpp"
 #include "experiments/config/reader.hpp"
 #include "libsim/base/error.hpp"
@@ -49,10 +48,9 @@ std::vector<std::filesystem::path> files_of(const ReproduceArguments& arguments)
 ExitCode reproduce(const ReproduceArguments& arguments) {
   std::vector<LoadedExperiment> experiments;
   for (const std::filesystem::path& file : files_of(arguments)) {
-    experiments.push_back(load_experiment(file));
-    const LoadedExperiment& loaded = experiments.back();
-    fmt::print(stderr, "{}", colored(format_mistakes(loaded.document, loaded.mistakes)));
-    if (loaded.has_errors()) return ExitCode::kInvalidInput;
+    auto loaded = load_and_print_mistakes(file);
+    if (!loaded) return ExitCode::kInvalidInput;
+    experiments.push_back(std::move(*loaded));
   }
   const std::string out = arguments.out.empty() ? "out/" + arguments.target : arguments.out;
   const RunSettings settings{
@@ -64,19 +62,19 @@ ExitCode reproduce(const ReproduceArguments& arguments) {
                                  : run_together(experiments, settings);
 }
 
+void declare(CLI::App& command, ReproduceArguments& arguments) {
+  command.add_option("target", arguments.target, "paper, table1, fig02 ... fig17, section7")
+      ->required();
+  command.add_option("--configs", arguments.configs, "folder of the experiment files");
+  command.add_option("--out", arguments.out, "folder of the results; default out/<target>");
+  declare_threads(command, arguments.threads, "number of threads; default all");
+}
+
 }  // namespace
 
 void add_reproduce_command(CLI::App& app, const Chosen& chosen) {
-  CLI::App* command = app.add_subcommand(
-      "reproduce", "Make the paper's table and figures: paper, table1, fig02, ...");
-  auto arguments = std::make_shared<ReproduceArguments>();
-  command->add_option("target", arguments->target, "paper, table1, fig02 ... fig17, section7")
-      ->required();
-  command->add_option("--configs", arguments->configs, "folder of the experiment files");
-  command->add_option("--out", arguments->out, "folder of the results; default out/<target>");
-  command->add_option("--threads", arguments->threads, "number of threads; default all")
-      ->check(CLI::Range(1, 4096));
-  command->callback([=] { chosen([=] { return reproduce(*arguments); }); });
+  add_command(app, chosen, "reproduce",
+              "Make the paper's table and figures: paper, table1, fig02, ...", declare, reproduce);
 }
 
 }  // namespace modcal

@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include "experiments/cli/command.hpp"
-#include "experiments/cli/message_colors.hpp"
+#include "experiments/cli/experiment_arguments.hpp"
 #include "experiments/cli/output_directory.hpp"
 #include "experiments/cli/runner.hpp"
 #include "experiments/cli/shell_word.hpp"
@@ -14,12 +14,8 @@
 namespace modcal {
 namespace {
 
-struct SubmitArguments {
-  std::string file;
-  std::string out;
-  std::vector<std::string> assignments;
+struct SubmitArguments : ExperimentArguments {
   std::string partition;
-  std::size_t threads = 1;
   double bundle_seconds = 1800.0;
   std::size_t most_jobs = 1000;
   bool slurm = false;
@@ -27,11 +23,8 @@ struct SubmitArguments {
 };
 
 std::string file_words(const SubmitArguments& arguments) {
-  std::string words = shell_word(std::filesystem::absolute(arguments.file).string());
-  for (const std::string& assignment : arguments.assignments) {
-    words += " --set " + shell_word(assignment);
-  }
-  return words;
+  return shell_word(std::filesystem::absolute(arguments.file).string()) +
+         arguments.assignment_words();
 }
 
 // What a command prints on its first line. Throws InvalidInput where it fails.
@@ -59,25 +52,21 @@ void submit(const std::filesystem::path& folder) {
 }
 
 ExitCode submit_to_slurm(const SubmitArguments& arguments) {
-  const LoadedExperiment loaded = load_experiment(arguments.file, arguments.assignments);
-  fmt::print(stderr, "{}", colored(format_mistakes(loaded.document, loaded.mistakes)));
-  if (loaded.has_errors()) return ExitCode::kInvalidInput;
-  const std::filesystem::path out = std::filesystem::absolute(
-      arguments.out.empty()
-          ? std::filesystem::path("out") / std::filesystem::path(arguments.file).stem()
-          : std::filesystem::path(arguments.out));
+  const auto loaded = load_and_print_mistakes(arguments.file, arguments.assignments);
+  if (!loaded) return ExitCode::kInvalidInput;
+  const std::filesystem::path out = std::filesystem::absolute(arguments.folder());
+  const auto threads = static_cast<std::size_t>(std::max(1, arguments.threads));
   const RunSettings settings{
       .out = out,
       .command = fmt::format("modcal run {} --out {}", file_words(arguments), out.string())};
-  const PilotRun pilot = run_pilot(loaded, settings);
-  const SlurmBundles bundles =
-      slurm_bundles(pilot.pending, pilot.seconds_per_task, arguments.threads,
-                    arguments.bundle_seconds, arguments.most_jobs);
+  const PilotRun pilot = run_pilot(*loaded, settings);
+  const SlurmBundles bundles = slurm_bundles(pilot.pending, pilot.seconds_per_task, threads,
+                                             arguments.bundle_seconds, arguments.most_jobs);
   const SlurmSettings slurm{.program = std::filesystem::read_symlink("/proc/self/exe").string(),
                             .file = file_words(arguments),
                             .out = out,
                             .partition = arguments.partition,
-                            .threads = arguments.threads};
+                            .threads = threads};
   const std::filesystem::path folder = out / "slurm";
   const OutputDirectory scripts(folder);
   scripts.write_text("run.sh", slurm_array_script(slurm, bundles));
@@ -85,35 +74,33 @@ ExitCode submit_to_slurm(const SubmitArguments& arguments) {
   fmt::print("{} tasks to do, {:.3g} s each (mean of {} that were run): {:.3g} core-hours\n",
              pilot.pending, pilot.seconds_per_task, pilot.run,
              static_cast<double>(pilot.pending) * pilot.seconds_per_task / 3600.0);
-  fmt::print("{} jobs of {} threads, about {:.3g} s each; scripts in {}\n", bundles.count,
-             arguments.threads, bundles.seconds, folder.string());
+  fmt::print("{} jobs of {} threads, about {:.3g} s each; scripts in {}\n", bundles.count, threads,
+             bundles.seconds, folder.string());
   if (!arguments.dry_run) submit(folder);
   return ExitCode::kOk;
+}
+
+void declare(CLI::App& command, SubmitArguments& arguments) {
+  arguments.declare_file(command);
+  command.add_flag("--slurm", arguments.slurm, "to Slurm, as an array of jobs")->required();
+  arguments.declare_out(command, "nodes");
+  command.add_option("--partition", arguments.partition, "partition of the cluster");
+  declare_threads(command, arguments.threads, "threads of a job");
+  command.add_option("--bundle-seconds", arguments.bundle_seconds, "length of a job to aim at")
+      ->check(CLI::PositiveNumber);
+  command
+      .add_option("--most-jobs", arguments.most_jobs,
+                  "largest array; see MaxArraySize of the cluster")
+      ->check(CLI::Range(1, 1000000));
+  command.add_flag("--dry-run", arguments.dry_run, "write the scripts and submit nothing");
 }
 
 }  // namespace
 
 void add_submit_command(CLI::App& app, const Chosen& chosen) {
-  CLI::App* command = app.add_subcommand(
-      "submit", "Share a list of tasks out over a cluster and merge the results");
-  auto arguments = std::make_shared<SubmitArguments>();
-  command->add_option("file", arguments->file, "YAML file")->required();
-  command->add_flag("--slurm", arguments->slurm, "to Slurm, as an array of jobs")->required();
-  command->add_option("--out", arguments->out,
-                      "folder of the results, seen by all nodes; default out/<name of the file>");
-  command->add_option("--set", arguments->assignments, "key.path=value, overrides the file")
-      ->allow_extra_args(false);
-  command->add_option("--partition", arguments->partition, "partition of the cluster");
-  command->add_option("--threads", arguments->threads, "threads of a job")
-      ->check(CLI::Range(1, 4096));
-  command->add_option("--bundle-seconds", arguments->bundle_seconds, "length of a job to aim at")
-      ->check(CLI::PositiveNumber);
-  command
-      ->add_option("--most-jobs", arguments->most_jobs,
-                   "largest array; see MaxArraySize of the cluster")
-      ->check(CLI::Range(1, 1000000));
-  command->add_flag("--dry-run", arguments->dry_run, "write the scripts and submit nothing");
-  command->callback([=] { chosen([=] { return submit_to_slurm(*arguments); }); });
+  add_command(app, chosen, "submit",
+              "Share a list of tasks out over a cluster and merge the results", declare,
+              submit_to_slurm);
 }
 
 }  // namespace modcal

@@ -1,0 +1,247 @@
+// status, merge, report, replay and compare: what is done with the folders that runs have left.
+#include <cstdio>
+#include <map>
+
+#include "experiments/cli/command.hpp"
+#include "experiments/cli/experiment_arguments.hpp"
+#include "experiments/cli/interrupt.hpp"
+#include "experiments/cli/message_colors.hpp"
+#include "experiments/cli/runner.hpp"
+#include "experiments/cli/stored_run.hpp"
+#include "experiments/runs/results_database.hpp"
+#include "experiments/study/paired_bootstrap.hpp"
+#include "libsim/base/error.hpp"
+#include "libsim/signal/statistics.hpp"
+
+namespace modcal {
+namespace {
+
+struct FolderArguments {
+  std::string folder;
+  std::string other;
+  std::size_t task = 0;
+  bool json = false;
+};
+
+void declare_folder(CLI::App& command, FolderArguments& arguments) {
+  command.add_option("folder", arguments.folder, "folder of the results")->required();
+}
+
+void print_damages(const StoredRun& run) {
+  for (const JournalDamage& damage : run.damages()) {
+    fmt::print(stderr, "{} {}\n", colored("warning:"), message_of(damage));
+  }
+}
+
+struct Counts {
+  std::size_t all = 0, done = 0, failed = 0;
+  double median_seconds = 0.0;
+  std::size_t pending() const { return all - done; }
+  /// Of one core, if the rest costs what the finished tasks did [s].
+  double left_seconds() const { return median_seconds * static_cast<double>(pending()); }
+};
+
+Counts count(const StoredRun& run) {
+  Counts counts{.all = run.tasks()};
+  std::vector<double> seconds;
+  for (std::size_t task = 0; task < run.tasks(); ++task) {
+    const std::optional<FinishedTask> finished = run.outcomes()[task];
+    if (!finished) continue;
+    ++counts.done;
+    seconds.push_back(finished->seconds);
+    if (!run.list().failure_in(finished->outcome).empty()) ++counts.failed;
+  }
+  if (!seconds.empty()) counts.median_seconds = quantile(std::move(seconds), 0.5);
+  return counts;
+}
+
+ExitCode status(const FolderArguments& arguments) {
+  const StoredRun run(arguments.folder);
+  const Counts counts = count(run);
+  const bool running = is_running(journal_folder(arguments.folder));
+  print_damages(run);
+  if (arguments.json) {
+    print_json({{"kind", run.loaded().kind},
+                {"title", run.loaded().title},
+                {"running", running},
+                {"tasks", counts.all},
+                {"done", counts.done},
+                {"failed", counts.failed},
+                {"pending", counts.pending()},
+                {"damaged_lines", run.damages().size()},
+                {"median_task_seconds", counts.median_seconds},
+                {"left_core_seconds", counts.left_seconds()},
+                {"command", run.command()}});
+    return ExitCode::kOk;
+  }
+  fmt::print("{}: {}\n{} of {} tasks done, {} failed, {} to do\n", run.loaded().kind,
+             run.loaded().title, counts.done, counts.all, counts.failed, counts.pending());
+  fmt::print("{}\n", running ? "a run works here now" : "no run works here");
+  if (counts.done > 0) {
+    fmt::print("a task took {:.3g} s (median)", counts.median_seconds);
+    if (counts.pending() > 0)
+      fmt::print("; about {:.3g} core-seconds to go", counts.left_seconds());
+    fmt::print("\n");
+  }
+  if (counts.pending() > 0 && !running) fmt::print("go on with:\n  {}\n", run.command());
+  return ExitCode::kOk;
+}
+
+// Row by row: what is held does not grow with the list.
+std::size_t add_rows(const StoredRun& run, ResultsDatabase& database) {
+  std::size_t done = 0;
+  for (std::size_t task = 0; task < run.tasks(); ++task) {
+    std::optional<FinishedTask> finished = run.outcomes()[task];
+    if (!finished) continue;
+    std::string failure = run.list().failure_in(finished->outcome);
+    database.add({task, run.list().axis_values(task), std::move(failure),
+                  std::move(finished->outcome), finished->seconds});
+    ++done;
+  }
+  return done;
+}
+
+ExitCode merge(const FolderArguments& arguments) {
+  const StoredRun run(arguments.folder);
+  print_damages(run);
+  const std::filesystem::path file = run.out() / "results.sqlite";
+  ResultsDatabase database(file, run.list().axes());
+  const std::size_t done = add_rows(run, database);
+  const std::string digest = database.finish({{"kind", run.loaded().kind},
+                                              {"title", run.loaded().title},
+                                              {"command", run.command()},
+                                              {"tasks", std::to_string(run.tasks())},
+                                              {"done", std::to_string(done)}});
+  fmt::print("{}: {} of {} tasks, digest {}\n", file.string(), done, run.tasks(), digest);
+  return ExitCode::kOk;
+}
+
+RunSettings settings_of(const StoredRun& run, std::string out) {
+  return {.out = std::move(out), .command = run.command(), .folder = run.folder()};
+}
+
+StudyContext context_of(const StoredRun& run, SharedWork& work, std::string command) {
+  return {.work = work, .folder = run.folder(), .command = std::move(command)};
+}
+
+ExitCode replay_task(const FolderArguments& arguments) {
+  const std::string& out = arguments.folder;
+  const std::size_t task = arguments.task;
+  const StoredRun run(out);
+  MODCAL_REQUIRE(task < run.tasks(), "task {} does not exist: {} has the tasks 0 to {}", task, out,
+                 run.tasks() - 1);
+  for (std::size_t axis = 0; axis < run.list().axes().size(); ++axis) {
+    fmt::print(stderr, "{}: {}\n", run.list().axes()[axis], run.list().axis_values(task)[axis]);
+  }
+  SharedWork work(interrupt_token());
+  const std::string command = fmt::format("modcal replay {} {}", out, task);
+  const StudyResult result = run.list().replay(task, context_of(run, work, command));
+  const std::filesystem::path folder =
+      std::filesystem::path(out) / "replay" / fmt::format("task-{}", task);
+  RunSettings settings = settings_of(run, folder.string());
+  settings.command = command;
+  return present(run.loaded(), result, settings, 0.0);
+}
+
+using Cell = std::map<std::string, std::string>;  // path of an axis to its value
+
+Cell cell_of(const StoredRun& run, std::size_t task) {
+  const std::vector<std::string> paths = run.list().axes();
+  const std::vector<std::string> values = run.list().axis_values(task);
+  Cell cell;
+  for (std::size_t i = 0; i < paths.size(); ++i) cell[paths[i]] = values[i];
+  return cell;
+}
+
+// Losses of the finished tasks by their cells; a draw without a result is worse than any other.
+std::map<Cell, double> losses_of(const StoredRun& run) {
+  MODCAL_REQUIRE(!run.list().loss_name().empty(),
+                 "{} holds a run of kind {}, whose tasks have no score to compare",
+                 run.out().string(), run.loaded().kind);
+  std::map<Cell, double> losses;
+  for (std::size_t task = 0; task < run.tasks(); ++task) {
+    const std::optional<FinishedTask> finished = run.outcomes()[task];
+    if (!finished) continue;
+    losses[cell_of(run, task)] = run.list().loss_in(finished->outcome).value_or(1e300);
+  }
+  return losses;
+}
+
+std::string verdict(const MedianRatio& ratio, const std::string& a, const std::string& b) {
+  if (ratio.is_below_one()) return a + " is better";
+  if (ratio.is_above_one()) return b + " is better";
+  return "the two cannot be told apart";
+}
+
+ExitCode compare(const FolderArguments& arguments) {
+  const std::string &out_a = arguments.folder, &out_b = arguments.other;
+  const StoredRun run_a(out_a), run_b(out_b);
+  MODCAL_REQUIRE(run_a.loaded().kind == run_b.loaded().kind,
+                 "{} is of kind {}, {} of kind {}: their scores are different things", out_a,
+                 run_a.loaded().kind, out_b, run_b.loaded().kind);
+  const std::map<Cell, double> losses_a = losses_of(run_a), losses_b = losses_of(run_b);
+  std::vector<double> a, b;
+  for (const auto& [cell, loss] : losses_a) {
+    const auto other = losses_b.find(cell);
+    if (other == losses_b.end()) continue;
+    a.push_back(loss);
+    b.push_back(other->second);
+  }
+  MODCAL_REQUIRE(!a.empty(), "{} and {} have no finished task with the same values in common",
+                 out_a, out_b);
+  const MedianRatio ratio = median_ratio(a, b);
+  fmt::print("{} of {} and {} tasks in common\n", a.size(), losses_a.size(), losses_b.size());
+  fmt::print("{}: median {:.4g} in {}, {:.4g} in {}\n", run_a.list().loss_name(), quantile(a, 0.5),
+             out_a, quantile(b, 0.5), out_b);
+  fmt::print("ratio {:.4g}, 95 % interval {:.4g} to {:.4g} (paired bootstrap): {}\n", ratio.ratio,
+             ratio.low, ratio.high, verdict(ratio, out_a, out_b));
+  return ExitCode::kOk;
+}
+
+void declare_status(CLI::App& command, FolderArguments& arguments) {
+  declare_folder(command, arguments);
+  command.add_flag("--json", arguments.json, "as JSON");
+}
+
+void declare_replay(CLI::App& command, FolderArguments& arguments) {
+  declare_folder(command, arguments);
+  command.add_option("task", arguments.task, "number of the task, from 0; see tasks.csv")
+      ->required();
+}
+
+void declare_compare(CLI::App& command, FolderArguments& arguments) {
+  command.add_option("a", arguments.folder, "folder of results")->required();
+  command.add_option("b", arguments.other, "another one")->required();
+}
+
+ExitCode write_stored_report(const FolderArguments& arguments) {
+  return report_stored_run(arguments.folder);
+}
+
+}  // namespace
+
+ExitCode report_stored_run(const std::string& out) {
+  const StoredRun run(out);
+  print_damages(run);
+  SharedWork work;
+  const StudyResult result =
+      run.list().sum_up(run.outcomes(), context_of(run, work, run.command()));
+  MODCAL_REQUIRE(result.pending_tasks < run.tasks(), "{}: none of the {} tasks is done; run:\n  {}",
+                 out, run.tasks(), run.command());
+  return present(run.loaded(), result, settings_of(run, out), 0.0);
+}
+
+void add_stored_commands(CLI::App& app, const Chosen& chosen) {
+  add_command(app, chosen, "status", "Say how far a run is, running or dead", declare_status,
+              status);
+  add_command(app, chosen, "merge", "Put the results of all journals into one SQLite file",
+              declare_folder, merge);
+  add_command(app, chosen, "report", "Write the report of what a run has finished", declare_folder,
+              write_stored_report);
+  add_command(app, chosen, "replay", "Run one task of a run again and show all of it",
+              declare_replay, replay_task);
+  add_command(app, chosen, "compare", "Say which of two runs is better on the tasks they share",
+              declare_compare, compare);
+}
+
+}  // namespace modcal
