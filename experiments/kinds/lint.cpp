@@ -18,13 +18,12 @@ void lint_string(const std::string& path, const StringModel& string, double posi
                  const std::string& bow_path, std::vector<Finding>& findings) {
   if (!is_known(string)) return;
   if (position >= string.length) {
-    findings.push_back({bow_path + ".position",
-                        fmt::format("contact point {:g} m is outside the string of {:g} m: it must "
-                                    "lie between its ends",
-                                    position, string.length)});
+    add_finding(findings, bow_path + ".position",
+                "contact point {:g} m is outside the string of {:g} m: it must "
+                "lie between its ends",
+                position, string.length);
   }
-  lint_making(
-      path, [&] { make_modal_basis(string); }, findings);
+  lint_making(findings, path, [&] { make_modal_basis(string); });
 }
 
 void lint_rate(const StringModel& string, double sample_rate, const std::string& string_path,
@@ -34,18 +33,17 @@ void lint_rate(const StringModel& string, double sample_rate, const std::string&
   const double top = stiff_string_frequency(string.fundamental, string.inharmonicity, top_mode);
   if (top < 0.5 * sample_rate) return;
   const auto most = std::floor(0.5 * sample_rate / string.fundamental);
-  findings.push_back(
-      {string_path + ".modes",
-       fmt::format("mode {} at {:.6g} Hz is not below half the sample rate, {:.6g} Hz: use at most "
-                   "about {:g} modes or a higher measurement.sample_rate",
-                   string.modes, top, 0.5 * sample_rate, most)});
+  add_finding(findings, string_path + ".modes",
+              "mode {} at {:.6g} Hz is not below half the sample rate, {:.6g} Hz: use at most "
+              "about {:g} modes or a higher measurement.sample_rate",
+              string.modes, top, 0.5 * sample_rate, most);
 }
 
 // What the simulator refuses for its kind alone.
 void lint_fit(const Scene& scene, const Choice<Simulator>& simulator,
               std::vector<Finding>& findings) {
   for (const SceneRefusal& refusal : simulator.make()->refusals(scene)) {
-    findings.push_back({"scene." + refusal.key, refusal.reason});
+    add_finding(findings, "scene." + refusal.key, "{}", refusal.reason);
   }
 }
 
@@ -78,27 +76,24 @@ std::vector<Finding> lint_scene(const Scene& scene, const Choice<Simulator>& sim
   std::vector<Finding> findings;
   lint_string("scene.string", scene.string, scene.bow.position, "scene.bow", findings);
   if (is_known(scene.string) && findings.empty()) {
-    lint_making(
-        "scene.initial", [&] { initial_state(scene, make_modal_basis(scene.string)); }, findings);
+    lint_making(findings, "scene.initial",
+                [&] { initial_state(scene, make_modal_basis(scene.string)); });
   }
-  lint_making(
-      "scene.bow", [&] { bow_motion(scene.bow, scene.duration); }, findings);
+  lint_making(findings, "scene.bow", [&] { bow_motion(scene.bow, scene.duration); });
   lint_rate(scene.string, measurement.sample_rate, "scene.string", findings);
   const std::size_t before = findings.size();
-  lint_making(
-      "scene.friction", [&] { scene.friction.make(); }, findings);
-  lint_making(
-      "simulator", [&] { simulator.make(); }, findings);
+  lint_making(findings, "scene.friction", [&] { scene.friction.make(); });
+  lint_making(findings, "simulator", [&] { simulator.make(); });
   if (findings.size() == before) lint_fit(scene, simulator, findings);
-  lint_making(
-      "scene.duration", [&] { sample_count(scene.duration, measurement.sample_rate); }, findings);
+  lint_making(findings, "scene.duration",
+              [&] { sample_count(scene.duration, measurement.sample_rate); });
   return findings;
 }
 
 std::vector<Finding> lint_observation(const ObservationOptions& options) {
   std::vector<Finding> findings;
-  lint_making(
-      options.has_record ? "record" : "scene", [&] { options.require_one_source(); }, findings);
+  lint_making(findings, options.has_record ? "record" : "scene",
+              [&] { options.require_one_source(); });
   if (!findings.empty()) return findings;
   if (options.has_scene) {
     findings = lint_scene(options.truth.scene, options.truth.simulator, options.measurement);
@@ -116,10 +111,10 @@ std::vector<Finding> lint_scores(const ScoreOptions& score, const ObservationOpt
   const double length = score.periods / options.truth.scene.string.fundamental;
   for (const double start : score.windows) {
     if (start + length <= duration) continue;
-    findings.push_back(
-        {"score.windows", fmt::format("the window from {:g} s over {:g} periods ends at {:.4g} s, "
-                                      "after the record of {:g} s",
-                                      start, score.periods, start + length, duration)});
+    add_finding(findings, "score.windows",
+                "the window from {:g} s over {:g} periods ends at {:.4g} s, "
+                "after the record of {:g} s",
+                start, score.periods, start + length, duration);
   }
   return findings;
 }
@@ -135,8 +130,8 @@ std::vector<Finding> lint_priors(const std::string& path, const UnknownsOptions&
   std::set<std::string> wrong;
   const auto passes = [&](const std::string& place) {
     const std::size_t before = findings.size();
-    lint_making(
-        path + place, [&] { require_priors(sound, modes, records, string.length); }, findings);
+    lint_making(findings, path + place,
+                [&] { require_priors(sound, modes, records, string.length); });
     return findings.size() == before;
   };
   for (std::size_t i = 0; i < unknowns.fixed.size(); ++i) {
@@ -167,28 +162,29 @@ std::vector<Finding> lint_figures(const std::vector<FigureOptions>& figures,
   std::set<std::string> ids;
   for (const FigureOptions& figure : figures) {
     if (!report::is_file_stem(figure.id)) {
-      findings.push_back(
-          {"figures", fmt::format("\"{}\" cannot name a figure's files: use letters, "
-                                  "digits, - and _",
-                                  figure.id)});
+      add_finding(findings, "figures",
+                  "\"{}\" cannot name a figure's files: use letters, "
+                  "digits, - and _",
+                  figure.id);
     }
     if (!ids.insert(figure.id).second) {
-      findings.push_back({"figures", fmt::format("two figures have the id \"{}\"", figure.id)});
+      add_finding(findings, "figures", "two figures have the id \"{}\"", figure.id);
     }
     if (figure.quantities.empty()) {
-      findings.push_back({"figures", fmt::format("figure {} has no quantities", figure.id)});
+      add_finding(findings, "figures", "figure {} has no quantities", figure.id);
     }
     const bool identified =
         std::find(contents.begin(), contents.end(), "spectra") != contents.end();
     for (const std::string& name : figure.quantities) {
       if (!identified || (name != "R1" && name != "R2")) continue;
-      findings.push_back({"figures", fmt::format("figure {} draws {}, which is measured, not "
-                                                 "identified: use y, v or f_c",
-                                                 figure.id, name)});
+      add_finding(findings, "figures",
+                  "figure {} draws {}, which is measured, not "
+                  "identified: use y, v or f_c",
+                  figure.id, name);
     }
     if (std::find(contents.begin(), contents.end(), figure.content) == contents.end()) {
-      findings.push_back({"figures", fmt::format("figure {}: this kind of experiment has no {}",
-                                                 figure.id, figure.content)});
+      add_finding(findings, "figures", "figure {}: this kind of experiment has no {}", figure.id,
+                  figure.content);
     }
   }
   return findings;

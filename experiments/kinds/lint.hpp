@@ -29,13 +29,19 @@ std::vector<Finding> lint_figures(const std::vector<FigureOptions>& figures,
 /// path: of the unknowns.
 std::vector<Finding> lint_priors(const std::string& path, const UnknownsOptions& unknowns,
                                  const StringModel& string, std::size_t records = 1);
+/// An error at `path`.
+template <typename... Args>
+void add_finding(std::vector<Finding>& findings, std::string path, fmt::format_string<Args...> text,
+                 Args&&... args) {
+  findings.push_back({std::move(path), fmt::format(text, std::forward<Args>(args)...)});
+}
 /// A finding at `path` where `make` throws InvalidInput.
 template <typename Make>
-void lint_making(const std::string& path, Make make, std::vector<Finding>& findings) {
+void lint_making(std::vector<Finding>& findings, const std::string& path, Make make) {
   try {
     make();
   } catch (const InvalidInput& error) {
-    findings.push_back({path, error.what(), true});
+    findings.push_back({path, error.what()});
   }
 }
 void append(std::vector<Finding>& all, std::vector<Finding> more);

@@ -76,8 +76,7 @@ report::Table task_table(const BenchmarkGrid& grid, const std::string& command) 
 bool is_refused_pair(const CalibrateOptions& cell, const Finding& finding) {
   if (finding.path != "calibration.optimizer") return false;
   std::vector<Finding> own;
-  lint_making(
-      finding.path, [&] { cell.calibration.optimizer.make(); }, own);
+  lint_making(own, finding.path, [&] { cell.calibration.optimizer.make(); });
   return own.empty();
 }
 
@@ -150,9 +149,9 @@ std::vector<Finding> BenchmarkExperiment::lint() const {
     }
     if (cell.inversion.observation.has_record &&
         known.insert({"record", "a record has no truth"}).second) {
-      findings.push_back({"record",
-                          "a benchmark scores on the truth, which a record does not "
-                          "have: state a scene"});
+      add_finding(findings, "record",
+                  "a benchmark scores on the truth, which a record does not "
+                  "have: state a scene");
     }
   }
   std::vector<FairnessTask> tasks;

@@ -20,9 +20,8 @@ void lint_sensors(const CalibrateOptions& options, std::vector<Finding>& finding
   } catch (const InvalidInput&) {
     return;  // the inversion's finding
   }
-  lint_making(
-      "inversion.estimator", [&] { require_sensors_once(options.calibration, *estimator); },
-      findings);
+  lint_making(findings, "inversion.estimator",
+              [&] { require_sensors_once(options.calibration, *estimator); });
 }
 
 // Whether a simulated record shows the noise levels that are not stated; a file is not read here.
@@ -35,20 +34,19 @@ void lint_noise(const CalibrateOptions& options, std::vector<Finding>& findings)
   const double rate = observation.measurement.sample_rate;
   const auto samples =
       static_cast<std::size_t>(std::round(observation.truth.scene.duration * rate));
-  lint_making(
-      calibration.has_continuation ? "calibration.continuation" : "calibration.objective",
-      [&] {
-        const ModalBasis basis = make_modal_basis(observation.string_model());
-        if (!calibration.has_continuation) {
-          calibration.objective.make()->require_record(basis, rate, samples);
-          return;
-        }
-        const ContinuationOptions& continuation = calibration.continuation;
-        likelihood_band({basis, 0.0}, continuation.highest_frequency, rate);
-        require_noise_known({continuation.left_noise, continuation.right_noise}, basis, rate,
-                            samples);
-      },
-      findings);
+  lint_making(findings,
+              calibration.has_continuation ? "calibration.continuation" : "calibration.objective",
+              [&] {
+                const ModalBasis basis = make_modal_basis(observation.string_model());
+                if (!calibration.has_continuation) {
+                  calibration.objective.make()->require_record(basis, rate, samples);
+                  return;
+                }
+                const ContinuationOptions& continuation = calibration.continuation;
+                likelihood_band({basis, 0.0}, continuation.highest_frequency, rate);
+                require_noise_known({continuation.left_noise, continuation.right_noise}, basis,
+                                    rate, samples);
+              });
 }
 
 // Whether the optimizer can minimize the objective, where both can be made at all.
@@ -58,24 +56,21 @@ void lint_pairing(const CalibrationOptions& calibration, std::vector<Finding>& f
                        [path](const Finding& finding) { return finding.path.starts_with(path); });
   };
   if (stands("calibration.objective") || stands("calibration.optimizer")) return;
-  lint_making(
-      "calibration.optimizer",
-      [&] {
-        const std::string mismatch = calibration.optimizer.make()->explain_unsatisfied(
-            calibration.objective.selected(), calibration.objective.make()->capabilities());
-        MODCAL_REQUIRE(mismatch.empty(), "{}", mismatch);
-      },
-      findings);
+  lint_making(findings, "calibration.optimizer", [&] {
+    const std::string mismatch = calibration.optimizer.make()->explain_unsatisfied(
+        calibration.objective.selected(), calibration.objective.make()->capabilities());
+    MODCAL_REQUIRE(mismatch.empty(), "{}", mismatch);
+  });
 }
 
 // What stands in the file and a continuation, which ends by itself, does not read.
 void lint_unread(const CalibrationOptions& calibration, std::vector<Finding>& findings) {
   const CalibrationOptions plain;
   const auto add = [&findings](std::string key, std::string_view reason) {
-    findings.push_back({"calibration." + key,
-                        fmt::format("a continuation does not read {}: {}; leave it out, or leave "
-                                    "continuation out",
-                                    key, reason)});
+    add_finding(findings, "calibration." + key,
+                "a continuation does not read {}: {}; leave it out, or leave "
+                "continuation out",
+                key, reason);
   };
   if (calibration.objective.selected() != plain.objective.selected()) {
     add("objective", "it minimizes the joint likelihood");
@@ -99,17 +94,13 @@ std::vector<Finding> CalibrateExperiment::lint() const {
          lint_figures(options_.inversion.figures, {"waveforms", "spectra", "parameter_curves",
                                                    "objectives", "frequency_errors"}));
   const CalibrationOptions& calibration = options_.calibration;
-  lint_making(
-      "calibration.objective", [&] { calibration.objective.make(); }, findings);
-  lint_making(
-      "calibration.optimizer", [&] { calibration.optimizer.make(); }, findings);
+  lint_making(findings, "calibration.objective", [&] { calibration.objective.make(); });
+  lint_making(findings, "calibration.optimizer", [&] { calibration.optimizer.make(); });
   if (!calibration.has_continuation) lint_pairing(calibration, findings);
-  lint_making(
-      "calibration.budget", [&] { calibration.budget.require_valid(); }, findings);
-  lint_making(
-      "further_strokes",
-      [&] { options_.further.require_fit_to(options_.inversion.observation, calibration); },
-      findings);
+  lint_making(findings, "calibration.budget", [&] { calibration.budget.require_valid(); });
+  lint_making(findings, "further_strokes", [&] {
+    options_.further.require_fit_to(options_.inversion.observation, calibration);
+  });
   append(findings, lint_plucks(options_.plucks, options_.inversion.observation, calibration));
   lint_noise(options_, findings);
   const auto modes = static_cast<std::size_t>(options_.inversion.observation.string_model().modes);
@@ -118,23 +109,18 @@ std::vector<Finding> CalibrateExperiment::lint() const {
         1 + options_.further.contacts.size() + options_.further.files.size();
     const UnknownsOptions& unknowns = calibration.continuation.unknowns;
     lint_unread(calibration, findings);
-    lint_making(
-        "calibration.parameters",
-        [&] { require_continuation_parameters(calibration.parameters, strokes); }, findings);
+    lint_making(findings, "calibration.parameters",
+                [&] { require_continuation_parameters(calibration.parameters, strokes); });
     append(findings, lint_priors("calibration.continuation.unknowns", unknowns,
                                  options_.inversion.observation.string_model(),
                                  strokes + options_.plucks.size()));
-    lint_making(
-        "calibration.continuation.unknowns", [&] { require_contacts(unknowns, strokes); },
-        findings);
+    lint_making(findings, "calibration.continuation.unknowns",
+                [&] { require_contacts(unknowns, strokes); });
   }
-  lint_making(
-      "calibration.parameters",
-      [&] {
-        const std::vector<std::string> names = calibration.parameters.names(modes);
-        if (!calibration.has_continuation) calibration.objective.make()->require_moved_by(names);
-      },
-      findings);
+  lint_making(findings, "calibration.parameters", [&] {
+    const std::vector<std::string> names = calibration.parameters.names(modes);
+    if (!calibration.has_continuation) calibration.objective.make()->require_moved_by(names);
+  });
   return findings;
 }
 

@@ -65,9 +65,9 @@ constexpr double kLeastPeriods = 2.0;
 void lint_simulated(const std::string& path, const PluckRecordOptions& pluck,
                     const StringModel& string, const Scene& scene, std::vector<Finding>& findings) {
   if (pluck.start.selected() == "rest") {
-    findings.push_back({path + ".initial",
-                        "a string at rest has no free decay: pluck it (initial: {type: pluck, "
-                        "...}), or name the record of its pluck"});
+    add_finding(findings, path + ".initial",
+                "a string at rest has no free decay: pluck it (initial: {{type: pluck, "
+                "...}}), or name the record of its pluck");
   }
   if (!is_known(string)) return;
   ModalBasis basis;
@@ -76,35 +76,28 @@ void lint_simulated(const std::string& path, const PluckRecordOptions& pluck,
   } catch (const InvalidInput&) {
     return;  // reported with the string
   }
-  lint_making(
-      path + ".initial", [&] { initial_state(scene, basis); }, findings);
+  lint_making(findings, path + ".initial", [&] { initial_state(scene, basis); });
   const double top =
       *std::max_element(basis.omega.begin(), basis.omega.end()) / (2.0 * std::numbers::pi);
   if (!(pluck.sample_rate > 2.0 * top)) {
-    findings.push_back(
-        {path + ".sample_rate",
-         fmt::format("a pluck sampled at {:g} Hz, but the highest mode is at {:g} Hz: sample at "
-                     "more than twice that, or use fewer modes",
-                     pluck.sample_rate, top)});
+    add_finding(findings, path + ".sample_rate",
+                "a pluck sampled at {:g} Hz, but the highest mode is at {:g} Hz: sample at "
+                "more than twice that, or use fewer modes",
+                pluck.sample_rate, top);
     return;
   }
   const double least = kLeastPeriods / basis.frequency(0);
   if (!(pluck.duration >= least)) {
-    findings.push_back(
-        {path + ".duration",
-         fmt::format("a pluck of {:g} s does not tell modes {:g} Hz apart from each other: record "
-                     "at least {:g} periods of the first mode, {:.3g} s",
-                     pluck.duration, basis.frequency(0), kLeastPeriods, least)});
+    add_finding(findings, path + ".duration",
+                "a pluck of {:g} s does not tell modes {:g} Hz apart from each other: record "
+                "at least {:g} periods of the first mode, {:.3g} s",
+                pluck.duration, basis.frequency(0), kLeastPeriods, least);
     return;
   }
-  lint_making(
-      path + ".sample_rate",
-      [&] {
-        require_noise_known(
-            {pluck.left_noise, pluck.right_noise}, basis, pluck.sample_rate,
-            static_cast<std::size_t>(std::round(pluck.duration * pluck.sample_rate)));
-      },
-      findings);
+  lint_making(findings, path + ".sample_rate", [&] {
+    require_noise_known({pluck.left_noise, pluck.right_noise}, basis, pluck.sample_rate,
+                        static_cast<std::size_t>(std::round(pluck.duration * pluck.sample_rate)));
+  });
 }
 
 }  // namespace
@@ -114,25 +107,24 @@ std::vector<Finding> lint_plucks(const std::vector<PluckRecordOptions>& plucks,
                                  const CalibrationOptions& calibration) {
   std::vector<Finding> findings;
   if (!plucks.empty() && !calibration.has_continuation) {
-    findings.push_back(
-        {"plucks", fmt::format("{} plucks are fitted with the stroke by the joint likelihood "
-                               "alone: state calibration.continuation",
-                               plucks.size())});
+    add_finding(findings, "plucks",
+                "{} plucks are fitted with the stroke by the joint likelihood "
+                "alone: state calibration.continuation",
+                plucks.size());
   }
   for (std::size_t i = 0; i < plucks.size(); ++i) {
     const PluckRecordOptions& pluck = plucks[i];
     const std::string path = fmt::format("plucks.{}", i);
     if (!pluck.file.empty()) {
       if (first.has_record) continue;
-      findings.push_back(
-          {path + ".record", fmt::format("the recorded pluck {} goes with a recorded stroke: state "
-                                         "record, or pluck the string of the scene",
-                                         pluck.file)});
+      add_finding(findings, path + ".record",
+                  "the recorded pluck {} goes with a recorded stroke: state "
+                  "record, or pluck the string of the scene",
+                  pluck.file);
     } else if (!first.has_scene) {
-      findings.push_back(
-          {path,
-           fmt::format("{} plucks, this one simulated, but there is no scene: name its record",
-                       plucks.size())});
+      add_finding(findings, path,
+                  "{} plucks, this one simulated, but there is no scene: name its record",
+                  plucks.size());
     } else {
       lint_simulated(path, pluck, first.string_model(), pluck.observation(first).truth.scene,
                      findings);

@@ -22,20 +22,17 @@ void IdentifyOptions::visit(OptionVisitor& visitor) {
 std::vector<Finding> IdentifyOptions::lint() const {
   std::vector<Finding> findings = lint_scene(truth.scene, truth.simulator, measurement);
   if (truth.scene.start.selected() == "rest") {
-    findings.push_back({"scene.initial", "a string at rest has no free decay: pluck it"});
+    add_finding(findings, "scene.initial", "a string at rest has no free decay: pluck it");
   }
   const double rate = measurement.sample_rate;
   if (!(identification.highest_frequency < 0.5 * rate)) {
-    findings.push_back({"identification.highest_frequency",
-                        fmt::format("{:g} Hz lie above half the sample rate {:g} Hz",
-                                    identification.highest_frequency, rate)});
+    add_finding(findings, "identification.highest_frequency",
+                "{:g} Hz lie above half the sample rate {:g} Hz", identification.highest_frequency,
+                rate);
   } else if (findings.empty()) {
-    lint_making(
-        "scene.duration",
-        [&] {
-          require_decay_length(sample_count(truth.scene.duration, rate), rate, identification);
-        },
-        findings);
+    lint_making(findings, "scene.duration", [&] {
+      require_decay_length(sample_count(truth.scene.duration, rate), rate, identification);
+    });
   }
   return findings;
 }

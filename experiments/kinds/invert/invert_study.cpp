@@ -35,18 +35,14 @@ void InvertOptions::visit(OptionVisitor& visitor) {
 
 std::vector<Finding> lint_inversion(const InvertOptions& options) {
   std::vector<Finding> findings = lint_observation(options.observation);
-  lint_making(
-      "inversion", [&] { InversionRecipe recipe(options.inversion); }, findings);
+  lint_making(findings, "inversion", [&] { InversionRecipe recipe(options.inversion); });
   append(findings, lint_scores(options.score, options.observation));
   if (findings.empty() && is_known(options.observation.string_model())) {
-    lint_making(
-        "model_error",
-        [&] {
-          with_errors(make_modal_basis(options.observation.string_model()),
-                      options.observation.contact_point(), options.model_error,
-                      options.key().with("model error"));
-        },
-        findings);
+    lint_making(findings, "model_error", [&] {
+      with_errors(make_modal_basis(options.observation.string_model()),
+                  options.observation.contact_point(), options.model_error,
+                  options.key().with("model error"));
+    });
   }
   return findings;
 }

@@ -100,23 +100,17 @@ void lint_start(const CalibrationLimitOptions& options, std::vector<Finding>& fi
                                   [](const Finding& finding) { return finding.is_error; });
   if (!sound || !is_known(scene.string)) return;
   const ModalBasis basis = make_modal_basis(scene.string);
-  lint_making(
-      "model_error",
-      [&] {
-        for (const double sign : {1.0, -1.0}) {
-          ModelErrorOptions errors = options.model_error;
-          errors.contact *= sign;
-          with_errors(basis, scene.bow.position, errors, StreamKey(1));
-        }
-      },
-      findings);
-  lint_making(
-      "continuation",
-      [&] {
-        likelihood_band({basis, scene.bow.position}, options.continuation.highest_frequency,
-                        options.observation.measurement.sample_rate);
-      },
-      findings);
+  lint_making(findings, "model_error", [&] {
+    for (const double sign : {1.0, -1.0}) {
+      ModelErrorOptions errors = options.model_error;
+      errors.contact *= sign;
+      with_errors(basis, scene.bow.position, errors, StreamKey(1));
+    }
+  });
+  lint_making(findings, "continuation", [&] {
+    likelihood_band({basis, scene.bow.position}, options.continuation.highest_frequency,
+                    options.observation.measurement.sample_rate);
+  });
 }
 
 }  // namespace
@@ -155,9 +149,9 @@ LimitQuestion limit_question_of(const CalibrationLimitOptions& options, double n
 std::vector<Finding> CalibrationLimitExperiment::lint() const {
   std::vector<Finding> findings;
   if (!options_.observation.has_scene) {
-    findings.push_back({"record",
-                        "a bound needs a truth, which a record does not have: state a "
-                        "scene"});
+    add_finding(findings, "record",
+                "a bound needs a truth, which a record does not have: state a "
+                "scene");
   } else {
     const ObservationOptions& observation = options_.observation;
     append(findings, lint_scene(observation.truth.scene, observation.truth.simulator,
@@ -167,7 +161,7 @@ std::vector<Finding> CalibrationLimitExperiment::lint() const {
   append(findings, lint_priors("continuation.unknowns", options_.continuation.unknowns,
                                options_.observation.string_model()));
   if (options_.noise_levels.empty()) {
-    findings.push_back({"noise_levels", "no noise level is stated"});
+    add_finding(findings, "noise_levels", "no noise level is stated");
   }
   return findings;
 }

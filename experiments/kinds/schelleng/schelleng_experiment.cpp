@@ -11,10 +11,10 @@ namespace {
 
 void lint_axis(const std::string& path, const MapAxis& axis, std::vector<Finding>& findings) {
   if (axis.lowest < axis.highest) return;
-  findings.push_back(
-      {path, fmt::format("the axis goes from {:g} to {:g}: the highest value must be "
-                         "above the lowest",
-                         axis.lowest, axis.highest)});
+  add_finding(findings, path,
+              "the axis goes from {:g} to {:g}: the highest value must be "
+              "above the lowest",
+              axis.lowest, axis.highest);
 }
 
 }  // namespace
@@ -27,25 +27,24 @@ std::vector<Finding> SchellengExperiment::lint() const {
   lint_axis("positions", o.positions, findings);
   lint_axis("forces", o.forces, findings);
   if (o.positions.highest > 0.5) {
-    findings.push_back({"positions.highest",
-                        fmt::format("the bow position {:g} is beyond the middle of the string: the "
-                                    "other half holds the same map",
-                                    o.positions.highest)});
+    add_finding(findings, "positions.highest",
+                "the bow position {:g} is beyond the middle of the string: the "
+                "other half holds the same map",
+                o.positions.highest);
   }
   if (scene.bow.velocity == 0.0) {
-    findings.push_back({"scene.bow.velocity", "a bow that stands still keeps no motion up"});
+    add_finding(findings, "scene.bow.velocity", "a bow that stands still keeps no motion up");
   }
   if (!bow_motion(scene.bow, scene.duration).is_steady()) {
-    findings.push_back({"scene.bow",
-                        "the bow's velocity or force goes with time: a map of steady "
-                        "strokes has neither gestures nor noise"});
+    add_finding(findings, "scene.bow",
+                "the bow's velocity or force goes with time: a map of steady "
+                "strokes has neither gestures nor noise");
   }
   if (is_known(scene.string) && judged_from(scene, o.criteria) < 0.0) {
-    findings.push_back(
-        {"scene.duration",
-         fmt::format("{:g} s are too short to judge {:g} periods of {:.4g} s: it takes {:.4g} s",
-                     scene.duration, o.criteria.periods, 1.0 / scene.string.fundamental,
-                     scene.duration - judged_from(scene, o.criteria))});
+    add_finding(findings, "scene.duration",
+                "{:g} s are too short to judge {:g} periods of {:.4g} s: it takes {:.4g} s",
+                scene.duration, o.criteria.periods, 1.0 / scene.string.fundamental,
+                scene.duration - judged_from(scene, o.criteria));
   }
   return findings;
 }

@@ -92,38 +92,28 @@ std::vector<Finding> PluckThenBowOptions::lint() const {
   std::vector<Finding> findings = lint_observation(stroke());
   append(findings, lint_scores(score, stroke()));
   append(findings, lint_figures(figures, {"waveforms", "spectra", "parameter_curves"}));
-  lint_making(
-      "inversion", [&] { InversionRecipe recipe(inversion); }, findings);
-  lint_making(
-      "refinement.objective", [&] { refinement.objective.make(); }, findings);
-  lint_making(
-      "refinement.optimizer", [&] { refinement.optimizer.make(); }, findings);
-  lint_making(
-      "contact.objective", [&] { contact.objective.make(); }, findings);
-  lint_making(
-      "pluck.initial",
-      [&] {
-        const Scene test = pluck_test(pluck.identification.method).truth.scene;
-        pluck.start.make();
-        if (is_known(test.string)) initial_state(test, make_modal_basis(test.string));
-      },
-      findings);
+  lint_making(findings, "inversion", [&] { InversionRecipe recipe(inversion); });
+  lint_making(findings, "refinement.objective", [&] { refinement.objective.make(); });
+  lint_making(findings, "refinement.optimizer", [&] { refinement.optimizer.make(); });
+  lint_making(findings, "contact.objective", [&] { contact.objective.make(); });
+  lint_making(findings, "pluck.initial", [&] {
+    const Scene test = pluck_test(pluck.identification.method).truth.scene;
+    pluck.start.make();
+    if (is_known(test.string)) initial_state(test, make_modal_basis(test.string));
+  });
   if (pluck.start.selected() == "rest") {
-    findings.push_back({"pluck.initial", "a string at rest has no free decay: pluck it"});
+    add_finding(findings, "pluck.initial", "a string at rest has no free decay: pluck it");
   }
-  lint_making(
-      "pluck.duration",
-      [&] {
-        const double rate = measurement.sample_rate;
-        require_decay_length(sample_count(pluck.duration, rate), rate, pluck.identification);
-      },
-      findings);
+  lint_making(findings, "pluck.duration", [&] {
+    const double rate = measurement.sample_rate;
+    require_decay_length(sample_count(pluck.duration, rate), rate, pluck.identification);
+  });
   if (has_bound) {
     append(findings, lint_priors("bound.unknowns", bound.unknowns, truth.scene.string));
   }
   if (!(contact.start - contact.range > 0.0 &&
         contact.start + contact.range < truth.scene.string.length)) {
-    findings.push_back({"contact.range", "the search leaves the string: narrow it"});
+    add_finding(findings, "contact.range", "the search leaves the string: narrow it");
   }
   return findings;
 }

@@ -41,9 +41,8 @@ std::vector<Finding> SimulateOptions::lint() const {
   for (const FigureOptions& figure : figures) {
     for (const std::string& quantity : figure.quantities) {
       if (std::find(outputs.begin(), outputs.end(), quantity) != outputs.end()) continue;
-      findings.push_back(
-          {"outputs",
-           fmt::format("figure {} draws {}, which is not among the outputs", figure.id, quantity)});
+      add_finding(findings, "outputs", "figure {} draws {}, which is not among the outputs",
+                  figure.id, quantity);
     }
   }
   return findings;

@@ -60,13 +60,13 @@ SweepCell SweepExperiment::cell(std::size_t task) const {
 std::vector<Finding> SweepExperiment::lint() const {
   std::vector<Finding> findings;
   if (!report::is_file_stem(options_.sweep.table.name)) {
-    findings.push_back({"table.name",
-                        "the name of the table cannot be a file name: use letters, "
-                        "digits, - and _"});
+    add_finding(findings, "table.name",
+                "the name of the table cannot be a file name: use letters, "
+                "digits, - and _");
   }
   if (!options_.base.figures.empty()) {
-    findings.push_back(
-        {"figures", "a sweep draws its own figure: use kind invert for single ones"});
+    add_finding(findings, "figures",
+                "a sweep draws its own figure: use kind invert for single ones");
   }
   std::set<std::pair<std::string, std::string>> known;
   for (const InvertOptions& cell : options_.cells.all()) {
