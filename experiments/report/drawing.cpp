@@ -64,13 +64,27 @@ void raise_marked_ends(DrawnSeries& drawn) {
   }
 }
 
+Look look_of(const Series& series) {
+  const bool points = series.style == SeriesStyle::kPoints;
+  return {.line = !points,
+          .dotted = series.style == SeriesStyle::kDotted,
+          .points = points || series.style == SeriesStyle::kLineWithPoints,
+          .ink = &ink_of(series.color)};
+}
+
 bool inside(double x, const Axis& axis) {
   return !axis.range || (x >= (*axis.range)[0] && x <= (*axis.range)[1]);
 }
 
 // Samples within the range of x and their neighbours, so that lines run on to the frame.
 DrawnSeries clipped(const Series& series, const Panel& panel, LeftOut& left_out) {
-  DrawnSeries drawn{.source = &series, .x = {}, .y = {}, .low = {}, .high = {}, .tasks = {}};
+  DrawnSeries drawn{.source = &series,
+                    .look = look_of(series),
+                    .x = {},
+                    .y = {},
+                    .low = {},
+                    .high = {},
+                    .tasks = {}};
   const std::size_t n = series.x.size();
   const bool has_spread = !series.y_low.empty();
   for (std::size_t i = 0; i < n; ++i) {
@@ -184,6 +198,30 @@ void set_y_window(DrawnPanel& drawn) {
   drawn.y_window = panel.y.range ? *panel.y.range : widened(all, 0.05, panel.y.logarithmic);
 }
 
+std::vector<LegendEntry> legend_of(const Panel& panel) {
+  std::vector<LegendEntry> legend;
+  for (const Category& category : panel.map ? panel.map->categories : std::vector<Category>{}) {
+    legend.push_back(
+        {.label = category.label, .look = {.ink = &ink_of(category.color)}, .is_cell = true});
+  }
+  for (const Series* series : shown_series(panel)) {
+    if (!series->label.empty()) legend.push_back({series->label, look_of(*series)});
+  }
+  return legend;
+}
+
+bool has_shared_legend(const Figure& figure) {
+  const auto same = [](const Series* a, const Series* b) {
+    return a->label == b->label && a->style == b->style && a->color == b->color;
+  };
+  const std::vector<const Series*> first = shown_series(figure.panels.front());
+  return std::all_of(figure.panels.begin(), figure.panels.end(), [&](const Panel& panel) {
+    if (panel.map && figure.panels.size() > 1) return false;
+    const std::vector<const Series*> series = shown_series(panel);
+    return std::equal(series.begin(), series.end(), first.begin(), first.end(), same);
+  });
+}
+
 std::string counted(std::size_t count, std::string_view one, std::string_view many) {
   return fmt::format("{} {}", count, count == 1 ? one : many);
 }
@@ -225,10 +263,10 @@ bool DrawnPanel::has_values() const {
 
 DrawnFigure draw_figure(const Figure& figure, std::size_t columns) {
   check_figure(figure);
-  DrawnFigure result{.source = &figure, .panels = {}, .notes = {}};
+  DrawnFigure result{.source = &figure, .shared_legend = has_shared_legend(figure)};
   LeftOut left_out;
   for (const Panel& panel : figure.panels) {
-    DrawnPanel drawn{.source = &panel, .series = {}};
+    DrawnPanel drawn{.source = &panel, .legend = legend_of(panel)};
     LeftOut not_seen;  // of hidden series: the caption speaks of what is shown
     for (const Series& series : panel.series) {
       LeftOut& counted = series.hidden ? not_seen : left_out;

@@ -7,11 +7,27 @@
 #include <vector>
 
 #include "experiments/report/figure.hpp"
+#include "experiments/report/palette.hpp"
 
 namespace modcal::report {
 
+/// How a series is drawn: a line, dotted or not, points, or both.
+struct Look {
+  bool line = true;
+  bool dotted = false;
+  bool points = false;
+  const Ink* ink = nullptr;
+};
+
+struct LegendEntry {
+  std::string label = {};
+  Look look = {};
+  bool is_cell = false;  ///< a category of a map
+};
+
 struct DrawnSeries {
   const Series* source = nullptr;
+  Look look = {};
   std::vector<double> x = {};
   std::vector<double> y = {};    ///< NaN: gap
   std::vector<double> low = {};  ///< empty where the series has no spread
@@ -28,12 +44,15 @@ struct DrawnPanel {
   /// A range or a marker asks for y_window, not the data alone: zooming in x keeps it.
   bool y_fixed = false;
   std::vector<DrawnSeries> series = {};
+  std::vector<LegendEntry> legend = {};  ///< categories, then what is shown and has a label
   bool has_values() const;
 };
 
 struct DrawnFigure {
   const Figure* source = nullptr;
   std::vector<DrawnPanel> panels = {};
+  /// All panels show the same labels in the same looks: one legend serves the figure.
+  bool shared_legend = false;
   /// Sentences for the caption: values left out on logarithmic axes, gaps, thinned series.
   std::vector<std::string> notes = {};
 };

@@ -73,18 +73,6 @@ std::string Axis::text() const {
   return unit.empty() || unit == "1" ? label : fmt::format("{} [{}]", label, unit);
 }
 
-bool has_shared_legend(const Figure& figure) {
-  const auto same = [](const Series* a, const Series* b) {
-    return a->label == b->label && a->style == b->style && a->color == b->color;
-  };
-  const std::vector<const Series*> first = shown_series(figure.panels.front());
-  return std::all_of(figure.panels.begin(), figure.panels.end(), [&](const Panel& panel) {
-    if (panel.map && figure.panels.size() > 1) return false;
-    const std::vector<const Series*> series = shown_series(panel);
-    return std::equal(series.begin(), series.end(), first.begin(), first.end(), same);
-  });
-}
-
 std::vector<const Series*> shown_series(const Panel& panel) {
   std::vector<const Series*> shown;
   for (const Series& series : panel.series) {

@@ -137,10 +137,6 @@ struct Figure {
 /// cannot be a file name.
 void check_figure(const Figure& figure);
 
-/// All panels show the same labels in the same styles and colours: one legend serves the figure.
-/// Hidden series do not count.
-bool has_shared_legend(const Figure& figure);
-
 /// The series that are not hidden.
 std::vector<const Series*> shown_series(const Panel& panel);
 

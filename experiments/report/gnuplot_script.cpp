@@ -15,10 +15,10 @@ struct Sheet {
   std::size_t columns, rows;
   double width, height, legend;
 
-  explicit Sheet(const Figure& figure)
-      : columns(std::min(figure.columns, figure.panels.size())),
+  explicit Sheet(const DrawnFigure& figure)
+      : columns(std::min(figure.source->columns, figure.panels.size())),
         rows((figure.panels.size() + columns - 1) / columns),
-        legend(has_shared_legend(figure) ? 0.3 : 0.0) {
+        legend(figure.shared_legend ? 0.3 : 0.0) {
     const double panel_width = columns == 1 ? 6.4 : columns == 2 ? 4.4 : 3.3;
     const double panel_height = columns == 1 ? 3.4 : 2.2;
     width = panel_width * static_cast<double>(columns);
@@ -105,15 +105,14 @@ std::string marker_commands(const DrawnPanel& drawn) {
 // Plot elements of one series, the data being block `index`.
 std::vector<std::string> elements_of(const Figure& figure, const DrawnSeries& drawn,
                                      std::size_t index, bool titled) {
-  const Series& series = *drawn.source;
-  const Ink& ink = ink_of(series.color);
+  const Look& look = drawn.look;
+  const Ink& ink = *look.ink;
+  const std::string& label = drawn.source->label;
   const std::string data = fmt::format("'{}.dat' index {}", figure.id, index);
-  const std::string title = titled && !series.label.empty()
-                                ? "title " + gnuplot_quoted(series.label) + " noenhanced"
-                                : "notitle";
-  const bool points = series.style == SeriesStyle::kPoints;
+  const std::string title =
+      titled && !label.empty() ? "title " + gnuplot_quoted(label) + " noenhanced" : "notitle";
   std::vector<std::string> elements;
-  if (!drawn.low.empty() && points) {
+  if (!drawn.low.empty() && !look.line) {
     elements.push_back(fmt::format(
         "{} using 1:2:3:4 with yerrorbars pointtype {} pointsize 0.01 linecolor rgb '{}' notitle",
         data, ink.gnuplot_point, ink.light));
@@ -123,14 +122,12 @@ std::vector<std::string> elements_of(const Figure& figure, const DrawnSeries& dr
                     "fillcolor rgb '{}' notitle",
                     data, ink.light));
   }
-  const std::string_view kind = points                                         ? "points"
-                                : series.style == SeriesStyle::kLineWithPoints ? "linespoints"
-                                                                               : "lines";
-  std::string look = fmt::format("linecolor rgb '{}'", ink.light);
-  if (kind != "lines") look += fmt::format(" pointtype {} pointsize 0.5", ink.gnuplot_point);
-  if (kind != "points") look += " linewidth 1.3";
-  if (series.style == SeriesStyle::kDotted) look += " dashtype 3";
-  elements.push_back(fmt::format("{} using 1:2 with {} {} {}", data, kind, look, title));
+  std::string style = fmt::format("linecolor rgb '{}'", ink.light);
+  if (look.points) style += fmt::format(" pointtype {} pointsize 0.5", ink.gnuplot_point);
+  if (look.line) style += " linewidth 1.3";
+  if (look.dotted) style += " dashtype 3";
+  elements.push_back(fmt::format("{} using 1:2 with {}{} {} {}", data, look.line ? "lines" : "",
+                                 look.points ? "points" : "", style, title));
   return elements;
 }
 
@@ -197,7 +194,7 @@ std::string category_data(const CategoryMap& map, std::size_t category) {
 std::string panel_commands(const DrawnFigure& figure, std::size_t place, std::size_t& index) {
   const DrawnPanel& drawn = figure.panels[place];
   const Panel& panel = *drawn.source;
-  const bool shared = has_shared_legend(*figure.source);
+  const bool shared = figure.shared_legend;
   std::string text = "unset arrow; unset label\n";
   text += fmt::format("set label {} at graph 0, graph 1 left offset 0,0.6 noenhanced\n",
                       gnuplot_quoted(panel.title));
@@ -229,7 +226,7 @@ std::string panel_commands(const DrawnFigure& figure, std::size_t place, std::si
 }  // namespace
 
 std::string gnuplot_script(const DrawnFigure& figure) {
-  const Sheet sheet(*figure.source);
+  const Sheet sheet(figure);
   const std::string& id = figure.source->id;
   std::string text = fmt::format(
       "# {0}.svg and {0}.pdf: run \"gnuplot {0}.gp\" in this folder; the data are in {0}.dat.\n"

@@ -14,32 +14,19 @@
 namespace modcal::report {
 namespace {
 
-// One series a label, hidden ones only where no shown one has it.
-std::vector<const Series*> legend_entries(const Panel& panel) {
-  std::vector<const Series*> entries = shown_series(panel);
-  std::erase_if(entries, [](const Series* series) { return series->label.empty(); });
-  return entries;
-}
-
-std::string legend_html(const Panel& panel) {
+std::string legend_html(const DrawnPanel& panel) {
   std::string html;
-  for (const Category& category : panel.map ? panel.map->categories : std::vector<Category>{}) {
+  for (const auto& [label, look, is_cell] : panel.legend) {
+    const std::string text = html_escaped(label);
     html += fmt::format(
-        "<span class=\"key\"><span class=\"mark cell ink-{}\" "
-        "aria-hidden=\"true\"></span>{}</span>",
-        ink_of(category.color).name, html_escaped(category.label));
-  }
-  for (const Series* shown : legend_entries(panel)) {
-    const Series& series = *shown;
-    const Ink& ink = ink_of(series.color);
-    const bool line = series.style != SeriesStyle::kPoints;
-    const bool points =
-        series.style == SeriesStyle::kPoints || series.style == SeriesStyle::kLineWithPoints;
-    html += fmt::format(
-        "<span class=\"key\" data-label=\"{3}\"><span class=\"mark{0} ink-{1}\" "
-        "aria-hidden=\"true\">{2}</span>{3}</span>",
-        line ? (series.style == SeriesStyle::kDotted ? " dotted" : " line") : "", ink.name,
-        points ? ink.glyph : "", html_escaped(series.label));
+        "<span class=\"key\"{}><span class=\"mark{} ink-{}\" "
+        "aria-hidden=\"true\">{}</span>{}</span>",
+        is_cell ? "" : " data-label=\"" + text + "\"",
+        is_cell       ? " cell"
+        : look.dotted ? " dotted"
+        : look.line   ? " line"
+                      : "",
+        look.ink->name, look.points ? look.ink->glyph : "", text);
   }
   return html;
 }
@@ -64,7 +51,7 @@ std::string panel_html(const DrawnPanel& drawn, std::size_t place, bool legend_i
   const Panel& panel = *drawn.source;
   std::string html = "<div class=\"panel\"><div class=\"head\">";
   html += fmt::format("<span class=\"title\">{}</span>", html_escaped(panel.title));
-  if (legend_in_panel) html += fmt::format("<span class=\"keys\">{}</span>", legend_html(panel));
+  if (legend_in_panel) html += fmt::format("<span class=\"keys\">{}</span>", legend_html(drawn));
   html += "<output class=\"values\"></output></div>\n";
   if (!drawn.has_values()) return html + "<div class=\"nothing\">no data</div></div>\n";
   return html + fmt::format(
@@ -134,15 +121,15 @@ std::string BlockWriter::operator()(const Text& text) const {
 
 std::string BlockWriter::operator()(const Figure& figure) {
   const DrawnFigure& drawn = figures_[next_++];
-  const bool shared = has_shared_legend(figure);
   std::string html = fmt::format(
       "<figure id=\"{0}\" class=\"columns-{1}\" style=\"--columns:{1}\">\n<div "
       "class=\"caption-head\"><h3>{2}</h3>{3}<button type=\"button\" class=\"reset\" "
       "hidden>Reset zoom</button></div>\n<div class=\"grid\">\n",
       figure.id, figure.columns, html_escaped(figure.title),
-      shared ? "<span class=\"keys\">" + legend_html(figure.panels.front()) + "</span>" : "");
+      drawn.shared_legend ? "<span class=\"keys\">" + legend_html(drawn.panels.front()) + "</span>"
+                          : "");
   for (std::size_t i = 0; i < drawn.panels.size(); ++i) {
-    html += panel_html(drawn.panels[i], i, !shared);
+    html += panel_html(drawn.panels[i], i, !drawn.shared_legend);
   }
   html += "</div>\n<figcaption>" + html_paragraphs(figure.caption);
   for (const std::string& note : drawn.notes) {

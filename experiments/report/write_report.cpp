@@ -35,21 +35,16 @@ std::vector<const Item*> items_of(const Report& report) {
 void check(const std::vector<const Figure*>& figures, const std::vector<const Table*>& tables,
            const std::vector<const Audio*>& sounds) {
   std::set<std::string> ids;
-  const auto check_id = [&ids](const std::string& id) {
-    MODCAL_REQUIRE(ids.insert(id).second, "two figures or tables are called \"{}\"", id);
+  const auto check_all = [&ids](const auto& items, auto check_item) {
+    for (const auto* item : items) {
+      check_item(*item);
+      MODCAL_REQUIRE(ids.insert(item->id).second, "two figures or tables are called \"{}\"",
+                     item->id);
+    }
   };
-  for (const Figure* figure : figures) {
-    check_figure(*figure);
-    check_id(figure->id);
-  }
-  for (const Table* table : tables) {
-    check_table(*table);
-    check_id(table->id);
-  }
-  for (const Audio* audio : sounds) {
-    check_audio(*audio);
-    check_id(audio->id);
-  }
+  check_all(figures, check_figure);
+  check_all(tables, check_table);
+  check_all(sounds, check_audio);
 }
 
 // About what tables and sounds take in the page: 16 bits a sample in base64, elements about a cell.

@@ -159,10 +159,10 @@ TEST(CheckFigure, SaysWhatIsWrong) {
 }
 
 TEST(HasSharedLegend, WhenAllPanelsShowTheSameThings) {
-  EXPECT_TRUE(has_shared_legend(waveform_figure()));
-  EXPECT_TRUE(has_shared_legend(objective_figure()));
-  EXPECT_FALSE(has_shared_legend(noise_figure()));
-  EXPECT_FALSE(has_shared_legend(long_figure()));
+  EXPECT_TRUE(draw_figure(waveform_figure(), 100).shared_legend);
+  EXPECT_TRUE(draw_figure(objective_figure(), 100).shared_legend);
+  EXPECT_FALSE(draw_figure(noise_figure(), 100).shared_legend);
+  EXPECT_FALSE(draw_figure(long_figure(), 100).shared_legend);
 }
 
 }  // namespace
