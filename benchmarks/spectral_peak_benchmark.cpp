@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "libcalib/calibration.hpp"
-#include "libcalib/optimizers/mode_by_mode.hpp"
+#include "libcalib/optimizers/systematic_search.hpp"
 #include "libsim/base/random.hpp"
 #include "libsim/dynamics/fixed_step/fixed_step.hpp"
 #include "libsim/signal/statistics.hpp"

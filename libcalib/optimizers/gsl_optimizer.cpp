@@ -6,37 +6,46 @@
 #include <algorithm>
 #include <array>
 #include <mutex>
+#include <variant>
 
 #include "libcalib/optimizers/gsl_searches.hpp"
+#include "libcalib/optimizers/tolerances.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
 namespace {
 
-using Search = StopReason (*)(UnboundedSearch&, const GslOptimizer::Options&);
+/// The library's table of an algorithm, behind the address at which it stands.
+using Table = std::variant<const GslSimplex* const*, const GslDescent* const*,
+                           const GslTrustRegion* const*, const GslLine* const*>;
 
 struct Algorithm {
   std::string_view name;
-  Search search;
+  Table table;
+
+  template <typename Family>
+  bool is() const {
+    return std::holds_alternative<const Family* const*>(table);
+  }
 };
 
 constexpr std::array kTable = {
-    Algorithm{"brent", gsl_line},
-    Algorithm{"conjugate_fr", gsl_descent},
-    Algorithm{"conjugate_pr", gsl_descent},
-    Algorithm{"ddogleg", gsl_least_squares},
-    Algorithm{"dogleg", gsl_least_squares},
-    Algorithm{"golden_section", gsl_line},
-    Algorithm{"lm", gsl_least_squares},
-    Algorithm{"lmaccel", gsl_least_squares},
-    Algorithm{"nmsimplex", gsl_simplex},
-    Algorithm{"nmsimplex2", gsl_simplex},
-    Algorithm{"nmsimplex2rand", gsl_simplex},
-    Algorithm{"quad_golden", gsl_line},
-    Algorithm{"steepest_descent", gsl_descent},
-    Algorithm{"subspace2d", gsl_least_squares},
-    Algorithm{"vector_bfgs", gsl_descent},
-    Algorithm{"vector_bfgs2", gsl_descent},
+    Algorithm{"brent", &gsl_min_fminimizer_brent},
+    Algorithm{"conjugate_fr", &gsl_multimin_fdfminimizer_conjugate_fr},
+    Algorithm{"conjugate_pr", &gsl_multimin_fdfminimizer_conjugate_pr},
+    Algorithm{"ddogleg", &gsl_multifit_nlinear_trs_ddogleg},
+    Algorithm{"dogleg", &gsl_multifit_nlinear_trs_dogleg},
+    Algorithm{"golden_section", &gsl_min_fminimizer_goldensection},
+    Algorithm{"lm", &gsl_multifit_nlinear_trs_lm},
+    Algorithm{"lmaccel", &gsl_multifit_nlinear_trs_lmaccel},
+    Algorithm{"nmsimplex", &gsl_multimin_fminimizer_nmsimplex},
+    Algorithm{"nmsimplex2", &gsl_multimin_fminimizer_nmsimplex2},
+    Algorithm{"nmsimplex2rand", &gsl_multimin_fminimizer_nmsimplex2rand},
+    Algorithm{"quad_golden", &gsl_min_fminimizer_quad_golden},
+    Algorithm{"steepest_descent", &gsl_multimin_fdfminimizer_steepest_descent},
+    Algorithm{"subspace2d", &gsl_multifit_nlinear_trs_subspace2D},
+    Algorithm{"vector_bfgs", &gsl_multimin_fdfminimizer_vector_bfgs},
+    Algorithm{"vector_bfgs2", &gsl_multimin_fdfminimizer_vector_bfgs2},
 };
 
 constexpr auto kNames = [] {
@@ -51,11 +60,6 @@ const Algorithm* find(std::string_view name) {
   return found == kTable.end() ? nullptr : found;
 }
 
-void switch_the_error_handler_off() {
-  static std::once_flag once;
-  std::call_once(once, [] { gsl_set_error_handler_off(); });
-}
-
 }  // namespace
 
 std::span<const std::string_view> GslOptimizer::algorithms() { return kNames; }
@@ -65,14 +69,7 @@ void GslOptimizer::Options::visit(OptionVisitor& visitor) {
                 .meaning = "GSL's name of the algorithm",
                 .choices = {kNames.begin(), kNames.end()}},
                algorithm);
-  const auto tolerance = [&visitor](std::string_view key, std::string_view meaning, double& value) {
-    visitor.number({.key = key, .meaning = meaning, .unit = "1", .range = Range::non_negative()},
-                   value);
-  };
-  tolerance("gradient_tolerance", "norm of the scaled gradient at an optimum", gradient_tolerance);
-  tolerance("step_tolerance", "smallest step, or size of a simplex or a bracket, scaled",
-            step_tolerance);
-  tolerance("value_tolerance", "smallest decrease, relative to the value", value_tolerance);
+  visit_tolerances(visitor, gradient_tolerance, step_tolerance, value_tolerance);
   visitor.number({.key = "initial_step",
                   .meaning = "first step, scaled",
                   .unit = "1",
@@ -88,27 +85,30 @@ GslOptimizer::GslOptimizer(const Options& options) : options_(options) {
 }
 
 Capabilities GslOptimizer::needs() const {
-  const Search family = find(options_.algorithm)->search;
-  return {.gradient = family == gsl_descent, .least_squares = family == gsl_least_squares};
+  const Algorithm* algorithm = find(options_.algorithm);
+  return {.gradient = algorithm->is<GslDescent>(),
+          .least_squares = algorithm->is<GslTrustRegion>()};
 }
 
 void GslOptimizer::require_feasible(const Evaluator& evaluator) const {
-  const Search family = find(options_.algorithm)->search;
-  MODCAL_REQUIRE(family != gsl_line || evaluator.dimension() == 1,
+  const Algorithm* algorithm = find(options_.algorithm);
+  MODCAL_REQUIRE(!algorithm->is<GslLine>() || evaluator.dimension() == 1,
                  "GSL's {} searches along one variable, {} are free: free one parameter or take "
                  "another algorithm",
                  options_.algorithm, evaluator.dimension());
   MODCAL_REQUIRE(
-      family != gsl_least_squares || evaluator.residual_count() >= evaluator.dimension(),
+      !algorithm->is<GslTrustRegion>() || evaluator.residual_count() >= evaluator.dimension(),
       "GSL's {} needs at least as many residuals as variables, there are {} and {}: free fewer "
       "parameters or take more data",
       options_.algorithm, evaluator.residual_count(), evaluator.dimension());
 }
 
 StopReason GslOptimizer::search(Evaluator& evaluator) const {
-  switch_the_error_handler_off();
+  static std::once_flag once;
+  std::call_once(once, [] { gsl_set_error_handler_off(); });
   UnboundedSearch unbounded(evaluator);
-  return find(options_.algorithm)->search(unbounded, options_);
+  return std::visit([&](auto table) { return gsl_search(*table, unbounded, options_); },
+                    find(options_.algorithm)->table);
 }
 
 }  // namespace modcal

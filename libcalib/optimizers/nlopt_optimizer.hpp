@@ -3,17 +3,33 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "libcalib/optimizer.hpp"
 
-struct nlopt_opt_s;
-
 namespace modcal {
 
+enum class NloptUse {
+  kInTheBox,   ///< keeps to the bounds by itself
+  kUnbounded,  ///< leaves the bounds: runs through UnboundedSearch
+  kTwoLevels,  ///< starts a second algorithm from many points
+  kRefused,
+};
+
+/// One of the algorithms that NLopt lists: how it is run here, or why it is refused.
+struct NloptAlgorithm {
+  std::string_view name;  ///< without the prefix NLOPT_
+  NloptUse use = NloptUse::kInTheBox;
+  std::string_view refusal;  ///< why it is refused and what to take instead; else empty
+
+  bool needs_gradient() const { return name[1] == 'D'; }
+};
+
 /// An algorithm of NLopt (Johnson, The NLopt nonlinear-optimization package), by its name;
-/// nlopt_algorithms() says which and how. Its own counts and limits are not used; its random
-/// generator, which belongs to the thread and is seeded from the clock, is seeded for every run.
-/// MLSL starts local_algorithm from many points.
+/// algorithms() says which and how. Its own counts and limits are not used; its random generator,
+/// which belongs to the thread and is seeded from the clock, is seeded for every run. MLSL starts
+/// local_algorithm from many points. A local search with slopes starts afresh at the best point, in
+/// units in which its first step has length 1, as long as that lowers the value by a tenth.
 class NloptOptimizer final : public Optimizer {
  public:
   struct Options {
@@ -31,15 +47,16 @@ class NloptOptimizer final : public Optimizer {
   std::string_view name() const override { return "nlopt"; }
   Capabilities needs() const override;
 
-  /// Names of the usable algorithms, without the prefix NLOPT_.
+  /// All algorithms of NLopt, sorted by name.
+  static std::span<const NloptAlgorithm> listed();
+  /// Names of the usable ones.
   static std::span<const std::string_view> algorithms();
 
  private:
-  void set_tolerances(nlopt_opt_s* optimizer) const;
-  void set_local_algorithm(nlopt_opt_s* optimizer) const;
   StopReason search(Evaluator& evaluator) const override;
 
   Options options_;
+  const NloptAlgorithm* row_;
 };
 
 }  // namespace modcal

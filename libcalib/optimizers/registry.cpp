@@ -1,11 +1,9 @@
 #include <array>
 
-#include "libcalib/optimizers/ceres_line_search.hpp"
 #include "libcalib/optimizers/ceres_optimizer.hpp"
-#include "libcalib/optimizers/grid.hpp"
 #include "libcalib/optimizers/gsl_optimizer.hpp"
-#include "libcalib/optimizers/mode_by_mode.hpp"
 #include "libcalib/optimizers/nlopt_optimizer.hpp"
+#include "libcalib/optimizers/systematic_search.hpp"
 #include "libcalib/optimizers/tiny_least_squares.hpp"
 
 namespace modcal {

@@ -94,6 +94,7 @@ StopReason TinyLeastSquares::search(Evaluator& evaluator) const {
   double growth = 2.0;
   bool moved = true;
   double value = 0.0;
+  SmallDecreases decreases(options_.value_tolerance);
   constexpr double kHopeless = 1e20;
   while (damping < kHopeless) {
     if (moved) {
@@ -123,9 +124,7 @@ StopReason TinyLeastSquares::search(Evaluator& evaluator) const {
       }
       moved = decrease > 0.0;
       if (moved) work.u = work.trial;
-      if (std::abs(decrease) <= options_.value_tolerance * value) {
-        return StopReason::kSmallDecrease;
-      }
+      if (decreases.are_small(std::abs(decrease), value)) return StopReason::kSmallDecrease;
       const double ratio = 2.0 * decrease / predicted - 1.0;
       if (moved) damping *= std::max(1.0 / 3.0, 1.0 - ratio * ratio * ratio);
     }

@@ -1,5 +1,7 @@
-// Tolerances at which a search with slopes ends.
+// When a search with slopes ends.
 #pragma once
+
+#include <cmath>
 
 #include "libsim/base/options.hpp"
 
@@ -17,5 +19,21 @@ inline void visit_tolerances(OptionVisitor& visitor, double& gradient, double& s
   tolerance("step_tolerance", "smallest step, relative to the scaled variables", step);
   tolerance("value_tolerance", "smallest decrease, relative to the value", value);
 }
+
+/// Watches the decreases of a value. One that is small may follow from a short step after a
+/// rejected one or along a bad direction, and says little about how far the optimum is; two in a
+/// row do.
+class SmallDecreases {
+ public:
+  explicit SmallDecreases(double tolerance) : tolerance_(tolerance) {}
+  bool are_small(double decrease, double value) {
+    in_a_row_ = decrease <= tolerance_ * std::abs(value) ? in_a_row_ + 1 : 0;
+    return in_a_row_ >= 2;
+  }
+
+ private:
+  double tolerance_;
+  int in_a_row_ = 0;
+};
 
 }  // namespace modcal

@@ -6,8 +6,7 @@
 #include <cmath>
 
 #include "libcalib/objectives/joint_likelihood.hpp"
-#include "libcalib/optimizers/grid.hpp"
-#include "libcalib/optimizers/mode_by_mode.hpp"
+#include "libcalib/optimizers/systematic_search.hpp"
 #include "libcalib/parameters/stiff_string_fit.hpp"
 #include "libsim/base/error.hpp"
 #include "tests/libcalib/calibration_case.hpp"

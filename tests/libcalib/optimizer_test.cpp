@@ -10,7 +10,7 @@
 #include <iterator>
 #include <thread>
 
-#include "libcalib/optimizers/nlopt_algorithms.hpp"
+#include "libcalib/optimizers/nlopt_optimizer.hpp"
 #include "libsim/base/error.hpp"
 #include "tests/libcalib/any_optimizer.hpp"
 
@@ -207,7 +207,7 @@ TEST(OptimizersPage, HoldsEveryOptimizerAndEveryAlgorithm) {
   for (const auto name : GslOptimizer::algorithms()) {
     EXPECT_THAT(page, HasSubstr(fmt::format("\n| `{}` |", name)));
   }
-  for (const NloptAlgorithm& row : nlopt_algorithms()) {
+  for (const NloptAlgorithm& row : NloptOptimizer::listed()) {
     const std::string_view use = row.use == NloptUse::kRefused     ? "refused"
                                  : row.use == NloptUse::kInTheBox  ? "in the box"
                                  : row.use == NloptUse::kUnbounded ? "through the map"

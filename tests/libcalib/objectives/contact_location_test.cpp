@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "libcalib/optimizers/grid.hpp"
+#include "libcalib/optimizers/systematic_search.hpp"
 #include "libcalib/optimizers/nlopt_optimizer.hpp"
 #include "libinverse/spectral/choices/fixed_parameter.hpp"
 #include "libinverse/spectral/one_sided/one_sided_inversion.hpp"

@@ -7,7 +7,7 @@
 
 #include <numbers>
 
-#include "libcalib/optimizers/mode_by_mode.hpp"
+#include "libcalib/optimizers/systematic_search.hpp"
 #include "libsim/base/error.hpp"
 #include "tests/libcalib/calibration_case.hpp"
 #include "tests/libcalib/slope_check.hpp"

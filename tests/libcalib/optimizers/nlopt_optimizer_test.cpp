@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 #include <nlopt.h>
 
-#include "libcalib/optimizers/nlopt_algorithms.hpp"
 #include "libsim/base/error.hpp"
 #include "tests/libcalib/test_functions.hpp"
 
@@ -40,22 +39,19 @@ TEST(NloptOptimizer, SeedsDecideWhatRandomAlgorithmsDo) {
 }
 
 TEST(NloptOptimizer, EveryAlgorithmNloptListsIsUsedOrRefusedWithAReason) {
-  for (int i = 0; i < NLOPT_NUM_ALGORITHMS; ++i) {
-    const char* name = nlopt_algorithm_to_string(static_cast<nlopt_algorithm>(i));
-    const NloptAlgorithm* row = find_nlopt_algorithm(name);
-    ASSERT_NE(row, nullptr) << name;
-    if (row->use != NloptUse::kRefused) {
-      EXPECT_NO_THROW(nlopt_with(name)) << name;
+  for (const NloptAlgorithm& row : NloptOptimizer::listed()) {
+    if (row.use != NloptUse::kRefused) {
+      EXPECT_NO_THROW(nlopt_with(row.name)) << row.name;
       continue;
     }
     try {
-      nlopt_with(name);
-      FAIL() << name;
+      nlopt_with(row.name);
+      FAIL() << row.name;
     } catch (const InvalidInput& refusal) {
-      EXPECT_THAT(refusal.what(), HasSubstr(std::string(row->refusal)));
+      EXPECT_THAT(refusal.what(), HasSubstr(std::string(row.refusal)));
     }
   }
-  EXPECT_EQ(nlopt_algorithms().size(), static_cast<std::size_t>(NLOPT_NUM_ALGORITHMS));
+  EXPECT_EQ(NloptOptimizer::listed().size(), static_cast<std::size_t>(NLOPT_NUM_ALGORITHMS));
   EXPECT_THROW(nlopt_with("BOBYQA"), InvalidInput);
   EXPECT_THROW(nlopt_with(""), InvalidInput);
 }

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "libcalib/optimizers/mode_by_mode.hpp"
+#include "libcalib/optimizers/systematic_search.hpp"
 #include "tests/libcalib/test_functions.hpp"
 
 namespace modcal {

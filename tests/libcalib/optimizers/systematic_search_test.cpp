@@ -1,12 +1,12 @@
 // The optimizers that lay their points out beforehand: grid and mode by mode.
+#include "libcalib/optimizers/systematic_search.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "libcalib/optimizers/grid.hpp"
-#include "libcalib/optimizers/mode_by_mode.hpp"
 #include "libsim/base/error.hpp"
 #include "tests/libcalib/test_functions.hpp"
 
