@@ -1,6 +1,7 @@
 // Physics lint: what no single option shows.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -45,5 +46,15 @@ void lint_making(std::vector<Finding>& findings, const std::string& path, Make m
   }
 }
 void append(std::vector<Finding>& all, std::vector<Finding> more);
+
+/// How many simulations of how many samples, others of the run behind them.
+std::string plan_line(const PlannedSimulations& planned);
+
+/// The truth that a run simulates for inversions; nothing for a record.
+std::optional<PlannedSimulations> planned_truths(const ObservationOptions& observation,
+                                                 OutputRequest outputs, std::size_t count = 1);
+
+/// Adds a simulation of another scene, once.
+void add_planned(const ObservationOptions& observation, PlannedSimulations& planned);
 
 }  // namespace modcal

@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "experiments/study/model_error.hpp"
 #include "experiments/study/observation.hpp"
 #include "experiments/study/scoring.hpp"
 #include "libinverse/inversion_options.hpp"

@@ -1,11 +1,104 @@
 #include "experiments/study/observation.hpp"
 
+#include <vector>
+
+#include "experiments/study/fingerprint.hpp"
 #include "experiments/study/scoring.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/records/recorded_signals.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {
+
+namespace {
+
+std::shared_ptr<const Truth> simulate_truth(const TruthOptions& options, double sample_rate,
+                                            const OutputRequest& outputs, const StopToken& stop) {
+  auto truth = std::make_shared<Truth>();
+  truth->basis = make_modal_basis(options.scene.string);
+  truth->contact = options.scene.bow.position;
+  truth->simulation = options.simulator.make()->simulate(options.scene, sample_rate, outputs, stop);
+  MODCAL_REQUIRE(!truth->simulation.diverged_at,
+                 "the simulation by {} diverges at {:g} s: use a smaller time step or modal_exact",
+                 options.simulator.selected(), *truth->simulation.diverged_at);
+  return truth;
+}
+
+}  // namespace
+
+std::string truth_key(TruthOptions options, double sample_rate, const OutputRequest& outputs) {
+  return fingerprint([&](OptionVisitor& visitor) {
+    options.scene.visit(visitor);
+    visitor.plugin({.key = "simulator", .meaning = ""}, options.simulator);
+    visitor.number({.key = "sample_rate", .meaning = ""}, sample_rate);
+    bool flags[] = {outputs.displacement, outputs.velocity, outputs.force, outputs.left_reaction,
+                    outputs.right_reaction};
+    for (bool& flag : flags) visitor.flag({.key = "output", .meaning = ""}, flag);
+    double switches_from = outputs.switches_from;
+    visitor.number({.key = "switches_from", .meaning = ""}, switches_from);
+  });
+}
+
+std::shared_ptr<const Truth> TruthCache::get(const TruthOptions& options, double sample_rate,
+                                             const OutputRequest& outputs) {
+  const std::string key = truth_key(options, sample_rate, outputs);
+  std::promise<std::shared_ptr<const Truth>> promise;
+  Shared truth;
+  bool is_mine = false;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto known = truths_.find(key);
+    is_mine = known == truths_.end();
+    truth = is_mine ? promise.get_future().share() : known->second;
+    if (is_mine) truths_.emplace(key, truth);
+  }
+  if (is_mine) {
+    try {
+      promise.set_value(simulate_truth(options, sample_rate, outputs, stop_));
+    } catch (...) {
+      promise.set_exception(std::current_exception());
+    }
+  }
+  return truth.get();
+}
+
+std::size_t TruthCache::simulated() const {
+  const std::lock_guard lock(mutex_);
+  return truths_.size();
+}
+
+void ModelErrorOptions::visit(OptionVisitor& visitor) {
+  visitor.number({.key = "frequencies",
+                  .meaning = "largest relative error of the modal frequencies, drawn for each mode",
+                  .unit = "1",
+                  .range = {0.0, 1.0, true, false}},
+                 frequencies);
+  visitor.number({.key = "damping",
+                  .meaning = "relative error of all damping ratios",
+                  .unit = "1",
+                  .range = Range::at_least(-1.0)},
+                 damping);
+  visitor.number({.key = "contact", .meaning = "error of the contact point", .unit = "m"}, contact);
+}
+
+AssumedModel with_errors(const ModalBasis& truth, double contact, const ModelErrorOptions& errors,
+                         const StreamKey& key) {
+  AssumedModel model{truth, contact + errors.contact};
+  MODCAL_REQUIRE(model.contact > 0.0 && model.contact < truth.length,
+                 "the assumed contact point {:g} m (true {:g} m, error {:g} m) is not inside the "
+                 "string of {:g} m",
+                 model.contact, contact, errors.contact, truth.length);
+  std::vector<double> uniform(truth.size());
+  fill_uniform(key, uniform);
+  for (std::size_t n = 0; n < truth.size(); ++n) {
+    model.basis.omega[n] *= 1.0 + errors.frequencies * (2.0 * uniform[n] - 1.0);
+    model.basis.zeta[n] *= 1.0 + errors.damping;
+    MODCAL_REQUIRE(model.basis.zeta[n] < 1.0,
+                   "damping ratio {:g} of mode {} (error {:g} %) must stay below 1",
+                   model.basis.zeta[n], n + 1, 100.0 * errors.damping);
+  }
+  return model;
+}
 
 void ObservationOptions::visit(OptionVisitor& visitor) {
   visitor.optional_group({.key = "scene", .meaning = "simulated truth: string, bow, friction"},

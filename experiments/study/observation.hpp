@@ -1,19 +1,80 @@
-// What an experiment inverts: a simulated or a recorded pair of reactions.
+// What an experiment inverts: a simulated or a recorded pair of reactions, the truth behind it,
+// computed once per distinct scene and shared by a whole sweep, and the model it starts from.
 #pragma once
 
 #include <filesystem>
+#include <future>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "experiments/study/truth.hpp"
+#include "libsim/base/options.hpp"
 #include "libsim/base/random.hpp"
+#include "libsim/dynamics/scene/simulator.hpp"
+#include "libsim/model/modal_basis.hpp"
 #include "libsim/model/transfer.hpp"
 #include "libsim/records/record_options.hpp"
 #include "libsim/signal/measurement.hpp"
 
 namespace modcal {
+
+/// A simulated record with the model that made it.
+struct Truth {
+  ModalBasis basis;
+  double contact = 0.0;  ///< x_c [m]
+  Simulation simulation;
+};
+
+/// Scene and simulator as an experiment states them.
+struct TruthOptions {
+  Scene scene;
+  Choice<Simulator> simulator{"newmark_explicit"};
+};
+
+/// Equal for equal truths: scene, simulator, rate and outputs, bit for bit.
+std::string truth_key(TruthOptions options, double sample_rate, const OutputRequest& outputs);
+
+/// Simulates, or waits for the thread that is simulating the same truth.
+class TruthCache {
+ public:
+  TruthCache() = default;
+  explicit TruthCache(const StopToken& stop) : stop_(stop) {}
+  /// Throws InvalidInput where the scene cannot be simulated or the simulation diverges,
+  /// Interrupted where the stop was requested.
+  std::shared_ptr<const Truth> get(const TruthOptions& options, double sample_rate,
+                                   const OutputRequest& outputs);
+  /// Simulations done so far.
+  std::size_t simulated() const;
+
+ private:
+  using Shared = std::shared_future<std::shared_ptr<const Truth>>;
+  StopToken stop_;
+  mutable std::mutex mutex_;
+  std::map<std::string, Shared> truths_;
+};
+
+/// Largest relative error of the modal frequencies (uniform, independent in every mode, both
+/// signs), relative error of all damping ratios, and error of the contact point [m].
+struct ModelErrorOptions {
+  double frequencies = 0.0;
+  double damping = 0.0;
+  double contact = 0.0;
+  void visit(OptionVisitor& visitor);
+};
+
+/// The model an inversion starts from.
+struct AssumedModel {
+  ModalBasis basis;
+  double contact = 0.0;  ///< x_c [m]
+};
+
+/// The true model with the stated errors; those of the frequencies are drawn from `key`.
+/// Throws InvalidInput where the contact point leaves the string or a damping ratio leaves [0, 1).
+AssumedModel with_errors(const ModalBasis& truth, double contact, const ModelErrorOptions& errors,
+                         const StreamKey& key);
 
 /// Where the reactions come from: `scene` with `simulator` and `measurement`, or `record` with the
 /// `string` that was played and the `bow` position x_c.

@@ -11,7 +11,7 @@
 
 #include "experiments/report/report.hpp"
 #include "experiments/study/identification.hpp"
-#include "experiments/study/truth.hpp"
+#include "experiments/study/observation.hpp"
 #include "libsim/base/task_loop.hpp"
 
 namespace modcal {

@@ -12,7 +12,6 @@
 #include "experiments/kinds/benchmark/benchmark_report.hpp"
 #include "experiments/kinds/calibrate/calibrate_experiment.hpp"
 #include "experiments/kinds/lint.hpp"
-#include "experiments/kinds/scene_plan.hpp"
 #include "experiments/study/fingerprint.hpp"
 
 namespace modcal {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/kinds/calibrate/calibrate_sensors.hpp"
+#include "experiments/kinds/calibrate/calibrate_study.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/signal/statistics.hpp"
 

@@ -1,7 +1,7 @@
-#include "experiments/kinds/calibrate/calibrate_audio.hpp"
-
 #include <algorithm>
 #include <cmath>
+
+#include "experiments/kinds/calibrate/calibrate_study.hpp"
 
 namespace modcal {
 namespace {

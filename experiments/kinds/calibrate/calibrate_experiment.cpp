@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/kinds/calibrate/calibrate_sensors.hpp"
+#include "experiments/kinds/calibrate/calibrate_study.hpp"
 #include "experiments/kinds/invert/invert_study.hpp"
 #include "experiments/kinds/lint.hpp"
-#include "experiments/kinds/scene_plan.hpp"
 #include "libcalib/likelihood/noise_level.hpp"
 
 namespace modcal {

@@ -1,5 +1,3 @@
-#include "experiments/kinds/calibrate/calibrate_sensors.hpp"
-
 #include <fmt/format.h>
 
 #include <cmath>
@@ -7,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "experiments/kinds/calibrate/calibrate_study.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/signal/measurement.hpp"
 #include "libsim/signal/statistics.hpp"

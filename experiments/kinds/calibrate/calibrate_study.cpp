@@ -1,7 +1,5 @@
 #include "experiments/kinds/calibrate/calibrate_study.hpp"
 
-#include "experiments/kinds/calibrate/calibrate_audio.hpp"
-#include "experiments/kinds/calibrate/calibrate_sensors.hpp"
 #include "experiments/kinds/calibrate/calibrate_summary.hpp"
 #include "experiments/report/result_json.hpp"
 #include "experiments/report/result_table.hpp"

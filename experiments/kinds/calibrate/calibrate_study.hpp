@@ -8,8 +8,10 @@
 
 #include "experiments/kinds/calibrate/calibrate_plucks.hpp"
 #include "experiments/kinds/invert/invert_study.hpp"
+#include "experiments/study/observation.hpp"
 #include "libcalib/calibration.hpp"
 #include "libcalib/parameters/stiff_string_fit.hpp"
+#include "libinverse/estimator.hpp"
 
 namespace modcal {
 
@@ -83,5 +85,25 @@ report::Figure frequency_error_figure(const FigureOptions& options,
                                       const CalibrationOutcome& outcome);
 /// Median of |f_n − true|/true over the modes that were searched; NaN without a truth.
 double median_relative_error(const CalibrationOutcome& outcome);
+
+/// Players for force and string velocity at the contact: the true ones where they are known, those
+/// identified from each reaction and from both with the refined model. At most the first second,
+/// low-passed and thinned to a rate near 22 kHz. The truth must have the velocity, if it is there.
+report::Audio calibration_audio(const CalibrateOptions& options, const Observation& observation,
+                                const AssumedModel& refined);
+
+/// The observation with S = gain exp(−s delay) s/(s + corner) taken out of the reaction at x = L,
+/// which had a sensor that a calibration found to differ: R₂ = R₂' / S. The delay is shifted back
+/// (see advanced()). A high-pass is undone as y + corner ∫ y dt; without the level that the sensor
+/// lost, a line is left over the record, and it is taken out. Equal sensors: unchanged.
+Observation with_sensors_alike(Observation observation, const SensorPair& sensors);
+
+/// Throws InvalidInput where the estimator is told of sensors that differ and the calibration finds
+/// or is told how they do, too: with_sensors_alike() has then taken out what the estimator takes
+/// out.
+void require_sensors_once(const CalibrationOptions& calibration, const Estimator& estimator);
+
+/// What was taken out, for a report; empty for equal sensors or where x = L was not recorded.
+std::string correction_text(const Observation& observation, const SensorPair& sensors);
 
 }  // namespace modcal

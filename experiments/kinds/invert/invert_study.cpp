@@ -5,7 +5,6 @@
 
 #include "experiments/kinds/invert/invert_output.hpp"
 #include "experiments/kinds/lint.hpp"
-#include "experiments/kinds/scene_plan.hpp"
 #include "experiments/report/result_table.hpp"
 
 namespace modcal {

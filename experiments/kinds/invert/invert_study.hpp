@@ -6,7 +6,7 @@
 
 #include "experiments/experiment.hpp"
 #include "experiments/study/figures.hpp"
-#include "experiments/study/model_error.hpp"
+#include "experiments/study/observation.hpp"
 #include "libinverse/observer/model_based_estimator.hpp"
 
 namespace modcal {

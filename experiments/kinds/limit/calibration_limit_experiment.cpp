@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "experiments/kinds/lint.hpp"
-#include "experiments/kinds/scene_plan.hpp"
 #include "experiments/study/fingerprint.hpp"
 #include "libcalib/calibration.hpp"
 #include "libsim/signal/statistics.hpp"

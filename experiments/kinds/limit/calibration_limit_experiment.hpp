@@ -7,12 +7,11 @@
 #include <vector>
 
 #include "experiments/kinds/calibrate/limit_source.hpp"
-#include "experiments/study/identification.hpp"
-#include "experiments/study/model_error.hpp"
-#include "experiments/study/observation.hpp"
 #include "experiments/runs/task_experiment.hpp"
-#include "libcalib/optimizers/staged/continuation.hpp"
+#include "experiments/study/identification.hpp"
+#include "experiments/study/observation.hpp"
 #include "libcalib/likelihood/whitened_record.hpp"
+#include "libcalib/optimizers/staged/continuation.hpp"
 
 namespace modcal {
 

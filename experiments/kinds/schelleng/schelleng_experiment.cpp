@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "experiments/kinds/lint.hpp"
-#include "experiments/kinds/scene_plan.hpp"
 #include "experiments/study/fingerprint.hpp"
 
 namespace modcal {

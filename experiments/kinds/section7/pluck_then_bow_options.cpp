@@ -1,5 +1,4 @@
 #include "experiments/kinds/lint.hpp"
-#include "experiments/kinds/scene_plan.hpp"
 #include "experiments/kinds/section7/pluck_then_bow.hpp"
 #include "libinverse/modes/decay_length.hpp"
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "experiments/kinds/lint.hpp"
-#include "experiments/kinds/scene_plan.hpp"
 #include "experiments/report/result_table.hpp"
 #include "libsim/base/random.hpp"
 #include "libsim/signal/statistics.hpp"

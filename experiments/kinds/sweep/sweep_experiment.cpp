@@ -8,7 +8,6 @@
 
 #include "experiments/kinds/invert/invert_study.hpp"
 #include "experiments/kinds/lint.hpp"
-#include "experiments/kinds/scene_plan.hpp"
 #include "experiments/study/fingerprint.hpp"
 
 namespace modcal {

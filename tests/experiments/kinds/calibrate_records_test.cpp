@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "experiments/kinds/calibrate/calibrate_sensors.hpp"
 #include "experiments/kinds/calibrate/calibrate_study.hpp"
 #include "experiments/loader.hpp"
 #include "libsim/dynamics/scene/initial_motion.hpp"

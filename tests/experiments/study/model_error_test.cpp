@@ -1,9 +1,8 @@
-#include "experiments/study/model_error.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "experiments/study/observation.hpp"
 #include "libsim/base/error.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 

@@ -1,10 +1,9 @@
-#include "experiments/study/truth.hpp"
-
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
 
 #include <array>
 
+#include "experiments/study/observation.hpp"
 #include "experiments/study/study.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
