@@ -44,13 +44,11 @@ template <typename Work>
 auto with_context(const LoadedExperiment& loaded, const std::filesystem::path& folder,
                   const std::string& command, SharedWork& shared, const Work& work) {
   Progress progress(title_of(loaded));
-  auto result = work(StudyContext{.work = shared,
-                                  .folder = folder,
-                                  .command = command,
-                                  .progress = [&progress](double share) { progress.report(share); },
-                                  .stop = interrupt_token()});
-  if constexpr (requires { result.state_command(command); }) result.state_command(command);
-  return result;
+  return work(StudyContext{.work = shared,
+                           .folder = folder,
+                           .command = command,
+                           .progress = [&progress](double share) { progress.report(share); },
+                           .stop = interrupt_token()});
 }
 
 void write_signal_file(const OutputDirectory& out, const SignalFile& file) {
@@ -169,8 +167,9 @@ PilotRun run_some_tasks(const TaskExperiment& list, const StudyContext& context,
 
 }  // namespace
 
-ExitCode present(const LoadedExperiment& loaded, const StudyResult& result,
-                 const RunSettings& settings, double seconds) {
+ExitCode present(const LoadedExperiment& loaded, StudyResult result, const RunSettings& settings,
+                 double seconds) {
+  result.state_command(settings.command);
   const OutputDirectory out(settings.out);
   write_files(out, result);
   print_summary(result, settings, seconds);
@@ -179,7 +178,7 @@ ExitCode present(const LoadedExperiment& loaded, const StudyResult& result,
   report.description = loaded.description;
   report.status = result.status;
   report.status_text = status_text(loaded, result);
-  report.sections.push_back({"Results", result.blocks});
+  report.sections.push_back({"Results", std::move(result.blocks)});
   if (dynamic_cast<const TaskExperiment*>(loaded.experiment.get()) != nullptr) {
     report.replay = "modcal replay " + shell_word(settings.out.string());
   }
@@ -229,7 +228,7 @@ ExitCode run_one(const LoadedExperiment& loaded, const RunSettings& settings) {
   if (interrupted()) say_interrupted(settings, store.has_value());
   const double seconds = seconds_since(start);
   fmt::print(stderr, "{:.2f} s\n", seconds);
-  if (settings.shard.is_whole()) return present(loaded, result, settings, seconds);
+  if (settings.shard.is_whole()) return present(loaded, std::move(result), settings, seconds);
   fmt::print(
       "shard {}: {} of {} tasks of the whole list are done; report with:\n  modcal report {}\n",
       settings.shard.text(), list->task_count() - result.pending_tasks, list->task_count(),
@@ -253,9 +252,11 @@ ExitCode run_together(const std::vector<LoadedExperiment>& experiments,
     const OutputDirectory folder(out.path() / name);
     StudyResult result;
     try {
+      const std::string command = fmt::format("modcal run {}", loaded.document.file);
       result = with_context(
-          loaded, loaded.document.folder(), fmt::format("modcal run {}", loaded.document.file),
-          work, [&](const StudyContext& context) { return loaded.experiment->run(context); });
+          loaded, loaded.document.folder(), command, work,
+          [&](const StudyContext& context) { return loaded.experiment->run(context); });
+      result.state_command(command);
     } catch (const Interrupted&) {
       say_interrupted(settings, false);
     }

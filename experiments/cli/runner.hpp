@@ -31,8 +31,8 @@ struct RunSettings {
 ExitCode run_one(const LoadedExperiment& loaded, const RunSettings& settings);
 
 /// Writes files, summary and report of a result and gives the exit code that stands for it.
-ExitCode present(const LoadedExperiment& loaded, const StudyResult& result,
-                 const RunSettings& settings, double seconds);
+ExitCode present(const LoadedExperiment& loaded, StudyResult result, const RunSettings& settings,
+                 double seconds);
 
 /// What a few tasks of a list cost.
 struct PilotRun {
