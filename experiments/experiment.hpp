@@ -41,6 +41,8 @@ class Experiment {
   virtual std::vector<std::string> plan() const = 0;
   /// What it would simulate; nothing where it simulates nothing.
   virtual std::optional<PlannedSimulations> planned_simulations() const { return std::nullopt; }
+  /// Recorded files whose content a run depends on, from the folder of the experiment's file.
+  virtual std::vector<std::string> files_read() const { return {}; }
   virtual StudyResult run(const StudyContext& context) const = 0;
 };
 

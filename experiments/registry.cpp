@@ -5,6 +5,7 @@
 #include "experiments/kinds/calibrate/calibrate_experiment.hpp"
 #include "experiments/kinds/identify/identify_study.hpp"
 #include "experiments/kinds/invert/invert_study.hpp"
+#include "experiments/kinds/kind_list.hpp"
 #include "experiments/kinds/limit/calibration_limit_experiment.hpp"
 #include "experiments/kinds/schelleng/schelleng_experiment.hpp"
 #include "experiments/kinds/section7/pluck_then_bow.hpp"
@@ -18,20 +19,20 @@ Registry<Experiment> Experiment::registry() {
   static constexpr std::array kTable = {
       entry_of<Experiment, BenchmarkExperiment>(
           "benchmark", "objectives and optimizers on the same truths, noise and starts"),
-      entry_of<Experiment, CalibrateExperiment>(
+      kind_of<CalibrateExperiment>(
           "calibrate", "refine the modal model, then identify force and motion with it"),
       entry_of<Experiment, CalibrationLimitExperiment>(
           "calibration_limit", "calibration error against noise beside the Cramer-Rao bound"),
-      entry_of<Experiment, StudyExperiment<IdentifyOptions>>(
-          "identify", "modes of a plucked string from its end reactions"),
-      entry_of<Experiment, StudyExperiment<InvertOptions>>(
+      kind_of<StudyExperiment<IdentifyOptions>>("identify",
+                                                "modes of a plucked string from its end reactions"),
+      kind_of<StudyExperiment<InvertOptions>>(
           "invert", "contact force and motion from simulated or recorded reactions"),
-      entry_of<Experiment, StudyExperiment<PluckThenBowOptions>>(
+      kind_of<StudyExperiment<PluckThenBowOptions>>(
           "pluck_then_bow", "pluck test, law, refinement and contact on a stroke, identification"),
       entry_of<Experiment, SchellengExperiment>(
           "schelleng", "which motion a steady bow stroke settles in, over positions and forces"),
-      entry_of<Experiment, StudyExperiment<SimulateOptions>>(
-          "simulate", "a bowed string, its signals and figures"),
+      kind_of<StudyExperiment<SimulateOptions>>("simulate",
+                                                "a bowed string, its signals and figures"),
       entry_of<Experiment, SweepExperiment>(
           "sweep", "the same inversion over axes of settings, summed up in a table"),
   };

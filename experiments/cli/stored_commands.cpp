@@ -19,6 +19,7 @@ namespace {
 struct FolderArguments {
   std::string folder;
   std::string other;
+  std::string number;
   std::size_t task = 0;
   bool json = false;
 };
@@ -153,17 +154,26 @@ Cell cell_of(const StoredRun& run, std::size_t task) {
   return cell;
 }
 
-// Losses of the finished tasks by their cells; a draw without a result is worse than any other.
-std::map<Cell, double> losses_of(const StoredRun& run) {
-  MODCAL_REQUIRE(!run.list().loss_name().empty(),
-                 "{} holds a run of kind {}, whose tasks have no score to compare",
+// Losses of the finished tasks by their cells, or the number of that name; a draw without a result
+// is worse than any other.
+std::map<Cell, double> losses_of(const StoredRun& run, const std::string& number) {
+  MODCAL_REQUIRE(!number.empty() || !run.list().loss_name().empty(),
+                 "{} holds a run of kind {}, whose tasks have no score of their own to compare: "
+                 "name one with --number, a column of tasks.csv",
                  run.out().string(), run.loaded().kind);
   std::map<Cell, double> losses;
+  bool any = number.empty();
   for (std::size_t task = 0; task < run.tasks(); ++task) {
     const std::optional<FinishedTask> finished = run.outcomes()[task];
     if (!finished) continue;
-    losses[cell_of(run, task)] = run.list().loss_in(finished->outcome).value_or(1e300);
+    const std::optional<double> loss = number.empty()
+                                           ? run.list().loss_in(finished->outcome)
+                                           : run.list().number_in(finished->outcome, number);
+    any = any || loss;
+    losses[cell_of(run, task)] = loss.value_or(1e300);
   }
+  MODCAL_REQUIRE(any, "no task of {} has a number {}: its names are columns of tasks.csv",
+                 run.out().string(), number);
   return losses;
 }
 
@@ -175,11 +185,13 @@ std::string verdict(const MedianRatio& ratio, const std::string& a, const std::s
 
 ExitCode compare(const FolderArguments& arguments) {
   const std::string &out_a = arguments.folder, &out_b = arguments.other;
+  const std::string& number = arguments.number;
   const StoredRun run_a(out_a), run_b(out_b);
   MODCAL_REQUIRE(run_a.loaded().kind == run_b.loaded().kind,
                  "{} is of kind {}, {} of kind {}: their scores are different things", out_a,
                  run_a.loaded().kind, out_b, run_b.loaded().kind);
-  const std::map<Cell, double> losses_a = losses_of(run_a), losses_b = losses_of(run_b);
+  const std::map<Cell, double> losses_a = losses_of(run_a, number);
+  const std::map<Cell, double> losses_b = losses_of(run_b, number);
   std::vector<double> a, b;
   for (const auto& [cell, loss] : losses_a) {
     const auto other = losses_b.find(cell);
@@ -191,8 +203,9 @@ ExitCode compare(const FolderArguments& arguments) {
                  out_a, out_b);
   const MedianRatio ratio = median_ratio(a, b);
   fmt::print("{} of {} and {} tasks in common\n", a.size(), losses_a.size(), losses_b.size());
-  fmt::print("{}: median {:.4g} in {}, {:.4g} in {}\n", run_a.list().loss_name(), quantile(a, 0.5),
-             out_a, quantile(b, 0.5), out_b);
+  fmt::print("{}: median {:.4g} in {}, {:.4g} in {}\n",
+             number.empty() ? run_a.list().loss_name() : number, quantile(a, 0.5), out_a,
+             quantile(b, 0.5), out_b);
   fmt::print("ratio {:.4g}, 95 % interval {:.4g} to {:.4g} (paired bootstrap): {}\n", ratio.ratio,
              ratio.low, ratio.high, verdict(ratio, out_a, out_b));
   return ExitCode::kOk;
@@ -212,6 +225,8 @@ void declare_replay(CLI::App& command, FolderArguments& arguments) {
 void declare_compare(CLI::App& command, FolderArguments& arguments) {
   command.add_option("a", arguments.folder, "folder of results")->required();
   command.add_option("b", arguments.other, "another one")->required();
+  command.add_option("--number", arguments.number,
+                     "number of the tasks to compare, smaller is better; default: their score");
 }
 
 ExitCode write_stored_report(const FolderArguments& arguments) {

@@ -200,11 +200,11 @@ std::string counted(const PlannedSimulations& planned) {
       sample_count(planned.scene.duration, planned.sample_rate), planned.sample_rate);
 }
 
+}  // namespace
+
 std::string key_of(const PlannedSimulations& planned) {
   return truth_key({planned.scene, planned.simulator}, planned.sample_rate, planned.outputs);
 }
-
-}  // namespace
 
 std::string plan_line(const PlannedSimulations& planned) {
   std::string text = "simulations: " + counted(planned);

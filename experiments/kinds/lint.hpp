@@ -47,6 +47,8 @@ void lint_making(std::vector<Finding>& findings, const std::string& path, Make m
 }
 void append(std::vector<Finding>& all, std::vector<Finding> more);
 
+/// Text that is equal for simulations with equal signals.
+std::string key_of(const PlannedSimulations& planned);
 /// How many simulations of how many samples, others of the run behind them.
 std::string plan_line(const PlannedSimulations& planned);
 

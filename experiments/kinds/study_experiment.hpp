@@ -15,6 +15,10 @@ class StudyExperiment : public Experiment {
   std::optional<PlannedSimulations> planned_simulations() const override {
     return options_.planned_simulations();
   }
+  std::vector<std::string> files_read() const override {
+    if constexpr (requires { options_.files_read(); }) return options_.files_read();
+    return {};
+  }
   StudyResult run(const StudyContext& context) const override { return options_.run(context); }
 
  protected:

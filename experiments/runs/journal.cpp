@@ -10,6 +10,7 @@
 #include <charconv>
 #include <cstring>
 #include <fstream>
+#include <optional>
 #include <system_error>
 
 #include "experiments/runs/task_key.hpp"
@@ -47,6 +48,14 @@ std::string content_of(const JournalRecord& record) {
   return fmt::format("{} {} {} {}", record.key, record.task, record.seconds, record.outcome);
 }
 
+// What stands behind the checksum of a line; nullopt where it does not match.
+std::optional<std::string_view> intact_content(std::string_view line) {
+  const std::string_view content = line.substr(std::min(kChecksumDigits + 1, line.size()));
+  const bool intact = line.size() > kChecksumDigits && line[kChecksumDigits] == ' ' &&
+                      checksum_of(content) == line.substr(0, kChecksumDigits);
+  return intact ? std::optional(content) : std::nullopt;
+}
+
 // A line without its end, handed on.
 class LineReader {
  public:
@@ -57,12 +66,11 @@ class LineReader {
   void read(std::string_view line, std::size_t offset, bool has_end) {
     ++number_;
     if (line.empty() && has_end) return;
-    const std::string_view content = line.substr(std::min(kChecksumDigits + 1, line.size()));
-    const bool intact = line.size() > kChecksumDigits && line[kChecksumDigits] == ' ' &&
-                        checksum_of(content) == line.substr(0, kChecksumDigits);
-    if (!intact) return damaged(offset, has_end ? "does not match its checksum" : "is cut off");
-    if (content.starts_with(kHeaderOfAnyVersion)) return require_version(content);
-    read_record(content, offset, line.size());
+    const std::optional<std::string_view> content = intact_content(line);
+    if (!content) return damaged(offset, has_end ? "does not match its checksum" : "is cut off");
+    if (content->starts_with(kHeaderOfAnyVersion)) return require_version(*content);
+    if (!parse_record(*content, record_)) return damaged(offset, "is no record");
+    take_(record_, offset, line.size());
   }
 
  private:
@@ -74,10 +82,6 @@ class LineReader {
                    "{}: the journal has a format of another version (\"{}\"); read it with the "
                    "modcal that wrote it",
                    file_.string(), content);
-  }
-  void read_record(std::string_view content, std::size_t offset, std::size_t length) {
-    if (!parse_record(content, record_)) return damaged(offset, "is no record");
-    take_(record_, offset, length);
   }
 
   const std::filesystem::path& file_;
@@ -116,32 +120,11 @@ void scan_journal(const std::filesystem::path& file, const TakeRecord& take,
 
 JournalRecord record_of_line(const std::filesystem::path& file, std::string_view line) {
   JournalRecord record;
-  const std::string_view content = line.substr(std::min(kChecksumDigits + 1, line.size()));
-  const bool intact = line.size() > kChecksumDigits &&
-                      checksum_of(content) == line.substr(0, kChecksumDigits) &&
-                      parse_record(content, record);
-  MODCAL_REQUIRE(intact, "{}: a line has changed while it was in use; run the command again",
+  const std::optional<std::string_view> content = intact_content(line);
+  MODCAL_REQUIRE(content && parse_record(*content, record),
+                 "{}: a line has changed while it was in use; run the command again",
                  file.string());
   return record;
-}
-
-namespace {
-
-void read_into(const std::filesystem::path& file, JournalContents& contents) {
-  scan_journal(
-      file,
-      [&contents](const JournalRecord& record, std::uint64_t, std::size_t) {
-        contents.records.push_back(record);
-      },
-      contents.damages);
-}
-
-}  // namespace
-
-JournalContents read_journal(const std::filesystem::path& file) {
-  JournalContents contents;
-  read_into(file, contents);
-  return contents;
 }
 
 std::vector<std::filesystem::path> journals_in(const std::filesystem::path& folder) {
@@ -152,12 +135,6 @@ std::vector<std::filesystem::path> journals_in(const std::filesystem::path& fold
   }
   std::sort(files.begin(), files.end());
   return files;
-}
-
-JournalContents read_journals(const std::filesystem::path& folder) {
-  JournalContents contents;
-  for (const std::filesystem::path& file : journals_in(folder)) read_into(file, contents);
-  return contents;
 }
 
 JournalWriter::JournalWriter(std::filesystem::path file, std::string_view program)

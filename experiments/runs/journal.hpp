@@ -33,13 +33,9 @@ struct JournalDamage {
 /// "out/journal/shard-1-of-1: line 17 at byte 2345 is cut off; its task will be run again"
 std::string message_of(const JournalDamage& damage);
 
-struct JournalContents {
-  std::vector<JournalRecord> records;  ///< in the order of the files' names and lines
-  std::vector<JournalDamage> damages;
-};
-
 /// Calls `take` for every record of a journal with the place of its line's first byte and the
-/// line's length; holds one line at a time. Throws like read_journal().
+/// line's length; holds one line at a time. Throws InvalidInput where the journal cannot be read or
+/// has another version's format.
 using TakeRecord =
     std::function<void(const JournalRecord& record, std::uint64_t offset, std::size_t length)>;
 void scan_journal(const std::filesystem::path& file, const TakeRecord& take,
@@ -51,12 +47,6 @@ JournalRecord record_of_line(const std::filesystem::path& file, std::string_view
 
 /// Journals (*.journal) of a folder by name; none where there is no such folder.
 std::vector<std::filesystem::path> journals_in(const std::filesystem::path& folder);
-
-/// Reads one journal. Throws InvalidInput where it cannot be read or has another version's format.
-JournalContents read_journal(const std::filesystem::path& file);
-
-/// Reads every journal (*.journal) of a folder, by name; nothing where there is no such folder.
-JournalContents read_journals(const std::filesystem::path& folder);
 
 /// Appends records to one journal; several threads may use one writer, one process one journal.
 class JournalWriter {

@@ -8,6 +8,7 @@
 #include <optional>
 #include <system_error>
 
+#include "experiments/runs/task_key.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -21,6 +22,13 @@ std::string identifier(const std::string& name) {
     if (letter == '"') quoted += letter;
   }
   return quoted + "\"";
+}
+
+// Lengths before texts: no two lists give one line of bytes.
+std::string framed(const std::vector<std::string>& parts) {
+  std::string text;
+  for (const std::string& part : parts) text += fmt::format("{}:{}", part.size(), part);
+  return text;
 }
 
 class Database {
@@ -60,23 +68,18 @@ class Insert {
     statement_.reset(statement);
   }
   Insert& number(std::uint64_t value) {
-    database_.check(
+    return bound(
         sqlite3_bind_int64(statement_.get(), ++column_, static_cast<sqlite3_int64>(value)));
-    return *this;
   }
   Insert& real(double value) {
-    database_.check(sqlite3_bind_double(statement_.get(), ++column_, value));
-    return *this;
+    return bound(sqlite3_bind_double(statement_.get(), ++column_, value));
   }
   Insert& text(const std::string& value) {
-    database_.check(sqlite3_bind_text64(statement_.get(), ++column_, value.data(), value.size(),
-                                        SQLITE_STATIC, SQLITE_UTF8));
-    return *this;
+    return bound(sqlite3_bind_text64(statement_.get(), ++column_, value.data(), value.size(),
+                                     SQLITE_STATIC, SQLITE_UTF8));
   }
   Insert& text_or_null(const std::string& value) {
-    if (!value.empty()) return text(value);
-    database_.check(sqlite3_bind_null(statement_.get(), ++column_));
-    return *this;
+    return value.empty() ? bound(sqlite3_bind_null(statement_.get(), ++column_)) : text(value);
   }
   void end_row() {
     database_.check(sqlite3_step(statement_.get()));
@@ -85,6 +88,10 @@ class Insert {
   }
 
  private:
+  Insert& bound(int code) {
+    database_.check(code);
+    return *this;
+  }
   struct Finalize {
     void operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
   };
@@ -133,28 +140,11 @@ class ResultsDatabase::Writer {
   std::optional<Insert> task_, timing_;
 };
 
-RowsDigest::RowsDigest(const std::vector<std::string>& axes) {
-  for (const std::string& axis : axes) add(axis);
-}
-
-// Lengths before texts: no two tables give one line of bytes.
-void RowsDigest::add(const std::string& part) {
-  digest_.add(fmt::format("{}:", part.size()));
-  digest_.add(part);
-}
+RowsDigest::RowsDigest(const std::vector<std::string>& axes) : digest_(digest_of(framed(axes))) {}
 
 void RowsDigest::add(const ResultRow& row) {
-  digest_.add(fmt::format("\n{}:", row.task));
-  for (const std::string& value : row.axis_values) add(value);
-  add(row.failure);
-  add(row.outcome);
-}
-
-std::string digest_of_rows(const std::vector<std::string>& axes,
-                           const std::vector<ResultRow>& rows) {
-  RowsDigest digest(axes);
-  for (const ResultRow& row : rows) digest.add(row);
-  return digest.text();
+  digest_ = digest_of(fmt::format("{}\n{}:{}{}", digest_, row.task, framed(row.axis_values),
+                                  framed({row.failure, row.outcome})));
 }
 
 ResultsDatabase::ResultsDatabase(std::filesystem::path file, const std::vector<std::string>& axes)
@@ -185,15 +175,6 @@ std::string ResultsDatabase::finish(std::vector<std::pair<std::string, std::stri
   std::filesystem::rename(temporary_, file_, error);
   MODCAL_REQUIRE(!error, "{} cannot be put in place: {}", file_.string(), error.message());
   return digest;
-}
-
-std::string write_results_database(const std::filesystem::path& file,
-                                   const std::vector<std::string>& axes,
-                                   const std::vector<ResultRow>& rows,
-                                   const std::vector<std::pair<std::string, std::string>>& facts) {
-  ResultsDatabase database(file, axes);
-  for (const ResultRow& row : rows) database.add(row);
-  return database.finish(facts);
 }
 
 }  // namespace modcal

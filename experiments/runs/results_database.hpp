@@ -8,8 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "experiments/runs/task_key.hpp"
-
 namespace modcal {
 
 /// One row of the table `tasks`.
@@ -21,20 +19,22 @@ struct ResultRow {
   double seconds = 0.0;
 };
 
-/// Digest of rows without their times, one after the other.
+/// Digest of rows without their times, one after the other: each is chained to those before.
 class RowsDigest {
  public:
   explicit RowsDigest(const std::vector<std::string>& axes);
   void add(const ResultRow& row);
-  std::string text() const { return digest_.text(); }
+  const std::string& text() const { return digest_; }
 
  private:
-  void add(const std::string& part);
-  Digest digest_;
+  std::string digest_;
 };
 
-/// A database that is written row by row: what is held does not grow with the rows. Until finish()
-/// it has another name; without finish() nothing of it is left.
+/// A database that is written row by row: the rows, in their order, as table `tasks` (task, one
+/// column an axis, failure, outcome), the times as table `timing` (task, seconds) and facts as
+/// table `run` (name, value). What is held does not grow with the rows; equal rows give an equal
+/// table `tasks`, whatever made them. Until finish() it has another name; without finish() nothing
+/// of it is left.
 class ResultsDatabase {
  public:
   /// Throws InvalidInput, as add() and finish() do, where the file cannot be written.
@@ -53,19 +53,5 @@ class ResultsDatabase {
   RowsDigest digest_;
   std::unique_ptr<Writer> writer_;
 };
-
-/// Writes the rows, in their order, as table `tasks` (task, one column an axis, failure, outcome),
-/// the times as table `timing` (task, seconds) and the facts as table `run` (name, value). The file
-/// is written under another name and put in place when it is complete; equal rows give an equal
-/// table `tasks`, whatever made them. Returns the digest of that table. Throws InvalidInput where
-/// the file cannot be written.
-std::string write_results_database(const std::filesystem::path& file,
-                                   const std::vector<std::string>& axes,
-                                   const std::vector<ResultRow>& rows,
-                                   const std::vector<std::pair<std::string, std::string>>& facts);
-
-/// Digest of the rows without their times.
-std::string digest_of_rows(const std::vector<std::string>& axes,
-                           const std::vector<ResultRow>& rows);
 
 }  // namespace modcal

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "experiments/runs/journal.hpp"
-#include "experiments/runs/run_lock.hpp"
 #include "experiments/runs/shard.hpp"
 
 namespace modcal {

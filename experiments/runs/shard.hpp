@@ -1,7 +1,10 @@
-// A part of a task list, for runs that share one list.
+// A part of a task list, for runs that share one list, and the lock that keeps two runs from
+// working on the same tasks in the same folder.
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -21,5 +24,23 @@ struct Shard {
 
 /// Reads "K/N". Throws InvalidInput for anything else and for K outside 1…N.
 Shard parse_shard(std::string_view text);
+
+/// Held while a run works in a folder; the system lets go of it when the process ends, however it
+/// ends. Runs of different shards share a folder, a run of the whole list has it for itself.
+class RunLock {
+ public:
+  /// Throws InvalidInput where another run works in the folder, naming it.
+  RunLock(const std::filesystem::path& folder, const Shard& shard);
+  ~RunLock();
+  RunLock(const RunLock&) = delete;
+  RunLock& operator=(const RunLock&) = delete;
+
+ private:
+  int folder_descriptor_ = -1;
+  int shard_descriptor_ = -1;
+};
+
+/// Whether a run works in the folder; looks without touching.
+bool is_running(const std::filesystem::path& folder);
 
 }  // namespace modcal

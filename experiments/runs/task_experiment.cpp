@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <nlohmann/json.hpp>
 
+#include "libsim/base/error.hpp"
 #include "libsim/base/task_loop.hpp"
 
 namespace modcal {
@@ -22,6 +24,12 @@ void find_finished(const TaskExperiment& experiment, const FinishedTasks& finish
     if (place.is_known()) outcomes.put(task, place);
   };
   for_each_task(outcomes.size(), find, stop);
+}
+
+nlohmann::json parsed(const std::string& outcome) {
+  nlohmann::json object = nlohmann::json::parse(outcome, nullptr, false);
+  MODCAL_REQUIRE(object.is_object(), "the stored outcome of a task cannot be read: {}", outcome);
+  return object;
 }
 
 }  // namespace
@@ -75,6 +83,20 @@ TaskOutcomes run_tasks(const TaskExperiment& experiment, const StudyContext& con
   };
   for_each_task(pending.size(), run, context.stop);
   return outcomes;
+}
+
+std::string TaskExperiment::failure_in(const std::string& outcome) const {
+  return parsed(outcome).value("failure", std::string());
+}
+
+std::optional<double> TaskExperiment::number_in(const std::string& outcome,
+                                                const std::string& name) const {
+  const nlohmann::json object = parsed(outcome);
+  if (object.contains(name) && object[name].is_number()) return object[name].get<double>();
+  for (const auto& number : object.value("numbers", nlohmann::json::array())) {
+    if (number.at(0) == name && number.at(1).is_number()) return number.at(1).get<double>();
+  }
+  return std::nullopt;
 }
 
 StudyResult TaskExperiment::run(const StudyContext& context) const {

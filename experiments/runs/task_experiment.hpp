@@ -57,12 +57,15 @@ class TaskExperiment : public Experiment {
   /// Outcome of one task as JSON on one line; a task that cannot be done has the reason in its
   /// outcome. Safe to call from several threads.
   virtual std::string run_task(std::size_t task, const StudyContext& context) const = 0;
-  /// The reason in an outcome why its task failed; empty where it did not.
-  virtual std::string failure_in(const std::string& outcome) const = 0;
+  /// The reason in an outcome why its task failed, its member "failure"; empty where it did not.
+  /// Throws InvalidInput for a text that is no outcome.
+  virtual std::string failure_in(const std::string& outcome) const;
   /// What loss_in() measures, for people; empty: tasks of this kind have no score.
   virtual std::string loss_name() const { return {}; }
   /// How wrong an outcome is, > 0; nullopt where its task failed.
   virtual std::optional<double> loss_in(const std::string& /*outcome*/) const { return {}; }
+  /// A number of an outcome by its name; nullopt where it has none of that name.
+  std::optional<double> number_in(const std::string& outcome, const std::string& name) const;
   /// Tables, figures and acceptance of the outcomes there are; nullopt: not run yet.
   virtual StudyResult sum_up(const TaskOutcomes& outcomes, const StudyContext& context) const = 0;
   /// One task again, with everything drawn and written that can be.

@@ -41,30 +41,8 @@ std::string truth_key(TruthOptions options, double sample_rate, const OutputRequ
 
 std::shared_ptr<const Truth> TruthCache::get(const TruthOptions& options, double sample_rate,
                                              const OutputRequest& outputs) {
-  const std::string key = truth_key(options, sample_rate, outputs);
-  std::promise<std::shared_ptr<const Truth>> promise;
-  Shared truth;
-  bool is_mine = false;
-  {
-    const std::lock_guard lock(mutex_);
-    const auto known = truths_.find(key);
-    is_mine = known == truths_.end();
-    truth = is_mine ? promise.get_future().share() : known->second;
-    if (is_mine) truths_.emplace(key, truth);
-  }
-  if (is_mine) {
-    try {
-      promise.set_value(simulate_truth(options, sample_rate, outputs, stop_));
-    } catch (...) {
-      promise.set_exception(std::current_exception());
-    }
-  }
-  return truth.get();
-}
-
-std::size_t TruthCache::simulated() const {
-  const std::lock_guard lock(mutex_);
-  return truths_.size();
+  return truths_.get(truth_key(options, sample_rate, outputs),
+                     [&] { return simulate_truth(options, sample_rate, outputs, stop_); });
 }
 
 void ModelErrorOptions::visit(OptionVisitor& visitor) {

@@ -3,14 +3,12 @@
 #pragma once
 
 #include <filesystem>
-#include <future>
-#include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "experiments/study/computed_once.hpp"
 #include "libsim/base/options.hpp"
 #include "libsim/base/random.hpp"
 #include "libsim/dynamics/scene/simulator.hpp"
@@ -47,13 +45,11 @@ class TruthCache {
   std::shared_ptr<const Truth> get(const TruthOptions& options, double sample_rate,
                                    const OutputRequest& outputs);
   /// Simulations done so far.
-  std::size_t simulated() const;
+  std::size_t simulated() const { return truths_.size(); }
 
  private:
-  using Shared = std::shared_future<std::shared_ptr<const Truth>>;
   StopToken stop_;
-  mutable std::mutex mutex_;
-  std::map<std::string, Shared> truths_;
+  ComputedOnce<std::shared_ptr<const Truth>> truths_;
 };
 
 /// Largest relative error of the modal frequencies (uniform, independent in every mode, both

@@ -1,15 +1,13 @@
-#include "experiments/kinds/benchmark/benchmark_bound.hpp"
-
 #include <fmt/format.h>
 
 #include <cmath>
 #include <limits>
 
+#include "experiments/kinds/benchmark/benchmark_study.hpp"
 #include "experiments/kinds/calibrate/limit_source.hpp"
 #include "experiments/study/fingerprint.hpp"
 #include "libcalib/parameters/stiff_string_fit.hpp"
 #include "libsim/base/error.hpp"
-#include "libsim/signal/statistics.hpp"
 
 namespace modcal {
 namespace {
@@ -60,30 +58,14 @@ std::vector<double> law_bounds(const ExpectedLimit& limit, const CalibrateOption
 
 std::vector<double> bounds_of(const CalibrateOptions& options, TruthCache& truths) {
   const ObservationOptions& observation = options.inversion.observation;
-  const double rate = observation.measurement.sample_rate;
-  // The outputs of the task's own truth, so that both share one simulation.
-  const auto truth = truths.get(observation.truth, rate,
-                                {.force = true, .left_reaction = true, .right_reaction = true});
-  const ModelPoint point{truth->basis, truth->contact};
-  NoisyRecords records{.sample_rate = rate};
-  records.reactions = {truth->simulation.left_reaction.samples,
-                       truth->simulation.right_reaction.samples};
-  for (std::size_t r = 0; r < 2; ++r) {
-    remove_mean(records.reactions[r]);
-    records.deviation[r] =
-        observation.measurement.noise_level * standard_deviation(records.reactions[r]);
-  }
-  LimitQuestion question;
+  LimitQuestion question{.observation = observation,
+                         .noise_level = observation.measurement.noise_level};
   question.calibrate_by(options.calibration);
-  const ExpectedLimit limit = expected_limit({.truth = point,
-                                              .strokes = {std::move(records)},
-                                              .contacts = {point.contact},
-                                              .plucks = {},
-                                              .highest_frequency = question.highest_frequency,
-                                              .law_width = question.law_width,
-                                              .unknowns = question.unknowns});
+  // The outputs of the task's own truth, so that both share one simulation.
+  const LimitCase records = limit_case(question, truths, {.force = true});
+  const ExpectedLimit limit = expected_limit(records);
   if (options.calibration.parameters.frequencies == "none") {
-    return law_bounds(limit, options, point.basis);
+    return law_bounds(limit, options, records.truth.basis);
   }
   std::vector<double> bounds;
   for (const ModeVerdict& mode : limit.modes) bounds.push_back(mode.deviation);
@@ -111,25 +93,9 @@ FrequencyBounds::Bounds FrequencyBounds::of(const CalibrateOptions& options, Tru
   const ParameterOptions& parameters = options.calibration.parameters;
   const bool searched = parameters.law || parameters.frequencies != "none";
   if (!searched || options.inversion.observation.measurement.noise_level <= 0.0) return nullptr;
-  const std::string key = key_of(options);
-  std::promise<Bounds> promise;
-  std::shared_future<Bounds> bounds;
-  bool is_mine = false;
-  {
-    const std::lock_guard lock(mutex_);
-    const auto known = known_.find(key);
-    is_mine = known == known_.end();
-    bounds = is_mine ? promise.get_future().share() : known->second;
-    if (is_mine) known_.emplace(key, bounds);
-  }
-  if (is_mine) {
-    try {
-      promise.set_value(std::make_shared<std::vector<double>>(bounds_of(options, truths)));
-    } catch (...) {
-      promise.set_exception(std::current_exception());
-    }
-  }
-  return bounds.get();
+  return known_.get(key_of(options), [&] {
+    return std::make_shared<const std::vector<double>>(bounds_of(options, truths));
+  });
 }
 
 double rms_bound(const FrequencyBounds::Bounds& bounds, const std::vector<std::size_t>& modes) {

@@ -25,7 +25,7 @@ std::string recommended(const BenchmarkGrid& grid, const BenchmarkCell& cell) {
                                 ? fmt::format(", RMSE {:.3g} times the bound", cell.bound_ratio)
                                 : std::string();
   return fmt::format("{} (median error {:.2g}{}, {} of {} right, {:.0f} evaluations)",
-                     grid.methods[cell.method], cell.error, bound, cell.successes, cell.n,
+                     grid.methods[cell.method], cell.error.median, bound, cell.successes, cell.n,
                      cell.evaluations);
 }
 
@@ -80,9 +80,7 @@ struct Failures {
     wrong += cell.n - cell.successes;
     reasons[cell.reason] += cell.reason_count;
     const std::string& condition = grid.conditions[cell.condition];
-    if (std::find(conditions.begin(), conditions.end(), condition) == conditions.end()) {
-      conditions.push_back(condition);
-    }
+    if (place_in(conditions, condition) == conditions.size()) conditions.push_back(condition);
   }
   std::string sentence(const BenchmarkGrid& grid, const std::string& who) const {
     const auto [reason, count] =

@@ -5,14 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
 
-#include "experiments/kinds/benchmark/benchmark_lint.hpp"
 #include "experiments/kinds/benchmark/benchmark_report.hpp"
-#include "experiments/kinds/calibrate/calibrate_experiment.hpp"
-#include "experiments/kinds/lint.hpp"
-#include "experiments/study/fingerprint.hpp"
+#include "experiments/report/result_table.hpp"
+#include "experiments/runs/stored_outcomes.hpp"
 
 namespace modcal {
 namespace {
@@ -20,143 +17,93 @@ namespace {
 constexpr std::string_view kMethodPrefix = "calibration.";
 constexpr std::string_view kObjectiveAxis = "calibration.objective";
 
-bool is_method_axis(const std::string& path) { return path.starts_with(kMethodPrefix); }
-bool is_seed_axis(const std::string& path) { return path == "seed" || path.ends_with(".seed"); }
-
 // Index of a label in the order of first use.
 std::size_t index_of(const std::string& label, std::vector<std::string>& labels) {
-  const auto known = std::find(labels.begin(), labels.end(), label);
-  if (known != labels.end()) return static_cast<std::size_t>(known - labels.begin());
-  labels.push_back(label);
-  return labels.size() - 1;
+  const std::size_t place = place_in(labels, label);
+  if (place == labels.size()) labels.push_back(label);
+  return place;
 }
 
-std::vector<FigureOptions> replay_figures() {
-  return {{.id = "objectives", .title = "Objective", .content = "objectives"},
-          {.id = "errors", .title = "Frequency errors", .content = "frequency_errors"},
-          {.id = "force", .title = "Identified force", .quantities = {"f_c"}}};
+report::Table task_table(const BenchmarkGrid& grid) {
+  return report::table_of({.id = "tasks", .title = "Tasks"}, grid.tasks,
+                          [&grid](report::RowWriter& row, const BenchmarkTask& task) {
+                            const BenchmarkOutcome& outcome = task.outcome;
+                            row({.key = "task"}, task.task);
+                            row({.key = "condition"}, grid.conditions[task.condition]);
+                            row({.key = "replicate"}, task.replicate);
+                            row({.key = "method"}, grid.methods[task.method]);
+                            row({.key = "right"}, outcome.success);
+                            row({.key = "stop"}, name_of(outcome.stop));
+                            row({.key = "evaluations"}, outcome.evaluations);
+                            row({.key = "objective_initial"}, outcome.initial_value);
+                            row({.key = "objective"}, outcome.value);
+                            row({.key = "objective_at_truth"}, outcome.truth_value);
+                            row({.key = "frequency_error"}, outcome.frequency_error);
+                            row({.key = "frequency_rms_error"}, outcome.frequency_rms_error);
+                            row({.key = "frequency_bound"}, outcome.frequency_bound);
+                            row({.key = "bound_ratio"}, outcome.bound_ratio());
+                            row({.key = "contact_error", .unit = "m"}, outcome.contact_error);
+                            row({.key = "correlation"}, outcome.correlation);
+                            row({.key = "reason"}, reason_of(outcome));
+                          });
 }
 
-report::Table task_table(const BenchmarkGrid& grid, const std::string& command) {
-  report::Table table{.id = "tasks",
-                      .title = "Tasks",
-                      .columns = {{.key = "task"},
-                                  {.key = "condition"},
-                                  {.key = "replicate"},
-                                  {.key = "method"},
-                                  {.key = "right"},
-                                  {.key = "stop"},
-                                  {.key = "evaluations"},
-                                  {.key = "objective_initial"},
-                                  {.key = "objective"},
-                                  {.key = "objective_at_truth"},
-                                  {.key = "frequency_error"},
-                                  {.key = "frequency_rms_error"},
-                                  {.key = "frequency_bound"},
-                                  {.key = "bound_ratio"},
-                                  {.key = "contact_error", .unit = "m"},
-                                  {.key = "correlation"},
-                                  {.key = "reason"}},
-                      .command = command};
-  for (const BenchmarkTask& task : grid.tasks) {
-    const BenchmarkOutcome& outcome = task.outcome;
-    table.rows.push_back(
-        {task.task, grid.conditions[task.condition], task.replicate, grid.methods[task.method],
-         outcome.success, std::string(name_of(outcome.stop)), outcome.evaluations,
-         outcome.initial_value, outcome.value, outcome.truth_value, outcome.frequency_error,
-         outcome.frequency_rms_error, outcome.frequency_bound, outcome.bound_ratio(),
-         outcome.contact_error, outcome.correlation, reason_of(outcome)});
+}  // namespace
+
+BenchmarkLabels BenchmarkExperiment::labels_of(std::size_t task) const {
+  const std::vector<std::string>& paths = options_.cells.paths();
+  const std::vector<std::string> values = options_.cells.values(task);
+  const CalibrationOptions& calibration = options_.base.calibration;
+  BenchmarkLabels labels{.objective = std::string(calibration.objective.selected())};
+  std::vector<std::string> search, condition, seeds;
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    const std::string label = short_label(values[i]);
+    if (paths[i] == kObjectiveAxis) {
+      if (!values[i].empty()) labels.objective = label;
+    } else if (paths[i].starts_with(kMethodPrefix)) {
+      search.push_back(label);
+    }
+    if (is_seed_axis(paths[i])) {
+      seeds.push_back(values[i]);
+    } else if (!paths[i].starts_with(kMethodPrefix) && !values[i].empty()) {
+      const std::string last = paths[i].substr(paths[i].find_last_of('.') + 1);
+      condition.push_back(fmt::format("{} {}", last == "noise_level" ? "noise" : last, label));
+    }
   }
-  return table;
+  const auto joined = [](const std::vector<std::string>& parts, std::string none) {
+    return parts.empty() ? std::move(none) : fmt::format("{}", fmt::join(parts, ", "));
+  };
+  labels.search = joined(search, std::string(calibration.optimizer.selected()));
+  labels.condition = joined(condition, "the one condition");
+  labels.replicate = joined(seeds, std::to_string(options_.base.inversion.seed));
+  return labels;
 }
 
 // What stands against an optimizer that can be made is that it cannot minimize the objective: a row
 // with its reason, not a mistake.
-bool is_refused_pair(const CalibrateOptions& cell, const Finding& finding) {
+bool BenchmarkExperiment::is_excused(const CalibrateOptions& cell, const Finding& finding) const {
   if (finding.path != "calibration.optimizer") return false;
   std::vector<Finding> own;
   lint_making(own, finding.path, [&] { cell.calibration.optimizer.make(); });
   return own.empty();
 }
 
-}  // namespace
-
-void BenchmarkOptions::visit(OptionVisitor& visitor) {
-  base.visit(visitor);
-  visitor.section({.key = "success", .meaning = "when a calibration counts as right"}, success);
-  // Last: every cell is read with the keys above known.
-  visitor.sweep(
-      {.key = "sweep", .meaning = "axes: option paths and their values", .required = true}, cells);
-}
-
-std::string BenchmarkExperiment::search_of(std::size_t task) const {
-  const std::vector<std::string>& paths = options_.cells.paths();
-  const std::vector<std::string> values = options_.cells.values(task);
-  std::vector<std::string> parts;
-  for (std::size_t i = 0; i < paths.size(); ++i) {
-    if (is_method_axis(paths[i]) && paths[i] != kObjectiveAxis) {
-      parts.push_back(short_label(values[i]));
-    }
-  }
-  if (parts.empty()) return std::string(options_.base.calibration.optimizer.selected());
-  return fmt::format("{}", fmt::join(parts, ", "));
-}
-
-std::string BenchmarkExperiment::method_of(std::size_t task) const {
-  return search_of(task) + ", " + objective_of(task);
-}
-
-std::string BenchmarkExperiment::objective_of(std::size_t task) const {
-  const std::vector<std::string>& paths = options_.cells.paths();
-  for (std::size_t i = 0; i < paths.size(); ++i) {
-    const std::string& value = options_.cells.value(task, i);
-    if (paths[i] == kObjectiveAxis && !value.empty()) return short_label(value);
-  }
-  return std::string(options_.base.calibration.objective.selected());
-}
-
-std::string BenchmarkExperiment::condition_of(std::size_t task) const {
-  const std::vector<std::string>& paths = options_.cells.paths();
-  const std::vector<std::string> values = options_.cells.values(task);
-  std::vector<std::string> parts;
-  for (std::size_t i = 0; i < paths.size(); ++i) {
-    if (is_method_axis(paths[i]) || is_seed_axis(paths[i]) || values[i].empty()) continue;
-    const std::string last = paths[i].substr(paths[i].find_last_of('.') + 1);
-    const std::string key = last == "noise_level" ? "noise" : last;
-    parts.push_back(fmt::format("{} {}", key, short_label(values[i])));
-  }
-  return parts.empty() ? "the one condition" : fmt::format("{}", fmt::join(parts, ", "));
-}
-
-std::string BenchmarkExperiment::replicate_of(std::size_t task) const {
-  const std::vector<std::string>& paths = options_.cells.paths();
-  std::vector<std::string> parts;
-  for (std::size_t i = 0; i < paths.size(); ++i) {
-    if (is_seed_axis(paths[i])) parts.push_back(options_.cells.value(task, i));
-  }
-  return parts.empty() ? std::to_string(options_.cells[task].inversion.seed)
-                       : fmt::format("{}", fmt::join(parts, ", "));
+void BenchmarkExperiment::visit_scoring(OptionVisitor& visitor) const {
+  SuccessOptions(options_.list).visit(visitor);
 }
 
 std::vector<Finding> BenchmarkExperiment::lint() const {
-  std::vector<Finding> findings;
-  std::set<std::pair<std::string, std::string>> known;
-  for (const CalibrateOptions& cell : options_.cells.all()) {
-    for (Finding& finding : CalibrateExperiment(cell).lint()) {
-      if (is_refused_pair(cell, finding)) continue;
-      if (known.insert({finding.path, finding.text}).second) findings.push_back(std::move(finding));
-    }
-    if (cell.inversion.observation.has_record &&
-        known.insert({"record", "a record has no truth"}).second) {
-      add_finding(findings, "record",
-                  "a benchmark scores on the truth, which a record does not "
-                  "have: state a scene");
-    }
+  std::vector<Finding> findings = AxisExperiment::lint();
+  const auto& cells = options_.cells.all();
+  if (std::any_of(cells.begin(), cells.end(), [](const CalibrateOptions& cell) {
+        return cell.inversion.observation.has_record;
+      })) {
+    add_finding(findings, "record",
+                "a benchmark scores on the truth, which a record does not "
+                "have: state a scene");
   }
   std::vector<FairnessTask> tasks;
-  for (std::size_t task = 0; task < task_count(); ++task) {
-    tasks.push_back({task, method_of(task), condition_of(task), replicate_of(task)});
-  }
+  for (std::size_t task = 0; task < task_count(); ++task) tasks.push_back({task, labels_of(task)});
   append(findings, lint_fairness(tasks, [this](std::size_t task) { return options_.cells[task]; }));
   return findings;
 }
@@ -164,8 +111,9 @@ std::vector<Finding> BenchmarkExperiment::lint() const {
 std::vector<std::string> BenchmarkExperiment::plan() const {
   std::set<std::string> methods, conditions;
   for (std::size_t task = 0; task < task_count(); ++task) {
-    methods.insert(method_of(task));
-    conditions.insert(condition_of(task));
+    const BenchmarkLabels labels = labels_of(task);
+    methods.insert(labels.method());
+    conditions.insert(labels.condition);
   }
   std::vector<std::string> lines;
   for (const std::string& method : methods) lines.push_back("method: " + method);
@@ -176,107 +124,72 @@ std::vector<std::string> BenchmarkExperiment::plan() const {
   return lines;
 }
 
-std::optional<PlannedSimulations> BenchmarkExperiment::planned_simulations() const {
-  std::set<std::string> scenes;
-  for (const CalibrateOptions& cell : options_.cells.all()) {
-    const ObservationOptions& observation = cell.inversion.observation;
-    scenes.insert(
-        truth_key(observation.truth, observation.measurement.sample_rate, {.force = true}));
-  }
-  return planned_truths(options_.base.inversion.observation, {.force = true}, scenes.size());
-}
-
-std::string BenchmarkExperiment::fingerprint(std::size_t task,
-                                             const std::filesystem::path& /*folder*/) const {
-  CalibrateOptions options = options_.cells[task];
-  SuccessOptions success = options_.success;
-  return "benchmark " + modcal::fingerprint([&](OptionVisitor& visitor) {
-           options.visit(visitor);
-           success.visit(visitor);
-         });
-}
-
 std::string BenchmarkExperiment::run_task(std::size_t task, const StudyContext& context) const {
-  return outcome_text(
-      run_benchmark_cell(options_.cells[task], options_.success, *bounds_, context));
-}
-
-std::string BenchmarkExperiment::failure_in(const std::string& outcome) const {
-  return read_benchmark_outcome(outcome).failure;
+  return report::json_line(attempted(
+      [&] { return run_benchmark_cell(options_.cells[task], options_.list, *bounds_, context); }));
 }
 
 std::optional<double> BenchmarkExperiment::loss_in(const std::string& outcome) const {
-  const BenchmarkOutcome read = read_benchmark_outcome(outcome);
-  if (!read.failure.empty() || !std::isfinite(read.frequency_error)) return std::nullopt;
-  return read.frequency_error;
+  return known(read_outcome<BenchmarkOutcome>(outcome).frequency_error);
 }
 
-BenchmarkGrid BenchmarkExperiment::grid(const TaskOutcomes& outcomes) const {
+BenchmarkGrid BenchmarkExperiment::grid(const TaskOutcomes& outcomes, StudyResult& result) const {
   BenchmarkGrid grid;
-  std::set<std::pair<std::size_t, std::size_t>> traced;
   for (std::size_t task = 0; task < outcomes.size(); ++task) {
-    const std::size_t method = index_of(method_of(task), grid.methods);
-    const std::size_t condition = index_of(condition_of(task), grid.conditions);
-    if (method == grid.objectives.size()) {
-      grid.objectives.push_back(objective_of(task));
-      grid.searches.push_back(search_of(task));
+    const BenchmarkLabels labels = labels_of(task);
+    if (index_of(labels.method(), grid.methods) == grid.objectives.size()) {
+      grid.objectives.push_back(labels.objective);
+      grid.searches.push_back(labels.search);
     }
-    if (condition == grid.noise_levels.size()) {
+    if (index_of(labels.condition, grid.conditions) == grid.noise_levels.size()) {
       grid.noise_levels.push_back(
           options_.cells[task].inversion.observation.measurement.noise_level);
     }
-    const std::optional<FinishedTask> finished = outcomes[task];
-    if (!finished) continue;
-    grid.tasks.push_back({task, method, condition, replicate_of(task), finished->seconds,
-                          read_benchmark_outcome(finished->outcome)});
-    // The figure of traces draws one a method and condition.
-    BenchmarkOutcome& outcome = grid.tasks.back().outcome;
-    if (!outcome.trace.empty() && !traced.insert({method, condition}).second) {
-      outcome.trace = {};
-    }
   }
+  std::set<std::pair<std::size_t, std::size_t>> traced;
+  for_each_outcome<BenchmarkOutcome>(
+      outcomes, result, [&](std::size_t task, BenchmarkOutcome outcome, double seconds) {
+        const BenchmarkLabels labels = labels_of(task);
+        const std::size_t method = place_in(grid.methods, labels.method());
+        const std::size_t condition = place_in(grid.conditions, labels.condition);
+        // The figure of traces draws one a method and condition.
+        if (!outcome.trace.empty() && !traced.insert({method, condition}).second) {
+          outcome.trace = {};
+        }
+        grid.tasks.push_back(
+            {task, method, condition, labels.replicate, seconds, std::move(outcome)});
+      });
   return grid;
 }
 
 StudyResult BenchmarkExperiment::sum_up(const TaskOutcomes& outcomes,
-                                        const StudyContext& context) const {
-  const BenchmarkGrid grid = this->grid(outcomes);
-  const std::vector<BenchmarkCell> cells = benchmark_cells(grid);
+                                        const StudyContext& /*context*/) const {
   StudyResult result;
-  result.pending_tasks = outcomes.size() - grid.tasks.size();
-  for (const BenchmarkTask& task : grid.tasks) {
-    if (!task.outcome.failure.empty()) ++result.failed_tasks;
-  }
-  if (result.failed_tasks > 0) result.status = report::Status::kSomeFailed;
-  if (!grid.tasks.empty() && result.failed_tasks == grid.tasks.size()) {
-    result.status = report::Status::kFailed;
-  }
-  std::string paragraphs;
-  for (const std::string& sentence : conclusion(grid, cells)) {
-    result.summary += sentence + "\n";
-    paragraphs += (paragraphs.empty() ? "" : "\n\n") + sentence;
-  }
-  result.blocks.emplace_back(report::Text{paragraphs});
-  result.blocks.emplace_back(success_map(grid, cells, context.command));
-  report::Table bounds = bound_map(grid, cells, context.command);
+  const BenchmarkGrid grid = this->grid(outcomes, result);
+  const std::vector<BenchmarkCell> cells = benchmark_cells(grid);
+  const std::vector<std::string> sentences = conclusion(grid, cells);
+  for (const std::string& sentence : sentences) result.summary += sentence + "\n";
+  result.blocks.emplace_back(report::Text{fmt::format("{}", fmt::join(sentences, "\n\n"))});
+  result.blocks.emplace_back(success_map(grid, cells));
+  report::Table bounds = bound_map(grid, cells);
   if (!bounds.rows.empty()) result.blocks.emplace_back(std::move(bounds));
   for (report::Figure figure :
        {error_figure(grid, cells), data_profile(grid), performance_profile(grid),
         work_precision_figure(grid, cells), waterfall_figure(grid), trace_figure(grid)}) {
     if (figure.panels.empty()) continue;
-    figure.command = context.command;
     result.blocks.emplace_back(std::move(figure));
   }
-  result.blocks.emplace_back(benchmark_table(grid, cells, context.command));
-  result.files.emplace_back("tasks.csv", report::table_csv(task_table(grid, context.command)));
+  result.blocks.emplace_back(benchmark_table(grid, cells));
+  result.files.emplace_back("tasks.csv", report::table_csv(task_table(grid)));
   return result;
 }
 
-StudyResult BenchmarkExperiment::replay(std::size_t task, const StudyContext& context) const {
-  CalibrateOptions options = options_.cells[task];
-  options.inversion.write_signals = true;
-  options.inversion.figures = replay_figures();
-  return calibrate_study(options, context);
+void BenchmarkExperiment::draw_all(CalibrateOptions& cell) const {
+  cell.inversion.write_signals = true;
+  cell.inversion.figures = {
+      {.id = "objectives", .title = "Objective", .content = "objectives"},
+      {.id = "errors", .title = "Frequency errors", .content = "frequency_errors"},
+      {.id = "force", .title = "Identified force", .quantities = {"f_c"}}};
 }
 
 }  // namespace modcal

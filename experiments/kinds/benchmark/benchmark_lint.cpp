@@ -1,12 +1,11 @@
 // Whether the methods of a benchmark have equal chances.
-#include "experiments/kinds/benchmark/benchmark_lint.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <map>
 #include <set>
 
+#include "experiments/kinds/benchmark/benchmark_summary.hpp"
 #include "experiments/study/fingerprint.hpp"
 #include "libsim/base/error.hpp"
 
@@ -29,11 +28,11 @@ std::map<std::string, MethodFacts> facts_of(const std::vector<FairnessTask>& tas
   std::map<std::string, MethodFacts> facts;
   for (const FairnessTask& task : tasks) {
     const CalibrateOptions options = options_of(task.task);
-    const auto [place, is_new] = facts.try_emplace(task.method);
+    const auto [place, is_new] = facts.try_emplace(task.labels.method());
     MethodFacts& ours = place->second;
     if (is_new) ours.first = options;
-    ours.problems.insert(task.condition + " / " + task.replicate);
-    ours.replicates.insert(task.replicate);
+    ours.problems.insert(task.labels.condition + " / " + task.labels.replicate);
+    ours.replicates.insert(task.labels.replicate);
     ours.budgets.insert(text_of(options.calibration.budget));
     ours.ranges.insert(text_of(options.calibration.parameters.ranges));
     ours.starts.insert(text_of(options.inversion.model_error));

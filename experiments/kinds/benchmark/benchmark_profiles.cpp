@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <map>
 
-#include "experiments/kinds/benchmark/benchmark_drawing.hpp"
+#include "experiments/kinds/benchmark/benchmark_report.hpp"
 
 namespace modcal {
 namespace {
@@ -13,19 +13,6 @@ using report::SeriesStyle;
 constexpr std::size_t kMostShown = 100;
 constexpr std::size_t kMostHidden = 24;
 
-std::size_t most_points(const report::Series& series) {
-  return series.hidden ? kMostHidden : kMostShown;
-}
-
-// A value with the task it comes from.
-struct TaskValue {
-  double value = 0.0;
-  std::size_t task = 0;
-  bool operator<(const TaskValue& other) const {
-    return value != other.value ? value < other.value : task < other.task;
-  }
-};
-
 bool belongs(const BenchmarkTask& task, std::size_t method, std::size_t condition) {
   return task.method == method && (condition == kAllConditions || task.condition == condition);
 }
@@ -33,8 +20,8 @@ bool belongs(const BenchmarkTask& task, std::size_t method, std::size_t conditio
 using ValueOf = std::function<std::optional<double>(const BenchmarkTask&)>;
 
 struct Values {
-  std::vector<TaskValue> known;
-  std::size_t all = 0;  ///< tasks, with and without a value
+  std::vector<std::pair<double, std::int64_t>> known;  ///< rising, with the tasks they come from
+  std::size_t all = 0;                                 ///< tasks, with and without a value
 };
 
 Values values_of(const BenchmarkGrid& grid, std::size_t method, std::size_t condition,
@@ -43,35 +30,42 @@ Values values_of(const BenchmarkGrid& grid, std::size_t method, std::size_t cond
   for (const BenchmarkTask& task : grid.tasks) {
     if (!belongs(task, method, condition)) continue;
     ++values.all;
-    if (const auto value = value_of(task)) values.known.push_back({*value, task.task});
+    if (const auto value = value_of(task)) {
+      values.known.emplace_back(*value, static_cast<std::int64_t>(task.task));
+    }
   }
   std::sort(values.known.begin(), values.known.end());
   return values;
 }
 
-// Share of all tasks that each rising value brings, as steps.
-void add_steps(const Values& values, report::Series& series) {
-  double before = 0.0;
-  for (const std::size_t i : spread_indices(values.known.size(), most_points(series))) {
-    const double after = static_cast<double>(i + 1) / static_cast<double>(values.all);
-    series.x.insert(series.x.end(), 2, values.known[i].value);
-    series.y.insert(series.y.end(), {before, after});
-    series.tasks.insert(series.tasks.end(), 2, static_cast<std::int64_t>(values.known[i].task));
-    before = after;
-  }
-}
+// How a series is drawn through the rising values: add(series, share before, share after, value).
+using AddValue = std::function<void(report::Series&, double before, double after,
+                                    const std::pair<double, std::int64_t>& value)>;
 
 report::Figure profile(const BenchmarkGrid& grid, report::Figure figure, const report::Axis& x,
-                       const report::Axis& y, const ValueOf& value_of) {
-  std::vector<report::Panel> panels =
-      objective_panels(grid, x, y, [&](std::size_t method, report::Panel& panel) {
-        for (const std::size_t condition : condition_choices(grid)) {
-          report::Series series = method_series(grid, method, condition, SeriesStyle::kLine);
-          add_steps(values_of(grid, method, condition, value_of), series);
-          if (!series.x.empty()) panel.series.push_back(std::move(series));
-        }
-      });
-  return panel_figure(figure.id, figure.title, figure.caption, std::move(panels));
+                       const report::Axis& y, const ValueOf& value_of, const AddValue& add) {
+  const auto add_method = [&](std::size_t method, report::Panel& panel) {
+    for (const std::size_t condition : condition_choices(grid)) {
+      const Values values = values_of(grid, method, condition, value_of);
+      report::Series series = method_series(grid, method, condition, SeriesStyle::kLine);
+      const std::size_t most = series.hidden ? kMostHidden : kMostShown;
+      double before = 0.0;
+      for (const std::size_t i : spread_indices(values.known.size(), most)) {
+        const double after = static_cast<double>(i + 1) / static_cast<double>(values.all);
+        add(series, before, after, values.known[i]);
+        before = after;
+      }
+      add_drawn(panel, std::move(series));
+    }
+  };
+  return panel_figure(std::move(figure), objective_panels(grid, x, y, add_method));
+}
+
+// Share of all tasks that each value brings, as a step.
+void add_step(report::Series& series, double before, double after,
+              const std::pair<double, std::int64_t>& value) {
+  add_task(series, value.first, before, value.second);
+  add_task(series, value.first, after, value.second);
 }
 
 using Problem = std::pair<std::size_t, std::string>;  // condition and replicate
@@ -90,58 +84,55 @@ std::map<Problem, double> fewest_evaluations(const BenchmarkGrid& grid) {
 }  // namespace
 
 report::Figure data_profile(const BenchmarkGrid& grid) {
-  return profile(grid,
-                 {.id = "data_profile",
-                  .title = "Tasks solved against evaluations",
-                  .caption = "Data profile. Solved: right by the truth, when the search ended."},
-                 {.label = "evaluations", .logarithmic = true},
-                 {.label = "share of tasks solved", .range = {{0.0, 1.0}}},
-                 [](const BenchmarkTask& task) -> std::optional<double> {
-                   if (!task.outcome.success) return std::nullopt;
-                   return static_cast<double>(task.outcome.evaluations);
-                 });
+  return profile(
+      grid,
+      {.id = "data_profile",
+       .title = "Tasks solved against evaluations",
+       .caption = "Data profile. Solved: right by the truth, when the search ended."},
+      {.label = "evaluations", .logarithmic = true},
+      {.label = "share of tasks solved", .range = {{0.0, 1.0}}},
+      [](const BenchmarkTask& task) -> std::optional<double> {
+        if (!task.outcome.success) return std::nullopt;
+        return static_cast<double>(task.outcome.evaluations);
+      },
+      add_step);
 }
 
 report::Figure performance_profile(const BenchmarkGrid& grid) {
   const std::map<Problem, double> fewest = fewest_evaluations(grid);
-  return profile(grid,
-                 {.id = "performance_profile",
-                  .title = "Problems solved against the fastest method",
-                  .caption = "Performance profile: the method with the fewest evaluations among "
-                             "all objectives and optimizers that solve the problem stands at 1."},
-                 {.label = "evaluations / those of the fastest method", .logarithmic = true},
-                 {.label = "share of problems solved", .range = {{0.0, 1.0}}},
-                 [&fewest](const BenchmarkTask& task) -> std::optional<double> {
-                   if (!task.outcome.success) return std::nullopt;
-                   return static_cast<double>(task.outcome.evaluations) /
-                          fewest.at({task.condition, task.replicate});
-                 });
+  return profile(
+      grid,
+      {.id = "performance_profile",
+       .title = "Problems solved against the fastest method",
+       .caption = "Performance profile: the method with the fewest evaluations among "
+                  "all objectives and optimizers that solve the problem stands at 1."},
+      {.label = "evaluations / those of the fastest method", .logarithmic = true},
+      {.label = "share of problems solved", .range = {{0.0, 1.0}}},
+      [&fewest](const BenchmarkTask& task) -> std::optional<double> {
+        if (!task.outcome.success) return std::nullopt;
+        return static_cast<double>(task.outcome.evaluations) /
+               fewest.at({task.condition, task.replicate});
+      },
+      add_step);
 }
 
 report::Figure waterfall_figure(const BenchmarkGrid& grid) {
-  const auto error_of = [](const BenchmarkTask& task) -> std::optional<double> {
-    if (!(task.outcome.frequency_error > 0.0)) return std::nullopt;
-    return task.outcome.frequency_error;
-  };
-  std::vector<report::Panel> panels = objective_panels(
-      grid, {.label = "share of starts", .range = {{0.0, 1.0}}},
+  return profile(
+      grid,
+      {.id = "waterfall",
+       .title = "Errors of all starts, in rising order",
+       .caption = "Waterfall: every seed is another wrong start and another noise. A step: so "
+                  "many starts end in one minimum."},
+      {.label = "share of starts", .range = {{0.0, 1.0}}},
       {.label = "relative frequency error", .logarithmic = true},
-      [&](std::size_t method, report::Panel& panel) {
-        for (const std::size_t condition : condition_choices(grid)) {
-          const Values values = values_of(grid, method, condition, error_of);
-          report::Series series = method_series(grid, method, condition, SeriesStyle::kLine);
-          for (const std::size_t i : spread_indices(values.known.size(), most_points(series))) {
-            series.x.push_back(static_cast<double>(i + 1) / static_cast<double>(values.all));
-            series.y.push_back(values.known[i].value);
-            series.tasks.push_back(static_cast<std::int64_t>(values.known[i].task));
-          }
-          if (!series.x.empty()) panel.series.push_back(std::move(series));
-        }
+      [](const BenchmarkTask& task) -> std::optional<double> {
+        if (!(task.outcome.frequency_error > 0.0)) return std::nullopt;
+        return task.outcome.frequency_error;
+      },
+      [](report::Series& series, double /*before*/, double after,
+         const std::pair<double, std::int64_t>& value) {
+        add_task(series, after, value.first, value.second);
       });
-  return panel_figure("waterfall", "Errors of all starts, in rising order",
-                      "Waterfall: every seed is another wrong start and another noise. A step: so "
-                      "many starts end in one minimum.",
-                      std::move(panels));
 }
 
 }  // namespace modcal

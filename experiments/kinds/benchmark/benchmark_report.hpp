@@ -1,6 +1,7 @@
 // What a benchmark shows: table, conclusion, figures.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -10,14 +11,11 @@
 namespace modcal {
 
 /// One row a method and condition.
-report::Table benchmark_table(const BenchmarkGrid& grid, const std::vector<BenchmarkCell>& cells,
-                              const std::string& command);
+report::Table benchmark_table(const BenchmarkGrid& grid, const std::vector<BenchmarkCell>& cells);
 /// Heat map of the share of successes: one row a method, one column a condition.
-report::Table success_map(const BenchmarkGrid& grid, const std::vector<BenchmarkCell>& cells,
-                          const std::string& command);
+report::Table success_map(const BenchmarkGrid& grid, const std::vector<BenchmarkCell>& cells);
 /// Heat map of the frequency RMSE over the Cramér–Rao bound; no rows where there is no bound.
-report::Table bound_map(const BenchmarkGrid& grid, const std::vector<BenchmarkCell>& cells,
-                        const std::string& command);
+report::Table bound_map(const BenchmarkGrid& grid, const std::vector<BenchmarkCell>& cells);
 /// The cell of a method under a condition; null: nothing of it is finished.
 const BenchmarkCell* find_cell(const std::vector<BenchmarkCell>& cells, std::size_t method,
                                std::size_t condition);
@@ -45,5 +43,33 @@ report::Figure work_precision_figure(const BenchmarkGrid& grid,
 report::Figure waterfall_figure(const BenchmarkGrid& grid);
 /// Best value so far above that at the truth, first draw of each condition.
 report::Figure trace_figure(const BenchmarkGrid& grid);
+
+// What the figures have in common: a panel an objective, a look a search, tags.
+
+/// Index of no condition: a series over all of them.
+inline constexpr std::size_t kAllConditions = static_cast<std::size_t>(-1);
+
+/// Empty series of a method with its label, look and tags, for one condition or for all. That of
+/// one condition is hidden until a filter asks for it.
+report::Series method_series(const BenchmarkGrid& grid, std::size_t method, std::size_t condition,
+                             report::SeriesStyle style);
+report::Tags method_tags(const BenchmarkGrid& grid, std::size_t method);
+/// Values of the tag "condition" of what belongs to one condition and is shown among all, too.
+report::Tag condition_tag(const BenchmarkGrid& grid, std::size_t condition);
+
+/// One panel an objective, with the series that `add` puts into it for each of its methods; panels
+/// without any are left out.
+std::vector<report::Panel> objective_panels(
+    const BenchmarkGrid& grid, const report::Axis& x, const report::Axis& y,
+    const std::function<void(std::size_t method, report::Panel& panel)>& add);
+
+/// The figure with the panels side by side.
+report::Figure panel_figure(report::Figure figure, std::vector<report::Panel> panels);
+
+/// All conditions together, then, where there are several, each.
+std::vector<std::size_t> condition_choices(const BenchmarkGrid& grid);
+
+/// `count` indices of [0, size), evenly spread, first and last among them; all where they fit.
+std::vector<std::size_t> spread_indices(std::size_t size, std::size_t count);
 
 }  // namespace modcal

@@ -10,16 +10,19 @@
 namespace modcal {
 
 void SuccessOptions::visit(OptionVisitor& visitor) {
-  visitor.number({.key = "frequency_error",
+  const auto members = [this](OptionVisitor& inner) {
+    inner.number({.key = "frequency_error",
                   .meaning = "largest median relative frequency error of the excited modes",
                   .unit = "1",
                   .range = Range::positive()},
                  frequency_error);
-  visitor.number({.key = "contact_error",
+    inner.number({.key = "contact_error",
                   .meaning = "largest error of the contact point, where it is free",
                   .unit = "m",
                   .range = Range::positive()},
                  contact_error);
+  };
+  visitor.group({.key = "success", .meaning = "when a calibration counts as right"}, members);
 }
 
 namespace {
@@ -119,18 +122,45 @@ BenchmarkOutcome score(const CalibrateOptions& options, const SuccessOptions& su
 
 BenchmarkOutcome run_benchmark_cell(const CalibrateOptions& options, const SuccessOptions& success,
                                     FrequencyBounds& bounds, const StudyContext& context) {
-  try {
-    const InvertOptions& inversion = options.inversion;
-    const Observation observation = observe(inversion.observation, {.force = true},
-                                            context.work.truths, inversion.key(), context.folder);
-    const CalibrationOutcome calibrated =
-        calibrate_observation(options, observation, polling_clock(context));
-    BenchmarkOutcome outcome = score(options, success, observation, calibrated);
-    outcome.frequency_bound = bound_of(options, calibrated, bounds, context.work.truths);
-    return outcome;
-  } catch (const InvalidInput& error) {
-    return {.failure = error.what()};
+  const InvertOptions& inversion = options.inversion;
+  const Observation observation = observe(inversion.observation, {.force = true},
+                                          context.work.truths, inversion.key(), context.folder);
+  const CalibrationOutcome calibrated =
+      calibrate_observation(options, observation, polling_clock(context));
+  BenchmarkOutcome outcome = score(options, success, observation, calibrated);
+  outcome.frequency_bound = bound_of(options, calibrated, bounds, context.work.truths);
+  return outcome;
+}
+
+void BenchmarkOutcome::visit(ResultVisitor& visitor) {
+  visitor({.key = "failure", .optional = true}, failure);
+  if (!failure.empty()) return;
+  visitor.word({.key = "stop"}, stop, StopReason::kNoProgress);
+  visitor({.key = "evaluations"}, evaluations);
+  visitor({.key = "success"}, success);
+  visitor({.key = "initial_value"}, initial_value);
+  visitor({.key = "value"}, value);
+  visitor({.key = "truth_value"}, truth_value);
+  visitor({.key = "initial_error"}, initial_error);
+  visitor({.key = "frequency_error"}, frequency_error);
+  visitor({.key = "frequency_rms_error"}, frequency_rms_error);
+  visitor({.key = "frequency_bound"}, frequency_bound);
+  visitor({.key = "contact_error"}, contact_error);
+  visitor({.key = "correlation"}, correlation);
+  visitor({.key = "trace"}, trace);
+}
+
+std::string reason_of(const BenchmarkOutcome& outcome) {
+  if (outcome.success) return {};
+  if (!outcome.failure.empty()) return "refused or broke: " + outcome.failure;
+  if (outcome.stop == StopReason::kNotFinite) return "met a value that is not finite";
+  if (outcome.value > outcome.truth_value) {
+    const bool cut =
+        outcome.stop == StopReason::kEvaluationBudget || outcome.stop == StopReason::kTimeBudget;
+    return cut ? "was cut by the budget before it reached the value at the truth"
+               : "ended in a minimum above the value at the truth";
   }
+  return "found a value below that at the truth: the objective's minimum lies elsewhere";
 }
 
 }  // namespace modcal

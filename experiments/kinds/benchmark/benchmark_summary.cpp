@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 
 #include "experiments/study/paired_bootstrap.hpp"
 #include "libsim/base/task_loop.hpp"
@@ -66,11 +65,6 @@ void count_reasons(const std::vector<const BenchmarkTask*>& tasks, BenchmarkCell
   }
 }
 
-// NaN of nothing.
-double mean_of(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
 std::int64_t median_task(std::vector<const BenchmarkTask*> tasks) {
   std::erase_if(tasks, [](const BenchmarkTask* task) {
     return !std::isfinite(task->outcome.frequency_error) || !task->outcome.failure.empty();
@@ -85,39 +79,35 @@ std::int64_t median_task(std::vector<const BenchmarkTask*> tasks) {
 
 BenchmarkCell sum_up(const std::vector<const BenchmarkTask*>& tasks) {
   BenchmarkCell cell{.n = tasks.size()};
-  std::vector<double> errors, rms_errors, squares, bound_squares;
-  std::vector<double> contact_errors, correlations, evaluations, seconds;
+  Sample errors, rms_errors, squares, bound_squares, contact_errors, correlations, evaluations;
+  Sample seconds;
   for (const BenchmarkTask* task : tasks) {
-    seconds.push_back(task->seconds);
+    seconds.add(task->seconds);
     const BenchmarkOutcome& outcome = task->outcome;
     if (!outcome.failure.empty()) {
       ++cell.failures;
       continue;
     }
     if (outcome.success) ++cell.successes;
-    errors.push_back(outcome.frequency_error);
-    rms_errors.push_back(outcome.frequency_rms_error);
-    squares.push_back(outcome.frequency_rms_error * outcome.frequency_rms_error);
-    bound_squares.push_back(outcome.frequency_bound * outcome.frequency_bound);
-    contact_errors.push_back(outcome.contact_error);
-    correlations.push_back(outcome.correlation);
-    evaluations.push_back(static_cast<double>(outcome.evaluations));
+    errors.add(outcome.frequency_error);
+    rms_errors.add(outcome.frequency_rms_error);
+    squares.add(outcome.frequency_rms_error * outcome.frequency_rms_error);
+    bound_squares.add(outcome.frequency_bound * outcome.frequency_bound);
+    contact_errors.add(outcome.contact_error);
+    correlations.add(outcome.correlation);
+    evaluations.add(static_cast<double>(outcome.evaluations));
   }
   cell.success = success_share(cell.successes, cell.n);
-  cell.error = quantile(errors, 0.5);
-  cell.error_q10 = quantile(errors, 0.1);
-  cell.error_q90 = quantile(errors, 0.9);
-  cell.rms = quantile(rms_errors, 0.5);
-  cell.rms_q10 = quantile(rms_errors, 0.1);
-  cell.rms_q90 = quantile(rms_errors, 0.9);
-  cell.rmse = std::sqrt(mean_of(squares));
-  cell.bound = std::sqrt(mean_of(bound_squares));
+  cell.error = Spread::of(errors);
+  cell.rms = Spread::of(rms_errors);
+  cell.rmse = std::sqrt(mean(squares.values));
+  cell.bound = std::sqrt(mean(bound_squares.values));
   cell.bound_ratio = cell.rmse / cell.bound;
   cell.task = median_task(tasks);
-  cell.contact_error = quantile(contact_errors, 0.5);
-  cell.correlation = quantile(correlations, 0.5);
-  cell.evaluations = quantile(evaluations, 0.5);
-  cell.seconds = quantile(seconds, 0.5);
+  cell.contact_error = contact_errors.median();
+  cell.correlation = correlations.median();
+  cell.evaluations = evaluations.median();
+  cell.seconds = seconds.median();
   count_reasons(tasks, cell);
   return cell;
 }
@@ -182,20 +172,22 @@ std::vector<BenchmarkCell> benchmark_cells(const BenchmarkGrid& grid) {
   return cells;
 }
 
+std::size_t place_in(const std::vector<std::string>& values, const std::string& value) {
+  return static_cast<std::size_t>(std::find(values.begin(), values.end(), value) - values.begin());
+}
+
 std::vector<std::string> distinct(const std::vector<std::string>& values) {
   std::vector<std::string> result;
   for (const std::string& value : values) {
-    if (std::find(result.begin(), result.end(), value) == result.end()) result.push_back(value);
+    if (place_in(result, value) == result.size()) result.push_back(value);
   }
   return result;
 }
 
 std::string short_label(const std::string& value) {
   std::string label;
-  for (std::size_t i = 0; i < value.size(); ++i) {
-    const char letter = value[i];
-    if (letter == '{' || letter == '}' || letter == '"' || letter == '\'') continue;
-    if (letter == ',') continue;
+  for (const char letter : value) {
+    if (std::string_view("{}\"',").find(letter) != std::string_view::npos) continue;
     if (letter == ':') {
       // The key is dropped: what it says is in the value or in the experiment.
       const std::size_t start = label.find_last_of(' ');

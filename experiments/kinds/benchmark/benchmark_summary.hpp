@@ -3,13 +3,24 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "experiments/kinds/benchmark/benchmark_outcome.hpp"
+#include "experiments/kinds/benchmark/benchmark_study.hpp"
+#include "experiments/kinds/sample.hpp"
 
 namespace modcal {
+
+/// What a task is compared by.
+struct BenchmarkLabels {
+  std::string objective;  ///< "force_mismatch"
+  std::string search;     ///< what else tells methods apart: "nlopt LN_SBPLX"
+  std::string condition;  ///< what differs in the data, but for the seed: "noise 5 %"
+  std::string replicate;  ///< what tells draws of one condition apart: the seed
+  std::string method() const { return search + ", " + objective; }
+};
 
 /// One finished task of a benchmark.
 struct BenchmarkTask {
@@ -45,8 +56,8 @@ struct BenchmarkCell {
   std::size_t successes = 0;
   std::size_t failures = 0;  ///< refused or broke: without any estimate
   SuccessShare success;
-  double error = 0.0, error_q10 = 0.0, error_q90 = 0.0;  ///< of the frequencies; failures left out
-  double rms = 0.0, rms_q10 = 0.0, rms_q90 = 0.0;        ///< median and quantiles of the rms error
+  Spread error;                ///< median error of the frequencies; failures left out
+  Spread rms;                  ///< rms error of the frequencies
   double rmse = 0.0;           ///< over all modes and draws with an estimate
   double bound = 0.0;          ///< Cramér–Rao bound of rmse; NaN without noise
   double bound_ratio = 0.0;    ///< rmse / bound
@@ -68,10 +79,28 @@ struct BenchmarkCell {
 /// better where the 95 % interval of the ratio of medians (median_ratio) lies below 1.
 std::vector<BenchmarkCell> benchmark_cells(const BenchmarkGrid& grid);
 
+/// Place of a value among others; their number where it is none of them.
+std::size_t place_in(const std::vector<std::string>& values, const std::string& value);
+
 /// Distinct values in the order of their first use.
 std::vector<std::string> distinct(const std::vector<std::string>& values);
 
 /// "{type: nlopt, algorithm: LN_SBPLX}" → "nlopt LN_SBPLX".
 std::string short_label(const std::string& value);
+
+/// A task by what is compared.
+struct FairnessTask {
+  std::size_t task = 0;
+  BenchmarkLabels labels;
+};
+
+using CellOptions = std::function<CalibrateOptions(std::size_t task)>;
+
+/// Warnings where methods have different budgets, bounds, starts, noise or problems, where there
+/// are fewer than 10 draws to rank them by, and where a search does not come half the way to the
+/// minimum of a parabola of as many variables within its budget, though it could with twenty times
+/// as much.
+std::vector<Finding> lint_fairness(const std::vector<FairnessTask>& tasks,
+                                   const CellOptions& options_of);
 
 }  // namespace modcal

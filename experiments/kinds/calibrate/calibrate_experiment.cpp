@@ -159,6 +159,15 @@ std::optional<PlannedSimulations> CalibrateExperiment::planned_simulations() con
   return planned;
 }
 
+std::vector<std::string> CalibrateExperiment::files_read() const {
+  std::vector<std::string> files = options_.inversion.files_read();
+  files.insert(files.end(), options_.further.files.begin(), options_.further.files.end());
+  for (const PluckRecordOptions& pluck : options_.plucks) {
+    if (!pluck.file.empty()) files.push_back(pluck.file);
+  }
+  return files;
+}
+
 LimitQuestion CalibrateExperiment::limit_question() const {
   const ObservationOptions& first = options_.inversion.observation;
   LimitQuestion question{.observation = first,

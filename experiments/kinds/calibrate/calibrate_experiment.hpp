@@ -14,6 +14,7 @@ class CalibrateExperiment final : public Experiment, public LimitSource {
   std::vector<Finding> lint() const override;
   std::vector<std::string> plan() const override;
   std::optional<PlannedSimulations> planned_simulations() const override;
+  std::vector<std::string> files_read() const override;
   LimitQuestion limit_question() const override;
   StudyResult run(const StudyContext& context) const override {
     return calibrate_study(options_, context);

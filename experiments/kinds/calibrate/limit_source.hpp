@@ -37,8 +37,9 @@ class LimitSource {
 };
 
 /// The records of the question without noise, simulated through the cache, and the bounds. Throws
-/// InvalidInput for a record: the truth has to be simulated.
-LimitCase limit_case(const LimitQuestion& question, TruthCache& truths);
+/// InvalidInput for a record: the truth has to be simulated. `outputs`: what the first stroke is
+/// simulated with beside its reactions, where somebody else asks for them too.
+LimitCase limit_case(const LimitQuestion& question, TruthCache& truths, OutputRequest outputs = {});
 
 /// The standard deviation to expect of every parameter, a verdict for each mode, and contact points
 /// that remove blind modes. Throws InvalidInput for a record: the truth has to be simulated.

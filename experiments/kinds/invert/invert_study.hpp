@@ -25,6 +25,11 @@ struct InvertOptions {
   void visit(OptionVisitor& visitor);
   std::int64_t& seed_slot() { return seed; }
   StreamKey key() const { return StreamKey(static_cast<std::uint64_t>(seed)); }
+  /// Recorded files, relative to the folder of the experiment's file.
+  std::vector<std::string> files_read() const {
+    if (!observation.has_record) return {};
+    return {observation.record.file};
+  }
 
   std::vector<Finding> lint() const;
   std::vector<std::string> plan() const;

@@ -6,6 +6,8 @@
 #include <numbers>
 
 #include "experiments/kinds/lint.hpp"
+#include "experiments/kinds/sample.hpp"
+#include "experiments/runs/stored_outcomes.hpp"
 #include "experiments/study/fingerprint.hpp"
 #include "libcalib/calibration.hpp"
 #include "libsim/signal/statistics.hpp"
@@ -139,6 +141,14 @@ void CalibrationLimitOptions::visit(OptionVisitor& visitor) {
       has_inversion, [this](OptionVisitor& members) { inversion.visit(members); });
 }
 
+CalibrationLimitExperiment::CalibrationLimitExperiment(Options options)
+    : ProductExperiment(
+          {axis_of("noise_level", options.noise_levels.size(),
+                   [&](std::size_t i) { return fmt::format("{:g}", options.noise_levels[i]); }),
+           axis_of("seed", static_cast<std::size_t>(options.seeds),
+                   [](std::size_t i) { return std::to_string(i); })}),
+      options_(std::move(options)) {}
+
 LimitQuestion limit_question_of(const CalibrationLimitOptions& options, double noise_level) {
   LimitQuestion question{.observation = options.observation, .noise_level = noise_level};
   question.calibrate_by(options.continuation);
@@ -181,36 +191,28 @@ LimitQuestion CalibrationLimitExperiment::limit_question() const {
   return limit_question_of(options_, options_.noise_levels.front());
 }
 
-std::vector<std::string> CalibrationLimitExperiment::axis_values(std::size_t task) const {
-  return {fmt::format("{:g}", level_of(task)),
-          std::to_string(task % static_cast<std::size_t>(options_.seeds))};
-}
-
+// Of a cell: any list that has it shares its outcome.
 std::string CalibrationLimitExperiment::fingerprint(std::size_t task,
                                                     const std::filesystem::path&) const {
   Options options = options_;
   options.noise_levels = {level_of(task)};
   options.seeds = 1;
-  return fmt::format("calibration_limit {} ", task % static_cast<std::size_t>(options_.seeds)) +
+  return fmt::format("calibration_limit {} ", place(task, 1)) +
          modcal::fingerprint([&](OptionVisitor& visitor) { options.visit(visitor); });
 }
 
 std::string CalibrationLimitExperiment::run_task(std::size_t task,
                                                  const StudyContext& context) const {
-  const auto draw = static_cast<std::uint64_t>(task % static_cast<std::size_t>(options_.seeds));
-  LimitOutcome outcome;
-  try {
-    outcome = calibrate_draw(level_of(task), draw, context.work.truths);
-  } catch (const InvalidInput& error) {
-    outcome.failure = error.what();
-  }
-  return outcome_text(outcome);
+  return report::json_line(attempted([&] { return calibrate_draw(task, context.work.truths); }));
 }
 
-LimitOutcome CalibrationLimitExperiment::calibrate_draw(double level, std::uint64_t draw,
+LimitOutcome CalibrationLimitExperiment::calibrate_draw(std::size_t task,
                                                         TruthCache& truths) const {
-  const StreamKey key = StreamKey(static_cast<std::uint64_t>(options_.seed)).with(draw);
-  LimitTruth truth = limit_truth(options_.observation, level, truths, options_.has_inversion);
+  const double level = level_of(task);
+  const StreamKey key =
+      StreamKey(static_cast<std::uint64_t>(options_.seed)).with(std::uint64_t{place(task, 1)});
+  LimitTruth truth =
+      limit_truth(options_.observation, level, truths, {.force = options_.has_inversion});
   // Every level has its own noise, so that levels are independent; starts are the same at all.
   if (level > 0.0) add_noise(key.with(level), truth.records);
   const CalibrationData data = CalibrationData::of_records(
@@ -235,25 +237,16 @@ LimitOutcome CalibrationLimitExperiment::calibrate_draw(double level, std::uint6
   return outcome;
 }
 
-std::string CalibrationLimitExperiment::failure_in(const std::string& outcome) const {
-  return read_limit_outcome(outcome).failure;
-}
-
 StudyResult CalibrationLimitExperiment::sum_up(const TaskOutcomes& outcomes,
                                                const StudyContext& context) const {
   std::vector<LimitLevel> levels;
   for (const double level : options_.noise_levels) levels.push_back({.noise_level = level});
-  std::size_t pending = 0;
-  for (std::size_t task = 0; task < outcomes.size(); ++task) {
-    if (!outcomes[task]) {
-      ++pending;
-      continue;
-    }
-    levels[task / static_cast<std::size_t>(options_.seeds)].outcomes.push_back(
-        read_limit_outcome(outcomes[task]->outcome));
-  }
-  StudyResult result = sum_up_limit(options_, levels, context);
-  result.pending_tasks = pending;
+  StudyResult result;
+  for_each_outcome<LimitOutcome>(outcomes, result,
+                                 [&](std::size_t task, LimitOutcome outcome, double /*seconds*/) {
+                                   levels[place(task, 0)].outcomes.push_back(std::move(outcome));
+                                 });
+  sum_up_limit(options_, levels, context, result);
   return result;
 }
 
@@ -261,10 +254,34 @@ StudyResult CalibrationLimitExperiment::replay(std::size_t task,
                                                const StudyContext& context) const {
   Options one = options_;
   one.noise_levels = {level_of(task)};
-  return sum_up_limit(
-      one,
-      {{.noise_level = level_of(task), .outcomes = {read_limit_outcome(run_task(task, context))}}},
-      context);
+  LimitLevel level{.noise_level = level_of(task)};
+  level.outcomes = {attempted([&] { return calibrate_draw(task, context.work.truths); })};
+  StudyResult result;
+  result.failed_tasks = level.outcomes[0].failure.empty() ? 0 : 1;
+  sum_up_limit(one, {level}, context, result);
+  return result;
+}
+
+void LimitOutcome::visit(ResultVisitor& visitor) {
+  visitor({.key = "failure", .optional = true}, failure);
+  if (!failure.empty()) return;
+  bool all = right();
+  visitor({.key = "law"}, law);
+  visitor({.key = "law_deviation"}, law_deviation);
+  visitor({.key = "frequencies"}, frequencies);
+  visitor({.key = "deviations"}, deviations);
+  visitor({.key = "contact"}, contact);
+  visitor({.key = "contact_deviation"}, contact_deviation);
+  visitor({.key = "sensors"}, sensors);
+  visitor({.key = "sensor_deviation"}, sensor_deviation);
+  visitor({.key = "law_chi2"}, law_chi2);
+  visitor({.key = "chi2"}, chi2);
+  visitor({.key = "chi2_deviation"}, chi2_deviation);
+  visitor({.key = "right"}, all);
+  visitor({.key = "fits"}, fits);
+  visitor({.key = "priors_hold"}, priors_hold);
+  visitor({.key = "paper_error"}, paper_error);
+  visitor({.key = "force_correlation"}, force_correlation);
 }
 
 }  // namespace modcal

@@ -6,12 +6,13 @@
 #include <memory>
 #include <vector>
 
+#include "experiments/kinds/axis_experiment.hpp"
 #include "experiments/kinds/calibrate/limit_source.hpp"
-#include "experiments/runs/task_experiment.hpp"
 #include "experiments/study/identification.hpp"
 #include "experiments/study/observation.hpp"
 #include "libcalib/likelihood/whitened_record.hpp"
 #include "libcalib/optimizers/staged/continuation.hpp"
+#include "libsim/base/result_visitor.hpp"
 
 namespace modcal {
 
@@ -48,10 +49,8 @@ struct LimitOutcome {
   /// Of the force identified with the calibrated model, from 10 % to 95 % of the record; NaN: not
   /// asked for.
   double force_correlation = 0.0;
+  void visit(ResultVisitor& visitor);
 };
-std::string outcome_text(const LimitOutcome& outcome);
-/// Throws InvalidInput for a text that outcome_text did not write.
-LimitOutcome read_limit_outcome(const std::string& text);
 
 /// Outcomes of one noise level.
 struct LimitLevel {
@@ -62,9 +61,10 @@ struct LimitLevel {
 /// The bound of one noise level.
 LimitQuestion limit_question_of(const CalibrationLimitOptions& options, double noise_level);
 
-/// Tables and figure; reads the truth and the bound from the scene.
-StudyResult sum_up_limit(const CalibrationLimitOptions& options,
-                         const std::vector<LimitLevel>& levels, const StudyContext& context);
+/// Adds tables, figure and acceptance to a result that knows how many failed; reads the truth and
+/// the bound from the scene.
+void sum_up_limit(const CalibrationLimitOptions& options, const std::vector<LimitLevel>& levels,
+                  const StudyContext& context, StudyResult& result);
 
 /// Clean reactions of the scene with the noise expected at a level; at zero the noise a calibration
 /// takes the aliases of clean records for.
@@ -74,33 +74,26 @@ struct LimitTruth {
   std::shared_ptr<const Truth> simulated;
 };
 LimitTruth limit_truth(const ObservationOptions& observation, double noise_level,
-                       TruthCache& truths, bool force = false);
+                       TruthCache& truths, OutputRequest outputs = {});
 
-class CalibrationLimitExperiment final : public TaskExperiment, public LimitSource {
+/// Kind "calibration_limit": noise levels by seeds.
+class CalibrationLimitExperiment final : public ProductExperiment, public LimitSource {
  public:
   using Options = CalibrationLimitOptions;
-  explicit CalibrationLimitExperiment(Options options) : options_(std::move(options)) {}
+  explicit CalibrationLimitExperiment(Options options);
   std::vector<Finding> lint() const override;
   std::vector<std::string> plan() const override;
   std::optional<PlannedSimulations> planned_simulations() const override;
   LimitQuestion limit_question() const override;
 
-  std::size_t task_count() const override {
-    return options_.noise_levels.size() * static_cast<std::size_t>(options_.seeds);
-  }
-  std::vector<std::string> axes() const override { return {"noise_level", "seed"}; }
-  std::vector<std::string> axis_values(std::size_t task) const override;
   std::string fingerprint(std::size_t task, const std::filesystem::path& folder) const override;
   std::string run_task(std::size_t task, const StudyContext& context) const override;
-  std::string failure_in(const std::string& outcome) const override;
   StudyResult sum_up(const TaskOutcomes& outcomes, const StudyContext& context) const override;
   StudyResult replay(std::size_t task, const StudyContext& context) const override;
 
  private:
-  LimitOutcome calibrate_draw(double level, std::uint64_t draw, TruthCache& truths) const;
-  double level_of(std::size_t task) const {
-    return options_.noise_levels[task / static_cast<std::size_t>(options_.seeds)];
-  }
+  LimitOutcome calibrate_draw(std::size_t task, TruthCache& truths) const;
+  double level_of(std::size_t task) const { return options_.noise_levels[place(task, 0)]; }
   Options options_;
 };
 

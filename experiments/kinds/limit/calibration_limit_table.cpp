@@ -1,15 +1,52 @@
-// Error of the calibration over noise: tables and acceptance.
+// Error of the calibration over noise: figure, tables and acceptance.
 #include <cmath>
 #include <limits>
 
 #include "experiments/kinds/limit/limit_summary.hpp"
+#include "experiments/kinds/sample.hpp"
+#include "experiments/report/result_table.hpp"
 #include "libcalib/identifiability/rms_interval.hpp"
 
 namespace modcal {
 namespace {
 
-report::Cell number_or_none(double value) {
-  return std::isfinite(value) ? report::Cell(value) : report::Cell();
+using report::ColorRole;
+using report::SeriesStyle;
+
+void add_panel(const std::string& title, const std::string& unit,
+               std::vector<report::Series> series, report::Figure& figure) {
+  report::Panel panel{.title = title,
+                      .x = {.label = "noise", .unit = "%", .logarithmic = true},
+                      .y = {.label = "error", .unit = unit, .logarithmic = true}};
+  for (report::Series& one : series) add_drawn(panel, std::move(one));
+  if (!panel.series.empty()) figure.panels.push_back(std::move(panel));
+}
+
+// Points of one parameter with their standard errors, and its bound. Without noise there is no
+// place on the axis.
+void add_parameter(const std::vector<LimitSummary>& levels, const std::string& parameter,
+                   const std::string& title, const std::string& unit, report::Figure& figure) {
+  report::Series points{
+      .label = "joint likelihood", .style = SeriesStyle::kPoints, .color = ColorRole::kFirst};
+  report::Series bound{.label = "bound", .color = ColorRole::kReference};
+  for (const LimitSummary& level : levels) {
+    const LimitRow* row = level.find(parameter);
+    if (!row || !(row->rmse > 0.0) || !(level.level > 0.0)) continue;
+    const double error = row->rmse / std::sqrt(2.0 * static_cast<double>(row->count));
+    add_band(points, row->noise_percent, {row->rmse, row->rmse - error, row->rmse + error});
+    bound.add(row->noise_percent, row->bound);
+  }
+  add_panel(title, unit, {std::move(points), std::move(bound)}, figure);
+}
+
+report::Series over_noise(const std::vector<LimitSummary>& levels, report::Series series,
+                          double LimitSummary::*value) {
+  for (const LimitSummary& level : levels) {
+    if (level.*value > 0.0 && level.level > 0.0) {
+      series.add(100.0 * level.level, level.*value);
+    }
+  }
+  return series;
 }
 
 RmsInterval interval_of(std::size_t count) {
@@ -17,95 +54,80 @@ RmsInterval interval_of(std::size_t count) {
   return count > 0 ? rms_interval(count) : RmsInterval{kNan, kNan};
 }
 
-report::Table row_table(const std::vector<LimitSummary>& levels, const std::string& command) {
-  report::Table table{.id = "calibration_limit",
-                      .title = "Error and bound",
-                      .caption =
-                          "Frequencies f_n as shares of f_n; efficiency is bound/RMSE; the "
-                          "intervals hold the true ratio with 95 % (chi-square of n draws); a "
-                          "failure is an error beyond 7.8 bounds or a run that broke.",
-                      .columns = {{.key = "noise_percent", .name = "noise", .unit = "%"},
-                                  {.key = "parameter"},
-                                  {.key = "rmse", .name = "RMSE"},
-                                  {.key = "bias"},
-                                  {.key = "crb", .name = "bound"},
-                                  {.key = "efficiency"},
-                                  {.key = "attainable_sd", .name = "attainable, force unknown"},
-                                  {.key = "ratio_low", .name = "RMSE/bound from"},
-                                  {.key = "ratio_high", .name = "to"},
-                                  {.key = "reported_sd", .name = "sd reported"},
-                                  {.key = "sd_ratio_low", .name = "that/RMSE from"},
-                                  {.key = "sd_ratio_high", .name = "to"},
-                                  {.key = "n"},
-                                  {.key = "failures"}},
-                      .command = command};
+void write_error(report::RowWriter& row, const LimitRow& item) {
+  const RmsInterval interval = interval_of(item.count);
+  const double sd_ratio = item.reported / item.rmse;
+  row({.key = "noise_percent", .name = "noise", .unit = "%"}, item.noise_percent);
+  row({.key = "parameter"}, item.parameter);
+  row({.key = "rmse", .name = "RMSE"}, item.rmse);
+  row({.key = "bias"}, item.bias);
+  row({.key = "crb", .name = "bound"}, item.bound);
+  row({.key = "efficiency"}, item.bound / item.rmse);
+  row({.key = "attainable_sd", .name = "attainable, force unknown"}, known(item.attainable));
+  row({.key = "ratio_low", .name = "RMSE/bound from"}, item.ratio() * interval.low);
+  row({.key = "ratio_high", .name = "to"}, item.ratio() * interval.high);
+  row({.key = "reported_sd", .name = "sd reported"}, item.reported);
+  row({.key = "sd_ratio_low", .name = "that/RMSE from"}, sd_ratio / interval.high);
+  row({.key = "sd_ratio_high", .name = "to"}, sd_ratio / interval.low);
+  row({.key = "n"}, item.count);
+  row({.key = "failures"}, item.failures);
+}
+
+report::Table row_table(const std::vector<LimitSummary>& levels) {
+  std::vector<LimitRow> rows;
   for (const LimitSummary& level : levels) {
-    for (const LimitRow& row : level.rows) {
-      const RmsInterval interval = interval_of(row.count);
-      const double sd_ratio = row.reported / row.rmse;
-      table.rows.push_back({row.noise_percent, row.parameter, row.rmse, row.bias, row.bound,
-                            row.bound / row.rmse, number_or_none(row.attainable),
-                            row.ratio() * interval.low, row.ratio() * interval.high, row.reported,
-                            sd_ratio / interval.high, sd_ratio / interval.low, row.count,
-                            row.failures + level.broken});
+    for (LimitRow row : level.rows) {
+      row.failures += level.broken;
+      rows.push_back(std::move(row));
     }
   }
-  return table;
+  return report::table_of(
+      {.id = "calibration_limit",
+       .title = "Error and bound",
+       .caption = "Frequencies f_n as shares of f_n; efficiency is bound/RMSE; the "
+                  "intervals hold the true ratio with 95 % (chi-square of n draws); a "
+                  "failure is an error beyond 7.8 bounds or a run that broke."},
+      rows, write_error);
 }
 
-report::Table pooled_table(const std::vector<LimitSummary>& levels, const std::string& command) {
-  report::Table table{.id = "calibration_limit_pooled",
-                      .title = "All noise levels together",
-                      .caption = "The law's errors in bounds; every level has its own noise.",
-                      .columns = {{.key = "parameter"},
-                                  {.key = "ratio", .name = "RMSE/bound", .format = "{:.3f}"},
-                                  {.key = "ratio_low", .name = "from", .format = "{:.3f}"},
-                                  {.key = "ratio_high", .name = "to", .format = "{:.3f}"},
-                                  {.key = "bias", .name = "bias, bounds", .format = "{:.3f}"},
-                                  {.key = "sd_ratio", .name = "sd/RMSE", .format = "{:.3f}"},
-                                  {.key = "sd_ratio_low", .name = "from", .format = "{:.3f}"},
-                                  {.key = "sd_ratio_high", .name = "to", .format = "{:.3f}"},
-                                  {.key = "n"}},
-                      .command = command};
-  for (const PooledRow& row : pooled_rows(levels)) {
-    const RmsInterval interval = interval_of(row.count);
-    table.rows.push_back({row.parameter, row.ratio, row.ratio * interval.low,
-                          row.ratio * interval.high, row.bias, row.sd_ratio,
-                          row.sd_ratio / interval.high, row.sd_ratio / interval.low, row.count});
-  }
-  return table;
+void write_pooled(report::RowWriter& row, const PooledRow& item) {
+  const RmsInterval interval = interval_of(item.count);
+  const auto ratio = [&row](std::string_view key, std::string_view name, double value) {
+    row({.key = key, .name = name, .format = "{:.3f}"}, value);
+  };
+  row({.key = "parameter"}, item.parameter);
+  ratio("ratio", "RMSE/bound", item.ratio);
+  ratio("ratio_low", "from", item.ratio * interval.low);
+  ratio("ratio_high", "to", item.ratio * interval.high);
+  ratio("bias", "bias, bounds", item.bias);
+  ratio("sd_ratio", "sd/RMSE", item.sd_ratio);
+  ratio("sd_ratio_low", "from", item.sd_ratio / interval.high);
+  ratio("sd_ratio_high", "to", item.sd_ratio / interval.low);
+  row({.key = "n"}, item.count);
 }
 
-report::Table level_table(const std::vector<LimitSummary>& levels, const std::string& command) {
-  report::Table table{
-      .id = "calibration_limit_levels",
-      .title = "Noise levels",
-      .columns = {{.key = "noise_percent", .name = "noise", .unit = "%"},
-                  {.key = "n"},
-                  {.key = "failures", .name = "wrong"},
-                  {.key = "silent", .name = "wrong and not contradicted"},
-                  {.key = "rejected", .name = "contradicted by chi2"},
-                  {.key = "priors_rejected", .name = "priors contradicted"},
-                  {.key = "mean_chi2", .name = "mean reduced chi2", .format = "{:.4f}"},
-                  {.key = "chi2_scatter", .name = "its scatter", .format = "{:.4f}"},
-                  {.key = "chi2_deviation", .name = "as stated", .format = "{:.4f}"},
-                  {.key = "mean_law_chi2", .name = "that of the law", .format = "{:.4f}"},
-                  {.key = "free_rms", .name = "free f_n: rms of RMSE/bound"},
-                  {.key = "free_worst", .name = "largest"},
-                  {.key = "median_relative_error", .name = "median error, excited modes"},
-                  {.key = "median_bound", .name = "median bound"},
-                  {.key = "paper_median_relative_error", .name = "the paper's method"},
-                  {.key = "force_correlation", .name = "correlation of the identified force"}},
-      .command = command};
-  for (const LimitSummary& level : levels) {
-    table.rows.push_back({100.0 * level.level, level.runs, level.wrong, level.silent,
-                          level.contradicted, level.priors_contradicted, level.mean_chi2,
-                          level.chi2_scatter, level.chi2_deviation, level.mean_law_chi2,
-                          level.free_rms, level.free_worst, level.median_error, level.median_bound,
-                          number_or_none(level.paper_error),
-                          number_or_none(level.force_correlation)});
-  }
-  return table;
+void write_level(report::RowWriter& row, const LimitSummary& level) {
+  const auto chi2 = [&row](std::string_view key, std::string_view name, double value) {
+    row({.key = key, .name = name, .format = "{:.4f}"}, value);
+  };
+  row({.key = "noise_percent", .name = "noise", .unit = "%"}, 100.0 * level.level);
+  row({.key = "n"}, level.runs);
+  row({.key = "failures", .name = "wrong"}, level.wrong);
+  row({.key = "silent", .name = "wrong and not contradicted"}, level.silent);
+  row({.key = "rejected", .name = "contradicted by chi2"}, level.contradicted);
+  row({.key = "priors_rejected", .name = "priors contradicted"}, level.priors_contradicted);
+  chi2("mean_chi2", "mean reduced chi2", level.mean_chi2);
+  chi2("chi2_scatter", "its scatter", level.chi2_scatter);
+  chi2("chi2_deviation", "as stated", level.chi2_deviation);
+  chi2("mean_law_chi2", "that of the law", level.mean_law_chi2);
+  row({.key = "free_rms", .name = "free f_n: rms of RMSE/bound"}, level.free_rms);
+  row({.key = "free_worst", .name = "largest"}, level.free_worst);
+  row({.key = "median_relative_error", .name = "median error, excited modes"}, level.median_error);
+  row({.key = "median_bound", .name = "median bound"}, level.median_bound);
+  row({.key = "paper_median_relative_error", .name = "the paper's method"},
+      known(level.paper_error));
+  row({.key = "force_correlation", .name = "correlation of the identified force"},
+      known(level.force_correlation));
 }
 
 // RMSE, bias and reported deviation of one parameter of the law. B on strings bowed off the nodes
@@ -173,29 +195,67 @@ std::string summary_line(const LimitSummary& level) {
 
 }  // namespace
 
-StudyResult sum_up_limit(const CalibrationLimitOptions& options,
-                         const std::vector<LimitLevel>& levels, const StudyContext& context) {
+report::Figure limit_figure(const std::vector<LimitSummary>& levels) {
+  report::Figure figure{.id = "calibration_limit_figure",
+                        .title = "Calibration error against noise",
+                        .caption =
+                            "Points: RMSE over the seeds, bars: its standard error; line: "
+                            "Cramér-Rao bound with the force unknown.",
+                        .columns = 3};
+  static constexpr const char* kPanels[][3] = {
+      {"f0", "f0", "Hz"},
+      {"B", "B", "1"},
+      {"x_c", "x_c", "m"},
+      {"damping", "damping factor", "1"},
+      {"x_c, frequencies free", "x_c, frequencies free", "m"},
+      {"gain", "sensor gain", "1"},
+      {"delay", "sensor delay", "s"},
+      {"corner", "sensor corner", "Hz"}};
+  for (const auto& [parameter, title, unit] : kPanels) {
+    add_parameter(levels, parameter, title, unit, figure);
+  }
+  add_panel(
+      "f_n, median of the excited modes", "1",
+      {over_noise(
+           levels,
+           {.label = "joint likelihood", .style = SeriesStyle::kPoints, .color = ColorRole::kFirst},
+           &LimitSummary::median_error),
+       over_noise(levels, {.label = "bound, median mode", .color = ColorRole::kReference},
+                  &LimitSummary::median_bound),
+       over_noise(levels,
+                  {.label = "spectral peak (the paper)",
+                   .style = SeriesStyle::kPoints,
+                   .color = ColorRole::kSecond},
+                  &LimitSummary::paper_error)},
+      figure);
+  return figure;
+}
+
+void sum_up_limit(const CalibrationLimitOptions& options, const std::vector<LimitLevel>& levels,
+                  const StudyContext& context, StudyResult& result) {
   std::vector<LimitSummary> summaries;
-  StudyResult result;
   for (const LimitLevel& level : levels) {
     const LimitTruth truth =
         limit_truth(options.observation, level.noise_level, context.work.truths);
     const ExpectedLimit bound = expected_limit(
         limit_case(limit_question_of(options, level.noise_level), context.work.truths));
     summaries.push_back(summarize_level(level, truth, bound));
-    result.failed_tasks += summaries.back().broken;
     result.summary += summary_line(summaries.back());
   }
   judge(summaries, options.known_noise, result);
-  report::Figure figure = limit_figure(summaries, context.command);
+  report::Figure figure = limit_figure(summaries);
   if (!figure.panels.empty()) result.blocks.emplace_back(std::move(figure));
-  const report::Table rows = row_table(summaries, context.command);
+  const report::Table rows = row_table(summaries);
   result.files.emplace_back("calibration_limit.json", report::table_json(rows));
-  result.blocks.emplace_back(level_table(summaries, context.command));
-  result.blocks.emplace_back(pooled_table(summaries, context.command));
+  result.blocks.emplace_back(report::table_of(
+      {.id = "calibration_limit_levels", .title = "Noise levels"}, summaries, write_level));
+  result.blocks.emplace_back(
+      report::table_of({.id = "calibration_limit_pooled",
+                        .title = "All noise levels together",
+                        .caption = "The law's errors in bounds; every level has its own noise."},
+                       pooled_rows(summaries), write_pooled));
   result.blocks.emplace_back(rows);
   if (result.failed_tasks > 0) result.status = report::Status::kFailed;
-  return result;
 }
 
 }  // namespace modcal

@@ -61,6 +61,6 @@ LimitSummary summarize_level(const LimitLevel& level, const LimitTruth& truth,
 std::vector<PooledRow> pooled_rows(const std::vector<LimitSummary>& levels);
 
 /// Errors over noise: law, x_c, median frequency, with bound and the paper's method.
-report::Figure limit_figure(const std::vector<LimitSummary>& levels, const std::string& command);
+report::Figure limit_figure(const std::vector<LimitSummary>& levels);
 
 }  // namespace modcal

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/kinds/limit/calibration_limit_experiment.hpp"
 #include "experiments/kinds/calibrate/correlation_text.hpp"
 #include "experiments/kinds/calibrate/limit_source.hpp"
+#include "experiments/kinds/limit/calibration_limit_experiment.hpp"
 #include "libcalib/identifiability/expected_limit.hpp"
 #include "libcalib/likelihood/noise_level.hpp"
 #include "libsim/signal/statistics.hpp"
@@ -139,12 +139,12 @@ std::string proposals(const LimitQuestion& question, const ExpectedLimit& limit,
 }  // namespace
 
 LimitTruth limit_truth(const ObservationOptions& observation, double noise_level,
-                       TruthCache& truths, bool force) {
+                       TruthCache& truths, OutputRequest outputs) {
   MODCAL_REQUIRE(observation.has_scene,
                  "a limit is computed from a simulated truth: state a scene, not a record");
   const double rate = observation.measurement.sample_rate;
-  const auto truth = truths.get(observation.truth, rate,
-                                {.force = force, .left_reaction = true, .right_reaction = true});
+  outputs.left_reaction = outputs.right_reaction = true;
+  const auto truth = truths.get(observation.truth, rate, outputs);
   LimitTruth result{.point = {truth->basis, truth->contact}, .simulated = truth};
   result.records.sample_rate = rate;
   result.records.reactions = {truth->simulation.left_reaction.samples,
@@ -184,8 +184,8 @@ void LimitQuestion::calibrate_by(const CalibrationOptions& calibration) {
   unknowns.corner.free = searched("corner");
 }
 
-LimitCase limit_case(const LimitQuestion& question, TruthCache& truths) {
-  LimitTruth first = limit_truth(question.observation, question.noise_level, truths);
+LimitCase limit_case(const LimitQuestion& question, TruthCache& truths, OutputRequest outputs) {
+  LimitTruth first = limit_truth(question.observation, question.noise_level, truths, outputs);
   LimitCase result{.truth = first.point,
                    .strokes = {std::move(first.records)},
                    .contacts = {first.point.contact},

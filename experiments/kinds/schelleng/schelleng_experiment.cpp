@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "experiments/kinds/lint.hpp"
+#include "experiments/runs/stored_outcomes.hpp"
 #include "experiments/study/fingerprint.hpp"
 
 namespace modcal {
@@ -17,6 +18,16 @@ void lint_axis(const std::string& path, const MapAxis& axis, std::vector<Finding
 }
 
 }  // namespace
+
+SchellengExperiment::SchellengExperiment(Options options)
+    : ProductExperiment(
+          {axis_of(
+               "bow.normal_force", static_cast<std::size_t>(options.forces.count),
+               [&](std::size_t i) { return fmt::format("{:.6g} N", options.forces.center(i)); }),
+           axis_of(
+               "bow.position/length", static_cast<std::size_t>(options.positions.count),
+               [&](std::size_t i) { return fmt::format("{:.6g}", options.positions.center(i)); })}),
+      options_(std::move(options)) {}
 
 std::vector<Finding> SchellengExperiment::lint() const {
   const SchellengOptions& o = options_;
@@ -65,11 +76,6 @@ std::optional<PlannedSimulations> SchellengExperiment::planned_simulations() con
                             .count = options_.cells()};
 }
 
-std::vector<std::string> SchellengExperiment::axis_values(std::size_t task) const {
-  return {fmt::format("{:.6g}", options_.positions.center(options_.position_of(task))),
-          fmt::format("{:.6g} N", options_.forces.center(options_.force_of(task)))};
-}
-
 // The axes are left out: a cell is the same in any map that has it.
 std::string SchellengExperiment::fingerprint(std::size_t task,
                                              const std::filesystem::path& /*folder*/) const {
@@ -85,20 +91,19 @@ std::string SchellengExperiment::fingerprint(std::size_t task,
 }
 
 std::string SchellengExperiment::run_task(std::size_t task, const StudyContext& context) const {
-  return cell_outcome_text(run_map_cell(options_, task, context.stop));
-}
-
-std::string SchellengExperiment::failure_in(const std::string& outcome) const {
-  return read_cell_outcome(outcome).failure;
+  return report::json_line(attempted([&] { return run_map_cell(options_, task, context.stop); }));
 }
 
 StudyResult SchellengExperiment::sum_up(const TaskOutcomes& outcomes,
-                                        const StudyContext& context) const {
+                                        const StudyContext& /*context*/) const {
+  StudyResult result;
   CellOutcomes cells(outcomes.size());
-  for (std::size_t task = 0; task < outcomes.size(); ++task) {
-    if (outcomes[task]) cells[task] = read_cell_outcome(outcomes[task]->outcome);
-  }
-  return sum_up_map(options_, cells, context);
+  for_each_outcome<CellOutcome>(outcomes, result,
+                                [&](std::size_t task, CellOutcome outcome, double /*seconds*/) {
+                                  cells[task] = std::move(outcome);
+                                });
+  sum_up_map(options_, cells, result);
+  return result;
 }
 
 }  // namespace modcal

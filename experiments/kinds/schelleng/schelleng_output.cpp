@@ -1,8 +1,12 @@
-// Tables, figures and files of a Schelleng diagram.
+// Borders, tables, figures and files of a Schelleng diagram.
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
-#include "experiments/kinds/schelleng/schelleng_study.hpp"
+#include "experiments/kinds/sample.hpp"
+#include "experiments/kinds/schelleng/schelleng_experiment.hpp"
+#include "experiments/report/result_table.hpp"
 #include "experiments/study/figures.hpp"
 #include "libsim/signal/statistics.hpp"
 
@@ -10,6 +14,25 @@ namespace modcal {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+bool is_helmholtz(const std::optional<CellOutcome>& outcome) {
+  return outcome && outcome->failure.empty() && outcome->regime == StringRegime::kHelmholtz;
+}
+
+// First and one past the last row of the longest run of Helmholtz cells of a column.
+std::pair<std::size_t, std::size_t> longest_run(const SchellengOptions& options,
+                                                const CellOutcomes& outcomes, std::size_t column) {
+  const auto columns = static_cast<std::size_t>(options.positions.count);
+  const auto rows = static_cast<std::size_t>(options.forces.count);
+  std::pair<std::size_t, std::size_t> best{0, 0};
+  std::size_t begin = 0;
+  for (std::size_t row = 0; row <= rows; ++row) {
+    if (row < rows && is_helmholtz(outcomes[row * columns + column])) continue;
+    if (row - begin > best.second - best.first) best = {begin, row};
+    begin = row + 1;
+  }
+  return best;
+}
 
 struct RegimeLook {
   const char* label;
@@ -58,8 +81,7 @@ report::CategoryMap regime_map(const SchellengOptions& options, const CellOutcom
   return map;
 }
 
-report::Figure map_figure(const SchellengOptions& options, const CellOutcomes& outcomes,
-                          const StudyContext& context) {
+report::Figure map_figure(const SchellengOptions& options, const CellOutcomes& outcomes) {
   report::Panel panel{.x = {.label = "bow position x_c/L", .unit = "1", .logarithmic = true},
                       .y = {.label = "bow force", .unit = "N", .logarithmic = true}};
   panel.x.range = {options.positions.lowest, options.positions.highest};
@@ -74,160 +96,146 @@ report::Figure map_figure(const SchellengOptions& options, const CellOutcomes& o
           "of Schelleng (1973) with the losses of the modes.",
           options.criteria.periods, options.scene.duration,
           options.start == "helmholtz" ? "in ideal Helmholtz motion" : "from rest"),
-      .panels = {panel},
-      .command = context.command};
+      .panels = {panel}};
 }
 
-report::Table count_table(const CellOutcomes& outcomes, const std::string& command) {
-  std::array<std::size_t, kStringRegimes> counts{};
+report::Table count_table(const CellOutcomes& outcomes) {
+  std::vector<std::pair<const char*, std::size_t>> counts;
+  for (std::size_t i = 0; i < kStringRegimes; ++i) {
+    counts.emplace_back(look_of(static_cast<StringRegime>(i)).label, 0);
+  }
   std::size_t failed = 0, pending = 0;
   for (const auto& outcome : outcomes) {
-    if (!outcome) {
-      ++pending;
-    } else if (!outcome->failure.empty()) {
-      ++failed;
-    } else {
-      ++counts[static_cast<std::size_t>(outcome->regime)];
-    }
+    ++(!outcome               ? pending
+       : !has_regime(outcome) ? failed
+                              : counts[static_cast<std::size_t>(outcome->regime)].second);
   }
-  report::Table table{
-      .id = "regimes",
-      .title = "Cells of each motion",
-      .columns = {{.key = "motion"},
-                  {.key = "cells"},
-                  {.key = "share_percent", .name = "share", .unit = "%", .format = "{:.1f}"}},
-      .command = command};
-  const auto add = [&](const char* name, std::size_t count) {
-    table.rows.push_back(
-        {name, count, 100.0 * static_cast<double>(count) / static_cast<double>(outcomes.size())});
-  };
-  for (std::size_t i = 0; i < kStringRegimes; ++i) {
-    add(look_of(static_cast<StringRegime>(i)).label, counts[i]);
-  }
-  if (failed > 0) add("failed", failed);
-  if (pending > 0) add("not run yet", pending);
-  return table;
+  if (failed > 0) counts.emplace_back("failed", failed);
+  if (pending > 0) counts.emplace_back("not run yet", pending);
+  return report::table_of(
+      {.id = "regimes", .title = "Cells of each motion"}, counts,
+      [&outcomes](report::RowWriter& row, const auto& count) {
+        row({.key = "motion"}, std::string(count.first));
+        row({.key = "cells"}, count.second);
+        row({.key = "share_percent", .name = "share", .unit = "%", .format = "{:.1f}"},
+            100.0 * static_cast<double>(count.second) / static_cast<double>(outcomes.size()));
+      });
 }
 
-struct Spread {
-  std::size_t count = 0;
-  double q10 = kNaN, median = kNaN, q90 = kNaN;
-};
-
-Spread spread_of(const std::vector<double>& values) {
-  std::vector<double> known;
-  for (const double value : values) {
-    if (std::isfinite(value)) known.push_back(value);
+Sample finite_sample(const std::vector<BorderRatios>& ratios, double BorderRatios::*border) {
+  Sample sample;
+  for (const BorderRatios& one : ratios) {
+    if (std::isfinite(one.*border)) sample.add(one.*border);
   }
-  return {known.size(), quantile(known, 0.1), quantile(known, 0.5), quantile(known, 0.9)};
+  return sample;
 }
 
-report::Table border_table(const Spread& lowest, const Spread& highest,
-                           const std::string& command) {
-  report::Table table{
-      .id = "borders",
-      .title = "Borders of Helmholtz motion over Schelleng's limits",
-      .caption = "Over the bow positions at which the border lies on the map.",
-      .columns = {{.key = "border"},
-                  {.key = "positions"},
-                  {.key = "median", .name = "simulated / limit, median", .format = "{:.2f}"},
-                  {.key = "q10", .name = "10 %", .format = "{:.2f}"},
-                  {.key = "q90", .name = "90 %", .format = "{:.2f}"}},
-      .command = command};
-  table.rows = {{"lowest force", lowest.count, lowest.median, lowest.q10, lowest.q90},
-                {"highest force", highest.count, highest.median, highest.q10, highest.q90}};
-  return table;
+// A border of Helmholtz motion over Schelleng's limit, at the positions where it is on the map.
+using Borders = std::vector<std::pair<const char*, Sample>>;
+
+report::Table border_table(const Borders& borders) {
+  return report::table_of(
+      {.id = "borders",
+       .title = "Borders of Helmholtz motion over Schelleng's limits",
+       .caption = "Over the bow positions at which the border lies on the map."},
+      borders, [](report::RowWriter& row, const auto& border) {
+        const auto& [name, ratios] = border;
+        row({.key = "border"}, fmt::format("{} force", name));
+        row({.key = "positions"}, ratios.values.size());
+        row({.key = "median", .name = "simulated / limit, median", .format = "{:.2f}"},
+            ratios.median());
+        row({.key = "q10", .name = "10 %", .format = "{:.2f}"}, ratios.q10());
+        row({.key = "q90", .name = "90 %", .format = "{:.2f}"}, ratios.q90());
+      });
 }
 
 // One row a cell, with everything that was measured.
 report::Table cell_table(const SchellengOptions& options, const CellOutcomes& outcomes) {
-  report::Table table{.id = "map",
-                      .columns = {{.key = "task"},
-                                  {.key = "position", .unit = "1"},
-                                  {.key = "normal_force", .unit = "N"},
-                                  {.key = "motion"},
-                                  {.key = "slips_per_period", .unit = "1"},
-                                  {.key = "periodicity", .unit = "1"},
-                                  {.key = "period", .unit = "1"},
-                                  {.key = "adherence", .unit = "1"},
-                                  {.key = "amplitude", .unit = "1"},
-                                  {.key = "failure"}}};
+  report::Table table{.id = "map"};
   for (std::size_t cell = 0; cell < outcomes.size(); ++cell) {
-    std::vector<report::Cell> row = {cell, options.positions.center(options.position_of(cell)),
-                                     options.forces.center(options.force_of(cell))};
-    row.resize(table.columns.size());
-    if (has_regime(outcomes[cell])) {
-      const RegimeFeatures& f = outcomes[cell]->features;
-      row[3] = std::string(name_of(outcomes[cell]->regime));
-      row[4] = f.slips_per_period;
-      row[5] = f.periodicity;
-      row[6] = f.period;
-      row[7] = f.adherence;
-      row[8] = f.amplitude;
-    } else if (outcomes[cell]) {
-      row[9] = outcomes[cell]->failure;
-    }
-    table.rows.push_back(std::move(row));
+    const std::optional<CellOutcome>& outcome = outcomes[cell];
+    report::add_row(table, [&](report::RowWriter& row) {
+      row({.key = "task"}, cell);
+      row({.key = "position", .unit = "1"}, options.positions.center(options.position_of(cell)));
+      row({.key = "normal_force", .unit = "N"}, options.forces.center(options.force_of(cell)));
+      const auto measured = [&](std::string_view key, std::string_view unit, auto value) {
+        row({.key = key, .unit = unit},
+            has_regime(outcome) ? std::optional(value(*outcome)) : std::nullopt);
+      };
+      const auto feature = [&](std::string_view key, double RegimeFeatures::*member) {
+        measured(key, "1", [member](const CellOutcome& found) { return found.features.*member; });
+      };
+      measured("motion", {}, [](const CellOutcome& found) { return name_of(found.regime); });
+      feature("slips_per_period", &RegimeFeatures::slips_per_period);
+      feature("periodicity", &RegimeFeatures::periodicity);
+      feature("period", &RegimeFeatures::period);
+      feature("adherence", &RegimeFeatures::adherence);
+      feature("amplitude", &RegimeFeatures::amplitude);
+      row.cell({.key = "failure"},
+               outcome && !has_regime(outcome) ? report::Cell(outcome->failure) : report::Cell());
+    });
   }
   return table;
 }
 
 void add_failures(const CellOutcomes& outcomes, StudyResult& result) {
-  const std::string* first = nullptr;
-  for (const auto& outcome : outcomes) {
-    if (!outcome) {
-      ++result.pending_tasks;
-    } else if (!outcome->failure.empty()) {
-      if (first == nullptr) first = &outcome->failure;
-      ++result.failed_tasks;
-    }
-  }
-  if (first == nullptr) return;
-  const bool all = result.failed_tasks + result.pending_tasks == outcomes.size();
-  result.status = all ? report::Status::kFailed : report::Status::kSomeFailed;
+  const auto first = std::find_if(outcomes.begin(), outcomes.end(), [](const auto& outcome) {
+    return outcome && !outcome->failure.empty();
+  });
+  if (first == outcomes.end()) return;
   result.blocks.emplace_back(report::Text{
-      .text = fmt::format("{} cells failed; the first: {}", result.failed_tasks, *first),
+      .text = fmt::format("{} cells failed; the first: {}", result.failed_tasks, (*first)->failure),
       .kind = report::Text::Kind::kFailure});
 }
 
-std::string summary_of(const report::Table& counts, const Spread& lowest, const Spread& highest) {
+std::string summary_of(const report::Table& counts, const Borders& borders) {
   std::string text;
   for (const auto& row : counts.rows) {
     text += fmt::format("{:<18}{:>6} cells  {:>5} %\n", cell_text(row[0], counts.columns[0]),
                         cell_text(row[1], counts.columns[1]), cell_text(row[2], counts.columns[2]));
   }
-  const auto line = [](const char* name, const Spread& spread) {
-    return spread.count == 0
-               ? fmt::format("{} force of Helmholtz motion: not on the map\n", name)
-               : fmt::format(
-                     "{} force of Helmholtz motion / Schelleng's limit: {:.2f} [{:.2f}, "
-                     "{:.2f}] over {} bow positions\n",
-                     name, spread.median, spread.q10, spread.q90, spread.count);
-  };
-  return text + line("lowest", lowest) + line("highest", highest);
+  for (const auto& [name, ratios] : borders) {
+    text += ratios.values.empty()
+                ? fmt::format("{} force of Helmholtz motion: not on the map\n", name)
+                : fmt::format(
+                      "{} force of Helmholtz motion / Schelleng's limit: {:.2f} [{:.2f}, "
+                      "{:.2f}] over {} bow positions\n",
+                      name, ratios.median(), ratios.q10(), ratios.q90(), ratios.values.size());
+  }
+  return text;
 }
 
 }  // namespace
 
-StudyResult sum_up_map(const SchellengOptions& options, const CellOutcomes& outcomes,
-                       const StudyContext& context) {
-  StudyResult result;
-  add_failures(outcomes, result);
-  std::vector<double> low, high;
-  for (const BorderRatios& ratios : border_ratios(options, outcomes)) {
-    low.push_back(ratios.lowest);
-    high.push_back(ratios.highest);
+std::vector<BorderRatios> border_ratios(const SchellengOptions& options,
+                                        const CellOutcomes& outcomes) {
+  const std::vector<double> edges = options.forces.edges();
+  std::vector<BorderRatios> ratios;
+  for (std::size_t column = 0; column < static_cast<std::size_t>(options.positions.count);
+       ++column) {
+    const auto [begin, end] = longest_run(options, outcomes, column);
+    const BowForceLimits limits = schelleng_limits(options.cell_scene(column));
+    const bool is_there = begin < end;
+    ratios.push_back({is_there && begin > 0 ? edges[begin] / limits.lowest : kNaN,
+                      is_there && end + 1 < edges.size() ? edges[end] / limits.highest : kNaN});
   }
-  const Spread lowest = spread_of(low), highest = spread_of(high);
-  report::Table counts = count_table(outcomes, context.command);
-  result.summary = summary_of(counts, lowest, highest);
-  result.blocks.emplace_back(map_figure(options, outcomes, context));
+  return ratios;
+}
+
+void sum_up_map(const SchellengOptions& options, const CellOutcomes& outcomes,
+                StudyResult& result) {
+  add_failures(outcomes, result);
+  const std::vector<BorderRatios> ratios = border_ratios(options, outcomes);
+  const Borders borders = {{"lowest", finite_sample(ratios, &BorderRatios::lowest)},
+                           {"highest", finite_sample(ratios, &BorderRatios::highest)}};
+  report::Table counts = count_table(outcomes);
+  result.summary = summary_of(counts, borders);
+  result.blocks.emplace_back(map_figure(options, outcomes));
   result.blocks.emplace_back(std::move(counts));
-  result.blocks.emplace_back(border_table(lowest, highest, context.command));
+  result.blocks.emplace_back(border_table(borders));
   const report::Table cells = cell_table(options, outcomes);
   result.files.emplace_back("map.csv", report::table_csv(cells));
   result.files.emplace_back("map.json", report::table_json(cells));
-  return result;
 }
 
 StudyResult show_cell(const SchellengOptions& options, std::size_t cell,
@@ -251,7 +259,6 @@ StudyResult show_cell(const SchellengOptions& options, std::size_t cell,
   FigureOptions figure{.id = "waveforms", .title = "The last periods"};
   figure.windows = {{.start = scene.duration - shown, .stop = scene.duration}};
   report::Figure drawn = simulation_figure(figure, simulation);
-  drawn.command = context.command;
   result.blocks.emplace_back(std::move(drawn));
   const RegimeFeatures& f = outcome.features;
   const BowForceLimits limits = schelleng_limits(scene);

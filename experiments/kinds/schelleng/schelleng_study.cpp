@@ -1,8 +1,6 @@
-#include "experiments/kinds/schelleng/schelleng_study.hpp"
-
 #include <cmath>
-#include <nlohmann/json.hpp>
 
+#include "experiments/kinds/schelleng/schelleng_experiment.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/dynamics/scene/string_regime.hpp"
 
@@ -90,52 +88,21 @@ CellOutcome judge_cell(const Scene& scene, const Simulation& simulation,
 }
 
 CellOutcome run_map_cell(const SchellengOptions& options, std::size_t cell, const StopToken& stop) {
-  try {
-    const Scene scene = options.cell_scene(cell);
-    const Simulation simulation =
-        options.simulator.make()->simulate(scene, options.sample_rate, options.outputs(), stop);
-    return judge_cell(scene, simulation, options.criteria);
-  } catch (const InvalidInput& error) {
-    return {.failure = error.what()};
-  }
+  const Scene scene = options.cell_scene(cell);
+  const Simulation simulation =
+      options.simulator.make()->simulate(scene, options.sample_rate, options.outputs(), stop);
+  return judge_cell(scene, simulation, options.criteria);
 }
 
-std::string cell_outcome_text(const CellOutcome& outcome) {
-  if (!outcome.failure.empty()) return nlohmann::json{{"failure", outcome.failure}}.dump();
-  const RegimeFeatures& features = outcome.features;
-  return nlohmann::json{
-      {"regime", name_of(outcome.regime)},   {"slips_per_period", features.slips_per_period},
-      {"periodicity", features.periodicity}, {"period", features.period},
-      {"adherence", features.adherence},     {"amplitude", features.amplitude}}
-      .dump();
-}
-
-namespace {
-
-StringRegime read_regime(const std::string& name) {
-  for (std::size_t i = 0; i < kStringRegimes; ++i) {
-    if (name_of(static_cast<StringRegime>(i)) == name) return static_cast<StringRegime>(i);
-  }
-  throw InvalidInput("unknown regime of a bowed string: " + name);
-}
-
-}  // namespace
-
-CellOutcome read_cell_outcome(const std::string& text) {
-  try {
-    const auto value = nlohmann::json::parse(text);
-    CellOutcome outcome{.failure = value.value("failure", std::string())};
-    if (!outcome.failure.empty()) return outcome;
-    outcome.regime = read_regime(value.at("regime").get<std::string>());
-    outcome.features = {.slips_per_period = value.at("slips_per_period").get<double>(),
-                        .periodicity = value.at("periodicity").get<double>(),
-                        .period = value.at("period").get<double>(),
-                        .adherence = value.at("adherence").get<double>(),
-                        .amplitude = value.at("amplitude").get<double>()};
-    return outcome;
-  } catch (const nlohmann::json::exception& error) {
-    throw InvalidInput(std::string("the stored outcome of a cell cannot be read: ") + error.what());
-  }
+void CellOutcome::visit(ResultVisitor& visitor) {
+  visitor({.key = "failure", .optional = true}, failure);
+  if (!failure.empty()) return;
+  visitor.word({.key = "regime"}, regime, StringRegime::kSilent);
+  visitor({.key = "slips_per_period"}, features.slips_per_period);
+  visitor({.key = "periodicity"}, features.periodicity);
+  visitor({.key = "period"}, features.period);
+  visitor({.key = "adherence"}, features.adherence);
+  visitor({.key = "amplitude"}, features.amplitude);
 }
 
 }  // namespace modcal

@@ -1,50 +1,42 @@
-#include "experiments/kinds/sweep/sweep_figures.hpp"
-
+// Correlation against noise, drawn.
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
-#include <map>
 
-#include "libsim/signal/statistics.hpp"
+#include "experiments/kinds/sweep/sweep_study.hpp"
 
 namespace modcal {
 namespace {
 
-report::Figure sweep_figure(const std::string& name, const std::vector<SweepRow>& rows,
-                            const std::string& command) {
-  using report::ColorRole;
-  report::Figure figure{.id = name + "_figure",
-                        .title = "Correlation of identified and true force against noise",
-                        .caption =
-                            "Median with the band from 10 % to 90 % of the draws; points: "
-                            "published figures.",
-                        .columns = 2,
-                        .command = command};
+using report::ColorRole;
+using report::SeriesStyle;
+
+report::Panel noise_panel(std::string title) {
+  return {.title = std::move(title),
+          .x = {.label = "noise", .unit = "%"},
+          .y = {.label = "correlation R"}};
+}
+
+std::vector<report::Panel> side_panels(const std::vector<SweepRow>& rows) {
+  std::vector<report::Panel> panels;
   for (const std::string side : {"1", "2"}) {
-    report::Series ours{.label = "median, 10-90 %", .style = report::SeriesStyle::kLineWithPoints};
+    report::Series ours{.label = "median, 10-90 %", .style = SeriesStyle::kLineWithPoints};
     ours.color = side == "1" ? ColorRole::kFirst : ColorRole::kSecond;
     report::Series paper{
-        .label = "paper", .style = report::SeriesStyle::kPoints, .color = ColorRole::kReference};
+        .label = "paper", .style = SeriesStyle::kPoints, .color = ColorRole::kReference};
     for (const SweepRow& row : rows) {
       if (row.side != side) continue;
-      ours.x.push_back(row.noise_percent);
-      ours.y.push_back(row.median);
-      ours.y_low.push_back(row.q10);
-      ours.y_high.push_back(row.q90);
-      if (!row.published_correlation) continue;
-      paper.x.push_back(row.noise_percent);
-      paper.y.push_back(*row.published_correlation);
+      add_band(ours, row.noise_percent, Spread::of(row.correlation));
+      if (row.published_correlation) {
+        paper.add(row.noise_percent, *row.published_correlation);
+      }
     }
-    report::Panel panel{.title = fmt::format("from R{}", side),
-                        .x = {.label = "noise", .unit = "%"},
-                        .y = {.label = "correlation R"},
-                        .series = {std::move(ours)}};
-    if (!paper.x.empty()) panel.series.push_back(std::move(paper));
-    figure.panels.push_back(std::move(panel));
+    panels.push_back(noise_panel("from R" + side));
+    panels.back().series = {std::move(ours)};
+    add_drawn(panels.back(), std::move(paper));
   }
-  return figure;
+  return panels;
 }
 
 std::string series_name(const std::string& side) {
@@ -54,71 +46,60 @@ std::string series_name(const std::string& side) {
   return side;
 }
 
-// Every estimate in one panel, with the better side of the published figures.
-report::Figure comparison_figure(const std::string& name, const std::vector<SweepRow>& rows,
-                                 const std::string& command) {
-  using report::ColorRole;
+report::Panel estimator_panel(const std::string& title, const std::vector<SweepRow>& rows,
+                              Sample SweepRow::*sample) {
   static constexpr ColorRole kColors[] = {ColorRole::kFirst, ColorRole::kSecond, ColorRole::kThird,
                                           ColorRole::kFourth, ColorRole::kFifth};
-  report::Figure figure{.id = name + "_figure",
-                        .title = "Correlation of identified and true force against noise",
-                        .caption = "Mean with the band from 10 % to 90 % of the draws.",
-                        .columns = 2,
-                        .command = command};
-  std::vector<std::string> sides;
+  report::Panel panel = noise_panel(title);
+  std::size_t sides = 0;
+  for (auto row = rows.begin(); row != rows.end(); ++sides) {
+    const std::string& side = row->side;
+    report::Series series{.label = series_name(side),
+                          .style = SeriesStyle::kLineWithPoints,
+                          .color = kColors[sides % std::size(kColors)]};
+    for (; row != rows.end() && row->side == side; ++row) {
+      const Sample& found = (*row).*sample;
+      if (std::isnan(found.known_mean())) continue;
+      add_band(series, row->noise_percent, {found.known_mean(), found.q10(), found.q90()});
+    }
+    add_drawn(panel, std::move(series));
+  }
+  return panel;
+}
+
+// Every estimate in one panel, with the better side of the published figures.
+std::vector<report::Panel> comparison_panels(const std::vector<SweepRow>& rows) {
+  std::vector<report::Panel> panels = {
+      estimator_panel("short windows", rows, &SweepRow::correlation),
+      estimator_panel("long window", rows, &SweepRow::whole)};
   std::map<double, double> paper;
   for (const SweepRow& row : rows) {
-    if (sides.empty() || sides.back() != row.side) sides.push_back(row.side);
     if (!row.published_correlation) continue;
     double& best = paper[row.noise_percent];
     best = std::max(best, *row.published_correlation);
   }
-  const auto panel_of = [&](const std::string& title, std::vector<double> SweepRow::*values) {
-    report::Panel panel{
-        .title = title, .x = {.label = "noise", .unit = "%"}, .y = {.label = "correlation R"}};
-    for (std::size_t s = 0; s < sides.size(); ++s) {
-      report::Series series{.label = series_name(sides[s]),
-                            .style = report::SeriesStyle::kLineWithPoints,
-                            .color = kColors[s % std::size(kColors)]};
-      for (const SweepRow& row : rows) {
-        if (row.side != sides[s] || std::isnan(mean_of(row.*values))) continue;
-        series.x.push_back(row.noise_percent);
-        series.y.push_back(mean_of(row.*values));
-        series.y_low.push_back(quantile(row.*values, 0.1));
-        series.y_high.push_back(quantile(row.*values, 0.9));
-      }
-      if (!series.x.empty()) panel.series.push_back(std::move(series));
-    }
-    return panel;
-  };
-  report::Panel windows = panel_of("short windows", &SweepRow::correlation);
-  if (!paper.empty()) {
-    report::Series series{.label = "paper, better side",
-                          .style = report::SeriesStyle::kPoints,
-                          .color = ColorRole::kReference};
-    for (const auto& [noise, value] : paper) {
-      series.x.push_back(noise);
-      series.y.push_back(value);
-    }
-    windows.series.push_back(std::move(series));
-  }
-  figure.panels.push_back(std::move(windows));
-  report::Panel whole = panel_of("long window", &SweepRow::whole);
-  if (!whole.series.empty()) figure.panels.push_back(std::move(whole));
-  return figure;
-}
-
-bool compares_estimators(const std::vector<SweepRow>& rows) {
-  return std::any_of(rows.begin(), rows.end(),
-                     [](const SweepRow& row) { return row.side != "1" && row.side != "2"; });
+  report::Series published{
+      .label = "paper, better side", .style = SeriesStyle::kPoints, .color = ColorRole::kReference};
+  for (const auto& [noise, value] : paper) published.add(noise, value);
+  add_drawn(panels[0], std::move(published));
+  if (panels[1].series.empty()) panels.pop_back();
+  return panels;
 }
 
 }  // namespace
 
-report::Figure correlation_figure(const std::string& name, const std::vector<SweepRow>& rows,
-                                  const std::string& command) {
-  return compares_estimators(rows) ? comparison_figure(name, rows, command)
-                                   : sweep_figure(name, rows, command);
+report::Figure correlation_figure(const std::string& name, const std::vector<SweepRow>& rows) {
+  const bool compares_estimators = std::any_of(rows.begin(), rows.end(), [](const SweepRow& row) {
+    return row.side != "1" && row.side != "2";
+  });
+  return {.id = name + "_figure",
+          .title = "Correlation of identified and true force against noise",
+          .caption = compares_estimators
+                         ? "Mean with the band from 10 % to 90 % of the draws."
+                         : "Median with the band from 10 % to 90 % of the draws; points: "
+                           "published figures.",
+          .columns = 2,
+          .panels = compares_estimators ? comparison_panels(rows) : side_panels(rows)};
 }
 
 }  // namespace modcal

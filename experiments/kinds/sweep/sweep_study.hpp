@@ -2,21 +2,38 @@
 #pragma once
 
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "experiments/kinds/invert/invert_study.hpp"
-#include "experiments/kinds/sweep/sweep_outcome.hpp"
+#include "experiments/kinds/sample.hpp"
+#include "libsim/base/result_visitor.hpp"
 
 namespace modcal {
 
-/// One cell of the sweep: its settings and their values along the axes.
-struct SweepCell {
-  InvertOptions options;
-  std::vector<std::string> axis_values;  ///< as written in the file
-  double row_value = 0.0;                ///< value of the axis that makes the table's rows
+/// Outcome of one task (cell) on one side.
+struct TaskScores {
+  std::string side;  ///< "1", "2", "joint", …
+  double parameter = 0.0;
+  ChoiceStatus status = ChoiceStatus::kNotComputed;
+  std::vector<WindowScore> scores;
+  WindowScore whole;
+  /// Mean square of what the estimate leaves of the data over that of their noise; NaN: not known.
+  double misfit = std::numeric_limits<double>::quiet_NaN();
+  std::vector<std::string> warnings;
+  void visit(ResultVisitor& visitor);
 };
+
+struct TaskOutcome {
+  std::vector<TaskScores> sides;
+  std::string failure;  ///< why the task failed; empty: it did not
+  void visit(ResultVisitor& visitor);
+};
+
+/// Observes and inverts one cell. Throws InvalidInput where it cannot be done.
+TaskOutcome run_cell(const InvertOptions& options, const StudyContext& context);
 
 /// Published figures that the sweep's table is held against.
 struct ComparisonOptions {
@@ -38,25 +55,60 @@ struct SweepTarget {
   void visit(OptionVisitor& visitor);
 };
 
-struct SweepTableOptions {
-  std::string name = "table";
-  void visit(OptionVisitor& visitor);
-};
-
-/// Observes and inverts one cell; a failure is an outcome.
-TaskOutcome run_cell(const SweepCell& cell, const StudyContext& context);
-
+/// How the results of a sweep are summed up.
 struct SweepOptions {
-  SweepTableOptions table;
+  static constexpr bool kNeedsAxes = true;
+  std::string name = "table";  ///< of the table's files
   bool has_comparison = false;
   ComparisonOptions comparison;
   std::vector<SweepTarget> targets;
+  void visit(OptionVisitor& visitor);
 };
 
-/// Table, figure and acceptance of the cells that are finished; nullopt: not run yet.
-StudyResult sum_up_sweep(const SweepOptions& options, const std::vector<std::string>& axes,
-                         const std::vector<SweepCell>& cells,
-                         const std::vector<std::optional<TaskOutcome>>& outcomes,
-                         const StudyContext& context);
+/// A finished task with what the table sorts it by.
+struct SweepTask {
+  std::size_t task = 0;
+  std::vector<std::string> axis_values;  ///< as written in the file
+  double noise_level = 0.0;
+  std::string estimator;
+  TaskOutcome outcome;
+};
+
+/// One row of the table: all draws of one noise level on one side.
+struct SweepRow {
+  double noise_percent = 0.0;
+  std::string side;
+  Sample correlation, rms_error, anti_aliased;  ///< over the short windows
+  Sample whole, whole_rms_error, whole_anti_aliased;
+  Sample misfit, parameter;
+  std::size_t stand_ins = 0;  ///< parameters that no rule has chosen
+  std::size_t warned = 0;     ///< draws whose estimate carries a warning
+  std::size_t failures = 0;
+  std::optional<double> published_correlation, published_parameter;
+};
+
+/// Published figures of one noise level, by side.
+struct PublishedRow {
+  double correlation[2];
+  double parameter[2];
+};
+using PublishedTable = std::map<double, PublishedRow>;  ///< by noise in percent
+
+/// Throws InvalidInput where the file is no such table.
+PublishedTable read_published(const std::filesystem::path& path);
+
+/// Rows by side and noise.
+std::vector<SweepRow> sweep_rows(const std::vector<SweepTask>& tasks,
+                                 const PublishedTable& published);
+
+/// Correlation against noise: a panel a side; where several estimators are compared, every estimate
+/// in one panel, for the short windows and for the long one.
+report::Figure correlation_figure(const std::string& name, const std::vector<SweepRow>& rows);
+
+/// Adds table, figure and acceptance of the finished tasks to a result that knows how many failed
+/// and how many are not run yet.
+void sum_up_sweep(const SweepOptions& options, const std::vector<std::string>& axes,
+                  const std::vector<SweepTask>& tasks, const StudyContext& context,
+                  StudyResult& result);
 
 }  // namespace modcal

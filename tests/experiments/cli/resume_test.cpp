@@ -170,6 +170,33 @@ TEST_F(Resume, ComparesTwoRunsOnTheTasksTheyShare) {
   EXPECT_THAT(modcal("compare a a").out, HasSubstr("the two cannot be told apart"));
 }
 
+// Everything a list can do, of a kind that is none without its axes.
+TEST_F(Resume, MakesAListOfAnyKind) {
+  std::string text(kSweep);
+  text.replace(text.find("sweep"), 5, "simulate");
+  for (const char* line : {"inversion:", "score:"}) {
+    const std::size_t start = text.find(line);
+    text.erase(start, text.find('\n', start) + 1 - start);
+  }
+  text.replace(text.find("[1, 2, 3, 4, 5]"), 15, "[1, 2]");
+  write("list.yaml", text);
+  ASSERT_EQ(modcal("run list.yaml --out a --shard 1/2").code, 0);
+  ASSERT_EQ(modcal("run list.yaml --out a").code, 0);
+  const std::string journal = content_of(folder() / "a/journal/shard-1-of-1.journal");
+  EXPECT_EQ(std::count(journal.begin(), journal.end(), '\n'), 1 + 8);
+  ASSERT_EQ(modcal("run list.yaml --out whole").code, 0);
+  EXPECT_EQ(content_of(folder() / "a/tasks.csv"), content_of(folder() / "whole/tasks.csv"));
+  EXPECT_EQ(digest_of("a"), digest_of("whole"));
+  const Outcome replayed = modcal("replay a 3");
+  ASSERT_EQ(replayed.code, 0) << replayed.err;
+  EXPECT_THAT(replayed.err, HasSubstr("measurement.noise_level: 1 %\nseed: 2\n"));
+  EXPECT_TRUE(std::filesystem::exists(folder() / "a/replay/task-3/levels.csv"));
+  EXPECT_THAT(modcal("compare a whole").err, HasSubstr("name one with --number"));
+  const Outcome compared = modcal("compare a whole --number levels.R1.std");
+  EXPECT_THAT(compared.out, HasSubstr("16 of 16 and 16 tasks in common\nlevels.R1.std: median"));
+  EXPECT_EQ(modcal("compare a whole --number levels.R3.std").code, 3);
+}
+
 TEST_F(Resume, RefusesFoldersWithoutARun) {
   for (const char* command : {"status", "merge", "report", "replay"}) {
     const Outcome outcome =

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "experiments/kinds/schelleng/schelleng_experiment.hpp"
-#include "experiments/kinds/schelleng/schelleng_study.hpp"
+#include "experiments/runs/stored_outcomes.hpp"
 #include "libsim/dynamics/event/modal_event.hpp"
 #include "libsim/dynamics/scene/simulator.hpp"
 #include "libsim/signal/statistics.hpp"
@@ -49,16 +49,16 @@ TEST(SchellengMap, AxesAreLogarithmic) {
 TEST(SchellengMap, StoresEveryBitOfACell) {
   const CellOutcome outcome{.regime = StringRegime::kMultipleSlip,
                             .features = {2.05, 1.0 / 3.0, 1.0 + 1e-15, 0.1, 3e-300}};
-  const CellOutcome read = read_cell_outcome(cell_outcome_text(outcome));
+  const CellOutcome read = read_outcome<CellOutcome>(report::json_line(outcome));
   EXPECT_EQ(read.regime, outcome.regime);
   EXPECT_EQ(read.features.slips_per_period, outcome.features.slips_per_period);
   EXPECT_EQ(read.features.periodicity, outcome.features.periodicity);
   EXPECT_EQ(read.features.period, outcome.features.period);
   EXPECT_EQ(read.features.adherence, outcome.features.adherence);
   EXPECT_EQ(read.features.amplitude, outcome.features.amplitude);
-  EXPECT_EQ(read_cell_outcome(R"({"failure":"too \"long\""})").failure, "too \"long\"");
-  EXPECT_THROW(read_cell_outcome("{}"), InvalidInput);
-  EXPECT_THROW(read_cell_outcome(R"({"regime":"loud"})"), InvalidInput);
+  EXPECT_EQ(read_outcome<CellOutcome>(R"({"failure":"too \"long\""})").failure, "too \"long\"");
+  EXPECT_THROW(read_outcome<CellOutcome>("{}"), InvalidInput);
+  EXPECT_THROW(read_outcome<CellOutcome>(R"({"regime":"loud"})"), InvalidInput);
 }
 
 // The known tolerance of Schelleng's limits is a factor of 2: they neglect the corner's width and,
@@ -109,8 +109,12 @@ TEST(SchellengMap, SumsUpWhatIsThere) {
   outcomes[0] = CellOutcome{.regime = StringRegime::kHelmholtz};
   outcomes[4] = CellOutcome{.regime = StringRegime::kRaucous};
   outcomes[5] = CellOutcome{.failure = "chatter"};
+  TaskOutcomes stored(6);
+  for (std::size_t cell = 0; cell < 6; ++cell) {
+    if (outcomes[cell]) stored.put(cell, FinishedTask{report::json_line(*outcomes[cell])});
+  }
   SharedWork work;
-  const StudyResult result = sum_up_map(options, outcomes, {.work = work});
+  const StudyResult result = SchellengExperiment(options).sum_up(stored, {.work = work});
   EXPECT_EQ(result.pending_tasks, 3u);
   EXPECT_EQ(result.failed_tasks, 1u);
   EXPECT_EQ(result.status, report::Status::kSomeFailed);

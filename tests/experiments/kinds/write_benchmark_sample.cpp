@@ -87,14 +87,14 @@ report::Report report_of(const BenchmarkGrid& grid) {
   std::string text;
   for (const std::string& sentence : conclusion(grid, cells)) text += sentence + "\n\n";
   section.blocks.emplace_back(report::Text{text});
-  section.blocks.emplace_back(success_map(grid, cells, report.command));
-  section.blocks.emplace_back(bound_map(grid, cells, report.command));
+  section.blocks.emplace_back(success_map(grid, cells));
+  section.blocks.emplace_back(bound_map(grid, cells));
   for (report::Figure figure :
        {error_figure(grid, cells), data_profile(grid), performance_profile(grid),
         work_precision_figure(grid, cells), waterfall_figure(grid), trace_figure(grid)}) {
     section.blocks.emplace_back(std::move(figure));
   }
-  section.blocks.emplace_back(benchmark_table(grid, cells, report.command));
+  section.blocks.emplace_back(benchmark_table(grid, cells));
   section.blocks.emplace_back(sound());
   report.sections.push_back(std::move(section));
   return report;

@@ -17,6 +17,33 @@ namespace {
 
 using ::testing::HasSubstr;
 
+struct JournalContents {
+  std::vector<JournalRecord> records;
+  std::vector<JournalDamage> damages;
+};
+
+void read_into(const std::filesystem::path& file, JournalContents& contents) {
+  scan_journal(
+      file,
+      [&contents](const JournalRecord& record, std::uint64_t, std::size_t) {
+        contents.records.push_back(record);
+      },
+      contents.damages);
+}
+
+JournalContents read_journal(const std::filesystem::path& file) {
+  JournalContents contents;
+  read_into(file, contents);
+  return contents;
+}
+
+// In the order of the files' names and lines.
+JournalContents read_journals(const std::filesystem::path& folder) {
+  JournalContents contents;
+  for (const std::filesystem::path& file : journals_in(folder)) read_into(file, contents);
+  return contents;
+}
+
 class Journal : public ::testing::Test {
  protected:
   Journal() {

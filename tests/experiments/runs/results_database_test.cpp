@@ -15,6 +15,22 @@ std::vector<ResultRow> rows() {
           {2, {"1 %", "\"b\""}, "no minimum", R"({"failure":"no minimum"})", 0.5}};
 }
 
+std::string write_results_database(const std::filesystem::path& file,
+                                   const std::vector<std::string>& axes,
+                                   const std::vector<ResultRow>& rows,
+                                   const std::vector<std::pair<std::string, std::string>>& facts) {
+  ResultsDatabase database(file, axes);
+  for (const ResultRow& row : rows) database.add(row);
+  return database.finish(facts);
+}
+
+std::string digest_of_rows(const std::vector<std::string>& axes,
+                           const std::vector<ResultRow>& rows) {
+  RowsDigest digest(axes);
+  for (const ResultRow& row : rows) digest.add(row);
+  return digest.text();
+}
+
 // Text of one value of the database, "NULL" for none.
 std::string ask(const std::filesystem::path& file, const std::string& sql) {
   sqlite3* database = nullptr;

@@ -1,5 +1,5 @@
 // The bound that a benchmark's errors are held against.
-#include "experiments/kinds/benchmark/benchmark_bound.hpp"
+#include "experiments/kinds/benchmark/benchmark_study.hpp"
 
 #include <gtest/gtest.h>
 

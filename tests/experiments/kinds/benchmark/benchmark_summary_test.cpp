@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "experiments/kinds/benchmark/benchmark_report.hpp"
+#include "experiments/runs/stored_outcomes.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/base/random.hpp"
 
@@ -129,10 +130,10 @@ TEST(BenchmarkSummary, HoldsTheErrorAgainstTheBound) {
   const BenchmarkCell cell = benchmark_cells(grid)[0];
   EXPECT_NEAR(cell.rmse, std::sqrt(sum), 1e-12);
   EXPECT_NEAR(cell.bound_ratio, 2.0 * cell.rmse, 1e-12);
-  EXPECT_EQ(bound_map(grid, benchmark_cells(grid), "").rows.size(), 3u);
+  EXPECT_EQ(bound_map(grid, benchmark_cells(grid)).rows.size(), 3u);
   for (BenchmarkTask& task : grid.tasks) task.outcome.frequency_bound = std::nan("");
   EXPECT_TRUE(std::isnan(benchmark_cells(grid)[0].bound_ratio));
-  EXPECT_TRUE(bound_map(grid, benchmark_cells(grid), "").rows.empty());
+  EXPECT_TRUE(bound_map(grid, benchmark_cells(grid)).rows.empty());
 }
 
 // The task offered for replay is a draw of that method with the median error.
@@ -140,7 +141,8 @@ TEST(BenchmarkSummary, NamesTheDrawInTheMiddle) {
   const BenchmarkGrid grid = grid_of(9, 1.0);
   const BenchmarkCell cell = benchmark_cells(grid)[1];
   ASSERT_EQ(cell.task % 3, 1);
-  EXPECT_EQ(grid.tasks[static_cast<std::size_t>(cell.task)].outcome.frequency_error, cell.error);
+  EXPECT_EQ(grid.tasks[static_cast<std::size_t>(cell.task)].outcome.frequency_error,
+            cell.error.median);
 }
 
 TEST(BenchmarkSummary, DrawsTheBoundBesideTheErrorsAndOneConditionAtATime) {
@@ -208,16 +210,18 @@ TEST(BenchmarkOutcome, ComesBackBitForBit) {
   outcome.value = 1.0 / 3.0;
   outcome.truth_value = -std::numeric_limits<double>::infinity();
   outcome.trace = {{1, std::nan("")}, {2, 0.1}};
-  const std::string text = outcome_text(outcome);
-  const BenchmarkOutcome again = read_benchmark_outcome(text);
+  const std::string text = report::json_line(outcome);
+  const BenchmarkOutcome again = read_outcome<BenchmarkOutcome>(text);
   EXPECT_EQ(again.stop, StopReason::kTimeBudget);
   EXPECT_EQ(again.value, 1.0 / 3.0);
   EXPECT_TRUE(std::isnan(again.correlation));
   EXPECT_EQ(again.truth_value, -std::numeric_limits<double>::infinity());
-  EXPECT_EQ(outcome_text(again), text);
-  EXPECT_EQ(read_benchmark_outcome(outcome_text({.failure = "why"})).failure, "why");
+  EXPECT_EQ(report::json_line(again), text);
+  EXPECT_EQ(
+      read_outcome<BenchmarkOutcome>(report::json_line(BenchmarkOutcome{.failure = "why"})).failure,
+      "why");
   for (const char* wrong : {"", "{}", "[]", R"({"stop": "tired"})"}) {
-    EXPECT_THROW(read_benchmark_outcome(wrong), InvalidInput) << wrong;
+    EXPECT_THROW(read_outcome<BenchmarkOutcome>(wrong), InvalidInput) << wrong;
   }
 }
 

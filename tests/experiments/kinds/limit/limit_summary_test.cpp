@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "experiments/runs/stored_outcomes.hpp"
+
 namespace modcal {
 namespace {
 
@@ -83,7 +85,7 @@ TEST(OutcomeOfALimit, KeepsWhatContradictsIt) {
   for (const bool fits : {false, true}) {
     for (const bool priors_hold : {false, true}) {
       LimitOutcome outcome = found(fits, priors_hold, 196.0);
-      const LimitOutcome read = read_limit_outcome(outcome_text(outcome));
+      const LimitOutcome read = read_outcome<LimitOutcome>(report::json_line(outcome));
       EXPECT_EQ(read.fits, fits);
       EXPECT_EQ(read.priors_hold, priors_hold);
     }
@@ -94,7 +96,7 @@ TEST(OutcomeOfALimit, KeepsTheDeviationOfChi2) {
   LimitOutcome outcome;
   outcome.chi2 = 1.01;
   outcome.chi2_deviation = 0.0083;
-  const LimitOutcome read = read_limit_outcome(outcome_text(outcome));
+  const LimitOutcome read = read_outcome<LimitOutcome>(report::json_line(outcome));
   EXPECT_EQ(read.chi2, 1.01);
   EXPECT_EQ(read.chi2_deviation, 0.0083);
 }

@@ -1,10 +1,10 @@
-#include "experiments/kinds/sweep/sweep_outcome.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
+#include "experiments/kinds/sweep/sweep_study.hpp"
+#include "experiments/runs/stored_outcomes.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -19,9 +19,9 @@ TEST(SweepOutcome, ComesBackBitForBit) {
                            ChoiceStatus::kNoInteriorMinimum,
                            {{0.0, std::nan(""), 1.0}}});
   outcome.sides[0].misfit = 1.0 + 1e-15;
-  const std::string text = outcome_text(outcome);
+  const std::string text = report::json_line(outcome);
   EXPECT_EQ(text.find('\n'), std::string::npos);
-  const TaskOutcome again = read_outcome(text);
+  const TaskOutcome again = read_outcome<TaskOutcome>(text);
   ASSERT_EQ(again.sides.size(), 2u);
   EXPECT_EQ(again.sides[0].side, "1");
   EXPECT_EQ(again.sides[1].side, "joint");
@@ -34,22 +34,22 @@ TEST(SweepOutcome, ComesBackBitForBit) {
   EXPECT_EQ(again.sides[1].status, ChoiceStatus::kNoInteriorMinimum);
   EXPECT_TRUE(std::isinf(again.sides[1].parameter));
   EXPECT_TRUE(std::isnan(again.sides[1].scores[0].correlation));
-  EXPECT_EQ(outcome_text(again), text);
+  EXPECT_EQ(report::json_line(again), text);
 }
 
 TEST(SweepOutcome, KeepsTheReasonOfAFailure) {
   TaskOutcome outcome;
   outcome.failure = "line 1\n\"quoted\"";
-  const std::string text = outcome_text(outcome);
+  const std::string text = report::json_line(outcome);
   EXPECT_EQ(text.find('\n'), std::string::npos);
-  EXPECT_EQ(read_outcome(text).failure, outcome.failure);
+  EXPECT_EQ(read_outcome<TaskOutcome>(text).failure, outcome.failure);
 }
 
 TEST(SweepOutcome, RefusesOtherTexts) {
   for (const char* text :
        {"", "{}", "[1]", R"({"sides": [{}]})",
         R"({"sides": [{"end": "left", "parameter": 1, "status": "x", "scores": []}]})"}) {
-    EXPECT_THROW(read_outcome(text), InvalidInput) << text;
+    EXPECT_THROW(read_outcome<TaskOutcome>(text), InvalidInput) << text;
   }
 }
 

@@ -4,20 +4,20 @@
 
 #include <cmath>
 
+#include "experiments/runs/stored_outcomes.hpp"
 #include "libinverse/observer/observer_estimator.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
 namespace modcal {
 namespace {
 
-SweepCell cell_with(double noise_level, double window) {
-  SweepCell cell;
-  cell.options.observation.has_scene = true;
-  cell.options.observation.truth.scene = paper_scene();
-  cell.options.observation.truth.scene.duration = 0.05;
-  cell.options.observation.measurement.noise_level = noise_level;
-  cell.options.score.windows = {window};
-  cell.row_value = noise_level;
+InvertOptions cell_with(double noise_level, double window) {
+  InvertOptions cell;
+  cell.observation.has_scene = true;
+  cell.observation.truth.scene = paper_scene();
+  cell.observation.truth.scene.duration = 0.05;
+  cell.observation.measurement.noise_level = noise_level;
+  cell.score.windows = {window};
   return cell;
 }
 
@@ -27,15 +27,17 @@ TEST(RunCell, GivesTheSameBitsAgainFromOneSimulation) {
   const TaskOutcome outcome = run_cell(cell_with(0.02, 0.03), context);
   const TaskOutcome again = run_cell(cell_with(0.02, 0.03), context);
   ASSERT_EQ(outcome.sides.size(), 2u);
-  EXPECT_EQ(outcome_text(outcome), outcome_text(again));
-  EXPECT_NE(outcome_text(outcome), outcome_text(run_cell(cell_with(0.03, 0.03), context)));
+  EXPECT_EQ(report::json_line(outcome), report::json_line(again));
+  EXPECT_NE(report::json_line(outcome),
+            report::json_line(run_cell(cell_with(0.03, 0.03), context)));
   EXPECT_EQ(work.truths.simulated(), 1u);
 }
 
 TEST(RunCell, PutsAFailureIntoItsOutcome) {
   SharedWork work;
   // The window is beyond the record.
-  const TaskOutcome outcome = run_cell(cell_with(0.0, 0.2), {.work = work});
+  const TaskOutcome outcome =
+      attempted([&] { return run_cell(cell_with(0.0, 0.2), {.work = work}); });
   EXPECT_FALSE(outcome.failure.empty());
   EXPECT_TRUE(outcome.sides.empty());
 }
@@ -43,20 +45,19 @@ TEST(RunCell, PutsAFailureIntoItsOutcome) {
 // The model-based estimate as one of the sweep's estimators, beside the linear limit of the same
 // draw: 0.1 s at 5 % noise.
 TEST(RunCell, TakesTheModelBasedEstimateForAnEstimator) {
-  SweepCell cell = cell_with(0.05, 0.08);
-  cell.options.observation.truth.scene.duration = 0.1;
-  cell.options.observation.truth.simulator.select("modal_event");
-  cell.options.score.whole = {0.02, 0.095};
-  cell.options.score.oversampling = 4;
+  InvertOptions cell = cell_with(0.05, 0.08);
+  cell.observation.truth.scene.duration = 0.1;
+  cell.observation.truth.simulator.select("modal_event");
+  cell.score.whole = {0.02, 0.095};
+  cell.score.oversampling = 4;
   ModelBasedOptions options;
   options.substeps = 4;
   options.rounds = 1;
-  cell.options.inversion.estimator =
-      Choice<Estimator>::of<ObserverEstimator>("model_based", options);
+  cell.inversion.estimator = Choice<Estimator>::of<ObserverEstimator>("model_based", options);
   SharedWork work;
   const StudyContext context{.work = work};
   const TaskOutcome model = run_cell(cell, context);
-  cell.options.inversion.estimator.select("linear_limit");
+  cell.inversion.estimator.select("linear_limit");
   const TaskOutcome limit = run_cell(cell, context);
   ASSERT_EQ(model.failure, "");
   ASSERT_EQ(model.sides.size(), 1u);
@@ -68,23 +69,48 @@ TEST(RunCell, TakesTheModelBasedEstimateForAnEstimator) {
   EXPECT_LT(scores.whole.relative_rms_error, limit.sides[0].whole.relative_rms_error);
   EXPECT_NEAR(scores.misfit, 1.0, 0.2);
   EXPECT_TRUE(std::isnan(limit.sides[0].misfit));
-  const StudyResult table = sum_up_sweep({}, {}, {cell, cell}, {model, limit}, context);
+  StudyResult table;
+  sum_up_sweep({}, {},
+               {{.noise_level = 0.05, .estimator = "model_based", .outcome = model},
+                {.task = 1, .noise_level = 0.05, .estimator = "linear_limit", .outcome = limit}},
+               context, table);
   EXPECT_NE(table.summary.find("model "), std::string::npos);
+}
+
+// Outcomes of a list of three tasks: one done, one failed, one not run yet.
+TaskOutcomes some_outcomes(const StudyContext& context) {
+  TaskOutcomes outcomes(3);
+  std::size_t task = 0;
+  for (const InvertOptions& cell : {cell_with(0.0, 0.03), cell_with(0.0, 0.2)}) {
+    const TaskOutcome outcome = attempted([&] { return run_cell(cell, context); });
+    outcomes.put(task++, FinishedTask{report::json_line(outcome)});
+  }
+  return outcomes;
+}
+
+StudyResult counted(const TaskOutcomes& outcomes, const StudyContext& context) {
+  StudyResult result;
+  std::vector<SweepTask> tasks;
+  for_each_outcome<TaskOutcome>(
+      outcomes, result, [&](std::size_t task, TaskOutcome outcome, double) {
+        tasks.push_back({.task = task, .estimator = "one_sided", .outcome = std::move(outcome)});
+      });
+  sum_up_sweep({}, {}, tasks, context, result);
+  return result;
 }
 
 TEST(SumUpSweep, CountsWhatFailedAndWhatIsNotRunYet) {
   SharedWork work;
   const StudyContext context{.work = work};
-  const std::vector<SweepCell> cells = {cell_with(0.0, 0.03), cell_with(0.0, 0.2),
-                                        cell_with(0.01, 0.03)};
-  const StudyResult part = sum_up_sweep(
-      {}, {}, cells, {run_cell(cells[0], context), run_cell(cells[1], context), std::nullopt},
-      context);
+  const TaskOutcomes outcomes = some_outcomes(context);
+  const StudyResult part = counted(outcomes, context);
   EXPECT_EQ(part.failed_tasks, 1u);
   EXPECT_EQ(part.pending_tasks, 1u);
   EXPECT_EQ(part.status, report::Status::kSomeFailed);
-  const StudyResult none = sum_up_sweep({}, {}, {cells[1]}, {run_cell(cells[1], context)}, context);
-  EXPECT_EQ(none.status, report::Status::kFailed);
+  EXPECT_NE(part.summary.find("1 of 3 tasks failed"), std::string::npos);
+  TaskOutcomes none(1);
+  none.put(0, *outcomes[1]);
+  EXPECT_EQ(counted(none, context).status, report::Status::kFailed);
 }
 
 }  // namespace

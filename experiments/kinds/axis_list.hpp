@@ -1,8 +1,8 @@
-// Options of every cell of a sweep.
+// The axis list of a list of tasks: which options differ between its cells, and the options of
+// every cell.
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -13,11 +13,11 @@
 
 namespace modcal {
 
-/// SweepSlot over copies of a type with visit() and the member function seed_slot(). Cells that
-/// differ in their seed alone share one copy, so that a list of 10⁶ draws is as small as its
-/// settings are few.
+/// SweepSlot over copies of the options of a kind of experiment, a type with visit() and the member
+/// `seed` or the member function seed_slot(). Cells that differ in their seed alone share one copy,
+/// so that a list of 10⁶ draws is as small as its settings are few.
 template <typename Options>
-class SweptOptions final : public SweepSlot {
+class AxisList final : public SweepSlot {
  public:
   const SweepPlan& plan() const override { return plan_; }
   void set_cells(SweepPlan plan, SweepCells cells) override {
@@ -42,12 +42,12 @@ class SweptOptions final : public SweepSlot {
   void visit_cell(std::size_t index, OptionVisitor& visitor) override {
     Options options;
     options.visit(visitor);
-    cells_[index].seed = std::exchange(options.seed_slot(), 0);
+    cells_[index].seed = std::exchange(seed_of(options), 0);
     std::string key = fingerprint([&options](OptionVisitor& writer) { options.visit(writer); });
     const auto [place, is_new] =
         known_settings_.try_emplace(std::move(key), static_cast<std::uint32_t>(settings_.size()));
     if (is_new) {
-      options.seed_slot() = cells_[index].seed;
+      seed_of(options) = cells_[index].seed;
       settings_.push_back(std::move(options));
     }
     cells_[index].settings = place->second;
@@ -59,19 +59,16 @@ class SweptOptions final : public SweepSlot {
   /// Their values in a cell, as written; empty: the experiment's own.
   std::vector<std::string> values(std::size_t cell) const {
     std::vector<std::string> values;
-    for (std::size_t i = 0; i < paths_.size(); ++i) values.push_back(value(cell, i));
+    for (std::size_t i = 0; i < paths_.size(); ++i) {
+      values.push_back(values_[value_of_[cell * paths_.size() + i]]);
+    }
     return values;
-  }
-  const std::string& value(std::size_t cell, std::size_t path) const {
-    return values_[value_of_[cell * paths_.size() + path]];
   }
   Options operator[](std::size_t cell) const {
     Options options = settings_[cells_[cell].settings];
-    options.seed_slot() = cells_[cell].seed;
+    seed_of(options) = cells_[cell].seed;
     return options;
   }
-  /// Equal for cells that differ in their seed alone.
-  std::size_t setting_of(std::size_t cell) const { return cells_[cell].settings; }
   /// The options of all cells, those that differ in their seed alone once.
   const std::vector<Options>& all() const { return settings_; }
 
@@ -80,6 +77,13 @@ class SweptOptions final : public SweepSlot {
     std::int64_t seed = 0;
     std::uint32_t settings = 0;
   };
+  static std::int64_t& seed_of(Options& options) {
+    if constexpr (requires { options.seed_slot(); }) {
+      return options.seed_slot();
+    } else {
+      return options.seed;
+    }
+  }
   SweepPlan plan_;
   std::vector<std::string> paths_;
   std::vector<std::string> values_;      // distinct ones
@@ -88,5 +92,10 @@ class SweptOptions final : public SweepSlot {
   std::unordered_map<std::string, std::uint32_t> known_settings_;
   std::vector<Cell> cells_;
 };
+
+/// Whether the value of this option tells draws of one setting apart.
+inline bool is_seed_axis(const std::string& path) {
+  return path == "seed" || path.ends_with(".seed");
+}
 
 }  // namespace modcal

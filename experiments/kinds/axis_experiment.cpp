@@ -1,0 +1,81 @@
+#include "experiments/kinds/axis_experiment.hpp"
+
+#include <fmt/ranges.h>
+
+#include <set>
+
+namespace modcal {
+
+std::vector<Finding> distinct_findings(std::vector<Finding> findings) {
+  std::set<std::pair<std::string, std::string>> known;
+  std::erase_if(findings, [&known](const Finding& finding) {
+    return !known.insert({finding.path, finding.text}).second;
+  });
+  return findings;
+}
+
+SweepAxis axis_of(std::string path, std::size_t count,
+                  const std::function<std::string(std::size_t)>& text_of) {
+  SweepAxis axis{std::move(path), {}};
+  for (std::size_t i = 0; i < count; ++i) axis.values.push_back(text_of(i));
+  return axis;
+}
+
+std::size_t ProductExperiment::task_count() const {
+  std::size_t count = 1;
+  for (const SweepAxis& axis : axes_) count *= axis.values.size();
+  return count;
+}
+
+std::vector<std::string> ProductExperiment::axes() const {
+  std::vector<std::string> paths;
+  for (const SweepAxis& axis : axes_) paths.push_back(axis.path);
+  return paths;
+}
+
+std::vector<std::string> ProductExperiment::axis_values(std::size_t task) const {
+  std::vector<std::string> values;
+  for (std::size_t i = 0; i < axes_.size(); ++i) values.push_back(axes_[i].values[place(task, i)]);
+  return values;
+}
+
+std::size_t ProductExperiment::place(std::size_t task, std::size_t axis) const {
+  for (std::size_t i = axes_.size(); --i > axis;) task /= axes_[i].values.size();
+  return task % axes_[axis].values.size();
+}
+
+std::vector<std::string> axis_plan(const SweepPlan& plan, std::size_t tasks,
+                                   const std::optional<PlannedSimulations>& planned) {
+  std::vector<std::string> lines;
+  for (const SweepAxis& axis : plan.product) {
+    lines.push_back(fmt::format("axis {}: {} values", axis.path, axis.values.size()));
+  }
+  for (const std::vector<SweepAxis>& group : plan.zip) {
+    std::vector<std::string> paths;
+    for (const SweepAxis& axis : group) paths.push_back(axis.path);
+    lines.push_back(fmt::format("axes {} together: {} values", fmt::join(paths, ", "),
+                                group.front().values.size()));
+  }
+  lines.push_back(fmt::format("tasks: {}", tasks));
+  if (planned) {
+    lines.push_back(plan_line(*planned));
+    lines.push_back(fmt::format("skipped: {} simulations whose scene another task has",
+                                tasks - std::min(tasks, planned->count)));
+  }
+  return lines;
+}
+
+std::optional<PlannedSimulations> planned_together(
+    std::optional<PlannedSimulations> base, std::size_t cells,
+    const std::function<std::optional<PlannedSimulations>(std::size_t)>& planned_of) {
+  if (!base) return base;
+  std::set<std::string> known;
+  base->count = 0;
+  for (std::size_t i = 0; i < cells; ++i) {
+    const std::optional<PlannedSimulations> planned = planned_of(i);
+    if (planned && known.insert(key_of(*planned)).second) base->count += planned->count;
+  }
+  return base;
+}
+
+}  // namespace modcal

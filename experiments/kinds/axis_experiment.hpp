@@ -1,0 +1,125 @@
+// Lists of tasks over the options of a kind of experiment: an axis list, whatever sums it up.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <typeinfo>
+#include <utility>
+#include <vector>
+
+#include "experiments/kinds/axis_list.hpp"
+#include "experiments/kinds/lint.hpp"
+#include "experiments/runs/task_experiment.hpp"
+
+namespace modcal {
+
+/// Findings, each once.
+std::vector<Finding> distinct_findings(std::vector<Finding> findings);
+
+/// One line an axis, the number of tasks, the simulations and those that tasks share.
+std::vector<std::string> axis_plan(const SweepPlan& plan, std::size_t tasks,
+                                   const std::optional<PlannedSimulations>& planned);
+
+/// `base` with the number of distinct simulations of `cells` settings.
+std::optional<PlannedSimulations> planned_together(
+    std::optional<PlannedSimulations> base, std::size_t cells,
+    const std::function<std::optional<PlannedSimulations>(std::size_t)>& planned_of);
+
+/// The axis of `count` values that text_of(i) writes.
+SweepAxis axis_of(std::string path, std::size_t count,
+                  const std::function<std::string(std::size_t)>& text_of);
+
+/// A list of every combination of some axes, the last varying fastest.
+class ProductExperiment : public TaskExperiment {
+ public:
+  explicit ProductExperiment(std::vector<SweepAxis> axes) : axes_(std::move(axes)) {}
+  std::size_t task_count() const final;
+  std::vector<std::string> axes() const final;
+  std::vector<std::string> axis_values(std::size_t task) const final;
+
+ protected:
+  /// Place of a task on an axis.
+  std::size_t place(std::size_t task, std::size_t axis) const;
+
+ private:
+  std::vector<SweepAxis> axes_;
+};
+
+/// An axis list over a kind of experiment: `Kind` is an Experiment made from its nested `Options`.
+/// `Settings` are the options of the list beside those of its cells: a type with visit() and
+/// kNeedsAxes, whether the axes must be stated. What one task leaves and how outcomes are summed up
+/// is for the derived class to say.
+template <typename Kind, typename Settings>
+class AxisExperiment : public TaskExperiment {
+ public:
+  using Cell = typename Kind::Options;
+  struct Options {
+    Cell base;
+    Settings list;
+    AxisList<Cell> cells;
+    void visit(OptionVisitor& visitor) {
+      base.visit(visitor);
+      list.visit(visitor);
+      // Last: every cell is read with the keys above known.
+      visitor.sweep({.key = "sweep",
+                     .meaning = "axes: option paths and their values",
+                     .required = Settings::kNeedsAxes},
+                    cells);
+    }
+  };
+  explicit AxisExperiment(Options options) : options_(std::move(options)) {}
+
+  std::vector<Finding> lint() const override {
+    std::vector<Finding> findings;
+    for (const Cell& cell : options_.cells.all()) {
+      for (Finding& finding : Kind(cell).lint()) {
+        if (!is_excused(cell, finding)) findings.push_back(std::move(finding));
+      }
+    }
+    return distinct_findings(std::move(findings));
+  }
+  std::vector<std::string> plan() const override {
+    return axis_plan(options_.cells.plan(), task_count(), planned_simulations());
+  }
+  std::optional<PlannedSimulations> planned_simulations() const override {
+    const std::vector<Cell>& cells = options_.cells.all();
+    return planned_together(
+        Kind(options_.base).planned_simulations(), cells.size(),
+        [&cells](std::size_t i) { return Kind(cells[i]).planned_simulations(); });
+  }
+  std::size_t task_count() const override { return options_.cells.size(); }
+  std::vector<std::string> axes() const override { return options_.cells.paths(); }
+  std::vector<std::string> axis_values(std::size_t task) const override {
+    return options_.cells.values(task);
+  }
+  std::string fingerprint(std::size_t task, const std::filesystem::path& folder) const override {
+    Cell cell = options_.cells[task];
+    std::string text = typeid(*this).name() + modcal::fingerprint([&](OptionVisitor& visitor) {
+                         cell.visit(visitor);
+                         visit_scoring(visitor);
+                       });
+    for (const std::string& file : Kind(std::move(cell)).files_read()) {
+      text += record_fingerprint(folder / file);
+    }
+    return text;
+  }
+  /// The cell as an experiment of its own.
+  StudyResult replay(std::size_t task, const StudyContext& context) const override {
+    Cell cell = options_.cells[task];
+    draw_all(cell);
+    return Kind(std::move(cell)).run(context);
+  }
+
+ protected:
+  Options options_;
+
+ private:
+  /// What is no mistake in a cell of a list.
+  virtual bool is_excused(const Cell& /*cell*/, const Finding& /*finding*/) const { return false; }
+  /// Options of the list that an outcome depends on.
+  virtual void visit_scoring(OptionVisitor& /*visitor*/) const {}
+  /// Turns on what a replay shows.
+  virtual void draw_all(Cell& /*cell*/) const {}
+};
+
+}  // namespace modcal

@@ -1,0 +1,230 @@
+#include "experiments/kinds/kind_list.hpp"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <set>
+
+#include "experiments/kinds/sample.hpp"
+#include "experiments/report/result_table.hpp"
+
+namespace modcal {
+namespace {
+
+void add_numbers(const report::Table& table, RunOutcome& outcome) {
+  std::set<std::string> labels;
+  for (const std::vector<report::Cell>& row : table.rows) {
+    // A table of one row needs no names of rows; rows of one name are counted.
+    std::string prefix = table.id + ".";
+    const bool is_one = table.rows.size() == 1;
+    if (!is_one) {
+      std::string label = report::cell_text(row[0], table.columns[0]);
+      if (!labels.insert(label).second) label += fmt::format(".{}", labels.size());
+      labels.insert(label);
+      prefix += label + ".";
+    }
+    for (std::size_t c = is_one ? 0 : 1; c < row.size(); ++c) {
+      const auto* number = std::get_if<double>(&row[c].value);
+      const auto* count = std::get_if<std::int64_t>(&row[c].value);
+      if (number == nullptr && count == nullptr) continue;
+      outcome.numbers.emplace_back(prefix + table.columns[c].key,
+                                   number != nullptr ? *number : static_cast<double>(*count));
+    }
+  }
+}
+
+// Draws of one setting: tasks that differ in seeds alone.
+struct Setting {
+  std::vector<std::string> values;  ///< of the axes that are no seeds
+  std::size_t n = 0, failures = 0;
+  std::map<std::string, Sample> samples;
+};
+
+struct RunTask {
+  std::size_t task = 0;
+  RunOutcome outcome;
+};
+
+class RunSummary {
+ public:
+  explicit RunSummary(const TaskExperiment& list) : list_(list), axes_(list.axes()) {
+    for (std::size_t i = 0; i < axes_.size(); ++i) {
+      if (!is_seed_axis(axes_[i])) setting_axes_.push_back(i);
+    }
+  }
+
+  void add(std::size_t task, RunOutcome outcome) {
+    const std::vector<std::string> all = list_.axis_values(task);
+    std::vector<std::string> values;
+    for (const std::size_t axis : setting_axes_) values.push_back(all[axis]);
+    const auto [place, is_new] = setting_of_.try_emplace(values, settings_.size());
+    if (is_new) settings_.push_back({.values = values});
+    Setting& setting = settings_[place->second];
+    ++setting.n;
+    if (!outcome.failure.empty()) ++setting.failures;
+    for (const auto& [name, value] : outcome.numbers) {
+      if (known_names_.insert(name).second) names_.push_back(name);
+      if (std::isfinite(value)) setting.samples[name].add(value);
+    }
+    tasks_.push_back({task, std::move(outcome)});
+  }
+
+  report::Table settings() const {
+    return report::table_of({.id = "settings",
+                             .title = "Medians by setting",
+                             .caption = "Draws of one setting differ in their seeds alone."},
+                            settings_, [this](report::RowWriter& row, const Setting& setting) {
+                              for (std::size_t i = 0; i < setting.values.size(); ++i) {
+                                row({.key = axes_[setting_axes_[i]]}, setting.values[i]);
+                              }
+                              row({.key = "n"}, setting.n);
+                              row({.key = "failures"}, setting.failures);
+                              for (const std::string& name : names_) {
+                                row({.key = name}, known(sample_of(setting, name).median()));
+                              }
+                            });
+  }
+
+  std::string tasks_csv() const {
+    const auto write_task = [this](report::RowWriter& row, const RunTask& task) {
+      row({.key = "task"}, task.task);
+      const std::vector<std::string> values = list_.axis_values(task.task);
+      for (std::size_t i = 0; i < axes_.size(); ++i) row({.key = axes_[i]}, values[i]);
+      const std::map<std::string, double> numbers(task.outcome.numbers.begin(),
+                                                  task.outcome.numbers.end());
+      for (const std::string& name : names_) {
+        const auto number = numbers.find(name);
+        row.cell({.key = name}, number == numbers.end() ? report::Cell() : number->second);
+      }
+      row.cell({.key = "failure"},
+               task.outcome.failure.empty() ? report::Cell() : task.outcome.failure);
+    };
+    report::Table table{.id = "tasks"};
+    for (const RunTask& task : tasks_) {
+      report::add_row(table, [&](report::RowWriter& row) { write_task(row, task); });
+    }
+    return report::table_csv(table);
+  }
+
+  /// The first numbers that differ, a panel each, against the first axis of numbers of one unit;
+  /// no panels where there is none.
+  report::Figure figure() const {
+    constexpr std::size_t kMostPanels = 6;
+    report::Figure figure{.id = "against_axis",
+                          .title = "Results over the axes",
+                          .caption = "Median and band from 10 % to 90 % of the draws.",
+                          .columns = 3};
+    for (std::size_t axis = 0; axis < setting_axes_.size(); ++axis) {
+      std::string unit;
+      const std::vector<double> x = numbers_of(axis, unit);
+      if (x.empty()) continue;
+      for (const std::string& name : names_) {
+        report::Panel panel{.x = {.label = axes_[setting_axes_[axis]], .unit = unit},
+                            .y = {.label = name},
+                            .series = series_of(name, axis, x)};
+        if (!panel.series.empty()) figure.panels.push_back(std::move(panel));
+        if (figure.panels.size() == kMostPanels) break;
+      }
+      break;
+    }
+    return figure;
+  }
+
+ private:
+  static const Sample& sample_of(const Setting& setting, const std::string& name) {
+    static const Sample kNone;
+    const auto found = setting.samples.find(name);
+    return found == setting.samples.end() ? kNone : found->second;
+  }
+
+  // Values of an axis in all settings; empty unless all are numbers of one unit.
+  std::vector<double> numbers_of(std::size_t axis, std::string& unit) const {
+    std::vector<double> numbers;
+    for (const Setting& setting : settings_) {
+      const std::string& text = setting.values[axis];
+      double number = 0.0;
+      const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+      std::string rest(end, text.data() + text.size());
+      rest.erase(0, rest.find_first_not_of(' '));
+      if (error != std::errc() || (!numbers.empty() && rest != unit)) return {};
+      unit = rest;
+      numbers.push_back(number);
+    }
+    return numbers;
+  }
+
+  // One series for all settings that agree but for the axis; none for a number that never differs.
+  std::vector<report::Series> series_of(const std::string& name, std::size_t axis,
+                                        const std::vector<double>& x) const {
+    std::vector<report::Series> series;
+    std::map<std::vector<std::string>, std::size_t> known;
+    std::set<double> medians;
+    for (std::size_t s = 0; s < settings_.size(); ++s) {
+      const Sample& sample = sample_of(settings_[s], name);
+      if (sample.values.empty()) continue;
+      std::vector<std::string> others = settings_[s].values;
+      others.erase(others.begin() + static_cast<std::ptrdiff_t>(axis));
+      const auto [place, is_new] = known.try_emplace(others, series.size());
+      if (is_new) {
+        const auto color = std::min<std::size_t>(series.size() + 1, report::kColorRoles - 1);
+        series.push_back({.label = others.empty() ? "median, 10-90 %"
+                                                  : fmt::format("{}", fmt::join(others, ", ")),
+                          .style = report::SeriesStyle::kLineWithPoints,
+                          .color = static_cast<report::ColorRole>(color)});
+      }
+      add_band(series[place->second], x[s], Spread::of(sample));
+      medians.insert(sample.median());
+    }
+    if (medians.size() < 2) series.clear();
+    return series;
+  }
+
+  const TaskExperiment& list_;
+  std::vector<std::string> axes_;
+  std::vector<std::size_t> setting_axes_;  // places of those that are no seeds
+  std::vector<std::string> names_;         // of the numbers, in the order of their first use
+  std::set<std::string> known_names_;
+  std::map<std::vector<std::string>, std::size_t> setting_of_;
+  std::vector<Setting> settings_;
+  std::vector<RunTask> tasks_;
+};
+
+}  // namespace
+
+void RunOutcome::visit(ResultVisitor& visitor) {
+  visitor({.key = "failure", .optional = true}, failure);
+  if (failure.empty()) visitor({.key = "numbers"}, numbers);
+}
+
+RunOutcome run_outcome(const StudyResult& result) {
+  RunOutcome outcome;
+  if (result.status == report::Status::kFailed) {
+    outcome.failure = result.summary.empty() ? "the run has failed" : result.summary;
+  }
+  for (const report::Block& block : result.blocks) {
+    if (const auto* table = std::get_if<report::Table>(&block)) add_numbers(*table, outcome);
+  }
+  return outcome;
+}
+
+StudyResult sum_up_runs(const TaskExperiment& list, const TaskOutcomes& outcomes) {
+  StudyResult result;
+  RunSummary summary(list);
+  for_each_outcome<RunOutcome>(outcomes, result,
+                               [&](std::size_t task, RunOutcome outcome, double /*seconds*/) {
+                                 summary.add(task, std::move(outcome));
+                               });
+  report::Figure figure = summary.figure();
+  if (!figure.panels.empty()) result.blocks.emplace_back(std::move(figure));
+  report::Table settings = summary.settings();
+  result.summary = fmt::format("{} of {} tasks done, {} failed; {} settings, see tasks.csv\n",
+                               outcomes.size() - result.pending_tasks, outcomes.size(),
+                               result.failed_tasks, settings.rows.size());
+  result.blocks.emplace_back(std::move(settings));
+  result.files.emplace_back("tasks.csv", summary.tasks_csv());
+  return result;
+}
+
+}  // namespace modcal

@@ -1,0 +1,77 @@
+// Every kind of experiment as a list of tasks: with a section "sweep" it is run once a cell.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "experiments/kinds/axis_experiment.hpp"
+#include "experiments/runs/stored_outcomes.hpp"
+#include "libsim/base/result_visitor.hpp"
+
+namespace modcal {
+
+/// What one run of a list leaves: the numbers of its tables.
+struct RunOutcome {
+  std::string failure;  ///< why there are none; empty: there are
+  /// "levels.f_c.std": table, first cell of the row (where there are several rows), column.
+  std::vector<std::pair<std::string, double>> numbers;
+  void visit(ResultVisitor& visitor);
+};
+
+/// The numbers of a result, or its summary as a failure where it has failed.
+RunOutcome run_outcome(const StudyResult& result);
+
+/// A row a setting with the median of every number over its draws (draws of one setting differ in
+/// seeds alone), the same against the first axis of numbers, and tasks.csv with every number of
+/// every task.
+StudyResult sum_up_runs(const TaskExperiment& list, const TaskOutcomes& outcomes);
+
+struct KindListSettings {
+  static constexpr bool kNeedsAxes = false;
+  void visit(OptionVisitor& /*visitor*/) {}
+};
+
+/// An experiment of any kind over axes of its options.
+template <typename Kind>
+class KindList final : public AxisExperiment<Kind, KindListSettings> {
+ public:
+  using AxisExperiment<Kind, KindListSettings>::AxisExperiment;
+  std::string run_task(std::size_t task, const StudyContext& context) const override {
+    StudyContext quiet = context;  // the list reports the progress
+    quiet.progress = [](double) {};
+    return report::json_line(
+        attempted([&] { return run_outcome(Kind(this->options_.cells[task]).run(quiet)); }));
+  }
+  StudyResult sum_up(const TaskOutcomes& outcomes, const StudyContext& /*context*/) const override {
+    return sum_up_runs(*this, outcomes);
+  }
+};
+
+/// Options of a kind and, where they state axes, of a list of it.
+template <typename Kind>
+class KindRecipe final : public Recipe<Experiment> {
+ public:
+  void visit(OptionVisitor& visitor) override { options_.visit(visitor); }
+  std::shared_ptr<const Experiment> make() const override {
+    if (options_.cells.size() > 0) return std::make_shared<const KindList<Kind>>(options_);
+    return std::make_shared<const Kind>(options_.base);
+  }
+  std::unique_ptr<Recipe<Experiment>> clone() const override {
+    return std::make_unique<KindRecipe>(*this);
+  }
+
+ private:
+  typename KindList<Kind>::Options options_;
+};
+
+/// Row of the registry: kind_of<SimulateExperiment>("simulate", "summary").
+template <typename Kind>
+constexpr RegistryEntry<Experiment> kind_of(std::string_view name, std::string_view summary) {
+  return {name, summary, +[]() -> std::unique_ptr<Recipe<Experiment>> {
+            return std::make_unique<KindRecipe<Kind>>();
+          }};
+}
+
+}  // namespace modcal
