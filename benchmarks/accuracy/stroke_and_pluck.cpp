@@ -12,7 +12,7 @@
 #include "libcalib/likelihood/all_records.hpp"
 #include "libcalib/likelihood/pluck_likelihood.hpp"
 #include "libcalib/optimizers/staged/records_fit.hpp"
-#include "libsim/dynamics/scene/initial_motion.hpp"
+#include "libsim/dynamics/scene/scene.hpp"
 
 namespace modcal {
 namespace {

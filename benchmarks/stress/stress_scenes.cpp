@@ -1,7 +1,7 @@
 #include "benchmarks/stress/stress_cell.hpp"
 #include "libsim/dynamics/friction/friction_law.hpp"
 #include "libsim/dynamics/gestures/gesture.hpp"
-#include "libsim/dynamics/scene/initial_motion.hpp"
+#include "libsim/dynamics/scene/scene.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
 namespace modcal {

@@ -16,7 +16,7 @@
 #include "libsim/base/error.hpp"
 #include "libsim/dynamics/friction/friction_law.hpp"
 #include "libsim/dynamics/gestures/gesture.hpp"
-#include "libsim/dynamics/scene/initial_motion.hpp"
+#include "libsim/dynamics/scene/scene.hpp"
 #include "libsim/dynamics/scene/simulator.hpp"
 #include "libsim/model/damping.hpp"
 

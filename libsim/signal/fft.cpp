@@ -5,21 +5,41 @@
 #include <algorithm>
 #include <cassert>
 #include <map>
-#include <memory>
 #include <mutex>
+#include <utility>
 
 #include "libsim/base/error.hpp"
 
 namespace modcal {
 
-struct RealFft::Plans {
-  fftw_plan forward = nullptr;
-  fftw_plan inverse = nullptr;
+namespace {
 
-  Plans() = default;
-  Plans(const Plans&) = delete;
-  Plans& operator=(const Plans&) = delete;
-  ~Plans() {
+fftw_complex* as_fftw(Complex* values) { return reinterpret_cast<fftw_complex*>(values); }
+double* samples_in(Complex* memory) { return reinterpret_cast<double*>(memory); }
+
+// Callers of kApart bring arrays of their own, of any alignment.
+enum class Memory { kApart, kInPlace, kInPlaceUnaligned };
+
+}  // namespace
+
+struct FftPlans {
+  fftw_plan forward, inverse;
+
+  FftPlans(std::size_t length, Memory memory) {
+    std::vector<Complex> spectrum(length / 2 + 1);
+    std::vector<double> apart(memory == Memory::kApart ? length : 0);
+    double* samples = apart.empty() ? samples_in(spectrum.data()) : apart.data();
+    const int n = static_cast<int>(length);
+    const unsigned flags =
+        memory == Memory::kInPlace ? FFTW_ESTIMATE : FFTW_ESTIMATE | FFTW_UNALIGNED;
+    const unsigned keep = apart.empty() ? 0 : FFTW_PRESERVE_INPUT;
+    const unsigned spoil = apart.empty() ? 0 : FFTW_DESTROY_INPUT;
+    forward = fftw_plan_dft_r2c_1d(n, samples, as_fftw(spectrum.data()), flags | keep);
+    inverse = fftw_plan_dft_c2r_1d(n, as_fftw(spectrum.data()), samples, flags | spoil);
+  }
+  FftPlans(const FftPlans&) = delete;
+  FftPlans& operator=(const FftPlans&) = delete;
+  ~FftPlans() {
     fftw_destroy_plan(forward);
     fftw_destroy_plan(inverse);
   }
@@ -27,36 +47,19 @@ struct RealFft::Plans {
 
 namespace {
 
-fftw_complex* as_fftw(Complex* values) { return reinterpret_cast<fftw_complex*>(values); }
-
-// FFTW's planner is not thread-safe; executing a plan on new arrays is.
-std::mutex& planner_mutex() {
+// Plans live as long as the process: their number is the number of distinct record lengths.
+const FftPlans* plans_for(std::size_t length, Memory memory) {
+  MODCAL_REQUIRE(length >= 1, "a Fourier transform needs at least one sample");
+  // FFTW's planner is not thread-safe; executing a plan on new arrays is.
   static std::mutex mutex;
-  return mutex;
+  static std::map<std::pair<std::size_t, Memory>, FftPlans> cache;
+  const std::lock_guard lock(mutex);
+  return &cache.try_emplace({length, memory}, length, memory).first->second;
 }
 
 }  // namespace
 
-RealFft::RealFft(std::size_t length) : length_(length) {
-  MODCAL_REQUIRE(length >= 1, "a Fourier transform needs at least one sample");
-  // Plans live as long as the process: their number is the number of distinct record lengths.
-  static std::map<std::size_t, std::unique_ptr<Plans>> cache;
-  const std::lock_guard lock(planner_mutex());
-  std::unique_ptr<Plans>& slot = cache[length];
-  if (!slot) {
-    std::vector<double> samples(length);
-    std::vector<Complex> spectrum(bins());
-    const int n = static_cast<int>(length);
-    // Unaligned: callers bring their own arrays.
-    const unsigned flags = FFTW_ESTIMATE | FFTW_UNALIGNED;
-    slot = std::make_unique<Plans>();
-    slot->forward = fftw_plan_dft_r2c_1d(n, samples.data(), as_fftw(spectrum.data()),
-                                         flags | FFTW_PRESERVE_INPUT);
-    slot->inverse = fftw_plan_dft_c2r_1d(n, as_fftw(spectrum.data()), samples.data(),
-                                         flags | FFTW_DESTROY_INPUT);
-  }
-  plans_ = slot.get();
-}
+RealFft::RealFft(std::size_t length) : length_(length), plans_(plans_for(length, Memory::kApart)) {}
 
 void RealFft::forward(std::span<const double> samples, std::span<Complex> spectrum) const {
   assert(samples.size() == length_ && spectrum.size() == bins());
@@ -85,52 +88,23 @@ std::vector<double> RealFft::inverse(std::vector<Complex> spectrum) const {
   return samples;
 }
 
-struct InPlaceFft::Plans {
-  // Aligned to 16 bytes or not.
-  fftw_plan forward[2] = {nullptr, nullptr};
-  fftw_plan inverse[2] = {nullptr, nullptr};
-
-  explicit Plans(std::size_t length) {
-    std::vector<Complex> memory(length / 2 + 1);
-    auto* samples = reinterpret_cast<double*>(memory.data());
-    const int n = static_cast<int>(length);
-    for (std::size_t i = 0; i < 2; ++i) {
-      const unsigned flags = i == 0 ? FFTW_ESTIMATE : FFTW_ESTIMATE | FFTW_UNALIGNED;
-      forward[i] = fftw_plan_dft_r2c_1d(n, samples, as_fftw(memory.data()), flags);
-      inverse[i] = fftw_plan_dft_c2r_1d(n, as_fftw(memory.data()), samples, flags);
-    }
-  }
-  Plans(const Plans&) = delete;
-  Plans& operator=(const Plans&) = delete;
-  ~Plans() {
-    for (std::size_t i = 0; i < 2; ++i) {
-      fftw_destroy_plan(forward[i]);
-      fftw_destroy_plan(inverse[i]);
-    }
-  }
-};
-
-InPlaceFft::InPlaceFft(std::size_t length) : length_(length) {
-  MODCAL_REQUIRE(length >= 1, "a Fourier transform needs at least one sample");
-  static std::map<std::size_t, std::unique_ptr<Plans>> cache;
-  const std::lock_guard lock(planner_mutex());
-  std::unique_ptr<Plans>& slot = cache[length];
-  if (!slot) slot = std::make_unique<Plans>(length);
-  plans_ = slot.get();
-}
+InPlaceFft::InPlaceFft(std::size_t length)
+    : length_(length),
+      aligned_(plans_for(length, Memory::kInPlace)),
+      unaligned_(plans_for(length, Memory::kInPlaceUnaligned)) {}
 
 void InPlaceFft::forward(std::span<Complex> memory) const {
   assert(memory.size() == bins());
-  auto* samples = reinterpret_cast<double*>(memory.data());
-  fftw_execute_dft_r2c(plans_->forward[fftw_alignment_of(samples) == 0 ? 0 : 1], samples,
-                       as_fftw(memory.data()));
+  double* samples = modcal::samples_in(memory.data());
+  const FftPlans* plans = fftw_alignment_of(samples) == 0 ? aligned_ : unaligned_;
+  fftw_execute_dft_r2c(plans->forward, samples, as_fftw(memory.data()));
 }
 
 void InPlaceFft::inverse(std::span<Complex> memory) const {
   assert(memory.size() == bins());
-  auto* samples = reinterpret_cast<double*>(memory.data());
-  fftw_execute_dft_c2r(plans_->inverse[fftw_alignment_of(samples) == 0 ? 0 : 1],
-                       as_fftw(memory.data()), samples);
+  double* samples = modcal::samples_in(memory.data());
+  const FftPlans* plans = fftw_alignment_of(samples) == 0 ? aligned_ : unaligned_;
+  fftw_execute_dft_c2r(plans->inverse, as_fftw(memory.data()), samples);
 }
 
 double bin_multiplicity(std::size_t k, std::size_t length) {

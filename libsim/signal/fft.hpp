@@ -14,6 +14,8 @@ namespace modcal {
 
 using Complex = std::complex<double>;
 
+struct FftPlans;
+
 /// Transform pair for one length; cheap to copy, safe to use from several threads at once.
 class RealFft {
  public:
@@ -34,9 +36,8 @@ class RealFft {
   std::vector<double> inverse(std::vector<Complex> spectrum) const;
 
  private:
-  struct Plans;
   std::size_t length_;
-  const Plans* plans_;
+  const FftPlans* plans_;
 };
 
 /// Multiplicity of bin k of a real sequence's half spectrum: 1 for k = 0 and (even K) k = K/2, else
@@ -64,9 +65,8 @@ class InPlaceFft {
   void inverse(std::span<Complex> memory) const;
 
  private:
-  struct Plans;
   std::size_t length_;
-  const Plans* plans_;
+  const FftPlans *aligned_, *unaligned_;  // to 16 bytes or not
 };
 
 }  // namespace modcal

@@ -1,13 +1,71 @@
 // Energy of a simulated string: where the bow's work has gone.
 #pragma once
 
+#include <complex>
 #include <cstddef>
 #include <span>
+#include <vector>
 
+#include "libsim/base/aligned_vector.hpp"
 #include "libsim/dynamics/scene/contact_modes.hpp"
 #include "libsim/dynamics/scene/simulation.hpp"
 
 namespace modcal {
+
+/// Gauss–Legendre quadrature on [0, 1].
+struct GaussRule {
+  std::vector<double> node, weight;
+};
+
+/// n points, exact for polynomials of degree 2n − 1: the roots of P_n by Newton's method from
+/// cos(π (i + ¾)/(n + ½)) (Abramowitz and Stegun, 1964, 25.4.30).
+GaussRule gauss_rule(int points);
+
+/// Σ powers[p] θ^p.
+inline double power_sum(std::span<const double> powers, double theta) {
+  double sum = 0.0;
+  for (std::size_t p = powers.size(); p-- > 0;) sum = sum * theta + powers[p];
+  return sum;
+}
+
+/// Coefficients of the powers of θ ∈ [0, 1], for one contact point each.
+using PointPowers = std::vector<std::vector<double>>;
+
+/// Modes Z' = λ Z + Σ_j φ_j f_j/m under forces given as power series in time. On a piece of length
+/// h each mode is the series z_{p+1} = (λh z_p + h Σ_j φ_j f_jp/m)/(p + 1), taken to where its rest
+/// is below rounding; dissipation is integrated by Gauss's rule. None of the simulators'
+/// propagators is used.
+class ModeReplay {
+ public:
+  /// Longest piece, |λ|h; longer ones are for the caller to divide.
+  static constexpr double kLongestPhase = 4.0;
+
+  explicit ModeReplay(const ContactModes& modes);
+  explicit ModeReplay(const LineModes& modes);
+
+  /// max |λ| [1/s].
+  double fastest() const { return fastest_; }
+  /// Moves on by `time` [s] under f_j(θ) = Σ force[j][k] θ^k, at most 25 coefficients. Returns the
+  /// dissipation Σ ∫ 2ζω m p² dt [J] and writes v_j(θ) = Σ velocity[j][p] θ^p of the points [m/s].
+  double advance(double time, std::span<const std::span<const double>> force,
+                 PointPowers& velocity);
+  /// Σ m (p² + ω² q²)/2 [J] of the present state, and of any state Z of these modes.
+  double energy() const;
+  double energy(const PlanarVector& state) const;
+
+ private:
+  ModeReplay(const ModeTable& modes, const std::vector<double>& inverse_mass,
+             const std::vector<std::vector<double>>& shape);
+  static std::size_t terms(double phase, std::size_t forces);
+  double energy_of(std::size_t mode, std::complex<double> state) const;
+
+  ModeTable modes_;
+  std::vector<double> inverse_mass_;
+  std::vector<std::vector<double>> shape_;
+  std::vector<std::complex<double>> state_;
+  double fastest_ = 0.0;
+  GaussRule few_, many_;
+};
 
 /// Energies in J over a whole run. The string's balance is string_work = dissipated + stored.
 struct EnergyBalance {

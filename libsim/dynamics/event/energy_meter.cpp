@@ -6,12 +6,6 @@
 namespace modcal::event {
 namespace {
 
-double value_at(std::span<const double> powers, double theta) {
-  double sum = 0.0;
-  for (std::size_t p = powers.size(); p-- > 0;) sum = sum * theta + powers[p];
-  return sum;
-}
-
 // ∫₀^θ.
 double integral_to(std::span<const double> powers, double theta) {
   double sum = 0.0;
@@ -79,11 +73,9 @@ double EnergyMeter::law_force(const ForcePiece& piece, double theta, double slip
   if (piece.phase == ContactPhase::kSticking) return -stiffness_ * elongation - damping_ * slip;
   const double load = piece.drive.load_at(theta * piece.duration);
   if (thermal_) {
-    return -piece.side * load * thermal_->softening_at(value_at(piece.rise, theta)).coefficient;
+    return -piece.side * load * thermal_->softening_at(power_sum(piece.rise, theta)).coefficient;
   }
-  const double speed = std::max(0.0, piece.side * slip);
-  return -piece.side * load *
-         std::visit([speed](const auto& law) { return law.at(speed).force; }, law_);
+  return -piece.side * load * sliding_force(law_, std::max(0.0, piece.side * slip));
 }
 
 void EnergyMeter::part(const ForcePiece& piece) {
@@ -96,7 +88,7 @@ void EnergyMeter::part(const ForcePiece& piece) {
   double explained = 0.0;  // heat of the contact
   for (std::size_t g = 0; g < rule_.node.size(); ++g) {
     const double theta = rule_.node[g], weight = rule_.weight[g] * h;
-    const double f = value_at(piece.force, theta), v = value_at(velocity, theta);
+    const double f = power_sum(piece.force, theta), v = power_sum(velocity, theta);
     const double bow = piece.drive.velocity_at(theta * h), slip = v - bow;
     const double elongation =
         piece.phase == ContactPhase::kSticking
@@ -114,7 +106,7 @@ void EnergyMeter::part(const ForcePiece& piece) {
     } else {
       sum_.friction -= weight * law * slip;
       if (thermal_) {
-        const double speed = piece.side * slip, rise = value_at(piece.rise, theta);
+        const double speed = piece.side * slip, rise = power_sum(piece.rise, theta);
         explained += weight * (std::abs(law) * speed -
                                (thermal_->conductance + thermal_->carried * speed) * rise);
       }
@@ -123,7 +115,7 @@ void EnergyMeter::part(const ForcePiece& piece) {
   if (piece.phase == ContactPhase::kSticking) {
     elongation_ += h * integral_to(velocity, 1.0) - piece.drive.travel(h);
   } else if (thermal_) {
-    const double change = value_at(piece.rise, 1.0) - value_at(piece.rise, 0.0);
+    const double change = power_sum(piece.rise, 1.0) - power_sum(piece.rise, 0.0);
     sum_.heat_residual += std::abs(thermal_->capacity * change - explained);
   }
 }

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "libsim/dynamics/energy/energy_account.hpp"
-#include "libsim/dynamics/energy/mode_replay.hpp"
 #include "libsim/dynamics/event/event_loop.hpp"
 
 namespace modcal::event {

@@ -28,9 +28,7 @@ class Run {
       const ContactModes& modes, std::optional<Sticking> sticking, EventState& state)
       : loop_(loop),
         state_(state),
-        clock_(loop.bow.empty() ? std::vector<BowKnot>{{.velocity = loop.contact.bow_velocity}}
-                                : loop.bow,
-               loop.grid_step),
+        clock_(loop.knots(), loop.grid_step),
         model_(modes, rule, loop.grid_step),
         sliding_(model_, friction, loop.slope_number, loop.tail_ratio),
         sticking_(std::move(sticking)) {}
@@ -66,8 +64,7 @@ class Run {
     const MotionSample motion = model_.observe(state_.modes, {});
     const BowDrive drive = clock_.drive_at(0.0);
     if (state_.sticking) {
-      sticking_->attach(drive, state_.modes, motion.displacement, state_.elongation, state_.rise);
-      clock_.mark_base(0.0);
+      hold(0.0, drive, motion.displacement, state_.elongation);
     } else {
       sliding_.start(state_.side, state_.side * (motion.velocity - drive.velocity), drive.load);
     }
@@ -92,19 +89,27 @@ class Run {
       sticking_->change_drive(clock_.since_base(x), clock_.drive());
       clock_.mark_base(x);
     }
-    if (in_contact_ && !contact) lift(x);
+    if (in_contact_ && !contact) {
+      if (state_.sticking) let_go(x);
+      clock_.mark_base(x);
+    }
     if (!in_contact_ && contact) touch_down(x);
     in_contact_ = contact;
   }
 
-  void lift(double x) {
-    if (state_.sticking) {
-      law().set_rise(sticking_->rise(clock_.since_base(x)));
-      sticking_->detach(clock_.since_base(x), state_.modes);
-      state_.sticking = false;
-      if (loop_.observer != nullptr) loop_.observer->released();
-    }
+  // The contact at y sticks from x on.
+  void hold(double x, const BowDrive& drive, double y, double elongation) {
+    sticking_->attach(drive, state_.modes, y, elongation, law().rise());
     clock_.mark_base(x);
+    state_.sticking = true;
+  }
+
+  void let_go(double x) {
+    const double tau = clock_.since_base(x);
+    sticking_->detach(tau, state_.modes);
+    law().set_rise(sticking_->rise(tau));
+    state_.sticking = false;
+    if (loop_.observer != nullptr) loop_.observer->released();
   }
 
   // The bow comes back: it holds the string where both move alike, else the string slides.
@@ -113,12 +118,11 @@ class Run {
     const MotionSample motion = model_.observe(state_.modes, {.reactions = false});
     const BowDrive drive = clock_.drive();
     const double slip = motion.velocity - drive.velocity;
-    state_.sticking = slip == 0.0;
-    if (state_.sticking) {
-      sticking_->attach(drive, state_.modes, motion.displacement, 0.0, law().rise());
-      clock_.mark_base(x);
+    if (slip == 0.0) {
+      hold(x, drive, motion.displacement, 0.0);
       if (loop_.observer != nullptr) loop_.observer->attached(0.0);
     } else {
+      state_.sticking = false;
       sliding_.start(slip < 0.0 ? -1.0 : 1.0, std::abs(slip), drive.load);
     }
   }
@@ -153,7 +157,8 @@ class Run {
   // From x to `last` at most.
   double part(double x, double last, bool sampled) {
     if (in_contact_) return state_.sticking ? stick(x, last, sampled) : slide(x, last);
-    if (loop_.observer != nullptr) loop_.observer->piece({.duration = (last - x) * loop_.grid_step});
+    if (loop_.observer != nullptr)
+      loop_.observer->piece({.duration = (last - x) * loop_.grid_step});
     if (x == 0.0 && last == 1.0) {
       model_.advance_free(state_.modes);
     } else {
@@ -217,22 +222,18 @@ class Run {
     const bool continuous = loop_.attach == AttachRule::kContinuous;
     const double force = -sliding_.side() * law().at(0.0, drive.load).friction;
     const double elongation = continuous ? -force / loop_.contact.stiffness : 0.0;
-    sticking_->attach(drive, state_.modes, y, elongation, law().rise());
+    hold(x, drive, y, elongation);
     if (loop_.observer != nullptr) loop_.observer->attached(elongation);
-    clock_.mark_base(x);
-    list_switch(x, y, true);
-    state_.sticking = true;
+    loop_.switches.add({clock_.time_at(x), y, true});
     ++counts_.attachments;
   }
 
   // `limit`: the sign of the force that adherence could not carry.
   void release(double x, int limit) {
-    sticking_->detach(clock_.since_base(x), state_.modes);
-    law().set_rise(sticking_->rise(clock_.since_base(x)));
-    if (loop_.observer != nullptr) loop_.observer->released();
+    let_go(x);
     const MotionSample motion = model_.observe(state_.modes, {.reactions = false});
     const double v = motion.velocity;
-    list_switch(x, motion.displacement, false);
+    loop_.switches.add({clock_.time_at(x), motion.displacement, false});
     const BowDrive drive = clock_.drive_at(x);
     const double slip = v - drive.velocity;
     const double against_force = -limit;
@@ -240,12 +241,7 @@ class Run {
     const double side = at_rest ? against_force : slip < 0.0 ? -1.0 : 1.0;
     if (side != against_force) ++counts_.wrong_sign_releases;
     sliding_.start(side, at_rest ? 0.0 : std::abs(slip), drive.load);
-    state_.sticking = false;
     ++counts_.releases;
-  }
-
-  void list_switch(double x, double displacement, bool attaches) {
-    loop_.switches.add({clock_.time_at(x), displacement, attaches});
   }
 
   Friction& law() { return sliding_.friction(); }
@@ -282,19 +278,6 @@ class Run {
 };
 
 }  // namespace
-
-EventState initial_state(const ContactModes& modes, double bow_velocity) {
-  EventState state;
-  state.modes = PlanarVector(modes.size());
-  double velocity = 0.0;
-  for (std::size_t n = 0; n < modes.size(); ++n) {
-    state.modes.set(n, modes.initial[n]);
-    velocity += modes.initial[n].real() - modes.quadrature[n] * modes.initial[n].imag();
-  }
-  state.sticking = velocity == bow_velocity;
-  state.side = velocity < bow_velocity ? -1.0 : 1.0;
-  return state;
-}
 
 EventCounts run_event_loop(const EventLoop& loop, const ContactModes& modes, EventState& state) {
   const LobattoRule rule = lobatto_rule(loop.nodes);

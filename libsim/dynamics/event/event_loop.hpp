@@ -10,9 +10,8 @@
 #include "libsim/dynamics/event/modes/bow_path.hpp"
 #include "libsim/dynamics/event/modes/closed_loop.hpp"
 #include "libsim/dynamics/event/modes/force_observer.hpp"
-#include "libsim/dynamics/fixed_step/step_loop.hpp"
-#include "libsim/dynamics/friction/stateful_laws.hpp"
-#include "libsim/dynamics/scene/simulation.hpp"
+#include "libsim/dynamics/friction/sliding_laws.hpp"
+#include "libsim/dynamics/scene/contact_modes.hpp"
 
 namespace modcal::event {
 
@@ -58,6 +57,12 @@ struct EventLoop {
   /// Sees every piece of the force and every switch; null: nobody does, at no cost.
   ForceObserver* observer = nullptr;
   StopToken stop;  ///< polled between samples
+
+  /// The bow's motion, a steady one as well.
+  std::vector<BowKnot> knots() const {
+    if (!bow.empty()) return bow;
+    return {{.time = 0.0, .velocity = contact.bow_velocity, .load = 1.0}};
+  }
 };
 
 struct EventCounts {
@@ -73,7 +78,15 @@ struct EventCounts {
 };
 
 /// The state with the given modes: sticking with an unstretched spring where v_c = 0.
-EventState initial_state(const ContactModes& modes, double bow_velocity);
+inline EventState initial_state(const ContactModes& modes, double bow_velocity) {
+  EventState state;
+  state.modes = PlanarVector(modes.size());
+  for (std::size_t n = 0; n < modes.size(); ++n) state.modes.set(n, modes.initial[n]);
+  const double velocity = motion_of(modes, modes.initial).velocity;
+  state.sticking = velocity == bow_velocity;
+  state.side = velocity < bow_velocity ? -1.0 : 1.0;
+  return state;
+}
 
 /// Advances the state over all samples. Throws InvalidInput where the contact cannot be computed
 /// at all: a double root of the closed loop, or a root that turns by more than 1e4 rad in a step.

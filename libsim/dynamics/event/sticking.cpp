@@ -127,16 +127,9 @@ SumAndRate Sticking::propagate(double time, bool observed) {
 }
 
 bool Sticking::hull_inside(double tau, double time, ForceJet start, ForceJet end) const {
-  const double part = time * (1.0 / 3.0);
-  const double second = start.value + part * start.rate;
-  const double third = end.value - part * end.rate;
-  // The limit is linear: its own control points lie on it.
-  const Limit at = limit(tau, time);
-  const double fall = (at.end - at.start) * (1.0 / 3.0);
+  const double part = time * (1.0 / 3.0), square = time * time;
   const double excess =
-      std::max(std::max(std::abs(start.value) - at.start, std::abs(second) - (at.start + fall)),
-               std::max(std::abs(third) - (at.end - fall), std::abs(end.value) - at.end));
-  const double square = time * time;
+      hull_excess(limit(tau, time), start.value, part * start.rate, end.value, part * end.rate);
   return excess + square * square * (fourth_derivative_ * (1.0 / 384.0)) < 0.0 &&
          std::isfinite(end.value);
 }
@@ -241,20 +234,6 @@ Sticking::Advance Sticking::advance(double tau, double time, bool observed) {
   bound_is_fresh_ = false;
   starts_at_upper_ = starts_at_lower_ = false;
   return result;
-}
-
-MotionSample Sticking::motion_at(double tau, double force,
-                                 const std::array<double, ClosedLoop::kRows>& seen) const {
-  MotionSample motion;
-  motion.force = force;
-  motion.velocity = seen[ClosedLoop::kVelocity] + loop_.displacement.value * slow_.rate_at(tau) +
-                    loop_.displacement.rate * slow_.curvature;
-  motion.left = seen[ClosedLoop::kLeft] + loop_.left.at(slow_, tau);
-  motion.right = seen[ClosedLoop::kRight] + loop_.right.at(slow_, tau);
-  const double slip = motion.velocity - drive_.velocity_at(tau);
-  motion.displacement =
-      rest_point_ + drive_.travel(tau) - (force + loop_.damping * slip) / loop_.stiffness;
-  return motion;
 }
 
 MotionSample Sticking::observe(double tau) {

@@ -99,6 +99,15 @@ class Sticking {
     const double at_start = limit_.at(tau);
     return {at_start * drive_.load_at(tau), at_start * drive_.load_at(tau + time)};
   }
+  // How far the Bézier polygon of the cubic with these forces at its ends goes beyond a limit that
+  // is a line: its own control points lie on it. `reach`: a third of the step's change by the rate.
+  static double hull_excess(const Limit& at, double start, double start_reach, double end,
+                            double end_reach) {
+    const double fall = (at.end - at.start) * (1.0 / 3.0);
+    return std::max(
+        std::max(std::abs(start) - at.start, std::abs(start + start_reach) - (at.start + fall)),
+        std::max(std::abs(end - end_reach) - (at.end - fall), std::abs(end) - at.end));
+  }
   double reach() const { return std::min(series_step_, limit_.reach()); }
   std::array<double, kTerms> limit_series(double tau, double time) const;
   std::array<double, kTerms> force_series(const PlanarVector& state, double tau, double time) const;
@@ -120,10 +129,21 @@ class Sticking {
     std::array<double, kBlock + 1> value, reach;
   };
   std::size_t certified_steps(double tau, const BlockForce& force) const;
-  void fill_motions(double tau, const double* seen, Block& out) const;
   double step_of(int level) const { return std::ldexp(longest_step_, -level); }
+  // `seen`: the rows' values of the homogeneous motion.
   MotionSample motion_at(double tau, double force,
-                         const std::array<double, ClosedLoop::kRows>& seen) const;
+                         const std::array<double, ClosedLoop::kRows>& seen) const {
+    MotionSample motion;
+    motion.force = force;
+    motion.velocity = seen[ClosedLoop::kVelocity] + loop_.displacement.value * slow_.rate_at(tau) +
+                      loop_.displacement.rate * slow_.curvature;
+    motion.left = seen[ClosedLoop::kLeft] + loop_.left.at(slow_, tau);
+    motion.right = seen[ClosedLoop::kRight] + loop_.right.at(slow_, tau);
+    const double slip = motion.velocity - drive_.velocity_at(tau);
+    motion.displacement =
+        rest_point_ + drive_.travel(tau) - (force + loop_.damping * slip) / loop_.stiffness;
+    return motion;
+  }
 
   ClosedLoop loop_;
   StaticLimit limit_;

@@ -85,12 +85,8 @@ std::size_t Sticking::certified_steps(double tau, const BlockForce& force) const
     end[k] = at.end;
   }
   for (std::size_t k = 0; k < kBlock; ++k) {
-    const double fall = (end[k] - start[k]) * (1.0 / 3.0);
-    const double first = std::abs(force.value[k]) - start[k];
-    const double second = std::abs(force.value[k] + force.reach[k]) - (start[k] + fall);
-    const double third = std::abs(force.value[k + 1] - force.reach[k + 1]) - (end[k] - fall);
-    const double last = std::abs(force.value[k + 1]) - end[k];
-    excess[k] = std::max(std::max(first, second), std::max(third, last));
+    excess[k] = hull_excess({start[k], end[k]}, force.value[k], force.reach[k], force.value[k + 1],
+                            force.reach[k + 1]);
   }
   const double square = longest_step_ * longest_step_;
   const double remainder = square * square * (fourth_derivative_ * (1.0 / 384.0));
@@ -124,27 +120,20 @@ std::size_t Sticking::advance_block(double tau, Block& out) {
     steps = certified_steps(tau, force);
   }
   if (steps == 0) return 0;
-  fill_motions(tau, &sums[kBlockVelocity * kBlock], out);
+  const double* seen = &sums[kBlockVelocity * kBlock];
+  for (std::size_t k = 0; k < kBlock; ++k) {
+    const MotionSample motion = motion_at(
+        tau + static_cast<double>(k + 1) * longest_step_, out.force[k],
+        {seen[k], seen[ClosedLoop::kLeft * kBlock + k], seen[ClosedLoop::kRight * kBlock + k]});
+    out.velocity[k] = motion.velocity;
+    out.displacement[k] = motion.displacement;
+    out.left[k] = motion.left;
+    out.right[k] = motion.right;
+  }
   event::advance(block_factor_[steps - 1], loop_.pole, state_, state_);
   force_ = {out.force[steps - 1], rate[steps - 1]};
   bound_is_fresh_ = seen_is_valid_ = false;
   return steps;
-}
-
-// motion_at() for the ends of a block's steps side by side.
-void Sticking::fill_motions(double tau, const double* seen, Block& out) const {
-  const double* seen_left = seen + ClosedLoop::kLeft * kBlock;
-  const double* seen_right = seen + ClosedLoop::kRight * kBlock;
-  for (std::size_t k = 0; k < kBlock; ++k) {
-    const double at = tau + static_cast<double>(k + 1) * longest_step_;
-    out.velocity[k] = seen[k] + loop_.displacement.value * slow_.rate_at(at) +
-                      loop_.displacement.rate * slow_.curvature;
-    const double slip = out.velocity[k] - drive_.velocity_at(at);
-    out.displacement[k] =
-        rest_point_ + drive_.travel(at) - (out.force[k] + loop_.damping * slip) / loop_.stiffness;
-    out.left[k] = seen_left[k] + loop_.left.at(slow_, at);
-    out.right[k] = seen_right[k] + loop_.right.at(slow_, at);
-  }
 }
 
 }  // namespace modcal::event

@@ -10,7 +10,7 @@
 #include <cstdint>
 
 #include "libsim/dynamics/fixed_step/step_loop.hpp"
-#include "libsim/dynamics/friction/stateful_laws.hpp"
+#include "libsim/dynamics/friction/sliding_laws.hpp"
 #include "libsim/dynamics/gestures/bow.hpp"
 
 namespace modcal {

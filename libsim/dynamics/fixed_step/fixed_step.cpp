@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "libsim/base/error.hpp"
-#include "libsim/dynamics/fixed_step/line_loop.hpp"
+#include "libsim/dynamics/fixed_step/step_loop.hpp"
 
 namespace modcal {
 namespace {

@@ -54,39 +54,25 @@ namespace modcal {
 
 HWY_EXPORT(AdvanceLine);
 
-namespace {
-
-AlignedVector padded(const std::vector<double>& values) {
-  AlignedVector result(values.begin(), values.end());
-  result.resize(padded_size(values.size()), 0.0);
-  return result;
-}
-
-template <typename Value>
-AlignedVector padded_part(std::size_t size, Value value) {
-  std::vector<double> parts(size);
-  for (std::size_t n = 0; n < size; ++n) parts[n] = value(n);
-  return padded(parts);
-}
-
-}  // namespace
-
 LineArrays make_line_arrays(const LineModes& modes, const SchemeWeights& w) {
-  const std::size_t size = modes.size();
+  const auto part = [&modes](auto value) { return padded(modes.size(), 0.0, value); };
+  const auto column = [&](const std::vector<double>& values) {
+    return part([&values](std::size_t n) { return values[n]; });
+  };
   LineArrays c;
   const auto deferred = [&w](std::size_t n) { return w.propagate[n] * w.newer[n] + w.older[n]; };
-  c.propagate_re = padded_part(size, [&w](std::size_t n) { return w.propagate[n].real(); });
-  c.propagate_im = padded_part(size, [&w](std::size_t n) { return w.propagate[n].imag(); });
-  c.deferred_re = padded_part(size, [&](std::size_t n) { return deferred(n).real(); });
-  c.deferred_im = padded_part(size, [&](std::size_t n) { return deferred(n).imag(); });
-  c.state_re = padded_part(size, [&modes](std::size_t n) { return modes.initial[n].real(); });
-  c.state_im = padded_part(size, [&modes](std::size_t n) { return modes.initial[n].imag(); });
-  c.inverse_mass = padded(modes.inverse_mass);
-  c.quadrature = padded(modes.quadrature);
-  c.compliance = padded(modes.compliance);
-  c.left_gain = padded(modes.left_gain);
-  c.right_gain = padded(modes.right_gain);
-  for (const std::vector<double>& shape : modes.shape) c.shape.push_back(padded(shape));
+  c.propagate_re = part([&](std::size_t n) { return w.propagate[n].real(); });
+  c.propagate_im = part([&](std::size_t n) { return w.propagate[n].imag(); });
+  c.deferred_re = part([&](std::size_t n) { return deferred(n).real(); });
+  c.deferred_im = part([&](std::size_t n) { return deferred(n).imag(); });
+  c.state_re = part([&](std::size_t n) { return modes.initial[n].real(); });
+  c.state_im = part([&](std::size_t n) { return modes.initial[n].imag(); });
+  c.inverse_mass = column(modes.inverse_mass);
+  c.quadrature = column(modes.quadrature);
+  c.compliance = column(modes.compliance);
+  c.left_gain = column(modes.left_gain);
+  c.right_gain = column(modes.right_gain);
+  for (const std::vector<double>& shape : modes.shape) c.shape.push_back(column(shape));
   return c;
 }
 

@@ -1,9 +1,8 @@
-#include "libsim/dynamics/fixed_step/line_loop.hpp"
-
 #include <algorithm>
 #include <cmath>
 
 #include "libsim/dynamics/fixed_step/point_forces.hpp"
+#include "libsim/dynamics/fixed_step/step_loop.hpp"
 
 namespace modcal {
 namespace {

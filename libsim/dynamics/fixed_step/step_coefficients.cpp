@@ -9,13 +9,6 @@ namespace {
 using Complex = std::complex<double>;
 using ComplexVector = std::vector<Complex>;
 
-template <typename Value>
-AlignedVector padded(std::size_t size, double filling, Value value) {
-  AlignedVector result(padded_size(size), filling);
-  for (std::size_t n = 0; n < size; ++n) result[n] = value(n);
-  return result;
-}
-
 // What a state Z of mode n is of velocity, displacement and reactions.
 using Quantity = double (*)(const ContactModes&, std::size_t, Complex);
 constexpr Quantity kVelocity = [](const ContactModes& modes, std::size_t n, Complex z) {
@@ -49,17 +42,6 @@ ModeSum sum_of(Quantity quantity, const ContactModes& modes, const ComplexVector
 }
 
 }  // namespace
-
-MotionSample motion_of(const ContactModes& modes, const std::vector<std::complex<double>>& state) {
-  MotionSample sum;
-  for (std::size_t n = 0; n < modes.size(); ++n) {
-    sum.displacement += kDisplacement(modes, n, state[n]);
-    sum.velocity += kVelocity(modes, n, state[n]);
-    sum.left += kLeft(modes, n, state[n]);
-    sum.right += kRight(modes, n, state[n]);
-  }
-  return sum;
-}
 
 void StepCoefficients::hold(double stiffness, double damping) {
   const auto mixed = [stiffness, damping](const AlignedVector& y, const AlignedVector& v) {

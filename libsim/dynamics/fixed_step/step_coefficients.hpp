@@ -42,8 +42,13 @@ struct StepCoefficients {
   void hold(double stiffness, double damping);
 };
 
-/// Motion of the contact and reactions of the ends in the state Z of the modes.
-MotionSample motion_of(const ContactModes& modes, const std::vector<std::complex<double>>& state);
+/// value(n) for n < size, then the filling up to whole vectors.
+template <typename Value>
+AlignedVector padded(std::size_t size, double filling, Value value) {
+  AlignedVector result(padded_size(size), filling);
+  for (std::size_t n = 0; n < size; ++n) result[n] = value(n);
+  return result;
+}
 
 /// Whether x₁ and x₂ can be told apart, |Im r| ≥ 0.05 |1 − r|, and forces reach them,
 /// |r d₁ + d₀| ≥ 1e-3 (|d₀| + |d₁|), for every mode: not where a mode does a whole number of half

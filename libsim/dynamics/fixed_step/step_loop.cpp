@@ -192,38 +192,24 @@ LoopCounts LoopOf(const FixedStepRun& run, ContactRule<Law>& rule, StepCoefficie
              : Loop<ForceTiming::kPreviousStep, Modes>(run, rule, c);
 }
 
-template <typename Law>
+// The state in registers where it is kVectors vectors or less, else in memory.
+template <std::size_t kVectors, typename Law>
 LoopCounts LoopOfLaw(const FixedStepRun& run, ContactRule<Law>& rule, StepCoefficients& c) {
-#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
-  switch (c.first.size() / kVectorPadding) {
-    case 1:
-      return LoopOf<ResidentModes<1>>(run, rule, c);
-    case 2:
-      return LoopOf<ResidentModes<2>>(run, rule, c);
-    case 3:
-      return LoopOf<ResidentModes<3>>(run, rule, c);
-    case 4:
-      return LoopOf<ResidentModes<4>>(run, rule, c);
-    case 5:
-      return LoopOf<ResidentModes<5>>(run, rule, c);
-    case 6:
-      return LoopOf<ResidentModes<6>>(run, rule, c);
-    case 7:
-      return LoopOf<ResidentModes<7>>(run, rule, c);
-    case 8:
-      return LoopOf<ResidentModes<8>>(run, rule, c);
-    default:
-      break;
+  if constexpr (kVectors > 0) {
+    if (c.first.size() != kVectors * kVectorPadding) return LoopOfLaw<kVectors - 1>(run, rule, c);
+    return LoopOf<ResidentModes<kVectors>>(run, rule, c);
+  } else {
+    return LoopOf<StreamedModes>(run, rule, c);
   }
-#endif
-  return LoopOf<StreamedModes>(run, rule, c);
 }
+
+constexpr std::size_t kMostVectors = HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL ? 8 : 0;
 
 LoopCounts RunStepLoop(const FixedStepRun& run, const SteadyContact& contact, StepCoefficients& c) {
   return std::visit(
       [&](const auto& law) {
         auto rule = make_rule(run, contact, law, c);
-        return LoopOfLaw(run, rule, c);
+        return LoopOfLaw<kMostVectors>(run, rule, c);
       },
       contact.law);
 }

@@ -15,6 +15,7 @@
 #include "libsim/base/task_loop.hpp"
 #include "libsim/dynamics/fixed_step/step_coefficients.hpp"
 #include "libsim/dynamics/friction/sliding_laws.hpp"
+#include "libsim/dynamics/scene/contact_modes.hpp"
 #include "libsim/dynamics/scene/simulation.hpp"
 
 namespace modcal {
@@ -62,5 +63,22 @@ LoopCounts run_step_loop(const FixedStepRun& run, const SteadyContact& contact,
 
 /// Force of the contact at t = 0 [N].
 double initial_force(const SteadyContact& contact);
+
+/// The contact of any bow: `friction` and `parameters` belong to all points together, which share
+/// them alike.
+struct GeneralContact {
+  ContactParameters parameters;
+  const FrictionLaw& friction;
+  const BowMotion& bow;
+};
+
+/// Runs all steps, sample 0 included. Displacement and velocity are the means over the points, the
+/// force is their sum.
+LoopCounts run_line_loop(const FixedStepRun& run, const GeneralContact& contact,
+                         const LineModes& modes, const SchemeWeights& weights);
+
+/// Largest response of the velocity of a point to the newest force, shared by the points alike or
+/// with any signs [m/(N s)]: no pattern of the points answers more.
+double contact_response(const LineModes& modes, const SchemeWeights& weights);
 
 }  // namespace modcal

@@ -8,7 +8,6 @@
 
 #include "libsim/base/registry.hpp"
 #include "libsim/dynamics/friction/sliding_laws.hpp"
-#include "libsim/dynamics/friction/stateful_laws.hpp"
 
 namespace modcal {
 

@@ -123,6 +123,18 @@ ContactModes contact_modes(const ModalBasis& basis, double contact, const ModalS
   return modes;
 }
 
+MotionSample motion_of(const ContactModes& modes, const std::vector<std::complex<double>>& state) {
+  MotionSample sum;
+  for (std::size_t n = 0; n < modes.size(); ++n) {
+    const std::complex<double> z = state[n];
+    sum.displacement += modes.compliance[n] * z.imag();
+    sum.velocity += z.real() - modes.quadrature[n] * z.imag();
+    sum.left += modes.left_gain[n] * z.imag();
+    sum.right += modes.right_gain[n] * z.imag();
+  }
+  return sum;
+}
+
 ContactModes scene_modes(const Scene& scene) {
   MODCAL_REQUIRE(scene.bow.contact_points().size() == 1,
                  "{} contact points over {:g} m: this simulator has one; use modal_exact or "

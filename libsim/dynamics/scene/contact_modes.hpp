@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "libsim/dynamics/scene/scene.hpp"
+#include "libsim/dynamics/scene/simulation.hpp"
 #include "libsim/model/modal_basis.hpp"
 
 namespace modcal {
@@ -58,6 +59,9 @@ bool is_node(double shape);
 
 /// Throws InvalidInput where no mode moves at the contact.
 ContactModes contact_modes(const ModalBasis& basis, double contact, const ModalState& initial);
+
+/// Motion of the contact and reactions of the ends in the state Z of the modes.
+MotionSample motion_of(const ContactModes& modes, const std::vector<std::complex<double>>& state);
 
 /// The modes of the scene's string as one contact point sees them, the torsional ones last. Throws
 /// InvalidInput for a bow with several contact points.

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numbers>
 #include <span>
-#include <variant>
 #include <vector>
 
 #include "libsim/base/error.hpp"
@@ -17,9 +16,7 @@ namespace {
 
 // μ_S − μ at the slip speed.
 double friction_fall(const FrictionLaw& law, double slip_speed) {
-  const double sliding = std::visit(
-      [slip_speed](const auto& unit) { return unit.at(slip_speed).force; }, law.sliding(1.0));
-  return law.static_limit(1.0) - sliding;
+  return law.static_limit(1.0) - sliding_force(law.sliding(1.0), slip_speed);
 }
 
 // Σ ζ_n/n over the odd modes that Helmholtz motion needs: 1/β of them shape its slip.

@@ -8,7 +8,7 @@
 
 #include "experiments/kinds/calibrate/calibrate_study.hpp"
 #include "experiments/loader.hpp"
-#include "libsim/dynamics/scene/initial_motion.hpp"
+#include "libsim/dynamics/scene/scene.hpp"
 #include "libsim/records/csv_writer.hpp"
 #include "libsim/signal/statistics.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"

@@ -4,7 +4,7 @@
 #include "libcalib/likelihood/whitened_record.hpp"
 #include "libsim/base/random.hpp"
 #include "libsim/dynamics/event/modal_event.hpp"
-#include "libsim/dynamics/scene/initial_motion.hpp"
+#include "libsim/dynamics/scene/scene.hpp"
 #include "libsim/signal/statistics.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 

@@ -8,7 +8,7 @@
 #include "libinverse/observer/model_based_estimator.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/dynamics/fixed_step/fixed_step.hpp"
-#include "libsim/dynamics/friction/stateful_laws.hpp"
+#include "libsim/dynamics/friction/sliding_laws.hpp"
 #include "tests/libinverse/observer/bowed_record.hpp"
 
 namespace modcal {

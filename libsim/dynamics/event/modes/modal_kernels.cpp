@@ -17,12 +17,14 @@
 HWY_BEFORE_NAMESPACE();
 namespace modcal::event::HWY_NAMESPACE {
 
-template <std::size_t kRows>
-HWY_INLINE SumAndRate AdvanceSeen(const PlanarVector& factor, const PlanarVector& pole,
+// out = factor ∘ state with the factor at i from factor_at(i); `rows`, where there are any, are
+// summed over the new state.
+template <std::size_t kRows, typename FactorAt>
+HWY_INLINE SumAndRate AdvanceSeen(const FactorAt& factor_at, const PlanarVector& pole,
                                   const PlanarVector& state, const PlanarRows& rows, double* seen,
                                   PlanarVector& out) {
   const Tag d;
-  const Source factors(factor), poles(pole), states(state);
+  const Source poles(pole), states(state);
   const Rows weights(rows);
   const Target to(out);
   const std::size_t size = state.size();
@@ -30,9 +32,9 @@ HWY_INLINE SumAndRate AdvanceSeen(const PlanarVector& factor, const PlanarVector
   Vec row[kRows + 1];
   for (std::size_t r = 0; r < kRows; ++r) row[r] = hn::Zero(d);
   for (std::size_t i = 0; i < size; i += hn::Lanes(d)) {
-    const ComplexVec next = Times(factors[i], states[i]);
-    to.Set(i, next);
     const ComplexVec mu = poles[i];
+    const ComplexVec next = Times(factor_at(i, mu), states[i]);
+    to.Set(i, next);
     sum = hn::Add(sum, next.re);
     rate = hn::NegMulAdd(mu.im, next.im, hn::MulAdd(mu.re, next.re, rate));
     for (std::size_t r = 0; r < kRows; ++r) {
@@ -46,37 +48,24 @@ HWY_INLINE SumAndRate AdvanceSeen(const PlanarVector& factor, const PlanarVector
 
 SumAndRate Advance(const PlanarVector& factor, const PlanarVector& pole, const PlanarVector& state,
                    const PlanarRows& rows, std::span<double> seen, PlanarVector& out) {
-  switch (seen.size()) {
-    case 1:
-      return AdvanceSeen<1>(factor, pole, state, rows, seen.data(), out);
-    case 3:
-      return AdvanceSeen<3>(factor, pole, state, rows, seen.data(), out);
-    default:
-      assert(seen.empty());
-      return AdvanceSeen<0>(factor, pole, state, rows, nullptr, out);
-  }
+  const Source factors(factor);
+  const auto at = [factors](std::size_t i, ComplexVec /*pole*/) HWY_ATTR { return factors[i]; };
+  if (seen.size() == 1) return AdvanceSeen<1>(at, pole, state, rows, seen.data(), out);
+  if (seen.size() == 3) return AdvanceSeen<3>(at, pole, state, rows, seen.data(), out);
+  assert(seen.empty());
+  return AdvanceSeen<0>(at, pole, state, rows, nullptr, out);
 }
 
 SumAndRate AdvanceBy(double time, const PlanarVector& pole, const PlanarVector& state,
                      PlanarVector& out) {
   const Tag d;
-  const Source poles(pole), states(state);
-  const Target to(out);
-  const std::size_t size = state.size();
   const auto t = hn::Set(d, time);
-  Vec sum = hn::Zero(d), rate = hn::Zero(d);
-  for (std::size_t i = 0; i < size; i += hn::Lanes(d)) {
-    const ComplexVec mu = poles[i];
+  const auto at = [&](std::size_t /*i*/, ComplexVec mu) HWY_ATTR {
     const auto modulus = hn::Exp(d, hn::Mul(mu.re, t));
     const auto phase = hn::Mul(mu.im, t);
-    const ComplexVec factor = {hn::Mul(modulus, hn::Cos(d, phase)),
-                               hn::Mul(modulus, hn::Sin(d, phase))};
-    const ComplexVec next = Times(factor, states[i]);
-    to.Set(i, next);
-    sum = hn::Add(sum, next.re);
-    rate = hn::NegMulAdd(mu.im, next.im, hn::MulAdd(mu.re, next.re, rate));
-  }
-  return {Total(sum), Total(rate)};
+    return ComplexVec{hn::Mul(modulus, hn::Cos(d, phase)), hn::Mul(modulus, hn::Sin(d, phase))};
+  };
+  return AdvanceSeen<0>(at, pole, state, {}, nullptr, out);
 }
 
 // kRows sums side by side: as many chains as the latency of a multiply-add needs.
@@ -147,16 +136,11 @@ HWY_INLINE void AdvanceDrivenBy(const PlanarVector& factor, const PlanarRows& re
 
 void AdvanceDriven(const PlanarVector& factor, const PlanarRows& response,
                    std::span<const double> forces, PlanarVector& state) {
-  switch (forces.size()) {
-    case 2:
-      return AdvanceDrivenBy<2>(factor, response, forces.data(), state);
-    case 3:
-      return AdvanceDrivenBy<3>(factor, response, forces.data(), state);
-    case 4:
-      return AdvanceDrivenBy<4>(factor, response, forces.data(), state);
-    default:
-      return AdvanceDrivenBy<5>(factor, response, forces.data(), state);
-  }
+  const double* f = forces.data();
+  if (forces.size() == 2) return AdvanceDrivenBy<2>(factor, response, f, state);
+  if (forces.size() == 3) return AdvanceDrivenBy<3>(factor, response, f, state);
+  if (forces.size() == 4) return AdvanceDrivenBy<4>(factor, response, f, state);
+  return AdvanceDrivenBy<5>(factor, response, f, state);
 }
 
 void AdvanceDrivenFor(double time, double largest, const PlanarVector& pole,

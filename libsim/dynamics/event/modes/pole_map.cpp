@@ -1,4 +1,4 @@
-#include "libsim/dynamics/event/modes/pole_map.hpp"
+#include "libsim/dynamics/event/modes/closed_loop.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "libsim/dynamics/event/modes/pole_map.cpp"

@@ -219,16 +219,10 @@ bool SolveNodes(const SlidingLaw& any_law, int nodes, const NodeMatrix& coupling
                 const NodeVector& free, NodeValues& values) {
   return std::visit(
       [&](const auto& law) {
-        switch (nodes) {
-          case 2:
-            return SolveNodesOf<2>(law, coupling, free, values);
-          case 3:
-            return SolveNodesOf<3>(law, coupling, free, values);
-          case 4:
-            return SolveNodesOf<4>(law, coupling, free, values);
-          default:
-            return SolveNodesOf<5>(law, coupling, free, values);
-        }
+        if (nodes == 2) return SolveNodesOf<2>(law, coupling, free, values);
+        if (nodes == 3) return SolveNodesOf<3>(law, coupling, free, values);
+        if (nodes == 4) return SolveNodesOf<4>(law, coupling, free, values);
+        return SolveNodesOf<5>(law, coupling, free, values);
       },
       any_law);
 }

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "libsim/dynamics/event/sliding/collocation.hpp"
-#include "libsim/dynamics/friction/stateful_laws.hpp"
+#include "libsim/dynamics/friction/sliding_laws.hpp"
 
 namespace modcal::event {
 

@@ -8,7 +8,7 @@
 #include <optional>
 #include <span>
 
-#include "libsim/dynamics/friction/stateful_laws.hpp"
+#include "libsim/dynamics/friction/sliding_laws.hpp"
 
 namespace modcal::event {
 

@@ -7,7 +7,7 @@
 #include "libsim/dynamics/event/modal_event.hpp"
 #include "libsim/dynamics/gestures/gesture.hpp"
 #include "libsim/dynamics/scene/contact_modes.hpp"
-#include "libsim/dynamics/scene/initial_motion.hpp"
+#include "libsim/dynamics/scene/scene.hpp"
 #include "libsim/model/constant_damping.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 

@@ -8,7 +8,7 @@
 
 #include "libsim/base/error.hpp"
 #include "libsim/dynamics/friction/friction_law.hpp"
-#include "libsim/dynamics/scene/initial_motion.hpp"
+#include "libsim/dynamics/scene/scene.hpp"
 #include "tests/libsim/dynamics/random_scenes.hpp"
 #include "tests/libsim/dynamics/simulators/compared_runs.hpp"
 #include "tests/libsim/dynamics/simulators/long_double_twin.hpp"

@@ -1,5 +1,3 @@
-#include "libsim/dynamics/friction/stateful_laws.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,6 +5,7 @@
 #include "libsim/base/error.hpp"
 #include "libsim/base/random.hpp"
 #include "libsim/dynamics/friction/friction_law.hpp"
+#include "libsim/dynamics/friction/sliding_laws.hpp"
 
 namespace modcal {
 namespace {

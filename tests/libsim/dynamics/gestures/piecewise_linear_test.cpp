@@ -1,11 +1,10 @@
-#include "libsim/dynamics/gestures/piecewise_linear.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
 #include "libsim/base/error.hpp"
+#include "libsim/dynamics/gestures/gesture.hpp"
 
 namespace modcal {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "libsim/base/error.hpp"
-#include "libsim/dynamics/scene/initial_motion.hpp"
+#include "libsim/dynamics/scene/scene.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
 namespace modcal {
