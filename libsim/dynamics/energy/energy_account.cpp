@@ -13,7 +13,6 @@ namespace modcal {
 
 namespace {
 
-constexpr int kMostNodes = 14;
 constexpr std::size_t kMostTerms = 64;  // the most that terms() asks for, at 4 radians, is 35
 
 constexpr double kEpsilon = 2.220446049250313e-16;
@@ -169,7 +168,7 @@ ModeReplay::ModeReplay(const ModeTable& modes, const std::vector<double>& invers
       shape_(shape),
       state_(modes.initial),
       few_(gauss_rule(8)),
-      many_(gauss_rule(kMostNodes)) {
+      many_(gauss_rule(14)) {
   for (const auto& pole : modes.pole) fastest_ = std::max(fastest_, std::abs(pole));
 }
 
@@ -211,7 +210,7 @@ double ModeReplay::advance(double time, std::span<const std::span<const double>>
     }
     state_[n] = end;
     // The nodes side by side: a chain of dependent operations each.
-    std::array<double, kMostNodes> v{};
+    std::array<double, 14> v{};
     for (std::size_t p = count; p-- > 0;) {
       for (std::size_t g = 0; g < nodes; ++g) v[g] = v[g] * rule.node[g] + series[p];
     }
