@@ -95,7 +95,7 @@ class AxisList final : public SweepSlot {
 
 /// Whether the value of this option tells draws of one setting apart.
 inline bool is_seed_axis(const std::string& path) {
-  return path == "seed" || path.ends_with(".seed");
+  return ("." + path).ends_with(".seed");
 }
 
 }  // namespace modcal
