@@ -1,5 +1,6 @@
 # Installs the public headers, which are those at the root of a library, and the headers that they
 # include; run by `cmake --install`, so that it is today's tree that counts.
+cmake_policy(VERSION 3.25)
 set(waiting "")
 foreach(library libsim libinverse libcalib)
   file(GLOB roots RELATIVE ${MODCAL_SOURCE_DIR} ${MODCAL_SOURCE_DIR}/${library}/*.hpp)

@@ -105,7 +105,7 @@ def reachable(edges, start):
 # What the parts of the libraries may include of the tree: first match counts.
 DIRECTIONS = [
     (r"libsim/(base|signal|model)/", r"libsim/(base|signal|model)/"),
-    (r"libsim/records/", r"libsim/(base|signal|model|records)/"),
+    (r"libsim/(records/|io\.hpp)", r"libsim/(base|signal|model|records)/"),
     (r"libsim/", r"libsim/(?!records/)"),
     (r"libinverse/modes/", r"libsim/(base|signal|model)/|libinverse/modes/"),
     (r"libinverse/(spectral|joint|waves)/", r"libsim/(base|signal|model)/|libinverse/(?!observer/|modes/)"),
