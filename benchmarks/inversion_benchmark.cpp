@@ -10,7 +10,7 @@
 
 #include "libinverse/joint/joint_inversion.hpp"
 #include "libinverse/joint/priors.hpp"
-#include "libinverse/spectral/choices/minimal_product.hpp"
+#include "libinverse/spectral/choices/rules.hpp"
 #include "libinverse/spectral/one_sided/one_sided_inversion.hpp"
 #include "libsim/base/random.hpp"
 #include "libsim/model/constant_damping.hpp"

@@ -15,24 +15,10 @@
 #include <memory>
 
 #include "benchmarks/problems/ill_posed_problems.hpp"
-#include "libinverse/spectral/choices/cumulative_periodogram.hpp"
-#include "libinverse/spectral/choices/discrepancy.hpp"
+#include "libinverse/spectral/choices/rules.hpp"
 #include "libinverse/estimator.hpp"
-#include "libinverse/spectral/choices/evidence.hpp"
-#include "libinverse/spectral/choices/fixed_parameter.hpp"
-#include "libinverse/spectral/choices/generalized_cross_validation.hpp"
-#include "libinverse/spectral/choices/l_curve.hpp"
-#include "libinverse/spectral/choices/l_curve_adaptive.hpp"
-#include "libinverse/spectral/choices/minimal_product.hpp"
-#include "libinverse/spectral/choices/predictive_risk.hpp"
-#include "libinverse/spectral/choices/quasi_optimality.hpp"
-#include "libinverse/spectral/choices/robust_cross_validation.hpp"
 #include "libinverse/spectral/one_sided/svd_problem.hpp"
-#include "libinverse/spectral/regularizers/tikhonov.hpp"
-#include "libinverse/spectral/regularizers/truncated_svd.hpp"
-#include "libinverse/spectral/regularizers/water_level.hpp"
-#include "libinverse/spectral/regularizers/water_level_clip.hpp"
-#include "libinverse/spectral/regularizers/wiener.hpp"
+#include "libinverse/spectral/regularizers/regularizers.hpp"
 #include "libsim/base/random.hpp"
 #include "libsim/dynamics/event/modal_event.hpp"
 #include "libsim/signal/measurement.hpp"
@@ -130,7 +116,7 @@ double best_of(const Invert& invert, std::size_t draws, double largest, const ch
       CurveOptions none;
       none.points = 0;
       none.measure = measure;
-      const FixedParameter fixed({.value = level, .curve = none});
+      const GivenParameter fixed({.value = level, .curve = none});
       best[draw] = std::min(best[draw], invert(fixed, draw).error);
       level *= 0.85;
     }

@@ -1,22 +1,7 @@
 #include <array>
 
-#include "libinverse/spectral/choices/cumulative_periodogram.hpp"
-#include "libinverse/spectral/choices/discrepancy.hpp"
-#include "libinverse/spectral/choices/evidence.hpp"
-#include "libinverse/spectral/choices/fixed_parameter.hpp"
-#include "libinverse/spectral/choices/generalized_cross_validation.hpp"
-#include "libinverse/spectral/choices/l_curve.hpp"
-#include "libinverse/spectral/choices/l_curve_adaptive.hpp"
-#include "libinverse/spectral/choices/minimal_product.hpp"
-#include "libinverse/spectral/regularizers/no_regularization.hpp"
-#include "libinverse/spectral/choices/predictive_risk.hpp"
-#include "libinverse/spectral/choices/quasi_optimality.hpp"
-#include "libinverse/spectral/choices/robust_cross_validation.hpp"
-#include "libinverse/spectral/regularizers/tikhonov.hpp"
-#include "libinverse/spectral/regularizers/truncated_svd.hpp"
-#include "libinverse/spectral/regularizers/water_level.hpp"
-#include "libinverse/spectral/regularizers/water_level_clip.hpp"
-#include "libinverse/spectral/regularizers/wiener.hpp"
+#include "libinverse/spectral/choices/rules.hpp"
+#include "libinverse/spectral/regularizers/regularizers.hpp"
 
 namespace modcal {
 
@@ -38,7 +23,7 @@ Registry<ParameterChoice> ParameterChoice::registry() {
   static constexpr std::array kTable = {
       entry_of<ParameterChoice, Discrepancy>("discrepancy", "residual as large as the known noise"),
       entry_of<ParameterChoice, Evidence>("evidence", "largest Bayesian evidence"),
-      entry_of<ParameterChoice, FixedParameter>("fixed", "a parameter given by the user"),
+      entry_of<ParameterChoice, GivenParameter>("fixed", "a parameter given by the user"),
       entry_of<ParameterChoice, GeneralizedCrossValidation>("gcv", "generalized cross validation"),
       entry_of<ParameterChoice, LCurve>("l_curve", "largest curvature of the L-curve"),
       entry_of<ParameterChoice, LCurveAdaptive>("l_curve_adaptive",

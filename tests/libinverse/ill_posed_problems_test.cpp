@@ -7,21 +7,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "libinverse/spectral/choices/cumulative_periodogram.hpp"
-#include "libinverse/spectral/choices/discrepancy.hpp"
-#include "libinverse/spectral/choices/evidence.hpp"
-#include "libinverse/spectral/choices/fixed_parameter.hpp"
-#include "libinverse/spectral/choices/generalized_cross_validation.hpp"
-#include "libinverse/spectral/choices/l_curve.hpp"
-#include "libinverse/spectral/choices/l_curve_adaptive.hpp"
-#include "libinverse/spectral/choices/minimal_product.hpp"
+#include "libinverse/spectral/choices/rules.hpp"
 #include "libinverse/spectral/one_sided/one_sided_inversion.hpp"
-#include "libinverse/spectral/choices/predictive_risk.hpp"
-#include "libinverse/spectral/choices/quasi_optimality.hpp"
-#include "libinverse/spectral/choices/robust_cross_validation.hpp"
 #include "libinverse/spectral/one_sided/svd_problem.hpp"
-#include "libinverse/spectral/regularizers/tikhonov.hpp"
-#include "libinverse/spectral/regularizers/wiener.hpp"
+#include "libinverse/spectral/regularizers/regularizers.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/base/random.hpp"
 
@@ -80,7 +69,7 @@ TEST_P(EveryProblem, EveryPairImprovesOnDirectInversionOrWarns) {
     if (!regularizer->has_parameter()) continue;
     const SvdProblem svd(problem.matrix, *regularizer, problem.step);
     const auto error_at = [&](double parameter) {
-      const FixedParameter fixed(
+      const GivenParameter fixed(
           {.value = parameter, .curve = {.points = 0, .measure = "solution"}});
       return error_of(problem, svd.solve(data, *regularizer, fixed).x);
     };
@@ -127,7 +116,7 @@ TEST_P(TikhonovOrder, HoldsTheDerivativeOfASignalDown) {
   fill_standard_normal(StreamKey(1), reaction);
   const Tikhonov regularizer({.order = GetParam()});
   const double level = 0.2;
-  const FixedParameter fixed({.value = level, .curve = {.points = 0}});
+  const GivenParameter fixed({.value = level, .curve = {.points = 0}});
   const InversionResult result =
       inversion.invert(reaction, {regularizer, fixed, {.force = true, .force_spectrum = true}});
   const FrequencyGrid grid = FrequencyGrid::of_record(samples, rate);
@@ -173,7 +162,7 @@ TEST_P(TikhonovOrder, HoldsTheDerivativeOfAMatrixSolutionDown) {
   const Tikhonov regularizer({.order = GetParam()});
   const SvdProblem svd(problem.matrix, regularizer, problem.step);
   const double level = 0.3;
-  const FixedParameter fixed({.value = level, .curve = {.points = 0, .measure = "solution"}});
+  const GivenParameter fixed({.value = level, .curve = {.points = 0, .measure = "solution"}});
   const SvdSolution solution = svd.solve(data, regularizer, fixed);
   const Eigen::VectorXd expected = by_normal_equations(problem, regularizer, data, level);
   // Normal equations square the condition, about 1e4 with this λ.
@@ -188,7 +177,7 @@ TEST(WienerFilter, OfAMatrixIsTheLinearEstimateOfItsPrior) {
   const Eigen::VectorXd data = noisy(problem, 0.02, 4, rms);
   const WienerFilter regularizer({.corner = 0.8});
   const SvdProblem svd(problem.matrix, regularizer, problem.step);
-  const FixedParameter fixed({.value = 0.01, .curve = {.points = 0, .measure = "solution"}});
+  const GivenParameter fixed({.value = 0.01, .curve = {.points = 0, .measure = "solution"}});
   const Eigen::VectorXd expected = by_normal_equations(problem, regularizer, data, 0.01);
   EXPECT_LT((svd.solve(data, regularizer, fixed).x - expected).norm(), 1e-8 * expected.norm());
 }

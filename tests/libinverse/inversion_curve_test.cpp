@@ -5,8 +5,7 @@
 #include <string>
 #include <tuple>
 
-#include "libinverse/spectral/choices/fixed_parameter.hpp"
-#include "libinverse/spectral/choices/minimal_product.hpp"
+#include "libinverse/spectral/choices/rules.hpp"
 #include "libinverse/spectral/one_sided/one_sided_inversion.hpp"
 #include "tests/libinverse/safe_problem.hpp"
 
@@ -35,7 +34,7 @@ TEST_P(BruteForce, FindsTheNormsOfTheCurve) {
   std::vector<Complex> transfer = safe.transfer;
   if (samples % 2 == 0) transfer.back() = transfer.back().real();
   for (const CurvePoint& point : curve) {
-    const FixedParameter fixed({.value = point.parameter, .curve = {.points = 0}});
+    const GivenParameter fixed({.value = point.parameter, .curve = {.points = 0}});
     std::vector<Complex> force =
         inversion.invert(reaction, {*regularizer, fixed, {.force_spectrum = true}}).force_spectrum;
     std::vector<Complex> modeled(force.size()), derivative(force.size());

@@ -5,10 +5,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "libinverse/spectral/choices/fixed_parameter.hpp"
-#include "libinverse/spectral/regularizers/no_regularization.hpp"
+#include "libinverse/spectral/choices/rules.hpp"
+#include "libinverse/spectral/regularizers/regularizers.hpp"
 #include "libinverse/spectral/one_sided/one_sided_inversion.hpp"
-#include "libinverse/spectral/regularizers/tikhonov.hpp"
 #include "libsim/base/error.hpp"
 #include "tests/libinverse/joint/joint_case.hpp"
 
@@ -20,8 +19,8 @@ constexpr InversionOutputs kEverything = {
 const NoRegularization kNone{NoRegularization::Options{}};
 const Tikhonov kTikhonov{Tikhonov::Options{}};
 
-FixedParameter fixed_at(double level) {
-  return FixedParameter({.value = level, .curve = {.points = 0}});
+GivenParameter fixed_at(double level) {
+  return GivenParameter({.value = level, .curve = {.points = 0}});
 }
 
 double largest(std::span<const double> values) {

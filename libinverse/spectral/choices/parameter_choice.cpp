@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
+#include <optional>
 #include <utility>
 
-#include "libinverse/spectral/choices/rule_disagreement.hpp"
+#include "libinverse/spectral/problem/interior_minimum.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -14,6 +17,39 @@ namespace {
 
 // Below this share of the largest singular value the automatic range does not reach.
 constexpr double kLowestShare = 1e-8;
+
+// Ratio of two parameters from which on their rules disagree.
+constexpr double kStrong = 10.0;
+
+std::optional<double> of_cross_validation(std::span<const CurvePoint> curve, double rows) {
+  std::size_t best = curve.size();
+  double smallest = std::numeric_limits<double>::infinity();
+  for (std::size_t j = 0; j < curve.size(); ++j) {
+    const double left = rows - curve[j].freedom;
+    const double quotient = curve[j].residual_norm / left;
+    if (!(left > 0.0) || !(quotient < smallest)) continue;
+    smallest = quotient;
+    best = j;
+  }
+  if (best == 0 || best + 1 >= curve.size()) return std::nullopt;
+  return curve[best].parameter;
+}
+
+std::optional<double> of_product(std::span<const CurvePoint> curve) {
+  std::vector<double> product(curve.size());
+  std::transform(curve.begin(), curve.end(), product.begin(),
+                 [](const CurvePoint& p) { return p.residual_norm * p.solution_norm; });
+  const auto minimum = most_prominent_minimum(product);
+  if (!minimum) return std::nullopt;
+  return curve[minimum->index].parameter;
+}
+
+std::optional<double> of_discrepancy(std::span<const CurvePoint> curve, double bound) {
+  const auto above = std::find_if(curve.begin(), curve.end(),
+                                  [bound](const CurvePoint& p) { return p.residual_norm > bound; });
+  if (!(bound > 0.0) || above == curve.begin() || above == curve.end()) return std::nullopt;
+  return std::prev(above)->parameter;
+}
 
 }  // namespace
 
@@ -102,7 +138,7 @@ ChosenParameter ParameterChoice::choose(const Regularizer& regularizer,
     const std::vector<double> grid = search_grid(falling_penalized_sigma(regularizer, problem));
     result.curve.resize(grid.size());
     regularizer.trace(SpectralSystem(data, measure_), grid, result.curve);
-    Pick picked = pick(regularizer, data, result.curve);
+    Pick picked = pick({regularizer, data, measure_, result.curve});
     result.status = picked.status;
     result.explanation = std::move(picked.explanation);
     result.point = point_at(picked.parameter, regularizer, data, result.curve);
@@ -172,6 +208,25 @@ ParameterChoice::Pick ParameterChoice::smallest_criterion(std::span<const CurveP
   }
   return {best->parameter, ChoiceStatus::kChosen,
           fmt::format("smallest {} {:.4g} at {:.4g}", what, best->criterion, best->parameter)};
+}
+
+std::string disagreement_of(const ChosenParameter& choice, std::size_t rows, double noise_rms) {
+  if (choice.status != ChoiceStatus::kChosen) return {};
+  const double data = static_cast<double>(rows);
+  const std::pair<const char*, std::optional<double>> others[] = {
+      {"generalized cross validation", of_cross_validation(choice.curve, data)},
+      {"the minimal product", of_product(choice.curve)},
+      {"the discrepancy principle", of_discrepancy(choice.curve, noise_rms * std::sqrt(data))}};
+  std::string text;
+  for (const auto& [name, parameter] : others) {
+    if (!parameter) continue;
+    const double ratio = *parameter / choice.parameter();
+    if (ratio <= kStrong && ratio * kStrong >= 1.0) continue;
+    text += fmt::format("{}{} {:.3g}", text.empty() ? "" : ", ", name, *parameter);
+  }
+  if (text.empty()) return {};
+  return fmt::format("the rules disagree: {:.3g} was chosen where others would take: {}",
+                     choice.parameter(), text);
 }
 
 }  // namespace modcal

@@ -35,7 +35,7 @@ struct ChosenParameter {
                             ///< a water level that zeroes: share of kept bins
   std::vector<CurvePoint> curve;  ///< every parameter searched, rising
   /// What to beware of: a parameter that stands in for one the rule did not find, or other rules
-  /// that would have chosen one more than a decade away (rule_disagreement.hpp).
+  /// that would have chosen one more than a decade away (disagreement_of).
   std::vector<std::string> warnings;
 
   double parameter() const { return point.parameter; }
@@ -56,6 +56,14 @@ struct CurveOptions {
   void visit(OptionVisitor& visitor);
 };
 
+/// A regularizer's curve over the searched range, with what it is a curve of.
+struct TracedCurve {
+  const Regularizer& regularizer;
+  const SpectralData& data;
+  Measure measure;
+  std::span<CurvePoint> curve;  ///< at least one point, unless the rule allows none
+};
+
 class ParameterChoice {
  public:
   static constexpr std::string_view kKind = "parameter_choice";
@@ -68,25 +76,22 @@ class ParameterChoice {
   /// range is empty.
   ChosenParameter choose(const Regularizer& regularizer, const SpectralData& data) const;
 
- protected:
-  /// Throws InvalidInput for fewer than `least_points` points, an empty range, an unknown measure.
-  explicit ParameterChoice(CurveOptions options, std::int64_t least_points = 3);
-
   struct Pick {
     double parameter = 0.0;
     ChoiceStatus status = ChoiceStatus::kNotComputed;
     std::string explanation;
   };
-  Measure measure() const { return measure_; }
   /// The point of the smallest criterion; at either end of where the criterion is
   /// defined the status is kEdgeOfRange.
   static Pick smallest_criterion(std::span<const CurvePoint> curve, std::string_view what);
 
+ protected:
+  /// Throws InvalidInput for fewer than `least_points` points, an empty range, an unknown measure.
+  ParameterChoice(CurveOptions options, std::int64_t least_points);
+
  private:
-  /// Fills the criterion of every point of the regularizer's curve and picks a parameter. The curve
-  /// has at least one point, unless the constructor allowed none.
-  virtual Pick pick(const Regularizer& regularizer, const SpectralData& data,
-                    std::span<CurvePoint> curve) const = 0;
+  /// Fills the criterion of every point of the curve and picks a parameter.
+  virtual Pick pick(const TracedCurve& traced) const = 0;
 
   std::vector<double> search_grid(std::span<const double> falling_sigma) const;
   CurvePoint point_at(double parameter, const Regularizer& regularizer, const SpectralData& data,
@@ -95,5 +100,12 @@ class ParameterChoice {
   CurveOptions options_;
   Measure measure_;
 };
+
+/// A sentence that names the rules which would have chosen, inside the same range, a parameter more
+/// than a factor of 10 from the chosen one, with their parameters; empty where none would, or where
+/// nothing was chosen. Asked are the rules that the traced curve answers without another pass over
+/// the data: generalized cross validation, the minimal product and, where the noise level is known
+/// (not NaN), the discrepancy principle. `rows`: real numbers in the data.
+std::string disagreement_of(const ChosenParameter& choice, std::size_t rows, double noise_rms);
 
 }  // namespace modcal

@@ -4,9 +4,9 @@
 
 #include "libcalib/optimizers/systematic_search.hpp"
 #include "libcalib/optimizers/nlopt_optimizer.hpp"
-#include "libinverse/spectral/choices/fixed_parameter.hpp"
+#include "libinverse/spectral/choices/rules.hpp"
 #include "libinverse/spectral/one_sided/one_sided_inversion.hpp"
-#include "libinverse/spectral/regularizers/tikhonov.hpp"
+#include "libinverse/spectral/regularizers/regularizers.hpp"
 #include "libsim/base/error.hpp"
 #include "tests/libcalib/calibration_case.hpp"
 #include "tests/libcalib/slope_check.hpp"
@@ -30,9 +30,9 @@ TEST(ContactLocation, IsTheRelativeDifferenceOfTheIdentifiedWaveforms) {
   const auto function = ContactLocation(options).bind(data, parameters);
 
   const double contact = 0.0315;
-  FixedParameter::Options fixed;
+  GivenParameter::Options fixed;
   fixed.value = 0.2;
-  const FixedParameter choice(fixed);
+  const GivenParameter choice(fixed);
   const Tikhonov tikhonov(Tikhonov::Options{});
   std::array<std::vector<double>, 2> force;
   for (std::size_t r = 0; r < 2; ++r) {

@@ -6,8 +6,8 @@
 #include <limits>
 #include <numbers>
 
-#include "libinverse/spectral/choices/fixed_parameter.hpp"
-#include "libinverse/spectral/regularizers/no_regularization.hpp"
+#include "libinverse/spectral/choices/rules.hpp"
+#include "libinverse/spectral/regularizers/regularizers.hpp"
 #include "libinverse/spectral/one_sided/one_sided_inversion.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/model/constant_damping.hpp"
@@ -101,7 +101,7 @@ TEST(WaveReconstruction, AgreesWithTheModalInversion) {
   const auto left = response(force, basis, false, End::kLeft);
   const auto right = response(force, basis, false, End::kRight);
   const NoRegularization regularizer({});
-  const FixedParameter choice({.value = 0.0});
+  const GivenParameter choice({.value = 0.0});
   const InversionResult modal = OneSidedInversion(basis, kContact, End::kRight, kSamples, kRate)
                                     .invert(right, {.regularizer = regularizer, .choice = choice});
   const auto wave = reconstruct_with_loss(basis, kContact, kRate, left, right, OutgoingWave::kLeft);

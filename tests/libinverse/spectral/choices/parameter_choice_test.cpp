@@ -6,12 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "libinverse/spectral/choices/discrepancy.hpp"
-#include "libinverse/spectral/choices/fixed_parameter.hpp"
-#include "libinverse/spectral/choices/generalized_cross_validation.hpp"
-#include "libinverse/spectral/choices/l_curve.hpp"
-#include "libinverse/spectral/choices/minimal_product.hpp"
-#include "libinverse/spectral/choices/predictive_risk.hpp"
+#include "libinverse/spectral/choices/rules.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -165,14 +160,14 @@ TEST(LCurve, SaysSoWithoutACorner) {
   EXPECT_EQ(chosen.status, ChoiceStatus::kNotReached);
 }
 
-TEST(FixedParameter, IsTakenAsItIsBesideTheCurve) {
-  const FixedParameter rule({.value = 0.5});
+TEST(GivenParameter, IsTakenAsItIsBesideTheCurve) {
+  const GivenParameter rule({.value = 0.5});
   const ChosenParameter chosen = rule.choose(*regularizer("water_level"), basin().data);
   EXPECT_EQ(chosen.status, ChoiceStatus::kGiven);
   EXPECT_EQ(chosen.parameter(), 0.5);
   EXPECT_NEAR(chosen.point.residual_norm, std::sqrt(2.0), 1e-14);
   EXPECT_EQ(chosen.curve.size(), 400u);
-  const FixedParameter bare({.value = 0.5, .curve = {.points = 0}});
+  const GivenParameter bare({.value = 0.5, .curve = {.points = 0}});
   EXPECT_TRUE(bare.choose(*regularizer("water_level"), basin().data).curve.empty());
 }
 
@@ -180,7 +175,7 @@ class EveryChoice : public testing::TestWithParam<std::string> {
  protected:
   static std::shared_ptr<const ParameterChoice> rule() {
     if (GetParam() == "fixed") {
-      return std::make_shared<FixedParameter>(FixedParameter::Options{.value = 0.3});
+      return std::make_shared<GivenParameter>(GivenParameter::Options{.value = 0.3});
     }
     return Choice<ParameterChoice>(GetParam()).make();
   }
@@ -247,8 +242,8 @@ TEST(CurveOptions, RefuseARangeThatIsNone) {
   EXPECT_THROW(MinimalProduct({.curve = {.points = 2}}), InvalidInput);
   EXPECT_THROW(MinimalProduct({.curve = {.lowest = 0.0}}), InvalidInput);
   EXPECT_THROW(MinimalProduct({.curve = {.measure = "length"}}), InvalidInput);
-  EXPECT_THROW(FixedParameter({.value = -1.0}), InvalidInput);
-  EXPECT_THROW(FixedParameter{FixedParameter::Options{}}, InvalidInput);
+  EXPECT_THROW(GivenParameter({.value = -1.0}), InvalidInput);
+  EXPECT_THROW(GivenParameter{GivenParameter::Options{}}, InvalidInput);
   EXPECT_THROW(Discrepancy({.tau = 0.5}), InvalidInput);
   EXPECT_THROW(Discrepancy({.noise_rms = -1.0}), InvalidInput);
   EXPECT_THROW(LCurve({.span = -1.0}), InvalidInput);

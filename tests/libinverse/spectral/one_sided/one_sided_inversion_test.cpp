@@ -7,13 +7,8 @@
 #include <numbers>
 #include <thread>
 
-#include "libinverse/spectral/choices/fixed_parameter.hpp"
-#include "libinverse/spectral/choices/generalized_cross_validation.hpp"
-#include "libinverse/spectral/choices/minimal_product.hpp"
-#include "libinverse/spectral/regularizers/no_regularization.hpp"
-#include "libinverse/spectral/regularizers/tikhonov.hpp"
-#include "libinverse/spectral/regularizers/water_level.hpp"
-#include "libinverse/spectral/regularizers/water_level_clip.hpp"
+#include "libinverse/spectral/choices/rules.hpp"
+#include "libinverse/spectral/regularizers/regularizers.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/model/constant_damping.hpp"
 #include "libsim/signal/statistics.hpp"
@@ -127,7 +122,7 @@ TEST(OneSidedInversion, WaterLevelsWorkOnTheBinsBelowThem) {
   const OneSidedInversion inversion(transfer, transfer, 8, kRate);
   const RealFft fft(8);
   const std::vector<double> reaction = fft.inverse(std::vector<Complex>{5.0, 1.0, 1.0, 1.0, 1.0});
-  const FixedParameter level({.value = 1.5});
+  const GivenParameter level({.value = 1.5});
   const auto zeroed = inversion.invert(reaction, {kWaterLevel, level, kEverything});
   const auto clipped = inversion.invert(reaction, {kClip, level, kEverything});
   const std::vector<Complex> expected_zeroed = {0.0, {0.0, -0.25}, 0.0, {0.0, 0.5}, 0.0};

@@ -6,13 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "libinverse/spectral/choices/discrepancy.hpp"
-#include "libinverse/spectral/choices/fixed_parameter.hpp"
-#include "libinverse/spectral/choices/generalized_cross_validation.hpp"
-#include "libinverse/spectral/choices/l_curve.hpp"
-#include "libinverse/spectral/choices/minimal_product.hpp"
-#include "libinverse/spectral/choices/predictive_risk.hpp"
-#include "libinverse/spectral/regularizers/tikhonov.hpp"
+#include "libinverse/spectral/choices/rules.hpp"
+#include "libinverse/spectral/regularizers/regularizers.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -101,7 +96,7 @@ SvdSolution optimum(double delta) {
   const SvdSolution any = solve(delta, *rule_named("minimal_product"));
   SvdSolution best = any;
   for (const CurvePoint& point : any.choice.curve) {
-    const FixedParameter fixed({.value = point.parameter, .curve = search(0)});
+    const GivenParameter fixed({.value = point.parameter, .curve = search(0)});
     SvdSolution solution = solve(delta, fixed);
     if (relative_error(solution) < relative_error(best)) best = std::move(solution);
   }

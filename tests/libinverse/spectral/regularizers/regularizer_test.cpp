@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "libinverse/spectral/regularizers/filter_terms.hpp"
-#include "libinverse/spectral/regularizers/tikhonov.hpp"
+#include "libinverse/spectral/regularizers/regularizers.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/base/random.hpp"
 
