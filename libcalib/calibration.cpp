@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
-#include "libcalib/problem/covariance.hpp"
+#include "libcalib/optimizers/staged/continuation.hpp"
 #include "libcalib/parameters/stiff_string_fit.hpp"
+#include "libcalib/problem/covariance.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -16,9 +18,9 @@ struct Names {
   std::vector<std::string> blind;
 };
 
-Names split_names(const CalibrationOptions& options, const std::vector<bool>& excited) {
+Names split_names(const ParameterOptions& parameters, const std::vector<bool>& excited) {
   Names names;
-  names.free = options.parameters.names(excited.size());
+  names.free = parameters.names(excited.size());
   for (std::size_t i = 0; i < excited.size(); ++i) {
     if (excited[i]) continue;
     const std::string name = fmt::format("f_{}", i + 1);
@@ -138,10 +140,9 @@ void add_damping(const ModelPoint& initial, const ContinuationResult& found,
                         .deviation = found.damping_power_deviation});
 }
 
-// Law, contacts, damping and sensors before and after; `records`: null for one stroke.
+// Law, contacts, damping and sensors before and after; those of further records with their number.
 std::vector<CalibratedParameter> found_parameters(const ModelPoint& initial,
                                                   const ContinuationResult& found,
-                                                  const RecordsFit* records,
                                                   const UnknownsOptions& unknowns) {
   const StiffStringFit start = fit_stiff_string(frequencies_of(initial.basis));
   const auto parameter = [](std::string name, const char* unit, double from, double to,
@@ -156,22 +157,18 @@ std::vector<CalibratedParameter> found_parameters(const ModelPoint& initial,
       parameter("f0", "Hz", start.fundamental, found.law.fundamental, found.law.deviation[0]),
       parameter("B", "1", start.inharmonicity, found.law.inharmonicity, found.law.deviation[1]),
       parameter("x_c", "m", initial.contact, found.model.contact, found.contact_deviation)};
-  add_values({.sensors = found.model.sensors,
-              .sensor_deviation = found.sensor_deviation,
-              .damping = found.damping,
-              .damping_deviation = found.damping_deviation},
-             unknowns, "", true, parameters);
+  add_values(found.values.front(), unknowns, "", true, parameters);
   if (!found.ratio_deviations.empty()) {
     std::erase_if(parameters, [](const CalibratedParameter& p) { return p.name == "damping"; });
   }
   add_damping(initial, found, parameters);
-  for (std::size_t r = 1; records && r < records->values.size(); ++r) {
+  for (std::size_t r = 1; r < found.values.size(); ++r) {
     const std::string number = fmt::format(" {}", r + 1);
-    if (r < records->contacts.size() && unknowns.own(UnknownKind::kContact)) {
-      parameters.push_back(parameter("x_c" + number, "m", initial.contact, records->contacts[r],
-                                     records->contact_deviations[r]));
+    if (r < found.contacts.size() && unknowns.own(UnknownKind::kContact)) {
+      parameters.push_back(parameter("x_c" + number, "m", initial.contact, found.contacts[r],
+                                     found.contact_deviations[r]));
     }
-    add_values(records->values[r], unknowns, number, false, parameters);
+    add_values(found.values[r], unknowns, number, false, parameters);
   }
   return parameters;
 }
@@ -192,39 +189,42 @@ std::vector<CalibratedMode> found_modes(const ModelPoint& initial, const Continu
   return modes;
 }
 
-// What the continuation found, in the form of a search.
-CalibrationResult calibrate_to_the_bound(const ModelPoint& initial,
-                                         std::span<const CalibrationData> records,
-                                         std::span<const PluckRecord> plucks,
-                                         const CalibrationOptions& options,
-                                         const SecondsClock& clock) {
-  require_continuation_parameters(options.parameters, records.size());
-  const ParameterOptions& free = options.parameters;
-  ContinuationOptions continuation = options.continuation;
-  continuation.frequencies = free.frequencies == "all";
-  if (!free.contact) continuation.unknowns.fixed.push_back({.parameter = "x_c"});
-  const FitPoll poll = [&clock] { clock(); };
-  const double begin = clock();
-  CalibrationResult result;
-  std::optional<RecordsFit> fit;
-  if (records.size() == 1 && plucks.empty()) {
-    result.continuation = calibrate_by_continuation(initial, records.front(), continuation, poll);
-    result.contact_deviations = {result.continuation->contact_deviation};
-  } else {
-    fit = calibrate_records(initial, records, continuation, plucks, poll);
-    result.continuation = as_continuation(*fit);
-    result.contact_deviations = fit->contact_deviations;
-  }
+// What the search of a schedule found.
+void report_estimate(const Problem& problem, const std::vector<Variable>& variables,
+                     CalibrationResult& result) {
+  result.continuation = result.search.estimate;
   const ContinuationResult& found = *result.continuation;
-  result.search.seconds = clock() - begin;
-  result.search.evaluations = static_cast<std::int64_t>(found.evaluations);
-  result.search.value = found.chi2;
-  result.search.stop = found.fits ? StopReason::kConverged : StopReason::kNoProgress;
   result.model = found.model;
-  result.parameters =
-      found_parameters(initial, found, fit ? &*fit : nullptr, continuation.unknowns);
-  result.modes = found_modes(initial, found, options.excitation_threshold);
-  return result;
+  result.parameters = found_parameters(problem.model, found, problem.parameters.unknowns);
+  for (CalibratedParameter& parameter : result.parameters) {
+    // Bounds of logarithms come back with their rounding.
+    const auto of = std::find_if(variables.begin(), variables.end(), [&](const Variable& variable) {
+      return variable.name == parameter.name;
+    });
+    if (of == variables.end()) continue;
+    const double margin = 1e-9 * (of->upper - of->lower);
+    parameter.at_bound =
+        parameter.final <= of->lower + margin || parameter.final >= of->upper - margin;
+  }
+  result.modes = found_modes(problem.model, found, problem.excitation_threshold);
+}
+
+// Not under the schedule: these say nothing to a search over the parameters alone.
+void require_nothing_known(const ParameterOptions& parameters) {
+  const ParameterOptions plain;
+  const UnknownsOptions& unknowns = parameters.unknowns;
+  const auto require = [](bool unread, const char* key) {
+    MODCAL_REQUIRE(!unread,
+                   "{} is read by the joint likelihood's own stages alone: leave it out, or state "
+                   "objective: joint_likelihood, optimizer: staged",
+                   key);
+  };
+  require(!unknowns.fixed.empty(), "fixed");
+  require(!unknowns.priors.empty(), "priors");
+  require(!unknowns.correlations.empty(), "correlations");
+  require(unknowns.per_record != plain.unknowns.per_record, "per_record");
+  require(unknowns.damping_width != plain.unknowns.damping_width, "damping_width");
+  require(!std::isnan(parameters.law_width), "law_width");
 }
 
 }  // namespace
@@ -234,11 +234,6 @@ void CalibrationOptions::visit(OptionVisitor& visitor) {
   visitor.plugin({.key = "objective", .meaning = "what is minimized"}, objective);
   visitor.plugin({.key = "optimizer", .meaning = "how it is minimized"}, optimizer);
   visitor.section({.key = "budget", .meaning = "what the search may spend"}, budget);
-  visitor.optional_group(
-      {.key = "continuation",
-       .meaning = "calibrate to the bound by the joint likelihood, in the place of objective, "
-                  "optimizer and budget"},
-      has_continuation, [this](OptionVisitor& members) { continuation.visit(members); });
   visitor.number({.key = "excitation_threshold",
                   .meaning = "modes with a smaller |phi_n(x_c)| are blind and keep their frequency",
                   .unit = "1",
@@ -246,24 +241,59 @@ void CalibrationOptions::visit(OptionVisitor& visitor) {
                  excitation_threshold);
 }
 
-void require_continuation_parameters(const ParameterOptions& free, std::size_t strokes) {
-  MODCAL_REQUIRE(free.law && free.frequencies != "listed",
-                 "a continuation frees the law and no frequency or all of them: state parameters: "
-                 "{{frequencies: all, law: true, contact: true}}, and what is known of single ones "
-                 "under continuation: {{unknowns: {{fixed: ...}}}}");
-  MODCAL_REQUIRE(free.contact || strokes == 1,
+Problem CalibrationOptions::problem(const ModelPoint& initial,
+                                    std::vector<CalibrationRecord> records) const {
+  return {initial, std::move(records), parameters, objective.make(), excitation_threshold};
+}
+
+bool CalibrationOptions::by_schedule() const {
+  try {
+    return optimizer.make()->needs().schedule;
+  } catch (const InvalidInput&) {
+    return false;  // whoever makes the optimizer is told why
+  }
+}
+
+void CalibrationOptions::require_schedule() const {
+  const std::string mismatch =
+      optimizer.make()->explain_unsatisfied(objective.selected(), objective.make()->capabilities());
+  MODCAL_REQUIRE(mismatch.empty(), "{}", mismatch);
+  MODCAL_REQUIRE(by_schedule(),
+                 "standard deviations are wanted, which the joint likelihood's own stages find: "
+                 "state objective: joint_likelihood, optimizer: {{type: {}}}",
+                 "staged");
+  require_read(1);
+}
+
+void CalibrationOptions::require_read(std::size_t strokes, std::size_t plucks) const {
+  if (!by_schedule()) {
+    MODCAL_REQUIRE(strokes + plucks == 1,
+                   "{} records are fitted together by the joint likelihood's own stages alone: "
+                   "state objective: joint_likelihood, optimizer: staged",
+                   strokes + plucks);
+    require_nothing_known(parameters);
+    return;
+  }
+  MODCAL_REQUIRE(parameters.law && parameters.frequencies != "listed",
+                 "the stages of the joint likelihood free the law and no frequency or all of them: "
+                 "state parameters: {{frequencies: all, law: true, contact: true}}, and what is "
+                 "known of single ones as fixed: [{{parameter: {}, value: ...}}]",
+                 parameters.modes.empty() ? "f_1" : fmt::format("f_{}", parameters.modes.front()));
+  MODCAL_REQUIRE(parameters.contact || strokes == 1,
                  "contact: false holds the contact of one stroke, and there are {}: state contact: "
-                 "true and the contacts that are known under continuation: {{unknowns: {{fixed: "
-                 "...}}}}",
+                 "true and the contacts that are known as fixed: [{{parameter: x_c 2, value: "
+                 "...}}]",
                  strokes);
-  MODCAL_REQUIRE(free.damping == "fixed",
-                 "a continuation does not read damping: {} here: state it under continuation: "
-                 "{{unknowns: {{damping: {}}}}}",
-                 free.damping, free.damping);
-  MODCAL_REQUIRE(free.sensors.empty(),
-                 "a continuation does not read sensors: [{}] here: state {}: {{free: true}} under "
-                 "continuation: {{unknowns: ...}}",
-                 fmt::join(free.sensors, ", "), free.sensors.front());
+  parameters.unknowns.require_contacts(strokes);
+}
+
+CalibrationOptions calibration_to_the_bound() {
+  CalibrationOptions options{.objective = Choice<Objective>("joint_likelihood"),
+                             .optimizer = Choice<Optimizer>("staged")};
+  options.parameters.frequencies = "all";
+  options.parameters.law = options.parameters.contact = true;
+  options.parameters.unknowns.damping = "factor";
+  return options;
 }
 
 std::vector<bool> excited_modes(const ModelPoint& point, double threshold) {
@@ -274,45 +304,45 @@ std::vector<bool> excited_modes(const ModelPoint& point, double threshold) {
   return excited;
 }
 
-CalibrationResult calibrate(const ModelPoint& initial, const CalibrationData& data,
-                            const CalibrationOptions& options, SecondsClock clock) {
-  if (options.has_continuation) {
-    return calibrate_to_the_bound(initial, std::span(&data, 1), {}, options, clock);
-  }
-  const std::vector<bool> excited = excited_modes(initial, options.excitation_threshold);
-  Names names = split_names(options, excited);
-  const ParameterSet parameters(initial, names.free, options.parameters.ranges);
-  const auto objective = options.objective.make();
-  const auto function = objective->bind(data, parameters);
+CalibrationResult calibrate(const Problem& problem, const Optimizer& optimizer,
+                            const Budget& budget, SecondsClock clock) {
+  ModelPoint initial = problem.model;
+  const SensorPair stated = problem.parameters.unknowns.sensors();
+  if (!stated.alike()) initial.sensors = stated;
+  const std::vector<bool> excited = excited_modes(initial, problem.excitation_threshold);
+  Names names = split_names(problem.parameters, excited);
+  const ParameterSet parameters(initial, names.free, problem.parameters.ranges);
+  const auto function = problem.objective->bind(problem, parameters);
   const std::vector<Variable> variables = parameters.variables();
   CalibrationResult result;
-  result.search =
-      options.optimizer.make()->minimize(*function, variables, options.budget, std::move(clock));
+  result.search = optimizer.minimize(*function, variables, budget, std::move(clock));
+  if (result.search.estimate) {
+    report_estimate(problem, variables, result);
+    return result;
+  }
   result.blind = std::move(names.blind);
   result.model = parameters.model(result.search.x);
   result.parameters = report_parameters(variables, result.search.x);
   result.modes = report_modes(parameters, result.model, excited);
-  add_deviations(*objective, *function, variables, result);
+  add_deviations(*problem.objective, *function, variables, result);
   return result;
 }
 
-CalibrationResult calibrate(const ModelPoint& initial, std::span<const CalibrationData> records,
+CalibrationResult calibrate(const ModelPoint& initial, std::vector<CalibrationRecord> records,
                             const CalibrationOptions& options, SecondsClock clock) {
-  return calibrate(initial, records, {}, options, std::move(clock));
+  const auto plucks = static_cast<std::size_t>(
+      std::count_if(records.begin(), records.end(),
+                    [](const CalibrationRecord& record) { return record.pluck; }));
+  MODCAL_REQUIRE(plucks < records.size(), "a calibration needs at least {} stroke", 1);
+  options.require_read(records.size() - plucks, plucks);
+  return calibrate(options.problem(initial, std::move(records)), *options.optimizer.make(),
+                   options.budget, std::move(clock));
 }
 
-CalibrationResult calibrate(const ModelPoint& initial, std::span<const CalibrationData> strokes,
-                            std::span<const PluckRecord> plucks, const CalibrationOptions& options,
-                            SecondsClock clock) {
-  MODCAL_REQUIRE(!strokes.empty(), "a calibration needs at least {} stroke", 1);
-  if (strokes.size() == 1 && plucks.empty()) {
-    return calibrate(initial, strokes.front(), options, std::move(clock));
-  }
-  MODCAL_REQUIRE(options.has_continuation,
-                 "{} records are fitted together by the joint likelihood alone: state "
-                 "calibration.continuation",
-                 strokes.size() + plucks.size());
-  return calibrate_to_the_bound(initial, strokes, plucks, options, clock);
+CalibrationResult calibrate(const ModelPoint& initial, const CalibrationData& data,
+                            const CalibrationOptions& options, SecondsClock clock) {
+  return calibrate(initial, std::vector<CalibrationRecord>{{.data = data}}, options,
+                   std::move(clock));
 }
 
 }  // namespace modcal

@@ -3,18 +3,16 @@
 
 #include <cstddef>
 #include <limits>
-#include <optional>
-#include <span>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "libcalib/optimizer.hpp"
+#include "libcalib/optimizers/staged/continuation.hpp"
+#include "libcalib/problem.hpp"
 #include "libcalib/problem/budget.hpp"
 #include "libcalib/problem/calibration_data.hpp"
-#include "libcalib/optimizers/staged/records_fit.hpp"
-#include "libcalib/objective.hpp"
 #include "libcalib/problem/optimization_result.hpp"
-#include "libcalib/optimizer.hpp"
-#include "libcalib/parameters/parameters.hpp"
 
 namespace modcal {
 
@@ -24,15 +22,22 @@ struct CalibrationOptions {
   Choice<Objective> objective{"spectral_peak"};
   Choice<Optimizer> optimizer{"mode_by_mode"};
   Budget budget;
-  /// Continuation of the joint likelihood in the place of objective and optimizer: x_c, the law and
-  /// one damping factor are free, and with frequencies: all every f_n.
-  bool has_continuation = false;
-  ContinuationOptions continuation;
   /// Modes with |φ_n(x_c)| below this are blind: nothing in the reactions tells their frequency
   /// [1].
   double excitation_threshold = 0.1;
   void visit(OptionVisitor& visitor);
+  Problem problem(const ModelPoint& initial, std::vector<CalibrationRecord> records) const;
+  /// Whether the optimizer follows the objective's own schedule of stages.
+  bool by_schedule() const;
+  /// Throws InvalidInput where it does not, or does not read the parameters of one stroke.
+  void require_schedule() const;
+  /// Throws InvalidInput for parameters that the search of so many records does not read.
+  void require_read(std::size_t strokes, std::size_t plucks = 0) const;
 };
+
+/// Calibration to the bound: the joint likelihood in stages over law, contact, one damping factor
+/// and every frequency.
+CalibrationOptions calibration_to_the_bound();
 
 struct CalibratedParameter {
   std::string name;
@@ -40,8 +45,8 @@ struct CalibratedParameter {
   double initial = 0.0;
   double final = 0.0;
   bool at_bound = false;  ///< the search ended on a bound: the optimum may lie beyond
-  /// Standard deviation: of a continuation; of a search that reached an optimum of a whitened
-  /// objective by its residuals, within the bounds (covariance_at(), which counts noise as
+  /// Standard deviation: of a schedule to the bound; of a search that reached an optimum of a
+  /// whitened objective by its residuals, within the bounds (covariance_at(), which counts noise as
   /// information: too small where the data tell little). NaN: not known.
   double deviation = std::numeric_limits<double>::quiet_NaN();
 };
@@ -51,9 +56,9 @@ struct CalibratedMode {
   std::size_t number = 0;          ///< n
   double initial_frequency = 0.0;  ///< [Hz]
   double frequency = 0.0;          ///< [Hz]
-  double shape = 0.0;     ///< φ_n at the initial contact; of a continuation at the one found
-  bool excited = false;   ///< |φ_n| ≥ the threshold
-  bool searched = false;  ///< its frequency was a free parameter of its own
+  double shape = 0.0;              ///< φ_n at the initial contact; by a schedule at the one found
+  bool excited = false;            ///< |φ_n| ≥ the threshold
+  bool searched = false;           ///< its frequency was a free parameter of its own
 };
 
 struct CalibrationResult {
@@ -64,32 +69,27 @@ struct CalibrationResult {
   std::vector<std::string> blind;
   ModelPoint model;  ///< refined
   OptimizationResult search;
-  std::optional<ContinuationResult> continuation;  ///< error bars, verdicts, χ²
-  std::vector<double> contact_deviations;          ///< of every record [m], with a continuation
+  /// Error bars, status of modes, χ²; null: the search had no schedule of its own.
+  std::shared_ptr<const ContinuationResult> continuation;
 };
 
 /// Marks the modes with |φ_n(x_c)| ≥ threshold.
 std::vector<bool> excited_modes(const ModelPoint& point, double threshold);
 
-/// Throws InvalidInput for parameters that a continuation over `strokes` strokes does not read.
-void require_continuation_parameters(const ParameterOptions& parameters, std::size_t strokes);
+/// Minimizes the objective over the parameters asked for, save the frequencies of blind modes. What
+/// each further record has for itself follows among the parameters with its number, "x_c 2",
+/// "gain 3". The clock is read before every evaluation. Throws InvalidInput where objective,
+/// optimizer, records and parameters do not fit together, before the first evaluation.
+CalibrationResult calibrate(const Problem& problem, const Optimizer& optimizer,
+                            const Budget& budget = {}, SecondsClock clock = steady_seconds());
 
-/// Minimizes the objective over the parameters asked for, save the frequencies of blind modes.
-/// Throws InvalidInput where objective, optimizer, data and parameters do not fit together, before
-/// the first evaluation.
+/// The same as an experiment states it.
+CalibrationResult calibrate(const ModelPoint& initial, std::vector<CalibrationRecord> records,
+                            const CalibrationOptions& options,
+                            SecondsClock clock = steady_seconds());
+/// One stroke.
 CalibrationResult calibrate(const ModelPoint& initial, const CalibrationData& data,
                             const CalibrationOptions& options,
-                            SecondsClock clock = steady_seconds());
-
-/// Several records of one string (calibrate_records): what each has for itself follows among the
-/// parameters with the number of the record, "x_c 2", "gain 3". More than one needs `continuation`.
-CalibrationResult calibrate(const ModelPoint& initial, std::span<const CalibrationData> records,
-                            const CalibrationOptions& options,
-                            SecondsClock clock = steady_seconds());
-/// The same with plucks of that string, which need `continuation` too. The clock is read before
-/// every evaluation of a continuation as of a search.
-CalibrationResult calibrate(const ModelPoint& initial, std::span<const CalibrationData> strokes,
-                            std::span<const PluckRecord> plucks, const CalibrationOptions& options,
                             SecondsClock clock = steady_seconds());
 
 }  // namespace modcal

@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "libcalib/problem.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -53,6 +54,21 @@ std::unique_ptr<const ObjectiveFunction> Objective::bind(const CalibrationData& 
   for (const Variable& variable : parameters.variables()) names.push_back(variable.name);
   require_moved_by(names);
   return bind_term(data, parameters);
+}
+
+std::unique_ptr<const ObjectiveFunction> Objective::bind(const Problem& problem,
+                                                         const ParameterSet& parameters) const {
+  MODCAL_REQUIRE(!problem.records.empty(), "a calibration needs at least {} stroke", 1);
+  return bind_problem(problem, parameters);
+}
+
+std::unique_ptr<const ObjectiveFunction> Objective::bind_problem(
+    const Problem& problem, const ParameterSet& parameters) const {
+  MODCAL_REQUIRE(problem.records.size() == 1 && !problem.records.front().pluck,
+                 "{} records are fitted together by the joint likelihood alone: state objective: "
+                 "joint_likelihood, optimizer: staged",
+                 problem.records.size());
+  return bind(problem.records.front().data, parameters);
 }
 
 std::unique_ptr<const ObjectiveFunction> Objective::bind_term(

@@ -5,10 +5,12 @@
 namespace modcal {
 namespace {
 
-// A gradient or a Jacobian that the objective does not give is formed by differences; residuals
-// cannot be made up.
+// A gradient or a Jacobian that the objective does not give is formed by differences; residuals and
+// the rest cannot be made up.
 bool satisfied(const Capabilities& needs, const Capabilities& has) {
-  return has.sum_of_squares() || !needs.sum_of_squares();
+  return (has.sum_of_squares() || !needs.sum_of_squares()) &&
+         (has.information || !needs.information) && (has.damped || !needs.damped) &&
+         (has.schedule || !needs.schedule);
 }
 
 std::string optimizers_for(const Capabilities& has) {
@@ -30,22 +32,45 @@ std::string Optimizer::explain_unsatisfied(const ObjectiveFunction& function) co
 std::string Optimizer::explain_unsatisfied(std::string_view objective,
                                            const Capabilities& known) const {
   if (satisfied(needs(), known)) return {};
+  const Capabilities wanted = needs();
+  std::string reason;
+  if (wanted.sum_of_squares() && !known.sum_of_squares()) {
+    reason = fmt::format(
+        "needs residuals, which objective \"{}\" does not have: it is no sum of squares",
+        objective);
+  } else if (wanted.information && !known.information) {
+    reason = fmt::format("needs the Fisher information, which objective \"{}\" does not have",
+                         objective);
+  } else if (wanted.damped && !known.damped) {
+    reason = fmt::format(
+        "damps the record, and objective \"{}\" has no form for that: state damping: 0, or take "
+        "objective joint_likelihood",
+        objective);
+  } else {
+    reason = fmt::format(
+        "without stages follows the schedule of the objective, and \"{}\" has none: state its "
+        "stages, or take objective joint_likelihood",
+        objective);
+  }
   return fmt::format(
-      "optimizer \"{}\" needs residuals, which objective \"{}\" does not have: it is no sum of "
-      "squares; with their default options these optimizers can minimize it: {}",
-      name(), objective, optimizers_for(known));
+      "optimizer \"{}\" {}; with their default options these optimizers can minimize it: {}",
+      name(), reason, optimizers_for(known));
 }
 
 OptimizationResult Optimizer::minimize(const ObjectiveFunction& function,
                                        std::span<const Variable> variables, const Budget& budget,
                                        SecondsClock clock) const {
-  const std::string mismatch = explain_unsatisfied(function);
-  MODCAL_REQUIRE(mismatch.empty(), "{}", mismatch);
   Evaluator evaluator(function, variables, budget, std::move(clock));
+  return minimize(evaluator);
+}
+
+OptimizationResult Optimizer::minimize(Evaluator& evaluator) const {
+  const std::string mismatch = explain_unsatisfied(evaluator.function());
+  MODCAL_REQUIRE(mismatch.empty(), "{}", mismatch);
   require_feasible(evaluator);
   StopReason reason = StopReason::kNotRun;
   try {
-    evaluator.begin();
+    if (starts_from_value()) evaluator.begin();
     reason = search(evaluator);
   } catch (const Evaluator::Stopped&) {
   }

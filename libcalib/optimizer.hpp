@@ -31,8 +31,12 @@ class Optimizer {
   OptimizationResult minimize(const ObjectiveFunction& function,
                               std::span<const Variable> variables, const Budget& budget,
                               SecondsClock clock = steady_seconds()) const;
+  /// The same through an evaluator that is there: a stage of another search.
+  OptimizationResult minimize(Evaluator& evaluator) const;
 
  private:
+  /// Whether the value at the initial point is wanted before the search.
+  virtual bool starts_from_value() const { return true; }
   /// Throws InvalidInput where the search cannot be made within the bounds or the budget; called
   /// before the first evaluation.
   virtual void require_feasible(const Evaluator& /*evaluator*/) const {}

@@ -11,7 +11,7 @@
 #include "benchmarks/noisy_stroke.hpp"
 #include "libcalib/likelihood/all_records.hpp"
 #include "libcalib/likelihood/pluck_likelihood.hpp"
-#include "libcalib/optimizers/staged/records_fit.hpp"
+#include "libcalib/optimizers/staged/continuation.hpp"
 #include "libsim/dynamics/scene/scene.hpp"
 
 namespace modcal {
@@ -130,7 +130,7 @@ void run(int draws) {
         {.data = data(draw(pluck, key.with("pluck"), true)), .noise = pluck.deviation}};
     ContinuationOptions options = the.options;
     options.law_width = kWidth;
-    const RecordsFit fit = calibrate_records(start, strokes, options, plucks);
+    const ContinuationResult fit = calibrate_records(start, strokes, options, plucks);
     for (Eigen::Index n = 0; n < 50; ++n) {
       const auto j = static_cast<std::size_t>(n);
       errors(i, n) = std::log(fit.model.basis.omega[j] / truth.basis.omega[j]);

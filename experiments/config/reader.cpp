@@ -33,8 +33,11 @@ void YamlReader::finish() {
   for (const YamlNode::Member& member : node_.members) {
     if (std::find(seen_.begin(), seen_.end(), member.key) != seen_.end()) continue;
     if (member.key == "<<") continue;  // reported by the parser
-    mistakes_.push_back({member.position, fmt::format("unknown key \"{}\"{}", member.key,
-                                                      suggestion(member.key, seen_))});
+    const std::string_view moved = moved_key(member.key);
+    mistakes_.push_back({member.position, moved.empty()
+                                              ? fmt::format("unknown key \"{}\"{}", member.key,
+                                                            suggestion(member.key, seen_))
+                                              : fmt::format("\"{}\" {}", member.key, moved)});
   }
 }
 

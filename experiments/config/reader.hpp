@@ -71,6 +71,8 @@ class YamlReader final : public OptionVisitor {
 void read_options(const YamlNode& node, const std::function<void(OptionVisitor&)>& visit,
                   std::vector<Mistake>& mistakes, const std::vector<std::string>& allowed = {});
 
+/// Where the options of a key that was given up stand now; empty for other keys.
+std::string_view moved_key(std::string_view key);
 /// ", did you mean …?" or the list of names.
 std::string suggestion(std::string_view text, const std::vector<std::string>& names);
 

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "libsim/base/nearest_name.hpp"
 #include "experiments/config/reader.hpp"
+#include "libsim/base/nearest_name.hpp"
 
 namespace modcal {
 
@@ -21,6 +21,15 @@ std::string_view kind_name(const YamlNode& node) {
     default:
       return node.text.empty() && !node.quoted ? "nothing" : "a single value";
   }
+}
+
+std::string_view moved_key(std::string_view key) {
+  if (key != "continuation") return {};
+  return "is now the optimizer \"staged\": write objective: {type: joint_likelihood, left_noise, "
+         "right_noise, highest_frequency}, optimizer: {type: staged, restarts}, and what is free "
+         "or "
+         "known under parameters: {frequencies: all, law: true, contact: true, damping: factor, "
+         "law_width, sensors: [gain, ...], per_record, fixed, priors, correlations}";
 }
 
 std::string suggestion(std::string_view text, const std::vector<std::string>& names) {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "libcalib/identifiability/mode_verdict.hpp"
-#include "libcalib/likelihood/parameter_forms.hpp"
 #include "libcalib/identifiability/stated_verdict.hpp"
+#include "libcalib/likelihood/parameter_forms.hpp"
 
 namespace modcal {
 namespace {
@@ -16,7 +16,7 @@ using Index = Eigen::Index;
 
 class JointReport {
  public:
-  JointReport(const JointEstimate& estimate, RecordsFit& fit) : at_(estimate), fit_(fit) {}
+  JointReport(const JointEstimate& estimate, ContinuationResult& fit) : at_(estimate), fit_(fit) {}
 
   void report(const Eigen::MatrixXd& covariance) {
     const Eigen::VectorXd deviation = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
@@ -101,7 +101,7 @@ class JointReport {
   }
 
   const JointEstimate& at_;
-  RecordsFit& fit_;
+  ContinuationResult& fit_;
 };
 
 }  // namespace
@@ -118,7 +118,7 @@ double mean_damping_change(const HeldParameters& held, const ModelPoint& point,
 }
 
 void report_joint_fit(const JointEstimate& estimate, const Eigen::MatrixXd& covariance,
-                      RecordsFit& fit) {
+                      ContinuationResult& fit) {
   JointReport(estimate, fit).report(covariance);
 }
 

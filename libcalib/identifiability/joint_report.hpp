@@ -1,9 +1,9 @@
 // What a fit of several records says of the string, of each record and of every mode.
 #pragma once
 
-#include "libcalib/likelihood/all_records.hpp"
 #include "libcalib/identifiability/law_followers.hpp"
-#include "libcalib/optimizers/staged/records_fit.hpp"
+#include "libcalib/likelihood/all_records.hpp"
+#include "libcalib/optimizers/staged/continuation.hpp"
 
 namespace modcal {
 
@@ -25,6 +25,6 @@ double mean_damping_change(const HeldParameters& held, const ModelPoint& point,
 /// Fills model, contacts, verdicts, values of the records and covariance of `fit`; of a law that is
 /// fitted, its estimate too.
 void report_joint_fit(const JointEstimate& estimate, const Eigen::MatrixXd& covariance,
-                      RecordsFit& fit);
+                      ContinuationResult& fit);
 
 }  // namespace modcal

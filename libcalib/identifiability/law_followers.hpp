@@ -13,7 +13,7 @@ inline constexpr double kWidePrior = 2e-3;
 /// Width that ties a mode to the law where the string follows it [1].
 inline constexpr double kTied = 1e-5;
 /// Width of the prior of a mode that leaves the law: nothing beside the data tells where it is [1].
-inline constexpr double kLeft = 1e-2;
+inline constexpr double kDeparted = 1e-2;
 
 /// What the data tell of the frequencies under the wide prior alone.
 struct ModeSight {

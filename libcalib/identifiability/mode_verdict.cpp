@@ -104,7 +104,7 @@ void release(const LawFollowers& followers, ModeSight& sight, Eigen::VectorXd& w
   for (Eigen::Index i = 0; i < widths.size(); ++i) {
     const LawTie tie = followers.ties[static_cast<std::size_t>(i)];
     if (tie == LawTie::kFollows) continue;
-    widths[i] = std::max(widths[i], tie == LawTie::kLeaves ? kLeft : kWidePrior);
+    widths[i] = std::max(widths[i], tie == LawTie::kLeaves ? kDeparted : kWidePrior);
     if (tie == LawTie::kLeaves) sight.seen[i] = std::min(sight.seen[i], sight.error[i]);
   }
 }
@@ -153,7 +153,7 @@ std::vector<ModeVerdict> free_verdicts(const ModelPoint& model, const Eigen::Vec
     if (verdict.tie != LawTie::kDoubtful) {
       verdict.reason = weak_reason(model, n);
       // Where neither law nor data have it, it is anywhere that its prior admits.
-      const double width = verdict.tie == LawTie::kLeaves ? kLeft : std::min(law_width, kWidePrior);
+      const double width = verdict.tie == LawTie::kLeaves ? kDeparted : std::min(law_width, kWidePrior);
       verdict.deviation = std::max(deviation[i], width);
     }
     // The law speaks for a mode where the other modes follow it closer than the mode is needed.

@@ -26,7 +26,7 @@ void doubt_rivals(const std::vector<Neighbor>& neighbors, ModeSight& sight);
 /// wide prior is that prior's (more than 0.7 of it) no more than the width estimated.
 Eigen::VectorXd prior_widths(const Eigen::VectorXd& seen, double width, double estimated);
 
-/// A mode that leaves the law has the width kLeft and is seen as far as its information says, a
+/// A mode that leaves the law has the width kDeparted and is seen as far as its information says, a
 /// doubtful one kWidePrior at least: tied to where it is not, it would push the others away.
 void release(const LawFollowers& followers, ModeSight& sight, Eigen::VectorXd& widths);
 

@@ -7,41 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "libcalib/parameters/prior_equations.hpp"
 #include "libcalib/likelihood/projected_likelihood.hpp"
-#include "libcalib/parameters/stated_priors.hpp"
-#include "libsim/base/options.hpp"
+#include "libcalib/parameters/parameter_options.hpp"
+#include "libcalib/parameters/prior_equations.hpp"
 
 namespace modcal {
-
-/// One number that is fixed at its value or free, started there.
-struct UnknownOption {
-  bool free = false;
-  double value = 0.0;
-};
-
-/// What is unknown of the damping and of the sensor at x = L beside frequencies and contact, and
-/// what is known of all of them beforehand.
-struct UnknownsOptions {
-  /// "fixed": ζ_n as stated; "factor": times one factor; "power": times a factor and a power of n;
-  /// "each": every ζ_n, under a prior about the stated one.
-  std::string damping = "factor";
-  double damping_width = 0.3;        ///< sd of the prior of each ln ζ_n, with "each" [1]
-  UnknownOption gain{.value = 1.0};  ///< of the sensor at x = L over that at x = 0 [1]
-  UnknownOption delay;               ///< [s]
-  UnknownOption corner;              ///< [Hz]
-  /// What each record has for itself, of x_c, gain, delay, corner and the factor "damping".
-  std::vector<std::string> per_record = {"x_c"};
-  std::vector<FixedParameter> fixed;
-  std::vector<ParameterPrior> priors;
-  std::vector<PriorCorrelation> correlations;
-  void visit(OptionVisitor& visitor);
-  SensorPair sensors() const;  ///< start
-  /// Whether it is each record's own.
-  bool own(UnknownKind kind) const;
-  /// Throws InvalidInput where per_record names what is fixed, unknown or named twice.
-  void require_sharing() const;
-};
 
 /// θ = (ln f_0, B | δ_1 … δ_N, x_c, damping, sensors) about a reference model, all zero there save
 /// B: with the law ω_n = 2πn f_0 √(1 + B n²), else ω_n = ω_n(reference) exp(δ_n). Damping: nothing,

@@ -1,11 +1,17 @@
 #include "libcalib/objectives/joint_likelihood.hpp"
 
+#include <cmath>
+#include <mutex>
 #include <numbers>
+#include <optional>
 
-#include "libcalib/optimizers/staged/continuation.hpp"
 #include "libcalib/likelihood/noise_level.hpp"
 #include "libcalib/likelihood/projected_likelihood.hpp"
 #include "libcalib/likelihood/record_options.hpp"
+#include "libcalib/optimizers/staged/continuation.hpp"
+#include "libcalib/parameters/stiff_string_fit.hpp"
+#include "libcalib/problem.hpp"
+#include "libcalib/problem/evaluator.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -46,34 +52,125 @@ std::vector<double> column_units(const ParameterSet& parameters, const ModelPoin
   return units;
 }
 
+// What a stage tells of the parameters, before there is an estimate.
+ContinuationResult told_by(const ModelPoint& model, const ModelPoint& initial) {
+  ContinuationResult found{.model = model};
+  std::vector<double> frequencies;
+  for (std::size_t n = 0; n < model.basis.size(); ++n) {
+    frequencies.push_back(model.basis.frequency(n));
+  }
+  const StiffStringFit law = fit_stiff_string(frequencies);
+  found.law.fundamental = law.fundamental;
+  found.law.inharmonicity = law.inharmonicity;
+  found.damping = model.basis.zeta.front() / initial.basis.zeta.front();
+  const double top = model.basis.zeta.back() / initial.basis.zeta.back();
+  if (frequencies.size() > 1) {
+    found.damping_power =
+        std::log(top / found.damping) / std::log(static_cast<double>(frequencies.size()));
+  }
+  return found;
+}
+
+// The parameters of the estimate in user units.
+std::vector<double> values_of(const ContinuationResult& found, const ParameterSet& parameters) {
+  std::vector<double> x;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const SensorPair& sensors = found.model.sensors;
+    const auto value = [&]() -> double {
+      switch (parameters[i].kind) {
+        case ParameterKind::kFundamental:
+          return found.law.fundamental;
+        case ParameterKind::kInharmonicity:
+          return found.law.inharmonicity;
+        case ParameterKind::kContact:
+          return found.model.contact;
+        case ParameterKind::kFrequency:
+          return found.model.basis.frequency(parameters[i].mode);
+        case ParameterKind::kDampingRatio:
+          return found.model.basis.zeta[parameters[i].mode];
+        case ParameterKind::kDampingFactor:
+          return found.damping;
+        case ParameterKind::kDampingPower:
+          return found.damping_power;
+        case ParameterKind::kGain:
+          return sensors.gain;
+        case ParameterKind::kDelay:
+          return sensors.delay;
+        case ParameterKind::kCorner:
+          return 0.5 * sensors.corner / std::numbers::pi;
+      }
+      return 0.0;
+    };
+    x.push_back(value());
+  }
+  return x;
+}
+
+// Noise stated with the record, else with the objective.
+std::array<double, 2> noise_of(const CalibrationRecord& record,
+                               const JointLikelihood::Options& options) {
+  return {std::isnan(record.noise[0]) ? options.left_noise : record.noise[0],
+          std::isnan(record.noise[1]) ? options.right_noise : record.noise[1]};
+}
+
 class JointLikelihoodFunction final : public ObjectiveFunction {
  public:
-  JointLikelihoodFunction(ProjectedLikelihood likelihood, ParameterSet parameters)
-      : likelihood_(std::move(likelihood)), parameters_(std::move(parameters)) {
-    likelihood_.cost(parameters_.initial());  // an undamped mode and the like, before any search
-  }
+  JointLikelihoodFunction(Problem problem, ParameterSet parameters,
+                          const JointLikelihood::Options& options)
+      : problem_(std::move(problem)), parameters_(std::move(parameters)), options_(options) {}
   std::string_view name() const override { return "joint_likelihood"; }
   std::size_t dimension() const override { return parameters_.size(); }
-  std::size_t residual_count() const override { return 2 * likelihood_.record().bins; }
-  Capabilities capabilities() const override { return {.gradient = true, .least_squares = true}; }
+  std::size_t residual_count() const override { return 2 * likelihood().record().bins; }
+  Capabilities capabilities() const override {
+    return {.gradient = true,
+            .least_squares = true,
+            .information = true,
+            .damped = true,
+            .schedule = options_.damping == 0.0};
+  }
+  std::unique_ptr<const ObjectiveFunction> damped(double sigma) const override {
+    JointLikelihood::Options options = options_;
+    options.damping += sigma;
+    return std::make_unique<JointLikelihoodFunction>(problem_, parameters_, options);
+  }
+  StopReason follow_schedule(Evaluator& evaluator, const ScheduleOptions& options) const override;
+  // Made when it is first asked for: a schedule of stages has likelihoods of its own.
+  const ProjectedLikelihood& likelihood() const {
+    std::call_once(made_, [this] {
+      MODCAL_REQUIRE(problem_.records.size() == 1,
+                     "{} records are fitted together by their stages: state optimizer: staged",
+                     problem_.records.size());
+      const CalibrationData& data = problem_.records.front().data;
+      const NoisyRecords records = NoisyRecords::of_data(
+          data, parameters_.initial().basis, noise_of(problem_.records.front(), options_));
+      const double highest =
+          likelihood_band(parameters_.initial(), options_.highest_frequency, data.sample_rate);
+      likelihood_.emplace(WhitenedRecord::of(records, options_.damping, highest));
+    });
+    return *likelihood_;
+  }
 
  private:
   void do_evaluate(std::span<const double> x, const ObjectiveOutputs& outputs) const override {
     const ModelPoint point = parameters_.model(x);
-    const bool slopes = outputs.gradient != nullptr || outputs.jacobian != nullptr;
+    const bool slopes = outputs.gradient || outputs.jacobian || outputs.information;
     const LikelihoodColumns columns =
         slopes ? columns_of(parameters_, x, point) : LikelihoodColumns{};
     std::vector<double> residuals(outputs.residuals ? residual_count() : 0);
     Eigen::MatrixXd jacobian;
+    const bool slope_alone =
+        outputs.gradient && !outputs.information && !outputs.residuals && !outputs.jacobian;
     const LikelihoodPoint at =
-        likelihood_.evaluate(point, columns,
-                             {.residuals = outputs.residuals ? &residuals : nullptr,
-                              .jacobian = outputs.jacobian ? &jacobian : nullptr});
+        slope_alone ? likelihood().slope(point, columns)
+                    : likelihood().evaluate(point, columns,
+                                            {.residuals = outputs.residuals ? &residuals : nullptr,
+                                             .jacobian = outputs.jacobian ? &jacobian : nullptr});
     if (outputs.value) *outputs.value = at.cost;
     const std::vector<double> units = column_units(parameters_, point);
     for (std::size_t i = 0; outputs.gradient && i < dimension(); ++i) {
       outputs.gradient[i] = std::numbers::sqrt2 * units[i] * at.slope[static_cast<Eigen::Index>(i)];
     }
+    add_information(point, columns, at, units, outputs);
     for (std::size_t j = 0; j < residuals.size(); ++j) {
       outputs.residuals[j] = std::numbers::sqrt2 * residuals[j];
     }
@@ -85,9 +182,63 @@ class JointLikelihoodFunction final : public ObjectiveFunction {
     }
   }
 
-  ProjectedLikelihood likelihood_;
+  // In the units of the parameters, which hold √2 of each residual.
+  void add_information(const ModelPoint& point, const LikelihoodColumns& columns,
+                       const LikelihoodPoint& at, const std::vector<double>& units,
+                       const ObjectiveOutputs& outputs) const {
+    const std::size_t repeats = 3;  // as the stages of the schedule do
+    const Eigen::Map<const Eigen::VectorXd> unit(units.data(),
+                                                 static_cast<Eigen::Index>(units.size()));
+    if (outputs.information) {
+      *outputs.information = unit.asDiagonal() * at.information * unit.asDiagonal();
+    }
+    if (outputs.noise) {
+      *outputs.noise = unit.asDiagonal() * likelihood().noise_information(point, columns, repeats) *
+                       unit.asDiagonal();
+    }
+  }
+
+  Problem problem_;
   ParameterSet parameters_;
+  JointLikelihood::Options options_;
+  mutable std::once_flag made_;
+  mutable std::optional<ProjectedLikelihood> likelihood_;
 };
+
+StopReason JointLikelihoodFunction::follow_schedule(Evaluator& evaluator,
+                                                    const ScheduleOptions& schedule) const {
+  const ParameterOptions& free = problem_.parameters;
+  ContinuationOptions options{.frequencies = free.every_frequency(),
+                              .law_width = free.law_width,
+                              .highest_frequency = options_.highest_frequency,
+                              .left_noise = options_.left_noise,
+                              .right_noise = options_.right_noise,
+                              .unknowns = free.unknowns,
+                              .restarts = schedule.restarts,
+                              .ranges = free.ranges};
+  if (!free.contact) options.unknowns.fixed.push_back({.parameter = "x_c"});
+  options.reached = [&](const ModelPoint& model, double chi2) {
+    evaluator.answer(values_of(told_by(model, problem_.model), parameters_), chi2);
+  };
+  std::vector<CalibrationData> strokes;
+  std::vector<PluckRecord> plucks;
+  for (const CalibrationRecord& record : problem_.records) {
+    if (record.pluck) plucks.push_back({record.data, record.noise});
+    if (!record.pluck) strokes.push_back(record.data);
+  }
+  const std::array<double, 2> noise = noise_of(problem_.records.front(), options_);
+  options.left_noise = noise[0];
+  options.right_noise = noise[1];
+  ContinuationResult found =
+      strokes.size() == 1 && plucks.empty()
+          ? calibrate_by_continuation(problem_.model, strokes.front(), options, &evaluator)
+          : calibrate_records(problem_.model, strokes, options, plucks, &evaluator);
+  evaluator.answer(values_of(found, parameters_), found.chi2);
+  for (const FitStage& stage : found.stages) evaluator.end_stage(stage);
+  const StopReason reason = found.fits ? StopReason::kConverged : StopReason::kNoProgress;
+  evaluator.report(std::make_shared<const ContinuationResult>(std::move(found)));
+  return reason;
+}
 
 }  // namespace
 
@@ -107,17 +258,22 @@ JointLikelihood::JointLikelihood(const Options& options) : options_(options) {
 
 void JointLikelihood::require_record(const ModalBasis& basis, double sample_rate,
                                      std::size_t samples) const {
+  likelihood_band({basis, 0.0}, options_.highest_frequency, sample_rate);
   require_noise_known({options_.left_noise, options_.right_noise}, basis, sample_rate, samples);
+}
+
+std::unique_ptr<const ObjectiveFunction> JointLikelihood::bind_problem(
+    const Problem& problem, const ParameterSet& parameters) const {
+  return std::make_unique<JointLikelihoodFunction>(problem, parameters, options_);
 }
 
 std::unique_ptr<const ObjectiveFunction> JointLikelihood::do_bind(
     const CalibrationData& data, const ParameterSet& parameters) const {
-  const NoisyRecords records = NoisyRecords::of_data(data, parameters.initial().basis,
-                                                     {options_.left_noise, options_.right_noise});
-  const double highest =
-      likelihood_band(parameters.initial(), options_.highest_frequency, data.sample_rate);
-  return std::make_unique<JointLikelihoodFunction>(
-      ProjectedLikelihood(WhitenedRecord::of(records, options_.damping, highest)), parameters);
+  auto function = std::make_unique<JointLikelihoodFunction>(
+      Problem{.model = parameters.initial(), .records = {{.data = data}}}, parameters, options_);
+  // An undamped mode and the like, before any search.
+  function->likelihood().cost(parameters.initial());
+  return function;
 }
 
 }  // namespace modcal

@@ -26,12 +26,22 @@ class JointLikelihood final : public Objective {
   Response response(ParameterKind /*kind*/) const override { return Response::kMoves; }
   /// Damped records have correlated bins.
   bool whitened() const override { return options_.damping == 0.0; }
+  Capabilities capabilities() const override {
+    return {.gradient = true,
+            .least_squares = true,
+            .information = true,
+            .damped = true,
+            .schedule = options_.damping == 0.0};
+  }
+  double highest_frequency() const override { return options_.highest_frequency; }
   /// Refuses a record in which a noise level that is not stated cannot be seen.
   void require_record(const ModalBasis& basis, double sample_rate,
                       std::size_t samples) const override;
 
  private:
   /// Throws InvalidInput where a reaction is missing.
+  std::unique_ptr<const ObjectiveFunction> bind_problem(
+      const Problem& problem, const ParameterSet& parameters) const override;
   std::unique_ptr<const ObjectiveFunction> do_bind(const CalibrationData& data,
                                                    const ParameterSet& parameters) const override;
 

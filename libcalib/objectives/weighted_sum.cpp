@@ -8,8 +8,6 @@
 namespace modcal {
 namespace {
 
-constexpr std::string_view kName = "weighted_sum";
-
 struct BoundTerm {
   double weight = 1.0;
   std::unique_ptr<const ObjectiveFunction> function;
@@ -64,7 +62,7 @@ class Function final : public ObjectiveFunction {
     }
     if (!capabilities_.sum_of_squares()) residual_count_ = 0;
   }
-  std::string_view name() const override { return kName; }
+  std::string_view name() const override { return WeightedSum::kName; }
   std::size_t dimension() const override { return terms_.front().function->dimension(); }
   std::size_t residual_count() const override { return residual_count_; }
   Capabilities capabilities() const override { return capabilities_; }
@@ -104,20 +102,6 @@ class Function final : public ObjectiveFunction {
 };
 
 }  // namespace
-
-std::vector<std::string_view> WeightedSum::TermChoice::names() const {
-  std::vector<std::string_view> all = choice_.names();
-  std::erase(all, kName);
-  return all;
-}
-
-void WeightedSum::TermChoice::select(std::string_view name) { assign(Choice<Objective>(name)); }
-
-void WeightedSum::TermChoice::assign(Choice<Objective> choice) {
-  MODCAL_REQUIRE(choice.selected() != kName,
-                 "a weighted_sum in a weighted_sum: write its terms into this one");
-  choice_ = std::move(choice);
-}
 
 void WeightedSum::Term::visit(OptionVisitor& visitor) {
   visitor.number({.key = "weight",

@@ -3,6 +3,7 @@
 #include <string_view>
 #include <vector>
 
+#include "libcalib/problem/nested_choice.hpp"
 #include "libcalib/objective.hpp"
 
 namespace modcal {
@@ -12,22 +13,9 @@ namespace modcal {
 /// are the user's: weights turn newtons and ratios into one number.
 class WeightedSum final : public Objective {
  public:
-  /// An objective that is no sum itself: a sum of sums is one longer sum.
-  class TermChoice final : public PluginSlot {
-   public:
-    std::string_view kind() const override { return choice_.kind(); }
-    std::vector<std::string_view> names() const override;
-    std::string_view summary(std::string_view name) const override { return choice_.summary(name); }
-    std::string_view selected() const override { return choice_.selected(); }
-    void select(std::string_view name) override;
-    void visit_options(OptionVisitor& visitor) override { choice_.visit_options(visitor); }
-    std::shared_ptr<const Objective> make() const { return choice_.make(); }
-    /// A term whose options are given in code. Throws InvalidInput for a weighted_sum.
-    void assign(Choice<Objective> choice);
-
-   private:
-    Choice<Objective> choice_;
-  };
+  static constexpr std::string_view kName = "weighted_sum";
+  static constexpr std::string_view kNested = "write its terms into this one";
+  using TermChoice = NestedChoice<Objective, WeightedSum>;
   struct Term {
     double weight = 1.0;
     TermChoice objective;

@@ -3,6 +3,8 @@
 #include "libcalib/optimizers/ceres_optimizer.hpp"
 #include "libcalib/optimizers/gsl_optimizer.hpp"
 #include "libcalib/optimizers/nlopt_optimizer.hpp"
+#include "libcalib/optimizers/scoring.hpp"
+#include "libcalib/optimizers/staged/staged.hpp"
 #include "libcalib/optimizers/systematic_search.hpp"
 #include "libcalib/optimizers/tiny_least_squares.hpp"
 
@@ -18,6 +20,11 @@ Registry<Optimizer> Optimizer::registry() {
       entry_of<Optimizer, ModeByMode>(
           "mode_by_mode", "the paper's systematic search, one parameter after the other"),
       entry_of<Optimizer, NloptOptimizer>("nlopt", "an algorithm of NLopt, by its name"),
+      entry_of<Optimizer, Scoring>(
+          "scoring", "Fisher scoring: Newton steps by the information of a likelihood"),
+      entry_of<Optimizer, Staged>("staged",
+                                  "stages on damped and whole records, by default the objective's "
+                                  "own schedule to the bound"),
       entry_of<Optimizer, TinyLeastSquares>("tiny_least_squares",
                                             "least squares for few parameters, without allocation"),
   };

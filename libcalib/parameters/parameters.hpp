@@ -126,20 +126,4 @@ class ParameterSet {
   std::vector<bool> damped_;   // per mode: ζ_n is an unknown of its own
 };
 
-/// Section "parameters" of a calibration.
-struct ParameterOptions {
-  std::string frequencies = "none";  ///< none, all, listed
-  std::vector<std::int64_t> modes;   ///< mode numbers, with frequencies: listed
-  bool law = false;                  ///< f0 and B
-  bool contact = false;              ///< x_c
-  /// fixed; factor; power: factor and exponent of n; each: every ζ_n.
-  std::string damping = "fixed";
-  std::vector<std::string> sensors;  ///< some of gain, delay, corner
-  ParameterRanges ranges;
-  void visit(OptionVisitor& visitor);
-  /// Names for a model of N modes. Throws InvalidInput where modes are listed but not asked for, or
-  /// nothing is free.
-  std::vector<std::string> names(std::size_t modes_of_model) const;
-};
-
 }  // namespace modcal

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libcalib/parameters/stated_priors.hpp"
 #include "libcalib/likelihood/string_unknowns.hpp"
+#include "libcalib/parameters/stated_priors.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -12,8 +12,8 @@ namespace {
 
 void require_free(const UnknownsOptions& options, const std::string& parameter, UnknownKind kind) {
   const auto require_sensor = [&](const UnknownOption& sensor) {
-    MODCAL_REQUIRE(sensor.free, "{} has a prior and is not free: state {}: {{free: true}}",
-                   parameter, parameter);
+    MODCAL_REQUIRE(sensor.free, "{} has a prior and is not free: name it among the sensors",
+                   parameter);
   };
   if (kind == UnknownKind::kGain) require_sensor(options.gain);
   if (kind == UnknownKind::kDelay) require_sensor(options.delay);

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -33,6 +34,16 @@ struct CalibrationData {
   void require_valid() const;
   /// Throws InvalidInput for a reaction that never moves: zeros, or one level throughout.
   void require_motion() const;
+};
+
+/// One record of a problem: a stroke, whose force is unknown, or the string left to itself after a
+/// pluck.
+struct CalibrationRecord {
+  CalibrationData data;
+  /// Noise standard deviation of each reaction [N]; NaN: as the objective has it.
+  std::array<double, 2> noise{std::numeric_limits<double>::quiet_NaN(),
+                              std::numeric_limits<double>::quiet_NaN()};
+  bool pluck = false;
 };
 
 }  // namespace modcal

@@ -52,7 +52,17 @@ Evaluator::Evaluator(const ObjectiveFunction& function, std::span<const Variable
   best_.reserve(x_.size());
 }
 
+Evaluator::Evaluator(Evaluator& parent, const ObjectiveFunction& function,
+                     std::span<const Variable> variables, std::vector<std::size_t> places,
+                     std::vector<double> held)
+    : Evaluator(function, variables, Budget{}, parent.clock_) {
+  parent_ = &parent;
+  places_ = std::move(places);
+  held_ = std::move(held);
+}
+
 std::int64_t Evaluator::evaluations_left() const {
+  if (parent_) return parent_->evaluations_left();
   const std::int64_t kept = scanner_ ? 1 : 0;
   return std::max<std::int64_t>(0, budget_.evaluations - kept - result_.evaluations);
 }
@@ -64,8 +74,14 @@ void Evaluator::stop(StopReason reason) {
 
 void Evaluator::require_budget(std::int64_t evaluations) {
   if (stopped()) throw Stopped{};
+  if (parent_) return parent_->require_budget(evaluations);
   if (evaluations > evaluations_left()) stop(StopReason::kEvaluationBudget);
   if (seconds() >= budget_.seconds) stop(StopReason::kTimeBudget);
+}
+
+void Evaluator::count(std::int64_t evaluations) {
+  result_.evaluations += evaluations;
+  if (parent_) parent_->count(evaluations);
 }
 
 void Evaluator::to_user(std::span<const double> z) {
@@ -84,6 +100,17 @@ void Evaluator::to_scaled(const ObjectiveOutputs& outputs) const {
       outputs.jacobian[j * n + i] *= variables_[i].scale;
     }
   }
+  for (Eigen::MatrixXd* matrix : {outputs.information, outputs.noise, outputs.prior}) {
+    if (!matrix) continue;
+    const auto rows = static_cast<std::size_t>(matrix->rows());
+    for (std::size_t i = 0; i < rows; ++i) {
+      const double row = variables_[rows == n ? i : (*outputs.rows)[i]].scale;
+      for (std::size_t j = 0; j < n; ++j) {
+        (*matrix)(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) *=
+            row * variables_[j].scale;
+      }
+    }
+  }
 }
 
 void Evaluator::note(double value) {
@@ -92,6 +119,11 @@ void Evaluator::note(double value) {
   best_value_ = value;
   best_ = x_;
   result_.trace.push_back({result_.evaluations, seconds(), value});
+  if (!parent_ || places_.empty()) return;
+  parent_->x_ = held_;
+  for (std::size_t i = 0; i < places_.size(); ++i) parent_->x_[places_[i]] = x_[i];
+  parent_->note(value);
+  if (value <= parent_->budget_.target) stop(parent_->stop_ = StopReason::kTargetReached);
 }
 
 bool Evaluator::evaluate(std::span<const double> z, const ObjectiveOutputs& outputs) {
@@ -109,6 +141,7 @@ bool Evaluator::finite(const ObjectiveOutputs& outputs) const {
   const std::size_t m = residual_count();
   return (!outputs.gradient || all_finite(outputs.gradient, n)) &&
          (!outputs.residuals || all_finite(outputs.residuals, m)) &&
+         (!outputs.information || outputs.information->allFinite()) &&
          (!outputs.jacobian || all_finite(outputs.jacobian, n * m));
 }
 
@@ -120,7 +153,7 @@ bool Evaluator::evaluate_given(std::span<const double> z, const ObjectiveOutputs
   double value = 0.0;
   ObjectiveOutputs asked = outputs;
   asked.value = &value;
-  ++result_.evaluations;
+  count(1);
   function_.evaluate(x_, asked);
   if (!std::isfinite(value) || !finite(asked)) {
     if (outputs.value) *outputs.value = std::numeric_limits<double>::infinity();
@@ -176,7 +209,7 @@ void Evaluator::begin() {
   double value = 0.0;
   require_budget(1);
   to_user(start());
-  ++result_.evaluations;
+  count(1);
   function_.evaluate(x_, {.value = &value});
   result_.initial_value = value;
   // What starts at +∞ can still be searched point by point.
@@ -194,7 +227,7 @@ void Evaluator::open_scan() {
 void Evaluator::scan(std::size_t i, std::span<const double> candidates, std::span<double> values) {
   assert(scanner_ && i < dimension() && candidates.size() == values.size());
   require_budget(static_cast<std::int64_t>(candidates.size()));
-  result_.evaluations += static_cast<std::int64_t>(candidates.size());
+  count(static_cast<std::int64_t>(candidates.size()));
   scanner_->scan(i, candidates, values);
   std::replace_if(
       values.begin(), values.end(), [](double value) { return !std::isfinite(value); },
@@ -207,14 +240,24 @@ void Evaluator::move(std::size_t i, double x) {
   scanner_->move(i, position_[i]);
 }
 
+void Evaluator::answer(std::vector<double> x, double value) {
+  best_ = std::move(x);
+  best_value_ = value;
+  result_.trace.push_back({result_.evaluations, seconds(), value});
+}
+
 OptimizationResult Evaluator::finish(StopReason reason) {
   if (error_) std::rethrow_exception(error_);
   if (scanner_) {
     // Nothing moved: the value is known, and the budget may not allow another evaluation.
     best_ = position_;
     best_value_ = moved_ ? function_.value(position_) : result_.initial_value;
-    if (moved_) result_.trace.push_back({++result_.evaluations, seconds(), best_value_});
+    if (moved_) {
+      count(1);
+      result_.trace.push_back({result_.evaluations, seconds(), best_value_});
+    }
   }
+  if (stop_ == StopReason::kNotRun && parent_) stop_ = parent_->stop_;
   result_.stop = stop_ == StopReason::kNotRun ? reason : stop_;
   if (best_.empty()) {
     // Nothing better than infinity was met: the initial point stands.

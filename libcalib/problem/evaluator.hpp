@@ -30,8 +30,15 @@ class Evaluator {
   /// evaluator.
   Evaluator(const ObjectiveFunction& function, std::span<const Variable> variables,
             const Budget& budget, SecondsClock clock = steady_seconds());
+  /// Search of a stage within that of `parent`, which lends it budget and clock and outlives it.
+  /// places: where the variables stand among the parent's, if the function is the parent's with all
+  /// others held at `held` (user units): its values count as the parent's; else empty.
+  Evaluator(Evaluator& parent, const ObjectiveFunction& function,
+            std::span<const Variable> variables, std::vector<std::size_t> places = {},
+            std::vector<double> held = {});
 
   std::size_t dimension() const { return variables_.size(); }
+  const ObjectiveFunction& function() const { return function_; }
   std::size_t residual_count() const { return function_.residual_count(); }
   std::span<const Variable> variables() const { return variables_; }
   std::span<const double> lower() const { return lower_; }  ///< scaled
@@ -59,7 +66,9 @@ class Evaluator {
   /// all that were met, residuals of that half square, and slopes of 0; before a finite value, or
   /// finite slopes where these are asked for, there is nothing to go back to: the search is over.
   Trial try_evaluate(std::span<const double> z, const ObjectiveOutputs& outputs) noexcept;
-  bool stopped() const { return stop_ != StopReason::kNotRun || error_ != nullptr; }
+  bool stopped() const {
+    return stop_ != StopReason::kNotRun || error_ != nullptr || (parent_ && parent_->stopped());
+  }
 
   /// Stepping along single variables, in user units, from the initial point and after begin(). The
   /// point it stands at is the search's answer, because values of parts cannot be compared over
@@ -80,6 +89,23 @@ class Evaluator {
     result_.searched.push_back(static_cast<std::int64_t>(searched));
   }
 
+  /// Reads the clock between evaluations. Throws Stopped where the search is over.
+  void poll() { require_budget(0); }
+  /// Allows and counts evaluations that the evaluator does not make itself. Throws Stopped where
+  /// the search is over.
+  void spend(std::int64_t evaluations) {
+    require_budget(evaluations);
+    count(evaluations);
+  }
+  std::int64_t evaluations() const { return result_.evaluations; }
+  void end_stage(FitStage stage) { result_.stages.push_back(std::move(stage)); }
+  const std::vector<FitStage>& stages() const { return result_.stages; }
+  /// The answer of a search whose stages have objectives that do not compare, in user units.
+  void answer(std::vector<double> x, double value);
+  void report(std::shared_ptr<const ContinuationResult> estimate) {
+    result_.estimate = std::move(estimate);
+  }
+
   /// Ends the search: throws what the objective threw, else gives the result. A reason the
   /// evaluator had to stop for goes before the back end's.
   OptimizationResult finish(StopReason reason);
@@ -89,6 +115,7 @@ class Evaluator {
   using Sample = std::function<bool(std::span<const double> z, double* numbers)>;
 
   [[noreturn]] void stop(StopReason reason);
+  void count(std::int64_t evaluations);
   void require_budget(std::int64_t evaluations);
   double seconds() const { return clock_() - begin_; }
   void to_user(std::span<const double> z);
@@ -104,6 +131,9 @@ class Evaluator {
   void difference(std::span<const double> z, const Sample& sample, std::span<const double> numbers,
                   double* slopes);
 
+  Evaluator* parent_ = nullptr;
+  std::vector<std::size_t> places_;
+  std::vector<double> held_;
   const ObjectiveFunction& function_;
   std::vector<Variable> variables_;
   Budget budget_;

@@ -2,6 +2,7 @@
 
 #include <cassert>
 
+#include "libcalib/problem/stop_reason.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -16,6 +17,11 @@ void ObjectiveFunction::evaluate(std::span<const double> x, const ObjectiveOutpu
                  "objective \"{}\" is no sum of squares: it has no residuals", name());
   MODCAL_REQUIRE(outputs.jacobian == nullptr || known.least_squares,
                  "objective \"{}\" has no Jacobian", name());
+  MODCAL_REQUIRE(outputs.information == nullptr || known.information,
+                 "objective \"{}\" has no Fisher information", name());
+  const auto n = static_cast<Eigen::Index>(dimension());
+  if (outputs.noise) outputs.noise->setZero(n, n);
+  if (outputs.prior) outputs.prior->setZero(n, n);
   do_evaluate(x, outputs);
 }
 
@@ -27,6 +33,18 @@ double ObjectiveFunction::value(std::span<const double> x) const {
 
 std::unique_ptr<CoordinateScanner> ObjectiveFunction::scanner(std::span<const double> x) const {
   return std::make_unique<EvaluatingScanner>(*this, x);
+}
+
+std::unique_ptr<const ObjectiveFunction> ObjectiveFunction::damped(double sigma) const {
+  throw_invalid_input(
+      "objective \"{}\" has no form for a record damped by {:g} 1/s: state damping: 0, or take "
+      "objective joint_likelihood",
+      name(), sigma);
+}
+
+StopReason ObjectiveFunction::follow_schedule(Evaluator& /*evaluator*/,
+                                              const ScheduleOptions& /*options*/) const {
+  throw_invalid_input("objective \"{}\" has no schedule of stages of its own", name());
 }
 
 void EvaluatingScanner::scan(std::size_t i, std::span<const double> candidates,

@@ -1,7 +1,9 @@
 // A function to be minimized, as optimizers see it.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -18,6 +20,12 @@ struct Capabilities {
   bool least_squares = false;
   /// The residuals without their Jacobian.
   bool residuals = false;
+  /// The Fisher information of a likelihood, of which the value is minus the logarithm.
+  bool information = false;
+  /// The same on the record damped by exp(−σt).
+  bool damped = false;
+  /// A schedule of stages of its own, which `staged` follows where no stages are stated.
+  bool schedule = false;
 
   bool sum_of_squares() const { return least_squares || residuals; }
 };
@@ -28,6 +36,22 @@ struct ObjectiveOutputs {
   double* gradient = nullptr;   ///< n numbers ∂value/∂x_i
   double* residuals = nullptr;  ///< m numbers
   double* jacobian = nullptr;   ///< m × n, row-major, ∂r_j/∂x_i
+  /// n × n, what the data tell: JᵀWJ of the whitened residuals, the value's Hessian but for noise
+  /// and prior.
+  Eigen::MatrixXd* information = nullptr;
+  /// Variables whose rows of the information are wanted, which then come alone, or all of them
+  /// where that costs no more; null: all.
+  const std::vector<std::size_t>* rows = nullptr;
+  Eigen::MatrixXd* noise = nullptr;  ///< n × n, N̄: what noise adds to JᵀWJ, 0 where not known
+  Eigen::MatrixXd* prior = nullptr;  ///< n × n, Hessian of what the value holds of prior knowledge
+};
+
+class Evaluator;
+enum class StopReason;
+
+/// How a schedule of stages is followed.
+struct ScheduleOptions {
+  std::int64_t restarts = 4;  ///< other starts tried while χ² says that the fit is wrong
 };
 
 /// The part of an objective that belongs to one variable, for many values of that variable at once.
@@ -67,6 +91,12 @@ class ObjectiveFunction {
   /// Scanner standing at x. By default every candidate is one evaluation, and the part of a
   /// variable is the whole objective.
   virtual std::unique_ptr<CoordinateScanner> scanner(std::span<const double> x) const;
+  /// The same objective on the record damped by exp(−σt), σ > 0 [1/s]: wide basins. Throws
+  /// InvalidInput where it has no such form.
+  virtual std::unique_ptr<const ObjectiveFunction> damped(double sigma) const;
+  /// Searches by the schedule of stages that the objective brings along and says why it ended.
+  /// Throws InvalidInput where it has none.
+  virtual StopReason follow_schedule(Evaluator& evaluator, const ScheduleOptions& options) const;
 
  private:
   virtual void do_evaluate(std::span<const double> x, const ObjectiveOutputs& outputs) const = 0;

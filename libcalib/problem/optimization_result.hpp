@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,18 @@ struct CoordinateScan {
   std::vector<double> values;
 };
 
+/// A stage of a search that has ended.
+struct FitStage {
+  std::string name;             ///< "law, sigma = 100 1/s"
+  std::size_t evaluations = 0;  ///< so far, those of all stages before included
+  double objective = 0.0;       ///< what it minimized, of its own record
+  /// Reduced, of the stage's own record, that of the whole one where bins are weighted; NaN: not
+  /// found.
+  double chi2 = std::numeric_limits<double>::quiet_NaN();
+};
+
+struct ContinuationResult;
+
 struct OptimizationResult {
   StopReason stop = StopReason::kNotRun;
   std::vector<double> x;  ///< in user units
@@ -48,6 +61,9 @@ struct OptimizationResult {
   }
   double seconds = 0.0;
   std::vector<TracePoint> trace;
+  std::vector<FitStage> stages;  ///< of a search in stages
+  /// What a schedule of stages says of its own result; null: the search had none.
+  std::shared_ptr<const ContinuationResult> estimate;
   std::vector<CoordinateScan> scans;  ///< of the first and of the last loop
 };
 

@@ -11,6 +11,7 @@
 #include "libcalib/optimizers/ceres_optimizer.hpp"
 #include "libcalib/optimizers/gsl_optimizer.hpp"
 #include "libcalib/optimizers/nlopt_optimizer.hpp"
+#include "libcalib/optimizers/staged/staged.hpp"
 #include "libcalib/optimizers/systematic_search.hpp"
 #include "libcalib/optimizers/tiny_least_squares.hpp"
 
@@ -69,6 +70,9 @@ inline std::vector<OptimizerCase> optimizer_cases() {
     add("ceres_line_search_" + direction, Way::kGradient,
         CeresLineSearch({.direction = direction}));
   }
+  Staged::Stage whole;
+  whole.optimizer.select("ceres");
+  add("staged", Way::kLeastSquares, Staged({.stages = {whole}}));
   add("tiny_least_squares", Way::kLeastSquares, TinyLeastSquares(TinyLeastSquares::Options{}));
   add("grid", Way::kSystematic, Grid(Grid::Options{}));
   add("mode_by_mode", Way::kSystematic, ModeByMode(ModeByMode::Options{}));

@@ -40,7 +40,7 @@ std::vector<double> law_bounds(const ExpectedLimit& limit, const CalibrateOption
       c[i][j] = limit.law_correlation[i][j] * deviation[i] * deviation[j];
     }
   }
-  if (!options.calibration.has_continuation && !options.calibration.parameters.contact) {
+  if (!options.calibration.parameters.contact) {
     know(kContact, c);
   }
   std::vector<double> bounds;
@@ -82,9 +82,8 @@ std::string key_of(const CalibrateOptions& options) {
   return fmt::format("{} {:a} {} {} {} {:a} {:a} {}",
                      truth_key(observation.truth, observation.measurement.sample_rate, {}),
                      observation.measurement.noise_level, calibration.parameters.frequencies,
-                     calibration.parameters.contact, calibration.has_continuation,
-                     calibration.continuation.highest_frequency, calibration.continuation.law_width,
-                     unknowns);
+                     calibration.parameters.contact, calibration.by_schedule(),
+                     question.highest_frequency, question.law_width, unknowns);
 }
 
 }  // namespace

@@ -139,7 +139,7 @@ Ending ending_of(const Optimizer& optimizer, std::size_t dimension, Budget budge
 bool is_cut_everywhere(const CalibrateOptions& options) {
   constexpr std::int64_t kMore = 20;
   constexpr std::int64_t kMostEvaluations = 20000;  // a glance, not a study
-  if (options.calibration.has_continuation) return false;
+  if (options.calibration.by_schedule()) return false;
   Budget budget = options.calibration.budget;
   if (budget.evaluations > kMostEvaluations) return false;
   try {

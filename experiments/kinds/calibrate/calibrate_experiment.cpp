@@ -6,7 +6,6 @@
 #include "experiments/kinds/calibrate/calibrate_study.hpp"
 #include "experiments/kinds/invert/invert_study.hpp"
 #include "experiments/kinds/lint.hpp"
-#include "libcalib/likelihood/noise_level.hpp"
 
 namespace modcal {
 namespace {
@@ -33,19 +32,10 @@ void lint_noise(const CalibrateOptions& options, std::vector<Finding>& findings)
   const double rate = observation.measurement.sample_rate;
   const auto samples =
       static_cast<std::size_t>(std::round(observation.truth.scene.duration * rate));
-  lint_making(findings,
-              calibration.has_continuation ? "calibration.continuation" : "calibration.objective",
-              [&] {
-                const ModalBasis basis = make_modal_basis(observation.string_model());
-                if (!calibration.has_continuation) {
-                  calibration.objective.make()->require_record(basis, rate, samples);
-                  return;
-                }
-                const ContinuationOptions& continuation = calibration.continuation;
-                likelihood_band({basis, 0.0}, continuation.highest_frequency, rate);
-                require_noise_known({continuation.left_noise, continuation.right_noise}, basis,
-                                    rate, samples);
-              });
+  lint_making(findings, "calibration.objective", [&] {
+    calibration.objective.make()->require_record(make_modal_basis(observation.string_model()), rate,
+                                                 samples);
+  });
 }
 
 // Whether the optimizer can minimize the objective, where both can be made at all.
@@ -62,40 +52,27 @@ void lint_pairing(const CalibrationOptions& calibration, std::vector<Finding>& f
   });
 }
 
-// What stands in the file and a continuation, which ends by itself, does not read.
-void lint_unread(const CalibrationOptions& calibration, std::vector<Finding>& findings) {
-  const CalibrationOptions plain;
-  const auto add = [&findings](std::string key, std::string_view reason) {
-    add_finding(findings, "calibration." + key,
-                "a continuation does not read {}: {}; leave it out, or leave "
-                "continuation out",
-                key, reason);
-  };
-  if (calibration.objective.selected() != plain.objective.selected()) {
-    add("objective", "it minimizes the joint likelihood");
-  }
-  if (calibration.optimizer.selected() != plain.optimizer.selected()) {
-    add("optimizer", "it takes Newton steps of its own");
-  }
-  const Budget& budget = calibration.budget;
-  if (budget.evaluations != plain.budget.evaluations || !std::isnan(budget.seconds) ||
-      !std::isnan(budget.target)) {
-    add("budget", "it takes some 50 to 400 evaluations and ends by itself");
-  }
-}
-
 }  // namespace
 
 std::vector<Finding> CalibrateExperiment::lint() const {
   std::vector<Finding> findings = lint_inversion(options_.inversion);
   lint_sensors(options_, findings);
+  const auto refuse = [&findings](bool stated, const char* key) {
+    if (!stated) return;
+    add_finding(findings, key,
+                "a calibration identifies the force by inversion.estimator and does not read {0}: "
+                "leave it out, or state {0} in an experiment of kind: invert",
+                key);
+  };
+  refuse(options_.inversion.wave_based, "wave_based");
+  refuse(options_.inversion.has_model_based, "model_based");
   append(findings,
          lint_figures(options_.inversion.figures, {"waveforms", "spectra", "parameter_curves",
                                                    "objectives", "frequency_errors"}));
   const CalibrationOptions& calibration = options_.calibration;
   lint_making(findings, "calibration.objective", [&] { calibration.objective.make(); });
   lint_making(findings, "calibration.optimizer", [&] { calibration.optimizer.make(); });
-  if (!calibration.has_continuation) lint_pairing(calibration, findings);
+  lint_pairing(calibration, findings);
   lint_making(findings, "calibration.budget", [&] { calibration.budget.require_valid(); });
   lint_making(findings, "further_strokes", [&] {
     options_.further.require_fit_to(options_.inversion.observation, calibration);
@@ -103,22 +80,13 @@ std::vector<Finding> CalibrateExperiment::lint() const {
   append(findings, lint_plucks(options_.plucks, options_.inversion.observation, calibration));
   lint_noise(options_, findings);
   const auto modes = static_cast<std::size_t>(options_.inversion.observation.string_model().modes);
-  if (calibration.has_continuation) {
-    const std::size_t strokes =
-        1 + options_.further.contacts.size() + options_.further.files.size();
-    const UnknownsOptions& unknowns = calibration.continuation.unknowns;
-    lint_unread(calibration, findings);
-    lint_making(findings, "calibration.parameters",
-                [&] { require_continuation_parameters(calibration.parameters, strokes); });
-    append(findings, lint_priors("calibration.continuation.unknowns", unknowns,
-                                 options_.inversion.observation.string_model(),
-                                 strokes + options_.plucks.size()));
-    lint_making(findings, "calibration.continuation.unknowns",
-                [&] { require_contacts(unknowns, strokes); });
-  }
+  const std::size_t strokes = 1 + options_.further.contacts.size() + options_.further.files.size();
+  append(findings, lint_priors("calibration.parameters", calibration.parameters.unknowns,
+                               options_.inversion.observation.string_model(),
+                               strokes + options_.plucks.size()));
   lint_making(findings, "calibration.parameters", [&] {
-    const std::vector<std::string> names = calibration.parameters.names(modes);
-    if (!calibration.has_continuation) calibration.objective.make()->require_moved_by(names);
+    calibration.require_read(strokes, options_.plucks.size());
+    calibration.objective.make()->require_moved_by(calibration.parameters.names(modes));
   });
   return findings;
 }
@@ -130,22 +98,16 @@ std::vector<std::string> CalibrateExperiment::plan() const {
   lines.push_back(planned ? plan_line(*planned) : "record: " + observation.record.file);
   const auto modes = static_cast<std::size_t>(observation.string_model().modes);
   const CalibrationOptions& calibration = options_.calibration;
-  if (calibration.has_continuation) {
-    lines.push_back(
-        "calibration: continuation of the joint likelihood, law first; objective and optimizer "
-        "are not used");
-    const std::size_t further = options_.further.contacts.size() + options_.further.files.size();
-    if (further > 0) lines.push_back(fmt::format("strokes fitted together: {}", further + 1));
-    if (!options_.plucks.empty()) {
-      lines.push_back(fmt::format("plucks fitted with them: {}", options_.plucks.size()));
-    }
-    return lines;
-  }
   lines.push_back(
       fmt::format("calibration: {} parameters asked for, objective {}, optimizer {}, at "
                   "most {} evaluations",
                   calibration.parameters.names(modes).size(), calibration.objective.selected(),
                   calibration.optimizer.selected(), calibration.budget.evaluations));
+  const std::size_t further = options_.further.contacts.size() + options_.further.files.size();
+  if (further > 0) lines.push_back(fmt::format("strokes fitted together: {}", further + 1));
+  if (!options_.plucks.empty()) {
+    lines.push_back(fmt::format("plucks fitted with them: {}", options_.plucks.size()));
+  }
   return lines;
 }
 

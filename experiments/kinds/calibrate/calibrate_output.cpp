@@ -119,8 +119,7 @@ void visit_pairs(ResultVisitor& visitor, const ContinuationResult& found) {
                });
 }
 
-void visit_continuation(ResultVisitor& visitor, const ContinuationResult& found,
-                        const std::vector<double>& contact_deviations) {
+void visit_estimate(ResultVisitor& visitor, const ContinuationResult& found) {
   const auto group = [&visitor](std::string_view key, auto visit, const auto& value) {
     visitor.group({.key = key}, [&](ResultVisitor& members) { visit(members, value); });
   };
@@ -144,7 +143,7 @@ void visit_continuation(ResultVisitor& visitor, const ContinuationResult& found,
   group("covariance", visit_covariance, found.covariance);
   group("law_covariance", visit_covariance, found.law.covariance);
   visitor.rows({.key = "stages"}, found.stages, visit_stage);
-  visitor({.key = "x_c_sd_of_strokes_m"}, contact_deviations);
+  visitor({.key = "x_c_sd_of_strokes_m"}, found.contact_deviations);
 }
 
 }  // namespace
@@ -168,7 +167,7 @@ void CalibrationOutcome::visit(ResultVisitor& visitor) const {
   if (found) {
     visitor.rows(
         {.table = "stages",
-         .name = "Stages of the continuation",
+         .name = "Stages of the search",
          .meaning = "Every stage has a record of its own: damped by sigma, whole, or whole with "
                     "weighted bins. Objectives of different stages do not compare.",
          .shown = kInTables},
@@ -189,7 +188,7 @@ void CalibrationOutcome::visit(ResultVisitor& visitor) const {
   visitor({.key = "stiff_string_law", .optional = true}, law);
   if (!found) return;
   visitor.group({.key = "continuation", .shown = kInJson}, [&](ResultVisitor& members) {
-    visit_continuation(members, *found, result.contact_deviations);
+    visit_estimate(members, *found);
   });
 }
 

@@ -106,10 +106,10 @@ std::vector<Finding> lint_plucks(const std::vector<PluckRecordOptions>& plucks,
                                  const ObservationOptions& first,
                                  const CalibrationOptions& calibration) {
   std::vector<Finding> findings;
-  if (!plucks.empty() && !calibration.has_continuation) {
+  if (!plucks.empty() && !calibration.by_schedule()) {
     add_finding(findings, "plucks",
                 "{} plucks are fitted with the stroke by the joint likelihood "
-                "alone: state calibration.continuation",
+                "alone: state objective: joint_likelihood, optimizer: staged",
                 plucks.size());
   }
   for (std::size_t i = 0; i < plucks.size(); ++i) {
@@ -139,18 +139,19 @@ void require_plucks(const std::vector<PluckRecordOptions>& plucks, const Observa
   if (!findings.empty()) throw InvalidInput(findings.front().text);
 }
 
-std::vector<PluckRecord> observe_plucks(const std::vector<PluckRecordOptions>& plucks,
-                                        const ObservationOptions& first, const StreamKey& key,
-                                        const StudyContext& context) {
-  std::vector<PluckRecord> records;
+std::vector<CalibrationRecord> observe_plucks(const std::vector<PluckRecordOptions>& plucks,
+                                              const ObservationOptions& first, const StreamKey& key,
+                                              const StudyContext& context) {
+  std::vector<CalibrationRecord> records;
   for (const PluckRecordOptions& pluck : plucks) {
     context.throw_if_interrupted();
     const StreamKey own = key.with("pluck").with(static_cast<std::uint64_t>(records.size() + 1));
     const Observation found =
         observe(pluck.observation(first), {.left_reaction = true, .right_reaction = true},
                 context.work.truths, own, context.folder);
-    records.push_back(
-        {.data = calibration_data(found), .noise = {pluck.left_noise, pluck.right_noise}});
+    records.push_back({.data = calibration_data(found),
+                       .noise = {pluck.left_noise, pluck.right_noise},
+                       .pluck = true});
   }
   return records;
 }

@@ -7,7 +7,7 @@
 
 #include "experiments/experiment.hpp"
 #include "experiments/study/observation.hpp"
-#include "libcalib/optimizers/staged/records_fit.hpp"
+#include "libcalib/problem/calibration_data.hpp"
 
 namespace modcal {
 
@@ -42,8 +42,8 @@ void require_plucks(const std::vector<PluckRecordOptions>& plucks, const Observa
                     const CalibrationOptions& calibration);
 
 /// The reactions of every pluck, simulated (through the cache) or read; noise of their own.
-std::vector<PluckRecord> observe_plucks(const std::vector<PluckRecordOptions>& plucks,
-                                        const ObservationOptions& first, const StreamKey& key,
-                                        const StudyContext& context);
+std::vector<CalibrationRecord> observe_plucks(const std::vector<PluckRecordOptions>& plucks,
+                                              const ObservationOptions& first, const StreamKey& key,
+                                              const StudyContext& context);
 
 }  // namespace modcal

@@ -54,9 +54,7 @@ Observation with_sensors_alike(Observation observation, const SensorPair& sensor
 }
 
 void require_sensors_once(const CalibrationOptions& calibration, const Estimator& estimator) {
-  const bool corrected = calibration.has_continuation
-                             ? calibration.continuation.unknowns.sensors().may_differ()
-                             : !calibration.parameters.sensors.empty();
+  const bool corrected = calibration.parameters.unknowns.sensors().may_differ();
   const SensorOptions stated = estimator.sensors();
   MODCAL_REQUIRE(
       !corrected || stated.alike(),

@@ -22,9 +22,9 @@ void FurtherStrokes::visit(OptionVisitor& visitor) {
 void FurtherStrokes::require_fit_to(const ObservationOptions& first,
                                     const CalibrationOptions& calibration) const {
   if (contacts.empty() && files.empty()) return;
-  MODCAL_REQUIRE(calibration.has_continuation,
+  MODCAL_REQUIRE(calibration.by_schedule(),
                  "{} further strokes are fitted together by the joint likelihood alone: state "
-                 "calibration.continuation",
+                 "objective: joint_likelihood, optimizer: staged",
                  contacts.size() + files.size());
   MODCAL_REQUIRE(contacts.empty() || first.has_scene,
                  "{} further contacts are simulated, but there is no scene: name further records",
@@ -150,15 +150,16 @@ CalibrationOutcome calibrate_observation(const CalibrateOptions& options,
 
 CalibrationOutcome calibrate_strokes(const CalibrateOptions& options,
                                      std::span<const Observation> strokes, SecondsClock clock,
-                                     std::span<const PluckRecord> plucks) {
+                                     std::span<const CalibrationRecord> plucks) {
   const Observation& observation = strokes.front();
   CalibrationOutcome outcome;
   outcome.initial =
       with_errors(observation.basis, observation.contact, options.inversion.model_error,
                   options.inversion.key().with("model error"));
-  std::vector<CalibrationData> data;
-  for (const Observation& stroke : strokes) data.push_back(calibration_data(stroke));
-  outcome.result = calibrate({outcome.initial.basis, outcome.initial.contact}, data, plucks,
+  std::vector<CalibrationRecord> records;
+  for (const Observation& stroke : strokes) records.push_back({.data = calibration_data(stroke)});
+  records.insert(records.end(), plucks.begin(), plucks.end());
+  outcome.result = calibrate({outcome.initial.basis, outcome.initial.contact}, std::move(records),
                              options.calibration, std::move(clock));
   outcome.refined = {outcome.result.model.basis, outcome.result.model.contact};
   if (observation.truth) outcome.true_frequencies = frequencies_of(observation.basis);
@@ -177,7 +178,7 @@ StudyResult calibrate_study(const CalibrateOptions& options, const StudyContext&
   std::vector<Observation> strokes = further_observations(options, context);
   strokes.insert(strokes.begin(), measured);
   require_plucks(options.plucks, inversion.observation, options.calibration);
-  const std::vector<PluckRecord> plucks =
+  const std::vector<CalibrationRecord> plucks =
       observe_plucks(options.plucks, inversion.observation, inversion.key(), context);
   const CalibrationOutcome outcome =
       calibrate_strokes(options, strokes, polling_clock(context), plucks);

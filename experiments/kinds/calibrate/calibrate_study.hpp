@@ -58,7 +58,7 @@ CalibrationOutcome calibrate_observation(const CalibrateOptions& options,
 CalibrationOutcome calibrate_strokes(const CalibrateOptions& options,
                                      std::span<const Observation> strokes,
                                      SecondsClock clock = steady_seconds(),
-                                     std::span<const PluckRecord> plucks = {});
+                                     std::span<const CalibrationRecord> plucks = {});
 
 /// f_n of all modes [Hz].
 std::vector<double> frequencies_of(const ModalBasis& basis);

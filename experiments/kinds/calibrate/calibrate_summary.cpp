@@ -113,7 +113,8 @@ std::string verdict_lines(const ContinuationResult& found) {
 
 std::string stroke_lines(const CalibrationOutcome& outcome) {
   std::string text;
-  const std::vector<double>& deviations = outcome.result.contact_deviations;
+  if (!outcome.result.continuation) return text;
+  const std::vector<double>& deviations = outcome.result.continuation->contact_deviations;
   std::size_t stroke = 0;
   for (const CalibratedParameter& parameter : outcome.result.parameters) {
     if (deviations.size() < 2 || !parameter.name.starts_with("x_c")) continue;

@@ -23,10 +23,7 @@ struct LimitQuestion {
   double law_width = kLawWidth;  ///< τ of the prior of f_n about the law
   UnknownsOptions unknowns;
 
-  /// Takes the band, τ and the unknowns of a calibration by continuation.
-  void calibrate_by(const ContinuationOptions& continuation);
-  /// Those of any calibration: of a search by objective and optimizer, damping and sensors as far
-  /// as they are searched.
+  /// Takes the band, τ and the unknowns of a calibration.
   void calibrate_by(const CalibrationOptions& calibration);
 };
 

@@ -108,8 +108,9 @@ void lint_start(const CalibrationLimitOptions& options, std::vector<Finding>& fi
       with_errors(basis, scene.bow.position, errors, StreamKey(1));
     }
   });
-  lint_making(findings, "continuation", [&] {
-    likelihood_band({basis, scene.bow.position}, options.continuation.highest_frequency,
+  lint_making(findings, "calibration.objective", [&] {
+    likelihood_band({basis, scene.bow.position}, 
+                    options.calibration.objective.make()->highest_frequency(),
                     options.observation.measurement.sample_rate);
   });
 }
@@ -121,7 +122,7 @@ void CalibrationLimitOptions::visit(OptionVisitor& visitor) {
   visitor.section({.key = "model_error",
                    .meaning = "bounds of the start's errors: uniform, drawn for each seed"},
                   model_error);
-  visitor.section({.key = "continuation", .meaning = "how the calibration is done"}, continuation);
+  visitor.section({.key = "calibration", .meaning = "how the calibration is done"}, calibration);
   visitor.numbers({.key = "noise_levels",
                    .meaning = "noise standard deviations over those of the signals",
                    .unit = "1",
@@ -151,7 +152,7 @@ CalibrationLimitExperiment::CalibrationLimitExperiment(Options options)
 
 LimitQuestion limit_question_of(const CalibrationLimitOptions& options, double noise_level) {
   LimitQuestion question{.observation = options.observation, .noise_level = noise_level};
-  question.calibrate_by(options.continuation);
+  question.calibrate_by(options.calibration);
   return question;
 }
 
@@ -167,7 +168,8 @@ std::vector<Finding> CalibrationLimitExperiment::lint() const {
                                 observation.measurement));
     lint_start(options_, findings);
   }
-  append(findings, lint_priors("continuation.unknowns", options_.continuation.unknowns,
+  lint_making(findings, "calibration", [&] { options_.calibration.require_schedule(); });
+  append(findings, lint_priors("calibration.parameters", options_.calibration.parameters.unknowns,
                                options_.observation.string_model()));
   if (options_.noise_levels.empty()) {
     add_finding(findings, "noise_levels", "no noise level is stated");
@@ -218,12 +220,11 @@ LimitOutcome CalibrationLimitExperiment::calibrate_draw(std::size_t task,
   const CalibrationData data = CalibrationData::of_records(
       truth.records.reactions[0], truth.records.reactions[1], truth.records.sample_rate);
   const ModelPoint start = start_of(truth.point, options_.model_error, key);
-  ContinuationOptions continuation = options_.continuation;
-  if (options_.known_noise && level > 0.0) {
-    continuation.left_noise = truth.records.deviation[0];
-    continuation.right_noise = truth.records.deviation[1];
-  }
-  const ContinuationResult found = calibrate_by_continuation(start, data, continuation);
+  CalibrationRecord record{.data = data};
+  if (options_.known_noise && level > 0.0) record.noise = truth.records.deviation;
+  const CalibrationResult calibrated =
+      calibrate(start, std::vector{std::move(record)}, options_.calibration);
+  const ContinuationResult& found = *calibrated.continuation;
   LimitOutcome outcome = outcome_of(found);
   if (options_.paper_method) {
     CalibrationOptions paper;

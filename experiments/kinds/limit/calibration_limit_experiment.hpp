@@ -10,8 +10,8 @@
 #include "experiments/kinds/calibrate/limit_source.hpp"
 #include "experiments/study/identification.hpp"
 #include "experiments/study/observation.hpp"
+#include "libcalib/calibration.hpp"
 #include "libcalib/likelihood/whitened_record.hpp"
-#include "libcalib/optimizers/staged/continuation.hpp"
 #include "libsim/base/result_visitor.hpp"
 
 namespace modcal {
@@ -20,7 +20,7 @@ struct CalibrationLimitOptions {
   ObservationOptions observation;
   /// Bounds of the start's errors: uniform and independent, x_c included.
   ModelErrorOptions model_error;
-  ContinuationOptions continuation;
+  CalibrationOptions calibration = calibration_to_the_bound();
   std::vector<double> noise_levels = {0.001, 0.003, 0.01, 0.02, 0.05, 0.08, 0.1};
   std::int64_t seeds = 50;
   std::int64_t seed = 1;

@@ -164,24 +164,11 @@ LimitTruth limit_truth(const ObservationOptions& observation, double noise_level
   return result;
 }
 
-void LimitQuestion::calibrate_by(const ContinuationOptions& continuation) {
-  highest_frequency = continuation.highest_frequency;
-  law_width = std::isnan(continuation.law_width) ? kLawWidth : continuation.law_width;
-  unknowns = continuation.unknowns;
-}
-
 void LimitQuestion::calibrate_by(const CalibrationOptions& calibration) {
-  calibrate_by(calibration.continuation);
-  if (calibration.has_continuation) return;
   const ParameterOptions& parameters = calibration.parameters;
-  const auto searched = [&](const char* sensor) {
-    return std::find(parameters.sensors.begin(), parameters.sensors.end(), sensor) !=
-           parameters.sensors.end();
-  };
-  unknowns = {.damping = parameters.damping};
-  unknowns.gain.free = searched("gain");
-  unknowns.delay.free = searched("delay");
-  unknowns.corner.free = searched("corner");
+  highest_frequency = calibration.objective.make()->highest_frequency();
+  law_width = std::isnan(parameters.law_width) ? kLawWidth : parameters.law_width;
+  unknowns = parameters.unknowns;
 }
 
 LimitCase limit_case(const LimitQuestion& question, TruthCache& truths, OutputRequest outputs) {

@@ -49,8 +49,8 @@ struct PluckThenBowOptions {
   PluckTestOptions pluck;
   RefinementOptions refinement;
   ContactSearchOptions contact;
-  bool has_bound = false;  ///< the continuation of the joint likelihood from the same pluck test
-  ContinuationOptions bound;
+  bool has_bound = false;  ///< the calibration to the bound from the same pluck test
+  CalibrationOptions bound = calibration_to_the_bound();
   InversionOptions inversion;
   ScoreOptions score;
   std::vector<FigureOptions> figures;
@@ -111,7 +111,7 @@ struct PluckThenBowOutcome {
 /// Throws InvalidInput where the pluck test gives too few modes to go on.
 PluckThenBowOutcome pluck_then_bow(const PluckThenBowOptions& options, const StudyContext& context);
 
-/// Starts of the calibration to the bound, the continuation and its posterior under the pluck test.
+/// Starts of the calibration to the bound, the calibration and its posterior under the pluck test.
 void add_bound_stages(const PluckThenBowOptions& options, const StudyContext& context,
                       PluckThenBowOutcome& outcome);
 /// A basis of `modes` modes that follow the law, damped by the polynomial.

@@ -36,7 +36,7 @@ ModelStage start_stage(const PluckThenBowOptions& options, const PluckThenBowOut
       .law = *outcome.likelihood.law};
 }
 
-ModelStage continuation_stage(const ContinuationResult& found, std::int64_t evaluations) {
+ModelStage bound_stage(const ContinuationResult& found, std::int64_t evaluations) {
   ModelStage stage{.key = "bound",
                    .title = "joint likelihood at its bound",
                    .model = {found.model.basis, found.model.contact},
@@ -119,10 +119,11 @@ void add_bound_stages(const PluckThenBowOptions& options, const StudyContext& co
   const CalibrationData data = calibration_data(outcome.stroke);
   outcome.bound_stages.push_back(start_stage(options, outcome));
   const AssumedModel start = outcome.bound_stages.back().model;
-  outcome.bound = calibrate_by_continuation({start.basis, start.contact}, data, options.bound);
-  context.throw_if_interrupted();
+  outcome.bound =
+      *calibrate({start.basis, start.contact}, data, options.bound, polling_clock(context))
+           .continuation;
   outcome.bound_stages.push_back(
-      continuation_stage(outcome.bound, static_cast<std::int64_t>(outcome.bound.evaluations)));
+      bound_stage(outcome.bound, static_cast<std::int64_t>(outcome.bound.evaluations)));
   const std::vector<Prior> priors = plucked_modes(outcome.likelihood, start.basis.size());
   ModelStage posterior = outcome.bound.law.accepted
                              ? law_posterior(outcome.bound_stages.back(), priors, outcome.bound,

@@ -108,7 +108,9 @@ std::vector<Finding> PluckThenBowOptions::lint() const {
     require_decay_length(sample_count(pluck.duration, rate), rate, pluck.identification);
   });
   if (has_bound) {
-    append(findings, lint_priors("bound.unknowns", bound.unknowns, truth.scene.string));
+    lint_making(findings, "bound", [&] { bound.require_schedule(); });
+    append(findings,
+           lint_priors("bound.parameters", bound.parameters.unknowns, truth.scene.string));
   }
   if (!(contact.start - contact.range > 0.0 &&
         contact.start + contact.range < truth.scene.string.length)) {
@@ -130,7 +132,7 @@ std::vector<std::string> PluckThenBowOptions::plan() const {
       refinement.law_modes, truth.scene.string.modes, contact.objective.selected()));
   if (has_bound) {
     lines.emplace_back(
-        "from the same pluck test: continuation of the joint likelihood, then its posterior under "
+        "from the same pluck test: joint likelihood in stages, then its posterior under "
         "the plucked frequencies");
   }
   return lines;

@@ -5,8 +5,10 @@
 #include <cmath>
 #include <utility>
 
-#include "libcalib/optimizers/staged/continuation_attempt.hpp"
 #include "libcalib/likelihood/noise_level.hpp"
+#include "libcalib/optimizers/staged/continuation_attempt.hpp"
+#include "libcalib/optimizers/staged/joint_fit.hpp"
+#include "libsim/base/error.hpp"
 
 namespace modcal {
 namespace {
@@ -21,7 +23,7 @@ ContinuationResult with_misfit_for_noise(const AttemptInput& input,
   for (double& deviation : records.deviation) deviation *= std::sqrt(misfit);
   ContinuationResult found =
       attempt_continuation({input.initial, records, input.options, input.priors, input.highest,
-                            input.noise_error, true, input.poll},
+                            input.noise_error, true, input.within},
                            0.0);
   found.chi2 *= misfit;
   found.law.chi2 *= misfit;
@@ -36,26 +38,58 @@ ContinuationResult with_misfit_for_noise(const AttemptInput& input,
   return found;
 }
 
+// What is the first record's, and the stages of all fits in order.
+void complete_by_single(ContinuationResult& fit) {
+  const ContinuationResult& one = fit.single.front();
+  fit.frequencies_free = one.frequencies_free;
+  fit.noise = one.noise;
+  fit.restarts = one.restarts;
+  fit.moved_modes = one.moved_modes;
+  fit.contact_deviation = fit.contact_deviations.front();
+  const RecordValues& first = fit.values.front();
+  fit.damping = first.damping;
+  fit.damping_deviation = first.damping_deviation;
+  fit.sensor_deviation = first.sensor_deviation;
+  std::vector<FitStage> stages;
+  std::size_t evaluations = 0;
+  for (std::size_t r = 0; r < fit.single.size(); ++r) {
+    append_stages(fit.single[r].stages, fmt::format("stroke {}: ", r + 1), evaluations, stages);
+    evaluations += fit.single[r].evaluations;
+  }
+  append_stages(fit.stages, "all records: ", evaluations, stages);
+  fit.stages = std::move(stages);
+  fit.evaluations += evaluations;
+}
+
 }  // namespace
 
-ContinuationResult calibrate_by_continuation(const ModelPoint& initial, const CalibrationData& data,
-                                             const ContinuationOptions& options,
-                                             const FitPoll& poll) {
-  ModelPoint stated = initial;
-  stated.sensors = options.unknowns.sensors();
-  return calibrate_by_continuation(initial, data, options, StatedPriors(options.unknowns, stated),
-                                   poll);
+void append_stages(const std::vector<FitStage>& further, const std::string& prefix,
+                   std::size_t evaluations, std::vector<FitStage>& stages) {
+  for (FitStage stage : further) {
+    stage.name = prefix + stage.name;
+    stage.evaluations += evaluations;
+    stages.push_back(std::move(stage));
+  }
 }
 
 ContinuationResult calibrate_by_continuation(const ModelPoint& initial, const CalibrationData& data,
                                              const ContinuationOptions& options,
-                                             const StatedPriors& priors, const FitPoll& poll) {
+                                             Evaluator* within) {
+  ModelPoint stated = initial;
+  stated.sensors = options.unknowns.sensors();
+  return calibrate_by_continuation(initial, data, options, StatedPriors(options.unknowns, stated),
+                                   within);
+}
+
+ContinuationResult calibrate_by_continuation(const ModelPoint& initial, const CalibrationData& data,
+                                             const ContinuationOptions& options,
+                                             const StatedPriors& priors, Evaluator* within) {
   const std::array<double, 2> noise{options.left_noise, options.right_noise};
   const NoisyRecords records = NoisyRecords::of_data(data, initial.basis, noise);
   const double noise_error = noise_power_error(noise, initial.basis, data);
   const double highest = likelihood_band(initial, options.highest_frequency, data.sample_rate);
   constexpr double kShifts[] = {0.0, 4e-3, -4e-3, 8e-3, -8e-3};
-  const AttemptInput input{initial, records, options, priors, highest, noise_error, false, poll};
+  const AttemptInput input{initial, records, options, priors, highest, noise_error, false, within};
   ContinuationResult best;
   std::size_t evaluations = 0;
   std::vector<FitStage> stages;
@@ -69,8 +103,30 @@ ContinuationResult calibrate_by_continuation(const ModelPoint& initial, const Ca
   }
   best.evaluations = evaluations;
   best.stages = std::move(stages);
-  if (best.fits || !options.frequencies) return best;
-  return with_misfit_for_noise(input, std::move(best));
+  if (!best.fits && options.frequencies) best = with_misfit_for_noise(input, std::move(best));
+  best.contacts = {best.model.contact};
+  best.contact_deviations = {best.contact_deviation};
+  best.values = {{best.model.sensors, best.sensor_deviation, best.damping, best.damping_deviation}};
+  return best;
+}
+
+ContinuationResult calibrate_records(const ModelPoint& initial,
+                                     std::span<const CalibrationData> strokes,
+                                     const ContinuationOptions& options,
+                                     std::span<const PluckRecord> plucks, Evaluator* within) {
+  MODCAL_REQUIRE(!strokes.empty(), "a fit of several records needs at least {} stroke", 1);
+  options.unknowns.require_contacts(strokes.size());
+  ModelPoint stated = initial;
+  stated.sensors = options.unknowns.sensors();
+  const StatedPriors priors(options.unknowns, stated, strokes.size() + plucks.size());
+  ContinuationResult fit;
+  for (std::size_t r = 0; r < strokes.size(); ++r) {
+    fit.single.push_back(
+        calibrate_by_continuation(initial, strokes[r], options, priors.of_record(r), within));
+  }
+  fit_jointly(initial, options, priors, strokes, plucks, within, fit);
+  complete_by_single(fit);
+  return fit;
 }
 
 }  // namespace modcal

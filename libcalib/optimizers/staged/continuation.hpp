@@ -4,19 +4,20 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <limits>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "libcalib/problem/calibration_data.hpp"
-#include "libcalib/optimizers/staged/fit_poll.hpp"
-#include "libcalib/optimizers/staged/fit_stage.hpp"
 #include "libcalib/identifiability/law_followers.hpp"
-#include "libcalib/parameters/named_covariance.hpp"
-#include "libcalib/parameters/prior_misfit.hpp"
 #include "libcalib/likelihood/string_unknowns.hpp"
+#include "libcalib/parameters/named_covariance.hpp"
 #include "libcalib/parameters/parameters.hpp"
+#include "libcalib/parameters/prior_misfit.hpp"
+#include "libcalib/problem/calibration_data.hpp"
+#include "libcalib/problem/evaluator.hpp"
 #include "libsim/base/options.hpp"
 
 namespace modcal {
@@ -34,7 +35,9 @@ struct ContinuationOptions {
   double right_noise = std::numeric_limits<double>::quiet_NaN();
   UnknownsOptions unknowns;   ///< damping and sensors
   std::int64_t restarts = 4;  ///< other starts tried while χ² says that the fit is wrong
-  void visit(OptionVisitor& visitor);
+  ParameterRanges ranges;     ///< how far all that is free may go
+  /// Called with the model and the reduced χ² that a stage ended with; empty: nobody asks.
+  std::function<void(const ModelPoint&, double chi2)> reached = {};
 };
 
 /// Where the frequency of a mode comes from.
@@ -66,11 +69,26 @@ struct LawEstimate {
   NamedCovariance covariance;  ///< of f0, B, x_c, damping and sensors, as far as they are free
 };
 
+/// Sensors and damping as one record has them, its own or shared.
+struct RecordValues {
+  SensorPair sensors;
+  std::array<double, 3> sensor_deviation{};  ///< of gain, delay [s], corner [Hz]; 0: not free
+  /// Factor of all initial ζ_n that are free; where each is, their geometric mean.
+  double damping = 1.0;
+  double damping_deviation = 0.0;
+};
+
 struct ContinuationResult {
   ModelPoint model;
+  std::vector<double> contacts;            ///< x_c of every stroke [m]
+  std::vector<double> contact_deviations;  ///< [m]
+  std::vector<RecordValues> values;        ///< of every stroke, then of every pluck
+  std::vector<ContinuationResult> single;  ///< of several records every stroke by itself
   LawEstimate law;
   bool frequencies_free = false;
   std::vector<ModeVerdict> modes;
+  /// Relative standard deviations of f_n by several records, where every frequency is free.
+  std::vector<double> frequency_deviations;
   double contact_deviation = 0.0;  ///< [m]
   /// Factor of all initial ζ_n that are free; where each is, their geometric mean.
   double damping = 1.0;
@@ -109,13 +127,38 @@ double likelihood_band(const ModelPoint& point, double highest_frequency, double
 /// tested against its neighboring minima. Last, free frequencies at σ = 0, each tested again, under
 /// the law prior, modes the data do not see tied to the law and modes that leave it set free; where
 /// some do or are doubtful, the law is fitted once more without them. The records must begin at
-/// rest. What `poll` throws comes out within one evaluation.
+/// rest. Budget, clock and stopping are those of `within`; null: there are none.
 ContinuationResult calibrate_by_continuation(const ModelPoint& initial, const CalibrationData& data,
                                              const ContinuationOptions& options,
-                                             const FitPoll& poll = {});
+                                             Evaluator* within = nullptr);
 /// The same with these priors in the place of those among the options.
 ContinuationResult calibrate_by_continuation(const ModelPoint& initial, const CalibrationData& data,
                                              const ContinuationOptions& options,
-                                             const StatedPriors& priors, const FitPoll& poll = {});
+                                             const StatedPriors& priors,
+                                             Evaluator* within = nullptr);
+
+/// Both reactions of the string left to itself after a pluck.
+struct PluckRecord {
+  CalibrationData data;
+  /// Noise standard deviation of each reaction [N]; NaN: estimated from the record.
+  std::array<double, 2> noise{std::numeric_limits<double>::quiet_NaN(),
+                              std::numeric_limits<double>::quiet_NaN()};
+};
+
+/// Every stroke by itself (calibrate_by_continuation), then all at σ = 0 in one likelihood, started
+/// from the one χ² contradicts least: frequencies or law shared, the end state of each record its
+/// own, and what `per_record` names of x_c, damping and sensors; the rest of these is shared. Modes
+/// that no stroke identifies start where the plucks ring. Records are independent, so their
+/// informations add. Stated noise levels of `options` hold for all strokes. Throws InvalidInput for
+/// no stroke.
+ContinuationResult calibrate_records(const ModelPoint& initial,
+                                     std::span<const CalibrationData> strokes,
+                                     const ContinuationOptions& options,
+                                     std::span<const PluckRecord> plucks = {},
+                                     Evaluator* within = nullptr);
+
+/// Puts `further` behind `stages`, each name with `prefix` before it and `evaluations` more.
+void append_stages(const std::vector<FitStage>& further, const std::string& prefix,
+                   std::size_t evaluations, std::vector<FitStage>& stages);
 
 }  // namespace modcal

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
-#include "libcalib/optimizers/staged/free_stage.hpp"
 #include "libcalib/identifiability/mode_verdict.hpp"
-#include "libcalib/likelihood/parameter_forms.hpp"
 #include "libcalib/identifiability/stated_verdict.hpp"
+#include "libcalib/likelihood/parameter_forms.hpp"
+#include "libcalib/optimizers/staged/free_stage.hpp"
 #include "libcalib/parameters/stiff_string_fit.hpp"
 #include "libsim/base/error.hpp"
 
@@ -75,7 +75,7 @@ class Attempt {
     for (int i = -reach; i <= reach; ++i) {
       starts.push_back(unknowns.start());
       starts.back()[unknowns.contact()] = i * step;
-      const bool admitted = unknowns.admits(starts.back());
+      const bool admitted = stroke_.admits(unknowns, starts.back());
       costs.push_back(admitted ? stroke_.cost(likelihood, unknowns.model(starts.back())) : kNever);
     }
     costs.push_back(kNever);

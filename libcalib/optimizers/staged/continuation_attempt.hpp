@@ -1,9 +1,8 @@
 // One attempt of a continuation: everything between a start of f_0 and a verdict by χ².
 #pragma once
 
-#include "libcalib/optimizers/staged/continuation.hpp"
-#include "libcalib/optimizers/staged/fit_poll.hpp"
 #include "libcalib/likelihood/whitened_record.hpp"
+#include "libcalib/optimizers/staged/continuation.hpp"
 
 namespace modcal {
 
@@ -17,7 +16,7 @@ struct AttemptInput {
   double noise_error = 0.0;  ///< relative standard deviation of the noise power
   /// The noise is what a wrong model leaves: no mode is said to leave a law by it.
   bool misfit_for_noise = false;
-  FitPoll poll = {};
+  Evaluator* within = nullptr;
 };
 
 /// From ln f_0 of the start `shift` higher [1]; evaluations: those spent before, which count too.

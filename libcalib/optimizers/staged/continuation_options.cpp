@@ -3,25 +3,9 @@
 #include <numbers>
 
 #include "libcalib/optimizers/staged/continuation.hpp"
-#include "libcalib/likelihood/record_options.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
-
-void ContinuationOptions::visit(OptionVisitor& visitor) {
-  visitor.number({.key = "law_width",
-                  .meaning = "relative width of the prior of f_n about the law",
-                  .unit = "1",
-                  .range = Range::positive(),
-                  .word = "estimated"},
-                 law_width);
-  visit_record_options(visitor, highest_frequency, left_noise, right_noise);
-  visitor.section({.key = "unknowns", .meaning = "what is free of damping and sensors"}, unknowns);
-  visitor.integer({.key = "restarts",
-                   .meaning = "other starts tried while the fit is contradicted by the data",
-                   .range = Range::closed(0.0, 4.0)},
-                  restarts);
-}
 
 double likelihood_band(const ModelPoint& point, double highest_frequency, double sample_rate) {
   std::vector<double> omega = point.basis.omega;

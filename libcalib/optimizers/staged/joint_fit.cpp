@@ -4,14 +4,15 @@
 #include <cmath>
 #include <numbers>
 
-#include "libcalib/likelihood/all_records.hpp"
-#include "libcalib/likelihood/bin_weights.hpp"
 #include "libcalib/identifiability/joint_report.hpp"
 #include "libcalib/identifiability/mode_verdict.hpp"
-#include "libcalib/optimizers/staged/newton_fit.hpp"
-#include "libcalib/likelihood/noise_level.hpp"
-#include "libcalib/optimizers/staged/pluck_search.hpp"
 #include "libcalib/identifiability/stated_verdict.hpp"
+#include "libcalib/likelihood/all_records.hpp"
+#include "libcalib/likelihood/bin_weights.hpp"
+#include "libcalib/likelihood/noise_level.hpp"
+#include "libcalib/likelihood/unknown_bounds.hpp"
+#include "libcalib/optimizers/staged/newton_fit.hpp"
+#include "libcalib/optimizers/staged/pluck_search.hpp"
 
 namespace modcal {
 namespace {
@@ -19,7 +20,7 @@ namespace {
 using Index = Eigen::Index;
 
 // The record to start from has the smallest χ²; its contact is that of the first.
-StringUnknowns shared_unknowns(const RecordsFit& fit, const ContinuationOptions& options,
+StringUnknowns shared_unknowns(const ContinuationResult& fit, const ContinuationOptions& options,
                                const StatedPriors& priors) {
   const auto best = std::min_element(
       fit.single.begin(), fit.single.end(),
@@ -36,37 +37,26 @@ StringUnknowns shared_unknowns(const RecordsFit& fit, const ContinuationOptions&
 class JointFit {
  public:
   JointFit(const ModelPoint& initial, const ContinuationOptions& options,
-           const StatedPriors& priors, const FitPoll& poll, RecordsFit& fit)
+           const StatedPriors& priors, Evaluator* within, ContinuationResult& fit)
       : initial_(initial),
         options_(options),
         priors_(priors),
-        poll_(poll),
+        within_(within),
         fit_(fit),
         all_(shared_unknowns(fit, options, priors)) {}
 
   void add(const CalibrationData& stroke) {
-    poll();
-    const std::array<double, 2> noise{options_.left_noise, options_.right_noise};
-    const NoisyRecords noisy = NoisyRecords::of_data(stroke, initial_.basis, noise);
-    const double highest =
-        likelihood_band(initial_, options_.highest_frequency, stroke.sample_rate);
-    const ProjectedLikelihood whole(WhitenedRecord::of(noisy, 0.0, highest));
+    const ProjectedLikelihood whole(whitened(stroke, {options_.left_noise, options_.right_noise}));
     ProjectedLikelihood weighted = whole;
     const Eigen::VectorXd start = own_start(fit_.single[all_.records()].model);
     weighted.set_weights(weights(whole, start));
     all_.add(std::make_shared<StrokeLikelihood>(whole, std::move(weighted)), start,
              own_places(true), held_contact(all_.records()));
-    noise_errors_.push_back(noise_power_error(noise, initial_.basis, stroke));
   }
 
   void add(const PluckRecord& pluck) {
-    poll();
-    const NoisyRecords noisy = NoisyRecords::of_data(pluck.data, initial_.basis, pluck.noise);
-    const double highest =
-        likelihood_band(initial_, options_.highest_frequency, pluck.data.sample_rate);
-    plucks_.push_back(std::make_shared<PluckLikelihood>(WhitenedRecord::of(noisy, 0.0, highest)));
+    plucks_.push_back(std::make_shared<PluckLikelihood>(whitened(pluck.data, pluck.noise)));
     all_.add(plucks_.back(), unknowns().start(), own_places(false));
-    noise_errors_.push_back(noise_power_error(pluck.noise, initial_.basis, pluck.data));
   }
 
   void run() {
@@ -154,11 +144,15 @@ class JointFit {
     const HeldParameters& held = priors_.held();
     return held.contact(record) ? held.contacts[record] : std::nullopt;
   }
-  void poll() const {
-    if (poll_) poll_();
+  WhitenedRecord whitened(const CalibrationData& data, const std::array<double, 2>& noise) {
+    if (within_) within_->poll();
+    noise_errors_.push_back(noise_power_error(noise, initial_.basis, data));
+    return WhitenedRecord::of(
+        NoisyRecords::of_data(data, initial_.basis, noise), 0.0,
+        likelihood_band(initial_, options_.highest_frequency, data.sample_rate));
   }
   LikelihoodPoint point(bool twice_weighted) {
-    poll();
+    if (within_) within_->spend(1);
     ++fit_.evaluations;
     return all_.evaluate(theta_, twice_weighted);
   }
@@ -184,12 +178,16 @@ class JointFit {
   }
 
   void search(const char* stage, const NewtonOptions& newton) {
+    ModelPoint initial = initial_;
+    initial.sensors = options_.unknowns.sensors();
+    const UnknownBounds bounds = unknown_bounds(all_, initial, options_.ranges);
     const NewtonFit found = newton_fit(
         {.evaluate = [this](const Eigen::VectorXd& theta) { return all_.evaluate(theta, false); },
          .admits = [this](const Eigen::VectorXd& theta) { return all_.admits(theta); },
          .capped = unknowns().is_law() ? 0 : modes(),
-         .poll = poll_},
-        theta_, newton);
+         .lower = bounds.lower,
+         .upper = bounds.upper},
+        theta_, newton, within_);
     theta_ = found.theta;
     fit_.evaluations += found.evaluations;
     fit_.stages.push_back(
@@ -254,8 +252,8 @@ class JointFit {
   const ModelPoint& initial_;
   const ContinuationOptions& options_;
   const StatedPriors& priors_;
-  const FitPoll& poll_;
-  RecordsFit& fit_;
+  Evaluator* within_;
+  ContinuationResult& fit_;
   AllRecords all_;
   std::vector<std::shared_ptr<const PluckLikelihood>> plucks_;
   std::vector<double> noise_errors_;
@@ -264,10 +262,8 @@ class JointFit {
   LawFollowers followers_;
 };
 
-void run_fit(const ModelPoint& initial, const ContinuationOptions& options,
-             const StatedPriors& priors, std::span<const CalibrationData> strokes,
-             std::span<const PluckRecord> plucks, const FitPoll& poll, RecordsFit& fit) {
-  JointFit joint(initial, options, priors, poll, fit);
+void run_fit(JointFit joint, std::span<const CalibrationData> strokes,
+             std::span<const PluckRecord> plucks) {
   for (const CalibrationData& stroke : strokes) joint.add(stroke);
   for (const PluckRecord& pluck : plucks) joint.add(pluck);
   joint.run();
@@ -277,20 +273,21 @@ void run_fit(const ModelPoint& initial, const ContinuationOptions& options,
 
 void fit_jointly(const ModelPoint& initial, const ContinuationOptions& options,
                  const StatedPriors& priors, std::span<const CalibrationData> strokes,
-                 std::span<const PluckRecord> plucks, const FitPoll& poll, RecordsFit& fit) {
-  run_fit(initial, options, priors, strokes, plucks, poll, fit);
+                 std::span<const PluckRecord> plucks, Evaluator* within, ContinuationResult& fit) {
+  run_fit({initial, options, priors, within, fit}, strokes, plucks);
   if (!options.frequencies) return;
   // Frequencies that are free say what the law is only as far as they may leave it.
   ContinuationOptions law_alone = options;
   law_alone.frequencies = false;
-  RecordsFit alone{.single = fit.single};
+  ContinuationResult alone{.single = fit.single};
   const std::vector<std::size_t> others = not_following(fit.modes);
   for (ContinuationResult& single : alone.single) {
     for (const std::size_t n : others) {
       single.model.basis.omega[n] = fit.model.basis.omega[n];
     }
   }
-  run_fit(initial, law_alone, priors.holding(others), strokes, plucks, poll, alone);
+  const StatedPriors held = priors.holding(others);
+  run_fit({initial, law_alone, held, within, alone}, strokes, plucks);
   fit.law = alone.law;
   append_stages(alone.stages, "", fit.evaluations, fit.stages);
   fit.evaluations += alone.evaluations;

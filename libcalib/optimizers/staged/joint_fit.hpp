@@ -3,14 +3,14 @@
 
 #include <span>
 
-#include "libcalib/optimizers/staged/records_fit.hpp"
+#include "libcalib/optimizers/staged/continuation.hpp"
 
 namespace modcal {
 
-/// Fills all of `fit` save `single`, which it starts from (calibrate_records); poll: called before
-/// every evaluation of all records.
+/// Fills all of `fit` save `single`, which it starts from (calibrate_records); within: the search
+/// that it is part of, or null.
 void fit_jointly(const ModelPoint& initial, const ContinuationOptions& options,
                  const StatedPriors& priors, std::span<const CalibrationData> strokes,
-                 std::span<const PluckRecord> plucks, const FitPoll& poll, RecordsFit& fit);
+                 std::span<const PluckRecord> plucks, Evaluator* within, ContinuationResult& fit);
 
 }  // namespace modcal

@@ -3,6 +3,9 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <string>
+
+#include "libcalib/optimizers/scoring.hpp"
 
 namespace modcal {
 namespace {
@@ -12,48 +15,6 @@ Eigen::MatrixXd padded(const Eigen::MatrixXd& prior, Eigen::Index size) {
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(size, size);
   result.topLeftCorner(prior.rows(), prior.cols()) = prior;
   return result;
-}
-
-// The information itself is positive: what is left in any direction is no less than the prior
-// there, save for the scatter of what noise adds. A direction with less than this of it would be
-// said to be worse known than before the record.
-constexpr double kPriorShare = 0.1;
-
-bool positive_definite(const Eigen::MatrixXd& matrix) {
-  // Scaled to a unit diagonal, so that units do not decide.
-  if ((matrix.diagonal().array() <= 0.0).any()) return false;
-  const Eigen::VectorXd scale = matrix.diagonal().cwiseSqrt().cwiseInverse();
-  Eigen::MatrixXd scaled = scale.asDiagonal() * matrix * scale.asDiagonal();
-  scaled.diagonal().array() -= 1e-10;
-  return scaled.llt().info() == Eigen::Success;
-}
-
-struct Objective2 {
-  double value;
-  Eigen::VectorXd gradient;
-};
-
-Objective2 with_prior(const LikelihoodPoint& point, const Eigen::VectorXd& theta,
-                      const Eigen::MatrixXd& prior, const Eigen::VectorXd& mean) {
-  const Eigen::VectorXd change = mean.size() == 0 ? theta : theta - mean;
-  const Eigen::VectorXd pull = prior * change;
-  return {point.cost + 0.5 * change.dot(pull), 2.0 * point.slope + pull};
-}
-
-struct Step {
-  Eigen::VectorXd move;
-  double decrease = 0.0;
-};
-
-Step newton_step(const NewtonFit& fit, const Objective2& at, double damping,
-                 const NewtonOptions& options) {
-  Eigen::MatrixXd hessian = debiased_hessian(fit.point.information, options);
-  const Eigen::VectorXd scale = hessian.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  hessian = scale.asDiagonal() * hessian * scale.asDiagonal();
-  hessian.diagonal().array() += damping + 1e-12;
-  Step step{-(scale.asDiagonal() * hessian.ldlt().solve(scale.asDiagonal() * at.gradient))};
-  step.decrease = -step.move.dot(at.gradient);
-  return step;
 }
 
 // The factor of a matrix scaled to a unit diagonal: units differ by many powers of ten.
@@ -67,97 +28,127 @@ struct UnitDiagonal {
   Eigen::LDLT<Eigen::MatrixXd> factor;
 };
 
-// A long step is likely to be taken and the information needed where it ends.
-constexpr double kLong = 1.0;
+Eigen::MatrixXd hessian_of(const LikelihoodPoint& point, const NewtonOptions& options) {
+  return debiased_hessian(2.0 * point.information, 2.0 * options.noise, options.prior);
+}
 
-// Of its standard deviation: an unknown that moved less keeps its row of the information. Even
-// where a column is another one after a standard deviation, a step is then off by a twenty-fifth of
-// one, and the slope, which is exact, has the next step make up for it.
-constexpr double kMoved = 0.2;
+// Cost and prior as an objective.
+class FitFunction final : public ObjectiveFunction {
+ public:
+  FitFunction(const FitTarget& target, Eigen::Index size, const NewtonOptions& options)
+      : target_(target), options_(options), prior_(padded(options.prior, size)) {}
+  std::string_view name() const override { return "joint_likelihood"; }
+  std::size_t dimension() const override { return static_cast<std::size_t>(prior_.rows()); }
+  Capabilities capabilities() const override { return {.gradient = true, .information = true}; }
 
-struct Trial {
-  LikelihoodPoint point;
-  Eigen::VectorXd formed;  // where each unknown's row of the information is from; empty: no rows
+  Eigen::VectorXd change(const Eigen::VectorXd& theta) const {
+    return options_.prior_mean.size() == 0 ? theta : Eigen::VectorXd(theta - options_.prior_mean);
+  }
+  ScoringFit known(const LikelihoodPoint& point, const Eigen::VectorXd& theta) const {
+    const Eigen::VectorXd off = change(theta), pull = prior_ * off;
+    return {.z = Eigen::VectorXd::Zero(theta.size()),
+            .value = point.cost + 0.5 * off.dot(pull),
+            .gradient = 2.0 * point.slope + pull,
+            .information = 2.0 * point.information,
+            .noise = 2.0 * options_.noise,
+            .prior = prior_};
+  }
+  LikelihoodPoint point(const ScoringFit& fit, const Eigen::VectorXd& theta) const {
+    const Eigen::VectorXd off = change(theta), pull = prior_ * off;
+    return {.cost = fit.value - 0.5 * off.dot(pull),
+            .slope = 0.5 * (fit.gradient - pull),
+            .information = 0.5 * fit.information};
+  }
+
+  mutable std::size_t slopes = 0, partial = 0;
+
+ private:
+  void do_evaluate(std::span<const double> x, const ObjectiveOutputs& outputs) const override {
+    const auto n = static_cast<Eigen::Index>(x.size());
+    const Eigen::VectorXd theta = Eigen::Map<const Eigen::VectorXd>(x.data(), n);
+    if (!target_.admits(theta)) {
+      *outputs.value = std::numeric_limits<double>::infinity();
+      return;
+    }
+    const ScoringFit at = known(likelihood(theta, outputs), theta);
+    if (outputs.value) *outputs.value = at.value;
+    if (outputs.gradient) Eigen::Map<Eigen::VectorXd>(outputs.gradient, n) = at.gradient;
+    if (outputs.information) *outputs.information = at.information;
+    if (outputs.noise && at.noise.size() > 0) *outputs.noise = at.noise;
+    if (outputs.prior) *outputs.prior = at.prior;
+  }
+  LikelihoodPoint likelihood(const Eigen::VectorXd& theta, const ObjectiveOutputs& outputs) const {
+    if (!outputs.information && target_.slope) {
+      ++slopes;
+      return target_.slope(theta);
+    }
+    if (!outputs.rows || !target_.rows) return target_.evaluate(theta);
+    LikelihoodPoint found = target_.rows(theta, *outputs.rows);
+    if (found.information.rows() != found.information.cols()) ++partial;
+    return found;
+  }
+
+  const FitTarget& target_;
+  const NewtonOptions& options_;
+  Eigen::MatrixXd prior_;
 };
 
-Eigen::VectorXd deviations(const LikelihoodPoint& point, const NewtonOptions& options) {
-  const UnitDiagonal hessian(debiased_hessian(point.information, options));
-  const Eigen::Index size = hessian.scale.size();
-  const Eigen::MatrixXd inverse = hessian.factor.solve(Eigen::MatrixXd::Identity(size, size));
-  return hessian.scale.cwiseProduct(inverse.diagonal().cwiseMax(0.0).cwiseSqrt());
-}
-
-std::vector<std::size_t> moved_unknowns(const Eigen::VectorXd& moves, const LikelihoodPoint& point,
-                                        const NewtonOptions& options) {
-  const Eigen::VectorXd least = kMoved * deviations(point, options);
-  std::vector<std::size_t> moved;
-  for (Eigen::Index i = 0; i < moves.size(); ++i) {
-    if (std::abs(moves[i]) > least[i]) moved.push_back(static_cast<std::size_t>(i));
+// Variables that stand for unknowns: no bound is farther than any of them goes.
+std::vector<Variable> variables_of(const FitTarget& target, const Eigen::VectorXd& start) {
+  std::vector<Variable> variables;
+  for (Eigen::Index i = 0; i < start.size(); ++i) {
+    const bool bounded = target.lower.size() > 0;
+    const double lower = bounded ? target.lower[i] : start[i] - 1e9;
+    const double upper = bounded ? target.upper[i] : start[i] + 1e9;
+    variables.push_back({.name = std::to_string(i),
+                         .unit = "1",
+                         .initial = std::clamp(start[i], lower, upper),
+                         .lower = lower,
+                         .upper = upper});
   }
-  return moved;
+  return variables;
 }
 
-// The information of fit.point with the rows found at `theta`.
-Trial with_rows(LikelihoodPoint point, const Eigen::VectorXd& theta,
-                std::span<const std::size_t> moved, const Eigen::VectorXd& formed,
-                const NewtonFit& fit) {
-  const Eigen::MatrixXd rows = std::move(point.information);
-  Trial result{.point = std::move(point), .formed = formed};
-  result.point.information = fit.point.information;
-  for (std::size_t i = 0; i < moved.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(moved[i]);
-    result.point.information.row(row) = rows.row(static_cast<Eigen::Index>(i));
-    result.point.information.col(row) = rows.row(static_cast<Eigen::Index>(i)).transpose();
-    result.formed[row] = theta[row];
+NewtonFit fit_by(Evaluator& evaluator, const FitFunction& function, const FitTarget& target,
+                 const NewtonOptions& options) {
+  const auto n = static_cast<Eigen::Index>(function.dimension());
+  Eigen::VectorXd start(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    start[i] = evaluator.variables()[static_cast<std::size_t>(i)].initial;
   }
-  return result;
-}
-
-Trial try_slope(const FitTarget& target, const Eigen::VectorXd& theta, NewtonFit& fit) {
-  if (target.poll) target.poll();
-  ++fit.evaluations;
-  if (!target.slope) return {target.evaluate(theta), theta};
-  ++fit.slopes;
-  return {target.slope(theta), {}};
-}
-
-// Rows of unknowns that have moved; where the fit stands and none has, nothing is to be found.
-Trial try_information(const FitTarget& target, const Eigen::VectorXd& theta,
-                      const NewtonOptions& options, const Eigen::VectorXd& formed, NewtonFit& fit) {
-  std::vector<std::size_t> moved;
-  if (target.rows) {
-    moved = moved_unknowns(theta - formed, fit.point, options);
-    if (moved.empty() && theta == fit.theta) return {.point = fit.point, .formed = formed};
+  ScoringShortcuts shortcuts{.slopes = static_cast<bool>(target.slope),
+                             .rows = static_cast<bool>(target.rows)};
+  if (target.capped > 0 && std::isfinite(options.frequency_cap)) {
+    shortcuts.largest = Eigen::VectorXd::Constant(n, std::numeric_limits<double>::infinity());
+    shortcuts.largest.head(target.capped).setConstant(options.frequency_cap);
   }
-  if (target.poll) target.poll();
-  ++fit.evaluations;
-  LikelihoodPoint point = target.rows ? target.rows(theta, moved) : target.evaluate(theta);
-  if (point.information.rows() == point.information.cols()) return {std::move(point), theta};
-  ++fit.partial;
-  return with_rows(std::move(point), theta, moved, formed, fit);
+  ScoringFit known;
+  if (options.at_start) {
+    known = function.known(*options.at_start, start);
+    shortcuts.at_start = &known;
+  }
+  const ScoringFit found = Scoring::fit(
+      evaluator,
+      {.steps = static_cast<std::int64_t>(options.steps), .tolerance = options.tolerance},
+      shortcuts);
+  NewtonFit fit{.theta = start + found.z, .objective = found.value};
+  fit.point = function.point(found, fit.theta);
+  fit.evaluations = static_cast<std::size_t>(evaluator.evaluations());
+  fit.slopes = function.slopes;
+  fit.partial = function.partial;
+  fit.converged = found.converged;
+  return fit;
 }
 
 }  // namespace
 
-Eigen::MatrixXd debiased_hessian(const Eigen::MatrixXd& information, const NewtonOptions& options) {
-  const Eigen::MatrixXd prior = padded(options.prior, information.rows());
-  const Eigen::MatrixXd full = 2.0 * information + prior;
-  if (options.noise.size() == 0) return full;
-  double share = 1.0;
-  for (int i = 0; i < 60; ++i, share *= 0.9) {
-    const Eigen::MatrixXd hessian = full - 2.0 * share * options.noise;
-    if (positive_definite(hessian - kPriorShare * prior)) return hessian;
-  }
-  return full;
-}
-
 double taken_by_fit(const LikelihoodPoint& point, const NewtonOptions& options) {
-  const UnitDiagonal hessian(debiased_hessian(point.information, options));
+  const UnitDiagonal hessian(hessian_of(point, options));
   return 2.0 * hessian.factor.solve(hessian.scaled(point.information)).trace();
 }
 
 Eigen::MatrixXd fit_covariance(const LikelihoodPoint& point, const NewtonOptions& options) {
-  const UnitDiagonal hessian(debiased_hessian(point.information, options));
+  const UnitDiagonal hessian(hessian_of(point, options));
   const Eigen::Index size = hessian.scale.size();
   const Eigen::MatrixXd inverse =
       hessian.scaled(hessian.factor.solve(Eigen::MatrixXd::Identity(size, size)));
@@ -166,82 +157,39 @@ Eigen::MatrixXd fit_covariance(const LikelihoodPoint& point, const NewtonOptions
 }
 
 NewtonFit newton_fit(const FitTarget& target, const Eigen::VectorXd& start,
-                     const NewtonOptions& options) {
-  const Eigen::MatrixXd prior = padded(options.prior, start.size());
-  NewtonFit fit{.theta = start};
-  if (target.poll) target.poll();
-  fit.point = options.at_start ? *options.at_start : target.evaluate(start);
-  fit.evaluations = options.at_start ? 0 : 1;
-  Eigen::VectorXd formed = start;
-  Objective2 at = with_prior(fit.point, start, prior, options.prior_mean);
-  fit.objective = at.value;
-  double damping = 0.0;
-  bool stale = false;  // the information is that of the point before
-  for (std::size_t count = 0; count < options.steps; ++count) {
-    Step step = newton_step(fit, at, damping, options);
-    // Half the tolerance: the information changes less than that in a step.
-    if (stale && !(step.decrease < 0.5 * options.tolerance && damping < 0.1)) {
-      Trial here = try_information(target, fit.theta, options, formed, fit);
-      fit.point.information = std::move(here.point.information);
-      formed = std::move(here.formed);
-      stale = false;
-      step = newton_step(fit, at, damping, options);
-    }
-    auto& [move, decrease] = step;
-    if (decrease < options.tolerance && damping < 0.1) {
-      fit.converged = true;
-      break;
-    }
-    if (target.capped > 0) {
-      const double largest = move.head(target.capped).cwiseAbs().maxCoeff();
-      if (largest > options.frequency_cap) move *= options.frequency_cap / largest;
-    }
-    const Eigen::VectorXd trial = fit.theta + move;
-    bool better = false;
-    if (target.admits(trial)) {
-      Trial tried = damping == 0.0 && decrease > kLong
-                        ? try_information(target, trial, options, formed, fit)
-                        : try_slope(target, trial, fit);
-      const Objective2 there = with_prior(tried.point, trial, prior, options.prior_mean);
-      // The debiased step may pass the minimum of this draw by a little of its noise.
-      better = there.value < at.value + 0.5 * options.tolerance;
-      if (better) {
-        stale = tried.formed.size() == 0;
-        if (stale) tried.point.information = std::move(fit.point.information);
-        if (!stale) formed = std::move(tried.formed);
-        fit.theta = trial;
-        fit.point = std::move(tried.point);
-        at = there;
-        fit.objective = at.value;
-      }
-    }
-    damping = better ? (damping < 1e-3 ? 0.0 : 0.2 * damping) : std::max(1e-2, 6.0 * damping);
-    if (damping > 1e8) break;
-  }
-  return fit;
+                     const NewtonOptions& options, Evaluator* within) {
+  const FitFunction function(target, start.size(), options);
+  const std::vector<Variable> variables = variables_of(target, start);
+  Evaluator evaluator =
+      within ? Evaluator(*within, function, variables) : Evaluator(function, variables, Budget{});
+  return fit_by(evaluator, function, target, options);
 }
 
 NewtonFit newton_fit(const ProjectedLikelihood& likelihood, const StringUnknowns& unknowns,
-                     const Eigen::VectorXd& start, const NewtonOptions& options,
-                     const FitPoll& poll) {
-  FitTarget target{.evaluate =
-                       [&](const Eigen::VectorXd& theta) {
-                         return likelihood.evaluate(unknowns.model(theta), unknowns.columns(theta));
-                       },
-                   .admits = [&](const Eigen::VectorXd& theta) { return unknowns.admits(theta); },
-                   .capped = unknowns.is_law() ? 0 : static_cast<Eigen::Index>(unknowns.modes()),
-                   .slope =
-                       [&](const Eigen::VectorXd& theta) {
-                         return likelihood.slope(unknowns.model(theta), unknowns.columns(theta));
-                       },
-                   .poll = poll};
+                     const Eigen::VectorXd& start, const NewtonOptions& options) {
+  return newton_fit(fit_target(likelihood, unknowns), start, options);
+}
+
+FitTarget fit_target(const ProjectedLikelihood& likelihood, const StringUnknowns& unknowns) {
+  FitTarget target{
+      .evaluate =
+          [&likelihood, &unknowns](const Eigen::VectorXd& theta) {
+            return likelihood.evaluate(unknowns.model(theta), unknowns.columns(theta));
+          },
+      .admits = [&unknowns](const Eigen::VectorXd& theta) { return unknowns.admits(theta); },
+      .capped = unknowns.is_law() ? 0 : static_cast<Eigen::Index>(unknowns.modes()),
+      .slope =
+          [&likelihood, &unknowns](const Eigen::VectorXd& theta) {
+            return likelihood.slope(unknowns.model(theta), unknowns.columns(theta));
+          }};
   // The law's few columns cost less than some of their rows.
   if (!unknowns.is_law()) {
-    target.rows = [&](const Eigen::VectorXd& theta, std::span<const std::size_t> wanted) {
+    target.rows = [&likelihood, &unknowns](const Eigen::VectorXd& theta,
+                                           std::span<const std::size_t> wanted) {
       return likelihood.rows(unknowns.model(theta), unknowns.columns(theta), wanted);
     };
   }
-  return newton_fit(target, start, options);
+  return target;
 }
 
 }  // namespace modcal

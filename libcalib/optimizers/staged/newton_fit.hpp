@@ -6,8 +6,8 @@
 #include <limits>
 #include <span>
 
-#include "libcalib/optimizers/staged/fit_poll.hpp"
 #include "libcalib/likelihood/string_unknowns.hpp"
+#include "libcalib/problem/evaluator.hpp"
 
 namespace modcal {
 
@@ -34,7 +34,7 @@ struct FitTarget {
   /// evaluate.
   std::function<LikelihoodPoint(const Eigen::VectorXd&, std::span<const std::size_t> wanted)> rows =
       {};
-  FitPoll poll = {};
+  Eigen::VectorXd lower = {}, upper = {};  ///< bounds of the unknowns; empty: none
 };
 
 struct NewtonFit {
@@ -47,20 +47,14 @@ struct NewtonFit {
   bool converged = false;
 };
 
-/// Minimizes Σ w|e|² + ½ (θ − θ_0)ᵀQ(θ − θ_0) from `start`, Hessian 2(JᵀWJ − N̄) + Q. JᵀWJ is
-/// found where a step starts: not where one is refused, nor where the last one ends. Unknowns that
-/// have moved by less than a fifth of their standard deviation since their row of it was found keep
-/// that row, save what they share with one that has moved.
+/// Minimizes Σ w|e|² + ½ (θ − θ_0)ᵀQ(θ − θ_0) from `start` by Scoring, Hessian 2(JᵀWJ − N̄) + Q,
+/// within the search of `within`; null: a search of its own.
 NewtonFit newton_fit(const FitTarget& target, const Eigen::VectorXd& start,
-                     const NewtonOptions& options);
+                     const NewtonOptions& options, Evaluator* within = nullptr);
 /// The same for one record.
 NewtonFit newton_fit(const ProjectedLikelihood& likelihood, const StringUnknowns& unknowns,
-                     const Eigen::VectorXd& start, const NewtonOptions& options,
-                     const FitPoll& poll = {});
-
-/// 2(JᵀWJ − N̄) + Q, N̄ shrunk by 0.9 as often as it takes to leave 2(JᵀWJ − N̄) + 0.9 Q positive
-/// definite: no direction comes out much worse known than the prior has it.
-Eigen::MatrixXd debiased_hessian(const Eigen::MatrixXd& information, const NewtonOptions& options);
+                     const Eigen::VectorXd& start, const NewtonOptions& options);
+FitTarget fit_target(const ProjectedLikelihood& likelihood, const StringUnknowns& unknowns);
 
 /// How many residuals the fit takes, 2 tr H⁻¹JᵀWJ: an unknown that its prior holds takes none.
 double taken_by_fit(const LikelihoodPoint& point, const NewtonOptions& options);

@@ -34,9 +34,29 @@ const ProjectedLikelihood& StrokeFit::whole() {
   return *whole_;
 }
 
+UnknownBounds StrokeFit::bounds_of(const StringUnknowns& unknowns) const {
+  ModelPoint initial = input_.initial;
+  initial.sensors = input_.options.unknowns.sensors();
+  return unknown_bounds(unknowns, initial, input_.options.ranges);
+}
+
+void StrokeFit::count() {
+  if (input_.within) input_.within->spend(1);
+  ++evaluations_;
+}
+
+bool StrokeFit::admits(const StringUnknowns& unknowns, const Eigen::VectorXd& theta) const {
+  return unknowns.admits(theta) &&
+         bounds_of(unknowns).hold(theta);
+}
+
 NewtonFit StrokeFit::fit(const ProjectedLikelihood& likelihood, const StringUnknowns& unknowns,
                          const Eigen::VectorXd& theta, const NewtonOptions& options) {
-  NewtonFit result = newton_fit(likelihood, unknowns, theta, options, input_.poll);
+  FitTarget target = fit_target(likelihood, unknowns);
+  UnknownBounds bounds = bounds_of(unknowns);
+  target.lower = std::move(bounds.lower);
+  target.upper = std::move(bounds.upper);
+  NewtonFit result = newton_fit(target, theta, options, input_.within);
   evaluations_ += result.evaluations;
   return result;
 }
@@ -52,8 +72,11 @@ NewtonFit StrokeFit::fit_stage(std::string name, const ProjectedLikelihood& like
 void StrokeFit::end_stage(std::string name, const ProjectedLikelihood& likelihood,
                           const StringUnknowns& unknowns, const NewtonFit& found) {
   const auto free_count = static_cast<std::size_t>(unknowns.size() - unknowns.held_count());
-  const double freedom = likelihood.degrees_of_freedom(free_count, unknowns.model(found.theta));
-  end_stage(std::move(name), found.objective, 2.0 * found.point.cost / freedom);
+  const ModelPoint model = unknowns.model(found.theta);
+  const double freedom = likelihood.degrees_of_freedom(free_count, model);
+  const double chi2 = 2.0 * found.point.cost / freedom;
+  end_stage(std::move(name), found.objective, chi2);
+  if (input_.options.reached) input_.options.reached(model, chi2);
 }
 
 void StrokeFit::end_stage(std::string name, double objective, double chi2) {
@@ -61,8 +84,7 @@ void StrokeFit::end_stage(std::string name, double objective, double chi2) {
 }
 
 double StrokeFit::cost(const ProjectedLikelihood& likelihood, const ModelPoint& point) {
-  poll();
-  ++evaluations_;
+  count();
   return likelihood.cost(point);
 }
 
@@ -88,8 +110,7 @@ Eigen::MatrixXd StrokeFit::noise_at(const StringUnknowns& unknowns,
 
 LikelihoodPoint StrokeFit::weighted_point(const StringUnknowns& unknowns,
                                           const Eigen::VectorXd& theta) {
-  poll();
-  ++evaluations_;
+  count();
   return weighted_->evaluate(unknowns.model(theta), unknowns.columns(theta),
                              {.twice_weighted = true});
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "libcalib/optimizers/staged/continuation_attempt.hpp"
+#include "libcalib/likelihood/unknown_bounds.hpp"
 #include "libcalib/optimizers/staged/newton_fit.hpp"
 
 namespace modcal {
@@ -21,7 +22,7 @@ class StrokeFit {
   std::size_t evaluations() const { return evaluations_; }
   /// Called by all that takes the time of an evaluation.
   void poll() const {
-    if (input_.poll) input_.poll();
+    if (input_.within) input_.within->poll();
   }
   /// σ [1/s] of a string of 196 Hz, in proportion to f_0 on others.
   void scale_damping(double fundamental) { unit_ = fundamental / 196.0; }
@@ -32,6 +33,9 @@ class StrokeFit {
   const ProjectedLikelihood& whole();
   /// The same with the weights prepared last.
   const ProjectedLikelihood& weighted() const { return *weighted_; }
+
+  /// Whether the parameters may go there.
+  bool admits(const StringUnknowns& unknowns, const Eigen::VectorXd& theta) const;
 
   NewtonFit fit(const ProjectedLikelihood& likelihood, const StringUnknowns& unknowns,
                 const Eigen::VectorXd& theta, const NewtonOptions& options);
@@ -58,6 +62,8 @@ class StrokeFit {
                                 const NewtonOptions& options);
 
  private:
+  void count();
+  UnknownBounds bounds_of(const StringUnknowns& unknowns) const;
   const AttemptInput& input_;
   std::optional<ProjectedLikelihood> whole_, weighted_;
   double unit_ = 1.0;

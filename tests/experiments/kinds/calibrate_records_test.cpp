@@ -40,9 +40,8 @@ class CalibrateRecords : public testing::Test {
     observation.truth.simulator.select("modal_event");
     observation.measurement.sample_rate = sample_rate;
     observation.measurement.noise_level = 0.01;
-    options.calibration.has_continuation = true;
-    options.calibration.parameters.law = true;
-    options.calibration.parameters.contact = true;
+    options.calibration = calibration_to_the_bound();
+    options.calibration.parameters.frequencies = "none";
     return options;
   }
 
@@ -55,15 +54,17 @@ class CalibrateRecords : public testing::Test {
     write_csv(folder_ / file, signals);
   }
 
-  StudyResult run(const std::string& calibration, const std::string& further) {
+  StudyResult run(const std::string& noise, const std::string& further,
+                  const std::string& sensors = "") {
     const LoadedExperiment loaded = load_experiment(
         parse_yaml("kind: calibrate\n"
                    "record: {file: stroke.csv, left: {channel: R1}, right: {channel: R2}, "
                    "reference: {channel: f_c}}\n"
                    "string: {length: 0.33 m, linear_density: 3.1e-3 kg/m, fundamental: 196 Hz}\n"
                    "bow: {position: 30 mm}\n"
-                   "calibration: {parameters: {law: true, contact: true}, continuation: " +
-                       calibration + "}\n" + further,
+                   "calibration: {parameters: {law: true, contact: true, damping: factor" +
+                       sensors + "}, objective: {type: joint_likelihood" + noise +
+                       "}, optimizer: staged}\n" + further,
                    (folder_ / "experiment.yaml").string()));
     EXPECT_EQ(format_mistakes(loaded.document, loaded.mistakes), "");
     return loaded.experiment ? loaded.experiment->run(context()) : StudyResult();
@@ -92,8 +93,8 @@ TEST_F(CalibrateRecords, FindFromARecordedPluckWhatASimulatedOneTells) {
   const Observation observed = stroke(options);
   write("stroke.csv",
         {*observed.reaction(End::kLeft), *observed.reaction(End::kRight), *observed.reference});
-  const PluckRecord decay = observe_plucks(options.plucks, options.inversion.observation,
-                                           options.inversion.key(), context())[0];
+  const CalibrationRecord decay = observe_plucks(options.plucks, options.inversion.observation,
+                                                 options.inversion.key(), context())[0];
   const RealFft fft(decay.data.samples);
   std::vector<Signal> signals;
   for (const End end : kEnds) {
@@ -104,7 +105,7 @@ TEST_F(CalibrateRecords, FindFromARecordedPluckWhatASimulatedOneTells) {
   }
   signals.push_back(*observed.reference);
   write("pluck.csv", signals);
-  const json recorded = calibration_of(run("{}", "plucks: [{record: pluck.csv}]\n"));
+  const json recorded = calibration_of(run("", "plucks: [{record: pluck.csv}]\n"));
 
   ASSERT_EQ(recorded["parameters"].size(), 4u);
   for (std::size_t i = 0; i < 4; ++i) {
@@ -123,7 +124,7 @@ TEST_F(CalibrateRecords, FailByThePriorsWhereTheFitIsNotWrong) {
   // x_c is known to half a micrometer; this prior, ten deviations off, moves it by a fortieth of
   // one.
   CalibrateOptions options = simulated(0.3, 51200.0);
-  options.calibration.continuation.unknowns.priors = {
+  options.calibration.parameters.unknowns.priors = {
       {.parameter = "x_c", .mean = 30.1e-3, .deviation = 1e-5}};
   const StudyResult result = calibrate_study(options, context());
   EXPECT_TRUE(calibration_of(result)["continuation"]["fits"].get<bool>());
@@ -139,9 +140,9 @@ TEST_F(CalibrateRecords, SayWhereTheNoiseStatedIsTooMuch) {
         {*observed.reaction(End::kLeft), *observed.reaction(End::kRight), *observed.reference});
   const double spread[] = {standard_deviation(observed.reaction(End::kLeft)->samples),
                            standard_deviation(observed.reaction(End::kRight)->samples)};
-  const StudyResult overstated = run(fmt::format("{{left_noise: {:g} N, right_noise: {:g} N}}",
-                                                 0.03 * spread[0], 0.03 * spread[1]),
-                                     "");
+  const StudyResult overstated = run(
+      fmt::format(", left_noise: {:g} N, right_noise: {:g} N", 0.03 * spread[0], 0.03 * spread[1]),
+      "");
   // Three times the noise there is: within the 2 % to which 0.3 s tell it, three of them.
   const double chi2 = calibration_of(overstated)["continuation"]["chi2"];
   EXPECT_NEAR(9.0 * chi2, 1.0, 0.1);
@@ -150,7 +151,7 @@ TEST_F(CalibrateRecords, SayWhereTheNoiseStatedIsTooMuch) {
                   "noise overstated: the data scatter less than the noise levels say; standard "
                   "deviations are too wide by a factor of {:.3g}",
                   1.0 / std::sqrt(chi2))));
-  EXPECT_THAT(run("{}", "").summary, testing::Not(testing::HasSubstr("overstated")));
+  EXPECT_THAT(run("", "").summary, testing::Not(testing::HasSubstr("overstated")));
 }
 
 // Correlation and relative error of the identified forces.
@@ -177,13 +178,13 @@ TEST_F(CalibrateRecords, IdentifyTheForceThroughTheSensorsTheyFound) {
   for (std::size_t j = 0; j < sensed.size(); ++j) {
     sensed.samples[j] = 1.05 * right.samples[j > 0 ? j - 1 : 0];
   }
-  const std::string unknowns = "{unknowns: {gain: {free: true}, delay: {free: true}}}";
+  const std::string sensors = ", sensors: [gain, delay]";
   for (const char* estimator : {"one_sided", "joint"}) {
     const std::string inversion = fmt::format("inversion: {{estimator: {}}}\n", estimator);
     write("stroke.csv", {left, right, *observed.reference});
-    const StudyResult equal = run(unknowns, inversion);
+    const StudyResult equal = run("", inversion, sensors);
     write("stroke.csv", {left, sensed, *observed.reference});
-    const StudyResult different = run(unknowns, inversion);
+    const StudyResult different = run("", inversion, sensors);
     EXPECT_THAT(different.summary, testing::HasSubstr("corrected for its sensor"));
     const std::vector<double> expected = scores_of(equal);
     const std::vector<double> found = scores_of(different);
@@ -206,37 +207,40 @@ TEST_F(CalibrateRecords, TakeTheDifferenceOfTheSensorsOutOnce) {
     doubled.samples[j] = 2.0 * left.samples[j];
     sensed.samples[j] = 2.1 * right.samples[j > 0 ? j - 1 : 0];
   }
-  const std::string unknowns = "{unknowns: {gain: {free: true}, delay: {free: true}}}";
+  const std::string sensors = ", sensors: [gain, delay]";
   write("stroke.csv", {left, right, *observed.reference});
-  const std::vector<double> expected = scores_of(run(unknowns, "inversion: {estimator: joint}\n"));
+  const std::vector<double> expected =
+      scores_of(run("", "inversion: {estimator: joint}\n", sensors));
   ASSERT_EQ(expected.size(), 2u);
   write("stroke.csv", {doubled, sensed, *observed.reference});
   const std::vector<double> found =
-      scores_of(run(unknowns, "inversion: {estimator: {type: joint, gain1: 2, gain2: 2}}\n"));
+      scores_of(run("", "inversion: {estimator: {type: joint, gain1: 2, gain2: 2}}\n", sensors));
   for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(found[i], expected[i], 5e-3) << i;
 
   // What is in the calibration's correction has no place in the estimator: correlation 0.82 fell to
   // 0.80.
-  const auto refusal = [&](const std::string& sensors, const std::string& estimator) {
+  const auto refusal = [&](const std::string& differing, const std::string& estimator) {
     const LoadedExperiment loaded = load_experiment(parse_yaml(
         "kind: calibrate\n"
         "record: {file: stroke.csv, left: {channel: R1}, right: {channel: R2}}\n"
         "string: {length: 0.33 m, linear_density: 3.1e-3 kg/m, fundamental: 196 Hz}\n"
         "bow: {position: 30 mm}\n"
-        "calibration: {parameters: {law: true, contact: true}, continuation: {unknowns: " +
-            sensors + "}}\ninversion: {estimator: " + estimator + "}\n",
+        "calibration: {parameters: {law: true, contact: true" +
+            differing +
+            "}, objective: joint_likelihood, optimizer: staged}\ninversion: {estimator: " +
+            estimator + "}\n",
         (folder_ / "experiment.yaml").string()));
     return format_mistakes(loaded.document, loaded.mistakes);
   };
   for (const char* estimator : {"{type: joint, gain2: 1.05}", "{type: joint, delay2: 20 us}",
                                 "{type: linear_limit, gain1: 2, gain2: 2.1}"}) {
-    for (const char* sensors : {"{gain: {free: true}}", "{delay: {value: 20 us}}"}) {
-      EXPECT_THAT(refusal(sensors, estimator), testing::HasSubstr("would take it out once more"))
-          << estimator << sensors;
+    for (const char* differing : {", sensors: [gain]", ", delay: 20 us"}) {
+      EXPECT_THAT(refusal(differing, estimator), testing::HasSubstr("would take it out once more"))
+          << estimator << differing;
     }
-    EXPECT_EQ(refusal("{}", estimator), "");  // a calibration that knows of no difference
+    EXPECT_EQ(refusal("", estimator), "");  // a calibration that knows of no difference
   }
-  EXPECT_EQ(refusal("{gain: {free: true}}", "{type: joint, gain1: 2, gain2: 2}"), "");
+  EXPECT_EQ(refusal(", sensors: [gain]", "{type: joint, gain1: 2, gain2: 2}"), "");
 }
 
 TEST(SensorCorrection, TakesOutGainDelayAndHighPass) {

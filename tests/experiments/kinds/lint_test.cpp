@@ -89,49 +89,66 @@ TEST(LintSearch, SaysWhereAnOptimizerCannotMinimizeTheObjective) {
   }
 }
 
+constexpr const char* kStaged = ", objective: joint_likelihood, optimizer: staged";
+
 TEST(LintStrokes, RefusesWhatCannotBeFittedTogether) {
-  EXPECT_THAT(messages_of(strokes("", "{contacts: [28 mm]}")),
-              testing::AllOf(testing::HasSubstr("scene.yaml:7:"),
-                             testing::HasSubstr("state calibration.continuation")));
-  EXPECT_THAT(messages_of(strokes(", continuation: {}", "{contacts: [28 mm, 0.4 m]}")),
+  EXPECT_THAT(
+      messages_of(strokes("", "{contacts: [28 mm]}")),
+      testing::AllOf(testing::HasSubstr("scene.yaml:7:"),
+                     testing::HasSubstr("state objective: joint_likelihood, optimizer: staged")));
+  EXPECT_THAT(messages_of(strokes(kStaged, "{contacts: [28 mm, 0.4 m]}")),
               testing::HasSubstr("0.4 m is not on the string"));
-  EXPECT_THAT(messages_of(strokes(", continuation: {}", "{records: [second.wav]}")),
+  EXPECT_THAT(messages_of(strokes(kStaged, "{records: [second.wav]}")),
               testing::HasSubstr("name further contacts"));
-  EXPECT_EQ(messages_of(strokes(", continuation: {}", "{contacts: [28 mm]}")).find("error"),
-            std::string::npos);
+  EXPECT_EQ(messages_of(strokes(kStaged, "{contacts: [28 mm]}")).find("error"), std::string::npos);
 }
 
-TEST(LintContinuation, RefusesWhatItWouldNotRead) {
-  const auto messages = [](const std::string& calibration) {
-    return messages_of(strokes(", continuation: {}" + calibration, "{contacts: [28 mm]}"));
-  };
-  EXPECT_THAT(messages(", budget: {evaluations: 10}"),
-              testing::ContainsRegex("scene.yaml:6:[0-9]+: error: a continuation does not read "
-                                     "budget: [^\n]*leave it out"));
-  EXPECT_THAT(messages(", objective: force_mismatch"),
-              testing::HasSubstr("a continuation does not read objective"));
-  EXPECT_THAT(messages(", optimizer: ceres"),
-              testing::HasSubstr("a continuation does not read optimizer"));
-  // What a run writes down of the defaults can be run again.
-  EXPECT_EQ(messages(", budget: {evaluations: 100000}, objective: spectral_peak").find("error"),
-            std::string::npos);
-}
-
-TEST(LintContinuation, SaysWhereItsParametersAndItsBandAreStated) {
-  const auto messages = [](const std::string& parameters, const std::string& continuation) {
-    std::string text = strokes(", continuation: " + continuation, "{contacts: [28 mm]}");
+TEST(LintStaged, RefusesWhatItWouldNotRead) {
+  const auto messages = [](const std::string& parameters, const std::string& calibration) {
+    std::string text = strokes(calibration, "{contacts: [28 mm]}");
     const std::string plain = "{frequencies: all, law: true, contact: true}";
     return messages_of(text.replace(text.find(plain), plain.size(), parameters));
   };
-  EXPECT_THAT(messages("{law: true, contact: true, sensors: [gain, delay]}", "{}"),
-              testing::ContainsRegex("scene.yaml:6:[0-9]+: error: [^\n]*gain: .free: true."));
-  EXPECT_THAT(messages("{law: true, contact: true, damping: each}", "{}"),
-              testing::HasSubstr("unknowns: {damping: each}"));
   const std::string all = "{frequencies: all, law: true, contact: true}";
-  EXPECT_THAT(messages(all, "{highest_frequency: 300}"),
+  EXPECT_EQ(messages(all, std::string(kStaged) + ", budget: {evaluations: 10}").find("error"),
+            std::string::npos);
+  EXPECT_THAT(messages("{frequencies: listed, modes: [3], law: true, contact: true}", kStaged),
+              testing::ContainsRegex("scene.yaml:6:[0-9]+: error: [^\n]*fixed: ..parameter: f_3"));
+  EXPECT_THAT(messages("{frequencies: all, law: true}", kStaged),
+              testing::HasSubstr("contact: false holds the contact of one stroke"));
+  EXPECT_THAT(messages(all,
+                       ", objective: {type: joint_likelihood, highest_frequency: 300}, "
+                       "optimizer: staged"),
               testing::ContainsRegex("scene.yaml:6:[0-9]+: error: highest_frequency 300 Hz: below "
                                      "it lie fewer than the 2 modes[^\n]*more than 392 Hz"));
-  EXPECT_EQ(messages(all, "{highest_frequency: 400}").find("error"), std::string::npos);
+  EXPECT_EQ(messages(all,
+                     ", objective: {type: joint_likelihood, highest_frequency: 400}, "
+                     "optimizer: staged")
+                .find("error"),
+            std::string::npos);
+  EXPECT_THAT(messages(all, ", objective: force_mismatch, optimizer: staged"),
+              testing::HasSubstr("\"force_mismatch\" has none: state its stages"));
+}
+
+TEST(LintStaged, IsTheOneThatReadsPriors) {
+  const auto messages = [](const std::string& parameters) {
+    return messages_of(
+        std::string("kind: calibrate\nscene:\n"
+                    "  string: {length: 0.33 m, linear_density: 3.1e-3 kg/m, fundamental: 196 Hz}\n"
+                    "  bow: {position: 30 mm}\n  duration: 1 s\n"
+                    "calibration: {parameters: {frequencies: all, ") +
+        parameters + "}}\n");
+  };
+  EXPECT_EQ(messages("contact: true").find("error"), std::string::npos);
+  EXPECT_THAT(messages("law_width: 1 %"), testing::HasSubstr("law_width is read by the joint"));
+  EXPECT_THAT(messages("priors: [{parameter: x_c, deviation: 1 mm}]"),
+              testing::ContainsRegex("scene.yaml:6:[0-9]+: error: priors is read by the joint"));
+}
+
+TEST(LintStaged, SaysHowAContinuationIsWrittenNow) {
+  EXPECT_THAT(messages_of(strokes(", continuation: {}", "{contacts: []}")),
+              testing::ContainsRegex("scene.yaml:6:[0-9]+: error: \"continuation\" is now the "
+                                     "optimizer \"staged\": write objective: "));
 }
 
 std::string limit_of(const std::string& bow, const std::string& rest) {
@@ -153,12 +170,15 @@ TEST(LintCalibrationLimit, FindsWhatEveryTaskWouldFailOf) {
   // The draws lie on both sides of the contact point.
   EXPECT_THAT(messages_of(limit_of(bow, "model_error: {contact: 31 mm}\n")),
               testing::AllOf(HasSubstr("scene.yaml:6:"), HasSubstr("not inside the string")));
-  EXPECT_THAT(messages_of(limit_of(bow, "continuation: {highest_frequency: 300}\n")),
-              testing::AllOf(HasSubstr("scene.yaml:6:"), HasSubstr("more than 392 Hz")));
+  EXPECT_THAT(
+      messages_of(limit_of(bow,
+                           "calibration: {parameters: {}, objective: {type: joint_likelihood, "
+                           "highest_frequency: 300}}\n")),
+      testing::AllOf(HasSubstr("scene.yaml:6:"), HasSubstr("more than 392 Hz")));
 }
 
 // Two priors that are wrong and one that is not, then correlations; each in a line of its own.
-constexpr const char* kUnknowns =
+constexpr const char* kPriors =
     "    damping: power\n"
     "    priors:\n"
     "      - {parameter: x_c, mean: 30 mm, deviation: 1 mm}\n"
@@ -192,29 +212,30 @@ void expect_mistakes_of_priors(const std::string& messages, std::size_t first) {
 }
 
 TEST(LintPriors, ReportsEachMistakeAtItsOwnPlaceInEveryKindThatHasPriors) {
-  expect_mistakes_of_priors(
-      messages_of(std::string("kind: calibrate\n") + kScene +
-                  "calibration:\n"
-                  "  parameters: {frequencies: all, law: true, contact: true}\n"
-                  "  continuation:\n   unknowns:\n" +
-                  kUnknowns),
-      11);
+  expect_mistakes_of_priors(messages_of(std::string("kind: calibrate\n") + kScene +
+                                        "calibration:\n"
+                                        "  objective: joint_likelihood\n"
+                                        "  optimizer: staged\n"
+                                        "  parameters:\n"
+                                        "    law: true\n" +
+                                        kPriors),
+                            12);
   expect_mistakes_of_priors(messages_of(std::string("kind: calibration_limit\n") + kScene +
-                                        "continuation:\n  unknowns:\n" + kUnknowns),
+                                        "calibration:\n  parameters:\n" + kPriors),
                             9);
   expect_mistakes_of_priors(
       messages_of(std::string("kind: pluck_then_bow\n") + kScene +
                   "pluck: {initial: {type: pluck, position: 43 mm, displacement: 1 mm}}\n"
                   "contact: {start: 30 mm}\n"
-                  "bound:\n  unknowns:\n" +
-                  kUnknowns),
+                  "bound:\n  parameters:\n" +
+                  kPriors),
       11);
 }
 
 TEST(LintPriors, ReportsCorrelationsThatNoGaussianHasAtTheLastOfThem) {
   const std::string messages = messages_of(std::string("kind: calibration_limit\n") + kScene +
-                                           "continuation:\n"
-                                           "  unknowns:\n"
+                                           "calibration:\n"
+                                           "  parameters:\n"
                                            "    priors:\n"
                                            "      - {parameter: x_c, deviation: 1 mm}\n"
                                            "      - {parameter: f0, deviation: 1 Hz}\n"
@@ -229,8 +250,8 @@ TEST(LintPriors, ReportsCorrelationsThatNoGaussianHasAtTheLastOfThem) {
 
 std::string plucks(const std::string& first, const std::string& second) {
   return std::string("kind: calibrate\n") + kScene +
-         "calibration: {parameters: {frequencies: all, law: true, contact: true}, continuation: {}}"
-         "\nplucks:\n  - " +
+         "calibration: {parameters: {frequencies: all, law: true, contact: true}, objective: "
+         "joint_likelihood, optimizer: staged}\nplucks:\n  - " +
          first + "\n  - " + second + "\n";
 }
 
@@ -311,18 +332,22 @@ TEST(LintNoise, RefusesARecordThatDoesNotShowTheNoiseToEstimate) {
                           testing::HasSubstr("22050 Hz"),
                           testing::HasSubstr("State left_noise and right_noise, or sample faster"));
   };
-  EXPECT_THAT(messages_of(sampled("22.05 kHz", "continuation: {}")), refused("7"));
+  EXPECT_THAT(messages_of(sampled("22.05 kHz", "objective: joint_likelihood, optimizer: staged")),
+              refused("7"));
   EXPECT_THAT(messages_of(sampled("22.05 kHz", "objective: joint_likelihood")), refused("7"));
   EXPECT_THAT(messages_of(sampled("22.05 kHz",
                                   "objective: {type: weighted_sum, terms: [{weight: "
                                   "1, objective: joint_likelihood}]}")),
               refused("7"));
-  const std::string stated = "continuation: {left_noise: 3 mN, right_noise: 4 mN}";
+  const std::string stated =
+      "objective: {type: joint_likelihood, left_noise: 3 mN, right_noise: 4 mN}, optimizer: staged";
   EXPECT_EQ(messages_of(sampled("22.05 kHz", stated)).find("error"), std::string::npos);
-  EXPECT_EQ(messages_of(sampled("25.6 kHz", "continuation: {}")).find("error"), std::string::npos);
+  EXPECT_EQ(messages_of(sampled("25.6 kHz", "objective: joint_likelihood, optimizer: staged"))
+                .find("error"),
+            std::string::npos);
   EXPECT_EQ(messages_of(sampled("22.05 kHz", "objective: spectral_peak")).find("error"),
             std::string::npos);
-  EXPECT_THAT(messages_of(sampled("51.2 kHz", "continuation: {}",
+  EXPECT_THAT(messages_of(sampled("51.2 kHz", "objective: joint_likelihood, optimizer: staged",
                                   "[{initial: {type: pluck, position: 0.1 m, displacement: 1 mm}, "
                                   "sample_rate: 22.05 kHz}]")),
               refused("8"));

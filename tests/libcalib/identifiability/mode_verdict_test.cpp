@@ -61,7 +61,7 @@ TEST(FreeVerdicts, KnowAModeThatLeavesTheLawByTheDataAlone) {
   EXPECT_EQ(verdicts[1].deviation, 2e-5);
   // Neither law nor data have it.
   EXPECT_EQ(verdicts[4].source, ModeSource::kPrior);
-  EXPECT_EQ(verdicts[4].deviation, kLeft);
+  EXPECT_EQ(verdicts[4].deviation, kDeparted);
   EXPECT_EQ(not_following(verdicts), (std::vector<std::size_t>{1, 4}));
 }
 
@@ -75,7 +75,7 @@ TEST(Release, OpensThePriorOfAModeThatLeaves) {
   Eigen::VectorXd widths = prior_widths(sight.seen, 2e-3, 1e-5);
   EXPECT_EQ(widths[1], 1e-5);
   release(found.followers, sight, widths);
-  EXPECT_EQ(widths[1], kLeft);
+  EXPECT_EQ(widths[1], kDeparted);
   EXPECT_EQ(sight.seen[1], 2e-4);
   EXPECT_EQ(widths[0], 2e-3);
 

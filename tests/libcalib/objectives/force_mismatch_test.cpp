@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "libcalib/optimizers/ceres_optimizer.hpp"
+#include "libcalib/parameters/parameter_options.hpp"
 #include "libsim/base/error.hpp"
 #include "tests/libcalib/calibration_case.hpp"
 #include "tests/libcalib/slope_check.hpp"

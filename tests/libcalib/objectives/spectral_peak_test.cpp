@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "libcalib/optimizers/systematic_search.hpp"
+#include "libcalib/parameters/parameter_options.hpp"
 #include "libsim/base/error.hpp"
 #include "tests/libcalib/calibration_case.hpp"
 #include "tests/libcalib/slope_check.hpp"

@@ -9,6 +9,7 @@
 #include "libcalib/calibration.hpp"
 #include "libsim/base/error.hpp"
 #include "tests/libcalib/likelihood/bowed_case.hpp"
+#include "tests/libcalib/optimizers/staged/as_calibration.hpp"
 
 namespace modcal {
 namespace {
@@ -110,7 +111,7 @@ TEST_F(HeldParameters, ContactsOfFurtherStrokesAreHeldEach) {
   const std::vector<CalibrationData> strokes = {
       data, CalibrationData::of_records(more.reactions[0], more.reactions[1], more.sample_rate)};
   ContinuationOptions with = options({{"x_c 2", 0.0291}});
-  const RecordsFit fit = calibrate_records(start(), strokes, with);
+  const ContinuationResult fit = calibrate_records(start(), strokes, with);
   EXPECT_TRUE(fit.right) << fit.chi2;
   EXPECT_EQ(fit.contacts[1], 0.0291);
   EXPECT_EQ(fit.contact_deviations[1], 0.0);
@@ -118,7 +119,7 @@ TEST_F(HeldParameters, ContactsOfFurtherStrokesAreHeldEach) {
   EXPECT_LT(std::abs(fit.contacts[0] - 0.0285), 6.0 * fit.contact_deviations[0]);
   with = options({{"x_c", 0.0285}, {"f0", 196.0}});
   with.frequencies = false;
-  const RecordsFit first = calibrate_records(start(), strokes, with);
+  const ContinuationResult first = calibrate_records(start(), strokes, with);
   EXPECT_EQ(first.contacts[0], 0.0285);
   EXPECT_EQ(first.law.fundamental, 196.0);
   EXPECT_EQ(first.law.deviation[0], 0.0);
@@ -127,15 +128,15 @@ TEST_F(HeldParameters, ContactsOfFurtherStrokesAreHeldEach) {
 }
 
 TEST_F(HeldParameters, AreWhatACalibrationWithoutAFreeContactHolds) {
-  CalibrationOptions with{.has_continuation = true, .continuation = options({})};
-  with.parameters.law = true;
+  CalibrationOptions with = as_calibration(options({}));
+  with.parameters.frequencies = "none";
+  with.parameters.contact = false;
   ModelPoint initial = start();
   initial.contact = 0.0285;
   const CalibrationResult result = calibrate(initial, data, with);
   EXPECT_EQ(result.model.contact, 0.0285);
-  EXPECT_EQ(result.contact_deviations, std::vector<double>{0.0});
-  const std::vector<CalibrationData> strokes = {data, data};
-  EXPECT_THROW(calibrate(initial, strokes, with), InvalidInput);
+  EXPECT_EQ(result.continuation->contact_deviations, std::vector<double>{0.0});
+  EXPECT_THROW(calibrate(initial, as_records({data, data}), with), InvalidInput);
 }
 
 TEST(FixedParameters, ThatCannotBeAreRefusedWithTheReason) {

@@ -8,6 +8,7 @@
 #include "libcalib/identifiability/expected_limit.hpp"
 #include "tests/libcalib/likelihood/bowed_case.hpp"
 #include "tests/libcalib/likelihood/pluck_record_case.hpp"
+#include "tests/libcalib/optimizers/staged/as_calibration.hpp"
 
 namespace modcal {
 namespace {
@@ -169,15 +170,14 @@ TEST_F(CovarianceOfAFit, OfSeveralRecordsNamesThemAsTheParametersDo) {
   const std::vector<CalibrationData> strokes = {
       data, CalibrationData::of_records(other.reactions[0], other.reactions[1], 51200.0)};
   const NoisyRecords rung = plucked_records(0.0, 0.25, kLevel, 7);
-  const std::vector<PluckRecord> plucks = {
-      {.data = CalibrationData::of_records(rung.reactions[0], rung.reactions[1], 51200.0),
-       .noise = rung.deviation}};
-  CalibrationOptions calibration{.has_continuation = true, .continuation = options};
-  calibration.parameters.law = calibration.parameters.contact = true;
-  calibration.parameters.frequencies = "all";
-  calibration.continuation.unknowns.gain.free = true;
-  calibration.continuation.unknowns.per_record = {"x_c", "gain"};
-  const CalibrationResult result = calibrate(bowed.truth, strokes, plucks, calibration);
+  std::vector<CalibrationRecord> all = as_records(strokes);
+  all.push_back({.data = CalibrationData::of_records(rung.reactions[0], rung.reactions[1], 51200.0),
+                 .noise = rung.deviation,
+                 .pluck = true});
+  CalibrationOptions calibration = as_calibration(options);
+  calibration.parameters.unknowns.gain.free = true;
+  calibration.parameters.unknowns.per_record = {"x_c", "gain"};
+  const CalibrationResult result = calibrate(bowed.truth, all, calibration);
   const ContinuationResult& fit = *result.continuation;
   expect_deviations_of_modes(fit.modes, fit.covariance);
   std::size_t others = 0;

@@ -1,8 +1,7 @@
-#include "libcalib/parameters/parameters.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "libcalib/parameters/parameter_options.hpp"
 #include "libsim/base/error.hpp"
 #include "tests/libcalib/calibration_case.hpp"
 
@@ -139,9 +138,10 @@ TEST(ParameterOptions, NameWhatIsFree) {
   EXPECT_EQ(options.names(2), (Names{"f_1", "f_2", "x_c"}));
   options = {.frequencies = "listed", .modes = {5, 3}, .law = true};
   EXPECT_EQ(options.names(8), (Names{"f_5", "f_3", "f0", "B"}));
-  options = {.contact = true, .damping = "power", .sensors = {"gain", "delay"}};
+  options = {.contact = true, .unknowns = {.damping = "power"}};
+  options.unknowns.gain.free = options.unknowns.delay.free = true;
   EXPECT_EQ(options.names(8), (Names{"x_c", "damping", "damping_power", "gain", "delay"}));
-  options = {.damping = "each"};
+  options = {.unknowns = {.damping = "each"}};
   EXPECT_EQ(options.names(2), (Names{"zeta_1", "zeta_2"}));
   EXPECT_THROW(ParameterOptions{}.names(8), InvalidInput);
   options = {.frequencies = "all", .modes = {5}};

@@ -12,6 +12,7 @@
 #include "libcalib/optimizers/staged/newton_fit.hpp"
 #include "libsim/base/error.hpp"
 #include "tests/libcalib/likelihood/bowed_case.hpp"
+#include "tests/libcalib/optimizers/staged/as_calibration.hpp"
 
 namespace modcal {
 namespace {
@@ -218,18 +219,16 @@ TEST(FreedUnknowns, ComeBackUnderTheNamesOfTheirPriorsWithDeviations) {
   for (std::size_t n = 0; n < 50; ++n) {
     start.basis.zeta[n] *= 1.1 * std::pow(static_cast<double>(n + 1), 0.05);
   }
-  CalibrationOptions options{.has_continuation = true,
-                             .continuation = {.law_width = 2e-3,
-                                              .left_noise = records.deviation[0],
-                                              .right_noise = records.deviation[1],
-                                              .restarts = 0}};
-  options.parameters.law = options.parameters.contact = true;
-  options.parameters.frequencies = "all";
-  UnknownsOptions& unknowns = options.continuation.unknowns;
+  CalibrationOptions options = as_calibration({.law_width = 2e-3,
+                                               .left_noise = records.deviation[0],
+                                               .right_noise = records.deviation[1],
+                                               .restarts = 0});
+  UnknownsOptions& unknowns = options.parameters.unknowns;
   unknowns.damping = "power";
   unknowns.gain.free = unknowns.delay.free = true;
   for (const std::size_t strokes : {1u, 2u}) {
-    const CalibrationResult found = calibrate(start, std::span(data).first(strokes), options);
+    const CalibrationResult found =
+        calibrate(start, as_records({data.begin(), data.begin() + strokes}), options);
     // What the names say: zeta_n = damping n^damping_power zeta_n(initial).
     const double truths[] = {1.0 / 1.1, -0.05, 1.0, 0.0};
     const char* names[] = {"damping", "damping_power", "gain", "delay"};
@@ -253,15 +252,12 @@ TEST(FreedUnknowns, AmongThemEveryDampingRatio) {
   const NoisyRecords records = noisy(bowed, 0.01, 5);
   const CalibrationData data =
       CalibrationData::of_records(records.reactions[0], records.reactions[1], records.sample_rate);
-  CalibrationOptions options{.has_continuation = true,
-                             .continuation = {.law_width = 2e-3,
-                                              .left_noise = records.deviation[0],
-                                              .right_noise = records.deviation[1],
-                                              .restarts = 0}};
-  options.parameters.law = options.parameters.contact = true;
-  options.parameters.frequencies = "all";
-  options.continuation.unknowns.damping = "each";
-  options.continuation.unknowns.fixed = {{"zeta_5", 1e-3}};
+  CalibrationOptions options = as_calibration({.law_width = 2e-3,
+                                               .left_noise = records.deviation[0],
+                                               .right_noise = records.deviation[1],
+                                               .restarts = 0});
+  options.parameters.unknowns.damping = "each";
+  options.parameters.unknowns.fixed = {{"zeta_5", 1e-3}};
   const CalibrationResult found = calibrate(bowed.truth, data, options);
   EXPECT_EQ(named(found, "damping"), nullptr);
   EXPECT_EQ(named(found, "zeta_5"), nullptr);
@@ -324,7 +320,7 @@ TEST(StatedPriors, ThatAreNoneAreRefusedWithTheReason) {
   refused(fixed, "no string has such a law");
   fixed.fixed = {{"x_c", 0.33}};
   refused(fixed, "within (0, 0.33) m");
-  refused(stating({{"corner", 4.0, 1.0}}), "corner: {free: true}");
+  refused(stating({{"corner", 4.0, 1.0}}), "among the sensors");
   refused(stating({{"zeta_3", 1e-3, 1e-4}, {"damping_power", 0.0, 0.1}}), "damping: power");
   refused(stating({}, {{{"f0", "B"}, 0.3}}), "f0 and B have a correlation and no priors");
   const std::vector<ParameterPrior> three = {

@@ -35,7 +35,8 @@ ContinuationResult found() {
 // The outcome of a calibration whose modes have not been asked for.
 CalibrationOutcome outcome_of(ContinuationResult continuation) {
   CalibrationOutcome outcome;
-  outcome.result.continuation = std::move(continuation);
+  outcome.result.continuation =
+      std::make_shared<ContinuationResult>(std::move(continuation));
   return outcome;
 }
 

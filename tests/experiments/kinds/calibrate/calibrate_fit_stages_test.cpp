@@ -1,4 +1,4 @@
-// What a calibration says of the stages of its continuation.
+// What a calibration says of the stages of its search.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,9 @@ std::vector<FitStage> stages() {
 
 CalibrationOutcome outcome_with_stages() {
   CalibrationOutcome outcome;
-  outcome.result.continuation.emplace().stages = stages();
+  ContinuationResult found;
+  found.stages = stages();
+  outcome.result.continuation = std::make_shared<ContinuationResult>(std::move(found));
   return outcome;
 }
 

@@ -11,7 +11,7 @@ namespace modcal {
 namespace {
 
 // Bowed at a fifth of its length, a node of modes 5 and 10.
-std::string config(const std::string& continuation, const std::string& rest) {
+std::string config(const std::string& parameters, const std::string& rest) {
   return "kind: calibrate\n"
          "scene:\n"
          "  string: {length: 0.33 m, linear_density: 3.1e-3 kg/m, fundamental: 196 Hz, modes: 11}\n"
@@ -21,9 +21,9 @@ std::string config(const std::string& continuation, const std::string& rest) {
          "simulator: modal_event\n"
          "measurement: {sample_rate: 12.5 kHz, noise_level: 0.5 %}\n"
          "calibration:\n"
-         "  parameters: {frequencies: all, law: true, contact: true}\n"
-         "  continuation: {law_width: 0.2 %" +
-         continuation + "}\n" + rest;
+         "  parameters: {frequencies: all, law: true, contact: true, law_width: 0.2 %" +
+         (parameters.empty() ? ", damping: factor" : parameters) +
+         "}\n  objective: joint_likelihood\n  optimizer: staged\n" + rest;
 }
 
 std::string limit_of(const std::string& text) {
@@ -60,8 +60,7 @@ TEST(LimitText, FurtherStrokesHaveContactsOfTheirOwn) {
 }
 
 TEST(LimitText, HasARowForEveryFreeParameterInBothStages) {
-  const std::string text =
-      limit_of(config(", unknowns: {damping: power, gain: {free: true}, delay: {free: true}}", ""));
+  const std::string text = limit_of(config(", damping: power, sensors: [gain, delay]", ""));
   const std::size_t free = text.find("every frequency free");
   ASSERT_NE(free, std::string::npos);
   for (const std::string& stage : {text.substr(0, free), text.substr(free)}) {
@@ -70,13 +69,13 @@ TEST(LimitText, HasARowForEveryFreeParameterInBothStages) {
     EXPECT_THAT(stage, testing::ContainsRegex("damping_power +sd [0-9]"));
     EXPECT_THAT(stage, testing::Not(testing::HasSubstr("corner")));
   }
-  EXPECT_THAT(limit_of(config(", unknowns: {damping: each}", "")),
+  EXPECT_THAT(limit_of(config(", damping: each", "")),
               testing::HasSubstr("relative sd  sd of zeta  verdict"));
 }
 
 TEST(LimitText, NamesNoFixedContactAmongTheDeviations) {
-  const std::string fixed = limit_of(
-      config(", unknowns: {damping: factor, fixed: [{parameter: x_c, value: 66 mm}]}", ""));
+  const std::string fixed =
+      limit_of(config(", damping: factor, fixed: [{parameter: x_c, value: 66 mm}]", ""));
   EXPECT_THAT(fixed, testing::HasSubstr("every frequency free: sd of the damping factor "));
   EXPECT_THAT(limit_of(config("", "")),
               testing::ContainsRegex("every frequency free: sd of x_c [^\n]* m, of the damping"));

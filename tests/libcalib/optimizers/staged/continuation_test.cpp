@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "libcalib/identifiability/mode_verdict.hpp"
+#include "libcalib/optimizers/scoring.hpp"
 #include "libcalib/optimizers/staged/newton_fit.hpp"
 #include "tests/libcalib/likelihood/bowed_case.hpp"
 
@@ -185,7 +186,8 @@ TEST(DebiasedHessian, LeavesNoDirectionMuchWorseKnownThanItsPriorHasIt) {
   options.noise = Eigen::Vector2d(0.1, 1.0).asDiagonal();
   options.prior = Eigen::Vector2d(0.0, 1.0).asDiagonal();
   const Eigen::MatrixXd information = Eigen::Vector2d(1.0, 0.2).asDiagonal();
-  const Eigen::MatrixXd hessian = debiased_hessian(information, options);
+  const Eigen::MatrixXd hessian =
+      debiased_hessian(2.0 * information, 2.0 * options.noise, options.prior);
   // 1.4 − 2·0.9ⁿ falls below 0.1 for n = 4: n = 5 it is.
   EXPECT_NEAR(hessian(1, 1), 1.4 - 2.0 * std::pow(0.9, 5), 1e-12);
   EXPECT_NEAR(hessian(0, 0), 2.0 - 0.2 * std::pow(0.9, 5), 1e-12);

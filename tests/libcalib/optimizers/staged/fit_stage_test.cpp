@@ -1,4 +1,3 @@
-#include "libcalib/optimizers/staged/fit_stage.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libcalib/optimizers/staged/records_fit.hpp"
+#include "libcalib/optimizers/staged/continuation.hpp"
 #include "tests/libcalib/likelihood/bowed_case.hpp"
 
 namespace modcal {
@@ -92,7 +91,7 @@ TEST(FitStage, CountRestartsAndTheFitWithMisfitForNoise) {
 TEST(FitStage, OfSeveralRecordsNameThem) {
   const Stroke one = stroke();
   const std::vector<CalibrationData> two = {one.data, one.data};
-  const ContinuationResult fit = as_continuation(calibrate_records(one.start, two, one.options));
+  const ContinuationResult fit = calibrate_records(one.start, two, one.options);
   expect_in_order(fit);
   const std::vector<std::string> names = names_of(fit.stages);
   ASSERT_EQ(names.size(), 9u + 9u + 3u);

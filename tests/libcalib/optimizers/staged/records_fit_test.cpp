@@ -1,13 +1,13 @@
-#include "libcalib/optimizers/staged/records_fit.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "libcalib/calibration.hpp"
+#include "libcalib/optimizers/staged/continuation.hpp"
 #include "libsim/base/error.hpp"
 #include "tests/libcalib/likelihood/bowed_case.hpp"
 #include "tests/libcalib/likelihood/pluck_record_case.hpp"
+#include "tests/libcalib/optimizers/staged/as_calibration.hpp"
 
 namespace modcal {
 namespace {
@@ -46,7 +46,7 @@ TEST(RecordsFit, FourStrokesHalveTheDeviationsAndKeepTheirContacts) {
   const std::vector<double> contacts = {0.0285, 0.0285, 0.0291, 0.0291};
   Strokes four = strokes(contacts);
   four.options.frequencies = false;
-  const RecordsFit fit = calibrate_records(four.start, four.data, four.options);
+  const ContinuationResult fit = calibrate_records(four.start, four.data, four.options);
   EXPECT_TRUE(fit.right) << fit.chi2;
   EXPECT_LT(std::abs(fit.law.fundamental - 196.0), 6.0 * fit.law.deviation[0]);
   EXPECT_LT(std::abs(fit.law.inharmonicity - kInharmonicity), 6.0 * fit.law.deviation[1]);
@@ -57,7 +57,7 @@ TEST(RecordsFit, FourStrokesHalveTheDeviationsAndKeepTheirContacts) {
   }
   EXPECT_TRUE(fit.law.accepted);
   EXPECT_EQ(fit.law.chi2, fit.chi2);
-  const ContinuationResult as_one = as_continuation(fit);
+  const ContinuationResult as_one = fit;
   for (std::size_t n = 0; n < 50; ++n) {
     const ModeVerdict& mode = as_one.modes[n];
     EXPECT_EQ(mode.frequency, fit.model.basis.frequency(n));
@@ -72,11 +72,11 @@ TEST(RecordsFit, FourStrokesHalveTheDeviationsAndKeepTheirContacts) {
 
 TEST(RecordsFit, EveryFrequencyProfits) {
   const Strokes two = strokes({0.0285, 0.0285});
-  const RecordsFit fit = calibrate_records(two.start, two.data, two.options);
+  const ContinuationResult fit = calibrate_records(two.start, two.data, two.options);
   EXPECT_TRUE(fit.right) << fit.chi2;
   ASSERT_EQ(fit.frequency_deviations.size(), 50u);
   // The law is that of both, not of one.
-  const LawEstimate law = as_continuation(fit).law;
+  const LawEstimate law = fit.law;
   EXPECT_TRUE(law.accepted) << law.chi2;
   EXPECT_NE(law.chi2, fit.single[0].law.chi2);
   EXPECT_NEAR(law.deviation[0] / fit.single[0].law.deviation[0], std::sqrt(0.5), 0.1);
@@ -100,16 +100,15 @@ TEST(RecordsFit, EveryFrequencyProfits) {
 TEST(RecordsFit, IsACalibrationWithAContactForEveryStroke) {
   const std::vector<double> contacts = {0.0285, 0.0291};
   const Strokes two = strokes(contacts);
-  CalibrationOptions options{.has_continuation = true, .continuation = two.options};
-  options.parameters.law = options.parameters.contact = true;
+  CalibrationOptions options = as_calibration(two.options);
   options.parameters.frequencies = "none";
-  const CalibrationResult result = calibrate(two.start, two.data, options);
-  const RecordsFit fit = [&] {
+  const CalibrationResult result = calibrate(two.start, as_records(two.data), options);
+  const ContinuationResult fit = [&] {
     ContinuationOptions law = two.options;
     law.frequencies = false;
     return calibrate_records(two.start, two.data, law);
   }();
-  EXPECT_EQ(result.contact_deviations, fit.contact_deviations);
+  EXPECT_EQ(result.continuation->contact_deviations, fit.contact_deviations);
   EXPECT_EQ(result.continuation->chi2, fit.chi2);
   EXPECT_EQ(result.continuation->law.deviation[0], fit.law.deviation[0]);
   EXPECT_EQ(result.model.basis.omega, fit.model.basis.omega);
@@ -118,8 +117,8 @@ TEST(RecordsFit, IsACalibrationWithAContactForEveryStroke) {
     if (parameter.name.starts_with("x_c")) found.push_back(parameter.final);
   }
   EXPECT_EQ(found, fit.contacts);
-  options.has_continuation = false;
-  EXPECT_THROW(calibrate(two.start, two.data, options), InvalidInput);
+  options.optimizer = Choice<Optimizer>("ceres");
+  EXPECT_THROW(calibrate(two.start, as_records(two.data), options), InvalidInput);
 }
 
 // A stroke at L/11 of the string without stiffness, to which modes 11, 22, 33 and 44 are blind.
@@ -143,7 +142,7 @@ PluckRecord as_record(const NoisyRecords& records) {
           .noise = records.deviation};
 }
 
-void expect_modes(const RecordsFit& fit, const ModelPoint& truth,
+void expect_modes(const ContinuationResult& fit, const ModelPoint& truth,
                   const std::vector<std::size_t>& numbers) {
   for (const std::size_t n : numbers) {
     EXPECT_EQ(fit.modes[n - 1].source, ModeSource::kIdentified) << n;
@@ -158,13 +157,13 @@ TEST(RecordsFit, APluckSeesTheModesThatTheStrokeDoesNot) {
   const Strokes one = blind_stroke();
   const ModelPoint truth = bowed_case(0.03, 0.0, 0.02).truth;
   const std::vector<PluckRecord> plucks = {as_record(plucked_records(0.0, 0.5, 0.01, 3))};
-  const RecordsFit fit = calibrate_records(one.start, one.data, one.options, plucks);
+  const ContinuationResult fit = calibrate_records(one.start, one.data, one.options, plucks);
   EXPECT_TRUE(fit.right) << fit.chi2;
   expect_modes(fit, truth, {11, 22, 33, 44});
   EXPECT_LT(std::abs(fit.model.contact - 0.03), 6.0 * fit.contact_deviations[0]);
   EXPECT_LT(std::abs(fit.values[0].damping - 1.0), 6.0 * fit.values[0].damping_deviation);
   // Informations add: no mode is known worse than by the stroke alone, noise in JᵀJ aside.
-  const RecordsFit alone = calibrate_records(one.start, one.data, one.options);
+  const ContinuationResult alone = calibrate_records(one.start, one.data, one.options);
   for (std::size_t n = 0; n < 50; ++n) {
     EXPECT_LT(fit.frequency_deviations[n], 1.05 * alone.frequency_deviations[n]) << n + 1;
   }
@@ -172,7 +171,7 @@ TEST(RecordsFit, APluckSeesTheModesThatTheStrokeDoesNot) {
   // the stroke alone, and as with the law's few unknowns.
   EXPECT_LT(fit.contact_deviations[0], 1.05 * alone.contact_deviations[0]);
   EXPECT_LT(fit.contact_deviations[0], 1.05 * fit.law.deviation[2]);
-  const ContinuationResult result = as_continuation(fit);
+  const ContinuationResult result = fit;
   EXPECT_EQ(result.modes[10].frequency, fit.model.basis.frequency(10));
   EXPECT_EQ(result.modes[10].deviation, fit.frequency_deviations[10]);
   EXPECT_EQ(result.chi2, fit.chi2);
@@ -199,7 +198,7 @@ TEST(RecordsFit, APluckFindsABlindModeThatLeavesTheLaw) {
     }
   }
   const std::vector<PluckRecord> plucks = {as_record(records)};
-  const RecordsFit fit = calibrate_records(one.start, one.data, one.options, plucks);
+  const ContinuationResult fit = calibrate_records(one.start, one.data, one.options, plucks);
   EXPECT_TRUE(fit.right) << fit.chi2;
   expect_modes(fit, truth, {11, 22, 33, 44});
 }
@@ -214,7 +213,7 @@ TEST(RecordsFit, EachRecordHasTheGainAndDampingThatAreItsOwn) {
   two.options.left_noise = two.options.right_noise = NAN;
   EXPECT_FALSE(calibrate_records(two.start, two.data, two.options).right);
   two.options.unknowns.per_record = {"x_c", "gain"};
-  const RecordsFit own_gain = calibrate_records(two.start, two.data, two.options);
+  const ContinuationResult own_gain = calibrate_records(two.start, two.data, two.options);
   EXPECT_TRUE(own_gain.right) << own_gain.chi2;
   ASSERT_EQ(own_gain.values.size(), 2u);
   for (const std::size_t r : {0u, 1u}) {
@@ -226,7 +225,7 @@ TEST(RecordsFit, EachRecordHasTheGainAndDampingThatAreItsOwn) {
   }
   two.options.unknowns.per_record = {"x_c", "gain", "damping"};
   two.options.unknowns.priors = {{"gain 2", 1.03, 1e-7}, {"x_c 2", 0.0291, 1e-9}};
-  const RecordsFit both = calibrate_records(two.start, two.data, two.options);
+  const ContinuationResult both = calibrate_records(two.start, two.data, two.options);
   EXPECT_TRUE(both.right) << both.chi2;
   EXPECT_NEAR(both.values[1].sensors.gain, 1.03, 1e-6);
   EXPECT_NEAR(both.contacts[1], 0.0291, 1e-8);
@@ -241,7 +240,7 @@ TEST(RecordsFit, AModeThatOnlyItsPriorHoldsIsNotIdentified) {
   Strokes one = blind_stroke();
   const double stated = 11.0 * 196.0 * 1.0005;
   one.options.unknowns.priors = {{"f_11", stated, 1e-4 * stated}};
-  const RecordsFit fit = calibrate_records(one.start, one.data, one.options);
+  const ContinuationResult fit = calibrate_records(one.start, one.data, one.options);
   EXPECT_TRUE(fit.right) << fit.chi2;
   for (const ModeVerdict& mode : {fit.modes[10], fit.single[0].modes[10]}) {
     EXPECT_EQ(mode.source, ModeSource::kPrior);
@@ -257,13 +256,13 @@ TEST(RecordsFit, FindsAPriorThatTheDataContradict) {
   Strokes two = strokes({0.0285, 0.0291});
   two.options.frequencies = false;
   two.options.unknowns.priors = {{"x_c", 0.0285, 1e-3}, {"x_c 2", 0.035, 1e-3}};
-  const RecordsFit fit = calibrate_records(two.start, two.data, two.options);
+  const ContinuationResult fit = calibrate_records(two.start, two.data, two.options);
   EXPECT_TRUE(fit.fits) << fit.chi2;
   EXPECT_FALSE(fit.right);
   EXPECT_EQ(fit.priors.count, 2u);
   EXPECT_EQ(fit.priors.farthest, "x_c 2");
   EXPECT_NEAR(fit.priors.deviations, 5.9, 0.02);
-  EXPECT_FALSE(as_continuation(fit).right);
+  EXPECT_FALSE(fit.right);
 }
 
 TEST(RecordsFit, HasEveryDampingRatioAboutTheStatedOne) {
@@ -271,7 +270,7 @@ TEST(RecordsFit, HasEveryDampingRatioAboutTheStatedOne) {
   one.options.unknowns.damping = "each";
   one.options.unknowns.damping_width = 1e-6;
   for (double& zeta : one.start.basis.zeta) zeta *= 1.05;
-  const RecordsFit fit = calibrate_records(one.start, one.data, one.options);
+  const ContinuationResult fit = calibrate_records(one.start, one.data, one.options);
   for (std::size_t n = 0; n < 50; ++n) {
     EXPECT_NEAR(fit.model.basis.zeta[n] / one.start.basis.zeta[n], 1.0, 1e-4) << n + 1;
   }
@@ -280,9 +279,9 @@ TEST(RecordsFit, HasEveryDampingRatioAboutTheStatedOne) {
 TEST(RecordsFit, OneContactMayBeShared) {
   Strokes two = strokes({0.0285, 0.0285});
   two.options.frequencies = false;
-  const RecordsFit own = calibrate_records(two.start, two.data, two.options);
+  const ContinuationResult own = calibrate_records(two.start, two.data, two.options);
   two.options.unknowns.per_record.clear();
-  const RecordsFit shared = calibrate_records(two.start, two.data, two.options);
+  const ContinuationResult shared = calibrate_records(two.start, two.data, two.options);
   EXPECT_TRUE(shared.right) << shared.chi2;
   EXPECT_EQ(shared.contacts[0], shared.contacts[1]);
   EXPECT_LT(std::abs(shared.contacts[0] - 0.0285), 6.0 * shared.contact_deviations[0]);
@@ -292,7 +291,7 @@ TEST(RecordsFit, OneContactMayBeShared) {
               0.05);
   EXPECT_LT(shared.contact_deviations[0], 0.95 * own.contact_deviations[0]);
   two.options.unknowns.fixed = {{"x_c", 0.0285}};
-  const RecordsFit held = calibrate_records(two.start, two.data, two.options);
+  const ContinuationResult held = calibrate_records(two.start, two.data, two.options);
   EXPECT_EQ(held.contacts, (std::vector<double>{0.0285, 0.0285}));
 }
 
@@ -312,15 +311,15 @@ TEST(RecordsFit, RefusesSharingThatCannotBe) {
   refused({"x_c"}, "all records share it");
   refused({"f0"}, "cannot be each record's own");
   refused({"gain", "gain"}, "twice");
-  refused({"gain", "delay"}, "delay: {free: true}");
+  refused({"gain", "delay"}, "among the sensors");
   UnknownsOptions power;
   power.damping = "power";
   power.per_record = {"damping"};
   EXPECT_THROW(power.require_sharing(), InvalidInput);
   UnknownsOptions contact;
   contact.priors = {{"x_c 2", 0.03, 1e-3}};
-  EXPECT_THROW(require_contacts(contact, 1), InvalidInput);
-  EXPECT_NO_THROW(require_contacts(contact, 2));
+  EXPECT_THROW(contact.require_contacts(1), InvalidInput);
+  EXPECT_NO_THROW(contact.require_contacts(2));
 }
 
 TEST(RecordsFit, RefusesNoRecord) { EXPECT_THROW(calibrate_records({}, {}, {}), InvalidInput); }

@@ -1,0 +1,242 @@
+#include "libcalib/optimizers/scoring.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+namespace modcal {
+namespace {
+
+using Index = Eigen::Index;
+
+// The information itself is positive: what is left in any direction is no less than the prior
+// there, save for the scatter of what noise adds. A direction with less than this of it would be
+// said to be worse known than before the record.
+constexpr double kPriorShare = 0.1;
+
+// A long step is likely to be taken and the information needed where it ends.
+constexpr double kLong = 1.0;
+
+// Of its standard deviation: a variable that moved less keeps its row of the information. Even
+// where a column is another one after a standard deviation, a step is then off by a twenty-fifth of
+// one, and the slope, which is exact, has the next step make up for it.
+constexpr double kMoved = 0.2;
+
+bool positive_definite(const Eigen::MatrixXd& matrix) {
+  // Scaled to a unit diagonal, so that units do not decide.
+  if ((matrix.diagonal().array() <= 0.0).any()) return false;
+  const Eigen::VectorXd scale = matrix.diagonal().cwiseSqrt().cwiseInverse();
+  Eigen::MatrixXd scaled = scale.asDiagonal() * matrix * scale.asDiagonal();
+  scaled.diagonal().array() -= 1e-10;
+  return scaled.llt().info() == Eigen::Success;
+}
+
+// Newton steps through an evaluator.
+class Search {
+ public:
+  Search(Evaluator& evaluator, const Scoring::Options& options, const ScoringShortcuts& shortcuts)
+      : evaluator_(evaluator), options_(options), shortcuts_(shortcuts) {
+    const auto n = static_cast<Index>(evaluator.dimension());
+    lower_ = Eigen::Map<const Eigen::VectorXd>(evaluator.lower().data(), n);
+    upper_ = Eigen::Map<const Eigen::VectorXd>(evaluator.upper().data(), n);
+    fit_.z = Eigen::VectorXd::Zero(n);
+    fit_.gradient.resize(n);
+  }
+
+  ScoringFit run() {
+    if (shortcuts_.at_start) fit_ = *shortcuts_.at_start;
+    const bool finite =
+        shortcuts_.at_start || evaluator_.evaluate(view(fit_.z), {.value = &fit_.value,
+                                                                  .gradient = fit_.gradient.data(),
+                                                                  .information = &fit_.information,
+                                                                  .noise = &fit_.noise,
+                                                                  .prior = &fit_.prior});
+    if (!finite) return fit_;
+    formed_ = fit_.z;
+    double damping = 0.0;
+    for (std::int64_t count = 0; count < options_.steps; ++count) {
+      Step step = newton_step(damping);
+      // Half the tolerance: the information changes less than that in a step.
+      if (stale_ && !(step.decrease < 0.5 * options_.tolerance && damping < 0.1)) {
+        refresh_information();
+        step = newton_step(damping);
+      }
+      if (step.decrease < options_.tolerance && damping < 0.1) {
+        fit_.converged = true;
+        break;
+      }
+      const bool better = take(step, damping);
+      damping = better ? (damping < 1e-3 ? 0.0 : 0.2 * damping) : std::max(1e-2, 6.0 * damping);
+      if (damping > 1e8) break;
+    }
+    return fit_;
+  }
+
+ private:
+  struct Step {
+    Eigen::VectorXd move;
+    double decrease = 0.0;
+  };
+  struct Trial {
+    bool finite = false;
+    double value = std::numeric_limits<double>::infinity();
+    Eigen::VectorXd gradient;
+    Eigen::MatrixXd information;
+    Eigen::VectorXd formed;  // where each row of the information is from; empty: there is none
+  };
+
+  static std::span<const double> view(const Eigen::VectorXd& z) {
+    return {z.data(), static_cast<std::size_t>(z.size())};
+  }
+  Eigen::MatrixXd hessian() const {
+    return debiased_hessian(fit_.information, fit_.noise, fit_.prior);
+  }
+
+  // Of variables pressed against a bound nothing moves.
+  Step newton_step(double damping) const {
+    Eigen::MatrixXd h = hessian();
+    Eigen::VectorXd gradient = fit_.gradient;
+    for (Index i = 0; i < gradient.size(); ++i) {
+      const bool pressed = (fit_.z[i] <= lower_[i] && gradient[i] > 0.0) ||
+                           (fit_.z[i] >= upper_[i] && gradient[i] < 0.0);
+      if (!pressed) continue;
+      gradient[i] = 0.0;
+      h.row(i).setZero();
+      h.col(i).setZero();
+      h(i, i) = 1.0;
+    }
+    const Eigen::VectorXd scale = h.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    h = scale.asDiagonal() * h * scale.asDiagonal();
+    h.diagonal().array() += damping + 1e-12;
+    Step step{-(scale.asDiagonal() * h.ldlt().solve(scale.asDiagonal() * gradient))};
+    step.decrease = -step.move.dot(gradient);
+    return step;
+  }
+
+  bool take(Step& step, double damping) {
+    Eigen::VectorXd& move = step.move;
+    if (shortcuts_.largest.size() > 0) {
+      const double share = move.cwiseAbs().cwiseQuotient(shortcuts_.largest).maxCoeff();
+      if (share > 1.0) move *= 1.0 / share;
+    }
+    const Eigen::VectorXd trial = (fit_.z + move).cwiseMax(lower_).cwiseMin(upper_);
+    const bool far = damping == 0.0 && step.decrease > kLong;
+    Trial tried = far || !shortcuts_.slopes ? with_information(trial) : slope(trial);
+    // The debiased step may pass the minimum of this draw by a little of its noise.
+    if (!tried.finite || !(tried.value < fit_.value + 0.5 * options_.tolerance)) return false;
+    stale_ = tried.formed.size() == 0;
+    if (!stale_) {
+      fit_.information = std::move(tried.information);
+      formed_ = std::move(tried.formed);
+    }
+    fit_.z = trial;
+    fit_.value = tried.value;
+    fit_.gradient = std::move(tried.gradient);
+    return true;
+  }
+
+  Trial slope(const Eigen::VectorXd& z) {
+    Trial trial{.gradient = Eigen::VectorXd(z.size())};
+    trial.finite =
+        evaluator_.evaluate(view(z), {.value = &trial.value, .gradient = trial.gradient.data()});
+    return trial;
+  }
+
+  std::vector<std::size_t> moved(const Eigen::VectorXd& moves) const {
+    const Eigen::MatrixXd h = hessian();
+    const Eigen::VectorXd scale = h.diagonal().cwiseSqrt().cwiseInverse();
+    const Eigen::MatrixXd scaled = scale.asDiagonal() * h * scale.asDiagonal();
+    const Eigen::MatrixXd inverse =
+        scaled.ldlt().solve(Eigen::MatrixXd::Identity(h.rows(), h.cols()));
+    const Eigen::VectorXd least =
+        kMoved * scale.cwiseProduct(inverse.diagonal().cwiseMax(0.0).cwiseSqrt());
+    std::vector<std::size_t> result;
+    for (Index i = 0; i < moves.size(); ++i) {
+      if (std::abs(moves[i]) > least[i]) result.push_back(static_cast<std::size_t>(i));
+    }
+    return result;
+  }
+
+  // With the rows of variables that have moved.
+  Trial with_information(const Eigen::VectorXd& z) {
+    std::vector<std::size_t> rows;
+    if (shortcuts_.rows) rows = moved(z - formed_);
+    Trial trial{.gradient = Eigen::VectorXd(z.size()), .formed = formed_};
+    Eigen::MatrixXd found;
+    trial.finite = evaluator_.evaluate(view(z), {.value = &trial.value,
+                                                 .gradient = trial.gradient.data(),
+                                                 .information = &found,
+                                                 .rows = shortcuts_.rows ? &rows : nullptr});
+    if (!trial.finite) return trial;
+    if (found.rows() == found.cols()) {
+      trial.information = std::move(found);
+      trial.formed = z;
+      return trial;
+    }
+    trial.information = fit_.information;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const auto row = static_cast<Index>(rows[i]);
+      trial.information.row(row) = found.row(static_cast<Index>(i));
+      trial.information.col(row) = found.row(static_cast<Index>(i)).transpose();
+      trial.formed[row] = z[row];
+    }
+    return trial;
+  }
+
+  // Where the fit stands; nothing is to be found where no variable has moved.
+  void refresh_information() {
+    stale_ = false;
+    if (shortcuts_.rows && moved(fit_.z - formed_).empty()) return;
+    Trial here = with_information(fit_.z);
+    fit_.information = std::move(here.information);
+    formed_ = std::move(here.formed);
+  }
+
+  Evaluator& evaluator_;
+  const Scoring::Options& options_;
+  const ScoringShortcuts& shortcuts_;
+  Eigen::VectorXd lower_, upper_, formed_;
+  bool stale_ = false;  // the information is that of the point before
+  ScoringFit fit_;
+};
+
+}  // namespace
+
+Eigen::MatrixXd debiased_hessian(const Eigen::MatrixXd& information, const Eigen::MatrixXd& noise,
+                                 const Eigen::MatrixXd& prior) {
+  Eigen::MatrixXd padded = Eigen::MatrixXd::Zero(information.rows(), information.rows());
+  padded.topLeftCorner(prior.rows(), prior.cols()) = prior;
+  const Eigen::MatrixXd full = information + padded;
+  if (noise.size() == 0 || noise.isZero(0.0)) return full;
+  double share = 1.0;
+  for (int i = 0; i < 60; ++i, share *= 0.9) {
+    const Eigen::MatrixXd hessian = full - share * noise;
+    if (positive_definite(hessian - kPriorShare * padded)) return hessian;
+  }
+  return full;
+}
+
+void Scoring::Options::visit(OptionVisitor& visitor) {
+  visitor.integer({.key = "steps", .meaning = "most Newton steps", .range = Range::at_least(1)},
+                  steps);
+  visitor.number({.key = "tolerance",
+                  .meaning = "ends where a step would lower minus the log likelihood by half of "
+                             "this: the square of its length in standard deviations",
+                  .unit = "1",
+                  .range = Range::positive()},
+                 tolerance);
+}
+
+ScoringFit Scoring::fit(Evaluator& evaluator, const Options& options,
+                        const ScoringShortcuts& shortcuts) {
+  return Search(evaluator, options, shortcuts).run();
+}
+
+StopReason Scoring::search(Evaluator& evaluator) const {
+  const ScoringFit found = fit(evaluator, options_);
+  if (found.converged) return StopReason::kConverged;
+  return found.gradient.allFinite() && std::isfinite(found.value) ? StopReason::kNoProgress
+                                                                  : StopReason::kNotFinite;
+}
+
+}  // namespace modcal
