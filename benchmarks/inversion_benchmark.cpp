@@ -8,12 +8,12 @@
 #include <ctime>
 #include <vector>
 
+#include "libinverse/joint/force_prior.hpp"
 #include "libinverse/joint/joint_inversion.hpp"
-#include "libinverse/joint/priors.hpp"
 #include "libinverse/spectral/choices/rules.hpp"
 #include "libinverse/spectral/one_sided/one_sided_inversion.hpp"
 #include "libsim/base/random.hpp"
-#include "libsim/model/constant_damping.hpp"
+#include "libsim/model/damping_laws.hpp"
 
 namespace modcal {
 namespace {

@@ -2,7 +2,7 @@
 // invert_record stroke.wav
 #include <cstdio>
 
-#include "libinverse/inversion_options.hpp"
+#include "libinverse/invert.hpp"
 #include "libsim/io.hpp"
 
 using namespace modcal;

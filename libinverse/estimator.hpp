@@ -2,45 +2,28 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <memory>
-#include <span>
-#include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
-#include "libinverse/joint/sensor_noise.hpp"
-#include "libinverse/spectral/one_sided/one_sided_inversion.hpp"
+#include "libinverse/estimate.hpp"
+#include "libinverse/record.hpp"
 #include "libsim/base/registry.hpp"
+#include "libsim/model.hpp"
 
 namespace modcal {
 
-/// One record as an estimator sees it. Spans are empty where a signal is not known.
-struct EstimationRecord {
-  ReactionPair reactions;  ///< by End, K samples each [N]
-  /// Standard deviations of the noise of one sample as stated by a simulated measurement [N]; NaN:
-  /// not known. Only rules that ask for a known noise level may use them.
-  std::array<double, 2> stated_noise = {std::numeric_limits<double>::quiet_NaN(),
-                                        std::numeric_limits<double>::quiet_NaN()};
-  /// True force [N]: for limits that nobody can beat, never for an estimate.
-  std::span<const double> true_force;
-};
+class Regularizer;
+class ParameterChoice;
 
-/// Where an estimate comes from and what it is.
-struct Estimate {
-  std::string side;   ///< "1", "2", "joint", …: the key of tables
-  std::string label;  ///< "from R1 (x = 0)", "from both reactions": for figures and warnings
-  InversionResult result;
-  /// f_c averaged over a sample period about every sample, undone below half the rate [N]: what
-  /// sampling the force does not fold back. Empty: the force has nothing above the highest mode.
-  std::vector<double> unaliased_force;
-  double largest_transfer = 0.0;  ///< max |H| that the parameter is relative to [N/N]
-  /// Standard deviations given the record: force [N], displacement [m], velocity [m/s]; NaN: none.
-  double force_deviation = std::numeric_limits<double>::quiet_NaN();
-  double displacement_deviation = std::numeric_limits<double>::quiet_NaN();
-  double velocity_deviation = std::numeric_limits<double>::quiet_NaN();
-  std::vector<std::pair<std::string, double>> figures;  ///< "sigma_T" and the like, for reports
-  std::vector<std::string> warnings;
+/// How to invert. The plug-ins must outlive the call.
+struct InversionMethod {
+  const Regularizer& regularizer;
+  const ParameterChoice& choice;
+  InversionOutputs outputs = {};
+  /// Standard deviation of the noise of one sample [N], where a parameter choice asks for it.
+  double noise_rms = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// The modal model that inverts.

@@ -10,7 +10,7 @@
 
 #include "experiments/study/observation.hpp"
 #include "experiments/study/scoring.hpp"
-#include "libinverse/inversion_options.hpp"
+#include "libinverse/invert.hpp"
 
 namespace modcal {
 

@@ -27,8 +27,7 @@ BinRange band_of(const FrequencyGrid& grid, const ModalBasis& basis,
 
 ForceKernel kernel_of(const CalibrationData& data, const ParameterSet& parameters,
                       const TwoSidedForceOptions& options) {
-  RecordBand record =
-      band_of(data, band_of(data.grid(), parameters.initial().basis, options));
+  RecordBand record = band_of(data, band_of(data.grid(), parameters.initial().basis, options));
   const auto regularizer = options.regularizer.make();
   MODCAL_REQUIRE(data.has_both(),
                  "this objective compares the forces identified from the two ends: the {} reaction "
@@ -120,7 +119,9 @@ class ForceDifference final : public ObjectiveFunction {
       kernel_.force_slope(state, slope);
       const double gradient = write_slopes(i, state, slope, r, power, outputs);
       if (!outputs.gradient) continue;
-      outputs.gradient[i] = value_ != Value::kRoot ? gradient : value == 0.0 ? 0.0 : gradient / value;
+      outputs.gradient[i] = value_ != Value::kRoot ? gradient
+                            : value == 0.0         ? 0.0
+                                                   : gradient / value;
     }
   }
 
@@ -131,8 +132,8 @@ class ForceDifference final : public ObjectiveFunction {
     double power_slope = 0.0;
     for (std::size_t k = 0; power_ == Power::kOfPoint && k < r.size(); ++k) {
       for (std::size_t e = 0; e < 2; ++e) {
-        power_slope += weights_[k] * weights_[k] *
-                       (std::conj(state.force[e][k]) * slope[e][k]).real();
+        power_slope +=
+            weights_[k] * weights_[k] * (std::conj(state.force[e][k]) * slope[e][k]).real();
       }
     }
     const double scale = 1.0 / std::sqrt(power), shrink = 0.5 * power_slope / power;

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "libcalib/objective.hpp"
-#include "libinverse/spectral/regularizers/regularizer.hpp"
+#include "libinverse/regularizer.hpp"
 
 namespace modcal {
 

@@ -7,30 +7,88 @@
 #include <numbers>
 
 #include "libsim/base/error.hpp"
+#include "libsim/signal/statistics.hpp"
 
 namespace modcal {
 namespace {
-
-double rms_of(std::span<const double> samples) {
-  double sum = 0.0, power = 0.0;
-  for (const double value : samples) sum += value;
-  const double mean = sum / static_cast<double>(samples.size());
-  for (const double value : samples) power += (value - mean) * (value - mean);
-  return std::sqrt(power / static_cast<double>(samples.size()));
-}
 
 // Noise over signal, the larger of both sides.
 double noise_share(const ReactionPair& reactions, const SensorNoiseLevel& noise) {
   double share = 0.0;
   for (std::size_t r = 0; r < 2; ++r) {
     if (reactions[r].empty()) continue;
-    const double rms = rms_of(reactions[r]);
+    const double rms = standard_deviation(reactions[r]);
     if (rms > 0.0) share = std::max(share, noise.rms[r] / rms);
   }
   return share;
 }
 
 }  // namespace
+
+Truncation truncation_of(const std::string& name) {
+  if (name == "shifted_contour") return Truncation::kShiftedContour;
+  if (name == "transient") return Truncation::kTransient;
+  MODCAL_REQUIRE(name == "wrapped",
+                 "unknown truncation \"{}\": shifted_contour, transient or wrapped", name);
+  return Truncation::kWrapped;
+}
+
+void JointOptions::require() const {
+  truncation_of(truncation);
+  MODCAL_REQUIRE(offset == "arrival" || offset == "none",
+                 "unknown offset rule \"{}\": arrival or none", offset);
+  MODCAL_REQUIRE(points >= 3 && points <= 1280, "{} points on the curve: 3 to 1280 are possible",
+                 points);
+  MODCAL_REQUIRE(std::isnan(sigma) || sigma > 0.0, "contour at {:g} 1/s must be > 0", sigma);
+  MODCAL_REQUIRE(std::isnan(sigma) || truncation == "shifted_contour",
+                 "sigma {:g} 1/s is for the shifted contour: leave it out with truncation \"{}\"",
+                 sigma, truncation);
+}
+
+void JointOptions::visit(OptionVisitor& visitor) {
+  visitor.text({.key = "truncation",
+                .meaning = "what is done about the ends of the record: shifted_contour (at rest at "
+                           "first), transient (any state at either end, unknowns) or wrapped "
+                           "(nothing)",
+                .choices = {"shifted_contour", "transient", "wrapped"}},
+               truncation);
+  visitor.number({.key = "sigma",
+                  .meaning = "contour's distance from the frequency axis; auto: from length, noise "
+                             "and damping, about 2 over the record's length",
+                  .unit = "Hz",
+                  .range = Range::positive(),
+                  .word = "auto"},
+                 sigma);
+  visitor.text({.key = "offset",
+                .meaning = "static level of the sensors; arrival: the mean before the first wave "
+                           "arrives, for records that start at rest",
+                .choices = {"arrival", "none"}},
+               offset);
+  for (std::size_t r = 0; r < 2; ++r) {
+    visitor.number({.key = r == 0 ? "noise_rms1" : "noise_rms2",
+                    .meaning = r == 0 ? "noise of one sample of the reaction at x = 0"
+                                      : "noise of one sample of the reaction at x = L",
+                    .unit = "N",
+                    .range = Range::non_negative(),
+                    .word = "measured"},
+                   noise_rms[r]);
+  }
+  visitor.number({.key = "band_limit",
+                  .meaning = "nothing is identified above this frequency",
+                  .unit = "Hz",
+                  .range = Range::positive(),
+                  .word = "none"},
+                 band_limit);
+  visitor.flag({.key = "limit_to_top_mode",
+                .meaning = "sharp band limit at the highest mode, in place of band_limit"},
+               limit_to_top_mode);
+  visitor.integer({.key = "points",
+                   .meaning = "points on the curve of evidence over the parameter",
+                   .range = Range::closed(3, 1280)},
+                  points);
+  transfer.visit(visitor);
+  sensors.visit(visitor);
+}
 
 ContourInversions::ContourInversions(const EstimationModel& model, const JointOptions& options)
     : basis_(model.basis),
@@ -104,9 +162,15 @@ JointMethod ContourInversions::method(const ForcePrior& prior,
           .outputs = outputs};
 }
 
-Estimate estimate_of(JointResult result, const JointInversion& inversion,
-                     const SensorNoiseLevel& noise, const EstimationRecord& record) {
+std::vector<Estimate> estimate_with(const JointInversion& inversion, const EstimationRecord& record,
+                                    const SensorNoiseLevel& noise, const JointMethod& method,
+                                    const char* side, const char* label) {
+  JointWorkspace workspace;
+  JointResult result;
+  inversion.invert(record.reactions, noise, method, workspace, result);
   Estimate estimate;
+  estimate.side = side;
+  estimate.label = label;
   estimate.result = std::move(result.identified);
   estimate.largest_transfer = inversion.largest_transfer();
   estimate.force_deviation = result.deviation.force;
@@ -141,7 +205,7 @@ Estimate estimate_of(JointResult result, const JointInversion& inversion,
   }
   std::string warning = warning_of(estimate.result.choice);
   if (!warning.empty()) estimate.warnings.push_back(std::move(warning));
-  return estimate;
+  return {std::move(estimate)};
 }
 
 }  // namespace modcal

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "libinverse/spectral/choices/parameter_choice.hpp"
+#include "libinverse/parameter_choice.hpp"
 
 namespace modcal {
 

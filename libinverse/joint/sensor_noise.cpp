@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "libsim/base/error.hpp"
+#include "libsim/signal/statistics.hpp"
 
 namespace modcal {
 namespace {
@@ -17,14 +17,6 @@ constexpr double kSupposedShare = 0.01;
 constexpr double kLeastShare = 1e-20;
 
 double power_of(Complex value) { return value.real() * value.real() + value.imag() * value.imag(); }
-
-double rms_of(std::span<const double> samples) {
-  double mean = 0.0, power = 0.0;
-  for (const double value : samples) mean += value;
-  mean /= static_cast<double>(std::max<std::size_t>(1, samples.size()));
-  for (const double value : samples) power += (value - mean) * (value - mean);
-  return std::sqrt(power / static_cast<double>(std::max<std::size_t>(1, samples.size())));
-}
 
 }  // namespace
 
@@ -69,7 +61,9 @@ SensorNoiseLevel SensorNoise::estimate(const ReactionPair& reactions, Workspace&
   const bool both = !reactions[0].empty() && !reactions[1].empty();
   SensorNoiseLevel level;
   if (last_ < first_ + kFewestBins) {
-    for (std::size_t r = 0; r < 2; ++r) level.rms[r] = kSupposedShare * rms_of(reactions[r]);
+    for (std::size_t r = 0; r < 2; ++r) {
+      if (!reactions[r].empty()) level.rms[r] = kSupposedShare * standard_deviation(reactions[r]);
+    }
     return level;
   }
   level.measured = true;

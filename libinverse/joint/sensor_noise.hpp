@@ -11,9 +11,6 @@
 
 namespace modcal {
 
-/// The two reactions of one record, by End; an empty span: not recorded.
-using ReactionPair = std::array<std::span<const double>, 2>;
-
 struct SensorNoiseLevel {
   std::array<double, 2> rms = {0.0, 0.0};  ///< of one sample [N]; 0 where a side is missing
   /// Share of the band's power that the cross relation leaves as noise, in (0, 1].

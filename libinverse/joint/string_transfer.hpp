@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "libinverse/record.hpp"
 #include "libsim/base/options.hpp"
 #include "libsim/model/transfer.hpp"
 
@@ -20,18 +21,10 @@ struct TransferOptions {
   void visit(OptionVisitor& visitor);
   /// `recorded`: the data are no simulation.
   StringSupport support(bool recorded) const {
-    return {.static_remainder = static_remainder == "on" || (static_remainder == "auto" && recorded),
-            .bending = bending};
+    return {
+        .static_remainder = static_remainder == "on" || (static_remainder == "auto" && recorded),
+        .bending = bending};
   }
-};
-
-/// How the two sensors read: R_measured(t) = gain · R(t − delay).
-struct SensorOptions {
-  double gain[2] = {1.0, 1.0};   ///< [1]
-  double delay[2] = {0.0, 0.0};  ///< [s]
-
-  bool alike() const { return gain[0] == gain[1] && delay[0] == delay[1]; }
-  void visit(OptionVisitor& visitor);
 };
 
 struct StringTransfer {

@@ -33,6 +33,13 @@ Complex TransientFit::reading(std::size_t side, std::size_t k) const {
   return std::polar(sensors_.gain[side], -grid_.omega(k) * sensors_.delay[side]);
 }
 
+// Transforms of the real and imaginary part of the n-th decay at the bin of this shift.
+std::array<Complex, 2> TransientFit::decay_of(std::size_t n, Complex shift) const {
+  const Complex one = 1.0 / (1.0 - poles_[n] * shift);
+  const Complex other = 1.0 / (1.0 - std::conj(poles_[n]) * shift);
+  return {0.5 * (one + other), Complex{0.0, 0.5} * (one - other)};
+}
+
 // Two complex equations a bin: along the force's direction in the whitened pair (variance
 // 1 + q P) and across it (variance 1). With one side there is the first alone.
 void TransientFit::fill_rows(const Setting& setting, std::size_t k,
@@ -69,9 +76,7 @@ void TransientFit::fill_rows(const Setting& setting, std::size_t k,
   const Complex shift = std::polar(1.0, -grid_.omega(k) / sample_rate_);
   const std::array<Complex, 2> read = {reading(0, k), reading(1, k)};
   for (std::size_t n = 0; n < poles_.size(); ++n) {
-    const Complex one = 1.0 / (1.0 - poles_[n] * shift);
-    const Complex other = 1.0 / (1.0 - std::conj(poles_[n]) * shift);
-    const Complex parts[2] = {0.5 * (one + other), Complex{0.0, 0.5} * (one - other)};
+    const std::array<Complex, 2> parts = decay_of(n, shift);
     for (std::size_t part = 0; part < 2; ++part) {
       const auto column = static_cast<Eigen::Index>(2 * n + part);
       put({gains_[0][n] * read[0] * parts[part], gains_[1][n] * read[1] * parts[part]},
@@ -104,11 +109,9 @@ void TransientFit::subtract(const Setting& setting, std::array<std::span<Complex
     const Complex shift = std::polar(1.0, -grid_.omega(k) / sample_rate_);
     std::array<Complex, 2> sum;
     for (std::size_t n = 0; n < poles_.size(); ++n) {
-      const Complex one = 1.0 / (1.0 - poles_[n] * shift);
-      const Complex other = 1.0 / (1.0 - std::conj(poles_[n]) * shift);
+      const std::array<Complex, 2> parts = decay_of(n, shift);
       const auto column = static_cast<Eigen::Index>(2 * n);
-      const Complex value = decays[column] * 0.5 * (one + other) +
-                            decays[column + 1] * Complex{0.0, 0.5} * (one - other);
+      const Complex value = decays[column] * parts[0] + decays[column + 1] * parts[1];
       sum[0] += gains_[0][n] * value;
       sum[1] += gains_[1][n] * value;
     }

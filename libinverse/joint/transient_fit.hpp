@@ -44,6 +44,7 @@ class TransientFit {
   void fill_rows(const Setting& setting, std::size_t k,
                  const std::array<std::span<Complex>, 2>& spectra, Eigen::Index row,
                  Workspace& workspace) const;
+  std::array<Complex, 2> decay_of(std::size_t n, Complex shift) const;
   Complex reading(std::size_t side, std::size_t k) const;
 
   FrequencyGrid grid_;

@@ -1,6 +1,7 @@
 // From a plucked string's reactions to its modes.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -46,5 +47,10 @@ struct PluckIdentification {
 /// short record, a fundamental that is not positive, an unknown method.
 PluckIdentification identify_pluck(const DecayRecord& record, double fundamental,
                                    const PluckOptions& options = {});
+
+/// Throws InvalidInput, as identify_pluck() would, where `samples` at `sample_rate` [Hz] leave
+/// nothing behind the time skipped, are too few for the filter of the band, or for the block rows
+/// of the Hankel matrix after it.
+void require_decay_length(std::size_t samples, double sample_rate, const PluckOptions& options);
 
 }  // namespace modcal

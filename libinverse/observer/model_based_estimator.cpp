@@ -10,8 +10,8 @@
 
 #include "libinverse/observer/gain_search.hpp"
 #include "libinverse/observer/innovation_fit.hpp"
+#include "libinverse/observer/observed_record.hpp"
 #include "libinverse/observer/result_judgement.hpp"
-#include "libinverse/observer/start_values.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/base/task_loop.hpp"
 #include "libsim/signal/fft.hpp"

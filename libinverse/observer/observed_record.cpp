@@ -9,12 +9,62 @@
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal::observer {
-
 namespace {
 
 // Σ over lags of the squared correlation between bins of a Hann-windowed white spectrum,
 // 1 + 2 (2/3)² + 2 (1/6)².
 constexpr double kHannSpread = 35.0 / 18.0;
+
+constexpr double kWeight = 2.0;     // σT
+constexpr double kTransient = 0.3;  // share of the record before steady motion
+constexpr std::size_t kHistogram = 200;
+
+std::vector<double> unweighted(const RealFft& fft, std::vector<Complex> spectrum) {
+  std::vector<double> samples = fft.inverse(std::move(spectrum));
+  const auto count = static_cast<double>(samples.size());
+  for (std::size_t j = 0; j < samples.size(); ++j) {
+    samples[j] *= std::exp(kWeight * static_cast<double>(j) / count);
+  }
+  return samples;
+}
+
+std::vector<double> after_transient(const std::vector<double>& x) {
+  const auto first = static_cast<std::ptrdiff_t>(kTransient * static_cast<double>(x.size()));
+  return {x.begin() + first, x.end()};
+}
+
+// Middle of the fullest of 200 equal cells between the 0.2 % and 99.8 % quantiles.
+double most_frequent(const std::vector<double>& values) {
+  const double low = quantile(values, 0.002), high = quantile(values, 0.998);
+  if (!(high > low)) return low;
+  const double width = (high - low) / static_cast<double>(kHistogram);
+  std::vector<std::size_t> count(kHistogram, 0);
+  for (const double value : values) {
+    if (value < low || value >= high) continue;
+    ++count[std::min(kHistogram - 1, static_cast<std::size_t>((value - low) / width))];
+  }
+  const auto fullest = std::max_element(count.begin(), count.end()) - count.begin();
+  return low + (static_cast<double>(fullest) + 0.5) * width;
+}
+
+// The weighted noise has the variance s² Σ_j w_j² in every bin, the force that over s² Σ|H|²/s²;
+// the weight's inverse makes it grow with time.
+std::vector<double> noise_deviation(const std::vector<double>& precision, std::size_t count,
+                                    const FrequencyGrid& grid, double top) {
+  double variance = 0.0, power = 0.0;
+  for (std::size_t k = 0; k < grid.bins && grid.omega(k) <= 1.02 * top; ++k) {
+    if (precision[k] > 0.0) variance += bin_multiplicity(k, count) / precision[k];
+  }
+  const auto samples = static_cast<double>(count);
+  for (std::size_t j = 0; j < count; ++j) {
+    power += std::exp(-2.0 * kWeight * static_cast<double>(j) / samples);
+  }
+  std::vector<double> deviation(count, std::sqrt(variance * power) / samples);
+  for (std::size_t j = 0; j < count; ++j) {
+    deviation[j] *= std::exp(kWeight * static_cast<double>(j) / samples);
+  }
+  return deviation;
+}
 
 }  // namespace
 
@@ -123,6 +173,68 @@ void negate(ObservedRecord& record) {
     record.offset[r] = -record.offset[r];
     for (double& value : record.reaction[r]) value = -value;
   }
+}
+
+LinearEstimate linear_estimate(const ObservedRecord& record) {
+  const std::size_t count = record.samples();
+  FrequencyGrid grid = FrequencyGrid::of_record(count, record.sample_rate);
+  grid.sigma = kWeight * record.sample_rate / static_cast<double>(count);
+  const RealFft fft(count);
+  const double top = 2.0 * std::numbers::pi * record.basis.frequency(record.basis.size() - 1);
+  std::vector<Complex> numerator(grid.bins), force(grid.bins), velocity(grid.bins);
+  std::vector<double> denominator(grid.bins, 0.0);
+  for (int r = 0; r < 2; ++r) {
+    std::vector<double> weighted(count);
+    for (std::size_t j = 0; j < count; ++j) {
+      weighted[j] = (record.reaction[r][j] - record.offset[r]) *
+                    std::exp(-kWeight * static_cast<double>(j) / static_cast<double>(count));
+    }
+    const std::vector<Complex> spectrum = fft.forward(weighted);
+    const std::vector<Complex> transfer =
+        reaction_transfer(record.basis, record.contact, r == 0 ? End::kLeft : End::kRight, grid);
+    const double precision = 1.0 / (record.noise[r] * record.noise[r]);
+    for (std::size_t k = 0; k < grid.bins; ++k) {
+      numerator[k] += precision * std::conj(transfer[k]) * spectrum[k];
+      denominator[k] += precision * std::norm(transfer[k]);
+    }
+  }
+  const std::vector<Complex> receptance = contact_receptance(record.basis, record.contact, grid);
+  for (std::size_t k = 0; k < grid.bins && grid.omega(k) <= 1.02 * top; ++k) {
+    if (!(denominator[k] > 0.0)) continue;
+    force[k] = numerator[k] / denominator[k];
+    velocity[k] = Complex(grid.sigma, grid.omega(k)) * receptance[k] * force[k];
+  }
+  return {unweighted(fft, std::move(force)), unweighted(fft, std::move(velocity)),
+          noise_deviation(denominator, count, grid, top)};
+}
+
+double bow_direction(const LinearEstimate& estimate) {
+  return most_frequent(after_transient(estimate.velocity)) < 0.0 ? -1.0 : 1.0;
+}
+
+ContactPicture picture_of(const LinearEstimate& estimate) {
+  const std::vector<double> velocity = after_transient(estimate.velocity);
+  const std::vector<double> force = after_transient(estimate.force);
+  ContactPicture picture;
+  picture.bow_velocity = most_frequent(velocity);
+  picture.slip_speed = picture.bow_velocity - quantile(velocity, 0.01);
+  MODCAL_REQUIRE(picture.bow_velocity > 0.0 && picture.slip_speed > 0.0,
+                 "the linear estimate shows no stick and slip (most frequent velocity {:g} m/s, "
+                 "slip speed {:g} m/s): use a linear estimator for this record",
+                 picture.bow_velocity, picture.slip_speed);
+  const double sliding = picture.bow_velocity - 0.6 * picture.slip_speed;
+  std::vector<double> sliding_force;
+  for (std::size_t j = 0; j < velocity.size(); ++j) {
+    if (velocity[j] < sliding) sliding_force.push_back(force[j]);
+  }
+  const double top = quantile(force, 0.995);
+  const double dynamic = sliding_force.empty() ? 0.0 : quantile(sliding_force, 0.5);
+  // The static part comes from the silent start alone and may be far off on noisy records.
+  picture.dynamic_force = std::max(dynamic, 0.1 * std::abs(top));
+  picture.static_force = std::max(top, 1.3 * picture.dynamic_force);
+  MODCAL_REQUIRE(picture.dynamic_force > 0.0,
+                 "the linear estimate shows no friction force (99.5 % quantile {:g} N)", top);
+  return picture;
 }
 
 }  // namespace modcal::observer

@@ -2,8 +2,7 @@
 #include <array>
 
 #include "libinverse/estimator.hpp"
-#include "libinverse/joint/joint_estimator.hpp"
-#include "libinverse/joint/linear_limit_estimator.hpp"
+#include "libinverse/joint/joint_estimators.hpp"
 #include "libinverse/observer/observer_estimator.hpp"
 #include "libinverse/spectral/one_sided/one_sided_estimator.hpp"
 

@@ -115,8 +115,8 @@ void ModalSums::evaluate(const FrequencyGrid& grid, const BinRange& part, std::s
     const ResidualTerms residual = model_.residuals.empty() ? ResidualTerms{} : model_.residuals[i];
     for (std::size_t j = 0; j < part.size(); ++j) {
       const Complex turned = real ? Complex{} : out.at(pairs + i, begin + j);
-      const Complex value = completed(out.at(i, begin + j), turned, power, residual,
-                                      grid.s(part.first + j));
+      const Complex value =
+          completed(out.at(i, begin + j), turned, power, residual, grid.s(part.first + j));
       out.real(i)[begin + j] = value.real();
       out.imag(i)[begin + j] = value.imag();
     }
@@ -163,8 +163,7 @@ void ModalModel::pole_slopes(std::size_t n, Complex s, double d_omega, double d_
       // Im A q/D with q = s/ω_n or −ω_n/s: q moves with the pole as well.
       const Complex q = power == 0 ? s / pole.omega : -pole.omega / s;
       const Complex q_slope = (power == 0 ? -1.0 : 1.0) * q / pole.omega * d_omega;
-      slopes[i] += quadrature[i * poles.size() + n] *
-                   (q * slope + q_slope / pole.denominator(s));
+      slopes[i] += quadrature[i * poles.size() + n] * (q * slope + q_slope / pole.denominator(s));
     }
     for (int p = 0; p < power; ++p) slopes[i] *= s;
   }

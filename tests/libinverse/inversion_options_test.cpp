@@ -1,7 +1,6 @@
-#include "libinverse/inversion_options.hpp"
-
 #include <gtest/gtest.h>
 
+#include "libinverse/invert.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {

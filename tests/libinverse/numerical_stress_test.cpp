@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "libinverse/spectral/choices/rules.hpp"
-#include "libinverse/spectral/regularizers/regularizers.hpp"
 #include "libinverse/spectral/one_sided/one_sided_inversion.hpp"
+#include "libinverse/spectral/regularizers/regularizers.hpp"
 #include "libsim/base/error.hpp"
 #include "tests/libinverse/joint/joint_case.hpp"
 

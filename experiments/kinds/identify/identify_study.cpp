@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "experiments/kinds/lint.hpp"
-#include "libinverse/modes/decay_length.hpp"
+#include "libinverse/modes/pluck_identification.hpp"
 #include "libsim/base/random.hpp"
 
 namespace modcal {

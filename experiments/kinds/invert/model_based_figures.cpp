@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "experiments/kinds/invert/invert_output.hpp"
-#include "libinverse/observer/friction_curve.hpp"
+#include "libinverse/observer/friction_candidates.hpp"
 
 namespace modcal {
 namespace {

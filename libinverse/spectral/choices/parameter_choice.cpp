@@ -1,4 +1,4 @@
-#include "libinverse/spectral/choices/parameter_choice.hpp"
+#include "libinverse/parameter_choice.hpp"
 
 #include <fmt/format.h>
 
@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "libinverse/spectral/problem/interior_minimum.hpp"
+#include "libinverse/spectral/problem/spectral_system.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "libinverse/spectral/problem/interior_minimum.hpp"
+#include "libinverse/spectral/problem/spectral_system.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {

@@ -1,7 +1,7 @@
 // The rules: each a function of the traced curve and, for some, of the data behind it.
 #pragma once
 
-#include "libinverse/spectral/choices/parameter_choice.hpp"
+#include "libinverse/parameter_choice.hpp"
 
 namespace modcal {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "libinverse/spectral/regularizers/regularizer.hpp"
+#include "libinverse/regularizer.hpp"
 #include "libsim/model/modal_model.hpp"
 
 namespace modcal {

@@ -81,8 +81,8 @@ HWY_INLINE double Integrate(const ScannedSensor* sensors, std::span<const double
     const ComplexVector denominator = Denominator(candidate, zeta, omegas.data() + i);
     const auto power = SquaredMagnitude(denominator);
     if constexpr (kBoth) {
-      const auto root = hn::Mul(
-          power, InverseRoot(hn::Mul(power, NumeratorPower(sensors[0], i, denominator))));
+      const auto root =
+          hn::Mul(power, InverseRoot(hn::Mul(power, NumeratorPower(sensors[0], i, denominator))));
       sum = hn::MulAdd(hn::LoadU(d, sensors[0].magnitude + i), root, sum);
     }
     const auto root = hn::Sqrt(hn::Div(power, NumeratorPower(last, i, denominator)));

@@ -14,8 +14,8 @@ struct ScannedSensor {
   double constant = 0.0;              ///< A of the mode
 };
 
-/// integrals_j += Σ_k Σ_sensors |R| |D| / |rest D + A| with D at ω_n = candidates_j [rad/s], for one
-/// sensor or two. Floor with both: a division, a square root and an inverse root per bin and
+/// integrals_j += Σ_k Σ_sensors |R| |D| / |rest D + A| with D at ω_n = candidates_j [rad/s], for
+/// one sensor or two. Floor with both: a division, a square root and an inverse root per bin and
 /// candidate.
 void integrate_candidates(std::span<const ScannedSensor> sensors, std::span<const double> omegas,
                           double zeta, std::span<const double> candidates,

@@ -2,6 +2,9 @@
 
 #include <memory>
 
+#include "libinverse/spectral/one_sided/one_sided_inversion.hpp"
+#include "libsim/model/transfer.hpp"
+
 namespace modcal {
 namespace {
 

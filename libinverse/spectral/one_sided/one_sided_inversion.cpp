@@ -5,6 +5,8 @@
 #include <numeric>
 #include <utility>
 
+#include "libinverse/parameter_choice.hpp"
+#include "libinverse/regularizer.hpp"
 #include "libinverse/spectral/one_sided/force_kernel.hpp"
 #include "libsim/base/error.hpp"
 

@@ -6,41 +6,12 @@
 #include <span>
 #include <vector>
 
-#include "libinverse/spectral/choices/parameter_choice.hpp"
-#include "libinverse/spectral/regularizers/regularizer.hpp"
+#include "libinverse/estimator.hpp"
+#include "libinverse/spectral/problem/spectral_system.hpp"
 #include "libsim/model/transfer.hpp"
 #include "libsim/signal/fft.hpp"
 
 namespace modcal {
-
-/// What an inversion computes. Each of the three signals costs an inverse transform.
-struct InversionOutputs {
-  bool force = true;
-  bool displacement = false;
-  bool velocity = false;
-  bool force_spectrum = false;
-};
-
-/// How to invert. The plug-ins must outlive the call.
-struct InversionMethod {
-  const Regularizer& regularizer;
-  const ParameterChoice& choice;
-  InversionOutputs outputs = {};
-  /// Standard deviation of the noise of one sample [N], where a parameter choice asks for it.
-  double noise_rms = std::numeric_limits<double>::quiet_NaN();
-};
-
-/// Identified motion at the contact; what was not asked for is empty.
-struct InversionResult {
-  ChosenParameter choice;            ///< norms are sample norms: ‖r‖² = Σ_j r_j² [N], [N/s]
-  std::size_t bins = 0;              ///< bins of the record besides k = 0
-  std::size_t blind_bins = 0;        ///< of these, bins with H = 0: F = 0 there, whatever the force
-  std::vector<double> force;         ///< f_c(t_j) [N], K samples of zero mean
-  std::vector<double> displacement;  ///< y(x_c, t_j) [m]
-  std::vector<double> velocity;      ///< v(x_c, t_j) [m/s]
-  std::vector<Complex>
-      force_spectrum;  ///< F_k, K/2 + 1, in the convention of libsim/signal/fft.hpp
-};
 
 /// Arrays that a call needs besides its results, to be kept from call to call; one per thread.
 struct InversionWorkspace {

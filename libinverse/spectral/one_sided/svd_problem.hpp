@@ -5,8 +5,9 @@
 #include <limits>
 #include <vector>
 
-#include "libinverse/spectral/choices/parameter_choice.hpp"
-#include "libinverse/spectral/regularizers/regularizer.hpp"
+#include "libinverse/parameter_choice.hpp"
+#include "libinverse/regularizer.hpp"
+#include "libinverse/spectral/problem/spectral_system.hpp"
 
 namespace modcal {
 

@@ -4,7 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "libinverse/spectral/regularizers/regularizer.hpp"
+#include "libinverse/regularizer.hpp"
+#include "libinverse/spectral/problem/spectral_system.hpp"
 
 namespace modcal {
 

@@ -1,4 +1,4 @@
-#include "libinverse/spectral/regularizers/regularizer.hpp"
+#include "libinverse/regularizer.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -8,6 +8,7 @@
 #include <limits>
 #include <numeric>
 
+#include "libinverse/spectral/problem/spectral_system.hpp"
 #include "libinverse/spectral/regularizers/filter_terms.hpp"
 #include "libsim/base/error.hpp"
 

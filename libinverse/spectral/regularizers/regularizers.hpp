@@ -3,7 +3,8 @@
 
 #include <cstdint>
 
-#include "libinverse/spectral/regularizers/regularizer.hpp"
+#include "libinverse/regularizer.hpp"
+#include "libinverse/spectral/problem/spectral_system.hpp"
 
 namespace modcal {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "experiments/config/reader.hpp"
-#include "libsim/model/polynomial_damping.hpp"
+#include "libsim/model/damping_laws.hpp"
 #include "tests/experiments/config/example_options.hpp"
 
 namespace modcal {

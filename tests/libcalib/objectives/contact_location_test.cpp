@@ -1,9 +1,8 @@
-#include "libcalib/objectives/force_difference.hpp"
-
 #include <gtest/gtest.h>
 
-#include "libcalib/optimizers/systematic_search.hpp"
+#include "libcalib/objectives/force_difference.hpp"
 #include "libcalib/optimizers/nlopt_optimizer.hpp"
+#include "libcalib/optimizers/systematic_search.hpp"
 #include "libinverse/spectral/choices/rules.hpp"
 #include "libinverse/spectral/one_sided/one_sided_inversion.hpp"
 #include "libinverse/spectral/regularizers/regularizers.hpp"

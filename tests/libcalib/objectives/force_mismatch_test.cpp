@@ -1,8 +1,7 @@
-#include "libcalib/objectives/force_difference.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "libcalib/objectives/force_difference.hpp"
 #include "libcalib/optimizers/ceres_optimizer.hpp"
 #include "libcalib/parameters/parameter_options.hpp"
 #include "libsim/base/error.hpp"

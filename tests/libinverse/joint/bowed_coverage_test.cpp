@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "libinverse/joint/joint_estimator.hpp"
+#include "libinverse/joint/joint_estimators.hpp"
 #include "libsim/base/random.hpp"
 #include "libsim/dynamics/event/modal_event.hpp"
 #include "libsim/signal/statistics.hpp"

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "libinverse/joint/priors.hpp"
 #include "libsim/base/random.hpp"
 
 namespace modcal {

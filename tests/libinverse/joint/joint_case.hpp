@@ -7,10 +7,10 @@
 #include <numbers>
 #include <vector>
 
+#include "libinverse/joint/force_prior.hpp"
 #include "libinverse/joint/joint_inversion.hpp"
-#include "libinverse/joint/priors.hpp"
 #include "libsim/base/random.hpp"
-#include "libsim/model/constant_damping.hpp"
+#include "libsim/model/damping_laws.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {

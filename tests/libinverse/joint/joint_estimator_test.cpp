@@ -1,11 +1,10 @@
 // The joint estimator as an experiment uses it: what is automatic, what is an option.
-#include "libinverse/joint/joint_estimator.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <map>
 
+#include "libinverse/joint/joint_estimators.hpp"
 #include "libsim/base/error.hpp"
 #include "tests/libinverse/joint/joint_case.hpp"
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "libinverse/modes/decimated_decay.hpp"
+#include "libinverse/modes/decay_record.hpp"
 #include "libsim/base/error.hpp"
 #include "tests/libinverse/modes/pluck_case.hpp"
 

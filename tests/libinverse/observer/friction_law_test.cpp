@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "libinverse/observer/friction_curve.hpp"
+#include "libinverse/observer/friction_candidates.hpp"
 #include "libinverse/observer/model_based_estimator.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/dynamics/fixed_step/fixed_step.hpp"

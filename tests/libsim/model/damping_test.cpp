@@ -6,12 +6,7 @@
 #include <numbers>
 
 #include "libsim/base/error.hpp"
-#include "libsim/model/constant_damping.hpp"
-#include "libsim/model/measured_damping.hpp"
-#include "libsim/model/polynomial_damping.hpp"
-#include "libsim/model/table_damping.hpp"
-#include "libsim/model/valette_cuesta_damping.hpp"
-#include "libsim/model/woodhouse_damping.hpp"
+#include "libsim/model/damping_laws.hpp"
 
 namespace modcal {
 namespace {

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <tuple>
 
-#include "libsim/model/constant_damping.hpp"
+#include "libsim/model/damping_laws.hpp"
 
 namespace modcal {
 namespace {

@@ -1,4 +1,4 @@
-#include "libinverse/spectral/choices/parameter_choice.hpp"
+#include "libinverse/parameter_choice.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "libinverse/spectral/choices/rules.hpp"
+#include "libinverse/spectral/problem/spectral_system.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {

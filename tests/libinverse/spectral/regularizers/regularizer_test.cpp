@@ -1,4 +1,4 @@
-#include "libinverse/spectral/regularizers/regularizer.hpp"
+#include "libinverse/regularizer.hpp"
 
 #include <gtest/gtest.h>
 

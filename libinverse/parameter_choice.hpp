@@ -8,41 +8,12 @@
 #include <string_view>
 #include <vector>
 
-#include "libinverse/spectral/regularizers/regularizer.hpp"
+#include "libinverse/regularizer.hpp"
 
 namespace modcal {
 
-enum class ChoiceStatus {
-  kNotComputed,        ///< nothing has been chosen yet
-  kChosen,             ///< the rule's condition is met inside the searched range
-  kGiven,              ///< the parameter was given, not chosen
-  kNoParameter,        ///< the regularizer has no parameter, or no component holds any signal
-  kEdgeOfRange,        ///< the rule points to the edge of the searched range or beyond it
-  kNoInteriorMinimum,  ///< the product curve has no local minimum inside the searched range
-  kNotReached,         ///< no parameter searched meets the rule's condition
-};
-
-/// The status as a word for results: "chosen", "no_interior_minimum", …
-std::string_view name_of(ChoiceStatus status);
-
-/// Outcome of a parameter choice. A status other than kChosen, kGiven and kNoParameter says that
-/// the parameter is a stand-in: the end of the range that regularizes least, or the edge named.
-struct ChosenParameter {
-  ChoiceStatus status = ChoiceStatus::kNotComputed;
-  std::string explanation;  ///< one sentence with the figures behind the status
-  CurvePoint point;         ///< the chosen parameter with its norms and criterion
-  double kept_share = 0.0;  ///< effective share of the degrees of freedom kept, in [0, 1]; for
-                            ///< a water level that zeroes: share of kept bins
-  std::vector<CurvePoint> curve;  ///< every parameter searched, rising
-  /// What to beware of: a parameter that stands in for one the rule did not find, or other rules
-  /// that would have chosen one more than a decade away (disagreement_of).
-  std::vector<std::string> warnings;
-
-  double parameter() const { return point.parameter; }
-};
-
-/// A sentence for a parameter that stands in for one the rule did not find; empty for a chosen one.
-std::string warning_of(const ChosenParameter& choice);
+enum class Measure;
+struct SpectralData;
 
 /// Parameters searched and the measure of the solution: options that every choice has.
 struct CurveOptions {

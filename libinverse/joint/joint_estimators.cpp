@@ -1,14 +1,34 @@
-#include "libinverse/joint/linear_limit_estimator.hpp"
+#include "libinverse/joint/joint_estimators.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "libinverse/joint/contour_inversions.hpp"
-#include "libinverse/joint/priors.hpp"
+#include "libinverse/joint/force_prior.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
 namespace {
+
+class PreparedJoint final : public PreparedEstimator {
+ public:
+  PreparedJoint(const EstimationModel& model, const JointOptions& options,
+                std::shared_ptr<const ForcePrior> prior)
+      : inversions_(model, options), prior_(std::move(prior)) {}
+
+  std::vector<Estimate> estimate(const EstimationRecord& record,
+                                 const InversionMethod& method) const override {
+    const SensorNoiseLevel noise = inversions_.noise_of(record);
+    const JointInversion& inversion = inversions_.of(record.reactions, noise);
+    return estimate_with(inversion, record, noise, inversions_.method(*prior_, method.outputs),
+                         "joint", "from both reactions");
+  }
+
+ private:
+  ContourInversions inversions_;
+  std::shared_ptr<const ForcePrior> prior_;
+};
 
 class PreparedLimit final : public PreparedEstimator {
  public:
@@ -29,14 +49,8 @@ class PreparedLimit final : public PreparedEstimator {
     const std::vector<double> spectrum = true_spectrum(record.true_force, inversion.sigma());
     JointMethod how = inversions_.method(unused_, method.outputs);
     how.known_variance = spectrum;
-    JointWorkspace workspace;
-    JointResult result;
-    inversion.invert(record.reactions, noise, how, workspace, result);
-    std::vector<Estimate> estimates;
-    estimates.push_back(estimate_of(std::move(result), inversion, noise, record));
-    estimates[0].side = "linear_limit";
-    estimates[0].label = "linear limit (true spectra known)";
-    return estimates;
+    return estimate_with(inversion, record, noise, how, "linear_limit",
+                         "linear limit (true spectra known)");
   }
 
  private:
@@ -65,6 +79,22 @@ class PreparedLimit final : public PreparedEstimator {
 };
 
 }  // namespace
+
+void JointEstimator::Options::visit(OptionVisitor& visitor) {
+  joint.visit(visitor);
+  visitor.plugin({.key = "prior", .meaning = "what is supposed about the spectrum of the force"},
+                 prior);
+}
+
+JointEstimator::JointEstimator(const Options& options)
+    : joint_(options.joint), prior_(options.prior.make()) {
+  joint_.require();
+}
+
+std::shared_ptr<const PreparedEstimator> JointEstimator::do_prepare(
+    const EstimationModel& model) const {
+  return std::make_shared<const PreparedJoint>(model, joint_, prior_);
+}
 
 void LinearLimitEstimator::Options::visit(OptionVisitor& visitor) {
   joint.visit(visitor);

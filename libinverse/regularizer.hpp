@@ -5,19 +5,13 @@
 #include <string_view>
 #include <vector>
 
-#include "libinverse/spectral/problem/spectral_system.hpp"
+#include "libinverse/estimate.hpp"
 #include "libsim/base/registry.hpp"
 
 namespace modcal {
 
-/// A regularized solution seen from outside, as a function of the parameter.
-struct CurvePoint {
-  double parameter = 0.0;      ///< in the unit of the singular values
-  double residual_norm = 0.0;  ///< ‖b − A x‖ in the unit of the data
-  double solution_norm = 0.0;  ///< ‖x‖ or ‖dx/dt‖, see Measure
-  double freedom = 0.0;        ///< effective degrees of freedom, Σ multiplicity_i φ_i
-  double criterion = 0.0;      ///< what the parameter choice looks at; NaN where it is not defined
-};
+class SpectralOperator;
+struct SpectralSystem;
 
 /// Regularized solution x = Σ_i φ(σ_i; λ) (u_iᵀb/σ_i) v_i with filter factors φ in [0, 1] that rise
 /// with σ and fall with the parameter λ > 0 (Hansen, 1998, section 4.2).

@@ -1,4 +1,4 @@
-#include "libinverse/inversion_options.hpp"
+#include "libinverse/invert.hpp"
 
 namespace modcal {
 

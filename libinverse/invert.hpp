@@ -4,7 +4,8 @@
 #include <memory>
 
 #include "libinverse/estimator.hpp"
-#include "libinverse/spectral/one_sided/one_sided_inversion.hpp"
+#include "libinverse/parameter_choice.hpp"
+#include "libinverse/regularizer.hpp"
 
 namespace modcal {
 
