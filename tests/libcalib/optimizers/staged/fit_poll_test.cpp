@@ -87,7 +87,8 @@ TEST_F(FitPollTest, RangesHoldInEveryStage) {
   EXPECT_GE(result.model.contact, 0.031 - 1.0001e-4);
   EXPECT_LE(result.model.contact, 0.031 + 1.0001e-4);
   for (const CalibratedParameter& parameter : result.parameters) {
-    if (parameter.name == "x_c") EXPECT_TRUE(parameter.at_bound);
+    if (parameter.name != "x_c") continue;
+    EXPECT_TRUE(parameter.at_bound);
   }
 }
 
