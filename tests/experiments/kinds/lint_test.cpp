@@ -89,6 +89,15 @@ TEST(LintSearch, SaysWhereAnOptimizerCannotMinimizeTheObjective) {
   }
 }
 
+TEST(LintSearch, RefusesEstimatesThatACalibrationDoesNotMake) {
+  const std::string plain = search("spectral_peak", "nlopt");
+  EXPECT_THAT(
+      messages_of(plain + "wave_based: true\n"),
+      testing::ContainsRegex("scene.yaml:10:[0-9]+: error: [^\n]*does not read wave_based"));
+  EXPECT_THAT(messages_of(plain + "model_based: {}\n"),
+              testing::ContainsRegex("scene.yaml:10:[0-9]+: error: [^\n]*read model_based"));
+}
+
 constexpr const char* kStaged = ", objective: joint_likelihood, optimizer: staged";
 
 TEST(LintStrokes, RefusesWhatCannotBeFittedTogether) {
