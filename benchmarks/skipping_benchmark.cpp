@@ -11,8 +11,8 @@
 
 #include "benchmarks/noisy_stroke.hpp"
 #include "libcalib/likelihood/likelihood_evaluation.hpp"
-#include "libcalib/likelihood/string_unknowns.hpp"
 #include "libcalib/optimizers/staged/newton_fit.hpp"
+#include "libcalib/parameters/string_unknowns.hpp"
 #include "libsim/dynamics/event/modal_event.hpp"
 #include "libsim/dynamics/fixed_step/fixed_step.hpp"
 #include "libsim/dynamics/plan.hpp"

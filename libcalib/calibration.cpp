@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include "libcalib/optimizers/staged/continuation.hpp"
@@ -79,7 +78,7 @@ std::vector<CalibratedMode> report_modes(const ParameterSet& parameters, const M
                 .excited = excited[i]};
   }
   for (std::size_t i = 0; i < parameters.size(); ++i) {
-    if (parameters[i].kind == ParameterKind::kFrequency) modes[parameters[i].mode].searched = true;
+    if (parameters[i].kind == ParameterKind::kFrequency) modes[parameters[i].index].searched = true;
   }
   return modes;
 }
@@ -93,30 +92,21 @@ std::vector<double> frequencies_of(const ModalBasis& basis) {
 // Sensors and damping of one record, `number` behind their names; damping: whether it is wanted.
 void add_values(const RecordValues& values, const UnknownsOptions& unknowns,
                 const std::string& number, bool all, std::vector<CalibratedParameter>& parameters) {
-  const auto wanted = [&](bool free, UnknownKind kind) {
-    return free && (all || unknowns.own(kind));
-  };
-  const auto add = [&](const char* name, const char* unit, double initial, double found,
+  const auto add = [&](const ParameterName& name, bool free, double initial, double found,
                        double deviation) {
-    parameters.push_back({.name = name + number,
-                          .unit = unit,
+    if (!free || !(all || unknowns.own(name))) return;
+    parameters.push_back({.name = text_of(name) + number,
+                          .unit = std::string(type_of(name).unit),
                           .initial = initial,
                           .final = found,
                           .deviation = deviation});
   };
-  const auto& sd = values.sensor_deviation;
-  if (wanted(unknowns.damping != "fixed", UnknownKind::kDampingFactor)) {
-    add("damping", "1", 1.0, values.damping, values.damping_deviation);
-  }
-  if (wanted(unknowns.gain.free, UnknownKind::kGain)) {
-    add("gain", "1", unknowns.gain.value, values.sensors.gain, sd[0]);
-  }
-  if (wanted(unknowns.delay.free, UnknownKind::kDelay)) {
-    add("delay", "s", unknowns.delay.value, values.sensors.delay, sd[1]);
-  }
-  if (wanted(unknowns.corner.free, UnknownKind::kCorner)) {
-    add("corner", "Hz", unknowns.corner.value, 0.5 * values.sensors.corner / std::numbers::pi,
-        sd[2]);
+  add({ParameterKind::kDampingFactor}, unknowns.damping != "fixed", 1.0, values.damping,
+      values.damping_deviation);
+  for (std::size_t i = 0; i < Sensor::kCount; ++i) {
+    const ParameterName name{ParameterKind::kSensor, i};
+    add(name, unknowns.sensor[i].free, unknowns.sensor[i].value, sensor_value(i, values.sensors),
+        values.sensor_deviation[i]);
   }
 }
 
@@ -164,7 +154,7 @@ std::vector<CalibratedParameter> found_parameters(const ModelPoint& initial,
   add_damping(initial, found, parameters);
   for (std::size_t r = 1; r < found.values.size(); ++r) {
     const std::string number = fmt::format(" {}", r + 1);
-    if (r < found.contacts.size() && unknowns.own(UnknownKind::kContact)) {
+    if (r < found.contacts.size() && unknowns.own({ParameterKind::kContact})) {
       parameters.push_back(parameter("x_c" + number, "m", initial.contact, found.contacts[r],
                                      found.contact_deviations[r]));
     }
@@ -307,7 +297,7 @@ std::vector<bool> excited_modes(const ModelPoint& point, double threshold) {
 CalibrationResult calibrate(const Problem& problem, const Optimizer& optimizer,
                             const Budget& budget, SecondsClock clock) {
   ModelPoint initial = problem.model;
-  const SensorPair stated = problem.parameters.unknowns.sensors();
+  const Sensor stated = problem.parameters.unknowns.sensors();
   if (!stated.alike()) initial.sensors = stated;
   const std::vector<bool> excited = excited_modes(initial, problem.excitation_threshold);
   Names names = split_names(problem.parameters, excited);

@@ -9,23 +9,9 @@
 namespace modcal {
 
 // Frequencies and contact are what every objective was made for.
-Response Objective::response(ParameterKind kind) const {
-  switch (kind) {
-    case ParameterKind::kFundamental:
-    case ParameterKind::kInharmonicity:
-    case ParameterKind::kContact:
-    case ParameterKind::kFrequency:
-      return Response::kMoves;
-    case ParameterKind::kDampingRatio:
-    case ParameterKind::kDampingFactor:
-    case ParameterKind::kDampingPower:
-      return Response::kRefused;
-    case ParameterKind::kGain:
-    case ParameterKind::kDelay:
-    case ParameterKind::kCorner:
-      break;
-  }
-  return Response::kNone;
+Response Objective::response(Moves what) const {
+  if (what == Moves::kDamping) return Response::kRefused;
+  return what == Moves::kSensor ? Response::kNone : Response::kMoves;
 }
 
 void Objective::require_record(const ModalBasis& /*basis*/, double /*sample_rate*/,
@@ -33,9 +19,9 @@ void Objective::require_record(const ModalBasis& /*basis*/, double /*sample_rate
 
 void Objective::require_moved_by(std::span<const std::string> names) const {
   for (const std::string& name : names) {
-    const std::optional<UnknownName> parsed = parse_unknown(name);
+    const std::optional<ParameterName> parsed = parse_parameter(name);
     if (!parsed) continue;
-    const Response response = this->response(parsed->kind);
+    const Response response = this->response(type_of(*parsed).moves);
     MODCAL_REQUIRE(response != Response::kNone,
                    "the objective does not depend on {}: fix it, or add an objective that does "
                    "(joint_likelihood sees every parameter) in a weighted_sum",

@@ -41,9 +41,9 @@ class Objective {
   /// The same for one term of a sum: another term may see what this one does not depend on.
   std::unique_ptr<const ObjectiveFunction> bind_term(const CalibrationData& data,
                                                      const ParameterSet& parameters) const;
-  /// Throws InvalidInput for a parameter (see parse_unknown()) that the objective cannot find.
+  /// Throws InvalidInput for a parameter (see parse_parameter()) that the objective cannot find.
   void require_moved_by(std::span<const std::string> names) const;
-  virtual Response response(ParameterKind kind) const;
+  virtual Response response(Moves what) const;
   /// What its functions can compute, known before there are data. Most have slopes and residuals.
   virtual Capabilities capabilities() const { return {.gradient = true, .least_squares = true}; }
   /// Whether its residuals are independent and of variance 1 for a right model, so that (JᵀJ)⁻¹ at

@@ -8,7 +8,7 @@
 #include "experiments/experiment.hpp"
 #include "experiments/study/figures.hpp"
 #include "experiments/study/observation.hpp"
-#include "libcalib/likelihood/string_unknowns.hpp"
+#include "libcalib/parameters/string_unknowns.hpp"
 
 namespace modcal {
 

@@ -22,7 +22,7 @@ struct LimitCase {
   UnknownsOptions unknowns;  ///< damping, sensors, priors
 };
 
-/// Standard deviations of one parameter, in the unit of its name (unit_of_unknown); NaN where it is
+/// Standard deviations of one parameter, in the unit of its name (unit_of_parameter); NaN where it is
 /// not free. "damping" is the factor of all ζ_n; where each is free, their geometric mean.
 struct ParameterLimit {
   static constexpr double kNan = std::numeric_limits<double>::quiet_NaN();

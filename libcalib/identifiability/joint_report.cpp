@@ -50,12 +50,12 @@ class JointReport {
   std::pair<double, double> damping_line(const ModelPoint& point) const {
     std::vector<std::pair<double, double>> changes;  // (ln n, ln ζ_n/ζ_n(initial))
     for (std::size_t n = 0; n < unknowns().modes(); ++n) {
-      if (at_.priors.held().ratio(n)) continue;
+      if (at_.priors.fixes_ratio(n)) continue;
       changes.emplace_back(std::log(static_cast<double>(n + 1)),
                            std::log(point.basis.zeta[n] / at_.initial.basis.zeta[n]));
     }
     if (at_.options.unknowns.damping != "power" || changes.size() < 2) {
-      return {std::exp(mean_damping_change(at_.priors.held(), point, at_.initial)), 0.0};
+      return {std::exp(unknowns().mean_damping_change(at_.initial, point)), 0.0};
     }
     // All lie on one line.
     const auto& [a, low] = changes.front();
@@ -71,7 +71,7 @@ class JointReport {
       at.models.push_back(at_.all.model(at_.theta, r));
       at.damping.push_back(fit_.values[r].damping);
     }
-    fit_.covariance = named_covariance(at_.all, at_.options.unknowns, at, covariance);
+    fit_.covariance = named_covariance(at_.all, at, covariance);
     raise_to_verdicts(fit_.modes, fit_.covariance);
   }
 
@@ -105,17 +105,6 @@ class JointReport {
 };
 
 }  // namespace
-
-double mean_damping_change(const HeldParameters& held, const ModelPoint& point,
-                           const ModelPoint& from) {
-  double change = 0.0, count = 0.0;
-  for (std::size_t n = 0; n < point.basis.size(); ++n) {
-    if (held.ratio(n)) continue;
-    change += std::log(point.basis.zeta[n] / from.basis.zeta[n]);
-    count += 1.0;
-  }
-  return change / std::max(count, 1.0);
-}
 
 void report_joint_fit(const JointEstimate& estimate, const Eigen::MatrixXd& covariance,
                       ContinuationResult& fit) {

@@ -18,10 +18,6 @@ struct JointEstimate {
   const LawFollowers& followers;
 };
 
-/// Mean of ln ζ_n/ζ_n(from) over the damping ratios that are not held.
-double mean_damping_change(const HeldParameters& held, const ModelPoint& point,
-                           const ModelPoint& from);
-
 /// Fills model, contacts, verdicts, values of the records and covariance of `fit`; of a law that is
 /// fitted, its estimate too.
 void report_joint_fit(const JointEstimate& estimate, const Eigen::MatrixXd& covariance,

@@ -65,30 +65,13 @@ LimitInformation::LimitInformation(const LimitCase& question)
   }
 }
 
-// As the joint fit places them; a pluck has no contact.
-std::vector<Index> LimitInformation::own_places(const StringUnknowns& unknowns,
-                                                std::size_t record) const {
-  const UnknownsOptions& own = question_.unknowns;
-  std::vector<Index> places;
-  if (record < strokes_.size() && own.own(UnknownKind::kContact)) {
-    places.push_back(unknowns.contact());
-  }
-  if (own.own(UnknownKind::kDampingFactor)) places.push_back(unknowns.damping());
-  const UnknownKind sensors[] = {UnknownKind::kGain, UnknownKind::kDelay, UnknownKind::kCorner};
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (own.own(sensors[i])) places.push_back(unknowns.sensor(i));
-  }
-  return places;
-}
-
 AllRecords LimitInformation::placed(const StringUnknowns& unknowns) const {
   AllRecords all(unknowns);
-  const HeldParameters& held = priors_.held();
   for (std::size_t r = 0; r < records_.size(); ++r) {
     Eigen::VectorXd start = unknowns.start();
     start[unknowns.contact()] = point_of(r).contact - question_.truth.contact;
-    const bool known = r < strokes_.size() && held.contact(r);
-    all.add(records_[r], start, own_places(unknowns, r),
+    const bool known = r < strokes_.size() && priors_.fixed_contact(r);
+    all.add(records_[r], start, unknowns.own_places(r < strokes_.size()),
             known ? std::optional<double>(point_of(r).contact) : std::nullopt);
   }
   return all;
@@ -153,7 +136,7 @@ Eigen::MatrixXd LimitInformation::prior(const StringUnknowns& unknowns, const St
                                         const LawScatter* scatter) const {
   const AllRecords all = placed(unknowns);
   PriorEquations equations(all.size());
-  priors.state([&](const UnknownName& name) { return all.coordinate(name, all.start()); },
+  priors.state([&](const ParameterName& name) { return all.coordinate(name, all.start()); },
                equations);
   unknowns.state_damping_ratios(question_.truth.basis.zeta, equations);
   if (scatter) equations.add_scatter(*scatter, unknowns.log_frequencies());
@@ -167,7 +150,7 @@ std::vector<ParameterForm> LimitInformation::forms(const StringUnknowns& unknown
                .fundamental = unknowns.fundamental(unknowns.start()),
                .strokes = strokes_.size()};
   for (std::size_t r = 0; r < records_.size(); ++r) at.models.push_back(point_of(r));
-  return parameter_forms(placed(unknowns), question_.unknowns, at);
+  return parameter_forms(placed(unknowns), at);
 }
 
 }  // namespace modcal

@@ -35,7 +35,6 @@ class LimitInformation {
   std::vector<ParameterForm> forms(const StringUnknowns& unknowns) const;
 
  private:
-  std::vector<Eigen::Index> own_places(const StringUnknowns& unknowns, std::size_t record) const;
   AllRecords placed(const StringUnknowns& unknowns) const;
   ModelPoint point_of(std::size_t record) const;
   template <typename Evaluate>

@@ -3,7 +3,8 @@
 
 #include <vector>
 
-#include "libcalib/likelihood/string_unknowns.hpp"
+#include "libcalib/likelihood/projected_likelihood.hpp"
+#include "libcalib/parameters/string_unknowns.hpp"
 
 namespace modcal {
 

@@ -92,7 +92,7 @@ bool AllRecords::admits(const Eigen::VectorXd& theta) const {
   return true;
 }
 
-std::optional<LinearForm> AllRecords::coordinate(const UnknownName& name,
+std::optional<LinearForm> AllRecords::coordinate(const ParameterName& name,
                                                  const Eigen::VectorXd& theta) const {
   const std::optional<LinearForm> of_record = unknowns_.coordinate(name, own(theta, name.record));
   if (!of_record) return of_record;

@@ -6,8 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "libcalib/likelihood/projected_likelihood.hpp"
 #include "libcalib/likelihood/record_likelihood.hpp"
-#include "libcalib/likelihood/string_unknowns.hpp"
+#include "libcalib/parameters/string_unknowns.hpp"
 
 namespace modcal {
 
@@ -61,7 +62,7 @@ class AllRecords {
   ModelPoint model(const Eigen::VectorXd& theta, std::size_t record) const;
   bool admits(const Eigen::VectorXd& theta) const;
   /// Coordinate of a prior, see StringUnknowns.
-  std::optional<LinearForm> coordinate(const UnknownName& name, const Eigen::VectorXd& theta) const;
+  std::optional<LinearForm> coordinate(const ParameterName& name, const Eigen::VectorXd& theta) const;
   LikelihoodPoint evaluate(const Eigen::VectorXd& theta, bool twice_weighted) const;
   Eigen::MatrixXd noise(const Eigen::VectorXd& theta) const;
 

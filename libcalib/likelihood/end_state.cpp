@@ -90,20 +90,20 @@ using Columns = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dy
 
 }  // namespace
 
-std::vector<PlainTransient> plain_transients(const WhitenedRecord& record,
-                                             const SensorPair& sensors) {
-  if (record.sigma > 0.0) return {{false, record.offset, {}}, {true, record.offset, {}}};
+std::vector<PlainTransient> plain_transients(const WhitenedRecord& record, const Sensor& sensors) {
+  if (record.sigma > 0.0) return {{false, record.offset}, {true, record.offset}};
   if (!sensors.may_differ()) return {};
   const std::size_t padded = record.root_weight.size();
-  PlainTransient sample{true, PlanarVector(padded), {}};
-  PlainTransient decay{true, PlanarVector(padded), PlanarVector(padded)};
+  PlainTransient sample{true, PlanarVector(padded)};
+  PlainTransient decay{true, PlanarVector(padded)};
+  PlanarVector& by_corner = decay.by_sensor[Sensor::kCorner] = PlanarVector(padded);
   const double pole = std::exp(-sensors.corner / record.sample_rate);
   for (std::size_t k = 0; k < record.bins; ++k) {
     sample.numbers.set(k, record.deviation[1]);
     const Complex u = 1.0 / (1.0 - pole * record.delay.at(k));
     decay.numbers.set(k, record.deviation[1] * u);
     // dU/dE = U² z^−1 and E U z^−1 = U − 1.
-    decay.by_corner.set(k, record.deviation[1] * u * (1.0 - u) / record.sample_rate);
+    by_corner.set(k, record.deviation[1] * u * (1.0 - u) / record.sample_rate);
   }
   return {std::move(sample), std::move(decay)};
 }

@@ -3,25 +3,26 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <array>
 #include <span>
 #include <vector>
 
 #include "libcalib/likelihood/decay_kernel.hpp"
-#include "libcalib/parameters/parameters.hpp"
+#include "libcalib/parameters/parameter_table.hpp"
 
 namespace modcal {
 
 /// Something in the record of one end, known but for its real amplitude.
 struct PlainTransient {
   bool right = false;
-  PlanarVector numbers;    ///< its transform, whitened but for 1/s_r
-  PlanarVector by_corner;  ///< ∂numbers/∂corner; empty: none
+  PlanarVector numbers;  ///< its transform, whitened but for 1/s_r
+  /// ∂numbers by the numbers of the sensor at x = L; empty: none.
+  std::array<PlanarVector, Sensor::kCount> by_sensor = {};
 };
 /// σ > 0: static offsets of both records. σ = 0: where the sensor at x = L has a delay or a corner
 /// of its own, or may have one, what it holds at the end of the record: one sample and its own
 /// decay.
-std::vector<PlainTransient> plain_transients(const WhitenedRecord& record,
-                                             const SensorPair& sensors);
+std::vector<PlainTransient> plain_transients(const WhitenedRecord& record, const Sensor& sensors);
 
 /// At σ = 0 the complex amplitudes c_n of the sampled free decays (2N columns x_n, x'_n, see
 /// decay_kernel.hpp), and the amplitudes of plain transients behind them. Least squares by the

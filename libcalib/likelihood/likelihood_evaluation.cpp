@@ -15,13 +15,14 @@ constexpr std::size_t kSmallRecord = 16;  // blocks: below, threads cost more th
 
 using Index = Eigen::Index;
 
-PlanarVector sensor_response(const WhitenedRecord& record, const SensorPair& sensors) {
-  PlanarVector response(record.root_weight.size());
+// A function of s in every bin.
+template <typename Function>
+PlanarVector in_bins(const WhitenedRecord& record, const Function& function) {
+  PlanarVector numbers(record.root_weight.size());
   for (std::size_t k = 0; k < record.bins; ++k) {
-    const Complex s(record.sigma, record.omega[k]);
-    response.set(k, sensors.response(s));
+    numbers.set(k, function(Complex(record.sigma, record.omega[k])));
   }
-  return response;
+  return numbers;
 }
 
 const PlanarVector* given(const std::optional<PlanarVector>& numbers) {
@@ -38,7 +39,7 @@ double dot(const double* a, const double* b) {
 
 struct LikelihoodEvaluation::Slopes {
   double cost = 0.0;
-  std::array<double, 3> sensors{};
+  std::array<double, Sensor::kCount> sensors{};
   AlignedVector modes, columns;
 };
 
@@ -56,7 +57,9 @@ LikelihoodEvaluation::LikelihoodEvaluation(const WhitenedRecord& record, const M
   blocks_ = std::span(arrays_.blocks).first(record.blocks());
   arrays_.first_columns.resize((1 + plain_width_) * kColumnLength * record.blocks());
   for (std::size_t n = 0; n < modes_.size(); ++n) all_modes_.push_back(n);
-  if (!sensors_.alike()) sensor_ = sensor_response(record, sensors_);
+  if (!sensors_.alike()) {
+    sensor_ = in_bins(record, [this](Complex s) { return sensors_.response(s); });
+  }
   std::vector<EndState::Sums> sums(chunks());
   for_blocks([&](std::size_t chunk, std::size_t b) {
     fill_model(b, sums[chunk]);
@@ -130,7 +133,7 @@ void LikelihoodEvaluation::apply_end_state() {
 void LikelihoodEvaluation::sum_plain() {
   plain_sums_[0].reset();
   plain_sums_[1].reset();
-  by_corner_.reset();
+  plain_slopes_ = {};
   const auto add = [this](const PlanarVector& numbers, double amplitude,
                           std::optional<PlanarVector>& sum) {
     if (numbers.size() == 0) return;
@@ -141,7 +144,9 @@ void LikelihoodEvaluation::sum_plain() {
   };
   for (std::size_t p = 0; p < plain_.size(); ++p) {
     add(plain_[p].numbers, end_state_.plain_amplitude(p), plain_sums_[plain_[p].right ? 1 : 0]);
-    add(plain_[p].by_corner, end_state_.plain_amplitude(p), by_corner_);
+    for (std::size_t i = 0; i < Sensor::kCount; ++i) {
+      add(plain_[p].by_sensor[i], end_state_.plain_amplitude(p), plain_slopes_[i]);
+    }
   }
 }
 
@@ -154,8 +159,19 @@ ColumnTask LikelihoodEvaluation::column_task(const LikelihoodColumns& columns) c
           .contact = columns.contact.value_or(columns.count)};
 }
 
-// The residual of a block, its force and the sensors' columns.
-void LikelihoodEvaluation::finish(std::size_t b, const std::array<double*, 3>& sensors) {
+void LikelihoodEvaluation::prepare_sensor(const LikelihoodColumns& columns) {
+  for (std::size_t i = 0; i < Sensor::kCount; ++i) {
+    if (!columns.sensors[i] || sensor_slopes_[i]) continue;
+    sensor_slopes_[i] = in_bins(*record_, [&](Complex s) { return sensors_.slope(i, s); });
+  }
+}
+
+// The residual of a block, its force and the sensor's columns.
+void LikelihoodEvaluation::finish(std::size_t b, const SensorPlaces& sensors) {
+  std::array<SensorColumn, Sensor::kCount> columns;
+  for (std::size_t i = 0; i < Sensor::kCount; ++i) {
+    columns[i] = {given(sensor_slopes_[i]), given(plain_slopes_[i]), sensors[i]};
+  }
   if (end_state_.decays() > 0) {
     fill_decays(*record_, b, splits_.of(b), end_state_.amplitudes(), blocks_[b]);
   }
@@ -163,9 +179,7 @@ void LikelihoodEvaluation::finish(std::size_t b, const std::array<double*, 3>& s
                   {.decays = end_state_.decays() > 0,
                    .sensor = given(sensor_),
                    .plain = {given(plain_sums_[0]), given(plain_sums_[1])},
-                   .plain_by_corner = given(by_corner_),
-                   .corner = sensors_.corner,
-                   .sensors = sensors,
+                   .columns = columns,
                    .residual = residual_of(b)},
                   blocks_[b]);
 }
@@ -188,22 +202,23 @@ Eigen::VectorXd LikelihoodEvaluation::mode_products(const double* sums,
 }
 
 LikelihoodPoint LikelihoodEvaluation::slope(const LikelihoodColumns& columns) {
-  const auto sensors = columns.sensors();
+  prepare_sensor(columns);
+  const auto& sensors = columns.sensors;
   std::vector<Slopes> parts(chunks());
   for_blocks([&](std::size_t chunk, std::size_t b) {
     Slopes& part = parts[chunk];
     if (part.modes.empty()) {
       part.modes.resize(modes_.size() * kSlopeSums * kSumLanes);
-      part.columns.resize(3 * kColumnLength);
+      part.columns.resize(Sensor::kCount * kColumnLength);
     }
-    std::array<double*, 3> places{};
-    for (std::size_t i = 0; i < 3; ++i) {
+    SensorPlaces places{};
+    for (std::size_t i = 0; i < Sensor::kCount; ++i) {
       if (sensors[i]) places[i] = part.columns.data() + i * kColumnLength;
     }
     finish(b, places);
     const double* residual = residual_of(b);
     part.cost += dot(residual, residual);
-    for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t i = 0; i < Sensor::kCount; ++i) {
       if (places[i]) part.sensors[i] += dot(places[i], residual);
     }
     if (columns.count == 0) return;
@@ -213,11 +228,11 @@ LikelihoodPoint LikelihoodEvaluation::slope(const LikelihoodColumns& columns) {
   Slopes sum = std::move(parts[0]);
   for (std::size_t c = 1; c < parts.size(); ++c) {
     sum.cost += parts[c].cost;
-    for (std::size_t i = 0; i < 3; ++i) sum.sensors[i] += parts[c].sensors[i];
+    for (std::size_t i = 0; i < Sensor::kCount; ++i) sum.sensors[i] += parts[c].sensors[i];
     for (std::size_t i = 0; i < sum.modes.size(); ++i) sum.modes[i] += parts[c].modes[i];
   }
   LikelihoodPoint point{.cost = sum.cost, .slope = mode_products(sum.modes.data(), columns)};
-  for (std::size_t i = 0; i < 3; ++i) {
+  for (std::size_t i = 0; i < Sensor::kCount; ++i) {
     if (sensors[i]) point.slope[static_cast<Index>(*sensors[i])] = sum.sensors[i];
   }
   return point;

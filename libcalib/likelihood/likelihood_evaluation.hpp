@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <functional>
 #include <optional>
 #include <span>
@@ -68,7 +69,9 @@ class LikelihoodEvaluation {
   void apply_end_state();
   void sum_plain();
   ColumnTask column_task(const LikelihoodColumns& columns) const;
-  void finish(std::size_t b, const std::array<double*, 3>& sensors);
+  using SensorPlaces = std::array<double*, Sensor::kCount>;
+  void prepare_sensor(const LikelihoodColumns& columns);
+  void finish(std::size_t b, const SensorPlaces& sensors);
   void fill_columns(std::size_t b, const LikelihoodColumns& columns, double* jacobian);
   Products multiply_columns(const LikelihoodColumns& columns, Columns& work,
                             const std::function<void(std::size_t, std::size_t)>& also);
@@ -89,7 +92,7 @@ class LikelihoodEvaluation {
   void give(const LikelihoodOutputs& outputs);
 
   const WhitenedRecord* record_;
-  SensorPair sensors_;
+  Sensor sensors_;
   std::vector<LikelihoodMode> modes_;
   ModeSplits splits_;
   std::vector<PlainTransient> plain_;
@@ -98,9 +101,10 @@ class LikelihoodEvaluation {
   std::vector<std::size_t> all_modes_;
   Arrays arrays_;
   std::span<LikelihoodBlock> blocks_;
-  std::optional<PlanarVector> sensor_;              // where the sensors differ
-  std::optional<PlanarVector> plain_sums_[2];       // plain transients with their amplitudes
-  std::optional<PlanarVector> by_corner_;           // and their derivative by the sensor's corner
+  std::optional<PlanarVector> sensor_;         // where the sensors differ
+  std::optional<PlanarVector> plain_sums_[2];  // plain transients with their amplitudes
+  // By the numbers of the sensor: their derivative, and that of ln S where it is asked for.
+  std::array<std::optional<PlanarVector>, Sensor::kCount> plain_slopes_, sensor_slopes_;
   std::vector<Complex> by_frequency_, by_damping_;  // c_n times the derivatives of E_n
 };
 

@@ -30,10 +30,9 @@ void for_rows(std::size_t b, std::size_t bins, Give give) {
 void LikelihoodEvaluation::fill_columns(std::size_t b, const LikelihoodColumns& columns,
                                         double* jacobian) {
   std::fill_n(jacobian, tiled(columns.count + 1) * kColumnLength, 0.0);
-  std::array<double*, 3> sensors{};
-  const auto places = columns.sensors();
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (places[i]) sensors[i] = jacobian + *places[i] * kColumnLength;
+  SensorPlaces sensors{};
+  for (std::size_t i = 0; i < Sensor::kCount; ++i) {
+    if (columns.sensors[i]) sensors[i] = jacobian + *columns.sensors[i] * kColumnLength;
   }
   finish(b, sensors);
   std::copy_n(residual_of(b), kColumnLength, jacobian + columns.count * kColumnLength);
@@ -122,6 +121,7 @@ Eigen::MatrixXd LikelihoodEvaluation::cross_products(const Columns& work,
 LikelihoodEvaluation::Products LikelihoodEvaluation::multiply_columns(
     const LikelihoodColumns& columns, Columns& work,
     const std::function<void(std::size_t, std::size_t)>& also) {
+  prepare_sensor(columns);
   const auto width = static_cast<Index>(work.width);
   std::vector<Products> parts(chunks());
   for (Products& part : parts) {

@@ -126,28 +126,22 @@ HWY_INLINE Transients TransientsAt(const WhitenedRecord& record, const Likelihoo
   return {left, right, decays};
 }
 
-// Columns of the sensors; left: h_1/|h|, read: what the sensor at x = L reads of the string.
-HWY_INLINE void FillSensorColumns(const WhitenedRecord& record, const ResidualTask& task,
-                                  const Bins& bins, C left, C read, std::size_t first,
-                                  std::size_t k) {
-  if (task.sensors[0]) StoreColumn(Mul(left, read), task.sensors[0], k);
-  if (task.sensors[1]) {
-    StoreColumn(Scale(Mul(left, Mul(bins.s, read)), Real(-1.0)), task.sensors[1], k);
+// Columns of the sensor at x = L; left: h_1/|h|, read: what it reads of the string.
+HWY_INLINE void FillSensorColumns(const WhitenedRecord& record, const ResidualTask& task, C left,
+                                  C read, std::size_t first, std::size_t k) {
+  for (const SensorColumn& sensor : task.columns) {
+    if (!sensor.column) continue;
+    C slope = Mul(Load(*sensor.slope, first + k), read);
+    if (sensor.plain) {
+      slope = AddScaled(slope, Load(*sensor.plain, first + k), Real(1.0 / record.deviation[1]));
+    }
+    StoreColumn(Mul(left, slope), sensor.column, k);
   }
-  if (!task.sensors[2]) return;
-  const C pole = Inverse(Make(hn::Add(bins.s.re, Real(task.corner)), bins.s.im));
-  C slope = Scale(Mul(pole, read), Real(-1.0));
-  if (task.plain_by_corner) {
-    slope =
-        AddScaled(slope, Load(*task.plain_by_corner, first + k), Real(1.0 / record.deviation[1]));
-  }
-  StoreColumn(Mul(left, slope), task.sensors[2], k);
 }
 
 void FinishResidual(const WhitenedRecord& record, std::size_t block_index, const ResidualTask& task,
                     LikelihoodBlock& block) {
   const std::size_t first = block_index * kBins;
-  const Places places = BinsOf(record, block_index);
   for (std::size_t k = 0; k < kBins; k += hn::Lanes(D())) {
     const C left = Load(block.left, k);
     const C right = Load(block.right, k);
@@ -160,7 +154,7 @@ void FinishResidual(const WhitenedRecord& record, std::size_t block_index, const
     const C from_right = Add(Load(record.right, first + k), transient.right);
     const C force = Scale(AddConjMul(ConjMul(left, from_left), right, from_right), norm);
     Store(force, block.force, k);
-    FillSensorColumns(record, task, places.BinsFrom(k), Scale(left, scale),
+    FillSensorColumns(record, task, Scale(left, scale),
                       Sub(Mul(right, force), transient.right_decays), first, k);
   }
 }

@@ -9,6 +9,7 @@
 
 #include "libcalib/likelihood/mode_split.hpp"
 #include "libcalib/likelihood/whitened_record.hpp"
+#include "libcalib/parameters/free_parameters.hpp"
 
 namespace modcal {
 
@@ -23,13 +24,6 @@ struct LikelihoodMode {
   Complex pole;                 ///< E_n
   Complex pole_by_frequency;    ///< ∂E_n/∂ln ω_n
   Complex pole_by_damping;      ///< ∂E_n/∂ln ζ_n
-};
-
-/// Share of one mode in one column of the Jacobian: ∂ln ω_n/∂θ and ∂ln ζ_n/∂θ.
-struct ColumnShare {
-  std::size_t column = 0;
-  double frequency = 0.0;
-  double damping = 0.0;
 };
 
 /// Per-bin numbers of one block that later passes need; real and imaginary parts.
@@ -62,14 +56,19 @@ void fill_plain_column(const WhitenedRecord& record, std::size_t block_index,
                        const LikelihoodBlock& block, bool right, const PlanarVector& numbers,
                        double* column);
 
-/// What is in the records beside the force, and which columns of the sensors are asked for.
+/// Column of one number of the sensor at x = L; null: not asked for.
+struct SensorColumn {
+  const PlanarVector* slope = nullptr;  ///< ∂ ln S by its coordinate
+  const PlanarVector* plain = nullptr;  ///< ∂plain[1] by it; null: none
+  double* column = nullptr;
+};
+
+/// What is in the records beside the force, and which columns of the sensor are asked for.
 struct ResidualTask {
   bool decays = false;  ///< odd_decay and even_decay of the block
   const PlanarVector* sensor = nullptr;
-  std::array<const PlanarVector*, 2> plain{};     ///< what else is in the records, both ends [N]
-  const PlanarVector* plain_by_corner = nullptr;  ///< ∂plain[1]/∂corner
-  double corner = 0.0;                            ///< of the sensor at x = L [rad/s]
-  std::array<double*, 3> sensors{};               ///< ln gain, delay [s], corner [rad/s]
+  std::array<const PlanarVector*, 2> plain{};  ///< what else is in the records, both ends [N]
+  std::array<SensorColumn, Sensor::kCount> columns{};
   double* residual = nullptr;
 };
 /// Adds the transients of the block to the column `residual`, fills its force and the columns of

@@ -2,25 +2,11 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
-#include <optional>
 #include <vector>
 
 #include "libcalib/likelihood/likelihood_kernel.hpp"
 
 namespace modcal {
-
-/// How the columns of a Jacobian are made of ∂/∂ln ω_n and ∂/∂ln ζ_n, and which ones are those of
-/// x_c and of the sensor at x = L: ln of its gain, delay [s], corner [rad/s].
-struct LikelihoodColumns {
-  std::size_t count = 0;
-  std::vector<ColumnShare> shares;       ///< by mode
-  std::vector<std::size_t> share_begin;  ///< N + 1 numbers: where those of mode n begin
-  std::optional<std::size_t> contact = {};
-  std::optional<std::size_t> gain = {}, delay = {}, corner = {};
-  /// Gain, delay and corner in this order.
-  std::array<std::optional<std::size_t>, 3> sensors() const { return {gain, delay, corner}; }
-};
 
 /// One evaluation at a model.
 struct LikelihoodPoint {

@@ -29,7 +29,7 @@ std::vector<std::optional<std::size_t>> places_in(std::span<const std::size_t> s
 std::vector<std::size_t> with_sensors(const LikelihoodColumns& columns,
                                       std::span<const std::size_t> wanted) {
   std::vector<std::size_t> selected(wanted.begin(), wanted.end());
-  for (const auto& sensor : columns.sensors()) {
+  for (const auto& sensor : columns.sensors) {
     if (sensor && std::find(wanted.begin(), wanted.end(), *sensor) == wanted.end()) {
       selected.push_back(*sensor);
     }
@@ -42,11 +42,8 @@ LikelihoodColumns select(const LikelihoodColumns& columns, std::span<const std::
   const auto moved = [&](const std::optional<std::size_t>& column) {
     return column ? places[*column] : std::nullopt;
   };
-  LikelihoodColumns some{.count = selected.size(),
-                         .contact = moved(columns.contact),
-                         .gain = moved(columns.gain),
-                         .delay = moved(columns.delay),
-                         .corner = moved(columns.corner)};
+  LikelihoodColumns some{.count = selected.size(), .contact = moved(columns.contact)};
+  std::transform(columns.sensors.begin(), columns.sensors.end(), some.sensors.begin(), moved);
   for (std::size_t n = 0; n + 1 < columns.share_begin.size(); ++n) {
     some.share_begin.push_back(some.shares.size());
     for (std::size_t i = columns.share_begin[n]; i < columns.share_begin[n + 1]; ++i) {
@@ -119,7 +116,7 @@ LikelihoodPoint LikelihoodEvaluation::rows(const LikelihoodColumns& columns,
                         .slope = mode_products(sums[0].data(), columns),
                         .information = project_rows(work, fit, wanted.size(), columns)};
   const auto places = places_in(selected, columns.count);
-  for (const auto& sensor : columns.sensors()) {
+  for (const auto& sensor : columns.sensors) {
     if (!sensor) continue;
     const auto column = static_cast<Index>(*sensor), place = static_cast<Index>(*places[*sensor]);
     point.slope[column] = products(n, place);

@@ -26,21 +26,16 @@ struct FormPoint {
 };
 
 /// Every parameter save the frequencies: f0, B, x_c, damping, those of further records,
-/// damping_power, gain, delay, corner, zeta_n; nothing of what is held. options: what is free.
-std::vector<ParameterForm> parameter_forms(const AllRecords& all, const UnknownsOptions& options,
-                                           const FormPoint& at);
+/// damping_power, gain, delay, corner, zeta_n; nothing of what is held.
+std::vector<ParameterForm> parameter_forms(const AllRecords& all, const FormPoint& at);
 
-/// Every f_n [Hz] that is not held; none with the law.
-std::vector<ParameterForm> frequency_forms(const AllRecords& all, const FormPoint& at);
-
-/// Covariance of both, frequencies first; where every ζ_n is free, of them in the place of their
-/// factor. covariance: of the unknowns of `all`.
-NamedCovariance named_covariance(const AllRecords& all, const UnknownsOptions& options,
-                                 const FormPoint& at, const Eigen::MatrixXd& covariance);
+/// Covariance of these and, first, of every f_n [Hz] that is free; where every ζ_n is free, of them
+/// in the place of their factor. covariance: of the unknowns of `all`.
+NamedCovariance named_covariance(const AllRecords& all, const FormPoint& at,
+                                 const Eigen::MatrixXd& covariance);
 
 /// The same for one record, at θ of its unknowns; damping: factor of all ζ_n there.
-NamedCovariance named_covariance(const StringUnknowns& unknowns, const UnknownsOptions& options,
-                                 const Eigen::VectorXd& theta, double damping,
-                                 const Eigen::MatrixXd& covariance);
+NamedCovariance named_covariance(const StringUnknowns& unknowns, const Eigen::VectorXd& theta,
+                                 double damping, const Eigen::MatrixXd& covariance);
 
 }  // namespace modcal

@@ -13,21 +13,20 @@ constexpr double kRidge = 1e-9;
 
 }  // namespace
 
-PluckEvaluation::Mode PluckEvaluation::mode_of(const LikelihoodMode& mode,
-                                               const SensorPair& sensors, double sample_rate,
-                                               double scale) {
+PluckEvaluation::Mode PluckEvaluation::mode_of(const LikelihoodMode& mode, const Sensor& sensors,
+                                               double sample_rate, double scale) {
   const Complex rate = std::log(mode.pole) * sample_rate;
   const Complex response = (mode.even ? -scale : scale) * sensors.response(rate);
-  const Complex by_rate = response * (1.0 / rate - sensors.delay - 1.0 / (rate + sensors.corner));
+  const Complex by_rate = response * sensors.rate(rate);
   Mode result{.pole = mode.pole,
               .by_frequency = mode.pole_by_frequency / mode.pole,
               .by_damping = mode.pole_by_damping / mode.pole,
               .right = response};
-  result.right_slopes[0] = by_rate * result.by_frequency * sample_rate;
-  result.right_slopes[1] = by_rate * result.by_damping * sample_rate;
-  result.right_slopes[2] = response;
-  result.right_slopes[3] = -rate * response;
-  result.right_slopes[4] = -response / (rate + sensors.corner);
+  result.right_by_frequency = by_rate * result.by_frequency * sample_rate;
+  result.right_by_damping = by_rate * result.by_damping * sample_rate;
+  for (std::size_t i = 0; i < Sensor::kCount; ++i) {
+    result.right_by_sensor[i] = sensors.slope(i, rate) * response;
+  }
   return result;
 }
 
@@ -145,15 +144,14 @@ void PluckEvaluation::add_mode(const LikelihoodColumns& columns, std::size_t mod
   for (std::size_t i = columns.share_begin[mode]; i < columns.share_begin[mode + 1]; ++i) {
     const auto& [column, frequency, damping] = columns.shares[i];
     const Complex slope = c * (frequency * own.by_frequency + damping * own.by_damping);
-    const Complex level = c * (frequency * own.right_slopes[0] + damping * own.right_slopes[1]);
+    const Complex level = c * (frequency * own.right_by_frequency + damping * own.right_by_damping);
     add(decay, kSlope, slope, left + column * kColumnLength);
     add(decay, kSlope, slope * own.right, right + column * kColumnLength);
     if (level != 0.0) add(decay, kLevel, level, right + column * kColumnLength);
   }
-  const std::optional<std::size_t> sensors[] = {columns.gain, columns.delay, columns.corner};
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (!sensors[i]) continue;
-    add(decay, kLevel, c * own.right_slopes[2 + i], right + *sensors[i] * kColumnLength);
+  for (std::size_t i = 0; i < Sensor::kCount; ++i) {
+    if (!columns.sensors[i]) continue;
+    add(decay, kLevel, c * own.right_by_sensor[i], right + *columns.sensors[i] * kColumnLength);
   }
   add(decay, kLevel, c, left + columns.count * kColumnLength);
   add(decay, kLevel, c * own.right, right + columns.count * kColumnLength);
@@ -174,8 +172,10 @@ void PluckEvaluation::fill_jacobian(std::size_t block, const LikelihoodColumns& 
   for (std::size_t p = 0; p < plain_.size(); ++p) {
     const double factor = linear_[static_cast<Index>(2 * modes_.size() + p)] / record_.deviation[1];
     fill_plain(block, plain_[p].numbers, factor, model);
-    if (columns.corner && plain_[p].by_corner.size() > 0) {
-      fill_plain(block, plain_[p].by_corner, factor, right + *columns.corner * kColumnLength);
+    for (std::size_t i = 0; i < Sensor::kCount; ++i) {
+      const PlanarVector& slope = plain_[p].by_sensor[i];
+      if (!columns.sensors[i] || slope.size() == 0) continue;
+      fill_plain(block, slope, factor, right + *columns.sensors[i] * kColumnLength);
     }
   }
   fill_plain(block, record_.left, -1.0, left + columns.count * kColumnLength);

@@ -32,11 +32,11 @@ class PluckEvaluation {
   struct Mode {
     Complex pole;
     Complex by_frequency, by_damping;  ///< ∂ln E/∂ln ω_n, ∂ln E/∂ln ζ_n
-    /// Factor of c_n at x = L, and its derivatives by ln ω_n, ln ζ_n, ln gain, delay, corner.
-    Complex right, right_slopes[5];
+    /// Factor of c_n at x = L, and its derivatives by ln ω_n, ln ζ_n and the sensor's numbers.
+    Complex right, right_by_frequency, right_by_damping, right_by_sensor[Sensor::kCount];
   };
 
-  static Mode mode_of(const LikelihoodMode& mode, const SensorPair& sensors, double sample_rate,
+  static Mode mode_of(const LikelihoodMode& mode, const Sensor& sensors, double sample_rate,
                       double scale);
   void fill(std::size_t block, std::size_t mode, bool slopes, Decay& decay) const;
   /// column += a part + conj(a) part'.

@@ -100,10 +100,8 @@ FrequencyPrior::FrequencyPrior(const Options& options) : options_(options) {
   require_positive(options.deviations, "deviation");
 }
 
-Response FrequencyPrior::response(ParameterKind kind) const {
-  const bool frequency = kind == ParameterKind::kFrequency || kind == ParameterKind::kFundamental ||
-                         kind == ParameterKind::kInharmonicity;
-  return frequency ? Response::kMoves : Response::kNone;
+Response FrequencyPrior::response(Moves what) const {
+  return what == Moves::kFrequencies ? Response::kMoves : Response::kNone;
 }
 
 std::unique_ptr<const ObjectiveFunction> FrequencyPrior::do_bind(

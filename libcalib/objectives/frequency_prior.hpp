@@ -23,7 +23,7 @@ class FrequencyPrior final : public Objective {
   /// Throws InvalidInput for lists of unequal length, a mode that is named twice or below 1,
   /// frequencies and deviations that are not finite and > 0.
   explicit FrequencyPrior(const Options& options);
-  Response response(ParameterKind kind) const override;
+  Response response(Moves what) const override;
   bool whitened() const override { return true; }
 
  private:

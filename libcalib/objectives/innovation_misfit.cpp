@@ -35,7 +35,8 @@ constexpr double kFaded = 16.0;
 std::size_t kept_samples(const CalibrationData& data, const ParameterSet& parameters) {
   double longest = std::abs(parameters.initial().sensors.delay);
   for (std::size_t i = 0; i < parameters.size(); ++i) {
-    if (parameters[i].kind != ParameterKind::kDelay) continue;
+    if (type_of(parameters[i]).moves != Moves::kSensor) continue;
+    if (parameters[i].index != Sensor::kDelay) continue;
     const Variable& variable = parameters[i].variable;
     longest = std::max({longest, std::abs(variable.lower), std::abs(variable.upper)});
   }
@@ -74,19 +75,10 @@ class Function final : public ObjectiveFunction {
  private:
   std::span<const double> left() const { return std::span(left_).first(kept_); }
 
-  // The reaction at x = L from what its sensor reads: R₂ = R₂'/S. The high-pass is undone as
-  // y + corner ∫ y dt by the trapezoidal rule.
-  std::vector<double> right(const SensorPair& sensors) const {
-    std::vector<double> samples =
-        sensors.delay == 0.0 ? right_ : advanced(right_, sensors.delay, sample_rate_);
+  // The reaction at x = L from what its sensor reads: R₂ = R₂'/S.
+  std::vector<double> right(const Sensor& sensors) const {
+    std::vector<double> samples = sensors.undone(right_, sample_rate_);
     samples.resize(kept_);
-    const double half = 0.5 * sensors.corner / sample_rate_;
-    double integral = 0.0, last = 0.0;
-    for (double& sample : samples) {
-      integral += half * (sample + last);
-      last = sample;
-      sample = (sample + integral) / sensors.gain;
-    }
     return samples;
   }
 
@@ -178,7 +170,7 @@ InnovationMisfit::InnovationMisfit(const Options& options) : options_(options) {
                  "force noise {:g} must be > 0", options.force_noise);
 }
 
-Response InnovationMisfit::response(ParameterKind /*kind*/) const { return Response::kMoves; }
+Response InnovationMisfit::response(Moves /*what*/) const { return Response::kMoves; }
 
 std::unique_ptr<const ObjectiveFunction> InnovationMisfit::do_bind(
     const CalibrationData& data, const ParameterSet& parameters) const {

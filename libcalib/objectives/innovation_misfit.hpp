@@ -13,7 +13,7 @@ namespace modcal {
 /// for x_c off by 0.1 mm at 2 % noise. At bind the friction is fitted with
 /// the initial model (ModelBasedEstimator); each evaluation fits it again with its own model, a few
 /// steps from there: friction, bow, adherence and offsets are eliminated. The reaction at x = L is
-/// taken back through its sensor, R₂ = R₂'/S (SensorPair), before it is predicted; with a delay the
+/// taken back through its sensor, R₂ = R₂'/S (Sensor), before it is predicted; with a delay the
 /// last samples, which it reaches beyond the record, are left out. No slopes of its own.
 /// One evaluation takes iterations × 15 simulations of the record.
 class InnovationMisfit final : public Objective {
@@ -30,7 +30,7 @@ class InnovationMisfit final : public Objective {
   explicit InnovationMisfit(const Options& options);
   /// All of them: the observer has the damping of the model and reads R₂ as its sensor's gain,
   /// delay and corner say.
-  Response response(ParameterKind kind) const override;
+  Response response(Moves what) const override;
   Capabilities capabilities() const override { return {.residuals = true}; }
 
  private:

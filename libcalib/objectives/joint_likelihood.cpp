@@ -17,37 +17,11 @@
 namespace modcal {
 namespace {
 
-LikelihoodColumns columns_of(const ParameterSet& parameters, std::span<const double> x,
-                             const ModelPoint& point) {
-  LikelihoodColumns columns{.count = parameters.size()};
-  std::vector<std::vector<ColumnShare>> by_mode(point.basis.size());
-  for (std::size_t i = 0; i < parameters.size(); ++i) {
-    const ParameterKind kind = parameters[i].kind;
-    if (kind == ParameterKind::kContact) columns.contact = i;
-    if (kind == ParameterKind::kGain) columns.gain = i;
-    if (kind == ParameterKind::kDelay) columns.delay = i;
-    if (kind == ParameterKind::kCorner) columns.corner = i;
-    for (const auto& [mode, slope] : parameters.frequency_slopes(x, i)) {
-      by_mode[mode].push_back({i, slope / point.basis.omega[mode], 0.0});
-    }
-    for (const auto& [mode, slope] : parameters.damping_slopes(x, i)) {
-      by_mode[mode].push_back({i, 0.0, slope / point.basis.zeta[mode]});
-    }
-  }
-  columns.share_begin.push_back(0);
-  for (const auto& shares : by_mode) {
-    columns.shares.insert(columns.shares.end(), shares.begin(), shares.end());
-    columns.share_begin.push_back(columns.shares.size());
-  }
-  return columns;
-}
-
-// Factors that turn the columns, by ln gain and corner in rad/s, into those of the parameters.
-std::vector<double> column_units(const ParameterSet& parameters, const ModelPoint& point) {
-  std::vector<double> units(parameters.size(), std::numbers::sqrt2);
+// Factors that turn the columns, by the coordinates, into those of the parameters.
+std::vector<double> column_units(const ParameterSet& parameters, std::span<const double> x) {
+  std::vector<double> units(parameters.size());
   for (std::size_t i = 0; i < units.size(); ++i) {
-    if (parameters[i].kind == ParameterKind::kGain) units[i] /= point.sensors.gain;
-    if (parameters[i].kind == ParameterKind::kCorner) units[i] *= 2.0 * std::numbers::pi;
+    units[i] = std::numbers::sqrt2 / type_of(parameters[i]).slope(x[i]);
   }
   return units;
 }
@@ -71,38 +45,18 @@ ContinuationResult told_by(const ModelPoint& model, const ModelPoint& initial) {
   return found;
 }
 
-// The parameters of the estimate in user units.
+// A parameter of the estimate in its unit; those of the laws stand beside the model.
+double value_in(const ContinuationResult& found, const ParameterName& name) {
+  if (name.kind == ParameterKind::kFundamental) return found.law.fundamental;
+  if (name.kind == ParameterKind::kInharmonicity) return found.law.inharmonicity;
+  if (name.kind == ParameterKind::kDampingFactor) return found.damping;
+  if (name.kind == ParameterKind::kDampingPower) return found.damping_power;
+  return value_of(name, found.model);
+}
+
 std::vector<double> values_of(const ContinuationResult& found, const ParameterSet& parameters) {
   std::vector<double> x;
-  for (std::size_t i = 0; i < parameters.size(); ++i) {
-    const SensorPair& sensors = found.model.sensors;
-    const auto value = [&]() -> double {
-      switch (parameters[i].kind) {
-        case ParameterKind::kFundamental:
-          return found.law.fundamental;
-        case ParameterKind::kInharmonicity:
-          return found.law.inharmonicity;
-        case ParameterKind::kContact:
-          return found.model.contact;
-        case ParameterKind::kFrequency:
-          return found.model.basis.frequency(parameters[i].mode);
-        case ParameterKind::kDampingRatio:
-          return found.model.basis.zeta[parameters[i].mode];
-        case ParameterKind::kDampingFactor:
-          return found.damping;
-        case ParameterKind::kDampingPower:
-          return found.damping_power;
-        case ParameterKind::kGain:
-          return sensors.gain;
-        case ParameterKind::kDelay:
-          return sensors.delay;
-        case ParameterKind::kCorner:
-          return 0.5 * sensors.corner / std::numbers::pi;
-      }
-      return 0.0;
-    };
-    x.push_back(value());
-  }
+  for (std::size_t i = 0; i < parameters.size(); ++i) x.push_back(value_in(found, parameters[i]));
   return x;
 }
 
@@ -154,8 +108,7 @@ class JointLikelihoodFunction final : public ObjectiveFunction {
   void do_evaluate(std::span<const double> x, const ObjectiveOutputs& outputs) const override {
     const ModelPoint point = parameters_.model(x);
     const bool slopes = outputs.gradient || outputs.jacobian || outputs.information;
-    const LikelihoodColumns columns =
-        slopes ? columns_of(parameters_, x, point) : LikelihoodColumns{};
+    const LikelihoodColumns columns = slopes ? parameters_.columns(x) : LikelihoodColumns{};
     std::vector<double> residuals(outputs.residuals ? residual_count() : 0);
     Eigen::MatrixXd jacobian;
     const bool slope_alone =
@@ -166,7 +119,7 @@ class JointLikelihoodFunction final : public ObjectiveFunction {
                                             {.residuals = outputs.residuals ? &residuals : nullptr,
                                              .jacobian = outputs.jacobian ? &jacobian : nullptr});
     if (outputs.value) *outputs.value = at.cost;
-    const std::vector<double> units = column_units(parameters_, point);
+    const std::vector<double> units = column_units(parameters_, x);
     for (std::size_t i = 0; outputs.gradient && i < dimension(); ++i) {
       outputs.gradient[i] = std::numbers::sqrt2 * units[i] * at.slope[static_cast<Eigen::Index>(i)];
     }

@@ -23,7 +23,7 @@ class JointLikelihood final : public Objective {
     void visit(OptionVisitor& visitor);
   };
   explicit JointLikelihood(const Options& options);
-  Response response(ParameterKind /*kind*/) const override { return Response::kMoves; }
+  Response response(Moves /*what*/) const override { return Response::kMoves; }
   /// Damped records have correlated bins.
   bool whitened() const override { return options_.damping == 0.0; }
   Capabilities capabilities() const override {

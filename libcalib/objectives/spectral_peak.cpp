@@ -65,8 +65,8 @@ class Scanner final : public EvaluatingScanner {
     }
     omegas_.assign(candidates.begin(), candidates.end());
     for (double& omega : omegas_) omega *= 2.0 * std::numbers::pi;
-    scan_.integrate(model_, parameter.mode, bands_.grid(),
-                    bands_.band_about(model_.poles[parameter.mode].omega), bands_.magnitudes(),
+    scan_.integrate(model_, parameter.index, bands_.grid(),
+                    bands_.band_about(model_.poles[parameter.index].omega), bands_.magnitudes(),
                     omegas_, values);
   }
 
@@ -74,7 +74,7 @@ class Scanner final : public EvaluatingScanner {
     EvaluatingScanner::move(i, value);
     const Parameter& parameter = bands_.parameters()[i];
     if (parameter.kind == ParameterKind::kFrequency) {
-      model_.poles[parameter.mode].omega = 2.0 * std::numbers::pi * value;
+      model_.poles[parameter.index].omega = 2.0 * std::numbers::pi * value;
     } else {
       refresh();
     }
@@ -84,8 +84,8 @@ class Scanner final : public EvaluatingScanner {
     const Parameter& from = bands_.parameters()[j];
     const Parameter& to = bands_.parameters()[i];
     if (from.kind != ParameterKind::kFrequency || to.kind != ParameterKind::kFrequency) return true;
-    const double center = model_.poles[to.mode].omega;
-    return std::abs(model_.poles[from.mode].omega - center) <= 2.0 * bands_.half_band() * center;
+    const double center = model_.poles[to.index].omega;
+    return std::abs(model_.poles[from.index].omega - center) <= 2.0 * bands_.half_band() * center;
   }
 
   void refresh() override { model_ = end_reactions(bands_.parameters().model(point())); }

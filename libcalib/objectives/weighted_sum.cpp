@@ -125,13 +125,13 @@ WeightedSum::WeightedSum(const Options& options) : options_(options) {
   }
 }
 
-Response WeightedSum::response(ParameterKind kind) const {
+Response WeightedSum::response(Moves what) const {
   MODCAL_REQUIRE(!options_.terms.empty(),
                  "a weighted_sum without terms: state terms: [{{weight: 1, objective: "
                  "joint_likelihood}}, ...]");
   Response response = Response::kNone;
   for (const Term& term : options_.terms) {
-    const Response own = term.objective.make()->response(kind);
+    const Response own = term.objective.make()->response(what);
     if (own == Response::kRefused) return own;
     if (own == Response::kMoves) response = own;
   }

@@ -28,7 +28,7 @@ class WeightedSum final : public Objective {
   /// Throws InvalidInput for a weight that is not positive.
   explicit WeightedSum(const Options& options);
   /// Moved by what moves one of the terms.
-  Response response(ParameterKind kind) const override;
+  Response response(Moves what) const override;
   /// What all terms have.
   Capabilities capabilities() const override;
   /// All terms are, each with the weight 1.

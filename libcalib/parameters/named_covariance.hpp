@@ -11,7 +11,7 @@
 
 namespace modcal {
 
-/// Covariance of P parameters, in the units of their names (unit_of_unknown); those of a further
+/// Covariance of P parameters, in the units of their names (unit_of_parameter); those of a further
 /// record have its number behind them, "x_c 2". Nothing of what is held.
 struct NamedCovariance {
   std::vector<std::string> names;

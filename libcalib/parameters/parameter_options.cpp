@@ -1,69 +1,91 @@
 #include "libcalib/parameters/parameter_options.hpp"
 
 #include <algorithm>
-#include <array>
-#include <numbers>
+#include <cmath>
 #include <optional>
 
 #include "libsim/base/error.hpp"
 
 namespace modcal {
-namespace {
-
-constexpr std::array kSensors = {"gain", "delay", "corner"};
-
-}  // namespace
-
 void ParameterRanges::visit(OptionVisitor& visitor) {
-  visitor.number({.key = "frequency_range",
-                  .meaning = "how far f_n and f0 may move, relative to their initial values",
+  for (const ParameterType& type : parameter_table()) {
+    if (!type.range_option.key.empty()) visitor.number(type.range_option, type.range(*this));
+    if (type.kind != ParameterKind::kInharmonicity) continue;
+    visitor.number(
+        {.key = "lowest_inharmonicity",
+         .meaning = "smallest B: the estimate of a string without stiffness scatters about "
+                    "0; automatic: half of what the law of the highest mode allows",
+         .unit = "1",
+         .range = Range::closed(-1.0, 0.0),
+         .word = "automatic"},
+        lowest_inharmonicity);
+  }
+}
+
+void ParameterRanges::require_valid() const {
+  ParameterRanges copy = *this;
+  for (const ParameterType& type : parameter_table()) {
+    const OptionInfo& option = type.range_option;
+    const double range = type.range(copy);
+    MODCAL_REQUIRE(option.key.empty() || option.range.contains(range), "{} {:g} {} must be {}",
+                   option.key, range, option.unit, option.range.text());
+  }
+}
+
+double ParameterRanges::lowest_of(std::size_t modes) const {
+  const double highest = static_cast<double>(modes);
+  const double end = -1.0 / (highest * highest);  // 1 + B n² = 0
+  if (std::isnan(lowest_inharmonicity)) return 0.5 * end;
+  MODCAL_REQUIRE(lowest_inharmonicity > end && lowest_inharmonicity <= 0.0,
+                 "lowest inharmonicity {:g} must lie in ({:g}, 0]: below, 1 + B n^2 of mode {} is "
+                 "not positive",
+                 lowest_inharmonicity, end, modes);
+  return lowest_inharmonicity;
+}
+
+void FixedParameter::visit(OptionVisitor& visitor) {
+  visitor.text({.key = "parameter",
+                .meaning = "f0, B, x_c, f_3 or zeta_3; of a further record: x_c 2",
+                .required = true},
+               parameter);
+  // The unit is that of the parameter, which stands before it.
+  visitor.number({.key = "value",
+                  .meaning = "the value it is held at, in the unit of the parameter",
+                  .unit = unit_of_parameter(parameter),
+                  .word = "initial"},
+                 value);
+}
+
+void ParameterPrior::visit(OptionVisitor& visitor) {
+  visitor.text(
+      {.key = "parameter",
+       .meaning = "f0, B, x_c, f_3, zeta_3, damping, damping_power, gain, delay or corner; "
+                  "of a further record: x_c 2",
+       .required = true},
+      parameter);
+  // The unit is that of the parameter, which stands before it.
+  visitor.number({.key = "mean",
+                  .meaning = "mean of the prior, in the unit of the parameter",
+                  .unit = unit_of_parameter(parameter),
+                  .word = "initial"},
+                 mean);
+  visitor.number({.key = "deviation",
+                  .meaning = "standard deviation of the prior, in the unit of the parameter",
+                  .unit = unit_of_parameter(parameter),
+                  .range = Range::positive(),
+                  .required = true},
+                 deviation);
+}
+
+void PriorCorrelation::visit(OptionVisitor& visitor) {
+  visitor.texts({.key = "between", .meaning = "two parameters that have priors", .required = true},
+                between);
+  visitor.number({.key = "value",
+                  .meaning = "their correlation",
                   .unit = "1",
-                  .range = Range::open(0.0, 1.0)},
-                 frequency);
-  visitor.number({.key = "inharmonicity_range",
-                  .meaning = "how far B may move",
-                  .unit = "1",
-                  .range = Range::positive()},
-                 inharmonicity);
-  visitor.number(
-      {.key = "lowest_inharmonicity",
-       .meaning = "smallest B: the estimate of a string without stiffness scatters about "
-                  "0; automatic: half of what the law of the highest mode allows",
-       .unit = "1",
-       .range = Range::closed(-1.0, 0.0),
-       .word = "automatic"},
-      lowest_inharmonicity);
-  visitor.number({.key = "contact_range",
-                  .meaning = "how far x_c may move",
-                  .unit = "m",
-                  .range = Range::positive()},
-                 contact);
-  visitor.number({.key = "damping_range",
-                  .meaning = "how far zeta_n and their factor may move, relative to their initial "
-                             "values",
-                  .unit = "1",
-                  .range = Range::open(0.0, 1.0)},
-                 damping);
-  visitor.number({.key = "power_range",
-                  .meaning = "how far the exponent of the mode number in zeta_n may move",
-                  .unit = "1",
-                  .range = Range::positive()},
-                 power);
-  visitor.number({.key = "gain_range",
-                  .meaning = "how far the gain may move, relative to its initial value",
-                  .unit = "1",
-                  .range = Range::open(0.0, 1.0)},
-                 gain);
-  visitor.number({.key = "delay_range",
-                  .meaning = "how far the delay may move",
-                  .unit = "s",
-                  .range = Range::positive()},
-                 delay);
-  visitor.number({.key = "corner_range",
-                  .meaning = "how far the corner may rise",
-                  .unit = "Hz",
-                  .range = Range::positive()},
-                 corner);
+                  .range = Range::open(-1.0, 1.0),
+                  .required = true},
+                 value);
 }
 
 void UnknownsOptions::visit(OptionVisitor& visitor) {
@@ -80,31 +102,21 @@ void UnknownsOptions::visit(OptionVisitor& visitor) {
   std::vector<std::string> free = free_sensors();
   visitor.texts({.key = "sensors",
                  .meaning = "what is free of the sensor at x = L against that at x = 0",
-                 .choices = {kSensors.begin(), kSensors.end()}},
+                 .choices = sensor_names()},
                 free);
-  UnknownOption* const sensors[] = {&gain, &delay, &corner};
-  for (std::size_t i = 0; i < kSensors.size(); ++i) {
-    sensors[i]->free = std::find(free.begin(), free.end(), kSensors[i]) != free.end();
+  std::vector<std::string_view> own = {"x_c"};
+  for (std::size_t i = 0; i < Sensor::kCount; ++i) {
+    const ParameterType& type = sensor_type(i);
+    sensor[i].free = std::find(free.begin(), free.end(), type.name) != free.end();
+    const std::string meaning = fmt::format("{}; of what is free: start", type.meaning);
+    visitor.number({.key = type.name, .meaning = meaning, .unit = type.unit, .range = type.stated},
+                   sensor[i].value);
+    own.push_back(type.name);
   }
-  visitor.number(
-      {.key = "gain",
-       .meaning = "gain of the sensor at x = L over that at x = 0; of what is free: start",
-       .unit = "1",
-       .range = Range::positive()},
-      gain.value);
-  visitor.number({.key = "delay",
-                  .meaning = "delay of the sensor at x = L against that at x = 0, likewise",
-                  .unit = "s"},
-                 delay.value);
-  visitor.number({.key = "corner",
-                  .meaning = "corner of a high-pass of the sensor at x = L that the other has not, "
-                             "likewise",
-                  .unit = "Hz",
-                  .range = Range::non_negative()},
-                 corner.value);
+  own.push_back("damping");
   visitor.texts({.key = "per_record",
                  .meaning = "what each stroke or pluck has for itself; the rest is shared by all",
-                 .choices = {"x_c", "gain", "delay", "corner", "damping"}},
+                 .choices = own},
                 per_record);
   ListOf<FixedParameter> fixed_slot(fixed);
   visitor.list({.key = "fixed", .meaning = "parameters that are held at a value"}, fixed_slot);
@@ -117,51 +129,16 @@ void UnknownsOptions::visit(OptionVisitor& visitor) {
 
 std::vector<std::string> UnknownsOptions::free_sensors() const {
   std::vector<std::string> names;
-  const bool free[] = {gain.free, delay.free, corner.free};
-  for (std::size_t i = 0; i < kSensors.size(); ++i) {
-    if (free[i]) names.emplace_back(kSensors[i]);
+  for (std::size_t i = 0; i < Sensor::kCount; ++i) {
+    if (sensor[i].free) names.emplace_back(sensor_type(i).name);
   }
   return names;
 }
 
-bool UnknownsOptions::own(UnknownKind kind) const {
-  return std::any_of(per_record.begin(), per_record.end(), [kind](const std::string& name) {
-    const std::optional<UnknownName> parsed = parse_unknown(name);
-    return parsed && parsed->kind == kind;
-  });
-}
-
-void UnknownsOptions::require_sharing() const {
-  std::vector<std::string> seen;
-  for (const std::string& name : per_record) {
-    const std::optional<UnknownName> parsed = parse_unknown(name);
-    const bool known =
-        parsed && parsed->record == 0 &&
-        (parsed->kind == UnknownKind::kContact || parsed->kind == UnknownKind::kDampingFactor ||
-         parsed->kind == UnknownKind::kGain || parsed->kind == UnknownKind::kDelay ||
-         parsed->kind == UnknownKind::kCorner);
-    MODCAL_REQUIRE(known,
-                   "\"{}\" cannot be each record's own: x_c, gain, delay, corner and damping can",
-                   name);
-    MODCAL_REQUIRE(std::find(seen.begin(), seen.end(), name) == seen.end(),
-                   "per_record names \"{}\" twice", name);
-    seen.push_back(name);
-    const bool held = (parsed->kind == UnknownKind::kGain && !gain.free) ||
-                      (parsed->kind == UnknownKind::kDelay && !delay.free) ||
-                      (parsed->kind == UnknownKind::kCorner && !corner.free);
-    MODCAL_REQUIRE(!held, "per_record names {}, which is fixed: name it among the sensors", name);
-    MODCAL_REQUIRE(
-        parsed->kind != UnknownKind::kDampingFactor || damping == "factor",
-        "per_record names damping, which is {}: a factor alone can be each record's own, "
-        "state damping: factor",
-        damping);
-  }
-}
-
 void UnknownsOptions::require_contacts(std::size_t strokes) const {
   const auto require = [strokes](const std::string& parameter) {
-    const std::optional<UnknownName> name = parse_unknown(parameter);
-    MODCAL_REQUIRE(!name || name->kind != UnknownKind::kContact || name->record < strokes,
+    const std::optional<ParameterName> name = parse_parameter(parameter);
+    MODCAL_REQUIRE(!name || name->kind != ParameterKind::kContact || name->record < strokes,
                    "\"{}\" is stated, but only strokes have a contact, and there {}: name one of "
                    "theirs, or state further_strokes",
                    parameter, strokes == 1 ? "is one" : fmt::format("are {}", strokes));
@@ -170,11 +147,30 @@ void UnknownsOptions::require_contacts(std::size_t strokes) const {
   for (const FixedParameter& held : fixed) require(held.parameter);
 }
 
-SensorPair UnknownsOptions::sensors() const {
-  return {.gain = gain.value,
-          .delay = delay.value,
-          .corner = 2.0 * std::numbers::pi * corner.value,
-          .free = gain.free || delay.free || corner.free};
+bool UnknownsOptions::own(const ParameterName& name) const {
+  return std::any_of(per_record.begin(), per_record.end(), [&](const std::string& text) {
+    const std::optional<ParameterName> parsed = parse_parameter(text);
+    return parsed && parsed->kind == name.kind && parsed->index == name.index;
+  });
+}
+
+Sensor UnknownsOptions::sensors() const {
+  Sensor result;
+  for (std::size_t i = 0; i < Sensor::kCount; ++i) {
+    result.*Sensor::value_of(i) = sensor_type(i).per_unit * sensor[i].value;
+    result.free = result.free || sensor[i].free;
+  }
+  return result;
+}
+
+ModelPoint with_fixed(ModelPoint initial, const UnknownsOptions& options) {
+  for (const FixedParameter& fixed : options.fixed) {
+    const ParameterName name = require_parameter(fixed.parameter, initial.basis.size());
+    const ParameterType& type = type_of(name);
+    if (std::isnan(fixed.value) || !type.at || name.record > 0) continue;
+    *type.at(initial, name.index) = type.per_unit * fixed.value;
+  }
+  return initial;
 }
 
 void ParameterOptions::visit(OptionVisitor& visitor) {

@@ -1,14 +1,15 @@
 // What a calibration frees, fixes and knows beforehand: section "parameters".
 #pragma once
 
+#include <Eigen/Core>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <string>
 #include <vector>
 
-#include "libcalib/parameters/parameters.hpp"
-#include "libcalib/parameters/stated_priors.hpp"
+#include "libcalib/parameters/parameter_table.hpp"
 #include "libsim/base/options.hpp"
 
 namespace modcal {
@@ -19,28 +20,47 @@ struct UnknownOption {
   double value = 0.0;
 };
 
+/// f0, B, x_c, a single f_n or zeta_n, fixed at a value.
+struct FixedParameter {
+  std::string parameter;
+  double value = std::numeric_limits<double>::quiet_NaN();  ///< NaN: the initial value
+  void visit(OptionVisitor& visitor);
+};
+
+/// Mean and standard deviation of one parameter, in the unit of its name.
+struct ParameterPrior {
+  std::string parameter;
+  double mean = std::numeric_limits<double>::quiet_NaN();  ///< NaN: the initial value
+  double deviation = std::numeric_limits<double>::quiet_NaN();
+  void visit(OptionVisitor& visitor);
+};
+
+/// Correlation of two parameters that have priors.
+struct PriorCorrelation {
+  std::vector<std::string> between;
+  double value = 0.0;
+  void visit(OptionVisitor& visitor);
+};
+
 /// What is unknown of the damping and of the sensor at x = L beside frequencies and contact, and
 /// what is known of all of them beforehand.
 struct UnknownsOptions {
   /// "fixed": ζ_n as stated; "factor": times one factor; "power": times a factor and a power of n;
   /// "each": every ζ_n, under a prior about the stated one.
   std::string damping = "factor";
-  double damping_width = 0.3;        ///< sd of the prior of each ln ζ_n, with "each" [1]
-  UnknownOption gain{.value = 1.0};  ///< of the sensor at x = L over that at x = 0 [1]
-  UnknownOption delay;               ///< [s]
-  UnknownOption corner;              ///< [Hz]
+  double damping_width = 0.3;  ///< sd of the prior of each ln ζ_n, with "each" [1]
+  /// Gain [1], delay [s] and corner [Hz] of the sensor at x = L.
+  std::array<UnknownOption, Sensor::kCount> sensor = {{{.value = 1.0}}};
   /// What each record has for itself, of x_c, gain, delay, corner and the factor "damping".
   std::vector<std::string> per_record = {"x_c"};
   std::vector<FixedParameter> fixed;
   std::vector<ParameterPrior> priors;
   std::vector<PriorCorrelation> correlations;
   void visit(OptionVisitor& visitor);
-  SensorPair sensors() const;                     ///< start
+  Sensor sensors() const;                         ///< start
   std::vector<std::string> free_sensors() const;  ///< some of gain, delay, corner
   /// Whether it is each record's own.
-  bool own(UnknownKind kind) const;
-  /// Throws InvalidInput where per_record names what is fixed, unknown or named twice.
-  void require_sharing() const;
+  bool own(const ParameterName& name) const;
   /// Throws InvalidInput for a prior or a fixed value of a contact that no stroke has.
   void require_contacts(std::size_t strokes) const;
 };
@@ -62,5 +82,19 @@ struct ParameterOptions {
   /// nothing is free.
   std::vector<std::string> names(std::size_t modes_of_model) const;
 };
+
+/// Throws InvalidInput for a name that is unknown, repeated, both fixed and with a prior, or of
+/// something that is not free; a fixed value, mean or deviation that no string has; fewer than two
+/// frequencies left to find a free law by; correlations that no Gaussian has; per_record that names
+/// what is fixed, unknown or named twice. modes, length [m]: of the string.
+void require_priors(const UnknownsOptions& options, std::size_t modes, std::size_t records = 1,
+                    double length = std::numeric_limits<double>::infinity());
+
+/// Correlations of the priors in their order. Throws InvalidInput for one of a parameter that has
+/// no prior, of one with itself, twice the same and outside (−1, 1).
+Eigen::MatrixXd prior_correlation(const UnknownsOptions& options);
+
+/// The initial model with the values stated: frequencies, damping ratios, the first contact.
+ModelPoint with_fixed(ModelPoint initial, const UnknownsOptions& options);
 
 }  // namespace modcal

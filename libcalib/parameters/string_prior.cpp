@@ -2,12 +2,13 @@
 #include <cmath>
 #include <numbers>
 
-#include "libcalib/likelihood/string_unknowns.hpp"
+#include "libcalib/parameters/string_unknowns.hpp"
 
 namespace modcal {
 namespace {
 
 using Index = Eigen::Index;
+using Kind = ParameterKind;
 
 }  // namespace
 
@@ -15,95 +16,61 @@ LinearForm StringUnknowns::form(double offset) const {
   return {.slope = Eigen::VectorXd::Zero(size() + 2), .offset = offset};
 }
 
-// ln f_n.
-std::optional<LinearForm> StringUnknowns::frequency_coordinate(std::size_t mode,
-                                                               const Eigen::VectorXd& theta) const {
-  const auto i = static_cast<Index>(mode);
-  if (!law_) {
-    LinearForm result = form(std::log(reference_.basis.frequency(mode)));
-    result.slope[i] = 1.0;
-    return result;
-  }
-  const double n = static_cast<double>(mode + 1);
-  const double stiff = 1.0 + theta[1] * n * n;
-  LinearForm result = form(std::log(n * fundamental_ * std::sqrt(stiff)));
-  result.slope[0] = 1.0;
-  result.slope[1] = 0.5 * n * n / stiff;
-  result.offset -= result.slope[1] * theta[1];
-  return result;
-}
-
-// ln ζ_n.
-std::optional<LinearForm> StringUnknowns::damping_coordinate(std::size_t mode) const {
-  LinearForm result = form(std::log(reference_.basis.zeta[mode]));
-  switch (damping_kind()) {
-    case Damping::kFixed:
-      return std::nullopt;
-    case Damping::kPower:
-      result.slope[damping() + 1] = std::log(static_cast<double>(mode + 1));
-      [[fallthrough]];
-    case Damping::kFactor:
-      result.slope[damping()] = 1.0;
-      break;
-    case Damping::kEach:
-      result.slope[damping() + static_cast<Index>(mode)] = 1.0;
-      break;
-  }
-  return result;
-}
-
-std::optional<LinearForm> StringUnknowns::coordinate(const UnknownName& name,
+std::optional<LinearForm> StringUnknowns::coordinate(const ParameterName& name,
                                                      const Eigen::VectorXd& theta) const {
-  const auto with_slope = [this](Index place, double offset) {
-    LinearForm result = form(offset);
-    result.slope[place] = 1.0;
+  const ParameterType& type = type_of(name);
+  const std::optional<std::size_t> place = free_.find(name.kind, name.index);
+  if (!type.at && type.moves == Moves::kFrequencies) {
+    const bool f0 = name.kind == Kind::kFundamental;
+    LinearForm result = form(law_ && f0 ? std::log(fundamental_) : 0.0);
+    result.slope[place ? static_cast<Index>(*place) : size() + (f0 ? 0 : 1)] = 1.0;
     return result;
-  };
-  const auto of_sensor = [&](std::size_t which, double offset) {
-    const Index place = sensor(which);
-    return place < 0 ? std::optional<LinearForm>() : with_slope(place, offset);
-  };
-  switch (name.kind) {
-    case UnknownKind::kFundamental:
-      return law_ ? with_slope(0, std::log(fundamental_)) : with_slope(size(), 0.0);
-    case UnknownKind::kInharmonicity:
-      return with_slope(law_ ? 1 : size() + 1, 0.0);
-    case UnknownKind::kContact:
-      return with_slope(contact(), reference_.contact);
-    case UnknownKind::kFrequency:
-      return frequency_coordinate(name.mode, theta);
-    case UnknownKind::kDampingFactor:
-    case UnknownKind::kDampingRatio:
-      return damping_coordinate(name.mode);
-    case UnknownKind::kDampingPower: {
-      if (damping_kind() != Damping::kPower) return std::nullopt;
-      LinearForm result = form(std::log(reference_.basis.zeta[1] / reference_.basis.zeta[0]));
-      result.slope[damping() + 1] = std::numbers::ln2;
-      return result;
-    }
-    case UnknownKind::kGain:
-      return of_sensor(0, std::log(reference_.sensors.gain));
-    case UnknownKind::kDelay:
-      return of_sensor(1, reference_.sensors.delay);
-    case UnknownKind::kCorner:
-      return of_sensor(2, reference_.sensors.corner);
   }
-  return std::nullopt;
+  if (name.kind == Kind::kDampingPower) {
+    if (!place) return std::nullopt;
+    LinearForm result = form(std::log(reference_.basis.zeta[1] / reference_.basis.zeta[0]));
+    result.slope[static_cast<Index>(*place)] = std::numbers::ln2;
+    return result;
+  }
+  if (place && type.at) {
+    LinearForm result = form(type.coordinate(value_of(name, reference_)));
+    result.slope[static_cast<Index>(*place)] = 1.0;
+    return result;
+  }
+  if (!type.share) return std::nullopt;
+  // What the law moves: ln f_n, ln ζ_n; the factor of the damping by that of ζ_1.
+  const std::span<const std::size_t> movers = free_.movers(type.moves, name.index);
+  if (movers.empty()) return std::nullopt;
+  const bool damping = type.moves == Moves::kDamping;
+  const double n = static_cast<double>(name.index + 1);
+  LinearForm result =
+      form(std::log(damping ? reference_.basis.zeta[name.index]
+                            : n * fundamental_ * std::sqrt(1.0 + theta[1] * n * n)));
+  for (const std::size_t i : movers) {
+    const auto at = static_cast<Index>(i);
+    result.slope[at] = free_.share(i, name.index, damping ? 0.0 : theta[1]);
+    if (free_[i].kind == Kind::kInharmonicity) result.offset -= result.slope[at] * theta[at];
+  }
+  return result;
+}
+
+StatedPriors::Coordinate StringUnknowns::coordinates(const Eigen::VectorXd& theta) const {
+  return [this, &theta](const ParameterName& name) { return coordinate(name, theta); };
 }
 
 void StringUnknowns::state_damping_ratios(const std::vector<double>& mean,
                                           PriorEquations& equations) const {
-  if (damping_kind() != Damping::kEach) return;
+  if (!free_.has(Kind::kDampingRatio)) return;
   for (std::size_t n = 0; n < modes(); ++n) {
-    if (priors_.has({.kind = UnknownKind::kDampingRatio, .mode = n})) continue;
-    if (priors_.held().ratio(n)) continue;
-    equations.add(*damping_coordinate(n), std::log(mean[n]), options_.damping_width);
+    const ParameterName ratio{Kind::kDampingRatio, n};
+    if (priors_.has(ratio) || priors_.fixed(ratio)) continue;
+    equations.add(*coordinate(ratio, {}), std::log(mean[n]), options_.damping_width);
   }
 }
 
 PriorEquations StringUnknowns::stated(const Eigen::VectorXd& theta) const {
   PriorEquations equations(size());
-  priors_.state([&](const UnknownName& name) { return coordinate(name, theta); }, equations);
+  priors_.state(coordinates(theta), equations);
   state_damping_ratios(reference_.basis.zeta, equations);
   return equations;
 }
@@ -125,12 +92,6 @@ QuadraticPrior StringUnknowns::prior(const Eigen::VectorXd& theta, const LawScat
   return stated(theta, law).solve();
 }
 
-PriorMisfit StringUnknowns::misfit_at(const Eigen::VectorXd& theta,
-                                      const PriorEquations& equations) const {
-  return priors_.misfit([&](const UnknownName& name) { return coordinate(name, theta); },
-                        equations.completed(theta));
-}
-
 PriorMisfit StringUnknowns::prior_misfit(const Eigen::VectorXd& theta) const {
   return misfit_at(theta, PriorEquations(size()));
 }
@@ -140,10 +101,9 @@ PriorMisfit StringUnknowns::prior_misfit(const Eigen::VectorXd& theta,
   return misfit_at(theta, stated(theta, law));
 }
 
-StringUnknowns StringUnknowns::under(StatedPriors priors) const {
-  StringUnknowns result = *this;
-  result.priors_ = std::move(priors);
-  return result;
+PriorMisfit StringUnknowns::misfit_at(const Eigen::VectorXd& theta,
+                                      const PriorEquations& equations) const {
+  return priors_.misfit(coordinates(theta), equations.completed(theta));
 }
 
 void StringUnknowns::hold(PriorEquations& equations) const {
@@ -151,10 +111,9 @@ void StringUnknowns::hold(PriorEquations& equations) const {
   for (Index i = 0; i < size(); ++i) {
     if (held(i)) equations.hold(i, at[i]);
   }
-  const HeldParameters& held = priors_.held();
   const Index law = equations.unknowns();
-  if (held.fundamental) equations.hold(law, std::log(*held.fundamental));
-  if (held.inharmonicity) equations.hold(law + 1, *held.inharmonicity);
+  if (const auto f0 = priors_.fixed({Kind::kFundamental})) equations.hold(law, std::log(*f0));
+  if (const auto b = priors_.fixed({Kind::kInharmonicity})) equations.hold(law + 1, *b);
 }
 
 Eigen::VectorXd StringUnknowns::log_frequencies() const {

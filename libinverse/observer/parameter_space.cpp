@@ -2,77 +2,53 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace modcal::observer {
 namespace {
 
-void move(ObserverParameters& p, const FreeParameter& free, double amount) {
+using Parameters = ObserverParameters;
+
+// How a number follows its coordinate: times exp(change), plus the change, the same within [0, 1].
+enum class Moved { kByFactor, kBySum, kWithinOne };
+
+struct Row {
+  Moved moved;
+  double* (*number)(Parameters& parameters, std::size_t index);
+};
+
+// By Coordinate, in its order.
+constexpr Row kRows[] = {
+    {Moved::kByFactor, [](Parameters& p, std::size_t) { return &p.sliding.dynamic_force; }},
+    {Moved::kByFactor, [](Parameters& p, std::size_t) { return &p.sliding.force_drop; }},
+    {Moved::kByFactor, [](Parameters& p, std::size_t) { return &p.sliding.decay; }},
+    {Moved::kByFactor, [](Parameters& p, std::size_t) { return &p.bow_velocity; }},
+    {Moved::kByFactor, [](Parameters& p, std::size_t) { return &p.stiffness; }},
+    {Moved::kBySum, [](Parameters& p, std::size_t) { return &p.offset[0]; }},
+    {Moved::kBySum, [](Parameters& p, std::size_t) { return &p.offset[1]; }},
+    {Moved::kByFactor, [](Parameters& p, std::size_t) { return &p.damping_ratio; }},
+    {Moved::kWithinOne, [](Parameters& p, std::size_t) { return &p.sliding.weight; }},
+    {Moved::kByFactor, [](Parameters& p, std::size_t) { return &p.sliding.ratio; }},
+    {Moved::kBySum, [](Parameters& p, std::size_t) { return &p.sliding.viscous; }},
+    {Moved::kByFactor, [](Parameters& p, std::size_t) { return &p.sliding.heating; }},
+    {Moved::kByFactor, [](Parameters& p, std::size_t) { return &p.sliding.cooling; }},
+    {Moved::kByFactor, [](Parameters& p, std::size_t) { return &p.sliding.carried; }},
+    {Moved::kByFactor, [](Parameters& p, std::size_t) { return &p.sliding.width; }},
+    {Moved::kBySum, [](Parameters& p, std::size_t i) { return &p.force_knots[i]; }},
+    {Moved::kBySum, [](Parameters& p, std::size_t i) { return &p.velocity_knots[i]; }},
+    {Moved::kBySum, [](Parameters& p, std::size_t) { return &p.delay; }},
+    {Moved::kByFactor, [](Parameters& p, std::size_t) { return &p.gain; }},
+    {Moved::kBySum, [](Parameters& p, std::size_t) { return &p.contact; }},
+    {Moved::kBySum, [](Parameters& p, std::size_t i) { return &p.detuning[i]; }},
+};
+static_assert(std::size(kRows) == static_cast<std::size_t>(Coordinate::kDetuning) + 1);
+
+void move(ObserverParameters& parameters, const FreeParameter& free, double amount) {
   const double change = free.step * amount;
-  switch (free.coordinate) {
-    case Coordinate::kDynamicForce:
-      p.sliding.dynamic_force *= std::exp(change);
-      break;
-    case Coordinate::kForceDrop:
-      p.sliding.force_drop *= std::exp(change);
-      break;
-    case Coordinate::kDecay:
-      p.sliding.decay *= std::exp(change);
-      break;
-    case Coordinate::kBowVelocity:
-      p.bow_velocity *= std::exp(change);
-      break;
-    case Coordinate::kStiffness:
-      p.stiffness *= std::exp(change);
-      break;
-    case Coordinate::kLeftOffset:
-      p.offset[0] += change;
-      break;
-    case Coordinate::kRightOffset:
-      p.offset[1] += change;
-      break;
-    case Coordinate::kDamping:
-      p.damping_ratio *= std::exp(change);
-      break;
-    case Coordinate::kWeight:
-      p.sliding.weight = std::clamp(p.sliding.weight + change, 0.0, 1.0);
-      break;
-    case Coordinate::kRatio:
-      p.sliding.ratio *= std::exp(change);
-      break;
-    case Coordinate::kViscous:
-      p.sliding.viscous += change;
-      break;
-    case Coordinate::kHeating:
-      p.sliding.heating *= std::exp(change);
-      break;
-    case Coordinate::kCooling:
-      p.sliding.cooling *= std::exp(change);
-      break;
-    case Coordinate::kCarried:
-      p.sliding.carried *= std::exp(change);
-      break;
-    case Coordinate::kWidth:
-      p.sliding.width *= std::exp(change);
-      break;
-    case Coordinate::kForceKnot:
-      p.force_knots[free.index] += change;
-      break;
-    case Coordinate::kVelocityKnot:
-      p.velocity_knots[free.index] += change;
-      break;
-    case Coordinate::kDelay:
-      p.delay += change;
-      break;
-    case Coordinate::kGain:
-      p.gain *= std::exp(change);
-      break;
-    case Coordinate::kContact:
-      p.contact += change;
-      break;
-    case Coordinate::kDetuning:
-      p.detuning[free.index] += change;
-      break;
-  }
+  const Row& row = kRows[static_cast<std::size_t>(free.coordinate)];
+  double& number = *row.number(parameters, free.index);
+  number = row.moved == Moved::kByFactor ? number * std::exp(change) : number + change;
+  if (row.moved == Moved::kWithinOne) number = std::clamp(number, 0.0, 1.0);
 }
 
 }  // namespace

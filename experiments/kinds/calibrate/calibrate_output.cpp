@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "experiments/kinds/calibrate/calibrate_summary.hpp"
-#include "libcalib/parameters/unknown_name.hpp"
+#include "libcalib/parameters/parameter_table.hpp"
 
 namespace modcal {
 namespace {
@@ -25,7 +25,7 @@ void visit_parameter(ResultVisitor& row, const CalibratedParameter& parameter) {
   row({.key = "at_bound", .shown = kInJson}, parameter.at_bound);
   row({.key = "sd", .name = "standard deviation", .format = "{:.3g}"}, known(parameter.deviation));
   row({.key = "unit"}, parameter.unit);
-  row({.key = "meaning"}, meaning_of_unknown(parameter.name));
+  row({.key = "meaning"}, meaning_of_parameter(parameter.name));
 }
 
 void visit_verdict(ResultVisitor& row, const ModeVerdict& found) {
@@ -82,7 +82,7 @@ void visit_covariance(ResultVisitor& visitor, const NamedCovariance& covariance)
   std::vector<std::vector<double>> correlations(covariance.size());
   const Eigen::MatrixXd matrix = covariance.correlations();
   for (std::size_t i = 0; i < covariance.size(); ++i) {
-    units.push_back(unit_of_unknown(covariance.names[i]));
+    units.push_back(unit_of_parameter(covariance.names[i]));
     deviations.push_back(covariance.deviation(i));
     const auto row = matrix.row(static_cast<Eigen::Index>(i));
     correlations[i].assign(row.begin(), row.end());

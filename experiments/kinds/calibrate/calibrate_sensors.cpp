@@ -1,13 +1,10 @@
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include <cmath>
-#include <numbers>
 #include <span>
 #include <vector>
 
 #include "experiments/kinds/calibrate/calibrate_study.hpp"
 #include "libsim/base/error.hpp"
-#include "libsim/signal/measurement.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {
@@ -29,27 +26,14 @@ void remove_line(std::span<double> samples) {
   }
 }
 
-// y + corner ∫ y dt by the trapezoidal rule: the bilinear transform of (s + corner)/s.
-void undo_high_pass(std::vector<double>& samples, double corner, double sample_rate) {
-  const double half = 0.5 * corner / sample_rate;
-  double integral = 0.0, last = 0.0;
-  for (double& sample : samples) {
-    integral += half * (sample + last);
-    last = sample;
-    sample += integral;
-  }
-  remove_line(samples);
-}
-
 }  // namespace
 
-Observation with_sensors_alike(Observation observation, const SensorPair& sensors) {
+Observation with_sensors_alike(Observation observation, const Sensor& sensors) {
   std::optional<Signal>& reaction = observation.reactions[static_cast<int>(End::kRight)];
   if (sensors.alike() || !reaction) return observation;
   std::vector<double>& samples = reaction->samples;
-  if (sensors.delay != 0.0) samples = advanced(samples, sensors.delay, observation.sample_rate);
-  for (double& sample : samples) sample /= sensors.gain;
-  if (sensors.corner != 0.0) undo_high_pass(samples, sensors.corner, observation.sample_rate);
+  samples = sensors.undone(samples, observation.sample_rate);
+  if (sensors.corner != 0.0) remove_line(samples);
   return observation;
 }
 
@@ -64,12 +48,18 @@ void require_sensors_once(const CalibrationOptions& calibration, const Estimator
       stated.gain[1], stated.delay[1], stated.gain[0], stated.delay[0]);
 }
 
-std::string correction_text(const Observation& observation, const SensorPair& sensors) {
+std::string correction_text(const Observation& observation, const Sensor& sensors) {
   if (sensors.alike() || !observation.reaction(End::kRight)) return "";
+  std::vector<std::string> numbers;
+  for (std::size_t i = 0; i < Sensor::kCount; ++i) {
+    const ParameterType& type = sensor_type(i);
+    const std::string number = fmt::format("{:.{}g}", sensor_value(i, sensors), type.digits);
+    numbers.push_back(fmt::format("{} {}{}{}", type.name, number, type.unit == "1" ? "" : " ",
+                                  type.unit == "1" ? "" : type.unit));
+  }
   return fmt::format(
-      "The reaction at x = L was corrected for its sensor before the identification: gain {:.5g}, "
-      "delay {:.4g} s, corner {:.3g} Hz.",
-      sensors.gain, sensors.delay, 0.5 * sensors.corner / std::numbers::pi);
+      "The reaction at x = L was corrected for its sensor before the identification: {}.",
+      fmt::join(numbers, ", "));
 }
 
 }  // namespace modcal

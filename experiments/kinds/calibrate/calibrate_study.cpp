@@ -183,7 +183,7 @@ StudyResult calibrate_study(const CalibrateOptions& options, const StudyContext&
   const CalibrationOutcome outcome =
       calibrate_strokes(options, strokes, polling_clock(context), plucks);
   context.throw_if_interrupted();
-  const SensorPair& sensors = outcome.result.model.sensors;
+  const Sensor& sensors = outcome.result.model.sensors;
   const Observation observation = with_sensors_alike(measured, sensors);
   const InversionRecipe recipe(inversion.inversion);
   const auto estimator = prepare_estimator(outcome.refined, observation, recipe);

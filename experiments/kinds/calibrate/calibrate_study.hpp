@@ -96,7 +96,7 @@ report::Audio calibration_audio(const CalibrateOptions& options, const Observati
 /// which had a sensor that a calibration found to differ: R₂ = R₂' / S. The delay is shifted back
 /// (see advanced()). A high-pass is undone as y + corner ∫ y dt; without the level that the sensor
 /// lost, a line is left over the record, and it is taken out. Equal sensors: unchanged.
-Observation with_sensors_alike(Observation observation, const SensorPair& sensors);
+Observation with_sensors_alike(Observation observation, const Sensor& sensors);
 
 /// Throws InvalidInput where the estimator is told of sensors that differ and the calibration finds
 /// or is told how they do, too: with_sensors_alike() has then taken out what the estimator takes
@@ -104,6 +104,6 @@ Observation with_sensors_alike(Observation observation, const SensorPair& sensor
 void require_sensors_once(const CalibrationOptions& calibration, const Estimator& estimator);
 
 /// What was taken out, for a report; empty for equal sensors or where x = L was not recorded.
-std::string correction_text(const Observation& observation, const SensorPair& sensors);
+std::string correction_text(const Observation& observation, const Sensor& sensors);
 
 }  // namespace modcal

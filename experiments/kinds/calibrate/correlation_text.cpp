@@ -4,13 +4,13 @@
 
 #include <algorithm>
 
-#include "libcalib/parameters/unknown_name.hpp"
+#include "libcalib/parameters/parameter_table.hpp"
 
 namespace modcal {
 
 std::string shown_unit(const std::string& parameter) {
   if (parameter == "damping") return "(factor)";
-  const std::string unit(unit_of_unknown(parameter));
+  const std::string unit(unit_of_parameter(parameter));
   return unit == "1" ? "" : unit;
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "experiments/kinds/lint.hpp"
 #include "experiments/kinds/sample.hpp"
@@ -54,8 +53,6 @@ LimitOutcome outcome_of(const ContinuationResult& found) {
       .law_deviation = found.law.deviation,
       .contact = found.model.contact,
       .contact_deviation = found.contact_deviation,
-      .sensors = {found.model.sensors.gain, found.model.sensors.delay,
-                  0.5 * found.model.sensors.corner / std::numbers::pi},
       .sensor_deviation = found.sensor_deviation,
       .law_chi2 = found.law.chi2,
       .chi2 = found.chi2,
@@ -64,6 +61,9 @@ LimitOutcome outcome_of(const ContinuationResult& found) {
       .priors_hold = !found.priors.contradicted(),
       .paper_error = kNan,
       .force_correlation = kNan};
+  for (std::size_t i = 0; i < Sensor::kCount; ++i) {
+    outcome.sensors[i] = sensor_value(i, found.model.sensors);
+  }
   for (const ModeVerdict& mode : found.modes) {
     outcome.frequencies.push_back(mode.frequency);
     outcome.deviations.push_back(mode.deviation);

@@ -12,6 +12,7 @@
 #include "experiments/study/observation.hpp"
 #include "libcalib/calibration.hpp"
 #include "libcalib/likelihood/whitened_record.hpp"
+#include "libcalib/optimizers/staged/continuation.hpp"
 #include "libsim/base/result_visitor.hpp"
 
 namespace modcal {
@@ -39,7 +40,7 @@ struct LimitOutcome {
   std::vector<double> frequencies, deviations;   ///< of every mode [Hz], relative
   double contact = 0.0, contact_deviation = 0.0;
   /// Gain, delay [s] and corner [Hz] of the sensor at x = L, and standard deviations (0: not free).
-  std::array<double, 3> sensors{1.0, 0.0, 0.0}, sensor_deviation{};
+  std::array<double, Sensor::kCount> sensors{1.0}, sensor_deviation{};
   double law_chi2 = 0.0, chi2 = 0.0;
   double chi2_deviation = 0.0;  ///< of χ², as the calibration states it
   bool fits = false;            ///< χ² does not contradict it

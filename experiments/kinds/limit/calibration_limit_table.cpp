@@ -207,12 +207,13 @@ report::Figure limit_figure(const std::vector<LimitSummary>& levels) {
       {"B", "B", "1"},
       {"x_c", "x_c", "m"},
       {"damping", "damping factor", "1"},
-      {"x_c, frequencies free", "x_c, frequencies free", "m"},
-      {"gain", "sensor gain", "1"},
-      {"delay", "sensor delay", "s"},
-      {"corner", "sensor corner", "Hz"}};
+      {"x_c, frequencies free", "x_c, frequencies free", "m"}};
   for (const auto& [parameter, title, unit] : kPanels) {
     add_parameter(levels, parameter, title, unit, figure);
+  }
+  for (std::size_t i = 0; i < Sensor::kCount; ++i) {
+    const std::string name(sensor_type(i).name);
+    add_parameter(levels, name, "sensor " + name, std::string(sensor_type(i).unit), figure);
   }
   add_panel(
       "f_n, median of the excited modes", "1",

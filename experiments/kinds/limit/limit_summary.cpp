@@ -113,13 +113,13 @@ class LevelReader {
 
   // The scene's sensors are alike.
   void add_sensors() {
-    constexpr const char* kNames[] = {"gain", "delay", "corner"};
-    constexpr double kTruth[] = {1.0, 0.0, 0.0};
-    for (std::size_t i = 0; i < 3; ++i) {
-      const ParameterLimit* bound = bound_.find(kNames[i]);
+    for (std::size_t i = 0; i < Sensor::kCount; ++i) {
+      const std::string name(sensor_type(i).name);
+      const double truth = sensor_value(i, {});
+      const ParameterLimit* bound = bound_.find(name);
       if (!bound) continue;
       summary_.rows.push_back(row(
-          kNames[i], bound->free, [&](const LimitOutcome& o) { return o.sensors[i] - kTruth[i]; },
+          name, bound->free, [&](const LimitOutcome& o) { return o.sensors[i] - truth; },
           [&](const LimitOutcome& o) { return o.sensor_deviation[i]; }));
     }
   }

@@ -12,10 +12,9 @@
 #include <vector>
 
 #include "libcalib/identifiability/law_followers.hpp"
-#include "libcalib/likelihood/string_unknowns.hpp"
 #include "libcalib/parameters/named_covariance.hpp"
 #include "libcalib/parameters/parameters.hpp"
-#include "libcalib/parameters/prior_misfit.hpp"
+#include "libcalib/parameters/string_unknowns.hpp"
 #include "libcalib/problem/calibration_data.hpp"
 #include "libcalib/problem/evaluator.hpp"
 #include "libsim/base/options.hpp"
@@ -71,8 +70,9 @@ struct LawEstimate {
 
 /// Sensors and damping as one record has them, its own or shared.
 struct RecordValues {
-  SensorPair sensors;
-  std::array<double, 3> sensor_deviation{};  ///< of gain, delay [s], corner [Hz]; 0: not free
+  Sensor sensors;
+  /// Of gain, delay [s], corner [Hz]; 0: not free.
+  std::array<double, Sensor::kCount> sensor_deviation{};
   /// Factor of all initial ζ_n that are free; where each is, their geometric mean.
   double damping = 1.0;
   double damping_deviation = 0.0;
@@ -97,7 +97,7 @@ struct ContinuationResult {
   double damping_power_deviation = 0.0;
   std::vector<double> ratio_deviations;  ///< of every ζ_n, relative; empty unless each is free
   /// Of gain, delay [s] and corner [Hz] of model.sensors; 0: not free.
-  std::array<double, 3> sensor_deviation{};
+  std::array<double, Sensor::kCount> sensor_deviation{};
   /// Of all that is free in `model`: f_n or f0 and B, x_c, damping, sensors. The roots of its
   /// diagonal are the deviations reported; what a verdict adds to that of a frequency, in its place
   /// alone.

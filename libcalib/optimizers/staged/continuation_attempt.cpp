@@ -23,16 +23,18 @@ class Attempt {
     reference_ = with_fixed(input.initial, options().unknowns);
     for (std::size_t n = 0; n < modes(); ++n) frequencies.push_back(reference_.basis.frequency(n));
     start_ = fit_stiff_string(frequencies);
-    const HeldParameters& held = priors_.held();
-    if (held.contact(0)) reference_.contact = *held.contacts[0];
-    if (held.fundamental) start_.fundamental = *held.fundamental;
-    if (held.inharmonicity) start_.inharmonicity = *held.inharmonicity;
+    const auto take_fixed = [this](const ParameterName& name, double& value) {
+      value = priors_.fixed(name).value_or(value);
+    };
+    take_fixed({ParameterKind::kContact}, reference_.contact);
+    take_fixed({ParameterKind::kFundamental}, start_.fundamental);
+    take_fixed({ParameterKind::kInharmonicity}, start_.inharmonicity);
     reference_.sensors = options().unknowns.sensors();
     stroke_.scale_damping(start_.fundamental);
   }
 
   ContinuationResult run(double shift) {
-    if (!priors_.held().fundamental) start_.fundamental *= std::exp(shift);
+    if (!priors_.fixed({ParameterKind::kFundamental})) start_.fundamental *= std::exp(shift);
     ContinuationResult result;
     result.noise = input_.records.deviation;
     follow_law();
@@ -98,7 +100,7 @@ class Attempt {
     const ProjectedLikelihood widest = stroke_.damped(200.0);
     const StringUnknowns unknowns = law(priors_).without_damping_and_sensors();
     NewtonFit best;
-    const int reach = priors_.held().contact(0) ? 0 : 4;
+    const int reach = priors_.fixed_contact(0) ? 0 : 4;
     for (const Eigen::VectorXd& theta : contact_starts(widest, unknowns, step, reach)) {
       NewtonFit found =
           stroke_.fit(widest, unknowns, theta, with_priors(unknowns, theta, 25, 1e-2));
@@ -148,8 +150,7 @@ class Attempt {
     }
     law.deviation[0] *= law.fundamental;
     law.deviation[3] = law_.damping_deviation(covariance) * law.damping;
-    law.covariance =
-        named_covariance(law_, input_.options.unknowns, law_theta_, law.damping, covariance);
+    law.covariance = named_covariance(law_, law_theta_, law.damping, covariance);
     law.chi2 = stroke_.reduced_chi2(model, free_count);
     stroke_.end_stage(name + ", weighted bins", last.objective, law.chi2);
     law.accepted = law.chi2 < 1.0 + 3.0 * result.chi2_deviation;
@@ -181,7 +182,7 @@ class Attempt {
     for (const std::size_t n : others) {
       reference_.basis.omega[n] = result.model.basis.omega[n];
     }
-    law_ = law(priors_.holding(others));
+    law_ = law(priors_.fixing(others));
     finish_law("law without the modes that do not follow it", result);
   }
 

@@ -8,8 +8,8 @@
 
 #include "libcalib/identifiability/mode_verdict.hpp"
 #include "libcalib/identifiability/neighbor_test.hpp"
-#include "libcalib/likelihood/parameter_forms.hpp"
 #include "libcalib/identifiability/stated_verdict.hpp"
+#include "libcalib/likelihood/parameter_forms.hpp"
 
 namespace modcal {
 namespace {
@@ -145,8 +145,7 @@ class FreeStage {
     result_.sensor_deviation = unknowns_.sensor_deviation(result_.model, covariance);
     result_.modes = free_verdicts(result_.model, deviation.head(modes()), sight_.seen, followers_);
     trust_stated_frequencies(priors_, deviation, result_.modes);
-    result_.covariance =
-        named_covariance(unknowns_, options_.unknowns, theta_, result_.damping, covariance);
+    result_.covariance = named_covariance(unknowns_, theta_, result_.damping, covariance);
     raise_to_verdicts(result_.modes, result_.covariance);
   }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "libcalib/identifiability/joint_report.hpp"
 #include "libcalib/identifiability/mode_verdict.hpp"
@@ -48,15 +47,15 @@ class JointFit {
   void add(const CalibrationData& stroke) {
     const ProjectedLikelihood whole(whitened(stroke, {options_.left_noise, options_.right_noise}));
     ProjectedLikelihood weighted = whole;
-    const Eigen::VectorXd start = own_start(fit_.single[all_.records()].model);
+    const Eigen::VectorXd start = unknowns().own_start(fit_.single[all_.records()].model);
     weighted.set_weights(weights(whole, start));
     all_.add(std::make_shared<StrokeLikelihood>(whole, std::move(weighted)), start,
-             own_places(true), held_contact(all_.records()));
+             unknowns().own_places(true), priors_.fixed_contact(all_.records()));
   }
 
   void add(const PluckRecord& pluck) {
     plucks_.push_back(std::make_shared<PluckLikelihood>(whitened(pluck.data, pluck.noise)));
-    all_.add(plucks_.back(), unknowns().start(), own_places(false));
+    all_.add(plucks_.back(), unknowns().start(), unknowns().own_places(false));
   }
 
   void run() {
@@ -113,37 +112,6 @@ class JointFit {
   }
   Index modes() const { return static_cast<Index>(unknowns().modes()); }
   double inharmonicity() const { return fit_.single.front().law.inharmonicity; }
-  // Unknowns that are each record's own; a pluck has no contact.
-  std::vector<Index> own_places(bool stroke) const {
-    std::vector<Index> places;
-    const UnknownsOptions& own = options_.unknowns;
-    if (stroke && own.own(UnknownKind::kContact)) places.push_back(unknowns().contact());
-    if (own.own(UnknownKind::kDampingFactor)) places.push_back(unknowns().damping());
-    const UnknownKind sensors[] = {UnknownKind::kGain, UnknownKind::kDelay, UnknownKind::kCorner};
-    for (std::size_t i = 0; i < 3; ++i) {
-      if (own.own(sensors[i])) places.push_back(unknowns().sensor(i));
-    }
-    return places;
-  }
-  // θ of a stroke that was fitted by itself, as far as it is its own.
-  Eigen::VectorXd own_start(const ModelPoint& single) const {
-    const ModelPoint shared = unknowns().model(unknowns().start());
-    Eigen::VectorXd start = unknowns().start();
-    for (const Index i : own_places(true)) {
-      if (i == unknowns().contact()) start[i] = single.contact - shared.contact;
-      if (i == unknowns().damping()) {
-        start[i] = mean_damping_change(priors_.held(), single, shared);
-      }
-      if (i == unknowns().sensor(0)) start[i] = std::log(single.sensors.gain / shared.sensors.gain);
-      if (i == unknowns().sensor(1)) start[i] = single.sensors.delay - shared.sensors.delay;
-      if (i == unknowns().sensor(2)) start[i] = single.sensors.corner - shared.sensors.corner;
-    }
-    return start;
-  }
-  std::optional<double> held_contact(std::size_t record) const {
-    const HeldParameters& held = priors_.held();
-    return held.contact(record) ? held.contacts[record] : std::nullopt;
-  }
   WhitenedRecord whitened(const CalibrationData& data, const std::array<double, 2>& noise) {
     if (within_) within_->poll();
     noise_errors_.push_back(noise_power_error(noise, initial_.basis, data));
@@ -160,7 +128,7 @@ class JointFit {
   // Priors about θ; widths of the frequencies' scatter about the law, or null.
   PriorEquations equations(const StatedPriors& priors, const Eigen::VectorXd* widths) const {
     PriorEquations result(all_.size());
-    priors.state([&](const UnknownName& name) { return all_.coordinate(name, theta_); }, result);
+    priors.state([&](const ParameterName& name) { return all_.coordinate(name, theta_); }, result);
     // About the damping stated: that of the strokes by themselves is in the data already.
     unknowns().state_damping_ratios(initial_.basis.zeta, result);
     if (widths) result.add_scatter({*widths, inharmonicity()}, unknowns().log_frequencies());
@@ -168,7 +136,7 @@ class JointFit {
     return result;
   }
   PriorMisfit misfit(const PriorEquations& equations) const {
-    return priors_.misfit([&](const UnknownName& name) { return all_.coordinate(name, theta_); },
+    return priors_.misfit([&](const ParameterName& name) { return all_.coordinate(name, theta_); },
                           equations.completed(theta_));
   }
   static void state(const PriorEquations& equations, NewtonOptions& newton) {
@@ -286,7 +254,7 @@ void fit_jointly(const ModelPoint& initial, const ContinuationOptions& options,
       single.model.basis.omega[n] = fit.model.basis.omega[n];
     }
   }
-  const StatedPriors held = priors.holding(others);
+  const StatedPriors held = priors.fixing(others);
   run_fit({initial, law_alone, held, within, alone}, strokes, plucks);
   fit.law = alone.law;
   append_stages(alone.stages, "", fit.evaluations, fit.stages);

@@ -6,7 +6,8 @@
 #include <limits>
 #include <span>
 
-#include "libcalib/likelihood/string_unknowns.hpp"
+#include "libcalib/likelihood/projected_likelihood.hpp"
+#include "libcalib/parameters/string_unknowns.hpp"
 #include "libcalib/problem/evaluator.hpp"
 
 namespace modcal {

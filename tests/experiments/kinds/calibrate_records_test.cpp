@@ -264,7 +264,7 @@ TEST(SensorCorrection, TakesOutGainDelayAndHighPass) {
   remove_mean(sensed.samples);
   remove_mean(truth.samples);
   observation.reactions[1] = sensed;
-  const SensorPair sensors{.gain = 1.05, .delay = 1.0 / kRate, .corner = kCorner};
+  const Sensor sensors{.gain = 1.05, .delay = 1.0 / kRate, .corner = kCorner};
   const Observation corrected = with_sensors_alike(observation, sensors);
   double largest = 0.0, difference = 0.0, uncorrected = 0.0;
   for (std::size_t j = 0; j + 1 < truth.size(); ++j) {

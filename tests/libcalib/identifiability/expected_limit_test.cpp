@@ -8,7 +8,7 @@
 
 #include "libcalib/identifiability/mode_verdict.hpp"
 #include "libcalib/likelihood/pluck_likelihood.hpp"
-#include "libcalib/likelihood/string_unknowns.hpp"
+#include "libcalib/parameters/string_unknowns.hpp"
 #include "libsim/base/error.hpp"
 #include "tests/libcalib/likelihood/bowed_case.hpp"
 #include "tests/libcalib/likelihood/pluck_record_case.hpp"
@@ -179,7 +179,8 @@ TEST_F(PapersString, SensorsAndDampingAreExpectedAsTheFitReportsThem) {
   // the width that a draw finds for the modes at a node: 0.03 of this one.
   LimitCase question = case_of(bowed, 1e-3);
   question.unknowns = {.damping = "power"};
-  question.unknowns.gain.free = question.unknowns.delay.free = question.unknowns.corner.free = true;
+  question.unknowns.sensor[Sensor::kGain].free = question.unknowns.sensor[Sensor::kDelay].free =
+      question.unknowns.sensor[Sensor::kCorner].free = true;
   const ExpectedLimit limit = expected_limit(question);
   const NoisyRecords records = noisy(bowed, 1e-3, 5);
   const ContinuationResult fit = calibrate_by_continuation(
@@ -208,7 +209,8 @@ TEST_F(PapersString, SensorsAndDampingAreExpectedAsTheFitReportsThem) {
 TEST_F(PapersString, TheLimitHasNoStepWhereTheSensorsBecomeEqual) {
   // A corner of 0.1 mHz turns a record of 0.25 s by 2π·10⁻⁴·0.25 = 1.6e-4 at the most.
   LimitCase question = case_of(bowed, 0.01);
-  question.unknowns.gain.free = question.unknowns.corner.free = true;
+  question.unknowns.sensor[Sensor::kGain].free = question.unknowns.sensor[Sensor::kCorner].free =
+      true;
   const ExpectedLimit equal = expected_limit(question);
   question.truth.sensors.corner = 2.0 * std::numbers::pi * 1e-4;
   const ExpectedLimit beside = expected_limit(question);
@@ -221,7 +223,7 @@ TEST_F(PapersString, TheLimitHasNoStepWhereTheSensorsBecomeEqual) {
 TEST_F(PapersString, APriorAddsItsInformation) {
   // A prior as wide as what the data alone tell halves the variance.
   LimitCase question = case_of(bowed, 0.01);
-  question.unknowns.gain.free = true;
+  question.unknowns.sensor[Sensor::kGain].free = true;
   const double alone = law_of(expected_limit(question), "gain");
   question.unknowns.priors = {{.parameter = "gain", .mean = 1.0, .deviation = alone}};
   EXPECT_NEAR(law_of(expected_limit(question), "gain") / alone, std::sqrt(0.5), 1e-6);
@@ -272,7 +274,7 @@ TEST_F(PapersString, WhatIsFixedHasNoRowAndIsKnownToTheOthers) {
 TEST_F(PapersString, ARecordsOwnSensorsHaveARowEach) {
   LimitCase question = case_of(bowed, 0.01);
   question.plucks.push_back(plucked_records(0.0, 0.25, 0.01, 0));
-  question.unknowns.gain.free = true;
+  question.unknowns.sensor[Sensor::kGain].free = true;
   const ExpectedLimit shared = expected_limit(question);
   question.unknowns.per_record = {"x_c", "gain"};
   const ExpectedLimit own = expected_limit(question);

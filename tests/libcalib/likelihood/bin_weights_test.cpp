@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "libcalib/optimizers/staged/continuation.hpp"
-#include "libcalib/likelihood/string_unknowns.hpp"
+#include "libcalib/parameters/string_unknowns.hpp"
 #include "libsim/base/error.hpp"
 #include "tests/libcalib/likelihood/bowed_case.hpp"
 

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "libcalib/likelihood/projected_likelihood.hpp"
-#include "libcalib/likelihood/string_unknowns.hpp"
+#include "libcalib/parameters/string_unknowns.hpp"
 #include "tests/libcalib/likelihood/bowed_case.hpp"
 
 namespace modcal {
@@ -232,7 +232,7 @@ TEST(FisherMatrix, KnowsTheCornerOfASensorAsFarAsTheMeanIsNotMeasured) {
   nuisance(kSamples, known.cols() + 1) = 1.0;  // a sample that the delay would bring in
   nuisance.rightCols(2).colwise().normalize();
   UnknownsOptions unknowns;
-  unknowns.gain.free = unknowns.corner.free = true;
+  unknowns.sensor[Sensor::kGain].free = unknowns.sensor[Sensor::kCorner].free = true;
   const Eigen::MatrixXd expected = time_domain_covariance(the, slopes, nuisance);
   const Eigen::MatrixXd found = likelihood_covariance(the, unknowns);
   for (Index i = 0; i < 6; ++i) {

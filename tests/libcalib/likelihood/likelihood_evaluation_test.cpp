@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "libcalib/optimizers/staged/newton_fit.hpp"
-#include "libcalib/likelihood/string_unknowns.hpp"
+#include "libcalib/parameters/string_unknowns.hpp"
 #include "libsim/base/task_loop.hpp"
 #include "tests/libcalib/likelihood/bowed_case.hpp"
 
@@ -28,9 +28,10 @@ class OneSecond : public ::testing::Test {
   }
   static StringUnknowns every_unknown() {
     UnknownsOptions options{.damping = "each"};
-    options.gain.free = options.delay.free = options.corner.free = true;
-    options.delay.value = 2e-6;
-    options.corner.value = 3.0;
+    options.sensor[Sensor::kGain].free = options.sensor[Sensor::kDelay].free =
+        options.sensor[Sensor::kCorner].free = true;
+    options.sensor[Sensor::kDelay].value = 2e-6;
+    options.sensor[Sensor::kCorner].value = 3.0;
     return StringUnknowns::frequencies(bowed.truth, options);
   }
   // Some standard deviations from the truth, so that the slopes are not those of noise alone.
@@ -90,9 +91,10 @@ TEST_F(OneSecond, FarModesAtNodesChangeNothing) {
 
 TEST_F(OneSecond, SlopeAloneIsThatOfTheColumns) {
   UnknownsOptions sensors{.damping = "power"};
-  sensors.gain.free = sensors.delay.free = sensors.corner.free = true;
-  sensors.delay.value = 2e-6;
-  sensors.corner.value = 3.0;
+  sensors.sensor[Sensor::kGain].free = sensors.sensor[Sensor::kDelay].free =
+      sensors.sensor[Sensor::kCorner].free = true;
+  sensors.sensor[Sensor::kDelay].value = 2e-6;
+  sensors.sensor[Sensor::kCorner].value = 3.0;
   for (const double sigma : {0.0, 20.0}) {
     const WhitenedRecord whitened = record(sigma);
     for (const StringUnknowns& unknowns :
@@ -111,8 +113,8 @@ TEST_F(OneSecond, SlopeAloneIsThatOfTheColumns) {
 // no mode's products tell.
 TEST_F(OneSecond, RowsAreThoseOfTheWholeInformation) {
   UnknownsOptions sensors;
-  sensors.gain.free = sensors.corner.free = true;
-  sensors.corner.value = 3.0;
+  sensors.sensor[Sensor::kGain].free = sensors.sensor[Sensor::kCorner].free = true;
+  sensors.sensor[Sensor::kCorner].value = 3.0;
   const StringUnknowns frequencies = StringUnknowns::frequencies(bowed.truth);
   const StringUnknowns sensed = StringUnknowns::frequencies(bowed.truth, sensors);
   const StringUnknowns every = every_unknown();
@@ -216,8 +218,8 @@ TEST_F(OneSecond, AKnownStartSavesItsEvaluationAndNoBit) {
 
 TEST_F(OneSecond, TakesOtherDataOfTheSameModel) {
   UnknownsOptions sensors;
-  sensors.delay.free = true;
-  sensors.delay.value = 2e-6;
+  sensors.sensor[Sensor::kDelay].free = true;
+  sensors.sensor[Sensor::kDelay].value = 2e-6;
   const StringUnknowns unknowns = law(sensors);
   const ModelPoint point = beside(unknowns);
   const LikelihoodColumns columns = unknowns.columns(unknowns.start());

@@ -27,7 +27,8 @@ ModelPoint paper_point(double inharmonicity, std::int64_t modes = 50) {
 UnknownsOptions all_free(const std::string& damping) {
   UnknownsOptions options;
   options.damping = damping;
-  options.gain.free = options.delay.free = options.corner.free = true;
+  options.sensor[Sensor::kGain].free = options.sensor[Sensor::kDelay].free =
+      options.sensor[Sensor::kCorner].free = true;
   return options;
 }
 

@@ -364,11 +364,8 @@ TEST_F(AtShortRecord, SensorsColumnsAreThoseOfAutomaticDifferentiation) {
   off.sensors = {.gain = 1.04, .delay = 7e-6, .corner = 2.0 * pi * 6.0, .free = true};
   const WhitenedRecord record = WhitenedRecord::of(noisy(bowed, 0.02, 3), 0.0, kBand);
   const ProjectedLikelihood likelihood(record);
-  const LikelihoodColumns columns{.count = 3,
-                                  .share_begin = std::vector<std::size_t>(51, 0),
-                                  .gain = 0,
-                                  .delay = 1,
-                                  .corner = 2};
+  const LikelihoodColumns columns{
+      .count = 3, .share_begin = std::vector<std::size_t>(51, 0), .sensors = {0, 1, 2}};
   std::vector<double> residuals;
   Eigen::MatrixXd jacobian;
   const LikelihoodPoint at =

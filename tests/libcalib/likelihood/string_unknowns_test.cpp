@@ -1,5 +1,5 @@
 // Damping and sensors as unknowns, on synthetic truth.
-#include "libcalib/likelihood/string_unknowns.hpp"
+#include "libcalib/parameters/string_unknowns.hpp"
 
 #include <gtest/gtest.h>
 
@@ -55,9 +55,9 @@ BowedCase sensed_case(double duration, double corner) {
 
 UnknownsOptions free_sensors(bool corner) {
   UnknownsOptions options;
-  options.gain.free = true;
-  options.delay.free = true;
-  options.corner.free = corner;
+  options.sensor[Sensor::kGain].free = true;
+  options.sensor[Sensor::kDelay].free = true;
+  options.sensor[Sensor::kCorner].free = corner;
   return options;
 }
 
@@ -92,9 +92,9 @@ TEST(StringUnknowns, GradientOfEveryUnknownIsTheDifferenceQuotient) {
 }
 
 // Six standard deviations, as in the Monte Carlo studies.
-void expect_sensors(const ContinuationResult& result, const SensorPair& truth, bool corner) {
+void expect_sensors(const ContinuationResult& result, const Sensor& truth, bool corner) {
   EXPECT_TRUE(result.right) << result.chi2;
-  const SensorPair& found = result.model.sensors;
+  const Sensor& found = result.model.sensors;
   const auto& sd = result.sensor_deviation;
   EXPECT_LT(std::abs(found.gain - truth.gain), 6.0 * sd[0]) << found.gain;
   EXPECT_LT(std::abs(found.delay - truth.delay), 6.0 * sd[1]) << found.delay;

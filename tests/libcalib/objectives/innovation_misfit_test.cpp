@@ -95,9 +95,10 @@ TEST(InnovationMisfit, FindsLawContactDampingAndSensorAtOnce) {
     initial.basis.zeta[n] *= 1.2;
   }
   const Names names{"f0", "B", "x_c", "damping", "gain", "delay", "corner"};
-  const ParameterSet parameters(
-      initial, names,
-      {.frequency = 0.004, .inharmonicity = 1e-5, .contact = 1e-3, .delay = 2e-5, .corner = 10.0});
+  ParameterRanges ranges{.frequency = 0.004, .inharmonicity = 1e-5, .contact = 1e-3};
+  ranges.sensors[Sensor::kDelay] = 2e-5;
+  ranges.sensors[Sensor::kCorner] = 10.0;
+  const ParameterSet parameters(initial, names, ranges);
   const auto function = InnovationMisfit(InnovationMisfit::Options{}).bind(data, parameters);
   const auto result =
       TinyLeastSquares({}).minimize(*function, parameters.variables(), {.evaluations = 84});
@@ -127,7 +128,9 @@ TEST(InnovationMisfit, FindsLawContactDampingAndSensorAtOnce) {
 
 TEST(InnovationMisfit, RefusesADelayThatReachesBeyondTheRecord) {
   const Case& given = the_case();
-  const ParameterSet parameters(given.truth, Names{"x_c", "delay"}, {.delay = 0.05});
+  ParameterRanges ranges;
+  ranges.sensors[Sensor::kDelay] = 0.05;
+  const ParameterSet parameters(given.truth, Names{"x_c", "delay"}, ranges);
   EXPECT_THROW(InnovationMisfit({.iterations = 0}).bind(given.data, parameters), InvalidInput);
 }
 

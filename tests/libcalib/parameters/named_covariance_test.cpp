@@ -105,7 +105,8 @@ class CovarianceOfAFit : public testing::Test {
 
 TEST_F(CovarianceOfAFit, HasTheDeviationsReportedOnItsDiagonal) {
   options.unknowns.damping = "power";
-  options.unknowns.gain.free = options.unknowns.delay.free = options.unknowns.corner.free = true;
+  options.unknowns.sensor[Sensor::kGain].free = options.unknowns.sensor[Sensor::kDelay].free =
+      options.unknowns.sensor[Sensor::kCorner].free = true;
   const ContinuationResult fit = calibrate_by_continuation(bowed.truth, data, options);
   const NamedCovariance& free = fit.covariance;
   ASSERT_EQ(free.size(), 50u + 1u + 2u + 3u);
@@ -175,7 +176,7 @@ TEST_F(CovarianceOfAFit, OfSeveralRecordsNamesThemAsTheParametersDo) {
                  .noise = rung.deviation,
                  .pluck = true});
   CalibrationOptions calibration = as_calibration(options);
-  calibration.parameters.unknowns.gain.free = true;
+  calibration.parameters.unknowns.sensor[Sensor::kGain].free = true;
   calibration.parameters.unknowns.per_record = {"x_c", "gain"};
   const CalibrationResult result = calibrate(bowed.truth, all, calibration);
   const ContinuationResult& fit = *result.continuation;

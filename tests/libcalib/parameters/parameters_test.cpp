@@ -125,8 +125,12 @@ TEST(ParameterSet, RefusesWrongNamesAndRanges) {
     EXPECT_THROW(ParameterSet(truth, names), InvalidInput) << testing::PrintToString(names);
   }
   EXPECT_THROW(ParameterSet(truth, Names{"f_1"}, {.frequency = 0.0}), InvalidInput);
-  EXPECT_THROW(ParameterSet(truth, Names{"gain"}, {.gain = 1.0}), InvalidInput);
-  EXPECT_THROW(ParameterSet(truth, Names{"delay"}, {.delay = 0.0}), InvalidInput);
+  ParameterRanges ranges;
+  ranges.sensors[Sensor::kGain] = 1.0;
+  EXPECT_THROW(ParameterSet(truth, Names{"gain"}, ranges), InvalidInput);
+  ranges = {};
+  ranges.sensors[Sensor::kDelay] = 0.0;
+  EXPECT_THROW(ParameterSet(truth, Names{"delay"}, ranges), InvalidInput);
   EXPECT_THROW(ParameterSet(truth, Names{"zeta_9"}), InvalidInput);
   EXPECT_THROW(ParameterSet(truth, Names{"x_c 2"}), InvalidInput);
   EXPECT_THROW(ParameterSet(paper_truth(8, 0.0, 0.33), Names{"f_1"}), InvalidInput);
@@ -139,7 +143,8 @@ TEST(ParameterOptions, NameWhatIsFree) {
   options = {.frequencies = "listed", .modes = {5, 3}, .law = true};
   EXPECT_EQ(options.names(8), (Names{"f_5", "f_3", "f0", "B"}));
   options = {.contact = true, .unknowns = {.damping = "power"}};
-  options.unknowns.gain.free = options.unknowns.delay.free = true;
+  options.unknowns.sensor[Sensor::kGain].free = true;
+  options.unknowns.sensor[Sensor::kDelay].free = true;
   EXPECT_EQ(options.names(8), (Names{"x_c", "damping", "damping_power", "gain", "delay"}));
   options = {.unknowns = {.damping = "each"}};
   EXPECT_EQ(options.names(2), (Names{"zeta_1", "zeta_2"}));

@@ -23,7 +23,7 @@ constexpr double kInharmonicity = 1.39e-4;
 UnknownsOptions stating(std::vector<ParameterPrior> priors,
                         std::vector<PriorCorrelation> correlations = {}) {
   UnknownsOptions options;
-  options.gain.free = options.delay.free = true;
+  options.sensor[Sensor::kGain].free = options.sensor[Sensor::kDelay].free = true;
   options.priors = std::move(priors);
   options.correlations = std::move(correlations);
   return options;
@@ -42,7 +42,8 @@ TEST(StatedPriors, HaveTheCovarianceStated) {
   point.sensors.gain = 1.1;
   const StringUnknowns unknowns =
       StringUnknowns::law(point, 196.0, 0.0, options, StatedPriors(options, point));
-  const Eigen::Index at = unknowns.sensor(0);
+  const Eigen::Index at =
+      static_cast<Eigen::Index>(*unknowns.parameters().find(ParameterKind::kSensor, Sensor::kGain));
   const QuadraticPrior prior = unknowns.prior(unknowns.start());
   const Eigen::Matrix2d covariance = prior.precision.block<2, 2>(at, at).inverse();
   EXPECT_NEAR(covariance(0, 0), 0.02 * 0.02, 1e-12);
@@ -50,7 +51,7 @@ TEST(StatedPriors, HaveTheCovarianceStated) {
   EXPECT_NEAR(covariance(0, 1), 0.5 * 0.02 * 2e-6, 1e-15);
   EXPECT_NEAR(prior.mean[at], std::log(1.0 / 1.1), 1e-12);
   EXPECT_NEAR(prior.mean[at + 1], 1e-6, 1e-18);
-  EXPECT_EQ(unknowns.sensor(2), -1);
+  EXPECT_FALSE(unknowns.parameters().find(ParameterKind::kSensor, Sensor::kCorner));
 }
 
 TEST(StatedPriors, OfALawAreThoseOfFrequenciesThatScatterAboutIt) {
@@ -145,8 +146,10 @@ TEST(PriorMisfit, IsMeasuredByTheCovarianceStated) {
       StringUnknowns::law(point, 196.0, kInharmonicity, options, StatedPriors(options, point));
   Eigen::VectorXd theta = unknowns.start();
   EXPECT_EQ(unknowns.prior_misfit(theta).chi2, 0.0);
-  theta[unknowns.sensor(0)] = 0.02;
-  theta[unknowns.sensor(1)] = -4e-6;
+  theta[static_cast<Eigen::Index>(
+      *unknowns.parameters().find(ParameterKind::kSensor, Sensor::kGain))] = 0.02;
+  theta[static_cast<Eigen::Index>(
+      *unknowns.parameters().find(ParameterKind::kSensor, Sensor::kDelay))] = -4e-6;
   const PriorMisfit misfit = unknowns.prior_misfit(theta);
   // (1, −2) under correlation 0.5: (1 + 2 + 4)/(1 − 0.25).
   EXPECT_NEAR(misfit.chi2, 28.0 / 3.0, 1e-10);
@@ -225,7 +228,7 @@ TEST(FreedUnknowns, ComeBackUnderTheNamesOfTheirPriorsWithDeviations) {
                                                .restarts = 0});
   UnknownsOptions& unknowns = options.parameters.unknowns;
   unknowns.damping = "power";
-  unknowns.gain.free = unknowns.delay.free = true;
+  unknowns.sensor[Sensor::kGain].free = unknowns.sensor[Sensor::kDelay].free = true;
   for (const std::size_t strokes : {1u, 2u}) {
     const CalibrationResult found =
         calibrate(start, as_records({data.begin(), data.begin() + strokes}), options);
@@ -284,12 +287,13 @@ TEST(StatedPriors, WithoutThoseOfSingleFrequenciesKeepTheRest) {
   const ModelPoint point = stiff_string();
   const StatedPriors rest = StatedPriors(options, point).without_frequencies();
   const StringUnknowns unknowns = StringUnknowns::law(point, 196.0, 0.0, options, rest);
-  const Eigen::Index at = unknowns.sensor(0);
+  const Eigen::Index at =
+      static_cast<Eigen::Index>(*unknowns.parameters().find(ParameterKind::kSensor, Sensor::kGain));
   const Eigen::Matrix2d covariance =
       unknowns.prior(unknowns.start()).precision.block<2, 2>(at, at).inverse();
   EXPECT_NEAR(covariance(0, 0), 0.02 * 0.02, 1e-12);
   EXPECT_NEAR(covariance(0, 1), 0.5 * 0.02 * 2e-6, 1e-15);
-  EXPECT_FALSE(rest.has({.kind = UnknownKind::kFrequency, .mode = 2}));
+  EXPECT_FALSE(rest.has({.kind = ParameterKind::kFrequency, .index = 2}));
 }
 
 TEST(StatedPriors, ThatAreNoneAreRefusedWithTheReason) {

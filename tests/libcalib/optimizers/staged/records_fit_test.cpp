@@ -206,7 +206,7 @@ TEST(RecordsFit, APluckFindsABlindModeThatLeavesTheLaw) {
 TEST(RecordsFit, EachRecordHasTheGainAndDampingThatAreItsOwn) {
   Strokes two = strokes({0.0285, 0.0291});
   two.options.frequencies = false;
-  two.options.unknowns.gain.free = true;
+  two.options.unknowns.sensor[Sensor::kGain].free = true;
   // The sensor was changed between the strokes: its signal and its noise.
   CalibrationData& second = two.data[1];
   for (Complex& bin : second.reactions[1]) bin *= 1.03;
@@ -298,7 +298,7 @@ TEST(RecordsFit, OneContactMayBeShared) {
 TEST(RecordsFit, RefusesSharingThatCannotBe) {
   const auto refused = [](std::vector<std::string> per_record, const std::string& reason) {
     UnknownsOptions options;
-    options.gain.free = true;
+    options.sensor[Sensor::kGain].free = true;
     options.per_record = std::move(per_record);
     options.priors = {{"gain 2", 1.0, 0.1}};
     try {
@@ -315,7 +315,7 @@ TEST(RecordsFit, RefusesSharingThatCannotBe) {
   UnknownsOptions power;
   power.damping = "power";
   power.per_record = {"damping"};
-  EXPECT_THROW(power.require_sharing(), InvalidInput);
+  EXPECT_THROW(require_priors(power, 3), InvalidInput);
   UnknownsOptions contact;
   contact.priors = {{"x_c 2", 0.03, 1e-3}};
   EXPECT_THROW(contact.require_contacts(1), InvalidInput);

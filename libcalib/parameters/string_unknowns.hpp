@@ -4,12 +4,10 @@
 #include <Eigen/Core>
 #include <array>
 #include <optional>
-#include <string>
 #include <vector>
 
-#include "libcalib/likelihood/projected_likelihood.hpp"
-#include "libcalib/parameters/parameter_options.hpp"
-#include "libcalib/parameters/prior_equations.hpp"
+#include "libcalib/parameters/free_parameters.hpp"
+#include "libcalib/parameters/stated_priors.hpp"
 
 namespace modcal {
 
@@ -31,13 +29,20 @@ class StringUnknowns {
   StringUnknowns without_damping_and_sensors() const;
 
   bool is_law() const { return law_; }
-  Eigen::Index size() const { return sensor_begin() + sensor_count(); }
+  const FreeParameters& parameters() const { return free_; }
+  Eigen::Index size() const { return static_cast<Eigen::Index>(free_.size()); }
   Eigen::Index contact() const { return law_ ? 2 : static_cast<Eigen::Index>(modes()); }
   Eigen::Index damping() const { return contact() + 1; }  ///< first of the damping's unknowns
-  Eigen::Index damping_count() const;
-  Eigen::Index sensor_begin() const { return damping() + damping_count(); }
-  /// Place of ln gain (0), delay (1) or corner (2); -1 where it is not free.
-  Eigen::Index sensor(std::size_t which) const;
+  Eigen::Index damping_count() const { return damping_count_; }
+  /// Those that a record has for itself where the options say so; only a stroke has a contact.
+  std::vector<Eigen::Index> own_places(bool stroke) const;
+  /// θ of another model: the law fitted to its frequencies, its contact and sensors, its damping by
+  /// the mean change of the ratios that are not fixed.
+  Eigen::VectorXd theta_of(const ModelPoint& model) const;
+  /// Start of a stroke that was fitted by itself, as far as it is its own.
+  Eigen::VectorXd own_start(const ModelPoint& found) const;
+  /// Mean of ln ζ_n/ζ_n(from) over the damping ratios that are not fixed.
+  double mean_damping_change(const ModelPoint& from, const ModelPoint& to) const;
   std::size_t modes() const { return reference_.basis.size(); }
   Eigen::VectorXd start() const;
   /// Whether unknown i keeps its start exactly; of a further record x_c alone is its own.
@@ -57,8 +62,8 @@ class StringUnknowns {
   /// Standard deviation of the factor, relative.
   double damping_deviation(const Eigen::MatrixXd& covariance) const;
   /// Those of gain, delay [s] and corner [Hz] of the model; 0: not free.
-  std::array<double, 3> sensor_deviation(const ModelPoint& model,
-                                         const Eigen::MatrixXd& covariance) const;
+  std::array<double, Sensor::kCount> sensor_deviation(const ModelPoint& model,
+                                                      const Eigen::MatrixXd& covariance) const;
   /// False where the law, the contact, damping or sensors leave what a string can be.
   bool admits(const Eigen::VectorXd& theta) const;
   ModelPoint model(const Eigen::VectorXd& theta) const;
@@ -66,7 +71,8 @@ class StringUnknowns {
   LikelihoodColumns columns(const Eigen::VectorXd& theta, std::size_t record = 0) const;
   /// Coordinate of a prior (StatedPriors), linear about θ in z = (θ, ln f_0, B), the last two those
   /// of the law where every frequency is free; none where nothing of θ moves it.
-  std::optional<LinearForm> coordinate(const UnknownName& name, const Eigen::VectorXd& theta) const;
+  std::optional<LinearForm> coordinate(const ParameterName& name,
+                                       const Eigen::VectorXd& theta) const;
   /// Priors stated and those of every ζ_n, linear about θ.
   QuadraticPrior prior(const Eigen::VectorXd& theta) const;
   /// The same with frequencies about the law.
@@ -84,21 +90,14 @@ class StringUnknowns {
   void hold(PriorEquations& equations) const;
 
  private:
-  enum class Damping { kFixed, kFactor, kPower, kEach };
-  Damping damping_kind() const;
-  const UnknownOption& sensor_option(std::size_t which) const;
-  std::optional<LinearForm> frequency_coordinate(std::size_t mode,
-                                                 const Eigen::VectorXd& theta) const;
-  std::optional<LinearForm> damping_coordinate(std::size_t mode) const;
   LinearForm form(double offset) const;
   PriorEquations stated(const Eigen::VectorXd& theta) const;
   PriorEquations stated(const Eigen::VectorXd& theta, const LawScatter& law) const;
   PriorMisfit misfit_at(const Eigen::VectorXd& theta, const PriorEquations& equations) const;
-  Eigen::Index sensor_count() const;
-  double sensor_change(std::size_t which, const Eigen::VectorXd& theta) const;
+  StatedPriors::Coordinate coordinates(const Eigen::VectorXd& theta) const;
   double damping_change(std::size_t mode, const Eigen::VectorXd& theta) const;
-  bool all_ratios_held() const;
-  void add_shares(std::size_t mode, const Eigen::VectorXd& theta, LikelihoodColumns& columns) const;
+  /// Names of θ in their order.
+  void list();
 
   ModelPoint reference_;
   UnknownsOptions options_;
@@ -106,6 +105,8 @@ class StringUnknowns {
   double fundamental_ = 0.0;
   double inharmonicity_ = 0.0;
   bool law_ = false;
+  FreeParameters free_;
+  Eigen::Index damping_count_ = 0;
 };
 
 /// Precision of δ under δ_n = law's change + N(0, τ_n²), the law's change (ln f_0, B) unknown.
