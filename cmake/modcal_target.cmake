@@ -25,8 +25,9 @@ if(MODCAL_TIDY)
   set(CMAKE_CXX_CLANG_TIDY clang-tidy)
 endif()
 
-# clang-tidy cannot read GCC's precompiled headers.
-if(MODCAL_TIDY)
+# clang-tidy cannot read GCC's precompiled headers. Without optimization fmt turns on a little of its own
+# in its headers, which GCC 12 does not turn off again after a precompiled one; Eigen then fails to compile.
+if(MODCAL_TIDY OR NOT CMAKE_BUILD_TYPE MATCHES "^(Release|RelWithDebInfo|MinSizeRel)$")
   set(CMAKE_DISABLE_PRECOMPILE_HEADERS ON)
 endif()
 
