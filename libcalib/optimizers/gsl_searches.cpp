@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "libcalib/optimizers/tolerances.hpp"
+#include "libcalib/optimizers/tuning.hpp"
 
 namespace modcal {
 namespace {
@@ -180,12 +181,10 @@ StopReason gsl_search(const GslDescent* type, UnboundedSearch& search,
   const auto minimizer =
       owned(gsl_multimin_fdfminimizer_alloc(type, n), gsl_multimin_fdfminimizer_free);
   const auto start_at_the_best = [&] {
-    // The manual's recommended accuracy of line searches.
-    constexpr double kLineTolerance = 0.1;
     const auto start = vector_of(n, 0.0);
     gsl_vector_memcpy(start.get(), values.best.get());
     gsl_multimin_fdfminimizer_set(minimizer.get(), &function, start.get(), options.initial_step,
-                                  kLineTolerance);
+                                  kGslLineTolerance);
   };
   start_at_the_best();
   Progress progress(minimizer.get(), options);
@@ -255,8 +254,6 @@ StopReason gsl_search(const GslLine* type, UnboundedSearch& search,
   const auto minimizer = owned(gsl_min_fminimizer_alloc(type), gsl_min_fminimizer_free);
   int status = gsl_min_fminimizer_set_with_values(minimizer.get(), &function, bracket.b, bracket.fb,
                                                   bracket.a, bracket.fa, bracket.c, bracket.fc);
-  // Near a minimum values differ by less than rounding within √ε of it: the bracket may stay wide.
-  constexpr int kRest = 12;
   int resting = 0;
   while (status == GSL_SUCCESS && !search.stopped()) {
     const double before = gsl_min_fminimizer_x_minimum(minimizer.get());
@@ -265,7 +262,7 @@ StopReason gsl_search(const GslLine* type, UnboundedSearch& search,
     const double width =
         gsl_min_fminimizer_x_upper(minimizer.get()) - gsl_min_fminimizer_x_lower(minimizer.get());
     resting = std::abs(at - before) <= options.step_tolerance ? resting + 1 : 0;
-    if (width <= options.step_tolerance || resting >= kRest) return StopReason::kSmallStep;
+    if (width <= options.step_tolerance || resting >= kRestingSteps) return StopReason::kSmallStep;
   }
   return search.stopped() ? StopReason::kNoProgress : StopReason::kRoundoff;
 }

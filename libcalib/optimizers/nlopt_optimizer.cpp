@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "libcalib/optimizers/tuning.hpp"
 #include "libcalib/optimizers/unbounded_search.hpp"
 #include "libsim/base/error.hpp"
 
@@ -165,8 +166,7 @@ StopReason search_again_and_again(Callback& callback) {
         reason_of(nlopt_optimize(callback.optimizer, z.data(), &value), callback.optimizer);
     // A fresh start that finds nothing better does not take back what the last one found.
     if (reason == StopReason::kNotRun || !gave_up(fresh)) reason = fresh;
-    constexpr double kWorthAnother = 0.9;
-    const bool better = callback.best_value < kWorthAnother * before;
+    const bool better = callback.best_value < (1.0 - kFreshStartGain) * before;
     if (fresh == StopReason::kConverged || !better || callback.evaluator.stopped()) return reason;
     before = callback.best_value;
     callback.choose_unit = true;

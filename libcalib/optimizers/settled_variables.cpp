@@ -2,16 +2,9 @@
 
 #include <cmath>
 
+#include "libcalib/optimizers/tuning.hpp"
+
 namespace modcal {
-namespace {
-
-// Of a step.
-constexpr double kUnmoved = 0.1;
-// Variables are moved by half steps: one step or less, whatever the rounding.
-constexpr double kOneStep = 1.25;
-
-}  // namespace
-
 SettledVariables::SettledVariables(std::span<const double> start) : histories_(start.size()) {
   for (std::size_t i = 0; i < start.size(); ++i) histories_[i].stood.fill(start[i]);
 }
@@ -20,9 +13,10 @@ bool SettledVariables::is_settled(std::size_t i, std::span<const double> positio
                                   const std::function<bool(std::size_t)>& reaches) const {
   const History& history = histories_[i];
   if (history.searches < 2) return false;
-  if (std::abs(history.stood[0] - history.stood[2]) > kUnmoved * history.step) return false;
+  if (std::abs(history.stood[0] - history.stood[2]) > kUnmovedSteps * history.step) return false;
   for (std::size_t j = 0; j < histories_.size(); ++j) {
-    const bool moved = std::abs(position[j] - history.around[j]) > kOneStep * histories_[j].step;
+    const bool moved =
+        std::abs(position[j] - history.around[j]) > kReachingSteps * histories_[j].step;
     if (moved && (j == i || reaches(j))) return false;
   }
   return true;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "libcalib/optimizers/tolerances.hpp"
+#include "libcalib/optimizers/tuning.hpp"
 #include "libcalib/optimizers/unbounded_search.hpp"
 #include "libsim/base/error.hpp"
 
@@ -95,8 +96,7 @@ StopReason TinyLeastSquares::search(Evaluator& evaluator) const {
   bool moved = true;
   double value = 0.0;
   SmallDecreases decreases(options_.value_tolerance);
-  constexpr double kHopeless = 1e20;
-  while (damping < kHopeless) {
+  while (damping < kHopelessDamping) {
     if (moved) {
       const auto trial = unbounded.try_evaluate(
           span_of(work.u), {.residuals = work.residuals.data(), .jacobian = work.jacobian.data()});

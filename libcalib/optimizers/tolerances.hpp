@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "libcalib/optimizers/tuning.hpp"
 #include "libsim/base/options.hpp"
 
 namespace modcal {
@@ -28,7 +29,7 @@ class SmallDecreases {
   explicit SmallDecreases(double tolerance) : tolerance_(tolerance) {}
   bool are_small(double decrease, double value) {
     in_a_row_ = decrease <= tolerance_ * std::abs(value) ? in_a_row_ + 1 : 0;
-    return in_a_row_ >= 2;
+    return in_a_row_ >= kSmallDecreasesInARow;
   }
 
  private:

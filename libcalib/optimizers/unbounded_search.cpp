@@ -4,6 +4,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "libcalib/optimizers/tuning.hpp"
+
 namespace modcal {
 
 UnboundedSearch::UnboundedSearch(Evaluator& evaluator)
@@ -11,8 +13,8 @@ UnboundedSearch::UnboundedSearch(Evaluator& evaluator)
   for (std::size_t i = 0; i < evaluator.dimension(); ++i) {
     const double center = 0.5 * (evaluator.lower()[i] + evaluator.upper()[i]);
     const double half_width = 0.5 * (evaluator.upper()[i] - evaluator.lower()[i]);
-    constexpr double kInside = 0.998;
-    const double start = std::clamp(-center / half_width, -kInside, kInside);
+    constexpr double kMost = 1.0 - 2.0 * kInsideBounds;
+    const double start = std::clamp(-center / half_width, -kMost, kMost);
     center_.push_back(center);
     half_width_.push_back(half_width);
     phase_.push_back(std::asin(start));
