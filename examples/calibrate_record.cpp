@@ -18,11 +18,8 @@ int main(int argc, char** argv) {
   // What is known beforehand: a fundamental 1 % too high and a contact point 1 mm too far.
   const StringModel string{.length = 0.33, .linear_density = 3.1e-3, .fundamental = 198.0};
   const ModelPoint guess{.basis = make_modal_basis(string), .contact = 0.031};
-  CalibrationOptions options;
-  options.has_continuation = true;
-  options.parameters.law = true;
-  options.parameters.contact = true;
-  options.parameters.damping = "factor";
+  CalibrationOptions options = calibration_to_the_bound();
+  options.parameters.frequencies = "none";  // f0 and B, the contact point, one factor of damping
   for (const auto& found : calibrate(guess, data, options).parameters) {
     std::printf("%s = %.8g +- %.1g %s\n", found.name.c_str(), found.final, found.deviation,
                 found.unit.c_str());
