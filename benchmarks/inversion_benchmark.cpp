@@ -83,7 +83,7 @@ BENCHMARK(prepare)->Unit(benchmark::kMillisecond);
 struct JointCase {
   explicit JointCase(std::size_t samples)
       : basis(violin_g_basis()),
-        sensors(basis, 0.03, samples, kRate, false, false, {}),
+        sensors(basis, 0.03, samples, kRate, {}, {}),
         inversion(basis, 0.03, samples, kRate,
                   {.sigma = 2.0 * kRate / static_cast<double>(samples)}),
         left(draw(samples, 1)),

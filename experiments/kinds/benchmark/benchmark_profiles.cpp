@@ -68,10 +68,10 @@ void add_step(report::Series& series, double before, double after,
   add_task(series, value.first, after, value.second);
 }
 
-using Problem = std::pair<std::size_t, std::string>;  // condition and replicate
+using ProblemKey = std::pair<std::size_t, std::string>;  // condition and replicate
 
-std::map<Problem, double> fewest_evaluations(const BenchmarkGrid& grid) {
-  std::map<Problem, double> fewest;
+std::map<ProblemKey, double> fewest_evaluations(const BenchmarkGrid& grid) {
+  std::map<ProblemKey, double> fewest;
   for (const BenchmarkTask& task : grid.tasks) {
     if (!task.outcome.success) continue;
     const auto spent = static_cast<double>(task.outcome.evaluations);
@@ -99,7 +99,7 @@ report::Figure data_profile(const BenchmarkGrid& grid) {
 }
 
 report::Figure performance_profile(const BenchmarkGrid& grid) {
-  const std::map<Problem, double> fewest = fewest_evaluations(grid);
+  const std::map<ProblemKey, double> fewest = fewest_evaluations(grid);
   return profile(
       grid,
       {.id = "performance_profile",

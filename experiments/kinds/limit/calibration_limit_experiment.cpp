@@ -109,7 +109,7 @@ void lint_start(const CalibrationLimitOptions& options, std::vector<Finding>& fi
     }
   });
   lint_making(findings, "calibration.objective", [&] {
-    likelihood_band({basis, scene.bow.position}, 
+    likelihood_band({basis, scene.bow.position},
                     options.calibration.objective.make()->highest_frequency(),
                     options.observation.measurement.sample_rate);
   });

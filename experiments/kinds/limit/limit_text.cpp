@@ -76,7 +76,7 @@ std::string mode_lines(const ExpectedLimit& limit) {
   const bool ratios =
       std::any_of(limit.parameters.begin(), limit.parameters.end(),
                   [](const ParameterLimit& row) { return row.parameter.starts_with("zeta_"); });
-  text += "\n" + free_lines(limit) + singular_values(limit);
+  text += fmt::format("\n{}{}", free_lines(limit), singular_values(limit));
   text += fmt::format("  n  f [Hz]      relative sd  {}verdict\n", ratios ? "sd of zeta  " : "");
   for (std::size_t n = 0; n < limit.modes.size(); ++n) {
     const ModeVerdict& mode = limit.modes[n];

@@ -118,7 +118,7 @@ TEST(JointInversion, DoesNotMindWhichEndIsLeft) {
 TEST(JointInversion, ScalesWithTheData) {
   const std::size_t samples = 1000;
   const ModalBasis basis = violin_g();
-  const SensorNoise noise(basis, kPosition, samples, kRate, false, false, {});
+  const SensorNoise noise(basis, kPosition, samples, kRate, {}, {});
   const JointInversion inversion(basis, kPosition, samples, kRate, contour_at(2.0, samples));
   const auto a = normal_draw(samples, StreamKey(7)), b = normal_draw(samples, StreamKey(8));
   const auto force_of = [&](double factor) {
@@ -151,7 +151,7 @@ INSTANTIATE_TEST_SUITE_P(JointInversion, EveryLength,
 TEST_P(EveryLength, TakesEveryPriorAndTruncationAndSignal) {
   const std::size_t samples = GetParam();
   const ModalBasis basis = violin_g();
-  const SensorNoise sensors(basis, kPosition, samples, kRate, false, false, {});
+  const SensorNoise sensors(basis, kPosition, samples, kRate, {}, {});
   for (const Truncation truncation :
        {Truncation::kShiftedContour, Truncation::kTransient, Truncation::kWrapped}) {
     JointModel model;
@@ -203,7 +203,7 @@ TEST(JointInversion, StandsUndampedCoincidentModesAndContactsAtASupport) {
 TEST(JointInversion, AllocatesNothingAfterTheFirstCall) {
   const std::size_t samples = 2048;
   const ModalBasis basis = violin_g();
-  const SensorNoise sensors(basis, kPosition, samples, kRate, false, false, {});
+  const SensorNoise sensors(basis, kPosition, samples, kRate, {}, {});
   const JointInversion inversion(basis, kPosition, samples, kRate, contour_at(2.0, samples));
   const auto a = normal_draw(samples, StreamKey(1)), b = normal_draw(samples, StreamKey(2));
   const auto c = normal_draw(samples, StreamKey(3));
