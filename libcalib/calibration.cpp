@@ -221,8 +221,9 @@ void require_nothing_known(const ParameterOptions& parameters) {
 
 void CalibrationOptions::visit(OptionVisitor& visitor) {
   // Required where nothing is free by default.
-  const bool free = parameters.law || parameters.contact || parameters.frequencies != "none";
-  visitor.section({.key = "parameters", .meaning = "what is free", .required = !free}, parameters);
+  visitor.section(
+      {.key = "parameters", .meaning = "what is free", .required = !parameters.frees_any()},
+      parameters);
   visitor.plugin({.key = "objective", .meaning = "what is minimized"}, objective);
   visitor.plugin({.key = "optimizer", .meaning = "how it is minimized"}, optimizer);
   visitor.section({.key = "budget", .meaning = "what the search may spend"}, budget);

@@ -196,6 +196,10 @@ void ParameterOptions::visit(OptionVisitor& visitor) {
 
 bool ParameterOptions::every_frequency() const { return frequencies == "all"; }
 
+bool ParameterOptions::frees_any() const {
+  return every_frequency() || frequencies == "listed" || law || contact;
+}
+
 std::vector<std::string> ParameterOptions::names(std::size_t modes_of_model) const {
   const bool listed = frequencies == "listed";
   MODCAL_REQUIRE(listed == !modes.empty(),

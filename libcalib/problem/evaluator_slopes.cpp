@@ -67,7 +67,9 @@ void Evaluator::difference(std::span<const double> z, const Sample& sample,
       for (std::size_t side = 0; side < 2 && failed == 0.0; ++side) {
         moved[i] = at + stencil.step[side];
         if (!sample(moved, shifted.data())) failed = stencil.step[side];
-        ++result_.difference_evaluations;
+        for (Evaluator* evaluator = this; evaluator; evaluator = evaluator->parent_) {
+          ++evaluator->result_.difference_evaluations;
+        }
         for (std::size_t j = 0; j < numbers.size(); ++j) {
           slopes[j * n + i] += stencil.weight[side] * shifted[j];
         }

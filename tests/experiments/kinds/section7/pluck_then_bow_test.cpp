@@ -100,8 +100,9 @@ TEST(PluckThenBow, TellsWrongPriorsFromAWrongFit) {
   // The stroke knows x_c to a micrometer; this prior, ten deviations off, moves it by a tenth of
   // one, which χ² does not see.
   YamlDocument document = small_case();
-  apply_assignment(
-      document, "bound.unknowns={priors: [{parameter: x_c, mean: 28.6 mm, deviation: 10 um}]}", 9);
+  apply_assignment(document,
+                   "bound.parameters={priors: [{parameter: x_c, mean: 28.6 mm, deviation: 10 um}]}",
+                   9);
   const LoadedExperiment loaded = load_experiment(std::move(document));
   ASSERT_EQ(format_mistakes(loaded.document, loaded.mistakes), "");
   const StudyResult result = run(loaded);
