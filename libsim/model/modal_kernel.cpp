@@ -51,13 +51,13 @@ template <std::size_t kSums>
 struct Totals {
   Vector real[kSums], imag[kSums];
 
-  HWY_INLINE void Add(const ModalSum* sums, std::size_t n, const ComplexVector& denominator,
-                      Vector inverse) {
+  HWY_INLINE void Add(const double* const* numerators, std::size_t n,
+                      const ComplexVector& denominator, Vector inverse) {
     const Tag d;
     const auto share = hn::Mul(denominator.real, inverse);
     const auto turned = hn::Mul(denominator.imag, inverse);
     for (std::size_t r = 0; r < kSums; ++r) {
-      const auto numerator = hn::Set(d, sums[r].numerator[n]);
+      const auto numerator = hn::Set(d, numerators[r][n]);
       real[r] = hn::MulAdd(numerator, share, real[r]);
       imag[r] = hn::NegMulAdd(numerator, turned, imag[r]);
     }
@@ -67,7 +67,7 @@ struct Totals {
 // 1/x_0 … 1/x_3 by one division. |D|² lies within 1e-12 to 1e30 for frequencies in the range of
 // numbers a structure can have, so that no product of four leaves the range of doubles.
 template <bool kShifted, std::size_t kSums>
-HWY_INLINE void AddFourTerms(const ModalPole* poles, const ModalSum* sums, std::size_t n,
+HWY_INLINE void AddFourTerms(const ModalPole* poles, const double* const* numerators, std::size_t n,
                              Vector omega, double sigma, Totals<kSums>& totals) {
   const Tag d;
   const ComplexVector d0 = Denominator<kShifted>(poles[n], omega, sigma);
@@ -79,10 +79,10 @@ HWY_INLINE void AddFourTerms(const ModalPole* poles, const ModalSum* sums, std::
   const auto low = hn::Mul(x0, x1), high = hn::Mul(x2, x3);
   const auto inverse = hn::Div(hn::Set(d, 1.0), hn::Mul(low, high));
   const auto inverse_low = hn::Mul(inverse, high), inverse_high = hn::Mul(inverse, low);
-  totals.Add(sums, n, d0, hn::Mul(inverse_low, x1));
-  totals.Add(sums, n + 1, d1, hn::Mul(inverse_low, x0));
-  totals.Add(sums, n + 2, d2, hn::Mul(inverse_high, x3));
-  totals.Add(sums, n + 3, d3, hn::Mul(inverse_high, x2));
+  totals.Add(numerators, n, d0, hn::Mul(inverse_low, x1));
+  totals.Add(numerators, n + 1, d1, hn::Mul(inverse_low, x0));
+  totals.Add(numerators, n + 2, d2, hn::Mul(inverse_high, x3));
+  totals.Add(numerators, n + 3, d3, hn::Mul(inverse_high, x2));
 }
 
 template <bool kShifted, std::size_t kSums>
@@ -90,6 +90,10 @@ void AddUp(std::span<const ModalPole> poles, const ModalSum* sums, const Frequen
            const BinRange& bins) {
   const Tag d;
   const std::size_t lanes = hn::Lanes(d);
+  // Kept where no store into the sums can be taken to change them.
+  const double sigma = grid.sigma;
+  const double* numerators[kSums];
+  for (std::size_t r = 0; r < kSums; ++r) numerators[r] = sums[r].numerator;
   for (std::size_t i = 0; i < bins.size(); i += lanes) {
     const auto omega =
         hn::Mul(hn::Iota(d, static_cast<double>(bins.first + i)), hn::Set(d, grid.spacing));
@@ -97,11 +101,12 @@ void AddUp(std::span<const ModalPole> poles, const ModalSum* sums, const Frequen
     for (std::size_t r = 0; r < kSums; ++r) totals.real[r] = totals.imag[r] = hn::Zero(d);
     std::size_t n = 0;
     for (; n + 4 <= poles.size(); n += 4) {
-      AddFourTerms<kShifted>(poles.data(), sums, n, omega, grid.sigma, totals);
+      AddFourTerms<kShifted>(poles.data(), numerators, n, omega, sigma, totals);
     }
     for (; n < poles.size(); ++n) {
-      const ComplexVector denominator = Denominator<kShifted>(poles[n], omega, grid.sigma);
-      totals.Add(sums, n, denominator, hn::Div(hn::Set(d, 1.0), SquaredMagnitude(denominator)));
+      const ComplexVector denominator = Denominator<kShifted>(poles[n], omega, sigma);
+      totals.Add(numerators, n, denominator,
+                 hn::Div(hn::Set(d, 1.0), SquaredMagnitude(denominator)));
     }
     const std::size_t count = HWY_MIN(lanes, bins.size() - i);
     for (std::size_t r = 0; r < kSums; ++r) {
