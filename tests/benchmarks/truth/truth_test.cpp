@@ -1,0 +1,334 @@
+// The string that modcal is compared with: that it is the string it says it is.
+#include "benchmarks/truth/truth.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <stdexcept>
+
+#include "benchmarks/truth/decimator.hpp"
+
+namespace modcal::truth {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+double frequency(const TruthString& string, std::size_t n) {
+  const double order = static_cast<double>(n);
+  return order * string.fundamental * std::sqrt(1.0 + string.inharmonicity * order * order);
+}
+
+double decay(const TruthString& string, std::size_t n) {
+  const double wavenumber = static_cast<double>(n) * kPi / string.length;
+  return string.loss + string.diffusion * wavenumber * wavenumber;
+}
+
+WaveEquation equation_of(const TruthString& string) {
+  return {.length = string.length,
+          .density = string.linear_density,
+          .speed = string.wave_speed(),
+          .stiffness = std::sqrt(string.bending() / string.linear_density),
+          .loss = string.loss,
+          .diffusion = string.diffusion};
+}
+
+/// Small and quick, with a bow that excites it well.
+TruthOptions quick(double duration) {
+  return {.duration = duration, .least_rate = 2e6, .audit = true};
+}
+
+// Dispersion
+
+TEST(TruthWave, HasTheModesOfTheContinuumToTheEndOfTheBand) {
+  const TruthString string;
+  const TruthOptions options;
+  const Wave wave(equation_of(string), grid_of(string, options));
+  EXPECT_GE(1.0 / wave.grid().time_step, 10e6);
+  for (std::size_t n = 1; n <= 70; ++n) {
+    const WaveMode mode = wave.mode(n);
+    // README: what these errors are worth beside the deviations of a calibration.
+    const double bound = n <= 30 ? 2e-11 : n <= 40 ? 1e-9 : n <= 60 ? 3e-7 : 3e-6;
+    EXPECT_NEAR(mode.omega / (2.0 * kPi * frequency(string, n)), 1.0, bound) << n;
+    const double loss_bound = n <= 20 ? 2e-8 : n <= 40 ? 5e-6 : 5e-4;
+    EXPECT_NEAR(mode.decay / decay(string, n), 1.0, loss_bound) << n;
+  }
+}
+
+/// Observed order of mode 6 between two grids, the time step following the cells.
+double observed_order(double inharmonicity, std::size_t half_width) {
+  TruthString string;
+  string.inharmonicity = inharmonicity;
+  string.loss = string.diffusion = 0.0;
+  double errors[2];
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::size_t cells = 40 << i;
+    const Wave wave(equation_of(string), {.intervals = cells,
+                                          .time_step = 1e-6 / static_cast<double>(1 << i),
+                                          .half_width = half_width,
+                                          .loss_half_width = half_width / 2});
+    errors[i] = std::abs(wave.mode(6).omega / (2.0 * kPi * frequency(string, 6)) - 1.0);
+  }
+  return std::log2(errors[0] / errors[1]);
+}
+
+TEST(TruthWave, ConvergesWithTheOrderOfItsStencils) {
+  EXPECT_NEAR(observed_order(0.0, 2), 4.0, 0.1);
+  EXPECT_NEAR(observed_order(0.0, 4), 8.0, 0.3);
+  // The fourth derivative has two orders less; a stiff string, so that its error is the larger one.
+  EXPECT_NEAR(observed_order(0.1, 2), 2.0, 0.1);
+  EXPECT_NEAR(observed_order(0.1, 4), 6.0, 0.3);
+}
+
+TEST(TruthWave, RingsWithTheModesOfItsDispersionRelation) {
+  // A sine of the grid is an eigenvector: its own amplitude obeys x_{i+1} = 2 e^{−σk} cos φ x_i −
+  // e^{−2σk} x_{i−1}. Both numbers by least squares over a decay sampled every 64 steps.
+  const TruthString string;
+  const WaveGrid grid{.intervals = 64, .time_step = 1.0 / 3e6};
+  for (const std::size_t n : {1u, 5u, 20u, 40u}) {
+    Wave wave(equation_of(string), grid);
+    std::vector<double> shape(grid.intervals + 1);
+    for (std::size_t j = 0; j < shape.size(); ++j) {
+      shape[j] = 1e-3 * std::sin(kPi * static_cast<double>(n * j) / grid.intervals);
+    }
+    wave.set_rest(shape);
+    const std::size_t skip = n == 1 ? 256 : 16;
+    std::vector<double> amplitude;
+    for (std::size_t i = 0; i < 60000; ++i) {
+      if (i % skip == 0) {
+        double sum = 0.0;
+        for (std::size_t j = 1; j < grid.intervals; ++j) sum += shape[j] * wave.y()[j];
+        amplitude.push_back(sum);
+      }
+      wave.advance();
+    }
+    double aa = 0.0, ab = 0.0, bb = 0.0, ac = 0.0, bc = 0.0;
+    for (std::size_t i = 2; i < amplitude.size(); ++i) {
+      const double a = amplitude[i - 1], b = amplitude[i - 2], c = amplitude[i];
+      aa += a * a, ab += a * b, bb += b * b, ac += a * c, bc += b * c;
+    }
+    const double c1 = (ac * bb - bc * ab) / (aa * bb - ab * ab);
+    const double c2 = -(bc * aa - ac * ab) / (aa * bb - ab * ab);
+    const double step = static_cast<double>(skip) * grid.time_step;
+    const double found_decay = -0.5 * std::log(c2) / step;
+    const double omega = std::hypot(std::acos(0.5 * c1 / std::sqrt(c2)) / step, found_decay);
+    const WaveMode mode = wave.mode(n);
+    EXPECT_NEAR(omega / mode.omega, 1.0, 1e-9) << n;
+    EXPECT_NEAR(found_decay / mode.decay, 1.0, 1e-7) << n;
+  }
+}
+
+TEST(TruthWave, RefusesGridsThatItsTimeStepCannotCarry) {
+  const TruthString string;
+  EXPECT_THROW(Wave(equation_of(string), {.intervals = 200, .time_step = 4e-6}),
+               std::invalid_argument);
+  EXPECT_THROW(Wave(equation_of(string), {.intervals = 20, .time_step = 1e-7}),
+               std::invalid_argument);
+}
+
+// Reactions
+
+/// x_c(L − x_c)/(L T) − sinh λx_c sinh λ(L − x_c)/(λT sinh λL), λ = √(T/EI), far from the ends
+/// [m/N].
+double compliance(const TruthString& string, double position) {
+  const double tension = string.tension(), lambda = std::sqrt(tension / string.bending());
+  return position * (string.length - position) / (string.length * tension) -
+         0.5 / (lambda * tension);
+}
+
+TEST(TruthRecord, SharesAStaticForceBetweenItsEnds) {
+  TruthString string;
+  string.loss = 1500.0;  // at rest 25 ms later, to 1e-16
+  TruthGesture gesture{.position = 0.0413,
+                       .action = TruthForce{.force = {{0.0, 0.0}, {0.01, 0.7}}}};
+  for (const Reactions kind : {Reactions::kTension, Reactions::kSupport}) {
+    TruthOptions options = quick(0.002);
+    options.start = 0.036;
+    options.reactions = kind;
+    const TruthRecord record = simulate(string, gesture, options);
+    const double near = 1.0 - gesture.position / string.length;
+    EXPECT_NEAR(record.r1.back(), -0.7 * near, 1e-9);
+    EXPECT_NEAR(record.r2.back(), -0.7 * (1.0 - near), 1e-9);
+    EXPECT_NEAR(record.r1.back() + record.r2.back(), -0.7, 1e-10);
+    EXPECT_NEAR(record.f.back(), 0.7, 1e-12);
+    // Modes beyond the grid do not bend.
+    EXPECT_NEAR(record.y.back() / (0.7 * compliance(string, gesture.position)), 1.0, 6e-4);
+  }
+}
+
+/// Transfer function from the force to a channel at a frequency [Hz], by the record's transforms.
+std::complex<double> transfer(const TruthRecord& record, const std::vector<double>& out, double f) {
+  std::complex<double> numerator = 0.0, denominator = 0.0;
+  const std::complex<double> turn = std::polar(1.0, -2.0 * kPi * f / record.rate);
+  std::complex<double> phase = 1.0;
+  for (std::size_t i = 0; i < out.size(); ++i, phase *= turn) {
+    numerator += phase * out[i];
+    denominator += phase * record.f[i];
+  }
+  return numerator / denominator;
+}
+
+TEST(TruthRecord, AnswersAForceAsTheContinuumDoes) {
+  // Modes of the continuum, as many as it takes, from a short force on a heavily damped string.
+  TruthString string;
+  string.loss = 600.0;
+  const TruthGesture gesture{.position = 0.0413,
+                             .action = TruthForce{.force = {{0.0, 0.0}, {4e-5, 1.0}, {8e-5, 0.0}}}};
+  for (const Reactions kind : {Reactions::kTension, Reactions::kSupport}) {
+    TruthOptions options = quick(0.06);
+    options.reactions = kind;
+    options.least_rate = 10e6;
+    options.audit = false;
+    const TruthRecord record = simulate(string, gesture, options);
+    for (const double f : {100.0, 450.0, 2000.0, 9000.0, 16000.0}) {
+      const std::complex<double> s(0.0, 2.0 * kPi * f);
+      std::complex<double> expected[2], receptance = 0.0;
+      for (std::size_t n = 1; n <= 20000; ++n) {
+        const double order = static_cast<double>(n), wavenumber = order * kPi / string.length;
+        const double omega = 2.0 * kPi * frequency(string, n);
+        const double gain =
+            string.tension() * wavenumber +
+            (kind == Reactions::kSupport ? string.bending() * std::pow(wavenumber, 3) : 0.0);
+        const double shape = std::sin(wavenumber * gesture.position);
+        const std::complex<double> answer = 2.0 / (string.linear_density * string.length) * shape /
+                                            (omega * omega + s * s + 2.0 * decay(string, n) * s);
+        expected[0] -= gain * answer;
+        expected[1] += (n % 2 == 0 ? 1.0 : -1.0) * gain * answer;
+        receptance += shape * answer;
+      }
+      const double bound = f < 10e3 ? 2e-4 : 1e-3;
+      EXPECT_LT(std::abs(transfer(record, record.r1, f) / expected[0] - 1.0), bound) << f;
+      EXPECT_LT(std::abs(transfer(record, record.r2, f) / expected[1] - 1.0), bound) << f;
+      // What the contact's own compliance lacks of modes beyond the grid stays the same at all f.
+      const double missing = 6e-4 * compliance(string, gesture.position);
+      EXPECT_LT(std::abs(transfer(record, record.y, f) - receptance), missing) << f;
+      EXPECT_LT(std::abs(transfer(record, record.v, f) / s - receptance), missing) << f;
+    }
+  }
+}
+
+// Contact and energy
+
+void expect_sound(const TruthRecord& record) {
+  EXPECT_LT(std::abs(record.audit.residual()), 1e-9);
+  EXPECT_LT(record.audit.friction_violation, 1e-9);
+  EXPECT_GE(record.audit.least_heat_power, -1e-9);
+  EXPECT_GT(record.audit.lost, 0.0);
+}
+
+TEST(TruthRecord, BalancesEnergyAndStaysInTheFrictionSet) {
+  TruthGesture gesture;
+  TruthBow bow{.velocity = {{0.0, 0.05}, {0.03, 0.15}}, .normal_force = {{0.0, 0.6}, {0.06, 0.3}}};
+  gesture.action = bow;
+  const TruthRecord exponential = simulate({}, gesture, quick(0.06));
+  expect_sound(exponential);
+  EXPECT_GT(exponential.stuck, 0.3);
+  EXPECT_GT(exponential.slips, 15u);
+  EXPECT_GT(exponential.audit.heat, 0.0);
+
+  bow.friction = ThermalFriction{};
+  gesture.action = bow;
+  const TruthRecord thermal = simulate({}, gesture, quick(0.06));
+  expect_sound(thermal);
+  EXPECT_GT(thermal.stuck, 0.3);
+  EXPECT_LT(thermal.stuck, 1.0);
+
+  TruthString turning;
+  turning.torsion.emplace();
+  expect_sound(simulate(turning, gesture, quick(0.06)));
+
+  gesture.action = TruthPluck{};
+  expect_sound(simulate({}, gesture, quick(0.06)));
+  gesture.action = TruthForce{};
+  expect_sound(simulate({}, gesture, quick(0.06)));
+}
+
+TEST(TruthContact, SolvesLoadLineAndFrictionTogether) {
+  const ExponentialFriction law{
+      .static_coefficient = 0.6, .dynamic_coefficient = 0.2, .decay = 8.0};
+  Contact contact(law, 1e-7);
+  ContactState state = contact.solve(
+      {.free_velocity = 0.1, .mobility = 0.05, .bow_velocity = 0.11, .normal_force = 1.0});
+  EXPECT_TRUE(state.stuck);
+  EXPECT_NEAR(state.force, 0.01 / 0.05, 1e-15);
+  for (const double free : {-1.0, 1.3}) {
+    state = contact.solve(
+        {.free_velocity = free, .mobility = 0.05, .bow_velocity = 0.1, .normal_force = 1.0});
+    EXPECT_FALSE(state.stuck);
+    EXPECT_NEAR(free - 0.1 + 0.05 * state.force, state.slip, 1e-14);
+    EXPECT_NEAR(state.force,
+                -std::copysign(0.2 + 0.4 * std::exp(-8.0 * std::abs(state.slip)), free), 1e-14);
+  }
+  EXPECT_THROW(
+      contact.solve(
+          {.free_velocity = 10.0, .mobility = 5.0, .bow_velocity = 0.0, .normal_force = 1.0}),
+      std::invalid_argument);
+}
+
+TEST(TruthContact, WarmsByItsOwnWorkAndSoftens) {
+  // Held at one sliding speed: ϑ → |f u|/(G + S u).
+  const ThermalFriction law;
+  Contact contact(law, 1e-5);
+  ContactState state;
+  for (int i = 0; i < 20000; ++i) {
+    state = contact.solve(
+        {.free_velocity = 0.2, .mobility = 1e-9, .bow_velocity = 0.0, .normal_force = 0.5});
+  }
+  const double rise =
+      std::abs(state.force * state.slip) / (law.conductance + law.carried_heat * 0.2);
+  EXPECT_NEAR(contact.temperature() / rise, 1.0, 1e-6);
+  EXPECT_LT(std::abs(state.force), 0.5 * law.cold_coefficient);
+  EXPECT_GT(std::abs(state.force), 0.5 * law.hot_coefficient);
+}
+
+// Filter, noise, refusals
+
+TEST(TruthDecimator, IsFlatAndDark) {
+  for (const std::size_t factor : {200u, 232u}) {
+    for (const double f : {0.0, 0.01, 0.2, 0.44, 0.45, 0.55, 0.7, 1.0, 1.5, 7.3, 50.0}) {
+      Decimator decimator(factor, true);
+      const double turn = 2.0 * kPi * f / static_cast<double>(factor);
+      for (std::size_t i = 0; i < 400 * factor; ++i) {
+        decimator.push(std::cos(turn * static_cast<double>(i)));
+      }
+      double worst = 0.0;
+      for (std::size_t i = 150; i < 300; ++i) {
+        const double exact =
+            f <= Decimator::kPass ? std::cos(2.0 * kPi * f * static_cast<double>(i)) : 0.0;
+        worst = std::max(worst, std::abs(decimator.samples()[i] - exact));
+      }
+      EXPECT_LT(worst, Decimator::kRipple) << factor << ' ' << f;
+    }
+  }
+}
+
+TEST(TruthRecord, AddsTheNoiseItStates) {
+  TruthRecord record{.r1 = std::vector<double>(20000), .r2 = std::vector<double>(20000)};
+  for (std::size_t i = 0; i < 20000; ++i) {
+    record.r1[i] = 3.0 + std::sin(0.1 * static_cast<double>(i));
+    record.r2[i] = i % 2 == 0 ? 2.0 : -2.0;
+  }
+  const TruthRecord clean = record;
+  add_noise(record, 0.05, 7);
+  EXPECT_NEAR(record.noise[0], 0.05 * std::sqrt(0.5), 1e-4);
+  EXPECT_DOUBLE_EQ(record.noise[1], 0.1);
+  double square = 0.0, cross = 0.0;
+  for (std::size_t i = 0; i < 20000; ++i) {
+    const double a = record.r1[i] - clean.r1[i], b = record.r2[i] - clean.r2[i];
+    square += b * b;
+    cross += a * b;
+  }
+  EXPECT_NEAR(std::sqrt(square / 20000.0), 0.1, 0.0025);  // five deviations
+  EXPECT_NEAR(cross / 20000.0 / (record.noise[0] * record.noise[1]), 0.0, 0.035);
+}
+
+TEST(TruthRecord, RefusesWhatItCannotSimulate) {
+  EXPECT_THROW(simulate({}, {.position = 0.001}, quick(0.01)), std::invalid_argument);
+  EXPECT_THROW(simulate({.length = -1.0}, {}, quick(0.01)), std::invalid_argument);
+  EXPECT_THROW(simulate({}, {}, {.duration = 0.0}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace modcal::truth
