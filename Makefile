@@ -63,3 +63,10 @@ calibration: packages
 	@cmake --preset $(PRESET) >/dev/null
 	@cmake --build --preset $(PRESET) --target calibration_work_precision objective_bias
 	@benchmarks/accuracy/calibration.sh build/$(PRESET) docs/calibration
+
+# Error bars on records of another program: 324 calibrations, resumed where they stopped.
+.PHONY: coverage
+coverage: packages
+	@cmake --preset $(PRESET) >/dev/null
+	@cmake --build --preset $(PRESET) --target modcal truth
+	@benchmarks/truth/score.py build/$(PRESET) build/$(PRESET)/coverage --jobs $$(nproc)

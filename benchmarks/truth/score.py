@@ -1,0 +1,275 @@
+#!/usr/bin/env python3
+"""Coverage of `modcal`'s error bars on records that it has not made.
+
+score.py BUILD OUT simulates strings with BUILD/benchmarks/truth, adds noise, calibrates every record with BUILD/modcal from
+starts that are off (f0 by up to 2 %, B by up to 20 %, x_c by up to 1.5 mm, uniform) and prints, for f0, B, x_c and all
+identified f_n, which share of the truths lies within one and two of the deviations stated (a Gaussian: 68 and 95 %) and the
+largest |z|; how many were accepted (exit code 0), and what a calibration costs. What is finished stays in OUT: the same command
+goes on where it stopped; records are kept, and so are results of the same program, record and configuration.
+"""
+import argparse
+import concurrent.futures
+import hashlib
+import json
+import math
+import os
+import random
+import resource
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+# f0 [Hz], B, L [m], linear density [kg/m], x_c [m], bow velocity [m/s], s0 [1/s], s1 [m^2/s]: zeta_n of 5e-4 to 2e-3
+# below 15 kHz. The paper's string is violin_g.
+STRINGS = {
+    "violin_d": (294.0, 1.1e-4, 0.33, 1.0e-3, 41.0e-3, 0.10, 3.0, 8.0e-4),
+    "violin_g": (196.0, 1.4e-4, 0.33, 3.1e-3, 30.0e-3, 0.10, 2.2, 6.5e-4),
+    "violin_e": (659.3, 5.0e-5, 0.325, 3.8e-4, 28.7e-3, 0.20, 5.0, 1.6e-3),
+    "viola_c": (130.8, 2.6e-4, 0.37, 6.0e-3, 45.2e-3, 0.12, 1.6, 6.0e-4),
+    "cello_d": (146.8, 1.7e-4, 0.69, 4.5e-3, 66.9e-3, 0.10, 1.6, 2.2e-3),
+    "cello_c": (65.4, 3.0e-4, 0.69, 15.0e-3, 71.3e-3, 0.15, 0.9, 1.4e-3),
+}
+ACTIONS = ("exponential", "thermal", "torsion", "pluck")
+CALIBRATION = """  parameters: {frequencies: all, law: true, contact: true, damping: factor, law_width: estimated}
+  objective: joint_likelihood
+  optimizer: staged
+"""
+
+
+def arguments():
+    p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    p.add_argument("build", type=Path, help="build folder: modcal and benchmarks/truth")
+    p.add_argument("out", type=Path, help="folder of records and results")
+    p.add_argument("--jobs", type=int, default=1)
+    p.add_argument("--quick", action="store_true", help="three strings, one action each, 1 draw: 9 calibrations")
+    p.add_argument("--strings", nargs="+", choices=STRINGS, default=list(STRINGS))
+    p.add_argument("--actions", nargs="+", choices=ACTIONS, default=["exponential", "thermal", "torsion"])
+    p.add_argument("--noise", nargs="+", type=float, default=[0.001, 0.01, 0.05])
+    p.add_argument("--draws", type=int, default=6, help="noise and start, of each record and noise")
+    p.add_argument("--rate", type=float, default=51200.0)
+    p.add_argument("--duration", type=float, default=1.0)
+    p.add_argument("--reactions", choices=("tension", "support"), default="tension")
+    p.add_argument("--damping", choices=("table", "constant"), default="table",
+                   help="stated: the true zeta_n, or 1e-3 for all")
+    p.add_argument("--modes", type=int, help="stated number of modes; left out: the program's default")
+    p.add_argument("--string-keys", default="", help="further keys of string:, such as \"remainder: none\"")
+    p.add_argument("--record-keys", default="", help="further keys of record:")
+    p.add_argument("--calibration", type=Path, help="file with the lines below calibration:")
+    p.add_argument("--timeout", type=float, default=600.0, help="of one calibration [s]")
+    a = p.parse_args()
+    a.build, a.out = a.build.resolve(), a.out.resolve()
+    a.pairs = [(s, k) for s in a.strings for k in a.actions]
+    if a.quick:
+        a.pairs = [("violin_d", "exponential"), ("violin_g", "thermal"), ("cello_d", "torsion")]
+        a.draws = 1
+    a.lines = a.calibration.read_text() if a.calibration else CALIBRATION
+    return a
+
+
+def digest(*parts):
+    return hashlib.sha256("\n".join(map(str, parts)).encode()).hexdigest()[:16]
+
+
+def file_digest(path):
+    return hashlib.sha256(path.read_bytes()).hexdigest()[:16]
+
+
+def truth_command(name, action, a):
+    """The command line of a record without noise. The bow presses with a third of what the Helmholtz motion allows."""
+    f0, B, L, rho, x, v, s0, s1 = STRINGS[name]
+    impedance = 2.0 * L * f0 * rho
+    press = 0.35 * 2.0 * impedance * v / (x / L * 0.19)
+    command = ["--f0", f0, "--B", B, "--length", L, "--density", rho, "--x", x, "--velocity", v, "--loss", s0,
+               "--diffusion", s1, "--rate", a.rate, "--duration", a.duration, "--reactions", a.reactions]
+    if action == "pluck":
+        command += ["--action", "force", "--force", f"0:0,0.02:{press:.4g},0.0204:0"]
+    else:
+        # Rosin warms with the work of the slips: H, G and S follow it from the string it was tuned for.
+        heat = press * v / 0.1
+        command += ["--normal-force", f"{press:.6g}", "--action", "thermal" if action == "thermal" else "exponential",
+                    "--heat-capacity", 5e-6 * heat, "--conductance", 2e-3 * heat, "--carried-heat", 1e-3 * press]
+    if action == "torsion":
+        command += ["--torsion", "--torsion-loss", 0.34 * f0, "--torsion-diffusion", 0.2 * L * L]
+    return list(map(str, command))
+
+
+def simulated(name, action, a, truth_digest):
+    """Path of the record's files without their endings."""
+    command = truth_command(name, action, a)
+    path = a.out / "records" / f"{name}-{action}-{digest(truth_digest, *command)}"
+    if not path.with_suffix(".json").exists():
+        path.parent.mkdir(parents=True, exist_ok=True)
+        draft = path.with_name(path.name + f".{os.getpid()}")
+        subprocess.run([a.build / "benchmarks/truth", *command, draft], check=True, stdout=subprocess.DEVNULL)
+        os.replace(f"{draft}.csv", f"{path}.csv")
+        os.replace(f"{draft}.json", f"{path}.json")
+    return path
+
+
+def with_noise(path, noise, draw, folder):
+    """Writes folder/record.csv: R1 and R2 with white noise of this share of their standard deviations."""
+    rows = [line.split(",")[:3] for line in Path(f"{path}.csv").read_text().splitlines()[1:]]
+    normal = random.Random(f"{path.name} {noise} {draw}").gauss
+    noisy = []
+    for column in (1, 2):
+        x = [float(row[column]) for row in rows]
+        mean = sum(x) / len(x)
+        sigma = noise * math.sqrt(sum((v - mean) ** 2 for v in x) / len(x))
+        noisy.append([v + normal(0.0, sigma) for v in x])
+    text = "".join(f"{row[0]},{r1:.12g},{r2:.12g}\n" for row, r1, r2 in zip(rows, *noisy))
+    (folder / "record.csv").write_text("t [s],R1 [N],R2 [N]\n" + text)
+
+
+def configuration(truth, name, noise, draw, a):
+    off = random.Random(f"start {name} {noise} {draw}").uniform
+    string = truth["string"]
+    table = [(f, z) for f, z in zip(truth["modes"]["f"], truth["modes"]["zeta"]) if f < 0.5 * a.rate]
+    damping = "{type: constant, ratio: 1e-3}"
+    if a.damping == "table":
+        damping = (f"{{type: table, frequencies: [{', '.join(f'{f:.9g} Hz' for f, _ in table)}], "
+                   f"ratios: [{', '.join(f'{z:.9g}' for _, z in table)}]}}")
+    keys = (f", modes: {a.modes}" if a.modes else "") + (f", {a.string_keys}" if a.string_keys else "")
+    record = "file: record.csv, left: {channel: R1}, right: {channel: R2}" + (f", {a.record_keys}" if a.record_keys else "")
+    return (f"kind: calibrate\nrecord: {{{record}}}\n"
+            f"string: {{length: {string['L']} m, linear_density: {string['rho_L']} kg/m, "
+            f"fundamental: {string['f0'] * (1 + off(-0.02, 0.02)):.9g} Hz, "
+            f"inharmonicity: {string['B'] * (1 + off(-0.2, 0.2)):.6g}, damping: {damping}{keys}}}\n"
+            f"bow: {{position: {1e3 * truth['x_c'] + off(-1.5, 1.5):.6g} mm}}\n"
+            f"calibration:\n{a.lines}")
+
+
+def z_of(found, truth, sd):
+    return None if not sd else (found - truth) / sd
+
+
+def scored(calibration, truth):
+    """z of the parameters and of the identified modes."""
+    named = {p["name"]: p for p in calibration["parameters"]}
+    true = {"f0": truth["string"]["f0"], "B": truth["string"]["B"], "x_c": truth["x_c"]}
+    result = {}
+    for name, value in true.items():
+        p = named[name]
+        result[name] = {"z": z_of(p["final"], value, p.get("sd")), "sd": p.get("sd"), "error": p["final"] - value}
+    result["f_n"], result["leaving"] = [], 0
+    for mode in calibration["modes"]:
+        # The string obeys its law: a mode said to leave it is a false alarm.
+        result["leaving"] += mode.get("law") not in ("follows", "", None)
+        if mode.get("source") != "identified" or mode["n"] > len(truth["modes"]["f"]):
+            continue
+        value = truth["modes"]["f"][mode["n"] - 1]
+        result["f_n"].append((mode["n"], z_of(mode["f_hz"], value, mode["relative_sd"] * mode["f_hz"]),
+                              mode["relative_sd"]))
+    continuation = calibration.get("continuation") or {}
+    result["chi2"] = continuation.get("chi2")
+    return result
+
+
+def calibrated(task, a):
+    """Runs one calibration: a line of the results."""
+    name, action, noise, draw, path, text, key = task
+    truth = json.loads(Path(f"{path}.json").read_text())
+    folder = a.out / "runs" / key
+    folder.mkdir(parents=True, exist_ok=True)
+    with_noise(path, noise, draw, folder)
+    (folder / "calibrate.yaml").write_text(text)
+    line = {"key": key, "string": name, "action": action, "noise": noise, "draw": draw}
+    begin = time.monotonic()
+    try:
+        done = subprocess.run([a.build / "modcal", "run", "calibrate.yaml", "--out", "out", "--threads", "1"], cwd=folder,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=a.timeout)
+        line |= {"exit": done.returncode, "accepted": done.returncode == 0}
+        found = sorted(folder.glob("out/**/calibration.json"))
+        if found:
+            line |= scored(json.loads(found[0].read_text()), truth)
+        else:
+            line["failure"] = done.stdout.strip()[-400:]
+    except subprocess.TimeoutExpired:
+        line |= {"accepted": False, "failure": f"longer than {a.timeout:g} s"}
+    line["wall"] = time.monotonic() - begin
+    for leftover in folder.glob("record.csv"):
+        leftover.unlink()
+    return line
+
+
+def finished(out, keys):
+    try:
+        lines = [json.loads(line) for line in (out / "results.jsonl").read_text().splitlines() if line.endswith("}")]
+    except FileNotFoundError:
+        lines = []
+    return {line["key"]: line for line in lines if line["key"] in keys}
+
+
+def tasks_of(a):
+    program, truth_digest = file_digest(a.build / "modcal"), file_digest(a.build / "benchmarks/truth")
+    with concurrent.futures.ThreadPoolExecutor(a.jobs) as pool:
+        paths = list(pool.map(lambda pair: simulated(*pair, a, truth_digest), a.pairs))
+    tasks = []
+    for (name, action), path in zip(a.pairs, paths):
+        truth = json.loads(Path(f"{path}.json").read_text())
+        for noise in a.noise:
+            for draw in range(a.draws):
+                text = configuration(truth, name, noise, draw, a)
+                key = f"{name}-{action}-{noise:g}-{draw}-{digest(program, path.name, text)}"
+                tasks.append((name, action, noise, draw, path, text, key))
+    return tasks
+
+
+def row(label, z, sds):
+    z = [abs(v) for v in z if v is not None and math.isfinite(v)]
+    if not z:
+        return f"  {label:5} none"
+    share = [100.0 * sum(v <= k for v in z) / len(z) for k in (1, 2)]
+    sd = sorted(sds)[len(sds) // 2] if sds else math.nan
+    return (f"  {label:5} n {len(z):5}  within 1 sd {share[0]:5.1f} %, 2 sd {share[1]:5.1f} %  largest |z| {max(z):8.1f}  "
+            f"median |z| {sorted(z)[len(z) // 2]:6.2f}  median sd {sd:.2g}")
+
+
+def summary(lines, title):
+    scored_lines = [line for line in lines if "f0" in line]
+    accepted = [line for line in scored_lines if line["accepted"]]
+    wall = sorted(line["wall"] for line in lines)
+    failed = len(lines) - len(scored_lines)
+    print(f"\n{title}: {len(lines)} calibrations, {len(accepted)} accepted, {len(scored_lines) - len(accepted)} refused"
+          + (f", {failed} without a result" if failed else "")
+          + f"; median {wall[len(wall) // 2]:.1f} s, longest {wall[-1]:.1f} s")
+    for group, chosen in (("accepted", accepted), ("all", scored_lines)):
+        if not chosen or (group == "all" and len(accepted) == len(scored_lines)):
+            continue
+        print(f" {group}: modes said to leave the law {sum(line['leaving'] for line in chosen)}")
+        for name in ("f0", "B", "x_c"):
+            print(row(name, [line[name]["z"] for line in chosen], [line[name]["sd"] for line in chosen if line[name]["sd"]]))
+        modes = [mode for line in chosen for mode in line["f_n"]]
+        print(row("f_n", [z for _, z, _ in modes], [sd for _, _, sd in modes]))
+
+
+def main():
+    a = arguments()
+    tasks = tasks_of(a)
+    done = finished(a.out, {task[-1] for task in tasks})
+    todo = [task for task in tasks if task[-1] not in done]
+    print(f"{len(tasks)} calibrations, {len(done)} of them done before", flush=True)
+    lock = threading.Lock()
+    with concurrent.futures.ThreadPoolExecutor(a.jobs) as pool, open(a.out / "results.jsonl", "a") as results:
+        for future in concurrent.futures.as_completed([pool.submit(calibrated, task, a) for task in todo]):
+            line = future.result()
+            with lock:
+                results.write(json.dumps(line) + "\n")
+                results.flush()
+            done[line["key"]] = line
+            print(f"{len(done)}/{len(tasks)} {line['string']} {line['action']} {100 * line['noise']:g} % "
+                  f"{'accepted' if line['accepted'] else 'refused'} {line['wall']:.1f} s", file=sys.stderr, flush=True)
+    lines = list(done.values())
+    for noise in a.noise:
+        summary([line for line in lines if line["noise"] == noise], f"noise {100 * noise:g} %")
+    summary(lines, "everything")
+    for text in sorted({line["failure"] for line in lines if "failure" in line}):
+        print(f"\n{sum(line.get('failure') == text for line in lines)} without a result: {text}")
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    if todo:
+        print(f"\n{(used.ru_utime + used.ru_stime) / len(todo):.1f} s of processor time a calibration, records included")
+
+
+if __name__ == "__main__":
+    main()
