@@ -32,6 +32,23 @@ STRINGS = {
     "cello_c": (65.4, 3.0e-4, 0.69, 15.0e-3, 71.3e-3, 0.15, 0.9, 1.4e-3),
 }
 ACTIONS = ("exponential", "thermal", "torsion", "pluck")
+# What a record has and its model may not: further arguments of truth, and what is done to the reactions afterwards.
+MISMATCHES = {
+    "none": ([], {}),
+    **{f"gain_{g:g}": (["--gain", 1 + g], {}) for g in (0.002, 0.005, 0.02)},
+    **{f"delay_{us:g}us": (["--delay", 1e-6 * us], {}) for us in (0.2, 1)},
+    **{f"corner_{hz:g}hz": (["--corner", hz], {}) for hz in (0.5, 2)},
+    **{f"body_{b:g}": (["--body-peak", b], {}) for b in (0.005, 0.0125)},
+    **{f"polarization_alike_{p:g}": (["--polarization-1", p, "--polarization-2", p], {}) for p in (0.03, 0.1)},
+    **{f"polarization_unlike_{p:g}": (["--polarization-1", p, "--polarization-2", 0.3 * p], {}) for p in (0.03, 0.1)},
+    "drift_1e-4": (["--drift", 1e-4], {}),
+    "mid_stroke": (["--start", 0.3], {}),
+    "damping_constant": ([], {"damping": "constant"}),
+    **{f"hum_{h:g}": ([], {"hum": h}) for h in (0.001, 0.01, 0.05)},
+    **{f"pink_{p:g}": ([], {"pink": p}) for p in (0.1, 0.5)},
+    **{f"correlated_{c:g}": ([], {"correlated": c}) for c in (0.3, 0.9)},
+    "8_bit": ([], {"bits": 8}),
+}
 CALIBRATION = """  parameters: {frequencies: all, law: true, contact: true, damping: factor, law_width: estimated}
   objective: joint_likelihood
   optimizer: staged
@@ -48,6 +65,8 @@ def arguments():
     p.add_argument("--actions", nargs="+", choices=ACTIONS, default=["exponential", "thermal", "torsion"])
     p.add_argument("--noise", nargs="+", type=float, default=[0.001, 0.01, 0.05])
     p.add_argument("--draws", type=int, default=6, help="noise and start, of each record and noise")
+    p.add_argument("--mismatch", nargs="+", choices=("all", *MISMATCHES), default=["none"], metavar="NAME",
+                   help=f"what the records have and the model has not: all, {', '.join(MISMATCHES)}")
     p.add_argument("--rate", type=float, default=51200.0)
     p.add_argument("--duration", type=float, default=1.0)
     p.add_argument("--reactions", choices=("tension", "support"), default="tension")
@@ -61,9 +80,11 @@ def arguments():
     a = p.parse_args()
     a.build, a.out = a.build.resolve(), a.out.resolve()
     a.pairs = [(s, k) for s in a.strings for k in a.actions]
+    a.mismatch = list(MISMATCHES) if "all" in a.mismatch else a.mismatch
     if a.quick:
         a.pairs = [("violin_d", "exponential"), ("violin_g", "thermal"), ("cello_d", "torsion")]
         a.draws = 1
+    a.cells = [(*pair, m) for pair in a.pairs for m in a.mismatch]
     a.lines = a.calibration.read_text() if a.calibration else CALIBRATION
     return a
 
@@ -76,7 +97,7 @@ def file_digest(path):
     return hashlib.sha256(path.read_bytes()).hexdigest()[:16]
 
 
-def truth_command(name, action, a):
+def truth_command(name, action, mismatch, a):
     """The command line of a record without noise. The bow presses with a third of what the Helmholtz motion allows."""
     f0, B, L, rho, x, v, s0, s1 = STRINGS[name]
     impedance = 2.0 * L * f0 * rho
@@ -92,42 +113,78 @@ def truth_command(name, action, a):
                     "--heat-capacity", 5e-6 * heat, "--conductance", 2e-3 * heat, "--carried-heat", 1e-3 * press]
     if action == "torsion":
         command += ["--torsion", "--torsion-loss", 0.34 * f0, "--torsion-diffusion", 0.2 * L * L]
-    return list(map(str, command))
+    return list(map(str, command + MISMATCHES[mismatch][0]))
 
 
-def simulated(name, action, a, truth_digest):
+def simulated(name, action, mismatch, a, truth_digest):
     """Path of the record's files without their endings."""
-    command = truth_command(name, action, a)
+    command = truth_command(name, action, mismatch, a)
     path = a.out / "records" / f"{name}-{action}-{digest(truth_digest, *command)}"
     if not path.with_suffix(".json").exists():
         path.parent.mkdir(parents=True, exist_ok=True)
-        draft = path.with_name(path.name + f".{os.getpid()}")
+        draft = path.with_name(path.name + f".{os.getpid()}.{threading.get_ident()}")
         subprocess.run([a.build / "benchmarks/truth", *command, draft], check=True, stdout=subprocess.DEVNULL)
         os.replace(f"{draft}.csv", f"{path}.csv")
         os.replace(f"{draft}.json", f"{path}.json")
     return path
 
 
-def with_noise(path, noise, draw, folder):
-    """Writes folder/record.csv: R1 and R2 with white noise of this share of their standard deviations."""
+def pink(normal, count):
+    """Noise of variance 1 whose power falls as 1/f between 5 Hz and 13 kHz: eleven first-order processes an octave apart."""
+    corners = [2.0 ** -k for k in range(11)]
+    keep = [math.exp(-c) for c in corners]
+    drive = [math.sqrt(1.0 - k * k) for k in keep]
+    state = [normal(0.0, 1.0) for _ in corners]
+    result = []
+    for _ in range(count):
+        state = [k * x + d * normal(0.0, 1.0) for k, d, x in zip(keep, drive, state)]
+        result.append(sum(state) / math.sqrt(len(state)))
+    return result
+
+
+def noise_of(normal, count, how):
+    """Noise of variance 1 for both reactions."""
+    channels = [[normal(0.0, 1.0) for _ in range(count)] for _ in range(2)]
+    if "correlated" in how:
+        c = how["correlated"]
+        channels[1] = [c * x + math.sqrt(1.0 - c * c) * y for x, y in zip(*channels)]
+    if "pink" in how:
+        share = how["pink"]
+        channels = [[math.sqrt(1.0 - share) * x + math.sqrt(share) * y for x, y in zip(white, pink(normal, count))]
+                    for white in channels]
+    return channels
+
+
+def with_noise(path, noise, draw, how, folder):
+    """Writes folder/record.csv: R1 and R2 with noise of this share of their standard deviations, hum of 50 Hz and its
+    harmonics (1/h) likewise, rounded to so many bits of the peak."""
     rows = [line.split(",")[:3] for line in Path(f"{path}.csv").read_text().splitlines()[1:]]
     normal = random.Random(f"{path.name} {noise} {draw}").gauss
+    rate = (len(rows) - 1) / float(rows[-1][0])
     noisy = []
-    for column in (1, 2):
+    for column, draws in zip((1, 2), noise_of(normal, len(rows), how)):
         x = [float(row[column]) for row in rows]
         mean = sum(x) / len(x)
-        sigma = noise * math.sqrt(sum((v - mean) ** 2 for v in x) / len(x))
-        noisy.append([v + normal(0.0, sigma) for v in x])
+        sigma = math.sqrt(sum((v - mean) ** 2 for v in x) / len(x))
+        x = [v + noise * sigma * d for v, d in zip(x, draws)]
+        if "hum" in how:
+            turn = 2.0 * math.pi * 50.0 / rate
+            waves = [(how["hum"] * sigma / h, h * turn, 0.7 * h * draw) for h in range(1, 9)]
+            x = [v + sum(a * math.cos(w * i + p) for a, w, p in waves) for i, v in enumerate(x)]
+        if "bits" in how:
+            step = 2.0 * max(map(abs, x)) / 2 ** how["bits"]
+            x = [step * round(v / step) for v in x]
+        noisy.append(x)
     text = "".join(f"{row[0]},{r1:.12g},{r2:.12g}\n" for row, r1, r2 in zip(rows, *noisy))
     (folder / "record.csv").write_text("t [s],R1 [N],R2 [N]\n" + text)
 
 
-def configuration(truth, name, noise, draw, a):
+def configuration(truth, name, mismatch, noise, draw, a):
     off = random.Random(f"start {name} {noise} {draw}").uniform
     string = truth["string"]
     table = [(f, z) for f, z in zip(truth["modes"]["f"], truth["modes"]["zeta"]) if f < 0.5 * a.rate]
     damping = "{type: constant, ratio: 1e-3}"
-    if a.damping == "table":
+    if MISMATCHES[mismatch][1].get("damping", a.damping) == "table":
         damping = (f"{{type: table, frequencies: [{', '.join(f'{f:.9g} Hz' for f, _ in table)}], "
                    f"ratios: [{', '.join(f'{z:.9g}' for _, z in table)}]}}")
     keys = (f", modes: {a.modes}" if a.modes else "") + (f", {a.string_keys}" if a.string_keys else "")
@@ -168,13 +225,13 @@ def scored(calibration, truth):
 
 def calibrated(task, a):
     """Runs one calibration: a line of the results."""
-    name, action, noise, draw, path, text, key = task
+    name, action, mismatch, noise, draw, path, text, key = task
     truth = json.loads(Path(f"{path}.json").read_text())
     folder = a.out / "runs" / key
     folder.mkdir(parents=True, exist_ok=True)
-    with_noise(path, noise, draw, folder)
+    with_noise(path, noise, draw, MISMATCHES[mismatch][1], folder)
     (folder / "calibrate.yaml").write_text(text)
-    line = {"key": key, "string": name, "action": action, "noise": noise, "draw": draw}
+    line = {"key": key, "string": name, "action": action, "mismatch": mismatch, "noise": noise, "draw": draw}
     begin = time.monotonic()
     try:
         done = subprocess.run([a.build / "modcal", "run", "calibrate.yaml", "--out", "out", "--threads", "1"], cwd=folder,
@@ -204,15 +261,15 @@ def finished(out, keys):
 def tasks_of(a):
     program, truth_digest = file_digest(a.build / "modcal"), file_digest(a.build / "benchmarks/truth")
     with concurrent.futures.ThreadPoolExecutor(a.jobs) as pool:
-        paths = list(pool.map(lambda pair: simulated(*pair, a, truth_digest), a.pairs))
+        paths = list(pool.map(lambda cell: simulated(*cell, a, truth_digest), a.cells))
     tasks = []
-    for (name, action), path in zip(a.pairs, paths):
+    for (name, action, mismatch), path in zip(a.cells, paths):
         truth = json.loads(Path(f"{path}.json").read_text())
         for noise in a.noise:
             for draw in range(a.draws):
-                text = configuration(truth, name, noise, draw, a)
-                key = f"{name}-{action}-{noise:g}-{draw}-{digest(program, path.name, text)}"
-                tasks.append((name, action, noise, draw, path, text, key))
+                text = configuration(truth, name, mismatch, noise, draw, a)
+                key = f"{name}-{action}-{mismatch}-{noise:g}-{draw}-{digest(program, path.name, text)}"
+                tasks.append((name, action, mismatch, noise, draw, path, text, key))
     return tasks
 
 
@@ -226,12 +283,19 @@ def row(label, z, sds):
             f"median |z| {sorted(z)[len(z) // 2]:6.2f}  median sd {sd:.2g}")
 
 
+def wrong(line):
+    """Off by more than an honest deviation allows: f0, B or x_c beyond 4, an f_n beyond 5."""
+    modes = max((abs(z) for _, z, _ in line["f_n"] if z is not None), default=0.0)
+    return modes > 5.0 or any(line[name]["z"] is None or abs(line[name]["z"]) > 4.0 for name in ("f0", "B", "x_c"))
+
+
 def summary(lines, title):
     scored_lines = [line for line in lines if "f0" in line]
     accepted = [line for line in scored_lines if line["accepted"]]
     wall = sorted(line["wall"] for line in lines)
     failed = len(lines) - len(scored_lines)
-    print(f"\n{title}: {len(lines)} calibrations, {len(accepted)} accepted, {len(scored_lines) - len(accepted)} refused"
+    print(f"\n{title}: {len(lines)} calibrations, {len(accepted)} accepted, of them {sum(map(wrong, accepted))} "
+          f"wrong (beyond 4 sd, f_n 5), {len(scored_lines) - len(accepted)} refused"
           + (f", {failed} without a result" if failed else "")
           + f"; median {wall[len(wall) // 2]:.1f} s, longest {wall[-1]:.1f} s")
     for group, chosen in (("accepted", accepted), ("all", scored_lines)):
@@ -258,11 +322,13 @@ def main():
                 results.write(json.dumps(line) + "\n")
                 results.flush()
             done[line["key"]] = line
-            print(f"{len(done)}/{len(tasks)} {line['string']} {line['action']} {100 * line['noise']:g} % "
+            print(f"{len(done)}/{len(tasks)} {line['string']} {line['action']} {line['mismatch']} {100 * line['noise']:g} % "
                   f"{'accepted' if line['accepted'] else 'refused'} {line['wall']:.1f} s", file=sys.stderr, flush=True)
     lines = list(done.values())
-    for noise in a.noise:
-        summary([line for line in lines if line["noise"] == noise], f"noise {100 * noise:g} %")
+    for mismatch in a.mismatch:
+        for noise in a.noise:
+            title = (f"{mismatch}, " if len(a.mismatch) > 1 else "") + f"noise {100 * noise:g} %"
+            summary([line for line in lines if (line["mismatch"], line["noise"]) == (mismatch, noise)], title)
     summary(lines, "everything")
     for text in sorted({line["failure"] for line in lines if "failure" in line}):
         print(f"\n{sum(line.get('failure') == text for line in lines)} without a result: {text}")

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "benchmarks/truth/decimator.hpp"
+#include "benchmarks/truth/sensor.hpp"
 
 namespace modcal::truth {
 namespace {
@@ -78,10 +79,22 @@ class Session {
         reaction_(reaction_weights(string, wave_.spacing(), options.reactions)),
         line_mobility_(wave_.mobility(contact_at_)),
         mobility_(line_mobility_),
+        sensor_({.gain = options.mismatch.gain,
+                 .delay = options.mismatch.delay,
+                 .corner = options.mismatch.corner,
+                 .body_peak = options.mismatch.body_peak,
+                 .body_frequency = options.mismatch.body_frequency,
+                 .body_damping = options.mismatch.body_damping},
+                1.0 / grid_.time_step),
         decimators_(5, Decimator(factor(), options.filtered)) {
     if (string.torsion) {
       torsion_.emplace(torsional(string, *string.torsion), grid_);
       mobility_ += torsion_->mobility(contact_at_);
+    }
+    if (options.mismatch.polarization[0] != 0.0 || options.mismatch.polarization[1] != 0.0) {
+      TruthString other = string;
+      other.fundamental *= 1.0 + options.mismatch.detuning;
+      other_.emplace(transverse(other), grid_);
     }
     if (const auto* bow = std::get_if<TruthBow>(&gesture.action)) {
       contact_.emplace(bow->friction, grid_.time_step);
@@ -105,20 +118,24 @@ class Session {
     return velocity(wave_) + (torsion_ ? velocity(*torsion_) : 0.0);
   }
   double energy() const { return wave_.energy() + (torsion_ ? torsion_->energy() : 0.0); }
-  double reaction(bool right) const;
+  double reaction(const Wave& wave, bool right) const;
+  void read_ends();
   ContactState force_at(double time, double free_velocity);
   void wait();  ///< at rest, before the gesture
   void step(std::size_t index);
+  void drift(double time);
   void check(const ContactState& state, double time);
 
   TruthGesture gesture_;
   TruthOptions options_;
   WaveGrid grid_;
   Wave wave_;
-  std::optional<Wave> torsion_;
+  std::optional<Wave> torsion_, other_;  ///< other_: the second polarization
   Interpolation contact_at_;
   std::vector<double> reaction_;
+  double tension_ = 1.0;             ///< over that of the string: drift
   double line_mobility_, mobility_;  ///< of the centre line, of the surface
+  TruthSensor sensor_;
   std::optional<Contact> contact_;
   std::vector<Decimator> decimators_;  ///< R1, R2, f, y, v
   std::size_t stuck_ = 0, slips_ = 0;
@@ -126,8 +143,8 @@ class Session {
   TruthAudit audit_;
 };
 
-double Session::reaction(bool right) const {
-  const double* y = wave_.y();
+double Session::reaction(const Wave& wave, bool right) const {
+  const double* y = wave.y();
   double even = 0.0, odd = 0.0;
   for (std::size_t i = 0; i < reaction_.size(); i += 2) {
     const std::size_t j = i + 1;
@@ -135,6 +152,16 @@ double Session::reaction(bool right) const {
     odd += reaction_[j] * y[right ? grid_.intervals - j - 1 : j + 1];
   }
   return even + odd;
+}
+
+void Session::read_ends() {
+  double ends[2];
+  for (std::size_t r = 0; r < 2; ++r) {
+    ends[r] = tension_ * reaction(wave_, r == 1);
+    if (other_) ends[r] += options_.mismatch.polarization[r] * reaction(*other_, r == 1);
+  }
+  decimators_[0].push(ends[0]);
+  decimators_[1].push(sensor_.read(ends[1]));
 }
 
 ContactState Session::force_at(double time, double free_velocity) {
@@ -151,8 +178,7 @@ ContactState Session::force_at(double time, double free_velocity) {
 }
 
 void Session::wait() {
-  decimators_[0].push(reaction(false));
-  decimators_[1].push(reaction(true));
+  read_ends();
   decimators_[2].push(0.0);
   decimators_[3].push(contact_at_.of(wave_.y()));
   decimators_[4].push(0.0);
@@ -160,16 +186,18 @@ void Session::wait() {
 
 void Session::step(std::size_t index) {
   const double time = static_cast<double>(index) * grid_.time_step;
-  decimators_[0].push(reaction(false));
-  decimators_[1].push(reaction(true));
+  read_ends();
   decimators_[3].push(contact_at_.of(wave_.y()));
+  if (options_.mismatch.drift != 0.0) drift(time);
   wave_.advance();
   if (torsion_) torsion_->advance();
+  if (other_) other_->advance();
   const double free = velocity(wave_);
   const ContactState state = force_at(time, free + (torsion_ ? velocity(*torsion_) : 0.0));
   if (state.force != 0.0) {
     wave_.push(contact_at_, state.force);
     if (torsion_) torsion_->push(contact_at_, state.force);
+    if (other_) other_->push(contact_at_, state.force);
   }
   decimators_[2].push(state.force);
   decimators_[4].push(free + line_mobility_ * state.force);
@@ -177,6 +205,13 @@ void Session::step(std::size_t index) {
   slips_ += was_stuck_ && !state.stuck;
   was_stuck_ = state.stuck;
   if (options_.audit) check(state, time);
+}
+
+void Session::drift(double time) {
+  const double part = (time - options_.start) / options_.duration - 0.5;
+  const double relative = 2.0 * options_.mismatch.drift * part;  // T ∝ f₀²
+  wave_.retune(relative);
+  tension_ = 1.0 + relative;
 }
 
 void Session::check(const ContactState& state, double time) {
@@ -230,57 +265,7 @@ TruthRecord Session::run() {
   return record;
 }
 
-/// Counter-based: draw i of a channel depends on nothing else (SplitMix64; Steele, Lea and Flood,
-/// 2014).
-double uniform(std::uint64_t seed, std::uint64_t counter) {
-  std::uint64_t z = seed * 0xD1342543DE82EF95u + (counter + 1) * 0x9E3779B97F4A7C15u;
-  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
-  z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
-  z ^= z >> 31;
-  return (static_cast<double>(z >> 11) + 0.5) * 0x1.0p-53;
-}
-
-double deviation(const std::vector<double>& samples) {
-  double mean = 0.0, square = 0.0;
-  for (const double x : samples) mean += x / static_cast<double>(samples.size());
-  for (const double x : samples) square += (x - mean) * (x - mean);
-  return std::sqrt(square / static_cast<double>(samples.size()));
-}
-
 }  // namespace
-
-double TruthString::bending() const {
-  const double width = length / std::numbers::pi;
-  return inharmonicity * tension() * width * width;
-}
-
-double value_at(const Course& course, double time) {
-  if (time <= course.front().time) return course.front().value;
-  for (std::size_t i = 1; i < course.size(); ++i) {
-    if (time >= course[i].time) continue;
-    const Knot &a = course[i - 1], &b = course[i];
-    return a.value + (b.value - a.value) * (time - a.time) / (b.time - a.time);
-  }
-  return course.back().value;
-}
-
-WaveGrid grid_of(const TruthString& string, const TruthOptions& options) {
-  require(options.sample_rate > 0.0 && options.least_rate > 0.0, "rates must be > 0");
-  const double multiple = std::ceil(options.least_rate / (8.0 * options.sample_rate) - 1e-9);
-  std::size_t intervals = options.intervals;
-  if (intervals == 0) {
-    // n f₀ √(1 + B n²) = f_s/2.
-    const double part = 0.5 * options.sample_rate / string.fundamental, b = string.inharmonicity;
-    const double square =
-        b > 0.0 ? (std::sqrt(1.0 + 4.0 * b * part * part) - 1.0) / (2.0 * b) : part * part;
-    intervals =
-        std::max<std::size_t>(128, static_cast<std::size_t>(std::ceil(3.0 * std::sqrt(square))));
-  }
-  return {.intervals = intervals,
-          .time_step = 1.0 / (8.0 * multiple * options.sample_rate),
-          .half_width = options.half_width,
-          .loss_half_width = options.half_width / 2};
-}
 
 TruthRecord simulate(const TruthString& string, const TruthGesture& gesture,
                      const TruthOptions& options) {
@@ -288,6 +273,8 @@ TruthRecord simulate(const TruthString& string, const TruthGesture& gesture,
           "f0, L and the linear density must be > 0");
   require(string.inharmonicity >= 0.0 && string.loss >= 0.0 && string.diffusion >= 0.0,
           "B and the losses must be >= 0");
+  require(options.mismatch.drift == 0.0 || !options.audit,
+          "a string that goes out of tune does not keep its energy: no audit");
   require(options.duration > 0.0, "duration must be > 0");
   const WaveGrid grid = grid_of(string, options);
   const double cell = string.length / static_cast<double>(grid.intervals);
@@ -298,18 +285,6 @@ TruthRecord simulate(const TruthString& string, const TruthGesture& gesture,
                     gesture.position, kInterpolationPoints / 2, cell));
   }
   return Session(string, gesture, options).run();
-}
-
-void add_noise(TruthRecord& record, double level, std::uint64_t seed) {
-  std::vector<double>* const channels[] = {&record.r1, &record.r2};
-  for (std::uint64_t c = 0; c < 2; ++c) {
-    record.noise[c] = level * deviation(*channels[c]);
-    for (std::size_t i = 0; i < channels[c]->size(); ++i) {
-      const double radius = std::sqrt(-2.0 * std::log(uniform(2 * seed + c, 2 * i)));
-      const double turn = 2.0 * std::numbers::pi * uniform(2 * seed + c, 2 * i + 1);
-      (*channels[c])[i] += record.noise[c] * radius * std::cos(turn);
-    }
-  }
 }
 
 }  // namespace modcal::truth

@@ -74,6 +74,24 @@ struct TruthGesture {
 /// late.
 enum class Reactions { kTension, kSupport };
 
+/// What a real rig has and a model of a string may not: R2 = (gain exp(−sτ) s/(s + ω_c) (1 + b(s)))
+/// R2, b(s) = peak · 2ζω_r s/(s² + 2ζω_r s + ω_r²), bilinear at the rate of the scheme; a second
+/// polarization; a string that goes out of tune.
+struct TruthMismatch {
+  double gain = 1.0;              ///< of the sensor at x = L over that at x = 0 [1]
+  double delay = 0.0;             ///< of the same, τ [s]
+  double corner = 0.0;            ///< of the same, ω_c/2π [Hz]
+  double body_peak = 0.0;         ///< of a resonance that the sensor at x = L feels [1]
+  double body_frequency = 280.0;  ///< [Hz]
+  double body_damping = 0.02;     ///< ζ [1]
+  /// The same force moves a second string with speed c (1 + detuning); so much of its reactions is
+  /// added to R1 and R2.
+  double polarization[2] = {0.0, 0.0};
+  double detuning = 1.3e-3;
+  /// Relative change of f0 from the record's beginning to its end, zero at its middle.
+  double drift = 0.0;
+};
+
 struct TruthOptions {
   double duration = 1.0;         ///< of the record [s]
   double sample_rate = 51200.0;  ///< of the record [Hz]
@@ -81,7 +99,8 @@ struct TruthOptions {
   /// included [s].
   double start = -2e-3;
   Reactions reactions = Reactions::kTension;
-  bool filtered = true;      ///< anti-alias filter (Decimator); otherwise plain samples
+  bool filtered = true;  ///< anti-alias filter (Decimator); otherwise plain samples
+  TruthMismatch mismatch;
   double noise_level = 0.0;  ///< white noise of R1 and R2 over their standard deviations [1]
   std::uint64_t seed = 1;    ///< of the noise
   /// Rate of the scheme: the least multiple of 8 sample rates that is not below [Hz].

@@ -92,6 +92,16 @@ ordered_json json_of(const TruthAudit& audit) {
           {"friction_violation", audit.friction_violation}};
 }
 
+ordered_json json_of(const TruthMismatch& m) {
+  return {{"gain", m.gain},
+          {"delay", m.delay},
+          {"corner", m.corner},
+          {"body", {{"peak", m.body_peak}, {"f", m.body_frequency}, {"zeta", m.body_damping}}},
+          {"polarization", {m.polarization[0], m.polarization[1]}},
+          {"detuning", m.detuning},
+          {"drift", m.drift}};
+}
+
 }  // namespace
 
 void write_record(const std::filesystem::path& path, const TruthRecord& record) {
@@ -137,6 +147,7 @@ void write_truth(const std::filesystem::path& path, const TruthString& string,
         {"anti_alias_filter", options.filtered},
         {"flat_to", pass},
         {"ripple", options.filtered ? Decimator::kRipple : 0.0}}},
+      {"mismatch", json_of(options.mismatch)},
       {"noise",
        {{"level", options.noise_level},
         {"seed", options.seed},

@@ -99,6 +99,19 @@ void add_record_options(CLI::App& app, Stated& s) {
   app.add_flag("--audit", s.options.audit, "checks energy and friction at every step");
 }
 
+void add_mismatch_options(CLI::App& app, TruthMismatch& m) {
+  app.add_option("--gain", m.gain, "of the sensor at x = L over that at x = 0");
+  app.add_option("--delay", m.delay, "of the sensor at x = L [s]");
+  app.add_option("--corner", m.corner, "of the sensor at x = L [Hz]");
+  app.add_option("--body-peak", m.body_peak, "of a resonance in the sensor at x = L");
+  app.add_option("--body-frequency", m.body_frequency, "[Hz]");
+  app.add_option("--body-damping", m.body_damping, "zeta");
+  app.add_option("--polarization-1", m.polarization[0], "share of the second polarization in R1");
+  app.add_option("--polarization-2", m.polarization[1], "share of the second polarization in R2");
+  app.add_option("--detuning", m.detuning, "of the second polarization");
+  app.add_option("--drift", m.drift, "relative change of f0 over the record");
+}
+
 TruthGesture gesture_of(const Stated& s) {
   TruthGesture gesture{.position = s.position, .action = s.pluck};
   if (s.action == "force") gesture.action = TruthForce{.force = course_of(s.force)};
@@ -146,6 +159,7 @@ int main(int argc, char** argv) {
   add_string_options(app, stated);
   add_gesture_options(app, stated);
   add_record_options(app, stated);
+  add_mismatch_options(app, stated.options.mismatch);
   CLI11_PARSE(app, argc, argv);
   try {
     run(stated);

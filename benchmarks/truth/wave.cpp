@@ -69,6 +69,7 @@ Wave::Wave(const WaveEquation& equation, const WaveGrid& grid)
     throw std::invalid_argument(
         fmt::format("{} cells are too few: at least {}", grid.intervals, 4 * grid.half_width));
   }
+  tuned_.assign(elastic_.taps().begin(), elastic_.taps().end());
   // A static force F kinks the string by F/T: E y = g f l with E ≈ e₁θ² has y' jump by g f/(e₁h).
   const double h = spacing();
   const long double leading = symbols_of(equation, grid, 2).elastic[1];
@@ -103,7 +104,7 @@ void Wave::mirror(std::vector<double>& values) const {
 void Wave::advance() {
   std::swap(y_, last_y_);
   std::swap(change_, last_change_);
-  step(grid_.half_width, {.elastic = elastic_.taps().data(),
+  step(grid_.half_width, {.elastic = tuned_.data(),
                           .losing = losing_.taps().data(),
                           .y = inner(last_y_),
                           .change = inner(last_change_),
@@ -112,6 +113,21 @@ void Wave::advance() {
                           .end = grid_.intervals});
   mirror(y_);
   mirror(change_);
+}
+
+void Wave::retune(double relative) {
+  if (slope_.empty()) {
+    constexpr double kStep = 1e-4;
+    WaveEquation tighter = equation_;
+    tighter.speed *= std::sqrt(1.0 + kStep);
+    const SymmetricStencil stencil = elastic_stencil(tighter, grid_);
+    for (std::size_t i = 0; i < tuned_.size(); ++i) {
+      slope_.push_back((stencil.taps()[i] - elastic_.taps()[i]) / kStep);
+    }
+  }
+  for (std::size_t i = 0; i < tuned_.size(); ++i) {
+    tuned_[i] = elastic_.taps()[i] + relative * slope_[i];
+  }
 }
 
 void Wave::push(const Interpolation& contact, double force) {

@@ -72,6 +72,10 @@ class Wave {
   /// Adds its part, the force f [N] at the contact between the last two levels.
   void push(const Interpolation& contact, double force);
 
+  /// Sets the tension to (1 + relative) times that of the equation, |relative| << 1, for the
+  /// steps to come. mode() stays that of the equation; the balance of energy lacks what this does.
+  void retune(double relative);
+
   const WaveEquation& equation() const { return equation_; }
   const WaveGrid& grid() const { return grid_; }
   double spacing() const { return equation_.length / static_cast<double>(grid_.intervals); }
@@ -103,6 +107,7 @@ class Wave {
   WaveGrid grid_;
   std::size_t margin_;
   SymmetricStencil elastic_, losing_;
+  std::vector<double> tuned_, slope_;  ///< taps of E as they are used, and their slope by tension
   double response_ = 0.0;
   std::vector<double> y_, change_, last_y_, last_change_;
 };

@@ -6,126 +6,18 @@
 
 #include <cmath>
 #include <complex>
-#include <numbers>
 #include <stdexcept>
 
 #include "benchmarks/truth/decimator.hpp"
+#include "benchmarks/truth/sensor.hpp"
+#include "tests/benchmarks/truth/continuum.hpp"
 
 namespace modcal::truth {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
-double frequency(const TruthString& string, std::size_t n) {
-  const double order = static_cast<double>(n);
-  return order * string.fundamental * std::sqrt(1.0 + string.inharmonicity * order * order);
-}
-
-double decay(const TruthString& string, std::size_t n) {
-  const double wavenumber = static_cast<double>(n) * kPi / string.length;
-  return string.loss + string.diffusion * wavenumber * wavenumber;
-}
-
-WaveEquation equation_of(const TruthString& string) {
-  return {.length = string.length,
-          .density = string.linear_density,
-          .speed = string.wave_speed(),
-          .stiffness = std::sqrt(string.bending() / string.linear_density),
-          .loss = string.loss,
-          .diffusion = string.diffusion};
-}
-
 /// Small and quick, with a bow that excites it well.
 TruthOptions quick(double duration) {
   return {.duration = duration, .least_rate = 2e6, .audit = true};
-}
-
-// Dispersion
-
-TEST(TruthWave, HasTheModesOfTheContinuumToTheEndOfTheBand) {
-  const TruthString string;
-  const TruthOptions options;
-  const Wave wave(equation_of(string), grid_of(string, options));
-  EXPECT_GE(1.0 / wave.grid().time_step, 10e6);
-  for (std::size_t n = 1; n <= 70; ++n) {
-    const WaveMode mode = wave.mode(n);
-    // README: what these errors are worth beside the deviations of a calibration.
-    const double bound = n <= 30 ? 2e-11 : n <= 40 ? 1e-9 : n <= 60 ? 3e-7 : 3e-6;
-    EXPECT_NEAR(mode.omega / (2.0 * kPi * frequency(string, n)), 1.0, bound) << n;
-    const double loss_bound = n <= 20 ? 2e-8 : n <= 40 ? 5e-6 : 5e-4;
-    EXPECT_NEAR(mode.decay / decay(string, n), 1.0, loss_bound) << n;
-  }
-}
-
-/// Observed order of mode 6 between two grids, the time step following the cells.
-double observed_order(double inharmonicity, std::size_t half_width) {
-  TruthString string;
-  string.inharmonicity = inharmonicity;
-  string.loss = string.diffusion = 0.0;
-  double errors[2];
-  for (std::size_t i = 0; i < 2; ++i) {
-    const std::size_t cells = 40 << i;
-    const Wave wave(equation_of(string), {.intervals = cells,
-                                          .time_step = 1e-6 / static_cast<double>(1 << i),
-                                          .half_width = half_width,
-                                          .loss_half_width = half_width / 2});
-    errors[i] = std::abs(wave.mode(6).omega / (2.0 * kPi * frequency(string, 6)) - 1.0);
-  }
-  return std::log2(errors[0] / errors[1]);
-}
-
-TEST(TruthWave, ConvergesWithTheOrderOfItsStencils) {
-  EXPECT_NEAR(observed_order(0.0, 2), 4.0, 0.1);
-  EXPECT_NEAR(observed_order(0.0, 4), 8.0, 0.3);
-  // The fourth derivative has two orders less; a stiff string, so that its error is the larger one.
-  EXPECT_NEAR(observed_order(0.1, 2), 2.0, 0.1);
-  EXPECT_NEAR(observed_order(0.1, 4), 6.0, 0.3);
-}
-
-TEST(TruthWave, RingsWithTheModesOfItsDispersionRelation) {
-  // A sine of the grid is an eigenvector: its own amplitude obeys x_{i+1} = 2 e^{−σk} cos φ x_i −
-  // e^{−2σk} x_{i−1}. Both numbers by least squares over a decay sampled every 64 steps.
-  const TruthString string;
-  const WaveGrid grid{.intervals = 64, .time_step = 1.0 / 3e6};
-  for (const std::size_t n : {1u, 5u, 20u, 40u}) {
-    Wave wave(equation_of(string), grid);
-    std::vector<double> shape(grid.intervals + 1);
-    for (std::size_t j = 0; j < shape.size(); ++j) {
-      shape[j] = 1e-3 * std::sin(kPi * static_cast<double>(n * j) / grid.intervals);
-    }
-    wave.set_rest(shape);
-    const std::size_t skip = n == 1 ? 256 : 16;
-    std::vector<double> amplitude;
-    for (std::size_t i = 0; i < 60000; ++i) {
-      if (i % skip == 0) {
-        double sum = 0.0;
-        for (std::size_t j = 1; j < grid.intervals; ++j) sum += shape[j] * wave.y()[j];
-        amplitude.push_back(sum);
-      }
-      wave.advance();
-    }
-    double aa = 0.0, ab = 0.0, bb = 0.0, ac = 0.0, bc = 0.0;
-    for (std::size_t i = 2; i < amplitude.size(); ++i) {
-      const double a = amplitude[i - 1], b = amplitude[i - 2], c = amplitude[i];
-      aa += a * a, ab += a * b, bb += b * b, ac += a * c, bc += b * c;
-    }
-    const double c1 = (ac * bb - bc * ab) / (aa * bb - ab * ab);
-    const double c2 = -(bc * aa - ac * ab) / (aa * bb - ab * ab);
-    const double step = static_cast<double>(skip) * grid.time_step;
-    const double found_decay = -0.5 * std::log(c2) / step;
-    const double omega = std::hypot(std::acos(0.5 * c1 / std::sqrt(c2)) / step, found_decay);
-    const WaveMode mode = wave.mode(n);
-    EXPECT_NEAR(omega / mode.omega, 1.0, 1e-9) << n;
-    EXPECT_NEAR(found_decay / mode.decay, 1.0, 1e-7) << n;
-  }
-}
-
-TEST(TruthWave, RefusesGridsThatItsTimeStepCannotCarry) {
-  const TruthString string;
-  EXPECT_THROW(Wave(equation_of(string), {.intervals = 200, .time_step = 4e-6}),
-               std::invalid_argument);
-  EXPECT_THROW(Wave(equation_of(string), {.intervals = 20, .time_step = 1e-7}),
-               std::invalid_argument);
 }
 
 // Reactions
@@ -281,6 +173,53 @@ TEST(TruthContact, WarmsByItsOwnWorkAndSoftens) {
   EXPECT_NEAR(contact.temperature() / rise, 1.0, 1e-6);
   EXPECT_LT(std::abs(state.force), 0.5 * law.cold_coefficient);
   EXPECT_GT(std::abs(state.force), 0.5 * law.hot_coefficient);
+}
+
+// Mismatch
+
+TEST(TruthSensor, AnswersAsItsFormulaSays) {
+  const double rate = 1e6;
+  const TruthSensor::Numbers numbers{.gain = 1.02,
+                                     .delay = 3.3e-6,
+                                     .corner = 5.0,
+                                     .body_peak = 0.0125,
+                                     .body_frequency = 280.0,
+                                     .body_damping = 0.02};
+  for (const double f : {20.0, 275.0, 280.0, 2000.0, 9000.0}) {
+    TruthSensor sensor(numbers, rate);
+    std::complex<double> sum = 0.0;
+    for (std::size_t i = 0; i < 1200000; ++i) {
+      // Ten periods of 20 Hz or more, half a second after the start.
+      const double phase = 2.0 * kPi * f * static_cast<double>(i) / rate;
+      const double read = sensor.read(std::cos(phase));
+      if (i >= 700000) sum += read * std::polar(2.0 / 500000.0, -phase);
+    }
+    const std::complex<double> s(0.0, 2.0 * kPi * f);
+    const double omega = 2.0 * kPi * 280.0;
+    const std::complex<double> body =
+        0.0125 * 2.0 * 0.02 * omega * s / (s * s + 2.0 * 0.02 * omega * s + omega * omega);
+    const std::complex<double> expected =
+        1.02 * std::exp(-3.3e-6 * s) * s / (s + 2.0 * kPi * 5.0) * (1.0 + body);
+    // The delay between two samples is linear: (ω/rate)²/8; and the start has decayed to e^{−22}.
+    EXPECT_LT(std::abs(sum - expected), 5e-4 * std::pow(f / 9000.0, 2.0) + 1e-6) << f;
+  }
+  EXPECT_THROW(TruthSensor({.gain = 1.0, .delay = -1e-6}, rate), std::invalid_argument);
+}
+
+TEST(TruthMismatch, AddsASecondPolarization) {
+  const TruthGesture gesture{.action = TruthForce{.force = {{0.0, 0.0}, {1e-3, 0.3}, {2e-3, 0.0}}}};
+  TruthOptions options{.duration = 0.01, .least_rate = 2e6};
+  const TruthRecord clean = simulate({}, gesture, options);
+  options.mismatch.polarization[0] = 0.1;
+  options.mismatch.polarization[1] = 0.2;
+  options.mismatch.detuning = 0.0;
+  const TruthRecord mixed = simulate({}, gesture, options);
+  for (std::size_t i = 0; i < clean.r1.size(); ++i) {
+    EXPECT_NEAR(mixed.r1[i], 1.1 * clean.r1[i], 1e-12);
+    EXPECT_NEAR(mixed.r2[i], 1.2 * clean.r2[i], 1e-12);
+  }
+  options.mismatch.detuning = 1.3e-3;
+  EXPECT_NE(simulate({}, gesture, options).r1, mixed.r1);
 }
 
 // Filter, noise, refusals
