@@ -1,13 +1,7 @@
 // One kind of experiment: what `kind:` names at the top of a file.
 #pragma once
 
-#include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include "experiments/study/study.hpp"
-#include "libsim/base/registry.hpp"
 
 namespace modcal {
 

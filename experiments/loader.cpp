@@ -1,14 +1,10 @@
 #include "experiments/loader.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <charconv>
 #include <regex>
 
 #include "experiments/config/reader.hpp"
 #include "experiments/config/resolved.hpp"
-#include "libsim/base/error.hpp"
 
 namespace modcal {
 namespace {

@@ -1,10 +1,6 @@
 // From a YAML file to an experiment that can run.
 #pragma once
 
-#include <memory>
-#include <string>
-#include <vector>
-
 #include "experiments/config/document.hpp"
 #include "experiments/experiment.hpp"
 

@@ -1,17 +1,10 @@
-#include <array>
 
-#include "experiments/experiment.hpp"
-#include "experiments/kinds/benchmark/benchmark_experiment.hpp"
-#include "experiments/kinds/calibrate/calibrate_experiment.hpp"
-#include "experiments/kinds/identify/identify_study.hpp"
-#include "experiments/kinds/invert/invert_study.hpp"
-#include "experiments/kinds/kind_list.hpp"
-#include "experiments/kinds/limit/calibration_limit_experiment.hpp"
-#include "experiments/kinds/schelleng/schelleng_experiment.hpp"
+#include "experiments/kinds/benchmark/benchmark.hpp"
+#include "experiments/kinds/limit/limit.hpp"
+#include "experiments/kinds/schelleng/schelleng.hpp"
 #include "experiments/kinds/section7/pluck_then_bow.hpp"
 #include "experiments/kinds/simulate/simulate_study.hpp"
-#include "experiments/kinds/study_experiment.hpp"
-#include "experiments/kinds/sweep/sweep_experiment.hpp"
+#include "experiments/kinds/sweep/sweep.hpp"
 
 namespace modcal {
 

@@ -4,12 +4,23 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
-#include <functional>
-#include <memory>
+#include <nlohmann/json_fwd.hpp>
 
-#include "experiments/cli/exit_code.hpp"
+#include "experiments/loader.hpp"
 
 namespace modcal {
+
+/// What a command tells the shell.
+enum class ExitCode : int {
+  kOk = 0,
+  kInternal = 1,
+  kUsage = 2,
+  kInvalidInput = 3,
+  kSomeTasksFailed = 4,
+  kAcceptanceMissed = 5,
+  kNothingMeasured = 6,
+  kInterrupted = 130,
+};
 
 using Action = std::function<ExitCode()>;
 /// Called with the chosen command's action while the command line is being parsed.
@@ -33,5 +44,40 @@ void add_inspect_command(CLI::App& app, const Chosen& chosen);
 void add_reproduce_command(CLI::App& app, const Chosen& chosen);
 void add_stored_commands(CLI::App& app, const Chosen& chosen);
 void add_submit_command(CLI::App& app, const Chosen& chosen);
+
+/// What `action` returns; an exception becomes one message on stderr and its exit code.
+ExitCode guarded(const Action& action);
+
+/// One word of a POSIX shell; single-quoted where anything in it could be special.
+std::string shell_word(const std::string& text);
+
+// What the commands that work on an experiment file have in common.
+
+struct ExperimentArguments {
+  std::string file;
+  std::vector<std::string> assignments;  ///< "key.path=value"
+  std::string out;                       ///< empty: out/<name of the file>
+  int threads = 0;                       ///< 0: not stated
+
+  /// FILE and --set.
+  void declare_file(CLI::App& command);
+  /// --out; seen_by: who else must see the folder, empty: nobody.
+  void declare_out(CLI::App& command, const std::string& seen_by = {});
+
+  std::filesystem::path folder() const;
+  /// Assignments as words of a shell: " --set ..." for each.
+  std::string assignment_words() const;
+  /// The command line that makes the same results again, of the whole list.
+  std::string command() const;
+};
+
+/// --threads with its range.
+void declare_threads(CLI::App& command, int& threads, const char* meaning);
+
+/// The experiment, after its mistakes were printed; none where an error is among them.
+std::optional<LoadedExperiment> load_and_print_mistakes(
+    const std::filesystem::path& file, const std::vector<std::string>& assignments = {});
+
+void print_json(const nlohmann::ordered_json& object);
 
 }  // namespace modcal

@@ -1,13 +1,8 @@
-#include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdio>
-#include <exception>
 
 #include "experiments/cli/command.hpp"
-#include "experiments/cli/guarded.hpp"
-#include "experiments/cli/interrupt.hpp"
-#include "experiments/cli/message_colors.hpp"
+#include "experiments/cli/terminal.hpp"
 #include "experiments/cli/provenance.hpp"
 #include "experiments/config/reader.hpp"
 

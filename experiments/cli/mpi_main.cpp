@@ -1,19 +1,12 @@
 // modcal-mpi run FILE: a list of tasks over the ranks of an MPI job, one shard each; rank 0
 // reports.
-#include <fmt/format.h>
 #include <mpi.h>
 
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <cstdio>
 
-#include "experiments/cli/experiment_arguments.hpp"
-#include "experiments/cli/guarded.hpp"
-#include "experiments/cli/interrupt.hpp"
-#include "experiments/cli/message_colors.hpp"
+#include "experiments/cli/terminal.hpp"
 #include "experiments/cli/runner.hpp"
-#include "experiments/cli/stored_run.hpp"
+#include "experiments/cli/run_folder.hpp"
 
 namespace modcal {
 namespace {

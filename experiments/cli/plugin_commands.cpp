@@ -1,24 +1,11 @@
 // list, describe and schema: what can stand in an experiment file.
-#include <algorithm>
-#include <array>
 
 #include "experiments/cli/command.hpp"
-#include "experiments/cli/experiment_arguments.hpp"
 #include "experiments/config/help.hpp"
 #include "experiments/config/reader.hpp"
-#include "experiments/experiment.hpp"
 #include "libcalib/objective.hpp"
 #include "libcalib/optimizer.hpp"
-#include "libinverse/estimator.hpp"
 #include "libinverse/joint/force_prior.hpp"
-#include "libinverse/parameter_choice.hpp"
-#include "libinverse/regularizer.hpp"
-#include "libsim/base/error.hpp"
-#include "libsim/dynamics/friction/friction_law.hpp"
-#include "libsim/dynamics/gestures/gesture.hpp"
-#include "libsim/dynamics/scene/scene.hpp"
-#include "libsim/dynamics/scene/simulator.hpp"
-#include "libsim/model/damping.hpp"
 
 namespace modcal {
 namespace {

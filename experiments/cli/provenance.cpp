@@ -3,7 +3,6 @@
 #include <fmt/chrono.h>
 #include <sys/utsname.h>
 
-#include <filesystem>
 #include <fstream>
 #include <thread>
 

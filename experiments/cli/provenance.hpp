@@ -2,11 +2,8 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
 #include "experiments/loader.hpp"
-#include "experiments/report/report.hpp"
 
 namespace modcal {
 

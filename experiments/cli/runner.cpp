@@ -1,23 +1,14 @@
 #include "experiments/cli/runner.hpp"
 
-#include <fmt/format.h>
 #include <tbb/global_control.h>
 
-#include <chrono>
 #include <cstdio>
-#include <optional>
 
-#include "experiments/cli/interrupt.hpp"
-#include "experiments/cli/message_colors.hpp"
-#include "experiments/cli/output_directory.hpp"
-#include "experiments/cli/progress.hpp"
+#include "experiments/cli/terminal.hpp"
+#include "experiments/cli/run_folder.hpp"
 #include "experiments/cli/provenance.hpp"
-#include "experiments/cli/shell_word.hpp"
-#include "experiments/report/write_report.hpp"
-#include "experiments/runs/task_experiment.hpp"
-#include "libsim/base/error.hpp"
-#include "libsim/records/csv_writer.hpp"
-#include "libsim/records/wav_writer.hpp"
+#include "libsim/records/csv.hpp"
+#include "libsim/records/wav.hpp"
 
 namespace modcal {
 namespace {

@@ -1,14 +1,8 @@
 // Runs loaded experiments and leaves their results in a folder.
 #pragma once
 
-#include <filesystem>
-#include <string>
-#include <vector>
-
-#include "experiments/cli/exit_code.hpp"
-#include "experiments/loader.hpp"
-#include "experiments/runs/shard.hpp"
-#include "experiments/study/study.hpp"
+#include "experiments/cli/command.hpp"
+#include "experiments/runs/run_store.hpp"
 
 namespace modcal {
 

@@ -1,17 +1,11 @@
 // status, merge, report, replay and compare: what is done with the folders that runs have left.
 #include <cstdio>
-#include <map>
 
-#include "experiments/cli/command.hpp"
-#include "experiments/cli/experiment_arguments.hpp"
-#include "experiments/cli/interrupt.hpp"
-#include "experiments/cli/message_colors.hpp"
+#include "experiments/cli/terminal.hpp"
 #include "experiments/cli/runner.hpp"
-#include "experiments/cli/stored_run.hpp"
+#include "experiments/cli/run_folder.hpp"
 #include "experiments/runs/results_database.hpp"
-#include "experiments/study/paired_bootstrap.hpp"
-#include "libsim/base/error.hpp"
-#include "libsim/signal/statistics.hpp"
+#include "experiments/study/sample.hpp"
 
 namespace modcal {
 namespace {

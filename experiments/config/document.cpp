@@ -1,13 +1,13 @@
 #include "experiments/config/document.hpp"
 
-#include <fmt/format.h>
-
+#include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <fstream>
 #include <sstream>
+#include <tuple>
 
-#include "experiments/config/yaml_text.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -21,6 +21,88 @@ std::vector<std::string> split_lines(const std::string& source) {
     lines.push_back(std::move(line));
   }
   return lines;
+}
+
+// The file first, then the arguments in their order ("--set 2" before "--set 10").
+auto order_of(const SourcePosition& position) {
+  return std::make_tuple(position.origin.size(), std::string_view(position.origin), position.line,
+                         position.column);
+}
+
+std::string_view source_line(const YamlDocument& document, const SourcePosition& at) {
+  for (const auto& [origin, text] : document.arguments) {
+    if (origin == at.origin) return text;
+  }
+  const bool in_file = at.origin.empty() && at.line >= 1 && at.line <= document.lines.size();
+  return in_file ? std::string_view(document.lines[at.line - 1]) : std::string_view();
+}
+
+std::string format_mistake(const YamlDocument& document, const Mistake& mistake) {
+  const SourcePosition& at = mistake.position;
+  const std::string_view line = source_line(document, at);
+  const std::string_view before = line.substr(0, std::min(line.size(), at.column - 1));
+  // Columns count characters, tabs stay tabs: the caret stands below its place.
+  std::string indent;
+  for (const char byte : before) {
+    if (count_characters({&byte, 1}) == 1) indent += byte == '\t' ? '\t' : ' ';
+  }
+  const std::string place = at.origin.empty() ? fmt::format("{}:{}:{}", document.file, at.line,
+                                                            count_characters(before) + 1)
+                                              : at.origin;
+  std::string text =
+      fmt::format("{}: {}: {}\n", place, mistake.warning ? "warning" : "error", mistake.text);
+  if (!line.empty()) text += fmt::format("    {}\n    {}^\n", line, indent);
+  return text;
+}
+
+// Values put into a document from elsewhere: sweeps and the command line.
+
+void refuse(YamlDocument& document, const SourcePosition& position, std::string text) {
+  document.mistakes.push_back({position, std::move(text)});
+}
+
+/// The item that a path's segment names by its index; null with a mistake where there is none.
+YamlNode* find_item(YamlDocument& document, YamlNode& list, const std::string& key,
+                    const SourcePosition& position) {
+  std::size_t index = 0;
+  const char* end = key.data() + key.size();
+  const auto read = std::from_chars(key.data(), end, index);
+  if (read.ec == std::errc() && read.ptr == end && index < list.items.size()) {
+    return &list.items[index];
+  }
+  refuse(document, position,
+         fmt::format("the list has no item \"{}\": it has {}, which count from 0", key,
+                     list.items.size()));
+  return nullptr;
+}
+
+/// "regularizer: water_level" is short for "regularizer: {type: water_level}".
+void unfold_plugin(YamlNode& node, const SourcePosition& position) {
+  if (node.kind != YamlNode::Kind::kScalar) return;
+  YamlNode map;
+  map.kind = YamlNode::Kind::kMap;
+  map.position = position;
+  if (!node.text.empty()) map.members.push_back({"type", position, std::move(node)});
+  node = std::move(map);
+}
+
+YamlNode* step_into(YamlDocument& document, YamlNode& node, const std::string& key,
+                    const SourcePosition& position) {
+  if (node.kind == YamlNode::Kind::kSequence) return find_item(document, node, key, position);
+  unfold_plugin(node, position);
+  if (YamlNode* known = node.find(key)) return known;
+  node.members.push_back({key, position, {}});
+  node.members.back().value.position = position;
+  return &node.members.back().value;
+}
+
+void set_origin(YamlNode& node, const std::string& origin) {
+  node.position.origin = origin;
+  for (YamlNode& item : node.items) set_origin(item, origin);
+  for (YamlNode::Member& member : node.members) {
+    member.position.origin = origin;
+    set_origin(member.value, origin);
+  }
 }
 
 }  // namespace
@@ -65,6 +147,56 @@ YamlDocument read_yaml_file(const std::filesystem::path& path) {
   std::ostringstream content;
   content << stream.rdbuf();
   return parse_yaml(content.str(), path.string());
+}
+
+std::string format_mistakes(const YamlDocument& document, std::vector<Mistake> mistakes) {
+  std::stable_sort(mistakes.begin(), mistakes.end(), [](const Mistake& a, const Mistake& b) {
+    return order_of(a.position) < order_of(b.position);
+  });
+  std::string text;
+  for (const Mistake& mistake : mistakes) text += format_mistake(document, mistake);
+  return text;
+}
+
+void set_value(YamlDocument& document, std::string_view path, YamlNode value,
+               const SourcePosition& path_position) {
+  const bool has_empty_key = path.empty() || path.front() == '.' || path.back() == '.' ||
+                             path.find("..") != std::string_view::npos;
+  if (has_empty_key) {
+    return refuse(
+        document, path_position,
+        fmt::format("\"{}\" is no path of an option: write its keys from the top with dots "
+                    "between, as in scene.bow.position",
+                    path));
+  }
+  YamlNode* node = &document.root;
+  for (std::string_view rest = path; node != nullptr;) {
+    const std::size_t dot = rest.find('.');
+    node = step_into(document, *node, std::string(rest.substr(0, dot)), path_position);
+    if (dot == std::string_view::npos) break;
+    rest.remove_prefix(dot + 1);
+  }
+  if (node != nullptr) *node = std::move(value);
+}
+
+void apply_assignment(YamlDocument& document, std::string_view assignment, std::size_t number) {
+  const SourcePosition start{1, 1, fmt::format("command line, --set {}", number)};
+  document.arguments.emplace_back(start.origin, assignment);
+  const std::size_t equals = assignment.find('=');
+  if (equals == std::string_view::npos || equals == 0 ||
+      assignment.find_first_not_of(' ', equals + 1) == std::string_view::npos) {
+    return refuse(document, start, fmt::format("\"{}\" is not key.path=value", assignment));
+  }
+  YamlDocument value;
+  parse_yaml_text(value, std::string(assignment), equals + 1);
+  for (Mistake& mistake : value.mistakes) {
+    mistake.position.origin = start.origin;
+    document.mistakes.push_back(std::move(mistake));
+  }
+  // A file that could not be parsed has no options to set; that is its mistake.
+  if (!value.mistakes.empty() || document.root.kind != YamlNode::Kind::kMap) return;
+  set_origin(value.root, start.origin);
+  set_value(document, assignment.substr(0, equals), std::move(value.root), start);
 }
 
 }  // namespace modcal

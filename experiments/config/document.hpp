@@ -78,4 +78,13 @@ void apply_assignment(YamlDocument& document, std::string_view assignment, std::
 /// All mistakes, by place: "file:line:column: error: text", the source line, a caret.
 std::string format_mistakes(const YamlDocument& document, std::vector<Mistake> mistakes);
 
+// YAML text to a document's tree.
+
+/// Fills root and mistakes of `document`. The first `skip` bytes of the text are no part of the
+/// YAML: places count them.
+void parse_yaml_text(YamlDocument& document, const std::string& text, std::size_t skip);
+
+/// Number of characters of UTF-8 text.
+std::size_t count_characters(std::string_view text);
+
 }  // namespace modcal

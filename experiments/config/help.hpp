@@ -1,9 +1,7 @@
 // Options described: as text and JSON for people, as a JSON schema for editors.
 #pragma once
 
-#include <functional>
 #include <nlohmann/json.hpp>
-#include <string>
 
 #include "libsim/base/options.hpp"
 

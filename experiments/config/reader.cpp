@@ -7,10 +7,10 @@
 #include <set>
 #include <tuple>
 
-#include "experiments/config/reader_words.hpp"
-#include "experiments/config/sweep_reader.hpp"
+#include "libsim/base/nearest_name.hpp"
 
 namespace modcal {
+
 YamlReader::YamlReader(const YamlNode& node, std::vector<Mistake>& mistakes)
     : node_(node), mistakes_(mistakes) {}
 
@@ -185,6 +185,36 @@ void read_options(const YamlNode& node, const std::function<void(OptionVisitor&)
   for (const std::string& key : allowed) reader.allow(key);
   visit(reader);
   reader.finish();
+}
+
+std::vector<std::string> strings_of(const std::vector<std::string_view>& views) {
+  return {views.begin(), views.end()};
+}
+
+std::string_view kind_name(const YamlNode& node) {
+  switch (node.kind) {
+    case YamlNode::Kind::kMap:
+      return "a map";
+    case YamlNode::Kind::kSequence:
+      return "a list";
+    default:
+      return node.text.empty() && !node.quoted ? "nothing" : "a single value";
+  }
+}
+
+std::string_view moved_key(std::string_view key) {
+  if (key != "continuation") return {};
+  return "is now the optimizer \"staged\": write objective: {type: joint_likelihood, left_noise, "
+         "right_noise, highest_frequency}, optimizer: {type: staged, restarts}, and what is free "
+         "or "
+         "known under parameters: {frequencies: all, law: true, contact: true, damping: factor, "
+         "law_width, sensors: [gain, ...], per_record, fixed, priors, correlations}";
+}
+
+std::string suggestion(std::string_view text, const std::vector<std::string>& names) {
+  const std::string nearest = nearest_name(text, names);
+  if (!nearest.empty()) return fmt::format("; did you mean \"{}\"?", nearest);
+  return names.empty() ? std::string() : fmt::format("; known: {}", fmt::join(names, ", "));
 }
 
 }  // namespace modcal

@@ -2,11 +2,7 @@
 // every value be of its kind, unit and range. All mistakes are collected, none is thrown.
 #pragma once
 
-#include <functional>
 #include <map>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "experiments/config/document.hpp"
 #include "libsim/base/options.hpp"
@@ -75,5 +71,40 @@ void read_options(const YamlNode& node, const std::function<void(OptionVisitor&)
 std::string_view moved_key(std::string_view key);
 /// ", did you mean …?" or the list of names.
 std::string suggestion(std::string_view text, const std::vector<std::string>& names);
+
+// What mistakes in a configuration call things.
+
+/// "a map", "a list", "a single value" or "nothing".
+std::string_view kind_name(const YamlNode& node);
+
+std::vector<std::string> strings_of(const std::vector<std::string_view>& views);
+
+// Numbers with units, as people write them.
+
+struct ScalarNumber {
+  double value = 0.0;  ///< in the SI unit asked for
+  std::string error;   ///< why there is no value; empty: there is one
+};
+
+/// "30 mm" in "m" is 0.03; a bare number is in the SI unit. "2 %" is allowed for pure numbers.
+ScalarNumber parse_number(std::string_view text, std::string_view si_unit);
+
+/// A leading 0 before another digit: YAML 1.1 reads 010 as 8.
+bool looks_octal(std::string_view text);
+
+// The section "sweep" of an experiment: from axes to cells.
+
+/// A sweep as written, with the places of its values.
+struct SweepTable {
+  SweepPlan plan;
+  std::vector<std::string> paths;
+  std::vector<SourcePosition> places;                ///< of the paths
+  std::vector<std::vector<const YamlNode*>> values;  ///< of every cell; null: its own
+  SweepCells cells() const;
+};
+
+/// Reads {product, zip, exclude, include}; mistakes are appended, and with one of them the table is
+/// empty. The nodes must outlive the table.
+SweepTable read_sweep(const YamlNode& node, std::string_view key, std::vector<Mistake>& mistakes);
 
 }  // namespace modcal

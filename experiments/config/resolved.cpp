@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
 
+#include <cctype>
 #include <cmath>
-
-#include "experiments/config/flow_text.hpp"
 
 namespace modcal {
 namespace {
@@ -142,6 +142,38 @@ void ResolvedWriter::item(const std::vector<std::pair<std::string, std::string>>
   for (const auto& [key, value] : members) {
     yaml_ += fmt::format("{}{}{}: {}\n", std::string(2 * level_ + 2, ' '), indent, key, value);
     indent = "  ";
+  }
+}
+
+std::string yaml_string(const std::string& text) { return nlohmann::json(text).dump(); }
+
+std::string flow_scalar(const std::string& text) {
+  const bool plain = !text.empty() && text != "null" && text != "~" &&
+                     text.find_first_of(",[]{}:#&*!|>'\"%@`\n") == std::string::npos;
+  const bool percent = !text.empty() && std::isdigit(static_cast<unsigned char>(text[0])) &&
+                       text.ends_with('%') && text.find_first_of(",[]{}:#\n") == std::string::npos;
+  return plain || percent ? text : yaml_string(text);
+}
+
+std::string flow_text(const YamlNode& node) {
+  std::vector<std::string> parts;
+  switch (node.kind) {
+    case YamlNode::Kind::kMap:
+      for (const YamlNode::Member& member : node.members) {
+        const bool scalar = member.value.kind == YamlNode::Kind::kScalar;
+        parts.push_back(
+            fmt::format("{}: {}", member.key,
+                        scalar ? flow_scalar(member.value.text) : flow_text(member.value)));
+      }
+      return fmt::format("{{{}}}", fmt::join(parts, ", "));
+    case YamlNode::Kind::kSequence:
+      for (const YamlNode& item : node.items) {
+        const bool scalar = item.kind == YamlNode::Kind::kScalar;
+        parts.push_back(scalar ? flow_scalar(item.text) : flow_text(item));
+      }
+      return fmt::format("[{}]", fmt::join(parts, ", "));
+    default:
+      return node.text;
   }
 }
 

@@ -1,11 +1,11 @@
-#include "experiments/config/sweep_reader.hpp"
+#include "experiments/config/reader.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 
-#include "experiments/config/flow_text.hpp"
+#include "experiments/config/resolved.hpp"
 
 namespace modcal {
 namespace {

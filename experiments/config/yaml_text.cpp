@@ -1,16 +1,185 @@
-#include "experiments/config/yaml_text.hpp"
-
 #include <fmt/format.h>
+#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/exceptions.h>
 #include <yaml-cpp/parser.h>
 
 #include <algorithm>
 #include <sstream>
 
-#include "experiments/config/tree_builder.hpp"
+#include "experiments/config/document.hpp"
 
 namespace modcal {
 namespace {
+
+// Byte behind the closing quote of the text that begins at `start`; npos where it is not closed.
+std::size_t end_of_quoted(std::string_view text, std::size_t start) {
+  const char quote = text[start];
+  for (std::size_t i = start + 1; i < text.size(); ++i) {
+    if (quote == '"' && text[i] == '\\') {
+      ++i;
+    } else if (text[i] == quote) {
+      if (quote == '"' || i + 1 >= text.size() || text[i + 1] != quote) return i + 1;
+      ++i;
+    }
+  }
+  return std::string_view::npos;
+}
+
+// yaml-cpp's own offset counts differently behind a byte order mark.
+std::size_t offset_of(std::string_view text, const YAML::Mark& mark) {
+  std::size_t start = 0;
+  for (int line = 0; line < mark.line && start != std::string_view::npos; ++line) {
+    start = text.find('\n', start);
+    if (start != std::string_view::npos) ++start;
+  }
+  return start == std::string_view::npos ? start : start + static_cast<std::size_t>(mark.column);
+}
+
+SourcePosition position_of(const YAML::Mark& mark) {
+  if (mark.is_null()) return {};
+  return {static_cast<std::size_t>(mark.line) + 1, static_cast<std::size_t>(mark.column) + 1, {}};
+}
+
+YamlNode node_at(const YAML::Mark& mark, YamlNode::Kind kind = YamlNode::Kind::kScalar) {
+  YamlNode node;
+  node.kind = kind;
+  node.position = position_of(mark);
+  return node;
+}
+
+// Builds a document's tree from the events of yaml-cpp's parser. Unlike YAML::Node, events show
+// duplicate keys, anchors and the place of every key. What is refused becomes a mistake of
+// `document`.
+class TreeBuilder final : public YAML::EventHandler {
+ public:
+  /// `text`: what is parsed, for what yaml-cpp does not see.
+  TreeBuilder(YamlDocument& document, std::string_view text) : document_(document), text_(text) {}
+
+  bool has_root() const { return has_root_; }
+  YamlNode take_root() { return std::move(root_); }
+  /// The list or map that is open where parsing stopped; null at the top.
+  const YamlNode* innermost() const { return levels_.empty() ? nullptr : &levels_.back().node; }
+
+  void OnDocumentStart(const YAML::Mark& mark) override {
+    if (++documents_ == 2)
+      refuse(mark, "a second YAML document (---) begins here: keep one in a file");
+  }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t) override { add(node_at(mark)); }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
+    const bool merged = !levels_.empty() && levels_.back().has_key && levels_.back().key == "<<";
+    if (!merged) refuse(mark, "aliases (*name) are not supported: write the value out");
+    YamlNode node = node_at(mark);
+    node.refused = true;
+    add(std::move(node));
+  }
+  void OnAnchor(const YAML::Mark& mark, const std::string& name) override {
+    refuse(mark, fmt::format("anchors (&{}) are not supported: write the value out", name));
+  }
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
+                const std::string& value) override {
+    YamlNode node = node_at(mark);
+    node.text = value;
+    node.quoted = tag == "!";
+    if (node.quoted) refuse_open_quote(mark);
+    refuse_tag(mark, tag);
+    add(std::move(node));
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {
+    open(mark, tag, YamlNode::Kind::kSequence);
+  }
+  void OnSequenceEnd() override { close(); }
+  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
+                  YAML::EmitterStyle::value) override {
+    open(mark, tag, YamlNode::Kind::kMap);
+  }
+  void OnMapEnd() override { close(); }
+
+ private:
+  struct Level {
+    YamlNode node;
+    bool has_key = false;
+    std::string key;
+    SourcePosition key_position;
+  };
+
+  void refuse(const YAML::Mark& mark, std::string text) {
+    document_.mistakes.push_back({position_of(mark), std::move(text)});
+  }
+
+  void refuse_tag(const YAML::Mark& mark, const std::string& tag) {
+    if (tag.empty() || tag == "!" || tag == "?") return;
+    refuse(mark, fmt::format("the tag {} is not supported: leave it out", tag));
+  }
+
+  // yaml-cpp takes the end of the file for a closing quote.
+  void refuse_open_quote(const YAML::Mark& mark) {
+    const std::size_t start = offset_of(text_, mark);
+    if (start >= text_.size() || (text_[start] != '"' && text_[start] != '\'')) return;
+    if (end_of_quoted(text_, start) != std::string_view::npos) return;
+    refuse(mark, fmt::format("the quote {0} is not closed: end the text with {0}", text_[start]));
+  }
+
+  void open(const YAML::Mark& mark, const std::string& tag, YamlNode::Kind kind) {
+    refuse_tag(mark, tag);
+    levels_.emplace_back().node = node_at(mark, kind);
+  }
+
+  void close() {
+    YamlNode node = std::move(levels_.back().node);
+    levels_.pop_back();
+    add(std::move(node));
+  }
+
+  void add(YamlNode node) {
+    if (levels_.empty()) {
+      if (documents_ > 1) return;
+      root_ = std::move(node);
+      has_root_ = true;
+      return;
+    }
+    Level& level = levels_.back();
+    if (level.node.kind == YamlNode::Kind::kSequence) {
+      level.node.items.push_back(std::move(node));
+    } else if (!level.has_key) {
+      take_key(level, node);
+    } else {
+      add_member(level, std::move(node));
+    }
+  }
+
+  void take_key(Level& level, const YamlNode& node) {
+    level.has_key = true;
+    level.key = node.text;
+    level.key_position = node.position;
+    if (node.kind != YamlNode::Kind::kScalar || (node.text.empty() && !node.refused)) {
+      document_.mistakes.push_back({node.position, "a key must be a plain word"});
+    } else if (node.text == "<<" && !node.quoted) {
+      document_.mistakes.push_back(
+          {node.position, "merge keys (<<) are not supported: write the values out"});
+    }
+  }
+
+  void add_member(Level& level, YamlNode node) {
+    level.has_key = false;
+    for (const YamlNode::Member& member : level.node.members) {
+      if (member.key != level.key) continue;
+      document_.mistakes.push_back(
+          {level.key_position, fmt::format("duplicate key \"{}\": it stands in line {} already",
+                                           level.key, member.position.line)});
+      return;
+    }
+    level.node.members.push_back({level.key, level.key_position, std::move(node)});
+  }
+
+  YamlDocument& document_;
+  std::string_view text_;
+  std::vector<Level> levels_;
+  YamlNode root_;
+  bool has_root_ = false;
+  std::size_t documents_ = 0;
+};
 
 bool is_continuation(char byte) { return (static_cast<unsigned char>(byte) & 0xC0) == 0x80; }
 
@@ -69,23 +238,21 @@ SourcePosition end_of(const std::string& text) {
 
 /// yaml-cpp's messages in words that say what to do.
 std::string explain(const std::string& message) {
-  if (message == YAML::ErrorMsg::MAP_VALUE) {
-    return "a \":\" cannot stand here: begin the keys of one map in one column, and put a text "
-           "with "
-           "\": \" in it into quotes";
-  }
-  if (message == YAML::ErrorMsg::END_OF_MAP || message == YAML::ErrorMsg::END_OF_SEQ) {
-    return "the indentation fits neither the entry above nor the one around it: begin the line in "
-           "the column of the entries it belongs to";
-  }
-  if (message == YAML::ErrorMsg::FLOW_END) {
-    return "a closing bracket without an opening one: delete it";
-  }
-  if (message == YAML::ErrorMsg::UNKNOWN_ANCHOR) {
-    return "aliases (*name) are not supported: write the value out";
-  }
-  if (message == YAML::ErrorMsg::UNKNOWN_TOKEN) {
-    return "this character cannot begin a value: put the text into quotes";
+  constexpr const char* kIndentation =
+      "the indentation fits neither the entry above nor the one around it: begin the line in the "
+      "column of the entries it belongs to";
+  static constexpr std::pair<const char*, const char*> kAdvice[] = {
+      {YAML::ErrorMsg::MAP_VALUE,
+       "a \":\" cannot stand here: begin the keys of one map in one column, and put a text with "
+       "\": \" in it into quotes"},
+      {YAML::ErrorMsg::END_OF_MAP, kIndentation},
+      {YAML::ErrorMsg::END_OF_SEQ, kIndentation},
+      {YAML::ErrorMsg::FLOW_END, "a closing bracket without an opening one: delete it"},
+      {YAML::ErrorMsg::UNKNOWN_ANCHOR, "aliases (*name) are not supported: write the value out"},
+      {YAML::ErrorMsg::UNKNOWN_TOKEN,
+       "this character cannot begin a value: put the text into quotes"}};
+  for (const auto& [known, advice] : kAdvice) {
+    if (message == known) return advice;
   }
   return "not YAML: " + message;
 }

@@ -2,13 +2,10 @@
 
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <charconv>
-#include <map>
 #include <set>
 
-#include "experiments/kinds/sample.hpp"
-#include "experiments/report/result_table.hpp"
+#include "experiments/study/sample.hpp"
 
 namespace modcal {
 namespace {

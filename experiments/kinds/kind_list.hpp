@@ -1,16 +1,34 @@
-// Every kind of experiment as a list of tasks: with a section "sweep" it is run once a cell.
 #pragma once
 
-#include <memory>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "experiments/kinds/axis_experiment.hpp"
-#include "experiments/runs/stored_outcomes.hpp"
-#include "libsim/base/result_visitor.hpp"
 
 namespace modcal {
+
+/// A kind whose options do all the work: lint(), plan(), planned_simulations() and run().
+template <typename OptionsOfKind>
+class StudyExperiment : public Experiment {
+ public:
+  using Options = OptionsOfKind;
+  explicit StudyExperiment(Options options) : options_(std::move(options)) {}
+  std::vector<Finding> lint() const override { return options_.lint(); }
+  std::vector<std::string> plan() const override { return options_.plan(); }
+  std::optional<PlannedSimulations> planned_simulations() const override {
+    return options_.planned_simulations();
+  }
+  std::vector<std::string> files_read() const override {
+    if constexpr (requires { options_.files_read(); }) return options_.files_read();
+    return {};
+  }
+  StudyResult run(const StudyContext& context) const override { return options_.run(context); }
+
+ protected:
+  const Options& options() const { return options_; }
+
+ private:
+  Options options_;
+};
+
+// Every kind of experiment as a list of tasks: with a section "sweep" it is run once a cell.
 
 /// What one run of a list leaves: the numbers of its tables.
 struct RunOutcome {

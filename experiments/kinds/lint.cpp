@@ -1,10 +1,5 @@
 #include "experiments/kinds/lint.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numbers>
 #include <set>
 
 namespace modcal {

@@ -1,13 +1,8 @@
 // Physics lint: what no single option shows.
 #pragma once
 
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "experiments/experiment.hpp"
 #include "experiments/study/figures.hpp"
-#include "experiments/study/observation.hpp"
 #include "libcalib/parameters/string_unknowns.hpp"
 
 namespace modcal {

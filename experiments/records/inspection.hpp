@@ -1,14 +1,10 @@
 // What a recorded file holds, for people, for programs, and as the start of an experiment.
 #pragma once
 
-#include <filesystem>
-#include <limits>
 #include <nlohmann/json_fwd.hpp>
-#include <string>
-#include <vector>
 
 #include "libsim/records/levels.hpp"
-#include "libsim/records/record_options.hpp"
+#include "libsim/records/recording.hpp"
 
 namespace modcal {
 

@@ -1,7 +1,6 @@
-#include "experiments/report/chart_data.hpp"
+#include "experiments/report/html_page.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -11,7 +10,6 @@
 #include <numeric>
 
 #include "experiments/report/encoding.hpp"
-#include "experiments/report/palette.hpp"
 
 namespace modcal::report {
 namespace {

@@ -1,4 +1,4 @@
-#include "experiments/report/decimation.hpp"
+#include "experiments/report/drawing.hpp"
 
 #include <algorithm>
 #include <cmath>

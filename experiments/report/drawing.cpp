@@ -6,8 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "experiments/report/decimation.hpp"
-
 namespace modcal::report {
 namespace {
 

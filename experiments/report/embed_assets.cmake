@@ -1,6 +1,6 @@
-# Writes OUTPUT, a C++ file that defines the strings of page_assets.hpp, from the files in the list
+# Writes OUTPUT, a C++ file that defines the embedded strings of html_page.hpp, from the files in the list
 # ASSETS of "name=path", separated by commas.
-set(code "#include \"experiments/report/page_assets.hpp\"\n\nnamespace modcal::report {\n\n")
+set(code "#include \"experiments/report/html_page.hpp\"\n\nnamespace modcal::report {\n\n")
 string(REPLACE "," ";" ASSETS "${ASSETS}")
 foreach(asset IN LISTS ASSETS)
   string(REGEX MATCH "^([^=]+)=(.+)$" _ "${asset}")

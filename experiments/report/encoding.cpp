@@ -1,13 +1,10 @@
 #include "experiments/report/encoding.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <fstream>
-#include <utility>
 
 #include "libsim/base/error.hpp"
 #include "libsim/records/signal_file.hpp"

@@ -143,4 +143,25 @@ std::vector<const Series*> shown_series(const Panel& panel);
 /// True for [A-Za-z0-9_-]+.
 bool is_file_stem(std::string_view id);
 
+// Colours and shapes: the one table the page, its script and gnuplot draw by.
+
+struct Ink {
+  std::string_view name;   ///< CSS variable and class
+  std::string_view light;  ///< colour on white, #rrggbb
+  std::string_view dark;   ///< colour on a dark page
+  std::string_view glyph;  ///< shape of its points, as a character
+  std::string_view shape;  ///< the same shape in the page's script
+  int gnuplot_point;       ///< and in gnuplot
+};
+
+/// Palette of Okabe and Ito (2008) without its yellow, which white paper swallows; blue is lighter
+/// on a dark page.
+const Ink& ink_of(ColorRole role);
+
+/// All samples of a figure as columns: one column of x for every distinct set of abscissae, after
+/// it "panel: series [unit]" (and "… low", "… high") for each series over it. Shorter columns end
+/// in empty fields; a NaN is "nan". Before them stand the cells of a map, one a row: their middle
+/// in x and y and their category.
+std::string figure_csv(const Figure& figure);
+
 }  // namespace modcal::report

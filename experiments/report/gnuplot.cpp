@@ -5,12 +5,10 @@
 #include <sys/wait.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdio>
 #include <fstream>
 #include <iterator>
 #include <system_error>
-#include <vector>
 
 #include "experiments/report/encoding.hpp"
 

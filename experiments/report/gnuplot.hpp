@@ -2,10 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "experiments/report/drawing.hpp"
 

@@ -5,7 +5,6 @@
 
 #include "experiments/report/encoding.hpp"
 #include "experiments/report/gnuplot.hpp"
-#include "experiments/report/palette.hpp"
 
 namespace modcal::report {
 namespace {

@@ -1,15 +1,36 @@
-// A report as plain data: what an experiment hands over to be written.
+// A report as plain data: what an experiment hands over to be written, with all files beside it.
 #pragma once
 
-#include <string>
-#include <variant>
-#include <vector>
+#include <filesystem>
 
-#include "experiments/report/audio.hpp"
-#include "experiments/report/figure.hpp"
 #include "experiments/report/table.hpp"
 
 namespace modcal::report {
+
+// Signals that the page plays.
+
+struct Track {
+  std::string label = {};
+  std::vector<double> samples = {};
+};
+
+/// Players, one a track; each is scaled to its own peak, so that quiet signals are heard. The files
+/// of a report do not have them.
+struct Audio {
+  std::string id = {};  ///< anchor of its place in the page: [A-Za-z0-9_-]+
+  std::string title = {};
+  std::string caption = {};
+  double sample_rate = 0.0;  ///< of all tracks [Hz]
+  std::vector<Track> tracks = {};
+};
+
+/// Throws InvalidInput where the rate is not a whole number of hertz from 1000 to 192000, a track
+/// is empty or longer than 60 s or has a value that is not finite, or the id cannot be an anchor.
+void check_audio(const Audio& audio);
+
+/// "data:audio/wav;base64,…": RIFF WAVE, one channel, 16 bits. The peak is at 0.9 of full scale, a
+/// constant part is taken out, both ends fade over 5 ms.
+std::string wav_data_uri(const std::vector<double>& samples, double sample_rate);
 
 /// Plain text; an empty line starts a new paragraph, kPreformatted keeps all lines.
 struct Text {
@@ -47,5 +68,24 @@ struct Report {
   /// Command that replays a task, without the task's number at its end; empty: none.
   std::string replay = {};
 };
+
+struct WriteOptions {
+  bool vector_figures = true;       ///< SVG and PDF by gnuplot
+  std::string gnuplot = "gnuplot";  ///< looked up in PATH
+};
+
+struct WrittenReport {
+  std::filesystem::path page;
+  std::vector<std::filesystem::path> files;  ///< all of them, the page last
+  std::string warning;                       ///< why SVG and PDF are missing; empty: they are not
+};
+
+/// Writes into `directory` (made if it is not there) report.html, ID.csv and ID.json of every table
+/// and figures/ID.{csv,dat,gp,svg,pdf} of every figure, each of them under a temporary name first.
+/// A report without vector figures is complete otherwise and says so. Throws InvalidInput where a
+/// figure or table is malformed or two have one id (before anything is written), and where a file
+/// cannot be written.
+WrittenReport write_report(const Report& report, const std::filesystem::path& directory,
+                           const WriteOptions& options = {});
 
 }  // namespace modcal::report

@@ -1,12 +1,8 @@
-#include "experiments/report/table.hpp"
 
-#include <cmath>
 #include <set>
 
 #include "experiments/report/encoding.hpp"
-#include "experiments/report/figure.hpp"
-#include "experiments/report/result_json.hpp"
-#include "libsim/base/error.hpp"
+#include "experiments/report/result.hpp"
 
 namespace modcal::report {
 namespace {

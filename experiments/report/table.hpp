@@ -1,12 +1,9 @@
 // Tables of a report: shown in the page, written as CSV and as JSON rows.
 #pragma once
 
-#include <cstdint>
-#include <string>
 #include <type_traits>
 #include <utility>
 #include <variant>
-#include <vector>
 
 #include "experiments/report/figure.hpp"
 

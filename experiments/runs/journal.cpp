@@ -1,9 +1,9 @@
 #include "experiments/runs/journal.hpp"
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <xxhash.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -13,7 +13,6 @@
 #include <optional>
 #include <system_error>
 
-#include "experiments/runs/task_key.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -180,6 +179,15 @@ JournalWriter::Place JournalWriter::write_line(std::string_view content) {
     written += static_cast<std::size_t>(count);
   }
   return {static_cast<std::uint64_t>(start), line.size() - 1};
+}
+
+std::string digest_of(std::string_view text) {
+  const XXH128_hash_t hash = XXH3_128bits(text.data(), text.size());
+  return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
+}
+
+std::string checksum_of(std::string_view text) {
+  return fmt::format("{:016x}", XXH3_64bits(text.data(), text.size()));
 }
 
 }  // namespace modcal

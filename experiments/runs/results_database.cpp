@@ -1,14 +1,12 @@
 #include "experiments/runs/results_database.hpp"
 
-#include <fmt/format.h>
 #include <sqlite3.h>
 #include <unistd.h>
 
-#include <memory>
 #include <optional>
 #include <system_error>
 
-#include "experiments/runs/task_key.hpp"
+#include "experiments/runs/journal.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {

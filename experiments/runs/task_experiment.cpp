@@ -1,12 +1,6 @@
 #include "experiments/runs/task_experiment.hpp"
 
-#include <algorithm>
-#include <atomic>
 #include <chrono>
-#include <nlohmann/json.hpp>
-
-#include "libsim/base/error.hpp"
-#include "libsim/base/task_loop.hpp"
 
 namespace modcal {
 namespace {

@@ -1,14 +1,5 @@
 #include "experiments/study/figures.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <functional>
-#include <map>
-#include <optional>
-
-#include "libsim/base/error.hpp"
-#include "libsim/signal/fft.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {

@@ -2,15 +2,8 @@
 // has them.
 #pragma once
 
-#include <cstdint>
-#include <limits>
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include "experiments/report/figure.hpp"
 #include "experiments/study/identification.hpp"
-#include "libsim/base/options.hpp"
 
 namespace modcal {
 

@@ -1,18 +1,62 @@
-// Identified force and motion at the contact, scored where a reference is known.
+// How close an identified signal comes to the true one.
 #pragma once
 
 #include <deque>
-#include <memory>
-#include <mutex>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "experiments/study/observation.hpp"
-#include "experiments/study/scoring.hpp"
 #include "libinverse/invert.hpp"
+#include "libsim/base/result_visitor.hpp"
 
 namespace modcal {
+
+/// Windows over which an identified force is compared with the true one.
+struct ScoreOptions {
+  std::vector<double> windows;    ///< starts [s]; none: the whole record at once
+  double periods = 2.0;           ///< length in periods of the fundamental
+  std::vector<double> whole;      ///< start and stop of the long window [s]; none: no long window
+  std::int64_t oversampling = 1;  ///< of the truth behind the anti-aliased figures; 1: none
+  void visit(OptionVisitor& visitor);
+};
+
+struct WindowScore {
+  double start = 0.0;                                                    ///< [s]
+  double correlation = std::numeric_limits<double>::quiet_NaN();         ///< R of eq. 16
+  double relative_rms_error = std::numeric_limits<double>::quiet_NaN();  ///< static parts removed
+  /// R of both forces below the cut, neither folded back by sampling (the true one low-passed
+  /// before it was sampled): one re-sticking jump on the wrong side of a sample weighs no more than
+  /// it lasts.
+  double anti_aliased = std::numeric_limits<double>::quiet_NaN();
+
+  void visit(ResultVisitor& visitor) const;
+  /// "window from 0.78 s: R = 0.9876, relative rms error 0.1234".
+  std::string text() const;
+};
+
+struct ForceScores {
+  std::vector<WindowScore> scores;  ///< window by window
+  WindowScore whole;                ///< over the long window; NaN where none is asked for
+};
+
+/// What an identified force is held against.
+struct ScoreReference {
+  const Signal& truth;
+  const std::optional<Signal>& anti_aliased;  ///< the truth low-passed at its full rate
+  double anti_alias_cut = 0.0;                ///< [Hz]
+  double fundamental = 0.0;                   ///< f₀ [Hz]
+};
+
+/// Scores over every window of `periods`/`fundamental` seconds and over the long one. `unaliased`:
+/// the identified force where sampling has not folded it back, for the anti-aliased score; empty:
+/// the samples, of which nothing was above half the rate. Throws InvalidInput where a window leaves
+/// the record or the long one is not two rising instants inside it.
+ForceScores score_force(std::span<const double> identified, const ScoreReference& reference,
+                        const ScoreOptions& options, std::span<const double> unaliased = {});
+
+/// The part below `cut` [Hz] of a signal, sampled at every `step`-th instant.
+std::vector<double> low_passed(std::span<const double> samples, double sample_rate, double cut,
+                               std::size_t step = 1);
+
+// Identified force and motion at the contact, scored where a reference is known.
 
 /// One estimate of a record with its scores; empty without a reference.
 struct SideIdentification : ForceScores {

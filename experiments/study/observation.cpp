@@ -1,15 +1,9 @@
-#include "experiments/study/observation.hpp"
 
-#include <vector>
 
-#include "experiments/study/fingerprint.hpp"
-#include "experiments/study/scoring.hpp"
-#include "libsim/base/error.hpp"
-#include "libsim/records/recorded_signals.hpp"
+#include "experiments/study/identification.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {
-
 namespace {
 
 std::shared_ptr<const Truth> simulate_truth(const TruthOptions& options, double sample_rate,

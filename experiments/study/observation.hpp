@@ -2,19 +2,10 @@
 // computed once per distinct scene and shared by a whole sweep, and the model it starts from.
 #pragma once
 
-#include <filesystem>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include "experiments/study/computed_once.hpp"
-#include "libsim/base/options.hpp"
-#include "libsim/base/random.hpp"
+#include "experiments/study/fingerprint.hpp"
 #include "libsim/dynamics/scene/simulator.hpp"
-#include "libsim/model/modal_basis.hpp"
 #include "libsim/model/transfer.hpp"
-#include "libsim/records/record_options.hpp"
+#include "libsim/records/recording.hpp"
 #include "libsim/signal/measurement.hpp"
 
 namespace modcal {

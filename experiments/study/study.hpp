@@ -1,18 +1,10 @@
 // What a kind of experiment gets and gives, apart from files, terminals and signals of the system.
 #pragma once
 
-#include <filesystem>
-#include <functional>
 #include <iterator>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include "experiments/report/report.hpp"
 #include "experiments/study/identification.hpp"
-#include "experiments/study/observation.hpp"
-#include "libsim/base/task_loop.hpp"
 
 namespace modcal {
 

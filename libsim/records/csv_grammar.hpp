@@ -4,8 +4,10 @@
 #include <cstddef>
 #include <filesystem>
 #include <fstream>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace modcal {
 
@@ -50,5 +52,64 @@ class CsvFile {
   std::string text_;
   std::size_t line_ = 0;
 };
+
+// Numbers and column headings of a CSV record.
+
+/// What a field holds. kNotFinite: "nan", "inf"; kOutOfRange: a number no double can hold.
+enum class NumberKind { kNumber, kNotFinite, kOutOfRange, kText };
+
+/// Decimal number with point, optional sign and exponent, and nothing else. `value` is NaN unless
+/// the kind is kNumber (or the infinity that was written).
+struct ParsedNumber {
+  NumberKind kind = NumberKind::kText;
+  double value = 0.0;
+};
+ParsedNumber parse_number(std::string_view text);
+
+/// Why a field is no usable number and what to do about it.
+std::string describe_bad_number(NumberKind kind, std::string_view text);
+
+/// The finest decimals a column was printed with.
+class PrintedDigits {
+ public:
+  void add(std::string_view number);
+  /// Spacing of the printed numbers about `magnitude`: 10^−decimals for a fixed number of decimals,
+  /// coarser for a fixed number of significant digits.
+  double resolution(double magnitude) const;
+
+ private:
+  int decimals_ = 0;
+  int significant_ = 1;
+};
+
+/// A heading "name [unit]" or "name (unit)"; the unit is empty where none is written.
+struct ColumnHeading {
+  std::string name;
+  std::string unit;
+};
+ColumnHeading parse_heading(std::string_view text);
+/// "name [unit]", or the name alone for an empty unit.
+std::string heading_text(std::string_view name, std::string_view unit);
+
+// Is a column of sampling instants uniform?
+
+struct TimeFinding {
+  std::size_t sample;  ///< index of the sample the finding is about, from 0
+  std::string text;
+};
+
+struct TimeAxis {
+  double sample_rate;  ///< [Hz]; NaN for fewer than two samples or instants that do not increase
+  double jitter;       ///< largest deviation from the uniform grid [s]
+  std::size_t jitter_sample;
+  bool coarse;  ///< not uniform, and printed too coarsely to tell why; the rate is not known then
+  std::vector<TimeFinding> findings;
+};
+
+/// Compares instants t_i [s], printed to `resolution` [s], with the uniform grid t_0 + i Δt,
+/// Δt = (t_{n−1} − t_0)/(n − 1). A step over 1.5 median steps is a gap; a deviation over
+/// 0.01 Δt + resolution (printing moves each instant by half its resolution) is jitter. A rate
+/// that lies within the printed resolution of a whole number of hertz is that number.
+TimeAxis examine_time_axis(std::span<const double> t, double resolution);
 
 }  // namespace modcal

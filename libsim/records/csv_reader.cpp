@@ -1,14 +1,11 @@
-#include "libsim/records/csv_reader.hpp"
+#include "libsim/records/csv.hpp"
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <optional>
 
 #include "libsim/base/units.hpp"
 #include "libsim/records/csv_grammar.hpp"
-#include "libsim/records/csv_number.hpp"
-#include "libsim/records/time_axis.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {

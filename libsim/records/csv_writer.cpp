@@ -1,4 +1,4 @@
-#include "libsim/records/csv_writer.hpp"
+#include "libsim/records/csv.hpp"
 
 #include <csv.h>
 #include <fmt/format.h>
@@ -6,10 +6,9 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 #include <iterator>
 
-#include "libsim/records/csv_number.hpp"
+#include "libsim/records/csv_grammar.hpp"
 #include "libsim/records/signal_file.hpp"
 #include "libsim/base/error.hpp"
 

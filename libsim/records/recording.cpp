@@ -1,15 +1,20 @@
-#include "libsim/records/recording.hpp"
 
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
+#include <cmath>
 
-#include "libsim/base/nearest_name.hpp"
 #include "libsim/base/error.hpp"
+#include "libsim/base/nearest_name.hpp"
+#include "libsim/base/units.hpp"
+#include "libsim/records/csv.hpp"
+#include "libsim/records/levels.hpp"
+#include "libsim/records/wav.hpp"
+#include "libsim/signal/measurement.hpp"
 
 namespace modcal {
-
 namespace {
 
 std::size_t find_channel(const std::vector<std::string>& names, std::string_view text,
@@ -24,6 +29,102 @@ std::size_t find_channel(const std::vector<std::string>& names, std::string_view
   throw_invalid_input("{}: there is no channel \"{}\"{}; the file has {} channel{}: {}", where,
                       text, nearest.empty() ? "" : fmt::format(", did you mean \"{}\"?", nearest),
                       names.size(), names.size() == 1 ? "" : "s", fmt::join(names, ", "));
+}
+
+struct Role {
+  const RecordedForceOptions* options;
+  std::string_view key;
+  std::string_view quantity;
+  std::optional<Signal> RecordedSignals::*target;
+};
+
+std::vector<Role> chosen_roles(const RecordOptions& options) {
+  MODCAL_REQUIRE(
+      options.has_left || options.has_right,
+      "the record of {} names no reaction; add left: {{channel: …}} or right: {{channel: "
+      "…}}",
+      options.file);
+  std::vector<Role> roles;
+  if (options.has_left) roles.push_back({&options.left, "left", "R1", &RecordedSignals::left});
+  if (options.has_right) roles.push_back({&options.right, "right", "R2", &RecordedSignals::right});
+  if (options.has_reference) {
+    roles.push_back({&options.reference, "reference", "f_c", &RecordedSignals::reference});
+  }
+  return roles;
+}
+
+Recording read(const RecordOptions& options, const std::filesystem::path& path,
+               const std::vector<std::string>& channels) {
+  if (record_format(path, options.format) == RecordFormat::kCsv) {
+    return read_csv(path, {.columns = channels, .sample_rate = options.sample_rate});
+  }
+  return read_wav(path, {.channels = channels, .sample_rate = options.sample_rate});
+}
+
+/// Newtons per recorded 1.
+double newtons(const RecordedChannel& channel, const Role& role, const std::string& file) {
+  const double calibration = role.options->calibration;
+  const bool states_force = std::isfinite(channel.full_scale) && is_unit_of(channel.unit, "N");
+  if (std::isnan(calibration)) {
+    MODCAL_REQUIRE(states_force,
+                   "{}: channel {} {}; state record.{}.calibration, the force per recorded 1 (for "
+                   "CSV per unit of the column, for WAV per full scale)",
+                   file, channel.name,
+                   channel.unit.empty()
+                       ? std::string("has no unit")
+                       : fmt::format("is in \"{}\", which is no unit of force", channel.unit),
+                   role.key);
+    return to_si(channel.full_scale, channel.unit, "N");
+  }
+  MODCAL_REQUIRE(calibration != 0.0 && std::isfinite(calibration),
+                 "record.{}.calibration = {} N cannot be used: it must not be 0", role.key,
+                 calibration);
+  MODCAL_REQUIRE(!states_force,
+                 "{}: channel {} is a force in {} already; leave out record.{}.calibration, or the "
+                 "unit in the file",
+                 file, channel.name, channel.unit, role.key);
+  return calibration;
+}
+
+struct Window {
+  std::size_t first;
+  std::size_t last;  ///< one behind
+};
+
+Window crop_window(const RecordOptions& options, double sample_rate, std::size_t frames,
+                   const std::string& file) {
+  const double duration = static_cast<double>(frames) / sample_rate;
+  const double stop = std::isnan(options.stop) ? duration : options.stop;
+  // Half a sample: times printed with few digits still name the end.
+  MODCAL_REQUIRE(
+      options.start >= 0.0 && options.start < stop && stop <= duration + 0.5 / sample_rate,
+      "{}: the part from start = {:g} s to stop = {:g} s is not in the record, which "
+      "lasts {:.9g} s",
+      file, options.start, stop, duration);
+  const auto index = [&](double time) {
+    return std::min(frames, static_cast<std::size_t>(std::llround(time * sample_rate)));
+  };
+  const Window window{index(options.start), index(stop)};
+  MODCAL_REQUIRE(window.first < window.last, "{}: no sample lies between {:g} s and {:g} s", file,
+                 options.start, stop);
+  return window;
+}
+
+Signal force_signal(const RecordedChannel& channel, const Role& role, double sample_rate,
+                    const Window& window, const std::string& file) {
+  const double scale = newtons(channel, role, file);
+  std::vector<double> samples = advanced(channel.samples, role.options->delay, sample_rate);
+  samples.erase(samples.begin() + static_cast<std::ptrdiff_t>(window.last), samples.end());
+  samples.erase(samples.begin(), samples.begin() + static_cast<std::ptrdiff_t>(window.first));
+  for (double& value : samples) value *= scale;
+  return {std::string(role.quantity), "N", sample_rate, std::move(samples)};
+}
+
+void warn_of_clipping(const RecordedChannel& channel, const std::string& file,
+                      std::vector<std::string>& warnings) {
+  const Clipping clipping = find_clipping(channel.samples);
+  if (clipping.samples == 0) return;
+  warnings.push_back(fmt::format("{}: channel {}: {}", file, channel.name, text(clipping)));
 }
 
 }  // namespace
@@ -53,6 +154,109 @@ std::vector<std::size_t> find_channels(const std::vector<std::string>& names,
     result.push_back(index);
   }
   return result;
+}
+
+void RecordedForceOptions::visit(OptionVisitor& visitor) {
+  visitor.text({.key = "channel",
+                .meaning = "column or channel of the file, by name or by number from 1",
+                .required = true},
+               channel);
+  visitor.number({.key = "calibration",
+                  .meaning = "force per unit of the column (CSV) or per full scale (WAV), negative "
+                             "to turn the sign; \"file\": the file states a unit of force",
+                  .unit = "N",
+                  .word = "file"},
+                 calibration);
+  visitor.number(
+      {.key = "delay", .meaning = "lag behind the other channels; it is shifted back", .unit = "s"},
+      delay);
+}
+
+void RecordOptions::visit(OptionVisitor& visitor) {
+  visitor.text({.key = "file",
+                .meaning = "recorded file, relative to the folder of the experiment's file",
+                .required = true},
+               file);
+  visitor.text({.key = "format",
+                .meaning = "format of the file; auto: by its extension",
+                .choices = {"auto", "csv", "wav"}},
+               format);
+  visitor.number({.key = "sample_rate",
+                  .meaning = "sample rate; \"file\": the file states it",
+                  .unit = "Hz",
+                  .range = Range::positive(),
+                  .word = "file"},
+                 sample_rate);
+  const auto force = [&visitor](std::string_view key, std::string_view meaning, bool& present,
+                                RecordedForceOptions& options) {
+    visitor.optional_group({.key = key, .meaning = meaning}, present,
+                           [&options](OptionVisitor& inner) { options.visit(inner); });
+  };
+  force("left", "reaction at x = 0", has_left, left);
+  force("right", "reaction at x = L", has_right, right);
+  force("reference", "force at the contact, for scoring only", has_reference, reference);
+  visitor.number({.key = "start",
+                  .meaning = "begin of the part that is used, after the first sample",
+                  .unit = "s",
+                  .range = Range::non_negative()},
+                 start);
+  visitor.number({.key = "stop",
+                  .meaning = "end of the part that is used, after the first sample",
+                  .unit = "s",
+                  .range = Range::positive(),
+                  .word = "end"},
+                 stop);
+}
+
+void ContactOptions::visit(OptionVisitor& visitor) {
+  visitor.number({.key = "position",
+                  .meaning = "contact point x_c, from the end x = 0",
+                  .unit = "m",
+                  .range = Range::positive(),
+                  .required = true},
+                 position);
+}
+
+RecordFormat record_format(const std::filesystem::path& path, const std::string& format) {
+  if (format == "csv") return RecordFormat::kCsv;
+  if (format == "wav") return RecordFormat::kWav;
+  MODCAL_REQUIRE(format == "auto", "unknown format \"{}\" of a record: auto, csv or wav", format);
+  std::string extension = path.extension().string();
+  for (char& letter : extension) {
+    letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  }
+  for (const char* known : {".csv", ".tsv", ".txt"}) {
+    if (extension == known) return RecordFormat::kCsv;
+  }
+  for (const char* known : {".wav", ".wave", ".rf64", ".bwf", ".w64"}) {
+    if (extension == known) return RecordFormat::kWav;
+  }
+  throw_invalid_input("{}: the extension \"{}\" does not tell the format; state format: csv or wav",
+                      path.string(), extension);
+}
+
+RecordedSignals load_record(const RecordOptions& options, const std::filesystem::path& folder) {
+  MODCAL_REQUIRE(!options.file.empty(), "record.file is empty; name the recorded file");
+  const std::filesystem::path path = folder / options.file;
+  const std::string name = path.string();
+  const std::vector<Role> roles = chosen_roles(options);
+  std::vector<std::string> channels;
+  for (const Role& role : roles) {
+    MODCAL_REQUIRE(!role.options->channel.empty(),
+                   "record.{}.channel is empty; name a channel of {}", role.key, name);
+    channels.push_back(role.options->channel);
+  }
+  const Recording recording = read(options, path, channels);
+  const Window window = crop_window(options, recording.sample_rate, recording.frames(), name);
+  RecordedSignals signals;
+  signals.sample_rate = recording.sample_rate;
+  signals.warnings = recording.warnings;
+  for (std::size_t i = 0; i < roles.size(); ++i) {
+    warn_of_clipping(recording.channels[i], name, signals.warnings);
+    signals.*roles[i].target =
+        force_signal(recording.channels[i], roles[i], recording.sample_rate, window, name);
+  }
+  return signals;
 }
 
 }  // namespace modcal

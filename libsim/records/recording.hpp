@@ -2,10 +2,15 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "libsim/base/options.hpp"
+#include "libsim/signal/signal.hpp"
 
 namespace modcal {
 
@@ -44,5 +49,63 @@ struct Recording {
 std::vector<std::size_t> find_channels(const std::vector<std::string>& names,
                                        const std::vector<std::string>& wanted,
                                        std::string_view where);
+
+// The `record:` section of an experiment: which channels of which file are what.
+
+/// One force channel of a recorded file.
+struct RecordedForceOptions {
+  std::string channel;
+  double calibration = std::numeric_limits<double>::quiet_NaN();  ///< [N] per recorded 1; NaN: file
+  double delay = 0.0;                                             ///< [s]
+  void visit(OptionVisitor& visitor);
+};
+
+/// A recorded experiment: the reactions at one or both ends and, where it was measured, the force
+/// at the contact.
+struct RecordOptions {
+  std::string file;
+  std::string format = "auto";
+  double sample_rate = std::numeric_limits<double>::quiet_NaN();  ///< [Hz]; NaN: from the file
+  bool has_left = false;
+  bool has_right = false;
+  bool has_reference = false;
+  RecordedForceOptions left;                               ///< R1, at x = 0
+  RecordedForceOptions right;                              ///< R2, at x = L
+  RecordedForceOptions reference;                          ///< f_c, used for scoring only
+  double start = 0.0;                                      ///< [s] after the first sample
+  double stop = std::numeric_limits<double>::quiet_NaN();  ///< [s]; NaN: the end
+  void visit(OptionVisitor& visitor);
+};
+
+/// The `bow:` section of an experiment on a record: where the force acts.
+struct ContactOptions {
+  double position = std::numeric_limits<double>::quiet_NaN();  ///< x_c [m]
+  void visit(OptionVisitor& visitor);
+};
+
+// Recorded forces, ready for inversion and calibration.
+
+/// Forces [N] of one sample rate [Hz] and one length; at least one reaction.
+struct RecordedSignals {
+  double sample_rate = 0.0;
+  std::optional<Signal> left;       ///< R1 at x = 0
+  std::optional<Signal> right;      ///< R2 at x = L
+  std::optional<Signal> reference;  ///< f_c at the contact
+  std::vector<std::string> warnings;
+
+  std::size_t size() const { return left ? left->size() : right->size(); }
+};
+
+enum class RecordFormat { kCsv, kWav };
+
+/// The format named "csv", "wav" or, for "auto", told by the extension (.csv, .tsv, .txt; .wav,
+/// .wave, .rf64, .bwf, .w64). Throws InvalidInput for another one.
+RecordFormat record_format(const std::filesystem::path& path, const std::string& format);
+
+/// Reads the chosen channels of the file (relative to `folder`), converts them to newtons, shifts
+/// them by their delays and crops them. Throws InvalidInput for a file that cannot be used, a
+/// channel without a unit of force and without a calibration, a channel used twice, a window
+/// outside the record.
+RecordedSignals load_record(const RecordOptions& options, const std::filesystem::path& folder);
 
 }  // namespace modcal

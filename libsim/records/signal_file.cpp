@@ -1,6 +1,7 @@
 #include "libsim/records/signal_file.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <unistd.h>
 
 #include <algorithm>
@@ -10,6 +11,18 @@
 #include "libsim/base/error.hpp"
 
 namespace modcal {
+namespace {
+
+std::vector<RecordedChannel> numbered_channels(std::size_t count) {
+  std::vector<RecordedChannel> channels(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    channels[i].name = std::to_string(i + 1);
+    channels[i].full_scale = std::numeric_limits<double>::quiet_NaN();
+  }
+  return channels;
+}
+
+}  // namespace
 
 void require_one_record(std::span<const Signal> signals, std::string_view file) {
   MODCAL_REQUIRE(!signals.empty(), "{}: there is no signal to write", file);
@@ -56,6 +69,38 @@ void replace_file(const std::filesystem::path& path,
     const std::string reason = error.message();
     std::filesystem::remove(temporary, error);
     throw_invalid_input("{}: cannot be written: {}", path.string(), reason);
+  }
+}
+
+std::string wav_comment(std::span<const Signal> signals, double full_scale) {
+  nlohmann::ordered_json content;
+  content["full_scale"] = full_scale;
+  content["channels"] = nlohmann::ordered_json::array();
+  for (const Signal& signal : signals) {
+    content["channels"].push_back(nlohmann::ordered_json::array({signal.quantity, signal.unit}));
+  }
+  nlohmann::ordered_json comment;
+  comment["modcal"] = content;
+  return comment.dump();
+}
+
+std::vector<RecordedChannel> channels_of_comment(std::string_view comment, std::size_t count) {
+  try {
+    const auto content = nlohmann::json::parse(comment).at("modcal");
+    const double full_scale = content.at("full_scale").get<double>();
+    const auto& stated = content.at("channels");
+    if (stated.size() != count || !(full_scale > 0.0) || !std::isfinite(full_scale)) {
+      return numbered_channels(count);
+    }
+    std::vector<RecordedChannel> channels;
+    for (const auto& channel : stated) {
+      channels.push_back(
+          {channel.at(0).get<std::string>(), channel.at(1).get<std::string>(), full_scale, {}});
+    }
+    return channels;
+  } catch (const nlohmann::json::exception&) {
+    // Somebody else's comment: a description, a recorder's settings.
+    return numbered_channels(count);
   }
 }
 

@@ -4,8 +4,11 @@
 #include <filesystem>
 #include <functional>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
+#include "libsim/records/recording.hpp"
 #include "libsim/signal/signal.hpp"
 
 namespace modcal {
@@ -18,5 +21,17 @@ void require_one_record(std::span<const Signal> signals, std::string_view file);
 /// An existing file at `path` is never left half written.
 void replace_file(const std::filesystem::path& path,
                   const std::function<void(const std::filesystem::path&)>& write);
+
+// Names, units and full scales of the channels, kept in the comment of an audio file.
+
+/// Longest comment that libsndfile 1.2 reads back from a WAV file [bytes].
+inline constexpr std::size_t kLongestWavComment = 2000;
+
+/// {"modcal":{"full_scale":10,"channels":[["R1","N"],["R2","N"]]}}: short, because of the limit.
+std::string wav_comment(std::span<const Signal> signals, double full_scale);
+
+/// The channels (without samples) of such a comment; for any other comment, or one for another
+/// number of channels, they are named "1" … "count", with no unit and full scale NaN.
+std::vector<RecordedChannel> channels_of_comment(std::string_view comment, std::size_t count);
 
 }  // namespace modcal

@@ -1,4 +1,4 @@
-#include "libsim/records/time_axis.hpp"
+#include "libsim/records/csv_grammar.hpp"
 
 #include <fmt/format.h>
 

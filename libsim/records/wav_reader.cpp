@@ -1,9 +1,9 @@
-#include "libsim/records/wav_reader.hpp"
+#include "libsim/records/wav.hpp"
 
 #include <cmath>
 #include <sndfile.hh>
 
-#include "libsim/records/wav_comment.hpp"
+#include "libsim/records/signal_file.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {

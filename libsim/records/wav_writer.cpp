@@ -1,13 +1,10 @@
-#include "libsim/records/wav_writer.hpp"
+#include "libsim/records/wav.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <sndfile.hh>
-#include <vector>
 
 #include "libsim/records/signal_file.hpp"
-#include "libsim/records/wav_comment.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {

@@ -1,15 +1,8 @@
-#include "experiments/kinds/benchmark/benchmark_experiment.hpp"
+#include "experiments/kinds/benchmark/benchmark.hpp"
 
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-#include <cmath>
 #include <set>
-
-#include "experiments/kinds/benchmark/benchmark_report.hpp"
-#include "experiments/report/result_table.hpp"
-#include "experiments/runs/stored_outcomes.hpp"
 
 namespace modcal {
 namespace {

@@ -1,13 +1,8 @@
 // Errors, cost and convergence of a benchmark, and what its figures have in common.
-#include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
 #include <numeric>
 
-#include "experiments/kinds/benchmark/benchmark_report.hpp"
+#include "experiments/kinds/benchmark/benchmark.hpp"
 
 namespace modcal {
 namespace {

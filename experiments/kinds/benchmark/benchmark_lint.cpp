@@ -1,13 +1,8 @@
 // Whether the methods of a benchmark have equal chances.
-#include <fmt/format.h>
 
-#include <algorithm>
-#include <map>
 #include <set>
 
-#include "experiments/kinds/benchmark/benchmark_summary.hpp"
-#include "experiments/study/fingerprint.hpp"
-#include "libsim/base/error.hpp"
+#include "experiments/kinds/benchmark/benchmark.hpp"
 
 namespace modcal {
 namespace {

@@ -1,8 +1,6 @@
 // Data profile, performance profile and waterfall of a benchmark.
-#include <algorithm>
-#include <map>
 
-#include "experiments/kinds/benchmark/benchmark_report.hpp"
+#include "experiments/kinds/benchmark/benchmark.hpp"
 
 namespace modcal {
 namespace {

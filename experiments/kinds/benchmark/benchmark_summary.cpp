@@ -1,12 +1,4 @@
-#include "experiments/kinds/benchmark/benchmark_summary.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <map>
-
-#include "experiments/study/paired_bootstrap.hpp"
-#include "libsim/base/task_loop.hpp"
-#include "libsim/signal/statistics.hpp"
+#include "experiments/kinds/benchmark/benchmark.hpp"
 
 namespace modcal {
 namespace {

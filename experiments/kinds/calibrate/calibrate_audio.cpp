@@ -1,7 +1,5 @@
-#include <algorithm>
-#include <cmath>
 
-#include "experiments/kinds/calibrate/calibrate_study.hpp"
+#include "experiments/kinds/calibrate/calibrate.hpp"
 
 namespace modcal {
 namespace {

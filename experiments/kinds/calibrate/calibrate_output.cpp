@@ -1,8 +1,6 @@
 // What a calibration found, described once for its tables and its JSON, and its figures.
-#include <cmath>
 
-#include "experiments/kinds/calibrate/calibrate_summary.hpp"
-#include "libcalib/parameters/parameter_table.hpp"
+#include "experiments/kinds/calibrate/calibrate.hpp"
 
 namespace modcal {
 namespace {

@@ -1,11 +1,83 @@
-#include "experiments/kinds/calibrate/calibrate_study.hpp"
+#include <fmt/ranges.h>
 
-#include "experiments/kinds/calibrate/calibrate_summary.hpp"
-#include "experiments/report/result_json.hpp"
-#include "experiments/report/result_table.hpp"
-#include "libsim/base/error.hpp"
+#include "experiments/kinds/calibrate/calibrate.hpp"
+#include "experiments/report/result.hpp"
+#include "libsim/signal/statistics.hpp"
 
 namespace modcal {
+namespace {
+
+void fill_blind(CalibrationOutcome& outcome) {
+  std::vector<bool> excited;
+  std::vector<double> weights;
+  for (const CalibratedMode& mode : outcome.result.modes) {
+    excited.push_back(mode.excited);
+    weights.push_back(mode.excited ? 1.0 : 0.0);
+  }
+  const std::vector<double> refined = frequencies_of(outcome.refined.basis);
+  outcome.law = fit_stiff_string(refined, weights);
+  outcome.refined.basis =
+      with_frequencies(outcome.refined.basis, fill_unexcited_modes(refined, excited, *outcome.law));
+}
+
+// Strokes after the first: the same scene bowed elsewhere, or other files; noise of their own.
+std::vector<Observation> further_observations(const CalibrateOptions& options,
+                                              const StudyContext& context) {
+  std::vector<Observation> strokes;
+  const OutputRequest reactions{.left_reaction = true, .right_reaction = true};
+  const auto add = [&](const ObservationOptions& stroke) {
+    context.throw_if_interrupted();
+    const StreamKey key =
+        options.inversion.key().with("stroke").with(static_cast<std::uint64_t>(strokes.size() + 2));
+    strokes.push_back(observe(stroke, reactions, context.work.truths, key, context.folder));
+  };
+  for (const double contact : options.further.contacts) {
+    ObservationOptions stroke = options.inversion.observation;
+    stroke.truth.scene.bow.position = contact;
+    add(stroke);
+  }
+  for (const std::string& file : options.further.files) {
+    ObservationOptions stroke = options.inversion.observation;
+    stroke.record.file = file;
+    add(stroke);
+  }
+  return strokes;
+}
+
+// Objectives over their candidates and errors of the frequencies, as asked for.
+void add_search_figures(const std::vector<FigureOptions>& figures,
+                        const CalibrationOutcome& outcome, StudyResult& result) {
+  for (const FigureOptions& figure : figures) {
+    report::Figure drawn;
+    if (figure.content == "objectives") {
+      drawn = objective_figure(figure, outcome);
+    } else if (figure.content == "frequency_errors") {
+      drawn = frequency_error_figure(figure, outcome);
+    } else {
+      continue;
+    }
+    if (drawn.panels.empty()) continue;  // only a systematic search has candidates to draw
+    result.blocks.emplace_back(std::move(drawn));
+  }
+}
+
+// Least squares, mean included.
+void remove_line(std::span<double> samples) {
+  remove_mean(samples);
+  const double middle = 0.5 * static_cast<double>(samples.size() - 1);
+  double product = 0.0, square = 0.0;
+  for (std::size_t j = 0; j < samples.size(); ++j) {
+    const double place = static_cast<double>(j) - middle;
+    product += place * samples[j];
+    square += place * place;
+  }
+  const double slope = square > 0.0 ? product / square : 0.0;
+  for (std::size_t j = 0; j < samples.size(); ++j) {
+    samples[j] -= slope * (static_cast<double>(j) - middle);
+  }
+}
+
+}  // namespace
 
 void FurtherStrokes::visit(OptionVisitor& visitor) {
   visitor.numbers({.key = "contacts",
@@ -68,64 +140,6 @@ std::vector<double> frequencies_of(const ModalBasis& basis) {
   for (std::size_t n = 0; n < basis.size(); ++n) frequencies[n] = basis.frequency(n);
   return frequencies;
 }
-
-namespace {
-
-void fill_blind(CalibrationOutcome& outcome) {
-  std::vector<bool> excited;
-  std::vector<double> weights;
-  for (const CalibratedMode& mode : outcome.result.modes) {
-    excited.push_back(mode.excited);
-    weights.push_back(mode.excited ? 1.0 : 0.0);
-  }
-  const std::vector<double> refined = frequencies_of(outcome.refined.basis);
-  outcome.law = fit_stiff_string(refined, weights);
-  outcome.refined.basis =
-      with_frequencies(outcome.refined.basis, fill_unexcited_modes(refined, excited, *outcome.law));
-}
-
-// Strokes after the first: the same scene bowed elsewhere, or other files; noise of their own.
-std::vector<Observation> further_observations(const CalibrateOptions& options,
-                                              const StudyContext& context) {
-  std::vector<Observation> strokes;
-  const OutputRequest reactions{.left_reaction = true, .right_reaction = true};
-  const auto add = [&](const ObservationOptions& stroke) {
-    context.throw_if_interrupted();
-    const StreamKey key =
-        options.inversion.key().with("stroke").with(static_cast<std::uint64_t>(strokes.size() + 2));
-    strokes.push_back(observe(stroke, reactions, context.work.truths, key, context.folder));
-  };
-  for (const double contact : options.further.contacts) {
-    ObservationOptions stroke = options.inversion.observation;
-    stroke.truth.scene.bow.position = contact;
-    add(stroke);
-  }
-  for (const std::string& file : options.further.files) {
-    ObservationOptions stroke = options.inversion.observation;
-    stroke.record.file = file;
-    add(stroke);
-  }
-  return strokes;
-}
-
-// Objectives over their candidates and errors of the frequencies, as asked for.
-void add_search_figures(const std::vector<FigureOptions>& figures,
-                        const CalibrationOutcome& outcome, StudyResult& result) {
-  for (const FigureOptions& figure : figures) {
-    report::Figure drawn;
-    if (figure.content == "objectives") {
-      drawn = objective_figure(figure, outcome);
-    } else if (figure.content == "frequency_errors") {
-      drawn = frequency_error_figure(figure, outcome);
-    } else {
-      continue;
-    }
-    if (drawn.panels.empty()) continue;  // only a systematic search has candidates to draw
-    result.blocks.emplace_back(std::move(drawn));
-  }
-}
-
-}  // namespace
 
 CalibrationData calibration_data(const Observation& observation) {
   const auto samples = [&observation](End end) -> std::span<const double> {
@@ -218,6 +232,40 @@ StudyResult calibrate_study(const CalibrateOptions& options, const StudyContext&
     result.signal_files.push_back(identified_signals(observation, sides));
   }
   return result;
+}
+
+Observation with_sensors_alike(Observation observation, const Sensor& sensors) {
+  std::optional<Signal>& reaction = observation.reactions[static_cast<int>(End::kRight)];
+  if (sensors.alike() || !reaction) return observation;
+  std::vector<double>& samples = reaction->samples;
+  samples = sensors.undone(samples, observation.sample_rate);
+  if (sensors.corner != 0.0) remove_line(samples);
+  return observation;
+}
+
+void require_sensors_once(const CalibrationOptions& calibration, const Estimator& estimator) {
+  const bool corrected = calibration.parameters.unknowns.sensors().may_differ();
+  const SensorOptions stated = estimator.sensors();
+  MODCAL_REQUIRE(
+      !corrected || stated.alike(),
+      "the reaction at x = L is corrected for its sensor as the calibration has it before "
+      "the estimator sees it: gain2 {:g} and delay2 {:g} s would take it out once more; "
+      "leave them out, or state those of x = 0 (gain1 {:g}, delay1 {:g} s)",
+      stated.gain[1], stated.delay[1], stated.gain[0], stated.delay[0]);
+}
+
+std::string correction_text(const Observation& observation, const Sensor& sensors) {
+  if (sensors.alike() || !observation.reaction(End::kRight)) return "";
+  std::vector<std::string> numbers;
+  for (std::size_t i = 0; i < Sensor::kCount; ++i) {
+    const ParameterType& type = sensor_type(i);
+    const std::string number = fmt::format("{:.{}g}", sensor_value(i, sensors), type.digits);
+    numbers.push_back(fmt::format("{} {}{}{}", type.name, number, type.unit == "1" ? "" : " ",
+                                  type.unit == "1" ? "" : type.unit));
+  }
+  return fmt::format(
+      "The reaction at x = L was corrected for its sensor before the identification: {}.",
+      fmt::join(numbers, ", "));
 }
 
 }  // namespace modcal

@@ -1,14 +1,51 @@
-#include "experiments/kinds/calibrate/calibrate_summary.hpp"
-
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <cmath>
-
-#include "experiments/kinds/calibrate/correlation_text.hpp"
+#include "experiments/kinds/calibrate/calibrate.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {
+namespace {
+
+constexpr std::size_t kPairsShown = 6;
+
+std::string condition_text(const NamedCovariance& covariance) {
+  const std::vector<double> values = covariance.singular_values();
+  if (values.empty()) return "";
+  return fmt::format("singular values in standard deviations {:.3g} to {:.3g}, condition {:.3g}\n",
+                     values.front(), values.back(), covariance.condition());
+}
+
+std::string verdict_lines(const ContinuationResult& found) {
+  std::string text =
+      fmt::format("{}\nsd: f0 {:.3g} Hz, B {:.3g}, x_c {:.3g} m, damping factor {:.3g}\n",
+                  chi2_text(found), found.law.deviation[0], found.law.deviation[1],
+                  found.contact_deviation, found.damping_deviation);
+  text += prior_lines(found.law.priors, "law");
+  if (found.frequencies_free) text += prior_lines(found.priors, "every frequency");
+  for (std::size_t n = 0; found.frequencies_free && n < found.modes.size(); ++n) {
+    const ModeVerdict& mode = found.modes[n];
+    if (mode.source == ModeSource::kIdentified && mode.tie == LawTie::kFollows) continue;
+    text +=
+        fmt::format("mode {}: {}, relative sd {:.2g}\n", n + 1, verdict_text(mode), mode.deviation);
+  }
+  return text;
+}
+
+std::string stroke_lines(const CalibrationOutcome& outcome) {
+  std::string text;
+  if (!outcome.result.continuation) return text;
+  const std::vector<double>& deviations = outcome.result.continuation->contact_deviations;
+  std::size_t stroke = 0;
+  for (const CalibratedParameter& parameter : outcome.result.parameters) {
+    if (deviations.size() < 2 || !parameter.name.starts_with("x_c")) continue;
+    text += fmt::format("stroke {}: x_c {:.6g} m, sd {:.3g} m\n", stroke + 1, parameter.final,
+                        deviations[stroke]);
+    ++stroke;
+  }
+  return text;
+}
+
+}  // namespace
 
 std::string verdict_text(const ModeVerdict& mode) {
   std::string text(name_of(mode.source));
@@ -65,19 +102,6 @@ std::vector<bool> told_by_data(const ContinuationResult& found) {
   return told;
 }
 
-namespace {
-
-constexpr std::size_t kPairsShown = 6;
-
-std::string condition_text(const NamedCovariance& covariance) {
-  const std::vector<double> values = covariance.singular_values();
-  if (values.empty()) return "";
-  return fmt::format("singular values in standard deviations {:.3g} to {:.3g}, condition {:.3g}\n",
-                     values.front(), values.back(), covariance.condition());
-}
-
-}  // namespace
-
 std::string covariance_text(const ContinuationResult& found) {
   std::string text = "stiff-string law:\n" + correlation_lines(found.law.covariance) + "  " +
                      condition_text(found.law.covariance);
@@ -92,40 +116,6 @@ std::string covariance_text(const ContinuationResult& found) {
   }
   return text + "\n  " + condition_text(found.covariance);
 }
-
-namespace {
-
-std::string verdict_lines(const ContinuationResult& found) {
-  std::string text =
-      fmt::format("{}\nsd: f0 {:.3g} Hz, B {:.3g}, x_c {:.3g} m, damping factor {:.3g}\n",
-                  chi2_text(found), found.law.deviation[0], found.law.deviation[1],
-                  found.contact_deviation, found.damping_deviation);
-  text += prior_lines(found.law.priors, "law");
-  if (found.frequencies_free) text += prior_lines(found.priors, "every frequency");
-  for (std::size_t n = 0; found.frequencies_free && n < found.modes.size(); ++n) {
-    const ModeVerdict& mode = found.modes[n];
-    if (mode.source == ModeSource::kIdentified && mode.tie == LawTie::kFollows) continue;
-    text +=
-        fmt::format("mode {}: {}, relative sd {:.2g}\n", n + 1, verdict_text(mode), mode.deviation);
-  }
-  return text;
-}
-
-std::string stroke_lines(const CalibrationOutcome& outcome) {
-  std::string text;
-  if (!outcome.result.continuation) return text;
-  const std::vector<double>& deviations = outcome.result.continuation->contact_deviations;
-  std::size_t stroke = 0;
-  for (const CalibratedParameter& parameter : outcome.result.parameters) {
-    if (deviations.size() < 2 || !parameter.name.starts_with("x_c")) continue;
-    text += fmt::format("stroke {}: x_c {:.6g} m, sd {:.3g} m\n", stroke + 1, parameter.final,
-                        deviations[stroke]);
-    ++stroke;
-  }
-  return text;
-}
-
-}  // namespace
 
 double median_relative_error(const CalibrationOutcome& outcome) {
   std::vector<double> errors;
@@ -198,6 +188,38 @@ void add_calibration_warnings(const CalibrationOutcome& outcome, StudyResult& re
       stop == StopReason::kNotRun) {
     fail("the search failed: " + std::string(explain(stop)));
   }
+}
+
+std::string shown_unit(const std::string& parameter) {
+  if (parameter == "damping") return "(factor)";
+  const std::string unit(unit_of_parameter(parameter));
+  return unit == "1" ? "" : unit;
+}
+
+std::string correlations_with(const std::vector<std::string>& names,
+                              const std::vector<double>& correlations) {
+  std::string text = "correlations";
+  for (std::size_t j = 0; j < correlations.size(); ++j) {
+    text += fmt::format(" {} {:+.2f}", names[j], correlations[j]);
+  }
+  return text;
+}
+
+std::string correlation_lines(const NamedCovariance& covariance) {
+  std::size_t width = 8;
+  for (const std::string& name : covariance.names) width = std::max(width, name.size());
+  const Eigen::MatrixXd correlations = covariance.correlations();
+  std::string text;
+  for (std::size_t i = 0; i < covariance.size(); ++i) {
+    std::vector<double> before;
+    for (std::size_t j = 0; j < i; ++j) {
+      before.push_back(correlations(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)));
+    }
+    text += fmt::format("  {:<{}} sd {:<9.3g} {:<9} {}\n", covariance.names[i], width,
+                        covariance.deviation(i), shown_unit(covariance.names[i]),
+                        correlations_with(covariance.names, before));
+  }
+  return text;
 }
 
 }  // namespace modcal

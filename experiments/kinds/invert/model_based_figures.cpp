@@ -1,8 +1,6 @@
 // Figures of a model-based estimate.
-#include <algorithm>
 
-#include "experiments/kinds/invert/invert_output.hpp"
-#include "libinverse/observer/friction_candidates.hpp"
+#include "experiments/kinds/invert/invert.hpp"
 
 namespace modcal {
 namespace {

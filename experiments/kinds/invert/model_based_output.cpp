@@ -1,10 +1,6 @@
-#include <algorithm>
-#include <cmath>
-#include <limits>
 
-#include "experiments/kinds/invert/invert_output.hpp"
-#include "experiments/report/result_table.hpp"
-#include "libsim/base/error.hpp"
+#include "experiments/kinds/invert/invert.hpp"
+#include "experiments/report/result.hpp"
 
 namespace modcal {
 namespace {

@@ -1,15 +1,6 @@
-#include "experiments/kinds/limit/calibration_limit_experiment.hpp"
+#include "experiments/kinds/limit/limit.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
-#include "experiments/kinds/lint.hpp"
-#include "experiments/kinds/sample.hpp"
-#include "experiments/runs/stored_outcomes.hpp"
-#include "experiments/study/fingerprint.hpp"
-#include "libcalib/calibration.hpp"
-#include "libsim/signal/statistics.hpp"
+#include "experiments/study/sample.hpp"
 
 namespace modcal {
 namespace {

@@ -1,10 +1,7 @@
 // Error of the calibration over noise: figure, tables and acceptance.
-#include <cmath>
-#include <limits>
 
-#include "experiments/kinds/limit/limit_summary.hpp"
-#include "experiments/kinds/sample.hpp"
-#include "experiments/report/result_table.hpp"
+#include "experiments/kinds/limit/limit.hpp"
+#include "experiments/study/sample.hpp"
 #include "libcalib/identifiability/rms_interval.hpp"
 
 namespace modcal {

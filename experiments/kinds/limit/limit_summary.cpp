@@ -1,9 +1,5 @@
-#include "experiments/kinds/limit/limit_summary.hpp"
+#include "experiments/kinds/limit/limit.hpp"
 
-#include <algorithm>
-#include <cmath>
-
-#include "libcalib/parameters/stiff_string_fit.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {

@@ -1,12 +1,6 @@
-#include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 
-#include "experiments/kinds/calibrate/correlation_text.hpp"
-#include "experiments/kinds/calibrate/limit_source.hpp"
-#include "experiments/kinds/limit/calibration_limit_experiment.hpp"
-#include "libcalib/identifiability/expected_limit.hpp"
+#include "experiments/kinds/limit/limit.hpp"
 #include "libcalib/likelihood/noise_level.hpp"
 #include "libsim/signal/statistics.hpp"
 

@@ -1,14 +1,7 @@
 // Borders, tables, figures and files of a Schelleng diagram.
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <utility>
 
-#include "experiments/kinds/sample.hpp"
-#include "experiments/kinds/schelleng/schelleng_experiment.hpp"
-#include "experiments/report/result_table.hpp"
-#include "experiments/study/figures.hpp"
-#include "libsim/signal/statistics.hpp"
+#include "experiments/study/sample.hpp"
+#include "experiments/kinds/schelleng/schelleng.hpp"
 
 namespace modcal {
 namespace {

@@ -2,13 +2,8 @@
 // data, and the calibration to the bound beside it.
 #pragma once
 
-#include <limits>
-#include <string>
-#include <string_view>
-#include <vector>
-
-#include "experiments/kinds/calibrate/calibrate_study.hpp"
-#include "experiments/kinds/identify/identify_study.hpp"
+#include "experiments/kinds/calibrate/calibrate.hpp"
+#include "experiments/kinds/identify/identify.hpp"
 #include "libsim/model/damping_fit.hpp"
 
 namespace modcal {

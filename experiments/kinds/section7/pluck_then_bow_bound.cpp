@@ -1,5 +1,4 @@
 // The calibration to the bound that starts from a pluck test and ends under it as a prior.
-#include <cmath>
 
 #include "experiments/kinds/section7/pluck_then_bow.hpp"
 #include "libcalib/objectives/frequency_prior.hpp"

@@ -1,6 +1,4 @@
 // Figures of the route from a pluck test to the identified force.
-#include <algorithm>
-#include <cmath>
 
 #include "experiments/kinds/section7/pluck_then_bow.hpp"
 

@@ -1,6 +1,5 @@
 #include "experiments/kinds/lint.hpp"
 #include "experiments/kinds/section7/pluck_then_bow.hpp"
-#include "libinverse/modes/pluck_identification.hpp"
 
 namespace modcal {
 

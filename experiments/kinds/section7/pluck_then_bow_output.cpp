@@ -1,10 +1,7 @@
 // What the route from a pluck test to the identified force found: tables, JSON, words.
-#include <algorithm>
-#include <cmath>
 
 #include "experiments/kinds/section7/pluck_then_bow.hpp"
-#include "experiments/report/result_json.hpp"
-#include "experiments/report/result_table.hpp"
+#include "experiments/report/result.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {

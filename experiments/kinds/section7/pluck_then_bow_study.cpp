@@ -1,9 +1,6 @@
-#include <algorithm>
-#include <cmath>
 
 #include "experiments/kinds/section7/pluck_then_bow.hpp"
 #include "libcalib/optimizers/gsl_optimizer.hpp"
-#include "libsim/base/error.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {

@@ -1,10 +1,7 @@
 #include "experiments/kinds/simulate/simulate_study.hpp"
 
-#include <algorithm>
-
 #include "experiments/kinds/lint.hpp"
-#include "experiments/report/result_table.hpp"
-#include "libsim/base/random.hpp"
+#include "experiments/report/result.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {

@@ -1,13 +1,8 @@
 // Kind "simulate": a scene, its signals as files and figures.
 #pragma once
 
-#include <cstdint>
-#include <string>
-#include <vector>
-
 #include "experiments/experiment.hpp"
 #include "experiments/study/figures.hpp"
-#include "libsim/signal/measurement.hpp"
 
 namespace modcal {
 

@@ -1,9 +1,9 @@
-#include "experiments/cli/slurm_script.hpp"
+#include "experiments/cli/slurm.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "experiments/cli/shell_word.hpp"
+#include "experiments/cli/command.hpp"
 
 namespace modcal {
 namespace {

@@ -1,4 +1,4 @@
-#include "experiments/config/scalar.hpp"
+#include "experiments/config/reader.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

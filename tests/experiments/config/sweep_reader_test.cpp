@@ -1,4 +1,4 @@
-#include "experiments/config/sweep_reader.hpp"
+#include "experiments/config/reader.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

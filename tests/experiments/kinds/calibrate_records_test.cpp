@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "experiments/kinds/calibrate/calibrate_study.hpp"
+#include "experiments/kinds/calibrate/calibrate.hpp"
 #include "experiments/loader.hpp"
 #include "libsim/dynamics/scene/scene.hpp"
-#include "libsim/records/csv_writer.hpp"
+#include "libsim/records/csv.hpp"
 #include "libsim/signal/statistics.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 

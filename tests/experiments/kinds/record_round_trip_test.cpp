@@ -6,12 +6,12 @@
 #include <filesystem>
 #include <fstream>
 
-#include "experiments/kinds/invert/invert_study.hpp"
+#include "experiments/kinds/invert/invert.hpp"
 #include "experiments/kinds/simulate/simulate_study.hpp"
 #include "experiments/loader.hpp"
-#include "libsim/records/csv_writer.hpp"
+#include "libsim/records/csv.hpp"
 #include "experiments/records/inspection.hpp"
-#include "libsim/records/wav_writer.hpp"
+#include "libsim/records/wav.hpp"
 
 namespace modcal {
 namespace {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/kinds/schelleng/schelleng_experiment.hpp"
-#include "experiments/runs/stored_outcomes.hpp"
+#include "experiments/kinds/schelleng/schelleng.hpp"
+#include "experiments/runs/task_experiment.hpp"
 #include "libsim/dynamics/event/modal_event.hpp"
 #include "libsim/dynamics/scene/simulator.hpp"
 #include "libsim/signal/statistics.hpp"

@@ -6,8 +6,8 @@
 #include <exception>
 #include <numbers>
 
-#include "experiments/kinds/benchmark/benchmark_report.hpp"
-#include "experiments/report/write_report.hpp"
+#include "experiments/kinds/benchmark/benchmark.hpp"
+#include "experiments/report/report.hpp"
 #include "libsim/base/random.hpp"
 
 namespace modcal {

@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "libsim/records/csv_writer.hpp"
-#include "libsim/records/recorded_signals.hpp"
-#include "libsim/records/wav_writer.hpp"
+#include "libsim/records/csv.hpp"
+#include "libsim/records/recording.hpp"
+#include "libsim/records/wav.hpp"
 #include "libsim/base/random.hpp"
 #include "tests/libsim/records/record_folder.hpp"
 

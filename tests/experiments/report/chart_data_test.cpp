@@ -1,4 +1,4 @@
-#include "experiments/report/chart_data.hpp"
+#include "experiments/report/html_page.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "experiments/report/figure_csv.hpp"
+#include "experiments/report/figure.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 
-#include "experiments/report/chart_data.hpp"
 #include "experiments/report/encoding.hpp"
 #include "tests/experiments/report/sample_report.hpp"
 

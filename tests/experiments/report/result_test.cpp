@@ -4,8 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "experiments/report/result_json.hpp"
-#include "experiments/report/result_table.hpp"
+#include "experiments/report/result.hpp"
 
 namespace modcal::report {
 namespace {

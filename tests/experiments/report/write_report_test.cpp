@@ -1,4 +1,4 @@
-#include "experiments/report/write_report.hpp"
+#include "experiments/report/report.hpp"
 
 #include <gmock/gmock.h>
 #include <unistd.h>

@@ -2,7 +2,7 @@
 #include <cstdio>
 #include <exception>
 
-#include "experiments/report/write_report.hpp"
+#include "experiments/report/report.hpp"
 #include "tests/experiments/report/sample_report.hpp"
 
 int main(int argc, char** argv) {

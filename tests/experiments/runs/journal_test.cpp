@@ -9,7 +9,6 @@
 #include <limits>
 #include <sstream>
 
-#include "experiments/runs/task_key.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {

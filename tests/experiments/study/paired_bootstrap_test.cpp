@@ -1,4 +1,4 @@
-#include "experiments/study/paired_bootstrap.hpp"
+#include "experiments/study/sample.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "experiments/study/scoring.hpp"
+#include "experiments/study/identification.hpp"
 
 #include <gtest/gtest.h>
 

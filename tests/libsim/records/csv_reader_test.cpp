@@ -1,4 +1,4 @@
-#include "libsim/records/csv_reader.hpp"
+#include "libsim/records/csv.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "libsim/records/csv_writer.hpp"
+#include "libsim/records/csv.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -9,7 +9,6 @@
 #include <limits>
 #include <sstream>
 
-#include "libsim/records/csv_reader.hpp"
 #include "libsim/base/random.hpp"
 #include "tests/libsim/records/record_folder.hpp"
 

@@ -1,4 +1,4 @@
-#include "libsim/records/recorded_signals.hpp"
+#include "libsim/records/recording.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "libsim/records/csv_writer.hpp"
-#include "libsim/records/wav_writer.hpp"
+#include "libsim/records/csv.hpp"
+#include "libsim/records/wav.hpp"
 #include "libsim/signal/measurement.hpp"
 #include "tests/libsim/records/record_folder.hpp"
 

@@ -7,8 +7,7 @@
 #include <sndfile.hh>
 #include <sstream>
 
-#include "libsim/records/wav_reader.hpp"
-#include "libsim/records/wav_writer.hpp"
+#include "libsim/records/wav.hpp"
 #include "libsim/base/random.hpp"
 #include "tests/libsim/records/record_folder.hpp"
 

@@ -1,5 +1,5 @@
 // The bound that a benchmark's errors are held against.
-#include "experiments/kinds/benchmark/benchmark_study.hpp"
+#include "experiments/kinds/benchmark/benchmark.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,11 @@
-#include "experiments/kinds/benchmark/benchmark_summary.hpp"
+#include "experiments/kinds/benchmark/benchmark.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "experiments/kinds/benchmark/benchmark_report.hpp"
-#include "experiments/runs/stored_outcomes.hpp"
+#include "experiments/runs/task_experiment.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/base/random.hpp"
 

@@ -5,11 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/kinds/calibrate/calibrate_study.hpp"
-#include "experiments/kinds/calibrate/calibrate_summary.hpp"
-#include "experiments/kinds/calibrate/correlation_text.hpp"
-#include "experiments/report/result_json.hpp"
-#include "experiments/report/result_table.hpp"
+#include "experiments/kinds/calibrate/calibrate.hpp"
+#include "experiments/report/result.hpp"
 
 namespace modcal {
 namespace {

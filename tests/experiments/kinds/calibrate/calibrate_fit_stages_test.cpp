@@ -4,9 +4,8 @@
 
 #include <algorithm>
 
-#include "experiments/kinds/calibrate/calibrate_study.hpp"
-#include "experiments/report/result_json.hpp"
-#include "experiments/report/result_table.hpp"
+#include "experiments/kinds/calibrate/calibrate.hpp"
+#include "experiments/report/result.hpp"
 
 namespace modcal {
 namespace {

@@ -5,9 +5,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "experiments/kinds/calibrate/calibrate_study.hpp"
-#include "experiments/report/result_json.hpp"
-#include "experiments/report/result_table.hpp"
+#include "experiments/kinds/calibrate/calibrate.hpp"
+#include "experiments/report/result.hpp"
 
 namespace modcal {
 namespace {

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "experiments/kinds/calibrate/calibrate_summary.hpp"
+#include "experiments/kinds/calibrate/calibrate.hpp"
 
 namespace modcal {
 namespace {

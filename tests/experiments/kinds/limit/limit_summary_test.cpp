@@ -1,11 +1,11 @@
-#include "experiments/kinds/limit/limit_summary.hpp"
+#include "experiments/kinds/limit/limit.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "experiments/runs/stored_outcomes.hpp"
+#include "experiments/runs/task_experiment.hpp"
 
 namespace modcal {
 namespace {

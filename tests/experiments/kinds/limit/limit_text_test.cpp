@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "experiments/kinds/calibrate/limit_source.hpp"
+#include "experiments/kinds/calibrate/calibrate.hpp"
 #include "experiments/loader.hpp"
 #include "libsim/base/error.hpp"
 

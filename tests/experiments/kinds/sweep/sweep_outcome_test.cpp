@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include "experiments/kinds/sweep/sweep_study.hpp"
-#include "experiments/runs/stored_outcomes.hpp"
+#include "experiments/kinds/sweep/sweep.hpp"
+#include "experiments/runs/task_experiment.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {

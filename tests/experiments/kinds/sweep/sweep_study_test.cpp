@@ -1,10 +1,10 @@
-#include "experiments/kinds/sweep/sweep_study.hpp"
+#include "experiments/kinds/sweep/sweep.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "experiments/runs/stored_outcomes.hpp"
+#include "experiments/runs/task_experiment.hpp"
 #include "libinverse/observer/observer_estimator.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 

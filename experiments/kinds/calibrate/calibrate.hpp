@@ -1,0 +1,225 @@
+// Experiments whose calibration has a limit that `modcal limit` can state.
+#pragma once
+
+#include "experiments/kinds/invert/invert.hpp"
+#include "libcalib/calibration.hpp"
+#include "libcalib/identifiability/expected_limit.hpp"
+#include "libcalib/parameters/stiff_string_fit.hpp"
+
+namespace modcal {
+
+/// What is simulated and what a calibration of it frees.
+struct LimitQuestion {
+  static constexpr double kLawWidth = 2e-3;  ///< τ where it is to be estimated
+
+  ObservationOptions observation;
+  double noise_level = 0.01;               ///< of every stroke
+  std::vector<double> further_contacts;    ///< x_c of further strokes of the scene [m]
+  std::vector<ObservationOptions> plucks;  ///< with noise levels of their own
+  double highest_frequency = std::numeric_limits<double>::quiet_NaN();  ///< [Hz]; NaN: automatic
+  double law_width = kLawWidth;  ///< τ of the prior of f_n about the law
+  UnknownsOptions unknowns;
+
+  /// Takes the band, τ and the unknowns of a calibration.
+  void calibrate_by(const CalibrationOptions& calibration);
+};
+
+class LimitSource {
+ public:
+  virtual ~LimitSource() = default;
+  virtual LimitQuestion limit_question() const = 0;
+};
+
+/// The records of the question without noise, simulated through the cache, and the bounds. Throws
+/// InvalidInput for a record: the truth has to be simulated. `outputs`: what the first stroke is
+/// simulated with beside its reactions, where somebody else asks for them too.
+LimitCase limit_case(const LimitQuestion& question, TruthCache& truths, OutputRequest outputs = {});
+
+/// The standard deviation to expect of every parameter, a verdict for each mode, and contact points
+/// that remove blind modes. Throws InvalidInput for a record: the truth has to be simulated.
+std::string limit_text(const LimitQuestion& question, TruthCache& truths);
+
+// Plucks that a calibration fits together with its strokes.
+
+struct CalibrationOptions;
+struct StudyContext;
+
+/// One pluck of the string that is calibrated: simulated, the scene without its bow, or a recorded
+/// file laid out as that of the stroke, which begins when the string has been let go.
+struct PluckRecordOptions {
+  Choice<InitialMotion> start{"rest"};  ///< a simulated one needs to be plucked
+  double duration = 1.0;                ///< [s]
+  double noise_level = 0.01;            ///< of a simulated pluck [1]
+  double sample_rate = 51200.0;         ///< of a simulated pluck [Hz]
+  std::string file;                     ///< empty: simulated
+  /// Noise standard deviation of each reaction [N]; NaN: estimated from the record.
+  double left_noise = std::numeric_limits<double>::quiet_NaN();
+  double right_noise = std::numeric_limits<double>::quiet_NaN();
+  void visit(OptionVisitor& visitor);
+  /// As an observation: the scene of the first stroke without its bow, or the other file.
+  ObservationOptions observation(const ObservationOptions& first) const;
+};
+
+/// What is wrong with each pluck, at its own place: plucks that do not fit to the first stroke or
+/// to what is calibrated, a plucking point beyond the string, a decay too short to tell its modes
+/// apart.
+std::vector<Finding> lint_plucks(const std::vector<PluckRecordOptions>& plucks,
+                                 const ObservationOptions& first,
+                                 const CalibrationOptions& calibration);
+
+/// Throws InvalidInput with the first of these.
+void require_plucks(const std::vector<PluckRecordOptions>& plucks, const ObservationOptions& first,
+                    const CalibrationOptions& calibration);
+
+/// The reactions of every pluck, simulated (through the cache) or read; noise of their own.
+std::vector<CalibrationRecord> observe_plucks(const std::vector<PluckRecordOptions>& plucks,
+                                              const ObservationOptions& first, const StreamKey& key,
+                                              const StudyContext& context);
+
+// Kind "calibrate": refine the modal model by an objective, then identify with it.
+
+/// Further strokes of the same string, fitted together with the first: simulated ones at further
+/// contact points, or further recorded files laid out as the first.
+struct FurtherStrokes {
+  std::vector<double> contacts;    ///< x_c [m]
+  std::vector<std::string> files;  ///< relative to the folder of the experiment's file
+  void visit(OptionVisitor& visitor);
+  /// Throws InvalidInput where they do not fit to what is calibrated.
+  void require_fit_to(const ObservationOptions& first, const CalibrationOptions& calibration) const;
+};
+
+struct CalibrateOptions {
+  InvertOptions inversion;
+  CalibrationOptions calibration;
+  FurtherStrokes further;
+  std::vector<PluckRecordOptions> plucks;
+  /// Give blind modes the frequencies of the stiff-string law fitted to the others (paper, eq. 18
+  /// and section 7.1).
+  bool fill_blind_modes = false;
+  bool audio = false;  ///< players in the report
+  void visit(OptionVisitor& visitor);
+  std::int64_t& seed_slot() { return inversion.seed; }
+};
+
+/// A calibration together with what it is judged by.
+struct CalibrationOutcome {
+  AssumedModel initial;
+  AssumedModel refined;
+  CalibrationResult result;
+  std::optional<StiffStringFit> law;     ///< where blind modes were filled
+  std::vector<double> true_frequencies;  ///< [Hz]; empty for a record
+
+  /// Tables of the report and calibration.json.
+  void visit(ResultVisitor& visitor) const;
+};
+
+CalibrationOutcome calibrate_observation(const CalibrateOptions& options,
+                                         const Observation& observation,
+                                         SecondsClock clock = steady_seconds());
+
+/// The same from several strokes and plucks; the first stroke is the one that is identified.
+CalibrationOutcome calibrate_strokes(const CalibrateOptions& options,
+                                     std::span<const Observation> strokes,
+                                     SecondsClock clock = steady_seconds(),
+                                     std::span<const CalibrationRecord> plucks = {});
+
+/// f_n of all modes [Hz].
+std::vector<double> frequencies_of(const ModalBasis& basis);
+
+/// Spectra of the reactions that were observed.
+CalibrationData calibration_data(const Observation& observation);
+
+/// Clock that ends a search with Interrupted where the context says so.
+SecondsClock polling_clock(const StudyContext& context);
+
+StudyResult calibrate_study(const CalibrateOptions& options, const StudyContext& context);
+
+/// Where a mode's frequency comes from and why: "from the law (node)".
+std::string verdict_text(const ModeVerdict& mode);
+/// What a stage's fit says of the priors; empty where none was stated.
+std::string prior_lines(const PriorMisfit& misfit, std::string_view stage);
+
+/// Objective over the candidates of the first modes, initial, chosen and true value marked (paper,
+/// figs. 13 and 20).
+report::Figure objective_figure(const FigureOptions& options, const CalibrationOutcome& outcome);
+/// Absolute and relative error of the frequencies and the mode shape at the contact (paper, fig.
+/// 14).
+report::Figure frequency_error_figure(const FigureOptions& options,
+                                      const CalibrationOutcome& outcome);
+/// Median of |f_n − true|/true over the modes that were searched; NaN without a truth.
+double median_relative_error(const CalibrationOutcome& outcome);
+
+/// Players for force and string velocity at the contact: the true ones where they are known, those
+/// identified from each reaction and from both with the refined model. At most the first second,
+/// low-passed and thinned to a rate near 22 kHz. The truth must have the velocity, if it is there.
+report::Audio calibration_audio(const CalibrateOptions& options, const Observation& observation,
+                                const AssumedModel& refined);
+
+/// The observation with S = gain exp(−s delay) s/(s + corner) taken out of the reaction at x = L,
+/// which had a sensor that a calibration found to differ: R₂ = R₂' / S. The delay is shifted back
+/// (see advanced()). A high-pass is undone as y + corner ∫ y dt; without the level that the sensor
+/// lost, a line is left over the record, and it is taken out. Equal sensors: unchanged.
+Observation with_sensors_alike(Observation observation, const Sensor& sensors);
+
+/// Throws InvalidInput where the estimator is told of sensors that differ and the calibration finds
+/// or is told how they do, too: with_sensors_alike() has then taken out what the estimator takes
+/// out.
+void require_sensors_once(const CalibrationOptions& calibration, const Estimator& estimator);
+
+/// What was taken out, for a report; empty for equal sensors or where x = L was not recorded.
+std::string correction_text(const Observation& observation, const Sensor& sensors);
+
+// What a calibration says in a few lines.
+
+/// Adds the search, its parameters with standard deviations, and the verdicts of the fit.
+void add_calibration_summary(const CalibrationOutcome& outcome, StudyResult& result);
+
+/// Warns of bounds that were reached, of blind modes and of a search that failed, which fails the
+/// task.
+void add_calibration_warnings(const CalibrationOutcome& outcome, StudyResult& result);
+
+/// What χ² says of a continuation's fit, in words.
+std::string chi2_text(const ContinuationResult& found);
+
+/// What contradicts a result that is not right: χ², the priors stated, or both; else empty.
+std::string contradiction(const ContinuationResult& found);
+
+/// Which parameters the data identify. A frequency that the law or a prior holds moves with the
+/// others by that alone.
+std::vector<bool> told_by_data(const ContinuationResult& found);
+
+/// The law's parameters with correlations and condition number, as `modcal limit` has them; where
+/// every frequency is free the strongest correlations of what the data identify, too.
+std::string covariance_text(const ContinuationResult& found);
+
+// Standard deviations and correlations in lines of text.
+
+/// "m", "(factor)" of the damping; empty where a parameter has no unit.
+std::string shown_unit(const std::string& parameter);
+
+/// "correlations f0 +0.31 B -0.72": with the first parameters of `names`, one number each.
+std::string correlations_with(const std::vector<std::string>& names,
+                              const std::vector<double>& correlations);
+
+/// One line a parameter: name, standard deviation, unit, correlations with those before it.
+std::string correlation_lines(const NamedCovariance& covariance);
+
+/// Kind "calibrate": refine the modal model, then identify force and motion with it.
+class CalibrateExperiment final : public Experiment, public LimitSource {
+ public:
+  using Options = CalibrateOptions;
+  explicit CalibrateExperiment(Options options) : options_(std::move(options)) {}
+  std::vector<Finding> lint() const override;
+  std::vector<std::string> plan() const override;
+  std::optional<PlannedSimulations> planned_simulations() const override;
+  std::vector<std::string> files_read() const override;
+  LimitQuestion limit_question() const override;
+  StudyResult run(const StudyContext& context) const override {
+    return calibrate_study(options_, context);
+  }
+
+ private:
+  Options options_;
+};
+
+}  // namespace modcal

@@ -1,0 +1,194 @@
+#include "experiments/kinds/identify/identify.hpp"
+
+#include "experiments/kinds/lint.hpp"
+#include "experiments/report/result.hpp"
+
+namespace modcal {
+namespace {
+
+DecayRecord measured_decay(const Simulation& simulation, const IdentifyOptions& options) {
+  const StreamKey noise =
+      StreamKey(static_cast<std::uint64_t>(options.seed)).with("measurement noise");
+  DecayRecord record{.sample_rate = options.measurement.sample_rate};
+  for (const Signal* reaction : {&simulation.left_reaction, &simulation.right_reaction}) {
+    record.channels.push_back(
+        measure(*reaction, options.measurement, noise.with(reaction->quantity)).samples);
+  }
+  return record;
+}
+
+std::optional<StiffStringFit> law_of(const PluckIdentification& found) {
+  if (found.modes.size() < 2) return std::nullopt;
+  std::vector<double> frequencies(found.modes.back().number, 0.0);
+  std::vector<double> weights(frequencies.size(), 0.0);
+  for (const auto& [number, mode] : found.modes) {
+    const double deviation = mode.deviation.frequency;
+    frequencies[number - 1] = mode.pole.frequency;
+    weights[number - 1] = found.full_rank ? 1.0 / (deviation * deviation) : 1.0;
+  }
+  return fit_stiff_string(frequencies, weights);
+}
+
+// What an identification found, and its figures.
+
+using report::Series;
+using report::SeriesStyle;
+
+report::Figure errors_figure(const IdentifyOutcome& outcome) {
+  const ModalBasis& basis = outcome.truth->basis;
+  Series errors{.label = "identified minus true", .style = SeriesStyle::kPoints};
+  for (const auto& [number, mode] : outcome.found.modes) {
+    if (number > basis.size()) continue;
+    const double truth = basis.frequency(number - 1);
+    const double error = mode.pole.frequency / truth - 1.0;
+    const double deviation = mode.deviation.frequency / truth;
+    errors.add(static_cast<double>(number), error, error - deviation, error + deviation);
+  }
+  return {.id = "frequency_errors",
+          .title = "Errors of the identified frequencies",
+          .caption = "Bars: one standard deviation to either side.",
+          .panels = {{.x = {.label = "mode"},
+                      .y = {.label = "relative error of the frequency"},
+                      .series = {std::move(errors)},
+                      .markers = {{.direction = report::Marker::Direction::kHorizontal}}}}};
+}
+
+std::string sentence_of(const IdentifyOutcome& outcome) {
+  std::string text = fmt::format("{} modes identified", outcome.found.modes.size());
+  if (!outcome.found.missing.empty()) {
+    text += fmt::format(", {} missing below the highest", outcome.found.missing.size());
+  }
+  if (outcome.law) {
+    text += fmt::format("; f0 = {:.6g} Hz, B = {:.4g}", outcome.law->fundamental,
+                        outcome.law->inharmonicity);
+  }
+  return text + "\n";
+}
+
+}  // namespace
+
+void IdentifyOptions::visit(OptionVisitor& visitor) {
+  visitor.section({.key = "scene", .meaning = "string and how it is plucked", .required = true},
+                  truth.scene);
+  visitor.plugin({.key = "simulator", .meaning = "how the scene is simulated"}, truth.simulator);
+  visitor.section({.key = "measurement", .meaning = "sampling and noise of the reactions"},
+                  measurement);
+  visitor.section({.key = "identification", .meaning = "how the modes are found"}, identification);
+  visitor.integer({.key = "seed", .meaning = "key of the noise", .range = Range::non_negative()},
+                  seed);
+}
+
+std::vector<Finding> IdentifyOptions::lint() const {
+  std::vector<Finding> findings = lint_scene(truth.scene, truth.simulator, measurement);
+  if (truth.scene.start.selected() == "rest") {
+    add_finding(findings, "scene.initial", "a string at rest has no free decay: pluck it");
+  }
+  const double rate = measurement.sample_rate;
+  if (!(identification.highest_frequency < 0.5 * rate)) {
+    add_finding(findings, "identification.highest_frequency",
+                "{:g} Hz lie above half the sample rate {:g} Hz", identification.highest_frequency,
+                rate);
+  } else if (findings.empty()) {
+    lint_making(findings, "scene.duration", [&] {
+      require_decay_length(sample_count(truth.scene.duration, rate), rate, identification);
+    });
+  }
+  return findings;
+}
+
+std::vector<std::string> IdentifyOptions::plan() const {
+  return {fmt::format("identify modes up to {:g} Hz by {}, orders {} to {}",
+                      identification.highest_frequency, identification.method,
+                      identification.stabilization.lowest_order,
+                      identification.stabilization.highest_order)};
+}
+
+std::optional<PlannedSimulations> IdentifyOptions::planned_simulations() const {
+  return PlannedSimulations{.scene = truth.scene,
+                            .simulator = truth.simulator,
+                            .sample_rate = measurement.sample_rate,
+                            .outputs = {.left_reaction = true, .right_reaction = true}};
+}
+
+IdentifyOutcome identify_outcome(const IdentifyOptions& options, const StudyContext& context) {
+  const auto truth = context.work.truths.get(options.truth, options.measurement.sample_rate,
+                                             {.left_reaction = true, .right_reaction = true});
+  context.throw_if_interrupted();
+  IdentifyOutcome outcome{
+      .found = identify_pluck(measured_decay(truth->simulation, options),
+                              options.truth.scene.string.fundamental, options.identification),
+      .truth = truth};
+  outcome.law = law_of(outcome.found);
+  return outcome;
+}
+
+void IdentifyOutcome::visit(ResultVisitor& visitor) const {
+  const ModalBasis& basis = truth->basis;
+  visitor.rows(
+      {.key = "modes",
+       .table = "modes",
+       .name = "Identified modes",
+       .meaning =
+           found.full_rank
+               ? "Deviations are the Cramér–Rao bound of the fit."
+               : "Deviations are the spread over the orders of the realization: no error bars."},
+      found.modes, [&](ResultVisitor& row, const PluckedMode& plucked) {
+        const auto& [number, mode] = plucked;
+        const auto of_truth = [&, n = number](auto value) {
+          return n <= basis.size() ? std::optional<double>(value(n - 1)) : std::nullopt;
+        };
+        row({.key = "n", .name = "mode"}, number);
+        row({.key = "f_hz", .name = "frequency", .unit = "Hz", .format = "{:.7g}"},
+            mode.pole.frequency);
+        row({.key = "f_sd_hz", .name = "its deviation", .unit = "Hz", .format = "{:.2g}"},
+            mode.deviation.frequency);
+        row({.key = "f_true_hz", .name = "true frequency", .unit = "Hz", .format = "{:.7g}"},
+            of_truth([&](std::size_t n) { return basis.frequency(n); }));
+        row({.key = "zeta", .name = "damping ratio"}, mode.pole.damping_ratio);
+        row({.key = "zeta_sd", .name = "its deviation", .format = "{:.2g}"},
+            mode.deviation.damping_ratio);
+        row({.key = "zeta_true", .name = "true damping ratio"},
+            of_truth([&](std::size_t n) { return basis.zeta[n]; }));
+      });
+  visitor({.key = "missing"}, found.missing);
+  visitor({.key = "deviations_are_error_bars"}, found.full_rank);
+  visitor({.key = "noise_in_band_n"}, found.noise);
+  visitor({.key = "converged"}, found.converged);
+  visitor({.key = "stiff_string_law", .optional = true}, law);
+}
+
+report::Figure stabilization_figure(const IdentifyOutcome& outcome) {
+  Series moving{.label = "moves with the order",
+                .style = SeriesStyle::kPoints,
+                .color = report::ColorRole::kMuted};
+  Series stable{.label = "stable", .style = SeriesStyle::kPoints};
+  for (const StabilizationPoint& point : outcome.found.diagram) {
+    (point.stable_orders > 1 ? stable : moving)
+        .add(point.pole.frequency, static_cast<double>(point.order));
+  }
+  return {.id = "stabilization",
+          .title = "Stabilization diagram",
+          .caption = "Poles of the realizations; a mode stays where it is when the order grows.",
+          .panels = {{.x = {.label = "frequency", .unit = "Hz"},
+                      .y = {.label = "order"},
+                      .series = {std::move(moving), std::move(stable)}}}};
+}
+
+StudyResult IdentifyOptions::run(const StudyContext& context) const {
+  const IdentifyOutcome outcome = identify_outcome(*this, context);
+  StudyResult result;
+  result.add(report::tables_of(outcome));
+  result.blocks.emplace_back(stabilization_figure(outcome));
+  if (!outcome.found.modes.empty()) result.blocks.emplace_back(errors_figure(outcome));
+  result.files.emplace_back("identification.json", report::json_file(report::json_of(outcome)));
+  result.summary = sentence_of(outcome);
+  if (outcome.found.modes.empty() || !outcome.found.converged) {
+    result.status = report::Status::kFailed;
+    result.summary += outcome.found.modes.empty()
+                          ? "no pole is stable over the orders: nothing was identified\n"
+                          : "the fit did not converge: its modes and error bars are not final\n";
+  }
+  return result;
+}
+
+}  // namespace modcal

@@ -1,0 +1,100 @@
+// Kind "invert": contact force and motion from the reactions of a simulated or recorded string.
+#pragma once
+
+#include "experiments/experiment.hpp"
+#include "experiments/study/figures.hpp"
+#include "libinverse/observer/model_based_estimator.hpp"
+
+namespace modcal {
+
+struct InvertOptions {
+  ObservationOptions observation;
+  ModelErrorOptions model_error;
+  InversionOptions inversion;
+  bool has_model_based = false;  ///< the model-based estimate beside the linear ones
+  ModelBasedOptions model_based;
+  bool wave_based = false;  ///< the wave-based reconstructions beside the linear estimates
+  ScoreOptions score;
+  std::vector<FigureOptions> figures;
+  std::int64_t seed = 1;
+  bool write_signals = false;
+  void visit(OptionVisitor& visitor);
+  std::int64_t& seed_slot() { return seed; }
+  StreamKey key() const { return StreamKey(static_cast<std::uint64_t>(seed)); }
+  /// Recorded files, relative to the folder of the experiment's file.
+  std::vector<std::string> files_read() const {
+    if (!observation.has_record) return {};
+    return {observation.record.file};
+  }
+
+  std::vector<Finding> lint() const;
+  std::vector<std::string> plan() const;
+  std::optional<PlannedSimulations> planned_simulations() const;
+  StudyResult run(const StudyContext& context) const;
+};
+
+/// Findings about an inversion, without its figures.
+std::vector<Finding> lint_inversion(const InvertOptions& options);
+
+/// Signals of the truth that the figures and scores need.
+OutputRequest truth_outputs(const std::vector<FigureOptions>& figures);
+/// What an inversion has to compute for them.
+InversionOutputs inversion_outputs(const std::vector<FigureOptions>& figures, bool all);
+/// One row a side and window: parameter, share of bins kept, correlation, relative rms error.
+report::Table identification_table(const std::vector<SideIdentification>& sides);
+/// Draws the waveforms, spectra and parameter curves among the figures asked for.
+void add_identification_figures(const std::vector<FigureOptions>& figures,
+                                const Observation& observation,
+                                const std::vector<SideIdentification>& sides, StudyResult& result);
+/// A side in a table: 1 and 2 are numbers, as the paper counts them.
+report::Cell side_cell(const std::string& side);
+/// identified.csv: every identified signal.
+SignalFile identified_signals(const Observation& observation,
+                              const std::vector<SideIdentification>& sides);
+/// Warnings of the observation and of parameter choices that had to settle for a stand-in.
+void add_warnings(const Observation& observation, const std::vector<SideIdentification>& sides,
+                  StudyResult& result);
+
+// Estimates beside the linear ones, by a friction law and by waves: scored where the truth is
+// known, drawn, and added to the result of an inversion.
+
+/// One window of comparison, anti-aliased figures included where the score asks for them.
+struct ModelScore {
+  std::string window;  ///< "0.78 s", or "0.1 s to 0.95 s" of the long window
+  WindowScore model;   ///< the model-based estimate
+  WindowScore linear;  ///< the linear estimate the observer started from
+};
+
+struct ModelIdentification {
+  ModelBasedResult result;
+  std::vector<ModelScore> scores;  ///< the windows asked for, then the long one
+};
+
+/// Estimates and scores. Throws InvalidInput for an observation with one reaction.
+ModelIdentification identify_by_model(const Observation& observation, const AssumedModel& model,
+                                      const ModelBasedOptions& options, const ScoreOptions& score,
+                                      const std::function<bool()>& interrupted);
+
+/// Force over slip speed: loops over two periods, cells with their 5–95 % spread of the model-based
+/// and the linear estimate, the fitted law.
+report::Figure friction_figure(const Observation& observation, const ModelBasedResult& result,
+                               double start, double duration);
+/// Identified force over the true and the linear one, `duration` from `start` on [s].
+report::Figure model_force_figure(const Observation& observation, const ModelBasedResult& result,
+                                  double start, double duration);
+
+/// Tables, figures, warnings and lines of the summary.
+void add_model_based(const Observation& observation, const ModelIdentification& identification,
+                     const ScoreOptions& score, StudyResult& result);
+/// Adds f_c_model, v_model and y_model to identified signals.
+void add_model_signals(const Observation& observation, const ModelBasedResult& model,
+                       SignalFile& file);
+
+/// Reconstructs the force from the waves of both reactions, in the time domain (ideal string) and
+/// with loss and dispersion, from either outgoing wave, and scores it where a reference is known: a
+/// baseline, and a check that shares no code with the modal inversion. Throws InvalidInput for an
+/// observation with one reaction.
+void add_wave_based(const Observation& observation, const AssumedModel& model,
+                    const ScoreOptions& score, StudyResult& result);
+
+}  // namespace modcal
