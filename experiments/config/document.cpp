@@ -61,21 +61,6 @@ void refuse(YamlDocument& document, const SourcePosition& position, std::string 
   document.mistakes.push_back({position, std::move(text)});
 }
 
-/// The item that a path's segment names by its index; null with a mistake where there is none.
-YamlNode* find_item(YamlDocument& document, YamlNode& list, const std::string& key,
-                    const SourcePosition& position) {
-  std::size_t index = 0;
-  const char* end = key.data() + key.size();
-  const auto read = std::from_chars(key.data(), end, index);
-  if (read.ec == std::errc() && read.ptr == end && index < list.items.size()) {
-    return &list.items[index];
-  }
-  refuse(document, position,
-         fmt::format("the list has no item \"{}\": it has {}, which count from 0", key,
-                     list.items.size()));
-  return nullptr;
-}
-
 /// "regularizer: water_level" is short for "regularizer: {type: water_level}".
 void unfold_plugin(YamlNode& node, const SourcePosition& position) {
   if (node.kind != YamlNode::Kind::kScalar) return;
@@ -88,7 +73,13 @@ void unfold_plugin(YamlNode& node, const SourcePosition& position) {
 
 YamlNode* step_into(YamlDocument& document, YamlNode& node, const std::string& key,
                     const SourcePosition& position) {
-  if (node.kind == YamlNode::Kind::kSequence) return find_item(document, node, key, position);
+  if (node.kind == YamlNode::Kind::kSequence) {
+    if (const YamlNode* item = node.child(key)) return const_cast<YamlNode*>(item);
+    refuse(document, position,
+           fmt::format("the list has no item \"{}\": it has {}, which count from 0", key,
+                       node.items.size()));
+    return nullptr;
+  }
   unfold_plugin(node, position);
   if (YamlNode* known = node.find(key)) return known;
   node.members.push_back({key, position, {}});
@@ -116,6 +107,14 @@ const YamlNode* YamlNode::find(std::string_view key) const {
 
 YamlNode* YamlNode::find(std::string_view key) {
   return const_cast<YamlNode*>(std::as_const(*this).find(key));
+}
+
+const YamlNode* YamlNode::child(std::string_view name) const {
+  if (kind != Kind::kSequence) return find(name);
+  std::size_t index = 0;
+  const char* last = name.data() + name.size();
+  const auto [end, error] = std::from_chars(name.data(), last, index);
+  return error == std::errc() && end == last && index < items.size() ? &items[index] : nullptr;
 }
 
 std::filesystem::path YamlDocument::folder() const {

@@ -32,6 +32,8 @@ struct YamlNode {
 
   const YamlNode* find(std::string_view key) const;
   YamlNode* find(std::string_view key);
+  /// Member of a map by its key, item of a list by its index.
+  const YamlNode* child(std::string_view name) const;
 };
 
 struct YamlNode::Member {

@@ -10,48 +10,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
-class Describer final : public OptionVisitor {
+class Describer final : public ValueVisitor {
  public:
   Json entries = Json::array();
 
-  void number(const OptionInfo& info, double& value) override {
-    Json& entry = add(info, "number");
-    entry["unit"] = info.unit;
-    entry["range"] = info.range.text();
-    if (!info.required) {
-      entry["default"] =
-          std::isnan(value) && !info.word.empty() ? Json(info.word) : number_or_null(value);
-    }
-  }
-  void numbers(const OptionInfo& info, std::vector<double>& values) override {
-    Json& entry = add(info, "list of numbers");
-    entry["unit"] = info.unit;
-    entry["range"] = info.range.text();
-    if (!info.required) entry["default"] = values;
-  }
-  void integer(const OptionInfo& info, std::int64_t& value) override {
-    Json& entry = add(info, "whole number");
-    entry["range"] = info.range.text();
-    if (!info.required) entry["default"] = value;
-  }
-  void integers(const OptionInfo& info, std::vector<std::int64_t>& values) override {
-    Json& entry = add(info, "list of whole numbers");
-    if (!info.required) entry["default"] = values;
-  }
-  void flag(const OptionInfo& info, bool& value) override {
-    add(info, "true or false")["default"] = value;
-  }
-  void text(const OptionInfo& info, std::string& value) override {
-    Json& entry = add(info, "text");
-    if (!info.choices.empty()) entry["choices"] = info.choices;
-    if (!info.required) entry["default"] = value;
-  }
-  void texts(const OptionInfo& info, std::vector<std::string>& values) override {
-    Json& entry = add(info, "list of texts");
-    if (!info.choices.empty()) entry["choices"] = info.choices;
-    if (!info.required) entry["default"] = values;
+  void value(const OptionInfo& info, OptionValue value) override {
+    std::visit([&](const auto* held) { describe(info, *held); }, value);
   }
   void plugin(const OptionInfo& info, PluginSlot& slot) override {
     Json& entry = add(info, "plug-in");
@@ -82,6 +46,27 @@ class Describer final : public OptionVisitor {
   void sweep(const OptionInfo& info, SweepSlot& /*slot*/) override { add(info, "sweep"); }
 
  private:
+  template <typename Value>
+  void describe(const OptionInfo& info, const Value& value) {
+    using Item = typename ItemOf<Value>::Type;
+    constexpr bool kIsReal = std::is_same_v<Item, double>;
+    constexpr bool kIsWhole = std::is_same_v<Item, std::int64_t>;
+    const std::string type = std::is_same_v<Item, bool> ? "true or false"
+                             : kIsReal                  ? "number"
+                             : kIsWhole                 ? "whole number"
+                                                        : "text";
+    Json& entry = add(info, std::is_same_v<Item, Value> ? type : fmt::format("list of {}s", type));
+    if (kIsReal) entry["unit"] = info.unit;
+    if (kIsReal || kIsWhole) entry["range"] = info.range.text();
+    if (!info.choices.empty()) entry["choices"] = info.choices;
+    if (info.required) return;
+    entry["default"] = value;
+    if constexpr (std::is_same_v<Value, double>) {
+      if (!std::isfinite(value)) entry["default"] = nullptr;
+      if (std::isnan(value) && !info.word.empty()) entry["default"] = info.word;
+    }
+  }
+
   Json& add(const OptionInfo& info, std::string_view type) {
     Json entry = {{"key", info.key}, {"type", type}, {"meaning", info.meaning}};
     if (info.required) entry["required"] = true;
@@ -91,7 +76,7 @@ class Describer final : public OptionVisitor {
   }
 };
 
-class SchemaWriter final : public OptionVisitor {
+class SchemaWriter final : public ValueVisitor {
  public:
   Json properties = Json::object();
   Json required = Json::array();
@@ -101,20 +86,20 @@ class SchemaWriter final : public OptionVisitor {
     if (!required.empty()) result["required"] = required;
     return result;
   }
-  void number(const OptionInfo& info, double&) override { add(info, number_schema(info)); }
-  void numbers(const OptionInfo& info, std::vector<double>&) override {
-    add(info, one_or_many(number_schema(info)));
-  }
-  void integer(const OptionInfo& info, std::int64_t&) override {
-    add(info, bounded({{"type", "integer"}}, info.range));
-  }
-  void integers(const OptionInfo& info, std::vector<std::int64_t>&) override {
-    add(info, one_or_many(bounded({{"type", "integer"}}, info.range)));
-  }
-  void flag(const OptionInfo& info, bool&) override { add(info, {{"type", "boolean"}}); }
-  void text(const OptionInfo& info, std::string&) override { add(info, text_schema(info)); }
-  void texts(const OptionInfo& info, std::vector<std::string>&) override {
-    add(info, one_or_many(text_schema(info)));
+  void value(const OptionInfo& info, OptionValue value) override {
+    std::visit(
+        [&]<typename Value>(const Value*) {
+          using Item = typename ItemOf<Value>::Type;
+          Json item = {{"type", "boolean"}};
+          if (std::is_same_v<Item, double>) item = number_schema(info);
+          if (std::is_same_v<Item, std::int64_t>) item = bounded({{"type", "integer"}}, info.range);
+          if (std::is_same_v<Item, std::string>) item = text_schema(info);
+          if (!std::is_same_v<Item, Value>) {
+            item = {{"anyOf", {item, {{"type", "array"}, {"items", item}}}}};
+          }
+          add(info, std::move(item));
+        },
+        value);
   }
   void plugin(const OptionInfo& info, PluginSlot& slot) override {
     Json variants = Json::array();
@@ -186,9 +171,6 @@ class SchemaWriter final : public OptionVisitor {
   static Json text_schema(const OptionInfo& info) {
     if (info.choices.empty()) return {{"type", {"string", "number"}}};
     return {{"enum", info.choices}};
-  }
-  static Json one_or_many(const Json& item) {
-    return {{"anyOf", {item, {{"type", "array"}, {"items", item}}}}};
   }
   void add(const OptionInfo& info, Json schema) {
     schema["description"] = info.unit == "1" ? std::string(info.meaning)

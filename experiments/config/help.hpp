@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "libsim/base/options.hpp"
+#include "experiments/config/value_visitor.hpp"
 
 namespace modcal {
 

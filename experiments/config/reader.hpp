@@ -5,24 +5,18 @@
 #include <map>
 
 #include "experiments/config/document.hpp"
-#include "libsim/base/options.hpp"
+#include "experiments/config/value_visitor.hpp"
 
 namespace modcal {
 
 struct SweepTable;
 
-class YamlReader final : public OptionVisitor {
+class YamlReader final : public ValueVisitor {
  public:
   /// Reads from the map `node`; mistakes are appended to `mistakes`.
   YamlReader(const YamlNode& node, std::vector<Mistake>& mistakes);
 
-  void number(const OptionInfo& info, double& value) override;
-  void numbers(const OptionInfo& info, std::vector<double>& values) override;
-  void integer(const OptionInfo& info, std::int64_t& value) override;
-  void integers(const OptionInfo& info, std::vector<std::int64_t>& values) override;
-  void flag(const OptionInfo& info, bool& value) override;
-  void text(const OptionInfo& info, std::string& value) override;
-  void texts(const OptionInfo& info, std::vector<std::string>& values) override;
+  void value(const OptionInfo& info, OptionValue value) override;
   void plugin(const OptionInfo& info, PluginSlot& slot) override;
   void group(const OptionInfo& info, const VisitMembers& visit_members) override;
   void optional_group(const OptionInfo& info, bool& present,
@@ -47,15 +41,17 @@ class YamlReader final : public OptionVisitor {
   void skip_section(const OptionInfo& info, const VisitMembers& visit_members);
   void read_members(const YamlNode& node, const VisitMembers& visit_members);
   void mistake(const YamlNode& node, std::string text);
-  bool read_number(const OptionInfo& info, const YamlNode& node, double& value);
-  bool read_integer(const OptionInfo& info, const YamlNode& node, std::int64_t& value);
-  bool read_text(const OptionInfo& info, const YamlNode& node, std::string& value);
+  // False with a mistake where the node holds no such value.
+  bool read(const OptionInfo& info, const YamlNode& node, double& value);
+  bool read(const OptionInfo& info, const YamlNode& node, std::int64_t& value);
+  bool read(const OptionInfo& info, const YamlNode& node, bool& value);
+  bool read(const OptionInfo& info, const YamlNode& node, std::string& value);
+  template <typename Value>
+  bool read(const OptionInfo& info, const YamlNode& node, std::vector<Value>& values);
   void select(const OptionInfo& info, const YamlNode& name, PluginSlot& slot);
   std::vector<Mistake> read_cell(const YamlNode& base, const SweepTable& table, std::size_t cell,
                                  SweepSlot& slot) const;
   void read_cells(std::string_view key, const SweepTable& table, SweepSlot& slot);
-  template <typename Value, typename Read>
-  void read_list(const OptionInfo& info, std::vector<Value>& values, Read read);
 
   const YamlNode& node_;
   std::vector<Mistake>& mistakes_;

@@ -43,7 +43,7 @@ std::string unit_mistake(std::string_view text, std::string_view unit, std::stri
 
 }  // namespace
 
-bool YamlReader::read_number(const OptionInfo& info, const YamlNode& node, double& value) {
+bool YamlReader::read(const OptionInfo& info, const YamlNode& node, double& value) {
   if (node.kind != YamlNode::Kind::kScalar || node.quoted) {
     mistake(node, fmt::format("{} must be a number{}, not {}", info.key,
                               info.unit == "1" ? "" : fmt::format(" in {}", info.unit),
@@ -73,7 +73,7 @@ bool YamlReader::read_number(const OptionInfo& info, const YamlNode& node, doubl
   return true;
 }
 
-bool YamlReader::read_integer(const OptionInfo& info, const YamlNode& node, std::int64_t& value) {
+bool YamlReader::read(const OptionInfo& info, const YamlNode& node, std::int64_t& value) {
   const std::string& text = node.text;
   std::int64_t parsed = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), parsed);
@@ -98,7 +98,7 @@ bool YamlReader::read_integer(const OptionInfo& info, const YamlNode& node, std:
   return true;
 }
 
-bool YamlReader::read_text(const OptionInfo& info, const YamlNode& node, std::string& value) {
+bool YamlReader::read(const OptionInfo& info, const YamlNode& node, std::string& value) {
   if (node.kind != YamlNode::Kind::kScalar || (node.text.empty() && !node.quoted)) {
     mistake(node, fmt::format("{} must be a text, not {}", info.key, kind_name(node)));
     return false;
@@ -116,66 +116,38 @@ bool YamlReader::read_text(const OptionInfo& info, const YamlNode& node, std::st
   return true;
 }
 
-void YamlReader::number(const OptionInfo& info, double& value) {
-  if (const YamlNode* node = take(info)) read_number(info, *node, value);
+bool YamlReader::read(const OptionInfo& info, const YamlNode& node, bool& value) {
+  const bool yes = node.text == "true";
+  if (node.kind == YamlNode::Kind::kScalar && !node.quoted && (yes || node.text == "false")) {
+    value = yes;
+    return true;
+  }
+  mistake(node, fmt::format("{} must be true or false, not \"{}\"", info.key, node.text));
+  return false;
 }
 
-void YamlReader::integer(const OptionInfo& info, std::int64_t& value) {
-  if (const YamlNode* node = take(info)) read_integer(info, *node, value);
-}
-
-void YamlReader::text(const OptionInfo& info, std::string& value) {
-  if (const YamlNode* node = take(info)) read_text(info, *node, value);
-}
-
-template <typename Value, typename Read>
-void YamlReader::read_list(const OptionInfo& info, std::vector<Value>& values, Read read) {
-  const YamlNode* node = take(info);
-  if (node == nullptr) return;
+template <typename Value>
+bool YamlReader::read(const OptionInfo& info, const YamlNode& node, std::vector<Value>& values) {
   values.clear();
-  if (node->kind == YamlNode::Kind::kScalar && !(node->text.empty() && !node->quoted)) {
-    Value value{};  // a single value is a list of one
-    if (read(*node, value)) values.push_back(std::move(value));
-    return;
-  }
-  if (node->kind != YamlNode::Kind::kSequence) {
-    mistake(*node, fmt::format("{} must be a list, not {}", info.key, kind_name(*node)));
-    return;
-  }
-  if (node->items.empty() && info.required) {
-    mistake(*node, fmt::format("{} is an empty list", info.key));
-  }
-  for (const YamlNode& item : node->items) {
+  const auto add = [&](const YamlNode& item) {
     Value value{};
-    if (read(item, value)) values.push_back(std::move(value));
+    if (read(info, item, value)) values.push_back(std::move(value));
+  };
+  if (node.kind == YamlNode::Kind::kScalar && !(node.text.empty() && !node.quoted)) {
+    add(node);  // a single value is a list of one
+  } else if (node.kind != YamlNode::Kind::kSequence) {
+    mistake(node, fmt::format("{} must be a list, not {}", info.key, kind_name(node)));
+  } else if (node.items.empty() && info.required) {
+    mistake(node, fmt::format("{} is an empty list", info.key));
   }
+  for (const YamlNode& item : node.items) add(item);
+  return true;
 }
 
-void YamlReader::numbers(const OptionInfo& info, std::vector<double>& values) {
-  read_list(info, values,
-            [&](const YamlNode& node, double& value) { return read_number(info, node, value); });
-}
-
-void YamlReader::integers(const OptionInfo& info, std::vector<std::int64_t>& values) {
-  read_list(info, values, [&](const YamlNode& node, std::int64_t& value) {
-    return read_integer(info, node, value);
-  });
-}
-
-void YamlReader::texts(const OptionInfo& info, std::vector<std::string>& values) {
-  read_list(info, values,
-            [&](const YamlNode& node, std::string& value) { return read_text(info, node, value); });
-}
-
-void YamlReader::flag(const OptionInfo& info, bool& value) {
+void YamlReader::value(const OptionInfo& info, OptionValue value) {
   const YamlNode* node = take(info);
   if (node == nullptr) return;
-  if (node->kind == YamlNode::Kind::kScalar && !node->quoted &&
-      (node->text == "true" || node->text == "false")) {
-    value = node->text == "true";
-    return;
-  }
-  mistake(*node, fmt::format("{} must be true or false, not \"{}\"", info.key, node->text));
+  std::visit([&](auto* held) { read(info, *node, *held); }, value);
 }
 
 bool looks_octal(std::string_view text) {

@@ -2,27 +2,53 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
 #include <cctype>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 namespace modcal {
 namespace {
 
-std::string number_text(const OptionInfo& info, double value) {
-  if (std::isnan(value)) return std::string(info.word);
-  return info.unit == "1" ? fmt::format("{}", value) : fmt::format("{} {}", value, info.unit);
+template <typename Value>
+std::string text_of(const OptionInfo& info, const Value& value) {
+  if constexpr (std::is_same_v<Value, double>) {
+    if (std::isnan(value)) return std::string(info.word);
+    return info.unit == "1" ? fmt::format("{}", value) : fmt::format("{} {}", value, info.unit);
+  } else if constexpr (std::is_same_v<Value, std::string>) {
+    return info.choices.empty() ? yaml_string(value) : value;
+  } else if constexpr (std::is_integral_v<Value>) {
+    return fmt::format("{}", value);
+  } else {
+    std::vector<std::string> items;
+    for (const auto& item : value) items.push_back(text_of(info, item));
+    return fmt::format("[{}]", fmt::join(items, ", "));
+  }
 }
 
-std::string item_text(const std::string& value) {
+// A value of a sweep as it was written, or several of them.
+std::string swept_text(const std::string& value) {
   const bool nested = value.starts_with('{') || value.starts_with('[');
   return nested ? value : flow_scalar(value);
 }
 
-std::string axis_text(const SweepAxis& axis) {
+std::string swept_text(const std::vector<std::string>& values) {
   std::vector<std::string> items;
-  for (const std::string& value : axis.values) items.push_back(item_text(value));
+  for (const std::string& value : values) items.push_back(swept_text(value));
+  return fmt::format("[{}]", fmt::join(items, ", "));
+}
+
+// Points, or axes that vary together.
+template <typename Members>
+std::string swept_maps(const std::vector<Members>& maps) {
+  std::vector<std::string> items;
+  for (const Members& members : maps) {
+    std::vector<std::string> parts;
+    for (const auto& [path, value] : members) {
+      parts.push_back(fmt::format("{}: {}", path, swept_text(value)));
+    }
+    items.push_back(fmt::format("{{{}}}", fmt::join(parts, ", ")));
+  }
   return fmt::format("[{}]", fmt::join(items, ", "));
 }
 
@@ -36,36 +62,8 @@ void ResolvedWriter::line(const OptionInfo& info, const std::string& value) {
       info.required && value.empty() ? fmt::format(" [{}]: fill in", info.unit) : std::string());
 }
 
-void ResolvedWriter::number(const OptionInfo& info, double& value) {
-  line(info, number_text(info, value));
-}
-
-void ResolvedWriter::numbers(const OptionInfo& info, std::vector<double>& values) {
-  std::vector<std::string> texts;
-  for (const double value : values) texts.push_back(number_text(info, value));
-  line(info, fmt::format("[{}]", fmt::join(texts, ", ")));
-}
-
-void ResolvedWriter::integer(const OptionInfo& info, std::int64_t& value) {
-  line(info, fmt::format("{}", value));
-}
-
-void ResolvedWriter::integers(const OptionInfo& info, std::vector<std::int64_t>& values) {
-  line(info, fmt::format("[{}]", fmt::join(values, ", ")));
-}
-
-void ResolvedWriter::flag(const OptionInfo& info, bool& value) {
-  line(info, value ? "true" : "false");
-}
-
-void ResolvedWriter::text(const OptionInfo& info, std::string& value) {
-  line(info, info.choices.empty() ? yaml_string(value) : value);
-}
-
-void ResolvedWriter::texts(const OptionInfo& info, std::vector<std::string>& values) {
-  std::vector<std::string> items;
-  for (const std::string& value : values) items.push_back(yaml_string(value));
-  line(info, fmt::format("[{}]", fmt::join(items, ", ")));
+void ResolvedWriter::value(const OptionInfo& info, OptionValue value) {
+  line(info, std::visit([&info](const auto* held) { return text_of(info, *held); }, value));
 }
 
 void ResolvedWriter::plugin(const OptionInfo& info, PluginSlot& slot) {
@@ -109,40 +107,17 @@ void ResolvedWriter::sweep(const OptionInfo& info, SweepSlot& slot) {
     line({.key = "product", .meaning = "every combination of the values"}, {});
     ++level_;
     for (const SweepAxis& axis : plan.product) {
-      line({.key = axis.path, .meaning = "values"}, axis_text(axis));
+      line({.key = axis.path, .meaning = "values"}, swept_text(axis.values));
     }
     --level_;
   }
-  if (!plan.zip.empty()) {
-    line({.key = "zip", .meaning = "values that vary together"}, {});
-    for (const std::vector<SweepAxis>& group : plan.zip) {
-      std::vector<std::pair<std::string, std::string>> members;
-      for (const SweepAxis& axis : group) members.emplace_back(axis.path, axis_text(axis));
-      item(members);
-    }
-  }
-  points("exclude", "cells left out", plan.exclude);
-  points("include", "cells added", plan.include);
+  const auto maps = [this](std::string_view key, std::string_view meaning, const auto& members) {
+    if (!members.empty()) line({.key = key, .meaning = meaning}, swept_maps(members));
+  };
+  maps("zip", "values that vary together", plan.zip);
+  maps("exclude", "cells left out", plan.exclude);
+  maps("include", "cells added", plan.include);
   --level_;
-}
-
-void ResolvedWriter::points(std::string_view key, std::string_view meaning,
-                            const std::vector<SweepPoint>& points) {
-  if (points.empty()) return;
-  line({.key = key, .meaning = meaning}, {});
-  for (const SweepPoint& point : points) {
-    std::vector<std::pair<std::string, std::string>> members;
-    for (const auto& [path, value] : point) members.emplace_back(path, item_text(value));
-    item(members);
-  }
-}
-
-void ResolvedWriter::item(const std::vector<std::pair<std::string, std::string>>& members) {
-  std::string_view indent = "- ";
-  for (const auto& [key, value] : members) {
-    yaml_ += fmt::format("{}{}{}: {}\n", std::string(2 * level_ + 2, ' '), indent, key, value);
-    indent = "  ";
-  }
 }
 
 std::string yaml_string(const std::string& text) { return nlohmann::json(text).dump(); }

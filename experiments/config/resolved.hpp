@@ -2,25 +2,18 @@
 #pragma once
 
 #include "experiments/config/document.hpp"
-#include "libsim/base/options.hpp"
+#include "experiments/config/value_visitor.hpp"
 
 namespace modcal {
 
 /// Visitor that writes `key: value  # meaning [unit]`, one option a line, indented by two blanks a
 /// level. Optional groups that are absent are left out. A number without a value (NaN, no word)
 /// stays empty: the reader asks for it.
-class ResolvedWriter final : public OptionVisitor {
+class ResolvedWriter final : public ValueVisitor {
  public:
-  explicit ResolvedWriter(std::size_t level = 0) : level_(level) {}
   const std::string& yaml() const { return yaml_; }
 
-  void number(const OptionInfo& info, double& value) override;
-  void numbers(const OptionInfo& info, std::vector<double>& values) override;
-  void integer(const OptionInfo& info, std::int64_t& value) override;
-  void integers(const OptionInfo& info, std::vector<std::int64_t>& values) override;
-  void flag(const OptionInfo& info, bool& value) override;
-  void text(const OptionInfo& info, std::string& value) override;
-  void texts(const OptionInfo& info, std::vector<std::string>& values) override;
+  void value(const OptionInfo& info, OptionValue value) override;
   void plugin(const OptionInfo& info, PluginSlot& slot) override;
   void group(const OptionInfo& info, const VisitMembers& visit_members) override;
   void optional_group(const OptionInfo& info, bool& present,
@@ -30,12 +23,8 @@ class ResolvedWriter final : public OptionVisitor {
 
  private:
   void line(const OptionInfo& info, const std::string& value);
-  // One item of a list of maps.
-  void item(const std::vector<std::pair<std::string, std::string>>& members);
-  void points(std::string_view key, std::string_view meaning,
-              const std::vector<SweepPoint>& points);
 
-  std::size_t level_;
+  std::size_t level_ = 0;
   std::string yaml_;
 };
 

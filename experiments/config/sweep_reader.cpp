@@ -1,10 +1,9 @@
-#include "experiments/config/reader.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 
+#include "experiments/config/reader.hpp"
 #include "experiments/config/resolved.hpp"
 
 namespace modcal {

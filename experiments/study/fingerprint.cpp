@@ -5,31 +5,17 @@
 
 #include <system_error>
 
+#include "experiments/config/value_visitor.hpp"
+
 namespace modcal {
 namespace {
 
-class FingerprintWriter final : public OptionVisitor {
+class FingerprintWriter final : public ValueVisitor {
  public:
   std::string line;
 
-  void number(const OptionInfo& info, double& value) override {
-    add(info, fmt::format("{:a}", value));
-  }
-  void numbers(const OptionInfo& info, std::vector<double>& values) override {
-    add(info, fmt::format("{:a}", fmt::join(values, ",")));
-  }
-  void integer(const OptionInfo& info, std::int64_t& value) override {
-    add(info, fmt::format("{}", value));
-  }
-  void integers(const OptionInfo& info, std::vector<std::int64_t>& values) override {
-    add(info, fmt::format("{}", fmt::join(values, ",")));
-  }
-  void flag(const OptionInfo& info, bool& value) override { add(info, value ? "true" : "false"); }
-  void text(const OptionInfo& info, std::string& value) override {
-    add(info, fmt::format("{}:{}", value.size(), value));
-  }
-  void texts(const OptionInfo& info, std::vector<std::string>& values) override {
-    for (std::string& value : values) text(info, value);
+  void value(const OptionInfo& info, OptionValue value) override {
+    std::visit([&](const auto* held) { write(info, *held); }, value);
   }
   void plugin(const OptionInfo& info, PluginSlot& slot) override {
     add(info, std::string(slot.selected()));
@@ -54,6 +40,23 @@ class FingerprintWriter final : public OptionVisitor {
   void sweep(const OptionInfo& /*info*/, SweepSlot& /*slot*/) override {}
 
  private:
+  template <typename Value>
+  void write(const OptionInfo& info, const Value& value) {
+    if constexpr (std::is_same_v<Value, std::vector<std::string>>) {
+      for (const std::string& text : value) write(info, text);
+    } else if constexpr (std::is_same_v<Value, std::string>) {
+      add(info, fmt::format("{}:{}", value.size(), value));
+    } else if constexpr (std::is_same_v<Value, double>) {
+      add(info, fmt::format("{:a}", value));
+    } else if constexpr (std::is_same_v<Value, std::vector<double>>) {
+      add(info, fmt::format("{:a}", fmt::join(value, ",")));
+    } else if constexpr (std::is_integral_v<Value>) {
+      add(info, fmt::format("{}", value));
+    } else {
+      add(info, fmt::format("{}", fmt::join(value, ",")));
+    }
+  }
+
   void add(const OptionInfo& info, const std::string& value) {
     line += fmt::format("{}={};", info.key, value);
   }
