@@ -14,14 +14,15 @@ struct Finding {
 
 /// The simulations of a run, by one of them.
 struct PlannedSimulations {
-  Scene scene;
-  Choice<Simulator> simulator;
+  TruthOptions truth;
   double sample_rate = 0.0;
   OutputRequest outputs;
   std::size_t count = 1;  ///< distinct ones
   /// Those of other scenes: plucks beside strokes.
   std::vector<PlannedSimulations> others = {};
 };
+
+struct LimitQuestion;
 
 class Experiment {
  public:
@@ -37,6 +38,8 @@ class Experiment {
   virtual std::optional<PlannedSimulations> planned_simulations() const { return std::nullopt; }
   /// Recorded files whose content a run depends on, from the folder of the experiment's file.
   virtual std::vector<std::string> files_read() const { return {}; }
+  /// What it calibrates, whose limit can be stated; null where it calibrates nothing.
+  virtual std::shared_ptr<const LimitQuestion> limit_question() const { return nullptr; }
   virtual StudyResult run(const StudyContext& context) const = 0;
 };
 

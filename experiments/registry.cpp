@@ -12,20 +12,18 @@ Registry<Experiment> Experiment::registry() {
   static constexpr std::array kTable = {
       entry_of<Experiment, BenchmarkExperiment>(
           "benchmark", "objectives and optimizers on the same truths, noise and starts"),
-      kind_of<CalibrateExperiment>(
-          "calibrate", "refine the modal model, then identify force and motion with it"),
+      kind_of<CalibrateOptions>("calibrate",
+                                "refine the modal model, then identify force and motion with it"),
       entry_of<Experiment, CalibrationLimitExperiment>(
           "calibration_limit", "calibration error against noise beside the Cramer-Rao bound"),
-      kind_of<StudyExperiment<IdentifyOptions>>("identify",
-                                                "modes of a plucked string from its end reactions"),
-      kind_of<StudyExperiment<InvertOptions>>(
-          "invert", "contact force and motion from simulated or recorded reactions"),
-      kind_of<StudyExperiment<PluckThenBowOptions>>(
+      kind_of<IdentifyOptions>("identify", "modes of a plucked string from its end reactions"),
+      kind_of<InvertOptions>("invert",
+                             "contact force and motion from simulated or recorded reactions"),
+      kind_of<PluckThenBowOptions>(
           "pluck_then_bow", "pluck test, law, refinement and contact on a stroke, identification"),
       entry_of<Experiment, SchellengExperiment>(
           "schelleng", "which motion a steady bow stroke settles in, over positions and forces"),
-      kind_of<StudyExperiment<SimulateOptions>>("simulate",
-                                                "a bowed string, its signals and figures"),
+      kind_of<SimulateOptions>("simulate", "a bowed string, its signals and figures"),
       entry_of<Experiment, SweepExperiment>(
           "sweep", "the same inversion over axes of settings, summed up in a table"),
   };

@@ -1,7 +1,6 @@
 // run, validate and limit: what is done with an experiment file as a whole.
-#include <nlohmann/json.hpp>
-
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "experiments/cli/build_info.hpp"
 #include "experiments/cli/runner.hpp"
@@ -86,12 +85,12 @@ void declare_limit(CLI::App& command, FileArguments& arguments) { arguments.decl
 ExitCode limit(const FileArguments& arguments) {
   const auto loaded = load_and_print_mistakes(arguments.file, arguments.assignments);
   if (!loaded) return ExitCode::kInvalidInput;
-  const auto* source = dynamic_cast<const LimitSource*>(loaded->experiment.get());
-  MODCAL_REQUIRE(source != nullptr,
+  const auto question = loaded->experiment->limit_question();
+  MODCAL_REQUIRE(question != nullptr,
                  "{} is no calibration: limits exist for the kinds calibrate and calibration_limit",
                  arguments.file);
   TruthCache truths;
-  fmt::print("{}", limit_text(source->limit_question(), truths));
+  fmt::print("{}", limit_text(*question, truths));
   return ExitCode::kOk;
 }
 

@@ -80,10 +80,11 @@ Price price_of_tasks(const TaskExperiment& list, std::size_t simulations,
 
 // Price of the simulations alone.
 Price price_of_simulations(const SimulationPlan& plan, const PlannedSimulations& planned) {
-  return {.core_seconds = static_cast<double>(planned.count) * plan.seconds(planned.scene.duration),
+  const double duration = planned.truth.scene.duration;
+  return {.core_seconds = static_cast<double>(planned.count) * plan.seconds(duration),
           .disk_bytes = {},
           .basis = fmt::format("the simulation alone, measured on the first {:.3g} s of {:g} s",
-                               plan.piece, planned.scene.duration)};
+                               plan.piece, duration)};
 }
 
 // "27.3 core-seconds (0.00758 core-hours), 13.6 s on 2 threads, 0.94 MB on disk".
@@ -98,6 +99,11 @@ std::string text_of(const Price& price, std::size_t threads) {
   return text;
 }
 
+SimulationPlan plan_of(const PlannedSimulations& planned) {
+  return plan_simulation(planned.truth.scene, *planned.truth.simulator.make(), planned.sample_rate,
+                         planned.outputs);
+}
+
 struct Plan {
   std::vector<std::string> lines;
   std::optional<SimulationPlan> simulation;
@@ -109,9 +115,8 @@ Plan make_plan(const LoadedExperiment& loaded) {
   Plan plan{.lines = loaded.experiment->plan(), .simulation = {}, .price = {}};
   const auto planned = loaded.experiment->planned_simulations();
   if (planned) {
-    plan.duration = planned->scene.duration;
-    plan.simulation = plan_simulation(planned->scene, *planned->simulator.make(),
-                                      planned->sample_rate, planned->outputs);
+    plan.duration = planned->truth.scene.duration;
+    plan.simulation = plan_of(*planned);
   }
   const auto* list = dynamic_cast<const TaskExperiment*>(loaded.experiment.get());
   if (list != nullptr) {
@@ -125,9 +130,7 @@ Plan make_plan(const LoadedExperiment& loaded) {
   } else if (planned) {
     plan.price = price_of_simulations(*plan.simulation, *planned);
     for (const PlannedSimulations& other : planned->others) {
-      const SimulationPlan one =
-          plan_simulation(other.scene, *other.simulator.make(), other.sample_rate, other.outputs);
-      plan.price->core_seconds += price_of_simulations(one, other).core_seconds;
+      plan.price->core_seconds += price_of_simulations(plan_of(other), other).core_seconds;
     }
   }
   return plan;

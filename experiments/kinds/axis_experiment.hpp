@@ -90,9 +90,7 @@ class AxisList final : public SweepSlot {
 };
 
 /// Whether the value of this option tells draws of one setting apart.
-inline bool is_seed_axis(const std::string& path) {
-  return ("." + path).ends_with(".seed");
-}
+inline bool is_seed_axis(const std::string& path) { return ("." + path).ends_with(".seed"); }
 
 // Lists of tasks over the options of a kind of experiment: an axis list, whatever sums it up.
 
@@ -128,14 +126,20 @@ class ProductExperiment : public TaskExperiment {
   std::vector<SweepAxis> axes_;
 };
 
-/// An axis list over a kind of experiment: `Kind` is an Experiment made from its nested `Options`.
+/// Recorded files that options name, where they can.
+template <typename Options>
+std::vector<std::string> files_read_by(const Options& options) {
+  if constexpr (requires { options.files_read(); }) return options.files_read();
+  return {};
+}
+
+/// An axis list over a kind of experiment: `Cell` are the options of the kind (StudyExperiment).
 /// `Settings` are the options of the list beside those of its cells: a type with visit() and
 /// kNeedsAxes, whether the axes must be stated. What one task leaves and how outcomes are summed up
 /// is for the derived class to say.
-template <typename Kind, typename Settings>
+template <typename Cell, typename Settings>
 class AxisExperiment : public TaskExperiment {
  public:
-  using Cell = typename Kind::Options;
   struct Options {
     Cell base;
     Settings list;
@@ -155,7 +159,7 @@ class AxisExperiment : public TaskExperiment {
   std::vector<Finding> lint() const override {
     std::vector<Finding> findings;
     for (const Cell& cell : options_.cells.all()) {
-      for (Finding& finding : Kind(cell).lint()) {
+      for (Finding& finding : cell.lint()) {
         if (!is_excused(cell, finding)) findings.push_back(std::move(finding));
       }
     }
@@ -166,9 +170,8 @@ class AxisExperiment : public TaskExperiment {
   }
   std::optional<PlannedSimulations> planned_simulations() const override {
     const std::vector<Cell>& cells = options_.cells.all();
-    return planned_together(
-        Kind(options_.base).planned_simulations(), cells.size(),
-        [&cells](std::size_t i) { return Kind(cells[i]).planned_simulations(); });
+    return planned_together(options_.base.planned_simulations(), cells.size(),
+                            [&cells](std::size_t i) { return cells[i].planned_simulations(); });
   }
   std::size_t task_count() const override { return options_.cells.size(); }
   std::vector<std::string> axes() const override { return options_.cells.paths(); }
@@ -181,7 +184,7 @@ class AxisExperiment : public TaskExperiment {
                          cell.visit(visitor);
                          visit_scoring(visitor);
                        });
-    for (const std::string& file : Kind(std::move(cell)).files_read()) {
+    for (const std::string& file : files_read_by(cell)) {
       text += record_fingerprint(folder / file);
     }
     return text;
@@ -190,7 +193,7 @@ class AxisExperiment : public TaskExperiment {
   StudyResult replay(std::size_t task, const StudyContext& context) const override {
     Cell cell = options_.cells[task];
     draw_all(cell);
-    return Kind(std::move(cell)).run(context);
+    return cell.run(context);
   }
 
  protected:

@@ -4,25 +4,25 @@
 
 namespace modcal {
 
-/// A kind whose options do all the work: lint(), plan(), planned_simulations() and run().
-template <typename OptionsOfKind>
-class StudyExperiment : public Experiment {
+/// A kind whose options do all the work: lint(), plan(), planned_simulations() and run(); where
+/// they have them files_read() and limit_question().
+template <typename Options>
+class StudyExperiment final : public Experiment {
  public:
-  using Options = OptionsOfKind;
   explicit StudyExperiment(Options options) : options_(std::move(options)) {}
   std::vector<Finding> lint() const override { return options_.lint(); }
   std::vector<std::string> plan() const override { return options_.plan(); }
   std::optional<PlannedSimulations> planned_simulations() const override {
     return options_.planned_simulations();
   }
-  std::vector<std::string> files_read() const override {
-    if constexpr (requires { options_.files_read(); }) return options_.files_read();
-    return {};
+  std::vector<std::string> files_read() const override { return files_read_by(options_); }
+  std::shared_ptr<const LimitQuestion> limit_question() const override {
+    if constexpr (requires { options_.limit_question(); }) {
+      return std::make_shared<const LimitQuestion>(options_.limit_question());
+    }
+    return nullptr;
   }
   StudyResult run(const StudyContext& context) const override { return options_.run(context); }
-
- protected:
-  const Options& options() const { return options_; }
 
  private:
   Options options_;
@@ -52,15 +52,15 @@ struct KindListSettings {
 };
 
 /// An experiment of any kind over axes of its options.
-template <typename Kind>
-class KindList final : public AxisExperiment<Kind, KindListSettings> {
+template <typename Options>
+class KindList final : public AxisExperiment<Options, KindListSettings> {
  public:
-  using AxisExperiment<Kind, KindListSettings>::AxisExperiment;
+  using AxisExperiment<Options, KindListSettings>::AxisExperiment;
   std::string run_task(std::size_t task, const StudyContext& context) const override {
     StudyContext quiet = context;  // the list reports the progress
     quiet.progress = [](double) {};
     return report::json_line(
-        attempted([&] { return run_outcome(Kind(this->options_.cells[task]).run(quiet)); }));
+        attempted([&] { return run_outcome(this->options_.cells[task].run(quiet)); }));
   }
   StudyResult sum_up(const TaskOutcomes& outcomes, const StudyContext& /*context*/) const override {
     return sum_up_runs(*this, outcomes);
@@ -68,27 +68,27 @@ class KindList final : public AxisExperiment<Kind, KindListSettings> {
 };
 
 /// Options of a kind and, where they state axes, of a list of it.
-template <typename Kind>
+template <typename Options>
 class KindRecipe final : public Recipe<Experiment> {
  public:
   void visit(OptionVisitor& visitor) override { options_.visit(visitor); }
   std::shared_ptr<const Experiment> make() const override {
-    if (options_.cells.size() > 0) return std::make_shared<const KindList<Kind>>(options_);
-    return std::make_shared<const Kind>(options_.base);
+    if (options_.cells.size() > 0) return std::make_shared<const KindList<Options>>(options_);
+    return std::make_shared<const StudyExperiment<Options>>(options_.base);
   }
   std::unique_ptr<Recipe<Experiment>> clone() const override {
     return std::make_unique<KindRecipe>(*this);
   }
 
  private:
-  typename KindList<Kind>::Options options_;
+  typename AxisExperiment<Options, KindListSettings>::Options options_;
 };
 
-/// Row of the registry: kind_of<SimulateExperiment>("simulate", "summary").
-template <typename Kind>
+/// Row of the registry: kind_of<SimulateOptions>("simulate", "summary").
+template <typename Options>
 constexpr RegistryEntry<Experiment> kind_of(std::string_view name, std::string_view summary) {
   return {name, summary, +[]() -> std::unique_ptr<Recipe<Experiment>> {
-            return std::make_unique<KindRecipe<Kind>>();
+            return std::make_unique<KindRecipe<Options>>();
           }};
 }
 

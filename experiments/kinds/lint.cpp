@@ -191,14 +191,14 @@ namespace {
 
 std::string counted(const PlannedSimulations& planned) {
   return fmt::format(
-      "{} of {:g} s, {} samples at {:g} Hz each", planned.count, planned.scene.duration,
-      sample_count(planned.scene.duration, planned.sample_rate), planned.sample_rate);
+      "{} of {:g} s, {} samples at {:g} Hz each", planned.count, planned.truth.scene.duration,
+      sample_count(planned.truth.scene.duration, planned.sample_rate), planned.sample_rate);
 }
 
 }  // namespace
 
 std::string key_of(const PlannedSimulations& planned) {
-  return truth_key({planned.scene, planned.simulator}, planned.sample_rate, planned.outputs);
+  return truth_key(planned.truth, planned.sample_rate, planned.outputs);
 }
 
 std::string plan_line(const PlannedSimulations& planned) {
@@ -221,8 +221,7 @@ std::optional<PlannedSimulations> planned_truths(const ObservationOptions& obser
   if (!observation.has_scene) return std::nullopt;
   outputs.left_reaction = true;
   outputs.right_reaction = true;
-  return PlannedSimulations{observation.truth.scene, observation.truth.simulator,
-                            observation.measurement.sample_rate, outputs, count};
+  return PlannedSimulations{observation.truth, observation.measurement.sample_rate, outputs, count};
 }
 
 }  // namespace modcal

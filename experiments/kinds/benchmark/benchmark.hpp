@@ -230,7 +230,7 @@ std::vector<std::size_t> condition_choices(const BenchmarkGrid& grid);
 std::vector<std::size_t> spread_indices(std::size_t size, std::size_t count);
 
 /// Kind "benchmark": objectives and optimizers on the same truths, noise and starts.
-class BenchmarkExperiment final : public AxisExperiment<CalibrateExperiment, SuccessOptions> {
+class BenchmarkExperiment final : public AxisExperiment<CalibrateOptions, SuccessOptions> {
  public:
   using AxisExperiment::AxisExperiment;
   std::vector<Finding> lint() const override;

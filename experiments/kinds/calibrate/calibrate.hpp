@@ -1,4 +1,5 @@
-// Experiments whose calibration has a limit that `modcal limit` can state.
+// Kind "calibrate": refine the modal model by an objective, then identify force and motion with it;
+// and the limit of a calibration, which `modcal limit` can state.
 #pragma once
 
 #include "experiments/kinds/invert/invert.hpp"
@@ -22,12 +23,6 @@ struct LimitQuestion {
 
   /// Takes the band, τ and the unknowns of a calibration.
   void calibrate_by(const CalibrationOptions& calibration);
-};
-
-class LimitSource {
- public:
-  virtual ~LimitSource() = default;
-  virtual LimitQuestion limit_question() const = 0;
 };
 
 /// The records of the question without noise, simulated through the cache, and the bounds. Throws
@@ -76,8 +71,6 @@ std::vector<CalibrationRecord> observe_plucks(const std::vector<PluckRecordOptio
                                               const ObservationOptions& first, const StreamKey& key,
                                               const StudyContext& context);
 
-// Kind "calibrate": refine the modal model by an objective, then identify with it.
-
 /// Further strokes of the same string, fitted together with the first: simulated ones at further
 /// contact points, or further recorded files laid out as the first.
 struct FurtherStrokes {
@@ -99,6 +92,12 @@ struct CalibrateOptions {
   bool audio = false;  ///< players in the report
   void visit(OptionVisitor& visitor);
   std::int64_t& seed_slot() { return inversion.seed; }
+  std::vector<Finding> lint() const;
+  std::vector<std::string> plan() const;
+  std::optional<PlannedSimulations> planned_simulations() const;
+  std::vector<std::string> files_read() const;
+  LimitQuestion limit_question() const;
+  StudyResult run(const StudyContext& context) const;
 };
 
 /// A calibration together with what it is judged by.
@@ -131,8 +130,6 @@ CalibrationData calibration_data(const Observation& observation);
 
 /// Clock that ends a search with Interrupted where the context says so.
 SecondsClock polling_clock(const StudyContext& context);
-
-StudyResult calibrate_study(const CalibrateOptions& options, const StudyContext& context);
 
 /// Where a mode's frequency comes from and why: "from the law (node)".
 std::string verdict_text(const ModeVerdict& mode);
@@ -203,23 +200,5 @@ std::string correlations_with(const std::vector<std::string>& names,
 
 /// One line a parameter: name, standard deviation, unit, correlations with those before it.
 std::string correlation_lines(const NamedCovariance& covariance);
-
-/// Kind "calibrate": refine the modal model, then identify force and motion with it.
-class CalibrateExperiment final : public Experiment, public LimitSource {
- public:
-  using Options = CalibrateOptions;
-  explicit CalibrateExperiment(Options options) : options_(std::move(options)) {}
-  std::vector<Finding> lint() const override;
-  std::vector<std::string> plan() const override;
-  std::optional<PlannedSimulations> planned_simulations() const override;
-  std::vector<std::string> files_read() const override;
-  LimitQuestion limit_question() const override;
-  StudyResult run(const StudyContext& context) const override {
-    return calibrate_study(options_, context);
-  }
-
- private:
-  Options options_;
-};
 
 }  // namespace modcal

@@ -93,9 +93,9 @@ void lint_simulated(const std::string& path, const PluckRecordOptions& pluck,
 
 }  // namespace
 
-std::vector<Finding> CalibrateExperiment::lint() const {
-  std::vector<Finding> findings = lint_inversion(options_.inversion);
-  lint_sensors(options_, findings);
+std::vector<Finding> CalibrateOptions::lint() const {
+  std::vector<Finding> findings = lint_inversion(inversion);
+  lint_sensors(*this, findings);
   const auto refuse = [&findings](bool stated, const char* key) {
     if (!stated) return;
     add_finding(findings, key,
@@ -103,79 +103,74 @@ std::vector<Finding> CalibrateExperiment::lint() const {
                 "leave it out, or state {0} in an experiment of kind: invert",
                 key);
   };
-  refuse(options_.inversion.wave_based, "wave_based");
-  refuse(options_.inversion.has_model_based, "model_based");
-  append(findings,
-         lint_figures(options_.inversion.figures, {"waveforms", "spectra", "parameter_curves",
-                                                   "objectives", "frequency_errors"}));
-  const CalibrationOptions& calibration = options_.calibration;
+  refuse(inversion.wave_based, "wave_based");
+  refuse(inversion.has_model_based, "model_based");
+  append(findings, lint_figures(inversion.figures, {"waveforms", "spectra", "parameter_curves",
+                                                    "objectives", "frequency_errors"}));
   lint_making(findings, "calibration.objective", [&] { calibration.objective.make(); });
   lint_making(findings, "calibration.optimizer", [&] { calibration.optimizer.make(); });
   lint_pairing(calibration, findings);
   lint_making(findings, "calibration.budget", [&] { calibration.budget.require_valid(); });
-  lint_making(findings, "further_strokes", [&] {
-    options_.further.require_fit_to(options_.inversion.observation, calibration);
-  });
-  append(findings, lint_plucks(options_.plucks, options_.inversion.observation, calibration));
-  lint_noise(options_, findings);
-  const auto modes = static_cast<std::size_t>(options_.inversion.observation.string_model().modes);
-  const std::size_t strokes = 1 + options_.further.contacts.size() + options_.further.files.size();
+  lint_making(findings, "further_strokes",
+              [&] { further.require_fit_to(inversion.observation, calibration); });
+  append(findings, lint_plucks(plucks, inversion.observation, calibration));
+  lint_noise(*this, findings);
+  const auto modes = static_cast<std::size_t>(inversion.observation.string_model().modes);
+  const std::size_t strokes = 1 + further.contacts.size() + further.files.size();
   append(findings, lint_priors("calibration.parameters", calibration.parameters.unknowns,
-                               options_.inversion.observation.string_model(),
-                               strokes + options_.plucks.size()));
+                               inversion.observation.string_model(), strokes + plucks.size()));
   lint_making(findings, "calibration.parameters", [&] {
-    calibration.require_read(strokes, options_.plucks.size());
+    calibration.require_read(strokes, plucks.size());
     calibration.objective.make()->require_moved_by(calibration.parameters.names(modes));
   });
   return findings;
 }
 
-std::vector<std::string> CalibrateExperiment::plan() const {
+std::vector<std::string> CalibrateOptions::plan() const {
   std::vector<std::string> lines;
-  const ObservationOptions& observation = options_.inversion.observation;
+  const ObservationOptions& observation = inversion.observation;
   const auto planned = planned_simulations();
   lines.push_back(planned ? plan_line(*planned) : "record: " + observation.record.file);
   const auto modes = static_cast<std::size_t>(observation.string_model().modes);
-  const CalibrationOptions& calibration = options_.calibration;
   lines.push_back(
       fmt::format("calibration: {} parameters asked for, objective {}, optimizer {}, at "
                   "most {} evaluations",
                   calibration.parameters.names(modes).size(), calibration.objective.selected(),
                   calibration.optimizer.selected(), calibration.budget.evaluations));
-  const std::size_t further = options_.further.contacts.size() + options_.further.files.size();
-  if (further > 0) lines.push_back(fmt::format("strokes fitted together: {}", further + 1));
-  if (!options_.plucks.empty()) {
-    lines.push_back(fmt::format("plucks fitted with them: {}", options_.plucks.size()));
+  const std::size_t more = further.contacts.size() + further.files.size();
+  if (more > 0) lines.push_back(fmt::format("strokes fitted together: {}", more + 1));
+  if (!plucks.empty()) {
+    lines.push_back(fmt::format("plucks fitted with them: {}", plucks.size()));
   }
   return lines;
 }
 
-std::optional<PlannedSimulations> CalibrateExperiment::planned_simulations() const {
-  const ObservationOptions& first = options_.inversion.observation;
-  auto planned = planned_truths(first, truth_outputs(options_.inversion.figures),
-                                1 + options_.further.contacts.size());
-  for (const PluckRecordOptions& pluck : options_.plucks) {
+std::optional<PlannedSimulations> CalibrateOptions::planned_simulations() const {
+  const ObservationOptions& first = inversion.observation;
+  auto planned =
+      planned_truths(first, truth_outputs(inversion.figures), 1 + further.contacts.size());
+  for (const PluckRecordOptions& pluck : plucks) {
     if (planned && pluck.file.empty()) add_planned(pluck.observation(first), *planned);
   }
   return planned;
 }
 
-std::vector<std::string> CalibrateExperiment::files_read() const {
-  std::vector<std::string> files = options_.inversion.files_read();
-  files.insert(files.end(), options_.further.files.begin(), options_.further.files.end());
-  for (const PluckRecordOptions& pluck : options_.plucks) {
+std::vector<std::string> CalibrateOptions::files_read() const {
+  std::vector<std::string> files = inversion.files_read();
+  files.insert(files.end(), further.files.begin(), further.files.end());
+  for (const PluckRecordOptions& pluck : plucks) {
     if (!pluck.file.empty()) files.push_back(pluck.file);
   }
   return files;
 }
 
-LimitQuestion CalibrateExperiment::limit_question() const {
-  const ObservationOptions& first = options_.inversion.observation;
+LimitQuestion CalibrateOptions::limit_question() const {
+  const ObservationOptions& first = inversion.observation;
   LimitQuestion question{.observation = first,
                          .noise_level = first.measurement.noise_level,
-                         .further_contacts = options_.further.contacts};
-  question.calibrate_by(options_.calibration);
-  for (const PluckRecordOptions& pluck : options_.plucks) {
+                         .further_contacts = further.contacts};
+  question.calibrate_by(calibration);
+  for (const PluckRecordOptions& pluck : plucks) {
     question.plucks.push_back(pluck.observation(first));
   }
   return question;

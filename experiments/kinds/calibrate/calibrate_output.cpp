@@ -185,9 +185,8 @@ void CalibrationOutcome::visit(ResultVisitor& visitor) const {
   });
   visitor({.key = "stiff_string_law", .optional = true}, law);
   if (!found) return;
-  visitor.group({.key = "continuation", .shown = kInJson}, [&](ResultVisitor& members) {
-    visit_estimate(members, *found);
-  });
+  visitor.group({.key = "continuation", .shown = kInJson},
+                [&](ResultVisitor& members) { visit_estimate(members, *found); });
 }
 
 report::Figure objective_figure(const FigureOptions& options, const CalibrationOutcome& outcome) {

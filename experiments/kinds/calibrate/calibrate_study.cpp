@@ -181,21 +181,19 @@ CalibrationOutcome calibrate_strokes(const CalibrateOptions& options,
   return outcome;
 }
 
-StudyResult calibrate_study(const CalibrateOptions& options, const StudyContext& context) {
-  const InvertOptions& inversion = options.inversion;
+StudyResult CalibrateOptions::run(const StudyContext& context) const {
   OutputRequest outputs = truth_outputs(inversion.figures);
-  if (options.audio) outputs.velocity = true;
+  if (audio) outputs.velocity = true;
   const Observation measured =
       observe(inversion.observation, outputs, context.work.truths, inversion.key(), context.folder);
-  options.further.require_fit_to(inversion.observation, options.calibration);
-  require_sensors_once(options.calibration, *inversion.inversion.estimator.make());
-  std::vector<Observation> strokes = further_observations(options, context);
+  further.require_fit_to(inversion.observation, calibration);
+  require_sensors_once(calibration, *inversion.inversion.estimator.make());
+  std::vector<Observation> strokes = further_observations(*this, context);
   strokes.insert(strokes.begin(), measured);
-  require_plucks(options.plucks, inversion.observation, options.calibration);
-  const std::vector<CalibrationRecord> plucks =
-      observe_plucks(options.plucks, inversion.observation, inversion.key(), context);
+  require_plucks(plucks, inversion.observation, calibration);
   const CalibrationOutcome outcome =
-      calibrate_strokes(options, strokes, polling_clock(context), plucks);
+      calibrate_strokes(*this, strokes, polling_clock(context),
+                        observe_plucks(plucks, inversion.observation, inversion.key(), context));
   context.throw_if_interrupted();
   const Sensor& sensors = outcome.result.model.sensors;
   const Observation observation = with_sensors_alike(measured, sensors);
@@ -219,8 +217,8 @@ StudyResult calibrate_study(const CalibrateOptions& options, const StudyContext&
   add_warnings(observation, sides, result);
   add_search_figures(inversion.figures, outcome, result);
   add_identification_figures(inversion.figures, observation, sides, result);
-  if (options.audio) {
-    result.blocks.emplace_back(calibration_audio(options, observation, outcome.refined));
+  if (audio) {
+    result.blocks.emplace_back(calibration_audio(*this, observation, outcome.refined));
   }
   if (const auto& found = outcome.result.continuation) {
     result.summary += covariance_text(*found);

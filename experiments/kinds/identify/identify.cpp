@@ -104,8 +104,7 @@ std::vector<std::string> IdentifyOptions::plan() const {
 }
 
 std::optional<PlannedSimulations> IdentifyOptions::planned_simulations() const {
-  return PlannedSimulations{.scene = truth.scene,
-                            .simulator = truth.simulator,
+  return PlannedSimulations{.truth = truth,
                             .sample_rate = measurement.sample_rate,
                             .outputs = {.left_reaction = true, .right_reaction = true}};
 }

@@ -180,8 +180,9 @@ std::optional<PlannedSimulations> CalibrationLimitExperiment::planned_simulation
   return planned_truths(options_.observation, {.left_reaction = true, .right_reaction = true});
 }
 
-LimitQuestion CalibrationLimitExperiment::limit_question() const {
-  return limit_question_of(options_, options_.noise_levels.front());
+std::shared_ptr<const LimitQuestion> CalibrationLimitExperiment::limit_question() const {
+  return std::make_shared<const LimitQuestion>(
+      limit_question_of(options_, options_.noise_levels.front()));
 }
 
 // Of a cell: any list that has it shares its outcome.

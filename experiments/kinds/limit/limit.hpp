@@ -67,14 +67,14 @@ LimitTruth limit_truth(const ObservationOptions& observation, double noise_level
                        TruthCache& truths, OutputRequest outputs = {});
 
 /// Kind "calibration_limit": noise levels by seeds.
-class CalibrationLimitExperiment final : public ProductExperiment, public LimitSource {
+class CalibrationLimitExperiment final : public ProductExperiment {
  public:
   using Options = CalibrationLimitOptions;
   explicit CalibrationLimitExperiment(Options options);
   std::vector<Finding> lint() const override;
   std::vector<std::string> plan() const override;
   std::optional<PlannedSimulations> planned_simulations() const override;
-  LimitQuestion limit_question() const override;
+  std::shared_ptr<const LimitQuestion> limit_question() const override;
 
   std::string fingerprint(std::size_t task, const std::filesystem::path& folder) const override;
   std::string run_task(std::size_t task, const StudyContext& context) const override;

@@ -162,11 +162,11 @@ std::vector<std::string> SchellengExperiment::plan() const {
 std::optional<PlannedSimulations> SchellengExperiment::planned_simulations() const {
   const std::size_t middle =
       options_.cells() / 2 + static_cast<std::size_t>(options_.positions.count) / 2;
-  return PlannedSimulations{.scene = options_.cell_scene(std::min(middle, options_.cells() - 1)),
-                            .simulator = options_.simulator,
-                            .sample_rate = options_.sample_rate,
-                            .outputs = options_.outputs(),
-                            .count = options_.cells()};
+  return PlannedSimulations{
+      .truth = {options_.cell_scene(std::min(middle, options_.cells() - 1)), options_.simulator},
+      .sample_rate = options_.sample_rate,
+      .outputs = options_.outputs(),
+      .count = options_.cells()};
 }
 
 // The axes are left out: a cell is the same in any map that has it.

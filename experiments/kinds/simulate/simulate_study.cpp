@@ -49,10 +49,8 @@ std::vector<std::string> SimulateOptions::plan() const {
 }
 
 std::optional<PlannedSimulations> SimulateOptions::planned_simulations() const {
-  return PlannedSimulations{.scene = truth.scene,
-                            .simulator = truth.simulator,
-                            .sample_rate = measurement.sample_rate,
-                            .outputs = request_of(outputs)};
+  return PlannedSimulations{
+      .truth = truth, .sample_rate = measurement.sample_rate, .outputs = request_of(outputs)};
 }
 
 namespace {

@@ -106,7 +106,7 @@ void sum_up_sweep(const SweepOptions& options, const std::vector<std::string>& a
                   StudyResult& result);
 
 /// Kind "sweep": the same inversion over axes of settings, summed up in a table.
-class SweepExperiment final : public AxisExperiment<StudyExperiment<InvertOptions>, SweepOptions> {
+class SweepExperiment final : public AxisExperiment<InvertOptions, SweepOptions> {
  public:
   using AxisExperiment::AxisExperiment;
   std::vector<Finding> lint() const override;

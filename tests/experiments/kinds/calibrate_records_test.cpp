@@ -88,7 +88,7 @@ TEST_F(CalibrateRecords, FindFromARecordedPluckWhatASimulatedOneTells) {
       "pluck", {.position = 0.043, .displacement = 1e-3, .width = 3e-3});
   pluck.duration = 0.3;
   options.plucks = {pluck};
-  const json direct = calibration_of(calibrate_study(options, context()));
+  const json direct = calibration_of(options.run(context()));
 
   const Observation observed = stroke(options);
   write("stroke.csv",
@@ -126,7 +126,7 @@ TEST_F(CalibrateRecords, FailByThePriorsWhereTheFitIsNotWrong) {
   CalibrateOptions options = simulated(0.3, 51200.0);
   options.calibration.parameters.unknowns.priors = {
       {.parameter = "x_c", .mean = 30.1e-3, .deviation = 1e-5}};
-  const StudyResult result = calibrate_study(options, context());
+  const StudyResult result = options.run(context());
   EXPECT_TRUE(calibration_of(result)["continuation"]["fits"].get<bool>());
   EXPECT_EQ(result.status, report::Status::kFailed);
   EXPECT_THAT(result.summary, testing::HasSubstr("warning: the data contradict the priors stated"));

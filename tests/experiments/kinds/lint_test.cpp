@@ -315,9 +315,9 @@ TEST(PlanPlucks, CountsTheirSimulationsOnce) {
   const auto two = planned_of(plucks(one, other));
   ASSERT_EQ(two->others.size(), 2u);
   EXPECT_EQ(two->count, 1u);
-  EXPECT_EQ(two->others[0].scene.duration, 0.5);
-  EXPECT_EQ(two->others[0].scene.bow.normal_force, 0.0);
-  EXPECT_EQ(two->others[1].scene.duration, 1.0);
+  EXPECT_EQ(two->others[0].truth.scene.duration, 0.5);
+  EXPECT_EQ(two->others[0].truth.scene.bow.normal_force, 0.0);
+  EXPECT_EQ(two->others[1].truth.scene.duration, 1.0);
   EXPECT_EQ(planned_of(plucks(one, one))->others.size(), 1u);
   const LoadedExperiment loaded = load_experiment(parse_yaml(plucks(one, other), "scene.yaml"));
   EXPECT_THAT(loaded.experiment->plan().front(), testing::HasSubstr("1 of 0.5 s"));

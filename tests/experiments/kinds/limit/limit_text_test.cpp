@@ -30,7 +30,7 @@ std::string limit_of(const std::string& text) {
   const LoadedExperiment loaded = load_experiment(parse_yaml(text, "scene.yaml"));
   EXPECT_FALSE(loaded.has_errors()) << format_mistakes(loaded.document, loaded.mistakes);
   TruthCache truths;
-  return limit_text(dynamic_cast<const LimitSource&>(*loaded.experiment).limit_question(), truths);
+  return limit_text(*loaded.experiment->limit_question(), truths);
 }
 
 TEST(LimitText, NamesBlindModesAndContactsWithoutThem) {
