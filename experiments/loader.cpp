@@ -1,6 +1,5 @@
 #include "experiments/loader.hpp"
 
-#include <charconv>
 #include <regex>
 
 #include "experiments/config/reader.hpp"
@@ -9,22 +8,13 @@
 namespace modcal {
 namespace {
 
-// Member of a map by its key, item of a list by its index.
-const YamlNode* child_of(const YamlNode& node, std::string_view name) {
-  if (node.kind != YamlNode::Kind::kSequence) return node.find(name);
-  std::size_t index = 0;
-  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), index);
-  const bool is_index = error == std::errc() && end == name.data() + name.size();
-  return is_index && index < node.items.size() ? &node.items[index] : nullptr;
-}
-
 // Position of the deepest existing part of a dotted path ("plucks.0.duration").
 SourcePosition position_of_path(const YamlNode& root, std::string_view path) {
   const YamlNode* node = &root;
   SourcePosition position = root.position;
   while (!path.empty()) {
     const std::size_t dot = path.find('.');
-    node = child_of(*node, path.substr(0, dot));
+    node = node->child(path.substr(0, dot));
     if (node == nullptr) break;
     position = node->position;
     if (dot == std::string_view::npos) break;

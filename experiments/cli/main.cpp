@@ -2,8 +2,8 @@
 #include <cstdio>
 
 #include "experiments/cli/command.hpp"
-#include "experiments/cli/terminal.hpp"
 #include "experiments/cli/provenance.hpp"
+#include "experiments/cli/terminal.hpp"
 #include "experiments/config/reader.hpp"
 
 namespace modcal {

@@ -4,9 +4,9 @@
 
 #include <cstdio>
 
-#include "experiments/cli/terminal.hpp"
-#include "experiments/cli/runner.hpp"
 #include "experiments/cli/run_folder.hpp"
+#include "experiments/cli/runner.hpp"
+#include "experiments/cli/terminal.hpp"
 
 namespace modcal {
 namespace {

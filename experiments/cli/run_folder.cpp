@@ -2,7 +2,6 @@
 
 #include <unistd.h>
 
-#include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <system_error>
@@ -43,16 +42,6 @@ OutputDirectory::OutputDirectory(std::filesystem::path path) : path_(std::move(p
   MODCAL_REQUIRE(good,
                  "the output folder {} cannot be written to: {}; choose another one with --out",
                  path_.string(), reason);
-}
-
-void OutputDirectory::write_text(std::string_view name, std::string_view content) const {
-  replace_file(path_ / name, [&](const std::filesystem::path& temporary) {
-    std::ofstream stream(temporary, std::ios::binary);
-    stream.write(content.data(), static_cast<std::streamsize>(content.size()));
-    stream.close();
-    MODCAL_REQUIRE(stream.good(), "{} cannot be written: {}", (path_ / name).string(),
-                   std::strerror(errno));
-  });
 }
 
 StoredRun::StoredRun(std::filesystem::path out) : out_(std::move(out)) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "experiments/cli/command.hpp"
+#include "experiments/report/encoding.hpp"
 #include "experiments/runs/task_experiment.hpp"
 
 namespace modcal {
@@ -15,7 +16,9 @@ class OutputDirectory {
   const std::filesystem::path& path() const { return path_; }
   /// Writes the whole file under a temporary name and renames it: an existing file is replaced by a
   /// complete one or not at all. Throws InvalidInput where that fails (no space, no permission).
-  void write_text(std::string_view name, std::string_view content) const;
+  void write_text(std::string_view name, std::string_view content) const {
+    report::write_file_atomically(path_ / name, content);
+  }
 
  private:
   std::filesystem::path path_;

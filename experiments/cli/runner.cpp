@@ -4,9 +4,9 @@
 
 #include <cstdio>
 
-#include "experiments/cli/terminal.hpp"
-#include "experiments/cli/run_folder.hpp"
 #include "experiments/cli/provenance.hpp"
+#include "experiments/cli/run_folder.hpp"
+#include "experiments/cli/terminal.hpp"
 #include "libsim/records/csv.hpp"
 #include "libsim/records/wav.hpp"
 
@@ -123,10 +123,6 @@ StudyResult run_list(const TaskExperiment& list, const StudyContext& context, Ru
   return list.sum_up(run_tasks(list, context, &store, shard), context);
 }
 
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
 PilotRun run_some_tasks(const TaskExperiment& list, const StudyContext& context, RunStore& store) {
   constexpr std::size_t kMost = 20;
   constexpr double kSeconds = 10.0;
@@ -143,9 +139,9 @@ PilotRun run_some_tasks(const TaskExperiment& list, const StudyContext& context,
   while (pilot.run < count && (pilot.run == 0 || seconds < kSeconds)) {
     context.throw_if_interrupted();
     const std::size_t task = pending[pilot.run * pending.size() / count];
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch clock;
     std::string outcome = list.run_task(task, context);
-    const double taken = seconds_since(start);
+    const double taken = clock.seconds();
     store.append({store.finished().key_of(list.fingerprint(task, context.folder)), task, taken,
                   std::move(outcome)});
     seconds += taken;
@@ -193,7 +189,7 @@ PilotRun run_pilot(const LoadedExperiment& loaded, const RunSettings& settings) 
 }
 
 ExitCode run_one(const LoadedExperiment& loaded, const RunSettings& settings) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch clock;
   const OutputDirectory out(settings.out);
   const auto* list = dynamic_cast<const TaskExperiment*>(loaded.experiment.get());
   MODCAL_REQUIRE(list != nullptr || settings.shard.is_whole(),
@@ -217,7 +213,7 @@ ExitCode run_one(const LoadedExperiment& loaded, const RunSettings& settings) {
   }
   // Work that does not poll ends by itself; what the user wanted to stop is not written either.
   if (interrupted()) say_interrupted(settings, store.has_value());
-  const double seconds = seconds_since(start);
+  const double seconds = clock.seconds();
   fmt::print(stderr, "{:.2f} s\n", seconds);
   if (settings.shard.is_whole()) return present(loaded, std::move(result), settings, seconds);
   fmt::print(
@@ -229,7 +225,7 @@ ExitCode run_one(const LoadedExperiment& loaded, const RunSettings& settings) {
 
 ExitCode run_together(const std::vector<LoadedExperiment>& experiments,
                       const RunSettings& settings) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch clock;
   const OutputDirectory out(settings.out);
   const auto limit = limit_threads(settings.threads);
   SharedWork work(interrupt_token());
@@ -268,7 +264,7 @@ ExitCode run_together(const std::vector<LoadedExperiment>& experiments,
   }
   out.write_text("provenance.json", provenance_json(settings.command).dump(2) + "\n");
   finish_report(std::move(report), settings, out);
-  fmt::print(stderr, "{:.2f} s\n", seconds_since(start));
+  fmt::print(stderr, "{:.2f} s\n", clock.seconds());
   return worst == ExitCode::kOk && missed ? ExitCode::kAcceptanceMissed : worst;
 }
 

@@ -1,35 +1,19 @@
 #include "experiments/cli/terminal.hpp"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <regex>
 #include <string_view>
 
 namespace modcal {
 namespace {
 
-constexpr std::string_view kRed = "\033[1;31m", kYellow = "\033[1;33m", kEnd = "\033[0m";
-
-// Marks a word that begins the line or follows the place of a mistake, "a.yaml:3:7: error: …".
-bool mark(std::string& line, std::string_view word, std::string_view color) {
-  const std::size_t found = line.find(word);
-  if (found == std::string::npos) return false;
-  const bool after_place = found >= 2 && line.compare(found - 2, 2, ": ") == 0;
-  if (found != 0 && !after_place) return false;
-  line.insert(found + word.size(), kEnd);
-  line.insert(found, color);
-  return true;
-}
-
-bool is_caret(std::string_view line) {
-  const std::size_t first = line.find_first_not_of(' ');
-  return first != std::string_view::npos && line.substr(first) == "^";
-}
-
-// A line is rewritten only where the terminal can clear it.
+// A terminal that understands codes: it can clear a line and color a text.
 bool can_rewrite() {
   const char* terminal = std::getenv("TERM");
   return isatty(STDERR_FILENO) != 0 && terminal != nullptr && std::string_view(terminal) != "dumb";
@@ -45,36 +29,15 @@ void on_signal(int number) {
 
 }  // namespace
 
-bool messages_have_colors() {
-  const char* refused = std::getenv("NO_COLOR");
-  const char* terminal = std::getenv("TERM");
-  return isatty(STDERR_FILENO) != 0 && (refused == nullptr || *refused == '\0') &&
-         terminal != nullptr && std::string_view(terminal) != "dumb";
-}
-
-std::string with_color_codes(const std::string& text) {
-  std::string result;
-  std::string_view color = kRed;  // of the caret below the last message
-  for (std::size_t start = 0; start < text.size();) {
-    const std::size_t end = std::min(text.find('\n', start), text.size());
-    std::string line = text.substr(start, end - start);
-    if (mark(line, "error:", kRed)) {
-      color = kRed;
-    } else if (mark(line, "warning:", kYellow)) {
-      color = kYellow;
-    } else if (is_caret(line)) {
-      line.insert(0, color);
-      line += kEnd;
-    }
-    result += line;
-    if (end < text.size()) result += '\n';
-    start = end + 1;
-  }
-  return result;
-}
-
 std::string colored(const std::string& text) {
-  return messages_have_colors() ? with_color_codes(text) : text;
+  const char* refused = std::getenv("NO_COLOR");
+  if (!can_rewrite() || (refused != nullptr && *refused != '\0')) return text;
+  // A word that begins a line or follows the place of a mistake, "a.yaml:3:7: error: …".
+  static const std::regex kError("(^|\n|: )(error:)"), kWarning("(^|\n|: )(warning:)");
+  static const std::regex kCaret("(\n *)(\\^)(?=\n)");
+  const std::string red = std::regex_replace(text, kError, "$1\033[1;31m$2\033[0m");
+  const std::string both = std::regex_replace(red, kWarning, "$1\033[1;33m$2\033[0m");
+  return std::regex_replace(both, kCaret, "$1\033[1m$2\033[0m");
 }
 
 Progress::Progress(std::string what)

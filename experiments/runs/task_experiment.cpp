@@ -1,13 +1,7 @@
 #include "experiments/runs/task_experiment.hpp"
 
-#include <chrono>
-
 namespace modcal {
 namespace {
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 // Looks up every task among the finished ones, over threads.
 void find_finished(const TaskExperiment& experiment, const FinishedTasks& finished,
@@ -64,9 +58,9 @@ TaskOutcomes run_tasks(const TaskExperiment& experiment, const StudyContext& con
   std::atomic<std::size_t> left{pending.size()};
   const auto run = [&](std::size_t i) {
     const std::size_t task = pending[i];
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch clock;
     std::string outcome = experiment.run_task(task, context);
-    const double seconds = seconds_since(start);
+    const double seconds = clock.seconds();
     if (store == nullptr) {
       outcomes.put(task, FinishedTask{std::move(outcome), seconds});
     } else {

@@ -2,11 +2,23 @@
 // for a single task again.
 #pragma once
 
+#include <chrono>
+
 #include "experiments/experiment.hpp"
 #include "experiments/report/result.hpp"
 #include "experiments/runs/run_store.hpp"
 
 namespace modcal {
+
+/// Seconds since it was made.
+class Stopwatch {
+ public:
+  double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point start_ = Clock::now();
+};
 
 /// What one task has left.
 struct FinishedTask {

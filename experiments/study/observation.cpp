@@ -116,7 +116,6 @@ void require_both_reactions(const Observation& observation, std::string_view wha
 
 std::string_view label_of(End end) { return end == End::kLeft ? "x = 0" : "x = L"; }
 
-int side_number(End end) { return end == End::kLeft ? 1 : 2; }
 
 namespace {
 

@@ -114,8 +114,6 @@ void require_both_reactions(const Observation& observation, std::string_view wha
 
 /// "x = 0" or "x = L".
 std::string_view label_of(End end);
-/// 1 for x = 0, 2 for x = L: the paper's superscripts.
-int side_number(End end);
 inline constexpr End kEnds[] = {End::kLeft, End::kRight};
 
 }  // namespace modcal

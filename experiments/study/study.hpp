@@ -46,7 +46,14 @@ struct StudyResult {
   std::vector<std::string> missed;
 
   /// Figures and tables that state no command of their own were made by this one.
-  void state_command(const std::string& command);
+  void state_command(const std::string& command) {
+    const auto state = [&command](auto& item) {
+      if constexpr (requires { item.command; }) {
+        if (item.command.empty()) item.command = command;
+      }
+    };
+    for (report::Block& block : blocks) std::visit(state, block);
+  }
   void add(std::vector<report::Table> tables) {
     std::move(tables.begin(), tables.end(), std::back_inserter(blocks));
   }
