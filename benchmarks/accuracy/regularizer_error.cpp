@@ -15,10 +15,10 @@
 #include <memory>
 
 #include "benchmarks/problems/ill_posed_problems.hpp"
+#include "benchmarks/problems/svd_problem.hpp"
 #include "libinverse/estimator.hpp"
 #include "libinverse/spectral/choices/rules.hpp"
 #include "libinverse/spectral/one_sided/one_sided_inversion.hpp"
-#include "libinverse/spectral/one_sided/svd_problem.hpp"
 #include "libinverse/spectral/regularizers/regularizers.hpp"
 #include "libsim/base/random.hpp"
 #include "libsim/dynamics/event/modal_event.hpp"

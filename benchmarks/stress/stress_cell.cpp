@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "benchmarks/stress/energy_meter.hpp"
 #include "libsim/base/error.hpp"
-#include "libsim/dynamics/energy/energy_account.hpp"
 #include "libsim/dynamics/event/modal_event.hpp"
 #include "libsim/dynamics/fixed_step/fixed_step.hpp"
 #include "libsim/dynamics/scene/contact_modes.hpp"
@@ -42,7 +42,7 @@ CellRun simulate(std::string_view simulator, const Scene& scene, double step) {
   } else if (simulator == "modal_exact") {
     cell.simulation = ModalExact({.time_step = step}).simulate(scene, rate, outputs);
   } else {
-    auto [run, energy] = ModalEvent({}).simulate_audited(scene, rate, outputs);
+    auto [run, energy] = simulate_audited(ModalEvent({}), scene, rate, outputs);
     cell.simulation = std::move(run);
     cell.energy = energy;
   }

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "benchmarks/problems/svd_problem.hpp"
 #include "libinverse/spectral/choices/rules.hpp"
 #include "libinverse/spectral/one_sided/one_sided_inversion.hpp"
-#include "libinverse/spectral/one_sided/svd_problem.hpp"
 #include "libinverse/spectral/regularizers/regularizers.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/base/random.hpp"

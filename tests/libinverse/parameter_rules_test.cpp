@@ -7,9 +7,9 @@
 #include <numbers>
 
 #include "benchmarks/problems/ill_posed_problems.hpp"
+#include "benchmarks/problems/svd_problem.hpp"
 #include "libinverse/parameter_choice.hpp"
 #include "libinverse/spectral/choices/rules.hpp"
-#include "libinverse/spectral/one_sided/svd_problem.hpp"
 #include "libinverse/spectral/regularizers/regularizers.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/base/random.hpp"

@@ -9,7 +9,6 @@
 #include "libsim/base/task_loop.hpp"
 #include "libsim/dynamics/event/modes/bow_path.hpp"
 #include "libsim/dynamics/event/modes/closed_loop.hpp"
-#include "libsim/dynamics/event/modes/force_observer.hpp"
 #include "libsim/dynamics/friction/sliding_laws.hpp"
 #include "libsim/dynamics/scene/contact_modes.hpp"
 
@@ -65,6 +64,13 @@ struct EventLoop {
   }
 };
 
+/// Who observes a run: begin() sees what is about to run and returns the observer, end() sees the
+/// state that a run reaches which does not stop early.
+struct Watch {
+  std::function<ForceObserver*(const EventLoop&, const ContactModes&, const EventState&)> begin;
+  std::function<void(const EventState&)> end;
+};
+
 struct EventCounts {
   std::size_t attachments = 0;
   std::size_t releases = 0;
@@ -80,8 +86,7 @@ struct EventCounts {
 /// The state with the given modes: sticking with an unstretched spring where v_c = 0.
 inline EventState initial_state(const ContactModes& modes, double bow_velocity) {
   EventState state;
-  state.modes = PlanarVector(modes.size());
-  for (std::size_t n = 0; n < modes.size(); ++n) state.modes.set(n, modes.initial[n]);
+  state.modes = PlanarVector(modes.initial);
   const double velocity = motion_of(modes, modes.initial).velocity;
   state.sticking = velocity == bow_velocity;
   state.side = velocity < bow_velocity ? -1.0 : 1.0;

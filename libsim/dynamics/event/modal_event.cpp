@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "libsim/base/error.hpp"
-#include "libsim/dynamics/event/energy_meter.hpp"
 #include "libsim/dynamics/scene/contact_modes.hpp"
 
 namespace modcal {
@@ -94,14 +93,12 @@ std::vector<SceneRefusal> ModalEvent::unsupported(const Scene& scene) const {
   return refusals;
 }
 
-ModalEvent::Audited ModalEvent::simulate_audited(const Scene& scene, double sample_rate,
-                                                 const OutputRequest& outputs,
-                                                 const StopToken& stop) const {
-  Audited result;
+Simulation ModalEvent::simulate_watched(const Scene& scene, double sample_rate,
+                                        const OutputRequest& outputs, const event::Watch& watch,
+                                        const StopToken& stop) const {
   ModalEvent watched = *this;
-  watched.energy_ = &result.energy;
-  result.simulation = watched.simulate(scene, sample_rate, outputs, stop);
-  return result;
+  watched.watch_ = &watch;
+  return watched.simulate(scene, sample_rate, outputs, stop);
 }
 
 Simulation ModalEvent::run(const Scene& scene, double sample_rate, const OutputRequest& outputs,
@@ -139,10 +136,9 @@ Simulation ModalEvent::run(const Scene& scene, double sample_rate, const OutputR
                         .targets = targets_of(result),
                         .switches = {&result.switches, outputs.switches_from},
                         .stop = stop};
-  std::optional<event::EnergyMeter> meter;
-  if (energy_ != nullptr) loop.observer = &meter.emplace(loop, modes, state);
+  if (watch_ != nullptr) loop.observer = watch_->begin(loop, modes, state);
   const event::EventCounts counts = event::run_event_loop(loop, modes, state);
-  if (meter && !counts.failure) *energy_ = meter->account(state);
+  if (watch_ != nullptr && !counts.failure) watch_->end(state);
 
   if (counts.failure) {
     result.diverge(counts.failed_at, *counts.failure);

@@ -4,7 +4,7 @@
 #include <limits>
 #include <string>
 
-#include "libsim/dynamics/energy/energy_account.hpp"
+#include "libsim/dynamics/event/event_loop.hpp"
 #include "libsim/dynamics/scene/simulator.hpp"
 
 namespace modcal {
@@ -47,21 +47,16 @@ class ModalEvent final : public Simulator {
   };
   explicit ModalEvent(const Options& options);
 
-  struct Audited {
-    Simulation simulation;  ///< the same as simulate()'s, bit by bit
-    EventEnergy energy;     ///< zero where the run stopped early
-  };
-  /// Simulates and integrates the energies of the run over its own steps. Takes 10 to 100 times as
-  /// long.
-  Audited simulate_audited(const Scene& scene, double sample_rate, const OutputRequest& outputs,
-                           const StopToken& stop = {}) const;
+  /// simulate(), bit by bit, under the eyes of an observer.
+  Simulation simulate_watched(const Scene& scene, double sample_rate, const OutputRequest& outputs,
+                              const event::Watch& watch, const StopToken& stop = {}) const;
 
  private:
   std::vector<SceneRefusal> unsupported(const Scene& scene) const override;
   Simulation run(const Scene& scene, double sample_rate, const OutputRequest& outputs,
                  const StopToken& stop) const override;
   Options options_;
-  EventEnergy* energy_ = nullptr;  // wanted
+  const event::Watch* watch_ = nullptr;
 };
 
 }  // namespace modcal

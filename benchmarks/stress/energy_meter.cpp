@@ -1,4 +1,4 @@
-#include "libsim/dynamics/event/energy_meter.hpp"
+#include "benchmarks/stress/energy_meter.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -142,3 +142,19 @@ EventEnergy EnergyMeter::account(const EventState& end) const {
 }
 
 }  // namespace modcal::event
+
+namespace modcal {
+
+AuditedRun simulate_audited(const ModalEvent& simulator, const Scene& scene, double sample_rate,
+                            const OutputRequest& outputs) {
+  AuditedRun result;
+  std::optional<event::EnergyMeter> meter;
+  result.simulation = simulator.simulate_watched(
+      scene, sample_rate, outputs,
+      {.begin = [&](const auto& loop, const auto& modes,
+                    const auto& state) { return &meter.emplace(loop, modes, state); },
+       .end = [&](const auto& state) { result.energy = meter->account(state); }});
+  return result;
+}
+
+}  // namespace modcal

@@ -1,9 +1,10 @@
+#include "benchmarks/stress/energy_account.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "libsim/base/error.hpp"
-#include "libsim/dynamics/energy/energy_account.hpp"
 #include "libsim/dynamics/fixed_step/fixed_step.hpp"
 #include "libsim/dynamics/friction/friction_law.hpp"
 #include "libsim/dynamics/gestures/gesture.hpp"

@@ -1,4 +1,4 @@
-#include "libinverse/spectral/one_sided/svd_problem.hpp"
+#include "benchmarks/problems/svd_problem.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

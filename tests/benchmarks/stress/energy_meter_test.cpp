@@ -1,4 +1,4 @@
-#include "libsim/dynamics/event/energy_meter.hpp"
+#include "benchmarks/stress/energy_meter.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,8 +16,8 @@ namespace {
 
 constexpr double kRate = 51200.0;
 
-ModalEvent::Audited audited(const Scene& scene, const ModalEvent::Options& options = {}) {
-  return ModalEvent(options).simulate_audited(scene, kRate, OutputRequest::all());
+AuditedRun audited(const Scene& scene, const ModalEvent::Options& options = {}) {
+  return simulate_audited(ModalEvent(options), scene, kRate, OutputRequest::all());
 }
 
 Scene short_scene(double duration) {
@@ -103,7 +103,7 @@ TEST(EnergyMeter, ClosesWhateverTheBowAndTheContactDo) {
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     for (const double step : {1.0 / kRate, 0.5e-3}) {
       const auto [run, energy] =
-          ModalEvent({}).simulate_audited(scenes[i], 1.0 / step, OutputRequest::all());
+          simulate_audited(ModalEvent({}), scenes[i], 1.0 / step, OutputRequest::all());
       ASSERT_FALSE(run.diverged_at) << run.explanation;
       expect_closed(energy, std::to_string(i));
       EXPECT_LE(energy.contact_bound() + energy.heat_residual, 1e-4 * energy.contact_at_hand())
@@ -126,7 +126,7 @@ TEST(EnergyMeter, OfAFreeDecayIsTheClosedForm) {
   const double period = 2.0 * 3.141592653589793 / damped;
   scene.duration = 51.0 * period / 10.0;  // samples at 0 … 5 periods
   const EventEnergy energy =
-      ModalEvent({}).simulate_audited(scene, 10.0 / period, OutputRequest::all()).energy;
+      simulate_audited(ModalEvent({}), scene, 10.0 / period, OutputRequest::all()).energy;
   const double start = 0.5 * basis.mass[0] * std::pow(basis.omega[0] * 1e-3, 2);
   const double left = std::exp(-2.0 * 0.01 * basis.omega[0] * 5.0 * period);
   EXPECT_NEAR(energy.stored, start * (left - 1.0), 1e-13 * start);

@@ -149,7 +149,7 @@ struct PointRecord {
 /// friction law is does not matter.
 /// modes: of the scene, with the points' shapes; points: one record each, of equal length; ≥ 1
 /// sample. Throws InvalidInput otherwise. modal_event accounts for itself
-/// (ModalEvent::simulate_audited): its force is not known from samples.
+/// (simulate_audited() in energy_meter.hpp): its force is not known from samples.
 EnergyAccount audit_energy(const LineModes& modes, const BowMotion& bow,
                            std::span<const PointRecord> points, double sample_rate, ForceHold hold);
 

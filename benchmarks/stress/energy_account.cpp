@@ -1,4 +1,4 @@
-#include "libsim/dynamics/energy/energy_account.hpp"
+#include "benchmarks/stress/energy_account.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "libinverse/spectral/one_sided/svd_problem.hpp"
+#include "benchmarks/problems/svd_problem.hpp"
 
 #include <Eigen/SVD>
 #include <cmath>

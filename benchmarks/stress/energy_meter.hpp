@@ -5,12 +5,12 @@
 #include <optional>
 #include <vector>
 
-#include "libsim/dynamics/energy/energy_account.hpp"
-#include "libsim/dynamics/event/event_loop.hpp"
+#include "benchmarks/stress/energy_account.hpp"
+#include "libsim/dynamics/event/modal_event.hpp"
 
 namespace modcal::event {
 
-/// Replays the string under the force alone, in arithmetic of its own (mode_replay.hpp), and takes
+/// Replays the string under the force alone, in arithmetic of its own (ModeReplay), and takes
 /// the velocity that comes out of it for everything: works are integrals of polynomials in time,
 /// the law's own force is computed anew at 14 Gauss points of every piece, elongation is the
 /// integral of v_c from the attachment on.
@@ -44,3 +44,16 @@ class EnergyMeter final : public ForceObserver {
 };
 
 }  // namespace modcal::event
+
+namespace modcal {
+
+struct AuditedRun {
+  Simulation simulation;  ///< the same as simulate()'s, bit by bit
+  EventEnergy energy;     ///< zero where the run stopped early
+};
+/// Simulates and integrates the energies of the run over its own steps. Takes 10 to 100 times as
+/// long.
+AuditedRun simulate_audited(const ModalEvent& simulator, const Scene& scene, double sample_rate,
+                            const OutputRequest& outputs);
+
+}  // namespace modcal
