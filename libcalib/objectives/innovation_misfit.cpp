@@ -21,13 +21,6 @@ std::vector<double> samples_of(const CalibrationData& data, End end) {
   return RealFft(data.samples).inverse(data.reaction(end));
 }
 
-/// Prior deviation of an offset [N]: noise of the silent samples, and the ripple of a finite number
-/// of modes ahead of the first wave, 0.3 % of the reaction.
-double offset_deviation(const ObservedRecord& record, int r) {
-  const double noise = record.noise[r] / std::sqrt(static_cast<double>(record.silent[r]));
-  return std::hypot(noise, 0.003 * standard_deviation(record.reaction[r]));
-}
-
 // What a shift in time makes up at the end of a record fades as 1/n² with the distance n from it.
 constexpr double kFaded = 16.0;
 
@@ -98,7 +91,8 @@ class Function final : public ObjectiveFunction {
     start.contact = point.contact;
     start.level_growth = point.sensors.corner;
     const ObservedRecord& record = runs.record();
-    double deviation[2] = {offset_deviation(record, 0), offset_deviation(record, 1)};
+    double deviation[2] = {observer::offset_deviation(record, 0),
+                           observer::offset_deviation(record, 1)};
     if (point.sensors.may_differ()) {
       start.offset[1] = record.offset[1];
       deviation[1] = observer::silent_deviation(record, End::kRight, start.bow_velocity);

@@ -13,11 +13,12 @@ namespace {
 
 // Between the force at rest and that at the slip speed a hyperbola stays lower at first and falls
 // on for longer: it starts with a faster fall and a lower floor.
-void start_hyperbolic(BlendedSliding& law, double slip_speed) {
-  const double rest = law.at_rest(), fast = law.at(slip_speed).force;
+void start_hyperbolic(ParameterSpace& space, const SlipPicture& slip) {
+  BlendedSliding& law = space.start().sliding;
+  const double rest = law.at_rest(), fast = law.at(slip.speed).force;
   law.hyperbolic = true;
   law.decay *= 2.0;
-  const double left = 1.0 / (1.0 + law.decay * slip_speed);
+  const double left = 1.0 / (1.0 + law.decay * slip.speed);
   law.force_drop = (rest - fast) / (1.0 - left);
   law.dynamic_force = rest - law.force_drop;
   const double least = 0.1 * rest;
@@ -30,7 +31,8 @@ void start_hyperbolic(BlendedSliding& law, double slip_speed) {
 // The contact warms to twice the softening temperature while it slides and cools to a fourth of
 // that until the string slips again; it starts out cold. Decay is free no more: the force falls
 // with the temperature alone.
-void start_thermal(BlendedSliding& law, const SlipPicture& slip) {
+void start_thermal(ParameterSpace& space, const SlipPicture& slip) {
+  BlendedSliding& law = space.start().sliding;
   const double rest = law.at_rest(), fast = law.at(slip.speed).force;
   law.thermal = true;
   law.width = 0.3;
@@ -39,44 +41,47 @@ void start_thermal(BlendedSliding& law, const SlipPicture& slip) {
   law.cooling = 1.4 / slip.period;
   law.carried = 0.5 * law.cooling / slip.speed;
   law.heating = 2.0 / (0.5 * (rest + fast) * slip.speed * slip.share * slip.period);
+  space.hold(Coordinate::kDecay);
+  space.free_also({Coordinate::kHeating, 0, 0.04, 1.5 / 0.04});
+  space.free_also({Coordinate::kCooling, 0, 0.06, 1.0 / 0.06});
+  space.free_also({Coordinate::kCarried, 0, 0.1, 1.0 / 0.1});
+  space.free_also({Coordinate::kWidth, 0, 0.06, 0.7 / 0.06});
 }
 
 // Two equal exponentials say nothing about their shares: they start apart.
-void start_two_exponential(BlendedSliding& law) {
+void start_two_exponential(ParameterSpace& space, const SlipPicture& /*slip*/) {
+  BlendedSliding& law = space.start().sliding;
   law.weight = 0.7;
   law.ratio = 0.3;
   law.decay *= 1.3;
+  space.free_also({Coordinate::kWeight, 0, 0.05, 0.5 / 0.05});
+  space.free_also({Coordinate::kRatio, 0, 0.1, 1.0 / 0.1});
+  space.free_also({Coordinate::kViscous, 0, 0.005 * law.at_rest(), 100.0});
 }
+
+struct Law {
+  std::string_view name;
+  void (*start)(ParameterSpace& space, const SlipPicture& slip);  // from the exponential one
+};
+constexpr std::array kLaws = {Law{"exponential", [](ParameterSpace&, const SlipPicture&) {}},
+                              Law{"hyperbolic", start_hyperbolic}, Law{"thermal", start_thermal},
+                              Law{"two_exponential", start_two_exponential}};
 
 }  // namespace
 
 std::vector<std::string_view> friction_law_names() {
-  return {"exponential", "hyperbolic", "thermal", "two_exponential"};
+  std::vector<std::string_view> names;
+  for (const Law& law : kLaws) names.push_back(law.name);
+  return names;
 }
 
 ParameterSpace with_friction_law(const ParameterSpace& space, std::string_view law,
                                  const SlipPicture& slip) {
+  const auto row = std::ranges::find(kLaws, law, &Law::name);
+  MODCAL_REQUIRE(row != kLaws.end(), "unknown friction law \"{}\": {} can be compared", law,
+                 fmt::join(friction_law_names(), ", "));
   ParameterSpace result = space;
-  BlendedSliding& sliding = result.start().sliding;
-  if (law == "hyperbolic") {
-    start_hyperbolic(sliding, slip.speed);
-  } else if (law == "thermal") {
-    start_thermal(sliding, slip);
-    result.hold(Coordinate::kDecay);
-    result.free_also({Coordinate::kHeating, 0, 0.04, 1.5 / 0.04});
-    result.free_also({Coordinate::kCooling, 0, 0.06, 1.0 / 0.06});
-    result.free_also({Coordinate::kCarried, 0, 0.1, 1.0 / 0.1});
-    result.free_also({Coordinate::kWidth, 0, 0.06, 0.7 / 0.06});
-  } else if (law == "two_exponential") {
-    start_two_exponential(sliding);
-    const double scale = sliding.at_rest();
-    result.free_also({Coordinate::kWeight, 0, 0.05, 0.5 / 0.05});
-    result.free_also({Coordinate::kRatio, 0, 0.1, 1.0 / 0.1});
-    result.free_also({Coordinate::kViscous, 0, 0.005 * scale, 100.0});
-  } else {
-    MODCAL_REQUIRE(law == "exponential", "unknown friction law \"{}\": {} can be compared", law,
-                   fmt::join(friction_law_names(), ", "));
-  }
+  row->start(result, slip);
   return result;
 }
 

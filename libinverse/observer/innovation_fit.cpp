@@ -2,9 +2,11 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
-#include "libsim/base/error.hpp"
 #include "libsim/base/task_loop.hpp"
 #include "libsim/signal/statistics.hpp"
 
@@ -14,7 +16,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kDifference = 0.1, kMuting = 6.0, kLongestStep = 12.0, kCorner = 3.0;
+constexpr double kDifference = 0.1, kMuting = 6.0, kLongestStep = 12.0;
 
 double cost_of(const Innovations& innovations, std::span<const double> weight) {
   double sum = 0.0;
@@ -82,7 +84,7 @@ class Fit {
 
  private:
   Innovations at(std::span<const double> x) {
-    if (limits_.interrupted()) throw Interrupted();
+    limits_.stop.throw_if_requested();
     return runs_.innovations(space_.at(x), schedule_, samples_);
   }
 
@@ -120,7 +122,8 @@ class Fit {
       for (Eigen::Index i = 0; i < size; ++i) {
         const std::vector<double>& column = l.slope[static_cast<std::size_t>(i)].scaled[r];
         for (std::size_t k = 0; k < samples_; ++k) {
-          const double robust = std::min(1.0, kCorner / std::max(kCorner, std::abs(residual[k])));
+          const double robust =
+              std::min(1.0, kHuberCorner / std::max(kHuberCorner, std::abs(residual[k])));
           weighted[k] = l.weight[k] * robust * column[k];
         }
         const Eigen::Map<const VectorXd> w(weighted.data(), static_cast<Eigen::Index>(samples_));
@@ -185,11 +188,103 @@ class Fit {
   FitOutcome outcome_;
 };
 
+struct Candidate {
+  ObserverState state;
+  double cost = 0.0;
+};
+
+struct Step {
+  std::size_t parent = 0, gain = 0;
+};
+
+double block_cost(const ObservedRecord& record, const ObserverSignals& outputs, std::size_t first,
+                  std::size_t last) {
+  double sum = 0.0;
+  for (std::size_t k = first; k < last; ++k) {
+    const double left = outputs.innovation[0][k - first] / record.noise[0];
+    const double right = outputs.innovation[1][k - first] / record.noise[1];
+    sum += left * left + right * right;
+  }
+  return sum;
+}
+
+class Search {
+ public:
+  Search(const ObserverRuns& runs, const ObserverParameters& parameters,
+         std::span<const std::size_t> gains)
+      : record_(runs.record()), observer_(runs.prepare(parameters)), gains_(gains) {}
+
+  GainSchedule run() {
+    std::vector<Candidate> alive(1);
+    alive[0].state = observer_.initial_state();
+    std::vector<std::vector<Step>> history;
+    const std::size_t samples = record_.samples();
+    for (std::size_t first = 0; first < samples; first += kBlock) {
+      std::vector<Candidate> next(alive.size() * gains_.size());
+      for_each_task(next.size(), [&](std::size_t i) {
+        next[i] = advanced(alive[i / gains_.size()], gains_[i % gains_.size()], first,
+                           std::min(samples, first + kBlock));
+      });
+      std::vector<std::size_t> order(next.size());
+      std::iota(order.begin(), order.end(), std::size_t{0});
+      std::stable_sort(order.begin(), order.end(),
+                       [&](std::size_t a, std::size_t b) { return next[a].cost < next[b].cost; });
+      order.resize(std::min(order.size(), survivors_));
+      std::vector<Step> steps;
+      std::vector<Candidate> kept;
+      for (const std::size_t i : order) {
+        steps.push_back({i / gains_.size(), gains_[i % gains_.size()]});
+        kept.push_back(std::move(next[i]));
+      }
+      alive = std::move(kept);
+      history.push_back(std::move(steps));
+    }
+    return path_of_best(history);
+  }
+
+ private:
+  Candidate advanced(const Candidate& from, std::size_t gain, std::size_t first,
+                     std::size_t last) const {
+    Candidate result = from;
+    std::array<double, kBlock> left, right;
+    ObserverSignals outputs;
+    outputs.innovation = {left.data(), right.data()};
+    observer_.run(gain, first, last, result.state, outputs, first);
+    result.cost = forgetting_ * from.cost + block_cost(record_, outputs, first, last);
+    // A state that ran away must not survive by comparing false with everything.
+    if (!(result.cost < std::numeric_limits<double>::infinity())) {
+      result.cost = std::numeric_limits<double>::infinity();
+    }
+    return result;
+  }
+
+  static GainSchedule path_of_best(const std::vector<std::vector<Step>>& history) {
+    GainSchedule schedule(history.size());
+    std::size_t at = 0;
+    for (std::size_t block = history.size(); block-- > 0;) {
+      schedule[block] = history[block][at].gain;
+      at = history[block][at].parent;
+    }
+    return schedule;
+  }
+
+  const ObservedRecord& record_;
+  PreparedObserver observer_;
+  std::span<const std::size_t> gains_;
+  std::size_t survivors_ = 4;
+  double forgetting_ = 0.9;  // of the cost, per block
+};
+
 }  // namespace
 
 FitOutcome fit_innovations(const ObserverRuns& runs, const ParameterSpace& space,
                            const GainSchedule& schedule, const FitLimits& limits) {
   return Fit(runs, space, schedule, limits).run();
+}
+
+GainSchedule search_gains(const ObserverRuns& runs, const ObserverParameters& parameters,
+                          std::span<const std::size_t> gains) {
+  return Search(runs, parameters, gains).run();
 }
 
 }  // namespace modcal::observer

@@ -1,10 +1,11 @@
-// Parameters of the observer by prediction error.
+// Parameters and gains of the observer by prediction error.
 #pragma once
 
-#include <functional>
+#include <span>
 #include <vector>
 
 #include "libinverse/observer/observer_runs.hpp"
+#include "libsim/base/task_loop.hpp"
 
 namespace modcal::observer {
 
@@ -12,7 +13,7 @@ struct FitLimits {
   std::size_t iterations = 8;
   std::size_t samples = 0;      ///< from the start of the record; 0: all
   double smallest_gain = 1e-4;  ///< relative fall of the cost below which the fit ends
-  std::function<bool()> interrupted = [] { return false; };
+  StopToken stop = {};
 };
 
 struct FitOutcome {
@@ -28,5 +29,11 @@ struct FitOutcome {
 /// chaotic. No coordinate moves more than 12 steps at once. Same bits for any number of threads.
 FitOutcome fit_innovations(const ObserverRuns& runs, const ParameterSpace& space,
                            const GainSchedule& schedule, const FitLimits& limits);
+
+/// Beam search: over blocks of kBlock samples four survivors are run on with every listed gain, the
+/// cost ← 0.9 cost + Σ (ν/s)² keeps the best. `gains`: numbers in the list of `runs`. Returns the
+/// path of the best survivor. Same bits for any number of threads.
+GainSchedule search_gains(const ObserverRuns& runs, const ObserverParameters& parameters,
+                          std::span<const std::size_t> gains);
 
 }  // namespace modcal::observer

@@ -8,10 +8,7 @@
 #include <memory>
 #include <numbers>
 
-#include "libinverse/observer/gain_search.hpp"
 #include "libinverse/observer/innovation_fit.hpp"
-#include "libinverse/observer/observed_record.hpp"
-#include "libinverse/observer/result_judgement.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/base/task_loop.hpp"
 #include "libsim/signal/fft.hpp"
@@ -28,11 +25,6 @@ namespace {
 constexpr std::array kForceNoise = {0.075, 0.025, 0.0125, 0.0075, 0.0025};
 constexpr std::size_t kWide = 0, kMiddle = 1, kNarrow = 2, kTrusting = 4;
 constexpr std::array<std::size_t, 4> kBeam = {0, 1, 3, 4};
-// A finite number of modes ripples ahead of the first wave. The prior of the offsets grants it this
-// share of the reaction's deviation, less than a string of few modes asks for (silent_ripple): the
-// observer knows the ripple, and a tight prior keeps friction forces and offsets from shifting
-// together.
-constexpr double kRipple = 0.003;
 constexpr std::size_t kNoiseDraws = 16;  // the deviation of the motion is known to 1/√32
 // Fitted parameters are off, too. The formal covariance of the fit is far too small (its
 // innovations answer chaotically); without this factor the 95 % bands of records of 0.2 and 1 s at
@@ -54,25 +46,81 @@ std::vector<double> from_means(const std::vector<double>& means) {
   return fft.inverse(std::move(spectrum));
 }
 
+constexpr std::array kEnds = {End::kLeft, End::kRight};
+constexpr std::array kEndNames = {"x = 0", "x = L"};
+
+// Fills the misfit that a right model leaves and its deviation: what the gains let in of the noise
+// (`quiet_misfit`, one a gain), by the share of the blocks each gain serves; the scatter of the
+// median over blocks, √(π/2) that of the mean, and that of the noise levels it is relative to.
+void judge_misfit(const ObservedRecord& record, const GainSchedule& schedule,
+                  std::span<const double> quiet_misfit, ModelBasedResult& result) {
+  double quiet = 0.0, level = 0.0, relative = 0.0;
+  for (const std::size_t gain : schedule) quiet += quiet_misfit[gain];
+  for (int r = 0; r < 2; ++r) {
+    const double share = record.raw_noise[r] / record.noise[r];
+    level += 0.5 * share * share;
+    relative += 0.25 * record.noise_deviation[r] * record.noise_deviation[r];
+  }
+  result.expected_misfit = level * quiet / static_cast<double>(schedule.size());
+  const double samples = 2.0 * static_cast<double>(record.samples());
+  result.misfit_deviation =
+      result.expected_misfit * std::sqrt(relative + std::numbers::pi / samples);
+}
+
+// A steady force F lifts R₁ by −(1 − x_c/L) F and R₂ by −(x_c/L) F: both offsets measure it.
+StaticRecovery static_recovery(const ObservedRecord& record, const ModelBasedResult& result) {
+  const double xi = record.contact / record.basis.length;
+  const double share[2] = {1.0 - xi, xi};
+  double precision = 0.0;
+  for (int r = 0; r < 2; ++r) {
+    const double weight =
+        share[r] / silent_deviation(record, kEnds[r], result.parameters.bow_velocity);
+    precision += weight * weight;
+  }
+  return {mean(result.force), 1.0 / std::sqrt(precision)};
+}
+
+// Warns of a misfit above its limit, and of offsets that left the level before the first wave by
+// more than five of their deviations [N].
+void add_warnings(const ModelBasedOptions& options, const ObservedRecord& record,
+                  std::span<const double> offset_deviation, ModelBasedResult& result) {
+  // Below the floor under the noise the observer's own discretization is all there is to see.
+  const double calibrated = std::max(1.0, result.expected_misfit) + 4.0 * result.misfit_deviation;
+  const double limit = std::isnan(options.misfit_limit) ? calibrated : options.misfit_limit;
+  if (!(result.steady_misfit <= limit)) {
+    result.warnings.push_back(fmt::format(
+        "innovation misfit {:.4g} (median over blocks) is above {:.4g}, a right model leaves "
+        "{:.3f} ± {:.3f}: the model does not explain the reactions to their noise; compare with "
+        "the linear estimate, and free what may differ (force_knots, velocity_knots, laws, "
+        "delay, gain, contact, frequencies)",
+        result.steady_misfit, limit, result.expected_misfit, result.misfit_deviation));
+  }
+  for (int r = 0; r < 2; ++r) {
+    const double level = std::abs(mean(std::span(record.reaction[r]).first(record.silent[r])) -
+                                  result.parameters.offset[r]);
+    const double deviation = std::max(
+        offset_deviation[r], silent_deviation(record, kEnds[r], result.parameters.bow_velocity));
+    if (level > 5.0 * deviation) {
+      result.warnings.push_back(fmt::format(
+          "the fitted offset of the reaction at {} is {:.3g} N away from its level before the "
+          "first wave, {:.2g} standard deviations: the record may not start at rest",
+          kEndNames[r], level, level / deviation));
+    }
+  }
+}
+
 class Estimation {
  public:
-  Estimation(const ModelBasedOptions& options, ObservedRecord record,
-             const std::function<bool()>& interrupted)
-      : options_(options), record_(std::move(record)), interrupted_(interrupted) {
-    for (int r = 0; r < 2; ++r) {
-      const double noise = record_.noise[r] / std::sqrt(static_cast<double>(record_.silent[r]));
-      const double ripple = kRipple * standard_deviation(record_.reaction[r]);
-      offset_deviation_[r] = std::hypot(noise, ripple);
-    }
+  Estimation(const ModelBasedOptions& options, ObservedRecord record, const StopToken& stop)
+      : options_(options), record_(std::move(record)), stop_(stop) {
+    for (int r = 0; r < 2; ++r) offset_deviation_[r] = offset_deviation(record_, r);
   }
 
   ModelBasedResult run() {
     LinearEstimate linear = linear_estimate(record_);
     if (bow_direction(linear) < 0.0) {
       negate(record_);
-      for (auto* signal : {&linear.force, &linear.velocity}) {
-        for (double& value : *signal) value = -value;
-      }
+      for (auto* signal : {&linear.force, &linear.velocity}) negate(*signal);
     }
     const ContactPicture picture = picture_of(linear);
     std::vector<double> force_noise(kForceNoise.begin(), kForceNoise.end());
@@ -83,8 +131,8 @@ class Estimation {
     runs_ = std::make_unique<ObserverRuns>(record_, force_noise, substeps);
     ParameterSpace space = best_start(picture);
     space = fitted(space, {kWide}, 8);
-    free_more(freed(), runs_->string().mode, space);
-    if (freed().any()) space = fitted(space, {kWide}, 8);
+    free_more(options_, runs_->string().mode, space);
+    if (options_.frees_more()) space = fitted(space, {kWide}, 8);
     const ModalBasis& basis = record_.basis;
     space = best_law(
         space, {.speed = picture.slip_speed,
@@ -106,21 +154,11 @@ class Estimation {
   }
 
  private:
-  FreedOptions freed() const {
-    return {.adherence_damping = options_.adherence_damping,
-            .force_knots = static_cast<std::size_t>(options_.force_knots),
-            .velocity_knots = static_cast<std::size_t>(options_.velocity_knots),
-            .delay = options_.delay,
-            .gain = options_.gain,
-            .contact = options_.contact,
-            .frequencies = options_.frequencies};
-  }
-
   ParameterSpace fitted(const ParameterSpace& space, const GainSchedule& schedule,
                         std::size_t iterations) {
     FitLimits limits;
     limits.iterations = iterations;
-    limits.interrupted = interrupted_;
+    limits.stop = stop_;
     const FitOutcome outcome = fit_innovations(*runs_, space, schedule, limits);
     run_count_ += outcome.runs;
     return space.restarted_at(outcome.x);
@@ -163,8 +201,7 @@ class Estimation {
         p.sliding.decay = decay / picture.slip_speed;
         p.bow_velocity = picture.bow_velocity;
         p.stiffness = stiff * stiffness;
-        p.offset[0] = record_.offset[0];
-        p.offset[1] = record_.offset[1];
+        std::copy_n(record_.offset, 2, p.offset);
         p.contact = record_.contact;
         starts.emplace_back(p, free);
       }
@@ -172,7 +209,7 @@ class Estimation {
     FitLimits limits;
     limits.iterations = 3;
     limits.samples = record_.samples() / 2;
-    limits.interrupted = interrupted_;
+    limits.stop = stop_;
     std::vector<FitOutcome> outcomes(starts.size());
     std::vector<double> score(starts.size());
     for_each_task(starts.size(), [&](std::size_t i) {
@@ -188,36 +225,27 @@ class Estimation {
   ModelBasedResult finish(const ObserverParameters& parameters, const GainSchedule& schedule,
                           LinearEstimate& linear) {
     ModelBasedResult result;
-    ObserverMotion motion;
-    const Innovations innovations = runs_->identify(parameters, schedule, motion);
+    const Innovations innovations =
+        runs_->innovations(parameters, schedule, record_.samples(), &result);
     result.misfit = misfit(innovations);
     result.steady_misfit = steady_misfit(innovations);
-    MotionDeviation deviation =
-        runs_->deviation(parameters, schedule, kNoiseDraws, StreamKey(kNoiseSeed));
-    for (auto* signal : {&deviation.force, &deviation.velocity}) {
+    result.deviation = runs_->deviation(parameters, schedule, kNoiseDraws, StreamKey(kNoiseSeed));
+    for (auto* signal : {&result.deviation.force, &result.deviation.velocity}) {
       for (double& value : *signal) value *= kParameterShare;
     }
-    result.force_deviation = std::move(deviation.force);
-    result.velocity_deviation = std::move(deviation.velocity);
-    result.force = std::move(motion.force);
-    result.velocity = std::move(motion.velocity);
-    result.displacement = std::move(motion.displacement);
-    result.unaliased_force = from_means(motion.mean_force);
-    result.linear_force = std::move(linear.force);
-    result.linear_velocity = std::move(linear.velocity);
-    result.linear_deviation = std::move(linear.force_deviation);
+    result.unaliased_force = from_means(result.mean_force);
+    result.linear = std::move(linear);
     result.laws = candidates_;
     result.parameters = parameters;
     result.negated = record_.negated;
     if (record_.negated) {
       for (auto* signal :
            {&result.force, &result.velocity, &result.displacement, &result.unaliased_force,
-            &result.linear_force, &result.linear_velocity}) {
-        for (double& value : *signal) value = -value;
+            &result.linear.force, &result.linear.velocity}) {
+        negate(*signal);
       }
     }
-    result.noise[0] = record_.raw_noise[0];
-    result.noise[1] = record_.raw_noise[1];
+    std::copy_n(record_.raw_noise, 2, result.noise);
     result.force_noise = runs_->force_noise();
     result.gain_share.assign(result.force_noise.size(), 0.0);
     for (const std::size_t gain : schedule) {
@@ -232,7 +260,7 @@ class Estimation {
 
   const ModelBasedOptions& options_;
   ObservedRecord record_;
-  const std::function<bool()>& interrupted_;
+  const StopToken& stop_;
   double offset_deviation_[2] = {};
   std::unique_ptr<ObserverRuns> runs_;
   std::size_t run_count_ = 0;
@@ -240,42 +268,6 @@ class Estimation {
 };
 
 }  // namespace
-
-void ModelBasedOptions::visit(OptionVisitor& visitor) {
-  visitor.texts({.key = "laws",
-                 .meaning = "friction laws to fit; of several the best supported one is taken",
-                 .choices = friction_law_names()},
-                laws);
-  visitor.integer({.key = "substeps",
-                   .meaning = "steps of the observer per sample",
-                   .range = Range::closed(1, 64)},
-                  substeps);
-  visitor.integer(
-      {.key = "rounds", .meaning = "rounds of gain search and fit", .range = Range::closed(0, 20)},
-      rounds);
-  visitor.flag(
-      {.key = "adherence_damping", .meaning = "fit the damping of adherence, else critical"},
-      adherence_damping);
-  visitor.integer({.key = "force_knots",
-                   .meaning = "knots of the normal force in time; 0: constant",
-                   .range = Range::closed(0, 200)},
-                  force_knots);
-  visitor.integer({.key = "velocity_knots",
-                   .meaning = "knots of the bow velocity in time; 0: constant",
-                   .range = Range::closed(0, 200)},
-                  velocity_knots);
-  visitor.flag({.key = "delay", .meaning = "fit the delay between the two sensors"}, delay);
-  visitor.flag({.key = "gain", .meaning = "fit the gain ratio of the two sensors"}, gain);
-  visitor.flag({.key = "contact", .meaning = "fit the contact point"}, contact);
-  visitor.flag({.key = "frequencies", .meaning = "fit every modal frequency"}, frequencies);
-  visitor.number({.key = "misfit_limit",
-                  .meaning = "innovation misfit, median over blocks, above which the result warns; "
-                             "auto: by its sampling deviation",
-                  .unit = "1",
-                  .range = Range::positive(),
-                  .word = "auto"},
-                 misfit_limit);
-}
 
 ModelBasedEstimator::ModelBasedEstimator(ModelBasedOptions options) : options_(std::move(options)) {
   MODCAL_REQUIRE(!options_.laws.empty(), "no friction law to fit: state at least one of laws");
@@ -289,9 +281,8 @@ ModelBasedEstimator::ModelBasedEstimator(ModelBasedOptions options) : options_(s
 ModelBasedResult ModelBasedEstimator::estimate(const ModalBasis& basis, double contact,
                                                double sample_rate, std::span<const double> left,
                                                std::span<const double> right,
-                                               const std::function<bool()>& interrupted) const {
-  return Estimation(options_, observe_record(basis, contact, sample_rate, left, right), interrupted)
-      .run();
+                                               const StopToken& stop) const {
+  return Estimation(options_, observe_record(basis, contact, sample_rate, left, right), stop).run();
 }
 
 }  // namespace modcal

@@ -167,11 +167,25 @@ double silent_deviation(const ObservedRecord& record, End end, double bow_veloci
   return std::hypot(noise, 2.0 * impedance * bow_velocity * ripple);
 }
 
+double offset_deviation(const ObservedRecord& record, int r) {
+  // A finite number of modes ripples ahead of the first wave. The prior of the offsets grants it
+  // this share of the reaction's deviation, less than a string of few modes asks for
+  // (silent_ripple): the observer knows the ripple, and a tight prior keeps friction forces and
+  // offsets from shifting together.
+  constexpr double kRipple = 0.003;
+  const double noise = record.noise[r] / std::sqrt(static_cast<double>(record.silent[r]));
+  return std::hypot(noise, kRipple * standard_deviation(record.reaction[r]));
+}
+
+void negate(std::vector<double>& samples) {
+  for (double& value : samples) value = -value;
+}
+
 void negate(ObservedRecord& record) {
   record.negated = !record.negated;
   for (int r = 0; r < 2; ++r) {
     record.offset[r] = -record.offset[r];
-    for (double& value : record.reaction[r]) value = -value;
+    negate(record.reaction[r]);
   }
 }
 

@@ -62,6 +62,11 @@ ObservedRecord observe_record(const ModalBasis& basis, double contact, double sa
 /// wave is back.
 double silent_deviation(const ObservedRecord& record, End end, double bow_velocity);
 
+/// Prior deviation of the offset of reaction r [N]: noise of the silent samples, and the ripple of
+/// a finite number of modes ahead of the first wave.
+double offset_deviation(const ObservedRecord& record, int r);
+
+void negate(std::vector<double>& samples);
 /// The record with both reactions negated: a bow moving in the other direction.
 void negate(ObservedRecord& record);
 

@@ -1,5 +1,6 @@
-#include "libinverse/observer/observer_estimator.hpp"
+// The model-based estimate as one of the estimators.
 
+#include "libinverse/observer/model_based_estimator.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -53,9 +54,9 @@ class PreparedObserverEstimate final : public PreparedEstimator {
 
 }  // namespace
 
-std::shared_ptr<const PreparedEstimator> ObserverEstimator::do_prepare(
+std::shared_ptr<const PreparedEstimator> ModelBasedEstimator::do_prepare(
     const EstimationModel& model) const {
-  return std::make_shared<const PreparedObserverEstimate>(model, estimator_);
+  return std::make_shared<const PreparedObserverEstimate>(model, *this);
 }
 
 }  // namespace modcal

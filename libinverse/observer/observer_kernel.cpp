@@ -20,10 +20,8 @@ class Observer {
       : string_(string),
         law_(contact.sliding),
         contact_(contact),
-        modes_(string, state.modes),
         state_(state),
-        elongation_(state.elongation),
-        force_(state.force),
+        run_{Modes<kVectors>(string, state.modes), {}, state.force, state.elongation},
         side_(state.side),
         sticking_(state.sticking) {
     law_.temperature = state.temperature;
@@ -41,113 +39,112 @@ class Observer {
         signals.mean_force[k] = impulse_ / static_cast<double>(string_.substeps.coarse);
       }
     }
-    modes_.Store();
-    state_.elongation = elongation_;
-    state_.force = force_;
+    run_.modes.Store();
+    state_.elongation = run_.elongation;
+    state_.force = run_.force;
     state_.side = side_;
     state_.sticking = sticking_;
     state_.temperature = law_.temperature;
   }
 
  private:
+  // What the step loop holds in registers.
+  struct Running {
+    Modes<kVectors> modes;
+    Motion now;
+    double force, elongation;
+  };
+
   void Correct(const GainTable& gain, const ObserverSignals& signals, std::size_t k) {
-    const double left = signals.left[k] - contact_.offset[0] - modes_.Reaction(string_.left_gain);
-    const double right =
-        signals.right[k] - contact_.offset[1] - modes_.Reaction(string_.right_gain);
-    now_ = modes_.Add(gain.left, left, gain.right, right);
+    double innovation[2];
+    for (std::size_t r = 0; r < 2; ++r) {
+      innovation[r] =
+          signals.reaction[r][k] - contact_.offset[r] - run_.modes.Reaction(string_.gain[r]);
+    }
+    run_.now = run_.modes.Add(gain[0], innovation[0], gain[1], innovation[1]);
     FindForceAgain();
-    if (signals.left_innovation) signals.left_innovation[k] = left;
-    if (signals.right_innovation) signals.right_innovation[k] = right;
-    if (signals.force) signals.force[k] = force_;
-    if (signals.velocity) signals.velocity[k] = now_.velocity;
-    if (signals.displacement) signals.displacement[k] = now_.displacement;
+    for (std::size_t r = 0; r < 2; ++r) {
+      if (signals.innovation[r]) signals.innovation[r][k] = innovation[r];
+    }
+    if (signals.force) signals.force[k] = run_.force;
+    if (signals.velocity) signals.velocity[k] = run_.now.velocity;
+    if (signals.displacement) signals.displacement[k] = run_.now.displacement;
   }
 
   // The force that belongs to the corrected state.
   void FindForceAgain() {
-    const double slip = now_.velocity - bow_;
+    const double slip = run_.now.velocity - bow_;
     if (sticking_) {
-      force_ = -contact_.stiffness * elongation_ - contact_.damping * slip;
-      if (std::abs(force_) <= limit_) return;
+      run_.force = -contact_.stiffness * run_.elongation - contact_.damping * slip;
+      if (std::abs(run_.force) <= limit_) return;
       sticking_ = false;
-      side_ = force_ > 0.0 ? -1.0 : 1.0;
+      side_ = run_.force > 0.0 ? -1.0 : 1.0;
     } else if (side_ * slip <= 0.0) {
-      force_ = -contact_.damping * slip;
-      if (std::abs(force_) <= limit_) {
+      run_.force = -contact_.damping * slip;
+      if (std::abs(run_.force) <= limit_) {
         sticking_ = true;
-        elongation_ = 0.0;
+        run_.elongation = 0.0;
         return;
       }
       side_ = -side_;
     }
-    force_ = -side_ * scale_ * law_.at(std::max(0.0, side_ * slip)).force;
+    run_.force = -side_ * scale_ * law_.at(std::max(0.0, side_ * slip)).force;
   }
 
   void AdvanceSample() {
     const StepTable& t = string_.coarse;
     const double travel = bow_ * t.step;
-    const StepTable::Response direct = t.newer_response, deferred = t.deferred_response;
+    const MotionSample direct = t.newer_response, deferred = t.deferred_response;
     const double stiffness = contact_.stiffness, damping = contact_.damping;
     const double held = 1.0 / (1.0 + stiffness * direct.displacement + damping * direct.velocity);
     double least = direct.velocity * limit_;
-    // Copies that no call can reach stay in registers.
-    Modes<kVectors> modes = modes_;
-    Motion now = now_;
-    double force = force_, elongation = elongation_;
-    impulse_ = 0.0;  // in steps: the sum of the steps' mean forces
+    Running run = run_;  // a copy that no call can reach stays in registers
+    impulse_ = 0.0;      // in steps: the sum of the steps' mean forces
     // P = r (Z − d f): what the next step needs of the modes does not wait for its force.
-    Motion sums = modes.AddThenTurn(t.propagate, t.newer, -force);
+    Motion sums = run.modes.AddThenTurn(t.propagate, t.newer, -run.force);
     for (std::size_t left = string_.substeps.coarse; left > 0; --left) {
-      const Motion free = {sums.velocity + deferred.velocity * force,
-                           sums.displacement + deferred.displacement * force};
-      const double older = force;
-      sums = modes.AddThenTurn(t.propagate, t.deferred, older);
+      const Motion free = {sums.velocity + deferred.velocity * run.force,
+                           sums.displacement + deferred.displacement * run.force};
+      const double older = run.force;
+      sums = run.modes.AddThenTurn(t.propagate, t.deferred, older);
       const double slip = free.velocity - bow_;
       bool switches;
       if (sticking_) {
-        const double stretch = elongation + free.displacement - now.displacement - travel;
-        force = -(stiffness * stretch + damping * slip) * held;
-        switches = !(std::abs(force) <= limit_);
+        const double stretch = run.elongation + free.displacement - run.now.displacement - travel;
+        run.force = -(stiffness * stretch + damping * slip) * held;
+        switches = !(std::abs(run.force) <= limit_);
       } else {
         switches = !(side_ * slip > least);
         if (!switches) {
-          const double speed = side_ * (now.velocity - bow_);
-          force = -side_ * SlidingForce(law_, scale_, direct.velocity, side_ * slip, speed);
+          const double speed = side_ * (run.now.velocity - bow_);
+          run.force = -side_ * SlidingForce(law_, scale_, direct.velocity, side_ * slip, speed);
         }
       }
       if (switches) {
         // P/r is the state without the newest force; a step back, and again in fine ones.
-        modes.TurnThenAdd(t.undo, t.older, -older);
-        modes.TurnThenAdd(t.undo, t.older, 0.0);
-        modes_ = modes;
-        now_ = now;
-        force_ = older;
-        elongation_ = elongation;
+        run.modes.TurnThenAdd(t.undo, t.older, -older);
+        run.modes.TurnThenAdd(t.undo, t.older, 0.0);
+        run.force = older;
+        run_ = run;
         CrossSwitch();
         if (left == 1) return;
-        modes = modes_;
-        now = now_;
-        force = force_;
-        elongation = elongation_;
+        run = run_;
         least = direct.velocity * limit_;
-        sums = modes.AddThenTurn(t.propagate, t.newer, -force);
+        sums = run.modes.AddThenTurn(t.propagate, t.newer, -run.force);
         continue;
       }
-      impulse_ += 0.5 * (older + force);
-      const Motion next = {free.velocity + direct.velocity * force,
-                           free.displacement + direct.displacement * force};
-      if (sticking_) elongation += next.displacement - now.displacement - travel;
-      now = next;
+      impulse_ += 0.5 * (older + run.force);
+      const Motion next = {free.velocity + direct.velocity * run.force,
+                           free.displacement + direct.displacement * run.force};
+      if (sticking_) run.elongation += next.displacement - run.now.displacement - travel;
+      run.now = next;
       if (law_.thermal) {
-        Warm(t.step, now, force);
+        Warm(t.step, run.now.velocity, run.force);
         least = direct.velocity * limit_;
       }
     }
-    modes.TurnThenAdd(t.undo, t.newer, force);
-    modes_ = modes;
-    now_ = now;
-    force_ = force;
-    elongation_ = elongation;
+    run.modes.TurnThenAdd(t.undo, t.newer, run.force);
+    run_ = run;
   }
 
   // One coarse step from the state Z in fine ones.
@@ -157,14 +154,14 @@ class Observer {
     const double held =
         1.0 / (1.0 + contact_.stiffness * t.newer_response.displacement + contact_.damping * b);
     for (std::size_t i = 0; i < string_.substeps.fine; ++i) {
-      const Motion free = modes_.TurnThenAdd(t.propagate, t.older, 0.0);
-      double older = force_, force = 0.0, stretch = 0.0;
-      const double slip = free.velocity + a * force_ - bow_;
+      const Motion free = run_.modes.TurnThenAdd(t.propagate, t.older, 0.0);
+      double older = run_.force, force = 0.0, stretch = 0.0;
+      const double slip = free.velocity + a * run_.force - bow_;
       bool held_throughout = sticking_, attaches = false;
       if (sticking_) {
-        const double moved = free.displacement + t.older_response.displacement * force_ -
-                             now_.displacement - bow_ * t.step;
-        force = -(contact_.stiffness * (elongation_ + moved) + contact_.damping * slip) * held;
+        const double moved = free.displacement + t.older_response.displacement * run_.force -
+                             run_.now.displacement - bow_ * t.step;
+        force = -(contact_.stiffness * (run_.elongation + moved) + contact_.damping * slip) * held;
         if (!(std::abs(force) <= limit_)) {
           sticking_ = held_throughout = false;
           side_ = force > 0.0 ? -1.0 : 1.0;
@@ -178,15 +175,15 @@ class Observer {
       if (attaches) {
         // Slip speed from u₀ ≥ 0 to u₁ ≤ 0: it vanishes at the share θ of the step, where the force
         // jumps. Its impulse is that of a ramp from 2θ f_old + (1 − 2θ) f.
-        const double u0 = std::max(0.0, side_ * (now_.velocity - bow_));
+        const double u0 = std::max(0.0, side_ * (run_.now.velocity - bow_));
         const double u1 = side_ * slip - b * limit_;
         const double theta = u0 - u1 > 0.0 ? u0 / (u0 - u1) : 0.0;
         const double stiff = 0.5 * (1.0 - theta) * t.step * contact_.stiffness + contact_.damping;
-        const double start = free.velocity + 2.0 * theta * a * force_ - bow_;
+        const double start = free.velocity + 2.0 * theta * a * run_.force - bow_;
         const double response = b + (1.0 - 2.0 * theta) * a;
         force = -stiff * start / (1.0 + stiff * response);
         if (std::abs(force) <= limit_) {
-          older = 2.0 * theta * force_ + (1.0 - 2.0 * theta) * force;
+          older = 2.0 * theta * run_.force + (1.0 - 2.0 * theta) * force;
           stretch = 0.5 * (1.0 - theta) * t.step * (start + response * force);
           sticking_ = true;
         } else {
@@ -195,20 +192,21 @@ class Observer {
           force = -side_ * FineSlidingForce(slip);
         }
       }
-      const Motion now = modes_.Add(t.older, older, t.newer, force);
+      const Motion now = run_.modes.Add(t.older, older, t.newer, force);
       impulse_ += 0.5 * (older + force) / static_cast<double>(string_.substeps.fine);
-      if (held_throughout) elongation_ += now.displacement - now_.displacement - bow_ * t.step;
-      if (attaches) elongation_ = stretch;
-      now_ = now;
-      force_ = force;
-      if (law_.thermal) Warm(t.step, now_, force_);
+      if (held_throughout)
+        run_.elongation += now.displacement - run_.now.displacement - bow_ * t.step;
+      if (attaches) run_.elongation = stretch;
+      run_.now = now;
+      run_.force = force;
+      if (law_.thermal) Warm(t.step, run_.now.velocity, run_.force);
     }
   }
 
-  // The temperature after a step that ends with this motion and force, and what the string sticks
+  // The temperature after a step that ends with this velocity and force, and what the string sticks
   // up to from there.
-  HWY_NOINLINE void Warm(double step, const Motion& motion, double force) {
-    const double speed = sticking_ ? 0.0 : std::max(0.0, side_ * (motion.velocity - bow_));
+  HWY_NOINLINE void Warm(double step, double velocity, double force) {
+    const double speed = sticking_ ? 0.0 : std::max(0.0, side_ * (velocity - bow_));
     law_.warm(step, speed, std::abs(force));
     limit_ = scale_ * law_.at_rest();
   }
@@ -231,19 +229,18 @@ class Observer {
   }
   double FineSlidingForce(double slip) const {
     return SlidingForce(law_, scale_, string_.fine.newer_response.velocity, side_ * slip,
-                        side_ * (now_.velocity - bow_));
+                        side_ * (run_.now.velocity - bow_));
   }
 
   const StringTables& string_;
   BlendedSliding law_;
   const ContactLaw contact_;
-  Modes<kVectors> modes_;
   ObserverState& state_;
-  double elongation_, force_, side_;
+  Running run_;
+  double side_;
   bool sticking_;
   double scale_ = 1.0, bow_ = 0.0, limit_ = 0.0;
   double impulse_ = 0.0;
-  Motion now_{};
 };
 
 template <std::size_t kVectors>

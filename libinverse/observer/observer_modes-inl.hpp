@@ -8,14 +8,11 @@
 #endif
 
 #include "libinverse/observer/string_tables.hpp"
+#include "libsim/base/planar_lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace modcal::observer::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
-
-// At most 8 lanes, the padding of the tables.
-using Tag = hn::CappedTag<double, kVectorPadding>;
-using Vector = hn::Vec<Tag>;
+using namespace modcal::HWY_NAMESPACE;
 
 struct Motion {
   double velocity, displacement;
@@ -45,39 +42,29 @@ class Modes {
 
   // X ← factor (X + row u), and the motion at the contact that goes with it.
   HWY_INLINE Motion AddThenTurn(const PlanarVector& factor, const PlanarVector& row, double u) {
-    const double *f_re = factor.re.data(), *f_im = factor.im.data();
-    const double *r_re = row.re.data(), *r_im = row.im.data();
+    const Source factors(factor), rows(row);
     const auto drive = hn::Set(Tag(), u);
     return Transform([=](std::size_t i, Vector& re, Vector& im) HWY_ATTR {
-      const Tag d;
-      re = hn::MulAdd(hn::Load(d, r_re + i), drive, re);
-      im = hn::MulAdd(hn::Load(d, r_im + i), drive, im);
-      Turn(hn::Load(d, f_re + i), hn::Load(d, f_im + i), re, im);
+      AddTo(rows[i], drive, re, im);
+      Turn(factors[i], re, im);
     });
   }
   // X ← factor X + row u.
   HWY_INLINE Motion TurnThenAdd(const PlanarVector& factor, const PlanarVector& row, double u) {
-    const double *f_re = factor.re.data(), *f_im = factor.im.data();
-    const double *r_re = row.re.data(), *r_im = row.im.data();
+    const Source factors(factor), rows(row);
     const auto drive = hn::Set(Tag(), u);
     return Transform([=](std::size_t i, Vector& re, Vector& im) HWY_ATTR {
-      const Tag d;
-      Turn(hn::Load(d, f_re + i), hn::Load(d, f_im + i), re, im);
-      re = hn::MulAdd(hn::Load(d, r_re + i), drive, re);
-      im = hn::MulAdd(hn::Load(d, r_im + i), drive, im);
+      Turn(factors[i], re, im);
+      AddTo(rows[i], drive, re, im);
     });
   }
   // X ← X + first u + second w.
   HWY_INLINE Motion Add(const PlanarVector& first, double u, const PlanarVector& second, double w) {
-    const double *a_re = first.re.data(), *a_im = first.im.data();
-    const double *b_re = second.re.data(), *b_im = second.im.data();
+    const Source firsts(first), seconds(second);
     const auto left = hn::Set(Tag(), u), right = hn::Set(Tag(), w);
     return Transform([=](std::size_t i, Vector& re, Vector& im) HWY_ATTR {
-      const Tag d;
-      re = hn::MulAdd(hn::Load(d, a_re + i), left, re);
-      im = hn::MulAdd(hn::Load(d, a_im + i), left, im);
-      re = hn::MulAdd(hn::Load(d, b_re + i), right, re);
-      im = hn::MulAdd(hn::Load(d, b_im + i), right, im);
+      AddTo(firsts[i], left, re, im);
+      AddTo(seconds[i], right, re, im);
     });
   }
   // Σ gain Im X.
@@ -94,14 +81,18 @@ class Modes {
         sum = hn::MulAdd(hn::Load(d, g + i), hn::Load(d, memory_im_ + i), sum);
       }
     }
-    return hn::GetLane(hn::SumOfLanes(d, sum));
+    return Total(sum);
   }
 
  private:
-  static HWY_INLINE void Turn(Vector f_re, Vector f_im, Vector& re, Vector& im) {
-    const auto turned = hn::NegMulAdd(f_im, im, hn::Mul(f_re, re));
-    im = hn::MulAdd(f_re, im, hn::Mul(f_im, re));
-    re = turned;
+  static HWY_INLINE void Turn(ComplexVector factor, Vector& re, Vector& im) {
+    const ComplexVector turned = Times(factor, ComplexVector{re, im});
+    re = turned.re;
+    im = turned.im;
+  }
+  static HWY_INLINE void AddTo(ComplexVector row, Vector drive, Vector& re, Vector& im) {
+    re = hn::MulAdd(row.re, drive, re);
+    im = hn::MulAdd(row.im, drive, im);
   }
 
   template <typename Change>
@@ -128,7 +119,7 @@ class Modes {
         hn::Store(im, d, memory_im_ + i);
       }
     }
-    return {hn::GetLane(hn::SumOfLanes(d, velocity)), hn::GetLane(hn::SumOfLanes(d, displacement))};
+    return {Total(velocity), Total(displacement)};
   }
 
   std::size_t size_;

@@ -47,9 +47,8 @@ ModalBasis detuned(ModalBasis basis, const std::vector<double>& detuning) {
 }  // namespace
 
 double huber(double r) {
-  constexpr double kCorner = 3.0;
   const double size = std::abs(r);
-  return size <= kCorner ? 0.5 * r * r : kCorner * (size - 0.5 * kCorner);
+  return size <= kHuberCorner ? 0.5 * r * r : kHuberCorner * (size - 0.5 * kHuberCorner);
 }
 
 double misfit(const Innovations& innovations) {
@@ -87,25 +86,14 @@ ObserverState PreparedObserver::initial_state() const {
   return state;
 }
 
-ObserverSignals PreparedObserver::with_inputs(const ObserverSignals& outputs,
-                                              std::size_t first) const {
-  ObserverSignals signals = outputs;
-  signals.left = (left_.empty() ? z_left_ : left_.data()) + first;
-  signals.right = (right_.empty() ? z_right_ : right_.data()) + first;
-  signals.force_scale = force_scale_.data() + first;
-  signals.bow_velocity = bow_velocity_.data() + first;
-  return signals;
-}
-
 void PreparedObserver::run(std::size_t gain, std::size_t first, std::size_t last,
-                           ObserverState& state, const ObserverSignals& outputs) const {
-  run_observer(*string_, contact_, (*gains_)[gain], with_inputs(outputs, 0), first, last, state);
-}
-
-void PreparedObserver::run_block(std::size_t gain, std::size_t first, std::size_t last,
-                                 ObserverState& state, const ObserverSignals& outputs) const {
-  run_observer(*string_, contact_, (*gains_)[gain], with_inputs(outputs, first), 0, last - first,
-               state);
+                           ObserverState& state, const ObserverSignals& outputs,
+                           std::size_t origin) const {
+  ObserverSignals signals = outputs;
+  for (std::size_t r = 0; r < 2; ++r) signals.reaction[r] = reaction(r) + origin;
+  signals.force_scale = force_scale_.data() + origin;
+  signals.bow_velocity = bow_velocity_.data() + origin;
+  run_observer(*string_, contact_, (*gains_)[gain], signals, first - origin, last - origin, state);
 }
 
 ObserverRuns::ObserverRuns(const ObservedRecord& record, std::vector<double> force_noise,
@@ -139,8 +127,7 @@ std::vector<GainTable> ObserverRuns::gains_for(const StringTables& string) const
       while (m < string_->mode.size() && string_->mode[m] < string.mode[n]) ++m;
       if (m == string_->mode.size() || string_->mode[m] != string.mode[n]) continue;
       const double scale = string.shape[n] / string_->shape[m];
-      table.left.set(n, scale * nominal.left.at(m));
-      table.right.set(n, scale * nominal.right.at(m));
+      for (std::size_t r = 0; r < 2; ++r) table[r].set(n, scale * nominal[r].at(m));
     }
     result.push_back(std::move(table));
   }
@@ -158,8 +145,10 @@ PreparedObserver ObserverRuns::prepare(const ObserverParameters& p) const {
   observer.contact_.stiffness = p.stiffness;
   observer.contact_.damping =
       p.damping_ratio * 2.0 * std::sqrt(p.stiffness * observer.string_->effective_mass);
-  observer.contact_.offset[0] = p.offset[0];
-  observer.contact_.offset[1] = p.offset[1];
+  for (std::size_t r = 0; r < 2; ++r) {
+    observer.contact_.offset[r] = p.offset[r];
+    observer.recorded_[r] = record_.reaction[r].data();
+  }
   const std::size_t samples = record_.samples();
   observer.force_scale_.assign(samples, 1.0);
   observer.bow_velocity_.assign(samples, p.bow_velocity);
@@ -171,26 +160,26 @@ PreparedObserver ObserverRuns::prepare(const ObserverParameters& p) const {
       observer.bow_velocity_[k] *= 1.0 + between_knots(p.velocity_knots, k, samples);
     }
   }
-  observer.z_left_ = record_.reaction[0].data();
-  observer.z_right_ = record_.reaction[1].data();
   if (p.delay != 0.0 || p.gain != 1.0) {
-    observer.left_ = corrected(record_.reaction[0], record_.sample_rate, p.delay, p.gain);
+    observer.changed_[0] = corrected(record_.reaction[0], record_.sample_rate, p.delay, p.gain);
   }
   if (p.level_growth != 0.0) {
     const double slope = p.offset[1] * p.level_growth / record_.sample_rate;
-    observer.right_ = record_.reaction[1];
-    for (std::size_t k = 0; k < samples; ++k) observer.right_[k] -= slope * static_cast<double>(k);
+    std::vector<double>& z = observer.changed_[1] = record_.reaction[1];
+    for (std::size_t k = 0; k < samples; ++k) z[k] -= slope * static_cast<double>(k);
   }
   return observer;
 }
 
-void ObserverRuns::run_schedule(const PreparedObserver& observer, const GainSchedule& schedule,
-                                std::size_t samples, Innovations& innovations,
-                                ObserverMotion* motion) const {
-  for (auto& scaled : innovations.scaled) scaled.resize(samples);
+Innovations ObserverRuns::run_schedule(const PreparedObserver& observer,
+                                       const GainSchedule& schedule, std::size_t samples,
+                                       ObserverMotion* motion) const {
+  Innovations innovations;
   ObserverSignals outputs;
-  outputs.left_innovation = innovations.scaled[0].data();
-  outputs.right_innovation = innovations.scaled[1].data();
+  for (std::size_t r = 0; r < 2; ++r) {
+    innovations.scaled[r].resize(samples);
+    outputs.innovation[r] = innovations.scaled[r].data();
+  }
   if (motion) {
     for (auto* signal :
          {&motion->force, &motion->velocity, &motion->displacement, &motion->mean_force}) {
@@ -211,20 +200,14 @@ void ObserverRuns::run_schedule(const PreparedObserver& observer, const GainSche
     const double scale = 1.0 / record_.noise[r];
     for (double& value : innovations.scaled[r]) value *= scale;
   }
-}
-
-Innovations ObserverRuns::innovations(const ObserverParameters& parameters,
-                                      const GainSchedule& schedule, std::size_t samples) const {
-  Innovations result;
-  run_schedule(prepare(parameters), schedule, samples, result, nullptr);
-  return result;
+  return innovations;
 }
 
 PreparedObserver ObserverRuns::disturbed(const ObserverParameters& parameters,
                                          const StreamKey& key) const {
   PreparedObserver observer = prepare(parameters);
   for (int r = 0; r < 2; ++r) {
-    std::vector<double>& z = r == 0 ? observer.left_ : observer.right_;
+    std::vector<double>& z = observer.changed_[r];
     if (z.empty()) z = record_.reaction[r];
     std::vector<double> noise(z.size());
     fill_standard_normal(key.with(r == 0 ? "R1" : "R2"), noise);
@@ -237,14 +220,12 @@ MotionDeviation ObserverRuns::deviation(const ObserverParameters& parameters,
                                         const GainSchedule& schedule, std::size_t draws,
                                         const StreamKey& key) const {
   const std::size_t samples = record_.samples();
-  Innovations unused;
   ObserverMotion plain;
-  run_schedule(prepare(parameters), schedule, samples, unused, &plain);
+  innovations(parameters, schedule, samples, &plain);
   std::vector<ObserverMotion> motions(draws);
   for_each_task(draws, [&](std::size_t i) {
-    Innovations own;
     run_schedule(disturbed(parameters, key.with(static_cast<std::uint64_t>(i))), schedule, samples,
-                 own, &motions[i]);
+                 &motions[i]);
   });
   MotionDeviation result{std::vector<double>(samples, 0.0), std::vector<double>(samples, 0.0)};
   const auto rms = [&](std::vector<double> ObserverMotion::*signal,
@@ -259,13 +240,6 @@ MotionDeviation ObserverRuns::deviation(const ObserverParameters& parameters,
   };
   rms(&ObserverMotion::force, result.force);
   rms(&ObserverMotion::velocity, result.velocity);
-  return result;
-}
-
-Innovations ObserverRuns::identify(const ObserverParameters& parameters,
-                                   const GainSchedule& schedule, ObserverMotion& motion) const {
-  Innovations result;
-  run_schedule(prepare(parameters), schedule, record_.samples(), result, &motion);
   return result;
 }
 

@@ -24,7 +24,10 @@ struct Innovations {
 };
 
 struct ObserverMotion {
-  std::vector<double> force, velocity, displacement, mean_force;
+  std::vector<double> force;         ///< f_c(t_k) [N]
+  std::vector<double> velocity;      ///< v(x_c, t_k) [m/s]
+  std::vector<double> displacement;  ///< y(x_c, t_k) [m]
+  std::vector<double> mean_force;    ///< of f_c from one sample to the next [N]
 };
 
 struct MotionDeviation {
@@ -38,22 +41,21 @@ class PreparedObserver {
   const StringTables& string() const { return *string_; }
   /// Starts at rest.
   ObserverState initial_state() const;
-  /// Output arrays begin at sample 0.
+  /// Output arrays begin at sample `origin`.
   void run(std::size_t gain, std::size_t first, std::size_t last, ObserverState& state,
-           const ObserverSignals& outputs) const;
-  /// The same with output arrays that begin at sample `first`.
-  void run_block(std::size_t gain, std::size_t first, std::size_t last, ObserverState& state,
-                 const ObserverSignals& outputs) const;
+           const ObserverSignals& outputs, std::size_t origin = 0) const;
 
  private:
-  ObserverSignals with_inputs(const ObserverSignals& outputs, std::size_t first) const;
+  const double* reaction(std::size_t r) const {
+    return changed_[r].empty() ? recorded_[r] : changed_[r].data();
+  }
 
   friend class ObserverRuns;
   std::shared_ptr<const StringTables> string_;
   ContactLaw contact_;
-  std::vector<double> left_, right_;  // empty: as recorded
+  const double* recorded_[2] = {};
+  std::vector<double> changed_[2];  // empty: as recorded
   std::vector<double> force_scale_, bow_velocity_;
-  const double *z_left_ = nullptr, *z_right_ = nullptr;
   std::shared_ptr<const std::vector<GainTable>> gains_;
 };
 
@@ -68,12 +70,11 @@ class ObserverRuns {
   /// Misfit that a right model leaves under each of the gains (SteadyGain::quiet_misfit).
   const std::vector<double>& quiet_misfit() const { return quiet_misfit_; }
   PreparedObserver prepare(const ObserverParameters& parameters) const;
-  /// Innovations of the first `samples` samples.
+  /// Innovations of the first `samples` samples and, where asked for, the identified motion.
   Innovations innovations(const ObserverParameters& parameters, const GainSchedule& schedule,
-                          std::size_t samples) const;
-  /// The same with the identified motion, over the whole record.
-  Innovations identify(const ObserverParameters& parameters, const GainSchedule& schedule,
-                       ObserverMotion& motion) const;
+                          std::size_t samples, ObserverMotion* motion = nullptr) const {
+    return run_schedule(prepare(parameters), schedule, samples, motion);
+  }
   /// Standard deviation of force and velocity at every sample under the sensors' noise alone: rms
   /// change of the motion over `draws` of further noise of the same strength, drawn from `key`, the
   /// parameters held.
@@ -84,8 +85,8 @@ class ObserverRuns {
   std::shared_ptr<const StringTables> tables_of(const ObserverParameters& parameters) const;
   std::vector<GainTable> gains_for(const StringTables& string) const;
   PreparedObserver disturbed(const ObserverParameters& parameters, const StreamKey& key) const;
-  void run_schedule(const PreparedObserver& observer, const GainSchedule& schedule,
-                    std::size_t samples, Innovations& innovations, ObserverMotion* motion) const;
+  Innovations run_schedule(const PreparedObserver& observer, const GainSchedule& schedule,
+                           std::size_t samples, ObserverMotion* motion) const;
 
   const ObservedRecord& record_;
   std::vector<double> force_noise_;
@@ -106,7 +107,8 @@ double steady_misfit(const Innovations& innovations);
 /// Mean of 2ρ(ν/s) with Huber's ρ, corner 3: 1 for an observer whose model and noise are right.
 double misfit(const Innovations& innovations);
 
-/// Huber's ρ(r): r²/2 up to |r| = 3, linear beyond.
+/// Huber's ρ(r): r²/2 up to the corner, linear beyond.
+inline constexpr double kHuberCorner = 3.0;
 double huber(double r);
 
 }  // namespace modcal::observer

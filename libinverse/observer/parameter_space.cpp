@@ -4,6 +4,8 @@
 #include <cmath>
 #include <iterator>
 
+#include "libinverse/observer/friction_candidates.hpp"
+
 namespace modcal::observer {
 namespace {
 
@@ -87,21 +89,56 @@ std::vector<FreeParameter> basic_parameters(double force_scale,
           {Coordinate::kRightOffset, 0, step, offset_deviation[1] / step}};
 }
 
-void free_more(const FreedOptions& options, std::span<const std::size_t> modes,
+void ModelBasedOptions::visit(OptionVisitor& visitor) {
+  visitor.texts({.key = "laws",
+                 .meaning = "friction laws to fit; of several the best supported one is taken",
+                 .choices = friction_law_names()},
+                laws);
+  visitor.integer({.key = "substeps",
+                   .meaning = "steps of the observer per sample",
+                   .range = Range::closed(1, 64)},
+                  substeps);
+  visitor.integer(
+      {.key = "rounds", .meaning = "rounds of gain search and fit", .range = Range::closed(0, 20)},
+      rounds);
+  visitor.flag(
+      {.key = "adherence_damping", .meaning = "fit the damping of adherence, else critical"},
+      adherence_damping);
+  visitor.integer({.key = "force_knots",
+                   .meaning = "knots of the normal force in time; 0: constant",
+                   .range = Range::closed(0, 200)},
+                  force_knots);
+  visitor.integer({.key = "velocity_knots",
+                   .meaning = "knots of the bow velocity in time; 0: constant",
+                   .range = Range::closed(0, 200)},
+                  velocity_knots);
+  visitor.flag({.key = "delay", .meaning = "fit the delay between the two sensors"}, delay);
+  visitor.flag({.key = "gain", .meaning = "fit the gain ratio of the two sensors"}, gain);
+  visitor.flag({.key = "contact", .meaning = "fit the contact point"}, contact);
+  visitor.flag({.key = "frequencies", .meaning = "fit every modal frequency"}, frequencies);
+  visitor.number({.key = "misfit_limit",
+                  .meaning = "innovation misfit, median over blocks, above which the result warns; "
+                             "auto: by its sampling deviation",
+                  .unit = "1",
+                  .range = Range::positive(),
+                  .word = "auto"},
+                 misfit_limit);
+}
+
+void free_more(const ModelBasedOptions& options, std::span<const std::size_t> modes,
                ParameterSpace& space) {
   ObserverParameters& start = space.start();
   const auto free = [&](Coordinate coordinate, std::size_t index, double step, double prior) {
     space.free_also({coordinate, index, step, prior / step});
   };
   if (options.adherence_damping) free(Coordinate::kDamping, 0, 0.08, 2.0);
-  start.force_knots.assign(options.force_knots, 0.0);
-  start.velocity_knots.assign(options.velocity_knots, 0.0);
-  for (std::size_t i = 0; i < options.force_knots; ++i) {
-    free(Coordinate::kForceKnot, i, 0.02, 0.3);
-  }
-  for (std::size_t i = 0; i < options.velocity_knots; ++i) {
-    free(Coordinate::kVelocityKnot, i, 0.01, 0.3);
-  }
+  const auto free_knots = [&](Coordinate coordinate, std::int64_t count, double step,
+                              std::vector<double>& knots) {
+    knots.assign(static_cast<std::size_t>(count), 0.0);
+    for (std::size_t i = 0; i < knots.size(); ++i) free(coordinate, i, step, 0.3);
+  };
+  free_knots(Coordinate::kForceKnot, options.force_knots, 0.02, start.force_knots);
+  free_knots(Coordinate::kVelocityKnot, options.velocity_knots, 0.01, start.velocity_knots);
   if (options.delay) free(Coordinate::kDelay, 0, 1e-6, 1e-4);
   if (options.gain) free(Coordinate::kGain, 0, 0.01, 0.3);
   if (options.contact) free(Coordinate::kContact, 0, 3e-4 * start.contact, 0.1 * start.contact);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "libinverse/observer/observer_kernel.hpp"
+#include "libsim/base/options.hpp"
 
 namespace modcal::observer {
 
@@ -89,16 +90,24 @@ class ParameterSpace {
   std::vector<FreeParameter> free_;
 };
 
-/// What is freed beyond friction products, decay, bow velocity, adherence stiffness and offsets.
-struct FreedOptions {
-  bool adherence_damping = false;
-  std::size_t force_knots = 0;     ///< 0: constant F_N
-  std::size_t velocity_knots = 0;  ///< 0: constant v_bow
-  bool delay = false;
-  bool gain = false;
-  bool contact = false;
-  bool frequencies = false;
-  bool any() const {
+struct ModelBasedOptions {
+  /// Friction laws fitted; with several, the one with the least BIC is taken.
+  std::vector<std::string> laws = {"exponential"};
+  std::int64_t substeps = 5;        ///< steps of the observer per sample while it is fitted
+  std::int64_t rounds = 3;          ///< of gain search and fit
+  bool adherence_damping = false;   ///< frees C_a, else 2√(K_a m_eff)
+  std::int64_t force_knots = 0;     ///< of ln F_N(t); 0: constant
+  std::int64_t velocity_knots = 0;  ///< of v_bow(t); 0: constant
+  bool delay = false;               ///< frees the delay between the two sensors
+  bool gain = false;                ///< frees the gain ratio of the two sensors
+  bool contact = false;             ///< frees x_c
+  bool frequencies = false;         ///< frees every ω_n
+  /// Steady J above which the result warns; NaN: four standard deviations above what a right model
+  /// leaves.
+  double misfit_limit = std::numeric_limits<double>::quiet_NaN();
+  void visit(OptionVisitor& visitor);
+  /// Beyond friction products, decay, bow velocity, adherence stiffness and offsets.
+  bool frees_more() const {
     return adherence_damping || force_knots > 0 || velocity_knots > 0 || delay || gain || contact ||
            frequencies;
   }
@@ -110,7 +119,7 @@ std::vector<FreeParameter> basic_parameters(double force_scale,
                                             const double (&offset_deviation)[2]);
 
 /// Frees what is asked for; `modes`: numbers of the modes that the contact reaches.
-void free_more(const FreedOptions& options, std::span<const std::size_t> modes,
+void free_more(const ModelBasedOptions& options, std::span<const std::size_t> modes,
                ParameterSpace& space);
 
 }  // namespace modcal::observer

@@ -3,7 +3,7 @@
 
 #include "libinverse/estimator.hpp"
 #include "libinverse/joint/joint_estimators.hpp"
-#include "libinverse/observer/observer_estimator.hpp"
+#include "libinverse/observer/model_based_estimator.hpp"
 #include "libinverse/spectral/one_sided/one_sided_estimator.hpp"
 
 namespace modcal {
@@ -13,7 +13,7 @@ Registry<Estimator> Estimator::registry() {
       entry_of<Estimator, JointEstimator>("joint", "one force from both reactions"),
       entry_of<Estimator, LinearLimitEstimator>(
           "linear_limit", "what no linear estimate beats: true spectra known (oracle)"),
-      entry_of<Estimator, ObserverEstimator>(
+      entry_of<Estimator, ModelBasedEstimator>(
           "model_based", "observer of both reactions with a fitted friction law"),
       entry_of<Estimator, OneSidedEstimator>("one_sided", "each reaction gives a force of its own"),
   };

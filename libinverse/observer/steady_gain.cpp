@@ -122,8 +122,9 @@ SteadyGain steady_gain(const ModalBasis& basis, double contact, double sample_ra
   result.gain = {PlanarVector(modes.size()), PlanarVector(modes.size())};
   for (std::size_t n = 0; n < modes.size(); ++n) {
     const auto row = static_cast<Eigen::Index>(2 * n);
-    result.gain.left.set(n, shape[n] * std::complex<double>(k(row, 0), k(row + 1, 0)));
-    result.gain.right.set(n, shape[n] * std::complex<double>(k(row, 1), k(row + 1, 1)));
+    for (int r = 0; r < 2; ++r) {
+      result.gain[r].set(n, shape[n] * std::complex<double>(k(row, r), k(row + 1, r)));
+    }
   }
   return result;
 }

@@ -7,41 +7,25 @@
 namespace modcal::observer {
 namespace {
 
-AlignedVector padded(const std::vector<double>& values) {
-  AlignedVector result(values.begin(), values.end());
-  result.resize(padded_size(values.size()), 0.0);
-  return result;
-}
-
-StepTable::Response response_of(const ContactModes& modes, const PlanarVector& state) {
-  StepTable::Response sum;
-  for (std::size_t n = 0; n < modes.size(); ++n) {
-    sum.velocity += state.re[n] - modes.quadrature[n] * state.im[n];
-    sum.displacement += modes.compliance[n] * state.im[n];
-  }
-  return sum;
-}
-
 StepTable make_step_table(const ContactModes& modes, double step) {
   StepTable table;
   table.step = step;
-  for (PlanarVector* row :
-       {&table.propagate, &table.undo, &table.older, &table.newer, &table.deferred}) {
-    *row = PlanarVector(modes.size());
-  }
+  table.propagate = table.undo = PlanarVector(modes.size());
+  std::vector<std::complex<double>> older, newer, deferred;
   for (std::size_t n = 0; n < modes.size(); ++n) {
     const ModeWeights weights = first_order_hold_weights(modes.pole[n], step);
-    const std::complex<double> older = modes.drive[n] * weights.older;
-    const std::complex<double> newer = modes.drive[n] * weights.newer;
     table.propagate.set(n, weights.propagate);
     table.undo.set(n, 1.0 / weights.propagate);
-    table.older.set(n, older);
-    table.newer.set(n, newer);
-    table.deferred.set(n, weights.propagate * newer + older);
+    older.push_back(modes.drive[n] * weights.older);
+    newer.push_back(modes.drive[n] * weights.newer);
+    deferred.push_back(weights.propagate * newer[n] + older[n]);
   }
-  table.older_response = response_of(modes, table.older);
-  table.newer_response = response_of(modes, table.newer);
-  table.deferred_response = response_of(modes, table.deferred);
+  table.older = PlanarVector(older);
+  table.newer = PlanarVector(newer);
+  table.deferred = PlanarVector(deferred);
+  table.older_response = motion_of(modes, older);
+  table.newer_response = motion_of(modes, newer);
+  table.deferred_response = motion_of(modes, deferred);
   return table;
 }
 
@@ -66,8 +50,8 @@ StringTables make_string_tables(const ModalBasis& basis, double contact, double 
   }
   tables.quadrature = padded(modes.quadrature);
   tables.compliance = padded(modes.compliance);
-  tables.left_gain = padded(modes.left_gain);
-  tables.right_gain = padded(modes.right_gain);
+  tables.gain[0] = padded(modes.left_gain);
+  tables.gain[1] = padded(modes.right_gain);
   tables.effective_mass = modes.effective_mass();
   return tables;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "libsim/base/aligned_vector.hpp"
+#include "libsim/dynamics/scene/simulation.hpp"
 #include "libsim/model/modal_basis.hpp"
 
 namespace modcal::observer {
@@ -13,18 +14,14 @@ namespace modcal::observer {
 /// One length of step h of all modes, Z(h) = r Z + a f_old + d f_new with the force linear over the
 /// step (first-order hold), Z as in libsim/dynamics/contact_modes.hpp.
 struct StepTable {
-  /// Answer of velocity and displacement at the contact to one of a, d, D.
-  struct Response {
-    double velocity = 0.0;      ///< [m/(N s)]
-    double displacement = 0.0;  ///< [m/N]
-  };
   double step = 0.0;       ///< h [s]
   PlanarVector propagate;  ///< r = e^{λh}
   PlanarVector undo;       ///< 1/r
   PlanarVector older;      ///< a
   PlanarVector newer;      ///< d
   PlanarVector deferred;   ///< D = r d + a
-  Response older_response, newer_response, deferred_response;
+  /// Answer of the contact to a, d, D: velocity [m/(N s)] and displacement [m/N].
+  MotionSample older_response, newer_response, deferred_response;
 };
 
 /// Steps per sample of the string: `coarse` ones, and `fine` ones in those that hold a switch.
@@ -36,12 +33,12 @@ struct Substeps {
 struct StringTables {
   StepTable coarse, fine;
   Substeps substeps;
-  std::vector<std::size_t> mode;        ///< index in the modal basis of every mode kept
-  std::vector<double> shape;            ///< φ_n(x_c) of the modes kept
-  AlignedVector quadrature;             ///< v = Σ Re Z − quadrature Im Z
-  AlignedVector compliance;             ///< y = Σ compliance Im Z
-  AlignedVector left_gain, right_gain;  ///< R_r = Σ gain_r Im Z
-  double effective_mass = 0.0;          ///< 1/Σ φ²/m [kg]
+  std::vector<std::size_t> mode;  ///< index in the modal basis of every mode kept
+  std::vector<double> shape;      ///< φ_n(x_c) of the modes kept
+  AlignedVector quadrature;       ///< v = Σ Re Z − quadrature Im Z
+  AlignedVector compliance;       ///< y = Σ compliance Im Z
+  AlignedVector gain[2];          ///< R_r = Σ gain_r Im Z
+  double effective_mass = 0.0;    ///< 1/Σ φ²/m [kg]
 
   /// Length of the arrays, padding included.
   std::size_t size() const { return compliance.size(); }

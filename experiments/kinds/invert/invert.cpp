@@ -71,8 +71,8 @@ std::vector<std::string> InvertOptions::plan() const {
   lines.push_back(planned ? plan_line(*planned) : "record: " + observation.record.file);
   const InversionOutputs outputs = inversion_outputs(figures, write_signals);
   if (!outputs.displacement)
-    lines.push_back("skipped: identified displacement, which nobody reads");
-  if (!outputs.velocity) lines.push_back("skipped: identified velocity, which nobody reads");
+    lines.emplace_back("skipped: identified displacement, which nobody reads");
+  if (!outputs.velocity) lines.emplace_back("skipped: identified velocity, which nobody reads");
   return lines;
 }
 
@@ -179,8 +179,8 @@ StudyResult InvertOptions::run(const StudyContext& context) const {
   if (write_signals) result.signal_files.push_back(identified_signals(observed, sides));
   if (wave_based) add_wave_based(observed, model, score, result);
   if (has_model_based) {
-    const ModelIdentification by_model = identify_by_model(
-        observed, model, model_based, score, [&] { return context.stop.requested(); });
+    const ModelIdentification by_model =
+        identify_by_model(observed, model, model_based, score, context.stop);
     add_model_based(observed, by_model, score, result);
     if (write_signals) add_model_signals(observed, by_model.result, result.signal_files.back());
   }

@@ -73,7 +73,7 @@ struct ModelIdentification {
 /// Estimates and scores. Throws InvalidInput for an observation with one reaction.
 ModelIdentification identify_by_model(const Observation& observation, const AssumedModel& model,
                                       const ModelBasedOptions& options, const ScoreOptions& score,
-                                      const std::function<bool()>& interrupted);
+                                      const StopToken& stop);
 
 /// Force over slip speed: loops over two periods, cells with their 5–95 % spread of the model-based
 /// and the linear estimate, the fitted law.

@@ -49,7 +49,7 @@ report::Figure friction_figure(const Observation& observation, const ModelBasedR
       .x = {.label = "|v_c|", .unit = "m/s"},
       .y = {.label = "|f_c|", .unit = "N"},
       .series = {
-          cells_of(result.linear_velocity, result.linear_force, bow, "linear", ColorRole::kMuted),
+          cells_of(result.linear.velocity, result.linear.force, bow, "linear", ColorRole::kMuted),
           cells_of(result.velocity, result.force, bow, "model-based", ColorRole::kFirst)}};
   double fastest = 0.0;
   for (const double v : result.velocity) fastest = std::max(fastest, sign * (bow - v));
@@ -72,10 +72,10 @@ report::Figure friction_figure(const Observation& observation, const ModelBasedR
   report::Panel loops{.title = "Loops",
                       .x = {.label = "v_c", .unit = "m/s"},
                       .y = {.label = "f_c", .unit = "N"},
-                      .series = {loop("linear", result.linear_velocity, result.linear_force,
-                                      result.linear_deviation, ColorRole::kMuted),
+                      .series = {loop("linear", result.linear.velocity, result.linear.force,
+                                      result.linear.force_deviation, ColorRole::kMuted),
                                  loop("model-based", result.velocity, result.force,
-                                      result.force_deviation, ColorRole::kFirst)}};
+                                      result.deviation.force, ColorRole::kFirst)}};
   return {
       .id = "friction_law",
       .title = "Friction law",
@@ -105,7 +105,7 @@ report::Figure model_force_figure(const Observation& observation, const ModelBas
       .title = "Friction force",
       .x = {.label = "t", .unit = "s"},
       .y = {.label = "f_c", .unit = "N"},
-      .series = {curve("linear", result.linear_force, SeriesStyle::kLine, ColorRole::kMuted),
+      .series = {curve("linear", result.linear.force, SeriesStyle::kLine, ColorRole::kMuted),
                  curve("model-based", result.force, SeriesStyle::kLine, ColorRole::kFirst)}};
   if (observation.reference) {
     panel.series.push_back(curve("truth", observation.reference->samples, SeriesStyle::kDotted,

@@ -8,7 +8,7 @@ namespace {
 std::vector<ModelScore> model_scores(const ModelBasedResult& result, const Observation& observation,
                                      const ScoreOptions& options) {
   const ForceScores model = scores_of(observation, result.force, &options, result.unaliased_force);
-  const ForceScores linear = scores_of(observation, result.linear_force, &options);
+  const ForceScores linear = scores_of(observation, result.linear.force, &options);
   std::vector<ModelScore> scores;
   for (std::size_t i = 0; i < model.scores.size(); ++i) {
     const bool all = options.windows.empty();
@@ -129,13 +129,12 @@ std::string law_line(const std::vector<observer::FrictionCandidate>& laws) {
 
 ModelIdentification identify_by_model(const Observation& observation, const AssumedModel& model,
                                       const ModelBasedOptions& options, const ScoreOptions& score,
-                                      const std::function<bool()>& interrupted) {
+                                      const StopToken& stop) {
   require_both_reactions(observation, "the model-based estimate", "model_based");
   ModelIdentification identification;
   identification.result = ModelBasedEstimator(options).estimate(
       model.basis, model.contact, observation.sample_rate,
-      observation.reaction(End::kLeft)->samples, observation.reaction(End::kRight)->samples,
-      interrupted);
+      observation.reaction(End::kLeft)->samples, observation.reaction(End::kRight)->samples, stop);
   identification.scores = model_scores(identification.result, observation, score);
   return identification;
 }
@@ -148,8 +147,8 @@ void add_model_signals(const Observation& observation, const ModelBasedResult& m
   add("f_c_model", "N", model.force);
   add("v_model", "m/s", model.velocity);
   add("y_model", "m", model.displacement);
-  add("f_c_model_deviation", "N", model.force_deviation);
-  add("v_model_deviation", "m/s", model.velocity_deviation);
+  add("f_c_model_deviation", "N", model.deviation.force);
+  add("v_model_deviation", "m/s", model.deviation.velocity);
 }
 
 void add_model_based(const Observation& observation, const ModelIdentification& identification,

@@ -33,7 +33,7 @@ TEST(ModelBasedEstimator, RecoversForceAndFrictionLaw) {
   const ModelBasedResult result = estimate(r, quick());
   EXPECT_GT(correlation(result.force, r.truth.force.samples), 0.95);
   EXPECT_GT(correlation(result.velocity, r.truth.velocity.samples), 0.999);
-  EXPECT_LT(correlation(result.linear_force, r.truth.force.samples), 0.93);
+  EXPECT_LT(correlation(result.linear.force, r.truth.force.samples), 0.93);
   const observer::ObserverParameters& p = result.parameters;
   EXPECT_NEAR(p.sliding.dynamic_force, 0.2, 0.02);
   EXPECT_NEAR(p.sliding.force_drop, 0.2, 0.01);
@@ -58,9 +58,9 @@ TEST(ModelBasedEstimator, RecoversForceAndFrictionLaw) {
   };
   const double shift = mean(r.truth.force.samples) - result.static_part.level;
   const double of_force =
-      share_inside(result.force, r.truth.force.samples, result.force_deviation, shift);
+      share_inside(result.force, r.truth.force.samples, result.deviation.force, shift);
   const double of_velocity =
-      share_inside(result.velocity, r.truth.velocity.samples, result.velocity_deviation, 0.0);
+      share_inside(result.velocity, r.truth.velocity.samples, result.deviation.velocity, 0.0);
   for (const double share : {of_force, of_velocity}) {
     EXPECT_GT(share, 0.88);
     EXPECT_LT(share, 0.99);
@@ -261,9 +261,10 @@ TEST(ModelBasedEstimator, FollowsANormalForceThatDrifts) {
 
 TEST(ModelBasedEstimator, StopsWhenAsked) {
   const BowedRecord r = light_record(0.08, 0.02);
+  const std::atomic<bool> asked = true;
   EXPECT_THROW(
       ModelBasedEstimator(quick()).estimate(r.basis, r.scene.bow.position, r.rate, r.left.samples,
-                                            r.right.samples, [] { return true; }),
+                                            r.right.samples, StopToken(asked)),
       Interrupted);
 }
 

@@ -52,15 +52,14 @@ Observed run(const BowedRecord& record, Substeps substeps, const GainTable* gain
                        &out.displacement}) {
     signal->resize(samples);
   }
-  const ObserverSignals signals{record.truth.left_reaction.samples.data(),
-                                record.truth.right_reaction.samples.data(),
-                                scale.data(),
-                                bow.data(),
-                                out.left_innovation.data(),
-                                out.right_innovation.data(),
-                                out.force.data(),
-                                out.velocity.data(),
-                                out.displacement.data()};
+  const ObserverSignals signals{
+      {record.truth.left_reaction.samples.data(), record.truth.right_reaction.samples.data()},
+      scale.data(),
+      bow.data(),
+      {out.left_innovation.data(), out.right_innovation.data()},
+      out.force.data(),
+      out.velocity.data(),
+      out.displacement.data()};
   const ContactLaw contact = contact_with(sliding, string);
   ObserverState state = ObserverState::at_rest(string.size());
   state.force = contact.sliding.at(bow[0]).force;

@@ -88,7 +88,7 @@ TEST(SteadyGain, IsTheLimitOfTheFilterRecursion) {
       const std::complex<double> expected =
           shape[m] * std::complex<double>(k(2 * i + 1, sensor) + decay * k(2 * i, sensor),
                                           damped * k(2 * i, sensor));
-      const auto& row = sensor == 0 ? result.gain.left : result.gain.right;
+      const auto& row = result.gain[static_cast<std::size_t>(sensor)];
       // The recursion forgets like e^{−2·(slowest pole)·t}; what is left is rounding of 4e4 steps.
       EXPECT_LT(std::abs(row.at(m) - expected), 1e-8 * std::abs(expected)) << m << ' ' << sensor;
     }

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "experiments/runs/task_experiment.hpp"
-#include "libinverse/observer/observer_estimator.hpp"
+#include "libinverse/observer/model_based_estimator.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
 namespace modcal {
@@ -53,7 +53,7 @@ TEST(RunCell, TakesTheModelBasedEstimateForAnEstimator) {
   ModelBasedOptions options;
   options.substeps = 4;
   options.rounds = 1;
-  cell.inversion.estimator = Choice<Estimator>::of<ObserverEstimator>("model_based", options);
+  cell.inversion.estimator = Choice<Estimator>::of<ModelBasedEstimator>("model_based", options);
   SharedWork work;
   const StudyContext context{.work = work};
   const TaskOutcome model = run_cell(cell, context);
