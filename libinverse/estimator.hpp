@@ -55,7 +55,7 @@ class Estimator {
     return do_prepare(model);
   }
   /// How the sensors read, as far as the estimator is told.
-  virtual SensorOptions sensors() const { return {}; }
+  virtual SensorPair sensors() const { return {}; }
 
  private:
   virtual std::shared_ptr<const PreparedEstimator> do_prepare(

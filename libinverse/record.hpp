@@ -5,21 +5,15 @@
 #include <limits>
 #include <span>
 
-namespace modcal {
+#include "libsim/model.hpp"
 
-class OptionVisitor;
+namespace modcal {
 
 /// The two reactions of one record, by End; an empty span: not recorded.
 using ReactionPair = std::array<std::span<const double>, 2>;
 
-/// How the two sensors read: R_measured(t) = gain · R(t − delay).
-struct SensorOptions {
-  double gain[2] = {1.0, 1.0};   ///< [1]
-  double delay[2] = {0.0, 0.0};  ///< [s]
-
-  bool alike() const { return gain[0] == gain[1] && delay[0] == delay[1]; }
-  void visit(OptionVisitor& visitor);
-};
+/// The sensors of the reactions, by End; of their numbers estimators use gain and delay.
+using SensorPair = std::array<Sensor, 2>;
 
 /// One record as an estimator sees it. Spans are empty where a signal is not known.
 struct EstimationRecord {

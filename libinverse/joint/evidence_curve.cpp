@@ -6,7 +6,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "libinverse/joint/cell_kernels.hpp"
+#include "libinverse/joint/joint_kernels.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -39,8 +39,7 @@ CellColumns columns_from(const Column (&columns)[3], std::size_t begin) {
 
 CurvePoint point_of(const CellColumns& cells, const CellColumns& values, std::size_t count,
                     double unseen, double parameter) {
-  std::array<double, 4> sums;
-  sum_cells(cells, values, count, sums);
+  const std::array<double, 4> sums = joint_kernels().sum_cells(cells, values, count);
   return {.parameter = parameter,
           .residual_norm = std::sqrt(sums[1] + unseen),
           .solution_norm = std::sqrt(sums[2]),
@@ -68,7 +67,7 @@ void EvidenceCurve::Cells::add(double g, double freedom_i, double power, double 
 void EvidenceCurve::Cells::add_pairs(std::span<const double> g, std::span<const double> power,
                                      std::span<const double> solution) {
   freedom += 2.0 * static_cast<double>(g.size());
-  unseen += spread_pairs(g, power, solution, kLowestOctave, kCellsPerOctave, sums);
+  unseen += joint_kernels().spread_pairs(g, power, solution, kLowestOctave, kCellsPerOctave, sums);
 }
 
 EvidenceCurve::Values EvidenceCurve::values_at(double octaves) {

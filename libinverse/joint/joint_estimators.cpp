@@ -1,43 +1,191 @@
 #include "libinverse/joint/joint_estimators.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <numbers>
+#include <string>
 #include <utility>
 
-#include "libinverse/joint/contour_inversions.hpp"
 #include "libinverse/joint/force_prior.hpp"
 #include "libsim/base/error.hpp"
+#include "libsim/signal/statistics.hpp"
 
 namespace modcal {
 namespace {
 
-class PreparedJoint final : public PreparedEstimator {
+// Noise over signal, the larger of both sides.
+double noise_share(const ReactionPair& reactions, const SensorNoiseLevel& noise) {
+  double share = 0.0;
+  for (std::size_t r = 0; r < 2; ++r) {
+    if (reactions[r].empty()) continue;
+    const double rms = standard_deviation(reactions[r]);
+    if (rms > 0.0) share = std::max(share, noise.rms[r] / rms);
+  }
+  return share;
+}
+
+// One inversion as an estimate, with its figures and warnings.
+std::vector<Estimate> estimate_with(const JointInversion& inversion, const EstimationRecord& record,
+                                    const SensorNoiseLevel& noise, const JointMethod& method,
+                                    const char* side, const char* label) {
+  JointWorkspace workspace;
+  JointResult result;
+  inversion.invert(record.reactions, noise, method, workspace, result);
+  Estimate estimate;
+  estimate.side = side;
+  estimate.label = label;
+  estimate.result = std::move(result.identified);
+  estimate.largest_transfer = inversion.largest_transfer();
+  estimate.force_deviation = result.deviation.force;
+  estimate.displacement_deviation = result.deviation.displacement;
+  estimate.velocity_deviation = result.deviation.velocity;
+  const double duration = static_cast<double>(inversion.samples()) / inversion.sample_rate();
+  estimate.figures = {{"sigma", inversion.sigma()},
+                      {"sigma_T", inversion.sigma() * duration},
+                      {"noise_rms_1", noise.rms[0]},
+                      {"noise_rms_2", noise.rms[1]},
+                      {"noise_share_of_band", noise.noise_share},
+                      {"offset_1", result.offset[0]},
+                      {"offset_2", result.offset[1]},
+                      {"force_deviation", result.deviation.force},
+                      {"misfit_of_sides", result.misfit}};
+  if (result.misfit > JointInversion::kContradiction) {
+    estimate.warnings.push_back(fmt::format(
+        "the reactions contradict each other {:.2g} times more than their noise: the model or the "
+        "ends of the record limit the estimate, and its error bars are widened",
+        std::sqrt(result.misfit)));
+  }
+  const bool both = !record.reactions[0].empty() && !record.reactions[1].empty();
+  if (!both) {
+    estimate.warnings.push_back(
+        fmt::format("reaction {} is missing: the estimate rests on the other one alone",
+                    record.reactions[0].empty() ? 1 : 2));
+  }
+  if (!noise.measured) {
+    estimate.warnings.emplace_back(
+        "the sample rate leaves no band above the modes to measure the noise in: 1 % of each "
+        "reaction is supposed");
+  }
+  std::string warning = warning_of(estimate.result.choice);
+  if (!warning.empty()) estimate.warnings.push_back(std::move(warning));
+  return {std::move(estimate)};
+}
+
+// Prepares an inversion when a record asks for its contour; safe to use from several threads.
+class PreparedJoint : public PreparedEstimator {
  public:
   PreparedJoint(const EstimationModel& model, const JointOptions& options,
                 std::shared_ptr<const ForcePrior> prior)
-      : inversions_(model, options), prior_(std::move(prior)) {}
+      : basis_(model.basis),
+        contact_(model.contact),
+        samples_(model.samples),
+        sample_rate_(model.sample_rate),
+        options_(options),
+        truncation_(truncation_of(options.truncation)),
+        support_(options.transfer.support(model.recorded)),
+        noise_(basis_, contact_, samples_, sample_rate_, support_, options.sensors),
+        prior_(std::move(prior)) {}
 
   std::vector<Estimate> estimate(const EstimationRecord& record,
                                  const InversionMethod& method) const override {
-    const SensorNoiseLevel noise = inversions_.noise_of(record);
-    const JointInversion& inversion = inversions_.of(record.reactions, noise);
-    return estimate_with(inversion, record, noise, inversions_.method(*prior_, method.outputs),
+    const SensorNoiseLevel noise = noise_of(record);
+    return estimate_with(of(record.reactions, noise), record, noise, this->method(method.outputs),
                          "joint", "from both reactions");
   }
 
+ protected:
+  std::size_t samples() const { return samples_; }
+  double sample_rate() const { return sample_rate_; }
+
+  // The inversion on the contour that suits the record, see contour_of.
+  const JointInversion& of(const ReactionPair& reactions, const SensorNoiseLevel& noise) const {
+    const double sigma = sigma_for(reactions, noise);
+    const std::lock_guard lock(mutex_);
+    auto& slot = by_sigma_[sigma];
+    if (!slot) {
+      slot = std::make_unique<const JointInversion>(basis_, contact_, samples_, sample_rate_,
+                                                    JointModel{.truncation = truncation_,
+                                                               .sigma = sigma,
+                                                               .support = support_,
+                                                               .sensors = options_.sensors},
+                                                    static_cast<std::size_t>(options_.points));
+    }
+    return *slot;
+  }
+
+  JointMethod method(const InversionOutputs& outputs) const {
+    double limit = options_.band_limit;
+    if (options_.limit_to_top_mode) {
+      // The flank of the top resonance belongs to it.
+      limit = 1.01 * *std::max_element(basis_.omega.begin(), basis_.omega.end()) /
+              (2.0 * std::numbers::pi);
+    }
+    return {.prior = *prior_,
+            .offset = offset_rule_of(options_.offset),
+            .band_limit = limit,
+            .outputs = outputs};
+  }
+
  private:
-  ContourInversions inversions_;
+  // As stated in the options, else measured.
+  SensorNoiseLevel noise_of(const EstimationRecord& record) const {
+    SensorNoise::Workspace workspace;
+    for (std::size_t r = 0; r < 2; ++r) {
+      const auto& reaction = record.reactions[r];
+      MODCAL_REQUIRE(reaction.empty() || reaction.size() == samples_,
+                     "reaction {} has {} samples, the estimator is prepared for {}", r + 1,
+                     reaction.size(), samples_);
+      for (std::size_t j = 0; j < reaction.size(); ++j) {
+        MODCAL_REQUIRE(std::isfinite(reaction[j]),
+                       "sample {} of reaction {} is {:g}: cut the record before it or repair it", j,
+                       r + 1, reaction[j]);
+      }
+    }
+    SensorNoiseLevel noise = noise_.estimate(record.reactions, workspace);
+    for (std::size_t r = 0; r < 2; ++r) {
+      if (!std::isnan(options_.noise_rms[r]) && !record.reactions[r].empty()) {
+        noise.rms[r] = options_.noise_rms[r];
+      }
+    }
+    return noise;
+  }
+
+  // Quarters of 1/T: few contours serve all records of a length.
+  double sigma_for(const ReactionPair& reactions, const SensorNoiseLevel& noise) const {
+    if (truncation_ != Truncation::kShiftedContour) return 0.0;
+    if (!std::isnan(options_.sigma)) return options_.sigma;
+    const double duration = static_cast<double>(samples_) / sample_rate_;
+    const double best = contour_of(basis_, duration, noise_share(reactions, noise));
+    return std::round(4.0 * duration * best) / (4.0 * duration);
+  }
+
+  ModalBasis basis_;
+  double contact_;
+  std::size_t samples_;
+  double sample_rate_;
+  JointOptions options_;
+  Truncation truncation_;
+  StringSupport support_;
+  SensorNoise noise_;
   std::shared_ptr<const ForcePrior> prior_;
+  mutable std::mutex mutex_;
+  mutable std::map<double, std::unique_ptr<const JointInversion>> by_sigma_;
 };
 
-class PreparedLimit final : public PreparedEstimator {
+class PreparedLimit final : public PreparedJoint {
  public:
   PreparedLimit(const EstimationModel& model, const JointOptions& options, double bandwidth)
-      : inversions_(model, options), bandwidth_(bandwidth) {}
+      : PreparedJoint(model, options, std::make_shared<const FlatPrior>(FlatPrior::Options{})),
+        bandwidth_(bandwidth) {}
 
   std::vector<Estimate> estimate(const EstimationRecord& record,
                                  const InversionMethod& method) const override {
-    MODCAL_REQUIRE(record.true_force.size() == inversions_.samples(),
+    MODCAL_REQUIRE(record.true_force.size() == samples(),
                    "the linear limit needs the true force: it exists for simulated records only");
     SensorNoiseLevel noise;
     noise.measured = true;
@@ -45,9 +193,9 @@ class PreparedLimit final : public PreparedEstimator {
       const double stated = record.stated_noise[r];
       if (std::isfinite(stated)) noise.rms[r] = stated;
     }
-    const JointInversion& inversion = inversions_.of(record.reactions, noise);
+    const JointInversion& inversion = of(record.reactions, noise);
     const std::vector<double> spectrum = true_spectrum(record.true_force, inversion.sigma());
-    JointMethod how = inversions_.method(unused_, method.outputs);
+    JointMethod how = this->method(method.outputs);
     how.known_variance = spectrum;
     return estimate_with(inversion, record, noise, how, "linear_limit",
                          "linear limit (true spectra known)");
@@ -56,7 +204,7 @@ class PreparedLimit final : public PreparedEstimator {
  private:
   // |F_k|² of the weighted force over the weights' power, smoothed.
   std::vector<double> true_spectrum(std::span<const double> force, double sigma) const {
-    const double rate = inversions_.sample_rate();
+    const double rate = sample_rate();
     std::vector<double> weighted(force.size());
     double power = 0.0;
     for (std::size_t j = 0; j < force.size(); ++j) {
@@ -73,9 +221,7 @@ class PreparedLimit final : public PreparedEstimator {
     return variance;
   }
 
-  ContourInversions inversions_;
   double bandwidth_;
-  FlatPrior unused_{FlatPrior::Options{}};
 };
 
 }  // namespace

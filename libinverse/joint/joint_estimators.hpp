@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "libinverse/estimator.hpp"
-#include "libinverse/joint/contour_inversions.hpp"
+#include "libinverse/joint/joint_options.hpp"
 
 namespace modcal {
 
@@ -18,7 +18,7 @@ class JointEstimator final : public Estimator {
   };
   /// Throws InvalidInput for options out of range.
   explicit JointEstimator(const Options& options);
-  SensorOptions sensors() const override { return joint_.sensors; }
+  SensorPair sensors() const override { return joint_.sensors; }
 
  private:
   std::shared_ptr<const PreparedEstimator> do_prepare(const EstimationModel& model) const override;
@@ -38,7 +38,7 @@ class LinearLimitEstimator final : public Estimator {
   };
   /// Throws InvalidInput for options out of range.
   explicit LinearLimitEstimator(const Options& options);
-  SensorOptions sensors() const override { return joint_.sensors; }
+  SensorPair sensors() const override { return joint_.sensors; }
 
  private:
   std::shared_ptr<const PreparedEstimator> do_prepare(const EstimationModel& model) const override;

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "libinverse/joint/bin_kernels.hpp"
+#include "libinverse/joint/joint_kernels.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -93,8 +93,8 @@ JointInversion::JointInversion(const ModalBasis& basis, double contact, std::siz
   }
   const double density = 2.0 * basis.mass.at(0) / basis.length;
   const double speed = std::sqrt(basis.tension / density);
-  arrival_[0] = contact / speed + model.sensors.delay[0];
-  arrival_[1] = (basis.length - contact) / speed + model.sensors.delay[1];
+  arrival_[0] = contact / speed + model.sensors[0].delay;
+  arrival_[1] = (basis.length - contact) / speed + model.sensors[1].delay;
   weight_power_ = static_cast<double>(samples);
   if (model.sigma > 0.0) {
     decay_.resize(samples);
@@ -205,8 +205,8 @@ void JointInversion::compare_sides(const Weights& weights, OffsetRule rule,
   const std::size_t bins = fft_.bins();
   workspace.misfit.resize(bins);
   const double sum =
-      cross_misfit({1.0 / inverse[0], 1.0 / inverse[1]}, 1.0 / weight_power_, transfer_[0],
-                   transfer_[1], workspace.spectrum[0], workspace.spectrum[1], workspace.misfit);
+      joint_kernels().cross_misfit({1.0 / inverse[0], 1.0 / inverse[1]}, 1.0 / weight_power_,
+                                   transfer_, workspace.spectrum, workspace.misfit);
   const double excess = allow_for_offsets(rule, workspace.misfit);
   result.misfit = (sum - excess) / static_cast<double>(bins);
   if (result.misfit < kContradiction) {
@@ -221,8 +221,8 @@ void JointInversion::compare_sides(const Weights& weights, OffsetRule rule,
 // After it spectrum[0] holds Σ conj(H_r) R_r/v_r.
 void JointInversion::combine(const Weights& weights, JointWorkspace& workspace) const {
   workspace.gain.resize(fft_.bins());
-  combine_sides(weights.inverse_variance, transfer_[0], transfer_[1], workspace.spectrum[1],
-                workspace.spectrum[0], workspace.gain);
+  joint_kernels().combine_sides(weights.inverse_variance, transfer_, workspace.spectrum,
+                                workspace.gain);
   if (decay_.empty()) workspace.gain[0] = 0.0;
 }
 
@@ -237,13 +237,13 @@ void JointInversion::invert(const ReactionPair& reactions, const SensorNoiseLeve
   if (model_.truncation == Truncation::kTransient) {
     // The force's amplitude and the decays are found in turn: the first round's amplitude still
     // holds what the decays explain.
-    const std::vector<Complex> kept[2] = {workspace.spectrum[0], workspace.spectrum[1]};
+    const SideSpectra kept = workspace.spectrum;
     for (int round = 0; round < 2; ++round) {
       combine(weights, workspace);
       choose_amplitude(weights, method, workspace, result);
       workspace.learned.assign(workspace.variance.begin(), workspace.variance.end());
       for (double& variance : workspace.learned) variance *= weight_power_;
-      for (std::size_t r = 0; r < 2; ++r) workspace.spectrum[r] = kept[r];
+      workspace.spectrum = kept;
       TransientFit::Setting setting;
       setting.prior = workspace.learned;
       std::array<std::span<Complex>, 2> spectra;

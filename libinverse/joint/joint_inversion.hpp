@@ -9,9 +9,9 @@
 
 #include "libinverse/joint/evidence_curve.hpp"
 #include "libinverse/joint/force_prior.hpp"
+#include "libinverse/joint/joint_kernels.hpp"
 #include "libinverse/joint/sensor_noise.hpp"
 #include "libinverse/joint/string_transfer.hpp"
-#include "libinverse/joint/transient_fit.hpp"
 #include "libinverse/spectral/one_sided/one_sided_inversion.hpp"
 #include "libsim/signal/fft.hpp"
 
@@ -35,7 +35,7 @@ struct JointModel {
   Truncation truncation = Truncation::kShiftedContour;
   double sigma = 0.0;  ///< real part of the contour [1/s]; 0 unless the contour is shifted
   StringSupport support = {};
-  SensorOptions sensors = {};
+  SensorPair sensors = {};
 };
 
 /// How to invert. The prior must outlive the call.
@@ -70,7 +70,7 @@ struct JointResult {
 /// Arrays that a call needs besides its results, to be kept from call to call; one per thread.
 struct JointWorkspace {
   SensorNoise::Workspace noise;
-  std::vector<Complex> spectrum[2];
+  SideSpectra spectrum;
   std::vector<double> gain;      ///< q_k = Σ_r |H_r|²/v_r
   std::vector<double> variance;  ///< prior P_k, then posterior 1/(q_k + 1/P_k)
   std::vector<double> misfit;  ///< of the sides in every bin, smoothed; empty: as the noise allows
@@ -159,7 +159,7 @@ class JointInversion {
   InPlaceFft fft_;
   double sample_rate_;
   JointModel model_;
-  std::vector<Complex> transfer_[2];
+  SideSpectra transfer_;
   std::vector<Complex> receptance_;
   std::vector<Complex> mobility_;
   double arrival_[2] = {0.0, 0.0};  ///< [s]

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libinverse/joint/bin_kernels.hpp"
 #include "libinverse/joint/joint_inversion.hpp"
+#include "libinverse/joint/joint_kernels.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -23,10 +23,10 @@ void JointInversion::fill_cells(const Weights& weights, JointWorkspace& workspac
   const std::size_t bins = fft_.bins();
   workspace.power.resize(bins);
   for (auto& term : workspace.terms) term.resize(bins);
-  scaled_power(workspace.spectrum[0], 1.0 / weight_power_, workspace.power);
+  joint_kernels().scaled_power(workspace.spectrum[0], 1.0 / weight_power_, workspace.power);
   auto& [g, reduced, solution] = workspace.terms;
-  evidence_terms(workspace.gain, workspace.variance, workspace.power, weights.mean_variance, g,
-                 reduced, solution);
+  joint_kernels().evidence_terms(workspace.gain, workspace.variance, workspace.power,
+                                 weights.mean_variance, g, reduced, solution);
   EvidenceCurve::Cells& cells = workspace.cells;
   cells.clear();
   const std::size_t end = samples() % 2 == 0 ? bins - 1 : bins;
@@ -75,7 +75,7 @@ void JointInversion::learn_spectrum(const ForcePrior& prior, double band_limit,
                                     JointWorkspace& workspace) const {
   workspace.scratch.resize(fft_.bins());
   for (std::int64_t pass = 0; pass < prior.passes(); ++pass) {
-    expected_power(workspace.gain, workspace.power, workspace.variance);
+    joint_kernels().expected_power(workspace.gain, workspace.power, workspace.variance);
     prior.learn(grid_, workspace.variance, workspace.scratch);
     limit_band(band_limit, workspace);
   }
@@ -107,7 +107,8 @@ double JointInversion::write_signal(std::span<const Complex> transfer, bool want
   } else {
     workspace.contact.resize(fft_.bins());
     spectrum = workspace.contact;
-    sum = through_transfer(transfer, workspace.spectrum[0], workspace.variance, spectrum);
+    sum = joint_kernels().through_transfer(transfer, workspace.spectrum[0], workspace.variance,
+                                           spectrum);
   }
   signal.resize(samples());
   fft_.inverse(spectrum);
@@ -153,7 +154,7 @@ void JointInversion::apply_posterior(const JointMethod& method, JointWorkspace& 
                                      JointResult& result) const {
   InversionResult& identified = result.identified;
   std::vector<Complex>& force = workspace.spectrum[0];
-  const double kept = modcal::apply_posterior(workspace.gain, workspace.variance, force);
+  const double kept = joint_kernels().apply_posterior(workspace.gain, workspace.variance, force);
   count_bins(kept, workspace, identified);
   widen_by_misfit(workspace);
   if (decay_.empty()) workspace.variance[0] = 0.0;

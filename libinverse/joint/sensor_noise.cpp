@@ -22,7 +22,7 @@ double power_of(Complex value) { return value.real() * value.real() + value.imag
 
 SensorNoise::SensorNoise(const ModalBasis& basis, double contact, std::size_t samples,
                          double sample_rate, const StringSupport& support,
-                         const SensorOptions& sensors)
+                         const SensorPair& sensors)
     : fft_(std::clamp<std::size_t>(samples, 1, kSegment)), samples_(samples) {
   const std::size_t length = fft_.length();
   window_.resize(length);

@@ -25,7 +25,7 @@ class SensorNoise {
  public:
   /// Transfer functions as the inversion's, on the frequency axis.
   SensorNoise(const ModalBasis& basis, double contact, std::size_t samples, double sample_rate,
-              const StringSupport& support, const SensorOptions& sensors);
+              const StringSupport& support, const SensorPair& sensors);
 
   struct Workspace {
     std::vector<Complex> spectrum[2];

@@ -5,21 +5,10 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "libsim/base/planar_lanes-inl.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace modcal::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
-
-using Tag = hn::CappedTag<double, kBinLanes>;
-using Vector = hn::Vec<Tag>;
-
-struct ComplexVector {
-  Vector real;
-  Vector imag;
-};
-
-HWY_INLINE Vector SquaredMagnitude(const ComplexVector& z) {
-  return hn::MulAdd(z.real, z.real, hn::Mul(z.imag, z.imag));
-}
 
 // ModalPole::denominator() of consecutive bins; on the frequency axis without the terms of σ.
 template <bool kShifted>
@@ -54,8 +43,8 @@ struct Totals {
   HWY_INLINE void Add(const double* const* numerators, std::size_t n,
                       const ComplexVector& denominator, Vector inverse) {
     const Tag d;
-    const auto share = hn::Mul(denominator.real, inverse);
-    const auto turned = hn::Mul(denominator.imag, inverse);
+    const auto share = hn::Mul(denominator.re, inverse);
+    const auto turned = hn::Mul(denominator.im, inverse);
     for (std::size_t r = 0; r < kSums; ++r) {
       const auto numerator = hn::Set(d, numerators[r][n]);
       real[r] = hn::MulAdd(numerator, share, real[r]);
@@ -74,8 +63,8 @@ HWY_INLINE void AddFourTerms(const ModalPole* poles, const double* const* numera
   const ComplexVector d1 = Denominator<kShifted>(poles[n + 1], omega, sigma);
   const ComplexVector d2 = Denominator<kShifted>(poles[n + 2], omega, sigma);
   const ComplexVector d3 = Denominator<kShifted>(poles[n + 3], omega, sigma);
-  const auto x0 = SquaredMagnitude(d0), x1 = SquaredMagnitude(d1);
-  const auto x2 = SquaredMagnitude(d2), x3 = SquaredMagnitude(d3);
+  const auto x0 = Power(d0), x1 = Power(d1);
+  const auto x2 = Power(d2), x3 = Power(d3);
   const auto low = hn::Mul(x0, x1), high = hn::Mul(x2, x3);
   const auto inverse = hn::Div(hn::Set(d, 1.0), hn::Mul(low, high));
   const auto inverse_low = hn::Mul(inverse, high), inverse_high = hn::Mul(inverse, low);
@@ -105,8 +94,7 @@ void AddUp(std::span<const ModalPole> poles, const ModalSum* sums, const Frequen
     }
     for (; n < poles.size(); ++n) {
       const ComplexVector denominator = Denominator<kShifted>(poles[n], omega, sigma);
-      totals.Add(numerators, n, denominator,
-                 hn::Div(hn::Set(d, 1.0), SquaredMagnitude(denominator)));
+      totals.Add(numerators, n, denominator, hn::Div(hn::Set(d, 1.0), Power(denominator)));
     }
     const std::size_t count = HWY_MIN(lanes, bins.size() - i);
     for (std::size_t r = 0; r < kSums; ++r) {

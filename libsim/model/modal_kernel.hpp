@@ -3,12 +3,13 @@
 
 #include <span>
 
+#include "libsim/base/aligned_vector.hpp"
 #include "libsim/model/modal_model.hpp"
 
 namespace modcal {
 
 /// Rows of SplitSpectra are padded to a multiple of this many bins.
-inline constexpr std::size_t kBinLanes = 8;
+inline constexpr std::size_t kBinLanes = kVectorPadding;
 
 /// One sum over modes: N real numerators, and where its real and imaginary part go.
 struct ModalSum {

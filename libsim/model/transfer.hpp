@@ -8,6 +8,7 @@
 
 #include "libsim/model/modal_basis.hpp"
 #include "libsim/model/modal_model.hpp"
+#include "libsim/model/sensor.hpp"
 
 namespace modcal {
 

@@ -243,13 +243,13 @@ Observation with_sensors_alike(Observation observation, const Sensor& sensors) {
 
 void require_sensors_once(const CalibrationOptions& calibration, const Estimator& estimator) {
   const bool corrected = calibration.parameters.unknowns.sensors().may_differ();
-  const SensorOptions stated = estimator.sensors();
+  const auto [left, right] = estimator.sensors();
   MODCAL_REQUIRE(
-      !corrected || stated.alike(),
+      !corrected || (left.gain == right.gain && left.delay == right.delay),
       "the reaction at x = L is corrected for its sensor as the calibration has it before "
       "the estimator sees it: gain2 {:g} and delay2 {:g} s would take it out once more; "
       "leave them out, or state those of x = 0 (gain1 {:g}, delay1 {:g} s)",
-      stated.gain[1], stated.delay[1], stated.gain[0], stated.delay[0]);
+      right.gain, right.delay, left.gain, left.delay);
 }
 
 std::string correction_text(const Observation& observation, const Sensor& sensors) {

@@ -7,21 +7,10 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "libsim/base/planar_lanes-inl.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace modcal::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
-
-using Tag = hn::CappedTag<double, kBinLanes>;
-using Vector = hn::Vec<Tag>;
-
-struct ComplexVector {
-  Vector real;
-  Vector imag;
-};
-
-HWY_INLINE Vector SquaredMagnitude(const ComplexVector& z) {
-  return hn::MulAdd(z.real, z.real, hn::Mul(z.imag, z.imag));
-}
 
 // ModalPole::denominator() on the frequency axis.
 HWY_INLINE ComplexVector Denominator(double omega_n, double zeta, const double* omegas) {
@@ -38,10 +27,10 @@ HWY_INLINE Vector NumeratorPower(const ScannedSensor& sensor, std::size_t i,
   const auto real = hn::LoadU(d, sensor.real + i);
   const auto imag = hn::LoadU(d, sensor.imag + i);
   const ComplexVector sum{
-      hn::MulAdd(real, denominator.real,
-                 hn::NegMulAdd(imag, denominator.imag, hn::Set(d, sensor.constant))),
-      hn::MulAdd(real, denominator.imag, hn::Mul(imag, denominator.real))};
-  return SquaredMagnitude(sum);
+      hn::MulAdd(real, denominator.re,
+                 hn::NegMulAdd(imag, denominator.im, hn::Set(d, sensor.constant))),
+      hn::MulAdd(real, denominator.im, hn::Mul(imag, denominator.re))};
+  return Power(sum);
 }
 
 // 1/√x for normal x > 0 within 1e-4.
@@ -79,7 +68,7 @@ HWY_INLINE double Integrate(const ScannedSensor* sensors, std::span<const double
   auto sum = hn::Zero(d);
   for (std::size_t i = 0; i < omegas.size(); i += hn::Lanes(d)) {
     const ComplexVector denominator = Denominator(candidate, zeta, omegas.data() + i);
-    const auto power = SquaredMagnitude(denominator);
+    const auto power = Power(denominator);
     if constexpr (kBoth) {
       const auto root =
           hn::Mul(power, InverseRoot(hn::Mul(power, NumeratorPower(sensors[0], i, denominator))));

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "libsim/dynamics/event/modes/bow_path.hpp"
-#include "libsim/dynamics/event/modes/force_observer.hpp"
 #include "libsim/dynamics/event/sliding/sliding.hpp"
 #include "libsim/dynamics/event/sticking.hpp"
 #include "libsim/dynamics/scene/simulation.hpp"

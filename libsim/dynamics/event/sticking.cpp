@@ -46,15 +46,15 @@ Sticking::Sticking(ClosedLoop loop, StaticLimit static_limit, double longest_ste
   fill_block();
 }
 
-// Adds `factor` times the coordinates of the slow force at τ.
-void Sticking::add_slow(double factor, double tau) {
+// Adds `factor` times the coordinates of the slow force at τ, those of Z or of w.
+void Sticking::add_slow(double factor, double tau, const std::array<PlanarVector, 3>& columns,
+                        PlanarVector& state) const {
   const std::array<double, 3> jet = {factor * slow_.value_at(tau), factor * slow_.rate_at(tau),
                                      factor * slow_.curvature};
   for (std::size_t k = 0; k < jet.size(); ++k) {
-    const PlanarVector& column = loop_.closed_slow[k];
-    for (std::size_t j = 0; j < loop_.roots; ++j) {
-      state_.re[j] += jet[k] * column.re[j];
-      state_.im[j] += jet[k] * column.im[j];
+    for (std::size_t j = 0; j < state.size(); ++j) {
+      state.re[j] += jet[k] * columns[k].re[j];
+      state.im[j] += jet[k] * columns[k].im[j];
     }
   }
 }
@@ -78,7 +78,7 @@ void Sticking::attach(const BowDrive& drive, const PlanarVector& open_state, dou
   rest_point_ = displacement - elongation;
   slow_ = loop_.slow_force(drive.velocity, drive.acceleration, rest_point_);
   apply(loop_.to_closed, loop_.modes, open_state, state_);
-  add_slow(-1.0, 0.0);
+  add_slow(-1.0, 0.0, loop_.closed_slow, state_);
   restart();
   const double at_limit = (1.0 - kAtLimit) * limit(0.0, 0.0).start;
   starts_at_upper_ = force_.value >= at_limit;
@@ -86,25 +86,18 @@ void Sticking::attach(const BowDrive& drive, const PlanarVector& open_state, dou
 }
 
 void Sticking::change_drive(double tau, const BowDrive& drive) {
-  add_slow(1.0, tau);
+  add_slow(1.0, tau, loop_.closed_slow, state_);
   rest_point_ += drive_.travel(tau);
   limit_.start(limit_.rise_at(tau));
   drive_ = drive;
   slow_ = loop_.slow_force(drive.velocity, drive.acceleration, rest_point_);
-  add_slow(-1.0, 0.0);
+  add_slow(-1.0, 0.0, loop_.closed_slow, state_);
   restart();
 }
 
 void Sticking::detach(double tau, PlanarVector& open_state) {
   apply(loop_.to_open, loop_.roots, state_, open_state);
-  const std::array<double, 3> jet = {slow_.value_at(tau), slow_.rate_at(tau), slow_.curvature};
-  for (std::size_t k = 0; k < jet.size(); ++k) {
-    const PlanarVector& column = loop_.open_slow[k];
-    for (std::size_t n = 0; n < loop_.modes; ++n) {
-      open_state.re[n] += jet[k] * column.re[n];
-      open_state.im[n] += jet[k] * column.im[n];
-    }
-  }
+  add_slow(1.0, tau, loop_.open_slow, open_state);
 }
 
 std::size_t Sticking::rows() const {

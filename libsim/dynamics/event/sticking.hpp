@@ -10,7 +10,6 @@
 
 #include "libsim/dynamics/event/modes/bow_path.hpp"
 #include "libsim/dynamics/event/modes/closed_loop.hpp"
-#include "libsim/dynamics/event/modes/force_observer.hpp"
 #include "libsim/dynamics/event/modes/modal_kernels.hpp"
 #include "libsim/dynamics/event/sliding/static_limit.hpp"
 #include "libsim/dynamics/scene/simulation.hpp"
@@ -115,7 +114,8 @@ class Sticking {
     return {slow_.value_at(tau) + sums.sum, slow_.rate_at(tau) + sums.rate};
   }
   double series_time(const PlanarVector& state, double tau, double time);
-  void add_slow(double factor, double tau);
+  void add_slow(double factor, double tau, const std::array<PlanarVector, 3>& columns,
+                PlanarVector& state) const;
   void restart();
   std::size_t rows() const;
   SumAndRate propagate(double time, bool observed);

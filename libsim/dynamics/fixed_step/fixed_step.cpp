@@ -81,7 +81,7 @@ std::optional<LoopCounts> run_plain(const Scene& scene, const FixedStepRun& run,
     return std::nullopt;
   }
   const ContactModes modes = scene_modes(scene);
-  const SchemeWeights weights = scheme_weights(modes.pole, run.time_step, weights_of_pole);
+  const SchemeWeights weights = scheme_weights(modes, run.time_step, weights_of_pole);
   if (!are_separable(weights)) return std::nullopt;
   contact.parameters = contact_parameters(contact.bow, contact.friction, modes.effective_mass());
   MotionSample start = motion_of(modes, modes.initial);
@@ -103,7 +103,7 @@ LoopCounts run_general(const Scene& scene, FixedStepRun& run, GeneralContact con
                        WeightsOfPole weights_of_pole, Simulation& result,
                        std::vector<PointMotion>* points) {
   const LineModes modes = scene_line_modes(scene);
-  const SchemeWeights weights = scheme_weights(modes.pole, run.time_step, weights_of_pole);
+  const SchemeWeights weights = scheme_weights(modes, run.time_step, weights_of_pole);
   contact.parameters = contact_parameters(contact.bow, contact.friction, modes.effective_mass());
   require_step(run, contact, contact_response(modes, weights));
   if (points != nullptr) {
@@ -134,15 +134,9 @@ ModeWeights trapezoidal_weights(std::complex<double> pole, double time_step) {
   return {.propagate = (1.0 + half) / (1.0 - half), .older = weight, .newer = weight};
 }
 
-SchemeWeights scheme_weights(std::span<const std::complex<double>> poles, double time_step,
-                             WeightsOfPole weights) {
+SchemeWeights scheme_weights(const ModeTable& modes, double time_step, WeightsOfPole weights) {
   SchemeWeights result;
-  for (const std::complex<double> pole : poles) {
-    const ModeWeights mode = weights(pole, time_step);
-    result.propagate.push_back(mode.propagate);
-    result.older.push_back(mode.older);
-    result.newer.push_back(mode.newer);
-  }
+  for (const auto& pole : modes.pole) result.push_back(weights(pole, time_step));
   return result;
 }
 

@@ -11,11 +11,6 @@
 
 namespace modcal {
 
-/// One-step weights r, d₀, d₁ of Z(h) = r Z + d₀ f_old + d₁ f_new for a mode with pole λ [1/s] and
-/// the step h > 0 [s].
-struct ModeWeights {
-  std::complex<double> propagate, older, newer;
-};
 using WeightsOfPole = ModeWeights (*)(std::complex<double> pole, double time_step);
 
 /// Exact step of Z' = λ Z + f(t) under a force linear over the step: r = e^x, d₀ = h (φ₁ − φ₂),
@@ -27,8 +22,7 @@ ModeWeights first_order_hold_weights(std::complex<double> pole, double time_step
 ModeWeights trapezoidal_weights(std::complex<double> pole, double time_step);
 
 /// Weights of all modes for one step.
-SchemeWeights scheme_weights(std::span<const std::complex<double>> poles, double time_step,
-                             WeightsOfPole weights);
+SchemeWeights scheme_weights(const ModeTable& modes, double time_step, WeightsOfPole weights);
 
 struct FixedStepScheme {
   ForceTiming timing;

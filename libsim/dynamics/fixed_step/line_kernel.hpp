@@ -17,10 +17,10 @@ constexpr std::size_t kMostPoints = 16;
 /// does not hold the newest force: S ← r S + D u, D = r d₁ + d₀, Z = S + d₁ f, with u = Σ φ_j
 /// f_j/m.
 struct LineArrays {
-  AlignedVector propagate_re, propagate_im, deferred_re, deferred_im;
+  PlanarVector propagate, deferred;
   AlignedVector inverse_mass, quadrature, compliance, left_gain, right_gain;
   std::vector<AlignedVector> shape;
-  AlignedVector state_re, state_im;  ///< S
+  PlanarVector state;  ///< S
 };
 
 struct PointMotions {

@@ -22,7 +22,7 @@ class Run {
         modes_(modes),
         arrays_(make_line_arrays(modes, weights)),
         direct_(direct_response(modes, weights)),
-        newer_(weights.newer),
+        weights_(weights),
         cursor_(bow),
         size_(modes.points()),
         forces_(direct_) {}
@@ -80,9 +80,9 @@ class Run {
     for (std::size_t n = 0; n < modes_.size(); ++n) {
       double load = 0.0;
       for (std::size_t j = 0; j < size_; ++j) load += modes_.shape[j][n] * driving_[j];
-      const std::complex<double> newest = newer_[n] * (load * modes_.inverse_mass[n]);
-      arrays_.state_re[n] -= newest.real();
-      arrays_.state_im[n] -= newest.imag();
+      const std::complex<double> newest = weights_[n].newer * (load * modes_.inverse_mass[n]);
+      arrays_.state.re[n] -= newest.real();
+      arrays_.state.im[n] -= newest.imag();
     }
   }
 
@@ -136,7 +136,7 @@ class Run {
     const auto reaction = [&](const double* wanted, const AlignedVector& gain,
                               const double* direct) {
       if (wanted == nullptr) return 0.0;
-      const double sum = sum_of_products(gain, arrays_.state_im);
+      const double sum = sum_of_products(gain, arrays_.state.im);
       return sample == 0 ? sum : sum + dot(direct, driving_, size_);
     };
     to.write(sample, {.displacement = mean(motion_.displacement),
@@ -155,7 +155,7 @@ class Run {
   const LineModes& modes_;
   LineArrays arrays_;
   DirectResponse direct_;
-  const std::vector<std::complex<double>>& newer_;
+  const SchemeWeights& weights_;
   BowCursor cursor_;
   std::size_t size_;
   PointForces<Point> forces_;

@@ -9,34 +9,19 @@ namespace {
 using Complex = std::complex<double>;
 using ComplexVector = std::vector<Complex>;
 
-// What a state Z of mode n is of velocity, displacement and reactions.
-using Quantity = double (*)(const ContactModes&, std::size_t, Complex);
-constexpr Quantity kVelocity = [](const ContactModes& modes, std::size_t n, Complex z) {
-  return z.real() - modes.quadrature[n] * z.imag();
-};
-constexpr Quantity kDisplacement = [](const ContactModes& modes, std::size_t n, Complex z) {
-  return modes.compliance[n] * z.imag();
-};
-constexpr Quantity kLeft = [](const ContactModes& modes, std::size_t n, Complex z) {
-  return modes.left_gain[n] * z.imag();
-};
-constexpr Quantity kRight = [](const ContactModes& modes, std::size_t n, Complex z) {
-  return modes.right_gain[n] * z.imag();
-};
-
 double total(const AlignedVector& values) {
   return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
 // P = G ((1 − r̄) x₁ + x₂).
-ModeSum sum_of(Quantity quantity, const ContactModes& modes, const ComplexVector& propagate,
-               const ComplexVector& gain) {
+ModeSum sum_of(double MotionSample::*quantity, const ContactModes& modes,
+               const SchemeWeights& weights, const ComplexVector& gain) {
   ModeSum sum;
   sum.first = padded(modes.size(), 0.0, [&](std::size_t n) {
-    return quantity(modes, n, (1.0 - std::conj(propagate[n])) * gain[n]);
+    return modes.motion(n, (1.0 - std::conj(weights[n].propagate)) * gain[n]).*quantity;
   });
   sum.second =
-      padded(modes.size(), 0.0, [&](std::size_t n) { return quantity(modes, n, gain[n]); });
+      padded(modes.size(), 0.0, [&](std::size_t n) { return modes.motion(n, gain[n]).*quantity; });
   sum.kick = total(sum.second);
   return sum;
 }
@@ -53,8 +38,7 @@ void StepCoefficients::hold(double stiffness, double damping) {
 }
 
 bool are_separable(const SchemeWeights& weights) {
-  for (std::size_t n = 0; n < weights.propagate.size(); ++n) {
-    const Complex r = weights.propagate[n], older = weights.older[n], newer = weights.newer[n];
+  for (const auto& [r, older, newer] : weights) {
     const bool distinct = std::abs(r.imag()) >= 0.05 * std::abs(1.0 - r);
     const bool driven = std::abs(r * newer + older) >= 1e-3 * (std::abs(older) + std::abs(newer));
     if (!distinct || !driven) return false;
@@ -65,15 +49,16 @@ bool are_separable(const SchemeWeights& weights) {
 StepCoefficients make_step_coefficients(const ContactModes& modes, const SchemeWeights& weights,
                                         double initial_force) {
   const std::size_t size = modes.size();
-  const ComplexVector& r = weights.propagate;
-  ComplexVector direct(size), deferred(size), gain(size), state(size);
+  ComplexVector r, direct(size), deferred(size), gain(size), state(size);
   for (std::size_t n = 0; n < size; ++n) {
-    direct[n] = modes.drive[n] * weights.newer[n];
-    deferred[n] = r[n] * direct[n] + modes.drive[n] * weights.older[n];
+    const auto& [propagate, older, newer] = weights[n];
+    r.push_back(propagate);
+    direct[n] = modes.drive[n] * newer;
+    deferred[n] = r[n] * direct[n] + modes.drive[n] * older;
     gain[n] = r[n] * deferred[n];
     // Without the drive, whose square may underflow.
-    const Complex unit = r[n] * weights.newer[n] + weights.older[n];
-    state[n] = (modes.initial[n] / modes.drive[n] - weights.newer[n] * initial_force) / unit;
+    const Complex unit = r[n] * newer + older;
+    state[n] = (modes.initial[n] / modes.drive[n] - newer * initial_force) / unit;
   }
   StepCoefficients c;
   c.decay = padded(size, 0.0, [&](std::size_t n) { return std::norm(r[n]); });
@@ -82,10 +67,10 @@ StepCoefficients make_step_coefficients(const ContactModes& modes, const SchemeW
   c.first = padded(size, 0.0, [&](std::size_t n) { return state[n].imag() / r[n].imag(); });
   c.second = padded(
       size, 0.0, [&](std::size_t n) { return state[n].real() - (1.0 - r[n].real()) * c.first[n]; });
-  c.velocity = sum_of(kVelocity, modes, r, gain);
-  c.displacement = sum_of(kDisplacement, modes, r, gain);
-  c.left = sum_of(kLeft, modes, r, gain);
-  c.right = sum_of(kRight, modes, r, gain);
+  c.velocity = sum_of(&MotionSample::velocity, modes, weights, gain);
+  c.displacement = sum_of(&MotionSample::displacement, modes, weights, gain);
+  c.left = sum_of(&MotionSample::left, modes, weights, gain);
+  c.right = sum_of(&MotionSample::right, modes, weights, gain);
   c.deferred_response = motion_of(modes, deferred);
   c.direct_response = motion_of(modes, direct);
   return c;

@@ -10,11 +10,13 @@
 
 namespace modcal {
 
-/// Scheme given by r, d₀ (weight of the older force) and d₁ (weight of the newer force), per mode:
-/// Z_{k+1} = r Z_k + drive·(d₀ f_old + d₁ f_new).
-struct SchemeWeights {
-  std::vector<std::complex<double>> propagate, older, newer;
+/// One-step weights of a mode with the step h > 0 [s], r, d₀ (of the older force) and d₁ (of the
+/// newer one): Z(h) = r Z + drive·(d₀ f_old + d₁ f_new).
+struct ModeWeights {
+  std::complex<double> propagate, older, newer;
 };
+/// Those of all modes.
+using SchemeWeights = std::vector<ModeWeights>;
 
 /// A sum over the modes, Σ first x₁ + second x₂; `kick` = Σ second is what a force that x₂ does not
 /// hold yet adds to it.
@@ -41,14 +43,6 @@ struct StepCoefficients {
   /// Makes `held` the force of a spring [N/m] and a damper [N s/m] at the contact.
   void hold(double stiffness, double damping);
 };
-
-/// value(n) for n < size, then the filling up to whole vectors.
-template <typename Value>
-AlignedVector padded(std::size_t size, double filling, Value value) {
-  AlignedVector result(padded_size(size), filling);
-  for (std::size_t n = 0; n < size; ++n) result[n] = value(n);
-  return result;
-}
 
 /// Whether x₁ and x₂ can be told apart, |Im r| ≥ 0.05 |1 − r|, and forces reach them,
 /// |r d₁ + d₀| ≥ 1e-3 (|d₀| + |d₁|), for every mode: not where a mode does a whole number of half

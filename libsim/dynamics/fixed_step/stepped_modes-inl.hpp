@@ -7,13 +7,10 @@
 #define MODCAL_STEPPED_MODES_INL
 #endif
 
+#include "libsim/base/planar_lanes-inl.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace modcal::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
-
-// At most 8 lanes, the padding of the coefficients.
-using Tag = hn::CappedTag<double, kVectorPadding>;
-using Vector = hn::Vec<Tag>;
 
 // A ModeSum by its arrays.
 struct SumWeights {
@@ -47,7 +44,7 @@ HWY_INLINE double SumOfLanes(Vector sum) {
   const auto two = hn::Add(hn::LowerHalf(quarter, four), hn::UpperHalf(quarter, four));
   return hn::GetLane(two) + hn::GetLane(hn::Reverse2(quarter, two));
 #else
-  return hn::GetLane(hn::SumOfLanes(Tag(), sum));
+  return modcal::HWY_NAMESPACE::Total(sum);
 #endif
 }
 

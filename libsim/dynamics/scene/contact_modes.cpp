@@ -126,11 +126,11 @@ ContactModes contact_modes(const ModalBasis& basis, double contact, const ModalS
 MotionSample motion_of(const ContactModes& modes, const std::vector<std::complex<double>>& state) {
   MotionSample sum;
   for (std::size_t n = 0; n < modes.size(); ++n) {
-    const std::complex<double> z = state[n];
-    sum.displacement += modes.compliance[n] * z.imag();
-    sum.velocity += z.real() - modes.quadrature[n] * z.imag();
-    sum.left += modes.left_gain[n] * z.imag();
-    sum.right += modes.right_gain[n] * z.imag();
+    const MotionSample part = modes.motion(n, state[n]);
+    for (const auto of : {&MotionSample::displacement, &MotionSample::velocity, &MotionSample::left,
+                          &MotionSample::right}) {
+      sum.*of += part.*of;
+    }
   }
   return sum;
 }

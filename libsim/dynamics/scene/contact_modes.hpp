@@ -24,6 +24,13 @@ struct ModeTable {
   std::vector<std::complex<double>> initial;  ///< Z at t = 0 [m/s]
 
   std::size_t size() const { return pole.size(); }
+  /// What the state Z of mode n is of the contact's motion and the reactions, with φ = 1.
+  MotionSample motion(std::size_t n, std::complex<double> z) const {
+    return {.displacement = compliance[n] * z.imag(),
+            .velocity = z.real() - quadrature[n] * z.imag(),
+            .left = left_gain[n] * z.imag(),
+            .right = right_gain[n] * z.imag()};
+  }
 };
 
 /// As one contact point sees them, φ its shape: displacement of the contact y = Σ Im Z/ω_d,

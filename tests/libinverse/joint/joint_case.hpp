@@ -58,7 +58,7 @@ inline std::vector<double> jumping_force(std::size_t length, const StreamKey& ke
 }
 
 inline DrivenString drive(const ModalBasis& basis, double contact, std::vector<double> force,
-                          const SensorOptions& sensors = {}, bool remainder = false,
+                          const SensorPair& sensors = {}, bool remainder = false,
                           bool bending = false) {
   const std::size_t samples = force.size();
   const std::size_t padded = 4 * samples;

@@ -117,7 +117,8 @@ TEST(JointEstimator, BendingOfTheSupportsIsAnOption) {
 TEST(JointEstimator, GainAndDelayOfEachSensorAreOptions) {
   const std::size_t samples = 4096;
   const ModalBasis basis = violin_g();
-  const SensorOptions sensors{.gain = {1.3, 0.8}, .delay = {7e-6, -4e-6}};
+  const SensorPair sensors = {Sensor{.gain = 1.3, .delay = 7e-6},
+                              Sensor{.gain = 0.8, .delay = -4e-6}};
   const DrivenString string =
       drive(basis, kPosition, jumping_force(samples, StreamKey(4)), sensors);
   JointOptions options;
@@ -140,12 +141,12 @@ TEST(JointEstimator, SaysWhenTheSidesContradictEachOther) {
   EXPECT_THAT(good.warnings, testing::Not(contradiction));
   // A wrong model of the second sensor, where the noise is said to be small.
   JointOptions wrong;
-  wrong.sensors.gain[1] = 0.7;
+  wrong.sensors[1].gain = 0.7;
   wrong.noise_rms[0] = wrong.noise_rms[1] = 1e-4 * standard_deviation(string.reaction[0]);
   const Estimate bad = estimate_with(wrong, basis, string.pair());
   EXPECT_THAT(bad.warnings, contradiction);
   JointOptions trusting = wrong;
-  trusting.sensors.gain[1] = 1.0;
+  trusting.sensors[1].gain = 1.0;
   EXPECT_GT(figure(bad, "misfit_of_sides"),
             figure(estimate_with(trusting, basis, string.pair()), "misfit_of_sides"));
 }

@@ -73,7 +73,8 @@ TEST(JointInversion, BothReactionsTellMoreThanEither) {
 TEST(JointInversion, KnowsGainDelayRemainderAndBending) {
   const std::size_t samples = 4096;
   const ModalBasis basis = violin_g();
-  const SensorOptions sensors{.gain = {1.3, 0.8}, .delay = {7e-6, -4e-6}};
+  const SensorPair sensors = {Sensor{.gain = 1.3, .delay = 7e-6},
+                              Sensor{.gain = 0.8, .delay = -4e-6}};
   const DrivenString string =
       drive(basis, kPosition, jumping_force(samples, StreamKey(4)), sensors, true, true);
   JointModel model = contour_at(4.0, samples);
@@ -89,8 +90,8 @@ TEST(JointInversion, KnowsGainDelayRemainderAndBending) {
   };
   const double right = error_of(model);
   EXPECT_LT(right, 0.05);
-  for (const auto& change : {+[](JointModel& m) { m.sensors.gain[0] = 1.0; },
-                             +[](JointModel& m) { m.sensors.delay[0] = 0.0; },
+  for (const auto& change : {+[](JointModel& m) { m.sensors[0].gain = 1.0; },
+                             +[](JointModel& m) { m.sensors[0].delay = 0.0; },
                              +[](JointModel& m) { m.support.static_remainder = false; }}) {
     JointModel wrong = model;
     change(wrong);

@@ -12,10 +12,11 @@
 #include <hwy/contrib/math/math-inl.h>
 // clang-format on
 
-#include "libsim/dynamics/event/modes/planar_lanes-inl.hpp"
+#include "libsim/base/planar_lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace modcal::event::HWY_NAMESPACE {
+using namespace modcal::HWY_NAMESPACE;
 
 // out = factor ∘ state with the factor at i from factor_at(i); `rows`, where there are any, are
 // summed over the new state.
@@ -28,12 +29,12 @@ HWY_INLINE SumAndRate AdvanceSeen(const FactorAt& factor_at, const PlanarVector&
   const Rows weights(rows);
   const Target to(out);
   const std::size_t size = state.size();
-  Vec sum = hn::Zero(d), rate = hn::Zero(d);
-  Vec row[kRows + 1];
+  Vector sum = hn::Zero(d), rate = hn::Zero(d);
+  Vector row[kRows + 1];
   for (std::size_t r = 0; r < kRows; ++r) row[r] = hn::Zero(d);
   for (std::size_t i = 0; i < size; i += hn::Lanes(d)) {
-    const ComplexVec mu = poles[i];
-    const ComplexVec next = Times(factor_at(i, mu), states[i]);
+    const ComplexVector mu = poles[i];
+    const ComplexVector next = Times(factor_at(i, mu), states[i]);
     to.Set(i, next);
     sum = hn::Add(sum, next.re);
     rate = hn::NegMulAdd(mu.im, next.im, hn::MulAdd(mu.re, next.re, rate));
@@ -49,7 +50,7 @@ HWY_INLINE SumAndRate AdvanceSeen(const FactorAt& factor_at, const PlanarVector&
 SumAndRate Advance(const PlanarVector& factor, const PlanarVector& pole, const PlanarVector& state,
                    const PlanarRows& rows, std::span<double> seen, PlanarVector& out) {
   const Source factors(factor);
-  const auto at = [factors](std::size_t i, ComplexVec /*pole*/) HWY_ATTR { return factors[i]; };
+  const auto at = [factors](std::size_t i, ComplexVector /*pole*/) HWY_ATTR { return factors[i]; };
   if (seen.size() == 1) return AdvanceSeen<1>(at, pole, state, rows, seen.data(), out);
   if (seen.size() == 3) return AdvanceSeen<3>(at, pole, state, rows, seen.data(), out);
   assert(seen.empty());
@@ -60,10 +61,10 @@ SumAndRate AdvanceBy(double time, const PlanarVector& pole, const PlanarVector& 
                      PlanarVector& out) {
   const Tag d;
   const auto t = hn::Set(d, time);
-  const auto at = [&](std::size_t /*i*/, ComplexVec mu) HWY_ATTR {
+  const auto at = [&](std::size_t /*i*/, ComplexVector mu) HWY_ATTR {
     const auto modulus = hn::Exp(d, hn::Mul(mu.re, t));
     const auto phase = hn::Mul(mu.im, t);
-    return ComplexVec{hn::Mul(modulus, hn::Cos(d, phase)), hn::Mul(modulus, hn::Sin(d, phase))};
+    return ComplexVector{hn::Mul(modulus, hn::Cos(d, phase)), hn::Mul(modulus, hn::Sin(d, phase))};
   };
   return AdvanceSeen<0>(at, pole, state, {}, nullptr, out);
 }
@@ -76,10 +77,10 @@ HWY_INLINE void ProductsOfRows(const PlanarRows& rows, std::size_t first, const 
   const Source states(state);
   const Rows weights(rows, first);
   const std::size_t size = state.size();
-  Vec sum[kRows];
+  Vector sum[kRows];
   for (std::size_t r = 0; r < kRows; ++r) sum[r] = hn::Zero(d);
   for (std::size_t i = 0; i < size; i += hn::Lanes(d)) {
-    const ComplexVec z = states[i];
+    const ComplexVector z = states[i];
     for (std::size_t r = 0; r < kRows; ++r) {
       sum[r] = hn::MulAdd(weights.Re(r, i), z.re, sum[r]);
       sum[r] = hn::NegMulAdd(weights.Im(r, i), z.im, sum[r]);
@@ -89,7 +90,7 @@ HWY_INLINE void ProductsOfRows(const PlanarRows& rows, std::size_t first, const 
   for (std::size_t r = 0; r < kRows; r += 4) {
     const auto at = [&](std::size_t i) { return i < kRows ? sum[i] : hn::Zero(d); };
     double totals[4];
-    Totals(at(r), at(r + 1), at(r + 2), at(r + 3), totals);
+    FourTotals(at(r), at(r + 1), at(r + 2), at(r + 3), totals);
     for (std::size_t i = r; i < kRows && i < r + 4; ++i) out[i] = totals[i - r];
   }
 }
@@ -106,9 +107,9 @@ double WeightedSize(const AlignedVector& weight, const PlanarVector& state) {
   const Tag d;
   const Source states(state);
   const std::size_t size = state.size();
-  Vec sum = hn::Zero(d);
+  Vector sum = hn::Zero(d);
   for (std::size_t i = 0; i < size; i += hn::Lanes(d)) {
-    const ComplexVec z = states[i];
+    const ComplexVector z = states[i];
     sum = hn::MulAdd(hn::Load(d, &weight[i]), hn::Add(hn::Abs(z.re), hn::Abs(z.im)), sum);
   }
   return Total(sum);
@@ -122,10 +123,10 @@ HWY_INLINE void AdvanceDrivenBy(const PlanarVector& factor, const PlanarRows& re
   const Rows responses(response);
   const Target to(state);
   const std::size_t size = state.size();
-  Vec force[kForces];
+  Vector force[kForces];
   for (std::size_t j = 0; j < kForces; ++j) force[j] = hn::Set(d, forces[j]);
   for (std::size_t i = 0; i < size; i += hn::Lanes(d)) {
-    ComplexVec z = Times(factors[i], states[i]);
+    ComplexVector z = Times(factors[i], states[i]);
     for (std::size_t j = 0; j < kForces; ++j) {
       z.re = hn::MulAdd(responses.Re(j, i), force[j], z.re);
       z.im = hn::MulAdd(responses.Im(j, i), force[j], z.im);
@@ -171,14 +172,14 @@ void AdvanceDrivenFor(double time, double largest, const PlanarVector& pole,
   const double* gains = drive.data();
   const double* weight = weights.data();
   for (std::size_t i = 0; i < size; i += hn::Lanes(d)) {
-    const ComplexVec mu = poles[i];
-    const ComplexVec x = {hn::Mul(mu.re, t), hn::Mul(mu.im, t)};
-    ComplexVec phi = {hn::Set(d, coefficient[terms - 1]), hn::Zero(d)};
+    const ComplexVector mu = poles[i];
+    const ComplexVector x = {hn::Mul(mu.re, t), hn::Mul(mu.im, t)};
+    ComplexVector phi = {hn::Set(d, coefficient[terms - 1]), hn::Zero(d)};
     for (int p = terms - 1; p-- > 0;) {
       phi = Times(phi, x);
       phi.re = hn::Add(phi.re, hn::Set(d, coefficient[p]));
     }
-    ComplexVec forced = {hn::Zero(d), hn::Zero(d)};
+    ComplexVector forced = {hn::Zero(d), hn::Zero(d)};
     for (std::size_t k = order; k-- > 0;) {  // phi is φ_{k+1} here
       const auto w = hn::Set(d, weight[k]);
       forced.re = hn::MulAdd(w, phi.re, forced.re);
@@ -187,7 +188,7 @@ void AdvanceDrivenFor(double time, double largest, const PlanarVector& pole,
       phi.re = hn::Add(phi.re, hn::Set(d, inverse_factorial[k]));
     }
     const auto gain = hn::Load(d, gains + i);
-    const ComplexVec free = Times(phi, states[i]);
+    const ComplexVector free = Times(phi, states[i]);
     to.Set(i, {hn::MulAdd(gain, forced.re, free.re), hn::MulAdd(gain, forced.im, free.im)});
   }
 }
@@ -197,7 +198,7 @@ void Polynomials(std::span<const Octet> table, const std::array<double, 4>& x,
   const Tag d;
   const std::size_t lanes = hn::Lanes(d);
   for (std::size_t k = 0; k < kVectorPadding; k += lanes) {
-    Vec sum[4];
+    Vector sum[4];
     for (std::size_t i = 0; i < 4; ++i) sum[i] = hn::Zero(d);
     for (std::size_t p = table.size(); p-- > 0;) {
       const auto coefficient = hn::LoadU(d, table[p].data() + k);

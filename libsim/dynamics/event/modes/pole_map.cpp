@@ -5,10 +5,11 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "libsim/dynamics/event/modes/planar_lanes-inl.hpp"
+#include "libsim/base/planar_lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace modcal::event::HWY_NAMESPACE {
+using namespace modcal::HWY_NAMESPACE;
 
 // kVectors blocks of outputs side by side.
 template <std::size_t kVectors>
@@ -17,7 +18,7 @@ HWY_INLINE void ApplyBlock(const PoleMap& map, std::size_t inputs, const double*
   const Tag d;
   const std::size_t lanes = hn::Lanes(d);
   const Rows matrix(map.matrix);
-  ComplexVec of_a[kVectors], of_b[kVectors];
+  ComplexVector of_a[kVectors], of_b[kVectors];
   for (std::size_t v = 0; v < kVectors; ++v) {
     of_a[v] = of_b[v] = {hn::Zero(d), hn::Zero(d)};
   }
@@ -35,17 +36,17 @@ HWY_INLINE void ApplyBlock(const PoleMap& map, std::size_t inputs, const double*
   const Target to(out);
   for (std::size_t v = 0; v < kVectors; ++v) {
     const std::size_t i = first + v * lanes;
-    const ComplexVec left = Times(p[i], of_a[v]);
-    const ComplexVec right = Times(q[i], of_b[v]);
+    const ComplexVector left = Times(p[i], of_a[v]);
+    const ComplexVector right = Times(q[i], of_b[v]);
     to.Set(i, {hn::Add(left.re, right.re), hn::Add(left.im, right.im)});
   }
 }
 
 // 1/z for the product z of two numbers.
-HWY_INLINE ComplexVec InverseOfProduct(ComplexVec x, ComplexVec y) {
-  const ComplexVec z = Times(x, y);
-  const Vec square = hn::MulAdd(z.re, z.re, hn::Mul(z.im, z.im));
-  const Vec inverse = hn::Div(hn::Set(Tag(), 1.0), square);
+HWY_INLINE ComplexVector InverseOfProduct(ComplexVector x, ComplexVector y) {
+  const ComplexVector z = Times(x, y);
+  const Vector square = Power(z);
+  const Vector inverse = hn::Div(hn::Set(Tag(), 1.0), square);
   return {hn::Mul(z.re, inverse), hn::Neg(hn::Mul(z.im, inverse))};
 }
 
@@ -56,9 +57,9 @@ HWY_INLINE void ComputeBlock(const PoleMap& map, std::size_t inputs, const doubl
   const Tag d;
   const Source poles(map.pole), anchors(map.anchor), offsets(map.offset);
   const auto all = [&d](const double* value) { return hn::Set(d, *value); };
-  ComplexVec of_a = {hn::Zero(d), hn::Zero(d)}, of_b = of_a;
+  ComplexVector of_a = {hn::Zero(d), hn::Zero(d)}, of_b = of_a;
   for (std::size_t n = 0; n < inputs; ++n) {
-    ComplexVec pole, anchor, offset;
+    ComplexVector pole, anchor, offset;
     if constexpr (kTowardsRoots) {
       pole = {all(poles.re + n), all(poles.im + n)};
       anchor = anchors[first];
@@ -69,11 +70,11 @@ HWY_INLINE void ComputeBlock(const PoleMap& map, std::size_t inputs, const doubl
       offset = {all(offsets.re + n), all(offsets.im + n)};
     }
     // The anchor is one of the poles: the difference is exact, and the offset keeps its digits.
-    const ComplexVec from = {hn::Add(hn::Sub(anchor.re, pole.re), offset.re),
-                             hn::Add(hn::Sub(anchor.im, pole.im), offset.im)};
-    ComplexVec mirrored = {from.re, hn::Add(hn::Add(anchor.im, pole.im), offset.im)};
+    const ComplexVector from = {hn::Add(hn::Sub(anchor.re, pole.re), offset.re),
+                                hn::Add(hn::Sub(anchor.im, pole.im), offset.im)};
+    ComplexVector mirrored = {from.re, hn::Add(hn::Add(anchor.im, pole.im), offset.im)};
     if constexpr (!kTowardsRoots) mirrored.re = hn::Neg(mirrored.re);
-    ComplexVec inverse = InverseOfProduct(from, mirrored);
+    ComplexVector inverse = InverseOfProduct(from, mirrored);
     if constexpr (!kTowardsRoots) inverse = {hn::Neg(inverse.re), hn::Neg(inverse.im)};
     of_a = {hn::MulAdd(all(a + n), inverse.re, of_a.re),
             hn::MulAdd(all(a + n), inverse.im, of_a.im)};
@@ -81,8 +82,8 @@ HWY_INLINE void ComputeBlock(const PoleMap& map, std::size_t inputs, const doubl
             hn::MulAdd(all(b + n), inverse.im, of_b.im)};
   }
   const Source p(map.p), q(map.q);
-  const ComplexVec left = Times(p[first], of_a);
-  const ComplexVec right = Times(q[first], of_b);
+  const ComplexVector left = Times(p[first], of_a);
+  const ComplexVector right = Times(q[first], of_b);
   Target(out).Set(first, {hn::Add(left.re, right.re), hn::Add(left.im, right.im)});
 }
 
@@ -92,7 +93,7 @@ void Apply(const PoleMap& map, std::size_t inputs, const PlanarVector& in, doubl
   const std::size_t lanes = hn::Lanes(d);
   const Source source(in), of_a(map.a), of_b(map.b);
   for (std::size_t i = 0; i < in.size(); i += lanes) {
-    const ComplexVec z = source[i];
+    const ComplexVector z = source[i];
     hn::Store(Times(of_a[i], z).re, d, a + i);
     hn::Store(Times(of_b[i], z).re, d, b + i);
   }

@@ -1,7 +1,7 @@
-#include "libsim/dynamics/event/sliding/collocation.hpp"
-
 #include <algorithm>
 #include <cmath>
+
+#include "libsim/dynamics/event/sliding/contact_friction.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "libsim/dynamics/event/sliding/collocation.cpp"

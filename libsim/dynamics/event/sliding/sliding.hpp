@@ -6,8 +6,6 @@
 
 #include "libsim/dynamics/event/modes/bow_path.hpp"
 #include "libsim/dynamics/event/modes/first_crossing.hpp"
-#include "libsim/dynamics/event/modes/force_observer.hpp"
-#include "libsim/dynamics/event/sliding/collocation.hpp"
 #include "libsim/dynamics/event/sliding/contact_friction.hpp"
 
 namespace modcal::event {

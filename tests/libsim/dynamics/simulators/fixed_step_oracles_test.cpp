@@ -47,7 +47,7 @@ struct Motion {
 // before the first.
 Motion run(ContactModes modes, ForceTiming timing, double h, std::size_t samples,
            std::size_t stride, double y = 0.0, double v = 0.0, double force_before = 0.0) {
-  const SchemeWeights weights = scheme_weights(modes.pole, h, weights_of(timing));
+  const SchemeWeights weights = scheme_weights(modes, h, weights_of(timing));
   Motion motion{
       std::vector<double>(samples), std::vector<double>(samples), std::vector<double>(samples), {}};
   const FixedStepRun plan{.timing = timing,
@@ -69,7 +69,7 @@ Motion run(ContactModes modes, ForceTiming timing, double h, std::size_t samples
                               .initial_velocity = v};
   // Z = v + i ω y (ζ = 0, φ = 1), and what the force before leaves of it: r Z' = r Z + d₀ f.
   modes.initial[0] = std::complex<double>(v, modes.pole[0].imag() * y) +
-                     weights.older[0] / weights.propagate[0] * modes.drive[0] * force_before;
+                     weights[0].older / weights[0].propagate * modes.drive[0] * force_before;
   const double side = v < 0.05 ? 1.0 : -1.0;
   StepCoefficients coefficients =
       make_step_coefficients(modes, weights, timing == ForceTiming::kImplicit ? side * 0.3 : 0.0);

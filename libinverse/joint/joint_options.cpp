@@ -1,0 +1,105 @@
+#include "libinverse/joint/joint_options.hpp"
+
+#include <cmath>
+
+#include "libsim/base/words.hpp"
+
+namespace modcal {
+namespace {
+
+constexpr std::array<std::string_view, 3> kTruncations = {"shifted_contour", "transient",
+                                                          "wrapped"};
+constexpr std::array<std::string_view, 2> kOffsetRules = {"arrival", "none"};
+
+}  // namespace
+
+Truncation truncation_of(const std::string& name) {
+  return enum_of<Truncation>(kTruncations, "truncation", name);
+}
+
+OffsetRule offset_rule_of(const std::string& name) {
+  return enum_of<OffsetRule>(kOffsetRules, "offset rule", name);
+}
+
+void TransferOptions::visit(OptionVisitor& visitor) {
+  visitor.text({.key = "static_remainder",
+                .meaning = "static response of the modes above the highest stated one; auto: for "
+                           "recorded data",
+                .choices = {"auto", "on", "off"}},
+               static_remainder);
+  visitor.flag({.key = "bending",
+                .meaning = "the supports of a stiff string feel its bending too: reactions times "
+                           "1 + B n^2 in mode n"},
+               bending);
+}
+
+void JointOptions::require() const {
+  const bool shifted = truncation_of(truncation) == Truncation::kShiftedContour;
+  offset_rule_of(offset);
+  MODCAL_REQUIRE(points >= 3 && points <= 1280, "{} points on the curve: 3 to 1280 are possible",
+                 points);
+  MODCAL_REQUIRE(std::isnan(sigma) || sigma > 0.0, "contour at {:g} 1/s must be > 0", sigma);
+  MODCAL_REQUIRE(std::isnan(sigma) || shifted,
+                 "sigma {:g} 1/s is for the shifted contour: leave it out with truncation \"{}\"",
+                 sigma, truncation);
+}
+
+void JointOptions::visit(OptionVisitor& visitor) {
+  visitor.text({.key = "truncation",
+                .meaning = "what is done about the ends of the record: shifted_contour (at rest at "
+                           "first), transient (any state at either end, unknowns) or wrapped "
+                           "(nothing)",
+                .choices = choices_of(kTruncations)},
+               truncation);
+  visitor.number({.key = "sigma",
+                  .meaning = "contour's distance from the frequency axis; auto: from length, noise "
+                             "and damping, about 2 over the record's length",
+                  .unit = "Hz",
+                  .range = Range::positive(),
+                  .word = "auto"},
+                 sigma);
+  visitor.text({.key = "offset",
+                .meaning = "static level of the sensors; arrival: the mean before the first wave "
+                           "arrives, for records that start at rest",
+                .choices = choices_of(kOffsetRules)},
+               offset);
+  for (std::size_t r = 0; r < 2; ++r) {
+    visitor.number({.key = r == 0 ? "noise_rms1" : "noise_rms2",
+                    .meaning = r == 0 ? "noise of one sample of the reaction at x = 0"
+                                      : "noise of one sample of the reaction at x = L",
+                    .unit = "N",
+                    .range = Range::non_negative(),
+                    .word = "measured"},
+                   noise_rms[r]);
+  }
+  visitor.number({.key = "band_limit",
+                  .meaning = "nothing is identified above this frequency",
+                  .unit = "Hz",
+                  .range = Range::positive(),
+                  .word = "none"},
+                 band_limit);
+  visitor.flag({.key = "limit_to_top_mode",
+                .meaning = "sharp band limit at the highest mode, in place of band_limit"},
+               limit_to_top_mode);
+  visitor.integer({.key = "points",
+                   .meaning = "points on the curve of evidence over the parameter",
+                   .range = Range::closed(3, 1280)},
+                  points);
+  transfer.visit(visitor);
+  for (std::size_t r = 0; r < 2; ++r) {
+    visitor.number(
+        {.key = r == 0 ? "gain1" : "gain2",
+         .meaning = r == 0 ? "gain of the sensor at x = 0" : "gain of the sensor at x = L",
+         .range = Range::positive()},
+        sensors[r].gain);
+  }
+  for (std::size_t r = 0; r < 2; ++r) {
+    visitor.number(
+        {.key = r == 0 ? "delay1" : "delay2",
+         .meaning = r == 0 ? "delay of the channel of x = 0" : "delay of the channel of x = L",
+         .unit = "s"},
+        sensors[r].delay);
+  }
+}
+
+}  // namespace modcal

@@ -1,0 +1,32 @@
+// Words of options as enumerators.
+#pragma once
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <vector>
+
+#include "libsim/base/error.hpp"
+
+namespace modcal {
+
+/// The enumerator whose place in `names` has this name. Throws InvalidInput for another name;
+/// `what` the word stands for.
+template <class Enum, std::size_t kNames>
+Enum enum_of(const std::array<std::string_view, kNames>& names, std::string_view what,
+             std::string_view name) {
+  const auto place = std::find(names.begin(), names.end(), name);
+  MODCAL_REQUIRE(place != names.end(), "unknown {} \"{}\": {} are possible", what, name,
+                 fmt::join(names, ", "));
+  return static_cast<Enum>(place - names.begin());
+}
+
+/// The names as the choices of a text option.
+template <std::size_t kNames>
+std::vector<std::string_view> choices_of(const std::array<std::string_view, kNames>& names) {
+  return {names.begin(), names.end()};
+}
+
+}  // namespace modcal
