@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "libsim/records/recorded_signals.hpp"
+#include "libsim/records/recording.hpp"
 #include "tests/libsim/records/record_folder.hpp"
 
 namespace modcal::truth {
