@@ -25,30 +25,6 @@ void visit_passes(OptionVisitor& visitor, std::int64_t& passes) {
                   passes);
 }
 
-}  // namespace
-
-void ForcePrior::shape(const PriorGrid& grid, std::span<double> variance) const {
-  MODCAL_REQUIRE(variance.size() == grid.bins, "{} variances for {} bins", variance.size(),
-                 grid.bins);
-  do_shape(grid, variance);
-  double sum = 0.0;
-  for (const double value : variance) sum += value;
-  const double scale = static_cast<double>(grid.bins) / sum;
-  for (double& value : variance) value *= scale;
-}
-
-void ForcePrior::learn(const PriorGrid& grid, std::span<double> power,
-                       std::span<double> scratch) const {
-  MODCAL_REQUIRE(power.size() == grid.bins && scratch.size() == power.size(),
-                 "{} powers and {} places for {} bins", power.size(), scratch.size(), grid.bins);
-  do_learn(grid, power, scratch);
-}
-
-void ForcePrior::do_learn(const PriorGrid& /*grid*/, std::span<double> /*power*/,
-                          std::span<double> /*scratch*/) const {}
-
-namespace {
-
 // The window slides: a bin enters once and leaves once. Bins far apart in power follow each other,
 // so the sum is begun anew where what has left outweighs what is left.
 void box_mean(std::span<const double> in, std::span<double> out, double at_zero, double slope) {
@@ -138,6 +114,26 @@ void box_mean_of(std::span<const double> in, std::span<double> out, double at_ze
 
 }  // namespace
 
+void ForcePrior::shape(const PriorGrid& grid, std::span<double> variance) const {
+  MODCAL_REQUIRE(variance.size() == grid.bins, "{} variances for {} bins", variance.size(),
+                 grid.bins);
+  do_shape(grid, variance);
+  double sum = 0.0;
+  for (const double value : variance) sum += value;
+  const double scale = static_cast<double>(grid.bins) / sum;
+  for (double& value : variance) value *= scale;
+}
+
+void ForcePrior::learn(const PriorGrid& grid, std::span<double> power,
+                       std::span<double> scratch) const {
+  MODCAL_REQUIRE(power.size() == grid.bins && scratch.size() == power.size(),
+                 "{} powers and {} places for {} bins", power.size(), scratch.size(), grid.bins);
+  do_learn(grid, power, scratch);
+}
+
+void ForcePrior::do_learn(const PriorGrid& /*grid*/, std::span<double> /*power*/,
+                          std::span<double> /*scratch*/) const {}
+
 void smooth_power(std::span<double> power, std::span<double> scratch, double bins_at_zero,
                   double bins_per_bin) {
   box_mean_of(power, scratch, bins_at_zero, bins_per_bin);
@@ -186,13 +182,10 @@ void SmoothPrior::Options::visit(OptionVisitor& visitor) {
 }
 
 SmoothPrior::SmoothPrior(const Options& options)
-    : start_({.corner = options.corner}), octaves_(options.octaves), passes_(options.passes) {
-  MODCAL_REQUIRE(octaves_ > 0.0 && passes_ >= 1,
-                 "smoothing over {:g} octaves in {} passes: both must be > 0", octaves_, passes_);
-}
-
-void SmoothPrior::do_shape(const PriorGrid& grid, std::span<double> variance) const {
-  start_.shape(grid, variance);
+    : LearningPrior(options.corner, options.passes), octaves_(options.octaves) {
+  MODCAL_REQUIRE(octaves_ > 0.0 && options.passes >= 1,
+                 "smoothing over {:g} octaves in {} passes: both must be > 0", octaves_,
+                 options.passes);
 }
 
 void SmoothPrior::do_learn(const PriorGrid& /*grid*/, std::span<double> power,
@@ -211,13 +204,10 @@ void LearnedPrior::Options::visit(OptionVisitor& visitor) {
 }
 
 LearnedPrior::LearnedPrior(const Options& options)
-    : start_({.corner = options.corner}), bandwidth_(options.bandwidth), passes_(options.passes) {
-  MODCAL_REQUIRE(bandwidth_ > 0.0 && passes_ >= 1,
-                 "smoothing over {:g} Hz in {} passes: both must be > 0", bandwidth_, passes_);
-}
-
-void LearnedPrior::do_shape(const PriorGrid& grid, std::span<double> variance) const {
-  start_.shape(grid, variance);
+    : LearningPrior(options.corner, options.passes), bandwidth_(options.bandwidth) {
+  MODCAL_REQUIRE(bandwidth_ > 0.0 && options.passes >= 1,
+                 "smoothing over {:g} Hz in {} passes: both must be > 0", bandwidth_,
+                 options.passes);
 }
 
 void LearnedPrior::do_learn(const PriorGrid& grid, std::span<double> power,

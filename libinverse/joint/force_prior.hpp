@@ -71,9 +71,25 @@ class JumpPrior final : public ForcePrior {
   double corner_;
 };
 
-/// Starts from a force that jumps and learns a spectrum that is smooth over a fraction of an
-/// octave.
-class SmoothPrior final : public ForcePrior {
+/// Starts from a force that jumps and learns the spectrum of the record.
+class LearningPrior : public ForcePrior {
+ public:
+  std::int64_t passes() const override { return passes_; }
+
+ protected:
+  LearningPrior(double corner, std::int64_t passes) : start_({.corner = corner}), passes_(passes) {}
+
+ private:
+  void do_shape(const PriorGrid& grid, std::span<double> variance) const override {
+    start_.shape(grid, variance);
+  }
+
+  JumpPrior start_;
+  std::int64_t passes_;
+};
+
+/// A spectrum that is smooth over a fraction of an octave.
+class SmoothPrior final : public LearningPrior {
  public:
   struct Options {
     double corner = 50.0;      ///< f_c of the start [Hz]
@@ -82,20 +98,15 @@ class SmoothPrior final : public ForcePrior {
     void visit(OptionVisitor& visitor);
   };
   explicit SmoothPrior(const Options& options);
-  std::int64_t passes() const override { return passes_; }
 
  private:
-  void do_shape(const PriorGrid& grid, std::span<double> variance) const override;
   void do_learn(const PriorGrid& grid, std::span<double> power,
                 std::span<double> scratch) const override;
-  JumpPrior start_;
   double octaves_;
-  std::int64_t passes_;
 };
 
-/// Starts from a force that jumps and learns the spectrum of the record at a fixed bandwidth, fine
-/// enough for the lines of a played note.
-class LearnedPrior final : public ForcePrior {
+/// The spectrum at a fixed bandwidth, fine enough for the lines of a played note.
+class LearnedPrior final : public LearningPrior {
  public:
   struct Options {
     double corner = 50.0;     ///< f_c of the start [Hz]
@@ -104,15 +115,11 @@ class LearnedPrior final : public ForcePrior {
     void visit(OptionVisitor& visitor);
   };
   explicit LearnedPrior(const Options& options);
-  std::int64_t passes() const override { return passes_; }
 
  private:
-  void do_shape(const PriorGrid& grid, std::span<double> variance) const override;
   void do_learn(const PriorGrid& grid, std::span<double> power,
                 std::span<double> scratch) const override;
-  JumpPrior start_;
   double bandwidth_;
-  std::int64_t passes_;
 };
 
 }  // namespace modcal

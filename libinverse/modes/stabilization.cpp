@@ -4,20 +4,16 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "libsim/base/error.hpp"
+#include "libsim/signal/statistics.hpp"
 
 namespace modcal {
 namespace {
 
 std::vector<std::vector<double>> without_means(const DecayRecord& record) {
   std::vector<std::vector<double>> channels = record.channels;
-  for (auto& channel : channels) {
-    const double mean =
-        std::accumulate(channel.begin(), channel.end(), 0.0) / static_cast<double>(channel.size());
-    for (double& value : channel) value -= mean;
-  }
+  for (auto& channel : channels) remove_mean(channel);
   return channels;
 }
 

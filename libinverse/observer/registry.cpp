@@ -4,7 +4,7 @@
 #include "libinverse/estimator.hpp"
 #include "libinverse/joint/joint_estimators.hpp"
 #include "libinverse/observer/model_based_estimator.hpp"
-#include "libinverse/spectral/one_sided/one_sided_estimator.hpp"
+#include "libinverse/spectral/one_sided/one_sided_inversion.hpp"
 
 namespace modcal {
 

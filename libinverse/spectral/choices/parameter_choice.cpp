@@ -9,9 +9,9 @@
 #include <optional>
 #include <utility>
 
-#include "libinverse/spectral/problem/interior_minimum.hpp"
+#include "libinverse/spectral/choices/rules.hpp"
 #include "libinverse/spectral/problem/spectral_system.hpp"
-#include "libsim/base/error.hpp"
+#include "libsim/base/words.hpp"
 
 namespace modcal {
 namespace {
@@ -22,56 +22,15 @@ constexpr double kLowestShare = 1e-8;
 // Ratio of two parameters from which on their rules disagree.
 constexpr double kStrong = 10.0;
 
-std::optional<double> of_cross_validation(std::span<const CurvePoint> curve, double rows) {
-  std::size_t best = curve.size();
-  double smallest = std::numeric_limits<double>::infinity();
-  for (std::size_t j = 0; j < curve.size(); ++j) {
-    const double left = rows - curve[j].freedom;
-    const double quotient = curve[j].residual_norm / left;
-    if (!(left > 0.0) || !(quotient < smallest)) continue;
-    smallest = quotient;
-    best = j;
-  }
-  if (best == 0 || best + 1 >= curve.size()) return std::nullopt;
-  return curve[best].parameter;
-}
-
-std::optional<double> of_product(std::span<const CurvePoint> curve) {
-  std::vector<double> product(curve.size());
-  std::transform(curve.begin(), curve.end(), product.begin(),
-                 [](const CurvePoint& p) { return p.residual_norm * p.solution_norm; });
-  const auto minimum = most_prominent_minimum(product);
-  if (!minimum) return std::nullopt;
-  return curve[minimum->index].parameter;
-}
-
-std::optional<double> of_discrepancy(std::span<const CurvePoint> curve, double bound) {
-  const auto above = std::find_if(curve.begin(), curve.end(),
-                                  [bound](const CurvePoint& p) { return p.residual_norm > bound; });
-  if (!(bound > 0.0) || above == curve.begin() || above == curve.end()) return std::nullopt;
-  return std::prev(above)->parameter;
-}
+constexpr std::array<std::string_view, 2> kMeasures = {"solution", "derivative"};
 
 }  // namespace
 
 std::string_view name_of(ChoiceStatus status) {
-  switch (status) {
-    case ChoiceStatus::kNotComputed:
-      return "not_computed";
-    case ChoiceStatus::kChosen:
-      return "chosen";
-    case ChoiceStatus::kGiven:
-      return "given";
-    case ChoiceStatus::kNoParameter:
-      return "no_parameter";
-    case ChoiceStatus::kEdgeOfRange:
-      return "edge_of_range";
-    case ChoiceStatus::kNoInteriorMinimum:
-      return "no_interior_minimum";
-    case ChoiceStatus::kNotReached:
-      return "not_reached";
-  }
-  return "not_computed";
+  static constexpr std::array<std::string_view, 7> kNames = {
+      "not_computed",        "chosen",     "given", "no_parameter", "edge_of_range",
+      "no_interior_minimum", "not_reached"};
+  return kNames.at(static_cast<std::size_t>(status));
 }
 
 void CurveOptions::visit(OptionVisitor& visitor) {
@@ -96,7 +55,7 @@ void CurveOptions::visit(OptionVisitor& visitor) {
       {.key = "measure",
        .meaning = "norm of the solution on the curve: of the force's time derivative or of "
                   "the force itself",
-       .choices = {"derivative", "solution"}},
+       .choices = {kMeasures[1], kMeasures[0]}},
       measure);
 }
 
@@ -110,9 +69,7 @@ std::string warning_of(const ChosenParameter& choice) {
 
 ParameterChoice::ParameterChoice(CurveOptions options, std::int64_t least_points)
     : options_(std::move(options)),
-      measure_(options_.measure == "solution" ? Measure::kSolution : Measure::kDerivative) {
-  MODCAL_REQUIRE(options_.measure == "solution" || options_.measure == "derivative",
-                 "unknown measure \"{}\": \"derivative\" or \"solution\"", options_.measure);
+      measure_(enum_of<Measure>(kMeasures, "measure", options_.measure)) {
   MODCAL_REQUIRE(options_.points >= least_points,
                  "{} points on the curve: this parameter choice needs at least {}", options_.points,
                  least_points);
@@ -214,16 +171,23 @@ ParameterChoice::Pick ParameterChoice::smallest_criterion(std::span<const CurveP
 std::string disagreement_of(const ChosenParameter& choice, std::size_t rows, double noise_rms) {
   if (choice.status != ChoiceStatus::kChosen) return {};
   const double data = static_cast<double>(rows);
-  const std::pair<const char*, std::optional<double>> others[] = {
-      {"generalized cross validation", of_cross_validation(choice.curve, data)},
-      {"the minimal product", of_product(choice.curve)},
-      {"the discrepancy principle", of_discrepancy(choice.curve, noise_rms * std::sqrt(data))}};
+  std::vector<CurvePoint> curve = choice.curve;
+  const std::pair<const char*, Pick> others[] = {
+      {"generalized cross validation", cross_validation_on(curve, data)},
+      {"the minimal product", minimal_product_on(curve)},
+      {"the discrepancy principle", discrepancy_on(curve, noise_rms * std::sqrt(data))}};
   std::string text;
-  for (const auto& [name, parameter] : others) {
-    if (!parameter) continue;
-    const double ratio = *parameter / choice.parameter();
+  for (const auto& [name, other] : others) {
+    // At the edge of where a criterion is defined may still be inside the range.
+    const bool inside =
+        other.parameter > curve.front().parameter && other.parameter < curve.back().parameter;
+    if (other.status != ChoiceStatus::kChosen &&
+        (other.status != ChoiceStatus::kEdgeOfRange || !inside)) {
+      continue;
+    }
+    const double ratio = other.parameter / choice.parameter();
     if (ratio <= kStrong && ratio * kStrong >= 1.0) continue;
-    text += fmt::format("{}{} {:.3g}", text.empty() ? "" : ", ", name, *parameter);
+    text += fmt::format("{}{} {:.3g}", text.empty() ? "" : ", ", name, other.parameter);
   }
   if (text.empty()) return {};
   return fmt::format("the rules disagree: {:.3g} was chosen where others would take: {}",

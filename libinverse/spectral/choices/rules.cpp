@@ -5,12 +5,24 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libinverse/spectral/problem/interior_minimum.hpp"
 #include "libinverse/spectral/problem/spectral_system.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
 namespace {
+
+// Highest value met on the way from `index` in direction `step` before lower ground or the end.
+double barrier(std::span<const double> values, std::size_t index, std::ptrdiff_t step) {
+  const auto size = static_cast<std::ptrdiff_t>(values.size());
+  double highest = values[index];
+  for (std::ptrdiff_t i = static_cast<std::ptrdiff_t>(index) + step; i >= 0 && i < size;
+       i += step) {
+    const double value = values[static_cast<std::size_t>(i)];
+    if (value < values[index]) break;
+    highest = std::max(highest, value);
+  }
+  return highest;
+}
 
 void visit_noise_rms(OptionVisitor& visitor, double& noise_rms) {
   visitor.number({.key = "noise_rms",
@@ -37,8 +49,25 @@ double known_noise_rms(double option, const SpectralData& data) {
 
 }  // namespace
 
-Pick pick_minimal_product(const CurveRuleOptions& /*options*/, const TracedCurve& traced) {
-  const std::span<CurvePoint> curve = traced.curve;
+std::optional<InteriorMinimum> most_prominent_minimum(std::span<const double> values) {
+  std::optional<InteriorMinimum> best;
+  std::size_t count = 0;
+  for (std::size_t begin = 1; begin + 1 < values.size(); ++begin) {
+    if (!(values[begin] > 0.0) || !(values[begin - 1] > values[begin])) continue;
+    std::size_t end = begin + 1;  // behind the plateau
+    while (end < values.size() && values[end] == values[begin]) ++end;
+    if (end == values.size() || !(values[end] > values[begin])) continue;
+    ++count;
+    const double saddle = std::min(barrier(values, begin, -1), barrier(values, end - 1, +1));
+    const double prominence = std::log10(saddle / values[begin]);
+    const std::size_t middle = (begin + end - 1) / 2;
+    if (!best || prominence > best->prominence) best = InteriorMinimum{middle, prominence, 0};
+  }
+  if (best) best->count = count;
+  return best;
+}
+
+Pick minimal_product_on(std::span<CurvePoint> curve) {
   std::vector<double> product(curve.size());
   for (std::size_t j = 0; j < curve.size(); ++j) {
     product[j] = curve[j].residual_norm * curve[j].solution_norm;
@@ -58,16 +87,23 @@ Pick pick_minimal_product(const CurveRuleOptions& /*options*/, const TracedCurve
                       minimum->count, parameter, minimum->prominence)};
 }
 
-Pick pick_generalized_cross_validation(const CurveRuleOptions& /*options*/,
-                                       const TracedCurve& traced) {
-  const std::span<CurvePoint> curve = traced.curve;
-  const double rows = static_cast<double>(traced.data.problem->rows());
+Pick pick_minimal_product(const CurveRuleOptions& /*options*/, const TracedCurve& traced) {
+  return minimal_product_on(traced.curve);
+}
+
+Pick cross_validation_on(std::span<CurvePoint> curve, double rows) {
   for (CurvePoint& point : curve) {
     const double left = rows - point.freedom;
     // With every datum fitted the quotient is 0/0 and says nothing.
-    if (left > 0.0) point.criterion = point.residual_norm * point.residual_norm / (left * left);
+    point.criterion = left > 0.0 ? point.residual_norm * point.residual_norm / (left * left)
+                                 : std::numeric_limits<double>::quiet_NaN();
   }
   return ParameterChoice::smallest_criterion(curve, "generalized cross validation");
+}
+
+Pick pick_generalized_cross_validation(const CurveRuleOptions& /*options*/,
+                                       const TracedCurve& traced) {
+  return cross_validation_on(traced.curve, static_cast<double>(traced.data.problem->rows()));
 }
 
 void RobustCrossValidationOptions::visit(OptionVisitor& visitor) {
@@ -203,11 +239,7 @@ void DiscrepancyOptions::require() const {
   require_noise_option(noise_rms);
 }
 
-Pick pick_discrepancy(const DiscrepancyOptions& options, const TracedCurve& traced) {
-  const std::span<CurvePoint> curve = traced.curve;
-  const double rows = static_cast<double>(traced.data.problem->rows());
-  const double bound =
-      options.tau * known_noise_rms(options.noise_rms, traced.data) * std::sqrt(rows);
+Pick discrepancy_on(std::span<CurvePoint> curve, double bound) {
   std::size_t within = 0;  // the residual rises with the parameter
   for (std::size_t j = 0; j < curve.size(); ++j) {
     if (bound > 0.0) curve[j].criterion = curve[j].residual_norm / bound;
@@ -229,6 +261,13 @@ Pick pick_discrepancy(const DiscrepancyOptions& options, const TracedCurve& trac
   return {point.parameter, ChoiceStatus::kChosen,
           fmt::format("largest parameter whose residual norm {:.4g} is within {:.4g}",
                       point.residual_norm, bound)};
+}
+
+Pick pick_discrepancy(const DiscrepancyOptions& options, const TracedCurve& traced) {
+  const double rows = static_cast<double>(traced.data.problem->rows());
+  return discrepancy_on(
+      traced.curve,
+      options.tau * known_noise_rms(options.noise_rms, traced.data) * std::sqrt(rows));
 }
 
 void GivenParameterOptions::visit(OptionVisitor& visitor) {

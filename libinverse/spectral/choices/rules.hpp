@@ -1,9 +1,28 @@
 // The rules: each a function of the traced curve and, for some, of the data behind it.
 #pragma once
 
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+
 #include "libinverse/parameter_choice.hpp"
 
 namespace modcal {
+
+/// A local minimum and how far it stands out.
+struct InteriorMinimum {
+  std::size_t index = 0;
+  /// log₁₀ of the lower of the two barriers between the minimum and lower ground (or the end of the
+  /// curve) on either side, over the minimum: its topographic prominence in decades.
+  double prominence = 0.0;
+  std::size_t count = 0;  ///< interior local minima on the whole curve
+};
+
+/// The most prominent interior local minimum of positive values, the first of equals. Ends,
+/// plateaus that touch them and values that are not positive are no minima. Empty where there is
+/// none.
+std::optional<InteriorMinimum> most_prominent_minimum(std::span<const double> values);
 
 /// Options of a rule that has none of its own.
 struct CurveRuleOptions {
@@ -28,6 +47,12 @@ class Rule final : public ParameterChoice {
 };
 
 using Pick = ParameterChoice::Pick;
+
+/// What rules that ask the curve alone choose on it, `rows` data [1] or a bound on the residual
+/// norm given. They fill in the criterion.
+Pick minimal_product_on(std::span<CurvePoint> curve);
+Pick cross_validation_on(std::span<CurvePoint> curve, double rows);
+Pick discrepancy_on(std::span<CurvePoint> curve, double bound);
 
 Pick pick_minimal_product(const CurveRuleOptions& options, const TracedCurve& traced);
 /// Minimal product: interior local minimum over ε of ‖R − H F_ε‖·‖dF_ε/dt‖ (Debut, Delaune and

@@ -8,6 +8,14 @@
 
 namespace modcal {
 
+/// One sensor over the band of a mode; arrays padded to a multiple of kBinLanes.
+struct ScannedSensor {
+  const double* real = nullptr;  ///< of the sum without the mode
+  const double* imag = nullptr;
+  const double* magnitude = nullptr;  ///< |R|, 0 beyond the band
+  double constant = 0.0;              ///< A of the mode
+};
+
 /// Integrals of |F_k| = |R_k|/|H_k| over a band while one pole moves, which changes H by one term:
 /// with S_k, the sum of the others over the band, |F_k| is |R_k| |D| / |S_k D + A_k|. For models of
 /// one contact with real constants and no residual terms, on the frequency axis. Blocks of bins are

@@ -37,6 +37,21 @@ struct ClippedSums {
   }
 };
 
+// Adds solution and freedom of the components that are kept whole, from the largest σ down.
+void add_whole(const SpectralSystem& system, std::span<const double> parameters,
+               bool (*keeps)(double sigma, double parameter), std::span<CurvePoint> curve) {
+  double solution = 0.0, freedom = 0.0;
+  std::size_t head = 0;
+  for (std::size_t j = parameters.size(); j-- > 0;) {
+    for (; head < system.size() && keeps(system.sigma[head], parameters[j]); ++head) {
+      solution += system.solution_weight[head] * system.power[head];
+      freedom += system.multiplicity[head];
+    }
+    curve[j].solution_norm += solution;
+    curve[j].freedom += freedom;
+  }
+}
+
 }  // namespace
 
 // The residual is gathered from the smallest σ up and the solution from the largest down: both are
@@ -49,17 +64,8 @@ void WaterLevel::do_trace_squares(const SpectralSystem& system, std::span<const 
     while (tail > 0 && !(system.sigma[tail - 1] > parameters[j])) residual += system.power[--tail];
     curve[j].residual_norm = residual;
   }
-  double solution = 0.0;
-  double freedom = 0.0;
-  std::size_t head = 0;
-  for (std::size_t j = parameters.size(); j-- > 0;) {
-    for (; head < system.size() && system.sigma[head] > parameters[j]; ++head) {
-      solution += system.solution_weight[head] * system.power[head];
-      freedom += system.multiplicity[head];
-    }
-    curve[j].solution_norm = solution;
-    curve[j].freedom = freedom;
-  }
+  for (CurvePoint& point : curve) point.solution_norm = point.freedom = 0.0;
+  add_whole(system, parameters, keeps_above, curve);
 }
 
 void WaterLevelClip::do_filter_factors(std::span<const double> sigma, double parameter,
@@ -92,18 +98,7 @@ void WaterLevelClip::do_trace_squares(const SpectralSystem& system,
     curve[j].solution_norm = clipped.solution * inverse * inverse;
     curve[j].freedom = clipped.freedom * inverse;
   }
-  double solution = 0.0;
-  double freedom = 0.0;
-  std::size_t head = 0;
-  for (std::size_t j = parameters.size(); j-- > 0;) {
-    for (; head < system.size() && system.sigma[head] > 0.0 && system.sigma[head] >= parameters[j];
-         ++head) {
-      solution += system.solution_weight[head] * system.power[head];
-      freedom += system.multiplicity[head];
-    }
-    curve[j].solution_norm += solution;
-    curve[j].freedom += freedom;
-  }
+  add_whole(system, parameters, keeps_from, curve);
 }
 
 void QuadraticFilter::do_filter_factors(std::span<const double> sigma, double parameter,

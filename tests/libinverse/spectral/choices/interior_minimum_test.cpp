@@ -1,8 +1,8 @@
-#include "libinverse/spectral/problem/interior_minimum.hpp"
-
 #include <gtest/gtest.h>
 
 #include <vector>
+
+#include "libinverse/spectral/choices/rules.hpp"
 
 namespace modcal {
 namespace {
