@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "libsim/base/error.hpp"
+#include "libsim/base/words.hpp"
 #include "libsim/dynamics/scene/contact_modes.hpp"
 
 namespace modcal {
@@ -24,6 +24,12 @@ std::vector<event::BowKnot> knots_of(const BowMotion& bow) {
   std::vector<event::BowKnot> knots;
   for (const double t : times) knots.push_back({t, bow.velocity.at(t), bow.normal_force.at(t)});
   return knots;
+}
+
+constexpr std::array<std::string_view, 2> kAttachRules = {"literal", "continuous"};
+
+event::AttachRule attach_rule_of(const std::string& name) {
+  return enum_of<event::AttachRule>(kAttachRules, "attachment rule", name);
 }
 
 }  // namespace
@@ -56,7 +62,7 @@ void ModalEvent::Options::visit(OptionVisitor& visitor) {
   visitor.text({.key = "attach",
                 .meaning = "adherence spring at attachment: literal (unstretched: the force starts "
                            "at 0) or continuous (the force goes on from the sliding limit)",
-                .choices = {"literal", "continuous"}},
+                .choices = choices_of(kAttachRules)},
                attach);
 }
 
@@ -69,8 +75,7 @@ ModalEvent::ModalEvent(const Options& options) : options_(options) {
                  options.slope_number);
   MODCAL_REQUIRE(options.tail_ratio > 0.0 && std::isfinite(options.tail_ratio),
                  "tail ratio {:g} must be > 0", options.tail_ratio);
-  MODCAL_REQUIRE(options.attach == "literal" || options.attach == "continuous",
-                 "unknown attachment rule \"{}\": literal or continuous", options.attach);
+  attach_rule_of(options.attach);
 }
 
 std::vector<SceneRefusal> ModalEvent::unsupported(const Scene& scene) const {
@@ -125,8 +130,7 @@ Simulation ModalEvent::run(const Scene& scene, double sample_rate, const OutputR
                         .law = thermal != nullptr ? SlidingLaw{} : friction->sliding(force),
                         .thermal = thermal != nullptr ? std::optional(*thermal) : std::nullopt,
                         .bow = scaled ? knots_of(bow) : std::vector<event::BowKnot>{},
-                        .attach = options_.attach == "continuous" ? event::AttachRule::kContinuous
-                                                                  : event::AttachRule::kLiteral,
+                        .attach = attach_rule_of(options_.attach),
                         .nodes = static_cast<int>(options_.nodes),
                         .slope_number = options_.slope_number,
                         .tail_ratio = options_.tail_ratio,

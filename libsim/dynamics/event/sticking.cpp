@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 
 #include "libsim/dynamics/event/modes/first_crossing.hpp"
@@ -17,6 +18,35 @@ constexpr double kSeriesPhase = 1.6;
 constexpr double kAtLimit = 1e-12;
 
 }  // namespace
+
+// With p = 1/(1 + e^x) and x = (ϑ − ϑ_s)/w the limit is μ_hot + (μ_cold − μ_hot) p, and
+// p' = −p (1 − p) x', x' = −g (ϑ/w): the powers of p follow one after the other.
+void StaticLimit::series(double tau, double time, std::span<double> out) const {
+  constexpr std::size_t kMost = 32;
+  assert(out.size() <= kMost);
+  std::fill(out.begin(), out.end(), 0.0);
+  if (!thermal_) {
+    out[0] = force_;
+    return;
+  }
+  const double decay = -cooling() * time;
+  std::array<double, kMost> p{}, product{}, rate{};
+  const double rise = rise_at(tau);
+  rate[0] = decay * rise / thermal_->softening_width;
+  for (std::size_t k = 1; k < out.size(); ++k) {
+    rate[k] = rate[k - 1] * decay / static_cast<double>(k);
+  }
+  p[0] = thermal_->cold_share(rise);
+  for (std::size_t k = 0; k + 1 < out.size(); ++k) {
+    product[k] = p[k];
+    for (std::size_t i = 0; i <= k; ++i) product[k] -= p[i] * p[k - i];
+    double sum = 0.0;
+    for (std::size_t i = 0; i <= k; ++i) sum += product[i] * rate[k - i];
+    p[k + 1] = -sum / static_cast<double>(k + 1);
+  }
+  for (std::size_t k = 0; k < out.size(); ++k) out[k] = thermal_->drop * p[k];
+  out[0] += thermal_->hot;
+}
 
 Sticking::Sticking(ClosedLoop loop, StaticLimit static_limit, double longest_step,
                    MotionRequest wanted)
@@ -109,14 +139,14 @@ SumAndRate Sticking::propagate(double time, bool observed) {
   seen_is_valid_ = false;
   if (time == longest_step_) {
     seen_is_valid_ = observed;
-    return event::advance(step_factor_[0], loop_.pole, state_, trial_, loop_.observed,
-                          std::span(seen_).first(observed ? rows() : 0));
+    return modal_kernels().advance(step_factor_[0], loop_.pole, state_, trial_, loop_.observed,
+                                   std::span(seen_).first(observed ? rows() : 0));
   }
   if (time == step_of(level_)) {
-    return event::advance(step_factor_[static_cast<std::size_t>(level_)], loop_.pole, state_,
-                          trial_);
+    return modal_kernels().advance(step_factor_[static_cast<std::size_t>(level_)], loop_.pole,
+                                   state_, trial_, {}, {});
   }
-  return advance_by(time, loop_.pole, state_, trial_);
+  return modal_kernels().advance_by(time, loop_.pole, state_, trial_);
 }
 
 bool Sticking::hull_inside(double tau, double time, ForceJet start, ForceJet end) const {
@@ -128,7 +158,7 @@ bool Sticking::hull_inside(double tau, double time, ForceJet start, ForceJet end
 }
 
 void Sticking::refresh_bound() {
-  fourth_derivative_ = weighted_size(fourth_power_, state_);
+  fourth_derivative_ = modal_kernels().weighted_size(fourth_power_, state_);
   bound_is_fresh_ = true;
 }
 
@@ -154,7 +184,7 @@ std::array<double, Sticking::kTerms> Sticking::limit_series(double tau, double t
 std::array<double, Sticking::kTerms> Sticking::force_series(const PlanarVector& state, double tau,
                                                             double time) const {
   std::array<double, kTerms> force;
-  real_products(series_, state, force);
+  modal_kernels().real_products(series_, state, force);
   const double ratio = time / series_step_;
   double scale = 1.0;
   for (double& c : force) {
@@ -219,7 +249,7 @@ Sticking::Advance Sticking::advance(double tau, double time, bool observed) {
     if (const auto release = crossing(tau, time)) {
       result = *release;
       seen_is_valid_ = false;
-      sums = advance_by(result.time, loop_.pole, state_, trial_);
+      sums = modal_kernels().advance_by(result.time, loop_.pole, state_, trial_);
     }
   }
   std::swap(state_, trial_);
@@ -230,7 +260,8 @@ Sticking::Advance Sticking::advance(double tau, double time, bool observed) {
 }
 
 MotionSample Sticking::observe(double tau) {
-  if (!seen_is_valid_) real_products(loop_.observed, state_, std::span(seen_).first(rows()));
+  if (!seen_is_valid_)
+    modal_kernels().real_products(loop_.observed, state_, std::span(seen_).first(rows()));
   seen_is_valid_ = true;
   return motion_at(tau, force_.value, seen_);
 }

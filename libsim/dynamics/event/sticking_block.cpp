@@ -40,7 +40,7 @@ double Sticking::series_time(const PlanarVector& state, double tau, double time)
                        std::tgamma(kTerms + 1.0);
     }
   }
-  const double left_out = weighted_size(last_power_, state);
+  const double left_out = modal_kernels().weighted_size(last_power_, state);
   const double allowed = kLeftOut * limit_.at(tau) * drive_.load_at(tau);
   const double reach = std::pow(allowed / left_out, 1.0 / double{kTerms});
   return std::min(time, series_step_ * std::max(1.0, reach));
@@ -49,7 +49,7 @@ double Sticking::series_time(const PlanarVector& state, double tau, double time)
 void Sticking::show(const PlanarVector& before, double tau, double time, ForceObserver& observer) {
   const double least = 1e-15 * time;
   for (double from = 0.0; time - from > least;) {
-    advance_by(from, loop_.pole, before, trial_);
+    modal_kernels().advance_by(from, loop_.pole, before, trial_);
     const double length = series_time(trial_, tau + from, time - from);
     const auto force = force_series(trial_, tau + from, length);
     observer.piece({.phase = ContactPhase::kSticking,
@@ -101,7 +101,7 @@ std::size_t Sticking::certified_steps(double tau, const BlockForce& force) const
 std::size_t Sticking::advance_block(double tau, Block& out) {
   if (starts_at_upper_ || starts_at_lower_) return 0;
   std::array<double, kBlockRows * kBlock> sums{};
-  real_products(block_, state_, std::span(sums).first(block_.count));
+  modal_kernels().real_products(block_, state_, std::span(sums).first(block_.count));
   BlockForce force;
   Block::Row rate;
   const double part = longest_step_ * (1.0 / 3.0);
@@ -130,7 +130,7 @@ std::size_t Sticking::advance_block(double tau, Block& out) {
     out.left[k] = motion.left;
     out.right[k] = motion.right;
   }
-  event::advance(block_factor_[steps - 1], loop_.pole, state_, state_);
+  modal_kernels().advance(block_factor_[steps - 1], loop_.pole, state_, state_, {}, {});
   force_ = {out.force[steps - 1], rate[steps - 1]};
   bound_is_fresh_ = seen_is_valid_ = false;
   return steps;

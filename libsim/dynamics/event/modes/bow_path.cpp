@@ -27,13 +27,14 @@ BowDrive drive_between(const BowKnot& from, const BowKnot& to) {
 
 }  // namespace
 
-BowPath::BowPath(const std::vector<BowKnot>& knots, double grid_step) {
+std::vector<BowStretch> stretches_of(const std::vector<BowKnot>& knots, double grid_step) {
   assert(!knots.empty());
+  std::vector<BowStretch> stretches;
   const auto add = [&](double time, const BowDrive& drive) {
     const GridPoint start = grid_point(std::max(time, 0.0), grid_step);
     // Two knots on one grid point: the later one holds from there on.
-    if (!stretches_.empty() && is_same(stretches_.back().start, start)) stretches_.pop_back();
-    stretches_.push_back({start, drive});
+    if (!stretches.empty() && is_same(stretches.back().start, start)) stretches.pop_back();
+    stretches.push_back({start, drive});
   };
   add(0.0, {knots.front().velocity, 0.0, knots.front().load, 0.0});
   for (std::size_t i = 0; i < knots.size(); ++i) {
@@ -43,6 +44,7 @@ BowPath::BowPath(const std::vector<BowKnot>& knots, double grid_step) {
                                 : drive_between(knots[i], knots[i + 1]);
     add(knots[i].time, knots[i].time < 0.0 ? drive.from(-knots[i].time) : drive);
   }
+  return stretches;
 }
 
 }  // namespace modcal::event

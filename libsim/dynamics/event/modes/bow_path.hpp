@@ -45,23 +45,14 @@ struct GridPoint {
   double x = 0.0;
 };
 
-/// Stretches of a bow's motion on a time grid. A knot within 1e-9 of a step of a grid point is
-/// that point.
-class BowPath {
- public:
-  struct Stretch {
-    GridPoint start;
-    BowDrive drive;
-  };
-  /// `knots` with rising times, at least one; `grid_step` [s].
-  BowPath(const std::vector<BowKnot>& knots, double grid_step);
-
-  /// At least one; the first starts at the origin, each lasts until the next one starts.
-  const std::vector<Stretch>& stretches() const { return stretches_; }
-
- private:
-  std::vector<Stretch> stretches_;
+/// A stretch of a bow's motion on a time grid; it lasts until the next one starts.
+struct BowStretch {
+  GridPoint start;
+  BowDrive drive;
 };
+/// At least one; the first starts at the origin. A knot within 1e-9 of a step of a grid point is
+/// that point. `knots` with rising times, at least one; `grid_step` [s].
+std::vector<BowStretch> stretches_of(const std::vector<BowKnot>& knots, double grid_step);
 
 /// The running grid step, the stretch of the bow's motion it lies in, and the base that τ [s] of
 /// adherence, or of a bow in the air, counts from. Position x in [0, 1] of the running grid step.
@@ -69,9 +60,9 @@ class BowClock {
  public:
   /// Starts at t = 0. `grid_step` [s].
   BowClock(const std::vector<BowKnot>& knots, double grid_step)
-      : path_(knots, grid_step),
-        stretch_(path_.stretches().data()),
-        last_stretch_(stretch_ + path_.stretches().size() - 1),
+      : path_(stretches_of(knots, grid_step)),
+        stretch_(path_.data()),
+        last_stretch_(&path_.back()),
         grid_step_(grid_step) {}
   BowClock(const BowClock&) = delete;
   BowClock& operator=(const BowClock&) = delete;
@@ -104,9 +95,9 @@ class BowClock {
     return (static_cast<double>(step_ - start.step) + (x - start.x)) * grid_step_;
   }
 
-  BowPath path_;
-  const BowPath::Stretch* stretch_;  // the running one
-  const BowPath::Stretch* last_stretch_;
+  std::vector<BowStretch> path_;
+  const BowStretch* stretch_;  // the running one
+  const BowStretch* last_stretch_;
   double grid_step_;
   std::uint64_t step_ = 0;
   GridPoint base_;

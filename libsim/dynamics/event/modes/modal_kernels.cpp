@@ -48,7 +48,7 @@ HWY_INLINE SumAndRate AdvanceSeen(const FactorAt& factor_at, const PlanarVector&
 }
 
 SumAndRate Advance(const PlanarVector& factor, const PlanarVector& pole, const PlanarVector& state,
-                   const PlanarRows& rows, std::span<double> seen, PlanarVector& out) {
+                   PlanarVector& out, const PlanarRows& rows, std::span<double> seen) {
   const Source factors(factor);
   const auto at = [factors](std::size_t i, ComplexVector /*pole*/) HWY_ATTR { return factors[i]; };
   if (seen.size() == 1) return AdvanceSeen<1>(at, pole, state, rows, seen.data(), out);
@@ -210,51 +210,28 @@ void Polynomials(std::span<const Octet> table, const std::array<double, 4>& x,
   }
 }
 
+const ModalKernels* Table() {
+  static constexpr ModalKernels kTable = {.advance = Advance,
+                                          .advance_by = AdvanceBy,
+                                          .real_products = RealProducts,
+                                          .weighted_size = WeightedSize,
+                                          .advance_driven = AdvanceDriven,
+                                          .advance_driven_by = AdvanceDrivenFor,
+                                          .polynomials = Polynomials};
+  return &kTable;
+}
+
 }  // namespace modcal::event::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace modcal::event {
-HWY_EXPORT(Advance);
-HWY_EXPORT(AdvanceBy);
-HWY_EXPORT(RealProducts);
-HWY_EXPORT(WeightedSize);
-HWY_EXPORT(AdvanceDriven);
-HWY_EXPORT(AdvanceDrivenFor);
-HWY_EXPORT(Polynomials);
+HWY_EXPORT(Table);
 
-SumAndRate advance(const PlanarVector& factor, const PlanarVector& pole, const PlanarVector& state,
-                   PlanarVector& out, const PlanarRows& rows, std::span<double> seen) {
-  return HWY_DYNAMIC_DISPATCH(Advance)(factor, pole, state, rows, seen, out);
+const ModalKernels& modal_kernels() {
+  static const ModalKernels& kernels = *HWY_DYNAMIC_DISPATCH(Table)();
+  return kernels;
 }
 
-SumAndRate advance_by(double time, const PlanarVector& pole, const PlanarVector& state,
-                      PlanarVector& out) {
-  return HWY_DYNAMIC_DISPATCH(AdvanceBy)(time, pole, state, out);
-}
-
-void real_products(const PlanarRows& rows, const PlanarVector& state, std::span<double> out) {
-  HWY_DYNAMIC_DISPATCH(RealProducts)(rows, state, out);
-}
-
-double weighted_size(const AlignedVector& weight, const PlanarVector& state) {
-  return HWY_DYNAMIC_DISPATCH(WeightedSize)(weight, state);
-}
-
-void advance_driven(const PlanarVector& factor, const PlanarRows& response,
-                    std::span<const double> forces, PlanarVector& state) {
-  HWY_DYNAMIC_DISPATCH(AdvanceDriven)(factor, response, forces, state);
-}
-
-void advance_driven_by(double time, double largest, const PlanarVector& pole,
-                       const AlignedVector& drive, std::span<const double> weights,
-                       PlanarVector& state) {
-  HWY_DYNAMIC_DISPATCH(AdvanceDrivenFor)(time, largest, pole, drive, weights, state);
-}
-
-void polynomials(std::span<const Octet> table, const std::array<double, 4>& x,
-                 std::array<Octet, 4>& out) {
-  HWY_DYNAMIC_DISPATCH(Polynomials)(table, x, out);
-}
 }  // namespace modcal::event
 #endif

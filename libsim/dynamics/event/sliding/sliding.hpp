@@ -169,7 +169,7 @@ class Sliding {
                                    NodeValues& values) {
     NodeVector free{};
     const auto unknowns = static_cast<std::size_t>(nodes() - 1);
-    real_products(table.rows, state, std::span(free).subspan(1, unknowns));
+    modal_kernels().real_products(table.rows, state, std::span(free).subspan(1, unknowns));
     for (int i = 1; i < nodes(); ++i) free[i] = sliding_speed(free[i], table.step, i);
     const double length = table.step / model_.grid_step();
     guess_speeds(model_.rule(), table.coupling, free, {powers_, 1.0, extrapolation(length)},
@@ -182,7 +182,8 @@ class Sliding {
     if (!stays_sliding(table, values, powers, state)) return std::nullopt;
     NodeVector force{};
     for (int j = 0; j < nodes(); ++j) force[j] = -side_ * values.friction[j];
-    advance_driven(table.factor, table.response, std::span(force).first(unknowns + 1), state);
+    modal_kernels().advance_driven(table.factor, table.response,
+                                   std::span(force).first(unknowns + 1), state);
     accept(values, powers, length);
     return Advance{end, Outcome::kAdvanced};
   }

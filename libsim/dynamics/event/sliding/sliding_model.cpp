@@ -90,7 +90,7 @@ void SlidingModel::fill_series(const ContactModes& modes) {
 }
 
 void SlidingModel::free_series(const PlanarVector& state, Series& out) const {
-  real_products(series_, state, out);
+  modal_kernels().real_products(series_, state, out);
 }
 
 NodeMatrix SlidingModel::coupling(double ratio) const {
@@ -98,7 +98,7 @@ NodeMatrix SlidingModel::coupling(double ratio) const {
   std::array<double, 4> x{};
   for (int i = 1; i < nodes; ++i) x[i - 1] = ratio * rule_.node[i];
   std::array<Octet, 4> sum;
-  polynomials(moment_table_, x, sum);
+  modal_kernels().polynomials(moment_table_, x, sum);
   NodeMatrix result{};
   for (int i = 1; i < nodes; ++i) {
     double power = ratio * rule_.node[i];
@@ -131,27 +131,28 @@ void SlidingModel::advance_any(double ratio, double theta, const NodeVector& for
     weight[k] = factor * force[k];
     factor *= theta * (k + 1);
   }
-  advance_driven_by(time, largest_pole_ * time, pole_, drive_,
-                    std::span(weight).first(static_cast<std::size_t>(rule_.nodes)), state);
+  modal_kernels().advance_driven_by(time, largest_pole_ * time, pole_, drive_,
+                                    std::span(weight).first(static_cast<std::size_t>(rule_.nodes)),
+                                    state);
 }
 
 void SlidingModel::advance_free(PlanarVector& state) {
-  event::advance(free_factor_, pole_, state, state);
+  modal_kernels().advance(free_factor_, pole_, state, state, {}, {});
 }
 
 void SlidingModel::advance_free_by(double time, PlanarVector& state) {
-  event::advance_by(time, pole_, state, state);
+  modal_kernels().advance_by(time, pole_, state, state);
 }
 
 double SlidingModel::free_derivative_bound(const PlanarVector& state) const {
-  return weighted_size(derivative_weight_, state);
+  return modal_kernels().weighted_size(derivative_weight_, state);
 }
 
 MotionSample SlidingModel::observe(const PlanarVector& state, MotionRequest wanted) const {
   std::array<double, kRows> row{};
   std::size_t rows = wanted.contact ? std::size_t{kLeft} : 0;
   if (wanted.reactions) rows = kRows;
-  real_products(observed_, state, std::span(row).first(rows));
+  modal_kernels().real_products(observed_, state, std::span(row).first(rows));
   return {.displacement = row[kDisplacement],
           .velocity = row[kVelocity],
           .left = row[kLeft],

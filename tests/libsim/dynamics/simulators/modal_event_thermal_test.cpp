@@ -8,7 +8,7 @@
 
 #include "libsim/base/random.hpp"
 #include "libsim/dynamics/event/event_loop.hpp"
-#include "libsim/dynamics/event/sliding/static_limit.hpp"
+#include "libsim/dynamics/event/sticking.hpp"
 #include "libsim/dynamics/friction/friction_law.hpp"
 #include "libsim/dynamics/gestures/gesture.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"

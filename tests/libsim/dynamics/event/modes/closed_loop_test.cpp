@@ -187,7 +187,7 @@ TEST(ClosedLoop, ObservesWhatTheModesShow) {
   }
   apply(loop->to_closed, loop->modes, state, w);
   std::array<double, ClosedLoop::kRows> row{};
-  real_products(loop->observed, w, row);
+  modal_kernels().real_products(loop->observed, w, row);
   double force = 0.0;
   for (std::size_t j = 0; j < loop->roots; ++j) force += w.re[j];
   // Rounding of 20-term sums through maps of condition below 30.
