@@ -234,15 +234,15 @@ std::string gnuplot_script(const DrawnFigure& figure) {
       "set encoding utf8\n"
       "set style line 100 linecolor rgb '#d9d9d9' linewidth 0.5\n",
       id);
-  for (const std::string_view format : {"svg", "pdf"}) {
-    text += format == "svg" ? fmt::format(
-                                  "set terminal svg size {:.0f},{:.0f} dynamic enhanced "
-                                  "font 'DejaVu Sans,11' background rgb 'white'\n",
-                                  96 * sheet.width, 96 * sheet.height)
-                            : fmt::format(
-                                  "set terminal pdfcairo size {:.2f}in,{:.2f}in enhanced "
-                                  "fontscale 1 font 'DejaVu Sans,7.5'\n",
-                                  sheet.width, sheet.height);
+  const std::pair<std::string_view, std::string> terminals[] = {
+      {"svg", fmt::format("svg size {:.0f},{:.0f} dynamic enhanced font 'DejaVu Sans,11' "
+                          "background rgb 'white'",
+                          96 * sheet.width, 96 * sheet.height)},
+      {"pdf", fmt::format("pdfcairo size {:.2f}in,{:.2f}in enhanced fontscale 1 "
+                          "font 'DejaVu Sans,7.5'",
+                          sheet.width, sheet.height)}};
+  for (const auto& [format, terminal] : terminals) {
+    text += fmt::format("set terminal {}\n", terminal);
     text += fmt::format("set output '{}.{}'.suffix\n", id, format);
     text += "set grid linestyle 100\n";
     text += "set border 3 linewidth 0.8\nset tics out nomirror scale 0.6\n";
