@@ -7,8 +7,7 @@
 #include "experiments/cli/provenance.hpp"
 #include "experiments/cli/run_folder.hpp"
 #include "experiments/cli/terminal.hpp"
-#include "libsim/records/csv.hpp"
-#include "libsim/records/wav.hpp"
+#include "libsim/records/record_file.hpp"
 
 namespace modcal {
 namespace {

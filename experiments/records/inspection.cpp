@@ -1,27 +1,18 @@
 #include "experiments/records/inspection.hpp"
 
-#include <nlohmann/json.hpp>
-
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <iterator>
+#include <nlohmann/json.hpp>
 
 #include "experiments/config/resolved.hpp"
 #include "libsim/base/units.hpp"
 #include "libsim/model/string_model.hpp"
-#include "libsim/records/csv.hpp"
-#include "libsim/records/wav.hpp"
+#include "libsim/records/record_file.hpp"
 
 namespace modcal {
 namespace {
-
-Recording survey(const std::filesystem::path& path, const InspectionOptions& options) {
-  if (record_format(path, options.format) == RecordFormat::kCsv) {
-    return read_csv(path, {.sample_rate = options.sample_rate, .survey = true});
-  }
-  return read_wav(path, {.sample_rate = options.sample_rate, .survey = true});
-}
 
 ChannelInspection inspect_channel(RecordedChannel& channel) {
   const bool scaled = std::isfinite(channel.full_scale);
@@ -169,7 +160,8 @@ ordered_json channel_json(const ChannelInspection& channel) {
 }  // namespace
 
 InspectionReport inspect(const std::filesystem::path& path, const InspectionOptions& options) {
-  Recording recording = survey(path, options);
+  Recording recording =
+      read_record(path, options.format, {.sample_rate = options.sample_rate, .survey = true});
   InspectionReport report{.file = path.string(),
                           .format = recording.format,
                           .sample_rate = recording.sample_rate,

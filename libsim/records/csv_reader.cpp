@@ -1,12 +1,11 @@
-#include "libsim/records/csv.hpp"
-
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 
+#include "libsim/base/error.hpp"
 #include "libsim/base/units.hpp"
 #include "libsim/records/csv_grammar.hpp"
-#include "libsim/base/error.hpp"
+#include "libsim/records/record_file.hpp"
 
 namespace modcal {
 namespace {
@@ -47,7 +46,7 @@ class RowLines {
 
 class CsvReader final : public CsvHandler {
  public:
-  CsvReader(const std::filesystem::path& path, const CsvReadOptions& options)
+  CsvReader(const std::filesystem::path& path, const ReadOptions& options)
       : file_(path), options_(options) {}
 
   Recording read() {
@@ -86,7 +85,7 @@ class CsvReader final : public CsvHandler {
   void report_sample(std::size_t index, NumberKind kind, std::string_view text);
 
   CsvFile file_;
-  const CsvReadOptions& options_;
+  const ReadOptions& options_;
   Recording record_;
   std::vector<std::string> headings_;
   std::vector<Column> columns_;
@@ -188,8 +187,8 @@ void CsvReader::settle_columns() {
 void CsvReader::choose_columns() {
   std::vector<std::string> names;
   for (const Column& column : columns_) names.push_back(column.channel.name);
-  kept_ = find_channels(names, options_.columns, fmt::format("{}:{}", file_.name(), file_.line()));
-  for (std::size_t i = 0; options_.columns.empty() && i < columns_.size(); ++i) {
+  kept_ = find_channels(names, options_.channels, fmt::format("{}:{}", file_.name(), file_.line()));
+  for (std::size_t i = 0; options_.channels.empty() && i < columns_.size(); ++i) {
     if (i != time_) kept_.push_back(i);
   }
   MODCAL_REQUIRE(!kept_.empty(), "{}: there is a time column but no channel", file_.place(0));
@@ -269,7 +268,7 @@ void CsvReader::use_time_axis(double stated) {
 
 }  // namespace
 
-Recording read_csv(const std::filesystem::path& path, const CsvReadOptions& options) {
+Recording read_csv(const std::filesystem::path& path, const ReadOptions& options) {
   const bool usable = std::isnan(options.sample_rate) ||
                       (options.sample_rate > 0.0 && std::isfinite(options.sample_rate));
   MODCAL_REQUIRE(usable, "sample_rate = {} Hz cannot be used: it must be > 0", options.sample_rate);

@@ -1,5 +1,3 @@
-#include "libsim/records/csv.hpp"
-
 #include <csv.h>
 #include <fmt/format.h>
 
@@ -8,9 +6,10 @@
 #include <cstring>
 #include <iterator>
 
-#include "libsim/records/csv_grammar.hpp"
-#include "libsim/records/signal_file.hpp"
 #include "libsim/base/error.hpp"
+#include "libsim/records/csv_grammar.hpp"
+#include "libsim/records/record_file.hpp"
+#include "libsim/records/signal_file.hpp"
 
 namespace modcal {
 namespace {

@@ -1,4 +1,3 @@
-
 #include <fmt/ranges.h>
 
 #include <algorithm>
@@ -9,9 +8,8 @@
 #include "libsim/base/error.hpp"
 #include "libsim/base/nearest_name.hpp"
 #include "libsim/base/units.hpp"
-#include "libsim/records/csv.hpp"
 #include "libsim/records/levels.hpp"
-#include "libsim/records/wav.hpp"
+#include "libsim/records/record_file.hpp"
 #include "libsim/signal/measurement.hpp"
 
 namespace modcal {
@@ -51,14 +49,6 @@ std::vector<Role> chosen_roles(const RecordOptions& options) {
     roles.push_back({&options.reference, "reference", "f_c", &RecordedSignals::reference});
   }
   return roles;
-}
-
-Recording read(const RecordOptions& options, const std::filesystem::path& path,
-               const std::vector<std::string>& channels) {
-  if (record_format(path, options.format) == RecordFormat::kCsv) {
-    return read_csv(path, {.columns = channels, .sample_rate = options.sample_rate});
-  }
-  return read_wav(path, {.channels = channels, .sample_rate = options.sample_rate});
 }
 
 /// Newtons per recorded 1.
@@ -217,19 +207,20 @@ void ContactOptions::visit(OptionVisitor& visitor) {
                  position);
 }
 
-RecordFormat record_format(const std::filesystem::path& path, const std::string& format) {
-  if (format == "csv") return RecordFormat::kCsv;
-  if (format == "wav") return RecordFormat::kWav;
+Recording read_record(const std::filesystem::path& path, const std::string& format,
+                      const ReadOptions& options) {
+  if (format == "csv") return read_csv(path, options);
+  if (format == "wav") return read_wav(path, options);
   MODCAL_REQUIRE(format == "auto", "unknown format \"{}\" of a record: auto, csv or wav", format);
   std::string extension = path.extension().string();
   for (char& letter : extension) {
     letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
   }
   for (const char* known : {".csv", ".tsv", ".txt"}) {
-    if (extension == known) return RecordFormat::kCsv;
+    if (extension == known) return read_csv(path, options);
   }
   for (const char* known : {".wav", ".wave", ".rf64", ".bwf", ".w64"}) {
-    if (extension == known) return RecordFormat::kWav;
+    if (extension == known) return read_wav(path, options);
   }
   throw_invalid_input("{}: the extension \"{}\" does not tell the format; state format: csv or wav",
                       path.string(), extension);
@@ -246,7 +237,8 @@ RecordedSignals load_record(const RecordOptions& options, const std::filesystem:
                    "record.{}.channel is empty; name a channel of {}", role.key, name);
     channels.push_back(role.options->channel);
   }
-  const Recording recording = read(options, path, channels);
+  const Recording recording =
+      read_record(path, options.format, {.channels = channels, .sample_rate = options.sample_rate});
   const Window window = crop_window(options, recording.sample_rate, recording.frames(), name);
   RecordedSignals signals;
   signals.sample_rate = recording.sample_rate;

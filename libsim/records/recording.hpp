@@ -96,12 +96,6 @@ struct RecordedSignals {
   std::size_t size() const { return left ? left->size() : right->size(); }
 };
 
-enum class RecordFormat { kCsv, kWav };
-
-/// The format named "csv", "wav" or, for "auto", told by the extension (.csv, .tsv, .txt; .wav,
-/// .wave, .rf64, .bwf, .w64). Throws InvalidInput for another one.
-RecordFormat record_format(const std::filesystem::path& path, const std::string& format);
-
 /// Reads the chosen channels of the file (relative to `folder`), converts them to newtons, shifts
 /// them by their delays and crops them. Throws InvalidInput for a file that cannot be used, a
 /// channel without a unit of force and without a calibration, a channel used twice, a window

@@ -1,11 +1,11 @@
 #include "libsim/records/signal_file.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <system_error>
 
 #include "libsim/base/error.hpp"

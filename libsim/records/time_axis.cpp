@@ -1,10 +1,10 @@
-#include "libsim/records/csv_grammar.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "libsim/records/csv_grammar.hpp"
 
 namespace modcal {
 namespace {

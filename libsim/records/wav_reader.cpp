@@ -1,10 +1,9 @@
-#include "libsim/records/wav.hpp"
-
 #include <cmath>
 #include <sndfile.hh>
 
-#include "libsim/records/signal_file.hpp"
 #include "libsim/base/error.hpp"
+#include "libsim/records/record_file.hpp"
+#include "libsim/records/signal_file.hpp"
 
 namespace modcal {
 namespace {
@@ -86,7 +85,7 @@ void check_samples(Recording& recording, const std::string& name) {
 
 }  // namespace
 
-Recording read_wav(const std::filesystem::path& path, const WavReadOptions& options) {
+Recording read_wav(const std::filesystem::path& path, const ReadOptions& options) {
   const std::string name = path.string();
   SndfileHandle file = open_wav(name);
   const char* const comment = file.getString(SF_STR_COMMENT);

@@ -1,11 +1,10 @@
-#include "libsim/records/wav.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <sndfile.hh>
 
-#include "libsim/records/signal_file.hpp"
 #include "libsim/base/error.hpp"
+#include "libsim/records/record_file.hpp"
+#include "libsim/records/signal_file.hpp"
 
 namespace modcal {
 namespace {
@@ -13,29 +12,13 @@ namespace {
 constexpr std::size_t kBlockFrames = 1 << 14;
 constexpr int kCodes24 = 1 << 23;
 
-int format_of(WavSamples samples) {
-  switch (samples) {
-    case WavSamples::kFloat:
-      return SF_FORMAT_FLOAT;
-    case WavSamples::kDouble:
-      return SF_FORMAT_DOUBLE;
-    case WavSamples::kPcm24:
-      return SF_FORMAT_PCM_24;
-  }
-  return 0;
-}
-
-std::uint64_t bytes_of(WavSamples samples) {
-  switch (samples) {
-    case WavSamples::kFloat:
-      return 4;
-    case WavSamples::kDouble:
-      return 8;
-    case WavSamples::kPcm24:
-      return 3;
-  }
-  return 0;
-}
+// How libsndfile calls samples, and their bytes; in the order of WavSamples.
+struct SampleFormat {
+  int format;
+  std::uint64_t bytes;
+};
+constexpr std::array<SampleFormat, 3> kFormats = {
+    {{SF_FORMAT_FLOAT, 4}, {SF_FORMAT_DOUBLE, 8}, {SF_FORMAT_PCM_24, 3}}};
 
 void require_fitting(std::span<const Signal> signals, const WavWriteOptions& options,
                      const std::string& name) {
@@ -112,14 +95,15 @@ void write_wav(const std::filesystem::path& path, std::span<const Signal> signal
   const std::string name = path.string();
   require_one_record(signals, name);
   require_fitting(signals, options, name);
-  const std::uint64_t bytes = bytes_of(options.samples) * signals.size() * signals.front().size();
+  const SampleFormat format = kFormats.at(static_cast<std::size_t>(options.samples));
+  const std::uint64_t bytes = format.bytes * signals.size() * signals.front().size();
   const std::string comment = wav_comment(signals, options.full_scale);
   MODCAL_REQUIRE(comment.size() <= kLongestWavComment,
                  "{}: the names of {} channels do not fit into the file's comment; write CSV", name,
                  signals.size());
   const int container = needs_rf64(bytes) ? SF_FORMAT_RF64 : SF_FORMAT_WAV;
   replace_file(path, [&](const std::filesystem::path& temporary) {
-    SndfileHandle file(temporary.string(), SFM_WRITE, container | format_of(options.samples),
+    SndfileHandle file(temporary.string(), SFM_WRITE, container | format.format,
                        static_cast<int>(signals.size()),
                        static_cast<int>(signals.front().sample_rate));
     MODCAL_REQUIRE(file.error() == SF_ERR_NO_ERROR,

@@ -1,6 +1,6 @@
 #include "experiments/kinds/sweep/sweep.hpp"
 
-#include "libsim/records/csv.hpp"
+#include "libsim/records/record_file.hpp"
 
 namespace modcal {
 namespace {
@@ -157,7 +157,7 @@ void SweepOptions::visit(OptionVisitor& visitor) {
 
 PublishedTable read_published(const std::filesystem::path& path) {
   const Recording file = read_csv(
-      path, {.columns = {"noise_percent", "R1", "epsilon1", "R2", "epsilon2"}, .sample_rate = 1.0});
+      path, {.channels = {"noise_percent", "R1", "epsilon1", "R2", "epsilon2"}, .sample_rate = 1.0});
   PublishedTable rows;
   for (std::size_t i = 0; i < file.frames(); ++i) {
     const auto value = [&](std::size_t column) { return file.channels[column].samples[i]; };

@@ -9,7 +9,7 @@
 #include "experiments/kinds/calibrate/calibrate.hpp"
 #include "experiments/loader.hpp"
 #include "libsim/dynamics/scene/scene.hpp"
-#include "libsim/records/csv.hpp"
+#include "libsim/records/record_file.hpp"
 #include "libsim/signal/statistics.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 

@@ -9,9 +9,8 @@
 #include "experiments/kinds/invert/invert.hpp"
 #include "experiments/kinds/simulate/simulate_study.hpp"
 #include "experiments/loader.hpp"
-#include "libsim/records/csv.hpp"
+#include "libsim/records/record_file.hpp"
 #include "experiments/records/inspection.hpp"
-#include "libsim/records/wav.hpp"
 
 namespace modcal {
 namespace {

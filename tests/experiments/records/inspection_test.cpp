@@ -8,9 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "libsim/records/csv.hpp"
+#include "libsim/records/record_file.hpp"
 #include "libsim/records/recording.hpp"
-#include "libsim/records/wav.hpp"
 #include "libsim/base/random.hpp"
 #include "tests/libsim/records/record_folder.hpp"
 

@@ -1,11 +1,10 @@
-#include "libsim/records/csv.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <limits>
 
+#include "libsim/records/record_file.hpp"
 #include "tests/libsim/records/record_folder.hpp"
 
 namespace modcal {
@@ -16,11 +15,11 @@ using testing::HasSubstr;
 
 class CsvReader : public RecordFolder {
  protected:
-  Recording read(std::string_view content, const CsvReadOptions& options = {}) const {
+  Recording read(std::string_view content, const ReadOptions& options = {}) const {
     return read_csv(write("r.csv", content), options);
   }
   /// The message for this content, with the folder cut off.
-  std::string error(std::string_view content, const CsvReadOptions& options = {}) const {
+  std::string error(std::string_view content, const ReadOptions& options = {}) const {
     std::string text = refusal([&] { read(content, options); });
     const std::string prefix = folder().string() + "/";
     for (std::size_t at; (at = text.find(prefix)) != std::string::npos;) {
@@ -99,7 +98,7 @@ TEST_F(CsvReader, ReadsExtremeNumbersExactly) {
 
 TEST_F(CsvReader, ChoosesColumnsByNameOrNumberInTheOrderAsked) {
   const std::string_view text = "t,a,note,b\n0,1,hello,3\n1,4,,6\n";
-  const Recording record = read(text, {.columns = {"4", "a"}});
+  const Recording record = read(text, {.channels = {"4", "a"}});
   ASSERT_EQ(record.channels.size(), 2u);
   EXPECT_THAT(record.channels[0].samples, ElementsAre(3.0, 6.0));
   EXPECT_THAT(record.channels[1].samples, ElementsAre(1.0, 4.0));
@@ -229,7 +228,7 @@ TEST_F(CsvReader, CountsProblemsBeyondTheFirstTen) {
 
 TEST_F(CsvReader, SurveyKeepsGoing) {
   const Recording record =
-      read("t,R1,R2\n0,1,2\n1,x\n2,nan,3\n", {.columns = {}, .sample_rate = 1.0, .survey = true});
+      read("t,R1,R2\n0,1,2\n1,x\n2,nan,3\n", {.channels = {}, .sample_rate = 1.0, .survey = true});
   EXPECT_EQ(record.problem_count, 3u);
   EXPECT_EQ(record.frames(), 3u);
   EXPECT_TRUE(std::isnan(record.channels[0].samples[1]));
@@ -249,15 +248,15 @@ TEST_F(CsvReader, ReportsBadHeaders) {
 
 TEST_F(CsvReader, ReportsMissingColumns) {
   const std::string_view text = "t,Reaction1,R2\n0,1,2\n1,2,3\n";
-  EXPECT_EQ(error(text, {.columns = {"reaktion1"}}),
+  EXPECT_EQ(error(text, {.channels = {"reaktion1"}}),
             "r.csv:1: there is no channel \"reaktion1\", did you mean \"Reaction1\"?; the file has "
             "3 channels: t, Reaction1, R2");
-  EXPECT_EQ(error(text, {.columns = {"4"}}),
+  EXPECT_EQ(error(text, {.channels = {"4"}}),
             "r.csv:1: there is no channel \"4\", did you mean \"t\"?; the file has 3 channels: t, "
             "Reaction1, R2");
-  EXPECT_EQ(error(text, {.columns = {"R2", "3"}}),
+  EXPECT_EQ(error(text, {.channels = {"R2", "3"}}),
             "r.csv:1: channel \"R2\" is asked for twice; give every role a channel of its own");
-  EXPECT_EQ(error(text, {.columns = {"t"}}),
+  EXPECT_EQ(error(text, {.channels = {"t"}}),
             "r.csv:1:1: column \"t\" is the time column, not a channel");
 }
 

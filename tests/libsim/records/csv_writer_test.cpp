@@ -1,5 +1,3 @@
-#include "libsim/records/csv.hpp"
-
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,6 +8,7 @@
 #include <sstream>
 
 #include "libsim/base/random.hpp"
+#include "libsim/records/record_file.hpp"
 #include "tests/libsim/records/record_folder.hpp"
 
 namespace modcal {

@@ -1,13 +1,11 @@
-#include "libsim/records/recording.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "libsim/records/csv.hpp"
-#include "libsim/records/wav.hpp"
+#include "libsim/records/record_file.hpp"
+#include "libsim/records/recording.hpp"
 #include "libsim/signal/measurement.hpp"
 #include "tests/libsim/records/record_folder.hpp"
 
@@ -133,12 +131,14 @@ TEST_F(LoadRecord, RefusesIncompleteOptions) {
 }
 
 TEST_F(LoadRecord, TellsTheFormatByTheExtension) {
-  EXPECT_EQ(record_format("a/b.TSV", "auto"), RecordFormat::kCsv);
-  EXPECT_EQ(record_format("a/b.rf64", "auto"), RecordFormat::kWav);
-  EXPECT_EQ(record_format("a/b.dat", "csv"), RecordFormat::kCsv);
-  EXPECT_EQ(refusal([] { record_format("b.dat", "auto"); }),
+  // Each reader has its own words for a file that is not there.
+  const std::string csv_missing = "cannot be opened", wav_missing = "there is no such file";
+  EXPECT_THAT(refusal([] { read_record("a/b.TSV", "auto"); }), HasSubstr(csv_missing));
+  EXPECT_THAT(refusal([] { read_record("a/b.rf64", "auto"); }), HasSubstr(wav_missing));
+  EXPECT_THAT(refusal([] { read_record("a/b.dat", "csv"); }), HasSubstr(csv_missing));
+  EXPECT_EQ(refusal([] { read_record("b.dat", "auto"); }),
             "b.dat: the extension \".dat\" does not tell the format; state format: csv or wav");
-  EXPECT_THAT(refusal([] { record_format("b.csv", "mat"); }), HasSubstr("unknown format \"mat\""));
+  EXPECT_THAT(refusal([] { read_record("b.csv", "mat"); }), HasSubstr("unknown format \"mat\""));
 }
 
 TEST_F(LoadRecord, ReadsWavWithAndWithoutItsOwnScale) {

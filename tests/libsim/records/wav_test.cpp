@@ -7,8 +7,8 @@
 #include <sndfile.hh>
 #include <sstream>
 
-#include "libsim/records/wav.hpp"
 #include "libsim/base/random.hpp"
+#include "libsim/records/record_file.hpp"
 #include "tests/libsim/records/record_folder.hpp"
 
 namespace modcal {

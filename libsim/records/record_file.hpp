@@ -1,0 +1,85 @@
+// Reads and writes records: CSV files, WAV and the other audio files of libsndfile.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "libsim/records/recording.hpp"
+#include "libsim/signal/signal.hpp"
+
+namespace modcal {
+
+struct ReadOptions {
+  /// Channels to keep, in this order, by name or by number from 1 (all columns of a CSV file
+  /// counted); empty: all but time.
+  std::vector<std::string> channels = {};
+  /// [Hz]; overrides what the file says (a difference becomes a warning). NaN: from the file.
+  double sample_rate = std::numeric_limits<double>::quiet_NaN();
+  /// Keep going over errors in the samples: they are listed in Recording::problems, and what is no
+  /// number is NaN. Otherwise they throw.
+  bool survey = false;
+};
+
+/// Reads a CSV record: an optional preamble of comments (# …), one row of headings `name [unit]`,
+/// rows of decimal numbers. The sample rate comes from the options, from a comment
+/// `# sample_rate: 51200 Hz`, or from the time column: the first one named t or time or whose unit
+/// is a time; that column must be uniform (examine_time_axis). Throws InvalidInput with
+/// file:line:column, value and remedy.
+Recording read_csv(const std::filesystem::path& path, const ReadOptions& options = {});
+
+struct CsvWriteOptions {
+  /// A first column t [s] = i/f_s.
+  bool time_column = true;
+  /// Where the samples come from; each line becomes a comment.
+  std::vector<std::string> provenance = {};
+};
+
+/// Writes signals of one rate and length: comments with the sample rate and the provenance, the
+/// headings `quantity [unit]`, one row per sample. Numbers are the shortest decimals that read back
+/// to the same double, so read_csv returns the same bits. An existing file is replaced only when
+/// the new one is complete. Throws InvalidInput for no signals, different rates or lengths, equal
+/// names, samples that are not finite, and where the file cannot be written.
+void write_csv(const std::filesystem::path& path, std::span<const Signal> signals,
+               const CsvWriteOptions& options = {});
+
+/// Reads a WAV record (also RF64, WAVEX, W64 and what else libsndfile opens): any channel count;
+/// samples of 8, 16, 24, 32 bits are divided by their full scale 2^(bits−1), float and double are
+/// taken as they are. Names, units and full scales come from the file's comment where write_wav
+/// left them; else the names are "1", "2", … and the full scale is NaN. Throws InvalidInput with
+/// file, channel, sample and remedy.
+Recording read_wav(const std::filesystem::path& path, const ReadOptions& options = {});
+
+/// One of these, as `format` says: "csv", "wav" or, for "auto", told by the extension (.csv, .tsv,
+/// .txt; .wav, .wave, .rf64, .bwf, .w64). Throws InvalidInput for another one.
+Recording read_record(const std::filesystem::path& path, const std::string& format,
+                      const ReadOptions& options = {});
+
+enum class WavSamples { kFloat, kDouble, kPcm24 };
+
+struct WavWriteOptions {
+  WavSamples samples = WavSamples::kFloat;
+  /// The signals' unit per full scale 1.0 (> 0): a sample x is stored as x/full_scale. A power of
+  /// two with kDouble keeps every bit.
+  double full_scale = 1.0;
+  /// Where the samples come from; stored in the file's title.
+  std::string provenance = {};
+};
+
+/// Writes signals of one rate and length, one per channel, with their names, units and full scale
+/// in the file's comment (JSON), so that read_wav restores them; RF64 where a WAV file's 32-bit
+/// sizes do not suffice. 24-bit samples are rounded to full_scale 2^−23. An existing file is
+/// replaced only when the new one is complete. Throws InvalidInput where the rate is no whole
+/// number of hertz, where a sample is not finite or, for 24 bits, beyond full scale, and where the
+/// file cannot be written.
+void write_wav(const std::filesystem::path& path, std::span<const Signal> signals,
+               const WavWriteOptions& options = {});
+
+/// Whether a file with this many bytes of samples needs RF64 (EBU Tech 3306) in the place of WAV.
+bool needs_rf64(std::uint64_t sample_bytes);
+
+}  // namespace modcal
