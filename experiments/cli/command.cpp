@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "experiments/cli/terminal.hpp"
+#include "experiments/report/encoding.hpp"
 
 namespace modcal {
 
@@ -25,15 +26,7 @@ std::string shell_word(const std::string& text) {
   const std::string_view harmless =
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-/=+:,%";
   if (!text.empty() && text.find_first_not_of(harmless) == std::string::npos) return text;
-  std::string quoted = "'";
-  for (const char letter : text) {
-    if (letter == '\'') {
-      quoted += "'\\''";
-    } else {
-      quoted += letter;
-    }
-  }
-  return quoted + "'";
+  return report::quoted(text, '\'', "'\\''");
 }
 
 void ExperimentArguments::declare_file(CLI::App& command) {

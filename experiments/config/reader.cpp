@@ -77,16 +77,17 @@ void YamlReader::optional_group(const OptionInfo& info, bool& present,
   take(info);
 }
 
-void YamlReader::select(const OptionInfo& info, const YamlNode& name, PluginSlot& slot) {
+bool YamlReader::select(const OptionInfo& info, const YamlNode& name, PluginSlot& slot) {
   const std::vector<std::string> names = strings_of(slot.names());
   if (name.kind != YamlNode::Kind::kScalar ||
       std::find(names.begin(), names.end(), name.text) == names.end()) {
     mistake(name, fmt::format("{}: unknown {} \"{}\"{}", info.key, slot.kind(), name.text,
                               suggestion(name.text, names)));
-    return;
+    return false;
   }
   // A type restated keeps the defaults that the experiment may have set.
   if (slot.selected() != name.text) slot.select(name.text);
+  return true;
 }
 
 void YamlReader::plugin(const OptionInfo& info, PluginSlot& slot) {
@@ -94,15 +95,12 @@ void YamlReader::plugin(const OptionInfo& info, PluginSlot& slot) {
   if (node == nullptr) {
     return skip_section(info, [&slot](OptionVisitor& inner) { slot.visit_options(inner); });
   }
+  YamlNode named;  // a name alone is short for {type: name}
   if (node->kind == YamlNode::Kind::kScalar) {
-    const std::size_t before = mistakes_.size();
-    select(info, *node, slot);
-    if (mistakes_.size() > before) return;
-    YamlNode no_options;  // so that required options of the plug-in are asked for
-    no_options.kind = YamlNode::Kind::kMap;
-    no_options.position = node->position;
-    read_members(no_options, [&slot](OptionVisitor& inner) { slot.visit_options(inner); });
-    return;
+    named.kind = YamlNode::Kind::kMap;
+    named.position = node->position;
+    named.members.push_back({"type", node->position, *node});
+    node = &named;
   }
   const YamlNode* type = node->find("type");
   if (node->kind != YamlNode::Kind::kMap || type == nullptr) {
@@ -110,9 +108,7 @@ void YamlReader::plugin(const OptionInfo& info, PluginSlot& slot) {
             fmt::format("{} needs a type: one of {}", info.key, fmt::join(slot.names(), ", ")));
     return;
   }
-  const std::size_t before = mistakes_.size();
-  select(info, *type, slot);
-  if (mistakes_.size() > before) return;
+  if (!select(info, *type, slot)) return;
   YamlReader inner(*node, mistakes_);
   inner.allow("type");
   slot.visit_options(inner);

@@ -48,7 +48,7 @@ class YamlReader final : public ValueVisitor {
   bool read(const OptionInfo& info, const YamlNode& node, std::string& value);
   template <typename Value>
   bool read(const OptionInfo& info, const YamlNode& node, std::vector<Value>& values);
-  void select(const OptionInfo& info, const YamlNode& name, PluginSlot& slot);
+  bool select(const OptionInfo& info, const YamlNode& name, PluginSlot& slot);
   std::vector<Mistake> read_cell(const YamlNode& base, const SweepTable& table, std::size_t cell,
                                  SweepSlot& slot) const;
   void read_cells(std::string_view key, const SweepTable& table, SweepSlot& slot);

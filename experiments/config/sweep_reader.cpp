@@ -11,27 +11,22 @@ namespace {
 
 constexpr std::size_t kMostCells = 1000000;
 
-// One column of the table: a path with its values.
-struct Axis {
-  std::string path;
-  SourcePosition place;
-  std::vector<const YamlNode*> values;
-};
+// Axes that vary together: keys of the file with their lists of values.
+using Group = std::vector<const YamlNode::Member*>;
 
-// Axes that vary together.
-using Group = std::vector<Axis>;
+std::size_t size_of(const Group& group) { return group.front()->value.items.size(); }
 
-using Point = std::vector<std::pair<std::string, const YamlNode*>>;
-
-SweepAxis plain(const Axis& axis) {
-  SweepAxis result{axis.path, {}};
-  for (const YamlNode* value : axis.values) result.values.push_back(flow_text(*value));
+SweepAxis plain(const YamlNode::Member& axis) {
+  SweepAxis result{axis.key, {}};
+  for (const YamlNode& value : axis.value.items) result.values.push_back(flow_text(value));
   return result;
 }
 
-SweepPoint plain(const Point& point) {
+SweepPoint plain(const YamlNode& point) {
   SweepPoint result;
-  for (const auto& [path, value] : point) result.emplace_back(path, flow_text(*value));
+  for (const auto& member : point.members) {
+    result.emplace_back(member.key, flow_text(member.value));
+  }
   return result;
 }
 
@@ -47,17 +42,17 @@ class Reader {
                                           "paths and their values",
                                           key_));
     }
-    require_different_paths();
+    name_axes();
     if (!good()) return {};
-    name_columns();
     std::size_t count = groups_.empty() ? 0 : 1;
     for (const Group& group : groups_) {
-      count *= group.front().values.size();
+      count *= size_of(group);
       if (count <= kMostCells) continue;
       mistake(node_.position, fmt::format("the sweep has more than {} cells", kMostCells));
       return {};
     }
-    add_combinations(count);
+    require_axes();
+    if (good()) add_combinations(count);
     add_points();
     if (good() && table_.values.empty()) mistake(node_.position, "the sweep has no cells left");
     return good() ? std::move(table_) : SweepTable{};
@@ -71,9 +66,9 @@ class Reader {
 
   void read_member(const YamlNode::Member& member) {
     if (member.key == "product") {
-      for (Axis& axis : read_axes(member.value)) {
-        table_.plan.product.push_back(plain(axis));
-        groups_.push_back({std::move(axis)});
+      for (const YamlNode::Member* axis : read_axes(member.value)) {
+        table_.plan.product.push_back(plain(*axis));
+        groups_.push_back({axis});
       }
     } else if (member.key == "zip") {
       for (const YamlNode& item : items_of(member)) read_zip(item);
@@ -87,31 +82,27 @@ class Reader {
     }
   }
 
-  // The maps of a list; one map alone stands for a list of one.
-  std::vector<YamlNode> const& items_of(const YamlNode::Member& member) {
-    if (member.value.kind == YamlNode::Kind::kSequence && !member.value.items.empty()) {
-      return member.value.items;
+  // The maps of a list.
+  const std::vector<YamlNode>& items_of(const YamlNode::Member& member) {
+    if (member.value.kind != YamlNode::Kind::kSequence || member.value.items.empty()) {
+      mistake(member.value.position,
+              fmt::format("{} needs a list of maps, each beginning with a dash", member.key));
     }
-    mistake(member.value.position,
-            fmt::format("{} needs a list of maps, each beginning with a dash", member.key));
-    static const std::vector<YamlNode> kNone;
-    return kNone;
+    return member.value.items;
   }
 
-  std::vector<Axis> read_axes(const YamlNode& map) {
-    std::vector<Axis> axes;
+  Group read_axes(const YamlNode& map) {
+    Group axes;
     if (map.kind != YamlNode::Kind::kMap || map.members.empty()) {
       mistake(map.position, "axes are a map of option paths and lists of values");
     }
     for (const YamlNode::Member& member : map.members) {
-      if (member.value.kind != YamlNode::Kind::kSequence || member.value.items.empty()) {
-        mistake(member.value.position,
-                fmt::format("{} needs a list of values, at least one", member.key));
+      if (member.value.kind == YamlNode::Kind::kSequence && !member.value.items.empty()) {
+        axes.push_back(&member);
         continue;
       }
-      Axis axis{member.key, member.position, {}};
-      for (const YamlNode& item : member.value.items) axis.values.push_back(&item);
-      axes.push_back(std::move(axis));
+      mistake(member.value.position,
+              fmt::format("{} needs a list of values, at least one", member.key));
     }
     return axes;
   }
@@ -119,60 +110,52 @@ class Reader {
   void read_zip(const YamlNode& item) {
     Group group = read_axes(item);
     if (group.empty()) return;
-    const std::size_t length = group.front().values.size();
     std::vector<SweepAxis> axes;
-    for (const Axis& axis : group) {
-      if (axis.values.size() != length) {
-        mistake(axis.place,
-                fmt::format("{} has {} values, {} has {}: values that vary together are "
-                            "as many",
-                            axis.path, axis.values.size(), group.front().path, length));
+    for (const YamlNode::Member* axis : group) {
+      if (axis->value.items.size() != size_of(group)) {
+        mistake(
+            axis->position,
+            fmt::format("{} has {} values, {} has {}: values that vary together "
+                        "are as many",
+                        axis->key, axis->value.items.size(), group.front()->key, size_of(group)));
         return;
       }
-      axes.push_back(plain(axis));
+      axes.push_back(plain(*axis));
     }
     table_.plan.zip.push_back(std::move(axes));
     groups_.push_back(std::move(group));
   }
 
-  void read_point(const YamlNode& item, std::vector<std::pair<const YamlNode*, Point>>& points,
+  void read_point(const YamlNode& item, std::vector<const YamlNode*>& points,
                   std::vector<SweepPoint>& plan) {
     if (item.kind != YamlNode::Kind::kMap || item.members.empty()) {
       return mistake(item.position, "a cell is a map of option paths and values");
     }
-    Point point;
-    for (const YamlNode::Member& member : item.members) {
-      point.emplace_back(member.key, &member.value);
-      if (&points == &include_) include_places_.emplace_back(member.key, member.position);
-    }
-    plan.push_back(plain(point));
-    points.emplace_back(&item, std::move(point));
+    plan.push_back(plain(item));
+    points.push_back(&item);
   }
 
-  void require_different_paths() {
-    std::vector<std::string> known;
+  // Columns of the table: the axes, then what only single cells have.
+  void name_axes() {
     for (const Group& group : groups_) {
-      for (const Axis& axis : group) {
-        if (std::find(known.begin(), known.end(), axis.path) != known.end()) {
-          mistake(axis.place, fmt::format("{} is an axis already", axis.path));
+      for (const YamlNode::Member* axis : group) {
+        if (column_of(axis->key) < table_.paths.size()) {
+          mistake(axis->position, fmt::format("{} is an axis already", axis->key));
         }
-        known.push_back(axis.path);
+        add_column(*axis);
+      }
+    }
+    axis_columns_ = table_.paths.size();
+    for (const YamlNode* point : include_) {
+      for (const YamlNode::Member& member : point->members) {
+        if (column_of(member.key) == table_.paths.size()) add_column(member);
       }
     }
   }
 
-  void name_columns() {
-    for (const Group& group : groups_) {
-      for (const Axis& axis : group) {
-        table_.paths.push_back(axis.path);
-        table_.places.push_back(axis.place);
-      }
-    }
-    for (const auto& [path, place] : include_places_) {
-      if (column_of(path) < table_.paths.size()) continue;
-      table_.paths.push_back(path);
-      table_.places.push_back(place);
-    }
+  void add_column(const YamlNode::Member& member) {
+    table_.paths.push_back(member.key);
+    table_.places.push_back(member.position);
   }
 
   std::size_t column_of(const std::string& path) const {
@@ -180,51 +163,44 @@ class Reader {
                                     table_.paths.begin());
   }
 
+  void require_axes() {
+    for (const YamlNode* point : exclude_) {
+      for (const YamlNode::Member& member : point->members) {
+        if (column_of(member.key) < axis_columns_) continue;
+        mistake(point->position,
+                fmt::format("{} is no axis; axes: {}", member.key, fmt::join(table_.paths, ", ")));
+      }
+    }
+  }
+
   void add_combinations(std::size_t count) {
-    require_known_columns();
-    if (!good()) return;
     std::vector<bool> used(exclude_.size(), false);
     for (std::size_t index = 0; index < count; ++index) {
       std::vector<const YamlNode*> cell(table_.paths.size(), nullptr);
       std::size_t rest = index;
-      std::size_t column = axis_columns();
+      std::size_t column = axis_columns_;
       for (std::size_t g = groups_.size(); g-- > 0;) {
         const Group& group = groups_[g];
-        const std::size_t choice = rest % group.front().values.size();
-        rest /= group.front().values.size();
-        for (std::size_t a = group.size(); a-- > 0;) cell[--column] = group[a].values[choice];
+        const std::size_t choice = rest % size_of(group);
+        rest /= size_of(group);
+        for (std::size_t a = group.size(); a-- > 0;)
+          cell[--column] = &group[a]->value.items[choice];
       }
       if (!is_excluded(cell, used)) table_.values.push_back(std::move(cell));
     }
     for (std::size_t i = 0; i < used.size(); ++i) {
       if (used[i]) continue;
-      mistake(exclude_[i].first->position,
+      mistake(exclude_[i]->position,
               "no cell agrees with this: write the values as they stand on the axes");
-    }
-  }
-
-  std::size_t axis_columns() const {
-    std::size_t count = 0;
-    for (const Group& group : groups_) count += group.size();
-    return count;
-  }
-
-  void require_known_columns() {
-    for (const auto& [node, point] : exclude_) {
-      for (const auto& [path, value] : point) {
-        if (column_of(path) < axis_columns()) continue;
-        mistake(node->position,
-                fmt::format("{} is no axis; axes: {}", path, fmt::join(table_.paths, ", ")));
-      }
     }
   }
 
   bool is_excluded(const std::vector<const YamlNode*>& cell, std::vector<bool>& used) const {
     bool excluded = false;
     for (std::size_t i = 0; i < exclude_.size(); ++i) {
-      const Point& point = exclude_[i].second;
-      const bool agrees = std::all_of(point.begin(), point.end(), [&](const auto& part) {
-        return flow_text(*cell[column_of(part.first)]) == flow_text(*part.second);
+      const auto& members = exclude_[i]->members;
+      const bool agrees = std::all_of(members.begin(), members.end(), [&](const auto& member) {
+        return flow_text(*cell[column_of(member.key)]) == flow_text(member.value);
       });
       used[i] = used[i] || agrees;
       excluded = excluded || agrees;
@@ -233,9 +209,9 @@ class Reader {
   }
 
   void add_points() {
-    for (const auto& [node, point] : include_) {
+    for (const YamlNode* point : include_) {
       std::vector<const YamlNode*> cell(table_.paths.size(), nullptr);
-      for (const auto& [path, value] : point) cell[column_of(path)] = value;
+      for (const auto& member : point->members) cell[column_of(member.key)] = &member.value;
       table_.values.push_back(std::move(cell));
     }
   }
@@ -246,8 +222,8 @@ class Reader {
   std::size_t before_;
   SweepTable table_;
   std::vector<Group> groups_;
-  std::vector<std::pair<const YamlNode*, Point>> exclude_, include_;
-  std::vector<std::pair<std::string, SourcePosition>> include_places_;
+  std::vector<const YamlNode*> exclude_, include_;
+  std::size_t axis_columns_ = 0;
 };
 
 }  // namespace
