@@ -1,4 +1,3 @@
-
 #include "experiments/kinds/benchmark/benchmark.hpp"
 #include "experiments/kinds/limit/limit.hpp"
 #include "experiments/kinds/schelleng/schelleng.hpp"

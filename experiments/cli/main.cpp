@@ -1,4 +1,3 @@
-
 #include <cstdio>
 
 #include "experiments/cli/command.hpp"

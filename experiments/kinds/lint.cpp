@@ -62,6 +62,12 @@ void lint_decay(const Scene& scene, std::vector<Finding>& findings) {
        false});
 }
 
+std::string counted(const PlannedSimulations& planned) {
+  return fmt::format(
+      "{} of {:g} s, {} samples at {:g} Hz each", planned.count, planned.truth.scene.duration,
+      sample_count(planned.truth.scene.duration, planned.sample_rate), planned.sample_rate);
+}
+
 }  // namespace
 
 void append(std::vector<Finding>& all, std::vector<Finding> more) {
@@ -186,16 +192,6 @@ std::vector<Finding> lint_figures(const std::vector<FigureOptions>& figures,
   }
   return findings;
 }
-
-namespace {
-
-std::string counted(const PlannedSimulations& planned) {
-  return fmt::format(
-      "{} of {:g} s, {} samples at {:g} Hz each", planned.count, planned.truth.scene.duration,
-      sample_count(planned.truth.scene.duration, planned.sample_rate), planned.sample_rate);
-}
-
-}  // namespace
 
 std::string key_of(const PlannedSimulations& planned) {
   return truth_key(planned.truth, planned.sample_rate, planned.outputs);

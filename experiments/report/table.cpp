@@ -1,4 +1,3 @@
-
 #include <set>
 
 #include "experiments/report/encoding.hpp"

@@ -46,6 +46,17 @@ EstimationRecord record_of(const Observation& observation) {
   return record;
 }
 
+// The estimator of `recipe` with its transfer functions.
+InversionCache::Prepared prepare_estimator(const AssumedModel& model,
+                                           const Observation& observation,
+                                           const InversionRecipe& recipe) {
+  return recipe.estimator().prepare({.basis = model.basis,
+                                     .contact = model.contact,
+                                     .samples = observation.samples(),
+                                     .sample_rate = observation.sample_rate,
+                                     .recorded = observation.truth == nullptr});
+}
+
 }  // namespace
 
 void ScoreOptions::visit(OptionVisitor& visitor) {
@@ -57,7 +68,6 @@ void ScoreOptions::visit(OptionVisitor& visitor) {
       windows);
   visitor.number({.key = "periods",
                   .meaning = "length of a window in periods of the fundamental",
-                  .unit = "1",
                   .range = Range::positive()},
                  periods);
   visitor.numbers({.key = "whole",
@@ -157,16 +167,6 @@ ForceScores scores_of(const Observation& observation, std::span<const double> fo
                      *score, unaliased);
 }
 
-InversionCache::Prepared prepare_estimator(const AssumedModel& model,
-                                           const Observation& observation,
-                                           const InversionRecipe& recipe) {
-  return recipe.estimator().prepare({.basis = model.basis,
-                                     .contact = model.contact,
-                                     .samples = observation.samples(),
-                                     .sample_rate = observation.sample_rate,
-                                     .recorded = observation.truth == nullptr});
-}
-
 InversionCache::Prepared InversionCache::get(const AssumedModel& model,
                                              const Observation& observation,
                                              const InversionOptions& options,
@@ -181,13 +181,15 @@ InversionCache::Prepared InversionCache::get(const AssumedModel& model,
   return prepared_.back().second;
 }
 
-std::vector<SideIdentification> identify(const Observation& observation,
-                                         const PreparedEstimator& estimator,
-                                         const InversionRecipe& recipe,
-                                         const InversionOutputs& outputs,
-                                         const ScoreOptions* score) {
+std::vector<SideIdentification> identify(const Observation& observation, const AssumedModel& model,
+                                         const InversionOptions& options,
+                                         const InversionOutputs& outputs, const ScoreOptions* score,
+                                         InversionCache* cache) {
+  const InversionRecipe recipe(options);
+  const auto estimator = cache != nullptr ? cache->get(model, observation, options, recipe)
+                                          : prepare_estimator(model, observation, recipe);
   std::vector<SideIdentification> sides;
-  for (Estimate& estimate : estimator.estimate(record_of(observation), recipe.method(outputs))) {
+  for (Estimate& estimate : estimator->estimate(record_of(observation), recipe.method(outputs))) {
     const ForceScores scores =
         scores_of(observation, estimate.result.force, score, estimate.unaliased_force);
     sides.push_back({scores, std::move(estimate)});

@@ -77,21 +77,16 @@ class InversionCache {
   std::deque<std::pair<std::string, Prepared>> prepared_;
 };
 
-/// The estimator of `recipe` with its transfer functions.
-InversionCache::Prepared prepare_estimator(const AssumedModel& model,
-                                           const Observation& observation,
-                                           const InversionRecipe& recipe);
-
 /// Scores of an identified force of the observation; none where `score` is null or the observation
 /// has no reference.
 ForceScores scores_of(const Observation& observation, std::span<const double> force,
                       const ScoreOptions* score, std::span<const double> unaliased = {});
 
-/// Inverts the reactions of the observation; `score` null: no scores.
-std::vector<SideIdentification> identify(const Observation& observation,
-                                         const PreparedEstimator& estimator,
-                                         const InversionRecipe& recipe,
-                                         const InversionOutputs& outputs,
-                                         const ScoreOptions* score);
+/// Inverts the reactions of the observation with the model. `score` null: no scores; `cache` null:
+/// the estimator is prepared for this call alone.
+std::vector<SideIdentification> identify(const Observation& observation, const AssumedModel& model,
+                                         const InversionOptions& options,
+                                         const InversionOutputs& outputs, const ScoreOptions* score,
+                                         InversionCache* cache = nullptr);
 
 }  // namespace modcal

@@ -1,5 +1,3 @@
-
-
 #include "experiments/study/identification.hpp"
 #include "libsim/signal/statistics.hpp"
 
@@ -16,6 +14,56 @@ std::shared_ptr<const Truth> simulate_truth(const TruthOptions& options, double 
                  "the simulation by {} diverges at {:g} s: use a smaller time step or modal_exact",
                  options.simulator.selected(), *truth->simulation.diverged_at);
   return truth;
+}
+
+Observation observe_scene(const ObservationOptions& options, OutputRequest outputs,
+                          TruthCache& cache, const StreamKey& key) {
+  outputs.left_reaction = true;
+  outputs.right_reaction = true;
+  Observation observation;
+  observation.sample_rate = options.measurement.sample_rate;
+  observation.truth = cache.get(options.truth, observation.sample_rate, outputs);
+  const Truth& truth = *observation.truth;
+  observation.basis = truth.basis;
+  observation.contact = truth.contact;
+  observation.noise_level = options.measurement.noise_level;
+  const StreamKey noise = key.with("measurement noise");
+  observation.reactions[0] =
+      measure(truth.simulation.left_reaction, options.measurement, noise.with("R1"));
+  observation.reactions[1] =
+      measure(truth.simulation.right_reaction, options.measurement, noise.with("R2"));
+  if (outputs.force) observation.reference = truth.simulation.force;
+  return observation;
+}
+
+Observation observe_record(const ObservationOptions& options, const std::filesystem::path& folder) {
+  RecordedSignals record = load_record(options.record, folder);
+  Observation observation;
+  observation.sample_rate = record.sample_rate;
+  observation.basis = make_modal_basis(options.string);
+  observation.contact = options.contact.position;
+  observation.reactions[0] = std::move(record.left);
+  observation.reactions[1] = std::move(record.right);
+  observation.reference = std::move(record.reference);
+  observation.warnings = std::move(record.warnings);
+  for (auto& reaction : observation.reactions) {
+    if (reaction && options.measurement.remove_mean) remove_mean(reaction->samples);
+  }
+  return observation;
+}
+
+// Below the highest mode, where the reactions tell of the force.
+void add_anti_aliased(const ObservationOptions& options, TruthCache& cache,
+                      std::int64_t oversampling, Observation& observation) {
+  const auto step = static_cast<std::size_t>(oversampling);
+  const double rate = observation.sample_rate * static_cast<double>(oversampling);
+  const auto fine = cache.get(options.truth, rate, {.force = true});
+  observation.anti_alias_cut = observation.basis.frequency(observation.basis.size() - 1);
+  Signal signal = *observation.reference;
+  signal.samples =
+      low_passed(fine->simulation.force.samples, rate, observation.anti_alias_cut, step);
+  signal.samples.resize(observation.reference->size(), 0.0);
+  observation.anti_aliased = std::move(signal);
 }
 
 }  // namespace
@@ -42,12 +90,10 @@ std::shared_ptr<const Truth> TruthCache::get(const TruthOptions& options, double
 void ModelErrorOptions::visit(OptionVisitor& visitor) {
   visitor.number({.key = "frequencies",
                   .meaning = "largest relative error of the modal frequencies, drawn for each mode",
-                  .unit = "1",
                   .range = {0.0, 1.0, true, false}},
                  frequencies);
   visitor.number({.key = "damping",
                   .meaning = "relative error of all damping ratios",
-                  .unit = "1",
                   .range = Range::at_least(-1.0)},
                  damping);
   visitor.number({.key = "contact", .meaning = "error of the contact point", .unit = "m"}, contact);
@@ -115,61 +161,6 @@ void require_both_reactions(const Observation& observation, std::string_view wha
 }
 
 std::string_view label_of(End end) { return end == End::kLeft ? "x = 0" : "x = L"; }
-
-
-namespace {
-
-Observation observe_scene(const ObservationOptions& options, OutputRequest outputs,
-                          TruthCache& cache, const StreamKey& key) {
-  outputs.left_reaction = true;
-  outputs.right_reaction = true;
-  Observation observation;
-  observation.sample_rate = options.measurement.sample_rate;
-  observation.truth = cache.get(options.truth, observation.sample_rate, outputs);
-  const Truth& truth = *observation.truth;
-  observation.basis = truth.basis;
-  observation.contact = truth.contact;
-  observation.noise_level = options.measurement.noise_level;
-  const StreamKey noise = key.with("measurement noise");
-  observation.reactions[0] =
-      measure(truth.simulation.left_reaction, options.measurement, noise.with("R1"));
-  observation.reactions[1] =
-      measure(truth.simulation.right_reaction, options.measurement, noise.with("R2"));
-  if (outputs.force) observation.reference = truth.simulation.force;
-  return observation;
-}
-
-Observation observe_record(const ObservationOptions& options, const std::filesystem::path& folder) {
-  RecordedSignals record = load_record(options.record, folder);
-  Observation observation;
-  observation.sample_rate = record.sample_rate;
-  observation.basis = make_modal_basis(options.string);
-  observation.contact = options.contact.position;
-  observation.reactions[0] = std::move(record.left);
-  observation.reactions[1] = std::move(record.right);
-  observation.reference = std::move(record.reference);
-  observation.warnings = std::move(record.warnings);
-  for (auto& reaction : observation.reactions) {
-    if (reaction && options.measurement.remove_mean) remove_mean(reaction->samples);
-  }
-  return observation;
-}
-
-// Below the highest mode, where the reactions tell of the force.
-void add_anti_aliased(const ObservationOptions& options, TruthCache& cache,
-                      std::int64_t oversampling, Observation& observation) {
-  const auto step = static_cast<std::size_t>(oversampling);
-  const double rate = observation.sample_rate * static_cast<double>(oversampling);
-  const auto fine = cache.get(options.truth, rate, {.force = true});
-  observation.anti_alias_cut = observation.basis.frequency(observation.basis.size() - 1);
-  Signal signal = *observation.reference;
-  signal.samples =
-      low_passed(fine->simulation.force.samples, rate, observation.anti_alias_cut, step);
-  signal.samples.resize(observation.reference->size(), 0.0);
-  observation.anti_aliased = std::move(signal);
-}
-
-}  // namespace
 
 Observation observe(const ObservationOptions& options, const OutputRequest& truth_outputs,
                     TruthCache& cache, const StreamKey& key, const std::filesystem::path& folder,

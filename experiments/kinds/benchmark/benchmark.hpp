@@ -62,6 +62,8 @@ struct BenchmarkOutcome {
   /// frequency_rms_error over its bound; NaN without a bound.
   double bound_ratio() const { return frequency_rms_error / frequency_bound; }
   void visit(ResultVisitor& visitor);
+  /// What is there unless the task failed: the store and tasks.csv have it.
+  void visit_scores(ResultVisitor& visitor);
 };
 
 /// Why a task did not succeed, in words that can be counted; empty where it did.
@@ -150,19 +152,13 @@ std::vector<std::string> distinct(const std::vector<std::string>& values);
 /// "{type: nlopt, algorithm: LN_SBPLX}" → "nlopt LN_SBPLX".
 std::string short_label(const std::string& value);
 
-/// A task by what is compared.
-struct FairnessTask {
-  std::size_t task = 0;
-  BenchmarkLabels labels;
-};
-
 using CellOptions = std::function<CalibrateOptions(std::size_t task)>;
 
 /// Warnings where methods have different budgets, bounds, starts, noise or problems, where there
 /// are fewer than 10 draws to rank them by, and where a search does not come half the way to the
 /// minimum of a parabola of as many variables within its budget, though it could with twenty times
 /// as much.
-std::vector<Finding> lint_fairness(const std::vector<FairnessTask>& tasks,
+std::vector<Finding> lint_fairness(const std::vector<BenchmarkLabels>& tasks,
                                    const CellOptions& options_of);
 
 // What a benchmark shows: table, conclusion, figures.

@@ -1,8 +1,8 @@
-#include "experiments/kinds/benchmark/benchmark.hpp"
-
 #include <fmt/ranges.h>
 
 #include <set>
+
+#include "experiments/kinds/benchmark/benchmark.hpp"
 
 namespace modcal {
 namespace {
@@ -20,23 +20,12 @@ std::size_t index_of(const std::string& label, std::vector<std::string>& labels)
 report::Table task_table(const BenchmarkGrid& grid) {
   return report::table_of({.id = "tasks", .title = "Tasks"}, grid.tasks,
                           [&grid](report::RowWriter& row, const BenchmarkTask& task) {
-                            const BenchmarkOutcome& outcome = task.outcome;
+                            BenchmarkOutcome outcome = task.outcome;
                             row({.key = "task"}, task.task);
                             row({.key = "condition"}, grid.conditions[task.condition]);
                             row({.key = "replicate"}, task.replicate);
                             row({.key = "method"}, grid.methods[task.method]);
-                            row({.key = "right"}, outcome.success);
-                            row({.key = "stop"}, name_of(outcome.stop));
-                            row({.key = "evaluations"}, outcome.evaluations);
-                            row({.key = "objective_initial"}, outcome.initial_value);
-                            row({.key = "objective"}, outcome.value);
-                            row({.key = "objective_at_truth"}, outcome.truth_value);
-                            row({.key = "frequency_error"}, outcome.frequency_error);
-                            row({.key = "frequency_rms_error"}, outcome.frequency_rms_error);
-                            row({.key = "frequency_bound"}, outcome.frequency_bound);
-                            row({.key = "bound_ratio"}, outcome.bound_ratio());
-                            row({.key = "contact_error", .unit = "m"}, outcome.contact_error);
-                            row({.key = "correlation"}, outcome.correlation);
+                            outcome.visit_scores(row);
                             row({.key = "reason"}, reason_of(outcome));
                           });
 }
@@ -95,8 +84,8 @@ std::vector<Finding> BenchmarkExperiment::lint() const {
                 "a benchmark scores on the truth, which a record does not "
                 "have: state a scene");
   }
-  std::vector<FairnessTask> tasks;
-  for (std::size_t task = 0; task < task_count(); ++task) tasks.push_back({task, labels_of(task)});
+  std::vector<BenchmarkLabels> tasks;
+  for (std::size_t task = 0; task < task_count(); ++task) tasks.push_back(labels_of(task));
   append(findings, lint_fairness(tasks, [this](std::size_t task) { return options_.cells[task]; }));
   return findings;
 }

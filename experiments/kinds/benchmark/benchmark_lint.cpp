@@ -18,16 +18,18 @@ std::string text_of(Section section) {
   return fingerprint([&section](OptionVisitor& visitor) { section.visit(visitor); });
 }
 
-std::map<std::string, MethodFacts> facts_of(const std::vector<FairnessTask>& tasks,
-                                            const CellOptions& options_of) {
-  std::map<std::string, MethodFacts> facts;
-  for (const FairnessTask& task : tasks) {
-    const CalibrateOptions options = options_of(task.task);
-    const auto [place, is_new] = facts.try_emplace(task.labels.method());
+using Methods = std::map<std::string, MethodFacts>;
+
+Methods facts_of(const std::vector<BenchmarkLabels>& tasks, const CellOptions& options_of) {
+  Methods facts;
+  for (std::size_t task = 0; task < tasks.size(); ++task) {
+    const BenchmarkLabels& labels = tasks[task];
+    const CalibrateOptions options = options_of(task);
+    const auto [place, is_new] = facts.try_emplace(labels.method());
     MethodFacts& ours = place->second;
     if (is_new) ours.first = options;
-    ours.problems.insert(task.labels.condition + " / " + task.labels.replicate);
-    ours.replicates.insert(task.labels.replicate);
+    ours.problems.insert(labels.condition + " / " + labels.replicate);
+    ours.replicates.insert(labels.replicate);
     ours.budgets.insert(text_of(options.calibration.budget));
     ours.ranges.insert(text_of(options.calibration.parameters.ranges));
     ours.starts.insert(text_of(options.inversion.model_error));
@@ -36,16 +38,13 @@ std::map<std::string, MethodFacts> facts_of(const std::vector<FairnessTask>& tas
   return facts;
 }
 
-class Warnings {
- public:
-  void add(std::string path, std::string text) {
-    findings.push_back({std::move(path), std::move(text), false});
-  }
-  std::vector<Finding> findings;
-};
+using Warnings = std::vector<Finding>;
+
+void warn(Warnings& warnings, std::string path, std::string text) {
+  warnings.push_back({std::move(path), std::move(text), false});
+}
 
 // The first method whose facts differ from those of the first one; null: none.
-using Methods = std::map<std::string, MethodFacts>;
 const std::string* odd_one(const Methods& methods, std::set<std::string> MethodFacts::*fact) {
   for (const auto& [name, facts] : methods) {
     if (facts.*fact != methods.begin()->second.*fact) return &name;
@@ -55,26 +54,26 @@ const std::string* odd_one(const Methods& methods, std::set<std::string> MethodF
 
 void lint_problems(const Methods& methods, Warnings& warnings) {
   const std::string& first = methods.begin()->first;
-  const auto warn = [&](const char* path, std::set<std::string> MethodFacts::*fact,
-                        const char* differ) {
+  const auto compare = [&](const char* path, std::set<std::string> MethodFacts::*fact,
+                           const char* differ) {
     const std::string* odd = odd_one(methods, fact);
     if (odd != nullptr) {
-      warnings.add(path, fmt::format("{} and {} have different {}", *odd, first, differ));
+      warn(warnings, path, fmt::format("{} and {} have different {}", *odd, first, differ));
     }
   };
-  warn("model_error", &MethodFacts::starts, "starts: errors of another size are another problem");
-  warn("measurement", &MethodFacts::noise, "noise: more of it is another problem");
-  warn("calibration.budget", &MethodFacts::budgets, "budgets: what costs more wins");
-  warn("calibration.parameters", &MethodFacts::ranges,
-       "bounds: the narrower range is a head start");
+  compare("model_error", &MethodFacts::starts,
+          "starts: errors of another size are another problem");
+  compare("measurement", &MethodFacts::noise, "noise: more of it is another problem");
+  compare("calibration.budget", &MethodFacts::budgets, "budgets: what costs more wins");
+  compare("calibration.parameters", &MethodFacts::ranges,
+          "bounds: the narrower range is a head start");
   const std::string* odd = odd_one(methods, &MethodFacts::problems);
   if (odd == nullptr) return;
-  warnings.add(
-      "sweep",
-      fmt::format("{} meets {} problems, {} meets {}: methods are compared on the problems "
-                  "they share",
-                  *odd, methods.at(*odd).problems.size(), first,
-                  methods.begin()->second.problems.size()));
+  warn(warnings, "sweep",
+       fmt::format("{} meets {} problems, {} meets {}: methods are compared on the problems "
+                   "they share",
+                   *odd, methods.at(*odd).problems.size(), first,
+                   methods.begin()->second.problems.size()));
 }
 
 void lint_draws(const Methods& methods, Warnings& warnings) {
@@ -82,10 +81,10 @@ void lint_draws(const Methods& methods, Warnings& warnings) {
   std::size_t fewest = kEnough;
   for (const auto& [name, facts] : methods) fewest = std::min(fewest, facts.replicates.size());
   if (methods.size() < 2 || fewest >= kEnough) return;
-  warnings.add("sweep",
-               fmt::format("{} draws a condition tell methods apart only where they differ "
-                           "grossly: take {} seeds or more",
-                           fewest, kEnough));
+  warn(warnings, "sweep",
+       fmt::format("{} draws a condition tell methods apart only where they differ "
+                   "grossly: take {} seeds or more",
+                   fewest, kEnough));
 }
 
 // ½ Σ (x_i − 1.1)²: no search has an easier task.
@@ -151,7 +150,7 @@ bool is_cut_everywhere(const CalibrateOptions& options) {
 
 }  // namespace
 
-std::vector<Finding> lint_fairness(const std::vector<FairnessTask>& tasks,
+std::vector<Finding> lint_fairness(const std::vector<BenchmarkLabels>& tasks,
                                    const CellOptions& options_of) {
   const Methods methods = facts_of(tasks, options_of);
   Warnings warnings;
@@ -169,14 +168,13 @@ std::vector<Finding> lint_fairness(const std::vector<FairnessTask>& tasks,
     const auto [place, is_new] = probed.try_emplace(key, false);
     if (!is_new) continue;
     if (is_cut_everywhere(facts.first)) {
-      warnings.add(
-          "calibration.budget",
-          fmt::format("{} does not come half the way to the minimum of a parabola within {} "
-                      "evaluations: the budget cuts it everywhere",
-                      name, facts.first.calibration.budget.evaluations));
+      warn(warnings, "calibration.budget",
+           fmt::format("{} does not come half the way to the minimum of a parabola within {} "
+                       "evaluations: the budget cuts it everywhere",
+                       name, facts.first.calibration.budget.evaluations));
     }
   }
-  return warnings.findings;
+  return warnings;
 }
 
 }  // namespace modcal

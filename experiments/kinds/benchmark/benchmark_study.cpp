@@ -1,5 +1,3 @@
-
-
 #include "experiments/kinds/benchmark/benchmark.hpp"
 
 namespace modcal {
@@ -47,12 +45,10 @@ double bound_of(const CalibrateOptions& options, const CalibrationOutcome& calib
 
 double mean_correlation(const CalibrateOptions& options, const Observation& observation,
                         const AssumedModel& refined) {
-  const InversionRecipe recipe(options.inversion.inversion);
-  const auto estimator = prepare_estimator(refined, observation, recipe);
   double sum = 0.0;
   std::size_t count = 0;
-  for (const SideIdentification& side :
-       identify(observation, *estimator, recipe, {.force = true}, &options.inversion.score)) {
+  for (const SideIdentification& side : identify(observation, refined, options.inversion.inversion,
+                                                 {.force = true}, &options.inversion.score)) {
     for (const WindowScore& score : side.scores) {
       sum += score.correlation;
       ++count;
@@ -113,9 +109,7 @@ void know(Unknown known, Covariance& c) {
 
 std::vector<double> law_bounds(const ExpectedLimit& limit, const CalibrateOptions& options,
                                const ModalBasis& basis) {
-  std::vector<double> frequencies(basis.size());
-  for (std::size_t n = 0; n < basis.size(); ++n) frequencies[n] = basis.frequency(n);
-  const StiffStringFit law = fit_stiff_string(frequencies);
+  const StiffStringFit law = fit_stiff_string(frequencies_of(basis));
   std::array<double, kUnknowns> deviation = limit.law;
   deviation[kFundamental] /= law.fundamental;
   Covariance c{};
@@ -176,7 +170,6 @@ void SuccessOptions::visit(OptionVisitor& visitor) {
   const auto members = [this](OptionVisitor& inner) {
     inner.number({.key = "frequency_error",
                   .meaning = "largest median relative frequency error of the excited modes",
-                  .unit = "1",
                   .range = Range::positive()},
                  frequency_error);
     inner.number({.key = "contact_error",
@@ -203,17 +196,22 @@ BenchmarkOutcome run_benchmark_cell(const CalibrateOptions& options, const Succe
 void BenchmarkOutcome::visit(ResultVisitor& visitor) {
   visitor({.key = "failure", .optional = true}, failure);
   if (!failure.empty()) return;
+  visit_scores(visitor);
+}
+
+void BenchmarkOutcome::visit_scores(ResultVisitor& visitor) {
+  visitor({.key = "right"}, success);
   visitor.word({.key = "stop"}, stop, StopReason::kNoProgress);
   visitor({.key = "evaluations"}, evaluations);
-  visitor({.key = "success"}, success);
-  visitor({.key = "initial_value"}, initial_value);
-  visitor({.key = "value"}, value);
-  visitor({.key = "truth_value"}, truth_value);
-  visitor({.key = "initial_error"}, initial_error);
+  visitor({.key = "objective_initial"}, initial_value);
+  visitor({.key = "objective"}, value);
+  visitor({.key = "objective_at_truth"}, truth_value);
+  visitor({.key = "initial_error", .shown = ResultVisitor::kInJson}, initial_error);
   visitor({.key = "frequency_error"}, frequency_error);
   visitor({.key = "frequency_rms_error"}, frequency_rms_error);
   visitor({.key = "frequency_bound"}, frequency_bound);
-  visitor({.key = "contact_error"}, contact_error);
+  visitor({.key = "bound_ratio", .shown = ResultVisitor::kInTables}, bound_ratio());
+  visitor({.key = "contact_error", .unit = "m"}, contact_error);
   visitor({.key = "correlation"}, correlation);
   visitor({.key = "trace"}, trace);
 }

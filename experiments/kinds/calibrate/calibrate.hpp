@@ -39,6 +39,10 @@ std::string limit_text(const LimitQuestion& question, TruthCache& truths);
 struct CalibrationOptions;
 struct StudyContext;
 
+/// Keys of a simulated pluck.
+void visit_pluck(OptionVisitor& visitor, Choice<InitialMotion>& start, double& duration,
+                 double& noise_level);
+
 /// One pluck of the string that is calibrated: simulated, the scene without its bow, or a recorded
 /// file laid out as that of the stroke, which begins when the string has been let go.
 struct PluckRecordOptions {

@@ -1,4 +1,3 @@
-
 #include "experiments/kinds/calibrate/calibrate.hpp"
 
 namespace modcal {
@@ -34,9 +33,7 @@ std::vector<SideIdentification> identified_by(const char* name, const InvertOpti
                                               const AssumedModel& refined) {
   InversionOptions options = inversion.inversion;
   if (options.estimator.selected() != name) options.estimator = Choice<Estimator>(name);
-  const InversionRecipe recipe(options);
-  const auto estimator = prepare_estimator(refined, observation, recipe);
-  return identify(observation, *estimator, recipe, {.force = true, .velocity = true}, nullptr);
+  return identify(observation, refined, options, {.force = true, .velocity = true}, nullptr);
 }
 
 }  // namespace

@@ -1,4 +1,3 @@
-
 #include "experiments/kinds/calibrate/calibrate.hpp"
 #include "experiments/kinds/lint.hpp"
 #include "libcalib/likelihood/noise_level.hpp"
@@ -176,7 +175,8 @@ LimitQuestion CalibrateOptions::limit_question() const {
   return question;
 }
 
-void PluckRecordOptions::visit(OptionVisitor& visitor) {
+void visit_pluck(OptionVisitor& visitor, Choice<InitialMotion>& start, double& duration,
+                 double& noise_level) {
   visitor.plugin(
       {.key = "initial", .meaning = "how a simulated string is plucked; a recorded one needs none"},
       start);
@@ -188,9 +188,12 @@ void PluckRecordOptions::visit(OptionVisitor& visitor) {
   visitor.number({.key = "noise_level",
                   .meaning = "standard deviation of the simulated noise, relative to that of each "
                              "reaction",
-                  .unit = "1",
                   .range = Range::non_negative()},
                  noise_level);
+}
+
+void PluckRecordOptions::visit(OptionVisitor& visitor) {
+  visit_pluck(visitor, start, duration, noise_level);
   visitor.number({.key = "sample_rate",
                   .meaning = "sample rate of the simulated reactions",
                   .unit = "Hz",

@@ -197,10 +197,8 @@ StudyResult CalibrateOptions::run(const StudyContext& context) const {
   context.throw_if_interrupted();
   const Sensor& sensors = outcome.result.model.sensors;
   const Observation observation = with_sensors_alike(measured, sensors);
-  const InversionRecipe recipe(inversion.inversion);
-  const auto estimator = prepare_estimator(outcome.refined, observation, recipe);
   const auto sides =
-      identify(observation, *estimator, recipe,
+      identify(observation, outcome.refined, inversion.inversion,
                inversion_outputs(inversion.figures, inversion.write_signals), &inversion.score);
 
   StudyResult result;

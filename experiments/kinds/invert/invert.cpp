@@ -167,10 +167,8 @@ StudyResult InvertOptions::run(const StudyContext& context) const {
                                        key(), context.folder, score.oversampling);
   const AssumedModel model =
       with_errors(observed.basis, observed.contact, model_error, key().with("model error"));
-  const InversionRecipe recipe(inversion);
-  const auto estimator = context.work.inversions.get(model, observed, inversion, recipe);
-  const auto sides =
-      identify(observed, *estimator, recipe, inversion_outputs(figures, write_signals), &score);
+  const auto sides = identify(observed, model, inversion, inversion_outputs(figures, write_signals),
+                              &score, &context.work.inversions);
 
   StudyResult result;
   add_warnings(observed, sides, result);

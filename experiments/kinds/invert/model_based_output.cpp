@@ -1,4 +1,3 @@
-
 #include "experiments/kinds/invert/invert.hpp"
 #include "experiments/report/result.hpp"
 

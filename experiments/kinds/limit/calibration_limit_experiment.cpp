@@ -1,5 +1,4 @@
 #include "experiments/kinds/limit/limit.hpp"
-
 #include "experiments/study/sample.hpp"
 
 namespace modcal {
@@ -63,7 +62,7 @@ LimitOutcome outcome_of(const ContinuationResult& found) {
 }
 
 double force_correlation(const LimitTruth& truth, double level, const ModelPoint& model,
-                         const InversionRecipe& recipe) {
+                         const InversionOptions& inversion) {
   Observation observation{.sample_rate = truth.records.sample_rate,
                           .basis = truth.point.basis,
                           .contact = truth.point.contact,
@@ -79,10 +78,9 @@ double force_correlation(const LimitTruth& truth, double level, const ModelPoint
   }
   const double duration = observation.reactions[0]->duration();
   const ScoreOptions score{.whole = {0.1 * duration, 0.95 * duration}};
-  const auto estimator = prepare_estimator({model.basis, model.contact}, observation, recipe);
-  const std::vector<SideIdentification> sides =
-      identify(observation, *estimator, recipe, {.force = true}, &score);
-  return sides.front().whole.correlation;
+  return identify(observation, {model.basis, model.contact}, inversion, {.force = true}, &score)
+      .front()
+      .whole.correlation;
 }
 
 // The farthest starts that a seed may draw, and the band of the calibration.
@@ -116,7 +114,6 @@ void CalibrationLimitOptions::visit(OptionVisitor& visitor) {
   visitor.section({.key = "calibration", .meaning = "how the calibration is done"}, calibration);
   visitor.numbers({.key = "noise_levels",
                    .meaning = "noise standard deviations over those of the signals",
-                   .unit = "1",
                    .range = Range::non_negative()},
                   noise_levels);
   visitor.integer({.key = "seeds", .meaning = "noise draws a level", .range = Range::at_least(1)},
@@ -224,8 +221,7 @@ LimitOutcome CalibrationLimitExperiment::calibrate_draw(std::size_t task,
     outcome.paper_error = median_error(calibrate(start, data, paper).model.basis, truth.point);
   }
   if (options_.has_inversion) {
-    outcome.force_correlation =
-        force_correlation(truth, level, found.model, InversionRecipe(options_.inversion));
+    outcome.force_correlation = force_correlation(truth, level, found.model, options_.inversion);
   }
   return outcome;
 }

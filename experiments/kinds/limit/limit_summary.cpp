@@ -1,5 +1,4 @@
 #include "experiments/kinds/limit/limit.hpp"
-
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {
@@ -37,9 +36,9 @@ class LevelReader {
   }
 
  private:
-  // deviation_of: standard deviation the calibration reports.
-  template <typename Value, typename Deviation>
-  LimitRow row(std::string name, double bound, Value error_of, Deviation deviation_of) {
+  // score(outcome): its error, and the standard deviation that the calibration reports.
+  template <typename Score>
+  LimitRow row(std::string name, double bound, Score score) {
     LimitRow row{.noise_percent = 100.0 * summary_.level,
                  .parameter = std::move(name),
                  .bound = bound,
@@ -47,10 +46,10 @@ class LevelReader {
     if (outcomes_.empty()) return row;
     double square = 0.0, sum = 0.0, variance = 0.0;
     for (std::size_t i = 0; i < outcomes_.size(); ++i) {
-      const double error = error_of(outcomes_[i]);
+      const auto [error, deviation] = score(outcomes_[i]);
       square += error * error;
       sum += error;
-      variance += std::pow(deviation_of(outcomes_[i]), 2);
+      variance += std::pow(deviation, 2);
       if (std::abs(error) <= kFailure * bound) continue;
       ++row.failures;
       beyond_[i] = true;
@@ -63,17 +62,13 @@ class LevelReader {
   }
 
   void add_law() {
-    std::vector<double> frequencies;
-    for (std::size_t n = 0; n < truth_.point.basis.size(); ++n) {
-      frequencies.push_back(truth_.point.basis.frequency(n));
-    }
-    const StiffStringFit fit = fit_stiff_string(frequencies);
+    const StiffStringFit fit = fit_stiff_string(frequencies_of(truth_.point.basis));
     const double values[] = {fit.fundamental, fit.inharmonicity, truth_.point.contact, 1.0};
     for (std::size_t i = 0; i < 4; ++i) {
       if (!bound_.find(kLawNames[i])) continue;  // a fixed damping factor
-      LimitRow law = row(
-          kLawNames[i], bound_.law[i], [&](const LimitOutcome& o) { return o.law[i] - values[i]; },
-          [&](const LimitOutcome& o) { return o.law_deviation[i]; });
+      LimitRow law = row(kLawNames[i], bound_.law[i], [&](const LimitOutcome& o) {
+        return std::pair(o.law[i] - values[i], o.law_deviation[i]);
+      });
       law.law = true;
       law.attainable = bound_.law_attainable[i];
       summary_.rows.push_back(std::move(law));
@@ -86,12 +81,9 @@ class LevelReader {
     for (std::size_t n = 0; n < truth_.point.basis.size(); ++n) {
       const ModeVerdict& mode = bound_.modes[n];
       if (!(mode.deviation < kWellSeen) || mode.source != ModeSource::kIdentified) continue;
-      LimitRow free = row(
-          fmt::format("f_{}", n + 1), mode.deviation,
-          [&](const LimitOutcome& o) {
-            return o.frequencies[n] / truth_.point.basis.frequency(n) - 1.0;
-          },
-          [&](const LimitOutcome& o) { return o.deviations[n]; });
+      LimitRow free = row(fmt::format("f_{}", n + 1), mode.deviation, [&](const LimitOutcome& o) {
+        return std::pair(o.frequencies[n] / truth_.point.basis.frequency(n) - 1.0, o.deviations[n]);
+      });
       bounds.push_back(mode.deviation);
       square += free.ratio() * free.ratio();
       count += 1.0;
@@ -101,10 +93,10 @@ class LevelReader {
     summary_.free_rms = std::sqrt(square / count);
     summary_.median_bound = quantile(bounds, 0.5);
     if (!bound_.find("x_c")) return;  // fixed
-    summary_.rows.push_back(row(
-        "x_c, frequencies free", bound_.contact,
-        [&](const LimitOutcome& o) { return o.contact - truth_.point.contact; },
-        [](const LimitOutcome& o) { return o.contact_deviation; }));
+    summary_.rows.push_back(
+        row("x_c, frequencies free", bound_.contact, [this](const LimitOutcome& o) {
+          return std::pair(o.contact - truth_.point.contact, o.contact_deviation);
+        }));
   }
 
   // The scene's sensors are alike.
@@ -114,36 +106,39 @@ class LevelReader {
       const double truth = sensor_value(i, {});
       const ParameterLimit* bound = bound_.find(name);
       if (!bound) continue;
-      summary_.rows.push_back(row(
-          name, bound->free, [&](const LimitOutcome& o) { return o.sensors[i] - truth; },
-          [&](const LimitOutcome& o) { return o.sensor_deviation[i]; }));
+      summary_.rows.push_back(row(name, bound->free, [&](const LimitOutcome& o) {
+        return std::pair(o.sensors[i] - truth, o.sensor_deviation[i]);
+      }));
     }
   }
 
   void add_means() {
-    std::vector<double> chi2, stated, law_chi2, medians, paper, force;
+    if (outcomes_.empty()) return;
+    const auto finite = [this](double LimitOutcome::*value) {
+      std::vector<double> values;
+      for (const LimitOutcome& outcome : outcomes_) {
+        if (std::isfinite(outcome.*value)) values.push_back(outcome.*value);
+      }
+      return values;
+    };
+    summary_.mean_chi2 = mean(finite(&LimitOutcome::chi2));
+    summary_.chi2_scatter = standard_deviation(finite(&LimitOutcome::chi2));
+    summary_.chi2_deviation = mean(finite(&LimitOutcome::chi2_deviation));
+    summary_.mean_law_chi2 = mean(finite(&LimitOutcome::law_chi2));
+    summary_.paper_error = quantile(finite(&LimitOutcome::paper_error), 0.5);
+    const std::vector<double> force = finite(&LimitOutcome::force_correlation);
+    if (!force.empty()) summary_.force_correlation = mean(force);
+    std::vector<double> medians;
     const std::vector<double> shape = truth_.point.basis.shape_at(truth_.point.contact);
     for (const LimitOutcome& outcome : outcomes_) {
-      chi2.push_back(outcome.chi2);
-      stated.push_back(outcome.chi2_deviation);
-      law_chi2.push_back(outcome.law_chi2);
       std::vector<double> errors;
       for (std::size_t n = 0; n < shape.size(); ++n) {
         if (std::abs(shape[n]) < 0.1) continue;
         errors.push_back(std::abs(outcome.frequencies[n] / truth_.point.basis.frequency(n) - 1.0));
       }
       medians.push_back(quantile(std::move(errors), 0.5));
-      if (std::isfinite(outcome.paper_error)) paper.push_back(outcome.paper_error);
-      if (std::isfinite(outcome.force_correlation)) force.push_back(outcome.force_correlation);
     }
-    if (outcomes_.empty()) return;
-    summary_.mean_chi2 = mean(chi2);
-    summary_.chi2_scatter = standard_deviation(chi2);
-    summary_.chi2_deviation = mean(stated);
-    summary_.mean_law_chi2 = mean(law_chi2);
     summary_.median_error = quantile(medians, 0.5);
-    summary_.paper_error = quantile(paper, 0.5);
-    if (!force.empty()) summary_.force_correlation = mean(force);
   }
 
   void count_wrong() {

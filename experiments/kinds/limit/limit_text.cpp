@@ -1,5 +1,3 @@
-
-
 #include "experiments/kinds/limit/limit.hpp"
 #include "libcalib/likelihood/noise_level.hpp"
 #include "libsim/signal/statistics.hpp"

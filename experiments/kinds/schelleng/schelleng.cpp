@@ -104,7 +104,11 @@ CellOutcome run_map_cell(const SchellengOptions& options, std::size_t cell, cons
 void CellOutcome::visit(ResultVisitor& visitor) {
   visitor({.key = "failure", .optional = true}, failure);
   if (!failure.empty()) return;
-  visitor.word({.key = "regime"}, regime, StringRegime::kSilent);
+  visit_motion(visitor);
+}
+
+void CellOutcome::visit_motion(ResultVisitor& visitor) {
+  visitor.word({.key = "motion"}, regime, StringRegime::kSilent);
   visitor({.key = "slips_per_period"}, features.slips_per_period);
   visitor({.key = "periodicity"}, features.periodicity);
   visitor({.key = "period"}, features.period);

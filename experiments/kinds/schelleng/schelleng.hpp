@@ -48,6 +48,7 @@ struct CellOutcome {
   RegimeFeatures features;
   std::string failure;  ///< why there is no regime; empty: there is
   void visit(ResultVisitor& visitor);
+  void visit_motion(ResultVisitor& visitor);  ///< regime and features
 };
 
 CellOutcome judge_cell(const Scene& scene, const Simulation& simulation,

@@ -1,7 +1,7 @@
 // Borders, tables, figures and files of a Schelleng diagram.
 
-#include "experiments/study/sample.hpp"
 #include "experiments/kinds/schelleng/schelleng.hpp"
+#include "experiments/study/sample.hpp"
 
 namespace modcal {
 namespace {
@@ -149,21 +149,14 @@ report::Table cell_table(const SchellengOptions& options, const CellOutcomes& ou
     const std::optional<CellOutcome>& outcome = outcomes[cell];
     report::add_row(table, [&](report::RowWriter& row) {
       row({.key = "task"}, cell);
-      row({.key = "position", .unit = "1"}, options.positions.center(options.position_of(cell)));
+      row({.key = "position"}, options.positions.center(options.position_of(cell)));
       row({.key = "normal_force", .unit = "N"}, options.forces.center(options.force_of(cell)));
-      const auto measured = [&](std::string_view key, std::string_view unit, auto value) {
-        row({.key = key, .unit = unit},
-            has_regime(outcome) ? std::optional(value(*outcome)) : std::nullopt);
-      };
-      const auto feature = [&](std::string_view key, double RegimeFeatures::*member) {
-        measured(key, "1", [member](const CellOutcome& found) { return found.features.*member; });
-      };
-      measured("motion", {}, [](const CellOutcome& found) { return name_of(found.regime); });
-      feature("slips_per_period", &RegimeFeatures::slips_per_period);
-      feature("periodicity", &RegimeFeatures::periodicity);
-      feature("period", &RegimeFeatures::period);
-      feature("adherence", &RegimeFeatures::adherence);
-      feature("amplitude", &RegimeFeatures::amplitude);
+      // Nothing of a cell that has failed or is not run yet but its reason is known.
+      report::RowWriter measured;
+      outcome.value_or(CellOutcome{}).visit_motion(measured);
+      row.columns.insert(row.columns.end(), measured.columns.begin(), measured.columns.end());
+      if (!has_regime(outcome)) measured.cells.assign(measured.cells.size(), report::Cell());
+      row.cells.insert(row.cells.end(), measured.cells.begin(), measured.cells.end());
       row.cell({.key = "failure"},
                outcome && !has_regime(outcome) ? report::Cell(outcome->failure) : report::Cell());
     });

@@ -4,17 +4,7 @@
 namespace modcal {
 
 void PluckTestOptions::visit(OptionVisitor& visitor) {
-  visitor.plugin({.key = "initial", .meaning = "how the string is plucked"}, start);
-  visitor.number({.key = "duration",
-                  .meaning = "length of the free decay",
-                  .unit = "s",
-                  .range = Range::positive()},
-                 duration);
-  visitor.number({.key = "noise_level",
-                  .meaning = "standard deviation of the noise, relative to that of each reaction",
-                  .unit = "1",
-                  .range = Range::non_negative()},
-                 noise_level);
+  visit_pluck(visitor, start, duration, noise_level);
   visitor.section({.key = "identification", .meaning = "how its modes are found"}, identification);
   visitor.integer({.key = "damping_degree",
                    .meaning = "degree of the polynomial that extrapolates the damping ratios",
@@ -37,7 +27,6 @@ void RefinementOptions::visit(OptionVisitor& visitor) {
   visitor.section({.key = "budget", .meaning = "what each search may spend"}, budget);
   visitor.number({.key = "excitation_threshold",
                   .meaning = "modes with a smaller |phi_n(x_c)| get their frequency from the law",
-                  .unit = "1",
                   .range = Range::closed(0.0, 1.0)},
                  excitation_threshold);
 }

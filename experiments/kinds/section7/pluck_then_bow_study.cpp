@@ -1,4 +1,3 @@
-
 #include "experiments/kinds/section7/pluck_then_bow.hpp"
 #include "libcalib/optimizers/gsl_optimizer.hpp"
 #include "libsim/signal/statistics.hpp"
@@ -34,10 +33,8 @@ ModalBasis law_basis(const PluckThenBowOptions& options, const StiffStringFit& l
 }
 
 StiffStringFit law_of_basis(const ModalBasis& basis, std::size_t modes) {
-  std::vector<double> frequencies;
-  for (std::size_t n = 0; n < std::min(modes, basis.size()); ++n) {
-    frequencies.push_back(basis.frequency(n));
-  }
+  std::vector<double> frequencies = frequencies_of(basis);
+  frequencies.resize(std::min(modes, basis.size()));
   return fit_stiff_string(frequencies);
 }
 
@@ -129,9 +126,8 @@ ModelStage with_contact(const PluckThenBowOptions& options, const CalibrationDat
 
 std::vector<SideIdentification> identified(const PluckThenBowOptions& options,
                                            const Observation& stroke, const AssumedModel& model) {
-  const InversionRecipe recipe(options.inversion);
-  return identify(stroke, *prepare_estimator(model, stroke, recipe), recipe,
-                  inversion_outputs(options.figures, false), &options.score);
+  return identify(stroke, model, options.inversion, inversion_outputs(options.figures, false),
+                  &options.score);
 }
 
 void take_paper_route(const PluckThenBowOptions& options, const StudyContext& context,
@@ -176,9 +172,6 @@ void take_paper_route(const PluckThenBowOptions& options, const StudyContext& co
   outcome.sides = identified(options, outcome.stroke, outcome.stages.back().model);
 }
 
-}  // namespace
-
-namespace {
 
 // Median and largest |f_n/f_n(truth) − 1| over the modes the contact excites.
 void set_errors(const Observation& stroke, double excitation_threshold, ModelStage& stage) {

@@ -77,11 +77,10 @@ TaskOutcome run_cell(const InvertOptions& options, const StudyContext& context) 
                                           key, context.folder, options.score.oversampling);
   const AssumedModel model = with_errors(observation.basis, observation.contact,
                                          options.model_error, key.with("model error"));
-  const InversionRecipe recipe(options.inversion);
-  const auto estimator = context.work.inversions.get(model, observation, options.inversion, recipe);
   TaskOutcome outcome;
   for (const SideIdentification& side :
-       identify(observation, *estimator, recipe, {.force = true}, &options.score)) {
+       identify(observation, model, options.inversion, {.force = true}, &options.score,
+                &context.work.inversions)) {
     const ChosenParameter& choice = side.estimate.result.choice;
     TaskScores scores{side.estimate.side, choice.parameter(), choice.status, side.scores,
                       side.whole};
@@ -101,7 +100,6 @@ void ComparisonOptions::visit(OptionVisitor& visitor) {
                table);
   visitor.number({.key = "lowest_row",
                   .meaning = "rows below this noise level are shown but not judged",
-                  .unit = "1",
                   .range = Range::non_negative()},
                  lowest_row);
   visitor.number({.key = "mean_difference",
@@ -157,7 +155,8 @@ void SweepOptions::visit(OptionVisitor& visitor) {
 
 PublishedTable read_published(const std::filesystem::path& path) {
   const Recording file = read_csv(
-      path, {.channels = {"noise_percent", "R1", "epsilon1", "R2", "epsilon2"}, .sample_rate = 1.0});
+      path,
+      {.channels = {"noise_percent", "R1", "epsilon1", "R2", "epsilon2"}, .sample_rate = 1.0});
   PublishedTable rows;
   for (std::size_t i = 0; i < file.frames(); ++i) {
     const auto value = [&](std::size_t column) { return file.channels[column].samples[i]; };

@@ -58,7 +58,7 @@ TEST(SchellengMap, StoresEveryBitOfACell) {
   EXPECT_EQ(read.features.amplitude, outcome.features.amplitude);
   EXPECT_EQ(read_outcome<CellOutcome>(R"({"failure":"too \"long\""})").failure, "too \"long\"");
   EXPECT_THROW(read_outcome<CellOutcome>("{}"), InvalidInput);
-  EXPECT_THROW(read_outcome<CellOutcome>(R"({"regime":"loud"})"), InvalidInput);
+  EXPECT_THROW(read_outcome<CellOutcome>(R"({"motion":"loud"})"), InvalidInput);
 }
 
 // The known tolerance of Schelleng's limits is a factor of 2: they neglect the corner's width and,
