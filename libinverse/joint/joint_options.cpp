@@ -21,18 +21,6 @@ OffsetRule offset_rule_of(const std::string& name) {
   return enum_of<OffsetRule>(kOffsetRules, "offset rule", name);
 }
 
-void TransferOptions::visit(OptionVisitor& visitor) {
-  visitor.text({.key = "static_remainder",
-                .meaning = "static response of the modes above the highest stated one; auto: for "
-                           "recorded data",
-                .choices = {"auto", "on", "off"}},
-               static_remainder);
-  visitor.flag({.key = "bending",
-                .meaning = "the supports of a stiff string feel its bending too: reactions times "
-                           "1 + B n^2 in mode n"},
-               bending);
-}
-
 void JointOptions::require() const {
   const bool shifted = truncation_of(truncation) == Truncation::kShiftedContour;
   offset_rule_of(offset);

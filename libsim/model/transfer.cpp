@@ -5,11 +5,17 @@
 #include <numbers>
 
 #include "libsim/base/error.hpp"
+#include "libsim/base/words.hpp"
 
 namespace modcal {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
+
+enum class Remainder { kAuto, kLaw, kNone };
+constexpr std::array<std::string_view, 3> kRemainders = {"auto", "law", "none"};
+enum class Reaction { kTension, kSupport };
+constexpr std::array<std::string_view, 2> kReactions = {"tension", "support"};
 
 ModalModel model_with(const ModalBasis& basis, std::vector<SensorKind> sensors) {
   ModalModel model{.sensors = std::move(sensors)};
@@ -53,6 +59,25 @@ double cosine_series(double y, double inharmonicity) {
 }
 
 }  // namespace
+
+void SupportOptions::visit(OptionVisitor& visitor) {
+  visitor.text({.key = "remainder",
+                .meaning = "the modes above the highest stated one; law: they answer as the law of "
+                           "the string has them, none: there are none, auto: law for recorded data",
+                .choices = choices_of(kRemainders)},
+               remainder);
+  visitor.text({.key = "reaction",
+                .meaning = "what the sensors at the ends feel; tension: T dy/dx, support: the "
+                           "bending of a stiff string too, 1 + B n^2 times as much in mode n",
+                .choices = choices_of(kReactions)},
+               reaction);
+}
+
+StringSupport SupportOptions::support(bool recorded) const {
+  const auto wanted = enum_of<Remainder>(kRemainders, "remainder", remainder);
+  return {.remainder = wanted == Remainder::kLaw || (wanted == Remainder::kAuto && recorded),
+          .bending = enum_of<Reaction>(kReactions, "reaction", reaction) == Reaction::kSupport};
+}
 
 std::vector<double> reaction_gains(const ModalBasis& basis, End end) {
   std::vector<double> gains(basis.size());
@@ -103,7 +128,7 @@ ModalModel string_model(const ModalBasis& basis, double contact, const StringSup
   for (std::size_t i = 0; i < shape.size(); ++i) {
     model.constants.push_back(shape[i] * (shape[i] / basis.mass[i]));
   }
-  if (!support.static_remainder) return model;
+  if (!support.remainder) return model;
   const StaticResponse all = static_response(basis, contact, support.bending);
   const StaticResponse kept = static_response_of_modes(basis, contact, support.bending);
   for (std::size_t r = 0; r < 2; ++r) {

@@ -4,8 +4,10 @@
 #include <array>
 #include <cstddef>
 #include <span>
+#include <string>
 #include <vector>
 
+#include "libsim/base/options.hpp"
 #include "libsim/model/modal_basis.hpp"
 #include "libsim/model/modal_model.hpp"
 #include "libsim/model/sensor.hpp"
@@ -29,9 +31,20 @@ ModalModel end_reaction_slopes(const ModalBasis& basis, double contact);
 
 /// What a transfer function of a string holds besides the stated modes.
 struct StringSupport {
-  bool static_remainder = false;  ///< modes above the highest stated one answer statically
+  bool remainder = false;  ///< the modes above the highest stated one answer too
   /// The support feels T y_x − E I y_xxx instead of T y_x: g_rn times (1 + B n²).
   bool bending = false;
+};
+
+/// The same as an experiment states it.
+struct SupportOptions {
+  /// "law": modes above the highest stated one answer as the law has them; "none": they do not
+  /// exist, as in a simulated string of that many modes; "auto": law for recorded data.
+  std::string remainder = "auto";
+  std::string reaction = "tension";  ///< what the sensors feel: "tension" or "support"
+  void visit(OptionVisitor& visitor);
+  /// `recorded`: the data are no simulation.
+  StringSupport support(bool recorded) const;
 };
 
 /// end_reactions() and, third, a sensor of displacement at the contact: the receptance

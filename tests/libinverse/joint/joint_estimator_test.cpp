@@ -84,11 +84,11 @@ TEST(JointEstimator, StaticRemainderIsOnForRecordedStringsUnlessStated) {
       drive(basis, kPosition, jumping_force(samples, StreamKey(4)), {}, true);
   const auto force_with = [&](const char* remainder, bool recorded) {
     JointOptions options;
-    options.transfer.static_remainder = remainder;
+    options.transfer.remainder = remainder;
     options.noise_rms[0] = options.noise_rms[1] = 1e-6;
     return estimate_with(options, basis, string.pair(), recorded).result.force;
   };
-  const auto on = force_with("on", false), off = force_with("off", true);
+  const auto on = force_with("law", false), off = force_with("none", true);
   EXPECT_EQ(force_with("auto", true), on);
   EXPECT_EQ(force_with("auto", false), off);
   // The response holds the remainder: without it the error is larger.
@@ -107,7 +107,7 @@ TEST(JointEstimator, BendingOfTheSupportsIsAnOption) {
       drive(basis, kPosition, jumping_force(samples, StreamKey(4)), {}, false, true);
   const auto error_with = [&](bool bending) {
     JointOptions options;
-    options.transfer.bending = bending;
+    options.transfer.reaction = bending ? "support" : "tension";
     options.noise_rms[0] = options.noise_rms[1] = 1e-6;
     return middle_error(estimate_with(options, basis, string.pair()).result.force, string.force);
   };

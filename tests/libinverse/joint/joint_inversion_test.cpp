@@ -78,7 +78,7 @@ TEST(JointInversion, KnowsGainDelayRemainderAndBending) {
   const DrivenString string =
       drive(basis, kPosition, jumping_force(samples, StreamKey(4)), sensors, true, true);
   JointModel model = contour_at(4.0, samples);
-  model.support.static_remainder = true;
+  model.support.remainder = true;
   model.support.bending = true;
   model.sensors = sensors;
   const SensorNoiseLevel noise{.rms = {1e-9, 1e-9}};
@@ -92,7 +92,7 @@ TEST(JointInversion, KnowsGainDelayRemainderAndBending) {
   EXPECT_LT(right, 0.05);
   for (const auto& change : {+[](JointModel& m) { m.sensors[0].gain = 1.0; },
                              +[](JointModel& m) { m.sensors[0].delay = 0.0; },
-                             +[](JointModel& m) { m.support.static_remainder = false; }}) {
+                             +[](JointModel& m) { m.support.remainder = false; }}) {
     JointModel wrong = model;
     change(wrong);
     EXPECT_GT(error_of(wrong), 1.5 * right);
