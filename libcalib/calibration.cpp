@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "libcalib/likelihood/likelihood_band.hpp"
 #include "libcalib/optimizers/staged/continuation.hpp"
 #include "libcalib/parameters/stiff_string_fit.hpp"
 #include "libcalib/problem/covariance.hpp"
@@ -144,8 +145,10 @@ std::vector<CalibratedParameter> found_parameters(const ModelPoint& initial,
                                .deviation = deviation};
   };
   std::vector<CalibratedParameter> parameters = {
-      parameter("f0", "Hz", start.fundamental, found.law.fundamental, found.law.deviation[0]),
-      parameter("B", "1", start.inharmonicity, found.law.inharmonicity, found.law.deviation[1]),
+      parameter("f0", "Hz", start.fundamental, found.found_law.fundamental,
+                found.found_law.deviation[0]),
+      parameter("B", "1", start.inharmonicity, found.found_law.inharmonicity,
+                found.found_law.deviation[1]),
       parameter("x_c", "m", initial.contact, found.model.contact, found.contact_deviation)};
   add_values(found.values.front(), unknowns, "", true, parameters);
   if (!found.ratio_deviations.empty()) {
@@ -199,6 +202,39 @@ void report_estimate(const Problem& problem, const std::vector<Variable>& variab
   result.modes = found_modes(problem.model, found, problem.excitation_threshold);
 }
 
+bool any_recorded(const Problem& problem) {
+  return std::any_of(problem.records.begin(), problem.records.end(),
+                     [](const CalibrationRecord& record) { return record.recorded; });
+}
+
+// What the sensors feel of the modes above the stated ones, where it belongs to the model.
+void add_higher_modes(const Problem& problem, ModelPoint& initial) {
+  const StringSupport support = problem.support.support(any_recorded(problem));
+  if (!support.remainder) return;
+  const StiffStringFit law = fit_stiff_string(frequencies_of(initial.basis));
+  double highest = problem.objective->highest_frequency();
+  if (std::isnan(highest)) highest = band_of_modes(initial.basis);
+  initial.higher = HigherModeLaw::above(initial.basis, law.fundamental, law.inharmonicity, highest,
+                                        support.bending);
+}
+
+// The problem with what is meant where nothing is stated of damping and sensors.
+Problem with_defaults(Problem problem, const Optimizer& optimizer) {
+  UnknownsOptions& unknowns = problem.parameters.unknowns;
+  const bool to_the_bound = optimizer.needs().schedule && any_recorded(problem);
+  if (!to_the_bound) {
+    unknowns = unknowns.of_simulations();
+    return problem;
+  }
+  // What is stated of a record's ζ_n is seldom more than their order of magnitude.
+  const ParameterOptions plain;
+  double& range = problem.parameters.ranges.damping;
+  const bool ratios = unknowns.damping == plain.unknowns.damping;
+  if (ratios && range == plain.ranges.damping) range = 0.9;
+  unknowns = unknowns.of_records(problem.records.front().data.sample_rate);
+  return problem;
+}
+
 // Not under the schedule: these say nothing to a search over the parameters alone.
 void require_nothing_known(const ParameterOptions& parameters) {
   const ParameterOptions plain;
@@ -232,11 +268,12 @@ void CalibrationOptions::visit(OptionVisitor& visitor) {
                   .unit = "1",
                   .range = Range::closed(0.0, 1.0)},
                  excitation_threshold);
+  support.visit(visitor);
 }
 
 Problem CalibrationOptions::problem(const ModelPoint& initial,
                                     std::vector<CalibrationRecord> records) const {
-  return {initial, std::move(records), parameters, objective.make(), excitation_threshold};
+  return {initial, std::move(records), parameters, objective.make(), support, excitation_threshold};
 }
 
 bool CalibrationOptions::by_schedule() const {
@@ -297,11 +334,13 @@ std::vector<bool> excited_modes(const ModelPoint& point, double threshold) {
   return excited;
 }
 
-CalibrationResult calibrate(const Problem& problem, const Optimizer& optimizer,
+CalibrationResult calibrate(const Problem& stated_problem, const Optimizer& optimizer,
                             const Budget& budget, SecondsClock clock) {
+  const Problem problem = with_defaults(stated_problem, optimizer);
   ModelPoint initial = problem.model;
   const Sensor stated = problem.parameters.unknowns.sensors();
   if (!stated.alike()) initial.sensors = stated;
+  add_higher_modes(problem, initial);
   const std::vector<bool> excited = excited_modes(initial, problem.excitation_threshold);
   Names names = split_names(problem.parameters, excited);
   const ParameterSet parameters(initial, names.free, problem.parameters.ranges);

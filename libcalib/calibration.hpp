@@ -25,6 +25,7 @@ struct CalibrationOptions {
   /// Modes with |φ_n(x_c)| below this are blind: nothing in the reactions tells their frequency
   /// [1].
   double excitation_threshold = 0.1;
+  SupportOptions support;
   void visit(OptionVisitor& visitor);
   Problem problem(const ModelPoint& initial, std::vector<CalibrationRecord> records) const;
   /// Whether the optimizer follows the objective's own schedule of stages.

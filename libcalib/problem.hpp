@@ -21,6 +21,7 @@ struct Problem {
   std::vector<CalibrationRecord> records;  ///< n >= 1, strokes before plucks
   ParameterOptions parameters;             ///< what is free, fixed or known beforehand
   std::shared_ptr<const Objective> objective;
+  SupportOptions support;  ///< what the ends feel besides the stated modes
   /// Modes with |φ_n(x_c)| below this are blind: nothing in the reactions tells their frequency
   /// [1].
   double excitation_threshold = 0.1;

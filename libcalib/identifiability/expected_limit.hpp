@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "libcalib/optimizers/staged/continuation.hpp"
 #include "libcalib/likelihood/whitened_record.hpp"
+#include "libcalib/optimizers/staged/continuation.hpp"
 
 namespace modcal {
 
@@ -22,8 +22,8 @@ struct LimitCase {
   UnknownsOptions unknowns;  ///< damping, sensors, priors
 };
 
-/// Standard deviations of one parameter, in the unit of its name (unit_of_parameter); NaN where it is
-/// not free. "damping" is the factor of all ζ_n; where each is free, their geometric mean.
+/// Standard deviations of one parameter, in the unit of its name (unit_of_parameter); NaN where it
+/// is not free. "damping" is the factor of all ζ_n; where each is free, their geometric mean.
 struct ParameterLimit {
   static constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   std::string parameter;

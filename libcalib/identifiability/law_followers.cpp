@@ -1,6 +1,7 @@
 #include "libcalib/identifiability/law_followers.hpp"
 
 #include <gsl/gsl_cdf.h>
+#include <gsl/gsl_randist.h>
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -74,6 +75,19 @@ class LawLine {
       if (std::isnan(known)) variance = std::max(0.0, excess / sum);
     }
     return variance;
+  }
+
+  // Mean of τ² ≥ 0 under the normal law of its estimate by moments.
+  double expected_variance(double variance) const {
+    double sum = 0.0, square = 0.0;
+    for (Index i = 0; i < size(); ++i) {
+      if (!taken(i)) continue;
+      sum += weight(i, variance);
+      square += 2.0 * std::pow(weight(i, variance) * (error2(i) + variance), 2);
+    }
+    const double error = std::sqrt(square) / sum;
+    const double z = variance / error;
+    return variance + error * gsl_ran_ugaussian_pdf(z) / gsl_cdf_ugaussian_P(z);
   }
 
   double score(Index i, double variance) const {
@@ -164,6 +178,7 @@ LawFollowers followers_of(LawLine line, double width) {
     found.rest = line.rest();
   }
   found.width = std::clamp(std::sqrt(variance), kTied, kWidePrior);
+  found.scatter = std::sqrt(line.expected_variance(variance));
   return found;
 }
 
@@ -177,8 +192,20 @@ std::string_view name_of(LawTie tie) {
 LawFollowers LawFollowers::all(Eigen::Index modes, double width) {
   return {.width = width,
           .prior_width = width,
+          .scatter = width,
           .ties = std::vector(static_cast<std::size_t>(modes), LawTie::kFollows),
           .rest = Eigen::VectorXd::Zero(modes)};
+}
+
+Eigen::VectorXd LawFollowers::scatters() const {
+  Eigen::VectorXd widths(static_cast<Eigen::Index>(ties.size()));
+  for (Eigen::Index i = 0; i < widths.size(); ++i) {
+    const LawTie tie = ties[static_cast<std::size_t>(i)];
+    widths[i] = tie == LawTie::kLeaves     ? kDeparted
+                : tie == LawTie::kDoubtful ? std::max(scatter, kWidePrior)
+                                           : std::max(scatter, 1e-3 * kTied);
+  }
+  return widths;
 }
 
 std::size_t LawFollowers::leaving() const {
@@ -195,6 +222,7 @@ LawFollowers find_followers(const ModeSight& sight, double inharmonicity, double
   }
   LawFollowers found = followers_of(line, width);
   found.width = estimated.width;
+  found.scatter = estimated.scatter;
   found.prior_width = width;
   return found;
 }

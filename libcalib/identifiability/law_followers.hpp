@@ -28,9 +28,13 @@ std::string_view name_of(LawTie tie);  ///< follows, doubtful, leaves
 struct LawFollowers {
   double width = kWidePrior;  ///< τ, relative scatter about the law of the modes that follow it
   double prior_width = kWidePrior;  ///< the same, or what is known of it beforehand
+  /// Root of the mean of τ² ≥ 0 given what the modes say of it: what a deviation of the law takes.
+  double scatter = kWidePrior;
   std::vector<LawTie> ties;
   Eigen::VectorXd rest;  ///< δ_n beyond the law of those that follow it
 
+  /// Widths of all modes about the law for the law's own sake.
+  Eigen::VectorXd scatters() const;
   static LawFollowers all(Eigen::Index modes, double width);
   void follow_all() { ties.assign(ties.size(), LawTie::kFollows); }
   std::size_t leaving() const;

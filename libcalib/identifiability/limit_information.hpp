@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "libcalib/likelihood/all_records.hpp"
 #include "libcalib/identifiability/expected_limit.hpp"
+#include "libcalib/likelihood/all_records.hpp"
 #include "libcalib/likelihood/parameter_forms.hpp"
 
 namespace modcal {

@@ -83,6 +83,15 @@ ModeSight sight_of(const Eigen::VectorXd& delta, const Eigen::VectorXd& deviatio
   return sight;
 }
 
+void leave_out_of_band(const ModelPoint& model, double highest, ModeSight& sight) {
+  for (std::size_t n = 0; model.higher && n < model.basis.size(); ++n) {
+    if (model.basis.omega[n] < highest) continue;
+    const auto i = static_cast<Eigen::Index>(n);
+    sight.seen[i] = std::max(sight.seen[i], kWidePrior);
+    sight.error[i] = std::max(sight.error[i], kWidePrior);
+  }
+}
+
 void doubt_rivals(const std::vector<Neighbor>& neighbors, ModeSight& sight) {
   for (std::size_t n = 0; n < neighbors.size(); ++n) {
     if (!neighbors[n].is_rival()) continue;
@@ -153,7 +162,8 @@ std::vector<ModeVerdict> free_verdicts(const ModelPoint& model, const Eigen::Vec
     if (verdict.tie != LawTie::kDoubtful) {
       verdict.reason = weak_reason(model, n);
       // Where neither law nor data have it, it is anywhere that its prior admits.
-      const double width = verdict.tie == LawTie::kLeaves ? kDeparted : std::min(law_width, kWidePrior);
+      const double width =
+          verdict.tie == LawTie::kLeaves ? kDeparted : std::min(law_width, kWidePrior);
       verdict.deviation = std::max(deviation[i], width);
     }
     // The law speaks for a mode where the other modes follow it closer than the mode is needed.
@@ -180,7 +190,7 @@ std::vector<std::size_t> not_following(const std::vector<ModeVerdict>& modes) {
   return found.size() + 2 > modes.size() ? std::vector<std::size_t>{} : found;
 }
 
-void report_departures(const LawEstimate& law, std::vector<ModeVerdict>& modes) {
+void report_departures(const FoundLaw& law, std::vector<ModeVerdict>& modes) {
   for (std::size_t n = 0; n < modes.size(); ++n) {
     const double number = static_cast<double>(n + 1);
     const double frequency =

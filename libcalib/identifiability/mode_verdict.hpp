@@ -3,9 +3,9 @@
 
 #include <Eigen/Core>
 
-#include "libcalib/optimizers/staged/continuation.hpp"
 #include "libcalib/identifiability/law_followers.hpp"
 #include "libcalib/identifiability/neighbor_test.hpp"
+#include "libcalib/optimizers/staged/continuation.hpp"
 
 namespace modcal {
 
@@ -18,6 +18,10 @@ std::vector<bool> nodes(const ModalBasis& basis, const std::vector<double>& cont
 ModeSight sight_of(const Eigen::VectorXd& delta, const Eigen::VectorXd& deviation,
                    const Eigen::MatrixXd& information, const Eigen::MatrixXd& noise,
                    const std::vector<bool>& node);
+
+/// Modes above the band [rad/s] of a record that has modes above the stated ones: their lines are
+/// not in it.
+void leave_out_of_band(const ModelPoint& model, double highest, ModeSight& sight);
 
 /// A mode that has a rival minimum is not seen: its error reaches there.
 void doubt_rivals(const std::vector<Neighbor>& neighbors, ModeSight& sight);
@@ -47,7 +51,7 @@ std::vector<std::size_t> not_following(const std::vector<ModeVerdict>& modes);
 void raise_to_verdicts(const std::vector<ModeVerdict>& modes, NamedCovariance& covariance);
 
 /// Fills how far every mode is from n f_0 √(1 + Bn²).
-void report_departures(const LawEstimate& law, std::vector<ModeVerdict>& modes);
+void report_departures(const FoundLaw& law, std::vector<ModeVerdict>& modes);
 
 /// Node where |φ_n(x_c)| < 0.1, antinode where |cos(nπx_c/L)| < 0.2 (both ends then react alike,
 /// whatever ω_n is), else noise.

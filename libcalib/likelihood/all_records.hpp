@@ -62,7 +62,8 @@ class AllRecords {
   ModelPoint model(const Eigen::VectorXd& theta, std::size_t record) const;
   bool admits(const Eigen::VectorXd& theta) const;
   /// Coordinate of a prior, see StringUnknowns.
-  std::optional<LinearForm> coordinate(const ParameterName& name, const Eigen::VectorXd& theta) const;
+  std::optional<LinearForm> coordinate(const ParameterName& name,
+                                       const Eigen::VectorXd& theta) const;
   LikelihoodPoint evaluate(const Eigen::VectorXd& theta, bool twice_weighted) const;
   Eigen::MatrixXd noise(const Eigen::VectorXd& theta) const;
 

@@ -69,7 +69,7 @@ void AddDecayPowers(const WhitenedRecord& record, std::size_t block_index, const
   if (split.has_far()) Gather(block_nodes(), bins, 4, nodes);
   const auto add = [&](std::span<const std::size_t> list, const Places& places,
                        const Weights& weights) {
-    for (const std::size_t n : list) {
+    for (const std::size_t n : split.decaying(list)) {
       AddPowersOf(split.modes[n], places, weights, sums + n * kPowerSums * kSumLanes);
     }
   };
@@ -147,7 +147,7 @@ void AddDecayProducts(const WhitenedRecord& record, std::size_t block_index, con
   if (split.has_far()) Gather(block_nodes(), bins, 4 * count, nodes);
   const auto add = [&](std::span<const std::size_t> list, const Places& places,
                        const double* fields) {
-    for (const std::size_t n : list) {
+    for (const std::size_t n : split.decaying(list)) {
       AddProductsOfAll(split.modes[n], places, fields, count, sums + n * 2 * count * kSumLanes);
     }
   };
@@ -171,7 +171,7 @@ void CollectDecayProducts(const double* sums, std::size_t modes, std::size_t cou
 HWY_INLINE C DecaySum(const ModeSplit& split, std::span<const std::size_t> list,
                       std::span<const Complex> amplitudes, C delay) {
   C sum = Zero();
-  for (const std::size_t n : list) {
+  for (const std::size_t n : split.decaying(list)) {
     const Decays decays = DecaysAt(split.modes[n].pole, delay);
     const C amplitude = Set(amplitudes[n]);
     sum = AddConjMul(AddMul(sum, amplitude, decays.u), amplitude, decays.u_conj);

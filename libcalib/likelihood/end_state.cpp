@@ -1,11 +1,14 @@
 #include "libcalib/likelihood/end_state.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace modcal {
 namespace {
 
 constexpr double kRidge = 1e-9;
+// Powers of s at either end: as many as go with the residual and a sensor's decay.
+constexpr std::size_t smooth_powers() { return (kDecayColumns - 2) / 2; }
 using Index = Eigen::Index;
 
 // Σ conj(κ_m U_m) κ_n U_n and the three sums with U' in the place of U_m, U_n or both.
@@ -86,13 +89,24 @@ EndState::Sums added(std::span<const EndState::Sums> parts) {
   return sum;
 }
 
-using Columns = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic>>;
+// What modes above the band leave ringing is smooth in it: powers of iω/ω_top.
+void add_smooth_transients(const WhitenedRecord& record, std::vector<PlainTransient>& transients) {
+  const double top = record.omega[record.bins - 1];
+  for (const bool right : {false, true}) {
+    std::vector<Complex> numbers(record.bins, record.deviation[right ? 1 : 0]);
+    for (std::size_t power = 0; power < smooth_powers(); ++power) {
+      transients.push_back({right, PlanarVector(record.root_weight.size())});
+      for (std::size_t k = 0; k < record.bins; ++k) {
+        transients.back().numbers.set(k, numbers[k]);
+        numbers[k] *= Complex(0.0, record.omega[k] / top);
+      }
+    }
+  }
+}
 
-}  // namespace
-
-std::vector<PlainTransient> plain_transients(const WhitenedRecord& record, const Sensor& sensors) {
-  if (record.sigma > 0.0) return {{false, record.offset}, {true, record.offset}};
-  if (!sensors.may_differ()) return {};
+// One sample, which smooth transients hold already, and the sensor's own decay.
+void add_sensor_transients(const WhitenedRecord& record, const Sensor& sensors,
+                           std::vector<PlainTransient>& transients) {
   const std::size_t padded = record.root_weight.size();
   PlainTransient sample{true, PlanarVector(padded)};
   PlainTransient decay{true, PlanarVector(padded)};
@@ -105,12 +119,30 @@ std::vector<PlainTransient> plain_transients(const WhitenedRecord& record, const
     // dU/dE = U² z^−1 and E U z^−1 = U − 1.
     by_corner.set(k, record.deviation[1] * u * (1.0 - u) / record.sample_rate);
   }
-  return {std::move(sample), std::move(decay)};
+  if (transients.empty()) transients.push_back(std::move(sample));
+  transients.push_back(std::move(decay));
+}
+
+using Columns = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic>>;
+
+}  // namespace
+
+std::vector<PlainTransient> plain_transients(const WhitenedRecord& record,
+                                             const ModelPoint& point) {
+  if (record.sigma > 0.0) return {{false, record.offset}, {true, record.offset}};
+  std::vector<PlainTransient> transients;
+  if (point.higher) add_smooth_transients(record, transients);
+  if (point.sensors.may_differ()) add_sensor_transients(record, point.sensors, transients);
+  return transients;
 }
 
 EndState::EndState(const WhitenedRecord& record, std::span<const LikelihoodMode> modes,
                    std::size_t plain)
-    : modes_(modes), decays_(record.sigma == 0.0 ? modes.size() : 0), plain_(plain) {}
+    : modes_(modes), decays_(0), plain_(plain) {
+  if (record.sigma > 0.0) return;
+  decays_ = static_cast<std::size_t>(std::count_if(
+      modes.begin(), modes.end(), [](const LikelihoodMode& mode) { return mode.decays; }));
+}
 
 void EndState::add_gram(const WhitenedRecord& record, std::size_t block_index,
                         const ModeSplit& split, const LikelihoodBlock& block, Sums& sums) const {
@@ -155,7 +187,7 @@ void EndState::solve(std::span<const Sums> parts) {
   if (decays_ > 0) {
     std::vector<DecayPowers> powers(decays_);
     collect_decay_powers(sums.powers.data(), powers);
-    gram.topLeftCorner(first, first) = decay_gram(modes_, powers, sums.totals);
+    gram.topLeftCorner(first, first) = decay_gram(modes_.first(decays_), powers, sums.totals);
   }
   gram.rightCols(plain) = products.rightCols(plain);
   gram.bottomLeftCorner(plain, first) = products.topRightCorner(first, plain).transpose();

@@ -21,8 +21,9 @@ struct PlainTransient {
 };
 /// σ > 0: static offsets of both records. σ = 0: where the sensor at x = L has a delay or a corner
 /// of its own, or may have one, what it holds at the end of the record: one sample and its own
-/// decay.
-std::vector<PlainTransient> plain_transients(const WhitenedRecord& record, const Sensor& sensors);
+/// decay. Where there are modes above the stated ones, what these leave ringing, smooth in the
+/// band: 1, s and s² at both ends.
+std::vector<PlainTransient> plain_transients(const WhitenedRecord& record, const ModelPoint& point);
 
 /// At σ = 0 the complex amplitudes c_n of the sampled free decays (2N columns x_n, x'_n, see
 /// decay_kernel.hpp), and the amplitudes of plain transients behind them. Least squares by the
@@ -42,7 +43,7 @@ class EndState {
     Eigen::MatrixXd plain;  // products of residual and plain transients
   };
 
-  std::size_t decays() const { return decays_; }  ///< N, or 0 for σ > 0
+  std::size_t decays() const { return decays_; }  ///< modes that decay, the first; 0 for σ > 0
   std::size_t size() const { return 2 * decays_ + plain_; }
   /// Adds what the model alone decides, of one block.
   void add_gram(const WhitenedRecord& record, std::size_t block_index, const ModeSplit& split,

@@ -81,8 +81,12 @@ void AddFarColumns(const Places& places, const ModeSplit& split, std::size_t par
       for (std::size_t i = task.share_begin[n]; i < task.share_begin[n + 1]; ++i) {
         const ColumnShare& share = task.shares[i];
         if (exact.column[share.column]) continue;
-        const C drive = AddScaled(Scale(terms.frequency.drive, Real(share.frequency)),
-                                  terms.damping.drive, Real(share.damping));
+        C drive = AddScaled(Scale(terms.frequency.drive, Real(share.frequency)),
+                            terms.damping.drive, Real(share.damping));
+        if (share.residue != 0.0) {
+          const double slope = share.residue * split.modes[n].residue_by_stiffness;
+          drive = AddScaled(drive, terms.inverse, Real(slope));
+        }
         const C decay = AddScaled(Scale(terms.frequency.decay, Real(share.frequency)),
                                   terms.damping.decay, Real(share.damping));
         for (std::size_t q = 0; q < 2; ++q) {
@@ -166,7 +170,7 @@ void AddFarProducts(const WhitenedRecord& record, std::size_t block_index, const
   }
   alignas(64) double spare[2 * kFarColumns];
   for (std::size_t q = 0; q < 2; ++q) {
-    const std::span<const std::size_t> list = split.far[q];
+    const std::span<const std::size_t> list = split.decaying(split.far[q]);
     for (std::size_t i = 0; i < list.size(); i += 2) {
       alignas(64) double rows[4 * kRows];
       double* to[4] = {nullptr, nullptr, spare, spare + kFarColumns};

@@ -49,14 +49,14 @@ LikelihoodEvaluation::LikelihoodEvaluation(const WhitenedRecord& record, const M
       sensors_(point.sensors),
       modes_(likelihood_modes(point, record.sample_rate)),
       splits_(record, modes_, interpolate),
-      plain_(plain_transients(record, point.sensors)),
+      plain_(plain_transients(record, point)),
       end_state_(record, modes_, plain_.size()),
       plain_width_(tiled(plain_.size())),
       arrays_(std::move(spare())) {
   if (arrays_.blocks.size() < record.blocks()) arrays_.blocks.resize(record.blocks());
   blocks_ = std::span(arrays_.blocks).first(record.blocks());
   arrays_.first_columns.resize((1 + plain_width_) * kColumnLength * record.blocks());
-  for (std::size_t n = 0; n < modes_.size(); ++n) all_modes_.push_back(n);
+  for (std::size_t n = 0; n < end_state_.decays(); ++n) decaying_.push_back(n);
   if (!sensors_.alike()) {
     sensor_ = in_bins(record, [this](Complex s) { return sensors_.response(s); });
   }
@@ -127,6 +127,7 @@ void LikelihoodEvaluation::apply_end_state() {
     by_frequency_.push_back(amplitudes[n] * modes_[n].pole_by_frequency);
     by_damping_.push_back(amplitudes[n] * modes_[n].pole_by_damping);
   }
+  if (!amplitudes.empty()) by_frequency_.resize(modes_.size()), by_damping_.resize(modes_.size());
   sum_plain();
 }
 
@@ -193,8 +194,9 @@ Eigen::VectorXd LikelihoodEvaluation::mode_products(const double* sums,
   for (std::size_t n = 0; n < modes_.size(); ++n) {
     for (std::size_t i = columns.share_begin[n]; i < columns.share_begin[n + 1]; ++i) {
       const ColumnShare& share = columns.shares[i];
-      products[static_cast<Index>(share.column)] +=
-          share.frequency * slopes[n].by_frequency + share.damping * slopes[n].by_damping;
+      products[static_cast<Index>(share.column)] += share.frequency * slopes[n].by_frequency +
+                                                    share.damping * slopes[n].by_damping +
+                                                    share.residue * slopes[n].by_residue;
     }
     if (columns.contact) products[static_cast<Index>(*columns.contact)] += slopes[n].by_contact;
   }

@@ -98,7 +98,7 @@ class LikelihoodEvaluation {
   std::vector<PlainTransient> plain_;
   EndState end_state_;
   std::size_t plain_width_;
-  std::vector<std::size_t> all_modes_;
+  std::vector<std::size_t> decaying_;  // modes of the end state
   Arrays arrays_;
   std::span<LikelihoodBlock> blocks_;
   std::optional<PlanarVector> sensor_;         // where the sensors differ

@@ -64,7 +64,12 @@ void LikelihoodEvaluation::add_state_products(std::size_t b, const LikelihoodCol
                                               double* jacobian, Products& sums) {
   const ModeSplit split = splits_.of(b);
   const bool nodes = end_state_.decays() > 0 && split.has_far() && columns.count <= kFarColumns;
-  const std::span<const std::size_t> list = nodes ? split.all_near() : all_modes_;
+  std::vector<std::size_t> near;
+  for (std::size_t p = 0; nodes && p < 2; ++p) {
+    const auto list = split.decaying(split.near[p]);
+    near.insert(near.end(), list.begin(), list.end());
+  }
+  const std::span<const std::size_t> list = nodes ? near : decaying_;
   const std::size_t decays = fill_state(b, list, sums.state);
   const std::size_t rows = decays + plain_.size();
   const std::size_t stride = product_stride(columns.count);
@@ -174,7 +179,7 @@ void LikelihoodEvaluation::project_block(std::size_t b, const Eigen::MatrixXd& f
                                          AlignedVector& state) {
   double* jacobian = work.of(0, b);
   if (!work.shared()) {
-    fill_state(b, all_modes_, state);
+    fill_state(b, decaying_, state);
     subtract_columns(state.data(), end_state_.size(), factors.data(), work.width, jacobian);
     return;
   }

@@ -16,14 +16,16 @@ namespace modcal {
 /// One mode as the kernels see it: P_n = residue/D_n, D_n = ω_n² + s² + 2ζ_nω_n s,
 /// U_n = 1/(1 − E_n z^−1).
 struct LikelihoodMode {
-  bool even = false;            ///< n even: the end x = L moves as the end x = 0 does not
-  double residue = 0.0;         ///< |g_n| φ_n(x_c)/m_n
-  double residue_slope = 0.0;   ///< its derivative by x_c
-  double omega_squared = 0.0;   ///< ω_n²
-  double two_zeta_omega = 0.0;  ///< 2ζ_nω_n
-  Complex pole;                 ///< E_n
-  Complex pole_by_frequency;    ///< ∂E_n/∂ln ω_n
-  Complex pole_by_damping;      ///< ∂E_n/∂ln ζ_n
+  bool even = false;                  ///< n even: the end x = L moves as the end x = 0 does not
+  double residue = 0.0;               ///< |g_n| φ_n(x_c)/m_n
+  double residue_slope = 0.0;         ///< its derivative by x_c
+  double omega_squared = 0.0;         ///< ω_n²
+  double two_zeta_omega = 0.0;        ///< 2ζ_nω_n
+  double residue_by_stiffness = 0.0;  ///< its derivative by B
+  bool decays = true;                 ///< what it leaves ringing is an unknown of its own
+  Complex pole;                       ///< E_n
+  Complex pole_by_frequency;          ///< ∂E_n/∂ln ω_n
+  Complex pole_by_damping;            ///< ∂E_n/∂ln ζ_n
 };
 
 /// Per-bin numbers of one block that later passes need; real and imaginary parts.

@@ -41,6 +41,10 @@ void FillModeColumns(const WhitenedRecord& record, std::size_t block_index,
         double* to = task.jacobian + share.column * kColumnLength;
         if (share.frequency != 0.0) AddTo(to, k, Scale(by_frequency, Real(share.frequency)));
         if (share.damping != 0.0) AddTo(to, k, Scale(by_damping, Real(share.damping)));
+        if (share.residue != 0.0) {
+          const C drive = Mul(factor, Mul(force, terms.inverse));
+          AddTo(to, k, Scale(drive, Real(share.residue * mode.residue_by_stiffness)));
+        }
       }
     }
     if (!contact) continue;
@@ -74,6 +78,10 @@ HWY_INLINE void AddShared(const ModeSplit& split, std::span<const std::size_t> l
       };
       add(terms.frequency, share.frequency);
       add(terms.damping, share.damping);
+      if (share.residue != 0.0) {
+        const double slope = share.residue * split.modes[n].residue_by_stiffness;
+        sum.drive = AddScaled(sum.drive, terms.inverse, Real(slope));
+      }
     }
   }
 }
@@ -140,7 +148,7 @@ HWY_INLINE void AddSlopesOf(const LikelihoodMode& mode, const Places& places, co
     plain = hn::MulAdd(a.im, inverse.im, hn::MulAdd(a.re, inverse.re, plain));
     square = hn::MulAdd(a.im, squared.im, hn::MulAdd(a.re, squared.re, square));
     s_square = hn::MulAdd(a.im, s_squared.im, hn::MulAdd(a.re, s_squared.re, s_square));
-    if (!with_decays) continue;
+    if (!with_decays || !mode.decays) continue;
     const C b = Load(fields + 2 * places.count + k, fields + 3 * places.count + k);
     const Decays decays = DecaysAt(mode.pole, places.Delay(k));
     decay = AddConjMul(decay, Mul(decays.u, decays.u), b);
@@ -197,7 +205,8 @@ void CollectModeSlopes(const double* sums, std::span<const LikelihoodMode> modes
     slopes[n] = {.by_frequency = damping - mode.residue * 2.0 * mode.omega_squared * found[1] +
                                  turned(task.by_frequency),
                  .by_damping = damping + turned(task.by_damping),
-                 .by_contact = mode.residue_slope * found[0]};
+                 .by_contact = mode.residue_slope * found[0],
+                 .by_residue = mode.residue_by_stiffness * found[0]};
   }
 }
 

@@ -36,6 +36,7 @@ struct ModeSlopes {
   double by_frequency = 0.0;  ///< Re Σ conj(J) e, J of ln ω_n
   double by_damping = 0.0;    ///< of ln ζ_n
   double by_contact = 0.0;    ///< of x_c, through this mode
+  double by_residue = 0.0;    ///< of B, through its residue
 };
 /// Adds the sums of one block, kSlopeSums of kSumLanes numbers a mode; no column is formed.
 void add_mode_slopes(const WhitenedRecord& record, std::size_t block_index, const ModeSplit& split,

@@ -43,14 +43,16 @@ ModeSplits::ModeSplits(const WhitenedRecord& record, std::span<const LikelihoodM
   const double half = 0.5 * static_cast<double>(WhitenedRecord::kBlock - 1) * record.spacing;
   std::vector<double> poles;  // [rad/s]
   for (const LikelihoodMode& mode : modes) {
-    poles.push_back(std::arg(mode.pole) * record.sample_rate);
+    poles.push_back(mode.decays ? std::arg(mode.pole) * record.sample_rate
+                                : std::sqrt(mode.omega_squared));
   }
   const double turn = 2.0 * std::numbers::pi * record.sample_rate;
   for (std::size_t b = 0; b < record.blocks(); ++b) {
     const double center = record.omega[b * WhitenedRecord::kBlock] + half;
     const auto is_far = [&](std::size_t n) {
+      double distance = std::abs(poles[n] - center);
       // The pole at −ω as well: the decays' repeats after a turn.
-      const double distance = std::min(std::abs(poles[n] - center), turn - poles[n] - center);
+      if (modes[n].decays) distance = std::min(distance, turn - poles[n] - center);
       return interpolate && distance >= kFar * half;
     };
     std::size_t far = 0;
@@ -65,6 +67,11 @@ ModeSplits::ModeSplits(const WhitenedRecord& record, std::span<const LikelihoodM
       counts_[b][group] = order_.size() - before;
     }
   }
+}
+
+std::span<const std::size_t> ModeSplit::decaying(std::span<const std::size_t> list) const {
+  while (!list.empty() && !modes[list.back()].decays) list = list.first(list.size() - 1);
+  return list;
 }
 
 ModeSplit ModeSplits::of(std::size_t block) const {

@@ -23,6 +23,8 @@ struct ModeSplit {
   std::size_t near_count() const { return near[0].size() + near[1].size(); }
   /// Near modes of both parities: the lists lie side by side.
   std::span<const std::size_t> all_near() const { return {near[0].data(), near_count()}; }
+  /// Those of a list that leave something ringing; modes that do not stand last.
+  std::span<const std::size_t> decaying(std::span<const std::size_t> list) const;
   bool has_far() const { return !far[0].empty() || !far[1].empty(); }
 };
 

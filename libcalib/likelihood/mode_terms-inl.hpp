@@ -27,7 +27,7 @@ HWY_INLINE ModeTerms TermsOf(const LikelihoodMode& mode, std::size_t n, const Co
   const C drive = Scale(Mul(terms.inverse, terms.inverse), Real(-mode.residue));
   terms.damping.drive = Mul(drive, Scale(bins.s, Real(mode.two_zeta_omega)));
   terms.frequency.drive = AddScaled(terms.damping.drive, drive, Real(2.0 * mode.omega_squared));
-  if (task.by_frequency.empty()) return terms;
+  if (task.by_frequency.empty() || !mode.decays) return terms;
   // c U² E' + conj(c) U'² conj(E').
   const Decays decays = DecaysAt(mode.pole, delay);
   const C square = Mul(decays.u, decays.u);

@@ -31,8 +31,9 @@ PluckEvaluation::Mode PluckEvaluation::mode_of(const LikelihoodMode& mode, const
 }
 
 PluckEvaluation::PluckEvaluation(const WhitenedRecord& record, const ModelPoint& point)
-    : record_(record), plain_(plain_transients(record, point.sensors)) {
+    : record_(record), plain_(plain_transients(record, point)) {
   for (const LikelihoodMode& mode : likelihood_modes(point, record.sample_rate)) {
+    if (!mode.decays) continue;
     modes_.push_back(mode_of(mode, point.sensors, record.sample_rate,
                              record.deviation[0] / record.deviation[1]));
   }
@@ -142,7 +143,7 @@ void PluckEvaluation::add_mode(const LikelihoodColumns& columns, std::size_t mod
   const Mode& own = modes_[mode];
   const Complex c = amplitudes_[mode];
   for (std::size_t i = columns.share_begin[mode]; i < columns.share_begin[mode + 1]; ++i) {
-    const auto& [column, frequency, damping] = columns.shares[i];
+    const auto& [column, frequency, damping, residue] = columns.shares[i];
     const Complex slope = c * (frequency * own.by_frequency + damping * own.by_damping);
     const Complex level = c * (frequency * own.right_by_frequency + damping * own.right_by_damping);
     add(decay, kSlope, slope, left + column * kColumnLength);

@@ -43,8 +43,7 @@ double PluckLikelihood::unweighted_cost(const ModelPoint& point) const {
 }
 
 double PluckLikelihood::degrees_of_freedom(const ModelPoint& point) const {
-  const std::size_t linear =
-      2 * point.basis.size() + plain_transients(record_, point.sensors).size();
+  const std::size_t linear = 2 * point.basis.size() + plain_transients(record_, point).size();
   return 4.0 * static_cast<double>(record_.bins) - static_cast<double>(linear);
 }
 

@@ -1,5 +1,6 @@
 #include "libcalib/likelihood/projected_likelihood.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -36,6 +37,25 @@ std::vector<LikelihoodMode> likelihood_modes(const ModelPoint& point, double sam
     mode.pole_by_damping =
         mode.pole * Complex(-zeta * omega, -omega * zeta * zeta / root) / sample_rate;
   }
+  if (!point.higher) return modes;
+  for (std::size_t i = 0; point.higher->bending && i < modes.size(); ++i) {
+    const double square = static_cast<double>((i + 1) * (i + 1));
+    const double stiff = 1.0 + std::max(point.higher->inharmonicity, 0.0) * square;
+    modes[i].residue_by_stiffness = modes[i].residue * square;
+    modes[i].residue *= stiff;
+    modes[i].residue_slope *= stiff;
+  }
+  for (const HigherMode& higher : higher_modes(*point.higher, basis, point.contact)) {
+    modes.push_back({.even = higher.even,
+                     .residue = higher.residue,
+                     .residue_slope = higher.by_contact,
+                     .omega_squared = higher.omega * higher.omega,
+                     .residue_by_stiffness = higher.by_inharmonicity,
+                     .decays = false,
+                     .pole = {},
+                     .pole_by_frequency = {},
+                     .pole_by_damping = {}});
+  }
   return modes;
 }
 
@@ -53,7 +73,7 @@ void ProjectedLikelihood::set_weights(std::span<const double> weights) {
 
 double ProjectedLikelihood::degrees_of_freedom(std::size_t parameters,
                                                const ModelPoint& point) const {
-  const std::size_t plain = plain_transients(record_, point.sensors).size();
+  const std::size_t plain = plain_transients(record_, point).size();
   const std::size_t projected = plain + (record_.sigma == 0.0 ? 2 * point.basis.size() : 0);
   return 2.0 * static_cast<double>(record_.bins) - static_cast<double>(projected + parameters);
 }

@@ -19,7 +19,9 @@ UnknownBounds unknown_bounds(const StringUnknowns& unknowns, const ModelPoint& i
     const double range = type.range(copy);
     const bool share = type.range_kind == RangeKind::kShare;
     double lower = center[i] + (share ? std::log1p(-range) : -type.per_unit * range);
-    const double upper = center[i] + (share ? std::log1p(range) : type.per_unit * range);
+    double upper = center[i] + (share ? std::log1p(range) : type.per_unit * range);
+    // A ratio may be as many times larger as smaller.
+    if (type.moves == Moves::kDamping && share) upper = center[i] - std::log1p(-range);
     // From 0, which is as far below the reference as that is above it.
     if (type.range_kind == RangeKind::kRise) {
       ModelPoint reference = unknowns.model(start);

@@ -34,8 +34,7 @@ ContinuationResult told_by(const ModelPoint& model, const ModelPoint& initial) {
     frequencies.push_back(model.basis.frequency(n));
   }
   const StiffStringFit law = fit_stiff_string(frequencies);
-  found.law.fundamental = law.fundamental;
-  found.law.inharmonicity = law.inharmonicity;
+  found.found_law = {law.fundamental, law.inharmonicity, {}};
   found.damping = model.basis.zeta.front() / initial.basis.zeta.front();
   const double top = model.basis.zeta.back() / initial.basis.zeta.back();
   if (frequencies.size() > 1) {
@@ -47,8 +46,8 @@ ContinuationResult told_by(const ModelPoint& model, const ModelPoint& initial) {
 
 // A parameter of the estimate in its unit; those of the laws stand beside the model.
 double value_in(const ContinuationResult& found, const ParameterName& name) {
-  if (name.kind == ParameterKind::kFundamental) return found.law.fundamental;
-  if (name.kind == ParameterKind::kInharmonicity) return found.law.inharmonicity;
+  if (name.kind == ParameterKind::kFundamental) return found.found_law.fundamental;
+  if (name.kind == ParameterKind::kInharmonicity) return found.found_law.inharmonicity;
   if (name.kind == ParameterKind::kDampingFactor) return found.damping;
   if (name.kind == ParameterKind::kDampingPower) return found.damping_power;
   return value_of(name, found.model);
@@ -71,7 +70,9 @@ class JointLikelihoodFunction final : public ObjectiveFunction {
  public:
   JointLikelihoodFunction(Problem problem, ParameterSet parameters,
                           const JointLikelihood::Options& options)
-      : problem_(std::move(problem)), parameters_(std::move(parameters)), options_(options) {}
+      : problem_(std::move(problem)), parameters_(std::move(parameters)), options_(options) {
+    problem_.model = parameters_.initial();
+  }
   std::string_view name() const override { return "joint_likelihood"; }
   std::size_t dimension() const override { return parameters_.size(); }
   std::size_t residual_count() const override { return 2 * likelihood().record().bins; }

@@ -3,8 +3,8 @@
 #include <string_view>
 #include <vector>
 
-#include "libcalib/problem/nested_choice.hpp"
 #include "libcalib/objective.hpp"
+#include "libcalib/problem/nested_choice.hpp"
 
 namespace modcal {
 

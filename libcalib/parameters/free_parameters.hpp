@@ -11,11 +11,13 @@
 
 namespace modcal {
 
-/// Share of one mode in one column of the Jacobian: ∂ln ω_n/∂θ and ∂ln ζ_n/∂θ.
+/// Share of one mode in one column of the Jacobian: ∂ln ω_n/∂θ, ∂ln ζ_n/∂θ and ∂B/∂θ as far as it
+/// moves the residue.
 struct ColumnShare {
   std::size_t column = 0;
   double frequency = 0.0;
   double damping = 0.0;
+  double residue = 0.0;
 };
 
 /// How the columns of a Jacobian are made of ∂/∂ln ω_n and ∂/∂ln ζ_n, and which ones are those of
@@ -54,10 +56,14 @@ class FreeParameters {
   double share(std::size_t i, std::size_t mode, double inharmonicity) const {
     return type(i).share(inharmonicity, static_cast<double>(mode + 1));
   }
-  /// Columns by the coordinates at B; `without`: none for these parameters.
-  LikelihoodColumns columns(double inharmonicity, const std::vector<bool>& without = {}) const;
+  /// Columns by the coordinates at B, of the modes and of the higher ones behind them; `without`:
+  /// none for these parameters.
+  LikelihoodColumns columns(double inharmonicity, const std::optional<HigherModeLaw>& higher,
+                            const std::vector<bool>& without = {}) const;
 
  private:
+  void add_higher(double inharmonicity, const HigherModeLaw& higher,
+                  const std::vector<bool>& without, LikelihoodColumns& columns) const;
   enum class State { kOfLaw, kOwn, kFixed };
   struct Pole {
     State state = State::kOfLaw;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "libcalib/parameters/damping_choice.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -91,8 +92,8 @@ void PriorCorrelation::visit(OptionVisitor& visitor) {
 void UnknownsOptions::visit(OptionVisitor& visitor) {
   visitor.text({.key = "damping",
                 .meaning = "damping ratios: fixed; one factor of all; factor and power of the mode "
-                           "number; each",
-                .choices = {"fixed", "factor", "power", "each"}},
+                           "number; each; auto: each of a record's to the bound, else fixed",
+                .choices = choices_of(kDampingChoices)},
                damping);
   visitor.number({.key = "damping_width",
                   .meaning = "relative standard deviation of the prior of each damping ratio",
@@ -100,10 +101,16 @@ void UnknownsOptions::visit(OptionVisitor& visitor) {
                   .range = Range::positive()},
                  damping_width);
   std::vector<std::string> free = free_sensors();
-  visitor.texts({.key = "sensors",
-                 .meaning = "what is free of the sensor at x = L against that at x = 0",
-                 .choices = sensor_names()},
-                free);
+  if (exact_sensors) free.emplace_back("exact");
+  std::vector<std::string_view> choices = sensor_names();
+  choices.emplace_back("exact");
+  visitor.texts(
+      {.key = "sensors",
+       .meaning = "what is free of the sensor at x = L against that at x = 0; none named: "
+                  "gain and delay of a record under priors; exact: nothing",
+       .choices = choices},
+      free);
+  exact_sensors = std::find(free.begin(), free.end(), "exact") != free.end();
   std::vector<std::string_view> own = {"x_c"};
   for (std::size_t i = 0; i < Sensor::kCount; ++i) {
     const ParameterType& type = sensor_type(i);
@@ -133,6 +140,29 @@ std::vector<std::string> UnknownsOptions::free_sensors() const {
     if (sensor[i].free) names.emplace_back(sensor_type(i).name);
   }
   return names;
+}
+
+UnknownsOptions UnknownsOptions::of_records(double sample_rate) const {
+  constexpr double kGainWidth = 0.02, kDelayWidth = 1.0;  // of the gain; samples
+  UnknownsOptions known = *this;
+  if (damping_choice(damping) == DampingChoice::kAuto) {
+    known.damping = "each";
+    if (damping_width == UnknownsOptions().damping_width) known.damping_width = 1.0;
+  }
+  if (exact_sensors || sensors().may_differ()) return known;
+  const auto release = [&](Sensor::Index i, double width) {
+    known.sensor[i].free = true;
+    known.priors.push_back({std::string(sensor_type(i).name), known.sensor[i].value, width});
+  };
+  release(Sensor::kGain, kGainWidth);
+  release(Sensor::kDelay, kDelayWidth / sample_rate);
+  return known;
+}
+
+UnknownsOptions UnknownsOptions::of_simulations() const {
+  UnknownsOptions known = *this;
+  if (damping_choice(damping) == DampingChoice::kAuto) known.damping = "fixed";
+  return known;
 }
 
 void UnknownsOptions::require_contacts(std::size_t strokes) const {

@@ -45,12 +45,14 @@ struct PriorCorrelation {
 /// What is unknown of the damping and of the sensor at x = L beside frequencies and contact, and
 /// what is known of all of them beforehand.
 struct UnknownsOptions {
-  /// "fixed": ζ_n as stated; "factor": times one factor; "power": times a factor and a power of n;
-  /// "each": every ζ_n, under a prior about the stated one.
+  /// "auto": each of a recorded string, fixed of a simulated one; "fixed": ζ_n as stated; "factor":
+  /// times one factor; "power": times a factor and a power of n; "each": every ζ_n, under a prior
+  /// about the stated one.
   std::string damping = "factor";
   double damping_width = 0.3;  ///< sd of the prior of each ln ζ_n, with "each" [1]
   /// Gain [1], delay [s] and corner [Hz] of the sensor at x = L.
   std::array<UnknownOption, Sensor::kCount> sensor = {{{.value = 1.0}}};
+  bool exact_sensors = false;  ///< they are as stated, in a record too
   /// What each record has for itself, of x_c, gain, delay, corner and the factor "damping".
   std::vector<std::string> per_record = {"x_c"};
   std::vector<FixedParameter> fixed;
@@ -59,6 +61,12 @@ struct UnknownsOptions {
   void visit(OptionVisitor& visitor);
   Sensor sensors() const;                         ///< start
   std::vector<std::string> free_sensors() const;  ///< some of gain, delay, corner
+  /// Of records, of which nothing is stated that says otherwise: gain and delay are free under
+  /// priors of 2 % and of one sample, every ζ_n is under `damping_width`. What two sensors differ
+  /// by biases f_n by many of their deviations before any test of the misfit sees it.
+  UnknownsOptions of_records(double sample_rate) const;
+  /// The same of simulated strings.
+  UnknownsOptions of_simulations() const;
   /// Whether it is each record's own.
   bool own(const ParameterName& name) const;
   /// Throws InvalidInput for a prior or a fixed value of a contact that no stroke has.
@@ -71,7 +79,7 @@ struct ParameterOptions {
   std::vector<std::int64_t> modes;   ///< mode numbers, with frequencies: listed
   bool law = false;                  ///< f0 and B
   bool contact = false;              ///< x_c
-  UnknownsOptions unknowns{.damping = "fixed"};
+  UnknownsOptions unknowns{.damping = "auto"};
   /// Relative width τ of the prior of f_n about the law; NaN: estimated from the modes the data see
   /// well [1].
   double law_width = std::numeric_limits<double>::quiet_NaN();

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "libcalib/parameters/damping_choice.hpp"
 #include "libcalib/parameters/parameter_options.hpp"
 #include "libsim/base/error.hpp"
 
@@ -88,7 +89,7 @@ void require_free(const UnknownsOptions& options, const std::string& parameter,
   MODCAL_REQUIRE(kind != Kind::kSensor || options.sensor[name.index].free,
                  "{} has a prior and is not free: name it among the sensors", parameter);
   const std::string& damping = options.damping;
-  MODCAL_REQUIRE(kind != Kind::kDampingRatio || damping != "fixed",
+  MODCAL_REQUIRE(kind != Kind::kDampingRatio || frees_damping(damping),
                  "{} has a prior and is not free: state damping: each, factor or power", parameter);
   MODCAL_REQUIRE(
       kind != Kind::kDampingFactor || damping == "factor" || damping == "power",

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "libsim/base/options.hpp"
+#include "libsim/model/higher_modes.hpp"
 #include "libsim/model/modal_basis.hpp"
 #include "libsim/model/sensor.hpp"
 
@@ -23,6 +24,8 @@ struct ModelPoint {
   double contact = std::numeric_limits<double>::quiet_NaN();  ///< x_c [m]
   /// Of x = L against that of x = 0; known to the joint likelihood and the innovation misfit.
   Sensor sensors = {};
+  /// What stands for the modes above; none: there are none, as in a simulation of these alone.
+  std::optional<HigherModeLaw> higher = {};
 };
 
 enum class ParameterKind {

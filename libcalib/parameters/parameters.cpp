@@ -115,6 +115,10 @@ ModelPoint ParameterSet::model(std::span<const double> x) const {
     }
     point.basis.zeta[n] *= law.damping(n);
   }
+  if (point.higher && law_is_free()) {
+    point.higher->fundamental = law.fundamental;
+    point.higher->inharmonicity = law.inharmonicity;
+  }
   for (std::size_t i = 0; i < size(); ++i) {
     const ParameterType& type = free_.type(i);
     if (type.at) *type.at(point, free_[i].index) = type.per_unit * x[i];

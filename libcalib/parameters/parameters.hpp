@@ -58,7 +58,7 @@ class ParameterSet {
   }
   /// Columns of a Jacobian by the coordinates of the parameters (ParameterType).
   LikelihoodColumns columns(std::span<const double> x) const {
-    return free_.columns(law_at(x).inharmonicity);
+    return free_.columns(law_at(x).inharmonicity, initial_.higher);
   }
 
  private:

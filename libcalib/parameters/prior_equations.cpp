@@ -67,15 +67,26 @@ void PriorEquations::hold(Index i, double value) {
 Eigen::VectorXd PriorEquations::completed(const Eigen::VectorXd& theta) const {
   Eigen::VectorXd z = Eigen::VectorXd::Zero(unknowns_ + 2);
   z.head(unknowns_) = theta;
-  const Eigen::Vector2d right = right_.tail(2) - normal_.bottomRows(2) * z;
+  z.tail(2) = law_covariance() * (right_.tail(2) - normal_.bottomRows(2) * z);
+  return z;
+}
+
+// Of (ln f_0, B) where θ is known.
+Eigen::Matrix2d PriorEquations::law_covariance() const {
   const Eigen::Matrix2d normal = normal_.bottomRightCorner<2, 2>();
   const Eigen::Vector2d scale = normal.diagonal().unaryExpr(
       [](double entry) { return entry > 0.0 ? 1.0 / std::sqrt(entry) : 0.0; });
   Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix2d> solver;
   solver.setThreshold(1e-11);
   solver.compute(scale.asDiagonal() * normal * scale.asDiagonal());
-  z.tail(2) = scale.asDiagonal() * solver.solve(scale.asDiagonal() * right).eval();
-  return z;
+  return scale.asDiagonal() * solver.pseudoInverse() * scale.asDiagonal();
+}
+
+LawPosterior PriorEquations::law(const Eigen::VectorXd& theta,
+                                 const Eigen::MatrixXd& covariance) const {
+  const Eigen::Matrix2d own = law_covariance();
+  const Eigen::MatrixXd gain = own * normal_.bottomLeftCorner(2, unknowns_);
+  return {completed(theta).tail<2>(), own + gain * covariance * gain.transpose()};
 }
 
 QuadraticPrior PriorEquations::solve() const {

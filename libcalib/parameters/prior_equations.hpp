@@ -30,6 +30,12 @@ struct LawScatter {
 
 /// Statements a·z + offset = mean + N(0, C) about z = (θ, ln f_0, B). f_0 and B of the law, which
 /// may be no unknowns of the fit, are integrated out: least squares eliminates them.
+/// Mean and covariance of (ln f_0, B).
+struct LawPosterior {
+  Eigen::Vector2d mean;
+  Eigen::Matrix2d covariance;
+};
+
 class PriorEquations {
  public:
   explicit PriorEquations(Eigen::Index unknowns);
@@ -48,10 +54,14 @@ class PriorEquations {
   /// z = (θ, ln f_0, B) with the f_0 and B that fit the statements best at θ; 0 for one that no
   /// statement is about or that is held.
   Eigen::VectorXd completed(const Eigen::VectorXd& theta) const;
+  /// What the statements say of the law where the data have θ with that mean and covariance: their
+  /// own scatter about the law joins it. 0 of what no statement is about or what is held.
+  LawPosterior law(const Eigen::VectorXd& theta, const Eigen::MatrixXd& covariance) const;
   /// The mean is of smallest norm where the statements leave a direction of θ open.
   QuadraticPrior solve() const;
 
  private:
+  Eigen::Matrix2d law_covariance() const;
   Eigen::Index unknowns_;
   Eigen::MatrixXd normal_;
   Eigen::VectorXd right_;

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "libcalib/parameters/damping_choice.hpp"
+
 namespace modcal {
 namespace {
 
@@ -74,7 +76,7 @@ void StringUnknowns::list() {
   const bool each = options_.damping == "each" && !law_;
   if (each) {
     add_modes(Kind::kDampingRatio);
-  } else if (options_.damping != "fixed") {
+  } else if (frees_damping(options_.damping)) {
     free_.add({Kind::kDampingFactor});
   }
   if (options_.damping == "power") free_.add({Kind::kDampingPower});
@@ -251,6 +253,10 @@ bool StringUnknowns::admits(const Eigen::VectorXd& theta) const {
 
 ModelPoint StringUnknowns::model(const Eigen::VectorXd& theta) const {
   ModelPoint point = reference_;
+  if (point.higher && law_) {
+    point.higher->fundamental = fundamental(theta);
+    point.higher->inharmonicity = theta[1];
+  }
   for (std::size_t i = 0; i < modes(); ++i) {
     const double n = static_cast<double>(i + 1);
     if (law_ && free_.follows_law(Moves::kFrequencies, i)) {
@@ -272,7 +278,7 @@ ModelPoint StringUnknowns::model(const Eigen::VectorXd& theta) const {
 LikelihoodColumns StringUnknowns::columns(const Eigen::VectorXd& theta, std::size_t record) const {
   std::vector<bool> known;
   for (Index i = 0; i < size(); ++i) known.push_back(held(i, record));
-  return free_.columns(law_ ? theta[1] : 0.0, known);
+  return free_.columns(law_ ? theta[1] : 0.0, reference_.higher, known);
 }
 
 }  // namespace modcal

@@ -77,6 +77,8 @@ class StringUnknowns {
   QuadraticPrior prior(const Eigen::VectorXd& theta) const;
   /// The same with frequencies about the law.
   QuadraticPrior prior(const Eigen::VectorXd& theta, const LawScatter& law) const;
+  /// What is stated, with the law's scatter, linear about θ.
+  PriorEquations stated(const Eigen::VectorXd& theta, const LawScatter& law) const;
   /// Adds the priors of every ζ_n about `mean`, where each is free, unless something else is stated
   /// of it.
   void state_damping_ratios(const std::vector<double>& mean, PriorEquations& equations) const;
@@ -92,7 +94,6 @@ class StringUnknowns {
  private:
   LinearForm form(double offset) const;
   PriorEquations stated(const Eigen::VectorXd& theta) const;
-  PriorEquations stated(const Eigen::VectorXd& theta, const LawScatter& law) const;
   PriorMisfit misfit_at(const Eigen::VectorXd& theta, const PriorEquations& equations) const;
   StatedPriors::Coordinate coordinates(const Eigen::VectorXd& theta) const;
   double damping_change(std::size_t mode, const Eigen::VectorXd& theta) const;

@@ -44,6 +44,7 @@ struct CalibrationRecord {
   std::array<double, 2> noise{std::numeric_limits<double>::quiet_NaN(),
                               std::numeric_limits<double>::quiet_NaN()};
   bool pluck = false;
+  bool recorded = false;  ///< it is no simulation of a model of stated modes alone
 };
 
 }  // namespace modcal

@@ -165,7 +165,8 @@ Observation with_sensors_alike(Observation observation, const Sensor& sensors);
 /// Throws InvalidInput where the estimator is told of sensors that differ and the calibration finds
 /// or is told how they do, too: with_sensors_alike() has then taken out what the estimator takes
 /// out.
-void require_sensors_once(const CalibrationOptions& calibration, const Estimator& estimator);
+void require_sensors_once(const CalibrationOptions& calibration, const Estimator& estimator,
+                          bool recorded);
 
 /// What was taken out, for a report; empty for equal sensors or where x = L was not recorded.
 std::string correction_text(const Observation& observation, const Sensor& sensors);

@@ -14,8 +14,9 @@ void lint_sensors(const CalibrateOptions& options, std::vector<Finding>& finding
   } catch (const InvalidInput&) {
     return;  // the inversion's finding
   }
-  lint_making(findings, "inversion.estimator",
-              [&] { require_sensors_once(options.calibration, *estimator); });
+  lint_making(findings, "inversion.estimator", [&] {
+    require_sensors_once(options.calibration, *estimator, options.inversion.observation.has_record);
+  });
 }
 
 // Whether a simulated record shows the noise levels that are not stated; a file is not read here.

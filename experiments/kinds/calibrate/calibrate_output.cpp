@@ -130,8 +130,8 @@ void visit_estimate(ResultVisitor& visitor, const ContinuationResult& found) {
   group("priors", visit_misfit, found.priors);
   group("law_priors", visit_misfit, found.law.priors);
   visitor({.key = "law_width"}, found.law_width);
-  visitor({.key = "f0_sd_hz"}, found.law.deviation[0]);
-  visitor({.key = "B_sd"}, found.law.deviation[1]);
+  visitor({.key = "f0_sd_hz"}, found.found_law.deviation[0]);
+  visitor({.key = "B_sd"}, found.found_law.deviation[1]);
   visitor({.key = "x_c_sd_m"}, found.contact_deviation);
   visitor({.key = "damping_sd"}, found.damping_deviation);
   visitor({.key = "noise_left_n"}, found.noise[0]);

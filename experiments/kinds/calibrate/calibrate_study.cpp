@@ -171,7 +171,9 @@ CalibrationOutcome calibrate_strokes(const CalibrateOptions& options,
       with_errors(observation.basis, observation.contact, options.inversion.model_error,
                   options.inversion.key().with("model error"));
   std::vector<CalibrationRecord> records;
-  for (const Observation& stroke : strokes) records.push_back({.data = calibration_data(stroke)});
+  for (const Observation& stroke : strokes) {
+    records.push_back({.data = calibration_data(stroke), .recorded = stroke.truth == nullptr});
+  }
   records.insert(records.end(), plucks.begin(), plucks.end());
   outcome.result = calibrate({outcome.initial.basis, outcome.initial.contact}, std::move(records),
                              options.calibration, std::move(clock));
@@ -187,7 +189,8 @@ StudyResult CalibrateOptions::run(const StudyContext& context) const {
   const Observation measured =
       observe(inversion.observation, outputs, context.work.truths, inversion.key(), context.folder);
   further.require_fit_to(inversion.observation, calibration);
-  require_sensors_once(calibration, *inversion.inversion.estimator.make());
+  require_sensors_once(calibration, *inversion.inversion.estimator.make(),
+                       inversion.observation.has_record);
   std::vector<Observation> strokes = further_observations(*this, context);
   strokes.insert(strokes.begin(), measured);
   require_plucks(plucks, inversion.observation, calibration);
@@ -239,8 +242,11 @@ Observation with_sensors_alike(Observation observation, const Sensor& sensors) {
   return observation;
 }
 
-void require_sensors_once(const CalibrationOptions& calibration, const Estimator& estimator) {
-  const bool corrected = calibration.parameters.unknowns.sensors().may_differ();
+void require_sensors_once(const CalibrationOptions& calibration, const Estimator& estimator,
+                          bool recorded) {
+  const UnknownsOptions& unknowns = calibration.parameters.unknowns;
+  const bool found = recorded && calibration.by_schedule() && !unknowns.exact_sensors;
+  const bool corrected = found || unknowns.sensors().may_differ();
   const auto [left, right] = estimator.sensors();
   MODCAL_REQUIRE(
       !corrected || (left.gain == right.gain && left.delay == right.delay),

@@ -18,7 +18,7 @@ std::string condition_text(const NamedCovariance& covariance) {
 std::string verdict_lines(const ContinuationResult& found) {
   std::string text =
       fmt::format("{}\nsd: f0 {:.3g} Hz, B {:.3g}, x_c {:.3g} m, damping factor {:.3g}\n",
-                  chi2_text(found), found.law.deviation[0], found.law.deviation[1],
+                  chi2_text(found), found.found_law.deviation[0], found.found_law.deviation[1],
                   found.contact_deviation, found.damping_deviation);
   text += prior_lines(found.law.priors, "law");
   if (found.frequencies_free) text += prior_lines(found.priors, "every frequency");

@@ -41,10 +41,10 @@ ModelStage bound_stage(const ContinuationResult& found, std::int64_t evaluations
                    .model = {found.model.basis, found.model.contact},
                    .contact_deviation = found.contact_deviation,
                    .evaluations = evaluations};
-  stage.law.fundamental = found.law.fundamental;
-  stage.law.inharmonicity = found.law.inharmonicity;
-  stage.law.fundamental_deviation = found.law.deviation[0];
-  stage.law.inharmonicity_deviation = found.law.deviation[1];
+  stage.law.fundamental = found.found_law.fundamental;
+  stage.law.inharmonicity = found.found_law.inharmonicity;
+  stage.law.fundamental_deviation = found.found_law.deviation[0];
+  stage.law.inharmonicity_deviation = found.found_law.deviation[1];
   for (const ModeVerdict& mode : found.modes) stage.deviation.push_back(mode.deviation);
   return stage;
 }

@@ -38,6 +38,24 @@ ContinuationResult with_misfit_for_noise(const AttemptInput& input,
   return found;
 }
 
+// A noise level read above the modes holds what the string still sounds there too. Where the fit
+// leaves less, what it leaves is the noise, and the fit is made again with that; once more for what
+// the first round changed.
+ContinuationResult attempt(const AttemptInput& input, NoisyRecords& records, double shift,
+                           std::size_t evaluations) {
+  ContinuationResult found = attempt_continuation(input, shift, evaluations);
+  for (int round = 0; round < 2; ++round) {
+    const bool less = found.chi2 < 1.0 - 3.0 * found.chi2_deviation;
+    if (input.noise_error == 0.0 || !less) break;
+    for (double& deviation : records.deviation) deviation *= std::sqrt(found.chi2);
+    std::vector<FitStage> stages = std::move(found.stages);
+    found = attempt_continuation(input, shift, found.evaluations);
+    append_stages(found.stages, "less noise: ", 0, stages);
+    found.stages = std::move(stages);
+  }
+  return found;
+}
+
 // What is the first record's, and the stages of all fits in order.
 void complete_by_single(ContinuationResult& fit) {
   const ContinuationResult& one = fit.single.front();
@@ -63,6 +81,15 @@ void complete_by_single(ContinuationResult& fit) {
 
 }  // namespace
 
+FoundLaw FoundLaw::of(const LawPosterior& posterior, const StatedPriors& priors) {
+  const double fundamental =
+      priors.fixed({ParameterKind::kFundamental}).value_or(std::exp(posterior.mean[0]));
+  return {
+      fundamental,
+      priors.fixed({ParameterKind::kInharmonicity}).value_or(posterior.mean[1]),
+      {fundamental * std::sqrt(posterior.covariance(0, 0)), std::sqrt(posterior.covariance(1, 1))}};
+}
+
 void append_stages(const std::vector<FitStage>& further, const std::string& prefix,
                    std::size_t evaluations, std::vector<FitStage>& stages) {
   for (FitStage stage : further) {
@@ -85,7 +112,7 @@ ContinuationResult calibrate_by_continuation(const ModelPoint& initial, const Ca
                                              const ContinuationOptions& options,
                                              const StatedPriors& priors, Evaluator* within) {
   const std::array<double, 2> noise{options.left_noise, options.right_noise};
-  const NoisyRecords records = NoisyRecords::of_data(data, initial.basis, noise);
+  NoisyRecords records = NoisyRecords::of_data(data, initial.basis, noise);
   const double noise_error = noise_power_error(noise, initial.basis, data);
   const double highest = likelihood_band(initial, options.highest_frequency, data.sample_rate);
   constexpr double kShifts[] = {0.0, 4e-3, -4e-3, 8e-3, -8e-3};
@@ -94,7 +121,7 @@ ContinuationResult calibrate_by_continuation(const ModelPoint& initial, const Ca
   std::size_t evaluations = 0;
   std::vector<FitStage> stages;
   for (std::size_t i = 0; i <= static_cast<std::size_t>(options.restarts); ++i) {
-    ContinuationResult found = attempt_continuation(input, kShifts[i], evaluations);
+    ContinuationResult found = attempt(input, records, kShifts[i], evaluations);
     evaluations = found.evaluations;
     append_stages(found.stages, i == 0 ? "" : fmt::format("restart {}: ", i), 0, stages);
     found.restarts = i;

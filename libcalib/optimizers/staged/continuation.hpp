@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "libcalib/identifiability/law_followers.hpp"
+#include "libcalib/likelihood/likelihood_band.hpp"
 #include "libcalib/parameters/named_covariance.hpp"
 #include "libcalib/parameters/parameters.hpp"
 #include "libcalib/parameters/string_unknowns.hpp"
@@ -68,6 +69,16 @@ struct LawEstimate {
   NamedCovariance covariance;  ///< of f0, B, x_c, damping and sensors, as far as they are free
 };
 
+/// The law that the frequencies found follow; their scatter about it is in the deviations.
+struct FoundLaw {
+  double fundamental = 0.0, inharmonicity = 0.0;
+  std::array<double, 2> deviation{};
+  static FoundLaw of(const LawPosterior& posterior, const StatedPriors& priors);
+  static FoundLaw of(const LawEstimate& law) {
+    return {law.fundamental, law.inharmonicity, {law.deviation[0], law.deviation[1]}};
+  }
+};
+
 /// Sensors and damping as one record has them, its own or shared.
 struct RecordValues {
   Sensor sensors;
@@ -84,7 +95,8 @@ struct ContinuationResult {
   std::vector<double> contact_deviations;  ///< [m]
   std::vector<RecordValues> values;        ///< of every stroke, then of every pluck
   std::vector<ContinuationResult> single;  ///< of several records every stroke by itself
-  LawEstimate law;
+  LawEstimate law;                         ///< fitted alone
+  FoundLaw found_law;  ///< through the frequencies, where each is free; else `law`
   bool frequencies_free = false;
   std::vector<ModeVerdict> modes;
   /// Relative standard deviations of f_n by several records, where every frequency is free.
@@ -114,11 +126,6 @@ struct ContinuationResult {
   std::vector<FitStage> stages;   ///< of all starts, in order
   std::array<double, 2> noise{};  ///< s_r [N]
 };
-
-/// Highest ω of the likelihood's bins [rad/s]: highest_frequency [Hz], or 1.05 times the highest
-/// mode where that is NaN; below 0.4 f_s. Throws InvalidInput where fewer than two modes lie below
-/// a stated one.
-double likelihood_band(const ModelPoint& point, double highest_frequency, double sample_rate);
 
 /// Law (f_0, B, x_c, then one damping factor) through σ ≈ 200, 100, 50, 20 1/s (in proportion to
 /// f_0/196 Hz) on records cut to 8/σ, started from the law fitted to the initial frequencies and

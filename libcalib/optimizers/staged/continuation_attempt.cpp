@@ -45,7 +45,9 @@ class Attempt {
       free_frequencies(input_, {law_, accepted ? law_theta_ : ladder_theta_, accepted}, stroke_,
                        result);
       leave_out(result);
-      report_departures(result.law, result.modes);
+      report_departures(result.found_law, result.modes);
+    } else {
+      result.found_law = FoundLaw::of(result.law);
     }
     result.fits = result.chi2 < 1.0 + 3.0 * result.chi2_deviation;
     result.right = result.fits && !result.priors.contradicted();

@@ -24,6 +24,7 @@ class FreeStage {
       : priors_(input.priors),
         options_(input.options),
         misfit_for_noise_(input.misfit_for_noise),
+        highest_(input.highest),
         start_(start),
         stroke_(stroke),
         unknowns_(StringUnknowns::frequencies(start.law.model(start.theta), input.options.unknowns,
@@ -70,6 +71,7 @@ class FreeStage {
     search_weighted();
     stroke_.end_stage("free, weighted bins", objective_, std::numeric_limits<double>::quiet_NaN());
     at_ = stroke_.weighted_point(unknowns_, theta_);
+    seen_at_ = theta_;
     // A prior of a mode's frequency is no sight of it.
     NewtonOptions unstated = newton_;
     set_prior(unknowns_.under(priors_.without_frequencies()).prior(theta_, {wide, inharmonicity_}),
@@ -78,6 +80,7 @@ class FreeStage {
     const ModelPoint point = unknowns_.model(theta_);
     sight_ = sight_of(theta_.head(modes()), deviation.head(modes()).cwiseSqrt(), at_.information,
                       newton_.noise, nodes(point.basis, {point.contact}));
+    leave_out_of_band(point, highest_, sight_);
     doubt_rivals(left, sight_);
   }
 
@@ -145,6 +148,9 @@ class FreeStage {
     result_.sensor_deviation = unknowns_.sensor_deviation(result_.model, covariance);
     result_.modes = free_verdicts(result_.model, deviation.head(modes()), sight_.seen, followers_);
     trust_stated_frequencies(priors_, deviation, result_.modes);
+    const LawScatter scatter{followers_.scatters(), inharmonicity_};
+    const PriorEquations statements = unknowns_.stated(seen_at_, scatter);
+    result_.found_law = FoundLaw::of(law_of_step(statements, at_, seen_at_, newton_), priors_);
     result_.covariance = named_covariance(unknowns_, theta_, result_.damping, covariance);
     raise_to_verdicts(result_.modes, result_.covariance);
   }
@@ -152,12 +158,14 @@ class FreeStage {
   const StatedPriors& priors_;
   const ContinuationOptions& options_;
   bool misfit_for_noise_;
+  double highest_;
   const FreeStart& start_;
   StrokeFit& stroke_;
   StringUnknowns unknowns_;
   double inharmonicity_;
   NewtonOptions newton_{.steps = 10, .tolerance = 1e-2, .frequency_cap = kStepCap};
   Eigen::VectorXd theta_, widths_;
+  Eigen::VectorXd seen_at_;
   LikelihoodPoint at_;      // where the modes were seen, with the weights of then
   double objective_ = 0.0;  // of the last fit with weights
   ModeSight sight_;

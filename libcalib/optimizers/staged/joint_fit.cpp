@@ -93,6 +93,7 @@ class JointFit {
     fit_.law.chi2 = fit_.chi2;
     fit_.law.accepted = fit_.fits;
     fit_.law.priors = fit_.priors;
+    fit_.found_law = FoundLaw::of(fit_.law);
   }
 
  private:
@@ -115,9 +116,9 @@ class JointFit {
   WhitenedRecord whitened(const CalibrationData& data, const std::array<double, 2>& noise) {
     if (within_) within_->poll();
     noise_errors_.push_back(noise_power_error(noise, initial_.basis, data));
-    return WhitenedRecord::of(
-        NoisyRecords::of_data(data, initial_.basis, noise), 0.0,
-        likelihood_band(initial_, options_.highest_frequency, data.sample_rate));
+    const double band = likelihood_band(initial_, options_.highest_frequency, data.sample_rate);
+    highest_ = std::max(highest_, band);
+    return WhitenedRecord::of(NoisyRecords::of_data(data, initial_.basis, noise), 0.0, band);
   }
   LikelihoodPoint point(bool twice_weighted) {
     if (within_) within_->spend(1);
@@ -196,7 +197,11 @@ class JointFit {
                           (n * std::sqrt(1.0 + inharmonicity() * n * n)));
     }
     ModeSight sight = sight_of(delta, deviation, at.information, newton.noise, nodes_of_all());
+    leave_out_of_band(model, highest_, sight);
     followers_ = find_followers(sight, inharmonicity(), options_.law_width);
+    const Eigen::VectorXd scatters = followers_.scatters();
+    const LawPosterior law = law_of_step(equations(priors_, &scatters), at, theta_, newton);
+    fit_.found_law = FoundLaw::of(law, priors_);
     fit_.law_width = followers_.prior_width;
     Eigen::VectorXd widths = prior_widths(sight.seen, fit_.law_width, followers_.width);
     widen_stated(priors_, fit_.law_width, widths);
@@ -225,6 +230,7 @@ class JointFit {
   AllRecords all_;
   std::vector<std::shared_ptr<const PluckLikelihood>> plucks_;
   std::vector<double> noise_errors_;
+  double highest_ = 0.0;  // of the widest band [rad/s]
   Eigen::VectorXd theta_;
   Eigen::VectorXd seen_;  // of δ, under the wide prior
   LawFollowers followers_;
@@ -259,7 +265,7 @@ void fit_jointly(const ModelPoint& initial, const ContinuationOptions& options,
   fit.law = alone.law;
   append_stages(alone.stages, "", fit.evaluations, fit.stages);
   fit.evaluations += alone.evaluations;
-  report_departures(fit.law, fit.modes);
+  report_departures(fit.found_law, fit.modes);
 }
 
 }  // namespace modcal

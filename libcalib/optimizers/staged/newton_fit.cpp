@@ -156,6 +156,18 @@ Eigen::MatrixXd fit_covariance(const LikelihoodPoint& point, const NewtonOptions
   return inverse * score * inverse;
 }
 
+LawPosterior law_of_step(const PriorEquations& statements, const LikelihoodPoint& at,
+                         const Eigen::VectorXd& theta, NewtonOptions options) {
+  QuadraticPrior prior = statements.solve();
+  const Eigen::VectorXd pull = prior.precision * (theta - prior.mean);
+  options.prior = std::move(prior.precision);
+  const UnitDiagonal hessian(hessian_of(at, options));
+  const Eigen::VectorXd gradient = 2.0 * at.slope + pull;
+  const Eigen::VectorXd step =
+      hessian.scale.asDiagonal() * hessian.factor.solve(hessian.scale.asDiagonal() * gradient);
+  return statements.law(theta - step, fit_covariance(at, options));
+}
+
 NewtonFit newton_fit(const FitTarget& target, const Eigen::VectorXd& start,
                      const NewtonOptions& options, Evaluator* within) {
   const FitFunction function(target, start.size(), options);

@@ -57,6 +57,11 @@ NewtonFit newton_fit(const ProjectedLikelihood& likelihood, const StringUnknowns
                      const Eigen::VectorXd& start, const NewtonOptions& options);
 FitTarget fit_target(const ProjectedLikelihood& likelihood, const StringUnknowns& unknowns);
 
+/// The law under these statements, which take the place of the prior among the options, by one step
+/// from a point with `twice_weighted` at θ.
+LawPosterior law_of_step(const PriorEquations& statements, const LikelihoodPoint& at,
+                         const Eigen::VectorXd& theta, NewtonOptions options);
+
 /// How many residuals the fit takes, 2 tr H⁻¹JᵀWJ: an unknown that its prior holds takes none.
 double taken_by_fit(const LikelihoodPoint& point, const NewtonOptions& options);
 

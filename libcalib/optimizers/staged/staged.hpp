@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "libcalib/problem/nested_choice.hpp"
 #include "libcalib/optimizer.hpp"
+#include "libcalib/problem/nested_choice.hpp"
 
 namespace modcal {
 

@@ -46,8 +46,7 @@ void StrokeFit::count() {
 }
 
 bool StrokeFit::admits(const StringUnknowns& unknowns, const Eigen::VectorXd& theta) const {
-  return unknowns.admits(theta) &&
-         bounds_of(unknowns).hold(theta);
+  return unknowns.admits(theta) && bounds_of(unknowns).hold(theta);
 }
 
 NewtonFit StrokeFit::fit(const ProjectedLikelihood& likelihood, const StringUnknowns& unknowns,

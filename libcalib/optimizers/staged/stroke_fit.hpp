@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "libcalib/optimizers/staged/continuation_attempt.hpp"
 #include "libcalib/likelihood/unknown_bounds.hpp"
+#include "libcalib/optimizers/staged/continuation_attempt.hpp"
 #include "libcalib/optimizers/staged/newton_fit.hpp"
 
 namespace modcal {

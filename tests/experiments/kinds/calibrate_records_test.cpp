@@ -54,8 +54,9 @@ class CalibrateRecords : public testing::Test {
     write_csv(folder_ / file, signals);
   }
 
+  // What was recorded is a simulation of exactly the stated modes.
   StudyResult run(const std::string& noise, const std::string& further,
-                  const std::string& sensors = "") {
+                  const std::string& sensors = ", sensors: [exact]") {
     const LoadedExperiment loaded = load_experiment(
         parse_yaml("kind: calibrate\n"
                    "record: {file: stroke.csv, left: {channel: R1}, right: {channel: R2}, "
@@ -64,7 +65,7 @@ class CalibrateRecords : public testing::Test {
                    "bow: {position: 30 mm}\n"
                    "calibration: {parameters: {law: true, contact: true, damping: factor" +
                        sensors + "}, objective: {type: joint_likelihood" + noise +
-                       "}, optimizer: staged}\n" + further,
+                       "}, optimizer: staged, remainder: none}\n" + further,
                    (folder_ / "experiment.yaml").string()));
     EXPECT_EQ(format_mistakes(loaded.document, loaded.mistakes), "");
     return loaded.experiment ? loaded.experiment->run(context()) : StudyResult();
@@ -234,11 +235,12 @@ TEST_F(CalibrateRecords, TakeTheDifferenceOfTheSensorsOutOnce) {
   };
   for (const char* estimator : {"{type: joint, gain2: 1.05}", "{type: joint, delay2: 20 us}",
                                 "{type: linear_limit, gain1: 2, gain2: 2.1}"}) {
-    for (const char* differing : {", sensors: [gain]", ", delay: 20 us"}) {
+    for (const char* differing : {", sensors: [gain]", ", delay: 20 us", ""}) {
       EXPECT_THAT(refusal(differing, estimator), testing::HasSubstr("would take it out once more"))
           << estimator << differing;
     }
-    EXPECT_EQ(refusal("", estimator), "");  // a calibration that knows of no difference
+    // A calibration that knows of no difference.
+    EXPECT_EQ(refusal(", sensors: [exact]", estimator), "");
   }
   EXPECT_EQ(refusal(", sensors: [gain]", "{type: joint, gain1: 2, gain2: 2}"), "");
 }

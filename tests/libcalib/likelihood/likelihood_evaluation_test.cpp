@@ -109,6 +109,90 @@ TEST_F(OneSecond, SlopeAloneIsThatOfTheColumns) {
   }
 }
 
+// A string whose modes above the stated ones are in the model.
+ModelPoint with_higher(ModelPoint point, bool bending) {
+  point.higher = HigherModeLaw::above(point.basis, 196.0, 1.39e-4, 10300.0, bending);
+  return point;
+}
+
+TEST_F(OneSecond, HigherModesChangeNoneOfThis) {
+  UnknownsOptions sensors;
+  sensors.sensor[Sensor::kGain].free = true;
+  for (const bool bending : {false, true}) {
+    const ModelPoint truth = with_higher(bowed.truth, bending);
+    const std::vector<StringUnknowns> all = {StringUnknowns::law(truth, 196.0, 1.39e-4, sensors),
+                                             StringUnknowns::frequencies(truth, sensors)};
+    for (const double sigma : {0.0, 20.0}) {
+      const WhitenedRecord whitened = record(sigma);
+      for (const StringUnknowns& unknowns : all) {
+        const ModelPoint point = beside(unknowns);
+        const LikelihoodColumns columns = unknowns.columns(unknowns.start());
+        const LikelihoodPoint full =
+            LikelihoodEvaluation(whitened, point, false).differentiate(columns, {});
+        // What is smooth at the record's end is nearly a sum of decays: there the ridge decides,
+        // and an error of 1e-15 grows by its inverse, 1e9.
+        constexpr double kDependent = 1e-6;
+        expect_near(LikelihoodEvaluation(whitened, point).differentiate(columns, {}), full,
+                    kDependent);
+        expect_near(LikelihoodEvaluation(whitened, point).slope(columns), full, kDependent);
+      }
+    }
+  }
+}
+
+// By f0, B and x_c, through every mode of the law; damped records have no end state, whose ridge
+// would spoil the differences.
+TEST_F(OneSecond, SlopesByTheLawHoldTheHigherModes) {
+  const WhitenedRecord whitened = record(20.0);
+  for (const bool bending : {false, true}) {
+    const StringUnknowns unknowns =
+        StringUnknowns::law(with_higher(bowed.truth, bending), 196.0, 1.39e-4);
+    Eigen::VectorXd theta = unknowns.start();
+    const auto cost = [&](const Eigen::VectorXd& at) {
+      return LikelihoodEvaluation(whitened, unknowns.model(at)).slope(LikelihoodColumns{}).cost;
+    };
+    theta[0] += 2e-5;  // off the optimum, where slopes are large
+    const Eigen::VectorXd slope =
+        LikelihoodEvaluation(whitened, unknowns.model(theta)).slope(unknowns.columns(theta)).slope;
+    const double steps[] = {1e-7, 1e-9, 1e-8};
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      Eigen::VectorXd high = theta, low = theta;
+      high[i] += steps[i], low[i] -= steps[i];
+      const double expected = 0.25 * (cost(high) - cost(low)) / steps[i];
+      // Central differences: what is left is of third order in steps of 1e-2 of a deviation.
+      EXPECT_NEAR(slope[i] / expected, 1.0, 1e-3) << "unknown " << i;
+    }
+  }
+}
+
+// 50 stated modes and some that stand for all others, against 1900 modes: the same H_1 and H_2.
+TEST_F(OneSecond, HigherModesStandForNineteenHundred) {
+  const WhitenedRecord whitened = record(20.0);
+  const auto transfers = [&](const ModelPoint& point) {
+    std::array<std::vector<Complex>, 2> found;
+    LikelihoodOutputs outputs{.left = &found[0], .right = &found[1]};
+    LikelihoodEvaluation(whitened, point)
+        .differentiate(
+            {.count = 0,
+             .share_begin = std::vector<std::size_t>(likelihood_modes(point, 51200.0).size() + 1)},
+            outputs);
+    return found;
+  };
+  const auto few = transfers(with_higher(bowed.truth, false));
+  // In so wide a band they stand for themselves.
+  ModelPoint many = bowed.truth;
+  many.higher = HigherModeLaw::above(many.basis, 196.0, 1.39e-4, 300000.0);
+  const auto all = transfers(many);
+  double error = 0.0, size = 0.0;
+  for (std::size_t end = 0; end < 2; ++end) {
+    for (std::size_t k = 0; k < few[end].size(); ++k) {
+      error = std::max(error, std::abs(few[end][k] - all[end][k]));
+      size = std::max(size, 1.0 / whitened.deviation[end]);  // of a static force
+    }
+  }
+  EXPECT_LT(error, 1e-5 * size);
+}
+
 // Of frequencies, the contact, damping shared by all modes or each mode's own, and sensors, which
 // no mode's products tell.
 TEST_F(OneSecond, RowsAreThoseOfTheWholeInformation) {
