@@ -49,7 +49,7 @@ MISMATCHES = {
     **{f"correlated_{c:g}": ([], {"correlated": c}) for c in (0.3, 0.9)},
     "8_bit": ([], {"bits": 8}),
 }
-CALIBRATION = """  parameters: {frequencies: all, law: true, contact: true, damping: factor, law_width: estimated}
+CALIBRATION = """  parameters: {frequencies: all, law: true, contact: true}
   objective: joint_likelihood
   optimizer: staged
 """

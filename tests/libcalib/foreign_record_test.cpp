@@ -1,0 +1,132 @@
+// Calibrations of records that no part of the libraries has made: benchmarks/truth.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "benchmarks/truth/truth.hpp"
+#include "libcalib/calibration.hpp"
+
+namespace modcal {
+namespace {
+
+constexpr double kFundamental = 294.0, kInharmonicity = 1.1e-4, kContact = 0.041;
+
+// Half a second: a third of the price of the others' records, and every mode rings out in it.
+truth::TruthRecord stroke(const truth::TruthMismatch& mismatch, truth::Reactions reactions) {
+  return truth::simulate({.fundamental = kFundamental, .inharmonicity = kInharmonicity},
+                         {.position = kContact},
+                         {.duration = 0.5, .reactions = reactions, .mismatch = mismatch});
+}
+
+const truth::TruthRecord& equal_sensors() {
+  static const truth::TruthRecord record = stroke({}, truth::Reactions::kTension);
+  return record;
+}
+
+struct Settings {
+  std::int64_t modes = 40;
+  double noise = 0.01;
+  SupportOptions support = {};
+  bool exact_sensors = false;
+  bool all_frequencies = true;
+};
+
+// From f0 1.5 % too high, B 20 % too low, x_c 1 mm too far and one ζ for all modes, as somebody
+// starts who has the record alone.
+CalibrationResult calibrated(truth::TruthRecord record, const Settings& settings) {
+  add_noise(record, settings.noise, 5);
+  const StringModel string{.length = 0.33,
+                           .linear_density = 1e-3,
+                           .fundamental = 1.015 * kFundamental,
+                           .inharmonicity = 0.8 * kInharmonicity,
+                           .modes = settings.modes};
+  CalibrationOptions options = calibration_to_the_bound();
+  options.parameters.frequencies = settings.all_frequencies ? "all" : "none";
+  options.parameters.unknowns.damping = "auto";
+  options.parameters.unknowns.exact_sensors = settings.exact_sensors;
+  options.support = settings.support;
+  std::vector<CalibrationRecord> records = {
+      {.data = CalibrationData::of_records(record.r1, record.r2, record.rate), .recorded = true}};
+  return calibrate({make_modal_basis(string), kContact + 1e-3}, std::move(records), options);
+}
+
+const CalibratedParameter& parameter(const CalibrationResult& result, std::string_view name) {
+  const auto found = std::find_if(result.parameters.begin(), result.parameters.end(),
+                                  [&](const auto& one) { return one.name == name; });
+  EXPECT_NE(found, result.parameters.end()) << name;
+  return *found;
+}
+
+// Errors in standard deviations.
+double error(const CalibrationResult& result, std::string_view name, double truth) {
+  const CalibratedParameter& found = parameter(result, name);
+  EXPECT_GT(found.deviation, 0.0) << name;
+  return (found.final - truth) / found.deviation;
+}
+
+struct FrequencyErrors {
+  double largest = 0.0;
+  std::size_t identified = 0;
+};
+FrequencyErrors frequency_errors(const CalibrationResult& result) {
+  FrequencyErrors errors;
+  const std::vector<ModeVerdict>& modes = result.continuation->modes;
+  for (std::size_t i = 0; i < modes.size(); ++i) {
+    if (modes[i].source != ModeSource::kIdentified) continue;
+    const double truth = stiff_string_frequency(kFundamental, kInharmonicity, i + 1);
+    errors.largest =
+        std::max(errors.largest, std::abs(modes[i].frequency / truth - 1.0) / modes[i].deviation);
+    ++errors.identified;
+  }
+  return errors;
+}
+
+// Four deviations: of these few dozen numbers one beyond by chance in 400 runs.
+constexpr double kFour = 4.0;
+
+void expect_right(const CalibrationResult& result) {
+  EXPECT_TRUE(result.continuation->right) << result.continuation->chi2;
+  EXPECT_LT(std::abs(error(result, "f0", kFundamental)), kFour);
+  EXPECT_LT(std::abs(error(result, "B", kInharmonicity)), kFour);
+  EXPECT_LT(std::abs(error(result, "x_c", kContact)), kFour);
+  const FrequencyErrors errors = frequency_errors(result);
+  EXPECT_LT(errors.largest, kFour);
+  EXPECT_GT(errors.identified, 20u);
+  for (const ModeVerdict& mode : result.continuation->modes) {
+    EXPECT_NE(mode.tie, LawTie::kLeaves);
+  }
+}
+
+TEST(ForeignRecord, IsCalibratedWithinItsDeviations) {
+  for (const double noise : {0.01, 0.05}) {
+    SCOPED_TRACE(noise);
+    expect_right(calibrated(equal_sensors(), {.noise = noise}));
+  }
+}
+
+TEST(ForeignRecord, WithoutTheModesAboveItIsWrong) {
+  const CalibrationResult result =
+      calibrated(equal_sensors(), {.support = {.remainder = "none"}, .exact_sensors = true});
+  EXPECT_GT(frequency_errors(result).largest, 2.0 * kFour);
+}
+
+TEST(ForeignRecord, SensorsMayDiffer) {
+  const truth::TruthRecord record =
+      stroke({.gain = 1.005, .delay = 1e-6}, truth::Reactions::kTension);
+  const CalibrationResult result = calibrated(record, {});
+  expect_right(result);
+  EXPECT_LT(std::abs(error(result, "gain", 1.005)), kFour);
+  EXPECT_LT(std::abs(error(result, "delay", 1e-6)), kFour);
+  // Taken to be equal, they are no test's finding: the frequencies are wrong.
+  const CalibrationResult exact = calibrated(record, {.exact_sensors = true});
+  EXPECT_GT(frequency_errors(exact).largest, 2.0 * kFour);
+}
+
+TEST(ForeignRecord, SupportsMayFeelTheBending) {
+  const truth::TruthRecord record = stroke({}, truth::Reactions::kSupport);
+  expect_right(calibrated(record, {.support = {.reaction = "support"}}));
+}
+
+}  // namespace
+}  // namespace modcal
