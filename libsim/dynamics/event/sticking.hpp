@@ -22,7 +22,7 @@ namespace modcal::event {
 /// μ(ϑ₀ e^{−Gτ/H}) of a contact with a temperature. It never falls with τ.
 class StaticLimit {
  public:
-  StaticLimit(double force) : force_(force) {}  // NOLINT(google-explicit-constructor)
+  explicit StaticLimit(double force) : force_(force) {}
   explicit StaticLimit(const ThermalSliding& law) : force_(law.at(0.0).force), thermal_(law) {}
 
   /// τ = 0 with the temperature rise ϑ₀ ≥ 0 [K].

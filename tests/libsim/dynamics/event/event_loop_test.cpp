@@ -211,7 +211,7 @@ TEST(Sticking, DoesNotMissAnExcursionBetweenStepEnds) {
   state.re[0] += 0.1 - velocity;  // moves with the bow: the force starts at 0
   const auto sticking = [&](double limit, double step) {
     auto closed = make_closed_loop(modes, loop.contact.stiffness, loop.contact.damping);
-    Sticking result(std::move(*closed), limit, step, {});
+    Sticking result(std::move(*closed), StaticLimit(limit), step, {});
     result.attach({.velocity = 0.1}, state, 0.0, 0.0);
     return result;
   };
@@ -249,7 +249,7 @@ TEST(Sticking, ReleasesExactlyAtTheLimit) {
   const ContactModes modes = modes_of(scene);
   const EventLoop loop = loop_for(scene, modes, 2);
   auto closed = make_closed_loop(modes, loop.contact.stiffness, loop.contact.damping);
-  Sticking sticking(std::move(*closed), 0.4, kStep, {});
+  Sticking sticking(std::move(*closed), StaticLimit(0.4), kStep, {});
   sticking.attach({.velocity = 0.1}, PlanarVector(modes.size()), 0.0,
                   0.0);  // at rest, gripped by the moving bow
   double tau = 0.0;
