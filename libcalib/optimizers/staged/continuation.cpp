@@ -38,15 +38,18 @@ ContinuationResult with_misfit_for_noise(const AttemptInput& input,
   return found;
 }
 
-// A noise level read above the modes holds what the string still sounds there too. Where the fit
-// leaves less, what it leaves is the noise, and the fit is made again with that; once more for what
-// the first round changed.
+// Noise levels read above the modes hold what the string still sounds there too. Where the fit
+// leaves so much less that error bars are a tenth too wide, what it leaves is the noise, and the
+// fit is made again with that; once more for what the first round changed. Levels that are stated
+// stay.
 ContinuationResult attempt(const AttemptInput& input, NoisyRecords& records, double shift,
                            std::size_t evaluations) {
   ContinuationResult found = attempt_continuation(input, shift, evaluations);
   for (int round = 0; round < 2; ++round) {
+    const bool stated =
+        !std::isnan(input.options.left_noise) || !std::isnan(input.options.right_noise);
     const bool less = found.chi2 < 1.0 - 3.0 * found.chi2_deviation;
-    if (input.noise_error == 0.0 || !less) break;
+    if (stated || !less || found.chi2 > 1.0 / (1.1 * 1.1)) break;
     for (double& deviation : records.deviation) deviation *= std::sqrt(found.chi2);
     std::vector<FitStage> stages = std::move(found.stages);
     found = attempt_continuation(input, shift, found.evaluations);

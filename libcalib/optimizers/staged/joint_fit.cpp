@@ -45,7 +45,8 @@ class JointFit {
         all_(shared_unknowns(fit, options, priors)) {}
 
   void add(const CalibrationData& stroke) {
-    const ProjectedLikelihood whole(whitened(stroke, {options_.left_noise, options_.right_noise}));
+    const ProjectedLikelihood whole(whitened(stroke, {options_.left_noise, options_.right_noise},
+                                             fit_.single[all_.records()].noise));
     ProjectedLikelihood weighted = whole;
     const Eigen::VectorXd start = unknowns().own_start(fit_.single[all_.records()].model);
     weighted.set_weights(weights(whole, start));
@@ -54,7 +55,8 @@ class JointFit {
   }
 
   void add(const PluckRecord& pluck) {
-    plucks_.push_back(std::make_shared<PluckLikelihood>(whitened(pluck.data, pluck.noise)));
+    plucks_.push_back(
+        std::make_shared<PluckLikelihood>(whitened(pluck.data, pluck.noise, pluck.noise)));
     all_.add(plucks_.back(), unknowns().start(), unknowns().own_places(false));
   }
 
@@ -113,9 +115,11 @@ class JointFit {
   }
   Index modes() const { return static_cast<Index>(unknowns().modes()); }
   double inharmonicity() const { return fit_.single.front().law.inharmonicity; }
-  WhitenedRecord whitened(const CalibrationData& data, const std::array<double, 2>& noise) {
+  // stated: what says how well the noise is known; noise: the level, of a stroke that by itself.
+  WhitenedRecord whitened(const CalibrationData& data, const std::array<double, 2>& stated,
+                          const std::array<double, 2>& noise) {
     if (within_) within_->poll();
-    noise_errors_.push_back(noise_power_error(noise, initial_.basis, data));
+    noise_errors_.push_back(noise_power_error(stated, initial_.basis, data));
     const double band = likelihood_band(initial_, options_.highest_frequency, data.sample_rate);
     highest_ = std::max(highest_, band);
     return WhitenedRecord::of(NoisyRecords::of_data(data, initial_.basis, noise), 0.0, band);
