@@ -86,6 +86,7 @@ class LawLine {
       square += 2.0 * std::pow(weight(i, variance) * (error2(i) + variance), 2);
     }
     const double error = std::sqrt(square) / sum;
+    if (!(error > 0.0)) return variance;  // every frequency is known exactly
     const double z = variance / error;
     return variance + error * gsl_ran_ugaussian_pdf(z) / gsl_cdf_ugaussian_P(z);
   }

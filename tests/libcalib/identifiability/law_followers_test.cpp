@@ -91,5 +91,15 @@ TEST(LawFollowers, TakeAFrequencyThatIsKnownExactly) {
   EXPECT_TRUE(found.rest.allFinite());
 }
 
+TEST(LawFollowers, HaveNoScatterWhereEveryFrequencyIsKnownAndOnTheLaw) {
+  ModeSight sight = drawn(0.0, 11);
+  sight.delta.setZero();
+  sight.seen.setZero();
+  sight.error.setZero();
+  const LawFollowers found = find_followers(sight, 0.0);
+  EXPECT_EQ(found.scatter, 0.0);
+  EXPECT_TRUE(found.scatters().allFinite());
+}
+
 }  // namespace
 }  // namespace modcal
