@@ -93,11 +93,13 @@ void visit_covariance(ResultVisitor& visitor, const NamedCovariance& covariance)
   visitor({.key = "condition"}, covariance.condition());
 }
 
-// The strongest correlations of the law and of all that is free.
+// The strongest correlations of the law, unless the data contradict it, and of all that is free.
 void visit_pairs(ResultVisitor& visitor, const ContinuationResult& found) {
   const NamedCovariance& law = found.law.covariance;
-  std::vector<CorrelatedPair> pairs =
-      strongest_correlations(law, std::vector<bool>(law.size(), true), kPairsShown);
+  std::vector<CorrelatedPair> pairs;
+  if (found.tells_of_law()) {
+    pairs = strongest_correlations(law, std::vector<bool>(law.size(), true), kPairsShown);
+  }
   const std::size_t of_law = pairs.size();
   if (found.frequencies_free) {
     const auto more = strongest_correlations(found.covariance, told_by_data(found), kPairsShown);

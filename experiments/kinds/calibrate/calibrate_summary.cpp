@@ -103,8 +103,11 @@ std::vector<bool> told_by_data(const ContinuationResult& found) {
 }
 
 std::string covariance_text(const ContinuationResult& found) {
-  std::string text = "stiff-string law:\n" + correlation_lines(found.law.covariance) + "  " +
-                     condition_text(found.law.covariance);
+  std::string text;
+  if (found.tells_of_law()) {
+    text = fmt::format("stiff-string law{}:\n", found.frequencies_free ? ", fitted alone" : "") +
+           correlation_lines(found.law.covariance) + "  " + condition_text(found.law.covariance);
+  }
   if (!found.frequencies_free) return text;
   text += "every frequency free, strongest correlations:";
   for (const CorrelatedPair& pair :

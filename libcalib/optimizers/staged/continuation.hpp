@@ -125,6 +125,9 @@ struct ContinuationResult {
   std::size_t evaluations = 0;
   std::vector<FitStage> stages;   ///< of all starts, in order
   std::array<double, 2> noise{};  ///< s_r [N]
+
+  /// Of a law that the data contradict nothing is reported but that.
+  bool tells_of_law() const { return !frequencies_free || law.accepted; }
 };
 
 /// Law (f_0, B, x_c, then one damping factor) through σ ≈ 200, 100, 50, 20 1/s (in proportion to

@@ -23,6 +23,7 @@ ContinuationResult found() {
   result.covariance.names = {"f_1", "f_2", "x_c"};
   result.covariance.matrix =
       Eigen::Matrix3d{{4e-6, 3e-6, -1e-9}, {3e-6, 4e-6, -0.2e-9}, {-1e-9, -0.2e-9, 1e-12}};
+  result.law.accepted = true;
   result.law.covariance.names = {"f0", "x_c", "damping"};
   result.law.covariance.matrix =
       Eigen::Matrix3d{{1e-6, 0.9e-9, 0.0}, {0.9e-9, 1e-12, 0.0}, {0.0, 0.0, 4e-6}};
@@ -32,8 +33,7 @@ ContinuationResult found() {
 // The outcome of a calibration whose modes have not been asked for.
 CalibrationOutcome outcome_of(ContinuationResult continuation) {
   CalibrationOutcome outcome;
-  outcome.result.continuation =
-      std::make_shared<ContinuationResult>(std::move(continuation));
+  outcome.result.continuation = std::make_shared<ContinuationResult>(std::move(continuation));
   return outcome;
 }
 
@@ -52,7 +52,7 @@ TEST(CorrelationText, HasALineForEveryParameterWithUnitAndCorrelations) {
 
 TEST(CalibrateCovariance, SaysWhatIsCorrelatedMostOfWhatTheDataTell) {
   const std::string text = covariance_text(found());
-  EXPECT_THAT(text, HasSubstr("stiff-string law:\n  f0 "));
+  EXPECT_THAT(text, HasSubstr("stiff-string law, fitted alone:\n  f0 "));
   EXPECT_THAT(text, HasSubstr("strongest correlations: x_c with f_1 -0.50\n"));
   EXPECT_THAT(text, Not(HasSubstr("f_2")));  // the law holds it
   // Eigenvalues of R of the law are 1.9, 1 and 0.1.
@@ -61,6 +61,14 @@ TEST(CalibrateCovariance, SaysWhatIsCorrelatedMostOfWhatTheDataTell) {
   ContinuationResult law_alone = found();
   law_alone.frequencies_free = false;
   EXPECT_THAT(covariance_text(law_alone), Not(HasSubstr("every frequency")));
+  EXPECT_THAT(covariance_text(law_alone), HasSubstr("stiff-string law:\n  f0 "));
+}
+
+TEST(CalibrateCovariance, TellsNothingOfALawThatTheDataReject) {
+  ContinuationResult rejected = found();
+  rejected.law.accepted = false;
+  EXPECT_THAT(covariance_text(rejected), Not(HasSubstr("stiff-string law")));
+  EXPECT_THAT(covariance_text(rejected), HasSubstr("every frequency free"));
 }
 
 TEST(CalibrateCovariance, HasEveryCorrelationInItsFile) {
@@ -99,6 +107,16 @@ TEST(CalibrateCovariance, IsATableOfBothFits) {
   EXPECT_NEAR(std::get<double>(table.rows[0][3].value), 0.9, 1e-12);
   EXPECT_EQ(std::get<std::string>(table.rows[3][0].value), "every frequency");
   EXPECT_EQ(std::get<std::string>(table.rows[3][2].value), "x_c");
+}
+
+TEST(CalibrateCovariance, TablesNothingOfALawThatTheDataReject) {
+  ContinuationResult rejected = found();
+  rejected.law.accepted = false;
+  for (const report::Table& table : report::tables_of(outcome_of(std::move(rejected)))) {
+    if (table.id != "correlations") continue;
+    ASSERT_EQ(table.rows.size(), 1u);
+    EXPECT_EQ(std::get<std::string>(table.rows[0][0].value), "every frequency");
+  }
 }
 
 }  // namespace
