@@ -56,6 +56,8 @@ class Estimator {
   }
   /// How the sensors read, as far as the estimator is told.
   virtual SensorPair sensors() const { return {}; }
+  /// Whether it takes the ends to feel the bending of the string (StringSupport).
+  virtual bool feels_bending() const { return false; }
 
  private:
   virtual std::shared_ptr<const PreparedEstimator> do_prepare(

@@ -107,7 +107,7 @@ void UnknownsOptions::visit(OptionVisitor& visitor) {
   visitor.texts(
       {.key = "sensors",
        .meaning = "what is free of the sensor at x = L against that at x = 0; none named: "
-                  "gain and delay of a record under priors; exact: nothing",
+                  "all of a record's, under priors; exact: nothing",
        .choices = choices},
       free);
   exact_sensors = std::find(free.begin(), free.end(), "exact") != free.end();
@@ -143,7 +143,7 @@ std::vector<std::string> UnknownsOptions::free_sensors() const {
 }
 
 UnknownsOptions UnknownsOptions::of_records(double sample_rate) const {
-  constexpr double kGainWidth = 0.02, kDelayWidth = 1.0;  // of the gain; samples
+  constexpr double kGainWidth = 0.02, kDelayWidth = 1.0, kCornerWidth = 1.0;  // 1; samples; Hz
   UnknownsOptions known = *this;
   if (damping_choice(damping) == DampingChoice::kAuto) {
     known.damping = "each";
@@ -156,6 +156,7 @@ UnknownsOptions UnknownsOptions::of_records(double sample_rate) const {
   };
   release(Sensor::kGain, kGainWidth);
   release(Sensor::kDelay, kDelayWidth / sample_rate);
+  release(Sensor::kCorner, kCornerWidth);
   return known;
 }
 

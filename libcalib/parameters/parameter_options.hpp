@@ -61,8 +61,8 @@ struct UnknownsOptions {
   void visit(OptionVisitor& visitor);
   Sensor sensors() const;                         ///< start
   std::vector<std::string> free_sensors() const;  ///< some of gain, delay, corner
-  /// Of records, of which nothing is stated that says otherwise: gain and delay are free under
-  /// priors of 2 % and of one sample, every ζ_n is under `damping_width`. What two sensors differ
+  /// Of records, of which nothing is stated that says otherwise: gain, delay and corner are free
+  /// under priors of 2 %, one sample and 1 Hz, every ln ζ_n under one of 1. What two sensors differ
   /// by biases f_n by many of their deviations before any test of the misfit sees it.
   UnknownsOptions of_records(double sample_rate) const;
   /// The same of simulated strings.

@@ -19,6 +19,7 @@ class JointEstimator final : public Estimator {
   /// Throws InvalidInput for options out of range.
   explicit JointEstimator(const Options& options);
   SensorPair sensors() const override { return joint_.sensors; }
+  bool feels_bending() const override { return joint_.transfer.support(false).bending; }
 
  private:
   std::shared_ptr<const PreparedEstimator> do_prepare(const EstimationModel& model) const override;
@@ -39,6 +40,7 @@ class LinearLimitEstimator final : public Estimator {
   /// Throws InvalidInput for options out of range.
   explicit LinearLimitEstimator(const Options& options);
   SensorPair sensors() const override { return joint_.sensors; }
+  bool feels_bending() const override { return joint_.transfer.support(false).bending; }
 
  private:
   std::shared_ptr<const PreparedEstimator> do_prepare(const EstimationModel& model) const override;

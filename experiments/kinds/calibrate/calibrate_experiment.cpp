@@ -15,7 +15,7 @@ void lint_sensors(const CalibrateOptions& options, std::vector<Finding>& finding
     return;  // the inversion's finding
   }
   lint_making(findings, "inversion.estimator", [&] {
-    require_sensors_once(options.calibration, *estimator, options.inversion.observation.has_record);
+    require_agreement(options.calibration, *estimator, options.inversion.observation.has_record);
   });
 }
 

@@ -1,8 +1,5 @@
-#include <fmt/ranges.h>
-
 #include "experiments/kinds/calibrate/calibrate.hpp"
 #include "experiments/report/result.hpp"
-#include "libsim/signal/statistics.hpp"
 
 namespace modcal {
 namespace {
@@ -58,22 +55,6 @@ void add_search_figures(const std::vector<FigureOptions>& figures,
     }
     if (drawn.panels.empty()) continue;  // only a systematic search has candidates to draw
     result.blocks.emplace_back(std::move(drawn));
-  }
-}
-
-// Least squares, mean included.
-void remove_line(std::span<double> samples) {
-  remove_mean(samples);
-  const double middle = 0.5 * static_cast<double>(samples.size() - 1);
-  double product = 0.0, square = 0.0;
-  for (std::size_t j = 0; j < samples.size(); ++j) {
-    const double place = static_cast<double>(j) - middle;
-    product += place * samples[j];
-    square += place * place;
-  }
-  const double slope = square > 0.0 ? product / square : 0.0;
-  for (std::size_t j = 0; j < samples.size(); ++j) {
-    samples[j] -= slope * (static_cast<double>(j) - middle);
   }
 }
 
@@ -189,8 +170,8 @@ StudyResult CalibrateOptions::run(const StudyContext& context) const {
   const Observation measured =
       observe(inversion.observation, outputs, context.work.truths, inversion.key(), context.folder);
   further.require_fit_to(inversion.observation, calibration);
-  require_sensors_once(calibration, *inversion.inversion.estimator.make(),
-                       inversion.observation.has_record);
+  require_agreement(calibration, *inversion.inversion.estimator.make(),
+                    inversion.observation.has_record);
   std::vector<Observation> strokes = further_observations(*this, context);
   strokes.insert(strokes.begin(), measured);
   require_plucks(plucks, inversion.observation, calibration);
@@ -198,7 +179,7 @@ StudyResult CalibrateOptions::run(const StudyContext& context) const {
       calibrate_strokes(*this, strokes, polling_clock(context),
                         observe_plucks(plucks, inversion.observation, inversion.key(), context));
   context.throw_if_interrupted();
-  const Sensor& sensors = outcome.result.model.sensors;
+  const Sensor sensors = told_sensors(outcome.result);
   const Observation observation = with_sensors_alike(measured, sensors);
   const auto sides =
       identify(observation, outcome.refined, inversion.inversion,
@@ -207,7 +188,9 @@ StudyResult CalibrateOptions::run(const StudyContext& context) const {
   StudyResult result;
   add_calibration_summary(outcome, result);
   add_calibration_warnings(outcome, result);
-  if (const std::string text = correction_text(measured, sensors); !text.empty()) {
+  for (const std::string& text :
+       {default_text(calibration, measured), correction_text(measured, sensors)}) {
+    if (text.empty()) continue;
     result.summary += text + "\n";
     result.blocks.emplace_back(report::Text{text, report::Text::Kind::kNote});
   }
@@ -231,43 +214,6 @@ StudyResult CalibrateOptions::run(const StudyContext& context) const {
     result.signal_files.push_back(identified_signals(observation, sides));
   }
   return result;
-}
-
-Observation with_sensors_alike(Observation observation, const Sensor& sensors) {
-  std::optional<Signal>& reaction = observation.reactions[static_cast<int>(End::kRight)];
-  if (sensors.alike() || !reaction) return observation;
-  std::vector<double>& samples = reaction->samples;
-  samples = sensors.undone(samples, observation.sample_rate);
-  if (sensors.corner != 0.0) remove_line(samples);
-  return observation;
-}
-
-void require_sensors_once(const CalibrationOptions& calibration, const Estimator& estimator,
-                          bool recorded) {
-  const UnknownsOptions& unknowns = calibration.parameters.unknowns;
-  const bool found = recorded && calibration.by_schedule() && !unknowns.exact_sensors;
-  const bool corrected = found || unknowns.sensors().may_differ();
-  const auto [left, right] = estimator.sensors();
-  MODCAL_REQUIRE(
-      !corrected || (left.gain == right.gain && left.delay == right.delay),
-      "the reaction at x = L is corrected for its sensor as the calibration has it before "
-      "the estimator sees it: gain2 {:g} and delay2 {:g} s would take it out once more; "
-      "leave them out, or state those of x = 0 (gain1 {:g}, delay1 {:g} s)",
-      right.gain, right.delay, left.gain, left.delay);
-}
-
-std::string correction_text(const Observation& observation, const Sensor& sensors) {
-  if (sensors.alike() || !observation.reaction(End::kRight)) return "";
-  std::vector<std::string> numbers;
-  for (std::size_t i = 0; i < Sensor::kCount; ++i) {
-    const ParameterType& type = sensor_type(i);
-    const std::string number = fmt::format("{:.{}g}", sensor_value(i, sensors), type.digits);
-    numbers.push_back(fmt::format("{} {}{}{}", type.name, number, type.unit == "1" ? "" : " ",
-                                  type.unit == "1" ? "" : type.unit));
-  }
-  return fmt::format(
-      "The reaction at x = L was corrected for its sensor before the identification: {}.",
-      fmt::join(numbers, ", "));
 }
 
 }  // namespace modcal
