@@ -157,6 +157,12 @@ def file_sizes(tree):
             yield f"{path}: more than 300 lines"
 
 
+def example_sizes(tree):
+    for path in tree.of(("examples",)):
+        if tree.text[path].count("\n") > 30:
+            yield f"{path}: an example of more than 30 lines"
+
+
 # Up to its brace, a function's header ends in its parameters and what may follow them.
 HEADER = re.compile(r"\)\s*(const|noexcept|override|final|mutable|HWY_\w+|\s)*(->[^;{}]*)?(:[^:;][^;]*)?$", re.S)
 NO_FUNCTION = re.compile(r"^\s*(if|for|while|switch|catch|else|do|namespace|class|struct|enum|union|return)\b")
@@ -273,8 +279,8 @@ def compared_names(tree):
             yield f"{path}: a name is compared with {literal}"
 
 
-RULES = (circles, directions, folder_sizes, file_sizes, function_sizes, public_headers, unread_options,
-         tuned_constants, compared_names)
+RULES = (circles, directions, folder_sizes, file_sizes, example_sizes, function_sizes, public_headers,
+         unread_options, tuned_constants, compared_names)
 
 LONG_FUNCTION = "int planted() {\n" + "  call();\n" * 60 + "}\n"
 # An offender for every rule, several for those that hold several: file, what is appended to it.
@@ -302,6 +308,7 @@ PLANTED = {
     ],
     folder_sizes: [(f"libsim/planted/file_{i}.cpp", "\n") for i in range(31)],
     file_sizes: [("libsim/base/planted.cpp", "\n" * 301)],
+    example_sizes: [("examples/planted.cpp", "\n" * 31), ("examples/simulate_stroke.cpp", "\n" * 30)],
     function_sizes: [("libsim/base/planted.cpp", LONG_FUNCTION),
                      ("libsim/base/planted.hpp", "struct S {\n  " + LONG_FUNCTION + "};\n")],
     public_headers: [("libsim/planted.hpp", "#include <fmt/format.h>\n"),
