@@ -29,7 +29,8 @@ inline constexpr bool kBuildDirty = @DIRTY@;
 inline constexpr char kBuildCompiler[] = "@COMPILER@";
 inline constexpr char kBuildType[] = "@BUILD_TYPE@";
 inline constexpr std::array<std::pair<const char*, const char*>, @LIBRARY_COUNT@> kBuildLibraries = {{@LIBRARY_TABLE@}};
-inline constexpr char kBuildConfigs[] = "@SOURCE_DIR@/configs";
+// Seen from the program's folder.
+inline constexpr std::array kBuildConfigs = {"@INSTALLED_CONFIGS@", "@BUILD_CONFIGS@"};
 
 }  // namespace modcal
 ]])

@@ -114,9 +114,20 @@ void declare(CLI::App& command, InspectArguments& arguments) {
   command.add_flag("--json", arguments.json, "as JSON");
 }
 
+// The configs that came with the program, wherever both were moved.
+std::string shipped_configs() {
+  const auto program = std::filesystem::read_symlink("/proc/self/exe").parent_path();
+  std::filesystem::path configs;
+  for (const char* folder : kBuildConfigs) {
+    configs = (program / folder).lexically_normal();
+    if (std::filesystem::is_directory(configs)) break;
+  }
+  return configs.string();
+}
+
 struct ReproduceArguments {
   std::string target;
-  std::string configs = kBuildConfigs;
+  std::string configs = shipped_configs();
   std::string out;
   int threads = 0;
 };
