@@ -1,0 +1,21 @@
+# Runs a program, which has to end with 0, and compares what it prints word by word with what is
+# expected: cmake "-DCOMMAND=PROGRAM;ARGUMENT" "-DPRINTS=x = 0.9..1.1 m|y = 2 m" -P run_example.cmake
+# Lines are parted by |; a..b stands for a number between a and b.
+cmake_minimum_required(VERSION 3.25)
+execute_process(COMMAND ${COMMAND} OUTPUT_VARIABLE printed RESULT_VARIABLE failure)
+message("${printed}")
+if(failure)
+  message(FATAL_ERROR "ends with ${failure}")
+endif()
+string(STRIP "${printed}" printed)
+string(REGEX REPLACE "[ \n]+" ";" printed "${printed}")
+string(REGEX REPLACE "[ |]+" ";" expected "${PRINTS}")
+foreach(word wanted IN ZIP_LISTS printed expected)
+  if(wanted MATCHES "^([-+.e0-9]+)\\.\\.([-+.e0-9]+)$")
+    if(NOT (word GREATER_EQUAL CMAKE_MATCH_1 AND word LESS_EQUAL CMAKE_MATCH_2))
+      message(FATAL_ERROR "${word} is no number between ${CMAKE_MATCH_1} and ${CMAKE_MATCH_2}")
+    endif()
+  elseif(NOT word STREQUAL wanted)
+    message(FATAL_ERROR "prints \"${word}\" where \"${wanted}\" is expected")
+  endif()
+endforeach()
