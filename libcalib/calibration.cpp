@@ -223,7 +223,11 @@ Problem with_defaults(Problem problem, const Optimizer& optimizer) {
   UnknownsOptions& unknowns = problem.parameters.unknowns;
   const bool to_the_bound = optimizer.needs().schedule && any_recorded(problem);
   if (!to_the_bound) {
-    unknowns = unknowns.of_simulations();
+    MODCAL_REQUIRE(optimizer.needs().schedule || !unknowns.response.free,
+                   "{} does not find the sensors' response: state optimizer: staged, or leave "
+                   "response out of the sensors",
+                   optimizer.name());
+    unknowns = unknowns.of_simulations(problem.model.basis);
     return problem;
   }
   // What is stated of a record's ζ_n is seldom more than their order of magnitude.
@@ -231,7 +235,7 @@ Problem with_defaults(Problem problem, const Optimizer& optimizer) {
   double& range = problem.parameters.ranges.damping;
   const bool ratios = unknowns.damping == plain.unknowns.damping;
   if (ratios && range == plain.ranges.damping) range = 0.9;
-  unknowns = unknowns.of_records(problem.records.front().data.sample_rate);
+  unknowns = unknowns.of_records(problem.records.front().data.sample_rate, problem.model.basis);
   return problem;
 }
 

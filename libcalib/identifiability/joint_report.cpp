@@ -97,6 +97,7 @@ class JointReport {
     RecordValues values{.sensors = model.sensors, .damping = damping_line(model).first};
     values.damping_deviation = values.damping * unknowns().damping_deviation(own);
     values.sensor_deviation = unknowns().sensor_deviation(model, own);
+    if (record == 0) fit_.response_deviations = unknowns().response_deviations(own);
     fit_.values.push_back(values);
   }
 

@@ -138,7 +138,7 @@ Eigen::MatrixXd LimitInformation::prior(const StringUnknowns& unknowns, const St
   PriorEquations equations(all.size());
   priors.state([&](const ParameterName& name) { return all.coordinate(name, all.start()); },
                equations);
-  unknowns.state_damping_ratios(question_.truth.basis.zeta, equations);
+  unknowns.state_widths(question_.truth.basis.zeta, equations);
   if (scatter) equations.add_scatter(*scatter, unknowns.log_frequencies());
   all.hold(equations);
   return equations.solve().precision;

@@ -69,10 +69,6 @@ std::vector<AllRecords::Index> AllRecords::held_places() const {
   return result;
 }
 
-AllRecords::Index AllRecords::free_count() const {
-  return size_ - static_cast<Index>(held_places().size());
-}
-
 void AllRecords::hold(PriorEquations& equations) const {
   unknowns_.hold(equations);
   for (const Index i : held_places()) equations.hold(i, start_[i]);

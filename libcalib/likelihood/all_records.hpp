@@ -45,8 +45,6 @@ class AllRecords {
   Index size() const { return size_; }
   /// Whether an unknown of a record keeps its start exactly.
   bool held(Index i, std::size_t record) const { return unknowns_.held(i, record); }
-  /// Number of unknowns that are free.
-  Index free_count() const;
   void hold(PriorEquations& equations) const;
   /// Zero where an unknown is held.
   void clear_held(Eigen::MatrixXd& covariance) const;

@@ -93,8 +93,10 @@ struct SharesOverNoise {
   std::vector<double> ratio, gain;
 };
 
+// A smooth response of the sensors, which its prior holds, says little of what a bin holds.
 SharesOverNoise shares_over_noise(const ProjectedLikelihood& likelihood, const ModelPoint& point,
-                                  const LikelihoodColumns& columns) {
+                                  const LikelihoodColumns& all) {
+  const LikelihoodColumns columns = all.without_response();
   const WhitenedRecord& record = likelihood.record();
   MODCAL_REQUIRE(std::all_of(record.root_weight.begin(),
                              record.root_weight.begin() + static_cast<long>(record.bins),

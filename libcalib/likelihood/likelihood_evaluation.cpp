@@ -41,6 +41,7 @@ struct LikelihoodEvaluation::Slopes {
   double cost = 0.0;
   std::array<double, Sensor::kCount> sensors{};
   AlignedVector modes, columns;
+  std::vector<Complex> knots;
 };
 
 LikelihoodEvaluation::LikelihoodEvaluation(const WhitenedRecord& record, const ModelPoint& point,
@@ -162,7 +163,8 @@ ColumnTask LikelihoodEvaluation::column_task(const LikelihoodColumns& columns) c
 
 void LikelihoodEvaluation::prepare_sensor(const LikelihoodColumns& columns) {
   for (std::size_t i = 0; i < Sensor::kCount; ++i) {
-    if (!columns.sensors[i] || sensor_slopes_[i]) continue;
+    const bool of_response = i == Sensor::kGain && columns.knots > 0;
+    if (!(columns.sensors[i] || of_response) || sensor_slopes_[i]) continue;
     sensor_slopes_[i] = in_bins(*record_, [&](Complex s) { return sensors_.slope(i, s); });
   }
 }
@@ -203,6 +205,20 @@ Eigen::VectorXd LikelihoodEvaluation::mode_products(const double* sums,
   return products;
 }
 
+// Products of the residual with the columns of the response, which are those of ln gain by shares:
+// Re e conj(v) for the real part of a knot, Re e conj(i v) = Im e conj(v) for its imaginary part.
+void LikelihoodEvaluation::add_knot_slopes(std::size_t b, const double* by_gain,
+                                           std::vector<Complex>& knots) {
+  const double* residual = residual_of(b);
+  for (std::size_t k = 0; k < LikelihoodBlock::kBins; ++k) {
+    const Complex product = Complex(residual[k], residual[LikelihoodBlock::kBins + k]) *
+                            Complex(by_gain[k], -by_gain[LikelihoodBlock::kBins + k]);
+    const auto [knot, next] = sensors_.smooth.place(record_->omega[b * LikelihoodBlock::kBins + k]);
+    knots[knot] += (1.0 - next) * product;
+    if (next > 0.0) knots[knot + 1] += next * product;
+  }
+}
+
 LikelihoodPoint LikelihoodEvaluation::slope(const LikelihoodColumns& columns) {
   prepare_sensor(columns);
   const auto& sensors = columns.sensors;
@@ -212,10 +228,12 @@ LikelihoodPoint LikelihoodEvaluation::slope(const LikelihoodColumns& columns) {
     if (part.modes.empty()) {
       part.modes.resize(modes_.size() * kSlopeSums * kSumLanes);
       part.columns.resize(Sensor::kCount * kColumnLength);
+      part.knots.resize(columns.knots);
     }
     SensorPlaces places{};
     for (std::size_t i = 0; i < Sensor::kCount; ++i) {
-      if (sensors[i]) places[i] = part.columns.data() + i * kColumnLength;
+      const bool of_response = i == Sensor::kGain && columns.knots > 0;
+      if (sensors[i] || of_response) places[i] = part.columns.data() + i * kColumnLength;
     }
     finish(b, places);
     const double* residual = residual_of(b);
@@ -223,6 +241,7 @@ LikelihoodPoint LikelihoodEvaluation::slope(const LikelihoodColumns& columns) {
     for (std::size_t i = 0; i < Sensor::kCount; ++i) {
       if (places[i]) part.sensors[i] += dot(places[i], residual);
     }
+    if (columns.knots > 0) add_knot_slopes(b, places[Sensor::kGain], part.knots);
     if (columns.count == 0) return;
     add_mode_slopes(*record_, b, splits_.of(b), blocks_[b], end_state_.decays() > 0, residual,
                     part.modes.data());
@@ -232,10 +251,16 @@ LikelihoodPoint LikelihoodEvaluation::slope(const LikelihoodColumns& columns) {
     sum.cost += parts[c].cost;
     for (std::size_t i = 0; i < Sensor::kCount; ++i) sum.sensors[i] += parts[c].sensors[i];
     for (std::size_t i = 0; i < sum.modes.size(); ++i) sum.modes[i] += parts[c].modes[i];
+    for (std::size_t k = 0; k < columns.knots; ++k) sum.knots[k] += parts[c].knots[k];
   }
   LikelihoodPoint point{.cost = sum.cost, .slope = mode_products(sum.modes.data(), columns)};
   for (std::size_t i = 0; i < Sensor::kCount; ++i) {
     if (sensors[i]) point.slope[static_cast<Index>(*sensors[i])] = sum.sensors[i];
+  }
+  for (std::size_t k = 0; k < columns.knots; ++k) {
+    const auto at = static_cast<Index>(columns.common() + 2 * k);
+    point.slope[at] = sum.knots[k].real();
+    point.slope[at + 1] = sum.knots[k].imag();
   }
   return point;
 }

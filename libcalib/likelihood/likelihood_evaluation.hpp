@@ -53,6 +53,7 @@ class LikelihoodEvaluation {
     AlignedVector first_columns, columns;
   };
   static Arrays& spare();
+  struct BlockColumns;
   struct Columns;
   struct Products;
   struct Slopes;
@@ -72,22 +73,34 @@ class LikelihoodEvaluation {
   using SensorPlaces = std::array<double*, Sensor::kCount>;
   void prepare_sensor(const LikelihoodColumns& columns);
   void finish(std::size_t b, const SensorPlaces& sensors);
-  void fill_columns(std::size_t b, const LikelihoodColumns& columns, double* jacobian);
+  BlockColumns columns_of(std::size_t b, const LikelihoodColumns& columns) const;
+  std::size_t most_columns(const LikelihoodColumns& columns) const;
+  void fill_columns(std::size_t b, const LikelihoodColumns& columns, const BlockColumns& own,
+                    double* jacobian);
+  void add_knot_slopes(std::size_t b, const double* by_gain, std::vector<Complex>& knots);
+  void fill_response(std::size_t b, const BlockColumns& own, const double* by_gain,
+                     double* jacobian) const;
   Products multiply_columns(const LikelihoodColumns& columns, Columns& work,
                             const std::function<void(std::size_t, std::size_t)>& also);
   Eigen::MatrixXd project_rows(Columns& work, const Eigen::MatrixXd& fit, std::size_t count,
                                const LikelihoodColumns& columns);
   /// Products with what every unknown's column is made of, from the sums of add_mode_slopes().
   Eigen::VectorXd mode_products(const double* sums, const LikelihoodColumns& columns) const;
-  void add_cross_products(std::size_t b, const LikelihoodColumns& columns, const Columns& work,
+  void add_own_products(const BlockColumns& own, std::size_t all, const double* jacobian,
+                        Products& sums) const;
+  void add_cross_products(std::size_t b, const LikelihoodColumns& columns, const BlockColumns& own,
                           double* jacobian, Products& sums);
-  void add_state_products(std::size_t b, const LikelihoodColumns& columns, double* jacobian,
-                          Products& sums);
+  void add_state_products(std::size_t b, const LikelihoodColumns& columns, const BlockColumns& own,
+                          double* jacobian, Products& sums);
+  void add_decays_of_response(std::size_t b, const BlockColumns& own, std::size_t all,
+                              const double* jacobian, Products& sums);
   Eigen::MatrixXd cross_products(const Columns& work, const Products& sums) const;
-  void project_columns(Columns& work, const Eigen::MatrixXd& fit, const LikelihoodOutputs& outputs,
-                       LikelihoodPoint& point);
+  static double* spread(const BlockColumns& own, std::size_t all, const double* jacobian,
+                        AlignedVector& columns);
+  void project_columns(const LikelihoodColumns& columns, Columns& work, const Eigen::MatrixXd& fit,
+                       const LikelihoodOutputs& outputs, LikelihoodPoint& point);
   void project_block(std::size_t b, const Eigen::MatrixXd& fit, const RowMatrix& factors,
-                     Columns& work, AlignedVector& state);
+                     bool shared, double* jacobian, AlignedVector& state);
   std::size_t fill_state(std::size_t b, std::span<const std::size_t> list, AlignedVector& state);
   void give(const LikelihoodOutputs& outputs);
 

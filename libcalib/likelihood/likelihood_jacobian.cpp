@@ -15,34 +15,61 @@ constexpr std::size_t kBins = LikelihoodBlock::kBins;
 
 using Index = Eigen::Index;
 
-// Calls give(row, real or imaginary part's place in the block's column) for the bins of a block.
-template <typename Give>
-void for_rows(std::size_t b, std::size_t bins, Give give) {
-  const std::size_t count = std::min(kBins, bins - b * kBins);
-  for (std::size_t k = 0; k < count; ++k) {
-    give(2 * (b * kBins + k), k);
-    give(2 * (b * kBins + k) + 1, kBins + k);
-  }
-}
-
 }  // namespace
 
+LikelihoodEvaluation::BlockColumns LikelihoodEvaluation::columns_of(
+    std::size_t b, const LikelihoodColumns& columns) const {
+  if (columns.knots == 0) return {.common = columns.common()};
+  const std::size_t end = std::min((b + 1) * kBins, record_->bins);
+  const std::size_t first = sensors_.smooth.place(record_->omega[b * kBins]).knot;
+  const auto [last, next] = sensors_.smooth.place(record_->omega[end - 1]);
+  return {columns.common(), first, last + (next > 0.0 ? 2 : 1) - first};
+}
+
+std::size_t LikelihoodEvaluation::most_columns(const LikelihoodColumns& columns) const {
+  std::size_t most = columns.common();
+  for (std::size_t b = 0; columns.knots > 0 && b < blocks_.size(); ++b) {
+    most = std::max(most, columns_of(b, columns).count());
+  }
+  return most;
+}
+
 void LikelihoodEvaluation::fill_columns(std::size_t b, const LikelihoodColumns& columns,
-                                        double* jacobian) {
-  std::fill_n(jacobian, tiled(columns.count + 1) * kColumnLength, 0.0);
+                                        const BlockColumns& own, double* jacobian) {
+  std::fill_n(jacobian, own.width() * kColumnLength, 0.0);
   SensorPlaces sensors{};
   for (std::size_t i = 0; i < Sensor::kCount; ++i) {
     if (columns.sensors[i]) sensors[i] = jacobian + *columns.sensors[i] * kColumnLength;
   }
+  double*& by_gain = sensors[Sensor::kGain];
+  if (own.knots > 0 && !by_gain) by_gain = jacobian + own.common * kColumnLength;
   finish(b, sensors);
-  std::copy_n(residual_of(b), kColumnLength, jacobian + columns.count * kColumnLength);
+  std::copy_n(residual_of(b), kColumnLength, jacobian + own.count() * kColumnLength);
+  if (own.knots > 0) fill_response(b, own, by_gain, jacobian);
   if (columns.shares.empty() && !columns.contact) return;
   ColumnTask task = column_task(columns);
+  task.count = own.common;
   task.jacobian = jacobian;
-  if (columns.count <= kSharedColumns) {
+  if (own.common <= kSharedColumns) {
     fill_shared_columns(*record_, b, splits_.of(b), blocks_[b], task);
   } else {
     fill_mode_columns(*record_, b, modes_, blocks_[b], task);
+  }
+}
+
+// Shares of the column of ln gain, which may stand where the first of them goes.
+void LikelihoodEvaluation::fill_response(std::size_t b, const BlockColumns& own,
+                                         const double* by_gain, double* jacobian) const {
+  for (std::size_t k = 0; k < kBins; ++k) {
+    const double re = by_gain[k], im = by_gain[kBins + k];
+    const auto [knot, next] = sensors_.smooth.place(record_->omega[b * kBins + k]);
+    double* column = jacobian + own.common * kColumnLength + k;
+    for (std::size_t i = 0; i < own.knots; ++i, column += 2 * kColumnLength) {
+      const std::size_t at = own.first_knot + i;
+      const double share = at == knot ? 1.0 - next : at == knot + 1 ? next : 0.0;
+      column[0] = share * re, column[kBins] = share * im;
+      column[kColumnLength] = -share * im, column[kColumnLength + kBins] = share * re;
+    }
   }
 }
 
@@ -61,9 +88,11 @@ std::size_t LikelihoodEvaluation::fill_state(std::size_t b, std::span<const std:
 // With the columns of the end state, which are rows here: those of near modes and plain transients
 // in the bins, those of far modes at the nodes.
 void LikelihoodEvaluation::add_state_products(std::size_t b, const LikelihoodColumns& columns,
-                                              double* jacobian, Products& sums) {
+                                              const BlockColumns& own, double* jacobian,
+                                              Products& sums) {
   const ModeSplit split = splits_.of(b);
-  const bool nodes = end_state_.decays() > 0 && split.has_far() && columns.count <= kFarColumns;
+  const std::size_t count = own.count();
+  const bool nodes = end_state_.decays() > 0 && split.has_far() && count <= kFarColumns;
   std::vector<std::size_t> near;
   for (std::size_t p = 0; nodes && p < 2; ++p) {
     const auto list = split.decaying(split.near[p]);
@@ -72,54 +101,115 @@ void LikelihoodEvaluation::add_state_products(std::size_t b, const LikelihoodCol
   const std::span<const std::size_t> list = nodes ? near : decaying_;
   const std::size_t decays = fill_state(b, list, sums.state);
   const std::size_t rows = decays + plain_.size();
-  const std::size_t stride = product_stride(columns.count);
-  RowMatrix found = RowMatrix::Zero(static_cast<Index>(tiled(rows)), static_cast<Index>(stride));
-  add_products(sums.state.data(), tiled(rows), jacobian, tiled(columns.count), false, found.data(),
-               stride);
+  const std::size_t stride = product_stride(columns.count), own_stride = product_stride(count);
+  RowMatrix found =
+      RowMatrix::Zero(static_cast<Index>(tiled(rows)), static_cast<Index>(own_stride));
+  add_products(sums.state.data(), tiled(rows), jacobian, tiled(count), false, found.data(),
+               own_stride);
+  const auto add_row = [&](const double* from, std::size_t row) {
+    double* to = sums.mixed.data() + row * stride;
+    for (std::size_t j = 0; j < count; ++j) to[own.place(j, columns.count)] += from[j];
+  };
   for (std::size_t i = 0; i < rows; ++i) {
-    const std::size_t row =
-        i < decays ? 2 * list[i / 2] + i % 2 : 2 * end_state_.decays() + i - decays;
-    for (std::size_t j = 0; j < columns.count; ++j) {
-      sums.mixed[row * stride + j] += found(static_cast<Index>(i), static_cast<Index>(j));
-    }
+    add_row(found.row(static_cast<Index>(i)).data(),
+            i < decays ? 2 * list[i / 2] + i % 2 : 2 * end_state_.decays() + i - decays);
   }
   if (!nodes) return;
   ColumnTask task = column_task(columns);
+  task.count = count;
   task.jacobian = jacobian;
-  add_far_products(*record_, b, split, blocks_[b], task, sums.mixed.data());
+  if (own.knots == 0) {
+    add_far_products(*record_, b, split, blocks_[b], task, sums.mixed.data());
+    return;
+  }
+  const std::size_t far_rows = 2 * end_state_.decays();
+  sums.block.assign(far_rows * own_stride, 0.0);
+  add_far_products(*record_, b, split, blocks_[b], task, sums.block.data());
+  for (std::size_t row = 0; row < far_rows; ++row) {
+    add_row(sums.block.data() + row * own_stride, row);
+  }
+}
+
+// The decays with the columns of the response, as many at a time as the kernel takes.
+void LikelihoodEvaluation::add_decays_of_response(std::size_t b, const BlockColumns& own,
+                                                  std::size_t all, const double* jacobian,
+                                                  Products& sums) {
+  const std::size_t stride = product_stride(all), rows = 2 * end_state_.decays();
+  for (std::size_t begin = own.common; begin < own.count(); begin += kDecayColumns) {
+    const std::size_t count = std::min(kDecayColumns, own.count() - begin);
+    sums.block.assign(rows * count * kSumLanes, 0.0);
+    add_decay_products(*record_, b, splits_.of(b), blocks_[b], jacobian + begin * kColumnLength,
+                       count, sums.block.data());
+    std::vector<double> found(rows * count);
+    collect_decay_products(sums.block.data(), end_state_.decays(), count, found.data());
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      sums.mixed[i / count * stride + own.place(begin + i % count, all)] += found[i];
+    }
+  }
 }
 
 // With the columns of the end state.
 void LikelihoodEvaluation::add_cross_products(std::size_t b, const LikelihoodColumns& columns,
-                                              const Columns& work, double* jacobian,
+                                              const BlockColumns& own, double* jacobian,
                                               Products& sums) {
-  if (!work.shared()) {
-    add_state_products(b, columns, jacobian, sums);
+  if (own.common > kSharedColumns) {
+    add_state_products(b, columns, own, jacobian, sums);
     return;
   }
   if (end_state_.decays() > 0) {
-    add_decay_products(*record_, b, splits_.of(b), blocks_[b], jacobian, work.count,
+    add_decay_products(*record_, b, splits_.of(b), blocks_[b], jacobian, own.common,
                        sums.decays.data());
+    add_decays_of_response(b, own, columns.count, jacobian, sums);
   }
-  add_products(jacobian, work.width, plain_of(b), plain_width_, false, sums.plain.data(),
+  if (own.knots == 0) {
+    add_products(jacobian, own.width(), plain_of(b), plain_width_, false, sums.plain.data(),
+                 plain_width_);
+    return;
+  }
+  sums.block.assign(own.width() * plain_width_, 0.0);
+  add_products(jacobian, own.width(), plain_of(b), plain_width_, false, sums.block.data(),
                plain_width_);
+  for (std::size_t i = 0; i < own.count(); ++i) {
+    sums.plain.row(static_cast<Index>(own.place(i, columns.count))) +=
+        Eigen::Map<const Eigen::RowVectorXd>(sums.block.data() + i * plain_width_,
+                                             static_cast<Index>(plain_width_));
+  }
 }
 
 Eigen::MatrixXd LikelihoodEvaluation::cross_products(const Columns& work,
                                                      const Products& sums) const {
-  const auto n = static_cast<Index>(work.count);
+  const auto n = static_cast<Index>(work.count), common = static_cast<Index>(work.common);
   const auto size = static_cast<Index>(end_state_.size());
   const auto plain = static_cast<Index>(plain_.size());
-  if (!work.shared()) {
+  RowMatrix cross = RowMatrix::Zero(size, n);
+  if (!sums.mixed.empty()) {
     const auto stride = static_cast<Index>(product_stride(work.count));
-    return Eigen::Map<const RowMatrix>(sums.mixed.data(), size, stride).leftCols(n);
+    cross = Eigen::Map<const RowMatrix>(sums.mixed.data(), size, stride).leftCols(n);
   }
-  RowMatrix cross(size, n);
+  if (!work.shared()) return cross;
   if (end_state_.decays() > 0) {
-    collect_decay_products(sums.decays.data(), end_state_.decays(), work.count, cross.data());
+    RowMatrix decays(size - plain, common);
+    collect_decay_products(sums.decays.data(), end_state_.decays(), work.common, decays.data());
+    cross.topLeftCorner(size - plain, common) = decays;
   }
   cross.bottomRows(plain) = sums.plain.topLeftCorner(n, plain).transpose();
   return cross;
+}
+
+// Products of one block's columns with each other.
+void LikelihoodEvaluation::add_own_products(const BlockColumns& own, std::size_t all,
+                                            const double* jacobian, Products& sums) const {
+  const std::size_t width = own.width(), stride = tiled(all + 1);
+  if (own.knots == 0) {
+    add_products(jacobian, width, jacobian, width, true, sums.own.data(), stride);
+    return;
+  }
+  sums.block.assign(width * width, 0.0);
+  add_products(jacobian, width, jacobian, width, true, sums.block.data(), width);
+  for (std::size_t i = 0; i <= own.count(); ++i) {
+    double* to = sums.own.data() + own.place(i, all) * stride;
+    for (std::size_t j = 0; j <= i; ++j) to[own.place(j, all)] += sums.block[i * width + j];
+  }
 }
 
 // Forms the columns of every block, adds up their products, and calls also(chunk, block).
@@ -127,23 +217,23 @@ LikelihoodEvaluation::Products LikelihoodEvaluation::multiply_columns(
     const LikelihoodColumns& columns, Columns& work,
     const std::function<void(std::size_t, std::size_t)>& also) {
   prepare_sensor(columns);
-  const auto width = static_cast<Index>(work.width);
+  const auto width = static_cast<Index>(tiled(work.count + 1));
   std::vector<Products> parts(chunks());
   for (Products& part : parts) {
     part.own = RowMatrix::Zero(width, width);
-    if (work.shared()) {
-      part.decays.resize(end_state_.decays() * 2 * work.count * kSumLanes);
-      part.plain = RowMatrix::Zero(width, static_cast<Index>(plain_width_));
-    } else {
+    if (!work.shared() || work.has_response()) {
       part.mixed.resize(end_state_.size() * product_stride(work.count));
     }
+    if (!work.shared()) continue;
+    part.decays.resize(end_state_.decays() * 2 * work.common * kSumLanes);
+    part.plain = RowMatrix::Zero(width, static_cast<Index>(plain_width_));
   }
   for_blocks([&](std::size_t chunk, std::size_t b) {
     double* jacobian = work.of(chunk, b);
-    fill_columns(b, columns, jacobian);
-    add_products(jacobian, work.width, jacobian, work.width, true, parts[chunk].own.data(),
-                 work.width);
-    if (work.count > 0) add_cross_products(b, columns, work, jacobian, parts[chunk]);
+    const BlockColumns own = columns_of(b, columns);
+    fill_columns(b, columns, own, jacobian);
+    add_own_products(own, work.count, jacobian, parts[chunk]);
+    if (work.count > 0) add_cross_products(b, columns, own, jacobian, parts[chunk]);
     also(chunk, b);
   });
   Products sum = std::move(parts[0]);
@@ -160,7 +250,8 @@ LikelihoodPoint LikelihoodEvaluation::differentiate(const LikelihoodColumns& col
                                                     const LikelihoodOutputs& outputs) {
   assert(columns.count == 0 || columns.share_begin.size() == modes_.size() + 1);
   const bool keep = outputs.jacobian || outputs.twice_weighted;
-  Columns work(columns.count, keep ? blocks_.size() : chunks(), keep, arrays_.columns);
+  Columns work(columns, most_columns(columns), keep ? blocks_.size() : chunks(), keep,
+               arrays_.columns);
   const auto n = static_cast<Index>(work.count);
   const Products sum = multiply_columns(columns, work, [](std::size_t, std::size_t) {});
   const Eigen::MatrixXd products = symmetric(sum.own, work.count + 1);
@@ -170,95 +261,8 @@ LikelihoodPoint LikelihoodEvaluation::differentiate(const LikelihoodColumns& col
   const Eigen::MatrixXd cross = cross_products(work, sum);
   const Eigen::MatrixXd fit = end_state_.fit(cross);
   point.information = products.topLeftCorner(n, n) - cross.transpose() * fit;
-  if (keep) project_columns(work, fit, outputs, point);
+  if (keep) project_columns(columns, work, fit, outputs, point);
   return point;
-}
-
-void LikelihoodEvaluation::project_block(std::size_t b, const Eigen::MatrixXd& fit,
-                                         const RowMatrix& factors, Columns& work,
-                                         AlignedVector& state) {
-  double* jacobian = work.of(0, b);
-  if (!work.shared()) {
-    fill_state(b, decaying_, state);
-    subtract_columns(state.data(), end_state_.size(), factors.data(), work.width, jacobian);
-    return;
-  }
-  const auto decays = static_cast<Index>(end_state_.decays());
-  std::vector<Complex> amplitudes(end_state_.decays());
-  for (Index i = 0; decays > 0 && i < fit.cols(); ++i) {
-    for (Index m = 0; m < decays; ++m) {
-      amplitudes[static_cast<std::size_t>(m)] = Complex(fit(2 * m, i), fit(2 * m + 1, i));
-    }
-    subtract_decays(*record_, b, splits_.of(b), amplitudes, blocks_[b],
-                    jacobian + i * static_cast<Index>(kColumnLength));
-  }
-  subtract_columns(plain_of(b), plain_.size(),
-                   factors.data() + 2 * end_state_.decays() * work.width, work.width, jacobian);
-}
-
-void LikelihoodEvaluation::project_columns(Columns& work, const Eigen::MatrixXd& fit,
-                                           const LikelihoodOutputs& outputs,
-                                           LikelihoodPoint& point) {
-  const auto width = static_cast<Index>(work.width);
-  RowMatrix factors = RowMatrix::Zero(fit.rows(), width);
-  factors.leftCols(fit.cols()) = fit;
-  if (outputs.jacobian) outputs.jacobian->resize(static_cast<long>(2 * record_->bins), fit.cols());
-  struct Part {
-    RowMatrix twice;
-    AlignedVector state;
-  };
-  std::vector<Part> parts(chunks());
-  for (Part& part : parts) part.twice = RowMatrix::Zero(width, width);
-  for_blocks([&](std::size_t chunk, std::size_t b) {
-    double* jacobian = work.of(chunk, b);
-    project_block(b, fit, factors, work, parts[chunk].state);
-    for (std::size_t i = 0; outputs.jacobian && i < work.count; ++i) {
-      for_rows(b, record_->bins, [&](std::size_t row, std::size_t at) {
-        (*outputs.jacobian)(static_cast<long>(row), static_cast<long>(i)) =
-            jacobian[i * kColumnLength + at];
-      });
-    }
-    if (!outputs.twice_weighted) return;
-    scale_columns(record_->root_weight.data() + b * kBins, work.width, jacobian);
-    add_products(jacobian, work.width, jacobian, work.width, true, parts[chunk].twice.data(),
-                 work.width);
-  });
-  if (!outputs.twice_weighted) return;
-  RowMatrix twice = parts[0].twice;
-  for (std::size_t c = 1; c < parts.size(); ++c) twice += parts[c].twice;
-  point.twice_weighted = symmetric(twice, work.count);
-}
-
-// What the passes leave in the blocks.
-void LikelihoodEvaluation::give(const LikelihoodOutputs& outputs) {
-  if (outputs.amplitudes) {
-    outputs.amplitudes->assign(end_state_.amplitudes().begin(), end_state_.amplitudes().end());
-  }
-  if (outputs.residuals) {
-    outputs.residuals->resize(2 * record_->bins);
-    for (std::size_t b = 0; b < blocks_.size(); ++b) {
-      for_rows(b, record_->bins, [&](std::size_t row, std::size_t at) {
-        (*outputs.residuals)[row] = residual_of(b)[at];
-      });
-    }
-  }
-  const auto give_bins = [this](std::vector<Complex>* numbers,
-                                LikelihoodBlock::Planar LikelihoodBlock::*member) {
-    if (!numbers) return;
-    numbers->resize(record_->bins);
-    for (std::size_t k = 0; k < record_->bins; ++k) {
-      const LikelihoodBlock::Planar& of_block = blocks_[k / kBins].*member;
-      (*numbers)[k] = {of_block.re[k % kBins], of_block.im[k % kBins]};
-    }
-  };
-  give_bins(outputs.force, &LikelihoodBlock::force);
-  give_bins(outputs.left, &LikelihoodBlock::left);
-  give_bins(outputs.right, &LikelihoodBlock::right);
-  if (!outputs.gain) return;
-  outputs.gain->resize(record_->bins);
-  for (std::size_t k = 0; k < record_->bins; ++k) {
-    (*outputs.gain)[k] = 1.0 / blocks_[k / kBins].norm[k % kBins];
-  }
 }
 
 }  // namespace modcal

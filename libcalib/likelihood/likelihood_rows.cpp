@@ -65,7 +65,7 @@ void add(const AlignedVector& from, AlignedVector& to) {
 
 bool LikelihoodEvaluation::may_give_rows(const LikelihoodColumns& columns,
                                          std::span<const std::size_t> wanted) {
-  return !wanted.empty() && with_sensors(columns, wanted).size() <= kMostRows;
+  return !wanted.empty() && columns.knots == 0 && with_sensors(columns, wanted).size() <= kMostRows;
 }
 
 // Row i: products of every column with column i of `work`, projected; sensors' are left 0.
@@ -81,7 +81,7 @@ Eigen::MatrixXd LikelihoodEvaluation::project_rows(Columns& work, const Eigen::M
   std::vector<Part> parts(chunks());
   for (Part& part : parts) part.sums.resize(count * size);
   for_blocks([&](std::size_t chunk, std::size_t b) {
-    project_block(b, fit, factors, work, parts[chunk].state);
+    project_block(b, fit, factors, work.shared(), work.of(0, b), parts[chunk].state);
     for (std::size_t i = 0; i < count; ++i) {
       add_mode_slopes(*record_, b, splits_.of(b), blocks_[b], end_state_.decays() > 0,
                       work.of(chunk, b) + i * kColumnLength, parts[chunk].sums.data() + i * size);
@@ -100,7 +100,7 @@ LikelihoodPoint LikelihoodEvaluation::rows(const LikelihoodColumns& columns,
   assert(may_give_rows(columns, wanted));
   const std::vector<std::size_t> selected = with_sensors(columns, wanted);
   const LikelihoodColumns some = select(columns, selected);
-  Columns work(some.count, blocks_.size(), true, arrays_.columns);
+  Columns work(some, some.count, blocks_.size(), true, arrays_.columns);
   std::vector<AlignedVector> sums(chunks(), AlignedVector(sums_of(modes_.size())));
   const Products sum = multiply_columns(some, work, [&](std::size_t chunk, std::size_t b) {
     add_mode_slopes(*record_, b, splits_.of(b), blocks_[b], end_state_.decays() > 0, residual_of(b),

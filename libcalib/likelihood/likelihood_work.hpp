@@ -6,19 +6,33 @@
 
 namespace modcal {
 
+// The columns that one block has: of the response those of the knots that reach into it.
+struct LikelihoodEvaluation::BlockColumns {
+  std::size_t common = 0, first_knot = 0, knots = 0;
+  std::size_t count() const { return common + 2 * knots; }
+  std::size_t width() const { return tiled(count() + 1); }
+  // Among all columns; the residual stands behind them.
+  std::size_t place(std::size_t i, std::size_t all) const {
+    return i < common ? i : i < count() ? i + 2 * first_knot : all;
+  }
+};
+
 // The Jacobian's columns, the residual behind them; where they are not kept, one block a chunk.
 struct LikelihoodEvaluation::Columns {
-  Columns(std::size_t column_count, std::size_t pieces, bool keep, AlignedVector& room)
-      : count(column_count), width(tiled(column_count + 1)), kept(keep) {
+  // most: of one block.
+  Columns(const LikelihoodColumns& columns, std::size_t most, std::size_t pieces, bool keep,
+          AlignedVector& room)
+      : count(columns.count), common(columns.common()), width(tiled(most + 1)), kept(keep) {
     if (room.size() < width * kColumnLength * pieces) room.resize(width * kColumnLength * pieces);
     numbers = room.data();
   }
   double* of(std::size_t chunk, std::size_t b) {
     return numbers + (kept ? b : chunk) * width * kColumnLength;
   }
-  bool shared() const { return count <= kSharedColumns; }
+  bool shared() const { return common <= kSharedColumns; }
+  bool has_response() const { return common < count; }
 
-  std::size_t count, width;
+  std::size_t count, common, width;
   bool kept;
   double* numbers;
 };
@@ -27,6 +41,7 @@ struct LikelihoodEvaluation::Columns {
 struct LikelihoodEvaluation::Products {
   RowMatrix own, plain;
   AlignedVector mixed, decays, state;
+  AlignedVector block;  // of one block's columns, before they are added to those of all
 };
 
 inline Eigen::MatrixXd symmetric(const auto& lower, std::size_t count) {

@@ -27,6 +27,7 @@ PluckEvaluation::Mode PluckEvaluation::mode_of(const LikelihoodMode& mode, const
   for (std::size_t i = 0; i < Sensor::kCount; ++i) {
     result.right_by_sensor[i] = sensors.slope(i, rate) * response;
   }
+  if (!sensors.smooth.knots.empty()) result.knots = sensors.smooth.place(std::abs(rate.imag()));
   return result;
 }
 
@@ -154,8 +155,22 @@ void PluckEvaluation::add_mode(const LikelihoodColumns& columns, std::size_t mod
     if (!columns.sensors[i]) continue;
     add(decay, kLevel, c * own.right_by_sensor[i], right + *columns.sensors[i] * kColumnLength);
   }
+  if (columns.knots > 0) add_knots(columns, mode, decay, right);
   add(decay, kLevel, c, left + columns.count * kColumnLength);
   add(decay, kLevel, c * own.right, right + columns.count * kColumnLength);
+}
+
+// Those of the knots on either side of the mode's frequency.
+void PluckEvaluation::add_knots(const LikelihoodColumns& columns, std::size_t mode,
+                                const Decay& decay, double* right) const {
+  const Complex level = amplitudes_[mode] * modes_[mode].right;
+  const auto [knot, next] = modes_[mode].knots;
+  const double shares[] = {1.0 - next, next};
+  for (std::size_t i = 0; i < 2 && shares[i] > 0.0; ++i) {
+    double* column = right + (columns.common() + 2 * (knot + i)) * kColumnLength;
+    add(decay, kLevel, shares[i] * level, column);
+    add(decay, kLevel, Complex(0.0, shares[i]) * level, column + kColumnLength);
+  }
 }
 
 // Columns of -e and of its derivatives, of both ends.

@@ -34,6 +34,7 @@ class PluckEvaluation {
     Complex by_frequency, by_damping;  ///< ∂ln E/∂ln ω_n, ∂ln E/∂ln ζ_n
     /// Factor of c_n at x = L, and its derivatives by ln ω_n, ln ζ_n and the sensor's numbers.
     Complex right, right_by_frequency, right_by_damping, right_by_sensor[Sensor::kCount];
+    SmoothResponse::Place knots;  ///< of the sensor's smooth response at the mode's frequency
   };
 
   static Mode mode_of(const LikelihoodMode& mode, const Sensor& sensors, double sample_rate,
@@ -47,6 +48,8 @@ class PluckEvaluation {
   void solve(const RowMatrix& products);
   void fill_jacobian(std::size_t block, const LikelihoodColumns& columns, double* left,
                      double* right) const;
+  void add_knots(const LikelihoodColumns& columns, std::size_t mode, const Decay& decay,
+                 double* right) const;
   void add_mode(const LikelihoodColumns& columns, std::size_t mode, const Decay& decay,
                 double* left, double* right) const;
 

@@ -13,7 +13,7 @@ UnknownBounds unknown_bounds(const StringUnknowns& unknowns, const ModelPoint& i
   const Eigen::VectorXd center = unknowns.theta_of(initial);
   UnknownBounds bounds{start, start};
   ParameterRanges copy = ranges;
-  for (Index i = 0; i < unknowns.size(); ++i) {
+  for (Index i = 0; i < unknowns.named(); ++i) {
     const ParameterName& name = unknowns.parameters()[static_cast<std::size_t>(i)];
     const ParameterType& type = type_of(name);
     const double range = type.range(copy);
@@ -33,6 +33,10 @@ UnknownBounds unknown_bounds(const StringUnknowns& unknowns, const ModelPoint& i
     bounds.lower[i] = std::min(lower, start[i]);
     bounds.upper[i] = std::max(upper, start[i]);
   }
+  // The prior holds the response.
+  const Index others = unknowns.size() - unknowns.named();
+  bounds.lower.tail(others).setConstant(-sensor_type(Sensor::kGain).farthest);
+  bounds.upper.tail(others).setConstant(sensor_type(Sensor::kGain).farthest);
   return bounds;
 }
 

@@ -21,13 +21,24 @@ struct ColumnShare {
 };
 
 /// How the columns of a Jacobian are made of ∂/∂ln ω_n and ∂/∂ln ζ_n, and which ones are those of
-/// x_c and of the sensor at x = L (its coordinates: ln gain, delay [s], corner [rad/s]).
+/// x_c and of the sensor at x = L (its coordinates: ln gain, delay [s], corner [rad/s]). Last stand
+/// those of its smooth response, which few bins have: real and imaginary part of knot after knot.
 struct LikelihoodColumns {
   std::size_t count = 0;
   std::vector<ColumnShare> shares;       ///< by mode
   std::vector<std::size_t> share_begin;  ///< N + 1 numbers: where those of mode n begin
   std::optional<std::size_t> contact = {};
   std::array<std::optional<std::size_t>, Sensor::kCount> sensors = {};
+  std::size_t knots = 0;
+
+  /// Columns before those of the response.
+  std::size_t common() const { return count - 2 * knots; }
+  LikelihoodColumns without_response() const {
+    LikelihoodColumns others = *this;
+    others.count = common();
+    others.knots = 0;
+    return others;
+  }
 };
 
 /// θ: the coordinates (ParameterType) of named parameters of one record. A mode whose frequency or

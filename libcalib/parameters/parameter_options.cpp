@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "libcalib/parameters/damping_choice.hpp"
@@ -101,20 +102,27 @@ void UnknownsOptions::visit(OptionVisitor& visitor) {
                   .range = Range::positive()},
                  damping_width);
   std::vector<std::string> free = free_sensors();
+  if (response.free) free.emplace_back("response");
   if (exact_sensors) free.emplace_back("exact");
   std::vector<std::string_view> choices = sensor_names();
-  choices.emplace_back("exact");
+  choices.insert(choices.end(), {"response", "exact"});
   visitor.texts(
       {.key = "sensors",
-       .meaning = "what is free of the sensor at x = L against that at x = 0; none named: "
-                  "all of a record's, under priors; exact: nothing",
+       .meaning = "what is free of the sensor at x = L against that at x = 0, response: a factor "
+                  "that is smooth in frequency; none named: all of a record's, under priors; "
+                  "exact: nothing",
        .choices = choices},
       free);
-  exact_sensors = std::find(free.begin(), free.end(), "exact") != free.end();
+  const auto named = [&](std::string_view name) {
+    return std::find(free.begin(), free.end(), name) != free.end();
+  };
+  exact_sensors = named("exact");
+  response.free = named("response");
+  response.visit(visitor);
   std::vector<std::string_view> own = {"x_c"};
   for (std::size_t i = 0; i < Sensor::kCount; ++i) {
     const ParameterType& type = sensor_type(i);
-    sensor[i].free = std::find(free.begin(), free.end(), type.name) != free.end();
+    sensor[i].free = named(type.name);
     const std::string meaning = fmt::format("{}; of what is free: start", type.meaning);
     visitor.number({.key = type.name, .meaning = meaning, .unit = type.unit, .range = type.stated},
                    sensor[i].value);
@@ -142,30 +150,6 @@ std::vector<std::string> UnknownsOptions::free_sensors() const {
   return names;
 }
 
-UnknownsOptions UnknownsOptions::of_records(double sample_rate) const {
-  constexpr double kGainWidth = 0.02, kDelayWidth = 1.0, kCornerWidth = 1.0;  // 1; samples; Hz
-  UnknownsOptions known = *this;
-  if (damping_choice(damping) == DampingChoice::kAuto) {
-    known.damping = "each";
-    if (damping_width == UnknownsOptions().damping_width) known.damping_width = 1.0;
-  }
-  if (exact_sensors || sensors().may_differ()) return known;
-  const auto release = [&](Sensor::Index i, double width) {
-    known.sensor[i].free = true;
-    known.priors.push_back({std::string(sensor_type(i).name), known.sensor[i].value, width});
-  };
-  release(Sensor::kGain, kGainWidth);
-  release(Sensor::kDelay, kDelayWidth / sample_rate);
-  release(Sensor::kCorner, kCornerWidth);
-  return known;
-}
-
-UnknownsOptions UnknownsOptions::of_simulations() const {
-  UnknownsOptions known = *this;
-  if (damping_choice(damping) == DampingChoice::kAuto) known.damping = "fixed";
-  return known;
-}
-
 void UnknownsOptions::require_contacts(std::size_t strokes) const {
   const auto require = [strokes](const std::string& parameter) {
     const std::optional<ParameterName> name = parse_parameter(parameter);
@@ -191,6 +175,10 @@ Sensor UnknownsOptions::sensors() const {
     result.*Sensor::value_of(i) = sensor_type(i).per_unit * sensor[i].value;
     result.free = result.free || sensor[i].free;
   }
+  if (!response.free) return result;
+  result.free = true;
+  result.smooth.knots.resize(response.knots);
+  result.smooth.spacing = 2.0 * std::numbers::pi * response.spacing;
   return result;
 }
 

@@ -42,6 +42,19 @@ struct PriorCorrelation {
   void visit(OptionVisitor& visitor);
 };
 
+/// The smooth response of the sensor at x = L against that at x = 0: its knots (SmoothResponse) are
+/// unknowns under a prior about 0.
+struct ResponseOptions {
+  bool free = false;
+  double width = 5e-3;  ///< sd of the prior of the real and of the imaginary part of a knot [1]
+  /// Between knots [Hz]; NaN: f_1, at most 300 Hz, at least a hundredth of f_N.
+  double spacing = std::numeric_limits<double>::quiet_NaN();
+  std::size_t knots = 0;  ///< up to above f_N; see laid_out()
+  void visit(OptionVisitor& visitor);
+  /// With spacing and knots for these modes. Throws InvalidInput where these would be over 400.
+  ResponseOptions laid_out(const ModalBasis& basis) const;
+};
+
 /// What is unknown of the damping and of the sensor at x = L beside frequencies and contact, and
 /// what is known of all of them beforehand.
 struct UnknownsOptions {
@@ -52,6 +65,7 @@ struct UnknownsOptions {
   double damping_width = 0.3;  ///< sd of the prior of each ln ζ_n, with "each" [1]
   /// Gain [1], delay [s] and corner [Hz] of the sensor at x = L.
   std::array<UnknownOption, Sensor::kCount> sensor = {{{.value = 1.0}}};
+  ResponseOptions response;
   bool exact_sensors = false;  ///< they are as stated, in a record too
   /// What each record has for itself, of x_c, gain, delay, corner and the factor "damping".
   std::vector<std::string> per_record = {"x_c"};
@@ -60,13 +74,14 @@ struct UnknownsOptions {
   std::vector<PriorCorrelation> correlations;
   void visit(OptionVisitor& visitor);
   Sensor sensors() const;                         ///< start
-  std::vector<std::string> free_sensors() const;  ///< some of gain, delay, corner
+  std::vector<std::string> free_sensors() const;  ///< the names of some of gain, delay, corner
   /// Of records, of which nothing is stated that says otherwise: gain, delay and corner are free
-  /// under priors of 2 %, one sample and 1 Hz, every ln ζ_n under one of 1. What two sensors differ
-  /// by biases f_n by many of their deviations before any test of the misfit sees it.
-  UnknownsOptions of_records(double sample_rate) const;
+  /// under priors of 2 %, one sample and 1 Hz, their smooth response under its own, every ln ζ_n
+  /// under one of 1. What two sensors differ by biases f_n by many of their deviations before any
+  /// test of the misfit sees it.
+  UnknownsOptions of_records(double sample_rate, const ModalBasis& basis) const;
   /// The same of simulated strings.
-  UnknownsOptions of_simulations() const;
+  UnknownsOptions of_simulations(const ModalBasis& basis) const;
   /// Whether it is each record's own.
   bool own(const ParameterName& name) const;
   /// Throws InvalidInput for a prior or a fixed value of a contact that no stroke has.

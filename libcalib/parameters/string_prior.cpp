@@ -1,4 +1,6 @@
 // What is known of the unknowns before the data.
+#include <fmt/format.h>
+
 #include <cmath>
 #include <numbers>
 
@@ -9,6 +11,7 @@ namespace {
 
 using Index = Eigen::Index;
 using Kind = ParameterKind;
+using Complex = std::complex<double>;
 
 }  // namespace
 
@@ -58,8 +61,17 @@ StatedPriors::Coordinate StringUnknowns::coordinates(const Eigen::VectorXd& thet
   return [this, &theta](const ParameterName& name) { return coordinate(name, theta); };
 }
 
-void StringUnknowns::state_damping_ratios(const std::vector<double>& mean,
-                                          PriorEquations& equations) const {
+void StringUnknowns::state_widths(const std::vector<double>& mean,
+                                  PriorEquations& equations) const {
+  for (std::size_t k = 0; k < knots_; ++k) {
+    const Complex at = reference_.sensors.smooth.knots[k];
+    const double offsets[] = {at.real(), at.imag()};
+    for (Index part = 0; part < 2; ++part) {
+      LinearForm number = form(offsets[part]);
+      number.slope[knot(k) + part] = 1.0;
+      equations.add(number, 0.0, options_.response.width);
+    }
+  }
   if (!free_.has(Kind::kDampingRatio)) return;
   for (std::size_t n = 0; n < modes(); ++n) {
     const ParameterName ratio{Kind::kDampingRatio, n};
@@ -71,7 +83,7 @@ void StringUnknowns::state_damping_ratios(const std::vector<double>& mean,
 PriorEquations StringUnknowns::stated(const Eigen::VectorXd& theta) const {
   PriorEquations equations(size());
   priors_.state(coordinates(theta), equations);
-  state_damping_ratios(reference_.basis.zeta, equations);
+  state_widths(reference_.basis.zeta, equations);
   return equations;
 }
 
@@ -103,7 +115,25 @@ PriorMisfit StringUnknowns::prior_misfit(const Eigen::VectorXd& theta,
 
 PriorMisfit StringUnknowns::misfit_at(const Eigen::VectorXd& theta,
                                       const PriorEquations& equations) const {
-  return priors_.misfit(coordinates(theta), equations.completed(theta));
+  return worse_of_response(theta, priors_.misfit(coordinates(theta), equations.completed(theta)));
+}
+
+PriorMisfit StringUnknowns::worse_of_response(const Eigen::VectorXd& theta,
+                                              PriorMisfit stated) const {
+  PriorMisfit response{.count = 2 * knots_};
+  const SmoothResponse& reference = reference_.sensors.smooth;
+  for (std::size_t k = 0; k < knots_; ++k) {
+    const Complex number = (reference.knots[k] + Complex(theta[knot(k)], theta[knot(k) + 1])) /
+                           options_.response.width;
+    response.chi2 += std::norm(number);
+    const double farthest = std::max(std::abs(number.real()), std::abs(number.imag()));
+    if (farthest <= response.deviations) continue;
+    response.deviations = farthest;
+    response.farthest =
+        fmt::format("the response at {:.4g} Hz",
+                    static_cast<double>(k) * reference.spacing / (2.0 * std::numbers::pi));
+  }
+  return response.contradicted() && !stated.contradicted() ? response : stated;
 }
 
 void StringUnknowns::hold(PriorEquations& equations) const {

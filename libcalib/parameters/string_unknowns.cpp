@@ -1,5 +1,6 @@
 #include "libcalib/parameters/string_unknowns.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -10,6 +11,7 @@ namespace {
 
 using Index = Eigen::Index;
 using Kind = ParameterKind;
+using Complex = std::complex<double>;
 using std::numbers::pi;
 
 double root(double variance) { return std::sqrt(std::max(variance, 0.0)); }
@@ -45,6 +47,7 @@ StringUnknowns StringUnknowns::without_damping_and_sensors() const {
   StringUnknowns unknowns = *this;
   unknowns.options_.damping = "fixed";
   for (UnknownOption& sensor : unknowns.options_.sensor) sensor.free = false;
+  unknowns.options_.response.free = false;
   unknowns.list();
   return unknowns;
 }
@@ -58,6 +61,7 @@ StringUnknowns StringUnknowns::under(StatedPriors priors) const {
 
 void StringUnknowns::list() {
   free_ = FreeParameters(modes());
+  knots_ = 0;
   for (std::size_t n = 0; n < modes(); ++n) {
     for (const Kind kind : {Kind::kFrequency, Kind::kDampingRatio}) {
       if (priors_.fixed({kind, n})) free_.fix({kind, n});
@@ -84,6 +88,7 @@ void StringUnknowns::list() {
   for (std::size_t i = 0; i < Sensor::kCount; ++i) {
     if (options_.sensor[i].free) free_.add({Kind::kSensor, i});
   }
+  if (options_.response.free) knots_ = reference_.sensors.smooth.knots.size();
 }
 
 std::vector<Index> StringUnknowns::own_places(bool stroke) const {
@@ -114,6 +119,11 @@ Eigen::VectorXd StringUnknowns::theta_of(const ModelPoint& model) const {
                        : mean_damping_change(reference_, model);
     }
   }
+  for (std::size_t k = 0; k < knots_; ++k) {
+    const Complex change = model.sensors.smooth.knots[k] - reference_.sensors.smooth.knots[k];
+    theta[knot(k)] = change.real();
+    theta[knot(k) + 1] = change.imag();
+  }
   return theta;
 }
 
@@ -122,16 +132,6 @@ Eigen::VectorXd StringUnknowns::own_start(const ModelPoint& found) const {
   const Eigen::VectorXd there = theta_of(found);
   for (const Index i : own_places(true)) theta[i] = there[i];
   return theta;
-}
-
-double StringUnknowns::mean_damping_change(const ModelPoint& from, const ModelPoint& to) const {
-  double change = 0.0, count = 0.0;
-  for (std::size_t n = 0; n < modes(); ++n) {
-    if (priors_.fixes_ratio(n)) continue;
-    change += std::log(to.basis.zeta[n] / from.basis.zeta[n]);
-    count += 1.0;
-  }
-  return change / std::max(count, 1.0);
 }
 
 Eigen::VectorXd StringUnknowns::start() const {
@@ -144,43 +144,8 @@ double StringUnknowns::fundamental(const Eigen::VectorXd& theta) const {
   return fundamental_ * std::exp(theta[0]);
 }
 
-// ln ζ_n/ζ_n(reference).
-double StringUnknowns::damping_change(std::size_t mode, const Eigen::VectorXd& theta) const {
-  double change = 0.0;
-  for (const std::size_t i : free_.movers(Moves::kDamping, mode)) {
-    change += free_.share(i, mode, 0.0) * theta[static_cast<Index>(i)];
-  }
-  return change;
-}
-
-double StringUnknowns::damping_factor(const Eigen::VectorXd& theta) const {
-  if (free_.has(Kind::kDampingPower)) return std::exp(theta[damping()]);
-  double sum = 0.0, count = 0.0;
-  for (std::size_t n = 0; n < modes(); ++n) {
-    sum += damping_change(n, theta);
-    count += priors_.fixes_ratio(n) ? 0.0 : 1.0;
-  }
-  return std::exp(sum / std::max(count, 1.0));
-}
-
-double StringUnknowns::damping_power(const Eigen::VectorXd& theta) const {
-  return free_.has(Kind::kDampingPower) ? theta[damping() + 1] : 0.0;
-}
-
-double StringUnknowns::damping_power_deviation(const Eigen::MatrixXd& covariance) const {
-  if (!free_.has(Kind::kDampingPower)) return 0.0;
-  return root(covariance(damping() + 1, damping() + 1));
-}
-
-std::vector<double> StringUnknowns::ratio_deviations(const Eigen::MatrixXd& covariance) const {
-  std::vector<double> result;
-  for (Index i = damping(); free_.has(Kind::kDampingRatio) && i < damping() + damping_count_; ++i) {
-    result.push_back(held(i) ? 0.0 : root(covariance(i, i)));
-  }
-  return result;
-}
-
 bool StringUnknowns::held(Index i, std::size_t record) const {
+  if (i >= named()) return false;
   ParameterName name = free_[static_cast<std::size_t>(i)];
   if (type_of(name).moves == Moves::kDamping && !type_of(name).of_mode) {
     for (std::size_t n = 0; n < modes(); ++n) {
@@ -206,19 +171,6 @@ void StringUnknowns::clear_held(Eigen::MatrixXd& covariance) const {
   }
 }
 
-double StringUnknowns::damping_deviation(const Eigen::MatrixXd& covariance) const {
-  const Index count = damping_count();
-  if (count == 0) return 0.0;
-  // The mean of all changes is linear in the unknowns.
-  Eigen::VectorXd slope(count);
-  for (Index i = 0; i < count; ++i) {
-    Eigen::VectorXd theta = Eigen::VectorXd::Zero(size());
-    theta[damping() + i] = 1.0;
-    slope[i] = std::log(damping_factor(theta));
-  }
-  return root(slope.dot(covariance.block(damping(), damping(), count, count) * slope));
-}
-
 std::array<double, Sensor::kCount> StringUnknowns::sensor_deviation(
     const ModelPoint& model, const Eigen::MatrixXd& covariance) const {
   std::array<double, Sensor::kCount> result{};
@@ -227,6 +179,15 @@ std::array<double, Sensor::kCount> StringUnknowns::sensor_deviation(
     const double unit = free_.type(i).slope(value_of(free_[i], model));
     const auto at = static_cast<Index>(i);
     result[free_[i].index] = unit * root(covariance(at, at));
+  }
+  return result;
+}
+
+std::vector<Complex> StringUnknowns::response_deviations(const Eigen::MatrixXd& covariance) const {
+  std::vector<Complex> result;
+  for (std::size_t k = 0; k < knots_; ++k) {
+    const Index i = knot(k);
+    result.emplace_back(root(covariance(i, i)), root(covariance(i + 1, i + 1)));
   }
   return result;
 }
@@ -248,7 +209,10 @@ bool StringUnknowns::admits(const Eigen::VectorXd& theta) const {
     const double coordinate = sensor_type(i).coordinate(sensor_value(i, point.sensors));
     if (!(std::abs(coordinate) < sensor_type(i).farthest)) return false;
   }
-  return true;
+  const std::vector<Complex>& knots = point.sensors.smooth.knots;
+  return std::all_of(knots.begin(), knots.end(), [](Complex knot) {
+    return std::abs(knot) < sensor_type(Sensor::kGain).farthest;
+  });
 }
 
 ModelPoint StringUnknowns::model(const Eigen::VectorXd& theta) const {
@@ -272,13 +236,19 @@ ModelPoint StringUnknowns::model(const Eigen::VectorXd& theta) const {
     double& number = *type.at(point, free_[i].index);
     number = type.moved(number, theta[static_cast<Index>(i)]);
   }
+  for (std::size_t k = 0; k < knots_; ++k) {
+    point.sensors.smooth.knots[k] += Complex(theta[knot(k)], theta[knot(k) + 1]);
+  }
   return point;
 }
 
 LikelihoodColumns StringUnknowns::columns(const Eigen::VectorXd& theta, std::size_t record) const {
   std::vector<bool> known;
   for (Index i = 0; i < size(); ++i) known.push_back(held(i, record));
-  return free_.columns(law_ ? theta[1] : 0.0, reference_.higher, known);
+  LikelihoodColumns columns = free_.columns(law_ ? theta[1] : 0.0, reference_.higher, known);
+  columns.knots = knots_;
+  columns.count += 2 * knots_;
+  return columns;
 }
 
 }  // namespace modcal

@@ -15,7 +15,8 @@ namespace modcal {
 /// B: with the law ω_n = 2πn f_0 √(1 + B n²), else ω_n = ω_n(reference) exp(δ_n). Damping: nothing,
 /// (ln factor), (ln factor, exponent) with ζ_n = ζ_n(reference) factor n^exponent, or every
 /// ln ζ_n/ζ_n(reference); "each" is "factor" as long as the law holds. Sensors: those free of
-/// ln gain, delay [s], corner [rad/s], as changes.
+/// ln gain, delay [s], corner [rad/s], as changes; then the real and imaginary part of every knot
+/// of their smooth response, where that is free, which have no names.
 class StringUnknowns {
  public:
   StringUnknowns() = default;
@@ -30,7 +31,9 @@ class StringUnknowns {
 
   bool is_law() const { return law_; }
   const FreeParameters& parameters() const { return free_; }
-  Eigen::Index size() const { return static_cast<Eigen::Index>(free_.size()); }
+  Eigen::Index size() const { return named() + 2 * static_cast<Eigen::Index>(knots_); }
+  /// Unknowns that have a name, the first.
+  Eigen::Index named() const { return static_cast<Eigen::Index>(free_.size()); }
   Eigen::Index contact() const { return law_ ? 2 : static_cast<Eigen::Index>(modes()); }
   Eigen::Index damping() const { return contact() + 1; }  ///< first of the damping's unknowns
   Eigen::Index damping_count() const { return damping_count_; }
@@ -64,6 +67,10 @@ class StringUnknowns {
   /// Those of gain, delay [s] and corner [Hz] of the model; 0: not free.
   std::array<double, Sensor::kCount> sensor_deviation(const ModelPoint& model,
                                                       const Eigen::MatrixXd& covariance) const;
+  /// Those of the real and imaginary parts of the knots of the response; empty: it is not free.
+  std::vector<std::complex<double>> response_deviations(const Eigen::MatrixXd& covariance) const;
+  /// The misfit of the response to its prior where that contradicts it, else what is stated.
+  PriorMisfit worse_of_response(const Eigen::VectorXd& theta, PriorMisfit stated) const;
   /// False where the law, the contact, damping or sensors leave what a string can be.
   bool admits(const Eigen::VectorXd& theta) const;
   ModelPoint model(const Eigen::VectorXd& theta) const;
@@ -80,8 +87,8 @@ class StringUnknowns {
   /// What is stated, with the law's scatter, linear about θ.
   PriorEquations stated(const Eigen::VectorXd& theta, const LawScatter& law) const;
   /// Adds the priors of every ζ_n about `mean`, where each is free, unless something else is stated
-  /// of it.
-  void state_damping_ratios(const std::vector<double>& mean, PriorEquations& equations) const;
+  /// of it, and those of the response.
+  void state_widths(const std::vector<double>& mean, PriorEquations& equations) const;
   /// What is stated against θ; with the law's scatter where every frequency is free.
   PriorMisfit prior_misfit(const Eigen::VectorXd& theta) const;
   PriorMisfit prior_misfit(const Eigen::VectorXd& theta, const LawScatter& law) const;
@@ -99,6 +106,7 @@ class StringUnknowns {
   double damping_change(std::size_t mode, const Eigen::VectorXd& theta) const;
   /// Names of θ in their order.
   void list();
+  Eigen::Index knot(std::size_t k) const { return named() + 2 * static_cast<Eigen::Index>(k); }
 
   ModelPoint reference_;
   UnknownsOptions options_;
@@ -107,6 +115,7 @@ class StringUnknowns {
   double inharmonicity_ = 0.0;
   bool law_ = false;
   FreeParameters free_;
+  std::size_t knots_ = 0;
   Eigen::Index damping_count_ = 0;
 };
 

@@ -1,5 +1,8 @@
 // What a calibration found, described once for its tables and its JSON, and its figures.
 
+#include <complex>
+#include <numbers>
+
 #include "experiments/kinds/calibrate/calibrate.hpp"
 
 namespace modcal {
@@ -119,6 +122,30 @@ void visit_pairs(ResultVisitor& visitor, const ContinuationResult& found) {
                });
 }
 
+// One knot of the smooth response of the sensor at x = L.
+struct ResponseKnot {
+  double frequency = 0.0;
+  std::complex<double> value, deviation;
+};
+
+std::vector<ResponseKnot> response_of(const ContinuationResult& found) {
+  std::vector<ResponseKnot> knots;
+  const SmoothResponse& smooth = found.model.sensors.smooth;
+  for (std::size_t k = 0; k < found.response_deviations.size(); ++k) {
+    knots.push_back({static_cast<double>(k) * smooth.spacing / (2.0 * std::numbers::pi),
+                     smooth.knots[k], found.response_deviations[k]});
+  }
+  return knots;
+}
+
+void visit_response(ResultVisitor& row, const ResponseKnot& knot) {
+  row({.key = "frequency_hz"}, knot.frequency);
+  row({.key = "log_gain"}, knot.value.real());
+  row({.key = "log_gain_sd"}, knot.deviation.real());
+  row({.key = "phase_rad"}, knot.value.imag());
+  row({.key = "phase_sd_rad"}, knot.deviation.imag());
+}
+
 void visit_estimate(ResultVisitor& visitor, const ContinuationResult& found) {
   const auto group = [&visitor](std::string_view key, auto visit, const auto& value) {
     visitor.group({.key = key}, [&](ResultVisitor& members) { visit(members, value); });
@@ -138,6 +165,7 @@ void visit_estimate(ResultVisitor& visitor, const ContinuationResult& found) {
   visitor({.key = "damping_sd"}, found.damping_deviation);
   visitor({.key = "noise_left_n"}, found.noise[0]);
   visitor({.key = "noise_right_n"}, found.noise[1]);
+  visitor.rows({.key = "sensor_response"}, response_of(found), visit_response);
   visitor({.key = "restarts"}, found.restarts);
   visitor({.key = "moved_modes"}, found.moved_modes);
   group("covariance", visit_covariance, found.covariance);

@@ -66,13 +66,17 @@ Sensor told_sensors(const CalibrationResult& result) {
 std::string default_text(const CalibrationOptions& calibration, const Observation& observation) {
   if (observation.truth || !calibration.by_schedule()) return "";
   const UnknownsOptions& stated = calibration.parameters.unknowns;
-  const UnknownsOptions known = stated.of_records(observation.sample_rate);
+  const UnknownsOptions known = stated.of_records(observation.sample_rate, observation.basis);
   std::vector<std::string> texts;
   for (std::size_t i = stated.priors.size(); i < known.priors.size(); ++i) {
     const ParameterPrior& prior = known.priors[i];
     const std::string_view unit = unit_of_parameter(prior.parameter);
     texts.push_back(fmt::format("{} {:g} +- {:.3g}{}{}", prior.parameter, prior.mean,
                                 prior.deviation, unit == "1" ? "" : " ", unit == "1" ? "" : unit));
+  }
+  if (known.response.free && !stated.response.free) {
+    texts.push_back(fmt::format("the smooth response of the sensors +- {:g} every {:.4g} Hz",
+                                known.response.width, known.response.spacing));
   }
   if (known.damping != stated.damping) {
     texts.push_back(fmt::format("every ln zeta_n +- {:g}", known.damping_width));
@@ -93,6 +97,7 @@ std::string correction_text(const Observation& observation, const Sensor& sensor
     numbers.push_back(fmt::format("{} {}{}{}", type.name, number, type.unit == "1" ? "" : " ",
                                   type.unit == "1" ? "" : type.unit));
   }
+  if (!sensors.smooth.zero()) numbers.emplace_back("smooth response");
   return fmt::format(
       "The reaction at x = L was corrected for its sensor before the identification: {}.",
       fmt::join(numbers, ", "));

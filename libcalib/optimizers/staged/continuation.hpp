@@ -110,6 +110,8 @@ struct ContinuationResult {
   std::vector<double> ratio_deviations;  ///< of every ζ_n, relative; empty unless each is free
   /// Of gain, delay [s] and corner [Hz] of model.sensors; 0: not free.
   std::array<double, Sensor::kCount> sensor_deviation{};
+  /// Of the real and imaginary parts of the knots of model.sensors.smooth; empty: not free.
+  std::vector<std::complex<double>> response_deviations;
   /// Of all that is free in `model`: f_n or f0 and B, x_c, damping, sensors. The roots of its
   /// diagonal are the deviations reported; what a verdict adds to that of a frequency, in its place
   /// alone.

@@ -139,7 +139,9 @@ class Attempt {
     options.noise = stroke_.prepare_weights(law_, law_theta_);
     const NewtonFit last = stroke_.fit(stroke_.weighted(), law_, law_theta_, options);
     law_theta_ = last.theta;
-    const Eigen::MatrixXd covariance = stroke_.covariance_at(law_, law_theta_, options);
+    const LikelihoodPoint at = stroke_.weighted_point(law_, law_theta_);
+    Eigen::MatrixXd covariance = fit_covariance(at, options);
+    law_.clear_held(covariance);
     const ModelPoint model = law_.model(law_theta_);
     LawEstimate& law = result.law;
     law.fundamental = law_.fundamental(law_theta_);
@@ -153,7 +155,7 @@ class Attempt {
     law.deviation[0] *= law.fundamental;
     law.deviation[3] = law_.damping_deviation(covariance) * law.damping;
     law.covariance = named_covariance(law_, law_theta_, law.damping, covariance);
-    law.chi2 = stroke_.reduced_chi2(model, free_count);
+    law.chi2 = stroke_.reduced_chi2(model, taken_by_fit(at, options));
     stroke_.end_stage(name + ", weighted bins", last.objective, law.chi2);
     law.accepted = law.chi2 < 1.0 + 3.0 * result.chi2_deviation;
     law.priors = law_.prior_misfit(law_theta_);
@@ -173,6 +175,7 @@ class Attempt {
     result.damping_power = law_.damping_power(law_theta_);
     result.damping_power_deviation = law_.damping_power_deviation(covariance);
     result.sensor_deviation = law_.sensor_deviation(result.model, covariance);
+    result.response_deviations = law_.response_deviations(covariance);
     result.modes = law_verdicts(result.model, law.inharmonicity, covariance.topLeftCorner(2, 2));
     trust_stated_frequencies(priors_, {}, result.modes);
   }

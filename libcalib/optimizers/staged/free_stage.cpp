@@ -146,6 +146,7 @@ class FreeStage {
     result_.ratio_deviations = unknowns_.ratio_deviations(covariance);
     result_.damping_deviation = unknowns_.damping_deviation(covariance) * result_.damping;
     result_.sensor_deviation = unknowns_.sensor_deviation(result_.model, covariance);
+    result_.response_deviations = unknowns_.response_deviations(covariance);
     result_.modes = free_verdicts(result_.model, deviation.head(modes()), sight_.seen, followers_);
     trust_stated_frequencies(priors_, deviation, result_.modes);
     const LawScatter scatter{followers_.scatters(), inharmonicity_};

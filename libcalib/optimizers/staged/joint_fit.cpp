@@ -83,10 +83,8 @@ class JointFit {
                       .seen = seen_,
                       .followers = followers_},
                      covariance, fit_);
-    // As for one record: the law's unknowns have no prior that takes their place.
-    const double taken =
-        unknowns().is_law() ? static_cast<double>(all_.free_count()) : taken_by_fit(last, newton);
-    const AllRecords::Misfit misfit = all_.misfit(theta_, noise_errors_, taken);
+    const AllRecords::Misfit misfit =
+        all_.misfit(theta_, noise_errors_, taken_by_fit(last, newton));
     fit_.chi2 = fit_.stages.back().chi2 = misfit.chi2;
     fit_.chi2_deviation = misfit.deviation;
     fit_.fits = fit_.chi2 < 1.0 + 3.0 * fit_.chi2_deviation;
@@ -135,14 +133,16 @@ class JointFit {
     PriorEquations result(all_.size());
     priors.state([&](const ParameterName& name) { return all_.coordinate(name, theta_); }, result);
     // About the damping stated: that of the strokes by themselves is in the data already.
-    unknowns().state_damping_ratios(initial_.basis.zeta, result);
+    unknowns().state_widths(initial_.basis.zeta, result);
     if (widths) result.add_scatter({*widths, inharmonicity()}, unknowns().log_frequencies());
     all_.hold(result);
     return result;
   }
   PriorMisfit misfit(const PriorEquations& equations) const {
-    return priors_.misfit([&](const ParameterName& name) { return all_.coordinate(name, theta_); },
-                          equations.completed(theta_));
+    return unknowns().worse_of_response(
+        theta_,
+        priors_.misfit([&](const ParameterName& name) { return all_.coordinate(name, theta_); },
+                       equations.completed(theta_)));
   }
   static void state(const PriorEquations& equations, NewtonOptions& newton) {
     QuadraticPrior prior = equations.solve();

@@ -114,12 +114,4 @@ LikelihoodPoint StrokeFit::weighted_point(const StringUnknowns& unknowns,
                              {.twice_weighted = true});
 }
 
-Eigen::MatrixXd StrokeFit::covariance_at(const StringUnknowns& unknowns,
-                                         const Eigen::VectorXd& theta,
-                                         const NewtonOptions& options) {
-  Eigen::MatrixXd covariance = fit_covariance(weighted_point(unknowns, theta), options);
-  unknowns.clear_held(covariance);
-  return covariance;
-}
-
 }  // namespace modcal

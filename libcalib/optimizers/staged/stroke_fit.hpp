@@ -58,8 +58,6 @@ class StrokeFit {
   Eigen::MatrixXd noise_at(const StringUnknowns& unknowns, const Eigen::VectorXd& theta) const;
   /// The weighted record at θ, with what its covariance takes.
   LikelihoodPoint weighted_point(const StringUnknowns& unknowns, const Eigen::VectorXd& theta);
-  Eigen::MatrixXd covariance_at(const StringUnknowns& unknowns, const Eigen::VectorXd& theta,
-                                const NewtonOptions& options);
 
  private:
   void count();
