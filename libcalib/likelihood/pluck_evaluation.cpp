@@ -114,8 +114,9 @@ void PluckEvaluation::fill_linear(std::size_t block, double* left, double* right
   }
   const std::size_t first = 2 * modes_.size();
   for (std::size_t p = 0; p < plain_.size(); ++p) {
-    fill_plain(block, plain_[p].numbers, 1.0 / record_.deviation[1],
-               right + (first + p) * kColumnLength);
+    const bool at_right = plain_[p].right;
+    fill_plain(block, plain_[p].numbers, 1.0 / record_.deviation[at_right ? 1 : 0],
+               (at_right ? right : left) + (first + p) * kColumnLength);
   }
   fill_plain(block, record_.left, 1.0, left + linear_unknowns() * kColumnLength);
   fill_plain(block, record_.right, 1.0, right + linear_unknowns() * kColumnLength);
@@ -184,18 +185,20 @@ void PluckEvaluation::fill_jacobian(std::size_t block, const LikelihoodColumns& 
     fill(block, n, true, decay);
     add_mode(columns, n, decay, left, right);
   }
-  double* model = right + columns.count * kColumnLength;
+  double* model[] = {left + columns.count * kColumnLength, right + columns.count * kColumnLength};
   for (std::size_t p = 0; p < plain_.size(); ++p) {
-    const double factor = linear_[static_cast<Index>(2 * modes_.size() + p)] / record_.deviation[1];
-    fill_plain(block, plain_[p].numbers, factor, model);
+    const std::size_t end = plain_[p].right ? 1 : 0;
+    const double factor =
+        linear_[static_cast<Index>(2 * modes_.size() + p)] / record_.deviation[end];
+    fill_plain(block, plain_[p].numbers, factor, model[end]);
     for (std::size_t i = 0; i < Sensor::kCount; ++i) {
       const PlanarVector& slope = plain_[p].by_sensor[i];
       if (!columns.sensors[i] || slope.size() == 0) continue;
       fill_plain(block, slope, factor, right + *columns.sensors[i] * kColumnLength);
     }
   }
-  fill_plain(block, record_.left, -1.0, left + columns.count * kColumnLength);
-  fill_plain(block, record_.right, -1.0, model);
+  fill_plain(block, record_.left, -1.0, model[0]);
+  fill_plain(block, record_.right, -1.0, model[1]);
 }
 
 LikelihoodPoint PluckEvaluation::differentiate(const LikelihoodColumns& columns) const {
