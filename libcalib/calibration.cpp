@@ -227,6 +227,10 @@ Problem with_defaults(Problem problem, const Optimizer& optimizer) {
                    "{} does not find the sensors' response: state optimizer: staged, or leave "
                    "response out of the sensors",
                    optimizer.name());
+    MODCAL_REQUIRE(optimizer.needs().schedule || !(unknowns.mains > 0.0),
+                   "{} does not find the lines of the mains at {:g} Hz: state optimizer: staged, "
+                   "or leave mains out",
+                   optimizer.name(), unknowns.mains);
     unknowns = unknowns.of_simulations(problem.model.basis);
     return problem;
   }

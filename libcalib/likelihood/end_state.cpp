@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace modcal {
 namespace {
@@ -123,16 +124,48 @@ void add_sensor_transients(const WhitenedRecord& record, const Sensor& sensors,
   transients.push_back(std::move(decay));
 }
 
+// Cosine and sine of the lines of the mains, Σ_j e^{±iω_h t_j} z^−j at σ: a geometric series, whose
+// end is the same in every bin.
+void add_lines(const WhitenedRecord& record, std::vector<PlainTransient>& transients) {
+  const double samples = 2.0 * std::numbers::pi * record.sample_rate / record.spacing;
+  const double norm = 1.0 / std::sqrt(samples);
+  for (const double line : record.lines) {
+    const Complex turn = std::polar(1.0, line / record.sample_rate);
+    const Complex rest =
+        1.0 - std::exp(Complex(-record.sigma, line) * samples / record.sample_rate);
+    PlanarVector cosine(record.root_weight.size()), sine(record.root_weight.size());
+    for (std::size_t k = 0; k < record.bins; ++k) {
+      const auto series = [&](Complex step, Complex end) {
+        const Complex off = 1.0 - step * record.delay.at(k);
+        // A line that stands in a bin is all there.
+        return norm * (std::abs(off) < 1e-12 ? Complex(samples) : end / off);
+      };
+      const Complex forward = series(turn, rest);
+      const Complex backward = series(std::conj(turn), std::conj(rest));
+      cosine.set(k, 0.5 * (forward + backward));
+      sine.set(k, Complex(0.0, -0.5) * (forward - backward));
+    }
+    for (const bool right : {false, true}) {
+      transients.push_back({right, cosine});
+      transients.push_back({right, sine});
+    }
+  }
+}
+
 using Columns = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic>>;
 
 }  // namespace
 
 std::vector<PlainTransient> plain_transients(const WhitenedRecord& record,
                                              const ModelPoint& point) {
-  if (record.sigma > 0.0) return {{false, record.offset}, {true, record.offset}};
   std::vector<PlainTransient> transients;
-  if (point.higher) add_smooth_transients(record, transients);
-  if (point.sensors.may_differ()) add_sensor_transients(record, point.sensors, transients);
+  if (record.sigma > 0.0) {
+    transients = {{false, record.offset}, {true, record.offset}};
+  } else {
+    if (point.higher) add_smooth_transients(record, transients);
+    if (point.sensors.may_differ()) add_sensor_transients(record, point.sensors, transients);
+  }
+  add_lines(record, transients);
   return transients;
 }
 
@@ -159,8 +192,11 @@ void EndState::add_products(const WhitenedRecord& record, std::size_t block_inde
     sums.products.resize(decays_ * 2 * count * kSumLanes);
     sums.plain.setZero(static_cast<Index>(count), static_cast<Index>(count));
   }
-  if (decays_ > 0) {
-    add_decay_products(record, block_index, split, block, columns, count, sums.products.data());
+  // As many at a time as the kernel takes.
+  for (std::size_t begin = 0; decays_ > 0 && begin < count; begin += kDecayColumns) {
+    add_decay_products(record, block_index, split, block, columns + begin * kColumnLength,
+                       std::min(kDecayColumns, count - begin),
+                       sums.products.data() + decays_ * 2 * begin * kSumLanes);
   }
   if (plain_ == 0) return;
   const Columns all(columns, static_cast<Index>(kColumnLength), static_cast<Index>(count));
@@ -171,8 +207,12 @@ void EndState::add_products(const WhitenedRecord& record, std::size_t block_inde
 EndState::RowMatrix EndState::collect_products(const Sums& sums) const {
   const auto plain = static_cast<Index>(plain_);
   RowMatrix products(static_cast<Index>(size()), 1 + plain);
-  if (decays_ > 0) {
-    collect_decay_products(sums.products.data(), decays_, 1 + plain_, products.data());
+  for (std::size_t begin = 0; decays_ > 0 && begin < 1 + plain_; begin += kDecayColumns) {
+    const std::size_t count = std::min(kDecayColumns, 1 + plain_ - begin);
+    RowMatrix part(static_cast<Index>(2 * decays_), static_cast<Index>(count));
+    collect_decay_products(sums.products.data() + decays_ * 2 * begin * kSumLanes, decays_, count,
+                           part.data());
+    products.block(0, static_cast<Index>(begin), part.rows(), part.cols()) = part;
   }
   products.bottomRows(plain) = sums.plain.bottomRows(plain);
   return products;

@@ -22,7 +22,7 @@ struct PlainTransient {
 /// σ > 0: static offsets of both records. σ = 0: where the sensor at x = L has a delay or a corner
 /// of its own, or may have one, what it holds at the end of the record: one sample and its own
 /// decay. Where there are modes above the stated ones, what these leave ringing, smooth in the
-/// band: 1, s and s² at both ends.
+/// band: 1, s and s² at both ends. At any σ the cosine and sine of every line of the mains.
 std::vector<PlainTransient> plain_transients(const WhitenedRecord& record, const ModelPoint& point);
 
 /// At σ = 0 the complex amplitudes c_n of the sampled free decays (2N columns x_n, x'_n, see

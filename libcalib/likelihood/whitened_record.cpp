@@ -110,6 +110,10 @@ WhitenedRecord WhitenedRecord::of(const NoisyRecords& records, double sigma, dou
   record.spacing = grid.spacing;
   record.sample_rate = records.sample_rate;
   record.deviation = records.deviation;
+  for (const double line : records.lines) {
+    const double omega = 2.0 * pi * line;
+    if (omega < record.spacing * static_cast<double>(record.bins)) record.lines.push_back(omega);
+  }
   const std::size_t padded = (record.bins + kBlock - 1) / kBlock * kBlock;
   record.left = record.right = record.delay = record.offset = PlanarVector(padded);
   record.root_weight.assign(padded, 0.0);
@@ -174,7 +178,8 @@ WhitenedRecord WhitenedRecord::slice(std::size_t begin, std::size_t count) const
                       .spacing = spacing,
                       .first = first + begin,
                       .sample_rate = sample_rate,
-                      .deviation = deviation};
+                      .deviation = deviation,
+                      .lines = lines};
   const std::size_t padded = (part.bins + kBlock - 1) / kBlock * kBlock;
   part.left = part.right = part.delay = part.offset = PlanarVector(padded);
   part.root_weight.assign(padded, 0.0);

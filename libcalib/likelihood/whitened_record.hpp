@@ -18,6 +18,8 @@ struct NoisyRecords {
   std::array<std::vector<double>, 2> reactions;  ///< R_r [N], one length; index: End
   std::array<double, 2> deviation{};             ///< s_r > 0 [N]
   double sample_rate = 0.0;                      ///< f_s [Hz]
+  /// Lines of the mains, whose amplitudes at either end are unknown [Hz].
+  std::vector<double> lines = {};
 
   std::size_t samples() const { return reactions[0].size(); }
   /// The records behind spectra of both ends. deviation: s_r [N]; NaN: estimated by
@@ -42,6 +44,7 @@ struct WhitenedRecord {
   std::size_t first = 1;     ///< 1, save in a slice
   double sample_rate = 0.0;  ///< [Hz]
   std::array<double, 2> deviation{};
+  std::vector<double> lines;  ///< [rad/s]
   PlanarVector left, right;   ///< y_1, y_2
   PlanarVector delay;         ///< z^−1 = exp(−s_k/f_s)
   PlanarVector offset;        ///< whitened transform of 1·exp(−σt); zero at σ = 0

@@ -119,6 +119,13 @@ void UnknownsOptions::visit(OptionVisitor& visitor) {
   exact_sensors = named("exact");
   response.free = named("response");
   response.visit(visitor);
+  visitor.number({.key = "mains",
+                  .meaning = "frequency of the mains, the amplitudes of whose lines are unknown at "
+                             "either end; 0: there is no hum; automatic: looked for in a record",
+                  .unit = "Hz",
+                  .range = Range::non_negative(),
+                  .word = "automatic"},
+                 mains);
   std::vector<std::string_view> own = {"x_c"};
   for (std::size_t i = 0; i < Sensor::kCount; ++i) {
     const ParameterType& type = sensor_type(i);

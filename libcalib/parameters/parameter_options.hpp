@@ -67,6 +67,9 @@ struct UnknownsOptions {
   std::array<UnknownOption, Sensor::kCount> sensor = {{{.value = 1.0}}};
   ResponseOptions response;
   bool exact_sensors = false;  ///< they are as stated, in a record too
+  /// Frequency of the mains, whose lines have unknown amplitudes [Hz]; 0: there are none; NaN:
+  /// looked for in a record.
+  double mains = 0.0;
   /// What each record has for itself, of x_c, gain, delay, corner and the factor "damping".
   std::vector<std::string> per_record = {"x_c"};
   std::vector<FixedParameter> fixed;
@@ -94,7 +97,7 @@ struct ParameterOptions {
   std::vector<std::int64_t> modes;   ///< mode numbers, with frequencies: listed
   bool law = false;                  ///< f0 and B
   bool contact = false;              ///< x_c
-  UnknownsOptions unknowns{.damping = "auto"};
+  UnknownsOptions unknowns{.damping = "auto", .mains = std::numeric_limits<double>::quiet_NaN()};
   /// Relative width τ of the prior of f_n about the law; NaN: estimated from the modes the data see
   /// well [1].
   double law_width = std::numeric_limits<double>::quiet_NaN();

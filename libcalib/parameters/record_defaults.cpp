@@ -62,6 +62,7 @@ UnknownsOptions UnknownsOptions::of_records(double sample_rate, const ModalBasis
 UnknownsOptions UnknownsOptions::of_simulations(const ModalBasis& basis) const {
   UnknownsOptions known = *this;
   if (response.free) known.response = response.laid_out(basis);
+  if (std::isnan(mains)) known.mains = 0.0;
   if (damping_choice(damping) == DampingChoice::kAuto) known.damping = "fixed";
   return known;
 }

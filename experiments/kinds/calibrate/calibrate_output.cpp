@@ -166,6 +166,7 @@ void visit_estimate(ResultVisitor& visitor, const ContinuationResult& found) {
   visitor({.key = "noise_left_n"}, found.noise[0]);
   visitor({.key = "noise_right_n"}, found.noise[1]);
   visitor.rows({.key = "sensor_response"}, response_of(found), visit_response);
+  visitor({.key = "mains_lines_hz"}, found.lines);
   visitor({.key = "restarts"}, found.restarts);
   visitor({.key = "moved_modes"}, found.moved_modes);
   group("covariance", visit_covariance, found.covariance);

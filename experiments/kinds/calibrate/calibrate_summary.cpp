@@ -20,6 +20,10 @@ std::string verdict_lines(const ContinuationResult& found) {
       fmt::format("{}\nsd: f0 {:.3g} Hz, B {:.3g}, x_c {:.3g} m, damping factor {:.3g}\n",
                   chi2_text(found), found.found_law.deviation[0], found.found_law.deviation[1],
                   found.contact_deviation, found.damping_deviation);
+  if (!found.lines.empty()) {
+    text += fmt::format("hum of the mains at {:.3f} Hz: {} lines are free in either reaction\n",
+                        found.lines.front(), found.lines.size());
+  }
   text += prior_lines(found.law.priors, "law");
   if (found.frequencies_free) text += prior_lines(found.priors, "every frequency");
   for (std::size_t n = 0; found.frequencies_free && n < found.modes.size(); ++n) {

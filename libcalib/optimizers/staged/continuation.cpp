@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "libcalib/likelihood/mains_lines.hpp"
 #include "libcalib/likelihood/noise_level.hpp"
 #include "libcalib/optimizers/staged/continuation_attempt.hpp"
 #include "libcalib/optimizers/staged/joint_fit.hpp"
@@ -64,6 +65,7 @@ void complete_by_single(ContinuationResult& fit) {
   const ContinuationResult& one = fit.single.front();
   fit.frequencies_free = one.frequencies_free;
   fit.noise = one.noise;
+  fit.lines = one.lines;
   fit.restarts = one.restarts;
   fit.moved_modes = one.moved_modes;
   fit.contact_deviation = fit.contact_deviations.front();
@@ -116,6 +118,7 @@ ContinuationResult calibrate_by_continuation(const ModelPoint& initial, const Ca
                                              const StatedPriors& priors, Evaluator* within) {
   const std::array<double, 2> noise{options.left_noise, options.right_noise};
   NoisyRecords records = NoisyRecords::of_data(data, initial.basis, noise);
+  records.lines = mains_lines(records, initial, options.unknowns.mains);
   const double noise_error = noise_power_error(noise, initial.basis, data);
   const double highest = likelihood_band(initial, options.highest_frequency, data.sample_rate);
   constexpr double kShifts[] = {0.0, 4e-3, -4e-3, 8e-3, -8e-3};
@@ -134,6 +137,7 @@ ContinuationResult calibrate_by_continuation(const ModelPoint& initial, const Ca
   best.evaluations = evaluations;
   best.stages = std::move(stages);
   if (!best.fits && options.frequencies) best = with_misfit_for_noise(input, std::move(best));
+  best.lines = records.lines;
   best.contacts = {best.model.contact};
   best.contact_deviations = {best.contact_deviation};
   best.values = {{best.model.sensors, best.sensor_deviation, best.damping, best.damping_deviation}};

@@ -127,6 +127,7 @@ struct ContinuationResult {
   std::size_t evaluations = 0;
   std::vector<FitStage> stages;   ///< of all starts, in order
   std::array<double, 2> noise{};  ///< s_r [N]
+  std::vector<double> lines;      ///< of the mains, free in the first record [Hz]
 
   /// Of a law that the data contradict nothing is reported but that.
   bool tells_of_law() const { return !frequencies_free || law.accepted; }

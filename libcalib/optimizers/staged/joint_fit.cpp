@@ -8,6 +8,7 @@
 #include "libcalib/identifiability/stated_verdict.hpp"
 #include "libcalib/likelihood/all_records.hpp"
 #include "libcalib/likelihood/bin_weights.hpp"
+#include "libcalib/likelihood/mains_lines.hpp"
 #include "libcalib/likelihood/noise_level.hpp"
 #include "libcalib/likelihood/unknown_bounds.hpp"
 #include "libcalib/optimizers/staged/newton_fit.hpp"
@@ -120,7 +121,9 @@ class JointFit {
     noise_errors_.push_back(noise_power_error(stated, initial_.basis, data));
     const double band = likelihood_band(initial_, options_.highest_frequency, data.sample_rate);
     highest_ = std::max(highest_, band);
-    return WhitenedRecord::of(NoisyRecords::of_data(data, initial_.basis, noise), 0.0, band);
+    NoisyRecords records = NoisyRecords::of_data(data, initial_.basis, noise);
+    records.lines = mains_lines(records, initial_, options_.unknowns.mains);
+    return WhitenedRecord::of(records, 0.0, band);
   }
   LikelihoodPoint point(bool twice_weighted) {
     if (within_) within_->spend(1);

@@ -1,0 +1,177 @@
+#include "libcalib/likelihood/mains_lines.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "libcalib/likelihood/projected_likelihood.hpp"
+#include "libcalib/likelihood/tuning.hpp"
+#include "libsim/signal/fft.hpp"
+
+namespace modcal {
+namespace {
+
+using std::numbers::pi;
+
+// One harmonic that stands out, and the power about it.
+struct Line {
+  std::size_t harmonic = 0;
+  double floor = 0.0;
+};
+
+// What the force leaves of both reactions under the window, (H_2 Y_1 - H_1 Y_2)/|H|: of a model
+// that is off by a few per cent little of the string's motion below its modes, and all of a hum
+// that does not reach both ends as a force does.
+class MainsSearch {
+ public:
+  MainsSearch(const NoisyRecords& records, const ModelPoint& point)
+      : rate_(records.sample_rate),
+        spacing_(rate_ / static_cast<double>(records.samples())),
+        modes_(likelihood_modes(point, rate_)) {
+    const RealFft fft(records.samples());
+    std::array<std::vector<Complex>, 2> spectra;
+    for (std::size_t r = 0; r < 2; ++r) {
+      samples_[r] = records.reactions[r];
+      const double turn = 2.0 * pi / static_cast<double>(records.samples());
+      for (std::size_t j = 0; j < samples_[r].size(); ++j) {
+        const double t = turn * static_cast<double>(j);
+        samples_[r][j] *= 0.35875 - 0.48829 * std::cos(t) + 0.14128 * std::cos(2.0 * t) -
+                          0.01168 * std::cos(3.0 * t);
+      }
+      spectra[r] = fft.forward(samples_[r]);
+    }
+    const auto bins = static_cast<std::size_t>(21.0 * 62.0 / spacing_);
+    for (std::size_t k = 0; k < std::min(bins, spectra[0].size()); ++k) {
+      const double frequency = spacing_ * static_cast<double>(k);
+      power_.push_back(misfit(frequency, spectra[0][k], spectra[1][k]));
+    }
+  }
+
+  bool long_enough(double mains) const { return mains / spacing_ >= 16.0; }
+
+  // What stands out of the harmonics of about this frequency, those of the string aside; nothing
+  // where neither of the first two does, the strongest of any hum.
+  std::vector<Line> lines(double mains) const {
+    std::vector<Line> found;
+    for (std::size_t h = 1; h <= 20; ++h) {
+      const double frequency = mains * static_cast<double>(h);
+      if (frequency >= 0.45 * rate_ || near_the_string(frequency)) continue;
+      const double floor = line_floor(frequency / spacing_, mains / spacing_);
+      if (floor > 0.0) found.push_back({h, floor});
+    }
+    if (!found.empty() && found.front().harmonic > 2) found.clear();
+    return found;
+  }
+
+  // The frequency of these lines' harmonics, by a grid an eighth of a bin apart at the highest,
+  // then between its neighbors.
+  double refined(double mains, const std::vector<Line>& lines) const {
+    const double step = spacing_ / (8.0 * static_cast<double>(lines.back().harmonic));
+    double best = mains, most = 0.0;
+    const auto reach = static_cast<int>(std::ceil(0.005 * mains / step));
+    for (int i = -reach; i <= reach; ++i) {
+      const double here = power(mains + i * step, lines);
+      if (here > most) most = here, best = mains + i * step;
+    }
+    double low = best - step, high = best + step;
+    for (int round = 0; round < 12; ++round) {  // to 0.8 % of a step
+      const double third = (high - low) / 3.0;
+      const bool left = power(low + third, lines) > power(high - third, lines);
+      (left ? high : low) = left ? high - third : low + third;
+    }
+    return 0.5 * (low + high);
+  }
+
+ private:
+  double misfit(double frequency, Complex left, Complex right) const {
+    const double omega = 2.0 * pi * frequency;
+    Complex odd = 0.0, even = 0.0;
+    for (const LikelihoodMode& mode : modes_) {
+      const Complex denominator(mode.omega_squared - omega * omega, mode.two_zeta_omega * omega);
+      (mode.even ? even : odd) += mode.residue / denominator;
+    }
+    const Complex at_left = -(odd + even), at_right = even - odd;
+    return std::norm(at_right * left - at_left * right) /
+           (std::norm(at_left) + std::norm(at_right));
+  }
+
+  bool near_the_string(double frequency) const {
+    return std::any_of(modes_.begin(), modes_.end(), [&](const LikelihoodMode& mode) {
+      const double own = std::sqrt(mode.omega_squared) / (2.0 * pi);
+      return std::abs(frequency - own) < kNearMode * own + 6.0 * spacing_;
+    });
+  }
+
+  // Median power about bin `center`, outside the four bins of the window's lobe, where what stands
+  // there is a line; else 0. fundamental: as far as to the next line.
+  double line_floor(double center, double fundamental) const {
+    const double reach = 1.0 + 0.005 * center;
+    const double about = std::min(20.0, 0.5 * fundamental);
+    double peak = 0.0;
+    std::vector<double> others;
+    for (std::size_t k = 1; k < power_.size(); ++k) {
+      const double off = std::abs(static_cast<double>(k) - center);
+      if (off <= reach) peak = std::max(peak, power_[k]);
+      if (off > reach + 6.0 && off < reach + about) others.push_back(power_[k]);
+    }
+    if (others.empty()) return 0.0;
+    const auto middle = others.begin() + static_cast<std::ptrdiff_t>(others.size() / 2);
+    std::nth_element(others.begin(), middle, others.end());
+    return peak > kLineRatio * *middle ? *middle : 0.0;
+  }
+
+  // Of all lines over what is about them.
+  double power(double mains, const std::vector<Line>& lines) const {
+    double sum = 0.0;
+    for (const Line& line : lines) {
+      const double frequency = mains * static_cast<double>(line.harmonic);
+      const double turn = 2.0 * pi * frequency / rate_;
+      Complex spectrum[2];
+      for (std::size_t r = 0; r < 2; ++r) {
+        double last = 0.0, before = 0.0;  // Goertzel's recurrence
+        for (const double sample : samples_[r]) {
+          const double next = sample + 2.0 * std::cos(turn) * last - before;
+          before = last, last = next;
+        }
+        spectrum[r] = last - std::polar(1.0, -turn) * before;
+      }
+      sum += misfit(frequency, spectrum[0], spectrum[1]) / line.floor;
+    }
+    return sum;
+  }
+
+  double rate_, spacing_;
+  std::vector<LikelihoodMode> modes_;
+  std::array<std::vector<double>, 2> samples_;
+  std::vector<double> power_;
+};
+
+}  // namespace
+
+std::vector<double> mains_lines(const NoisyRecords& records, const ModelPoint& point,
+                                double mains) {
+  if (mains == 0.0) return {};
+  const MainsSearch search(records, point);
+  std::vector<double> candidates = {50.0, 60.0};
+  if (mains > 0.0) candidates = {mains};
+  double frequency = mains;
+  std::vector<Line> lines;
+  for (const double candidate : candidates) {
+    if (!search.long_enough(candidate)) continue;
+    std::vector<Line> found = search.lines(candidate);
+    if (found.size() <= lines.size()) continue;
+    frequency = candidate;
+    lines = std::move(found);
+  }
+  if (std::isnan(frequency)) return {};
+  std::size_t count = 8;
+  if (!lines.empty()) {
+    frequency = search.refined(frequency, lines);
+    count = std::max(count, lines.back().harmonic);
+  }
+  std::vector<double> result;
+  for (std::size_t h = 1; h <= count; ++h) result.push_back(frequency * static_cast<double>(h));
+  return result;
+}
+
+}  // namespace modcal

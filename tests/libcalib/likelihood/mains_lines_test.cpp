@@ -1,0 +1,136 @@
+#include "libcalib/likelihood/mains_lines.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "libcalib/likelihood/likelihood_evaluation.hpp"
+#include "libcalib/likelihood/pluck_likelihood.hpp"
+#include "libcalib/parameters/string_unknowns.hpp"
+#include "tests/libcalib/likelihood/bowed_case.hpp"
+#include "tests/libcalib/likelihood/pluck_record_case.hpp"
+
+namespace modcal {
+namespace {
+
+using std::numbers::pi;
+
+constexpr double kBand = 2.0 * pi * 10300.0;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+// Harmonics of F with amplitudes `level`/h of each reaction's deviation.
+NoisyRecords with_hum(NoisyRecords records, const BowedCase& bowed, double mains, double level) {
+  for (std::size_t r = 0; r < 2; ++r) {
+    for (std::size_t j = 0; j < records.samples(); ++j) {
+      const double turn = 2.0 * pi * mains * static_cast<double>(j) / records.sample_rate;
+      for (int h = 1; h <= 8; ++h) {
+        records.reactions[r][j] += level * bowed.spread[r] / h *
+                                   std::cos(h * turn + 0.7 * h + 2.0 * static_cast<double>(r));
+      }
+    }
+  }
+  return records;
+}
+
+class OneSecond : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() { bowed = bowed_case(0.0285, 1.39e-4, 1.0); }
+  static BowedCase bowed;
+};
+BowedCase OneSecond::bowed;
+
+TEST_F(OneSecond, OfHumAreFound) {
+  const NoisyRecords records = noisy(bowed, 0.01, 3);
+  ModelPoint start = bowed.truth;
+  for (double& omega : start.basis.omega) omega *= 1.015;
+  start.contact += 1e-3;
+  EXPECT_TRUE(mains_lines(records, start, kNan).empty());
+  for (const double mains : {49.93, 60.11}) {
+    for (const double level : {0.003, 0.01, 0.05}) {
+      const std::vector<double> lines =
+          mains_lines(with_hum(records, bowed, mains, level), start, kNan);
+      ASSERT_GE(lines.size(), 8u) << mains << ", " << level;
+      // Noise alone leaves √24 s/(2π a T √N) = 3.4e-3 s/a Hz (Rife and Boorstyn, 1974), s of the
+      // noise, a of the line, the window twice that; the string's motion, which a start that is off
+      // leaves in it, some times more.
+      EXPECT_NEAR(lines[0], mains, 3e-2 * 0.01 / level + 5e-3) << level;
+      for (std::size_t h = 1; h <= lines.size(); ++h) {
+        EXPECT_DOUBLE_EQ(lines[h - 1], lines[0] * static_cast<double>(h));
+      }
+    }
+  }
+}
+
+TEST_F(OneSecond, AreAsStated) {
+  const NoisyRecords records = noisy(bowed, 0.01, 3);
+  EXPECT_TRUE(mains_lines(with_hum(records, bowed, 50.0, 0.1), bowed.truth, 0.0).empty());
+  const std::vector<double> stated = mains_lines(records, bowed.truth, 25.0);
+  ASSERT_EQ(stated.size(), 8u);
+  EXPECT_EQ(stated[0], 25.0);
+}
+
+TEST(MainsLines, AreNotLookedForInAShortRecord) {
+  const BowedCase bowed = bowed_case(0.0285, 1.39e-4, 0.1);
+  const NoisyRecords records = with_hum(noisy(bowed, 0.01, 3), bowed, 50.0, 0.1);
+  EXPECT_TRUE(mains_lines(records, bowed.truth, kNan).empty());
+}
+
+TEST_F(OneSecond, AreNoMatterToTheFit) {
+  const NoisyRecords plain = noisy(bowed, 0.01, 3);
+  ModelPoint point = bowed.truth;
+  point.contact += 1e-5;
+  const StringUnknowns unknowns = StringUnknowns::frequencies(point);
+  const LikelihoodColumns columns = unknowns.columns(unknowns.start());
+  for (const double sigma : {0.0, 20.0}) {
+    NoisyRecords records = plain, hum = with_hum(plain, bowed, 50.3, 0.02);
+    const double wrong =
+        LikelihoodEvaluation(WhitenedRecord::of(hum, sigma, kBand), point).slope({}).cost;
+    for (int h = 1; h <= 8; ++h) records.lines.push_back(50.3 * h);
+    hum.lines = records.lines;
+    const WhitenedRecord of_plain = WhitenedRecord::of(records, sigma, kBand);
+    const WhitenedRecord of_hum = WhitenedRecord::of(hum, sigma, kBand);
+    const LikelihoodPoint a =
+        LikelihoodEvaluation(of_plain, point).differentiate(columns, {.twice_weighted = true});
+    const LikelihoodPoint b =
+        LikelihoodEvaluation(of_hum, point).differentiate(columns, {.twice_weighted = true});
+    EXPECT_GT(wrong, 1.05 * a.cost);
+    // The ridge leaves 1e-9 of the lines' power, which is 1e4 times that of the noise in a bin.
+    EXPECT_NEAR(b.cost / a.cost, 1.0, 1e-6) << sigma;
+    for (Eigen::Index i = 0; i < a.slope.size(); ++i) {
+      const double own = std::sqrt(a.information(i, i));
+      EXPECT_NEAR(a.slope[i] / own, b.slope[i] / own, 1e-4) << i << ", sigma " << sigma;
+      EXPECT_NEAR(a.information(i, i) / b.information(i, i), 1.0, 1e-5) << i;
+    }
+    // Some rows, and the slope alone, hold the lines alike.
+    const std::vector<std::size_t> wanted = {0, 50};
+    const LikelihoodPoint rows = LikelihoodEvaluation(of_hum, point).rows(columns, wanted);
+    EXPECT_LT((rows.information.row(1) - b.information.row(50)).norm(),
+              1e-8 * b.information.row(50).norm());
+    EXPECT_LT((rows.slope - b.slope).norm(), 1e-8 * b.slope.norm() + 1e-8 * std::sqrt(b.cost));
+    EXPECT_NEAR(LikelihoodEvaluation(of_hum, point).slope(columns).cost, b.cost, 1e-9 * b.cost);
+  }
+}
+
+TEST(MainsLines, OfEitherEndAreNoMatterToAPluck) {
+  NoisyRecords records = plucked_records(1.39e-4, 0.5, 0.01, 7);
+  for (int h = 1; h <= 3; ++h) records.lines.push_back(50.3 * h);
+  Scene scene = paper_scene();
+  scene.string.inharmonicity = 1.39e-4;
+  const ModelPoint truth{make_modal_basis(scene.string), 0.03};
+  const auto cost = [&] {
+    return PluckLikelihood(WhitenedRecord::of(records, 0.0, kBand)).unweighted_cost(truth);
+  };
+  const double without = cost();
+  for (std::size_t r = 0; r < 2; ++r) {
+    const double level = 5.0 * records.deviation[r];
+    for (std::size_t j = 0; j < records.samples(); ++j) {
+      const double turn = 2.0 * pi * 50.3 * static_cast<double>(j) / records.sample_rate;
+      records.reactions[r][j] += level * std::cos(turn + 1.0) + level * std::sin(3.0 * turn);
+    }
+    EXPECT_NEAR(cost() / without, 1.0, 1e-6) << r;
+  }
+}
+
+}  // namespace
+}  // namespace modcal
