@@ -123,6 +123,12 @@ TEST(Calibrate, RefusesWhatCannotBeCalibrated) {
   options.parameters = {.frequencies = "all"};
   options.optimizer = Choice<Optimizer>("ceres");
   EXPECT_THROW(calibrate(paper_truth(12), data, options), InvalidInput);  // no residuals
+  options.optimizer = Choice<Optimizer>("grid");
+  options.parameters.unknowns.response.free = true;
+  EXPECT_THROW(calibrate(paper_truth(12), data, options), InvalidInput);  // staged alone finds it
+  options.parameters.unknowns.response.free = false;
+  options.parameters.unknowns.mains = 50.0;
+  EXPECT_THROW(calibrate(paper_truth(12), data, options), InvalidInput);  // and these
 }
 
 TEST(Registries, AreSortedByName) {

@@ -29,6 +29,7 @@ struct Settings {
   double noise = 0.01;
   SupportOptions support = {};
   bool exact_sensors = false;
+  bool response = true;  ///< else gain, delay and corner alone
   bool all_frequencies = true;
 };
 
@@ -45,6 +46,11 @@ CalibrationResult calibrated(truth::TruthRecord record, const Settings& settings
   options.parameters.frequencies = settings.all_frequencies ? "all" : "none";
   options.parameters.unknowns.damping = "auto";
   options.parameters.unknowns.exact_sensors = settings.exact_sensors;
+  if (!settings.response) {
+    for (UnknownOption& sensor : options.parameters.unknowns.sensor) sensor.free = true;
+    options.parameters.unknowns.priors = {
+        {"gain", 1.0, 0.02}, {"delay", 0.0, 2e-5}, {"corner", 0.0, 1.0}};
+  }
   options.support = settings.support;
   std::vector<CalibrationRecord> records = {
       {.data = CalibrationData::of_records(record.r1, record.r2, record.rate), .recorded = true}};
@@ -121,6 +127,33 @@ TEST(ForeignRecord, SensorsMayDiffer) {
   // Taken to be equal, they are no test's finding: the frequencies are wrong.
   const CalibrationResult exact = calibrated(record, {.exact_sensors = true});
   EXPECT_GT(frequency_errors(exact).largest, 2.0 * kFour);
+}
+
+// A resonance of the body in one reaction is a response of its sensor that nobody has stated.
+TEST(ForeignRecord, ABodyMayRingInOneReaction) {
+  const truth::TruthRecord record =
+      stroke({.body_peak = 0.0125, .body_frequency = 280.0, .body_damping = 0.02},
+             truth::Reactions::kTension);
+  expect_right(calibrated(record, {.noise = 2e-3}));
+  EXPECT_GT(frequency_errors(calibrated(record, {.noise = 2e-3, .response = false})).largest,
+            2.0 * kFour);
+}
+
+TEST(ForeignRecord, HumOfTheMainsIsNoMatter) {
+  truth::TruthRecord record = equal_sensors();
+  for (std::size_t j = 0; j < record.r1.size(); ++j) {
+    const double turn = 2.0 * M_PI * 49.96 * static_cast<double>(j) / record.rate;
+    for (int h = 1; h <= 6; ++h) {
+      record.r1[j] += 0.02 / h * std::cos(h * turn + h);
+      record.r2[j] -= 0.01 / h * std::sin(h * turn);
+    }
+  }
+  const CalibrationResult result = calibrated(record, {});
+  expect_right(result);
+  ASSERT_GE(result.continuation->lines.size(), 8u);
+  // Half a second: a fiftieth of a bin of 2 Hz.
+  EXPECT_NEAR(result.continuation->lines.front(), 49.96, 0.04);
+  EXPECT_TRUE(calibrated(equal_sensors(), {}).continuation->lines.empty());
 }
 
 TEST(ForeignRecord, SupportsMayFeelTheBending) {

@@ -171,7 +171,8 @@ LimitCase limit_case(const LimitQuestion& question, TruthCache& truths, OutputRe
                    .plucks = {},
                    .highest_frequency = question.highest_frequency,
                    .law_width = question.law_width,
-                   .unknowns = question.unknowns};
+                   .unknowns = question.unknowns.of_simulations(first.point.basis)};
+  result.truth.sensors.smooth = result.unknowns.sensors().smooth;
   for (const double contact : question.further_contacts) {
     ObservationOptions stroke = question.observation;
     stroke.truth.scene.bow.position = contact;

@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+#include <sstream>
+
 #include "experiments/kinds/calibrate/calibrate.hpp"
 #include "experiments/loader.hpp"
 #include "libsim/base/error.hpp"
@@ -71,6 +74,27 @@ TEST(LimitText, HasARowForEveryFreeParameterInBothStages) {
   }
   EXPECT_THAT(limit_of(config(", damping: each", "")),
               testing::HasSubstr("relative sd  sd of zeta  verdict"));
+}
+
+// The relative deviation of mode n where every frequency is free.
+double deviation_of(std::size_t mode, const std::string& text) {
+  std::istringstream lines(text.substr(text.find("relative sd")));
+  std::string line;
+  while (std::getline(lines, line)) {
+    std::istringstream words(line);
+    std::size_t number = 0;
+    double frequency = 0.0, deviation = 0.0;
+    if (words >> number >> frequency >> deviation && number == mode) return deviation;
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+TEST(LimitText, CountsWhatASmoothResponseTakes) {
+  const double gain = deviation_of(1, limit_of(config(", sensors: [gain]", "")));
+  const double response = deviation_of(
+      1, limit_of(config(", sensors: [gain, response], response_spacing: 300 Hz", "")));
+  EXPECT_GT(response, 1.2 * gain);
+  EXPECT_LT(response, 100.0 * gain);
 }
 
 TEST(LimitText, NamesNoFixedContactAmongTheDeviations) {
