@@ -71,7 +71,7 @@ std::vector<bool> nodes(const ModalBasis& basis, const std::vector<double>& cont
 ModeSight sight_of(const Eigen::VectorXd& delta, const Eigen::VectorXd& deviation,
                    const Eigen::MatrixXd& information, const Eigen::MatrixXd& noise,
                    const std::vector<bool>& node) {
-  constexpr double kProof = 3.0, kNodeProof = 10.0;
+  constexpr double kProof = 3.0, kNodeProof = 100.0;
   ModeSight sight{.delta = delta, .seen = deviation, .error = deviation};
   for (std::size_t n = 0; n < node.size(); ++n) {
     const auto i = static_cast<Eigen::Index>(n);
@@ -79,6 +79,7 @@ ModeSight sight_of(const Eigen::VectorXd& delta, const Eigen::VectorXd& deviatio
     const bool proven = information(i, i) >= proof * noise(i, i);
     if (!proven) sight.seen[i] = std::max(deviation[i], kWidePrior);
     if (!proven || node[n]) sight.error[i] = 2.0 * deviation[i];
+    if (!proven && node[n]) sight.error[i] = std::max(sight.error[i], kWidePrior);
   }
   return sight;
 }

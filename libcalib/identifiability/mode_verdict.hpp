@@ -13,8 +13,11 @@ namespace modcal {
 std::vector<bool> nodes(const ModalBasis& basis, const std::vector<double>& contacts);
 
 /// A mode that nothing excites has the information of its noise, which scatters about N̄ with few
-/// degrees of freedom: less than three times N̄ is no proof of a signal, and near a node, where a
-/// signal would be a surprise, less than ten. deviation: of δ under the wide prior.
+/// degrees of freedom: less than three times N̄ is no proof of a signal. Near a node a signal would
+/// be a surprise, and the fit looks for the loudest noise about the mode, or for what a model that
+/// is off by 1e-5 leaves there: less than a hundred times N̄ is no proof, and the mode is not said
+/// to leave the law by it. (Of 1100 modes in nodes three had 13 to 65 times N̄, all of them wrong.)
+/// deviation: of δ under the wide prior.
 ModeSight sight_of(const Eigen::VectorXd& delta, const Eigen::VectorXd& deviation,
                    const Eigen::MatrixXd& information, const Eigen::MatrixXd& noise,
                    const std::vector<bool>& node);
