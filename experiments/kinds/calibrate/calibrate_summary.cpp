@@ -24,7 +24,7 @@ std::string verdict_lines(const ContinuationResult& found) {
     text += fmt::format("hum of the mains at {:.3f} Hz: {} lines are free in either reaction\n",
                         found.lines.front(), found.lines.size());
   }
-  text += prior_lines(found.law.priors, "law");
+  if (found.tells_of_law()) text += prior_lines(found.law.priors, "law");
   if (found.frequencies_free) text += prior_lines(found.priors, "every frequency");
   for (std::size_t n = 0; found.frequencies_free && n < found.modes.size(); ++n) {
     const ModeVerdict& mode = found.modes[n];
@@ -74,7 +74,7 @@ std::string chi2_text(const ContinuationResult& found) {
   std::string text = fmt::format(
       "reduced chi2 {:.4f} (sd {:.4f}): {}; law alone {:.4f}: {}", found.chi2, found.chi2_deviation,
       found.fits ? "the data do not contradict the fit" : "THE FIT IS WRONG", found.law.chi2,
-      found.law.accepted ? "accepted" : "contradicted");
+      found.law_holds() ? "accepted" : "contradicted");
   if (found.chi2 < 1.0 - 3.0 * found.chi2_deviation) {
     text += fmt::format(
         "\nnoise overstated: the data scatter less than the noise levels say; standard deviations "

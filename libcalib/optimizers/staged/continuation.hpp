@@ -129,8 +129,10 @@ struct ContinuationResult {
   std::array<double, 2> noise{};  ///< s_r [N]
   std::vector<double> lines;      ///< of the mains, free in the first record [Hz]
 
-  /// Of a law that the data contradict nothing is reported but that.
-  bool tells_of_law() const { return !frequencies_free || law.accepted; }
+  /// Neither χ² nor what was stated contradicts the law.
+  bool law_holds() const { return law.accepted && !law.priors.contradicted(); }
+  /// Of a law that something contradicts nothing is reported but that.
+  bool tells_of_law() const { return !frequencies_free || law_holds(); }
 };
 
 /// Law (f_0, B, x_c, then one damping factor) through σ ≈ 200, 100, 50, 20 1/s (in proportion to
