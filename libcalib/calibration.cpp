@@ -223,14 +223,7 @@ Problem with_defaults(Problem problem, const Optimizer& optimizer) {
   UnknownsOptions& unknowns = problem.parameters.unknowns;
   const bool to_the_bound = optimizer.needs().schedule && any_recorded(problem);
   if (!to_the_bound) {
-    MODCAL_REQUIRE(optimizer.needs().schedule || !unknowns.response.free,
-                   "{} does not find the sensors' response: state optimizer: staged, or leave "
-                   "response out of the sensors",
-                   optimizer.name());
-    MODCAL_REQUIRE(optimizer.needs().schedule || !(unknowns.mains > 0.0),
-                   "{} does not find the lines of the mains at {:g} Hz: state optimizer: staged, "
-                   "or leave mains out",
-                   optimizer.name(), unknowns.mains);
+    unknowns.require_found_by(optimizer.name(), optimizer.needs().schedule);
     unknowns = unknowns.of_simulations(problem.model.basis);
     return problem;
   }

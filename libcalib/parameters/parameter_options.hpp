@@ -85,6 +85,9 @@ struct UnknownsOptions {
   UnknownsOptions of_records(double sample_rate, const ModalBasis& basis) const;
   /// The same of simulated strings.
   UnknownsOptions of_simulations(const ModalBasis& basis) const;
+  /// Throws InvalidInput for what a schedule alone finds, a response or lines of the mains, where
+  /// this optimizer has none.
+  void require_found_by(std::string_view optimizer, bool has_schedule) const;
   /// Whether it is each record's own.
   bool own(const ParameterName& name) const;
   /// Throws InvalidInput for a prior or a fixed value of a contact that no stroke has.

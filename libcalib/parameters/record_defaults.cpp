@@ -59,6 +59,17 @@ UnknownsOptions UnknownsOptions::of_records(double sample_rate, const ModalBasis
   return known;
 }
 
+void UnknownsOptions::require_found_by(std::string_view optimizer, bool has_schedule) const {
+  MODCAL_REQUIRE(has_schedule || !response.free,
+                 "{} does not find the sensors' response: state optimizer: staged, or leave "
+                 "response out of the sensors",
+                 optimizer);
+  MODCAL_REQUIRE(has_schedule || !(mains > 0.0),
+                 "{} does not find the lines of the mains at {:g} Hz: state optimizer: staged, or "
+                 "leave mains out",
+                 optimizer, mains);
+}
+
 UnknownsOptions UnknownsOptions::of_simulations(const ModalBasis& basis) const {
   UnknownsOptions known = *this;
   if (response.free) known.response = response.laid_out(basis);

@@ -120,6 +120,11 @@ std::vector<Finding> CalibrateOptions::lint() const {
   append(findings, lint_priors("calibration.parameters", calibration.parameters.unknowns,
                                inversion.observation.string_model(), strokes + plucks.size()));
   lint_making(findings, "calibration.parameters", [&] {
+    const UnknownsOptions& unknowns = calibration.parameters.unknowns;
+    unknowns.require_found_by(calibration.optimizer.selected(), calibration.by_schedule());
+    if (is_known(inversion.observation.string_model())) {
+      unknowns.response.laid_out(make_modal_basis(inversion.observation.string_model()));
+    }
     calibration.require_read(strokes, plucks.size());
     calibration.objective.make()->require_moved_by(calibration.parameters.names(modes));
   });
