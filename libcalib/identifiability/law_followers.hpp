@@ -20,6 +20,8 @@ struct ModeSight {
   Eigen::VectorXd delta;  ///< δ_n, relative to a model near the law
   Eigen::VectorXd seen;   ///< its standard deviation; no less than kWidePrior without proof
   Eigen::VectorXd error;  ///< the same, of modes without proof twice what their information says
+  /// In a node, and not told well enough to be said to leave the law; empty: none.
+  std::vector<bool> surprise = {};
 };
 
 enum class LawTie { kFollows, kDoubtful, kLeaves };

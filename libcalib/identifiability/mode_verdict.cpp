@@ -71,17 +71,29 @@ std::vector<bool> nodes(const ModalBasis& basis, const std::vector<double>& cont
 ModeSight sight_of(const Eigen::VectorXd& delta, const Eigen::VectorXd& deviation,
                    const Eigen::MatrixXd& information, const Eigen::MatrixXd& noise,
                    const std::vector<bool>& node) {
-  constexpr double kProof = 3.0, kNodeProof = 100.0;
-  ModeSight sight{.delta = delta, .seen = deviation, .error = deviation};
+  constexpr double kProof = 3.0, kNodeProof = 10.0, kSurprise = 100.0;
+  ModeSight sight{.delta = delta,
+                  .seen = deviation,
+                  .error = deviation,
+                  .surprise = std::vector<bool>(node.size())};
   for (std::size_t n = 0; n < node.size(); ++n) {
     const auto i = static_cast<Eigen::Index>(n);
     const double proof = node[n] ? kNodeProof : kProof;
     const bool proven = information(i, i) >= proof * noise(i, i);
     if (!proven) sight.seen[i] = std::max(deviation[i], kWidePrior);
     if (!proven || node[n]) sight.error[i] = 2.0 * deviation[i];
-    if (!proven && node[n]) sight.error[i] = std::max(sight.error[i], kWidePrior);
+    sight.surprise[n] = node[n] && information(i, i) < kSurprise * noise(i, i);
   }
   return sight;
+}
+
+void deny_surprises(LawFollowers& followers, ModeSight& sight) {
+  for (std::size_t n = 0; n < sight.surprise.size(); ++n) {
+    if (!sight.surprise[n] || followers.ties[n] == LawTie::kFollows) continue;
+    const auto i = static_cast<Eigen::Index>(n);
+    followers.ties[n] = LawTie::kFollows;
+    sight.seen[i] = std::max(sight.seen[i], kWidePrior);
+  }
 }
 
 void leave_out_of_band(const ModelPoint& model, double highest, ModeSight& sight) {

@@ -13,14 +13,17 @@ namespace modcal {
 std::vector<bool> nodes(const ModalBasis& basis, const std::vector<double>& contacts);
 
 /// A mode that nothing excites has the information of its noise, which scatters about N̄ with few
-/// degrees of freedom: less than three times N̄ is no proof of a signal. Near a node a signal would
-/// be a surprise, and the fit looks for the loudest noise about the mode, or for what a model that
-/// is off by 1e-5 leaves there: less than a hundred times N̄ is no proof, and the mode is not said
-/// to leave the law by it. (Of 1100 modes in nodes three had 13 to 65 times N̄, all of them wrong.)
-/// deviation: of δ under the wide prior.
+/// degrees of freedom: less than three times N̄ is no proof of a signal, and near a node, where a
+/// signal would be a surprise, less than ten. Less than a hundred is none that the mode leaves the
+/// law: the fit looks for the loudest noise about it, or for what a model that is off by 1e-5
+/// leaves there. (Of 1100 modes in nodes three had 13 to 65 times N̄ off the law, all of them
+/// wrong.) deviation: of δ under the wide prior.
 ModeSight sight_of(const Eigen::VectorXd& delta, const Eigen::VectorXd& deviation,
                    const Eigen::MatrixXd& information, const Eigen::MatrixXd& noise,
                    const std::vector<bool>& node);
+
+/// A mode in a node that is off the law without proof is not seen: it follows the law.
+void deny_surprises(LawFollowers& followers, ModeSight& sight);
 
 /// Modes above the band [rad/s] of a record that has modes above the stated ones: their lines are
 /// not in it.

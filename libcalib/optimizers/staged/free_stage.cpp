@@ -117,6 +117,7 @@ class FreeStage {
   // The prior about the law, as wide as the modes say.
   void follow_law() {
     followers_ = find_followers(sight_, inharmonicity_, options_.law_width);
+    deny_surprises(followers_, sight_);
     if (misfit_for_noise_) followers_.follow_all();
     result_.law_width = followers_.prior_width;
     widths_ = prior_widths(sight_.seen, followers_.prior_width, followers_.width);

@@ -206,6 +206,7 @@ class JointFit {
     ModeSight sight = sight_of(delta, deviation, at.information, newton.noise, nodes_of_all());
     leave_out_of_band(model, highest_, sight);
     followers_ = find_followers(sight, inharmonicity(), options_.law_width);
+    deny_surprises(followers_, sight);
     const Eigen::VectorXd scatters = followers_.scatters();
     const LawPosterior law = law_of_step(equations(priors_, &scatters), at, theta_, newton);
     fit_.found_law = FoundLaw::of(law, priors_);

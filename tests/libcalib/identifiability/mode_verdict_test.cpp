@@ -66,20 +66,25 @@ TEST(FreeVerdicts, KnowAModeThatLeavesTheLawByTheDataAlone) {
 }
 
 // Informations of 65 times N̄, as noise and a model that is off by 1e-5 have left in nodes.
-TEST(SightOf, TrustsNoModeInANodeThatNothingProves) {
-  constexpr Eigen::Index kModes = 3;
+TEST(SightOf, HasNoModeInANodeLeaveTheLawUnproven) {
+  constexpr Eigen::Index kModes = 4;
   const Eigen::VectorXd delta = Eigen::VectorXd::Constant(kModes, 2.4e-3);
   const Eigen::VectorXd deviation = Eigen::VectorXd::Constant(kModes, 1.8e-4);
   const Eigen::MatrixXd noise = 1e5 * Eigen::MatrixXd::Identity(kModes, kModes);
   Eigen::MatrixXd information = 65.0 * noise;
   information(2, 2) = 200.0 * noise(2, 2);
-  const ModeSight sight = sight_of(delta, deviation, information, noise, {false, true, true});
+  ModeSight sight = sight_of(delta, deviation, information, noise, {false, true, true, true});
+  EXPECT_EQ(sight.seen, deviation);
+  EXPECT_EQ(sight.error[1], 3.6e-4);
+  LawFollowers followers = LawFollowers::all(kModes, 1e-5);
+  followers.ties = {LawTie::kLeaves, LawTie::kLeaves, LawTie::kLeaves, LawTie::kFollows};
+  deny_surprises(followers, sight);
+  EXPECT_EQ(followers.ties, (std::vector<LawTie>{LawTie::kLeaves, LawTie::kFollows, LawTie::kLeaves,
+                                                 LawTie::kFollows}));
   EXPECT_EQ(sight.seen[0], 1.8e-4);
-  EXPECT_EQ(sight.error[0], 1.8e-4);
   EXPECT_EQ(sight.seen[1], kWidePrior);
-  EXPECT_EQ(sight.error[1], kWidePrior);
   EXPECT_EQ(sight.seen[2], 1.8e-4);  // proven
-  EXPECT_EQ(sight.error[2], 3.6e-4);
+  EXPECT_EQ(sight.seen[3], 1.8e-4);  // follows
 }
 
 TEST(Release, OpensThePriorOfAModeThatLeaves) {

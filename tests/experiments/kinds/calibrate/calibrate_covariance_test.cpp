@@ -112,11 +112,20 @@ TEST(CalibrateCovariance, IsATableOfBothFits) {
 TEST(CalibrateCovariance, TablesNothingOfALawThatTheDataReject) {
   ContinuationResult rejected = found();
   rejected.law.accepted = false;
-  for (const report::Table& table : report::tables_of(outcome_of(std::move(rejected)))) {
-    if (table.id != "correlations") continue;
-    ASSERT_EQ(table.rows.size(), 1u);
-    EXPECT_EQ(std::get<std::string>(table.rows[0][0].value), "every frequency");
-  }
+  const std::vector<report::Table> tables = report::tables_of(outcome_of(std::move(rejected)));
+  const auto place = std::find_if(tables.begin(), tables.end(),
+                                  [](const auto& one) { return one.id == "correlations"; });
+  ASSERT_NE(place, tables.end());
+  ASSERT_EQ(place->rows.size(), 1u);
+  EXPECT_EQ(std::get<std::string>(place->rows[0][0].value), "every frequency");
+}
+
+TEST(CalibrateCovariance, TellsNothingOfALawThatThePriorsContradict) {
+  ContinuationResult rejected = found();
+  rejected.law.priors = {.chi2 = 400.0, .count = 120, .farthest = "the response at 1980 Hz"};
+  EXPECT_THAT(covariance_text(rejected), Not(HasSubstr("stiff-string law")));
+  EXPECT_THAT(chi2_text(rejected), HasSubstr("contradicted"));
+  EXPECT_THAT(chi2_text(found()), HasSubstr("accepted"));
 }
 
 }  // namespace
