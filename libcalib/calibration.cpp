@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "libcalib/likelihood/likelihood_band.hpp"
@@ -216,6 +217,13 @@ void add_higher_modes(const Problem& problem, ModelPoint& initial) {
   if (std::isnan(highest)) highest = band_of_modes(initial.basis);
   initial.higher = HigherModeLaw::above(initial.basis, law.fundamental, law.inharmonicity, highest,
                                         support.bending);
+  double widest = 0.0;
+  for (const CalibrationRecord& record : problem.records) {
+    widest = std::max(widest, likelihood_band(initial, problem.objective->highest_frequency(),
+                                              record.data.sample_rate) /
+                                  (2.0 * std::numbers::pi));
+  }
+  initial.higher->ringing = ringing_modes(initial.basis, widest);
 }
 
 // The problem with what is meant where nothing is stated of damping and sensors.

@@ -18,7 +18,7 @@ double CostWith(const ModeSurroundings& around, const LikelihoodMode& mode) {
   const V per_left = Real(1.0 / around.deviation[0]);
   const V per_right = Real(turn / around.deviation[1]);
   const V residue = Real(mode.residue);
-  const bool decays = around.sigma == 0.0;
+  const bool decays = around.sigma == 0.0 && mode.decays;
   V own = hn::Zero(D());
   V first_own = own, second_own = own, first_both = own, second_both = own, mixed = own;
   for (std::size_t k = 0; k < around.omega.size(); k += hn::Lanes(D())) {

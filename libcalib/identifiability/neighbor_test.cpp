@@ -82,7 +82,7 @@ class Field {
     const Complex residual = Complex(residuals_[2 * k], residuals_[2 * k + 1]) / root;
     Complex left_data = left * force_[k] + std::conj(right) * residual;
     Complex right_data = right * force_[k] - std::conj(left) * residual;
-    if (!amplitudes_.empty()) {
+    if (n < amplitudes_.size()) {
       const Complex decay = amplitudes_[n] / (1.0 - mode.pole * delay) +
                             std::conj(amplitudes_[n]) / (1.0 - std::conj(mode.pole) * delay);
       left_data -= decay / record_.deviation[0];

@@ -9,11 +9,23 @@
 
 namespace modcal {
 
-double band_of_modes(const ModalBasis& basis) {
-  const std::size_t n = basis.size();
+namespace {
+
+// That the first n modes describe.
+double band_of_first(const ModalBasis& basis, std::size_t n) {
   const double top = basis.frequency(n - 1);
-  // A start may be 4 % too high, and mode N + 1 is to stay outside.
+  // A start may be 4 % too high, and mode n + 1 is to stay outside.
   return 0.96 * (n > 1 ? 0.5 * (top + basis.frequency(n - 2)) : top);
+}
+
+}  // namespace
+
+double band_of_modes(const ModalBasis& basis) { return band_of_first(basis, basis.size()); }
+
+std::size_t ringing_modes(const ModalBasis& basis, double highest) {
+  std::size_t count = basis.size();
+  while (count > 2 && band_of_first(basis, count - 1) >= highest) --count;
+  return count;
 }
 
 double likelihood_band(const ModelPoint& point, double highest_frequency, double sample_rate) {

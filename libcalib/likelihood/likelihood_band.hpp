@@ -10,6 +10,12 @@ namespace modcal {
 /// ringing is no unknown of the fit, and one and a half spacings away it is small.
 double band_of_modes(const ModalBasis& basis);
 
+/// How many of the stated modes, the first, ring in a band up to `highest` [Hz] or so near it that
+/// what they leave ringing is not smooth there: all in band_of_modes() and above. The decays of
+/// others are no unknowns of their own: powers of s hold them, and dozens of columns that hardly
+/// differ in the band would take amplitudes that noise decides.
+std::size_t ringing_modes(const ModalBasis& basis, double highest);
+
 /// Highest ω of the likelihood's bins [rad/s]: highest_frequency [Hz], or where that is NaN
 /// band_of_modes(), 1.05 times the highest mode where the model has no further ones; below 0.4 f_s.
 /// Throws InvalidInput where fewer than two modes lie below a stated one.

@@ -33,9 +33,9 @@ PluckEvaluation::Mode PluckEvaluation::mode_of(const LikelihoodMode& mode, const
 
 PluckEvaluation::PluckEvaluation(const WhitenedRecord& record, const ModelPoint& point)
     : record_(record), plain_(plain_transients(record, point)) {
-  for (const LikelihoodMode& mode : likelihood_modes(point, record.sample_rate)) {
-    if (!mode.decays) continue;
-    modes_.push_back(mode_of(mode, point.sensors, record.sample_rate,
+  const std::vector<LikelihoodMode> modes = likelihood_modes(point, record.sample_rate);
+  for (std::size_t n = 0; n < point.basis.size(); ++n) {
+    modes_.push_back(mode_of(modes[n], point.sensors, record.sample_rate,
                              record.deviation[0] / record.deviation[1]));
   }
   const std::size_t width = tiled(linear_unknowns() + 1);

@@ -45,6 +45,7 @@ std::vector<LikelihoodMode> likelihood_modes(const ModelPoint& point, double sam
     modes[i].residue *= stiff;
     modes[i].residue_slope *= stiff;
   }
+  for (std::size_t i = point.higher->ringing; i < modes.size(); ++i) modes[i].decays = false;
   for (const HigherMode& higher : higher_modes(*point.higher, basis, point.contact)) {
     modes.push_back({.even = higher.even,
                      .residue = higher.residue,
@@ -74,7 +75,9 @@ void ProjectedLikelihood::set_weights(std::span<const double> weights) {
 double ProjectedLikelihood::degrees_of_freedom(std::size_t parameters,
                                                const ModelPoint& point) const {
   const std::size_t plain = plain_transients(record_, point).size();
-  const std::size_t projected = plain + (record_.sigma == 0.0 ? 2 * point.basis.size() : 0);
+  const std::size_t ringing =
+      std::min(point.basis.size(), point.higher ? point.higher->ringing : point.basis.size());
+  const std::size_t projected = plain + (record_.sigma == 0.0 ? 2 * ringing : 0);
   return 2.0 * static_cast<double>(record_.bins) - static_cast<double>(projected + parameters);
 }
 

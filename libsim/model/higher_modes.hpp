@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "libsim/model/modal_basis.hpp"
@@ -17,6 +18,8 @@ struct HigherModeLaw {
   double highest = 0.0;        ///< highest frequency of the band [Hz]
   /// The support feels T y_x − E I y_xxx instead of T y_x: g_rn times (1 + B n²).
   bool bending = false;
+  /// Stated modes, the first, of which what they leave ringing is not smooth in the band.
+  std::size_t ringing = std::numeric_limits<std::size_t>::max();
 
   /// Stated modes as in `basis`, for a band up to `highest` [Hz].
   static HigherModeLaw above(const ModalBasis& basis, double fundamental, double inharmonicity,

@@ -119,7 +119,9 @@ TEST_F(OneSecond, HigherModesChangeNoneOfThis) {
   UnknownsOptions sensors;
   sensors.sensor[Sensor::kGain].free = true;
   for (const bool bending : {false, true}) {
-    const ModelPoint truth = with_higher(bowed.truth, bending);
+    ModelPoint truth = with_higher(bowed.truth, bending);
+    // Beside modes above the band, whose decays are no unknowns.
+    if (bending) truth.higher->ringing = 44;
     const std::vector<StringUnknowns> all = {StringUnknowns::law(truth, 196.0, 1.39e-4, sensors),
                                              StringUnknowns::frequencies(truth, sensors)};
     for (const double sigma : {0.0, 20.0}) {
