@@ -72,7 +72,7 @@ def arguments():
     p.add_argument("--reactions", choices=("tension", "support"), default="tension")
     p.add_argument("--damping", choices=("table", "constant"), default="table",
                    help="stated: the true zeta_n, or 1e-3 for all")
-    p.add_argument("--modes", type=int, help="stated number of modes; left out: the program's 50, or those below 0.4 of the rate")
+    p.add_argument("--modes", type=int, help="stated number of modes; left out: as many as the record tells")
     p.add_argument("--string-keys", default="", help="further keys of string:, such as \"remainder: none\"")
     p.add_argument("--record-keys", default="", help="further keys of record:")
     p.add_argument("--calibration", type=Path, help="file with the lines below calibration:")
@@ -187,10 +187,7 @@ def configuration(truth, name, mismatch, noise, draw, a):
     if MISMATCHES[mismatch][1].get("damping", a.damping) == "table":
         damping = (f"{{type: table, frequencies: [{', '.join(f'{f:.9g} Hz' for f, _ in table)}], "
                    f"ratios: [{', '.join(f'{z:.9g}' for _, z in table)}]}}")
-    # The program's 50 modes reach beyond half the rate on a high string; it then asks for fewer.
-    fitting = sum(f < 0.4 * a.rate for f in truth["modes"]["f"])
-    modes = a.modes or (fitting if fitting < 50 else None)
-    keys = (f", modes: {modes}" if modes else "") + (f", {a.string_keys}" if a.string_keys else "")
+    keys = (f", modes: {a.modes}" if a.modes else "") + (f", {a.string_keys}" if a.string_keys else "")
     record = "file: record.csv, left: {channel: R1}, right: {channel: R2}" + (f", {a.record_keys}" if a.record_keys else "")
     return (f"kind: calibrate\nrecord: {{{record}}}\n"
             f"string: {{length: {string['L']} m, linear_density: {string['rho_L']} kg/m, "

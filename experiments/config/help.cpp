@@ -65,6 +65,9 @@ class Describer final : public ValueVisitor {
       if (!std::isfinite(value)) entry["default"] = nullptr;
       if (std::isnan(value) && !info.word.empty()) entry["default"] = info.word;
     }
+    if constexpr (std::is_same_v<Value, std::int64_t>) {
+      if (value == 0 && !info.word.empty()) entry["default"] = info.word;
+    }
   }
 
   Json& add(const OptionInfo& info, std::string_view type) {
@@ -92,7 +95,7 @@ class SchemaWriter final : public ValueVisitor {
           using Item = typename ItemOf<Value>::Type;
           Json item = {{"type", "boolean"}};
           if (std::is_same_v<Item, double>) item = number_schema(info);
-          if (std::is_same_v<Item, std::int64_t>) item = bounded({{"type", "integer"}}, info.range);
+          if (std::is_same_v<Item, std::int64_t>) item = integer_schema(info);
           if (std::is_same_v<Item, std::string>) item = text_schema(info);
           if (!std::is_same_v<Item, Value>) {
             item = {{"anyOf", {item, {{"type", "array"}, {"items", item}}}}};
@@ -160,6 +163,11 @@ class SchemaWriter final : public ValueVisitor {
       schema[range.highest_allowed ? "maximum" : "exclusiveMaximum"] = range.highest;
     }
     return schema;
+  }
+  static Json integer_schema(const OptionInfo& info) {
+    Json schema = bounded({{"type", "integer"}}, info.range);
+    if (info.word.empty()) return schema;
+    return {{"anyOf", {std::move(schema), {{"const", info.word}}}}};
   }
   static Json number_schema(const OptionInfo& info) {
     const Json with_unit = {{"type", "string"},

@@ -75,12 +75,17 @@ bool YamlReader::read(const OptionInfo& info, const YamlNode& node, double& valu
 
 bool YamlReader::read(const OptionInfo& info, const YamlNode& node, std::int64_t& value) {
   const std::string& text = node.text;
+  const bool scalar = node.kind == YamlNode::Kind::kScalar && !node.quoted;
+  if (!info.word.empty() && scalar && text == info.word) {
+    value = 0;
+    return true;
+  }
   std::int64_t parsed = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), parsed);
-  const bool whole = node.kind == YamlNode::Kind::kScalar && !node.quoted && error == std::errc() &&
-                     end == text.data() + text.size();
+  const bool whole = scalar && error == std::errc() && end == text.data() + text.size();
   if (!whole) {
-    mistake(node, fmt::format("{} must be a whole number, not {}", info.key,
+    mistake(node, fmt::format("{} must be a whole number{}, not {}", info.key,
+                              info.word.empty() ? "" : fmt::format(" or {}", info.word),
                               node.kind == YamlNode::Kind::kScalar ? fmt::format("\"{}\"", text)
                                                                    : std::string(kind_name(node))));
     return false;

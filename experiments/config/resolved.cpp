@@ -18,7 +18,8 @@ std::string text_of(const OptionInfo& info, const Value& value) {
   } else if constexpr (std::is_same_v<Value, std::string>) {
     return info.choices.empty() ? yaml_string(value) : value;
   } else if constexpr (std::is_integral_v<Value>) {
-    return fmt::format("{}", value);
+    const bool word = !std::is_same_v<Value, bool> && value == 0 && !info.word.empty();
+    return word ? std::string(info.word) : fmt::format("{}", value);
   } else {
     std::vector<std::string> items;
     for (const auto& item : value) items.push_back(text_of(info, item));

@@ -103,7 +103,7 @@ std::vector<Finding> lint_observation(const ObservationOptions& options) {
     lint_decay(options.truth.scene, findings);
     return findings;
   }
-  lint_string("string", options.string, options.contact.position, "bow", findings);
+  lint_string("string", options.string.before_reading(), options.contact.position, "bow", findings);
   return findings;
 }
 
@@ -124,7 +124,9 @@ std::vector<Finding> lint_scores(const ScoreOptions& score, const ObservationOpt
 
 std::vector<Finding> lint_priors(const std::string& path, const UnknownsOptions& unknowns,
                                  const StringModel& string, std::size_t records) {
-  const auto modes = static_cast<std::size_t>(string.modes);
+  // Which modes there are, a record may have to tell.
+  const std::size_t modes =
+      string.modes_of_record() ? 5000 : static_cast<std::size_t>(string.modes);
   std::vector<Finding> findings;
   UnknownsOptions sound = unknowns;  // what has passed so far
   sound.fixed.clear();

@@ -227,7 +227,7 @@ ordered_json json(const InspectionReport& report) {
 
 std::string stanza(const InspectionReport& report) {
   RecordOptions record = report.record;
-  StringModel string;
+  StringModel string{.modes = 0};
   ContactOptions bow;
   ResolvedWriter writer;
   writer.section({.key = "record", .meaning = "recorded forces"}, record);

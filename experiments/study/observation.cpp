@@ -1,4 +1,5 @@
 #include "experiments/study/identification.hpp"
+#include "libsim/records/told_modes.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {
@@ -40,7 +41,13 @@ Observation observe_record(const ObservationOptions& options, const std::filesys
   RecordedSignals record = load_record(options.record, folder);
   Observation observation;
   observation.sample_rate = record.sample_rate;
-  observation.basis = make_modal_basis(options.string);
+  StringModel string = options.string;
+  if (string.modes_of_record()) {
+    const ToldModes told = told_modes(string, record);
+    string.modes = told.count;
+    observation.modes_taken = told.text();
+  }
+  observation.basis = make_modal_basis(string);
   observation.contact = options.contact.position;
   observation.reactions[0] = std::move(record.left);
   observation.reactions[1] = std::move(record.right);

@@ -72,11 +72,12 @@ struct ObservationOptions {
   bool has_record = false;
   RecordOptions record;
   bool has_string = false;
-  StringModel string;
+  StringModel string{.modes = 0};
   bool has_bow = false;
   ContactOptions contact;
   void visit(OptionVisitor& visitor);
 
+  /// The string as stated: a record's may leave the number of modes to the record.
   const StringModel& string_model() const { return has_scene ? truth.scene.string : string; }
   double contact_point() const { return has_scene ? truth.scene.bow.position : contact.position; }
   /// Throws InvalidInput unless exactly one source is stated completely.
@@ -97,6 +98,7 @@ struct Observation {
   std::optional<Signal> anti_aliased;
   double anti_alias_cut = 0.0;  ///< [Hz]
   std::vector<std::string> warnings;
+  std::string modes_taken;  ///< how many modes and why, where the record told; else empty
 
   const std::optional<Signal>& reaction(End end) const { return reactions[static_cast<int>(end)]; }
   std::size_t samples() const;

@@ -49,7 +49,8 @@ struct OptionInfo {
   bool required = false;
   /// Allowed words of a text option; empty: any text.
   std::vector<std::string_view> choices = {};
-  /// A word that may stand for a number; the value is then NaN. Empty: no such word.
+  /// A word that may stand for a number; the value is then NaN, of a whole number 0. Empty: no such
+  /// word.
   std::string_view word = {};
 };
 

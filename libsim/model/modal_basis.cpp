@@ -34,6 +34,8 @@ ModalBasis make_modal_basis(const StringModel& string) {
                  string.length, string.linear_density, string.fundamental);
   MODCAL_REQUIRE(string.inharmonicity >= 0.0, "inharmonicity {:g} must be >= 0",
                  string.inharmonicity);
+  MODCAL_REQUIRE(!string.modes_of_record(),
+                 "modes: auto asks a record how many modes it tells: state a number of modes");
   MODCAL_REQUIRE(string.modes >= 1, "{} modes: at least one is needed", string.modes);
   const auto count = static_cast<std::size_t>(string.modes);
   ModalBasis basis;

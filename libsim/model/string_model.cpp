@@ -4,6 +4,12 @@
 
 namespace modcal {
 
+StringModel StringModel::before_reading() const {
+  StringModel string = *this;
+  if (string.modes_of_record()) string.modes = StringModel().modes;
+  return string;
+}
+
 void StringModel::visit(OptionVisitor& visitor) {
   visitor.number({.key = "length",
                   .meaning = "vibrating length L",
@@ -28,7 +34,11 @@ void StringModel::visit(OptionVisitor& visitor) {
                   .unit = "1",
                   .range = Range::non_negative()},
                  inharmonicity);
-  visitor.integer({.key = "modes", .meaning = "number of modes N", .range = Range::closed(1, 5000)},
+  visitor.integer({.key = "modes",
+                   .meaning = "number of modes N; auto, for a record: those below 0.4 sampling "
+                              "rates that stand out of its noise",
+                   .range = Range::closed(1, 5000),
+                   .word = "auto"},
                   modes);
   visitor.plugin({.key = "damping", .meaning = "modal damping law"}, damping);
 }
@@ -36,6 +46,16 @@ void StringModel::visit(OptionVisitor& visitor) {
 double stiff_string_frequency(double fundamental, double inharmonicity, std::size_t n) {
   const double order = static_cast<double>(n);
   return order * fundamental * std::sqrt(1.0 + inharmonicity * order * order);
+}
+
+std::int64_t modes_below(const StringModel& string, double highest) {
+  std::int64_t count = 0;
+  const auto frequency = [&](std::int64_t n) {
+    return stiff_string_frequency(string.fundamental, string.inharmonicity,
+                                  static_cast<std::size_t>(n));
+  };
+  while (frequency(count + 1) < highest) ++count;
+  return count;
 }
 
 }  // namespace modcal

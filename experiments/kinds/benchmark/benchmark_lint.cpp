@@ -137,7 +137,8 @@ bool is_cut_everywhere(const CalibrateOptions& options) {
   Budget budget = options.calibration.budget;
   if (budget.evaluations > kMostEvaluations) return false;
   try {
-    const auto modes = static_cast<std::size_t>(options.inversion.observation.string_model().modes);
+    const auto modes = static_cast<std::size_t>(
+        options.inversion.observation.string_model().before_reading().modes);
     const std::size_t dimension = options.calibration.parameters.names(modes).size();
     const auto optimizer = options.calibration.optimizer.make();
     if (ending_of(*optimizer, dimension, budget) == Ending::kFinished) return false;

@@ -115,18 +115,17 @@ std::vector<Finding> CalibrateOptions::lint() const {
               [&] { further.require_fit_to(inversion.observation, calibration); });
   append(findings, lint_plucks(plucks, inversion.observation, calibration));
   lint_noise(*this, findings);
-  const auto modes = static_cast<std::size_t>(inversion.observation.string_model().modes);
+  const StringModel string = inversion.observation.string_model().before_reading();
   const std::size_t strokes = 1 + further.contacts.size() + further.files.size();
   append(findings, lint_priors("calibration.parameters", calibration.parameters.unknowns,
                                inversion.observation.string_model(), strokes + plucks.size()));
   lint_making(findings, "calibration.parameters", [&] {
     const UnknownsOptions& unknowns = calibration.parameters.unknowns;
     unknowns.require_found_by(calibration.optimizer.selected(), calibration.by_schedule());
-    if (is_known(inversion.observation.string_model())) {
-      unknowns.response.laid_out(make_modal_basis(inversion.observation.string_model()));
-    }
+    if (is_known(string)) unknowns.response.laid_out(make_modal_basis(string));
     calibration.require_read(strokes, plucks.size());
-    calibration.objective.make()->require_moved_by(calibration.parameters.names(modes));
+    calibration.objective.make()->require_moved_by(
+        calibration.parameters.names(static_cast<std::size_t>(string.modes)));
   });
   return findings;
 }
@@ -136,12 +135,17 @@ std::vector<std::string> CalibrateOptions::plan() const {
   const ObservationOptions& observation = inversion.observation;
   const auto planned = planned_simulations();
   lines.push_back(planned ? plan_line(*planned) : "record: " + observation.record.file);
-  const auto modes = static_cast<std::size_t>(observation.string_model().modes);
+  const StringModel string = observation.string_model().before_reading();
+  const auto modes = static_cast<std::size_t>(string.modes);
   lines.push_back(
-      fmt::format("calibration: {} parameters asked for, objective {}, optimizer {}, at "
+      fmt::format("calibration: {} parameters asked for{}, objective {}, optimizer {}, at "
                   "most {} evaluations",
-                  calibration.parameters.names(modes).size(), calibration.objective.selected(),
-                  calibration.optimizer.selected(), calibration.budget.evaluations));
+                  calibration.parameters.names(modes).size(),
+                  observation.string_model().modes_of_record()
+                      ? fmt::format(" (of {} modes; the record tells how many there are)", modes)
+                      : "",
+                  calibration.objective.selected(), calibration.optimizer.selected(),
+                  calibration.budget.evaluations));
   const std::size_t more = further.contacts.size() + further.files.size();
   if (more > 0) lines.push_back(fmt::format("strokes fitted together: {}", more + 1));
   if (!plucks.empty()) {

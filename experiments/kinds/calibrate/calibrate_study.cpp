@@ -188,8 +188,8 @@ StudyResult CalibrateOptions::run(const StudyContext& context) const {
   StudyResult result;
   add_calibration_summary(outcome, result);
   add_calibration_warnings(outcome, result);
-  for (const std::string& text :
-       {default_text(calibration, measured), correction_text(measured, sensors)}) {
+  for (const std::string& text : {measured.modes_taken, default_text(calibration, measured),
+                                  correction_text(measured, sensors)}) {
     if (text.empty()) continue;
     result.summary += text + "\n";
     result.blocks.emplace_back(report::Text{text, report::Text::Kind::kNote});

@@ -51,7 +51,7 @@ std::vector<Finding> lint_inversion(const InvertOptions& options) {
   append(findings, lint_scores(options.score, options.observation));
   if (findings.empty() && is_known(options.observation.string_model())) {
     lint_making(findings, "model_error", [&] {
-      with_errors(make_modal_basis(options.observation.string_model()),
+      with_errors(make_modal_basis(options.observation.string_model().before_reading()),
                   options.observation.contact_point(), options.model_error,
                   options.key().with("model error"));
     });
@@ -171,6 +171,10 @@ StudyResult InvertOptions::run(const StudyContext& context) const {
                               &score, &context.work.inversions);
 
   StudyResult result;
+  if (!observed.modes_taken.empty()) {
+    result.summary += observed.modes_taken + "\n";
+    result.blocks.emplace_back(report::Text{observed.modes_taken, report::Text::Kind::kNote});
+  }
   add_warnings(observed, sides, result);
   add_identification_figures(figures, observed, sides, result);
   result.add({identification_table(sides)});

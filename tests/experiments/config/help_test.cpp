@@ -28,6 +28,7 @@ TEST(OptionsSchema, AcceptsRightOptions) {
   EXPECT_TRUE(schema.accepts(right()));
   json full = right();
   full["string"]["damping"] = "constant";
+  full["string"]["modes"] = "auto";
   full["stop"] = "end";
   full["seeds"] = {1, 2};
   full["content"] = "spectra";
@@ -51,6 +52,8 @@ TEST(OptionsSchema, RejectsWrongOptions) {
       {"/content", "spectrum"},
       {"/band", {{"high", 1}}},
       {"/bands", {{{"low", 1}, {"middle", 2}}}},
+      {"/string/modes", 0},
+      {"/string/modes", "all"},
       {"/string/length", 0},
       {"/string/length", -0.33},
       {"/string/damping", "constnt"},

@@ -37,6 +37,7 @@ ExampleOptions awkward() {
   options.string.linear_density = 5e-324;
   options.string.fundamental = 1.7976931348623157e308;
   options.string.inharmonicity = 1.4e-4;
+  options.string.modes = 0;
   options.string.damping = Choice<DampingLaw>::of<PolynomialDamping>(
       "polynomial", {.coefficients = {-0.0, 1e-3, 0.1 + 0.2}});
   options.windows = {0.1, 1e22, 123456789.123456789};
@@ -54,6 +55,8 @@ TEST(ResolvedWriter, ReadsBackAsTheSameBits) {
   EXPECT_EQ(again.string.linear_density, options.string.linear_density);
   EXPECT_EQ(again.string.fundamental, options.string.fundamental);
   EXPECT_EQ(again.share, options.share);
+  EXPECT_NE(yaml.find("modes: auto"), std::string::npos);
+  EXPECT_TRUE(again.string.modes_of_record());
   EXPECT_TRUE(std::isnan(again.stop));
   EXPECT_EQ(again.windows, options.windows);
   EXPECT_EQ(again.seeds, options.seeds);

@@ -61,7 +61,8 @@ class CalibrateRecords : public testing::Test {
         parse_yaml("kind: calibrate\n"
                    "record: {file: stroke.csv, left: {channel: R1}, right: {channel: R2}, "
                    "reference: {channel: f_c}}\n"
-                   "string: {length: 0.33 m, linear_density: 3.1e-3 kg/m, fundamental: 196 Hz}\n"
+                   "string: {length: 0.33 m, linear_density: 3.1e-3 kg/m, fundamental: 196 Hz, "
+                   "modes: 50}\n"
                    "bow: {position: 30 mm}\n"
                    "calibration: {parameters: {law: true, contact: true, damping: factor" +
                        sensors + "}, objective: {type: joint_likelihood" + noise +

@@ -51,6 +51,14 @@ TEST(LintSimulator, HasNothingAgainstWhatTheSimulatorFollows) {
   EXPECT_EQ(messages_of(config("hyperbolic", ", width: 5 mm, points: 3", "modal_exact")), "");
 }
 
+// A scene has no record that tells how many modes there are.
+TEST(LintScene, AsksForTheNumberOfModes) {
+  std::string text = config("thermal", "", "modal_event");
+  text.insert(text.find("196 Hz") + 6, ", modes: auto");
+  EXPECT_THAT(messages_of(text), testing::HasSubstr("scene.yaml:3:"));
+  EXPECT_THAT(messages_of(text), testing::HasSubstr("state a number of modes"));
+}
+
 std::string strokes(const std::string& calibration, const std::string& further) {
   return "kind: calibrate\n"
          "scene:\n"
