@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace modcal {
 namespace {
@@ -152,6 +153,18 @@ void add_lines(const WhitenedRecord& record, std::vector<PlainTransient>& transi
   }
 }
 
+// The residual takes what is at x = L from the record, and adds what is at x = 0.
+void add_signals(const WhitenedRecord& record, std::vector<PlainTransient>& transients) {
+  for (const SignalColumn& signal : record.signals) {
+    PlanarVector left(record.root_weight.size()), right(record.root_weight.size());
+    for (std::size_t k = 0; k < record.bins; ++k) {
+      left.set(k, -record.deviation[0] * signal.left.at(k));
+      right.set(k, record.deviation[1] * signal.right.at(k));
+    }
+    transients.push_back({true, std::move(right), std::move(left)});
+  }
+}
+
 using Columns = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic>>;
 
 }  // namespace
@@ -166,6 +179,7 @@ std::vector<PlainTransient> plain_transients(const WhitenedRecord& record,
     if (point.sensors.may_differ()) add_sensor_transients(record, point.sensors, transients);
   }
   add_lines(record, transients);
+  add_signals(record, transients);
   return transients;
 }
 

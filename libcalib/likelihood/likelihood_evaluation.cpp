@@ -108,8 +108,12 @@ void LikelihoodEvaluation::fill_model(std::size_t b, EndState::Sums& sums) {
   const ModeSplit split = splits_.of(b);
   fill_block(*record_, b, split, given(sensor_), blocks_[b]);
   for (std::size_t p = 0; p < plain_.size(); ++p) {
-    fill_plain_column(*record_, b, blocks_[b], plain_[p].right, plain_[p].numbers,
-                      plain_of(b) + p * kColumnLength);
+    double* column = plain_of(b) + p * kColumnLength;
+    fill_plain_column(*record_, b, blocks_[b], plain_[p].right, plain_[p].numbers, column);
+    if (plain_[p].left.size() == 0) continue;
+    alignas(64) double left[kColumnLength];
+    fill_plain_column(*record_, b, blocks_[b], false, plain_[p].left, left);
+    for (std::size_t i = 0; i < kColumnLength; ++i) column[i] += left[i];
   }
   end_state_.add_gram(*record_, b, split, blocks_[b], sums);
 }
@@ -146,6 +150,7 @@ void LikelihoodEvaluation::sum_plain() {
   };
   for (std::size_t p = 0; p < plain_.size(); ++p) {
     add(plain_[p].numbers, end_state_.plain_amplitude(p), plain_sums_[plain_[p].right ? 1 : 0]);
+    add(plain_[p].left, end_state_.plain_amplitude(p), plain_sums_[0]);
     for (std::size_t i = 0; i < Sensor::kCount; ++i) {
       add(plain_[p].by_sensor[i], end_state_.plain_amplitude(p), plain_slopes_[i]);
     }

@@ -46,6 +46,11 @@ void LikelihoodEvaluation::fill_columns(std::size_t b, const LikelihoodColumns& 
   finish(b, sensors);
   std::copy_n(residual_of(b), kColumnLength, jacobian + own.count() * kColumnLength);
   if (own.knots > 0) fill_response(b, own, by_gain, jacobian);
+  const std::size_t first_signal = own.common - columns.signals.size();
+  for (std::size_t i = 0; i < columns.signals.size(); ++i) {
+    fill_signal_column(*record_, b, blocks_[b], columns.signals[i],
+                       jacobian + (first_signal + i) * kColumnLength);
+  }
   if (columns.shares.empty() && !columns.contact) return;
   ColumnTask task = column_task(columns);
   task.count = own.common;

@@ -101,6 +101,21 @@ void FillPlainColumn(const WhitenedRecord& record, std::size_t block_index,
   }
 }
 
+void FillSignalColumn(const WhitenedRecord& record, std::size_t block_index,
+                      const LikelihoodBlock& block, const SignalColumn& signal, double* column) {
+  const std::size_t first = block_index * kBins;
+  for (std::size_t k = 0; k < kBins; k += hn::Lanes(D())) {
+    C change = Zero();
+    if (signal.right.size() > 0) {
+      change = Mul(Load(block.left, k), Load(signal.right, first + k));
+    }
+    if (signal.left.size() > 0) {
+      change = Sub(change, Mul(Load(block.right, k), Load(signal.left, first + k)));
+    }
+    StoreColumn(Scale(change, ScaleAt(record, block, first, k)), column, k);
+  }
+}
+
 // What the end states add to h_1F and to h_2F; decays: the part that the sensor at x = L reads.
 struct Transients {
   C left, right, right_decays;
@@ -167,6 +182,7 @@ namespace modcal {
 HWY_EXPORT(FillBlock);
 HWY_EXPORT(FillResidual);
 HWY_EXPORT(FillPlainColumn);
+HWY_EXPORT(FillSignalColumn);
 HWY_EXPORT(FinishResidual);
 
 void fill_block(const WhitenedRecord& record, std::size_t block_index, const ModeSplit& split,
@@ -183,6 +199,11 @@ void fill_plain_column(const WhitenedRecord& record, std::size_t block_index,
                        const LikelihoodBlock& block, bool right, const PlanarVector& numbers,
                        double* column) {
   HWY_DYNAMIC_DISPATCH(FillPlainColumn)(record, block_index, block, right, numbers, column);
+}
+
+void fill_signal_column(const WhitenedRecord& record, std::size_t block_index,
+                        const LikelihoodBlock& block, const SignalColumn& signal, double* column) {
+  HWY_DYNAMIC_DISPATCH(FillSignalColumn)(record, block_index, block, signal, column);
 }
 
 void finish_residual(const WhitenedRecord& record, std::size_t block_index,

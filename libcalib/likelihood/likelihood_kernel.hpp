@@ -58,6 +58,10 @@ void fill_plain_column(const WhitenedRecord& record, std::size_t block_index,
                        const LikelihoodBlock& block, bool right, const PlanarVector& numbers,
                        double* column);
 
+/// Column of an amplitude that changes both records: √w (h_1 ∂y_2 − h_2 ∂y_1)/|h|.
+void fill_signal_column(const WhitenedRecord& record, std::size_t block_index,
+                        const LikelihoodBlock& block, const SignalColumn& signal, double* column);
+
 /// Column of one number of the sensor at x = L; null: not asked for.
 struct SensorColumn {
   const PlanarVector* slope = nullptr;  ///< ∂ ln S by its coordinate

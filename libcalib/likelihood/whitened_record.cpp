@@ -114,6 +114,7 @@ WhitenedRecord WhitenedRecord::of(const NoisyRecords& records, double sigma, dou
     const double omega = 2.0 * pi * line;
     if (omega < record.spacing * static_cast<double>(record.bins)) record.lines.push_back(omega);
   }
+  if (sigma == 0.0) record.signals = records.signals;
   const std::size_t padded = (record.bins + kBlock - 1) / kBlock * kBlock;
   record.left = record.right = record.delay = record.offset = PlanarVector(padded);
   record.root_weight.assign(padded, 0.0);
@@ -189,6 +190,13 @@ WhitenedRecord WhitenedRecord::slice(std::size_t begin, std::size_t count) const
     part.delay.set(k, delay.at(begin + k));
     part.offset.set(k, offset.at(begin + k));
     part.root_weight[k] = root_weight[begin + k];
+  }
+  for (const SignalColumn& signal : signals) {
+    SignalColumn& own = part.signals.emplace_back(PlanarVector(padded), PlanarVector(padded));
+    for (std::size_t k = 0; k < part.bins; ++k) {
+      own.left.set(k, signal.left.at(begin + k));
+      own.right.set(k, signal.right.at(begin + k));
+    }
   }
   part.place_bins();
   return part;

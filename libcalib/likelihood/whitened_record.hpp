@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "libcalib/parameters/free_parameters.hpp"
 #include "libcalib/problem/calibration_data.hpp"
 #include "libsim/base/aligned_vector.hpp"
 #include "libsim/model/modal_basis.hpp"
@@ -20,6 +21,8 @@ struct NoisyRecords {
   double sample_rate = 0.0;                      ///< f_s [Hz]
   /// Lines of the mains, whose amplitudes at either end are unknown [Hz].
   std::vector<double> lines = {};
+  /// Of unknown amplitudes, for the undamped record: whitened, of all its bins.
+  std::vector<SignalColumn> signals = {};
 
   std::size_t samples() const { return reactions[0].size(); }
   /// The records behind spectra of both ends. deviation: s_r [N]; NaN: estimated by
@@ -45,6 +48,7 @@ struct WhitenedRecord {
   double sample_rate = 0.0;  ///< [Hz]
   std::array<double, 2> deviation{};
   std::vector<double> lines;  ///< [rad/s]
+  std::vector<SignalColumn> signals;
   PlanarVector left, right;   ///< y_1, y_2
   PlanarVector delay;         ///< z^−1 = exp(−s_k/f_s)
   PlanarVector offset;        ///< whitened transform of 1·exp(−σt); zero at σ = 0

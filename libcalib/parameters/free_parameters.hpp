@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "libcalib/parameters/parameter_table.hpp"
+#include "libsim/base/aligned_vector.hpp"
 
 namespace modcal {
 
@@ -20,17 +21,32 @@ struct ColumnShare {
   double residue = 0.0;
 };
 
+/// What changes both records by an amplitude that is no parameter of the model: the change of y_1
+/// and y_2 (WhitenedRecord) for 1, by bins; empty: none.
+struct SignalColumn {
+  PlanarVector left, right;
+};
+
 /// How the columns of a Jacobian are made of ∂/∂ln ω_n and ∂/∂ln ζ_n, and which ones are those of
 /// x_c and of the sensor at x = L (its coordinates: ln gain, delay [s], corner [rad/s]). Last stand
 /// those of its smooth response, which few bins have: real and imaginary part of knot after knot.
+/// Before them stand those of `signals`, which must outlive this.
 struct LikelihoodColumns {
   std::size_t count = 0;
   std::vector<ColumnShare> shares;       ///< by mode
   std::vector<std::size_t> share_begin;  ///< N + 1 numbers: where those of mode n begin
   std::optional<std::size_t> contact = {};
   std::array<std::optional<std::size_t>, Sensor::kCount> sensors = {};
+  std::span<const SignalColumn> signals = {};
   std::size_t knots = 0;
 
+  /// The same with `further` beside them, which must outlive the result; there are no others yet.
+  LikelihoodColumns with(std::span<const SignalColumn> further) const {
+    LikelihoodColumns more = *this;
+    more.signals = further;
+    more.count += further.size();
+    return more;
+  }
   /// Columns before those of the response.
   std::size_t common() const { return count - 2 * knots; }
   LikelihoodColumns without_response() const {

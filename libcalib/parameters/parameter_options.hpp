@@ -70,6 +70,8 @@ struct UnknownsOptions {
   /// Frequency of the mains, whose lines have unknown amplitudes [Hz]; 0: there are none; NaN:
   /// looked for in a record.
   double mains = 0.0;
+  /// What the fit of every frequency leaves is tested for causes that the model has not.
+  bool tests = false;
   /// What each record has for itself, of x_c, gain, delay, corner and the factor "damping".
   std::vector<std::string> per_record = {"x_c"};
   std::vector<FixedParameter> fixed;

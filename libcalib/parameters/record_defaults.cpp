@@ -41,6 +41,7 @@ ResponseOptions ResponseOptions::laid_out(const ModalBasis& basis) const {
 UnknownsOptions UnknownsOptions::of_records(double sample_rate, const ModalBasis& basis) const {
   constexpr double kGainWidth = 0.02, kDelayWidth = 1.0, kCornerWidth = 1.0;  // 1; samples; Hz
   UnknownsOptions known = *this;
+  known.tests = true;
   if (damping_choice(damping) == DampingChoice::kAuto) {
     known.damping = "each";
     if (damping_width == UnknownsOptions().damping_width) known.damping_width = 1.0;

@@ -213,6 +213,64 @@ TEST(ForeignRecord, HumOfTheMainsIsNoMatter) {
   EXPECT_TRUE(calibrated(equal_sensors(), {}).continuation->lines.empty());
 }
 
+const ScoreTest& test_of(const CalibrationResult& result, std::string_view cause) {
+  const std::vector<ScoreTest>& tests = result.continuation->tests;
+  const auto found = std::find_if(tests.begin(), tests.end(),
+                                  [&](const ScoreTest& test) { return test.cause == cause; });
+  EXPECT_NE(found, tests.end()) << cause;
+  return *found;
+}
+
+// A tuning that drifts is found, to first order, and free in the fit that is reported.
+TEST(ForeignRecord, ItsTuningMayDrift) {
+  constexpr double kDrift = 2e-4;
+  const CalibrationResult result =
+      calibrated(stroke({.drift = kDrift}, truth::Reactions::kTension), {});
+  expect_right(result);
+  ASSERT_EQ(result.continuation->freed.size(), 1u);
+  const ScoreTest& freed = result.continuation->freed.front();
+  EXPECT_EQ(freed.cause, "drift of the tuning");
+  const double deviation = kDrift / std::sqrt(freed.statistic);
+  // First order: of mode 40, whose width is 2ζ = 3e-3, a tenth.
+  EXPECT_NEAR(freed.amplitude, kDrift, 4.0 * deviation + 0.1 * kDrift);
+  EXPECT_GT(freed.shift, 1.0);
+}
+
+// What a second polarization does to both ends alike cannot be told: the fit is refused by what it
+// does to one of them.
+TEST(ForeignRecord, ASecondPolarizationIsNamed) {
+  const CalibrationResult result =
+      calibrated(stroke({.polarization = {0.1, 0.03}}, truth::Reactions::kTension), {});
+  EXPECT_FALSE(result.continuation->right);
+  EXPECT_TRUE(test_of(result, "second polarization").named());
+  const ScoreTest* cause = first_cause(result.continuation->tests);
+  ASSERT_NE(cause, nullptr);
+  EXPECT_TRUE(cause->refuses());
+  EXPECT_FALSE(cause->remedy().empty());
+}
+
+TEST(ForeignRecord, ANonlinearSensorIsNamed) {
+  truth::TruthRecord record = equal_sensors();
+  double power = 0.0;
+  for (const double r : record.r2) power += r * r / static_cast<double>(record.r2.size());
+  for (double& r : record.r2) r *= 1.0 + 0.005 * r * r / power;
+  const CalibrationResult result = calibrated(record, {});
+  EXPECT_TRUE(test_of(result, "nonlinear sensor").named());
+  EXPECT_FALSE(result.continuation->right);
+}
+
+// Of an equal record no test says anything, whatever the noise; and none is made of a simulation.
+TEST(ForeignRecord, NoCauseIsSeenWhereThereIsNone) {
+  for (const double noise : {0.002, 0.05}) {
+    const CalibrationResult result = calibrated(equal_sensors(), {.noise = noise});
+    ASSERT_EQ(result.continuation->tests.size(), 4u);
+    for (const ScoreTest& test : result.continuation->tests) {
+      EXPECT_FALSE(test.named()) << test.cause << " " << test.log_p;
+    }
+    EXPECT_TRUE(result.continuation->freed.empty());
+  }
+}
+
 TEST(ForeignRecord, SupportsMayFeelTheBending) {
   const truth::TruthRecord record = stroke({}, truth::Reactions::kSupport);
   expect_right(calibrated(record, {.support = {.reaction = "support"}}));

@@ -190,8 +190,19 @@ void add_calibration_warnings(const CalibrationOutcome& outcome, StudyResult& re
 /// What χ² says of a continuation's fit, in words.
 std::string chi2_text(const ContinuationResult& found);
 
-/// What contradicts a result that is not right: χ², the priors stated, or both; else empty.
+/// What contradicts a result that is not right: χ², the priors stated, a cause of misfit, or
+/// several of them; else empty.
 std::string contradiction(const ContinuationResult& found);
+
+/// What is in the record beside what was stated: sensors, damping, causes of misfit; or which of
+/// these were looked for; empty where none was. Of a search with an estimate.
+std::string cause_lines(const CalibrationResult& result);
+/// The cause that contradicts a fit and what to do about it; empty: none.
+std::string cause_contradiction(const ContinuationResult& found);
+/// The tests as a table.
+void visit_causes(ResultVisitor& visitor, const ContinuationResult& found);
+/// What the fit leaves over the band, the modes marked; without panels where it was not looked at.
+report::Figure misfit_figure(const ContinuationResult& found);
 
 /// Which parameters the data identify. A frequency that the law or a prior holds moves with the
 /// others by that alone.

@@ -29,7 +29,8 @@ void visit_parameter(ResultVisitor& row, const CalibratedParameter& parameter) {
   row({.key = "meaning"}, meaning_of_parameter(parameter.name));
 }
 
-void visit_verdict(ResultVisitor& row, const ModeVerdict& found) {
+void visit_verdict(ResultVisitor& row, const ContinuationResult& fit, std::size_t n) {
+  const ModeVerdict& found = fit.modes[n];
   row({.key = "relative_sd", .name = "relative sd", .format = "{:.1e}"}, found.deviation);
   row({.key = "data_sd", .name = "by its data alone", .format = "{:.1e}"}, found.data_deviation);
   row({.key = "verdict", .shown = kInTables}, verdict_text(found));
@@ -37,6 +38,8 @@ void visit_verdict(ResultVisitor& row, const ModeVerdict& found) {
   row({.key = "reason", .shown = kInJson}, name_of(found.reason));
   row({.key = "law", .shown = kInJson}, name_of(found.tie));
   row({.key = "beyond_law", .shown = kInJson}, found.departure);
+  if (fit.local.modes.empty()) return;
+  row({.key = "chi2", .name = "chi2 about it", .format = "{:.2f}"}, fit.local.modes[n].chi2);
 }
 
 void visit_mode(ResultVisitor& row, const CalibrationOutcome& outcome, const CalibratedMode& mode) {
@@ -54,7 +57,7 @@ void visit_mode(ResultVisitor& row, const CalibrationOutcome& outcome, const Cal
   row({.key = "relative_error", .name = "relative error", .format = "{:.2e}", .shown = kInTables},
       error);
   if (const auto& found = outcome.result.continuation) {
-    visit_verdict(row, found->modes[mode.number - 1]);
+    visit_verdict(row, *found, mode.number - 1);
   }
   row({.key = "excited"}, mode.excited);
   row({.key = "searched", .shown = kInJson}, mode.searched);
@@ -208,6 +211,7 @@ void CalibrationOutcome::visit(ResultVisitor& visitor) const {
   visitor.rows({.table = "parameters", .name = "Parameters", .shown = kInTables},
                beside_frequencies, visit_parameter);
   if (found) visit_pairs(visitor, *found);
+  if (found) visit_causes(visitor, *found);
   visitor.rows(
       {.key = "modes", .table = "modes", .name = "Modal frequencies"}, result.modes,
       [this](ResultVisitor& row, const CalibratedMode& mode) { visit_mode(row, *this, mode); });

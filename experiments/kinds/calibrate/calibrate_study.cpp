@@ -200,6 +200,13 @@ StudyResult CalibrateOptions::run(const StudyContext& context) const {
   }
   add_warnings(observation, sides, result);
   add_search_figures(inversion.figures, outcome, result);
+  if (outcome.result.continuation) {
+    report::Figure misfit = misfit_figure(*outcome.result.continuation);
+    const std::string causes = cause_lines(outcome.result);
+    if (!causes.empty())
+      result.blocks.emplace_back(report::Text{causes, report::Text::Kind::kNote});
+    if (!misfit.panels.empty()) result.blocks.emplace_back(std::move(misfit));
+  }
   add_identification_figures(inversion.figures, observation, sides, result);
   if (audio) {
     result.blocks.emplace_back(calibration_audio(*this, observation, outcome.refined));

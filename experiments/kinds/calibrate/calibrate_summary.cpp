@@ -85,16 +85,20 @@ std::string chi2_text(const ContinuationResult& found) {
 }
 
 std::string contradiction(const ContinuationResult& found) {
-  std::string text;
+  std::vector<std::string> reasons;
   if (!found.fits) {
-    text = fmt::format("the fit is wrong: reduced chi2 {:.4f}, where {:.4f} would scatter from 1",
-                       found.chi2, found.chi2_deviation);
+    reasons.push_back(
+        fmt::format("the fit is wrong: reduced chi2 {:.4f}, where {:.4f} would scatter from 1",
+                    found.chi2, found.chi2_deviation));
   }
-  if (!found.priors.contradicted()) return text;
-  if (!text.empty()) text += "; ";
-  return text +
-         fmt::format("the data contradict the priors stated, that of {} most ({:.3g} deviations)",
-                     found.priors.farthest, found.priors.deviations);
+  if (found.priors.contradicted()) {
+    reasons.push_back(
+        fmt::format("the data contradict the priors stated, that of {} most ({:.3g} deviations)",
+                    found.priors.farthest, found.priors.deviations));
+  }
+  const std::string cause = cause_contradiction(found);
+  if (!cause.empty()) reasons.push_back(cause);
+  return fmt::format("{}", fmt::join(reasons, "; "));
 }
 
 std::vector<bool> told_by_data(const ContinuationResult& found) {
@@ -159,7 +163,9 @@ void add_calibration_summary(const CalibrationOutcome& outcome, StudyResult& res
     result.summary +=
         std::isnan(parameter.deviation) ? "\n" : fmt::format(", sd {:.3g}\n", parameter.deviation);
   }
-  if (outcome.result.continuation) result.summary += verdict_lines(*outcome.result.continuation);
+  if (outcome.result.continuation) {
+    result.summary += verdict_lines(*outcome.result.continuation) + cause_lines(outcome.result);
+  }
   result.summary += stroke_lines(outcome);
   if (outcome.law) {
     result.summary += fmt::format("stiff-string law: f0 = {:.6g} Hz, B = {:.4g}\n",

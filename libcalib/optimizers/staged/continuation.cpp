@@ -22,10 +22,15 @@ ContinuationResult with_misfit_for_noise(const AttemptInput& input,
   if (!(misfit > 1.0)) return contradicted;
   NoisyRecords records = input.records;
   for (double& deviation : records.deviation) deviation *= std::sqrt(misfit);
-  ContinuationResult found =
-      attempt_continuation({input.initial, records, input.options, input.priors, input.highest,
-                            input.noise_error, true, input.within},
-                           0.0);
+  ContinuationResult found = attempt_continuation({.initial = input.initial,
+                                                   .records = records,
+                                                   .options = input.options,
+                                                   .priors = input.priors,
+                                                   .highest = input.highest,
+                                                   .noise_error = input.noise_error,
+                                                   .misfit_for_noise = true,
+                                                   .within = input.within},
+                                                  0.0);
   found.chi2 *= misfit;
   found.law.chi2 *= misfit;
   found.law.accepted = false;
@@ -39,24 +44,34 @@ ContinuationResult with_misfit_for_noise(const AttemptInput& input,
   return found;
 }
 
-// Noise levels read above the modes hold what the string still sounds there too. Where the fit
-// leaves so much less that error bars are a tenth too wide, what it leaves is the noise, and the
-// fit is made again with that; once more for what the first round changed. Levels that are stated
-// stay.
-ContinuationResult attempt(const AttemptInput& input, NoisyRecords& records, double shift,
-                           std::size_t evaluations) {
+// Where the noise is less than was read, the fit is made again with what it leaves; once more for
+// what the first round changed.
+ContinuationResult attempt(const AttemptInput& input, double shift, std::size_t evaluations) {
+  input.records.signals.clear();
   ContinuationResult found = attempt_continuation(input, shift, evaluations);
   for (int round = 0; round < 2; ++round) {
-    const bool stated =
-        !std::isnan(input.options.left_noise) || !std::isnan(input.options.right_noise);
     const bool less = found.chi2 < 1.0 - 3.0 * found.chi2_deviation;
-    if (stated || !less || found.chi2 > 1.0 / (1.1 * 1.1)) break;
-    for (double& deviation : records.deviation) deviation *= std::sqrt(found.chi2);
+    const bool more = !found.fits;
+    const bool changed =
+        (less && input.lower_noise(found.chi2)) || (more && input.correct_noise(found.chi2));
+    if (!changed) break;
     std::vector<FitStage> stages = std::move(found.stages);
     found = attempt_continuation(input, shift, found.evaluations);
-    append_stages(found.stages, "less noise: ", 0, stages);
+    append_stages(found.stages, "other noise: ", 0, stages);
     found.stages = std::move(stages);
   }
+  const ScoreTest* cause = first_cause(found.tests);
+  if (!cause || !cause->frees()) return found;
+  // To first order its amplitude is one more number of the record, as long as it is small.
+  std::vector<ScoreTest> freed = {*cause};
+  input.records.signals = freed.front().columns;
+  std::vector<FitStage> stages = std::move(found.stages);
+  found = attempt_continuation(input, shift, found.evaluations);
+  append_stages(found.stages, freed.front().cause + " free: ", 0, stages);
+  found.stages = std::move(stages);
+  std::erase_if(found.tests,
+                [&](const ScoreTest& test) { return test.cause == freed.front().cause; });
+  found.freed = std::move(freed);
   return found;
 }
 
@@ -66,6 +81,11 @@ void complete_by_single(ContinuationResult& fit) {
   fit.frequencies_free = one.frequencies_free;
   fit.noise = one.noise;
   fit.lines = one.lines;
+  fit.local = one.local;
+  for (const ContinuationResult& single : fit.single) {
+    fit.tests.insert(fit.tests.end(), single.tests.begin(), single.tests.end());
+    fit.freed.insert(fit.freed.end(), single.freed.begin(), single.freed.end());
+  }
   fit.restarts = one.restarts;
   fit.moved_modes = one.moved_modes;
   fit.contact_deviation = fit.contact_deviations.front();
@@ -122,12 +142,18 @@ ContinuationResult calibrate_by_continuation(const ModelPoint& initial, const Ca
   const double noise_error = noise_power_error(noise, initial.basis, data);
   const double highest = likelihood_band(initial, options.highest_frequency, data.sample_rate);
   constexpr double kShifts[] = {0.0, 4e-3, -4e-3, 8e-3, -8e-3};
-  const AttemptInput input{initial, records, options, priors, highest, noise_error, false, within};
+  const AttemptInput input{.initial = initial,
+                           .records = records,
+                           .options = options,
+                           .priors = priors,
+                           .highest = highest,
+                           .noise_error = noise_error,
+                           .within = within};
   ContinuationResult best;
   std::size_t evaluations = 0;
   std::vector<FitStage> stages;
   for (std::size_t i = 0; i <= static_cast<std::size_t>(options.restarts); ++i) {
-    ContinuationResult found = attempt(input, records, kShifts[i], evaluations);
+    ContinuationResult found = attempt(input, kShifts[i], evaluations);
     evaluations = found.evaluations;
     append_stages(found.stages, i == 0 ? "" : fmt::format("restart {}: ", i), 0, stages);
     found.restarts = i;

@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "libcalib/identifiability/law_followers.hpp"
+#include "libcalib/identifiability/local_misfit.hpp"
+#include "libcalib/identifiability/misfit_causes.hpp"
 #include "libcalib/likelihood/likelihood_band.hpp"
 #include "libcalib/parameters/named_covariance.hpp"
 #include "libcalib/parameters/parameters.hpp"
@@ -121,13 +123,19 @@ struct ContinuationResult {
   double chi2_deviation = 0.0;
   bool fits = false;   ///< χ² does not contradict the result: χ² < 1 + 3 sd
   PriorMisfit priors;  ///< of `model` to what was stated beforehand
-  bool right = false;  ///< neither χ² nor the priors contradict the result
+  bool right = false;  ///< neither χ² nor priors nor a cause of misfit contradict the result
   std::size_t restarts = 0;
   std::size_t moved_modes = 0;  ///< modes found in a neighboring minimum and moved
   std::size_t evaluations = 0;
   std::vector<FitStage> stages;   ///< of all starts, in order
   std::array<double, 2> noise{};  ///< s_r [N]
-  std::vector<double> lines;      ///< of the mains, free in the first record [Hz]
+  /// Of causes of misfit in each stroke, where every frequency is free and tests are asked for.
+  std::vector<ScoreTest> tests;
+  /// Causes that a fit before this one named, whose amplitudes are free in this one.
+  std::vector<ScoreTest> freed;
+  /// Of the first stroke by itself, where every frequency is free.
+  LocalMisfit local;
+  std::vector<double> lines;  ///< of the mains, free in the first record [Hz]
 
   /// Neither χ² nor what was stated contradicts the law.
   bool law_holds() const { return law.accepted && !law.priors.contradicted(); }

@@ -36,8 +36,12 @@ class Attempt {
   ContinuationResult run(double shift) {
     if (!priors_.fixed({ParameterKind::kFundamental})) start_.fundamental *= std::exp(shift);
     ContinuationResult result;
-    result.noise = input_.records.deviation;
     follow_law();
+    // The last damped record says it before the undamped one is taken.
+    input_.lower_noise(stroke_.stages().back().chi2);
+    fit_whole("law");
+    if (input_.correct_noise(stroke_.stages().back().chi2)) stroke_.renew();
+    result.noise = input_.records.deviation;
     const Eigen::MatrixXd covariance = finish_law("law", result);
     report_law(covariance, result);
     if (options().frequencies) {
@@ -50,7 +54,8 @@ class Attempt {
       result.found_law = FoundLaw::of(result.law);
     }
     result.fits = result.chi2 < 1.0 + 3.0 * result.chi2_deviation;
-    result.right = result.fits && !result.priors.contradicted();
+    const ScoreTest* cause = first_cause(result.tests);
+    result.right = result.fits && !result.priors.contradicted() && !(cause && cause->refuses());
     result.evaluations = stroke_.evaluations();
     result.stages = stroke_.stages();
     return result;
@@ -124,17 +129,20 @@ class Attempt {
     ladder_theta_ = law_theta_;
   }
 
-  // σ = 0, end state projected out, then once more with weights and without the noise in JᵀJ.
-  // Returns the covariance.
+  // σ = 0, end state projected out.
+  void fit_whole(const std::string& name) {
+    law_theta_ = stroke_
+                     .fit_stage(name + ", whole record", stroke_.whole(), law_, law_theta_,
+                                with_priors(law_, law_theta_, 12, 1e-2))
+                     .theta;
+  }
+
+  // Once more with weights and without the noise in JᵀJ. Returns the covariance.
   Eigen::MatrixXd finish_law(const std::string& name, ContinuationResult& result) {
     const auto free_count = static_cast<double>(law_.size() - law_.held_count());
     result.chi2_deviation =
         std::hypot(std::sqrt(2.0 / stroke_.whole().degrees_of_freedom(free_count, reference_)),
                    input_.noise_error);
-    law_theta_ = stroke_
-                     .fit_stage(name + ", whole record", stroke_.whole(), law_, law_theta_,
-                                with_priors(law_, law_theta_, 12, 1e-2))
-                     .theta;
     NewtonOptions options = with_priors(law_, law_theta_, 4, 1e-4);
     options.noise = stroke_.prepare_weights(law_, law_theta_);
     const NewtonFit last = stroke_.fit(stroke_.weighted(), law_, law_theta_, options);
@@ -188,7 +196,9 @@ class Attempt {
       reference_.basis.omega[n] = result.model.basis.omega[n];
     }
     law_ = law(priors_.fixing(others));
-    finish_law("law without the modes that do not follow it", result);
+    const std::string name = "law without the modes that do not follow it";
+    fit_whole(name);
+    finish_law(name, result);
   }
 
   const AttemptInput& input_;
@@ -201,6 +211,22 @@ class Attempt {
 };
 
 }  // namespace
+
+bool AttemptInput::lower_noise(double chi2) const {
+  const bool stated = !std::isnan(options.left_noise) || !std::isnan(options.right_noise);
+  if (stated || misfit_for_noise || !(chi2 < 1.0 / (1.1 * 1.1))) return false;
+  for (double& deviation : records.deviation) deviation *= std::sqrt(chi2);
+  return true;
+}
+
+bool AttemptInput::correct_noise(double chi2) const {
+  const double root = std::sqrt(chi2);
+  const bool lowered = records.deviation[0] < read[0];
+  if (!lowered || misfit_for_noise || !(root > 1.0 / 1.1 && root < 1.1)) return false;
+  if (root * records.deviation[0] > read[0]) return false;
+  for (double& deviation : records.deviation) deviation *= root;
+  return true;
+}
 
 ContinuationResult attempt_continuation(const AttemptInput& input, double shift,
                                         std::size_t evaluations) {

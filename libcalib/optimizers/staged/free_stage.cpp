@@ -10,6 +10,7 @@
 #include "libcalib/identifiability/neighbor_test.hpp"
 #include "libcalib/identifiability/stated_verdict.hpp"
 #include "libcalib/likelihood/parameter_forms.hpp"
+#include "libcalib/optimizers/staged/score_tests.hpp"
 
 namespace modcal {
 namespace {
@@ -43,6 +44,11 @@ class FreeStage {
     result_.chi2 = stroke_.reduced_chi2(result_.model, taken_by_fit(last, newton_));
     stroke_.end_stage("free, prior as wide as the law's followers", objective_, result_.chi2);
     result_.priors = unknowns_.prior_misfit(theta_, {widths_, inharmonicity_});
+    if (!options_.unknowns.tests) return;
+    stroke_.poll();
+    result_.local = local_misfit(stroke_.whole(), result_.model);
+    result_.tests = score_tests(stroke_.weighted(), unknowns_, theta_, newton_,
+                                covariance.diagonal().cwiseMax(0.0).cwiseSqrt(), result_.chi2);
   }
 
  private:

@@ -47,7 +47,8 @@ class JointFit {
 
   void add(const CalibrationData& stroke) {
     const ProjectedLikelihood whole(whitened(stroke, {options_.left_noise, options_.right_noise},
-                                             fit_.single[all_.records()].noise));
+                                             fit_.single[all_.records()].noise,
+                                             fit_.single[all_.records()].freed));
     ProjectedLikelihood weighted = whole;
     const Eigen::VectorXd start = unknowns().own_start(fit_.single[all_.records()].model);
     weighted.set_weights(weights(whole, start));
@@ -57,7 +58,7 @@ class JointFit {
 
   void add(const PluckRecord& pluck) {
     plucks_.push_back(
-        std::make_shared<PluckLikelihood>(whitened(pluck.data, pluck.noise, pluck.noise)));
+        std::make_shared<PluckLikelihood>(whitened(pluck.data, pluck.noise, pluck.noise, {})));
     all_.add(plucks_.back(), unknowns().start(), unknowns().own_places(false));
   }
 
@@ -89,7 +90,12 @@ class JointFit {
     fit_.chi2 = fit_.stages.back().chi2 = misfit.chi2;
     fit_.chi2_deviation = misfit.deviation;
     fit_.fits = fit_.chi2 < 1.0 + 3.0 * fit_.chi2_deviation;
-    fit_.right = fit_.fits && !fit_.priors.contradicted();
+    const bool explained =
+        std::none_of(fit_.single.begin(), fit_.single.end(), [](const ContinuationResult& single) {
+          const ScoreTest* cause = first_cause(single.tests);
+          return cause && cause->refuses();
+        });
+    fit_.right = fit_.fits && !fit_.priors.contradicted() && explained;
     if (!unknowns().is_law()) return;
     fit_.law.chi2 = fit_.chi2;
     fit_.law.accepted = fit_.fits;
@@ -114,15 +120,19 @@ class JointFit {
   }
   Index modes() const { return static_cast<Index>(unknowns().modes()); }
   double inharmonicity() const { return fit_.single.front().law.inharmonicity; }
-  // stated: what says how well the noise is known; noise: the level, of a stroke that by itself.
+  // stated: what says how well the noise is known; noise: the level, of a stroke that by itself;
+  // freed: causes of misfit that are free in it.
   WhitenedRecord whitened(const CalibrationData& data, const std::array<double, 2>& stated,
-                          const std::array<double, 2>& noise) {
+                          const std::array<double, 2>& noise, const std::vector<ScoreTest>& freed) {
     if (within_) within_->poll();
     noise_errors_.push_back(noise_power_error(stated, initial_.basis, data));
     const double band = likelihood_band(initial_, options_.highest_frequency, data.sample_rate);
     highest_ = std::max(highest_, band);
     NoisyRecords records = NoisyRecords::of_data(data, initial_.basis, noise);
     records.lines = mains_lines(records, initial_, options_.unknowns.mains);
+    for (const ScoreTest& cause : freed) {
+      records.signals.insert(records.signals.end(), cause.columns.begin(), cause.columns.end());
+    }
     return WhitenedRecord::of(records, 0.0, band);
   }
   LikelihoodPoint point(bool twice_weighted) {

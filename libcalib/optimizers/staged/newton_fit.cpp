@@ -147,6 +147,12 @@ double taken_by_fit(const LikelihoodPoint& point, const NewtonOptions& options) 
   return 2.0 * hessian.factor.solve(hessian.scaled(point.information)).trace();
 }
 
+Eigen::MatrixXd fit_response(const LikelihoodPoint& point, const NewtonOptions& options,
+                             const Eigen::MatrixXd& change) {
+  const UnitDiagonal hessian(hessian_of(point, options));
+  return hessian.scale.asDiagonal() * hessian.factor.solve(hessian.scale.asDiagonal() * change);
+}
+
 Eigen::MatrixXd fit_covariance(const LikelihoodPoint& point, const NewtonOptions& options) {
   const UnitDiagonal hessian(hessian_of(point, options));
   const Eigen::Index size = hessian.scale.size();

@@ -65,6 +65,10 @@ LawPosterior law_of_step(const PriorEquations& statements, const LikelihoodPoint
 /// How many residuals the fit takes, 2 tr H⁻¹JᵀWJ: an unknown that its prior holds takes none.
 double taken_by_fit(const LikelihoodPoint& point, const NewtonOptions& options);
 
+/// H⁻¹B for a matrix B of as many rows.
+Eigen::MatrixXd fit_response(const LikelihoodPoint& point, const NewtonOptions& options,
+                             const Eigen::MatrixXd& change);
+
 /// H⁻¹(2 JᵀW²J + Q)H⁻¹ of the fit's last point, which must hold `twice_weighted`.
 Eigen::MatrixXd fit_covariance(const LikelihoodPoint& point, const NewtonOptions& options);
 

@@ -31,6 +31,8 @@ class StrokeFit {
   ProjectedLikelihood damped(double sigma) const;
   /// σ = 0, the end state projected out; made once.
   const ProjectedLikelihood& whole();
+  /// The noise levels have changed.
+  void renew() { whole_.reset(); }
   /// The same with the weights prepared last.
   const ProjectedLikelihood& weighted() const { return *weighted_; }
 

@@ -1,0 +1,146 @@
+// What a record has that the model has not: in lines of text, and described once for tables and
+// JSON.
+
+#include <fmt/ranges.h>
+
+#include "experiments/kinds/calibrate/calibrate.hpp"
+
+namespace modcal {
+namespace {
+
+// "second polarization (detuned by +0.08 %)".
+std::string whole_name(const ScoreTest& test) {
+  return test.detail.empty() ? test.cause : fmt::format("{} ({})", test.cause, test.detail);
+}
+
+std::string chance(const ScoreTest& test) {
+  constexpr double kLeast = -700.0;  // ln of what a number still holds
+  return test.log_p < kLeast ? "below 1e-300" : fmt::format("{:.1g}", std::exp(test.log_p));
+}
+
+// What was found of sensors and damping that is not what was stated: more than four deviations,
+// one of 16 000 by chance.
+std::string departures(const CalibrationResult& result) {
+  constexpr double kFar = 4.0;
+  std::string text;
+  std::size_t ratios = 0, far_ratios = 0;
+  for (const CalibratedParameter& one : result.parameters) {
+    const auto name = parse_parameter(one.name);
+    const double off = std::abs(one.final - one.initial) / one.deviation;
+    if (name && name->kind == ParameterKind::kDampingRatio) {
+      ++ratios;
+      if (off > kFar) ++far_ratios;
+    }
+    if (!name || name->kind != ParameterKind::kSensor || !(off > kFar)) continue;
+    text += fmt::format(
+        "the sensors differ in {}: {:.6g}{}{}, {:.3g} deviations from what was stated\n", one.name,
+        one.final, one.unit == "1" ? "" : " ", one.unit == "1" ? "" : one.unit, off);
+  }
+  if (far_ratios > 0) {
+    text += fmt::format(
+        "the damping is not as stated: {} of {} damping ratios by more than four deviations\n",
+        far_ratios, ratios);
+  }
+  return text;
+}
+
+std::string role(const ScoreTest& test) {
+  if (!test.named()) return "not seen";
+  return test.refuses() ? "contradicts the fit" : "seen, held by the deviations";
+}
+
+void visit_cause(ResultVisitor& row, const ScoreTest& test) {
+  row({.key = "cause"}, test.cause);
+  row({.key = "detail", .name = "of those tried the likeliest"}, test.detail);
+  row({.key = "statistic", .name = "S", .format = "{:.4g}"}, test.statistic);
+  row({.key = "degrees", .name = "of"}, test.degrees);
+  row({.key = "chance", .shown = ResultVisitor::kInTables}, chance(test));
+  row({.key = "log_p", .shown = ResultVisitor::kInJson}, test.log_p);
+  row({.key = "amplitude", .format = "{:.2e}"}, test.amplitude);
+  row({.key = "shift", .name = "would move, in its sd", .format = "{:.2f}"}, test.shift);
+  row({.key = "unknown", .name = "most"}, test.unknown);
+  row({.key = "shift_per_root", .name = "shift/√S", .format = "{:.2f}"}, test.shift_per_root);
+  row({.key = "named", .shown = ResultVisitor::kInJson}, test.named());
+  row({.key = "refuses", .shown = ResultVisitor::kInJson}, test.refuses());
+  row({.key = "verdict", .shown = ResultVisitor::kInTables}, role(test));
+}
+
+}  // namespace
+
+std::string cause_lines(const CalibrationResult& result) {
+  const ContinuationResult& found = *result.continuation;
+  std::string text = found.tests.empty() ? "" : departures(result);
+  for (const ScoreTest& freed : found.freed) {
+    text += fmt::format("{} of {:.3g} (sd {:.2g}) was found and is free in the fit\n",
+                        whole_name(freed), freed.amplitude,
+                        std::abs(freed.amplitude) / std::sqrt(freed.statistic));
+  }
+  for (const ScoreTest& test : found.tests) {
+    if (!test.named()) continue;
+    text += fmt::format("what the fit leaves looks like a {}: S {:.4g} of {}, by chance {}: {}\n",
+                        whole_name(test), test.statistic, test.degrees, chance(test), role(test));
+  }
+  if (!found.tests.empty() && !first_cause(found.tests)) {
+    std::vector<std::string_view> looked_for;
+    for (const ScoreTest& test : found.tests) looked_for.push_back(test.cause);
+    text += fmt::format("no sign of: {}\n", fmt::join(looked_for, ", "));
+  }
+  return text;
+}
+
+std::string cause_contradiction(const ContinuationResult& found) {
+  const ScoreTest* cause = first_cause(found.tests);
+  if (!cause || !cause->refuses()) return "";
+  return fmt::format(
+      "what the fit leaves looks like a {} (by chance {}), which the error bars do "
+      "not hold: {}",
+      whole_name(*cause), chance(*cause), cause->remedy());
+}
+
+void visit_causes(ResultVisitor& visitor, const ContinuationResult& found) {
+  if (found.tests.empty()) return;
+  visitor.rows({.key = "causes",
+                .table = "causes",
+                .name = "What would explain the misfit",
+                .meaning = "Score tests of what the fit leaves. S is chi2 of so many degrees where "
+                           "the cause is not in the record; a cause whose shift/√S is large moves "
+                           "the answers before a test can see it."},
+               found.tests, visit_cause);
+  visitor.rows({.key = "residual", .shown = ResultVisitor::kInJson}, found.local.bands,
+               [](ResultVisitor& row, const MisfitBand& band) {
+                 row({.key = "frequency_hz"}, band.frequency);
+                 row({.key = "chi2"}, band.chi2);
+                 row({.key = "bins"}, band.bins);
+               });
+  visitor.rows({.key = "freed_causes", .shown = ResultVisitor::kInJson}, found.freed, visit_cause);
+}
+
+report::Figure misfit_figure(const ContinuationResult& found) {
+  constexpr double kTwoSided = 1.96;  // deviations of 95 %
+  report::Figure figure{.id = "misfit",
+                        .title = "What the fit leaves",
+                        .caption =
+                            "Mean power of the residual in bands, 1 where it is noise as "
+                            "stated or read; dotted lines: the modes."};
+  if (found.local.bands.empty()) return figure;
+  report::Panel panel;
+  panel.x = {.label = "frequency", .unit = "Hz"};
+  panel.y = {.label = "residual power over noise"};
+  report::Series noise{.label = "noise alone, 95 %",
+                       .style = report::SeriesStyle::kLine,
+                       .color = report::ColorRole::kMuted};
+  report::Series left{.label = "residual", .style = report::SeriesStyle::kLineWithPoints};
+  for (const MisfitBand& band : found.local.bands) {
+    const double spread = kTwoSided * band.deviation();
+    noise.add(band.frequency, 1.0, 1.0 - spread, 1.0 + spread);
+    left.add(band.frequency, band.chi2);
+  }
+  panel.series = {std::move(noise), std::move(left)};
+  for (const MisfitBand& mode : found.local.modes) {
+    panel.markers.push_back({.value = mode.frequency, .color = report::ColorRole::kMuted});
+  }
+  figure.panels.push_back(std::move(panel));
+  return figure;
+}
+
+}  // namespace modcal

@@ -1,0 +1,223 @@
+#include "libcalib/identifiability/misfit_causes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "libsim/signal/fft.hpp"
+
+namespace modcal {
+namespace {
+
+using std::numbers::pi;
+
+constexpr std::string_view kPolarization = "second polarization";
+constexpr std::string_view kDrift = "drift of the tuning";
+constexpr std::string_view kNonlinear = "nonlinear sensor";
+constexpr std::string_view kModesAbove = "modes above";
+
+// What the fit makes of a record: force, transfer functions, what rings.
+class FittedRecord {
+ public:
+  FittedRecord(const ProjectedLikelihood& likelihood, const ModelPoint& point)
+      : record_(likelihood.record()),
+        sensor_(point.sensors),
+        modes_(likelihood_modes(point, record_.sample_rate)),
+        own_(point.basis.size()),
+        fft_(samples()) {
+    std::vector<double> residuals;
+    likelihood.evaluate(point, {},
+                        {.residuals = &residuals,
+                         .force = &force_,
+                         .amplitudes = &amplitudes_,
+                         .left = &left_,
+                         .right = &right_});
+    for (std::size_t k = 0; k < record_.bins; ++k) {
+      const double root = record_.root_weight[k];
+      const Complex e(residuals[2 * k], residuals[2 * k + 1]);
+      residual_.push_back(root > 0.0 ? e / root : 0.0);
+    }
+  }
+
+  // A share of every mode once more, δ above its frequency, near its peak: far from it there is
+  // nothing that the sensors' response would not do as well.
+  MisfitCause polarization(double detuning) const {
+    SignalColumn columns[2] = {{numbers(), {}}, {{}, numbers()}};
+    for (std::size_t k = 0; k < record_.bins; ++k) {
+      const LikelihoodMode& mode = nearest(record_.omega[k]);
+      const double factor = 1.0 + detuning;
+      const Complex s(0.0, record_.omega[k]);
+      const Complex mirrored = mode.residue / (mode.omega_squared * factor * factor + s * s +
+                                               mode.two_zeta_omega * factor * s);
+      const auto [left, right] = ends(mirrored * force_[k], mode.even, s);
+      columns[0].left.set(k, left);
+      columns[1].right.set(k, right);
+    }
+    return {std::string(kPolarization),
+            fmt::format("detuned by {:+.2g} %", 100.0 * detuning),
+            {std::move(columns[0]), std::move(columns[1])}};
+  }
+
+  // Mode by mode D_n q_n = f − 2ω_n² p (t/T − 1/2) q_n: the motion as it is fitted, in the time
+  // domain, drives its own change.
+  MisfitCause drift() const {
+    SignalColumn column{numbers(), numbers()};
+    std::vector<Complex> spectrum(fft_.bins());
+    std::vector<double> motion(fft_.length());
+    for (std::size_t n = 0; n < own_; ++n) {
+      const LikelihoodMode& mode = modes_[n];
+      std::fill(spectrum.begin(), spectrum.end(), 0.0);
+      for (std::size_t k = 0; k < record_.bins; ++k) spectrum[k + 1] = motion_of(n, k);
+      fft_.inverse(spectrum, motion);
+      for (std::size_t j = 0; j < motion.size(); ++j) {
+        motion[j] *= static_cast<double>(j) / static_cast<double>(motion.size()) - 0.5;
+      }
+      fft_.forward(motion, spectrum);
+      for (std::size_t k = 0; k < record_.bins; ++k) {
+        const Complex s(0.0, record_.omega[k]);
+        const Complex change =
+            -2.0 * mode.omega_squared * spectrum[k + 1] * inverse_denominator(mode, s);
+        const auto [left, right] = ends(change, mode.even, s);
+        column.left.set(k, column.left.at(k) + left);
+        column.right.set(k, column.right.at(k) + right);
+      }
+    }
+    return {std::string(kDrift), "", {std::move(column)}};
+  }
+
+  MisfitCause nonlinear_sensors() const {
+    SignalColumn columns[2] = {{cubed(false), {}}, {{}, cubed(true)}};
+    return {std::string(kNonlinear), "", {std::move(columns[0]), std::move(columns[1])}};
+  }
+
+  MisfitCause modes_above() const {
+    MisfitCause cause{std::string(kModesAbove), "", {}};
+    const double top = record_.omega[record_.bins - 1];
+    for (const bool right : {false, true}) {
+      for (const int power : {0, 2}) {
+        PlanarVector change = numbers();
+        for (std::size_t k = 0; k < record_.bins; ++k) {
+          change.set(k, std::pow(record_.omega[k] / top, power) * force_[k]);
+        }
+        cause.columns.push_back(right ? SignalColumn{{}, std::move(change)}
+                                      : SignalColumn{std::move(change), {}});
+      }
+    }
+    return cause;
+  }
+
+ private:
+  std::size_t samples() const {
+    return static_cast<std::size_t>(std::lround(2.0 * pi * record_.sample_rate / record_.spacing));
+  }
+  PlanarVector numbers() const { return PlanarVector(record_.root_weight.size()); }
+
+  static Complex inverse_denominator(const LikelihoodMode& mode, Complex s) {
+    return 1.0 / (mode.omega_squared + s * s + mode.two_zeta_omega * s);
+  }
+  const LikelihoodMode& nearest(double omega) const {
+    const auto end = modes_.begin() + static_cast<long>(own_);
+    const auto above = std::find_if(modes_.begin(), end, [&](const LikelihoodMode& mode) {
+      return mode.omega_squared > omega * omega;
+    });
+    if (above == modes_.begin()) return *above;
+    const auto below = above - 1;
+    if (above == end) return *below;
+    return std::sqrt(above->omega_squared) - omega < omega - std::sqrt(below->omega_squared)
+               ? *above
+               : *below;
+  }
+  // What a modal contribution is in the whitened records.
+  struct Ends {
+    Complex left, right;
+  };
+  Ends ends(Complex motion, bool even, Complex s) const {
+    const Complex right = motion * sensor_.response(s) / record_.deviation[1];
+    return {-motion / record_.deviation[0], even ? right : -right};
+  }
+  // Mode n with what rings of it, in bin k.
+  Complex motion_of(std::size_t n, std::size_t k) const {
+    const LikelihoodMode& mode = modes_[n];
+    const Complex driven =
+        mode.residue * force_[k] * inverse_denominator(mode, {0.0, record_.omega[k]});
+    if (n >= amplitudes_.size()) return driven;
+    const Complex delay = record_.delay.at(k), amplitude = amplitudes_[n];
+    return driven + amplitude / (1.0 - mode.pole * delay) +
+           std::conj(amplitude) / (1.0 - std::conj(mode.pole) * delay);
+  }
+  // The record of one end less its noise, e's share of it, cubed over its mean square.
+  PlanarVector cubed(bool right) const {
+    std::vector<Complex> spectrum(fft_.bins());
+    for (std::size_t k = 0; k < record_.bins; ++k) {
+      const Complex h1 = left_[k], h2 = right_[k];
+      const double norm = std::sqrt(std::norm(h1) + std::norm(h2));
+      const Complex noise = residual_[k] / norm * (right ? -std::conj(h1) : std::conj(h2));
+      spectrum[k + 1] = (right ? record_.right : record_.left).at(k) - noise;
+    }
+    std::vector<double> samples(fft_.length());
+    fft_.inverse(spectrum, samples);
+    double power = 0.0;
+    for (const double y : samples) power += y * y;
+    const double mean = power / static_cast<double>(samples.size());
+    for (double& y : samples) y *= y * y / mean;
+    fft_.forward(samples, spectrum);
+    PlanarVector result = numbers();
+    for (std::size_t k = 0; k < record_.bins; ++k) result.set(k, spectrum[k + 1]);
+    return result;
+  }
+
+  const WhitenedRecord& record_;
+  const Sensor& sensor_;
+  std::vector<LikelihoodMode> modes_;
+  std::size_t own_;  // modes that the model states, the first
+  RealFft fft_;
+  std::vector<Complex> force_, amplitudes_, left_, right_, residual_;
+};
+
+}  // namespace
+
+bool ScoreTest::refuses() const { return named() && (cause == kPolarization || shift > 1.0); }
+
+bool ScoreTest::frees() const { return cause == kDrift; }
+
+std::string_view ScoreTest::remedy() const {
+  constexpr std::pair<std::string_view, std::string_view> kRemedies[] = {
+      {kPolarization,
+       "the string moves across the plane of the sensors, too: bow it in that plane, or turn the "
+       "sensors"},
+      {kDrift, "record when the string has settled, or calibrate a shorter part of the record"},
+      {kNonlinear, "play softer, or use sensors of a wider range"},
+      {kModesAbove,
+       "the record has not the modes above those stated that the law has: state more modes, or "
+       "remainder: none for a simulated record of exactly so many"}};
+  for (const auto& [name, text] : kRemedies) {
+    if (cause == name) return text;
+  }
+  return "";
+}
+
+const ScoreTest* first_cause(const std::vector<ScoreTest>& tests) {
+  const auto least =
+      std::min_element(tests.begin(), tests.end(),
+                       [](const ScoreTest& a, const ScoreTest& b) { return a.log_p < b.log_p; });
+  return least == tests.end() || !least->named() ? nullptr : &*least;
+}
+
+std::vector<MisfitCause> misfit_causes(const ProjectedLikelihood& likelihood,
+                                       const ModelPoint& point) {
+  const FittedRecord fitted(likelihood, point);
+  std::vector<MisfitCause> causes;
+  for (double detuning = 2e-4; detuning < 1.1e-2; detuning *= 1.43) {
+    causes.push_back(fitted.polarization(detuning));
+    causes.push_back(fitted.polarization(-detuning));
+  }
+  causes.push_back(fitted.drift());
+  causes.push_back(fitted.nonlinear_sensors());
+  causes.push_back(fitted.modes_above());
+  return causes;
+}
+
+}  // namespace modcal

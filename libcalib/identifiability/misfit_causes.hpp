@@ -1,0 +1,56 @@
+// What may be in a record that the model of string and sensors has not, to first order.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "libcalib/likelihood/projected_likelihood.hpp"
+
+namespace modcal {
+
+/// A cause of misfit: amplitudes of what it adds to both records, to first order.
+struct MisfitCause {
+  std::string name;
+  std::string detail;  ///< which of several tried, in words; empty: there is one
+  std::vector<SignalColumn> columns;
+};
+
+/// What the score test of one cause says (score_tests.hpp).
+struct ScoreTest {
+  std::string cause, detail;
+  double statistic = 0.0;  ///< S, χ² of `degrees` where the cause is not there [1]
+  std::size_t degrees = 0;
+  double log_p = 0.0;           ///< ln of the chance of S or more by noise, in any of those tried
+  double amplitude = 0.0;       ///< estimated to first order; of several their root square sum [1]
+  double shift = 0.0;           ///< largest change of an unknown, were it free, in its deviations
+  double shift_per_root = 0.0;  ///< the same where √S is 1, by the worst of its amplitudes
+  std::string unknown;          ///< that this is of
+  std::vector<SignalColumn> columns;  ///< where it is named and frees()
+
+  /// Noise does so in one of 8000 tests: four causes, each in less than one of 2000 records.
+  bool named() const { return log_p < -9.0; }
+  /// Named, and what it does to the unknowns is more than their deviations hold, or unknown: what
+  /// a second polarization does to both ends alike no test can tell.
+  bool refuses() const;
+  /// Linear enough to be free in a further fit.
+  bool frees() const;
+  /// What to do about it, in words.
+  std::string_view remedy() const;
+};
+/// The named test of the least chance; null: none is.
+const ScoreTest* first_cause(const std::vector<ScoreTest>& tests);
+
+/// Causes of one name differ in a number that is tried.
+///
+/// - "second polarization": every mode once more at ω_n(1 + δ), a share of it at x = 0 and one at
+///   x = L; |δ| from 2e-4 to 1e-2;
+/// - "drift of the tuning": ω_n(t) = ω_n (1 + p (t/T − 1/2)), p the drift over the record;
+/// - "nonlinear sensor": p y³/⟨y²⟩ in each record, y what the fit leaves of it without noise;
+/// - "modes above": p_0 and p_1 s² times the force at either end.
+///
+/// All take the force of the fit. Weights of `likelihood` play no part; σ = 0.
+std::vector<MisfitCause> misfit_causes(const ProjectedLikelihood& likelihood,
+                                       const ModelPoint& point);
+
+}  // namespace modcal
