@@ -30,8 +30,8 @@ struct ScoreTest {
 
   /// Noise does so in one of 8000 tests: four causes, each in less than one of 2000 records.
   bool named() const { return log_p < -9.0; }
-  /// Named, and what it does to the unknowns is more than their deviations hold, or unknown: what
-  /// a second polarization does to both ends alike no test can tell.
+  /// Named, and what it does to the unknowns is more than their deviations hold; a second
+  /// polarization always: what of it is alike at both ends is told least.
   bool refuses() const;
   /// Linear enough to be free in a further fit.
   bool frees() const;
@@ -44,12 +44,12 @@ const ScoreTest* first_cause(const std::vector<ScoreTest>& tests);
 /// Causes of one name differ in a number that is tried.
 ///
 /// - "second polarization": every mode once more at ω_n(1 + δ), a share of it at x = 0 and one at
-///   x = L; |δ| from 2e-4 to 1e-2;
+///   x = L; δ = ±0.1, 0.3 and 1 %;
 /// - "drift of the tuning": ω_n(t) = ω_n (1 + p (t/T − 1/2)), p the drift over the record;
 /// - "nonlinear sensor": p y³/⟨y²⟩ in each record, y what the fit leaves of it without noise;
 /// - "modes above": p_0 and p_1 s² times the force at either end.
 ///
-/// All take the force of the fit. Weights of `likelihood` play no part; σ = 0.
+/// All take the motion or the force of the fit. Weights of `likelihood` play no part; σ = 0.
 std::vector<MisfitCause> misfit_causes(const ProjectedLikelihood& likelihood,
                                        const ModelPoint& point);
 

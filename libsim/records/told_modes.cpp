@@ -72,10 +72,18 @@ ToldModes told_modes(const StringModel& string, const RecordedSignals& record) {
     });
   };
   while (told.count > kFewestModes && !stands_out(told.count)) --told.count;
+  told.standing_out = told.count;
+  told.count = std::min(told.count, kMostModes);
   return told;
 }
 
 std::string ToldModes::text() const {
+  if (count < standing_out) {
+    return fmt::format(
+        "{} modes taken (modes: auto): of the {} that stand out of the noise the first; state "
+        "modes for more, which take longer",
+        count, standing_out);
+  }
   if (count == in_band) {
     return fmt::format(
         "{} modes taken (modes: auto): those of the stated law below {:.5g} Hz, "

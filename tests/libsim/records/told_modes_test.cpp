@@ -53,6 +53,15 @@ TEST(ToldModes, AreTenAtLeastAndAllWhereTheNoiseIsUnknown) {
   EXPECT_EQ(told_modes(kString, record(3, 0.0, 50)).count, 59);
 }
 
+TEST(ToldModes, AreSixtyAtMost) {
+  StringModel string = kString;
+  string.fundamental = 196.0;
+  const ToldModes told = told_modes(string, record(59, 1e-4));
+  EXPECT_EQ(told.count, 60);
+  EXPECT_GT(told.standing_out, 60);
+  EXPECT_THAT(told.text(), HasSubstr("that stand out of the noise the first"));
+}
+
 TEST(ToldModes, OfAStringTooHighOrTooLowAreRefused) {
   StringModel string = kString;
   for (const double fundamental : {15000.0, 1e-3}) {
