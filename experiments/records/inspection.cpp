@@ -19,11 +19,13 @@ ChannelInspection inspect_channel(RecordedChannel& channel) {
   if (scaled && channel.full_scale != 1.0) {
     for (double& value : channel.samples) value *= channel.full_scale;
   }
+  const Levels levels = measure_levels(channel.samples);
   return {.name = channel.name,
           .unit = scaled ? channel.unit : "full scale",
-          .levels = measure_levels(channel.samples),
+          .levels = levels,
           .clipping = find_clipping(channel.samples),
-          .noise_rms = white_noise_rms(channel.samples)};
+          .noise_rms = white_noise_rms(channel.samples),
+          .fault = levels.not_finite == 0 ? find_fault(channel.samples) : std::nullopt};
 }
 
 bool same_word(std::string_view a, std::string_view b) {
@@ -95,6 +97,18 @@ void ask_for_calibrations(InspectionReport& report) {
   ask(report.record.has_left, "left", report.record.left);
   ask(report.record.has_right, "right", report.record.right);
   ask(report.record.has_reference, "reference", report.record.reference);
+}
+
+void list_faults(InspectionReport& report) {
+  for (const ChannelInspection& channel : report.channels) {
+    const RecordOptions& record = report.record;
+    const bool is_reaction = (record.has_left && record.left.channel == channel.name) ||
+                             (record.has_right && record.right.channel == channel.name);
+    if (!is_reaction || !channel.fault) continue;
+    report.problems.push_back(fmt::format("{}: channel {}, sample {}: {}", report.file,
+                                          channel.name, channel.fault->first, channel.fault->text));
+    ++report.problem_count;
+  }
 }
 
 using nlohmann::ordered_json;
@@ -179,6 +193,7 @@ InspectionReport inspect(const std::filesystem::path& path, const InspectionOpti
   }
   report.record = propose(path, options, report.channels);
   ask_for_calibrations(report);
+  list_faults(report);
   return report;
 }
 

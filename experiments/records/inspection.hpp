@@ -2,9 +2,11 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 
 #include "libsim/records/levels.hpp"
 #include "libsim/records/recording.hpp"
+#include "libsim/records/sample_faults.hpp"
 
 namespace modcal {
 
@@ -19,6 +21,9 @@ struct ChannelInspection {
   Levels levels;
   Clipping clipping;
   double noise_rms;  ///< white_noise_rms
+  /// Why a run would not take the channel for a reaction; samples that are no numbers are listed
+  /// with the file's problems.
+  std::optional<SampleFault> fault;
 };
 
 struct InspectionReport {

@@ -1,3 +1,4 @@
+#include "experiments/study/end_check.hpp"
 #include "experiments/study/identification.hpp"
 #include "libsim/records/told_modes.hpp"
 #include "libsim/signal/statistics.hpp"
@@ -39,6 +40,7 @@ Observation observe_scene(const ObservationOptions& options, OutputRequest outpu
 
 Observation observe_record(const ObservationOptions& options, const std::filesystem::path& folder) {
   RecordedSignals record = load_record(options.record, folder);
+  if (record.left && record.right) require_one_string(options, record);
   Observation observation;
   observation.sample_rate = record.sample_rate;
   StringModel string = options.string;

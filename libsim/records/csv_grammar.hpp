@@ -96,12 +96,14 @@ std::string heading_text(std::string_view name, std::string_view unit);
 struct TimeFinding {
   std::size_t sample;  ///< index of the sample the finding is about, from 0
   std::string text;
+  bool breaks = false;  ///< instants are missing here or return
 };
 
 struct TimeAxis {
   double sample_rate;  ///< [Hz]; NaN for fewer than two samples or instants that do not increase
   double jitter;       ///< largest deviation from the uniform grid [s]
   std::size_t jitter_sample;
+  double rate_error;  ///< of the rate, relative, from printing and jitter
   bool coarse;  ///< not uniform, and printed too coarsely to tell why; the rate is not known then
   std::vector<TimeFinding> findings;
 };

@@ -6,12 +6,12 @@
 #include "libsim/base/units.hpp"
 #include "libsim/records/csv_grammar.hpp"
 #include "libsim/records/record_file.hpp"
+#include "libsim/records/tuning.hpp"
 
 namespace modcal {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kRateTolerance = 1e-3;
 
 std::string lower_case(std::string text) {
   for (char& letter : text) {
@@ -24,25 +24,6 @@ bool is_time(const ColumnHeading& heading) {
   const std::string name = lower_case(heading.name);
   return (heading.unit.empty() && (name == "t" || name == "time")) || is_unit_of(heading.unit, "s");
 }
-
-/// Line of every row; comments and blank lines between rows are the exception.
-class RowLines {
- public:
-  void add(std::size_t row, std::size_t line) {
-    if (starts_.empty() || line - row != starts_.back().second - starts_.back().first) {
-      starts_.emplace_back(row, line);
-    }
-  }
-  std::size_t line(std::size_t row) const {
-    auto after = std::upper_bound(starts_.begin(), starts_.end(), row,
-                                  [](std::size_t r, const auto& start) { return r < start.first; });
-    --after;
-    return after->second + row - after->first;
-  }
-
- private:
-  std::vector<std::pair<std::size_t, std::size_t>> starts_;
-};
 
 class CsvReader final : public CsvHandler {
  public:
@@ -79,7 +60,6 @@ class CsvReader final : public CsvHandler {
   void settle_columns();
   void choose_columns();
   void settle_sample_rate();
-  void check_stated_rate(double from_axis);
   void use_time_axis(double stated);
   void report_ragged_row(std::size_t fields);
   void report_sample(std::size_t index, NumberKind kind, std::string_view text);
@@ -92,7 +72,6 @@ class CsvReader final : public CsvHandler {
   std::vector<std::size_t> kept_;
   std::optional<std::size_t> time_;
   PrintedDigits time_digits_;
-  RowLines row_lines_;
   std::size_t rows_ = 0;
   double commented_rate_ = kNaN;
   std::size_t commented_rate_line_ = 0;
@@ -135,7 +114,7 @@ void CsvReader::end_row(std::size_t fields) {
     settle_columns();
     return;
   }
-  row_lines_.add(rows_, file_.line());
+  record_.lines.add(rows_, file_.line());
   ++rows_;
   if (fields == columns_.size()) return;
   report_ragged_row(fields);
@@ -202,10 +181,9 @@ void CsvReader::choose_columns() {
 
 void CsvReader::settle_sample_rate() {
   const bool given = std::isfinite(options_.sample_rate);
-  record_.sample_rate = given ? options_.sample_rate : commented_rate_;
+  record_.sample_rate = commented_rate_;
   if (given) {
-    record_.rate_source = "as stated by the user";
-    check_stated_rate(commented_rate_);
+    record_.compare_rate(options_.sample_rate, 0.0, file_.name());
   } else if (std::isfinite(commented_rate_)) {
     record_.rate_source = fmt::format("comment on line {}", commented_rate_line_);
   }
@@ -215,14 +193,6 @@ void CsvReader::settle_sample_rate() {
         fmt::format("{}: the sample rate is not known; state sample_rate, add a comment line "
                     "\"# sample_rate: 51200 Hz\", or a column t [s] with two instants or more",
                     file_.name()));
-  }
-}
-
-void CsvReader::check_stated_rate(double from_file) {
-  if (std::abs(from_file / options_.sample_rate - 1.0) > kRateTolerance) {
-    record_.warnings.push_back(
-        fmt::format("{}: the file says {:.9g} Hz, the stated {:.9g} Hz is used", file_.name(),
-                    from_file, options_.sample_rate));
   }
 }
 
@@ -241,6 +211,7 @@ void CsvReader::use_time_axis(double stated) {
   }
   const TimeAxis axis = examine_time_axis(t, resolution);
   record_.time_jitter = axis.jitter;
+  const double rounding = std::min(axis.rate_error, kCalibratedClock);
   const bool given = std::isfinite(options_.sample_rate);
   if (axis.coarse && !std::isfinite(stated)) {
     record_.add_problem(fmt::format(
@@ -249,16 +220,24 @@ void CsvReader::use_time_axis(double stated) {
         file_.name(), column.channel.name, resolution));
   }
   for (const TimeFinding& finding : axis.findings) {
-    std::string text = fmt::format("{}:{}: sample {}: {}", file_.name(),
-                                   row_lines_.line(finding.sample), finding.sample, finding.text);
-    given ? record_.warnings.push_back(std::move(text)) : record_.add_problem(std::move(text));
+    std::string text =
+        fmt::format("{}:{}: sample {}: {}", file_.name(), record_.lines.line(finding.sample),
+                    finding.sample, finding.text);
+    if (!given) {
+      record_.add_problem(std::move(text));
+    } else if (finding.breaks) {
+      record_.contradict(std::move(text));
+    } else {
+      record_.warnings.push_back(std::move(text));
+    }
   }
   if (given) {
-    check_stated_rate(axis.sample_rate);
+    record_.sample_rate = axis.sample_rate;
+    record_.compare_rate(options_.sample_rate, rounding, file_.name());
   } else if (!std::isfinite(stated)) {
     record_.sample_rate = axis.sample_rate;
     record_.rate_source = fmt::format("column {}", column.channel.name);
-  } else if (axis.findings.empty() && std::abs(axis.sample_rate / stated - 1.0) > kRateTolerance) {
+  } else if (axis.findings.empty() && std::abs(axis.sample_rate / stated - 1.0) > rounding) {
     record_.add_problem(fmt::format(
         "{}:{}: the comment says {:.9g} Hz, column {} says {:.9g} Hz; correct one of them or state "
         "sample_rate",

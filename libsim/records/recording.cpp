@@ -4,12 +4,15 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <span>
 
 #include "libsim/base/error.hpp"
 #include "libsim/base/nearest_name.hpp"
 #include "libsim/base/units.hpp"
 #include "libsim/records/levels.hpp"
 #include "libsim/records/record_file.hpp"
+#include "libsim/records/sample_faults.hpp"
+#include "libsim/records/tuning.hpp"
 #include "libsim/signal/measurement.hpp"
 
 namespace modcal {
@@ -110,9 +113,18 @@ Signal force_signal(const RecordedChannel& channel, const Role& role, double sam
   return {std::string(role.quantity), "N", sample_rate, std::move(samples)};
 }
 
-void warn_of_clipping(const RecordedChannel& channel, const std::string& file,
-                      std::vector<std::string>& warnings) {
-  const Clipping clipping = find_clipping(channel.samples);
+// What is wrong with the samples of a reaction; few that are clipped are told of.
+void judge_samples(const Recording& recording, const RecordedChannel& channel, const Window& window,
+                   const std::string& file, bool is_reaction, std::vector<std::string>& warnings) {
+  const auto used = std::span(channel.samples).subspan(window.first, window.last - window.first);
+  if (const auto fault = is_reaction ? find_fault(used) : std::nullopt) {
+    const std::size_t sample = window.first + fault->first;
+    throw_invalid_input(
+        "{}{}: channel {}, sample {} ({:.6g} s): {}", file,
+        recording.lines.empty() ? "" : fmt::format(":{}", recording.lines.line(sample)),
+        channel.name, sample, static_cast<double>(sample) / recording.sample_rate, fault->text);
+  }
+  const Clipping clipping = find_clipping(used);
   if (clipping.samples == 0) return;
   warnings.push_back(fmt::format("{}: channel {}: {}", file, channel.name, text(clipping)));
 }
@@ -121,6 +133,36 @@ void warn_of_clipping(const RecordedChannel& channel, const std::string& file,
 
 void Recording::add_problem(std::string text) {
   if (problem_count++ < kMaxProblems) problems.push_back(std::move(text));
+}
+
+void Recording::contradict(std::string text) {
+  contradictions.push_back(text);
+  warnings.push_back(std::move(text));
+}
+
+void Recording::compare_rate(double stated, double rounding, std::string_view file) {
+  const double difference = std::abs(sample_rate / stated - 1.0);
+  if (difference > rounding) {
+    std::string text = fmt::format("{}: the file says {:.9g} Hz, the stated {:.9g} Hz is used",
+                                   file, sample_rate, stated);
+    if (difference > kCalibratedClock) contradictions.push_back(text);
+    warnings.push_back(std::move(text));
+  }
+  sample_rate = stated;
+  rate_source = "as stated by the user";
+}
+
+void SampleLines::add(std::size_t sample, std::size_t line) {
+  if (starts_.empty() || line - sample != starts_.back().second - starts_.back().first) {
+    starts_.emplace_back(sample, line);
+  }
+}
+
+std::size_t SampleLines::line(std::size_t sample) const {
+  auto after = std::upper_bound(starts_.begin(), starts_.end(), sample,
+                                [](std::size_t s, const auto& start) { return s < start.first; });
+  --after;
+  return after->second + sample - after->first;
 }
 
 void Recording::refuse_problems() const {
@@ -144,67 +186,6 @@ std::vector<std::size_t> find_channels(const std::vector<std::string>& names,
     result.push_back(index);
   }
   return result;
-}
-
-void RecordedForceOptions::visit(OptionVisitor& visitor) {
-  visitor.text({.key = "channel",
-                .meaning = "column or channel of the file, by name or by number from 1",
-                .required = true},
-               channel);
-  visitor.number({.key = "calibration",
-                  .meaning = "force per unit of the column (CSV) or per full scale (WAV), negative "
-                             "to turn the sign; \"file\": the file states a unit of force",
-                  .unit = "N",
-                  .word = "file"},
-                 calibration);
-  visitor.number(
-      {.key = "delay", .meaning = "lag behind the other channels; it is shifted back", .unit = "s"},
-      delay);
-}
-
-void RecordOptions::visit(OptionVisitor& visitor) {
-  visitor.text({.key = "file",
-                .meaning = "recorded file, relative to the folder of the experiment's file",
-                .required = true},
-               file);
-  visitor.text({.key = "format",
-                .meaning = "format of the file; auto: by its extension",
-                .choices = {"auto", "csv", "wav"}},
-               format);
-  visitor.number({.key = "sample_rate",
-                  .meaning = "sample rate; \"file\": the file states it",
-                  .unit = "Hz",
-                  .range = Range::positive(),
-                  .word = "file"},
-                 sample_rate);
-  const auto force = [&visitor](std::string_view key, std::string_view meaning, bool& present,
-                                RecordedForceOptions& options) {
-    visitor.optional_group({.key = key, .meaning = meaning}, present,
-                           [&options](OptionVisitor& inner) { options.visit(inner); });
-  };
-  force("left", "reaction at x = 0", has_left, left);
-  force("right", "reaction at x = L", has_right, right);
-  force("reference", "force at the contact, for scoring only", has_reference, reference);
-  visitor.number({.key = "start",
-                  .meaning = "begin of the part that is used, after the first sample",
-                  .unit = "s",
-                  .range = Range::non_negative()},
-                 start);
-  visitor.number({.key = "stop",
-                  .meaning = "end of the part that is used, after the first sample",
-                  .unit = "s",
-                  .range = Range::positive(),
-                  .word = "end"},
-                 stop);
-}
-
-void ContactOptions::visit(OptionVisitor& visitor) {
-  visitor.number({.key = "position",
-                  .meaning = "contact point x_c, from the end x = 0",
-                  .unit = "m",
-                  .range = Range::positive(),
-                  .required = true},
-                 position);
 }
 
 Recording read_record(const std::filesystem::path& path, const std::string& format,
@@ -239,12 +220,17 @@ RecordedSignals load_record(const RecordOptions& options, const std::filesystem:
   }
   const Recording recording =
       read_record(path, options.format, {.channels = channels, .sample_rate = options.sample_rate});
+  MODCAL_REQUIRE(recording.contradictions.empty(),
+                 "record.sample_rate is stated and the file contradicts it: {}; leave "
+                 "record.sample_rate out, or correct the file",
+                 recording.contradictions.front());
   const Window window = crop_window(options, recording.sample_rate, recording.frames(), name);
   RecordedSignals signals;
   signals.sample_rate = recording.sample_rate;
   signals.warnings = recording.warnings;
   for (std::size_t i = 0; i < roles.size(); ++i) {
-    warn_of_clipping(recording.channels[i], name, signals.warnings);
+    judge_samples(recording, recording.channels[i], window, name,
+                  roles[i].target != &RecordedSignals::reference, signals.warnings);
     signals.*roles[i].target =
         force_signal(recording.channels[i], roles[i], recording.sample_rate, window, name);
   }

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "libsim/base/options.hpp"
@@ -23,6 +24,18 @@ struct RecordedChannel {
   std::vector<double> samples;
 };
 
+/// Line of every sample of a text file; comments and blank lines between rows are the exception.
+class SampleLines {
+ public:
+  void add(std::size_t sample, std::size_t line);
+  /// Line of a sample that was added.
+  std::size_t line(std::size_t sample) const;
+  bool empty() const { return starts_.empty(); }
+
+ private:
+  std::vector<std::pair<std::size_t, std::size_t>> starts_;
+};
+
 struct Recording {
   std::string format;  ///< for people: "CSV, separated by ','", "WAV, 24 bit integers"
   double sample_rate = std::numeric_limits<double>::quiet_NaN();  ///< [Hz], NaN: not known
@@ -34,11 +47,21 @@ struct Recording {
   std::size_t problem_count = 0;
   /// What a user should know although the record can be used.
   std::vector<std::string> warnings;
+  /// Those of the warnings that tell of another sample rate than the one stated by more than 0.05
+  /// %, or of gaps in time: one of both is wrong.
+  std::vector<std::string> contradictions;
+  SampleLines lines;  ///< empty for audio files
 
   static constexpr std::size_t kMaxProblems = 10;
 
   std::size_t frames() const { return channels.empty() ? 0 : channels.front().samples.size(); }
   void add_problem(std::string text);
+  /// A warning that is a contradiction.
+  void contradict(std::string text);
+  /// Takes the rate stated by the user in the place of that of the file (NaN: it tells none). More
+  /// than `rounding` (relative) between them is a warning, more than 0.05 %, which no calibration
+  /// of a clock corrects, a contradiction.
+  void compare_rate(double stated, double rounding, std::string_view file);
   /// Throws InvalidInput with all problems, one a line, where there are any.
   void refuse_problems() const;
 };
@@ -99,7 +122,8 @@ struct RecordedSignals {
 /// Reads the chosen channels of the file (relative to `folder`), converts them to newtons, shifts
 /// them by their delays and crops them. Throws InvalidInput for a file that cannot be used, a
 /// channel without a unit of force and without a calibration, a channel used twice, a window
-/// outside the record.
+/// outside the record, reactions whose samples tell against them (find_fault()), and a stated
+/// sample rate that the file contradicts.
 RecordedSignals load_record(const RecordOptions& options, const std::filesystem::path& folder);
 
 }  // namespace modcal

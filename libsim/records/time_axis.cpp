@@ -31,14 +31,18 @@ void find_gaps(std::span<const double> t, double mean_step, double resolution, b
     const double step = t[i] - t[i - 1];
     // Coarse printing makes neighbors equal.
     if (!(coarse ? step >= 0.0 : step > 0.0)) {
-      findings.push_back({i, fmt::format("time goes from {:.9g} s to {:.9g} s; sampling instants "
-                                         "must increase",
-                                         t[i - 1], t[i])});
+      findings.push_back({i,
+                          fmt::format("time goes from {:.9g} s to {:.9g} s; sampling instants "
+                                      "must increase",
+                                      t[i - 1], t[i]),
+                          true});
     } else if (step > longest) {
       findings.push_back(
-          {i, fmt::format("a gap of {:.6g} s before {:.9g} s where the steps are {:.6g} s; crop "
-                          "the record before or behind the gap",
-                          step, t[i], nominal)});
+          {i,
+           fmt::format("a gap of {:.6g} s before {:.9g} s where the steps are {:.6g} s; crop "
+                       "the record before or behind the gap",
+                       step, t[i], nominal),
+           true});
     }
   }
 }
@@ -64,7 +68,7 @@ double snapped_rate(double step, double duration, double resolution) {
 }  // namespace
 
 TimeAxis examine_time_axis(std::span<const double> t, double resolution) {
-  TimeAxis axis{kNaN, kNaN, 0, false, {}};
+  TimeAxis axis{kNaN, kNaN, 0, kNaN, false, {}};
   if (t.size() < 2) return axis;
   const double duration = t.back() - t.front();
   const double step = duration / static_cast<double>(t.size() - 1);
@@ -80,6 +84,7 @@ TimeAxis examine_time_axis(std::span<const double> t, double resolution) {
   // Rounding of i Δt and of the differences; matters for instants far from zero.
   const double rounding = 4 * std::numeric_limits<double>::epsilon() *
                           std::max(std::abs(t.front()), std::abs(t.back()));
+  axis.rate_error = (resolution + rounding + axis.jitter) / duration;
   axis.sample_rate = snapped_rate(step, duration, resolution + rounding);
   if (axis.findings.empty() && axis.jitter > kJitter * step + resolution + rounding) {
     axis.findings.push_back(

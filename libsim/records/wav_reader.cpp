@@ -102,13 +102,7 @@ Recording read_wav(const std::filesystem::path& path, const ReadOptions& options
                     name, file.frames()));
   }
   if (std::isfinite(options.sample_rate)) {
-    if (options.sample_rate != recording.sample_rate) {
-      recording.warnings.push_back(
-          fmt::format("{}: the file says {:.9g} Hz, the stated {:.9g} Hz is used", name,
-                      recording.sample_rate, options.sample_rate));
-    }
-    recording.sample_rate = options.sample_rate;
-    recording.rate_source = "as stated by the user";
+    recording.compare_rate(options.sample_rate, 0.0, name);
   }
   for (const std::size_t index : chosen) recording.channels.push_back(std::move(channels[index]));
   read_samples(file, chosen, recording, name);

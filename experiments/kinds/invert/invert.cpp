@@ -2,6 +2,7 @@
 
 #include "experiments/kinds/lint.hpp"
 #include "experiments/report/result.hpp"
+#include "experiments/study/end_check.hpp"
 #include "libinverse/waves/wave_reconstruction.hpp"
 
 namespace modcal {
@@ -165,6 +166,7 @@ void add_warnings(const Observation& observation, const std::vector<SideIdentifi
 StudyResult InvertOptions::run(const StudyContext& context) const {
   const Observation observed = observe(observation, truth_outputs(figures), context.work.truths,
                                        key(), context.folder, score.oversampling);
+  require_told_fundamental(observation, observed);
   const AssumedModel model =
       with_errors(observed.basis, observed.contact, model_error, key().with("model error"));
   const auto sides = identify(observed, model, inversion, inversion_outputs(figures, write_signals),

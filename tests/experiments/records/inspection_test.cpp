@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "libsim/base/random.hpp"
 #include "libsim/records/record_file.hpp"
 #include "libsim/records/recording.hpp"
-#include "libsim/base/random.hpp"
 #include "tests/libsim/records/record_folder.hpp"
 
 namespace modcal {
@@ -105,6 +105,18 @@ TEST_F(Inspect, ListsWhatARunWouldRefuse) {
   EXPECT_THAT(text(report), HasSubstr("A run would refuse this file:"));
   EXPECT_THAT(text(report), HasSubstr("2 samples are no numbers, first sample 1"));
   EXPECT_TRUE(json(report)["channels"][0]["noise_rms"].is_null());
+}
+
+TEST_F(Inspect, ListsSamplesThatARunWouldRefuse) {
+  std::vector<double> clipped = noisy_sine(1.0, 1e-3, 0.0, 5120);
+  for (double& value : clipped) value = std::min(value, 0.9);
+  write_csv(path("r.csv"), std::vector<Signal>{{"R1", "N", kRate, clipped},
+                                               {"R2", "N", kRate, noisy_sine(1.0, 1e-3, 0.0, 5120)},
+                                               {"trigger", "V", kRate, clipped}});
+  const InspectionReport report = inspect(path("r.csv"));
+  EXPECT_EQ(report.problem_count, 1u);
+  EXPECT_THAT(report.problems, ElementsAre(testing::AllOf(HasSubstr("channel R1, sample"),
+                                                          HasSubstr("the peaks are clipped"))));
 }
 
 TEST_F(Inspect, ReportsOneSampleWithoutAKnownRate) {

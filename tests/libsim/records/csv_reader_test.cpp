@@ -114,6 +114,12 @@ TEST_F(CsvReader, TakesTheSampleRateOfTheUserFirst) {
   EXPECT_EQ(record.sample_rate, 20.0);
   EXPECT_THAT(record.warnings,
               ElementsAre(HasSubstr("the file says 10 Hz, the stated 20 Hz is used")));
+  EXPECT_EQ(record.contradictions, record.warnings);
+  // As a calibration of the clock tells.
+  const Recording close = read("# sample_rate: 51200 Hz\nR1\n1\n2\n", {.sample_rate = 51203.0});
+  EXPECT_EQ(close.sample_rate, 51203.0);
+  EXPECT_EQ(close.warnings.size(), 1u);
+  EXPECT_THAT(close.contradictions, testing::IsEmpty());
 }
 
 TEST_F(CsvReader, ConvertsTheUnitOfTime) {
@@ -157,12 +163,23 @@ TEST_F(CsvReader, ReportsGapsJitterAndReturnsInTime) {
             "record before or behind the gap");
   const std::string_view gap = "t,R1\n0,1\n0.1,1\n0.4,1\n0.5,1\n0.6,1\n";
   EXPECT_EQ(read(gap, {.sample_rate = 10.0}).warnings.size(), 2u);  // the gap, and 5 / 0.6 s ≠ 10
+  EXPECT_EQ(read(gap, {.sample_rate = 10.0}).contradictions.size(), 2u);
+  // A time column that is not to be trusted is no contradiction.
+  const std::string_view jitter = "t,R1\n0,1\n0.10000,1\n0.21000,1\n0.3,1\n0.4,1\n";
+  EXPECT_EQ(read(jitter, {.sample_rate = 10.0}).warnings.size(), 1u);
+  EXPECT_THAT(read(jitter, {.sample_rate = 10.0}).contradictions, testing::IsEmpty());
 }
 
 TEST_F(CsvReader, ReportsAFileThatContradictsItself) {
   EXPECT_EQ(error("# sample_rate: 20 Hz\nt,R1\n0,1\n0.1,1\n0.2,1\n"),
             "r.csv:1: the comment says 20 Hz, column t says 10 Hz; correct one of them or state "
             "sample_rate");
+  // To all that is printed: 1e-4 in f0 is tens of its deviations.
+  std::string text = "# sample_rate: 51205 Hz\nt,R1\n";
+  for (int i = 0; i < 5120; ++i) text += fmt::format("{:.9f},0\n", i / 51200.0);
+  EXPECT_THAT(error(text), HasSubstr("the comment says 51205 Hz, column t says 51200 Hz"));
+  text.replace(text.find("51205"), 5, "51200");
+  EXPECT_EQ(read(text).sample_rate, 51200.0);
 }
 
 TEST_F(CsvReader, ReportsAnUnknownSampleRate) {

@@ -178,6 +178,35 @@ TEST_F(LoadRecord, WarnsOfClipping) {
                                     "and 1, first at sample 1")));
 }
 
+TEST_F(LoadRecord, RefusesSamplesThatTellAgainstTheirChannel) {
+  RecordOptions options = csv("# sample_rate: 8 Hz\nR1 [N],R2 [N]\n0,3\n# note\n1,3\n2,3\n");
+  EXPECT_THAT(error(options), HasSubstr("r.csv:3: channel R2, sample 0 (0 s): all 3 samples are 3: "
+                                        "the channel is silent"));
+  options = csv("# sample_rate: 8 Hz\nR1 [N],R2 [N]\n0,3\n# note\n1,1e200\n2,3\n");
+  EXPECT_THAT(error(options), HasSubstr("r.csv:5: channel R2, sample 1 (0.125 s): 1e+200"));
+  // Not in the part that is used, and not in what is for scoring only.
+  options.start = 0.25;
+  EXPECT_EQ(error(options), "");
+  options.start = 0.0;
+  options.has_right = false;
+  options.has_reference = true;
+  options.reference.channel = "R2";
+  EXPECT_EQ(error(options), "");
+}
+
+TEST_F(LoadRecord, RefusesARateThatTheFileContradicts) {
+  RecordOptions options = csv(kRecord);
+  options.sample_rate = 2.1;
+  EXPECT_THAT(error(options), testing::AllOf(HasSubstr("the file contradicts it"),
+                                             HasSubstr("the file says 2 Hz, the stated 2.1 Hz"),
+                                             HasSubstr("leave record.sample_rate out")));
+  options.sample_rate = 2.0004;
+  EXPECT_EQ(error(options), "");
+  options = csv("t [s],R1 [N],R2 [N]\n0,1,2\n1,2,3\n2,3,4\n5,5,6\n6,6,7\n7,6,7\n");
+  options.sample_rate = 1.0;
+  EXPECT_THAT(error(options), HasSubstr("r.csv:5: sample 3: a gap of 3 s before 5 s"));
+}
+
 TEST(Advanced, ShiftsASineByAFractionOfAPeriod) {
   // A sine under a Hann window: smooth at the ends, so the mirror image adds no jump and the error
   // is the window's own tail beyond the Nyquist frequency, (f/f_N)^-3-like: far below 1e-9 here.

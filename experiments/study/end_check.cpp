@@ -1,0 +1,112 @@
+#include "experiments/study/end_check.hpp"
+
+#include <cmath>
+
+#include "libinverse/waves/end_relation.hpp"
+#include "libsim/base/error.hpp"
+#include "libsim/records/levels.hpp"
+
+namespace modcal {
+namespace {
+
+EndRelationFit relations_of(const ObservationOptions& options, const Signal& left_reaction,
+                            const Signal& right_reaction) {
+  const std::span<const double> left = left_reaction.samples, right = right_reaction.samples;
+  return fit_end_relations({.left = left,
+                            .right = right,
+                            .sample_rate = left_reaction.sample_rate,
+                            .noise = {white_noise_rms(left), white_noise_rms(right)}},
+                           {.length = options.string.length,
+                            .fundamental = options.string.fundamental,
+                            .inharmonicity = options.string.inharmonicity,
+                            .contact = options.contact.position});
+}
+
+constexpr std::string_view kSign =
+    "turn the sign of one column and leave it at that where the force at the contact then has the "
+    "right sign, else turn the other one (a force > 0 pushes both reactions below 0)";
+
+std::string remedy_of(EndRelation relation, const ObservationOptions& options,
+                      const EndRelationFit& fit) {
+  const RecordOptions& record = options.record;
+  const std::string exchange = fmt::format(
+      "state record.left: {{channel: {}}}, record.right: {{channel: {}}}, or bow.position {:.4g} "
+      "mm, from the other end",
+      record.right.channel, record.left.channel,
+      1e3 * (options.string.length - options.contact.position));
+  switch (relation) {
+    case EndRelation::kString:
+      return "";
+    case EndRelation::kSignTurned:
+      return fmt::format(
+          "would be those of the string stated if one of them had the other sign: {}", kSign);
+    case EndRelation::kSwapped:
+      return fmt::format("would be those of the string stated if the ends were exchanged: {}",
+                         exchange);
+    case EndRelation::kSwappedSignTurned:
+      return fmt::format(
+          "would be those of the string stated if the ends were exchanged and one of them had the "
+          "other sign: {}; and {}",
+          exchange, kSign);
+    case EndRelation::kCopies:
+      return fmt::format(
+          "are one signal, x = L reading {:.4g} times x = 0: give each end a sensor and a channel "
+          "of its own",
+          fit.copy_gain);
+  }
+  return "";
+}
+
+}  // namespace
+
+void require_one_string(const ObservationOptions& options, const RecordedSignals& signals) {
+  const RecordOptions& record = options.record;
+  const double duration = static_cast<double>(signals.size()) / signals.sample_rate;
+  MODCAL_REQUIRE(duration * options.string.fundamental >= 2.0,
+                 "{}: {} samples at {:g} Hz are {:.3g} s, less than two periods of the string of "
+                 "{:g} Hz: its modes cannot be told apart; record for longer",
+                 record.file, signals.size(), signals.sample_rate, duration,
+                 options.string.fundamental);
+  const EndRelationFit fit = relations_of(options, *signals.left, *signals.right);
+  for (const End end : kEnds) {
+    MODCAL_REQUIRE(!fit.noise_alone(static_cast<std::size_t>(end)),
+                   "{}: channel {}, the reaction at {}, holds nothing but noise between half and "
+                   "ten times f0 = {:g} Hz: check its sensor, or leave record.{} out where the "
+                   "method works with one reaction",
+                   record.file, end == End::kLeft ? record.left.channel : record.right.channel,
+                   label_of(end), options.string.fundamental, end == End::kLeft ? "left" : "right");
+  }
+  const std::string pair = fmt::format("{}: channels {} and {}, the reactions at x = 0 and x = L,",
+                                       record.file, record.left.channel, record.right.channel);
+  const EndRelation best = fit.best();
+  MODCAL_REQUIRE(best == EndRelation::kString, "{} {}", pair, remedy_of(best, options, fit));
+  MODCAL_REQUIRE(fit.explained(),
+                 "{} are not those of one string with f0 within 3 % of {:g} Hz and the contact "
+                 "within 2 % of L of {:g} mm: the best, with f0 = {:.5g} Hz, leaves {:.2g} % of "
+                 "their power unexplained; check channels, sample rate, f0 and bow.position",
+                 pair, options.string.fundamental, 1e3 * options.contact.position, fit.fundamental,
+                 100.0 * fit.unexplained);
+  MODCAL_REQUIRE(!fit.disturbance,
+                 "{} contradict each other near {:.4g} s {:.3g} times more than elsewhere: samples "
+                 "are missing or something else was recorded there; crop to the part before or "
+                 "behind (record.start, record.stop)",
+                 pair, record.start + fit.disturbance->time, fit.disturbance->ratio);
+}
+
+void require_told_fundamental(const ObservationOptions& options, const Observation& observation) {
+  if (observation.truth || !observation.reaction(End::kLeft) ||
+      !observation.reaction(End::kRight)) {
+    return;
+  }
+  const double told =
+      relations_of(options, *observation.reaction(End::kLeft), *observation.reaction(End::kRight))
+          .fundamental;
+  const double difference = told / options.string.fundamental - 1.0;
+  MODCAL_REQUIRE(std::abs(difference) < 2e-3,
+                 "{}: the reactions are those of a string with f0 near {:.5g} Hz, {:+.2g} % from "
+                 "the {:g} Hz stated, which an inversion takes for granted: calibrate the string "
+                 "first (kind: calibrate), or check the sample rate",
+                 options.record.file, told, 100.0 * difference, options.string.fundamental);
+}
+
+}  // namespace modcal

@@ -1,0 +1,66 @@
+// Which relation between the reactions of one string a record obeys.
+//
+// Whatever the force at x_c is, the waves that it sends to both ends make
+//     R₁ sin kx_c = R₂ sin k(L − x_c),    k = nπ/L,  n √(1 + B n²) = f/f₀
+// (pinned string; losses and near fields of the bending, of order ζ and B, left out). It holds in
+// every bin, near modes or between them, from the first sample or from mid-stroke, so that
+// exchanged channels, a turned sign, copies and lost samples show without a calibration.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+
+namespace modcal {
+
+/// Both reactions as recorded, of one length.
+struct EndRecord {
+  std::span<const double> left, right;  ///< R₁, R₂ [N]
+  double sample_rate = 0.0;             ///< [Hz]
+  std::array<double, 2> noise{};        ///< standard deviation of white noise [N]
+};
+
+/// The string as it is stated; f₀ may be off by 3 %, x_c by 2 % of L.
+struct StatedString {
+  double length = 0.0;         ///< L [m]
+  double fundamental = 0.0;    ///< f₀ [Hz]
+  double inharmonicity = 0.0;  ///< B
+  double contact = 0.0;        ///< x_c [m]
+};
+
+enum class EndRelation { kString, kSignTurned, kSwapped, kSwappedSignTurned, kCopies };
+
+/// Where in the record the relation of a string fails, although it holds elsewhere.
+struct EndDisturbance {
+  double time = 0.0;   ///< centre of a period, after the first sample [s]
+  double ratio = 0.0;  ///< power left there over what is left elsewhere of as much
+};
+
+struct EndRelationFit {
+  /// Mean of ln(1 + |e|²/v) over bins between f₀/2 and 10 f₀ that stand above the noise, e what the
+  /// relation leaves, v its noise and 5 % of the reactions: 0 explained, 6 not at all.
+  std::array<double, 5> misfit{};
+  double copy_gain = 0.0;    ///< g of R₂ = g R₁
+  double fundamental = 0.0;  ///< f₀ of the string [Hz]
+  double contact = 0.0;      ///< x_c of the string [m]
+  bool at_edge = false;      ///< f₀ is farther from the one stated than it may be
+  double unexplained = 0.0;  ///< share of the reactions' power below 10 f₀ that the string leaves
+  bool explained() const;    ///< it is that of one string
+  /// Largest power of a bin below 10 f₀ over that of the noise, of either reaction.
+  std::array<double, 2> peak_over_noise{};
+  /// Whether no bin of that end stands above the noise by more than noise itself does.
+  bool noise_alone(std::size_t end) const;
+  std::optional<EndDisturbance> disturbance;
+
+  double misfit_of(EndRelation relation) const {
+    return misfit[static_cast<std::size_t>(relation)];
+  }
+  /// The relation that leaves less than half of what the string as stated leaves, and least.
+  EndRelation best() const;
+};
+
+/// Throws InvalidInput for reactions of different lengths, records shorter than two periods of f₀,
+/// a contact outside the string.
+EndRelationFit fit_end_relations(const EndRecord& record, const StatedString& string);
+
+}  // namespace modcal

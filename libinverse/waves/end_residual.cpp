@@ -1,0 +1,122 @@
+#include "libinverse/waves/end_residual.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "libinverse/waves/tuning.hpp"
+#include "libsim/signal/fft.hpp"
+#include "libsim/signal/statistics.hpp"
+
+namespace modcal {
+namespace {
+
+// n of n √(1 + B n²) = f/f₀, to 1e-9 at B = 1e-2 and n = 12.
+double mode_number(double ratio, double inharmonicity) {
+  const double b = 4.0 * inharmonicity * ratio * ratio;
+  return ratio * std::sqrt(2.0 / (1.0 + std::sqrt(1.0 + b)));
+}
+
+/// What the relation leaves over time, below 10 f₀.
+struct EndResidual {
+  std::vector<double> error, left, right;  ///< a R₁ − b R₂, a R₁, b R₂
+  double noise = 0.0;                      ///< variance of a sample of `error`
+};
+
+EndResidual residual_of(const EndRecord& record, const StatedString& string) {
+  const std::size_t size = record.left.size();
+  const RealFft fft(size);
+  const double width = record.sample_rate / static_cast<double>(size);
+  std::vector<Complex> spectra[3];
+  for (std::size_t r = 0; r < 2; ++r) {
+    const auto samples = r == 0 ? record.left : record.right;
+    std::vector<double> centred(samples.begin(), samples.end());
+    remove_mean(centred);
+    spectra[r] = fft.forward(centred);
+  }
+  spectra[2].resize(fft.bins());
+  EndResidual residual;
+  for (std::size_t k = 0; k < fft.bins(); ++k) {
+    const double frequency = static_cast<double>(k) * width;
+    const double share = frequency / (kRelationTop * string.fundamental);
+    const double gain =
+        share < 0.5 ? 1.0
+                    : (share < 1.0 ? 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * share) : 0.0);
+    const EndFactors factors = gain > 0.0 ? end_factors(frequency, string) : EndFactors{0.0, 0.0};
+    const double a = gain * factors.left, b = gain * factors.right;
+    spectra[0][k] *= a;
+    spectra[1][k] *= b;
+    spectra[2][k] = spectra[0][k] - spectra[1][k];
+    residual.noise +=
+        2.0 / static_cast<double>(size) *
+        (a * a * record.noise[0] * record.noise[0] + b * b * record.noise[1] * record.noise[1]);
+  }
+  residual.left = fft.inverse(std::move(spectra[0]));
+  residual.right = fft.inverse(std::move(spectra[1]));
+  residual.error = fft.inverse(std::move(spectra[2]));
+  return residual;
+}
+
+/// Sums over one period.
+struct Period {
+  double time, error, power;
+};
+
+std::vector<Period> periods_of(const EndResidual& residual, double sample_rate,
+                               double fundamental) {
+  const auto length = static_cast<std::size_t>(sample_rate / fundamental);
+  std::vector<Period> periods;
+  // The transform wraps: the first and last periods see the other end, through the low-pass, too.
+  for (std::size_t first = kEndPeriods * length;
+       first + (kEndPeriods + 1) * length < residual.error.size();
+       first += std::max<std::size_t>(1, length / 2)) {
+    Period period{
+        .time = (static_cast<double>(first) + 0.5 * static_cast<double>(length)) / sample_rate,
+        .error = 0.0,
+        .power = 0.0};
+    for (std::size_t j = first; j < first + length; ++j) {
+      period.error += residual.error[j] * residual.error[j];
+      period.power += residual.left[j] * residual.left[j] + residual.right[j] * residual.right[j];
+    }
+    periods.push_back(period);
+  }
+  return periods;
+}
+
+}  // namespace
+
+EndFactors end_factors(double frequency, const StatedString& string) {
+  const double k = std::numbers::pi / string.length *
+                   mode_number(frequency / string.fundamental, string.inharmonicity);
+  return {std::sin(k * string.contact), std::sin(k * (string.length - string.contact))};
+}
+
+void judge_residual(const EndRecord& record, const StatedString& string, EndRelationFit& fit) {
+  const EndResidual residual = residual_of(record, string);
+  const std::vector<Period> periods = periods_of(residual, record.sample_rate, string.fundamental);
+  if (periods.empty()) return;
+  const double noise = residual.noise * std::floor(record.sample_rate / string.fundamental);
+  std::vector<double> errors, shares;
+  double error = 0.0, power = 0.0;
+  for (const Period& period : periods) {
+    errors.push_back(period.error);
+    shares.push_back(period.power > 0.0 ? period.error / period.power : 0.0);
+    error += period.error;
+    power += period.power;
+  }
+  const double noise_sum = noise * static_cast<double>(periods.size());
+  fit.unexplained =
+      power > 2.0 * noise_sum ? std::max(error - noise_sum, 0.0) / (power - noise_sum) : 0.0;
+  const double usual = quantile(errors, kUsual), usual_share = quantile(shares, kUsual);
+  EndDisturbance worst;
+  for (const Period& period : periods) {
+    const double expected = std::max(usual, usual_share * period.power);
+    if (expected > 0.0 && period.error > worst.ratio * expected) {
+      worst = {period.time, period.error / expected};
+    }
+  }
+  if (worst.ratio > kDisturbance && periods.size() >= kLeastPeriods) fit.disturbance = worst;
+}
+
+}  // namespace modcal

@@ -1,0 +1,367 @@
+// Every way in which a record goes bad: a right answer or one clear refusal. The records are those
+// of benchmarks/truth, the list is that of benchmarks/truth/bad_records.py (hum:
+// foreign_record_test).
+#include <fmt/ranges.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "benchmarks/truth/truth.hpp"
+#include "experiments/kinds/invert/invert.hpp"
+#include "experiments/loader.hpp"
+#include "tests/libsim/records/record_folder.hpp"
+
+namespace modcal {
+namespace {
+
+constexpr double kFundamental = 294.0, kInharmonicity = 1.1e-4, kContact = 0.041;
+
+/// What a file holds, and keys of `record:`.
+struct Written {
+  std::vector<double> t, r1, r2;
+  std::vector<std::string> frequencies, ratios;  ///< of the damping
+  std::string preamble, keys, cell;              ///< cell: in the place of the middle sample of R1
+  bool time_column = true;
+
+  std::size_t middle() const { return r1.size() / 2; }
+  std::array<std::vector<double>*, 2> channels() { return {&r1, &r2}; }
+  std::string text() const {
+    std::string result = preamble + (time_column ? "t [s],R1 [N],R2 [N]\n" : "R1 [N],R2 [N]\n");
+    for (std::size_t j = 0; j < r1.size(); ++j) {
+      if (time_column) result += fmt::format("{:.12g},", t[j]);
+      result += j == middle() && !cell.empty() ? cell : fmt::format("{:.12g}", r1[j]);
+      result += fmt::format(",{:.12g}\n", r2[j]);
+    }
+    return result;
+  }
+};
+
+using Spoil = std::function<void(Written&)>;
+
+/// Refused with a text, contradicted, or accepted and right where it is empty.
+struct Row {
+  const char* name;
+  const char* refusal;
+  Spoil spoil;
+};
+
+Spoil scaled(double left, double right) {
+  return [=](Written& w) {
+    for (double& x : w.r1) x *= left;
+    for (double& x : w.r2) x *= right;
+  };
+}
+
+Spoil raised(double left, double right) {
+  return [=](Written& w) {
+    for (double& x : w.r1) x += left;
+    for (double& x : w.r2) x += right;
+  };
+}
+
+Spoil cell(std::string text) {
+  return [=](Written& w) { w.cell = text; };
+}
+
+Spoil clipped(double share, bool left, bool right) {
+  return [=](Written& w) {
+    for (std::size_t r = 0; r < 2; ++r) {
+      if (!(r == 0 ? left : right)) continue;
+      std::vector<double>& x = *w.channels()[r];
+      const auto [low, high] = std::minmax_element(x.begin(), x.end());
+      const double limit = share * std::max(-*low, *high);
+      for (double& value : x) value = std::clamp(value, -limit, limit);
+    }
+  };
+}
+
+Spoil filled(std::size_t count, bool hold) {
+  return [=](Written& w) {
+    for (std::vector<double>* x : w.channels()) {
+      const auto from = x->begin() + static_cast<std::ptrdiff_t>(w.middle());
+      std::fill_n(from, count, hold ? *(from - 1) : 0.0);
+    }
+  };
+}
+
+void erase(std::vector<double>& x, std::size_t first, std::size_t count) {
+  const auto from = x.begin() + static_cast<std::ptrdiff_t>(first);
+  x.erase(from, from + static_cast<std::ptrdiff_t>(count));
+}
+
+Spoil lost(std::size_t count, const char* time) {
+  return [=, how = std::string(time)](Written& w) {
+    const std::size_t middle = w.middle();
+    erase(w.r1, middle, count);
+    erase(w.r2, middle, count);
+    erase(w.t, how == "jumps" ? middle : w.t.size() - count, count);
+    if (how != "rate") return;
+    w.time_column = false;
+    w.preamble = "# sample_rate: 51200 Hz\n";
+  };
+}
+
+Spoil kept(double from, double to) {
+  return [=](Written& w) {
+    const auto size = static_cast<double>(w.r1.size());
+    for (std::vector<double>* x : {&w.t, &w.r1, &w.r2}) {
+      x->resize(static_cast<std::size_t>(to * size));
+      erase(*x, 0, static_cast<std::size_t>(from * size));
+    }
+  };
+}
+
+Spoil stated_rate(double rate) {
+  return [=](Written& w) { w.keys = fmt::format(", sample_rate: {} Hz", rate); };
+}
+
+Spoil commented_rate(double rate) {
+  return [=](Written& w) { w.preamble = fmt::format("# sample_rate: {} Hz\n", rate); };
+}
+
+Spoil file_clock(double factor) {
+  return [=](Written& w) {
+    for (double& t : w.t) t *= factor;
+  };
+}
+
+Spoil copied(double gain) {
+  return [=](Written& w) {
+    w.r2 = w.r1;
+    for (double& x : w.r2) x *= gain;
+  };
+}
+
+Spoil rounded(int bits) {
+  return [=](Written& w) {
+    for (std::vector<double>* x : w.channels()) {
+      const double step = *std::max_element(x->begin(), x->end()) / std::exp2(bits - 1);
+      for (double& value : *x) value = step * std::round(value / step);
+    }
+  };
+}
+
+Spoil spike(double value) {
+  return [=](Written& w) { w.r2[w.middle()] = value; };
+}
+
+Spoil late(std::ptrdiff_t samples) {
+  return [=](Written& w) { std::rotate(w.r2.rbegin(), w.r2.rbegin() + samples, w.r2.rend()); };
+}
+
+Spoil noise_for_right() {
+  return [](Written& w) {
+    for (std::size_t j = 0; j < w.r2.size(); ++j) {
+      w.r2[j] = 1e-3 * std::sin(12345.678 * static_cast<double>(j * (j % 97)));
+    }
+  };
+}
+
+Spoil both(const Spoil& first, const Spoil& second) {
+  return [=](Written& w) {
+    first(w);
+    second(w);
+  };
+}
+
+Spoil exchanged() {
+  return [](Written& w) { std::swap(w.r1, w.r2); };
+}
+
+Spoil reversed() {
+  return [](Written& w) {
+    std::reverse(w.r1.begin(), w.r1.end());
+    std::reverse(w.r2.begin(), w.r2.end());
+  };
+}
+
+const char kSigns[] =
+    "record.csv: channels R1 and R2, the reactions at x = 0 and x = L, would be those of the "
+    "string stated if one of them had the other sign";
+const char kEnds[] =
+    "if the ends were exchanged: state record.left: {channel: R2}, record.right: "
+    "{channel: R1}, or bow.position 288 mm";
+const char kBoth[] = "if the ends were exchanged and one of them had the other sign";
+const char kCopies[] = "are one signal, x = L reading";
+const char kGap[] = "contradict each other near 0.1";
+const char kOther[] = "are not those of one string with f0 within 3 % of";
+const char kRate[] = "record.sample_rate is stated and the file contradicts it";
+
+// Run, and failed by χ² or the priors.
+const char kContradicted[] = "contradicted";
+
+std::vector<Row> rows() {
+  return {
+      {"good", "", scaled(1.0, 1.0)},
+      {"nan", "record.csv:7682:6: sample 7680 of R1: \"nan\"", cell("nan")},
+      {"inf", "\"inf\" is no usable sample", cell("inf")},
+      {"text", "\"overload\" is not a number", cell("overload")},
+      {"empty", "the field is empty", cell(" ")},
+      {"1e300", "record.csv:7682: channel R1, sample 7680 (0.15 s): 1e+300", cell("1e300")},
+      {"1e300 all", "outside the range of double precision", scaled(1e300, 1e300)},
+      {"spike of 10", "stands alone", spike(10.0)},
+      {"spike of 1e6", "stands alone", spike(1e6)},
+      {"zero left", "samples are 0: the channel is silent", scaled(0.0, 1.0)},
+      {"zero both", "record.csv:2: channel R1, sample 0 (0 s): all", scaled(0.0, 0.0)},
+      {"constant right", "the channel is silent", both(scaled(1.0, 0.0), raised(0.0, 0.3))},
+      {"four samples", "record.csv: 4 samples at 51200 Hz are 7.81e-05 s", kept(0.0, 4.5 / 15360)},
+      {"fifty samples", "less than two periods of the string", kept(0.0, 50.5 / 15360)},
+      {"clipped at 95 %", "", clipped(0.95, true, true)},
+      {"clipped at 80 %", "the peaks are clipped", clipped(0.8, true, true)},
+      {"clipped left", "channel R1", clipped(0.5, true, false)},
+      {"clipped right", "channel R2", clipped(0.5, false, true)},
+      {"gap of zeros, 1 ms", "samples in a row are 0", filled(51, false)},
+      {"gap of zeros, 100 ms", "samples in a row are 0", filled(5120, false)},
+      {"gap held, 0.1 ms", "samples in a row are", filled(5, true)},
+      {"gap held, 10 ms", "samples in a row are", filled(512, true)},
+      {"gap in time, 1 sample", "record.csv:7682: sample 7680: a gap of", lost(1, "jumps")},
+      {"gap in time, 100 ms", "a gap of", lost(5120, "jumps")},
+      {"gap in time, rate stated", kRate, both(lost(51, "jumps"), stated_rate(51200))},
+      {"lost, 1 sample", kGap, lost(1, "goes on")},
+      {"lost, 1 ms", kGap, lost(51, "goes on")},
+      {"lost, 10 ms", kGap, lost(512, "rate")},
+      {"rate stated 1 % off", kRate, stated_rate(50688)},
+      {"rate stated 44.1 for 48", kRate, stated_rate(47040)},
+      {"comment 1e-4 off", "the comment says 51205 Hz, column t says 51200 Hz",
+       commented_rate(51205)},
+      {"comment 1 % off", "correct one of them", commented_rate(50688)},
+      {"clock 48 for 44.1", kOther, file_clock(48.0 / 44.1)},
+      {"copies", kCopies, copied(1.0)},
+      {"copies, 0.7", "x = L reading 0.7 times x = 0", copied(0.7)},
+      {"copies, -1", kCopies, copied(-1.0)},
+      {"noise alone", "channel R2, the reaction at x = L, holds nothing but noise",
+       noise_for_right()},
+      {"offset", "", raised(300.0, -200.0)},
+      {"begun in mid-stroke", "", kept(0.3, 1.0)},
+      {"ended in mid-stroke", "", kept(0.0, 0.7)},
+      {"sign left", kSigns, scaled(-1.0, 1.0)},
+      {"sign right", kSigns, scaled(1.0, -1.0)},
+      {"sign both", "", scaled(-1.0, -1.0)},
+      {"exchanged", kEnds, exchanged()},
+      {"exchanged and turned", kBoth, both(exchanged(), scaled(-1.0, 1.0))},
+      {"late by 1 ms", kOther, late(51)},
+      {"8 bit", "", rounded(8)},
+      {"backwards", kContradicted, reversed()},
+      {"gain of 2", kOther, scaled(1.0, 2.0)},
+  };
+}
+
+class BadRecords : public RecordFolder {
+ protected:
+  static const Written& good() {
+    static const Written written = [] {
+      truth::TruthRecord record =
+          truth::simulate({.fundamental = kFundamental, .inharmonicity = kInharmonicity},
+                          {.position = kContact}, {.duration = 0.3, .start = 0.0});
+      add_noise(record, 0.01, 7);
+      Written result;
+      for (std::size_t j = 0; j < record.r1.size(); ++j) {
+        result.t.push_back(static_cast<double>(j) / record.rate);
+      }
+      for (std::size_t i = 0; i < 50; ++i) {
+        result.frequencies.push_back(
+            fmt::format("{:.9g} Hz", record.modes[i].omega / (2.0 * M_PI)));
+        result.ratios.push_back(
+            fmt::format("{:.9g}", record.modes[i].decay / record.modes[i].omega));
+      }
+      result.r1 = record.r1;
+      result.r2 = record.r2;
+      return result;
+    }();
+    return written;
+  }
+
+  // The refusal, or the result.
+  std::string run(const Written& record, const std::string& kind, StudyResult& result) {
+    write("record.csv", record.text());
+    const bool calibrates = kind == "calibrate";
+    const LoadedExperiment loaded = load_experiment(parse_yaml(
+        fmt::format(
+            "kind: {}\nrecord: {{file: record.csv, left: {{channel: R1}}, right: {{channel: "
+            "R2}}{}}}\nstring: {{length: 0.33 m, linear_density: 1e-3 kg/m, fundamental: {} Hz, "
+            "inharmonicity: {}, modes: 40, damping: {{type: table, frequencies: [{}], ratios: "
+            "[{}]}}}}\nbow: {{position: 42 mm}}\n{}",
+            kind, record.keys, calibrates ? 1.01 * kFundamental : kFundamental, kInharmonicity,
+            fmt::join(record.frequencies, ", "), fmt::join(record.ratios, ", "),
+            calibrates ? "calibration: {parameters: {law: true, contact: true}, objective: "
+                         "joint_likelihood, optimizer: staged}\n"
+                       : "inversion: {estimator: joint}\n"),
+        path("experiment.yaml").string()));
+    EXPECT_EQ(format_mistakes(loaded.document, loaded.mistakes), "");
+    return refusal([&] {
+      result = loaded.experiment->run({.work = work_, .folder = folder(), .command = "test"});
+    });
+  }
+
+  static void expect_right(const StudyResult& result) {
+    EXPECT_EQ(result.status, report::Status::kOk) << result.summary;
+    const auto file = std::find_if(result.files.begin(), result.files.end(),
+                                   [](const auto& one) { return one.first == "calibration.json"; });
+    ASSERT_NE(file, result.files.end());
+    const std::map<std::string, double> truth = {
+        {"f0", kFundamental}, {"B", kInharmonicity}, {"x_c", kContact}};
+    std::size_t found = 0;
+    const auto document = nlohmann::json::parse(file->second);
+    for (const auto& parameter : document["parameters"]) {
+      const auto known = truth.find(parameter["name"].get<std::string>());
+      if (known == truth.end()) continue;
+      ++found;
+      const double z =
+          (parameter["final"].get<double>() - known->second) / parameter["sd"].get<double>();
+      EXPECT_LT(std::abs(z), 4.0) << known->first;
+    }
+    EXPECT_EQ(found, truth.size());
+  }
+
+  SharedWork work_;
+};
+
+TEST_F(BadRecords, GiveARightAnswerOrOneClearRefusal) {
+  for (const Row& row : rows()) {
+    SCOPED_TRACE(row.name);
+    Written record = good();
+    row.spoil(record);
+    StudyResult result;
+    const std::string said = run(record, "calibrate", result);
+    if (row.refusal[0] == '\0') {
+      EXPECT_EQ(said, "");
+      if (said.empty()) expect_right(result);
+      continue;
+    }
+    if (row.refusal == kContradicted) {
+      EXPECT_EQ(said, "");
+      EXPECT_EQ(result.status, report::Status::kFailed);
+      continue;
+    }
+    EXPECT_THAT(said, testing::HasSubstr(row.refusal));
+    // An inversion takes no worse records.
+    EXPECT_EQ(run(record, "invert", result).empty(), false);
+  }
+}
+
+TEST_F(BadRecords, AreNotInvertedWithAnotherTuning) {
+  StudyResult result;
+  Written record = good();
+  EXPECT_EQ(run(record, "invert", result), "");
+  file_clock(1.01)(record);
+  EXPECT_THAT(run(record, "invert", result),
+              testing::HasSubstr("the reactions are those of a string with f0 near 291"));
+}
+
+TEST_F(BadRecords, MaySayHowFastTheirClockRan) {
+  Written record = good();
+  record.keys = ", sample_rate: 51205 Hz";
+  StudyResult result;
+  EXPECT_EQ(run(record, "invert", result), "");
+  EXPECT_THAT(result.summary,
+              testing::HasSubstr("the file says 51200 Hz, the stated 51205 Hz is used"));
+}
+
+}  // namespace
+}  // namespace modcal

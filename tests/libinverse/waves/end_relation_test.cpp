@@ -1,0 +1,141 @@
+// Records of benchmarks/truth, good ones and those of crossed wires.
+#include "libinverse/waves/end_relation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "benchmarks/truth/truth.hpp"
+#include "libsim/signal/statistics.hpp"
+#include "tests/refusal.hpp"
+
+namespace modcal {
+namespace {
+
+constexpr double kNoise = 0.01;
+
+// Starts are off by 1.5 % and 1 mm.
+const StatedString kStated{
+    .length = 0.33, .fundamental = 294.0 * 1.015, .inharmonicity = 1e-4, .contact = 0.042};
+
+truth::TruthRecord stroke(const truth::TruthMismatch& mismatch = {}) {
+  truth::TruthRecord record = truth::simulate(
+      {}, {.position = 0.041}, {.duration = 0.3, .mismatch = mismatch, .least_rate = 2e6});
+  add_noise(record, kNoise, 3);
+  return record;
+}
+
+const truth::TruthRecord& good() {
+  static const truth::TruthRecord record = stroke();
+  return record;
+}
+
+EndRelationFit fitted(const std::vector<double>& left, const std::vector<double>& right) {
+  const double level = kNoise * standard_deviation(good().r1);
+  return fit_end_relations({left, right, good().rate, {level, level}}, kStated);
+}
+
+std::vector<double> times(double factor, std::vector<double> samples) {
+  for (double& x : samples) x *= factor;
+  return samples;
+}
+
+TEST(EndRelation, OfAStringIsThatOfTheStringStated) {
+  for (const truth::TruthMismatch& mismatch :
+       {truth::TruthMismatch{},
+        {.gain = 1.05, .delay = 2e-6, .corner = 2.0},
+        {.body_peak = 0.0125, .polarization = {0.1, 0.03}, .drift = 1e-4}}) {
+    const truth::TruthRecord record = stroke(mismatch);
+    const EndRelationFit fit = fitted(record.r1, record.r2);
+    EXPECT_EQ(fit.best(), EndRelation::kString);
+    for (std::size_t other = 1; other < fit.misfit.size(); ++other) {
+      EXPECT_GT(fit.misfit[other], 2.5 * fit.misfit_of(EndRelation::kString)) << other;
+    }
+    EXPECT_LT(fit.unexplained, 0.01);
+    EXPECT_FALSE(fit.disturbance.has_value()) << fit.disturbance->ratio;
+    EXPECT_NEAR(fit.fundamental, 294.0, 0.004 * 294.0);
+    EXPECT_NEAR(fit.contact, 0.041, 2e-3);
+  }
+}
+
+TEST(EndRelation, TellsOfSignsAndExchangedEnds) {
+  const std::vector<double>&left = good().r1, &right = good().r2;
+  EXPECT_EQ(fitted(times(-1.0, left), right).best(), EndRelation::kSignTurned);
+  EXPECT_EQ(fitted(left, times(-1.0, right)).best(), EndRelation::kSignTurned);
+  EXPECT_EQ(fitted(right, left).best(), EndRelation::kSwapped);
+  EXPECT_EQ(fitted(right, times(-1.0, left)).best(), EndRelation::kSwappedSignTurned);
+  // Another sign of the force.
+  EXPECT_EQ(fitted(times(-1.0, left), times(-1.0, right)).best(), EndRelation::kString);
+}
+
+TEST(EndRelation, TellsOfCopies) {
+  for (const double gain : {1.0, 0.7, -1.0}) {
+    const EndRelationFit fit = fitted(good().r1, times(gain, good().r1));
+    EXPECT_EQ(fit.best(), EndRelation::kCopies);
+    EXPECT_NEAR(fit.copy_gain, gain, 1e-12);
+  }
+  // Through converters with noise of their own.
+  truth::TruthRecord two = good();
+  two.r2 = two.r1;
+  add_noise(two, kNoise, 4);
+  EXPECT_EQ(fitted(two.r1, two.r2).best(), EndRelation::kCopies);
+}
+
+TEST(EndRelation, TellsOfNoiseAlone) {
+  truth::TruthRecord more = good();
+  add_noise(more, kNoise, 8);
+  for (std::size_t j = 0; j < more.r2.size(); ++j) more.r2[j] -= good().r2[j];
+  const double level = kNoise * standard_deviation(good().r2);
+  const EndRelationFit fit =
+      fit_end_relations({good().r1, more.r2, good().rate, {level, level}}, kStated);
+  EXPECT_FALSE(fit.noise_alone(0));
+  EXPECT_TRUE(fit.noise_alone(1));
+  EXPECT_GT(fit.unexplained, 0.5);
+}
+
+TEST(EndRelation, TellsWhereSamplesAreMissing) {
+  const auto ratio_at = [](std::vector<double> left, std::vector<double> right, double time) {
+    const EndRelationFit fit = fitted(left, right);
+    EXPECT_TRUE(fit.disturbance.has_value());
+    if (!fit.disturbance) return;
+    EXPECT_NEAR(fit.disturbance->time, time, 1.0 / 294.0);
+  };
+  for (const std::ptrdiff_t lost : {1, 51, 512}) {
+    SCOPED_TRACE(lost);
+    std::vector<double> left = good().r1, right = good().r2;
+    left.erase(left.begin() + 7000, left.begin() + 7000 + lost);
+    right.erase(right.begin() + 7000, right.begin() + 7000 + lost);
+    ratio_at(left, right, 7000.0 / good().rate);
+  }
+  std::vector<double> left = good().r1;
+  std::fill_n(left.begin() + 7000, 51, 0.0);
+  ratio_at(left, good().r2, 7025.0 / good().rate);
+}
+
+TEST(EndRelation, LeavesWhatIsOfNoStringUnexplained) {
+  std::vector<double> late = good().r2;
+  std::rotate(late.rbegin(), late.rbegin() + 51, late.rend());
+  EXPECT_GT(fitted(good().r1, late).unexplained, 0.3);
+  StatedString other = kStated;
+  other.fundamental *= 48.0 / 44.1;
+  const double level = kNoise * standard_deviation(good().r1);
+  EXPECT_GT(
+      fit_end_relations({good().r1, good().r2, good().rate, {level, level}}, other).unexplained,
+      0.05);
+}
+
+TEST(EndRelation, RefusesWhatItCannotJudge) {
+  const std::vector<double> four(4, 1.0), many(1000, 1.0);
+  EXPECT_NE(refusal_of([&] { fitted(four, four); }).find("less than two periods"),
+            std::string::npos);
+  EXPECT_NE(refusal_of([&] { fitted(four, many); }).find("4 and 1000 samples"), std::string::npos);
+  StatedString outside = kStated;
+  outside.contact = 0.4;
+  EXPECT_NE(refusal_of([&] {
+              fit_end_relations({many, many, 51200.0, {}}, outside);
+            }).find("not inside the string"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace modcal
