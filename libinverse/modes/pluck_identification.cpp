@@ -1,5 +1,6 @@
 #include "libinverse/modes/pluck_identification.hpp"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -53,6 +54,39 @@ std::vector<DecayMode> modes_of(const DecimatedDecay& decay, const std::vector<S
   return modes;
 }
 
+/// The law f² = n² (a + b n²) through the modes numbered so far, with equal errors of all f: its
+/// first modes number the next.
+class LawNumbers {
+ public:
+  explicit LawNumbers(double fundamental) : square_(fundamental * fundamental) {}
+
+  /// n of the law at f, n²(a + b n²) = f².
+  double place(double frequency) const {
+    const double ratio = frequency * frequency / square_;
+    return std::sqrt(2.0 * ratio / (1.0 + std::sqrt(1.0 + 4.0 * bend_ / square_ * ratio)));
+  }
+  /// What lies farther from the law than the fundamental stated may, or half way to the middle
+  /// between two modes, numbers no others. Stiffness is never negative.
+  void add(std::size_t number, double frequency) {
+    const double n = static_cast<double>(number), weight = std::pow(n * n / frequency, 2);
+    if (std::abs(place(frequency) - n) > std::min(0.25, 0.03 * n)) return;
+    const double y = frequency * frequency / (n * n), x = n * n;
+    sums_ += Eigen::Matrix2d{{weight, weight * x}, {weight * x, weight * x * x}};
+    right_ += Eigen::Vector2d{weight * y, weight * x * y};
+    if (++count_ < 3) return;  // two tell a law, but not how wrong it is
+    const Eigen::Vector2d law = sums_.ldlt().solve(right_);
+    const bool stiff = law[1] > 0.0;
+    square_ = stiff ? law[0] : right_[0] / sums_(0, 0);
+    bend_ = stiff ? law[1] : 0.0;
+  }
+
+ private:
+  double square_, bend_ = 0.0;  // f₀², f₀² B
+  Eigen::Matrix2d sums_ = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d right_ = Eigen::Vector2d::Zero();
+  int count_ = 0;
+};
+
 }  // namespace
 
 void PluckOptions::visit(OptionVisitor& visitor) {
@@ -98,14 +132,19 @@ PluckIdentification identify_pluck(const DecayRecord& record, double fundamental
   result.diagram = stabilization_diagram(realization, options.stabilization);
   const std::vector<StablePole> stable = stable_poles(result.diagram, options.stabilization);
   if (stable.empty()) return result;
+  std::vector<DecayMode> modes = modes_of(decay, stable, options, result);
+  std::sort(modes.begin(), modes.end(), [](const DecayMode& a, const DecayMode& b) {
+    return a.pole.frequency < b.pole.frequency;
+  });
   std::map<std::size_t, DecayMode> numbered;
-  for (DecayMode& mode : modes_of(decay, stable, options, result)) {
-    if (mode.pole.frequency > options.highest_frequency || !(mode.pole.damping_ratio > 0.0)) {
-      continue;
-    }
-    const auto number = static_cast<std::size_t>(std::lround(mode.pole.frequency / fundamental));
+  LawNumbers law(fundamental);
+  for (DecayMode& mode : modes) {
+    const double frequency = mode.pole.frequency;
+    if (frequency > options.highest_frequency || !(mode.pole.damping_ratio > 0.0)) continue;
+    const auto number = static_cast<std::size_t>(std::lround(law.place(frequency)));
     if (number == 0) continue;
     const auto [place, fresh] = numbered.try_emplace(number, mode);
+    if (fresh) law.add(number, frequency);
     if (!fresh && size_of(mode) > size_of(place->second)) place->second = std::move(mode);
   }
   for (auto& [number, mode] : numbered) {

@@ -42,7 +42,8 @@ struct PluckIdentification {
 /// paper's route, section 7.1), those kept that are stable over the orders, and for
 /// maximum_likelihood all of them fitted together as damped sinusoids. Deviations are the
 /// Cramér–Rao bound for maximum_likelihood; the spread over the orders, no error bar, for era.
-/// A mode has the number n nearest to f/fundamental; of two with one number the one with the larger
+/// Modes are numbered upwards along the law f = n f₀ √(1 + B n²) of those numbered before: far up a
+/// stiff string f/f₀ is off by more than one. Of two with one number the one with the larger
 /// amplitude is kept. fundamental: f₀ to about 1 % [Hz]. Throws InvalidInput for an invalid or too
 /// short record, a fundamental that is not positive, an unknown method.
 PluckIdentification identify_pluck(const DecayRecord& record, double fundamental,
