@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "experiments/kinds/calibrate/calibrate.hpp"
 #include "experiments/report/result.hpp"
 
@@ -15,6 +17,23 @@ void fill_blind(CalibrationOutcome& outcome) {
   outcome.law = fit_stiff_string(refined, weights);
   outcome.refined.basis =
       with_frequencies(outcome.refined.basis, fill_unexcited_modes(refined, excited, *outcome.law));
+}
+
+// T = 4 L² f₀² ρ_L: what is stated of a recorded string gives ρ_L and L, the f₀ found the tension.
+void follow_tension(const Observation& observation, CalibrationOutcome& outcome) {
+  double fundamental = observation.fundamental;
+  if (const auto& found = outcome.result.continuation) {
+    fundamental = found->found_law.fundamental;
+  } else {
+    std::vector<double> weights;
+    for (const CalibratedMode& mode : outcome.result.modes) {
+      weights.push_back(mode.excited ? 1.0 : 0.0);
+    }
+    if (std::count(weights.begin(), weights.end(), 1.0) < 2) return;
+    fundamental = fit_stiff_string(frequencies_of(outcome.refined.basis), weights).fundamental;
+  }
+  const double ratio = fundamental / observation.fundamental;
+  outcome.refined.basis.tension *= ratio * ratio;
 }
 
 // Strokes after the first: the same scene bowed elsewhere, or other files; noise of their own.
@@ -159,7 +178,11 @@ CalibrationOutcome calibrate_strokes(const CalibrateOptions& options,
   outcome.result = calibrate({outcome.initial.basis, outcome.initial.contact}, std::move(records),
                              options.calibration, std::move(clock));
   outcome.refined = {outcome.result.model.basis, outcome.result.model.contact};
-  if (observation.truth) outcome.true_frequencies = frequencies_of(observation.basis);
+  if (observation.truth) {
+    outcome.true_frequencies = frequencies_of(observation.basis);
+  } else {
+    follow_tension(observation, outcome);
+  }
   if (options.fill_blind_modes) fill_blind(outcome);
   return outcome;
 }

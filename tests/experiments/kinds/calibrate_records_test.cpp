@@ -56,15 +56,17 @@ class CalibrateRecords : public testing::Test {
 
   // What was recorded is a simulation of exactly the stated modes.
   StudyResult run(const std::string& noise, const std::string& further,
-                  const std::string& sensors = ", sensors: [exact]") {
+                  const std::string& sensors = ", sensors: [exact]",
+                  const std::string& fundamental = "196 Hz") {
     const LoadedExperiment loaded = load_experiment(
         parse_yaml("kind: calibrate\n"
                    "record: {file: stroke.csv, left: {channel: R1}, right: {channel: R2}, "
                    "reference: {channel: f_c}}\n"
-                   "string: {length: 0.33 m, linear_density: 3.1e-3 kg/m, fundamental: 196 Hz, "
-                   "modes: 50}\n"
-                   "bow: {position: 30 mm}\n"
-                   "calibration: {parameters: {law: true, contact: true, damping: factor" +
+                   "string: {length: 0.33 m, linear_density: 3.1e-3 kg/m, fundamental: " +
+                       fundamental +
+                       ", modes: 50}\n"
+                       "bow: {position: 30 mm}\n"
+                       "calibration: {parameters: {law: true, contact: true, damping: factor" +
                        sensors + "}, objective: {type: joint_likelihood" + noise +
                        "}, optimizer: staged, remainder: none}\n" + further,
                    (folder_ / "experiment.yaml").string()));
@@ -244,6 +246,29 @@ TEST_F(CalibrateRecords, TakeTheDifferenceOfTheSensorsOutOnce) {
     EXPECT_EQ(refusal(", sensors: [exact]", estimator), "");
   }
   EXPECT_EQ(refusal(", sensors: [gain]", "{type: joint, gain1: 2, gain2: 2}"), "");
+}
+
+// Identified over true force, by least squares about the means.
+double scale_of(const StudyResult& result, const Signal& truth) {
+  for (const Signal& found : result.signal_files.at(0).signals) {
+    if (!found.quantity.starts_with("f_c")) continue;
+    return correlation(found.samples, truth.samples) * standard_deviation(found.samples) /
+           standard_deviation(truth.samples);
+  }
+  return 0.0;
+}
+
+TEST_F(CalibrateRecords, IdentifyTheForceWithTheTensionThatTheyFound) {
+  const Observation observed = stroke(simulated(0.4, 50000.0));
+  write("stroke.csv",
+        {*observed.reaction(End::kLeft), *observed.reaction(End::kRight), *observed.reference});
+  const std::string inversion = "inversion: {estimator: joint}\nwrite_signals: true\n";
+  const double expected = scale_of(run("", inversion), *observed.reference);
+  EXPECT_GT(expected, 0.5);
+  // The tension of 200 Hz would make the force 4 % smaller.
+  const double found =
+      scale_of(run("", inversion, ", sensors: [exact]", "200 Hz"), *observed.reference);
+  EXPECT_NEAR(found / expected, 1.0, 1e-3);
 }
 
 TEST(SensorCorrection, TakesOutGainDelayAndHighPass) {
