@@ -201,7 +201,7 @@ class FittedRecord {
 
 }  // namespace
 
-bool ScoreTest::refuses() const { return named() && (cause == kPolarization || shift > 1.0); }
+bool ScoreTest::refuses() const { return named() && shift > 2.0; }
 
 bool ScoreTest::frees() const { return cause == kDrift; }
 

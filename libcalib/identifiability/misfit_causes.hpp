@@ -30,8 +30,7 @@ struct ScoreTest {
 
   /// Noise does so in one of 8000 tests: four causes, each in less than one of 2000 records.
   bool named() const { return log_p < -9.0; }
-  /// Named, and what it does to the unknowns is more than their deviations hold; a second
-  /// polarization always: what of it is alike at both ends is told least.
+  /// Named, and it moves an unknown by two deviations: out of the interval that holds 95 %.
   bool refuses() const;
   /// Linear enough to be free in a further fit.
   bool frees() const;

@@ -112,6 +112,9 @@ constexpr double kFour = 4.0;
 
 void expect_right(const CalibrationResult& result) {
   EXPECT_TRUE(result.continuation->right) << result.continuation->chi2;
+  for (const ScoreTest& test : result.continuation->tests) {
+    EXPECT_FALSE(test.refuses()) << test.cause << ", S " << test.statistic << ", " << test.shift;
+  }
   EXPECT_LT(std::abs(error(result, "f0", kFundamental)), kFour);
   EXPECT_LT(std::abs(error(result, "B", kInharmonicity)), kFour);
   EXPECT_LT(std::abs(error(result, "x_c", kContact)), kFour);
