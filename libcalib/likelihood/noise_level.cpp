@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "libsim/base/error.hpp"
-#include "libsim/signal/fft.hpp"
+#include "libsim/signal/hann.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {
@@ -65,23 +65,14 @@ double noise_deviation(std::span<const double> samples, const NoiseBand& band) {
   MODCAL_REQUIRE(samples.size() >= 64, "{} samples are too few to estimate the noise from",
                  samples.size());
   const std::size_t count = samples.size();
-  const double mean = modcal::mean(samples);
-  std::vector<double> windowed(count);
-  double energy = 0.0;
-  for (std::size_t j = 0; j < count; ++j) {
-    const double hann =
-        0.5 - 0.5 * std::cos(2.0 * pi * static_cast<double>(j) / static_cast<double>(count));
-    windowed[j] = (samples[j] - mean) * hann;
-    energy += hann * hann;
-  }
-  const std::vector<Complex> spectrum = RealFft(count).forward(windowed);
+  const std::vector<Complex> spectrum = hann_spectrum(samples);
   const Bins bins = bins_of(band, count);
   MODCAL_REQUIRE(bins.count() > 0 && bins.last <= spectrum.size(),
                  "a noise band from {:g} to {:g} of the sample rate has no bin", band.low,
                  band.high);
   const auto inside = std::span(spectrum).subspan(bins.first, bins.count());
   const double power = total_power(inside, band.clear);
-  const double deviation = std::sqrt(power / (static_cast<double>(bins.count()) * energy));
+  const double deviation = std::sqrt(power / static_cast<double>(bins.count()));
   return std::max(deviation, 2e-4 * standard_deviation(samples));
 }
 

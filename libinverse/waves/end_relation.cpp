@@ -3,19 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <vector>
 
 #include "libinverse/waves/end_residual.hpp"
 #include "libinverse/waves/tuning.hpp"
 #include "libsim/base/error.hpp"
-#include "libsim/signal/fft.hpp"
-#include "libsim/signal/statistics.hpp"
+#include "libsim/signal/hann.hpp"
 
 namespace modcal {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 void require_record(const EndRecord& record, const StatedString& string) {
   MODCAL_REQUIRE(record.left.size() == record.right.size(),
@@ -51,29 +47,14 @@ struct EndBins {
   }
 };
 
-std::vector<Complex> windowed_spectrum(std::span<const double> samples) {
-  std::vector<double> windowed(samples.begin(), samples.end());
-  remove_mean(windowed);
-  double energy = 0.0;
-  for (std::size_t j = 0; j < windowed.size(); ++j) {
-    const double turn = static_cast<double>(j) / static_cast<double>(windowed.size());
-    const double weight = 0.5 - 0.5 * std::cos(2.0 * kPi * turn);
-    windowed[j] *= weight;
-    energy += weight * weight;
-  }
-  std::vector<Complex> spectrum = RealFft(windowed.size()).forward(windowed);
-  for (Complex& bin : spectrum) bin /= std::sqrt(energy);
-  return spectrum;
-}
-
 // Bins that stand above the noise: the others tell of no relation.
 EndBins bins_of(const EndRecord& record, const StatedString& string) {
   const double width = record.sample_rate / static_cast<double>(record.left.size());
   const double top = std::min(kRelationTop * string.fundamental, 0.4 * record.sample_rate);
   const auto first = static_cast<std::size_t>(std::ceil(0.5 * string.fundamental / width));
   const auto last = static_cast<std::size_t>(std::floor(top / width));
-  const std::vector<Complex> left = windowed_spectrum(record.left);
-  const std::vector<Complex> right = windowed_spectrum(record.right);
+  const std::vector<Complex> left = hann_spectrum(record.left);
+  const std::vector<Complex> right = hann_spectrum(record.right);
   EndBins bins;
   bins.variance = {record.noise[0] * record.noise[0], record.noise[1] * record.noise[1]};
   std::vector<std::size_t> above;

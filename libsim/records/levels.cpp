@@ -8,7 +8,8 @@
 #include <numbers>
 #include <vector>
 
-#include "libsim/signal/fft.hpp"
+#include "libsim/records/runs.hpp"
+#include "libsim/signal/hann.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {
@@ -16,28 +17,19 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-double hann(std::size_t i, std::size_t length) {
-  const double turn = static_cast<double>(i) / static_cast<double>(length);
-  return 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * turn);
-}
-
 }  // namespace
 
 Clipping find_clipping(std::span<const double> samples) {
   const Levels levels = measure_levels(samples);
   Clipping clipping{.lowest = levels.lowest, .highest = levels.highest};
   if (!(levels.lowest < levels.highest)) return clipping;
-  for (std::size_t start = 0; start < samples.size();) {
-    const double value = samples[start];
-    std::size_t end = start + 1;
-    while (end < samples.size() && samples[end] == value) ++end;
+  for_each_run(samples, [&](const Run& run) {
+    const double value = samples[run.first];
     const bool extreme = value == levels.lowest || value == levels.highest;
-    if (extreme && end - start >= Clipping::kShortestRun) {
-      if (clipping.runs++ == 0) clipping.first = start;
-      clipping.samples += end - start;
-    }
-    start = end;
-  }
+    if (!extreme || run.count < Clipping::kShortestRun) return;
+    if (clipping.runs++ == 0) clipping.first = run.first;
+    clipping.samples += run.count;
+  });
   return clipping;
 }
 
@@ -78,20 +70,12 @@ double white_noise_rms(std::span<const double> samples) {
   if (length < kShortestNoiseRecord || !std::all_of(samples.begin(), samples.end(), finite)) {
     return kNaN;
   }
-  std::vector<double> windowed(samples.begin(), samples.end());
-  remove_mean(windowed);
-  double window_energy = 0.0;
-  for (std::size_t i = 0; i < length; ++i) {
-    const double weight = hann(i, length);
-    windowed[i] *= weight;
-    window_energy += weight * weight;
-  }
-  const std::vector<Complex> spectrum = RealFft(length).forward(windowed);
+  const std::vector<Complex> spectrum = hann_spectrum(samples);
   const double half = 0.5 * static_cast<double>(length);
   const auto low = static_cast<std::size_t>(std::ceil(kNoiseBandLow * half));
   const auto high = static_cast<std::size_t>(std::floor(kNoiseBandHigh * half));
   std::vector<double> power;
-  for (std::size_t k = low; k <= high; ++k) power.push_back(std::norm(spectrum[k]) / window_energy);
+  for (std::size_t k = low; k <= high; ++k) power.push_back(std::norm(spectrum[k]));
   return std::sqrt(quantile(std::move(power), 0.5) / std::numbers::ln2);
 }
 

@@ -9,28 +9,13 @@
 #include <vector>
 
 #include "libsim/records/levels.hpp"
+#include "libsim/records/runs.hpp"
 
 namespace modcal {
 namespace {
 
 using Samples = std::span<const double>;
 using Fault = std::optional<SampleFault>;
-
-/// Equal samples that follow one another.
-struct Run {
-  std::size_t first, count;
-  std::size_t end() const { return first + count; }
-};
-
-template <typename Visit>
-void for_each_run(Samples samples, Visit visit) {
-  for (std::size_t first = 0; first < samples.size();) {
-    std::size_t end = first + 1;
-    while (end < samples.size() && samples[end] == samples[first]) ++end;
-    visit(Run{first, end - first});
-    first = end;
-  }
-}
 
 Fault find_extreme_magnitude(Samples samples) {
   const auto magnitude = [](double a, double b) { return std::abs(a) < std::abs(b); };

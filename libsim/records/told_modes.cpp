@@ -4,12 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "libsim/base/error.hpp"
 #include "libsim/records/levels.hpp"
 #include "libsim/records/tuning.hpp"
-#include "libsim/signal/fft.hpp"
+#include "libsim/signal/hann.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {
@@ -19,18 +18,11 @@ namespace {
 class PowerInNoise {
  public:
   explicit PowerInNoise(const Signal& signal) : spacing_(signal.sample_rate) {
-    std::vector<double> samples = signal.samples;
-    const double noise = white_noise_rms(samples);
+    const double noise = white_noise_rms(signal.samples);
     if (!(noise > 0.0)) return;
-    remove_mean(samples);
-    const auto count = static_cast<double>(samples.size());
-    for (std::size_t j = 0; j < samples.size(); ++j) {
-      samples[j] *= 1.0 - std::cos(2.0 * std::numbers::pi * static_cast<double>(j) / count);
-    }
-    spacing_ /= count;
-    for (const Complex bin : RealFft(samples.size()).forward(samples)) {
-      // The squares of the window sum up to 3/2 a sample.
-      power_.push_back(std::norm(bin) / (1.5 * count * noise * noise));
+    spacing_ /= static_cast<double>(signal.samples.size());
+    for (const Complex bin : hann_spectrum(signal.samples)) {
+      power_.push_back(std::norm(bin) / (noise * noise));
     }
   }
 
