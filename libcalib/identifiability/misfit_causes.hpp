@@ -28,7 +28,7 @@ struct ScoreTest {
   std::string unknown;          ///< that this is of
   std::vector<SignalColumn> columns;  ///< where it is named and frees()
 
-  /// Noise does so in one of 8000 tests: four causes, each in less than one of 2000 records.
+  /// Noise does so in one of 8000 tests, of the four causes in one of 2000 records.
   bool named() const { return log_p < -9.0; }
   /// Named, and it moves an unknown by two deviations: out of the interval that holds 95 %.
   bool refuses() const;

@@ -69,8 +69,9 @@ ContinuationResult attempt(const AttemptInput& input, double shift, std::size_t 
   found = attempt_continuation(input, shift, found.evaluations);
   append_stages(found.stages, freed.front().cause + " free: ", 0, stages);
   found.stages = std::move(stages);
-  std::erase_if(found.tests,
-                [&](const ScoreTest& test) { return test.cause == freed.front().cause; });
+  for (ScoreTest& test : found.tests) {
+    if (test.cause == freed.front().cause) test.detail = "beyond what is free of it";
+  }
   found.freed = std::move(freed);
   return found;
 }

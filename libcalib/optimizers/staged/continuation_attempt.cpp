@@ -41,9 +41,7 @@ class Attempt {
     const bool as_read = input_.records.deviation == input_.read;
     if (as_read) input_.lower_noise(stroke_.stages().back().chi2);
     fit_whole("law");
-    // What a law that is wrong leaves is no noise.
-    const double whole = stroke_.stages().back().chi2;
-    if (std::abs(whole - 1.0) < 0.2 && input_.correct_noise(whole)) stroke_.renew();
+    if (input_.correct_noise(stroke_.stages().back().chi2)) stroke_.renew();
     result.noise = input_.records.deviation;
     const Eigen::MatrixXd covariance = finish_law("law", result);
     report_law(covariance, result);
@@ -225,7 +223,7 @@ bool AttemptInput::lower_noise(double chi2) const {
 bool AttemptInput::correct_noise(double chi2) const {
   const double root = std::sqrt(chi2);
   const bool lowered = records.deviation[0] < read[0];
-  if (!lowered || misfit_for_noise) return false;
+  if (!lowered || misfit_for_noise || !(root > 1.0 / 1.1 && root < 1.1)) return false;
   if (root * records.deviation[0] > read[0]) return false;
   for (double& deviation : records.deviation) deviation *= root;
   return true;

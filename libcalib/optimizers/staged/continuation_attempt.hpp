@@ -24,8 +24,9 @@ struct AttemptInput {
   /// much less, chi2, that error bars are a tenth too wide, what it leaves is the noise. Levels
   /// that are stated stay. True: they are lowered.
   bool lower_noise(double chi2) const;
-  /// Lowered by a part of the record, they are what the whole record leaves, chi2: no more than was
-  /// read. True: they have changed.
+  /// Lowered by a part of the record, they are what the whole record leaves, chi2: up to a tenth
+  /// more or less, which a misfit of the whole would hide in, and no more than was read. True: they
+  /// have changed.
   bool correct_noise(double chi2) const;
 };
 
