@@ -102,7 +102,8 @@ void require_told_fundamental(const ObservationOptions& options, const Observati
       relations_of(options, *observation.reaction(End::kLeft), *observation.reaction(End::kRight))
           .fundamental;
   const double difference = told / options.string.fundamental - 1.0;
-  MODCAL_REQUIRE(std::abs(difference) < 2e-3,
+  // Told to 0.23 % where B is stated 20 % wrong.
+  MODCAL_REQUIRE(std::abs(difference) < 3e-3,
                  "{}: the reactions are those of a string with f0 near {:.5g} Hz, {:+.2g} % from "
                  "the {:g} Hz stated, which an inversion takes for granted: calibrate the string "
                  "first (kind: calibrate), or check the sample rate",
