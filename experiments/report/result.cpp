@@ -9,10 +9,7 @@ class TablesWriter final : public ResultVisitor {
  public:
   std::vector<Table> tables = {};
 
-  void number(const ResultField& /*field*/, double& /*value*/) override {}
-  void integer(const ResultField& /*field*/, std::int64_t& /*value*/) override {}
-  void flag(const ResultField& /*field*/, bool& /*value*/) override {}
-  void text(const ResultField& /*field*/, std::string& /*value*/) override {}
+  void value(const ResultField& /*field*/, Value /*held*/) override {}
   bool is_known(const ResultField& /*field*/, bool known) override { return known; }
   void group(const ResultField& field, const VisitMembers& visit_members) override {
     if (field.shown == kInJson) return;
@@ -49,12 +46,13 @@ void JsonWriter::put(const ResultField& field, Json value) {
   (field.key.empty() ? *here_ : (*here_)[std::string(field.key)]) = std::move(value);
 }
 
-void JsonWriter::number(const ResultField& field, double& value) {
-  put(field, number_json(value, non_finite_));
-}
-
-void JsonWriter::text(const ResultField& field, std::string& value) {
-  if (!field.optional || !value.empty()) put(field, value);
+void JsonWriter::value(const ResultField& field, Value held) {
+  if (const auto* number = std::get_if<double*>(&held)) {
+    return put(field, number_json(**number, non_finite_));
+  }
+  const auto* text = std::get_if<std::string*>(&held);
+  if (text && field.optional && (*text)->empty()) return;
+  std::visit([&](const auto* one) { put(field, *one); }, held);
 }
 
 bool JsonWriter::is_known(const ResultField& field, bool known) {
@@ -93,16 +91,17 @@ const Json* JsonReader::find(const ResultField& field) const {
   return field.optional ? nullptr : &here_->at(std::string(field.key));  // throws
 }
 
-void JsonReader::number(const ResultField& field, double& value) {
+void JsonReader::value(const ResultField& field, Value held) {
   const Json* const found = find(field);
   if (found == nullptr) return;
+  const auto* number = std::get_if<double*>(&held);
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  if (*found == "nan") {
-    value = std::numeric_limits<double>::quiet_NaN();
-  } else if (*found == "inf" || *found == "-inf") {
-    value = *found == "inf" ? kInfinity : -kInfinity;
+  if (number && *found == "nan") {
+    **number = std::numeric_limits<double>::quiet_NaN();
+  } else if (number && (*found == "inf" || *found == "-inf")) {
+    **number = *found == "inf" ? kInfinity : -kInfinity;
   } else {
-    found->get_to(value);
+    std::visit([found](auto* one) { found->get_to(*one); }, held);
   }
 }
 

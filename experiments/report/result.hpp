@@ -22,10 +22,7 @@ class JsonWriter final : public ResultVisitor {
   explicit JsonWriter(NonFinite non_finite) : non_finite_(non_finite) {}
   Json take() { return std::move(document_); }
 
-  void number(const ResultField& field, double& value) override;
-  void integer(const ResultField& field, std::int64_t& value) override { put(field, value); }
-  void flag(const ResultField& field, bool& value) override { put(field, value); }
-  void text(const ResultField& field, std::string& value) override;
+  void value(const ResultField& field, Value held) override;
   bool is_known(const ResultField& field, bool known) override;
   void group(const ResultField& field, const VisitMembers& visit_members) override;
   void list(const ResultField& field, std::size_t size, const Resize& resize,
@@ -45,10 +42,7 @@ class JsonReader final : public ResultVisitor {
  public:
   explicit JsonReader(const Json& document) : here_(&document) {}
 
-  void number(const ResultField& field, double& value) override;
-  void integer(const ResultField& field, std::int64_t& value) override { get(field, value); }
-  void flag(const ResultField& field, bool& value) override { get(field, value); }
-  void text(const ResultField& field, std::string& value) override { get(field, value); }
+  void value(const ResultField& field, Value held) override;
   bool is_known(const ResultField& field, bool known) override;
   void group(const ResultField& field, const VisitMembers& visit_members) override;
   void list(const ResultField& field, std::size_t size, const Resize& resize,
@@ -57,10 +51,6 @@ class JsonReader final : public ResultVisitor {
  private:
   /// Null where an optional value is missing.
   const Json* find(const ResultField& field) const;
-  template <typename Value>
-  void get(const ResultField& field, Value& value) const {
-    if (const Json* found = find(field)) found->get_to(value);
-  }
 
   const Json* here_;
 };
@@ -110,10 +100,9 @@ class RowWriter final : public ResultVisitor {
   std::vector<Cell> cells = {};
 
   void cell(const ResultField& field, Cell cell);
-  void number(const ResultField& field, double& value) override { cell(field, value); }
-  void integer(const ResultField& field, std::int64_t& value) override { cell(field, value); }
-  void flag(const ResultField& field, bool& value) override { cell(field, value); }
-  void text(const ResultField& field, std::string& value) override { cell(field, value); }
+  void value(const ResultField& field, Value held) override {
+    std::visit([&](const auto* one) { cell(field, *one); }, held);
+  }
   bool is_known(const ResultField& field, bool known) override;
   void group(const ResultField& field, const VisitMembers& visit_members) override;
   void list(const ResultField& /*field*/, std::size_t /*size*/, const Resize& /*resize*/,

@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
-#include <utility>
+#include <variant>
 
 #include "libsim/base/error.hpp"
 
@@ -48,10 +48,8 @@ class ResultVisitor {
   static constexpr auto kInTables = ResultField::Shown::kInTables;
 
   virtual ~ResultVisitor() = default;
-  virtual void number(const ResultField& field, double& value) = 0;
-  virtual void integer(const ResultField& field, std::int64_t& value) = 0;
-  virtual void flag(const ResultField& field, bool& value) = 0;
-  virtual void text(const ResultField& field, std::string& value) = 0;
+  using Value = std::variant<double*, std::int64_t*, bool*, std::string*>;
+  virtual void value(const ResultField& field, Value held) = 0;
   /// Whether there is a value that may be missing: a writer repeats `known` and marks what is not,
   /// a reader looks.
   virtual bool is_known(const ResultField& field, bool known) = 0;
@@ -69,13 +67,13 @@ class ResultVisitor {
       const auto members = [&value](ResultVisitor& visitor) { value.visit(visitor); };
       field.key.empty() ? members(*this) : group(field, members);
     } else if constexpr (std::is_same_v<Plain, bool>) {
-      leaf<bool>(&ResultVisitor::flag, field, value);
+      leaf<bool>(field, value);
     } else if constexpr (std::is_integral_v<Plain>) {
-      leaf<std::int64_t>(&ResultVisitor::integer, field, value);
+      leaf<std::int64_t>(field, value);
     } else if constexpr (std::is_floating_point_v<Plain>) {
-      leaf<double>(&ResultVisitor::number, field, value);
+      leaf<double>(field, value);
     } else if constexpr (std::is_convertible_v<Plain, std::string_view>) {
-      leaf<std::string>(&ResultVisitor::text, field, value);
+      leaf<std::string>(field, value);
     } else if constexpr (requires { value.has_value(); }) {
       optional(field, value);
     } else if constexpr (requires { value.first; }) {
@@ -103,7 +101,7 @@ class ResultVisitor {
   template <typename Enum>
   void word(const ResultField& field, Enum& value, Enum last) {
     std::string name(name_of(value));
-    text(field, name);
+    this->value(field, &name);
     for (int i = 0; i <= static_cast<int>(last); ++i) {
       value = static_cast<Enum>(i);
       if (name_of(value) == name) return;
@@ -112,13 +110,12 @@ class ResultVisitor {
   }
 
  private:
-  template <typename Held, typename Value>
-  void leaf(void (ResultVisitor::*visit)(const ResultField&, Held&), const ResultField& field,
-            Value& value) {
-    Held held(static_cast<Held>(value));
-    (this->*visit)(field, held);
-    if constexpr (std::is_same_v<Value, std::string> || std::is_arithmetic_v<Value>) {
-      if constexpr (!std::is_const_v<Value>) value = static_cast<Value>(held);
+  template <typename Held, typename Given>
+  void leaf(const ResultField& field, Given& given) {
+    Held held(static_cast<Held>(given));
+    value(field, &held);
+    if constexpr (std::is_same_v<Given, std::string> || std::is_arithmetic_v<Given>) {
+      if constexpr (!std::is_const_v<Given>) given = static_cast<Given>(held);
     }
   }
   template <typename Optional>
