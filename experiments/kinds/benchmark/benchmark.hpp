@@ -169,12 +169,6 @@ report::Table benchmark_table(const BenchmarkGrid& grid, const std::vector<Bench
 report::Table success_map(const BenchmarkGrid& grid, const std::vector<BenchmarkCell>& cells);
 /// Heat map of the frequency RMSE over the Cramér–Rao bound; no rows where there is no bound.
 report::Table bound_map(const BenchmarkGrid& grid, const std::vector<BenchmarkCell>& cells);
-/// The cell of a method under a condition; null: nothing of it is finished.
-const BenchmarkCell* find_cell(const std::vector<BenchmarkCell>& cells, std::size_t method,
-                               std::size_t condition);
-/// Cells of one condition, best first; equals in the order of the methods.
-std::vector<const BenchmarkCell*> ranked_cells(const std::vector<BenchmarkCell>& cells,
-                                               std::size_t condition);
 /// One sentence a condition: which methods to use; then which methods fail, where and why.
 std::vector<std::string> conclusion(const BenchmarkGrid& grid,
                                     const std::vector<BenchmarkCell>& cells);

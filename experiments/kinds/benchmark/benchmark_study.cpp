@@ -3,17 +3,6 @@
 namespace modcal {
 namespace {
 
-// Relative frequency errors of the excited modes.
-std::vector<double> errors_of(const CalibrationOutcome& outcome, bool initial) {
-  std::vector<double> errors;
-  for (const CalibratedMode& mode : outcome.result.modes) {
-    if (!mode.excited) continue;
-    const double truth = outcome.true_frequencies[mode.number - 1];
-    errors.push_back(std::abs((initial ? mode.initial_frequency : mode.frequency) / truth - 1.0));
-  }
-  return errors;
-}
-
 double rms(const std::vector<double>& values) {
   double sum = 0.0;
   for (const double value : values) sum += value * value;
@@ -59,12 +48,9 @@ double mean_correlation(const CalibrateOptions& options, const Observation& obse
 
 // The first, the last and evenly spaced ones between.
 std::vector<std::pair<std::int64_t, double>> thinned(const std::vector<TracePoint>& trace) {
-  constexpr std::size_t kMost = 100;
   std::vector<std::pair<std::int64_t, double>> points;
-  const std::size_t count = std::min(trace.size(), kMost);
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t at = count == 1 ? 0 : i * (trace.size() - 1) / (count - 1);
-    points.emplace_back(trace[at].evaluations, trace[at].value);
+  for (const std::size_t i : spread_indices(trace.size(), 100)) {
+    points.emplace_back(trace[i].evaluations, trace[i].value);
   }
   return points;
 }
@@ -77,8 +63,8 @@ BenchmarkOutcome score(const CalibrateOptions& options, const SuccessOptions& su
                            .initial_value = search.initial_value,
                            .value = search.value};
   outcome.truth_value = value_at_truth(options, observation);
-  const std::vector<double> errors = errors_of(calibrated, false);
-  outcome.initial_error = quantile(errors_of(calibrated, true), 0.5);
+  const std::vector<double> errors = frequency_errors(calibrated);
+  outcome.initial_error = quantile(frequency_errors(calibrated, true), 0.5);
   outcome.frequency_error = quantile(errors, 0.5);
   outcome.frequency_rms_error = rms(errors);
   outcome.contact_error = std::abs(calibrated.refined.contact - observation.contact);

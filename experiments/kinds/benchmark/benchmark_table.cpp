@@ -5,6 +5,15 @@
 namespace modcal {
 namespace {
 
+// The cell of a method under a condition; null: nothing of it is finished.
+const BenchmarkCell* find_cell(const std::vector<BenchmarkCell>& cells, std::size_t method,
+                               std::size_t condition) {
+  for (const BenchmarkCell& cell : cells) {
+    if (cell.method == method && cell.condition == condition) return &cell;
+  }
+  return nullptr;
+}
+
 using report::Cell;
 using report::Highlight;
 
@@ -158,16 +167,7 @@ Failures failures_of(const BenchmarkGrid& grid, const std::vector<BenchmarkCell>
   return failures;
 }
 
-}  // namespace
-
-const BenchmarkCell* find_cell(const std::vector<BenchmarkCell>& cells, std::size_t method,
-                               std::size_t condition) {
-  for (const BenchmarkCell& cell : cells) {
-    if (cell.method == method && cell.condition == condition) return &cell;
-  }
-  return nullptr;
-}
-
+// Cells of one condition, best first; equals in the order of the methods.
 std::vector<const BenchmarkCell*> ranked_cells(const std::vector<BenchmarkCell>& cells,
                                                std::size_t condition) {
   std::vector<const BenchmarkCell*> result;
@@ -180,6 +180,8 @@ std::vector<const BenchmarkCell*> ranked_cells(const std::vector<BenchmarkCell>&
   });
   return result;
 }
+
+}  // namespace
 
 report::Table benchmark_table(const BenchmarkGrid& grid, const std::vector<BenchmarkCell>& cells) {
   report::Table table{

@@ -140,6 +140,10 @@ std::string verdict_text(const ModeVerdict& mode);
 /// What a stage's fit says of the priors; empty where none was stated.
 std::string prior_lines(const PriorMisfit& misfit, std::string_view stage);
 
+/// |f_n − true|/true of the excited modes, of the initial model or the refined one; empty without a
+/// truth.
+std::vector<double> frequency_errors(const CalibrationOutcome& outcome, bool initial = false);
+
 /// Objective over the candidates of the first modes, initial, chosen and true value marked (paper,
 /// figs. 13 and 20).
 report::Figure objective_figure(const FigureOptions& options, const CalibrationOutcome& outcome);

@@ -7,27 +7,6 @@ constexpr double kRate = 22050.0;   // [Hz], about: strings have little above ha
 constexpr double kLongest = 1.0;    // [s]: four or eight players share a page of 2 MB
 constexpr double kPassBand = 0.45;  // of the rate that is played
 
-// Thins signals of one record for the players.
-class Thinner {
- public:
-  explicit Thinner(double sample_rate)
-      : rate_(sample_rate),
-        step_(std::max<std::size_t>(1, static_cast<std::size_t>(sample_rate / kRate))) {}
-
-  double played_rate() const { return std::round(rate_ / static_cast<double>(step_)); }
-  std::vector<double> operator()(const std::vector<double>& samples) const {
-    const auto longest = static_cast<std::size_t>(kLongest * rate_);
-    const std::vector<double> first(
-        samples.begin(),
-        samples.begin() + static_cast<std::ptrdiff_t>(std::min(samples.size(), longest)));
-    return low_passed(first, rate_, kPassBand * played_rate(), step_);
-  }
-
- private:
-  double rate_;
-  std::size_t step_;
-};
-
 std::vector<SideIdentification> identified_by(const char* name, const InvertOptions& inversion,
                                               const Observation& observation,
                                               const AssumedModel& refined) {
@@ -40,11 +19,18 @@ std::vector<SideIdentification> identified_by(const char* name, const InvertOpti
 
 report::Audio calibration_audio(const CalibrateOptions& options, const Observation& observation,
                                 const AssumedModel& refined) {
-  const Thinner thinned(observation.sample_rate);
+  const double rate = observation.sample_rate;
+  const auto step = std::max<std::size_t>(1, static_cast<std::size_t>(rate / kRate));
+  const double played = std::round(rate / static_cast<double>(step));
+  const auto thinned = [&](std::span<const double> samples) {
+    const auto longest = static_cast<std::size_t>(kLongest * rate);
+    return low_passed(samples.first(std::min(samples.size(), longest)), rate, kPassBand * played,
+                      step);
+  };
   report::Audio audio{.id = "sound",
                       .title = "Listen to force and string velocity at the contact",
                       .caption = "Each is scaled to its own peak.",
-                      .sample_rate = thinned.played_rate()};
+                      .sample_rate = played};
   std::vector<report::Track> velocities;
   const auto add = [&](const std::string& name, const std::vector<double>& force,
                        const std::vector<double>& velocity) {

@@ -128,14 +128,18 @@ std::string covariance_text(const ContinuationResult& found) {
   return text + "\n  " + condition_text(found.covariance);
 }
 
-double median_relative_error(const CalibrationOutcome& outcome) {
+std::vector<double> frequency_errors(const CalibrationOutcome& outcome, bool initial) {
   std::vector<double> errors;
   for (const CalibratedMode& mode : outcome.result.modes) {
     if (!mode.excited || outcome.true_frequencies.empty()) continue;
     const double truth = outcome.true_frequencies[mode.number - 1];
-    errors.push_back(std::abs(mode.frequency / truth - 1.0));
+    errors.push_back(std::abs((initial ? mode.initial_frequency : mode.frequency) / truth - 1.0));
   }
-  return quantile(std::move(errors), 0.5);
+  return errors;
+}
+
+double median_relative_error(const CalibrationOutcome& outcome) {
+  return quantile(frequency_errors(outcome), 0.5);
 }
 
 void add_calibration_summary(const CalibrationOutcome& outcome, StudyResult& result) {

@@ -190,8 +190,7 @@ std::string summary_line(const LimitSummary& level) {
   return text + "\n";
 }
 
-}  // namespace
-
+// Errors over noise: law, x_c, median frequency, with bound and the paper's method.
 report::Figure limit_figure(const std::vector<LimitSummary>& levels) {
   report::Figure figure{.id = "calibration_limit_figure",
                         .title = "Calibration error against noise",
@@ -228,6 +227,8 @@ report::Figure limit_figure(const std::vector<LimitSummary>& levels) {
       figure);
   return figure;
 }
+
+}  // namespace
 
 void sum_up_limit(const CalibrationLimitOptions& options, const std::vector<LimitLevel>& levels,
                   const StudyContext& context, StudyResult& result) {

@@ -138,7 +138,4 @@ LimitSummary summarize_level(const LimitLevel& level, const LimitTruth& truth,
 /// The law's rows of all levels with noise and runs, pooled.
 std::vector<PooledRow> pooled_rows(const std::vector<LimitSummary>& levels);
 
-/// Errors over noise: law, x_c, median frequency, with bound and the paper's method.
-report::Figure limit_figure(const std::vector<LimitSummary>& levels);
-
 }  // namespace modcal

@@ -32,13 +32,13 @@ ModalBasis law_basis(const PluckThenBowOptions& options, const StiffStringFit& l
   return basis;
 }
 
+namespace {
+
 StiffStringFit law_of_basis(const ModalBasis& basis, std::size_t modes) {
   std::vector<double> frequencies = frequencies_of(basis);
   frequencies.resize(std::min(modes, basis.size()));
   return fit_stiff_string(frequencies);
 }
-
-namespace {
 
 /// The modes of the pluck test; a mode that it missed follows the law of the others.
 ModalBasis plucked_basis(const PluckThenBowOptions& options, const PluckThenBowOutcome& outcome) {
@@ -171,7 +171,6 @@ void take_paper_route(const PluckThenBowOptions& options, const StudyContext& co
   context.throw_if_interrupted();
   outcome.sides = identified(options, outcome.stroke, outcome.stages.back().model);
 }
-
 
 // Median and largest |f_n/f_n(truth) − 1| over the modes the contact excites.
 void set_errors(const Observation& stroke, double excitation_threshold, ModelStage& stage) {

@@ -251,6 +251,22 @@ std::vector<report::Panel> comparison_panels(const std::vector<SweepRow>& rows) 
   return panels;
 }
 
+// Correlation against noise: a panel a side; where several estimators are compared, every estimate
+// in one panel, for the short windows and for the long one.
+report::Figure correlation_figure(const std::string& name, const std::vector<SweepRow>& rows) {
+  const bool compares_estimators = std::any_of(rows.begin(), rows.end(), [](const SweepRow& row) {
+    return row.side != "1" && row.side != "2";
+  });
+  return {.id = name + "_figure",
+          .title = "Correlation of identified and true force against noise",
+          .caption = compares_estimators
+                         ? "Mean with the band from 10 % to 90 % of the draws."
+                         : "Median with the band from 10 % to 90 % of the draws; points: "
+                           "published figures.",
+          .columns = 2,
+          .panels = compares_estimators ? comparison_panels(rows) : side_panels(rows)};
+}
+
 }  // namespace
 
 void sum_up_sweep(const SweepOptions& options, const std::vector<std::string>& axes,
@@ -275,20 +291,6 @@ void sum_up_sweep(const SweepOptions& options, const std::vector<std::string>& a
     result.summary += fmt::format("{} of {} tasks failed; see tasks.csv\n", result.failed_tasks,
                                   tasks.size() + result.pending_tasks);
   }
-}
-
-report::Figure correlation_figure(const std::string& name, const std::vector<SweepRow>& rows) {
-  const bool compares_estimators = std::any_of(rows.begin(), rows.end(), [](const SweepRow& row) {
-    return row.side != "1" && row.side != "2";
-  });
-  return {.id = name + "_figure",
-          .title = "Correlation of identified and true force against noise",
-          .caption = compares_estimators
-                         ? "Mean with the band from 10 % to 90 % of the draws."
-                         : "Median with the band from 10 % to 90 % of the draws; points: "
-                           "published figures.",
-          .columns = 2,
-          .panels = compares_estimators ? comparison_panels(rows) : side_panels(rows)};
 }
 
 }  // namespace modcal
