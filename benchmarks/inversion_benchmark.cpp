@@ -13,7 +13,7 @@
 #include "libinverse/spectral/choices/rules.hpp"
 #include "libinverse/spectral/one_sided/one_sided_inversion.hpp"
 #include "libsim/base/random.hpp"
-#include "libsim/model/damping_laws.hpp"
+#include "libsim/model/damping.hpp"
 
 namespace modcal {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <regex>
 
+#include "experiments/config/help.hpp"
 #include "experiments/config/reader.hpp"
-#include "experiments/config/resolved.hpp"
 
 namespace modcal {
 namespace {
@@ -43,8 +43,8 @@ bool choose_kind(LoadedExperiment& loaded) {
 }
 
 void visit_head(OptionVisitor& visitor, LoadedExperiment& loaded) {
-  visitor.text({.key = "title", .meaning = "title of the report"}, loaded.title);
-  visitor.text({.key = "description", .meaning = "what the experiment is for"}, loaded.description);
+  visitor("title", "title of the report", loaded.title);
+  visitor("description", "what the experiment is for", loaded.description);
 }
 
 bool is_known_mistake(const std::vector<Mistake>& mistakes, const SourcePosition& position) {
@@ -92,7 +92,7 @@ std::string LoadedExperiment::resolved() const {
   LoadedExperiment copy = *this;
   ResolvedWriter writer;
   std::string kind_name = kind;
-  writer.text({.key = "kind", .meaning = "kind of experiment", .choices = {kind_name}}, kind_name);
+  writer("kind", "kind of experiment", {.choices = {kind_name}}, kind_name);
   visit_head(writer, copy);
   copy.choice.visit_options(writer);
   return writer.yaml();

@@ -31,17 +31,13 @@ void require_nothing_known(const ParameterOptions& parameters) {
 
 void CalibrationOptions::visit(OptionVisitor& visitor) {
   // Required where nothing is free by default.
-  visitor.section(
-      {.key = "parameters", .meaning = "what is free", .required = !parameters.frees_any()},
-      parameters);
-  visitor.plugin({.key = "objective", .meaning = "what is minimized"}, objective);
-  visitor.plugin({.key = "optimizer", .meaning = "how it is minimized"}, optimizer);
-  visitor.section({.key = "budget", .meaning = "what the search may spend"}, budget);
-  visitor.number({.key = "excitation_threshold",
-                  .meaning = "modes with a smaller |phi_n(x_c)| are blind and keep their frequency",
-                  .unit = "1",
-                  .range = Range::closed(0.0, 1.0)},
-                 excitation_threshold);
+  visitor("parameters", "what is free", {.required = !parameters.frees_any()}, parameters);
+  visitor("objective", "what is minimized", objective);
+  visitor("optimizer", "how it is minimized", optimizer);
+  visitor("budget", "what the search may spend", budget);
+  visitor("excitation_threshold",
+          "modes with a smaller |phi_n(x_c)| are blind and keep their frequency",
+          {.range = Range::closed(0.0, 1.0)}, excitation_threshold);
   support.visit(visitor);
 }
 

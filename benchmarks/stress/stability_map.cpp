@@ -13,7 +13,7 @@
 
 #include "benchmarks/stress/stress_cell.hpp"
 #include "libsim/dynamics/friction/friction_law.hpp"
-#include "libsim/model/damping_laws.hpp"
+#include "libsim/model/damping.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
 namespace modcal {

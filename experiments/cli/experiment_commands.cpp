@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/cli/build_info.hpp"
+#include "experiments/cli/command.hpp"
 #include "experiments/cli/runner.hpp"
-#include "experiments/cli/terminal.hpp"
 #include "experiments/config/reader.hpp"
 #include "experiments/kinds/calibrate/calibrate.hpp"
 #include "experiments/records/inspection.hpp"

@@ -1,8 +1,7 @@
 #include <cstdio>
 
 #include "experiments/cli/command.hpp"
-#include "experiments/cli/provenance.hpp"
-#include "experiments/cli/terminal.hpp"
+#include "experiments/cli/runner.hpp"
 #include "experiments/config/reader.hpp"
 
 namespace modcal {

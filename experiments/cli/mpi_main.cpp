@@ -4,9 +4,8 @@
 
 #include <cstdio>
 
-#include "experiments/cli/run_folder.hpp"
+#include "experiments/cli/command.hpp"
 #include "experiments/cli/runner.hpp"
-#include "experiments/cli/terminal.hpp"
 
 namespace modcal {
 namespace {

@@ -3,8 +3,8 @@
 #include <thread>
 
 #include "experiments/cli/command.hpp"
-#include "experiments/cli/terminal.hpp"
 #include "experiments/runs/task_experiment.hpp"
+#include "experiments/study/sample.hpp"
 #include "libsim/dynamics/plan.hpp"
 
 namespace modcal {
@@ -21,16 +21,6 @@ struct Price {
 };
 
 double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
-
-struct Mean {
-  double sum = 0.0;
-  std::size_t count = 0;
-  void add(double value) {
-    sum += value;
-    ++count;
-  }
-  double value() const { return count > 0 ? sum / static_cast<double>(count) : 0.0; }
-};
 
 // Checksum, key, number and time of a line of the journal, about.
 constexpr double kJournalOverhead = 70.0;
@@ -49,7 +39,7 @@ Price price_of_tasks(const TaskExperiment& list, std::size_t simulations,
   constexpr double kBudget = 1.0;  // [s] of processor time
   const std::size_t count = list.task_count();
   std::set<std::size_t> done;
-  Mean with_simulation, without, bytes;
+  Sample with_simulation, without, bytes;
   const double start = processor_seconds();
   for (std::size_t k = 0; done.size() < count && processor_seconds() - start < kBudget; ++k) {
     const std::size_t task = k < 4 * count ? spread_index(k, count) : k - 4 * count;
@@ -64,14 +54,15 @@ Price price_of_tasks(const TaskExperiment& list, std::size_t simulations,
   }
   Price price;
   const auto tasks = static_cast<double>(count);
-  if (with_simulation.count > 0 && without.count > 0) {
-    price.core_seconds =
-        tasks * without.value() +
-        static_cast<double>(simulations) * std::max(0.0, with_simulation.value() - without.value());
+  const bool some_new = !with_simulation.values.empty();
+  if (some_new && !without.values.empty()) {
+    price.core_seconds = tasks * without.known_mean() +
+                         static_cast<double>(simulations) *
+                             std::max(0.0, with_simulation.known_mean() - without.known_mean());
   } else {
-    price.core_seconds = tasks * (with_simulation.count > 0 ? with_simulation : without).value();
+    price.core_seconds = tasks * (some_new ? with_simulation : without).known_mean();
   }
-  price.disk_bytes = tasks * bytes.value();
+  price.disk_bytes = tasks * bytes.known_mean();
   price.basis = fmt::format("measured on {} of {} tasks, {:.2g} s", done.size(), count,
                             processor_seconds() - start);
   return price;

@@ -1,11 +1,15 @@
-#include "experiments/cli/run_folder.hpp"
-
+#include <fmt/chrono.h>
+#include <sys/utsname.h>
 #include <unistd.h>
 
 #include <cstring>
 #include <fstream>
 #include <system_error>
+#include <thread>
 
+#include "experiments/cli/build_info.hpp"
+#include "experiments/cli/runner.hpp"
+#include "experiments/config/help.hpp"
 #include "libsim/records/signal_file.hpp"
 
 namespace modcal {
@@ -22,6 +26,56 @@ nlohmann::json read_provenance(const std::filesystem::path& out) {
                     provenance.contains("program") && provenance.contains("command");
   MODCAL_REQUIRE(good, "{}: provenance.json does not say where the run came from", out.string());
   return provenance;
+}
+
+std::string processor() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);) {
+    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
+  }
+  return "unknown";
+}
+
+std::string system_name() {
+  utsname name{};
+  return uname(&name) == 0 ? fmt::format("{} {} {}", name.sysname, name.release, name.machine)
+                           : std::string("unknown");
+}
+
+nlohmann::ordered_json libraries() {
+  nlohmann::ordered_json result = nlohmann::ordered_json::object();
+  for (const auto& [name, version] : kBuildLibraries) result[name] = version;
+  return result;
+}
+
+void collect_seeds(const nlohmann::ordered_json& options, const std::string& prefix,
+                   nlohmann::ordered_json& seeds) {
+  for (const auto& option : options) {
+    const std::string key = option["key"].get<std::string>();
+    if ((key == "seed" || key == "seeds") && option.contains("default")) {
+      seeds[prefix + key] = option["default"];
+    }
+    const bool absent = option["type"] == "optional section" && !option.contains("present");
+    if (option.contains("options") && !absent)
+      collect_seeds(option["options"], prefix + key + ".", seeds);
+  }
+}
+
+void add_seeds(const YamlNode& axes, nlohmann::ordered_json& seeds) {
+  for (const YamlNode::Member& axis : axes.members) {
+    if (axis.key != "seed" && !axis.key.ends_with(".seed")) continue;
+    seeds[axis.key] = nlohmann::ordered_json::array();
+    for (const YamlNode& value : axis.value.items) seeds[axis.key].push_back(value.text);
+  }
+}
+
+void collect_swept_seeds(const YamlNode& root, nlohmann::ordered_json& seeds) {
+  const YamlNode* sweep = root.find("sweep");
+  if (sweep == nullptr) return;
+  if (const YamlNode* product = sweep->find("product")) add_seeds(*product, seeds);
+  if (const YamlNode* zip = sweep->find("zip")) {
+    for (const YamlNode& group : zip->items) add_seeds(group, seeds);
+  }
 }
 
 }  // namespace
@@ -57,6 +111,54 @@ StoredRun::StoredRun(std::filesystem::path out) : out_(std::move(out)) {
                  out_.string(), loaded_.kind);
   finished_.emplace(out_, provenance["program"].get<std::string>());
   outcomes_.emplace(stored_outcomes(*list_, *finished_, folder_));
+}
+
+nlohmann::ordered_json seeds_json(const LoadedExperiment& loaded) {
+  nlohmann::ordered_json seeds = nlohmann::ordered_json::object();
+  Choice<Experiment> choice = loaded.choice;
+  collect_seeds(describe_options([&](OptionVisitor& visitor) { choice.visit_options(visitor); }),
+                "", seeds);
+  collect_swept_seeds(loaded.document.root, seeds);
+  return seeds;
+}
+
+std::string version_text() {
+  return fmt::format("modcal {} (commit {}{})", kBuildVersion, kBuildCommit,
+                     kBuildDirty ? ", with local changes" : "");
+}
+
+std::string program_identity() {
+  std::string identity = fmt::format("modcal {} {}", kBuildVersion, kBuildCommit);
+  if (!kBuildDirty) return identity;
+  const std::filesystem::path self = "/proc/self/exe";
+  return identity + fmt::format(" {} {}", std::filesystem::file_size(self),
+                                std::filesystem::last_write_time(self).time_since_epoch().count());
+}
+
+nlohmann::ordered_json provenance_json(const std::string& command) {
+  const std::time_t now = std::time(nullptr);
+  return {{"version", kBuildVersion},
+          {"commit", kBuildCommit},
+          {"dirty", kBuildDirty},
+          {"program", program_identity()},
+          {"compiler", kBuildCompiler},
+          {"build_type", kBuildType},
+          {"libraries", libraries()},
+          {"processor", processor()},
+          {"hardware_threads", std::thread::hardware_concurrency()},
+          {"system", system_name()},
+          {"command", command},
+          {"time_utc", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now))}};
+}
+
+std::vector<report::ProvenanceLine> provenance_lines(const std::string& command) {
+  std::vector<report::ProvenanceLine> lines;
+  const nlohmann::ordered_json provenance = provenance_json(command);
+  for (const auto& [name, value] : provenance.items()) {
+    if (name == "command") continue;
+    lines.push_back({name, value.is_string() ? value.get<std::string>() : value.dump()});
+  }
+  return lines;
 }
 
 }  // namespace modcal

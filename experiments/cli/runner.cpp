@@ -4,9 +4,7 @@
 
 #include <cstdio>
 
-#include "experiments/cli/provenance.hpp"
-#include "experiments/cli/run_folder.hpp"
-#include "experiments/cli/terminal.hpp"
+#include "experiments/cli/command.hpp"
 #include "libsim/records/record_file.hpp"
 
 namespace modcal {

@@ -2,7 +2,6 @@
 
 #include <cstdio>
 
-#include "experiments/cli/run_folder.hpp"
 #include "experiments/cli/runner.hpp"
 
 namespace modcal {

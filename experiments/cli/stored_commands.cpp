@@ -1,9 +1,8 @@
 // status, merge, report, replay and compare: what is done with the folders that runs have left.
 #include <cstdio>
 
-#include "experiments/cli/run_folder.hpp"
+#include "experiments/cli/command.hpp"
 #include "experiments/cli/runner.hpp"
-#include "experiments/cli/terminal.hpp"
 #include "experiments/runs/results_database.hpp"
 #include "experiments/study/sample.hpp"
 

@@ -10,7 +10,17 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-class Describer final : public ValueVisitor {
+// Type of the values of a list, or of a value that stands alone.
+template <typename Value>
+struct ItemOf {
+  using Type = Value;
+};
+template <typename Item>
+struct ItemOf<std::vector<Item>> {
+  using Type = Item;
+};
+
+class Describer final : public OptionVisitor {
  public:
   Json entries = Json::array();
 
@@ -79,7 +89,7 @@ class Describer final : public ValueVisitor {
   }
 };
 
-class SchemaWriter final : public ValueVisitor {
+class SchemaWriter final : public OptionVisitor {
  public:
   Json properties = Json::object();
   Json required = Json::array();

@@ -7,7 +7,7 @@
 #include <set>
 #include <tuple>
 
-#include "libsim/base/nearest_name.hpp"
+#include "libsim/base/words.hpp"
 
 namespace modcal {
 

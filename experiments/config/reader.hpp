@@ -5,13 +5,13 @@
 #include <map>
 
 #include "experiments/config/document.hpp"
-#include "experiments/config/value_visitor.hpp"
+#include "libsim/base/options.hpp"
 
 namespace modcal {
 
 struct SweepTable;
 
-class YamlReader final : public ValueVisitor {
+class YamlReader final : public OptionVisitor {
  public:
   /// Reads from the map `node`; mistakes are appended to `mistakes`.
   YamlReader(const YamlNode& node, std::vector<Mistake>& mistakes);
@@ -84,9 +84,6 @@ struct ScalarNumber {
 
 /// "30 mm" in "m" is 0.03; a bare number is in the SI unit. "2 %" is allowed for pure numbers.
 ScalarNumber parse_number(std::string_view text, std::string_view si_unit);
-
-/// A leading 0 before another digit: YAML 1.1 reads 010 as 8.
-bool looks_octal(std::string_view text);
 
 // The section "sweep" of an experiment: from axes to cells.
 

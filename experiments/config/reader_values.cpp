@@ -7,11 +7,17 @@
 #include <cmath>
 
 #include "experiments/config/reader.hpp"
-#include "libsim/base/nearest_name.hpp"
 #include "libsim/base/units.hpp"
+#include "libsim/base/words.hpp"
 
 namespace modcal {
 namespace {
+
+// A leading 0 before another digit: YAML 1.1 reads 010 as 8.
+bool looks_octal(std::string_view text) {
+  if (!text.empty() && (text[0] == '-' || text[0] == '+')) text.remove_prefix(1);
+  return text.size() > 1 && text[0] == '0' && text[1] >= '0' && text[1] <= '9';
+}
 
 /// The digits of a number moved by `shift` decimal places: one rounding, as if it had been written
 /// in the SI unit.
@@ -153,11 +159,6 @@ void YamlReader::value(const OptionInfo& info, OptionValue value) {
   const YamlNode* node = take(info);
   if (node == nullptr) return;
   std::visit([&](auto* held) { read(info, *node, *held); }, value);
-}
-
-bool looks_octal(std::string_view text) {
-  if (!text.empty() && (text[0] == '-' || text[0] == '+')) text.remove_prefix(1);
-  return text.size() > 1 && text[0] == '0' && text[1] >= '0' && text[1] <= '9';
 }
 
 ScalarNumber parse_number(std::string_view text, std::string_view si_unit) {

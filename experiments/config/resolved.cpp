@@ -1,5 +1,3 @@
-#include "experiments/config/resolved.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -7,8 +5,22 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "experiments/config/help.hpp"
+
 namespace modcal {
 namespace {
+
+// YAML's double-quoted form, which is JSON's.
+std::string yaml_string(const std::string& text) { return nlohmann::json(text).dump(); }
+
+// Numbers, units and words as they were written; what would not read back so, in quotes.
+std::string flow_scalar(const std::string& text) {
+  const bool plain = !text.empty() && text != "null" && text != "~" &&
+                     text.find_first_of(",[]{}:#&*!|>'\"%@`\n") == std::string::npos;
+  const bool percent = !text.empty() && std::isdigit(static_cast<unsigned char>(text[0])) &&
+                       text.ends_with('%') && text.find_first_of(",[]{}:#\n") == std::string::npos;
+  return plain || percent ? text : yaml_string(text);
+}
 
 template <typename Value>
 std::string text_of(const OptionInfo& info, const Value& value) {
@@ -119,16 +131,6 @@ void ResolvedWriter::sweep(const OptionInfo& info, SweepSlot& slot) {
   maps("exclude", "cells left out", plan.exclude);
   maps("include", "cells added", plan.include);
   --level_;
-}
-
-std::string yaml_string(const std::string& text) { return nlohmann::json(text).dump(); }
-
-std::string flow_scalar(const std::string& text) {
-  const bool plain = !text.empty() && text != "null" && text != "~" &&
-                     text.find_first_of(",[]{}:#&*!|>'\"%@`\n") == std::string::npos;
-  const bool percent = !text.empty() && std::isdigit(static_cast<unsigned char>(text[0])) &&
-                       text.ends_with('%') && text.find_first_of(",[]{}:#\n") == std::string::npos;
-  return plain || percent ? text : yaml_string(text);
 }
 
 std::string flow_text(const YamlNode& node) {

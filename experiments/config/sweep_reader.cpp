@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
+#include "experiments/config/help.hpp"
 #include "experiments/config/reader.hpp"
-#include "experiments/config/resolved.hpp"
 
 namespace modcal {
 namespace {

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "experiments/config/resolved.hpp"
+#include "experiments/config/help.hpp"
 #include "libsim/base/units.hpp"
 #include "libsim/model/string_model.hpp"
 #include "libsim/records/record_file.hpp"
@@ -245,9 +245,9 @@ std::string stanza(const InspectionReport& report) {
   StringModel string{.modes = 0};
   ContactOptions bow;
   ResolvedWriter writer;
-  writer.section({.key = "record", .meaning = "recorded forces"}, record);
-  writer.section({.key = "string", .meaning = "the string"}, string);
-  writer.section({.key = "bow", .meaning = "where the force acts"}, bow);
+  writer("record", "recorded forces", record);
+  writer("string", "the string", string);
+  writer("bow", "where the force acts", bow);
   return "kind: invert\n" + writer.yaml();
 }
 

@@ -6,7 +6,6 @@
 
 #include "libsim/records/levels.hpp"
 #include "libsim/records/recording.hpp"
-#include "libsim/records/sample_faults.hpp"
 
 namespace modcal {
 

@@ -1,5 +1,3 @@
-#include "experiments/report/gnuplot.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <sys/wait.h>
@@ -10,6 +8,7 @@
 #include <iterator>
 #include <system_error>
 
+#include "experiments/report/drawing.hpp"
 #include "experiments/report/encoding.hpp"
 
 namespace modcal::report {

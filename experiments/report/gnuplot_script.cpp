@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/report/drawing.hpp"
 #include "experiments/report/encoding.hpp"
-#include "experiments/report/gnuplot.hpp"
 
 namespace modcal::report {
 namespace {

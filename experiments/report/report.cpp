@@ -3,8 +3,8 @@
 #include <future>
 #include <system_error>
 
+#include "experiments/report/drawing.hpp"
 #include "experiments/report/encoding.hpp"
-#include "experiments/report/gnuplot.hpp"
 #include "experiments/report/html_page.hpp"
 #include "libsim/base/error.hpp"
 

@@ -1,7 +1,6 @@
-#include "experiments/study/end_check.hpp"
-
 #include <cmath>
 
+#include "experiments/study/observation.hpp"
 #include "libinverse/waves/end_relation.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/records/levels.hpp"

@@ -5,12 +5,12 @@
 
 #include <system_error>
 
-#include "experiments/config/value_visitor.hpp"
+#include "libsim/base/options.hpp"
 
 namespace modcal {
 namespace {
 
-class FingerprintWriter final : public ValueVisitor {
+class FingerprintWriter final : public OptionVisitor {
  public:
   std::string line;
 

@@ -10,9 +10,8 @@ constexpr std::size_t kPreparedKept = 8;
 std::string key_of(const AssumedModel& model, const Observation& observation,
                    InversionOptions options) {
   const ModalBasis& basis = model.basis;
-  std::string key = fingerprint([&](OptionVisitor& visitor) {
-    visitor.plugin({.key = "estimator", .meaning = ""}, options.estimator);
-  });
+  std::string key =
+      fingerprint([&](OptionVisitor& visitor) { visitor("estimator", "", options.estimator); });
   const auto add = [&key](double value) { key += fmt::format(" {:a}", value); };
   for (const double value :
        {model.contact, observation.sample_rate, static_cast<double>(observation.samples()),
@@ -60,27 +59,18 @@ InversionCache::Prepared prepare_estimator(const AssumedModel& model,
 }  // namespace
 
 void ScoreOptions::visit(OptionVisitor& visitor) {
-  visitor.numbers(
-      {.key = "windows",
-       .meaning = "starts of the windows in which forces are compared; none: the whole record",
-       .unit = "s",
-       .range = Range::non_negative()},
-      windows);
-  visitor.number({.key = "periods",
-                  .meaning = "length of a window in periods of the fundamental",
-                  .range = Range::positive()},
-                 periods);
-  visitor.numbers({.key = "whole",
-                   .meaning = "start and stop of a long window scored beside the others; none: no "
-                              "such score",
-                   .unit = "s",
-                   .range = Range::non_negative()},
-                  whole);
-  visitor.integer({.key = "oversampling",
-                   .meaning = "rate of the simulated force behind the anti-aliased correlation, in "
-                              "sample rates; 1: no such score",
-                   .range = Range::closed(1, 64)},
-                  oversampling);
+  visitor("windows", "starts of the windows in which forces are compared; none: the whole record",
+          {.unit = "s", .range = Range::non_negative()}, windows);
+  visitor("periods", "length of a window in periods of the fundamental",
+          {.range = Range::positive()}, periods);
+  visitor("whole",
+          "start and stop of a long window scored beside the others; none: no "
+          "such score",
+          {.unit = "s", .range = Range::non_negative()}, whole);
+  visitor("oversampling",
+          "rate of the simulated force behind the anti-aliased correlation, in "
+          "sample rates; 1: no such score",
+          {.range = Range::closed(1, 64)}, oversampling);
 }
 
 void WindowScore::visit(ResultVisitor& visitor) const {

@@ -1,4 +1,5 @@
-#include "experiments/study/end_check.hpp"
+#include "experiments/study/observation.hpp"
+
 #include "experiments/study/identification.hpp"
 #include "libsim/records/told_modes.hpp"
 #include "libsim/signal/statistics.hpp"
@@ -80,13 +81,13 @@ void add_anti_aliased(const ObservationOptions& options, TruthCache& cache,
 std::string truth_key(TruthOptions options, double sample_rate, const OutputRequest& outputs) {
   return fingerprint([&](OptionVisitor& visitor) {
     options.scene.visit(visitor);
-    visitor.plugin({.key = "simulator", .meaning = ""}, options.simulator);
-    visitor.number({.key = "sample_rate", .meaning = ""}, sample_rate);
+    visitor("simulator", "", options.simulator);
+    visitor("sample_rate", "", sample_rate);
     bool flags[] = {outputs.displacement, outputs.velocity, outputs.force, outputs.left_reaction,
                     outputs.right_reaction};
-    for (bool& flag : flags) visitor.flag({.key = "output", .meaning = ""}, flag);
+    for (bool& flag : flags) visitor("output", "", flag);
     double switches_from = outputs.switches_from;
-    visitor.number({.key = "switches_from", .meaning = ""}, switches_from);
+    visitor("switches_from", "", switches_from);
   });
 }
 
@@ -97,15 +98,11 @@ std::shared_ptr<const Truth> TruthCache::get(const TruthOptions& options, double
 }
 
 void ModelErrorOptions::visit(OptionVisitor& visitor) {
-  visitor.number({.key = "frequencies",
-                  .meaning = "largest relative error of the modal frequencies, drawn for each mode",
-                  .range = {0.0, 1.0, true, false}},
-                 frequencies);
-  visitor.number({.key = "damping",
-                  .meaning = "relative error of all damping ratios",
-                  .range = Range::at_least(-1.0)},
-                 damping);
-  visitor.number({.key = "contact", .meaning = "error of the contact point", .unit = "m"}, contact);
+  visitor("frequencies", "largest relative error of the modal frequencies, drawn for each mode",
+          {.range = {0.0, 1.0, true, false}}, frequencies);
+  visitor("damping", "relative error of all damping ratios", {.range = Range::at_least(-1.0)},
+          damping);
+  visitor("contact", "error of the contact point", {.unit = "m"}, contact);
 }
 
 AssumedModel with_errors(const ModalBasis& truth, double contact, const ModelErrorOptions& errors,
@@ -128,18 +125,12 @@ AssumedModel with_errors(const ModalBasis& truth, double contact, const ModelErr
 }
 
 void ObservationOptions::visit(OptionVisitor& visitor) {
-  visitor.optional_group({.key = "scene", .meaning = "simulated truth: string, bow, friction"},
-                         has_scene, [this](OptionVisitor& inner) { truth.scene.visit(inner); });
-  visitor.plugin({.key = "simulator", .meaning = "how the scene is simulated"}, truth.simulator);
-  visitor.section(
-      {.key = "measurement", .meaning = "sampling and noise of the simulated reactions"},
-      measurement);
-  visitor.optional_group({.key = "record", .meaning = "recorded reactions, in place of a scene"},
-                         has_record, [this](OptionVisitor& inner) { record.visit(inner); });
-  visitor.optional_group({.key = "string", .meaning = "the string of a record"}, has_string,
-                         [this](OptionVisitor& inner) { string.visit(inner); });
-  visitor.optional_group({.key = "bow", .meaning = "the bow of a record"}, has_bow,
-                         [this](OptionVisitor& inner) { contact.visit(inner); });
+  visitor("scene", "simulated truth: string, bow, friction", has_scene, truth.scene);
+  visitor("simulator", "how the scene is simulated", truth.simulator);
+  visitor("measurement", "sampling and noise of the simulated reactions", measurement);
+  visitor("record", "recorded reactions, in place of a scene", has_record, record);
+  visitor("string", "the string of a record", has_string, string);
+  visitor("bow", "the bow of a record", has_bow, contact);
 }
 
 void ObservationOptions::require_one_source() const {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "libsim/base/error.hpp"
-#include "libsim/signal/hann.hpp"
+#include "libsim/signal/fft.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {

@@ -168,37 +168,22 @@ std::unique_ptr<const ObjectiveFunction> bind_contact_location(
 }  // namespace
 
 void TwoSidedForceOptions::visit(OptionVisitor& visitor) {
-  visitor.plugin({.key = "regularizer", .meaning = "filter of the inversions that are compared"},
-                 regularizer);
-  visitor.number({.key = "parameter",
-                  .meaning = "regularization parameter, in the unit of the transfer function",
-                  .unit = "1",
-                  .range = Range::non_negative()},
-                 parameter);
-  visitor.flag({.key = "common_filter",
-                .meaning = "filter both forces alike, so that only the model makes a difference"},
-               common_filter);
-  visitor.number({.key = "lowest_frequency",
-                  .meaning = "lower end of the band compared; automatic: half the lowest mode's",
-                  .unit = "Hz",
-                  .range = Range::non_negative(),
-                  .word = "automatic"},
-                 lowest);
-  visitor.number(
-      {.key = "highest_frequency",
-       .meaning = "upper end of the band compared; automatic: 4 % above the highest mode",
-       .unit = "Hz",
-       .range = Range::positive(),
-       .word = "automatic"},
-      highest);
+  visitor("regularizer", "filter of the inversions that are compared", regularizer);
+  visitor("parameter", "regularization parameter, in the unit of the transfer function",
+          {.range = Range::non_negative()}, parameter);
+  visitor("common_filter", "filter both forces alike, so that only the model makes a difference",
+          common_filter);
+  visitor("lowest_frequency", "lower end of the band compared; automatic: half the lowest mode's",
+          {.unit = "Hz", .range = Range::non_negative(), .word = "automatic"}, lowest);
+  visitor("highest_frequency",
+          "upper end of the band compared; automatic: 4 % above the highest mode",
+          {.unit = "Hz", .range = Range::positive(), .word = "automatic"}, highest);
 }
 
 void ForceMismatch::Options::visit(OptionVisitor& visitor) {
   inversion.visit(visitor);
-  visitor.text({.key = "weights",
-                .meaning = "weights of the bins: uniform, or transfer for equal noise in all",
-                .choices = {"uniform", "transfer"}},
-               weights);
+  visitor("weights", "weights of the bins: uniform, or transfer for equal noise in all",
+          {.choices = {"uniform", "transfer"}}, weights);
 }
 
 ForceMismatch::ForceMismatch(const Options& options) : options_(options) {

@@ -68,23 +68,12 @@ void require_positive(const std::vector<double>& values, std::string_view what) 
 }  // namespace
 
 void FrequencyPrior::Options::visit(OptionVisitor& visitor) {
-  visitor.integers({.key = "modes",
-                    .meaning = "numbers of the modes that were measured",
-                    .range = Range::at_least(1),
-                    .required = true},
-                   modes);
-  visitor.numbers({.key = "frequencies",
-                   .meaning = "their frequencies",
-                   .unit = "Hz",
-                   .range = Range::positive(),
-                   .required = true},
-                  frequencies);
-  visitor.numbers({.key = "deviations",
-                   .meaning = "the standard deviations of these",
-                   .unit = "Hz",
-                   .range = Range::positive(),
-                   .required = true},
-                  deviations);
+  visitor("modes", "numbers of the modes that were measured",
+          {.range = Range::at_least(1), .required = true}, modes);
+  visitor("frequencies", "their frequencies",
+          {.unit = "Hz", .range = Range::positive(), .required = true}, frequencies);
+  visitor("deviations", "the standard deviations of these",
+          {.unit = "Hz", .range = Range::positive(), .required = true}, deviations);
 }
 
 FrequencyPrior::FrequencyPrior(const Options& options) : options_(options) {

@@ -140,21 +140,16 @@ class Function final : public ObjectiveFunction {
 }  // namespace
 
 void InnovationMisfit::Options::visit(OptionVisitor& visitor) {
-  visitor.integer({.key = "substeps",
-                   .meaning = "steps of the observer per sample",
-                   .range = Range::closed(1, 64)},
-                  substeps);
-  visitor.integer({.key = "iterations",
-                   .meaning = "steps of the friction's fit in every evaluation; 0: as fitted with "
-                              "the initial model",
-                   .range = Range::closed(0, 50)},
-                  iterations);
-  visitor.number({.key = "force_noise",
-                  .meaning = "noise of the force that the observer allows for, relative to the "
-                             "static friction force",
-                  .unit = "1",
-                  .range = Range::positive()},
-                 force_noise);
+  visitor("substeps", "steps of the observer per sample", {.range = Range::closed(1, 64)},
+          substeps);
+  visitor("iterations",
+          "steps of the friction's fit in every evaluation; 0: as fitted with "
+          "the initial model",
+          {.range = Range::closed(0, 50)}, iterations);
+  visitor("force_noise",
+          "noise of the force that the observer allows for, relative to the "
+          "static friction force",
+          {.range = Range::positive()}, force_noise);
 }
 
 InnovationMisfit::InnovationMisfit(const Options& options) : options_(options) {

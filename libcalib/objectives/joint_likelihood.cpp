@@ -197,12 +197,10 @@ StopReason JointLikelihoodFunction::follow_schedule(Evaluator& evaluator,
 }  // namespace
 
 void JointLikelihood::Options::visit(OptionVisitor& visitor) {
-  visitor.number({.key = "damping",
-                  .meaning = "the records are multiplied by exp(-damping t): wide basins; 0: the "
-                             "whole record, end state projected out",
-                  .unit = "Hz",
-                  .range = Range::non_negative()},
-                 damping);
+  visitor("damping",
+          "the records are multiplied by exp(-damping t): wide basins; 0: the "
+          "whole record, end state projected out",
+          {.unit = "Hz", .range = Range::non_negative()}, damping);
   visit_record_options(visitor, highest_frequency, left_noise, right_noise);
 }
 

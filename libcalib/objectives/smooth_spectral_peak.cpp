@@ -91,16 +91,10 @@ class Function final : public ObjectiveFunction {
 }  // namespace
 
 void SmoothSpectralPeak::Options::visit(OptionVisitor& visitor) {
-  visitor.number({.key = "half_band",
-                  .meaning = "how far the band reaches to either side, relative to f_n",
-                  .unit = "1",
-                  .range = Range::open(0.0, 1.0)},
-                 half_band);
-  visitor.number({.key = "softening",
-                  .meaning = "magnitude below which the force is rounded off, relative to its mean",
-                  .unit = "1",
-                  .range = Range::positive()},
-                 softening);
+  visitor("half_band", "how far the band reaches to either side, relative to f_n",
+          {.range = Range::open(0.0, 1.0)}, half_band);
+  visitor("softening", "magnitude below which the force is rounded off, relative to its mean",
+          {.range = Range::positive()}, softening);
 }
 
 SmoothSpectralPeak::SmoothSpectralPeak(const Options& options) : options_(options) {

@@ -104,11 +104,8 @@ std::unique_ptr<CoordinateScanner> Function::scanner(std::span<const double> x) 
 }  // namespace
 
 void SpectralPeak::Options::visit(OptionVisitor& visitor) {
-  visitor.number({.key = "half_band",
-                  .meaning = "how far the band reaches to either side, relative to f_n",
-                  .unit = "1",
-                  .range = Range::open(0.0, 1.0)},
-                 half_band);
+  visitor("half_band", "how far the band reaches to either side, relative to f_n",
+          {.range = Range::open(0.0, 1.0)}, half_band);
 }
 
 SpectralPeak::SpectralPeak(const Options& options) : options_(options) {

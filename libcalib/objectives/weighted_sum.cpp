@@ -104,18 +104,12 @@ class Function final : public ObjectiveFunction {
 }  // namespace
 
 void WeightedSum::Term::visit(OptionVisitor& visitor) {
-  visitor.number({.key = "weight",
-                  .meaning = "weight of the objective in the sum",
-                  .unit = "1",
-                  .range = Range::positive()},
-                 weight);
-  visitor.plugin({.key = "objective", .meaning = "an objective of the sum", .required = true},
-                 objective);
+  visitor("weight", "weight of the objective in the sum", {.range = Range::positive()}, weight);
+  visitor("objective", "an objective of the sum", {.required = true}, objective);
 }
 
 void WeightedSum::Options::visit(OptionVisitor& visitor) {
-  ListOf<Term> slot(terms);
-  visitor.list({.key = "terms", .meaning = "objectives and their weights", .required = true}, slot);
+  visitor("terms", "objectives and their weights", {.required = true}, terms);
 }
 
 WeightedSum::WeightedSum(const Options& options) : options_(options) {

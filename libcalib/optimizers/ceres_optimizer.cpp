@@ -157,15 +157,10 @@ StopReason convergence_reason(const Summary& summary) {
 }  // namespace
 
 void CeresOptimizer::Options::visit(OptionVisitor& visitor) {
-  visitor.text(
-      {.key = "strategy", .meaning = "trust-region strategy", .choices = names_of(kStrategies)},
-      strategy);
+  visitor("strategy", "trust-region strategy", {.choices = names_of(kStrategies)}, strategy);
   visit_tolerances(visitor, gradient_tolerance, step_tolerance, value_tolerance);
-  visitor.number({.key = "initial_radius",
-                  .meaning = "first radius of the trust region, in scaled variables",
-                  .unit = "1",
-                  .range = Range::positive()},
-                 initial_radius);
+  visitor("initial_radius", "first radius of the trust region, in scaled variables",
+          {.range = Range::positive()}, initial_radius);
 }
 
 CeresOptimizer::CeresOptimizer(const Options& options) : options_(options) {
@@ -195,10 +190,8 @@ StopReason CeresOptimizer::search(Evaluator& evaluator) const {
 }
 
 void CeresLineSearch::Options::visit(OptionVisitor& visitor) {
-  visitor.text({.key = "direction",
-                .meaning = "how the direction of a line search is chosen",
-                .choices = names_of(kDirections)},
-               direction);
+  visitor("direction", "how the direction of a line search is chosen",
+          {.choices = names_of(kDirections)}, direction);
   visit_tolerances(visitor, gradient_tolerance, step_tolerance, value_tolerance);
 }
 

@@ -65,16 +65,10 @@ const Algorithm* find(std::string_view name) {
 std::span<const std::string_view> GslOptimizer::algorithms() { return kNames; }
 
 void GslOptimizer::Options::visit(OptionVisitor& visitor) {
-  visitor.text({.key = "algorithm",
-                .meaning = "GSL's name of the algorithm",
-                .choices = {kNames.begin(), kNames.end()}},
-               algorithm);
+  visitor("algorithm", "GSL's name of the algorithm", {.choices = {kNames.begin(), kNames.end()}},
+          algorithm);
   visit_tolerances(visitor, gradient_tolerance, step_tolerance, value_tolerance);
-  visitor.number({.key = "initial_step",
-                  .meaning = "first step, scaled",
-                  .unit = "1",
-                  .range = Range::positive()},
-                 initial_step);
+  visitor("initial_step", "first step, scaled", {.range = Range::positive()}, initial_step);
 }
 
 GslOptimizer::GslOptimizer(const Options& options) : options_(options) {

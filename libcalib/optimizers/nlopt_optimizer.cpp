@@ -187,28 +187,20 @@ std::span<const std::string_view> NloptOptimizer::algorithms() {
 }
 
 void NloptOptimizer::Options::visit(OptionVisitor& visitor) {
-  visitor.text({.key = "algorithm",
-                .meaning = "NLopt's name of the algorithm; GN and LN ones need no gradient",
-                .choices = {algorithms().begin(), algorithms().end()}},
-               algorithm);
-  visitor.text({.key = "local_algorithm",
-                .meaning = "what MLSL starts from many points; automatic: LN_BOBYQA or LD_LBFGS",
-                .choices = local_choices()},
-               local_algorithm);
+  visitor("algorithm", "NLopt's name of the algorithm; GN and LN ones need no gradient",
+          {.choices = {algorithms().begin(), algorithms().end()}}, algorithm);
+  visitor("local_algorithm", "what MLSL starts from many points; automatic: LN_BOBYQA or LD_LBFGS",
+          {.choices = local_choices()}, local_algorithm);
   const auto number = [&visitor](std::string_view key, std::string_view meaning, Range range,
-                                 double& value) {
-    visitor.number({.key = key, .meaning = meaning, .unit = "1", .range = range}, value);
-  };
+                                 double& value) { visitor(key, meaning, {.range = range}, value); };
   number("step_tolerance", "smallest step, relative to the range of the variables",
          Range::non_negative(), step_tolerance);
   number("value_tolerance", "smallest decrease, relative to the value", Range::non_negative(),
          value_tolerance);
   number("initial_step", "first step, relative to the range of the variables", Range::positive(),
          initial_step);
-  visitor.integer({.key = "seed",
-                   .meaning = "seed of the algorithms that draw random numbers",
-                   .range = Range::at_least(0)},
-                  seed);
+  visitor("seed", "seed of the algorithms that draw random numbers", {.range = Range::at_least(0)},
+          seed);
 }
 
 NloptOptimizer::NloptOptimizer(const Options& options) : options_(options) {

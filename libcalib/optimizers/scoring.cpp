@@ -217,14 +217,11 @@ Eigen::MatrixXd debiased_hessian(const Eigen::MatrixXd& information, const Eigen
 }
 
 void Scoring::Options::visit(OptionVisitor& visitor) {
-  visitor.integer({.key = "steps", .meaning = "most Newton steps", .range = Range::at_least(1)},
-                  steps);
-  visitor.number({.key = "tolerance",
-                  .meaning = "ends where a step would lower minus the log likelihood by half of "
-                             "this: the square of its length in standard deviations",
-                  .unit = "1",
-                  .range = Range::positive()},
-                 tolerance);
+  visitor("steps", "most Newton steps", {.range = Range::at_least(1)}, steps);
+  visitor("tolerance",
+          "ends where a step would lower minus the log likelihood by half of "
+          "this: the square of its length in standard deviations",
+          {.range = Range::positive()}, tolerance);
 }
 
 ScoringFit Scoring::fit(Evaluator& evaluator, const Options& options,

@@ -25,23 +25,16 @@ double& nearest_of(std::vector<double>& candidates, double value) {
 }  // namespace
 
 void ModeByMode::Options::visit(OptionVisitor& visitor) {
-  visitor.integer({.key = "candidates",
-                   .meaning = "candidates per variable and loop",
-                   .range = Range::closed(2, 1000000)},
-                  candidates);
-  visitor.number({.key = "half_range",
-                  .meaning = "how far candidates reach to either side, relative to the variable",
-                  .unit = "1",
-                  .range = Range::open(0.0, 1.0)},
-                 half_range);
-  visitor.integer({.key = "loops",
-                   .meaning = "how often all variables are searched",
-                   .range = Range::closed(1, 1000000)},
-                  loops);
-  visitor.flag({.key = "skip_settled",
-                .meaning = "leave out searches whose answer no longer changes, save in the last "
-                           "loop"},
-               skip_settled);
+  visitor("candidates", "candidates per variable and loop", {.range = Range::closed(2, 1000000)},
+          candidates);
+  visitor("half_range", "how far candidates reach to either side, relative to the variable",
+          {.range = Range::open(0.0, 1.0)}, half_range);
+  visitor("loops", "how often all variables are searched", {.range = Range::closed(1, 1000000)},
+          loops);
+  visitor("skip_settled",
+          "leave out searches whose answer no longer changes, save in the last "
+          "loop",
+          skip_settled);
 }
 
 ModeByMode::ModeByMode(const Options& options) : options_(options) {
@@ -133,10 +126,8 @@ StopReason ModeByMode::search(Evaluator& evaluator) const {
 }
 
 void Grid::Options::visit(OptionVisitor& visitor) {
-  visitor.integer({.key = "points",
-                   .meaning = "grid points per variable, bounds included",
-                   .range = Range::closed(2, 1000000)},
-                  points);
+  visitor("points", "grid points per variable, bounds included",
+          {.range = Range::closed(2, 1000000)}, points);
 }
 
 Grid::Grid(const Options& options) : options_(options) {

@@ -76,11 +76,8 @@ std::span<const double> span_of(const Eigen::VectorXd& vector) {
 
 void TinyLeastSquares::Options::visit(OptionVisitor& visitor) {
   visit_tolerances(visitor, gradient_tolerance, step_tolerance, value_tolerance);
-  visitor.number({.key = "initial_damping",
-                  .meaning = "first damping, relative to the diagonal of the normal equations",
-                  .unit = "1",
-                  .range = Range::positive()},
-                 initial_damping);
+  visitor("initial_damping", "first damping, relative to the diagonal of the normal equations",
+          {.range = Range::positive()}, initial_damping);
 }
 
 TinyLeastSquares::TinyLeastSquares(const Options& options) : options_(options) {

@@ -13,8 +13,7 @@ inline void visit_tolerances(OptionVisitor& visitor, double& gradient, double& s
                              double& value) {
   const auto tolerance = [&visitor](std::string_view key, std::string_view meaning,
                                     double& number) {
-    visitor.number({.key = key, .meaning = meaning, .unit = "1", .range = Range::non_negative()},
-                   number);
+    visitor(key, meaning, {.range = Range::non_negative()}, number);
   };
   tolerance("gradient_tolerance", "largest entry of the scaled gradient at an optimum", gradient);
   tolerance("step_tolerance", "smallest step, relative to the scaled variables", step);

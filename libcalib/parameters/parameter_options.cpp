@@ -11,16 +11,12 @@
 namespace modcal {
 void ParameterRanges::visit(OptionVisitor& visitor) {
   for (const ParameterType& type : parameter_table()) {
-    if (!type.range_option.key.empty()) visitor.number(type.range_option, type.range(*this));
+    if (!type.range_option.key.empty()) visitor.value(type.range_option, &type.range(*this));
     if (type.kind != ParameterKind::kInharmonicity) continue;
-    visitor.number(
-        {.key = "lowest_inharmonicity",
-         .meaning = "smallest B: the estimate of a string without stiffness scatters about "
-                    "0; automatic: half of what the law of the highest mode allows",
-         .unit = "1",
-         .range = Range::closed(-1.0, 0.0),
-         .word = "automatic"},
-        lowest_inharmonicity);
+    visitor("lowest_inharmonicity",
+            "smallest B: the estimate of a string without stiffness scatters about "
+            "0; automatic: half of what the law of the highest mode allows",
+            {.range = Range::closed(-1.0, 0.0), .word = "automatic"}, lowest_inharmonicity);
   }
 }
 
@@ -46,107 +42,72 @@ double ParameterRanges::lowest_of(std::size_t modes) const {
 }
 
 void FixedParameter::visit(OptionVisitor& visitor) {
-  visitor.text({.key = "parameter",
-                .meaning = "f0, B, x_c, f_3 or zeta_3; of a further record: x_c 2",
-                .required = true},
-               parameter);
+  visitor("parameter", "f0, B, x_c, f_3 or zeta_3; of a further record: x_c 2", {.required = true},
+          parameter);
   // The unit is that of the parameter, which stands before it.
-  visitor.number({.key = "value",
-                  .meaning = "the value it is held at, in the unit of the parameter",
-                  .unit = unit_of_parameter(parameter),
-                  .word = "initial"},
-                 value);
+  visitor("value", "the value it is held at, in the unit of the parameter",
+          {.unit = unit_of_parameter(parameter), .word = "initial"}, value);
 }
 
 void ParameterPrior::visit(OptionVisitor& visitor) {
-  visitor.text(
-      {.key = "parameter",
-       .meaning = "f0, B, x_c, f_3, zeta_3, damping, damping_power, gain, delay or corner; "
-                  "of a further record: x_c 2",
-       .required = true},
-      parameter);
+  visitor("parameter",
+          "f0, B, x_c, f_3, zeta_3, damping, damping_power, gain, delay or corner; "
+          "of a further record: x_c 2",
+          {.required = true}, parameter);
   // The unit is that of the parameter, which stands before it.
-  visitor.number({.key = "mean",
-                  .meaning = "mean of the prior, in the unit of the parameter",
-                  .unit = unit_of_parameter(parameter),
-                  .word = "initial"},
-                 mean);
-  visitor.number({.key = "deviation",
-                  .meaning = "standard deviation of the prior, in the unit of the parameter",
-                  .unit = unit_of_parameter(parameter),
-                  .range = Range::positive(),
-                  .required = true},
-                 deviation);
+  visitor("mean", "mean of the prior, in the unit of the parameter",
+          {.unit = unit_of_parameter(parameter), .word = "initial"}, mean);
+  visitor("deviation", "standard deviation of the prior, in the unit of the parameter",
+          {.unit = unit_of_parameter(parameter), .range = Range::positive(), .required = true},
+          deviation);
 }
 
 void PriorCorrelation::visit(OptionVisitor& visitor) {
-  visitor.texts({.key = "between", .meaning = "two parameters that have priors", .required = true},
-                between);
-  visitor.number({.key = "value",
-                  .meaning = "their correlation",
-                  .unit = "1",
-                  .range = Range::open(-1.0, 1.0),
-                  .required = true},
-                 value);
+  visitor("between", "two parameters that have priors", {.required = true}, between);
+  visitor("value", "their correlation", {.range = Range::open(-1.0, 1.0), .required = true}, value);
 }
 
 void UnknownsOptions::visit(OptionVisitor& visitor) {
-  visitor.text({.key = "damping",
-                .meaning = "damping ratios: fixed; one factor of all; factor and power of the mode "
-                           "number; each; auto: each of a record's to the bound, else fixed",
-                .choices = choices_of(kDampingChoices)},
-               damping);
-  visitor.number({.key = "damping_width",
-                  .meaning = "relative standard deviation of the prior of each damping ratio",
-                  .unit = "1",
-                  .range = Range::positive()},
-                 damping_width);
+  visitor("damping",
+          "damping ratios: fixed; one factor of all; factor and power of the mode "
+          "number; each; auto: each of a record's to the bound, else fixed",
+          {.choices = choices_of(kDampingChoices)}, damping);
+  visitor("damping_width", "relative standard deviation of the prior of each damping ratio",
+          {.range = Range::positive()}, damping_width);
   std::vector<std::string> free = free_sensors();
   if (response.free) free.emplace_back("response");
   if (exact_sensors) free.emplace_back("exact");
   std::vector<std::string_view> choices = sensor_names();
   choices.insert(choices.end(), {"response", "exact"});
-  visitor.texts(
-      {.key = "sensors",
-       .meaning = "what is free of the sensor at x = L against that at x = 0, response: a factor "
-                  "that is smooth in frequency; none named: all of a record's, under priors; "
-                  "exact: nothing",
-       .choices = choices},
-      free);
+  visitor("sensors",
+          "what is free of the sensor at x = L against that at x = 0, response: a factor "
+          "that is smooth in frequency; none named: all of a record's, under priors; "
+          "exact: nothing",
+          {.choices = choices}, free);
   const auto named = [&](std::string_view name) {
     return std::find(free.begin(), free.end(), name) != free.end();
   };
   exact_sensors = named("exact");
   response.free = named("response");
   response.visit(visitor);
-  visitor.number({.key = "mains",
-                  .meaning = "frequency of the mains, the amplitudes of whose lines are unknown at "
-                             "either end; 0: there is no hum; automatic: looked for in a record",
-                  .unit = "Hz",
-                  .range = Range::non_negative(),
-                  .word = "automatic"},
-                 mains);
+  visitor("mains",
+          "frequency of the mains, the amplitudes of whose lines are unknown at "
+          "either end; 0: there is no hum; automatic: looked for in a record",
+          {.unit = "Hz", .range = Range::non_negative(), .word = "automatic"}, mains);
   std::vector<std::string_view> own = {"x_c"};
   for (std::size_t i = 0; i < Sensor::kCount; ++i) {
     const ParameterType& type = sensor_type(i);
     sensor[i].free = named(type.name);
     const std::string meaning = fmt::format("{}; of what is free: start", type.meaning);
-    visitor.number({.key = type.name, .meaning = meaning, .unit = type.unit, .range = type.stated},
-                   sensor[i].value);
+    visitor(type.name, meaning, {.unit = type.unit, .range = type.stated}, sensor[i].value);
     own.push_back(type.name);
   }
   own.push_back("damping");
-  visitor.texts({.key = "per_record",
-                 .meaning = "what each stroke or pluck has for itself; the rest is shared by all",
-                 .choices = own},
-                per_record);
-  ListOf<FixedParameter> fixed_slot(fixed);
-  visitor.list({.key = "fixed", .meaning = "parameters that are held at a value"}, fixed_slot);
-  ListOf<ParameterPrior> prior_slot(priors);
-  visitor.list({.key = "priors", .meaning = "Gaussian priors of single parameters"}, prior_slot);
-  ListOf<PriorCorrelation> correlation_slot(correlations);
-  visitor.list({.key = "correlations", .meaning = "correlations of these priors"},
-               correlation_slot);
+  visitor("per_record", "what each stroke or pluck has for itself; the rest is shared by all",
+          {.choices = own}, per_record);
+  visitor("fixed", "parameters that are held at a value", fixed);
+  visitor("priors", "Gaussian priors of single parameters", priors);
+  visitor("correlations", "correlations of these priors", correlations);
 }
 
 std::vector<std::string> UnknownsOptions::free_sensors() const {
@@ -200,23 +161,14 @@ ModelPoint with_fixed(ModelPoint initial, const UnknownsOptions& options) {
 }
 
 void ParameterOptions::visit(OptionVisitor& visitor) {
-  visitor.text({.key = "frequencies",
-                .meaning = "free modal frequencies: none, all, or those of the listed modes",
-                .choices = {"none", "all", "listed"}},
-               frequencies);
-  visitor.integers({.key = "modes",
-                    .meaning = "mode numbers, with frequencies: listed",
-                    .range = Range::at_least(1)},
-                   modes);
-  visitor.flag({.key = "law", .meaning = "free f0 and B of the stiff-string law"}, law);
-  visitor.flag({.key = "contact", .meaning = "free contact location x_c"}, contact);
+  visitor("frequencies", "free modal frequencies: none, all, or those of the listed modes",
+          {.choices = {"none", "all", "listed"}}, frequencies);
+  visitor("modes", "mode numbers, with frequencies: listed", {.range = Range::at_least(1)}, modes);
+  visitor("law", "free f0 and B of the stiff-string law", law);
+  visitor("contact", "free contact location x_c", contact);
   unknowns.visit(visitor);
-  visitor.number({.key = "law_width",
-                  .meaning = "relative width of the prior of f_n about the law",
-                  .unit = "1",
-                  .range = Range::positive(),
-                  .word = "estimated"},
-                 law_width);
+  visitor("law_width", "relative width of the prior of f_n about the law",
+          {.range = Range::positive(), .word = "estimated"}, law_width);
   ranges.visit(visitor);
 }
 

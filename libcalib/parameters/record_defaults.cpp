@@ -9,18 +9,12 @@
 namespace modcal {
 
 void ResponseOptions::visit(OptionVisitor& visitor) {
-  visitor.number({.key = "response_width",
-                  .meaning = "standard deviation of the prior of the response, of its logarithm's "
-                             "real and imaginary part at a knot",
-                  .unit = "1",
-                  .range = Range::positive()},
-                 width);
-  visitor.number({.key = "response_spacing",
-                  .meaning = "between the knots of the response",
-                  .unit = "Hz",
-                  .range = Range::positive(),
-                  .word = "automatic"},
-                 spacing);
+  visitor("response_width",
+          "standard deviation of the prior of the response, of its logarithm's "
+          "real and imaginary part at a knot",
+          {.range = Range::positive()}, width);
+  visitor("response_spacing", "between the knots of the response",
+          {.unit = "Hz", .range = Range::positive(), .word = "automatic"}, spacing);
 }
 
 ResponseOptions ResponseOptions::laid_out(const ModalBasis& basis) const {

@@ -8,21 +8,11 @@
 namespace modcal {
 
 void Budget::visit(OptionVisitor& visitor) {
-  visitor.integer({.key = "evaluations",
-                   .meaning = "evaluations of the objective allowed",
-                   .range = Range::at_least(1)},
-                  evaluations);
-  visitor.number({.key = "seconds",
-                  .meaning = "time after which no evaluation starts",
-                  .unit = "s",
-                  .range = Range::positive(),
-                  .word = "unlimited"},
-                 seconds);
-  visitor.number({.key = "target",
-                  .meaning = "value of the objective at which the search ends",
-                  .unit = "1",
-                  .word = "none"},
-                 target);
+  visitor("evaluations", "evaluations of the objective allowed", {.range = Range::at_least(1)},
+          evaluations);
+  visitor("seconds", "time after which no evaluation starts",
+          {.unit = "s", .range = Range::positive(), .word = "unlimited"}, seconds);
+  visitor("target", "value of the objective at which the search ends", {.word = "none"}, target);
 }
 
 void Budget::require_valid() const {

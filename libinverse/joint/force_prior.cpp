@@ -11,18 +11,13 @@ namespace modcal {
 namespace {
 
 void visit_corner(OptionVisitor& visitor, double& corner) {
-  visitor.number({.key = "corner",
-                  .meaning = "frequency below which the supposed spectrum is flat",
-                  .unit = "Hz",
-                  .range = Range::positive()},
-                 corner);
+  visitor("corner", "frequency below which the supposed spectrum is flat",
+          {.unit = "Hz", .range = Range::positive()}, corner);
 }
 
 void visit_passes(OptionVisitor& visitor, std::int64_t& passes) {
-  visitor.integer({.key = "passes",
-                   .meaning = "how often the spectrum is learned anew from the record",
-                   .range = Range::closed(1, 100)},
-                  passes);
+  visitor("passes", "how often the spectrum is learned anew from the record",
+          {.range = Range::closed(1, 100)}, passes);
 }
 
 // The window slides: a bin enters once and leaves once. Bins far apart in power follow each other,
@@ -174,10 +169,8 @@ void JumpPrior::do_shape(const PriorGrid& grid, std::span<double> variance) cons
 
 void SmoothPrior::Options::visit(OptionVisitor& visitor) {
   visit_corner(visitor, corner);
-  visitor.number({.key = "octaves",
-                  .meaning = "width of the smoothing in octaves",
-                  .range = Range::closed(0.01, 4.0)},
-                 octaves);
+  visitor("octaves", "width of the smoothing in octaves", {.range = Range::closed(0.01, 4.0)},
+          octaves);
   visit_passes(visitor, passes);
 }
 
@@ -195,11 +188,8 @@ void SmoothPrior::do_learn(const PriorGrid& /*grid*/, std::span<double> power,
 
 void LearnedPrior::Options::visit(OptionVisitor& visitor) {
   visit_corner(visitor, corner);
-  visitor.number({.key = "bandwidth",
-                  .meaning = "full width of the smoothing over frequency",
-                  .unit = "Hz",
-                  .range = Range::positive()},
-                 bandwidth);
+  visitor("bandwidth", "full width of the smoothing over frequency",
+          {.unit = "Hz", .range = Range::positive()}, bandwidth);
   visit_passes(visitor, passes);
 }
 

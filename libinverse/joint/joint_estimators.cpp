@@ -228,8 +228,7 @@ class PreparedLimit final : public PreparedJoint {
 
 void JointEstimator::Options::visit(OptionVisitor& visitor) {
   joint.visit(visitor);
-  visitor.plugin({.key = "prior", .meaning = "what is supposed about the spectrum of the force"},
-                 prior);
+  visitor("prior", "what is supposed about the spectrum of the force", prior);
 }
 
 JointEstimator::JointEstimator(const Options& options)
@@ -244,11 +243,8 @@ std::shared_ptr<const PreparedEstimator> JointEstimator::do_prepare(
 
 void LinearLimitEstimator::Options::visit(OptionVisitor& visitor) {
   joint.visit(visitor);
-  visitor.number({.key = "bandwidth",
-                  .meaning = "full width over which the true spectrum is smoothed",
-                  .unit = "Hz",
-                  .range = Range::positive()},
-                 bandwidth);
+  visitor("bandwidth", "full width over which the true spectrum is smoothed",
+          {.unit = "Hz", .range = Range::positive()}, bandwidth);
 }
 
 LinearLimitEstimator::LinearLimitEstimator(const Options& options)

@@ -33,60 +33,41 @@ void JointOptions::require() const {
 }
 
 void JointOptions::visit(OptionVisitor& visitor) {
-  visitor.text({.key = "truncation",
-                .meaning = "what is done about the ends of the record: shifted_contour (at rest at "
-                           "first), transient (any state at either end, unknowns) or wrapped "
-                           "(nothing)",
-                .choices = choices_of(kTruncations)},
-               truncation);
-  visitor.number({.key = "sigma",
-                  .meaning = "contour's distance from the frequency axis; auto: from length, noise "
-                             "and damping, about 2 over the record's length",
-                  .unit = "Hz",
-                  .range = Range::positive(),
-                  .word = "auto"},
-                 sigma);
-  visitor.text({.key = "offset",
-                .meaning = "static level of the sensors; arrival: the mean before the first wave "
-                           "arrives, for records that start at rest",
-                .choices = choices_of(kOffsetRules)},
-               offset);
+  visitor("truncation",
+          "what is done about the ends of the record: shifted_contour (at rest at "
+          "first), transient (any state at either end, unknowns) or wrapped "
+          "(nothing)",
+          {.choices = choices_of(kTruncations)}, truncation);
+  visitor("sigma",
+          "contour's distance from the frequency axis; auto: from length, noise "
+          "and damping, about 2 over the record's length",
+          {.unit = "Hz", .range = Range::positive(), .word = "auto"}, sigma);
+  visitor("offset",
+          "static level of the sensors; arrival: the mean before the first wave "
+          "arrives, for records that start at rest",
+          {.choices = choices_of(kOffsetRules)}, offset);
   for (std::size_t r = 0; r < 2; ++r) {
-    visitor.number({.key = r == 0 ? "noise_rms1" : "noise_rms2",
-                    .meaning = r == 0 ? "noise of one sample of the reaction at x = 0"
-                                      : "noise of one sample of the reaction at x = L",
-                    .unit = "N",
-                    .range = Range::non_negative(),
-                    .word = "measured"},
-                   noise_rms[r]);
+    visitor(r == 0 ? "noise_rms1" : "noise_rms2",
+            r == 0 ? "noise of one sample of the reaction at x = 0"
+                   : "noise of one sample of the reaction at x = L",
+            {.unit = "N", .range = Range::non_negative(), .word = "measured"}, noise_rms[r]);
   }
-  visitor.number({.key = "band_limit",
-                  .meaning = "nothing is identified above this frequency",
-                  .unit = "Hz",
-                  .range = Range::positive(),
-                  .word = "none"},
-                 band_limit);
-  visitor.flag({.key = "limit_to_top_mode",
-                .meaning = "sharp band limit at the highest mode, in place of band_limit"},
-               limit_to_top_mode);
-  visitor.integer({.key = "points",
-                   .meaning = "points on the curve of evidence over the parameter",
-                   .range = Range::closed(3, 1280)},
-                  points);
+  visitor("band_limit", "nothing is identified above this frequency",
+          {.unit = "Hz", .range = Range::positive(), .word = "none"}, band_limit);
+  visitor("limit_to_top_mode", "sharp band limit at the highest mode, in place of band_limit",
+          limit_to_top_mode);
+  visitor("points", "points on the curve of evidence over the parameter",
+          {.range = Range::closed(3, 1280)}, points);
   transfer.visit(visitor);
   for (std::size_t r = 0; r < 2; ++r) {
-    visitor.number(
-        {.key = r == 0 ? "gain1" : "gain2",
-         .meaning = r == 0 ? "gain of the sensor at x = 0" : "gain of the sensor at x = L",
-         .range = Range::positive()},
-        sensors[r].gain);
+    visitor(r == 0 ? "gain1" : "gain2",
+            r == 0 ? "gain of the sensor at x = 0" : "gain of the sensor at x = L",
+            {.range = Range::positive()}, sensors[r].gain);
   }
   for (std::size_t r = 0; r < 2; ++r) {
-    visitor.number(
-        {.key = r == 0 ? "delay1" : "delay2",
-         .meaning = r == 0 ? "delay of the channel of x = 0" : "delay of the channel of x = L",
-         .unit = "s"},
-        sensors[r].delay);
+    visitor(r == 0 ? "delay1" : "delay2",
+            r == 0 ? "delay of the channel of x = 0" : "delay of the channel of x = L",
+            {.unit = "s"}, sensors[r].delay);
   }
 }
 

@@ -90,29 +90,17 @@ class LawNumbers {
 }  // namespace
 
 void PluckOptions::visit(OptionVisitor& visitor) {
-  visitor.number({.key = "highest_frequency",
-                  .meaning = "upper end of the band in which modes are looked for",
-                  .unit = "Hz",
-                  .range = Range::positive()},
-                 highest_frequency);
-  visitor.text({.key = "method",
-                .meaning = "realization alone, or followed by a fit of all damped sinusoids",
-                .choices = {"era", "maximum_likelihood"}},
-               method);
-  visitor.number({.key = "skip",
-                  .meaning = "time left out after the pluck",
-                  .unit = "s",
-                  .range = Range::non_negative()},
-                 skip);
-  visitor.integer({.key = "block_rows",
-                   .meaning = "samples in a column of the Hankel matrix",
-                   .range = Range::closed(2, 5000)},
-                  block_rows);
-  visitor.integer({.key = "columns",
-                   .meaning = "columns of the Hankel matrix, spread over the record",
-                   .range = Range::closed(2, 5000)},
-                  columns);
-  visitor.section({.key = "stabilization", .meaning = "which poles count as modes"}, stabilization);
+  visitor("highest_frequency", "upper end of the band in which modes are looked for",
+          {.unit = "Hz", .range = Range::positive()}, highest_frequency);
+  visitor("method", "realization alone, or followed by a fit of all damped sinusoids",
+          {.choices = {"era", "maximum_likelihood"}}, method);
+  visitor("skip", "time left out after the pluck", {.unit = "s", .range = Range::non_negative()},
+          skip);
+  visitor("block_rows", "samples in a column of the Hankel matrix",
+          {.range = Range::closed(2, 5000)}, block_rows);
+  visitor("columns", "columns of the Hankel matrix, spread over the record",
+          {.range = Range::closed(2, 5000)}, columns);
+  visitor("stabilization", "which poles count as modes", stabilization);
 }
 
 PluckIdentification identify_pluck(const DecayRecord& record, double fundamental,

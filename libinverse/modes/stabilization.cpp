@@ -112,33 +112,18 @@ std::vector<DecayPole> EigensystemRealization::poles(std::size_t order) const {
 }
 
 void StabilizationOptions::visit(OptionVisitor& visitor) {
-  visitor.integer({.key = "lowest_order",
-                   .meaning = "first order of the realizations; two a mode",
-                   .range = Range::closed(2, 1000)},
-                  lowest_order);
-  visitor.integer({.key = "highest_order",
-                   .meaning = "last order of the realizations",
-                   .range = Range::closed(2, 1000)},
-                  highest_order);
-  visitor.number({.key = "frequency_tolerance",
-                  .meaning = "largest relative change of a stable frequency between orders",
-                  .unit = "1",
-                  .range = Range::positive()},
-                 frequency_tolerance);
-  visitor.number({.key = "damping_tolerance",
-                  .meaning = "largest change of a stable damping ratio between orders",
-                  .unit = "1",
-                  .range = Range::positive()},
-                 damping_tolerance);
-  visitor.integer({.key = "required",
-                   .meaning = "orders in a row over which a mode must be stable",
-                   .range = Range::closed(2, 500)},
-                  required);
-  visitor.number({.key = "highest_damping",
-                  .meaning = "damping ratio above which a pole is taken for none",
-                  .unit = "1",
-                  .range = Range::open(0.0, 1.0)},
-                 highest_damping);
+  visitor("lowest_order", "first order of the realizations; two a mode",
+          {.range = Range::closed(2, 1000)}, lowest_order);
+  visitor("highest_order", "last order of the realizations", {.range = Range::closed(2, 1000)},
+          highest_order);
+  visitor("frequency_tolerance", "largest relative change of a stable frequency between orders",
+          {.range = Range::positive()}, frequency_tolerance);
+  visitor("damping_tolerance", "largest change of a stable damping ratio between orders",
+          {.range = Range::positive()}, damping_tolerance);
+  visitor("required", "orders in a row over which a mode must be stable",
+          {.range = Range::closed(2, 500)}, required);
+  visitor("highest_damping", "damping ratio above which a pole is taken for none",
+          {.range = Range::open(0.0, 1.0)}, highest_damping);
 }
 
 std::vector<StabilizationPoint> stabilization_diagram(const EigensystemRealization& realization,

@@ -90,39 +90,24 @@ std::vector<FreeParameter> basic_parameters(double force_scale,
 }
 
 void ModelBasedOptions::visit(OptionVisitor& visitor) {
-  visitor.texts({.key = "laws",
-                 .meaning = "friction laws to fit; of several the best supported one is taken",
-                 .choices = friction_law_names()},
-                laws);
-  visitor.integer({.key = "substeps",
-                   .meaning = "steps of the observer per sample",
-                   .range = Range::closed(1, 64)},
-                  substeps);
-  visitor.integer(
-      {.key = "rounds", .meaning = "rounds of gain search and fit", .range = Range::closed(0, 20)},
-      rounds);
-  visitor.flag(
-      {.key = "adherence_damping", .meaning = "fit the damping of adherence, else critical"},
-      adherence_damping);
-  visitor.integer({.key = "force_knots",
-                   .meaning = "knots of the normal force in time; 0: constant",
-                   .range = Range::closed(0, 200)},
-                  force_knots);
-  visitor.integer({.key = "velocity_knots",
-                   .meaning = "knots of the bow velocity in time; 0: constant",
-                   .range = Range::closed(0, 200)},
-                  velocity_knots);
-  visitor.flag({.key = "delay", .meaning = "fit the delay between the two sensors"}, delay);
-  visitor.flag({.key = "gain", .meaning = "fit the gain ratio of the two sensors"}, gain);
-  visitor.flag({.key = "contact", .meaning = "fit the contact point"}, contact);
-  visitor.flag({.key = "frequencies", .meaning = "fit every modal frequency"}, frequencies);
-  visitor.number({.key = "misfit_limit",
-                  .meaning = "innovation misfit, median over blocks, above which the result warns; "
-                             "auto: by its sampling deviation",
-                  .unit = "1",
-                  .range = Range::positive(),
-                  .word = "auto"},
-                 misfit_limit);
+  visitor("laws", "friction laws to fit; of several the best supported one is taken",
+          {.choices = friction_law_names()}, laws);
+  visitor("substeps", "steps of the observer per sample", {.range = Range::closed(1, 64)},
+          substeps);
+  visitor("rounds", "rounds of gain search and fit", {.range = Range::closed(0, 20)}, rounds);
+  visitor("adherence_damping", "fit the damping of adherence, else critical", adherence_damping);
+  visitor("force_knots", "knots of the normal force in time; 0: constant",
+          {.range = Range::closed(0, 200)}, force_knots);
+  visitor("velocity_knots", "knots of the bow velocity in time; 0: constant",
+          {.range = Range::closed(0, 200)}, velocity_knots);
+  visitor("delay", "fit the delay between the two sensors", delay);
+  visitor("gain", "fit the gain ratio of the two sensors", gain);
+  visitor("contact", "fit the contact point", contact);
+  visitor("frequencies", "fit every modal frequency", frequencies);
+  visitor("misfit_limit",
+          "innovation misfit, median over blocks, above which the result warns; "
+          "auto: by its sampling deviation",
+          {.range = Range::positive(), .word = "auto"}, misfit_limit);
 }
 
 void free_more(const ModelBasedOptions& options, std::span<const std::size_t> modes,

@@ -8,7 +8,7 @@
 #include "libinverse/waves/end_residual.hpp"
 #include "libinverse/waves/tuning.hpp"
 #include "libsim/base/error.hpp"
-#include "libsim/signal/hann.hpp"
+#include "libsim/signal/fft.hpp"
 
 namespace modcal {
 namespace {

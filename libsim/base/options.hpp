@@ -3,15 +3,17 @@
 // writer, the help printer and the schema writer are visitors.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <limits>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <utility>
+#include <variant>
 #include <vector>
-
-#include "libsim/base/sweep.hpp"
 
 namespace modcal {
 
@@ -39,8 +41,8 @@ struct Range {
 
 /// What a visitor needs to know about one option besides its value.
 struct OptionInfo {
-  std::string_view key;
-  std::string_view meaning;
+  std::string_view key = {};
+  std::string_view meaning = {};
   /// SI unit of a number ("m", "kg/m", "N", "s/m", "Hz", "1" for a pure number; a pure number may
   /// also be written in percent).
   std::string_view unit = "1";
@@ -80,31 +82,41 @@ class ListSlot {
   virtual void visit_item(std::size_t index, OptionVisitor& visitor) = 0;
 };
 
-class OptionVisitor {
+// The cells of a sweep: copies of an experiment's options, each read with its own values.
+
+/// One axis of a sweep: the dotted path of an option and the values it takes, as written.
+struct SweepAxis {
+  std::string path;
+  std::vector<std::string> values;
+};
+
+/// Values of some options by their paths, as written.
+using SweepPoint = std::vector<std::pair<std::string, std::string>>;
+
+/// Which cells there are: every combination of the axes of `product` and of the groups of `zip`,
+/// whose axes vary together, without the cells that agree with a point of `exclude`, then the
+/// points of `include`. The last axis varies fastest.
+struct SweepPlan {
+  std::vector<SweepAxis> product;
+  std::vector<std::vector<SweepAxis>> zip;
+  std::vector<SweepPoint> exclude;
+  std::vector<SweepPoint> include;
+};
+
+/// The values of every cell: `values[cell][i]` belongs to `paths[i]`; empty: the experiment's own.
+struct SweepCells {
+  std::vector<std::string> paths;
+  std::vector<std::vector<std::string>> values;
+};
+
+/// The place of a sweep in a configuration.
+class SweepSlot {
  public:
-  using VisitMembers = std::function<void(OptionVisitor&)>;
-
-  virtual ~OptionVisitor() = default;
-  virtual void number(const OptionInfo& info, double& value) = 0;
-  virtual void numbers(const OptionInfo& info, std::vector<double>& values) = 0;
-  virtual void integer(const OptionInfo& info, std::int64_t& value) = 0;
-  virtual void integers(const OptionInfo& info, std::vector<std::int64_t>& values) = 0;
-  virtual void flag(const OptionInfo& info, bool& value) = 0;
-  virtual void text(const OptionInfo& info, std::string& value) = 0;
-  virtual void texts(const OptionInfo& info, std::vector<std::string>& values) = 0;
-  virtual void plugin(const OptionInfo& info, PluginSlot& slot) = 0;
-  virtual void group(const OptionInfo& info, const VisitMembers& visit_members) = 0;
-  /// A section that may be left out; `present` says whether it is there.
-  virtual void optional_group(const OptionInfo& info, bool& present,
-                              const VisitMembers& visit_members) = 0;
-  virtual void list(const OptionInfo& info, ListSlot& slot) = 0;
-  virtual void sweep(const OptionInfo& info, SweepSlot& slot) = 0;
-
-  /// A group whose type has a visit() of its own.
-  template <typename Options>
-  void section(const OptionInfo& info, Options& options) {
-    group(info, [&options](OptionVisitor& visitor) { options.visit(visitor); });
-  }
+  virtual ~SweepSlot() = default;
+  virtual const SweepPlan& plan() const = 0;
+  /// Takes the plan and its cells and makes room for their options.
+  virtual void set_cells(SweepPlan plan, SweepCells cells) = 0;
+  virtual void visit_cell(std::size_t index, OptionVisitor& visitor) = 0;
 };
 
 /// ListSlot over a vector of a type with visit().
@@ -120,6 +132,53 @@ class ListOf final : public ListSlot {
 
  private:
   std::vector<Item>& items_;
+};
+
+/// The value of an option, or the list of values.
+using OptionValue = std::variant<double*, std::int64_t*, bool*, std::string*, std::vector<double>*,
+                                 std::vector<std::int64_t>*, std::vector<std::string>*>;
+
+class OptionVisitor {
+ public:
+  using VisitMembers = std::function<void(OptionVisitor&)>;
+  virtual ~OptionVisitor() = default;
+  virtual void value(const OptionInfo& info, OptionValue value) = 0;
+  virtual void plugin(const OptionInfo& info, PluginSlot& slot) = 0;
+  virtual void group(const OptionInfo& info, const VisitMembers& visit_members) = 0;
+  /// A section that may be left out; `present` says whether it is there.
+  virtual void optional_group(const OptionInfo& info, bool& present,
+                              const VisitMembers& visit_members) = 0;
+  virtual void list(const OptionInfo& info, ListSlot& slot) = 0;
+  virtual void sweep(const OptionInfo& info, SweepSlot& slot) = 0;
+
+  /// One option, by the type of `held`: a number, text, flag or list of them, a plug-in, a section
+  /// (a type with visit()) or a list of sections. `info`: what there is to know beside key and
+  /// meaning.
+  template <typename Held>
+  void operator()(std::string_view key, std::string_view meaning, OptionInfo info, Held& held) {
+    info.key = key;
+    info.meaning = meaning;
+    if constexpr (requires { held.visit(*this); }) {
+      group(info, [&held](OptionVisitor& inner) { held.visit(inner); });
+    } else if constexpr (std::is_base_of_v<PluginSlot, Held>) {
+      plugin(info, held);
+    } else if constexpr (requires { held.front().visit(*this); }) {
+      ListOf items(held);
+      list(info, items);
+    } else {
+      value(info, &held);
+    }
+  }
+  template <typename Held>
+  void operator()(std::string_view key, std::string_view meaning, Held& held) {
+    (*this)(key, meaning, {}, held);
+  }
+  /// A section that may be left out.
+  template <typename Options>
+  void operator()(std::string_view key, std::string_view meaning, bool& present, Options& options) {
+    optional_group({.key = key, .meaning = meaning}, present,
+                   [&options](OptionVisitor& inner) { options.visit(inner); });
+  }
 };
 
 }  // namespace modcal

@@ -2,12 +2,7 @@
 // plug-in, sorted by name.
 #pragma once
 
-#include <memory>
 #include <span>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include "libsim/base/error.hpp"
 #include "libsim/base/options.hpp"

@@ -1,18 +1,13 @@
 #include "libsim/base/units.hpp"
 
-#include <fmt/format.h>
 #include <udunits2.h>
 
-#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <mutex>
-#include <utility>
-#include <vector>
 
-#include "libsim/base/nearest_name.hpp"
-#include "libsim/base/error.hpp"
+#include "libsim/base/words.hpp"
 
 namespace modcal {
 namespace {

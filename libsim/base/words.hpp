@@ -29,4 +29,11 @@ std::vector<std::string_view> choices_of(const std::array<std::string_view, kNam
   return {names.begin(), names.end()};
 }
 
+// "Did you mean …?"
+
+/// The name with the smallest edit distance (Damerau, 1964: a swap of neighbors counts once;
+/// letters' case ignored) from `text`; empty where even that one differs in more than a third of
+/// the letters (but 1 is always allowed).
+std::string nearest_name(std::string_view text, const std::vector<std::string>& names);
+
 }  // namespace modcal

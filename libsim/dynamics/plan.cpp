@@ -1,14 +1,9 @@
 #include "libsim/dynamics/plan.hpp"
 
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-#include <cmath>
 #include <ctime>
-#include <utility>
 
-#include "libsim/base/error.hpp"
 #include "libsim/dynamics/scene/contact_modes.hpp"
 #include "libsim/signal/statistics.hpp"
 

@@ -1,10 +1,6 @@
 // What a simulation leaves out because its scene does not need it, and what it costs.
 #pragma once
 
-#include <cstddef>
-#include <string>
-#include <vector>
-
 #include "libsim/dynamics/scene/simulator.hpp"
 
 namespace modcal {

@@ -1,4 +1,3 @@
-#include <array>
 
 #include "libsim/dynamics/event/modal_event.hpp"
 #include "libsim/dynamics/fixed_step/fixed_step.hpp"

@@ -1,10 +1,6 @@
 // The modes of a string above the highest stated one, as a few modes that answer alike in a band.
 #pragma once
 
-#include <cstddef>
-#include <limits>
-#include <vector>
-
 #include "libsim/model/modal_basis.hpp"
 
 namespace modcal {

@@ -3,8 +3,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "libsim/base/error.hpp"
-
 namespace modcal {
 
 double sine_shape(std::size_t n, double relative_position) {

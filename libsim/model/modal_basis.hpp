@@ -1,10 +1,6 @@
 // The modal model: what simulation, inversion and calibration share.
 #pragma once
 
-#include <cstddef>
-#include <span>
-#include <vector>
-
 #include "libsim/model/string_model.hpp"
 
 namespace modcal {

@@ -1,8 +1,6 @@
 // Kernel of the modal sum: no allocation, instruction set chosen at run time.
 #pragma once
 
-#include <span>
-
 #include "libsim/base/aligned_vector.hpp"
 #include "libsim/model/modal_model.hpp"
 

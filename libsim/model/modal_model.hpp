@@ -1,10 +1,7 @@
 // The modal model of any structure: transfer functions from contacts to sensors.
 #pragma once
 
-#include <cstddef>
 #include <initializer_list>
-#include <span>
-#include <vector>
 
 #include "libsim/signal/fft.hpp"
 
@@ -111,16 +108,16 @@ class ModalSums {
 /// Transfer functions from P contacts to K sensors, one pair (sensor k, contact p) after the other
 /// at index k P + p:
 ///   H(s) = s^p [Σ_n (Re A_n + Im A_n q_n(s))/D_n(s) + c_−2 s^−2 + c_0 + c_2 s²],
-/// q_n = s/ω_n for p = 0, else −ω_n/s: at the resonance s = iω_n the numerator is the modal constant
-/// A_n, whose imaginary part is 0 where damping is proportional, as it is for a string. Units: those
-/// of A_n [sensor's unit/(N s²)]; σ ≥ 0. Where s = 0, H is 0 for p > 0.
+/// q_n = s/ω_n for p = 0, else −ω_n/s: at the resonance s = iω_n the numerator is the modal
+/// constant A_n, whose imaginary part is 0 where damping is proportional, as it is for a string.
+/// Units: those of A_n [sensor's unit/(N s²)]; σ ≥ 0. Where s = 0, H is 0 for p > 0.
 struct ModalModel {
-  std::vector<ModalPole> poles;                ///< N
-  std::vector<SensorKind> sensors;             ///< K
-  std::size_t contacts = 1;                    ///< P
-  std::vector<double> constants;               ///< Re A_n, N of every pair in turn
-  std::vector<double> quadrature;              ///< Im A_n likewise; empty: real, at no cost
-  std::vector<ResidualTerms> residuals;        ///< one a pair; empty: none
+  std::vector<ModalPole> poles;          ///< N
+  std::vector<SensorKind> sensors;       ///< K
+  std::size_t contacts = 1;              ///< P
+  std::vector<double> constants;         ///< Re A_n, N of every pair in turn
+  std::vector<double> quadrature;        ///< Im A_n likewise; empty: real, at no cost
+  std::vector<ResidualTerms> residuals;  ///< one a pair; empty: none
 
   std::size_t pairs() const { return sensors.size() * contacts; }
   double constant(std::size_t pair, std::size_t n) const {

@@ -62,8 +62,8 @@ struct Sensor {
   }
   /// The quantity itself from what the sensor reads, x = y/S: the delay is shifted back (see
   /// advanced()), the high-pass undone as y + corner ∫ y dt by the trapezoidal rule, the bilinear
-  /// transform of (s + corner)/s, `smooth` in the bins of the record. Throws InvalidInput for a delay longer than
-  /// the record.
+  /// transform of (s + corner)/s, `smooth` in the bins of the record. Throws InvalidInput for a
+  /// delay longer than the record.
   std::vector<double> undone(std::span<const double> samples, double sample_rate) const;
 };
 

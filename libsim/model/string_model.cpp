@@ -11,36 +11,19 @@ StringModel StringModel::before_reading() const {
 }
 
 void StringModel::visit(OptionVisitor& visitor) {
-  visitor.number({.key = "length",
-                  .meaning = "vibrating length L",
-                  .unit = "m",
-                  .range = Range::positive(),
-                  .required = true},
-                 length);
-  visitor.number({.key = "linear_density",
-                  .meaning = "mass per length",
-                  .unit = "kg/m",
-                  .range = Range::positive(),
-                  .required = true},
-                 linear_density);
-  visitor.number({.key = "fundamental",
-                  .meaning = "fundamental f0 of the string without stiffness",
-                  .unit = "Hz",
-                  .range = Range::positive(),
-                  .required = true},
-                 fundamental);
-  visitor.number({.key = "inharmonicity",
-                  .meaning = "B of f_n = n f0 sqrt(1 + B n^2)",
-                  .unit = "1",
-                  .range = Range::non_negative()},
-                 inharmonicity);
-  visitor.integer({.key = "modes",
-                   .meaning = "number of modes N; auto, for a record: those below 0.4 sampling "
-                              "rates that stand out of its noise",
-                   .range = Range::closed(1, 5000),
-                   .word = "auto"},
-                  modes);
-  visitor.plugin({.key = "damping", .meaning = "modal damping law"}, damping);
+  visitor("length", "vibrating length L",
+          {.unit = "m", .range = Range::positive(), .required = true}, length);
+  visitor("linear_density", "mass per length",
+          {.unit = "kg/m", .range = Range::positive(), .required = true}, linear_density);
+  visitor("fundamental", "fundamental f0 of the string without stiffness",
+          {.unit = "Hz", .range = Range::positive(), .required = true}, fundamental);
+  visitor("inharmonicity", "B of f_n = n f0 sqrt(1 + B n^2)", {.range = Range::non_negative()},
+          inharmonicity);
+  visitor("modes",
+          "number of modes N; auto, for a record: those below 0.4 sampling "
+          "rates that stand out of its noise",
+          {.range = Range::closed(1, 5000), .word = "auto"}, modes);
+  visitor("damping", "modal damping law", damping);
 }
 
 double stiff_string_frequency(double fundamental, double inharmonicity, std::size_t n) {

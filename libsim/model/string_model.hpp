@@ -1,10 +1,6 @@
 // The string as a user describes it.
 #pragma once
 
-#include <cstdint>
-#include <limits>
-
-#include "libsim/base/options.hpp"
 #include "libsim/base/registry.hpp"
 #include "libsim/model/damping.hpp"
 

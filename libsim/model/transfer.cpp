@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "libsim/base/error.hpp"
 #include "libsim/base/words.hpp"
 
 namespace modcal {
@@ -61,16 +60,14 @@ double cosine_series(double y, double inharmonicity) {
 }  // namespace
 
 void SupportOptions::visit(OptionVisitor& visitor) {
-  visitor.text({.key = "remainder",
-                .meaning = "the modes above the highest stated one; law: they answer as the law of "
-                           "the string has them, none: there are none, auto: law for recorded data",
-                .choices = choices_of(kRemainders)},
-               remainder);
-  visitor.text({.key = "reaction",
-                .meaning = "what the sensors at the ends feel; tension: T dy/dx, support: the "
-                           "bending of a stiff string too, 1 + B n^2 times as much in mode n",
-                .choices = choices_of(kReactions)},
-               reaction);
+  visitor("remainder",
+          "the modes above the highest stated one; law: they answer as the law of "
+          "the string has them, none: there are none, auto: law for recorded data",
+          {.choices = choices_of(kRemainders)}, remainder);
+  visitor("reaction",
+          "what the sensors at the ends feel; tension: T dy/dx, support: the "
+          "bending of a stiff string too, 1 + B n^2 times as much in mode n",
+          {.choices = choices_of(kReactions)}, reaction);
 }
 
 StringSupport SupportOptions::support(bool recorded) const {

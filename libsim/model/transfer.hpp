@@ -2,12 +2,7 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
-#include <span>
-#include <string>
-#include <vector>
 
-#include "libsim/base/options.hpp"
 #include "libsim/model/modal_basis.hpp"
 #include "libsim/model/modal_model.hpp"
 #include "libsim/model/sensor.hpp"

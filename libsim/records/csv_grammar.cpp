@@ -1,7 +1,6 @@
 #include "libsim/records/csv_grammar.hpp"
 
 #include <csv.h>
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -10,7 +9,6 @@
 #include <cstring>
 #include <exception>
 #include <limits>
-#include <utility>
 
 #include "libsim/base/error.hpp"
 

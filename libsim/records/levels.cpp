@@ -6,16 +6,148 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <vector>
 
-#include "libsim/records/runs.hpp"
-#include "libsim/signal/hann.hpp"
+#include "libsim/signal/fft.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+using Samples = std::span<const double>;
+using Fault = std::optional<SampleFault>;
+
+Fault find_extreme_magnitude(Samples samples) {
+  const auto magnitude = [](double a, double b) { return std::abs(a) < std::abs(b); };
+  const auto largest = std::max_element(samples.begin(), samples.end(), magnitude);
+  const double square = *largest * *largest * static_cast<double>(samples.size());
+  if (square >= std::numeric_limits<double>::min() && square < std::numeric_limits<double>::max()) {
+    return std::nullopt;
+  }
+  return SampleFault{
+      static_cast<std::size_t>(largest - samples.begin()),
+      fmt::format("{:g} is the largest magnitude, whose square is outside the range of double "
+                  "precision: no sensor reads that; repair the sample, or state the unit that the "
+                  "numbers have",
+                  *largest)};
+}
+
+Fault find_spike(Samples samples) {
+  if (samples.size() < kShortestNoiseRecord) return std::nullopt;
+  std::vector<double> sorted(samples.begin(), samples.end());
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  const auto farther = [median = *middle](double a, double b) {
+    return std::abs(a - median) < std::abs(b - median);
+  };
+  const auto spike = std::max_element(samples.begin(), samples.end(), farther);
+  const auto index = static_cast<std::size_t>(spike - samples.begin());
+  double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    // An anti-alias filter spreads a spike over its neighbors.
+    if (i + 1 >= index && i <= index + 1) continue;
+    lowest = std::min(lowest, samples[i]);
+    highest = std::max(highest, samples[i]);
+  }
+  const double width = highest - lowest;
+  if (*spike <= highest + width && *spike >= lowest - width) return std::nullopt;
+  return SampleFault{index, fmt::format("{:.6g} stands alone, all others lie between {:.6g} and "
+                                        "{:.6g}: a spike; repair the sample or crop it away",
+                                        *spike, lowest, highest)};
+}
+
+/// Samples at an extreme value and at the next one.
+struct Pile {
+  double value = 0.0, next = 0.0;
+  std::size_t at_value = 0, at_next = 0;
+};
+
+Pile pile_at(Samples samples, bool highest) {
+  const auto [low, high] = std::minmax_element(samples.begin(), samples.end());
+  Pile pile{highest ? *high : *low, highest ? *low : *high};
+  for (const double x : samples) {
+    if (x != pile.value) pile.next = highest ? std::max(pile.next, x) : std::min(pile.next, x);
+  }
+  for (const double x : samples) {
+    pile.at_value += x == pile.value;
+    pile.at_next += x == pile.next;
+  }
+  return pile;
+}
+
+Fault find_clipped(Samples samples) {
+  constexpr double kRoundest = std::numbers::sqrt2 + 1.0;
+  for (const bool highest : {true, false}) {
+    const Pile pile = pile_at(samples, highest);
+    if (!(static_cast<double>(pile.at_value) >
+          2.0 * kRoundest * static_cast<double>(pile.at_next))) {
+      continue;
+    }
+    std::size_t runs = 0, first = 0;
+    for_each_run(samples, [&](const Run& run) {
+      if (samples[run.first] != pile.value || run.count < Clipping::kShortestRun) return;
+      if (runs++ == 0) first = run.first;
+    });
+    if (runs == 0) continue;
+    return SampleFault{
+        first, fmt::format("{} samples, {} run{} of {} or more, are {:.6g}, the {}, and {} the "
+                           "next value {:.6g}: the peaks are clipped; record again with less "
+                           "gain, or crop to a part that is not clipped",
+                           pile.at_value, runs, runs == 1 ? "" : "s", Clipping::kShortestRun,
+                           pile.value, highest ? "largest" : "smallest", pile.at_next, pile.next)};
+  }
+  return std::nullopt;
+}
+
+// Smallest step between values that occur.
+double resolution_of(Samples samples) {
+  std::vector<double> sorted(samples.begin(), samples.end());
+  std::sort(sorted.begin(), sorted.end());
+  double step = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 1; i < sorted.size(); ++i) {
+    if (sorted[i] > sorted[i - 1]) step = std::min(step, sorted[i] - sorted[i - 1]);
+  }
+  return step;
+}
+
+// Whether within two steps of the resolution the signal comes and goes, as where it turns, or as
+// many samples as the run has stay before or behind it, as in silence.
+bool is_signal(Samples samples, const Run& run) {
+  const double reach = 2.0 * resolution_of(samples), level = samples[run.first];
+  const auto quiet = [&](std::size_t first, std::size_t end) {
+    const Samples side = samples.subspan(first, end - first);
+    return std::all_of(side.begin(), side.end(),
+                       [&](double x) { return std::abs(x - level) <= reach; });
+  };
+  const auto before = [&](std::size_t count) {
+    return quiet(run.first - std::min(run.first, count), run.first);
+  };
+  const auto behind = [&](std::size_t count) {
+    return quiet(run.end(), std::min(samples.size(), run.end() + count));
+  };
+  return (before(1) && behind(1)) || before(run.count) || behind(run.count);
+}
+
+Fault find_held(Samples samples, double sample_count) {
+  std::size_t equal = 0;
+  for (std::size_t i = 1; i < samples.size(); ++i) equal += samples[i] == samples[i - 1];
+  const auto [low, high] = std::minmax_element(samples.begin(), samples.end());
+  Fault fault;
+  for_each_run(samples, [&](const Run& run) {
+    const double level = samples[run.first];
+    if (fault || run.count < Clipping::kShortestRun || level == *low || level == *high) return;
+    const double others = sample_count - static_cast<double>(run.count);
+    const double share = (static_cast<double>(equal - (run.count - 1)) + 1.0) / (others + 1.0);
+    const double chance =
+        std::log(sample_count) + static_cast<double>(run.count - 1) * std::log(share);
+    if (!(chance < std::log(1e-9)) || is_signal(samples, run)) return;
+    fault = {run.first, fmt::format("{} samples in a row are {:.6g}: a gap that was filled; crop "
+                                    "to the part before or behind it",
+                                    run.count, level)};
+  });
+  return fault;
+}
 
 }  // namespace
 
@@ -77,6 +209,27 @@ double white_noise_rms(std::span<const double> samples) {
   std::vector<double> power;
   for (std::size_t k = low; k <= high; ++k) power.push_back(std::norm(spectrum[k]));
   return std::sqrt(quantile(std::move(power), 0.5) / std::numbers::ln2);
+}
+
+std::optional<SampleFault> find_fault(std::span<const double> samples) {
+  if (samples.empty()) return std::nullopt;
+  std::size_t first = 1, end = samples.size();
+  while (first < end && samples[first] == samples[0]) ++first;
+  if (first == end && end > 1) {
+    return SampleFault{0, fmt::format("all {} samples are {:g}: the channel is silent; check its "
+                                      "sensor, channel and scale, or leave it out",
+                                      end, samples[0])};
+  }
+  while (end > first && samples[end - 1] == samples.back()) --end;
+  // The last of the silence before and the first of that behind belong to the signal.
+  const Samples signal = samples.subspan(first - 1, std::min(end + 1, samples.size()) - first + 1);
+  Fault fault = find_extreme_magnitude(samples);
+  if (!fault) fault = find_spike(samples);
+  if (fault) return fault;
+  fault = find_clipped(signal);
+  if (!fault) fault = find_held(signal, static_cast<double>(samples.size()));
+  if (fault) fault->first += first - 1;
+  return fault;
 }
 
 }  // namespace modcal

@@ -1,16 +1,9 @@
 // Reads and writes records: CSV files, WAV and the other audio files of libsndfile.
 #pragma once
 
-#include <cstdint>
-#include <filesystem>
-#include <limits>
 #include <span>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "libsim/records/recording.hpp"
-#include "libsim/signal/signal.hpp"
 
 namespace modcal {
 

@@ -1,21 +1,18 @@
-#include <fmt/ranges.h>
+#include "libsim/records/recording.hpp"
 
-#include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <span>
 
-#include "libsim/base/error.hpp"
-#include "libsim/base/nearest_name.hpp"
 #include "libsim/base/units.hpp"
+#include "libsim/base/words.hpp"
 #include "libsim/records/levels.hpp"
 #include "libsim/records/record_file.hpp"
-#include "libsim/records/sample_faults.hpp"
 #include "libsim/records/tuning.hpp"
 #include "libsim/signal/measurement.hpp"
 
 namespace modcal {
+
 namespace {
 
 std::size_t find_channel(const std::vector<std::string>& names, std::string_view text,
@@ -235,6 +232,41 @@ RecordedSignals load_record(const RecordOptions& options, const std::filesystem:
         force_signal(recording.channels[i], roles[i], recording.sample_rate, window, name);
   }
   return signals;
+}
+
+void RecordedForceOptions::visit(OptionVisitor& visitor) {
+  visitor("channel", "column or channel of the file, by name or by number from 1",
+          {.required = true}, channel);
+  visitor("calibration",
+          "force per unit of the column (CSV) or per full scale (WAV), negative "
+          "to turn the sign; \"file\": the file states a unit of force",
+          {.unit = "N", .word = "file"}, calibration);
+  visitor("delay", "lag behind the other channels; it is shifted back", {.unit = "s"}, delay);
+}
+
+void RecordOptions::visit(OptionVisitor& visitor) {
+  visitor("file", "recorded file, relative to the folder of the experiment's file",
+          {.required = true}, file);
+  visitor("format", "format of the file; auto: by its extension",
+          {.choices = {"auto", "csv", "wav"}}, format);
+  visitor("sample_rate", "sample rate; \"file\": the file states it",
+          {.unit = "Hz", .range = Range::positive(), .word = "file"}, sample_rate);
+  const auto force = [&visitor](std::string_view key, std::string_view meaning, bool& present,
+                                RecordedForceOptions& options) {
+    visitor(key, meaning, present, options);
+  };
+  force("left", "reaction at x = 0", has_left, left);
+  force("right", "reaction at x = L", has_right, right);
+  force("reference", "force at the contact, for scoring only", has_reference, reference);
+  visitor("start", "begin of the part that is used, after the first sample",
+          {.unit = "s", .range = Range::non_negative()}, start);
+  visitor("stop", "end of the part that is used, after the first sample",
+          {.unit = "s", .range = Range::positive(), .word = "end"}, stop);
+}
+
+void ContactOptions::visit(OptionVisitor& visitor) {
+  visitor("position", "contact point x_c, from the end x = 0",
+          {.unit = "m", .range = Range::positive(), .required = true}, position);
 }
 
 }  // namespace modcal

@@ -1,14 +1,8 @@
 // A file of sampled channels as it was recorded: numbers in the units of the file.
 #pragma once
 
-#include <cstddef>
 #include <filesystem>
-#include <limits>
 #include <optional>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include "libsim/base/options.hpp"
 #include "libsim/signal/signal.hpp"

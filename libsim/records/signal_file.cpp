@@ -1,6 +1,5 @@
 #include "libsim/records/signal_file.hpp"
 
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>

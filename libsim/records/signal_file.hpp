@@ -1,15 +1,9 @@
 // What writing signals to any kind of file has in common.
 #pragma once
 
-#include <filesystem>
-#include <functional>
 #include <span>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "libsim/records/recording.hpp"
-#include "libsim/signal/signal.hpp"
 
 namespace modcal {
 

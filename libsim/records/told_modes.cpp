@@ -1,14 +1,11 @@
 #include "libsim/records/told_modes.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
-#include "libsim/base/error.hpp"
 #include "libsim/records/levels.hpp"
 #include "libsim/records/tuning.hpp"
-#include "libsim/signal/hann.hpp"
+#include "libsim/signal/fft.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {

@@ -1,9 +1,6 @@
 // How many modes of a string a record can tell.
 #pragma once
 
-#include <cstdint>
-#include <string>
-
 #include "libsim/model/string_model.hpp"
 #include "libsim/records/recording.hpp"
 

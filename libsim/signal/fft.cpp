@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <map>
 #include <mutex>
-#include <utility>
+#include <numbers>
 
 #include "libsim/base/error.hpp"
+#include "libsim/signal/statistics.hpp"
 
 namespace modcal {
 
@@ -109,6 +111,22 @@ void InPlaceFft::inverse(std::span<Complex> memory) const {
 
 double bin_multiplicity(std::size_t k, std::size_t length) {
   return k == 0 || 2 * k == length ? 1.0 : 2.0;
+}
+
+std::vector<Complex> hann_spectrum(std::span<const double> samples) {
+  std::vector<double> windowed(samples.begin(), samples.end());
+  remove_mean(windowed);
+  double energy = 0.0;
+  for (std::size_t j = 0; j < windowed.size(); ++j) {
+    const double turn = static_cast<double>(j) / static_cast<double>(windowed.size());
+    const double weight = 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * turn);
+    windowed[j] *= weight;
+    energy += weight * weight;
+  }
+  std::vector<Complex> spectrum = RealFft(windowed.size()).forward(windowed);
+  const double scale = 1.0 / std::sqrt(energy);
+  for (Complex& bin : spectrum) bin *= scale;
+  return spectrum;
 }
 
 }  // namespace modcal

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <vector>
 
 #include "libsim/base/error.hpp"
 #include "libsim/signal/fft.hpp"
@@ -42,18 +41,11 @@ std::vector<double> shifted_by_phase(const std::vector<double>& samples, double 
 }  // namespace
 
 void Measurement::visit(OptionVisitor& visitor) {
-  visitor.number({.key = "sample_rate",
-                  .meaning = "sampling rate of the recorder",
-                  .unit = "Hz",
-                  .range = Range::positive()},
-                 sample_rate);
-  visitor.number({.key = "noise_level",
-                  .meaning = "noise standard deviation over that of each signal",
-                  .unit = "1",
-                  .range = Range::non_negative()},
-                 noise_level);
-  visitor.flag({.key = "remove_mean", .meaning = "remove the mean, as piezoelectric sensors do"},
-               remove_mean);
+  visitor("sample_rate", "sampling rate of the recorder",
+          {.unit = "Hz", .range = Range::positive()}, sample_rate);
+  visitor("noise_level", "noise standard deviation over that of each signal",
+          {.range = Range::non_negative()}, noise_level);
+  visitor("remove_mean", "remove the mean, as piezoelectric sensors do", remove_mean);
 }
 
 Signal measure(const Signal& signal, const Measurement& measurement, const StreamKey& key) {

@@ -1,9 +1,6 @@
 // What a sensor and its recorder make of a signal.
 #pragma once
 
-#include <span>
-#include <vector>
-
 #include "libsim/base/options.hpp"
 #include "libsim/base/random.hpp"
 #include "libsim/signal/signal.hpp"

@@ -8,7 +8,7 @@
 #include "benchmarks/truth/truth.hpp"
 #include "libcalib/calibration.hpp"
 #include "libcalib/objectives/joint_likelihood.hpp"
-#include "libsim/model/damping_laws.hpp"
+#include "libsim/model/damping.hpp"
 
 namespace modcal {
 namespace {

@@ -161,11 +161,10 @@ std::vector<Finding> lint_fairness(const std::vector<BenchmarkLabels>& tasks,
   std::map<std::string, bool> probed;  // what the answer depends on
   for (const auto& [name, facts] : methods) {
     CalibrationOptions calibration = facts.first.calibration;
-    const std::string key =
-        fingerprint([&](OptionVisitor& visitor) {
-          visitor.plugin({.key = "optimizer", .meaning = ""}, calibration.optimizer);
-        }) +
-        text_of(calibration.budget) + text_of(calibration.parameters);
+    const std::string key = fingerprint([&](OptionVisitor& visitor) {
+                              visitor("optimizer", "", calibration.optimizer);
+                            }) +
+                            text_of(calibration.budget) + text_of(calibration.parameters);
     const auto [place, is_new] = probed.try_emplace(key, false);
     if (!is_new) continue;
     if (is_cut_everywhere(facts.first)) {

@@ -154,15 +154,10 @@ std::string key_of(const CalibrateOptions& options) {
 
 void SuccessOptions::visit(OptionVisitor& visitor) {
   const auto members = [this](OptionVisitor& inner) {
-    inner.number({.key = "frequency_error",
-                  .meaning = "largest median relative frequency error of the excited modes",
-                  .range = Range::positive()},
-                 frequency_error);
-    inner.number({.key = "contact_error",
-                  .meaning = "largest error of the contact point, where it is free",
-                  .unit = "m",
-                  .range = Range::positive()},
-                 contact_error);
+    inner("frequency_error", "largest median relative frequency error of the excited modes",
+          {.range = Range::positive()}, frequency_error);
+    inner("contact_error", "largest error of the contact point, where it is free",
+          {.unit = "m", .range = Range::positive()}, contact_error);
   };
   visitor.group({.key = "success", .meaning = "when a calibration counts as right"}, members);
 }

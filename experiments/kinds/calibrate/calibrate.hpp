@@ -59,13 +59,6 @@ struct PluckRecordOptions {
   ObservationOptions observation(const ObservationOptions& first) const;
 };
 
-/// What is wrong with each pluck, at its own place: plucks that do not fit to the first stroke or
-/// to what is calibrated, a plucking point beyond the string, a decay too short to tell its modes
-/// apart.
-std::vector<Finding> lint_plucks(const std::vector<PluckRecordOptions>& plucks,
-                                 const ObservationOptions& first,
-                                 const CalibrationOptions& calibration);
-
 /// Throws InvalidInput with the first of these.
 void require_plucks(const std::vector<PluckRecordOptions>& plucks, const ObservationOptions& first,
                     const CalibrationOptions& calibration);
@@ -140,10 +133,6 @@ std::string verdict_text(const ModeVerdict& mode);
 /// What a stage's fit says of the priors; empty where none was stated.
 std::string prior_lines(const PriorMisfit& misfit, std::string_view stage);
 
-/// |f_n − true|/true of the excited modes, of the initial model or the refined one; empty without a
-/// truth.
-std::vector<double> frequency_errors(const CalibrationOutcome& outcome, bool initial = false);
-
 /// Objective over the candidates of the first modes, initial, chosen and true value marked (paper,
 /// figs. 13 and 20).
 report::Figure objective_figure(const FigureOptions& options, const CalibrationOutcome& outcome);
@@ -151,6 +140,10 @@ report::Figure objective_figure(const FigureOptions& options, const CalibrationO
 /// 14).
 report::Figure frequency_error_figure(const FigureOptions& options,
                                       const CalibrationOutcome& outcome);
+/// |f_n − true|/true of the excited modes, of the initial model or the refined one; empty without a
+/// truth.
+std::vector<double> frequency_errors(const CalibrationOutcome& outcome, bool initial = false);
+
 /// Median of |f_n − true|/true over the modes that were searched; NaN without a truth.
 double median_relative_error(const CalibrationOutcome& outcome);
 

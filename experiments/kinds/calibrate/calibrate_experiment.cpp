@@ -91,6 +91,40 @@ void lint_simulated(const std::string& path, const PluckRecordOptions& pluck,
   });
 }
 
+// What is wrong with each pluck, at its own place: plucks that do not fit to the first stroke or
+// to what is calibrated, a plucking point beyond the string, a decay too short to tell its modes
+// apart.
+std::vector<Finding> lint_plucks(const std::vector<PluckRecordOptions>& plucks,
+                                 const ObservationOptions& first,
+                                 const CalibrationOptions& calibration) {
+  std::vector<Finding> findings;
+  if (!plucks.empty() && !calibration.by_schedule()) {
+    add_finding(findings, "plucks",
+                "{} plucks are fitted with the stroke by the joint likelihood "
+                "alone: state objective: joint_likelihood, optimizer: staged",
+                plucks.size());
+  }
+  for (std::size_t i = 0; i < plucks.size(); ++i) {
+    const PluckRecordOptions& pluck = plucks[i];
+    const std::string path = fmt::format("plucks.{}", i);
+    if (!pluck.file.empty()) {
+      if (first.has_record) continue;
+      add_finding(findings, path + ".record",
+                  "the recorded pluck {} goes with a recorded stroke: state "
+                  "record, or pluck the string of the scene",
+                  pluck.file);
+    } else if (!first.has_scene) {
+      add_finding(findings, path,
+                  "{} plucks, this one simulated, but there is no scene: name its record",
+                  plucks.size());
+    } else {
+      lint_simulated(path, pluck, first.string_model(), pluck.observation(first).truth.scene,
+                     findings);
+    }
+  }
+  return findings;
+}
+
 }  // namespace
 
 std::vector<Finding> CalibrateOptions::lint() const {
@@ -187,33 +221,23 @@ LimitQuestion CalibrateOptions::limit_question() const {
 
 void visit_pluck(OptionVisitor& visitor, Choice<InitialMotion>& start, double& duration,
                  double& noise_level) {
-  visitor.plugin(
-      {.key = "initial", .meaning = "how a simulated string is plucked; a recorded one needs none"},
-      start);
-  visitor.number({.key = "duration",
-                  .meaning = "length of the simulated free decay",
-                  .unit = "s",
-                  .range = Range::positive()},
-                 duration);
-  visitor.number({.key = "noise_level",
-                  .meaning = "standard deviation of the simulated noise, relative to that of each "
-                             "reaction",
-                  .range = Range::non_negative()},
-                 noise_level);
+  visitor("initial", "how a simulated string is plucked; a recorded one needs none", start);
+  visitor("duration", "length of the simulated free decay",
+          {.unit = "s", .range = Range::positive()}, duration);
+  visitor("noise_level",
+          "standard deviation of the simulated noise, relative to that of each "
+          "reaction",
+          {.range = Range::non_negative()}, noise_level);
 }
 
 void PluckRecordOptions::visit(OptionVisitor& visitor) {
   visit_pluck(visitor, start, duration, noise_level);
-  visitor.number({.key = "sample_rate",
-                  .meaning = "sample rate of the simulated reactions",
-                  .unit = "Hz",
-                  .range = Range::positive()},
-                 sample_rate);
-  visitor.text(
-      {.key = "record",
-       .meaning = "a recorded file in the place of a simulated pluck, with the channels of "
-                  "the stroke's; it begins when the string has been let go"},
-      file);
+  visitor("sample_rate", "sample rate of the simulated reactions",
+          {.unit = "Hz", .range = Range::positive()}, sample_rate);
+  visitor("record",
+          "a recorded file in the place of a simulated pluck, with the channels of "
+          "the stroke's; it begins when the string has been let go",
+          file);
   visit_noise_levels(visitor, left_noise, right_noise);
 }
 
@@ -231,37 +255,6 @@ ObservationOptions PluckRecordOptions::observation(const ObservationOptions& fir
   options.measurement.noise_level = noise_level;
   options.measurement.sample_rate = sample_rate;
   return options;
-}
-
-std::vector<Finding> lint_plucks(const std::vector<PluckRecordOptions>& plucks,
-                                 const ObservationOptions& first,
-                                 const CalibrationOptions& calibration) {
-  std::vector<Finding> findings;
-  if (!plucks.empty() && !calibration.by_schedule()) {
-    add_finding(findings, "plucks",
-                "{} plucks are fitted with the stroke by the joint likelihood "
-                "alone: state objective: joint_likelihood, optimizer: staged",
-                plucks.size());
-  }
-  for (std::size_t i = 0; i < plucks.size(); ++i) {
-    const PluckRecordOptions& pluck = plucks[i];
-    const std::string path = fmt::format("plucks.{}", i);
-    if (!pluck.file.empty()) {
-      if (first.has_record) continue;
-      add_finding(findings, path + ".record",
-                  "the recorded pluck {} goes with a recorded stroke: state "
-                  "record, or pluck the string of the scene",
-                  pluck.file);
-    } else if (!first.has_scene) {
-      add_finding(findings, path,
-                  "{} plucks, this one simulated, but there is no scene: name its record",
-                  plucks.size());
-    } else {
-      lint_simulated(path, pluck, first.string_model(), pluck.observation(first).truth.scene,
-                     findings);
-    }
-  }
-  return findings;
 }
 
 void require_plucks(const std::vector<PluckRecordOptions>& plucks, const ObservationOptions& first,

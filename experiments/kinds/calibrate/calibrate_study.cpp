@@ -6,17 +6,22 @@
 namespace modcal {
 namespace {
 
-void fill_blind(CalibrationOutcome& outcome) {
-  std::vector<bool> excited;
+// 1 of an excited mode, 0 of a blind one.
+std::vector<double> excitation(const CalibrationOutcome& outcome) {
   std::vector<double> weights;
   for (const CalibratedMode& mode : outcome.result.modes) {
-    excited.push_back(mode.excited);
     weights.push_back(mode.excited ? 1.0 : 0.0);
   }
+  return weights;
+}
+
+void fill_blind(CalibrationOutcome& outcome) {
+  const std::vector<double> weights = excitation(outcome);
   const std::vector<double> refined = frequencies_of(outcome.refined.basis);
   outcome.law = fit_stiff_string(refined, weights);
-  outcome.refined.basis =
-      with_frequencies(outcome.refined.basis, fill_unexcited_modes(refined, excited, *outcome.law));
+  outcome.refined.basis = with_frequencies(
+      outcome.refined.basis,
+      fill_unexcited_modes(refined, {weights.begin(), weights.end()}, *outcome.law));
 }
 
 // T = 4 L² f₀² ρ_L: what is stated of a recorded string gives ρ_L and L, the f₀ found the tension.
@@ -25,10 +30,7 @@ void follow_tension(const Observation& observation, CalibrationOutcome& outcome)
   if (const auto& found = outcome.result.continuation) {
     fundamental = found->found_law.fundamental;
   } else {
-    std::vector<double> weights;
-    for (const CalibratedMode& mode : outcome.result.modes) {
-      weights.push_back(mode.excited ? 1.0 : 0.0);
-    }
+    const std::vector<double> weights = excitation(outcome);
     if (std::count(weights.begin(), weights.end(), 1.0) < 2) return;
     fundamental = fit_stiff_string(frequencies_of(outcome.refined.basis), weights).fundamental;
   }
@@ -80,15 +82,12 @@ void add_search_figures(const std::vector<FigureOptions>& figures,
 }  // namespace
 
 void FurtherStrokes::visit(OptionVisitor& visitor) {
-  visitor.numbers({.key = "contacts",
-                   .meaning = "contact points x_c of further simulated strokes",
-                   .unit = "m",
-                   .range = Range::positive()},
-                  contacts);
-  visitor.texts({.key = "records",
-                 .meaning = "further recorded files with the channels of the first; each stroke's "
-                            "contact point is found by itself, started from the bow's"},
-                files);
+  visitor("contacts", "contact points x_c of further simulated strokes",
+          {.unit = "m", .range = Range::positive()}, contacts);
+  visitor("records",
+          "further recorded files with the channels of the first; each stroke's "
+          "contact point is found by itself, started from the bow's",
+          files);
 }
 
 void FurtherStrokes::require_fit_to(const ObservationOptions& first,
@@ -113,26 +112,19 @@ void FurtherStrokes::require_fit_to(const ObservationOptions& first,
 
 void CalibrateOptions::visit(OptionVisitor& visitor) {
   inversion.visit(visitor);
-  visitor.section({.key = "calibration",
-                   .meaning = "what is refined, by which objective and optimizer",
-                   .required = true},
-                  calibration);
-  visitor.section({.key = "further_strokes",
-                   .meaning = "strokes of the same string that are fitted together with the first"},
-                  further);
-  ListOf<PluckRecordOptions> pluck_slot(plucks);
-  visitor.list({.key = "plucks",
-                .meaning = "plucks of the same string that are fitted together with the strokes"},
-               pluck_slot);
-  visitor.flag({.key = "fill_blind_modes",
-                .meaning = "give blind modes the frequencies of the stiff-string law fitted to the "
-                           "others"},
-               fill_blind_modes);
-  visitor.flag(
-      {.key = "audio",
-       .meaning = "players in the report for the true, one-sided and joint force and string "
-                  "velocity"},
-      audio);
+  visitor("calibration", "what is refined, by which objective and optimizer", {.required = true},
+          calibration);
+  visitor("further_strokes", "strokes of the same string that are fitted together with the first",
+          further);
+  visitor("plucks", "plucks of the same string that are fitted together with the strokes", plucks);
+  visitor("fill_blind_modes",
+          "give blind modes the frequencies of the stiff-string law fitted to the "
+          "others",
+          fill_blind_modes);
+  visitor("audio",
+          "players in the report for the true, one-sided and joint force and string "
+          "velocity",
+          audio);
 }
 
 std::vector<double> frequencies_of(const ModalBasis& basis) {

@@ -68,14 +68,11 @@ std::string sentence_of(const IdentifyOutcome& outcome) {
 }  // namespace
 
 void IdentifyOptions::visit(OptionVisitor& visitor) {
-  visitor.section({.key = "scene", .meaning = "string and how it is plucked", .required = true},
-                  truth.scene);
-  visitor.plugin({.key = "simulator", .meaning = "how the scene is simulated"}, truth.simulator);
-  visitor.section({.key = "measurement", .meaning = "sampling and noise of the reactions"},
-                  measurement);
-  visitor.section({.key = "identification", .meaning = "how the modes are found"}, identification);
-  visitor.integer({.key = "seed", .meaning = "key of the noise", .range = Range::non_negative()},
-                  seed);
+  visitor("scene", "string and how it is plucked", {.required = true}, truth.scene);
+  visitor("simulator", "how the scene is simulated", truth.simulator);
+  visitor("measurement", "sampling and noise of the reactions", measurement);
+  visitor("identification", "how the modes are found", identification);
+  visitor("seed", "key of the noise", {.range = Range::non_negative()}, seed);
 }
 
 std::vector<Finding> IdentifyOptions::lint() const {

@@ -2,7 +2,7 @@
 
 #include "experiments/kinds/lint.hpp"
 #include "experiments/report/result.hpp"
-#include "experiments/study/end_check.hpp"
+#include "experiments/study/observation.hpp"
 #include "libinverse/waves/wave_reconstruction.hpp"
 
 namespace modcal {
@@ -25,25 +25,16 @@ constexpr Method kMethods[] = {
 
 void InvertOptions::visit(OptionVisitor& visitor) {
   observation.visit(visitor);
-  visitor.section({.key = "model_error", .meaning = "errors put into the model that inverts"},
-                  model_error);
-  visitor.section({.key = "inversion", .meaning = "how the reactions are inverted"}, inversion);
-  visitor.optional_group(
-      {.key = "model_based",
-       .meaning = "observer with a fitted friction law, beside the linear estimates"},
-      has_model_based, [this](OptionVisitor& inner) { model_based.visit(inner); });
-  visitor.flag({.key = "wave_based",
-                .meaning = "reconstruct the force from the waves of both reactions as well"},
-               wave_based);
-  visitor.section({.key = "score", .meaning = "where identified and true force are compared"},
-                  score);
-  visitor.integer(
-      {.key = "seed", .meaning = "key of noise and model errors", .range = Range::non_negative()},
-      seed);
-  visitor.flag({.key = "write_signals", .meaning = "write the identified signals as CSV"},
-               write_signals);
-  ListOf<FigureOptions> list(figures);
-  visitor.list({.key = "figures", .meaning = "what is drawn"}, list);
+  visitor("model_error", "errors put into the model that inverts", model_error);
+  visitor("inversion", "how the reactions are inverted", inversion);
+  visitor("model_based", "observer with a fitted friction law, beside the linear estimates",
+          has_model_based, model_based);
+  visitor("wave_based", "reconstruct the force from the waves of both reactions as well",
+          wave_based);
+  visitor("score", "where identified and true force are compared", score);
+  visitor("seed", "key of noise and model errors", {.range = Range::non_negative()}, seed);
+  visitor("write_signals", "write the identified signals as CSV", write_signals);
+  visitor("figures", "what is drawn", figures);
 }
 
 std::vector<Finding> lint_inversion(const InvertOptions& options) {

@@ -108,26 +108,17 @@ void lint_start(const CalibrationLimitOptions& options, std::vector<Finding>& fi
 
 void CalibrationLimitOptions::visit(OptionVisitor& visitor) {
   observation.visit(visitor);
-  visitor.section({.key = "model_error",
-                   .meaning = "bounds of the start's errors: uniform, drawn for each seed"},
-                  model_error);
-  visitor.section({.key = "calibration", .meaning = "how the calibration is done"}, calibration);
-  visitor.numbers({.key = "noise_levels",
-                   .meaning = "noise standard deviations over those of the signals",
-                   .range = Range::non_negative()},
-                  noise_levels);
-  visitor.integer({.key = "seeds", .meaning = "noise draws a level", .range = Range::at_least(1)},
-                  seeds);
-  visitor.integer(
-      {.key = "seed", .meaning = "key of noise and starts", .range = Range::non_negative()}, seed);
-  visitor.flag({.key = "known_noise",
-                .meaning = "the calibration is told the noise level, where there is any"},
-               known_noise);
-  visitor.flag({.key = "paper_method", .meaning = "draw the paper's method from the same starts"},
-               paper_method);
-  visitor.optional_group(
-      {.key = "inversion", .meaning = "identify the force with the calibrated model as well"},
-      has_inversion, [this](OptionVisitor& members) { inversion.visit(members); });
+  visitor("model_error", "bounds of the start's errors: uniform, drawn for each seed", model_error);
+  visitor("calibration", "how the calibration is done", calibration);
+  visitor("noise_levels", "noise standard deviations over those of the signals",
+          {.range = Range::non_negative()}, noise_levels);
+  visitor("seeds", "noise draws a level", {.range = Range::at_least(1)}, seeds);
+  visitor("seed", "key of noise and starts", {.range = Range::non_negative()}, seed);
+  visitor("known_noise", "the calibration is told the noise level, where there is any",
+          known_noise);
+  visitor("paper_method", "draw the paper's method from the same starts", paper_method);
+  visitor("inversion", "identify the force with the calibrated model as well", has_inversion,
+          inversion);
 }
 
 CalibrationLimitExperiment::CalibrationLimitExperiment(Options options)

@@ -11,23 +11,21 @@ void lint_axis(const std::string& path, const MapAxis& axis, std::vector<Finding
               axis.lowest, axis.highest);
 }
 
+// Simulates one cell. Throws InvalidInput where it cannot be done.
+CellOutcome run_map_cell(const SchellengOptions& options, std::size_t cell, const StopToken& stop) {
+  const Scene scene = options.cell_scene(cell);
+  const Simulation simulation =
+      options.simulator.make()->simulate(scene, options.sample_rate, options.outputs(), stop);
+  return judge_cell(scene, simulation, options.criteria);
+}
+
 }  // namespace
 
 void MapAxis::visit(OptionVisitor& visitor) {
-  visitor.number({.key = "lowest",
-                  .meaning = "lower end of the axis",
-                  .unit = unit,
-                  .range = Range::positive()},
-                 lowest);
-  visitor.number({.key = "highest",
-                  .meaning = "upper end of the axis",
-                  .unit = unit,
-                  .range = Range::positive()},
-                 highest);
-  visitor.integer({.key = "count",
-                   .meaning = "cells between them, in equal ratios",
-                   .range = Range::closed(1, 10000)},
-                  count);
+  visitor("lowest", "lower end of the axis", {.unit = unit, .range = Range::positive()}, lowest);
+  visitor("highest", "upper end of the axis", {.unit = unit, .range = Range::positive()}, highest);
+  visitor("count", "cells between them, in equal ratios", {.range = Range::closed(1, 10000)},
+          count);
 }
 
 std::vector<double> MapAxis::edges() const {
@@ -45,25 +43,18 @@ double MapAxis::center(std::size_t index) const {
 }
 
 void SchellengOptions::visit(OptionVisitor& visitor) {
-  visitor.section({.key = "scene",
-                   .meaning = "string, bow, friction; position and force of the bow are the map's",
-                   .required = true},
-                  scene);
-  visitor.plugin({.key = "simulator", .meaning = "how the cells are simulated"}, simulator);
-  visitor.number({.key = "sample_rate",
-                  .meaning = "rate at which the velocity of the contact is sampled",
-                  .unit = "Hz",
-                  .range = Range::positive()},
-                 sample_rate);
-  visitor.section({.key = "positions", .meaning = "bow positions x_c/L, from the end x = 0"},
-                  positions);
-  visitor.section({.key = "forces", .meaning = "normal forces of the bow"}, forces);
-  visitor.text({.key = "start",
-                .meaning = "motion at t = 0: helmholtz (which motion is kept up) or rest (which "
-                           "motion is reached)",
-                .choices = {"helmholtz", "rest"}},
-               start);
-  visitor.section({.key = "criteria", .meaning = "where the regimes part"}, criteria);
+  visitor("scene", "string, bow, friction; position and force of the bow are the map's",
+          {.required = true}, scene);
+  visitor("simulator", "how the cells are simulated", simulator);
+  visitor("sample_rate", "rate at which the velocity of the contact is sampled",
+          {.unit = "Hz", .range = Range::positive()}, sample_rate);
+  visitor("positions", "bow positions x_c/L, from the end x = 0", positions);
+  visitor("forces", "normal forces of the bow", forces);
+  visitor("start",
+          "motion at t = 0: helmholtz (which motion is kept up) or rest (which "
+          "motion is reached)",
+          {.choices = {"helmholtz", "rest"}}, start);
+  visitor("criteria", "where the regimes part", criteria);
 }
 
 Scene SchellengOptions::cell_scene(std::size_t cell) const {
@@ -92,13 +83,6 @@ CellOutcome judge_cell(const Scene& scene, const Simulation& simulation,
   outcome.features = regime_features(scene, simulation, criteria);
   outcome.regime = classify(outcome.features, criteria);
   return outcome;
-}
-
-CellOutcome run_map_cell(const SchellengOptions& options, std::size_t cell, const StopToken& stop) {
-  const Scene scene = options.cell_scene(cell);
-  const Simulation simulation =
-      options.simulator.make()->simulate(scene, options.sample_rate, options.outputs(), stop);
-  return judge_cell(scene, simulation, options.criteria);
 }
 
 void CellOutcome::visit(ResultVisitor& visitor) {
@@ -180,9 +164,9 @@ std::string SchellengExperiment::fingerprint(std::size_t task,
   Scene scene = options_.cell_scene(task);
   return "schelleng " + modcal::fingerprint([&](OptionVisitor& visitor) {
            scene.visit(visitor);
-           visitor.plugin({.key = "simulator", .meaning = ""}, o.simulator);
-           visitor.number({.key = "sample_rate", .meaning = ""}, o.sample_rate);
-           visitor.text({.key = "start", .meaning = ""}, o.start);
+           visitor("simulator", "", o.simulator);
+           visitor("sample_rate", "", o.sample_rate);
+           visitor("start", "", o.start);
            o.criteria.visit(visitor);
          });
 }

@@ -53,8 +53,6 @@ struct CellOutcome {
 
 CellOutcome judge_cell(const Scene& scene, const Simulation& simulation,
                        const RegimeCriteria& criteria);
-/// Simulates one cell. Throws InvalidInput where it cannot be done.
-CellOutcome run_map_cell(const SchellengOptions& options, std::size_t cell, const StopToken& stop);
 
 using CellOutcomes = std::vector<std::optional<CellOutcome>>;  ///< nullopt: not run yet
 

@@ -4,7 +4,7 @@
 
 #include "experiments/kinds/calibrate/calibrate.hpp"
 #include "experiments/kinds/identify/identify.hpp"
-#include "libsim/model/damping_fit.hpp"
+#include "libsim/model/damping.hpp"
 
 namespace modcal {
 
@@ -112,7 +112,6 @@ void add_bound_stages(const PluckThenBowOptions& options, const StudyContext& co
 /// A basis of `modes` modes that follow the law, damped by the polynomial.
 ModalBasis law_basis(const PluckThenBowOptions& options, const StiffStringFit& law,
                      const DampingFit& damping, std::size_t modes);
-StiffStringFit law_of_basis(const ModalBasis& basis, std::size_t modes);
 DampingFit damping_of(const PluckIdentification& found, std::int64_t degree);
 
 std::vector<report::Figure> pluck_then_bow_figures(const PluckThenBowOptions& options,

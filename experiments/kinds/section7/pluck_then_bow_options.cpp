@@ -5,74 +5,48 @@ namespace modcal {
 
 void PluckTestOptions::visit(OptionVisitor& visitor) {
   visit_pluck(visitor, start, duration, noise_level);
-  visitor.section({.key = "identification", .meaning = "how its modes are found"}, identification);
-  visitor.integer({.key = "damping_degree",
-                   .meaning = "degree of the polynomial that extrapolates the damping ratios",
-                   .range = Range::closed(0, 4)},
-                  damping_degree);
+  visitor("identification", "how its modes are found", identification);
+  visitor("damping_degree", "degree of the polynomial that extrapolates the damping ratios",
+          {.range = Range::closed(0, 4)}, damping_degree);
 }
 
 void RefinementOptions::visit(OptionVisitor& visitor) {
-  visitor.integer({.key = "first_modes",
-                   .meaning = "plucked modes that are refined before the first law is fitted",
-                   .range = Range::closed(2, 1000)},
-                  first_modes);
-  visitor.integer({.key = "law_modes",
-                   .meaning = "modes that the first law is fitted to; those beyond first_modes as "
-                              "plucked",
-                   .range = Range::closed(2, 1000)},
-                  law_modes);
-  visitor.plugin({.key = "objective", .meaning = "what is minimized"}, objective);
-  visitor.plugin({.key = "optimizer", .meaning = "how it is minimized"}, optimizer);
-  visitor.section({.key = "budget", .meaning = "what each search may spend"}, budget);
-  visitor.number({.key = "excitation_threshold",
-                  .meaning = "modes with a smaller |phi_n(x_c)| get their frequency from the law",
-                  .range = Range::closed(0.0, 1.0)},
-                 excitation_threshold);
+  visitor("first_modes", "plucked modes that are refined before the first law is fitted",
+          {.range = Range::closed(2, 1000)}, first_modes);
+  visitor("law_modes",
+          "modes that the first law is fitted to; those beyond first_modes as "
+          "plucked",
+          {.range = Range::closed(2, 1000)}, law_modes);
+  visitor("objective", "what is minimized", objective);
+  visitor("optimizer", "how it is minimized", optimizer);
+  visitor("budget", "what each search may spend", budget);
+  visitor("excitation_threshold",
+          "modes with a smaller |phi_n(x_c)| get their frequency from the law",
+          {.range = Range::closed(0.0, 1.0)}, excitation_threshold);
 }
 
 void ContactSearchOptions::visit(OptionVisitor& visitor) {
-  visitor.number({.key = "start",
-                  .meaning = "contact point as measured on the string",
-                  .unit = "m",
-                  .range = Range::positive(),
-                  .required = true},
-                 start);
-  visitor.number({.key = "range",
-                  .meaning = "how far the search reaches to either side",
-                  .unit = "m",
-                  .range = Range::positive()},
-                 range);
-  visitor.integer({.key = "points",
-                   .meaning = "points of the curve that brackets the minimum",
-                   .range = Range::closed(5, 100000)},
-                  points);
-  visitor.plugin({.key = "objective", .meaning = "what is minimized"}, objective);
+  visitor("start", "contact point as measured on the string",
+          {.unit = "m", .range = Range::positive(), .required = true}, start);
+  visitor("range", "how far the search reaches to either side",
+          {.unit = "m", .range = Range::positive()}, range);
+  visitor("points", "points of the curve that brackets the minimum",
+          {.range = Range::closed(5, 100000)}, points);
+  visitor("objective", "what is minimized", objective);
 }
 
 void PluckThenBowOptions::visit(OptionVisitor& visitor) {
-  visitor.section({.key = "scene", .meaning = "string and bow stroke", .required = true},
-                  truth.scene);
-  visitor.plugin({.key = "simulator", .meaning = "how pluck and stroke are simulated"},
-                 truth.simulator);
-  visitor.section({.key = "measurement", .meaning = "sampling and noise of the stroke"},
-                  measurement);
-  visitor.section({.key = "pluck", .meaning = "pluck test before the stroke", .required = true},
-                  pluck);
-  visitor.section({.key = "refinement", .meaning = "search of the frequencies on the stroke"},
-                  refinement);
-  visitor.section({.key = "contact", .meaning = "search of the contact point", .required = true},
-                  contact);
-  visitor.optional_group(
-      {.key = "bound", .meaning = "calibrate to the bound from the same pluck test, too"},
-      has_bound, [this](OptionVisitor& members) { bound.visit(members); });
-  visitor.section({.key = "inversion", .meaning = "how the reactions are inverted"}, inversion);
-  visitor.section({.key = "score", .meaning = "where identified and true force are compared"},
-                  score);
-  visitor.integer({.key = "seed", .meaning = "key of the noise", .range = Range::non_negative()},
-                  seed);
-  ListOf<FigureOptions> list(figures);
-  visitor.list({.key = "figures", .meaning = "what is drawn of the identification"}, list);
+  visitor("scene", "string and bow stroke", {.required = true}, truth.scene);
+  visitor("simulator", "how pluck and stroke are simulated", truth.simulator);
+  visitor("measurement", "sampling and noise of the stroke", measurement);
+  visitor("pluck", "pluck test before the stroke", {.required = true}, pluck);
+  visitor("refinement", "search of the frequencies on the stroke", refinement);
+  visitor("contact", "search of the contact point", {.required = true}, contact);
+  visitor("bound", "calibrate to the bound from the same pluck test, too", has_bound, bound);
+  visitor("inversion", "how the reactions are inverted", inversion);
+  visitor("score", "where identified and true force are compared", score);
+  visitor("seed", "key of the noise", {.range = Range::non_negative()}, seed);
+  visitor("figures", "what is drawn of the identification", figures);
 }
 
 std::vector<Finding> PluckThenBowOptions::lint() const {

@@ -7,28 +7,19 @@
 namespace modcal {
 
 void SimulateOptions::visit(OptionVisitor& visitor) {
-  visitor.section({.key = "scene", .meaning = "string, bow, friction", .required = true},
-                  truth.scene);
-  visitor.plugin({.key = "simulator", .meaning = "how the scene is simulated"}, truth.simulator);
-  visitor.section({.key = "measurement", .meaning = "sampling and noise of the reactions"},
-                  measurement);
-  visitor.texts({.key = "outputs",
-                 .meaning = "signals that are computed: motion and force at the contact, reactions",
-                 .choices = {"y", "v", "f_c", "R1", "R2"}},
-                outputs);
-  visitor.texts({.key = "files",
-                 .meaning = "record files to write: signals.csv, signals.wav",
-                 .choices = {"csv", "wav"}},
-                files);
-  visitor.number({.key = "wav_full_scale",
-                  .meaning = "what the full scale 1.0 of the sound file stands for, in the SI unit "
-                             "of each signal",
-                  .range = Range::positive()},
-                 wav_full_scale);
-  visitor.integer({.key = "seed", .meaning = "key of the noise", .range = Range::non_negative()},
-                  seed);
-  ListOf<FigureOptions> list(figures);
-  visitor.list({.key = "figures", .meaning = "what is drawn"}, list);
+  visitor("scene", "string, bow, friction", {.required = true}, truth.scene);
+  visitor("simulator", "how the scene is simulated", truth.simulator);
+  visitor("measurement", "sampling and noise of the reactions", measurement);
+  visitor("outputs", "signals that are computed: motion and force at the contact, reactions",
+          {.choices = {"y", "v", "f_c", "R1", "R2"}}, outputs);
+  visitor("files", "record files to write: signals.csv, signals.wav", {.choices = {"csv", "wav"}},
+          files);
+  visitor("wav_full_scale",
+          "what the full scale 1.0 of the sound file stands for, in the SI unit "
+          "of each signal",
+          {.range = Range::positive()}, wav_full_scale);
+  visitor("seed", "key of the noise", {.range = Range::non_negative()}, seed);
+  visitor("figures", "what is drawn", figures);
 }
 
 std::vector<Finding> SimulateOptions::lint() const {

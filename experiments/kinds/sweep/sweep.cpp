@@ -94,63 +94,37 @@ TaskOutcome run_cell(const InvertOptions& options, const StudyContext& context) 
 }
 
 void ComparisonOptions::visit(OptionVisitor& visitor) {
-  visitor.text({.key = "table",
-                .meaning = "published figures: CSV with noise_percent, R1, epsilon1, R2, epsilon2",
-                .required = true},
-               table);
-  visitor.number({.key = "lowest_row",
-                  .meaning = "rows below this noise level are shown but not judged",
-                  .range = Range::non_negative()},
-                 lowest_row);
-  visitor.number({.key = "mean_difference",
-                  .meaning = "largest accepted mean |R_median - published R|; any: not judged",
-                  .range = Range::non_negative(),
-                  .word = "any"},
-                 mean_difference);
-  visitor.integer({.key = "inside_band",
-                   .meaning = "least number of cells whose published R lies in the 10-90 % band",
-                   .range = Range::non_negative()},
-                  inside_band);
-  visitor.number({.key = "parameter_factor",
-                  .meaning = "factor within which the parameter agrees with the published one",
-                  .range = Range::at_least(1.0)},
-                 parameter_factor);
-  visitor.integer({.key = "parameter_cells",
-                   .meaning = "least number of cells whose parameter agrees",
-                   .range = Range::non_negative()},
-                  parameter_cells);
+  visitor("table", "published figures: CSV with noise_percent, R1, epsilon1, R2, epsilon2",
+          {.required = true}, table);
+  visitor("lowest_row", "rows below this noise level are shown but not judged",
+          {.range = Range::non_negative()}, lowest_row);
+  visitor("mean_difference", "largest accepted mean |R_median - published R|; any: not judged",
+          {.range = Range::non_negative(), .word = "any"}, mean_difference);
+  visitor("inside_band", "least number of cells whose published R lies in the 10-90 % band",
+          {.range = Range::non_negative()}, inside_band);
+  visitor("parameter_factor", "factor within which the parameter agrees with the published one",
+          {.range = Range::at_least(1.0)}, parameter_factor);
+  visitor("parameter_cells", "least number of cells whose parameter agrees",
+          {.range = Range::non_negative()}, parameter_cells);
 }
 
 void SweepTarget::visit(OptionVisitor& visitor) {
-  visitor.text({.key = "side",
-                .meaning = "row of the table: 1, 2, or the estimator's name for its estimate",
-                .required = true},
-               side);
-  visitor.number({.key = "noise",
-                  .meaning = "row of the table: noise level",
-                  .range = Range::non_negative(),
-                  .required = true},
-                 noise);
-  visitor.number({.key = "correlation",
-                  .meaning = "least mean correlation over windows and draws",
-                  .range = Range::closed(-1.0, 1.0)},
-                 correlation);
-  visitor.number({.key = "whole",
-                  .meaning = "least mean correlation over the long window",
-                  .range = Range::closed(-1.0, 1.0)},
-                 whole);
+  visitor("side", "row of the table: 1, 2, or the estimator's name for its estimate",
+          {.required = true}, side);
+  visitor("noise", "row of the table: noise level",
+          {.range = Range::non_negative(), .required = true}, noise);
+  visitor("correlation", "least mean correlation over windows and draws",
+          {.range = Range::closed(-1.0, 1.0)}, correlation);
+  visitor("whole", "least mean correlation over the long window",
+          {.range = Range::closed(-1.0, 1.0)}, whole);
 }
 
 void SweepOptions::visit(OptionVisitor& visitor) {
-  visitor.group({.key = "table", .meaning = "how the results are summed up"},
-                [this](OptionVisitor& members) {
-                  members.text({.key = "name", .meaning = "name of the table's files"}, name);
-                });
-  visitor.optional_group(
-      {.key = "compare_with", .meaning = "published figures to hold beside ours"}, has_comparison,
-      [this](OptionVisitor& members) { comparison.visit(members); });
-  ListOf<SweepTarget> list(targets);
-  visitor.list({.key = "targets", .meaning = "figures that rows of the table have to reach"}, list);
+  visitor.group(
+      {.key = "table", .meaning = "how the results are summed up"},
+      [this](OptionVisitor& members) { members("name", "name of the table's files", name); });
+  visitor("compare_with", "published figures to hold beside ours", has_comparison, comparison);
+  visitor("targets", "figures that rows of the table have to reach", targets);
 }
 
 PublishedTable read_published(const std::filesystem::path& path) {

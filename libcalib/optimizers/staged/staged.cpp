@@ -34,31 +34,23 @@ std::vector<std::size_t> places_of(const Staged::Stage& stage,
 }  // namespace
 
 void Staged::Stage::visit(OptionVisitor& visitor) {
-  visitor.number({.key = "damping",
-                  .meaning = "the record is multiplied by exp(-damping t): wide basins; 0: the "
-                             "record itself",
-                  .unit = "Hz",
-                  .range = Range::non_negative()},
-                 damping);
-  visitor.texts(
-      {.key = "free",
-       .meaning = "parameters searched, of those that are free; f: every f_n, zeta: every "
-                  "zeta_n; none named: all"},
-      free);
-  visitor.plugin({.key = "optimizer", .meaning = "how the stage is searched"}, optimizer);
+  visitor("damping",
+          "the record is multiplied by exp(-damping t): wide basins; 0: the "
+          "record itself",
+          {.unit = "Hz", .range = Range::non_negative()}, damping);
+  visitor("free",
+          "parameters searched, of those that are free; f: every f_n, zeta: every "
+          "zeta_n; none named: all",
+          free);
+  visitor("optimizer", "how the stage is searched", optimizer);
 }
 
 void Staged::Options::visit(OptionVisitor& visitor) {
-  ListOf<Stage> slot(stages);
-  visitor.list({.key = "stages",
-                .meaning = "searched one after the other; none: the schedule of the objective"},
-               slot);
-  visitor.integer(
-      {.key = "restarts",
-       .meaning = "other starts tried while the fit is contradicted by the data, in the "
-                  "schedule of the objective",
-       .range = Range::closed(0.0, 4.0)},
-      schedule.restarts);
+  visitor("stages", "searched one after the other; none: the schedule of the objective", stages);
+  visitor("restarts",
+          "other starts tried while the fit is contradicted by the data, in the "
+          "schedule of the objective",
+          {.range = Range::closed(0.0, 4.0)}, schedule.restarts);
 }
 
 Staged::Staged(Options options) : options_(std::move(options)) {

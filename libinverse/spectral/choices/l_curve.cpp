@@ -174,12 +174,10 @@ std::size_t corner_among(const Candidates& found, std::span<const Vertex> vertic
 
 void LCurveOptions::visit(OptionVisitor& visitor) {
   curve.visit(visitor);
-  visitor.number({.key = "span",
-                  .meaning = "half span of the differences behind the curvature, in decades of the "
-                             "parameter; 0: neighboring points",
-                  .unit = "1",
-                  .range = Range::closed(0.0, 10.0)},
-                 span);
+  visitor("span",
+          "half span of the differences behind the curvature, in decades of the "
+          "parameter; 0: neighboring points",
+          {.range = Range::closed(0.0, 10.0)}, span);
 }
 
 void LCurveOptions::require() const {

@@ -34,29 +34,18 @@ std::string_view name_of(ChoiceStatus status) {
 }
 
 void CurveOptions::visit(OptionVisitor& visitor) {
-  visitor.integer({.key = "points",
-                   .meaning = "number of parameters searched, logarithmically spaced",
-                   .range = Range::closed(0, 1e6)},
-                  points);
-  visitor.number({.key = "lowest",
-                  .meaning = "lowest parameter searched; auto: the smallest singular value > 0, at "
-                             "most 8 decades below the largest",
-                  .unit = "1",
-                  .range = Range::positive(),
-                  .word = "auto"},
-                 lowest);
-  visitor.number({.key = "highest",
-                  .meaning = "highest parameter searched; auto: the largest singular value",
-                  .unit = "1",
-                  .range = Range::positive(),
-                  .word = "auto"},
-                 highest);
-  visitor.text(
-      {.key = "measure",
-       .meaning = "norm of the solution on the curve: of the force's time derivative or of "
-                  "the force itself",
-       .choices = {kMeasures[1], kMeasures[0]}},
-      measure);
+  visitor("points", "number of parameters searched, logarithmically spaced",
+          {.range = Range::closed(0, 1e6)}, points);
+  visitor("lowest",
+          "lowest parameter searched; auto: the smallest singular value > 0, at "
+          "most 8 decades below the largest",
+          {.range = Range::positive(), .word = "auto"}, lowest);
+  visitor("highest", "highest parameter searched; auto: the largest singular value",
+          {.range = Range::positive(), .word = "auto"}, highest);
+  visitor("measure",
+          "norm of the solution on the curve: of the force's time derivative or of "
+          "the force itself",
+          {.choices = {kMeasures[1], kMeasures[0]}}, measure);
 }
 
 std::string warning_of(const ChosenParameter& choice) {

@@ -25,13 +25,10 @@ double barrier(std::span<const double> values, std::size_t index, std::ptrdiff_t
 }
 
 void visit_noise_rms(OptionVisitor& visitor, double& noise_rms) {
-  visitor.number({.key = "noise_rms",
-                  .meaning = "standard deviation of the noise of one sample; measured: the level "
-                             "that comes with the data",
-                  .unit = "N",
-                  .range = Range::non_negative(),
-                  .word = "measured"},
-                 noise_rms);
+  visitor("noise_rms",
+          "standard deviation of the noise of one sample; measured: the level "
+          "that comes with the data",
+          {.unit = "N", .range = Range::non_negative(), .word = "measured"}, noise_rms);
 }
 
 void require_noise_option(double noise_rms) {
@@ -108,10 +105,8 @@ Pick pick_generalized_cross_validation(const CurveRuleOptions& /*options*/,
 
 void RobustCrossValidationOptions::visit(OptionVisitor& visitor) {
   curve.visit(visitor);
-  visitor.number({.key = "gamma",
-                  .meaning = "weight of plain cross validation; 1: nothing else",
-                  .range = Range{0.0, 1.0, false, true}},
-                 gamma);
+  visitor("gamma", "weight of plain cross validation; 1: nothing else",
+          {.range = Range{0.0, 1.0, false, true}}, gamma);
 }
 
 void RobustCrossValidationOptions::require() const {
@@ -226,11 +221,7 @@ Pick pick_predictive_risk(const PredictiveRiskOptions& options, const TracedCurv
 
 void DiscrepancyOptions::visit(OptionVisitor& visitor) {
   curve.visit(visitor);
-  visitor.number({.key = "tau",
-                  .meaning = "safety factor on the norm of the noise",
-                  .unit = "1",
-                  .range = Range::at_least(1.0)},
-                 tau);
+  visitor("tau", "safety factor on the norm of the noise", {.range = Range::at_least(1.0)}, tau);
   visit_noise_rms(visitor, noise_rms);
 }
 
@@ -271,12 +262,8 @@ Pick pick_discrepancy(const DiscrepancyOptions& options, const TracedCurve& trac
 }
 
 void GivenParameterOptions::visit(OptionVisitor& visitor) {
-  visitor.number({.key = "value",
-                  .meaning = "regularization parameter, in the unit of the transfer function",
-                  .unit = "1",
-                  .range = Range::non_negative(),
-                  .required = true},
-                 value);
+  visitor("value", "regularization parameter, in the unit of the transfer function",
+          {.range = Range::non_negative(), .required = true}, value);
   curve.visit(visitor);
 }
 

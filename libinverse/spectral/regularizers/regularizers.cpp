@@ -122,10 +122,8 @@ void QuadraticFilter::do_trace_squares(const SpectralSystem& system,
 }
 
 void Tikhonov::Options::visit(OptionVisitor& visitor) {
-  visitor.integer({.key = "order",
-                   .meaning = "order of the derivative whose norm is held down",
-                   .range = Range::closed(0, 2)},
-                  order);
+  visitor("order", "order of the derivative whose norm is held down",
+          {.range = Range::closed(0, 2)}, order);
 }
 
 Tikhonov::Tikhonov(const Options& options) : order_(options.order) {
@@ -138,11 +136,8 @@ double Tikhonov::penalty(double omega, double reference) const {
 }
 
 void WienerFilter::Options::visit(OptionVisitor& visitor) {
-  visitor.number({.key = "corner",
-                  .meaning = "frequency below which the supposed spectrum of the force is flat",
-                  .unit = "Hz",
-                  .range = Range::positive()},
-                 corner);
+  visitor("corner", "frequency below which the supposed spectrum of the force is flat",
+          {.unit = "Hz", .range = Range::positive()}, corner);
 }
 
 WienerFilter::WienerFilter(const Options& options)

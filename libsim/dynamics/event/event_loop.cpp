@@ -1,14 +1,7 @@
 #include "libsim/dynamics/event/event_loop.hpp"
 
-#include <fmt/format.h>
-
-#include <cmath>
-#include <utility>
-
-#include "libsim/dynamics/event/modes/bow_path.hpp"
 #include "libsim/dynamics/event/sliding/sliding.hpp"
 #include "libsim/dynamics/event/sticking.hpp"
-#include "libsim/dynamics/scene/simulation.hpp"
 
 namespace modcal::event {
 namespace {

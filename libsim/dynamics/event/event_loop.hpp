@@ -2,15 +2,9 @@
 // switches located inside the step.
 #pragma once
 
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "libsim/base/task_loop.hpp"
 #include "libsim/dynamics/event/modes/bow_path.hpp"
 #include "libsim/dynamics/event/modes/closed_loop.hpp"
-#include "libsim/dynamics/friction/sliding_laws.hpp"
-#include "libsim/dynamics/scene/contact_modes.hpp"
 
 namespace modcal::event {
 

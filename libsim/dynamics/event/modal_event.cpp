@@ -1,13 +1,6 @@
 #include "libsim/dynamics/event/modal_event.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 #include "libsim/base/words.hpp"
-#include "libsim/dynamics/scene/contact_modes.hpp"
 
 namespace modcal {
 
@@ -35,35 +28,25 @@ event::AttachRule attach_rule_of(const std::string& name) {
 }  // namespace
 
 void ModalEvent::Options::visit(OptionVisitor& visitor) {
-  visitor.integer({.key = "nodes",
-                   .meaning = "Lobatto nodes of a sliding step: order 2(nodes - 1)",
-                   .range = Range::closed(2, 5)},
-                  nodes);
-  visitor.number({.key = "max_step",
-                  .meaning = "longest step; the next smaller one that divides the sampling period "
-                             "is taken",
-                  .unit = "s",
-                  .range = Range::positive(),
-                  .word = "sampling_period"},
-                 max_step);
-  visitor.number({.key = "slope_number",
-                  .meaning = "largest fall of the friction force with the speed, times the step, "
-                             "over the effective mass, of a sliding step",
-                  .unit = "1",
-                  .range = Range::positive()},
-                 slope_number);
-  visitor.number({.key = "tail_ratio",
-                  .meaning = "highest power of the friction force in a sliding step, times the "
-                             "step, over effective mass and speed, at most this to the power "
-                             "nodes - 1; smaller ones halve more steps",
-                  .unit = "1",
-                  .range = Range::positive()},
-                 tail_ratio);
-  visitor.text({.key = "attach",
-                .meaning = "adherence spring at attachment: literal (unstretched: the force starts "
-                           "at 0) or continuous (the force goes on from the sliding limit)",
-                .choices = choices_of(kAttachRules)},
-               attach);
+  visitor("nodes", "Lobatto nodes of a sliding step: order 2(nodes - 1)",
+          {.range = Range::closed(2, 5)}, nodes);
+  visitor("max_step",
+          "longest step; the next smaller one that divides the sampling period "
+          "is taken",
+          {.unit = "s", .range = Range::positive(), .word = "sampling_period"}, max_step);
+  visitor("slope_number",
+          "largest fall of the friction force with the speed, times the step, "
+          "over the effective mass, of a sliding step",
+          {.range = Range::positive()}, slope_number);
+  visitor("tail_ratio",
+          "highest power of the friction force in a sliding step, times the "
+          "step, over effective mass and speed, at most this to the power "
+          "nodes - 1; smaller ones halve more steps",
+          {.range = Range::positive()}, tail_ratio);
+  visitor("attach",
+          "adherence spring at attachment: literal (unstretched: the force starts "
+          "at 0) or continuous (the force goes on from the sliding limit)",
+          {.choices = choices_of(kAttachRules)}, attach);
 }
 
 ModalEvent::ModalEvent(const Options& options) : options_(options) {

@@ -1,9 +1,5 @@
 #pragma once
 
-#include <cstdint>
-#include <limits>
-#include <string>
-
 #include "libsim/dynamics/event/event_loop.hpp"
 #include "libsim/dynamics/scene/simulator.hpp"
 

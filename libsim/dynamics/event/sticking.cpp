@@ -1,10 +1,5 @@
 #include "libsim/dynamics/event/sticking.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cassert>
-#include <cmath>
-
 #include "libsim/dynamics/event/modes/first_crossing.hpp"
 
 namespace modcal::event {

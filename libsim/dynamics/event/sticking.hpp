@@ -2,19 +2,10 @@
 // between.
 #pragma once
 
-#include <algorithm>
-#include <array>
 #include <cassert>
-#include <cmath>
-#include <optional>
-#include <span>
-#include <vector>
 
 #include "libsim/dynamics/event/modes/bow_path.hpp"
 #include "libsim/dynamics/event/modes/closed_loop.hpp"
-#include "libsim/dynamics/event/modes/modal_kernels.hpp"
-#include "libsim/dynamics/friction/sliding_laws.hpp"
-#include "libsim/dynamics/scene/simulation.hpp"
 
 namespace modcal::event {
 

@@ -1,11 +1,5 @@
 // The held string beside its single steps: how it is made and shown, some steps at once.
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <complex>
-#include <utility>
 
-#include "libsim/base/error.hpp"
 #include "libsim/dynamics/event/sticking.hpp"
 
 namespace modcal::event {

@@ -5,13 +5,7 @@
 // end_step() enclose them.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-
 #include "libsim/dynamics/fixed_step/step_loop.hpp"
-#include "libsim/dynamics/friction/sliding_laws.hpp"
-#include "libsim/dynamics/gestures/bow.hpp"
 
 namespace modcal {
 

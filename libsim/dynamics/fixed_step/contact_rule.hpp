@@ -5,10 +5,6 @@
 // step at which |−K_a y_c − C_a v_c| exceeds μ_S F_N (Debut, Delaune and Antunes, 2010, eqs. 5–8).
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-
 #include "libsim/dynamics/fixed_step/step_loop.hpp"
 
 namespace modcal {

@@ -1,11 +1,5 @@
 #include "libsim/dynamics/fixed_step/fixed_step.hpp"
 
-#include <cmath>
-#include <optional>
-
-#include "libsim/base/error.hpp"
-#include "libsim/dynamics/fixed_step/step_loop.hpp"
-
 namespace modcal {
 namespace {
 
@@ -141,12 +135,10 @@ SchemeWeights scheme_weights(const ModeTable& modes, double time_step, WeightsOf
 }
 
 void FixedStepOptions::visit(OptionVisitor& visitor) {
-  visitor.number({.key = "time_step",
-                  .meaning = "largest time step; the next smaller one that divides the sampling "
-                             "period is taken",
-                  .unit = "s",
-                  .range = Range::positive()},
-                 time_step);
+  visitor("time_step",
+          "largest time step; the next smaller one that divides the sampling "
+          "period is taken",
+          {.unit = "s", .range = Range::positive()}, time_step);
 }
 
 Simulation simulate_fixed_step(const Scene& scene, double sample_rate, const OutputRequest& outputs,

@@ -2,10 +2,6 @@
 // and the two schemes.
 #pragma once
 
-#include <complex>
-#include <span>
-#include <vector>
-
 #include "libsim/dynamics/fixed_step/step_loop.hpp"
 #include "libsim/dynamics/scene/simulator.hpp"
 

@@ -2,12 +2,7 @@
 // chosen at run time.
 #pragma once
 
-#include <cstddef>
-#include <vector>
-
-#include "libsim/base/aligned_vector.hpp"
 #include "libsim/dynamics/fixed_step/step_coefficients.hpp"
-#include "libsim/dynamics/scene/contact_modes.hpp"
 
 namespace modcal {
 

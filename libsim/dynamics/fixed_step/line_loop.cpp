@@ -1,8 +1,5 @@
-#include <algorithm>
-#include <cmath>
 
 #include "libsim/dynamics/fixed_step/point_forces.hpp"
-#include "libsim/dynamics/fixed_step/step_loop.hpp"
 
 namespace modcal {
 namespace {

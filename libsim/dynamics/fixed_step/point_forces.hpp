@@ -1,13 +1,8 @@
 // The friction forces of several contact points, solved for together.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 #include "libsim/dynamics/fixed_step/contact_point.hpp"
 #include "libsim/dynamics/fixed_step/line_kernel.hpp"
-#include "libsim/dynamics/gestures/bow.hpp"
 
 namespace modcal {
 

@@ -1,6 +1,5 @@
 #include "libsim/dynamics/fixed_step/step_coefficients.hpp"
 
-#include <cmath>
 #include <numeric>
 
 namespace modcal {

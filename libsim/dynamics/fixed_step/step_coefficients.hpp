@@ -1,12 +1,8 @@
 // One-step coefficients of the fixed-step loop, in the coordinates in which a step is cheapest.
 #pragma once
 
-#include <complex>
-#include <vector>
-
 #include "libsim/base/aligned_vector.hpp"
 #include "libsim/dynamics/scene/contact_modes.hpp"
-#include "libsim/dynamics/scene/simulation.hpp"
 
 namespace modcal {
 

@@ -1,7 +1,5 @@
 #include "libsim/dynamics/fixed_step/step_loop.hpp"
 
-#include <cmath>
-
 #include "libsim/dynamics/fixed_step/contact_rule.hpp"
 
 #undef HWY_TARGET_INCLUDE

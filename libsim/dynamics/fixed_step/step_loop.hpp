@@ -8,15 +8,8 @@
 // force of the adherence on the string while it sticks.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <vector>
-
 #include "libsim/base/task_loop.hpp"
 #include "libsim/dynamics/fixed_step/step_coefficients.hpp"
-#include "libsim/dynamics/friction/sliding_laws.hpp"
-#include "libsim/dynamics/scene/contact_modes.hpp"
-#include "libsim/dynamics/scene/simulation.hpp"
 
 namespace modcal {
 

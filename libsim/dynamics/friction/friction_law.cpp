@@ -2,23 +2,18 @@
 
 #include <array>
 
-#include "libsim/base/error.hpp"
-
 namespace modcal {
 namespace {
 
 void visit_falling(OptionVisitor& visitor, const Range& range, double& static_coefficient,
                    double& dynamic_coefficient) {
-  visitor.number({.key = "static", .meaning = "static friction coefficient mu_S", .range = range},
-                 static_coefficient);
-  visitor.number({.key = "dynamic",
-                  .meaning = "dynamic friction coefficient mu_D at high speed, at most mu_S",
-                  .range = range},
-                 dynamic_coefficient);
+  visitor("static", "static friction coefficient mu_S", {.range = range}, static_coefficient);
+  visitor("dynamic", "dynamic friction coefficient mu_D at high speed, at most mu_S",
+          {.range = range}, dynamic_coefficient);
 }
 
 void visit_adherence(OptionVisitor& visitor, Adherence& adherence) {
-  visitor.section({.key = "adherence", .meaning = "spring and damper while sticking"}, adherence);
+  visitor("adherence", "spring and damper while sticking", adherence);
 }
 
 // μ_S − μ_D of a law that falls with the sliding speed.
@@ -64,17 +59,10 @@ ThermalSliding rosin_of(const Thermal::Options& options) {
 }  // namespace
 
 void Adherence::visit(OptionVisitor& visitor) {
-  visitor.number({.key = "stiffness",
-                  .meaning = "adherence stiffness K_a",
-                  .unit = "N/m",
-                  .range = Range::positive()},
-                 stiffness);
-  visitor.number({.key = "damping",
-                  .meaning = "adherence damping C_a; near_critical: 2 sqrt(K_a m_eff)",
-                  .unit = "N s/m",
-                  .range = Range::non_negative(),
-                  .word = "near_critical"},
-                 damping);
+  visitor("stiffness", "adherence stiffness K_a", {.unit = "N/m", .range = Range::positive()},
+          stiffness);
+  visitor("damping", "adherence damping C_a; near_critical: 2 sqrt(K_a m_eff)",
+          {.unit = "N s/m", .range = Range::non_negative(), .word = "near_critical"}, damping);
 }
 
 SlidingLaw FrictionLaw::sliding(double normal_force) const {
@@ -99,11 +87,8 @@ double FrictionLaw::static_limit(double normal_force) const {
 
 void CoulombExponential::Options::visit(OptionVisitor& visitor) {
   visit_falling(visitor, Range::non_negative(), static_coefficient, dynamic_coefficient);
-  visitor.number({.key = "decay",
-                  .meaning = "decay C of the friction coefficient with the sliding speed",
-                  .unit = "s/m",
-                  .range = Range::non_negative()},
-                 decay);
+  visitor("decay", "decay C of the friction coefficient with the sliding speed",
+          {.unit = "s/m", .range = Range::non_negative()}, decay);
   visit_adherence(visitor, adherence);
 }
 
@@ -115,11 +100,8 @@ CoulombExponential::CoulombExponential(const Options& options)
 
 void Hyperbolic::Options::visit(OptionVisitor& visitor) {
   visit_falling(visitor, Range::non_negative(), static_coefficient, dynamic_coefficient);
-  visitor.number({.key = "half_speed",
-                  .meaning = "sliding speed v0 at which half of the fall has happened",
-                  .unit = "m/s",
-                  .range = Range::positive()},
-                 half_speed);
+  visitor("half_speed", "sliding speed v0 at which half of the fall has happened",
+          {.unit = "m/s", .range = Range::positive()}, half_speed);
   visit_adherence(visitor, adherence);
 }
 
@@ -133,60 +115,35 @@ Hyperbolic::Hyperbolic(const Options& options)
 
 void ElastoPlastic::Options::visit(OptionVisitor& visitor) {
   visit_falling(visitor, Range::positive(), static_coefficient, dynamic_coefficient);
-  visitor.number({.key = "stribeck_speed",
-                  .meaning = "sliding speed v_s over which the coefficient falls",
-                  .unit = "m/s",
-                  .range = Range::positive()},
-                 stribeck_speed);
-  visitor.text({.key = "model",
-                .meaning = "elasto_plastic: no creep below breakaway; lugre: creep at any load",
-                .choices = {"elasto_plastic", "lugre"}},
-               model);
-  visitor.number({.key = "breakaway",
-                  .meaning = "largest elastic deflection over that of dynamic friction "
-                             "(elasto_plastic)",
-                  .range = {0.0, 1.0, true, false}},
-                 breakaway);
-  visitor.section({.key = "bristle", .meaning = "spring and damper of the bristles"}, bristle);
+  visitor("stribeck_speed", "sliding speed v_s over which the coefficient falls",
+          {.unit = "m/s", .range = Range::positive()}, stribeck_speed);
+  visitor("model", "elasto_plastic: no creep below breakaway; lugre: creep at any load",
+          {.choices = {"elasto_plastic", "lugre"}}, model);
+  visitor("breakaway",
+          "largest elastic deflection over that of dynamic friction "
+          "(elasto_plastic)",
+          {.range = {0.0, 1.0, true, false}}, breakaway);
+  visitor("bristle", "spring and damper of the bristles", bristle);
 }
 
 ElastoPlastic::ElastoPlastic(const Options& options)
     : FrictionLaw(options.bristle, options.static_coefficient, {}, bristles_of(options)) {}
 
 void Thermal::Options::visit(OptionVisitor& visitor) {
-  visitor.number({.key = "cold",
-                  .meaning = "friction coefficient far below softening",
-                  .range = Range::non_negative()},
-                 cold_coefficient);
-  visitor.number({.key = "hot",
-                  .meaning = "friction coefficient far above softening, at most cold",
-                  .range = Range::non_negative()},
-                 hot_coefficient);
-  visitor.number({.key = "softening_rise",
-                  .meaning = "temperature rise at which half of the fall has happened",
-                  .unit = "K",
-                  .range = Range::positive()},
-                 softening_rise);
-  visitor.number({.key = "softening_width",
-                  .meaning = "width of the fall",
-                  .unit = "K",
-                  .range = Range::positive()},
-                 softening_width);
-  visitor.number({.key = "heat_capacity",
-                  .meaning = "heat capacity H of the contact",
-                  .unit = "J/K",
-                  .range = Range::positive()},
-                 heat_capacity);
-  visitor.number({.key = "conductance",
-                  .meaning = "conduction G of heat into string and bow",
-                  .unit = "W/K",
-                  .range = Range::non_negative()},
-                 conductance);
-  visitor.number({.key = "carried_heat",
-                  .meaning = "heat S that leaves with the material, per length rubbed past",
-                  .unit = "J/K/m",
-                  .range = Range::non_negative()},
-                 carried_heat);
+  visitor("cold", "friction coefficient far below softening", {.range = Range::non_negative()},
+          cold_coefficient);
+  visitor("hot", "friction coefficient far above softening, at most cold",
+          {.range = Range::non_negative()}, hot_coefficient);
+  visitor("softening_rise", "temperature rise at which half of the fall has happened",
+          {.unit = "K", .range = Range::positive()}, softening_rise);
+  visitor("softening_width", "width of the fall", {.unit = "K", .range = Range::positive()},
+          softening_width);
+  visitor("heat_capacity", "heat capacity H of the contact",
+          {.unit = "J/K", .range = Range::positive()}, heat_capacity);
+  visitor("conductance", "conduction G of heat into string and bow",
+          {.unit = "W/K", .range = Range::non_negative()}, conductance);
+  visitor("carried_heat", "heat S that leaves with the material, per length rubbed past",
+          {.unit = "J/K/m", .range = Range::non_negative()}, carried_heat);
   visit_adherence(visitor, adherence);
 }
 

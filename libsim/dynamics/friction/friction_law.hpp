@@ -1,11 +1,6 @@
 // Friction between bow and string.
 #pragma once
 
-#include <cstdint>
-#include <limits>
-#include <string>
-#include <string_view>
-
 #include "libsim/base/registry.hpp"
 #include "libsim/dynamics/friction/sliding_laws.hpp"
 

@@ -2,15 +2,12 @@
 
 #include <cmath>
 
-#include "libsim/base/error.hpp"
-
 namespace modcal {
 namespace {
 
 void visit_noise(OptionVisitor& visitor, std::string_view key, std::string_view meaning,
                  GestureNoise& noise) {
-  visitor.optional_group({.key = key, .meaning = meaning}, noise.present,
-                         [&noise](OptionVisitor& members) { noise.visit(members); });
+  visitor(key, meaning, noise.present, noise);
 }
 
 double time_of_lowest(const PiecewiseLinear& function) {
@@ -23,32 +20,16 @@ double time_of_lowest(const PiecewiseLinear& function) {
 }  // namespace
 
 void Bow::visit(OptionVisitor& visitor) {
-  visitor.number({.key = "position",
-                  .meaning = "contact point x_c, from the end x = 0",
-                  .unit = "m",
-                  .range = Range::positive(),
-                  .required = true},
-                 position);
-  visitor.number(
-      {.key = "velocity", .meaning = "bow velocity", .unit = "m/s", .range = Range::any()},
-      velocity);
-  visitor.number({.key = "normal_force",
-                  .meaning = "force that presses the bow on the string",
-                  .unit = "N",
-                  .range = Range::non_negative()},
-                 normal_force);
-  visitor.number({.key = "width",
-                  .meaning = "width of the bow hair along the string",
-                  .unit = "m",
-                  .range = Range::non_negative()},
-                 width);
-  visitor.integer(
-      {.key = "points", .meaning = "contact points over the width", .range = Range::closed(1, 16)},
-      points);
-  visitor.plugin({.key = "velocity_gesture", .meaning = "factor of the velocity against time"},
-                 velocity_gesture);
-  visitor.plugin({.key = "force_gesture", .meaning = "factor of the normal force against time"},
-                 force_gesture);
+  visitor("position", "contact point x_c, from the end x = 0",
+          {.unit = "m", .range = Range::positive(), .required = true}, position);
+  visitor("velocity", "bow velocity", {.unit = "m/s", .range = Range::any()}, velocity);
+  visitor("normal_force", "force that presses the bow on the string",
+          {.unit = "N", .range = Range::non_negative()}, normal_force);
+  visitor("width", "width of the bow hair along the string",
+          {.unit = "m", .range = Range::non_negative()}, width);
+  visitor("points", "contact points over the width", {.range = Range::closed(1, 16)}, points);
+  visitor("velocity_gesture", "factor of the velocity against time", velocity_gesture);
+  visitor("force_gesture", "factor of the normal force against time", force_gesture);
   visit_noise(visitor, "velocity_noise", "band-limited noise on the velocity", velocity_noise);
   visit_noise(visitor, "force_noise", "band-limited noise on the normal force", force_noise);
 }

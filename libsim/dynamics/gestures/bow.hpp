@@ -1,10 +1,6 @@
 // The bow stroke as a user describes it, and its motion as the simulators take it.
 #pragma once
 
-#include <cstdint>
-#include <limits>
-#include <vector>
-
 #include "libsim/dynamics/gestures/gesture.hpp"
 
 namespace modcal {

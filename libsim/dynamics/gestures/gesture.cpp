@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
-#include "libsim/base/error.hpp"
 #include "libsim/base/random.hpp"
 
 namespace modcal {
@@ -130,26 +128,16 @@ Registry<Gesture> Gesture::registry() {
 }
 
 void TableGesture::Options::visit(OptionVisitor& visitor) {
-  visitor.numbers({.key = "times",
-                   .meaning = "times of the points, strictly rising",
-                   .unit = "s",
-                   .required = true},
-                  times);
-  visitor.numbers({.key = "factors", .meaning = "factors at these times", .required = true},
-                  factors);
+  visitor("times", "times of the points, strictly rising", {.unit = "s", .required = true}, times);
+  visitor("factors", "factors at these times", {.required = true}, factors);
 }
 
 void RampGesture::Options::visit(OptionVisitor& visitor) {
-  visitor.number({.key = "from", .meaning = "factor before the ramp"}, from);
-  visitor.number({.key = "to", .meaning = "factor after the ramp"}, to);
-  visitor.number({.key = "start",
-                  .meaning = "time at which the ramp starts",
-                  .unit = "s",
-                  .range = Range::non_negative()},
-                 start);
-  visitor.number(
-      {.key = "duration", .meaning = "length of the ramp", .unit = "s", .range = Range::positive()},
-      duration);
+  visitor("from", "factor before the ramp", from);
+  visitor("to", "factor after the ramp", to);
+  visitor("start", "time at which the ramp starts", {.unit = "s", .range = Range::non_negative()},
+          start);
+  visitor("duration", "length of the ramp", {.unit = "s", .range = Range::positive()}, duration);
 }
 
 PiecewiseLinear RampGesture::factor(double /*duration*/) const {
@@ -157,14 +145,11 @@ PiecewiseLinear RampGesture::factor(double /*duration*/) const {
 }
 
 void SineGesture::Options::visit(OptionVisitor& visitor) {
-  visitor.number({.key = "mean", .meaning = "mean factor"}, mean);
-  visitor.number({.key = "amplitude", .meaning = "amplitude of the sine"}, amplitude);
-  visitor.number({.key = "frequency",
-                  .meaning = "frequency of the sine",
-                  .unit = "Hz",
-                  .range = Range::positive()},
-                 frequency);
-  visitor.number({.key = "phase", .meaning = "phase at t = 0", .unit = "rad"}, phase);
+  visitor("mean", "mean factor", mean);
+  visitor("amplitude", "amplitude of the sine", amplitude);
+  visitor("frequency", "frequency of the sine", {.unit = "Hz", .range = Range::positive()},
+          frequency);
+  visitor("phase", "phase at t = 0", {.unit = "rad"}, phase);
 }
 
 PiecewiseLinear SineGesture::factor(double duration) const {
@@ -185,17 +170,11 @@ PiecewiseLinear SineGesture::factor(double duration) const {
 }
 
 void GestureNoise::visit(OptionVisitor& visitor) {
-  visitor.number({.key = "level",
-                  .meaning = "standard deviation over the nominal value",
-                  .range = Range::non_negative()},
-                 level);
-  visitor.number({.key = "cutoff",
-                  .meaning = "frequency above which there is no noise",
-                  .unit = "Hz",
-                  .range = Range::positive()},
-                 cutoff);
-  visitor.integer({.key = "seed", .meaning = "seed of the draws", .range = Range::non_negative()},
-                  seed);
+  visitor("level", "standard deviation over the nominal value", {.range = Range::non_negative()},
+          level);
+  visitor("cutoff", "frequency above which there is no noise",
+          {.unit = "Hz", .range = Range::positive()}, cutoff);
+  visitor("seed", "seed of the draws", {.range = Range::non_negative()}, seed);
 }
 
 PiecewiseLinear GestureNoise::factor(double duration, std::string_view role) const {

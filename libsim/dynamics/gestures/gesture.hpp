@@ -1,11 +1,6 @@
 // Bow gestures: how velocity and normal force of the bow go with time.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <string_view>
-#include <vector>
-
 #include "libsim/base/registry.hpp"
 
 namespace modcal {

@@ -1,10 +1,7 @@
 #include "libsim/dynamics/scene/contact_modes.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <numeric>
 
-#include "libsim/base/error.hpp"
 #include "libsim/model/transfer.hpp"
 
 namespace modcal {

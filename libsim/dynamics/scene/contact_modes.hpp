@@ -3,13 +3,9 @@
 #pragma once
 
 #include <complex>
-#include <cstddef>
-#include <span>
-#include <vector>
 
 #include "libsim/dynamics/scene/scene.hpp"
 #include "libsim/dynamics/scene/simulation.hpp"
-#include "libsim/model/modal_basis.hpp"
 
 namespace modcal {
 

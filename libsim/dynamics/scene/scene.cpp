@@ -1,11 +1,6 @@
 #include "libsim/dynamics/scene/scene.hpp"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
-#include <numbers>
-
-#include "libsim/base/error.hpp"
 
 namespace modcal {
 
@@ -19,20 +14,11 @@ double sinc(double u) {
 }  // namespace
 
 void Pluck::Options::visit(OptionVisitor& visitor) {
-  visitor.number({.key = "position",
-                  .meaning = "plucking point, from the end x = 0",
-                  .unit = "m",
-                  .range = Range::positive(),
-                  .required = true},
-                 position);
-  visitor.number(
-      {.key = "displacement", .meaning = "height of the triangle", .unit = "m", .required = true},
-      displacement);
-  visitor.number({.key = "width",
-                  .meaning = "width over which its corner is rounded",
-                  .unit = "m",
-                  .range = Range::non_negative()},
-                 width);
+  visitor("position", "plucking point, from the end x = 0",
+          {.unit = "m", .range = Range::positive(), .required = true}, position);
+  visitor("displacement", "height of the triangle", {.unit = "m", .required = true}, displacement);
+  visitor("width", "width over which its corner is rounded",
+          {.unit = "m", .range = Range::non_negative()}, width);
 }
 
 ModalState Pluck::state(const ModalBasis& basis) const {
@@ -67,24 +53,13 @@ Registry<InitialMotion> InitialMotion::registry() {
 }
 
 void Torsion::visit(OptionVisitor& visitor) {
-  visitor.integer(
-      {.key = "modes", .meaning = "number of torsional modes", .range = Range::closed(1, 5000)},
-      modes);
-  visitor.number({.key = "speed_ratio",
-                  .meaning = "torsional over transverse wave speed",
-                  .unit = "1",
-                  .range = Range::positive()},
-                 speed_ratio);
-  visitor.number({.key = "impedance_ratio",
-                  .meaning = "torsional over transverse wave impedance at the surface",
-                  .unit = "1",
-                  .range = Range::positive()},
-                 impedance_ratio);
-  visitor.number({.key = "damping_ratio",
-                  .meaning = "damping ratio of the torsional modes",
-                  .unit = "1",
-                  .range = {0.0, 1.0, true, false}},
-                 damping_ratio);
+  visitor("modes", "number of torsional modes", {.range = Range::closed(1, 5000)}, modes);
+  visitor("speed_ratio", "torsional over transverse wave speed", {.range = Range::positive()},
+          speed_ratio);
+  visitor("impedance_ratio", "torsional over transverse wave impedance at the surface",
+          {.range = Range::positive()}, impedance_ratio);
+  visitor("damping_ratio", "damping ratio of the torsional modes",
+          {.range = {0.0, 1.0, true, false}}, damping_ratio);
 }
 
 ModalBasis Torsion::basis(const ModalBasis& transverse, double wave_speed) const {
@@ -109,18 +84,12 @@ ModalBasis Torsion::basis(const ModalBasis& transverse, double wave_speed) const
 }
 
 void Scene::visit(OptionVisitor& visitor) {
-  visitor.section({.key = "string", .meaning = "the string"}, string);
-  visitor.section({.key = "bow", .meaning = "the bow stroke"}, bow);
-  visitor.plugin({.key = "friction", .meaning = "friction between bow and string"}, friction);
-  visitor.number({.key = "duration",
-                  .meaning = "length of the record",
-                  .unit = "s",
-                  .range = Range::positive()},
-                 duration);
-  visitor.plugin({.key = "initial", .meaning = "motion of the string at t = 0"}, start);
-  visitor.optional_group({.key = "torsion", .meaning = "torsional modes of the string"},
-                         torsion.present,
-                         [this](OptionVisitor& members) { torsion.visit(members); });
+  visitor("string", "the string", string);
+  visitor("bow", "the bow stroke", bow);
+  visitor("friction", "friction between bow and string", friction);
+  visitor("duration", "length of the record", {.unit = "s", .range = Range::positive()}, duration);
+  visitor("initial", "motion of the string at t = 0", start);
+  visitor("torsion", "torsional modes of the string", torsion.present, torsion);
 }
 
 ModalState initial_state(const Scene& scene, const ModalBasis& basis) {

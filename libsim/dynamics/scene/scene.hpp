@@ -2,17 +2,9 @@
 // business.
 #pragma once
 
-#include <cstdint>
-#include <limits>
-#include <string_view>
-#include <vector>
-
-#include "libsim/base/options.hpp"
-#include "libsim/base/registry.hpp"
 #include "libsim/dynamics/friction/friction_law.hpp"
 #include "libsim/dynamics/gestures/bow.hpp"
 #include "libsim/model/modal_basis.hpp"
-#include "libsim/model/string_model.hpp"
 
 namespace modcal {
 

@@ -1,11 +1,8 @@
 // The record that a simulator makes, and how it is written sample by sample.
 #pragma once
 
-#include <cstddef>
 #include <limits>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "libsim/signal/signal.hpp"
 

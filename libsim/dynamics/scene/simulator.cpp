@@ -1,10 +1,5 @@
 #include "libsim/dynamics/scene/simulator.hpp"
 
-#include <cmath>
-
-#include "libsim/base/error.hpp"
-#include "libsim/base/task_loop.hpp"
-
 namespace modcal {
 namespace {
 

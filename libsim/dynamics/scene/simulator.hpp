@@ -1,13 +1,6 @@
 // Simulation of a bowed string in modal form.
 #pragma once
 
-#include <cstddef>
-#include <functional>
-#include <string>
-#include <string_view>
-#include <vector>
-
-#include "libsim/base/registry.hpp"
 #include "libsim/base/task_loop.hpp"
 #include "libsim/dynamics/scene/scene.hpp"
 #include "libsim/dynamics/scene/simulation.hpp"

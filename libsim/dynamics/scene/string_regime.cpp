@@ -1,13 +1,7 @@
 #include "libsim/dynamics/scene/string_regime.hpp"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
-#include <numbers>
-#include <span>
-#include <vector>
 
-#include "libsim/base/error.hpp"
 #include "libsim/dynamics/scene/contact_modes.hpp"
 #include "libsim/signal/statistics.hpp"
 
@@ -142,23 +136,16 @@ BowForceLimits schelleng_limits(const Scene& scene) {
 }
 
 void RegimeCriteria::visit(OptionVisitor& visitor) {
-  visitor.number({.key = "periods",
-                  .meaning = "periods at the end of the record in which the motion is judged",
-                  .range = Range::at_least(3.0)},
-                 periods);
-  visitor.number({.key = "slip_share",
-                  .meaning = "a stretch of sliding over less than this share of the bow's way in a "
-                             "period is no slip",
-                  .range = Range::open(0.0, 1.0)},
-                 slip_share);
-  visitor.number({.key = "periodicity",
-                  .meaning = "least autocorrelation, one period later, of a periodic motion",
-                  .range = Range::open(0.0, 1.0)},
-                 periodicity);
-  visitor.number({.key = "adherence",
-                  .meaning = "least share of the time for which a sounding string sticks",
-                  .range = Range::open(0.0, 1.0)},
-                 adherence);
+  visitor("periods", "periods at the end of the record in which the motion is judged",
+          {.range = Range::at_least(3.0)}, periods);
+  visitor("slip_share",
+          "a stretch of sliding over less than this share of the bow's way in a "
+          "period is no slip",
+          {.range = Range::open(0.0, 1.0)}, slip_share);
+  visitor("periodicity", "least autocorrelation, one period later, of a periodic motion",
+          {.range = Range::open(0.0, 1.0)}, periodicity);
+  visitor("adherence", "least share of the time for which a sounding string sticks",
+          {.range = Range::open(0.0, 1.0)}, adherence);
 }
 
 std::string_view name_of(StringRegime regime) {

@@ -2,12 +2,7 @@
 // in.
 #pragma once
 
-#include <string_view>
-
-#include "libsim/base/options.hpp"
-#include "libsim/dynamics/scene/scene.hpp"
 #include "libsim/dynamics/scene/simulator.hpp"
-#include "libsim/model/modal_basis.hpp"
 
 namespace modcal {
 

@@ -10,7 +10,7 @@
 #include "libsim/dynamics/gestures/gesture.hpp"
 #include "libsim/dynamics/scene/contact_modes.hpp"
 #include "libsim/dynamics/scene/scene.hpp"
-#include "libsim/model/damping_laws.hpp"
+#include "libsim/model/damping.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
 namespace modcal {

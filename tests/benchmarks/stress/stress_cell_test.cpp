@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "libsim/dynamics/friction/friction_law.hpp"
-#include "libsim/model/damping_laws.hpp"
+#include "libsim/model/damping.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
 namespace modcal {

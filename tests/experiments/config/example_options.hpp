@@ -15,8 +15,8 @@ struct Band {
   double low = 0.0;
   double high = 1.0;
   void visit(OptionVisitor& visitor) {
-    visitor.number({.key = "low", .meaning = "lower end", .unit = "Hz", .required = true}, low);
-    visitor.number({.key = "high", .meaning = "upper end", .unit = "Hz"}, high);
+    visitor("low", "lower end", {.unit = "Hz", .required = true}, low);
+    visitor("high", "upper end", {.unit = "Hz"}, high);
   }
 };
 
@@ -37,24 +37,19 @@ struct ExampleOptions {
   Choice<DampingLaw> optional_damping;
 
   void visit(OptionVisitor& visitor) {
-    visitor.section({.key = "string", .meaning = "the string"}, string);
-    visitor.number({.key = "decay", .meaning = "decay of friction", .unit = "s/m"}, decay);
-    visitor.number({.key = "stop", .meaning = "last instant", .unit = "s", .word = "end"}, stop);
-    visitor.number({.key = "share", .meaning = "a share", .range = Range::closed(0, 1)}, share);
-    visitor.numbers({.key = "windows", .meaning = "starts", .unit = "s", .required = true},
-                    windows);
-    visitor.integers({.key = "seeds", .meaning = "seeds"}, seeds);
-    visitor.flag({.key = "remove_mean", .meaning = "remove the mean"}, remove_mean);
-    visitor.text({.key = "note", .meaning = "a note"}, note);
-    visitor.text(
-        {.key = "content", .meaning = "what is drawn", .choices = {"waveforms", "spectra"}},
-        content);
-    visitor.texts({.key = "quantities", .meaning = "rows"}, quantities);
-    visitor.optional_group({.key = "band", .meaning = "a band"}, has_band,
-                           [this](OptionVisitor& members) { band.visit(members); });
-    ListOf<Band> list(bands);
-    visitor.list({.key = "bands", .meaning = "bands"}, list);
-    visitor.plugin({.key = "optional_damping", .meaning = "none by default"}, optional_damping);
+    visitor("string", "the string", string);
+    visitor("decay", "decay of friction", {.unit = "s/m"}, decay);
+    visitor("stop", "last instant", {.unit = "s", .word = "end"}, stop);
+    visitor("share", "a share", {.range = Range::closed(0, 1)}, share);
+    visitor("windows", "starts", {.unit = "s", .required = true}, windows);
+    visitor("seeds", "seeds", seeds);
+    visitor("remove_mean", "remove the mean", remove_mean);
+    visitor("note", "a note", note);
+    visitor("content", "what is drawn", {.choices = {"waveforms", "spectra"}}, content);
+    visitor("quantities", "rows", quantities);
+    visitor("band", "a band", has_band, band);
+    visitor("bands", "bands", bands);
+    visitor("optional_damping", "none by default", optional_damping);
   }
 };
 

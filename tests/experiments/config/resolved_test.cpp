@@ -1,11 +1,10 @@
-#include "experiments/config/resolved.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "experiments/config/help.hpp"
 #include "experiments/config/reader.hpp"
-#include "libsim/model/damping_laws.hpp"
+#include "libsim/model/damping.hpp"
 #include "tests/experiments/config/example_options.hpp"
 
 namespace modcal {

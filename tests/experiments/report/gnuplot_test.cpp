@@ -1,5 +1,3 @@
-#include "experiments/report/gnuplot.hpp"
-
 #include <gmock/gmock.h>
 #include <unistd.h>
 
@@ -8,6 +6,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "experiments/report/drawing.hpp"
 #include "tests/experiments/report/sample_report.hpp"
 
 namespace modcal::report {

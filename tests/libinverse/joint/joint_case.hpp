@@ -10,7 +10,7 @@
 #include "libinverse/joint/force_prior.hpp"
 #include "libinverse/joint/joint_inversion.hpp"
 #include "libsim/base/random.hpp"
-#include "libsim/model/damping_laws.hpp"
+#include "libsim/model/damping.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {

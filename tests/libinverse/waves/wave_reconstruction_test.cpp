@@ -10,7 +10,7 @@
 #include "libinverse/spectral/one_sided/one_sided_inversion.hpp"
 #include "libinverse/spectral/regularizers/regularizers.hpp"
 #include "libsim/base/error.hpp"
-#include "libsim/model/damping_laws.hpp"
+#include "libsim/model/damping.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {

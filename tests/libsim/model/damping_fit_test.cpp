@@ -1,8 +1,7 @@
-#include "libsim/model/damping_fit.hpp"
-
 #include <gtest/gtest.h>
 
 #include "libsim/base/error.hpp"
+#include "libsim/model/damping.hpp"
 
 namespace modcal {
 namespace {

@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "libsim/base/error.hpp"
-#include "libsim/model/damping_laws.hpp"
 
 namespace modcal {
 namespace {

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <tuple>
 
-#include "libsim/model/damping_laws.hpp"
+#include "libsim/model/damping.hpp"
 
 namespace modcal {
 namespace {

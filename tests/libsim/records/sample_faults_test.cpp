@@ -1,5 +1,3 @@
-#include "libsim/records/sample_faults.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,6 +5,8 @@
 #include <cmath>
 #include <random>
 #include <vector>
+
+#include "libsim/records/levels.hpp"
 
 namespace modcal {
 namespace {

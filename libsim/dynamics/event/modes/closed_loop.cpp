@@ -1,8 +1,5 @@
 #include "libsim/dynamics/event/modes/closed_loop.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 #include "libsim/dynamics/event/modes/secular_roots.hpp"
 
 namespace modcal::event {

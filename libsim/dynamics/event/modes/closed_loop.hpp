@@ -1,10 +1,6 @@
 // The string held by the contact's spring and damper: a linear system in its own coordinates.
 #pragma once
 
-#include <array>
-#include <cstddef>
-#include <optional>
-
 #include "libsim/dynamics/event/modes/modal_kernels.hpp"
 #include "libsim/dynamics/scene/contact_modes.hpp"
 

@@ -3,8 +3,6 @@
 #pragma once
 
 #include <array>
-#include <complex>
-#include <cstddef>
 #include <span>
 
 #include "libsim/base/aligned_vector.hpp"

@@ -1,5 +1,3 @@
-#include <algorithm>
-#include <cmath>
 
 #include "libsim/dynamics/event/sliding/contact_friction.hpp"
 

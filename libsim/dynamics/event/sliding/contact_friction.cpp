@@ -1,9 +1,5 @@
 #include "libsim/dynamics/event/sliding/contact_friction.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <utility>
-
 namespace modcal::event {
 namespace {
 

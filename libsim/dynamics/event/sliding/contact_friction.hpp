@@ -1,10 +1,7 @@
 // Friction of the sliding contact as the collocation steps ask for it.
 #pragma once
 
-#include <span>
-
 #include "libsim/dynamics/event/sliding/sliding_model.hpp"
-#include "libsim/dynamics/friction/sliding_laws.hpp"
 
 namespace modcal::event {
 

@@ -1,8 +1,5 @@
 #include "libsim/dynamics/event/sliding/lobatto.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 #include "libsim/base/error.hpp"
 
 namespace modcal::event {

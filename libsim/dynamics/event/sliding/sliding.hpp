@@ -1,9 +1,6 @@
 // The sliding string: collocation steps, and the instant at which the bow catches it.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-
 #include "libsim/dynamics/event/modes/bow_path.hpp"
 #include "libsim/dynamics/event/modes/first_crossing.hpp"
 #include "libsim/dynamics/event/sliding/contact_friction.hpp"

@@ -1,8 +1,5 @@
 #include "libsim/dynamics/event/sliding/sliding_model.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 namespace modcal::event {
 namespace {
 

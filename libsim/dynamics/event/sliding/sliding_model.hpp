@@ -2,15 +2,9 @@
 // power series for steps of any length.
 #pragma once
 
-#include <array>
-#include <memory>
-#include <span>
-#include <vector>
-
 #include "libsim/dynamics/event/modes/modal_kernels.hpp"
 #include "libsim/dynamics/event/sliding/lobatto.hpp"
 #include "libsim/dynamics/scene/contact_modes.hpp"
-#include "libsim/dynamics/scene/simulation.hpp"
 
 namespace modcal::event {
 

@@ -10,7 +10,7 @@
 #include "libinverse/spectral/choices/rules.hpp"
 #include "libinverse/spectral/regularizers/regularizers.hpp"
 #include "libsim/base/error.hpp"
-#include "libsim/model/damping_laws.hpp"
+#include "libsim/model/damping.hpp"
 #include "libsim/signal/statistics.hpp"
 #include "tests/libinverse/safe_problem.hpp"
 #include "tests/refusal.hpp"

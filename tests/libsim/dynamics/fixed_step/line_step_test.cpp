@@ -8,7 +8,7 @@
 #include "libsim/dynamics/friction/friction_law.hpp"
 #include "libsim/dynamics/gestures/gesture.hpp"
 #include "libsim/dynamics/scene/scene.hpp"
-#include "libsim/model/damping_laws.hpp"
+#include "libsim/model/damping.hpp"
 #include "libsim/model/transfer.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 

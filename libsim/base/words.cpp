@@ -1,9 +1,7 @@
-#include "libsim/base/nearest_name.hpp"
+#include "libsim/base/words.hpp"
 
-#include <algorithm>
 #include <cctype>
 #include <numeric>
-#include <utility>
 
 namespace modcal {
 namespace {
