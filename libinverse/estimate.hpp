@@ -85,7 +85,17 @@ struct Estimate {
   double force_deviation = std::numeric_limits<double>::quiet_NaN();
   double displacement_deviation = std::numeric_limits<double>::quiet_NaN();
   double velocity_deviation = std::numeric_limits<double>::quiet_NaN();
+  /// The same at every sample, where they differ; empty: the ones above.
+  std::vector<double> force_deviations, velocity_deviations;
+  /// Variance of every bin of force [N²] and velocity [(m/s)²] under the noise alone, that of a
+  /// sample being its mean over all K bins; empty: not known.
+  std::vector<double> force_variance, velocity_variance;
+  /// Of the two sides, in every bin, about 40 Hz smoothed: 1 where they agree within their noise.
+  std::vector<double> side_misfit;
+  /// Nothing is identified above it, and the deviations are of the part below [Hz]; NaN: no limit.
+  double band_limit = std::numeric_limits<double>::quiet_NaN();
   std::vector<std::pair<std::string, double>> figures;  ///< "sigma_T" and the like, for reports
+  std::vector<std::string> notes;  ///< what was chosen by itself, one sentence each
   std::vector<std::string> warnings;
 };
 

@@ -24,6 +24,7 @@ struct InversionMethod {
   InversionOutputs outputs = {};
   /// Standard deviation of the noise of one sample [N], where a parameter choice asks for it.
   double noise_rms = std::numeric_limits<double>::quiet_NaN();
+  bool variances = false;  ///< of every bin too (Estimate::force_variance)
 };
 
 /// The modal model that inverts.

@@ -54,7 +54,7 @@ class Function final : public ObjectiveFunction {
         kept_(kept_samples(data, parameters_)) {
     const ModelPoint& initial = parameters_.initial();
     const ModelBasedResult start =
-        ModelBasedEstimator({.substeps = options.substeps, .rounds = 0})
+        ModelBasedEstimator({.laws = {"exponential"}, .substeps = options.substeps, .rounds = 0})
             .estimate(initial.basis, initial.contact, sample_rate_, left(), right(initial.sensors));
     friction_ = start.parameters;
     negated_ = start.negated;

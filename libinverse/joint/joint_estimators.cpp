@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "libinverse/joint/force_prior.hpp"
+#include "libinverse/joint/tuning.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/signal/statistics.hpp"
 
@@ -29,53 +30,6 @@ double noise_share(const ReactionPair& reactions, const SensorNoiseLevel& noise)
   return share;
 }
 
-// One inversion as an estimate, with its figures and warnings.
-std::vector<Estimate> estimate_with(const JointInversion& inversion, const EstimationRecord& record,
-                                    const SensorNoiseLevel& noise, const JointMethod& method,
-                                    const char* side, const char* label) {
-  JointWorkspace workspace;
-  JointResult result;
-  inversion.invert(record.reactions, noise, method, workspace, result);
-  Estimate estimate;
-  estimate.side = side;
-  estimate.label = label;
-  estimate.result = std::move(result.identified);
-  estimate.largest_transfer = inversion.largest_transfer();
-  estimate.force_deviation = result.deviation.force;
-  estimate.displacement_deviation = result.deviation.displacement;
-  estimate.velocity_deviation = result.deviation.velocity;
-  const double duration = static_cast<double>(inversion.samples()) / inversion.sample_rate();
-  estimate.figures = {{"sigma", inversion.sigma()},
-                      {"sigma_T", inversion.sigma() * duration},
-                      {"noise_rms_1", noise.rms[0]},
-                      {"noise_rms_2", noise.rms[1]},
-                      {"noise_share_of_band", noise.noise_share},
-                      {"offset_1", result.offset[0]},
-                      {"offset_2", result.offset[1]},
-                      {"force_deviation", result.deviation.force},
-                      {"misfit_of_sides", result.misfit}};
-  if (result.misfit > JointInversion::kContradiction) {
-    estimate.warnings.push_back(fmt::format(
-        "the reactions contradict each other {:.2g} times more than their noise: the model or the "
-        "ends of the record limit the estimate, and its error bars are widened",
-        std::sqrt(result.misfit)));
-  }
-  const bool both = !record.reactions[0].empty() && !record.reactions[1].empty();
-  if (!both) {
-    estimate.warnings.push_back(
-        fmt::format("reaction {} is missing: the estimate rests on the other one alone",
-                    record.reactions[0].empty() ? 1 : 2));
-  }
-  if (!noise.measured) {
-    estimate.warnings.emplace_back(
-        "the sample rate leaves no band above the modes to measure the noise in: 1 % of each "
-        "reaction is supposed");
-  }
-  std::string warning = warning_of(estimate.result.choice);
-  if (!warning.empty()) estimate.warnings.push_back(std::move(warning));
-  return {std::move(estimate)};
-}
-
 // Prepares an inversion when a record asks for its contour; safe to use from several threads.
 class PreparedJoint : public PreparedEstimator {
  public:
@@ -86,6 +40,7 @@ class PreparedJoint : public PreparedEstimator {
         samples_(model.samples),
         sample_rate_(model.sample_rate),
         options_(options),
+        recorded_(model.recorded),
         truncation_(truncation_of(options.truncation)),
         support_(options.transfer.support(model.recorded)),
         noise_(basis_, contact_, samples_, sample_rate_, support_, options.sensors),
@@ -93,9 +48,22 @@ class PreparedJoint : public PreparedEstimator {
 
   std::vector<Estimate> estimate(const EstimationRecord& record,
                                  const InversionMethod& method) const override {
-    const SensorNoiseLevel noise = noise_of(record);
-    return estimate_with(of(record.reactions, noise), record, noise, this->method(method.outputs),
-                         "joint", "from both reactions");
+    SensorNoiseLevel noise = noise_of(record);
+    const bool shifted = truncation_ == Truncation::kShiftedContour;
+    if (recorded_ && noise.measured && shifted) noise = lowered(record.reactions, noise);
+    JointMethod how = this->method(method.outputs);
+    how.variances = method.variances;
+    std::vector<Estimate> estimates = estimate_with(of(record.reactions, noise), record, noise, how,
+                                                    "joint", "from both reactions");
+    if (limited_by_default()) {
+      estimates[0].notes.push_back(fmt::format(
+          "the force is identified up to {:.5g} Hz, {} modes below the highest of {}, next to "
+          "which "
+          "the resonance of the next one is missing; its deviation is that of the part below; "
+          "band_limit states another frequency",
+          how.band_limit, modes_kept_off(), basis_.size()));
+    }
+    return estimates;
   }
 
  protected:
@@ -104,7 +72,10 @@ class PreparedJoint : public PreparedEstimator {
 
   // The inversion on the contour that suits the record, see contour_of.
   const JointInversion& of(const ReactionPair& reactions, const SensorNoiseLevel& noise) const {
-    const double sigma = sigma_for(reactions, noise);
+    return at(sigma_for(reactions, noise));
+  }
+
+  const JointInversion& at(double sigma) const {
     const std::lock_guard lock(mutex_);
     auto& slot = by_sigma_[sigma];
     if (!slot) {
@@ -120,7 +91,9 @@ class PreparedJoint : public PreparedEstimator {
 
   JointMethod method(const InversionOutputs& outputs) const {
     double limit = options_.band_limit;
-    if (options_.limit_to_top_mode) {
+    if (limited_by_default()) {
+      limit = basis_.frequency(basis_.size() - 1 - modes_kept_off());
+    } else if (options_.limit_to_top_mode) {
       // The flank of the top resonance belongs to it.
       limit = 1.01 * *std::max_element(basis_.omega.begin(), basis_.omega.end()) /
               (2.0 * std::numbers::pi);
@@ -132,6 +105,25 @@ class PreparedJoint : public PreparedEstimator {
   }
 
  private:
+  // What lies above the modes of a real string the data do not tell.
+  bool limited_by_default() const {
+    return recorded_ && std::isnan(options_.band_limit) && !options_.limit_to_top_mode;
+  }
+  std::size_t modes_kept_off() const { return std::min<std::size_t>(3, basis_.size() - 1); }
+
+  // What is above the modes of a real string is no noise alone.
+  SensorNoiseLevel lowered(const ReactionPair& reactions, const SensorNoiseLevel& noise) const {
+    JointWorkspace workspace;
+    const double duration = static_cast<double>(samples_) / sample_rate_;
+    SensorNoiseLevel result =
+        at(kNoiseContour / duration)
+            .lowered_noise(reactions, noise, offset_rule_of(options_.offset), workspace);
+    for (std::size_t r = 0; r < 2; ++r) {
+      if (!std::isnan(options_.noise_rms[r])) result.rms[r] = noise.rms[r];
+    }
+    return result;
+  }
+
   // As stated in the options, else measured.
   SensorNoiseLevel noise_of(const EstimationRecord& record) const {
     SensorNoise::Workspace workspace;
@@ -169,6 +161,7 @@ class PreparedJoint : public PreparedEstimator {
   std::size_t samples_;
   double sample_rate_;
   JointOptions options_;
+  bool recorded_;
   Truncation truncation_;
   StringSupport support_;
   SensorNoise noise_;

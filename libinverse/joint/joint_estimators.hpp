@@ -8,6 +8,11 @@
 
 namespace modcal {
 
+/// One inversion as an estimate, with its figures and warnings; side and label as in Estimate.
+std::vector<Estimate> estimate_with(const JointInversion& inversion, const EstimationRecord& record,
+                                    const SensorNoiseLevel& noise, const JointMethod& method,
+                                    const char* side, const char* label);
+
 /// One force from both reactions (JointInversion); from one where the record has but one.
 class JointEstimator final : public Estimator {
  public:

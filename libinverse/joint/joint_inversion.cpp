@@ -196,8 +196,9 @@ double JointInversion::allow_for_offsets(OffsetRule rule, std::span<double> misf
   return fallen;
 }
 
-void JointInversion::compare_sides(const Weights& weights, OffsetRule rule,
+void JointInversion::compare_sides(const Weights& weights, OffsetRule rule, bool keep_misfit,
                                    JointWorkspace& workspace, JointResult& result) const {
+  result.side_misfit.clear();
   result.misfit = std::numeric_limits<double>::quiet_NaN();
   workspace.misfit.clear();
   const auto& inverse = weights.inverse_variance;
@@ -209,13 +210,14 @@ void JointInversion::compare_sides(const Weights& weights, OffsetRule rule,
                                    transfer_, workspace.spectrum, workspace.misfit);
   const double excess = allow_for_offsets(rule, workspace.misfit);
   result.misfit = (sum - excess) / static_cast<double>(bins);
-  if (result.misfit < kContradiction) {
-    workspace.misfit.clear();
-    return;
+  const bool contradict = !(result.misfit < kContradiction);
+  if (contradict || keep_misfit) {
+    workspace.scratch.resize(bins);
+    const double half = std::max(4.0, 0.25 * kMisfitWidth / grid_.bin_width());
+    smooth_power(workspace.misfit, workspace.scratch, half, 0.0);
   }
-  workspace.scratch.resize(bins);
-  const double half = std::max(4.0, 0.25 * kMisfitWidth / grid_.bin_width());
-  smooth_power(workspace.misfit, workspace.scratch, half, 0.0);
+  if (keep_misfit) result.side_misfit = workspace.misfit;
+  if (!contradict) workspace.misfit.clear();
 }
 
 // After it spectrum[0] holds Σ conj(H_r) R_r/v_r.
@@ -256,7 +258,7 @@ void JointInversion::invert(const ReactionPair& reactions, const SensorNoiseLeve
       transient_.subtract(setting, spectra, workspace.transient);
     }
   }
-  compare_sides(weights, offset_rule, workspace, result);
+  compare_sides(weights, offset_rule, method.variances, workspace, result);
   combine(weights, workspace);
   choose_amplitude(weights, method, workspace, result);
   if (method.known_variance.empty()) {

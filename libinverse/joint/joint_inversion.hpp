@@ -48,6 +48,7 @@ struct JointMethod {
   /// is not searched: amplitude 1.
   std::span<const double> known_variance = {};
   InversionOutputs outputs = {};
+  bool variances = false;  ///< of every bin, too
 };
 
 /// Standard deviations of the force given the record, the same at every instant.
@@ -60,6 +61,10 @@ struct PosteriorDeviation {
 struct JointResult {
   InversionResult identified;
   PosteriorDeviation deviation;
+  /// Of every bin by the noise alone, not widened by the misfit, that of a sample being the mean
+  /// over all K bins [N², (m/s)²]; where wanted.
+  std::vector<double> force_variance, velocity_variance;
+  std::vector<double> side_misfit;            ///< of every bin, smoothed; where wanted
   std::array<double, 2> offset = {0.0, 0.0};  ///< subtracted from the reactions [N]
   double noise_amplitude = 0.0;               ///< √v̄, v̄ the mean variance of the sides [N]
   /// Mean over the bins of |R_1 H_2 − R_2 H_1|² over what the noise puts there: 1 where the model
@@ -120,6 +125,13 @@ class JointInversion {
   void invert(const ReactionPair& reactions, const SensorNoiseLevel& noise,
               const JointMethod& method, JointWorkspace& workspace, JointResult& result) const;
 
+  /// The noise lowered to what the cross relation leaves in the whole band: the variances v_1, v_2
+  /// of E|R_1 H_2 − R_2 H_1|² = v_1 |H_2|² + v_2 |H_1|² by least squares with weights 1/E², 50 Hz
+  /// to 0.45 f_s, bins above eight times their expectation left out (what wraps around beside
+  /// resonances). Unchanged with one reaction. Throws as invert() does.
+  SensorNoiseLevel lowered_noise(const ReactionPair& reactions, SensorNoiseLevel noise,
+                                 OffsetRule rule, JointWorkspace& workspace) const;
+
  private:
   struct SidePower {
     bool recorded = false;
@@ -138,8 +150,8 @@ class JointInversion {
   void transform(const ReactionPair& reactions, OffsetRule rule, JointWorkspace& workspace,
                  JointResult& result) const;
   double allow_for_offsets(OffsetRule rule, std::span<double> misfit) const;
-  void compare_sides(const Weights& weights, OffsetRule rule, JointWorkspace& workspace,
-                     JointResult& result) const;
+  void compare_sides(const Weights& weights, OffsetRule rule, bool keep_misfit,
+                     JointWorkspace& workspace, JointResult& result) const;
   void combine(const Weights& weights, JointWorkspace& workspace) const;
   void set_prior(const JointMethod& method, JointWorkspace& workspace) const;
   void fill_cells(const Weights& weights, JointWorkspace& workspace) const;

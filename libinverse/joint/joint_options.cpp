@@ -52,8 +52,10 @@ void JointOptions::visit(OptionVisitor& visitor) {
                    : "noise of one sample of the reaction at x = L",
             {.unit = "N", .range = Range::non_negative(), .word = "measured"}, noise_rms[r]);
   }
-  visitor("band_limit", "nothing is identified above this frequency",
-          {.unit = "Hz", .range = Range::positive(), .word = "none"}, band_limit);
+  visitor("band_limit",
+          "nothing is identified above this frequency; auto: three modes below "
+          "the highest for a record, half the sample rate for a simulation",
+          {.unit = "Hz", .range = Range::positive(), .word = "auto"}, band_limit);
   visitor("limit_to_top_mode", "sharp band limit at the highest mode, in place of band_limit",
           limit_to_top_mode);
   visitor("points", "points on the curve of evidence over the parameter",

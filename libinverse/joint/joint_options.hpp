@@ -18,7 +18,8 @@ struct JointOptions {
   /// Standard deviations of the noise of one sample [N]; NaN: from the record.
   double noise_rms[2] = {std::numeric_limits<double>::quiet_NaN(),
                          std::numeric_limits<double>::quiet_NaN()};
-  double band_limit = std::numeric_limits<double>::quiet_NaN();  ///< [Hz]; NaN: none
+  /// [Hz]; NaN: three modes below the highest for recorded data, none for a simulation.
+  double band_limit = std::numeric_limits<double>::quiet_NaN();
   bool limit_to_top_mode = false;
   std::int64_t points = 100;
   SupportOptions transfer = {};

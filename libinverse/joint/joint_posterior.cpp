@@ -156,6 +156,13 @@ void JointInversion::apply_posterior(const JointMethod& method, JointWorkspace& 
   std::vector<Complex>& force = workspace.spectrum[0];
   const double kept = joint_kernels().apply_posterior(workspace.gain, workspace.variance, force);
   count_bins(kept, workspace, identified);
+  if (method.variances) {
+    result.force_variance = workspace.variance;
+    result.velocity_variance = workspace.variance;
+    for (std::size_t k = 0; k < mobility_.size(); ++k) {
+      result.velocity_variance[k] *= std::norm(mobility_[k]);
+    }
+  }
   widen_by_misfit(workspace);
   if (decay_.empty()) workspace.variance[0] = 0.0;
   force.front() = force.front().real();

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "libinverse/observer/innovation_fit.hpp"
+#include "libinverse/observer/verdict.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/base/task_loop.hpp"
 #include "libsim/signal/fft.hpp"
@@ -46,73 +47,11 @@ std::vector<double> from_means(const std::vector<double>& means) {
   return fft.inverse(std::move(spectrum));
 }
 
-constexpr std::array kEnds = {End::kLeft, End::kRight};
-constexpr std::array kEndNames = {"x = 0", "x = L"};
-
-// Fills the misfit that a right model leaves and its deviation: what the gains let in of the noise
-// (`quiet_misfit`, one a gain), by the share of the blocks each gain serves; the scatter of the
-// median over blocks, √(π/2) that of the mean, and that of the noise levels it is relative to.
-void judge_misfit(const ObservedRecord& record, const GainSchedule& schedule,
-                  std::span<const double> quiet_misfit, ModelBasedResult& result) {
-  double quiet = 0.0, level = 0.0, relative = 0.0;
-  for (const std::size_t gain : schedule) quiet += quiet_misfit[gain];
-  for (int r = 0; r < 2; ++r) {
-    const double share = record.raw_noise[r] / record.noise[r];
-    level += 0.5 * share * share;
-    relative += 0.25 * record.noise_deviation[r] * record.noise_deviation[r];
-  }
-  result.expected_misfit = level * quiet / static_cast<double>(schedule.size());
-  const double samples = 2.0 * static_cast<double>(record.samples());
-  result.misfit_deviation =
-      result.expected_misfit * std::sqrt(relative + std::numbers::pi / samples);
-}
-
-// A steady force F lifts R₁ by −(1 − x_c/L) F and R₂ by −(x_c/L) F: both offsets measure it.
-StaticRecovery static_recovery(const ObservedRecord& record, const ModelBasedResult& result) {
-  const double xi = record.contact / record.basis.length;
-  const double share[2] = {1.0 - xi, xi};
-  double precision = 0.0;
-  for (int r = 0; r < 2; ++r) {
-    const double weight =
-        share[r] / silent_deviation(record, kEnds[r], result.parameters.bow_velocity);
-    precision += weight * weight;
-  }
-  return {mean(result.force), 1.0 / std::sqrt(precision)};
-}
-
-// Warns of a misfit above its limit, and of offsets that left the level before the first wave by
-// more than five of their deviations [N].
-void add_warnings(const ModelBasedOptions& options, const ObservedRecord& record,
-                  std::span<const double> offset_deviation, ModelBasedResult& result) {
-  // Below the floor under the noise the observer's own discretization is all there is to see.
-  const double calibrated = std::max(1.0, result.expected_misfit) + 4.0 * result.misfit_deviation;
-  const double limit = std::isnan(options.misfit_limit) ? calibrated : options.misfit_limit;
-  if (!(result.steady_misfit <= limit)) {
-    result.warnings.push_back(fmt::format(
-        "innovation misfit {:.4g} (median over blocks) is above {:.4g}, a right model leaves "
-        "{:.3f} ± {:.3f}: the model does not explain the reactions to their noise; compare with "
-        "the linear estimate, and free what may differ (force_knots, velocity_knots, laws, "
-        "delay, gain, contact, frequencies)",
-        result.steady_misfit, limit, result.expected_misfit, result.misfit_deviation));
-  }
-  for (int r = 0; r < 2; ++r) {
-    const double level = std::abs(mean(std::span(record.reaction[r]).first(record.silent[r])) -
-                                  result.parameters.offset[r]);
-    const double deviation = std::max(
-        offset_deviation[r], silent_deviation(record, kEnds[r], result.parameters.bow_velocity));
-    if (level > 5.0 * deviation) {
-      result.warnings.push_back(fmt::format(
-          "the fitted offset of the reaction at {} is {:.3g} N away from its level before the "
-          "first wave, {:.2g} standard deviations: the record may not start at rest",
-          kEndNames[r], level, level / deviation));
-    }
-  }
-}
-
 class Estimation {
  public:
-  Estimation(const ModelBasedOptions& options, ObservedRecord record, const StopToken& stop)
-      : options_(options), record_(std::move(record)), stop_(stop) {
+  Estimation(const ModelBasedOptions& options, ObservedRecord record, Estimate joint,
+             const StopToken& stop)
+      : options_(options), record_(std::move(record)), joint_(std::move(joint)), stop_(stop) {
     for (int r = 0; r < 2; ++r) offset_deviation_[r] = offset_deviation(record_, r);
   }
 
@@ -224,6 +163,7 @@ class Estimation {
 
   ModelBasedResult finish(const ObserverParameters& parameters, const GainSchedule& schedule,
                           LinearEstimate& linear) {
+    require_finite_stiffness(*runs_, parameters, schedule);
     ModelBasedResult result;
     const Innovations innovations =
         runs_->innovations(parameters, schedule, record_.samples(), &result);
@@ -233,6 +173,7 @@ class Estimation {
     for (auto* signal : {&result.deviation.force, &result.deviation.velocity}) {
       for (double& value : *signal) value *= kParameterShare;
     }
+    require_no_ringing(result.force, record_.sample_rate);
     result.unaliased_force = from_means(result.mean_force);
     result.linear = std::move(linear);
     result.laws = candidates_;
@@ -255,11 +196,13 @@ class Estimation {
     judge_misfit(record_, schedule, runs_->quiet_misfit(), result);
     result.static_part = static_recovery(record_, result);
     add_warnings(options_, record_, offset_deviation_, result);
+    add_model_error(std::move(joint_), record_, result);
     return result;
   }
 
   const ModelBasedOptions& options_;
   ObservedRecord record_;
+  Estimate joint_;
   const StopToken& stop_;
   double offset_deviation_[2] = {};
   std::unique_ptr<ObserverRuns> runs_;
@@ -280,9 +223,14 @@ ModelBasedEstimator::ModelBasedEstimator(ModelBasedOptions options) : options_(s
 
 ModelBasedResult ModelBasedEstimator::estimate(const ModalBasis& basis, double contact,
                                                double sample_rate, std::span<const double> left,
-                                               std::span<const double> right,
-                                               const StopToken& stop) const {
-  return Estimation(options_, observe_record(basis, contact, sample_rate, left, right), stop).run();
+                                               std::span<const double> right, const StopToken& stop,
+                                               bool recorded) const {
+  ObservedRecord record =
+      observe_record(basis, contact, sample_rate, left, right, options_.noise_rms);
+  Estimate joint = joint_estimate({basis, contact, left.size(), sample_rate, recorded},
+                                  {left, right}, options_.noise_rms);
+  if (recorded) take_noise(joint, options_.noise_rms, record);
+  return Estimation(options_, std::move(record), std::move(joint), stop).run();
 }
 
 }  // namespace modcal

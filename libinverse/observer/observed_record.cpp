@@ -120,7 +120,8 @@ double silent_ripple(const ModalBasis& basis, double contact, End end, double sa
 }
 
 ObservedRecord observe_record(const ModalBasis& basis, double contact, double sample_rate,
-                              std::span<const double> left, std::span<const double> right) {
+                              std::span<const double> left, std::span<const double> right,
+                              const double (&noise_rms)[2]) {
   MODCAL_REQUIRE(left.size() == right.size(),
                  "the reactions have {} and {} samples: the observer needs both, equally long",
                  left.size(), right.size());
@@ -145,7 +146,9 @@ ObservedRecord observe_record(const ModalBasis& basis, double contact, double sa
     MODCAL_REQUIRE(deviation > 0.0, "the reaction at {} is constant: nothing moved",
                    r == 0 ? "x = 0" : "x = L");
     record.reaction[r].assign(samples.begin(), samples.end());
-    const WhiteNoise noise = noise_above(samples, sample_rate, 1.22 * top);
+    const WhiteNoise noise = std::isnan(noise_rms[r])
+                                 ? noise_above(samples, sample_rate, 1.22 * top)
+                                 : WhiteNoise{.rms = noise_rms[r]};
     record.raw_noise[r] = noise.rms;
     record.noise_deviation[r] = noise.deviation;
     record.noise[r] = std::max(record.raw_noise[r], kNoiseFloor * deviation);

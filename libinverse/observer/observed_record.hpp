@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -32,6 +33,9 @@ struct ObservedRecord {
 /// would hold its own discretization for truth.
 inline constexpr double kNoiseFloor = 0.01;
 
+inline constexpr double kUnknownNoise[2] = {std::numeric_limits<double>::quiet_NaN(),
+                                            std::numeric_limits<double>::quiet_NaN()};
+
 /// White noise as estimated.
 struct WhiteNoise {
   double rms = 0.0;        ///< [N]
@@ -53,9 +57,10 @@ double silent_ripple(const ModalBasis& basis, double contact, End end, double sa
 
 /// Record that starts at rest. Noise from the band above 1.22 times the highest mode. Throws
 /// InvalidInput for reactions of different lengths, samples that are not finite and records shorter
-/// than four periods.
+/// than four periods. `noise_rms`: as stated [N]; NaN: from the record.
 ObservedRecord observe_record(const ModalBasis& basis, double contact, double sample_rate,
-                              std::span<const double> left, std::span<const double> right);
+                              std::span<const double> left, std::span<const double> right,
+                              const double (&noise_rms)[2] = kUnknownNoise);
 
 /// Standard deviation of the mean of an end's silent samples about its offset [N], bow velocity
 /// v_bow [m/s]: their noise, and the ripple of the 2 Z₀ v_bow that the bow draws until the first

@@ -1,6 +1,6 @@
 // The model-based estimate as one of the estimators.
 
-#include "libinverse/observer/model_based_estimator.hpp"
+#include "libinverse/observer/verdict.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -13,6 +13,7 @@ class PreparedObserverEstimate final : public PreparedEstimator {
         contact_(model.contact),
         sample_rate_(model.sample_rate),
         samples_(model.samples),
+        recorded_(model.recorded),
         estimator_(estimator) {}
 
   std::vector<Estimate> estimate(const EstimationRecord& record,
@@ -23,8 +24,8 @@ class PreparedObserverEstimate final : public PreparedEstimator {
                      "samples each; use estimator joint where one is missing",
                      r == 0 ? "x = 0" : "x = L", record.reactions[r].size(), samples_);
     }
-    ModelBasedResult result = estimator_.estimate(basis_, contact_, sample_rate_,
-                                                  record.reactions[0], record.reactions[1]);
+    ModelBasedResult result = estimator_.estimate(
+        basis_, contact_, sample_rate_, record.reactions[0], record.reactions[1], {}, recorded_);
     Estimate estimate;
     estimate.side = "model";
     estimate.label = "model-based";
@@ -41,6 +42,11 @@ class PreparedObserverEstimate final : public PreparedEstimator {
                         {"misfit_deviation", result.misfit_deviation},
                         {"static_level", result.static_part.level},
                         {"static_deviation", result.static_part.deviation}};
+    if (method.outputs.force) estimate.force_deviations = std::move(result.deviation.force);
+    if (method.outputs.velocity) {
+      estimate.velocity_deviations = std::move(result.deviation.velocity);
+    }
+    estimate.notes = {observer::law_note(result)};
     estimate.warnings = std::move(result.warnings);
     return {std::move(estimate)};
   }
@@ -49,6 +55,7 @@ class PreparedObserverEstimate final : public PreparedEstimator {
   ModalBasis basis_;
   double contact_, sample_rate_;
   std::size_t samples_;
+  bool recorded_;
   ModelBasedEstimator estimator_;
 };
 

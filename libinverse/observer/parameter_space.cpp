@@ -108,6 +108,12 @@ void ModelBasedOptions::visit(OptionVisitor& visitor) {
           "innovation misfit, median over blocks, above which the result warns; "
           "auto: by its sampling deviation",
           {.range = Range::positive(), .word = "auto"}, misfit_limit);
+  for (std::size_t r = 0; r < 2; ++r) {
+    visitor(r == 0 ? "noise_rms1" : "noise_rms2",
+            r == 0 ? "noise of one sample of the reaction at x = 0"
+                   : "noise of one sample of the reaction at x = L",
+            {.unit = "N", .range = Range::positive(), .word = "measured"}, noise_rms[r]);
+  }
 }
 
 void free_more(const ModelBasedOptions& options, std::span<const std::size_t> modes,

@@ -92,7 +92,7 @@ class ParameterSpace {
 
 struct ModelBasedOptions {
   /// Friction laws fitted; with several, the one with the least BIC is taken.
-  std::vector<std::string> laws = {"exponential"};
+  std::vector<std::string> laws = {"exponential", "hyperbolic", "thermal", "two_exponential"};
   std::int64_t substeps = 5;        ///< steps of the observer per sample while it is fitted
   std::int64_t rounds = 3;          ///< of gain search and fit
   bool adherence_damping = false;   ///< frees C_a, else 2√(K_a m_eff)
@@ -105,6 +105,9 @@ struct ModelBasedOptions {
   /// Steady J above which the result warns; NaN: four standard deviations above what a right model
   /// leaves.
   double misfit_limit = std::numeric_limits<double>::quiet_NaN();
+  /// Standard deviations of the noise of one sample [N]; NaN: from the record.
+  double noise_rms[2] = {std::numeric_limits<double>::quiet_NaN(),
+                         std::numeric_limits<double>::quiet_NaN()};
   void visit(OptionVisitor& visitor);
   /// Beyond friction products, decay, bow velocity, adherence stiffness and offsets.
   bool frees_more() const {

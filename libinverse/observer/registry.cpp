@@ -3,13 +3,15 @@
 
 #include "libinverse/estimator.hpp"
 #include "libinverse/joint/joint_estimators.hpp"
-#include "libinverse/observer/model_based_estimator.hpp"
+#include "libinverse/observer/auto_estimator.hpp"
 #include "libinverse/spectral/one_sided/one_sided_inversion.hpp"
 
 namespace modcal {
 
 Registry<Estimator> Estimator::registry() {
   static constexpr std::array kTable = {
+      entry_of<Estimator, AutoEstimator>(
+          "auto", "joint and model_based, weighted by what the record says of the second"),
       entry_of<Estimator, JointEstimator>("joint", "one force from both reactions"),
       entry_of<Estimator, LinearLimitEstimator>(
           "linear_limit", "what no linear estimate beats: true spectra known (oracle)"),

@@ -94,7 +94,10 @@ report::Cell side_cell(const std::string& side) {
 
 report::Table identification_table(const std::vector<SideIdentification>& sides) {
   report::Table table{.id = "identification", .title = "Identification"};
-  const auto add = [&table](const SideIdentification& side, const WindowScore& score) {
+  const bool limited = std::ranges::any_of(sides, [](const SideIdentification& side) {
+    return std::isfinite(side.estimate.band_limit);
+  });
+  const auto add = [&table, limited](const SideIdentification& side, const WindowScore& score) {
     const ChosenParameter& choice = side.estimate.result.choice;
     const bool free = choice.status == ChoiceStatus::kNoParameter;
     const auto parameter = free ? std::nullopt : std::optional(choice.parameter());
@@ -110,6 +113,13 @@ report::Table identification_table(const std::vector<SideIdentification>& sides)
            .name = "standard deviation of the force, posterior",
            .unit = "N"},
           known(side.estimate.force_deviation));
+      if (!limited) return;
+      row({.key = "velocity_deviation",
+           .name = "standard deviation of the velocity, posterior",
+           .unit = "m/s"},
+          known(side.estimate.velocity_deviation));
+      row({.key = "band_limit", .name = "identified up to", .unit = "Hz"},
+          known(side.estimate.band_limit));
     });
   };
   for (const SideIdentification& side : sides) {
@@ -140,6 +150,14 @@ SignalFile identified_signals(const Observation& observation,
       file.signals.push_back({fmt::format("{}{}{}", name, numbered ? "" : "_", side.estimate.side),
                               std::string(quantity.unit), observation.sample_rate, samples});
     }
+    const auto add = [&](const char* name, const char* unit, const std::vector<double>& samples) {
+      if (samples.empty()) return;
+      file.signals.push_back({fmt::format(fmt::runtime(name), side.estimate.side), unit,
+                              observation.sample_rate, samples});
+    };
+    add("f_c_{}_unaliased", "N", side.estimate.unaliased_force);
+    add("f_c_{}_deviation", "N", side.estimate.force_deviations);
+    add("v_{}_deviation", "m/s", side.estimate.velocity_deviations);
   }
   return file;
 }
@@ -148,6 +166,10 @@ void add_warnings(const Observation& observation, const std::vector<SideIdentifi
                   StudyResult& result) {
   for (const std::string& warning : observation.warnings) result.warn(warning);
   for (const SideIdentification& side : sides) {
+    for (const std::string& note : side.estimate.notes) {
+      result.summary += fmt::format("side {}  {}\n", side.estimate.side, note);
+      result.blocks.emplace_back(report::Text{note, report::Text::Kind::kNote});
+    }
     for (const std::string& warning : side.estimate.warnings) {
       result.warn(fmt::format("Estimate {}: {}", side.estimate.label, warning));
     }

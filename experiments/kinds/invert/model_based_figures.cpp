@@ -81,8 +81,9 @@ report::Figure friction_figure(const Observation& observation, const ModelBasedR
       .title = "Friction law",
       .caption =
           "Left: medians of cells of slip speed with the 5 and 95 % quantiles of their samples. "
-          "Right: the bars are 95 % bands under the sensors' noise, what the band limit cuts off "
-          "and a wrong law not counted. The linear estimate assumes no law; the model-based one "
+          "Right: the bars are 95 % bands under the sensors' noise and, for the model-based "
+          "estimate, its model error; what the band limit of the linear one cuts off is not "
+          "counted. The linear estimate assumes no law; the model-based one "
           "lies on its own.",
       .columns = 2,
       .panels = {std::move(curve), std::move(loops)}};

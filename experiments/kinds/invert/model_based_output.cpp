@@ -1,5 +1,6 @@
 #include "experiments/kinds/invert/invert.hpp"
 #include "experiments/report/result.hpp"
+#include "libinverse/observer/verdict.hpp"
 
 namespace modcal {
 namespace {
@@ -115,15 +116,6 @@ report::Table law_table(const std::vector<observer::FrictionCandidate>& laws) {
       });
 }
 
-std::string law_line(const std::vector<observer::FrictionCandidate>& laws) {
-  std::string text = fmt::format("model  friction law: {}", laws[0].law);
-  for (std::size_t i = 1; i < laws.size(); ++i) {
-    text += fmt::format("{} {} (BIC {:+.4g}, z {:.2g})", i == 1 ? "; others:" : ",", laws[i].law,
-                        laws[i].criterion - laws[0].criterion, laws[i].distance - laws[0].distance);
-  }
-  return text + "\n";
-}
-
 }  // namespace
 
 ModelIdentification identify_by_model(const Observation& observation, const AssumedModel& model,
@@ -133,7 +125,8 @@ ModelIdentification identify_by_model(const Observation& observation, const Assu
   ModelIdentification identification;
   identification.result = ModelBasedEstimator(options).estimate(
       model.basis, model.contact, observation.sample_rate,
-      observation.reaction(End::kLeft)->samples, observation.reaction(End::kRight)->samples, stop);
+      observation.reaction(End::kLeft)->samples, observation.reaction(End::kRight)->samples, stop,
+      observation.truth == nullptr);
   identification.scores = model_scores(identification.result, observation, score);
   return identification;
 }
@@ -144,6 +137,7 @@ void add_model_signals(const Observation& observation, const ModelBasedResult& m
     file.signals.push_back({name, unit, observation.sample_rate, samples});
   };
   add("f_c_model", "N", model.force);
+  add("f_c_model_unaliased", "N", model.unaliased_force);
   add("v_model", "m/s", model.velocity);
   add("y_model", "m", model.displacement);
   add("f_c_model_deviation", "N", model.deviation.force);
@@ -161,7 +155,7 @@ void add_model_based(const Observation& observation, const ModelIdentification& 
   result.blocks.emplace_back(friction_figure(observation, r, start, length));
   if (r.laws.size() > 1) {
     result.add({law_table(r.laws)});
-    result.summary += law_line(r.laws);
+    result.summary += fmt::format("model  {}\n", observer::law_note(r));
   }
   if (!identification.scores.empty()) result.add({score_table(identification.scores)});
   result.add({parameter_table(r)});

@@ -6,6 +6,7 @@
 
 #include "libinverse/joint/joint_estimators.hpp"
 #include "libsim/base/error.hpp"
+#include "libsim/signal/fft.hpp"
 #include "tests/libinverse/joint/joint_case.hpp"
 
 namespace modcal {
@@ -85,6 +86,7 @@ TEST(JointEstimator, StaticRemainderIsOnForRecordedStringsUnlessStated) {
   const auto force_with = [&](const char* remainder, bool recorded) {
     JointOptions options;
     options.transfer.remainder = remainder;
+    options.band_limit = kRate;  // none: a record's own would end below the highest mode
     options.noise_rms[0] = options.noise_rms[1] = 1e-6;
     return estimate_with(options, basis, string.pair(), recorded).result.force;
   };
@@ -93,6 +95,66 @@ TEST(JointEstimator, StaticRemainderIsOnForRecordedStringsUnlessStated) {
   EXPECT_EQ(force_with("auto", false), off);
   // The response holds the remainder: without it the error is larger.
   EXPECT_LT(1.5 * middle_error(on, string.force), middle_error(off, string.force));
+}
+
+// What lies above the modes of a real string the data do not tell: three modes below the highest
+// one a record's estimate ends, and says so; a simulated string has no others.
+TEST(JointEstimator, OfARecordEndsBelowTheHighestMode) {
+  const std::size_t samples = 8192;
+  const ModalBasis basis = violin_g();
+  const DrivenString string =
+      drive(basis, kPosition, jumping_force(samples, StreamKey(4)), {}, true);
+  // Under a window: the growing weight makes the record's end and its beginning differ.
+  const auto power_above = [](std::vector<double> force, double frequency) {
+    for (std::size_t j = 0; j < force.size(); ++j) {
+      const double turn = (static_cast<double>(j) + 0.5) / static_cast<double>(force.size());
+      force[j] *= std::pow(std::sin(std::numbers::pi * turn), 2);
+    }
+    const std::vector<Complex> spectrum = RealFft(force.size()).forward(force);
+    double power = 0.0, all = 0.0;
+    for (std::size_t k = 1; k < spectrum.size(); ++k) {
+      const double at = static_cast<double>(k) * kRate / static_cast<double>(force.size());
+      all += std::norm(spectrum[k]);
+      if (at > frequency) power += std::norm(spectrum[k]);
+    }
+    return power / all;
+  };
+  JointOptions options;
+  options.noise_rms[0] = options.noise_rms[1] = 1e-4;
+  const Estimate record = estimate_with(options, basis, string.pair(), true);
+  EXPECT_EQ(record.band_limit, basis.frequency(46));
+  // The contour's weight blurs the limit by σ/2π, less than 1 Hz.
+  EXPECT_LT(power_above(record.result.force, 1.05 * basis.frequency(46)), 1e-5);
+  ASSERT_EQ(record.notes.size(), 1u);
+  EXPECT_THAT(record.notes[0], testing::HasSubstr("3 modes below the highest of 50"));
+  const Estimate simulated = estimate_with(options, basis, string.pair(), false);
+  EXPECT_TRUE(std::isnan(simulated.band_limit));
+  EXPECT_GT(power_above(simulated.result.force, 1.05 * basis.frequency(46)), 1e-4);
+  EXPECT_TRUE(simulated.notes.empty());
+  options.band_limit = 5000.0;
+  const Estimate stated = estimate_with(options, basis, string.pair(), true);
+  EXPECT_EQ(stated.band_limit, 5000.0);
+  EXPECT_TRUE(stated.notes.empty());
+  options.band_limit = std::numeric_limits<double>::quiet_NaN();
+  options.limit_to_top_mode = true;
+  EXPECT_NEAR(estimate_with(options, basis, string.pair(), true).band_limit,
+              1.01 * basis.frequency(49), 1e-6);
+}
+
+// Above its modes a real string is not silent: what is read there is five times the noise, what the
+// cross relation leaves is the noise.
+TEST(JointEstimator, NoiseOfARecordIsWhatTheCrossRelationLeaves) {
+  const std::size_t samples = 16384;
+  const ModalBasis basis = violin_g();
+  for (const double level : {0.002, 0.02}) {
+    DrivenString string = drive(basis, kPosition, jumping_force(samples, StreamKey(4)), {}, true);
+    SensorNoiseLevel truth;
+    add_noise(string, level, StreamKey(5), &truth);
+    const Estimate found = estimate_with({}, basis, string.pair(), true);
+    // Weighted by exp(−8 t/T) a sixteenth of the bins is independent: 3 %, by their weights twice.
+    EXPECT_NEAR(figure(found, "noise_rms_1"), truth.rms[0], 0.12 * truth.rms[0]) << level;
+    EXPECT_NEAR(figure(found, "noise_rms_2"), truth.rms[1], 0.12 * truth.rms[1]) << level;
+  }
 }
 
 TEST(JointEstimator, BendingOfTheSupportsIsAnOption) {

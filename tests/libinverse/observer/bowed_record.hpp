@@ -2,6 +2,7 @@
 #pragma once
 
 #include "libsim/dynamics/event/modal_event.hpp"
+#include "libsim/dynamics/gestures/gesture.hpp"
 #include "libsim/model/modal_basis.hpp"
 #include "libsim/signal/measurement.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
@@ -63,6 +64,16 @@ inline BowedRecord bowed_record(double duration, double noise, std::uint64_t see
 
 inline BowedRecord light_record(double duration, double noise, std::uint64_t seed = 1) {
   return record_of(light_scene(duration), kLightRate, noise, seed);
+}
+
+/// The light record under a bow whose velocity swings by ±10 %, once in 0.14 s.
+inline BowedRecord swinging_record(double noise) {
+  Scene scene = light_scene(0.14);
+  SineGesture::Options swing;
+  swing.amplitude = 0.1;
+  swing.frequency = 1.0 / scene.duration;
+  scene.bow.velocity_gesture = Choice<Gesture>::of<SineGesture>("sine", swing);
+  return record_of(scene, kLightRate, noise);
 }
 
 }  // namespace modcal

@@ -14,6 +14,7 @@ namespace {
 
 ModelBasedOptions quick() {
   ModelBasedOptions options;
+  options.laws = {"exponential"};
   options.substeps = 4;
   options.rounds = 1;
   return options;
@@ -147,12 +148,7 @@ TEST(ModelBasedEstimator, AStringOfFewModesRipplesBeforeTheFirstWave) {
 // knot at every quarter it follows as closely as lines between five knots do: the least-squares
 // ones have the knots 0.098, 1.191, 0, -1.191, -0.098 times the swing.
 TEST(ModelBasedEstimator, FollowsABowVelocityThatDrifts) {
-  Scene scene = light_scene(0.14);
-  SineGesture::Options swing;
-  swing.amplitude = 0.1;
-  swing.frequency = 1.0 / scene.duration;
-  scene.bow.velocity_gesture = Choice<Gesture>::of<SineGesture>("sine", swing);
-  const BowedRecord r = record_of(scene, kLightRate, 0.01);
+  const BowedRecord r = swinging_record(0.01);
   ModelBasedOptions options = quick();
   options.rounds = 0;
   const ModelBasedResult constant = estimate(r, options);

@@ -1,0 +1,61 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "libinverse/joint/joint_estimators.hpp"
+
+namespace modcal {
+
+std::vector<Estimate> estimate_with(const JointInversion& inversion, const EstimationRecord& record,
+                                    const SensorNoiseLevel& noise, const JointMethod& method,
+                                    const char* side, const char* label) {
+  JointWorkspace workspace;
+  JointResult result;
+  inversion.invert(record.reactions, noise, method, workspace, result);
+  Estimate estimate;
+  estimate.band_limit = method.band_limit;
+  estimate.force_variance = std::move(result.force_variance);
+  estimate.velocity_variance = std::move(result.velocity_variance);
+  estimate.side_misfit = std::move(result.side_misfit);
+  estimate.side = side;
+  estimate.label = label;
+  estimate.result = std::move(result.identified);
+  estimate.largest_transfer = inversion.largest_transfer();
+  estimate.force_deviation = result.deviation.force;
+  estimate.displacement_deviation = result.deviation.displacement;
+  estimate.velocity_deviation = result.deviation.velocity;
+  const double duration = static_cast<double>(inversion.samples()) / inversion.sample_rate();
+  estimate.figures = {{"sigma", inversion.sigma()},
+                      {"sigma_T", inversion.sigma() * duration},
+                      {"noise_rms_1", noise.rms[0]},
+                      {"noise_rms_2", noise.rms[1]},
+                      {"noise_share_of_band", noise.noise_share},
+                      {"offset_1", result.offset[0]},
+                      {"offset_2", result.offset[1]},
+                      {"force_deviation", result.deviation.force},
+                      {"misfit_of_sides", result.misfit}};
+  if (result.misfit > JointInversion::kContradiction) {
+    estimate.warnings.push_back(fmt::format(
+        "the reactions contradict each other {:.2g} times more than their noise: the model or the "
+        "ends of the record limit the estimate, and its error bars are widened",
+        std::sqrt(result.misfit)));
+  }
+  const bool both = !record.reactions[0].empty() && !record.reactions[1].empty();
+  if (!both) {
+    estimate.warnings.push_back(
+        fmt::format("reaction {} is missing: the estimate rests on the other one alone",
+                    record.reactions[0].empty() ? 1 : 2));
+  }
+  if (!noise.measured) {
+    estimate.warnings.emplace_back(
+        "the sample rate leaves no band above the modes to measure the noise in: 1 % of each "
+        "reaction is supposed");
+  }
+  std::string warning = warning_of(estimate.result.choice);
+  if (!warning.empty()) estimate.warnings.push_back(std::move(warning));
+  return {std::move(estimate)};
+}
+
+}  // namespace modcal

@@ -1,0 +1,110 @@
+#include "libinverse/observer/verdict.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "libsim/base/error.hpp"
+#include "libsim/signal/statistics.hpp"
+#include "tests/libinverse/observer/bowed_record.hpp"
+
+namespace modcal::observer {
+namespace {
+
+using testing::HasSubstr;
+
+// A saw: what a force that sticks and slides looks like.
+std::vector<double> saw(double ringing_amplitude) {
+  std::vector<double> force(8192);
+  for (std::size_t j = 0; j < force.size(); ++j) {
+    const auto k = static_cast<double>(j);
+    force[j] = std::fmod(k / 173.3, 1.0) + ringing_amplitude * std::cos(0.96 * M_PI * k);
+  }
+  return force;
+}
+
+TEST(Ringing, IsSeenAndRefusedWithARemedy) {
+  EXPECT_LT(ringing(saw(0.0)), 1.5);
+  EXPECT_NO_THROW(require_no_ringing(saw(0.0), 51200.0));
+  EXPECT_GT(ringing(saw(0.1)), kMostRinging);
+  try {
+    require_no_ringing(saw(0.1), 51200.0);
+    FAIL() << "accepted";
+  } catch (const InvalidInput& refusal) {
+    EXPECT_THAT(refusal.what(), HasSubstr("rings between 23040 and 25600 Hz"));
+    EXPECT_THAT(refusal.what(), HasSubstr("estimator: joint"));
+  }
+}
+
+// The light record's contact has 1e5 N/m. At a hundred thousand times that it is rigid, and nothing
+// in the innovations holds it.
+TEST(Stiffness, OfARigidContactIsRefused) {
+  const BowedRecord r = light_record(0.04, 0.02);
+  const ObservedRecord record =
+      observe_record(r.basis, r.scene.bow.position, r.rate, r.left.samples, r.right.samples);
+  const ObserverRuns runs(record, {0.01}, {});
+  ObserverParameters p;
+  p.sliding.dynamic_force = p.sliding.force_drop = 0.2;
+  p.sliding.decay = 5.0;
+  p.bow_velocity = 0.1;
+  p.contact = record.contact;
+  p.stiffness = 1e5;
+  EXPECT_NO_THROW(require_finite_stiffness(runs, p, {0}));
+  p.stiffness = 1e10;
+  ASSERT_GT(p.stiffness, rigid_stiffness(runs));
+  try {
+    require_finite_stiffness(runs, p, {0});
+    FAIL() << "accepted";
+  } catch (const InvalidInput& refusal) {
+    EXPECT_THAT(refusal.what(), HasSubstr("runs away: at 1e+10 N/m"));
+    EXPECT_THAT(refusal.what(), HasSubstr("take fewer modes"));
+  }
+}
+
+ModelBasedOptions quick() {
+  ModelBasedOptions options;
+  options.laws = {"exponential"};
+  options.substeps = 4;
+  options.rounds = 0;
+  return options;
+}
+
+TEST(ModelBasedOptions, AllLawsAreFittedUnlessStated) {
+  const auto names = friction_law_names();
+  EXPECT_EQ(ModelBasedOptions{}.laws, (std::vector<std::string>(names.begin(), names.end())));
+}
+
+TEST(ModelBasedEstimator, MayBeToldTheNoise) {
+  const BowedRecord r = light_record(0.04, 0.02);
+  ModelBasedOptions options = quick();
+  options.noise_rms[0] = 1.5e-3;
+  options.noise_rms[1] = 2.5e-3;
+  const ModelBasedResult result = ModelBasedEstimator(options).estimate(
+      r.basis, r.scene.bow.position, r.rate, r.left.samples, r.right.samples);
+  EXPECT_EQ(result.noise[0], 1.5e-3);
+  EXPECT_EQ(result.noise[1], 2.5e-3);
+}
+
+// The bow's velocity swings by 10 %, which a constant one does not explain.
+TEST(ModelBasedEstimator, BarsHoldTheErrorOfAWrongModel) {
+  const BowedRecord r = swinging_record(0.01);
+  const ModelBasedResult result = ModelBasedEstimator(quick()).estimate(
+      r.basis, r.scene.bow.position, r.rate, r.left.samples, r.right.samples);
+  EXPECT_FALSE(result.explained());
+  EXPECT_GT(result.model_error.force_square, 0.0);
+  const auto held = [&](const std::vector<double>& x, const std::vector<double>& truth,
+                        const std::vector<double>& deviation) {
+    const double shift = mean(x) - mean(truth);
+    std::size_t inside = 0;
+    for (std::size_t k = x.size() / 4; k < x.size(); ++k) {
+      inside += std::abs(x[k] - shift - truth[k]) <= 1.96 * deviation[k] ? 1 : 0;
+    }
+    return static_cast<double>(inside) / (0.75 * static_cast<double>(x.size()));
+  };
+  EXPECT_GT(held(result.force, r.truth.force.samples, result.deviation.force), 0.85);
+  EXPECT_GT(held(result.velocity, r.truth.velocity.samples, result.deviation.velocity), 0.85);
+}
+
+}  // namespace
+}  // namespace modcal::observer
