@@ -52,9 +52,9 @@ constexpr double kSidesApart = 2.0;
 
 /// Share of the record before steady motion, for the model error of the bands.
 /// Source: that of observed_record.cpp.
-/// Range tried: 0.08 to 0.3.
+/// Range tried: none.
 /// Doubled: not tried.
-/// Halved: not tried; at 0.08 the bands hold as much to 0.001.
+/// Halved: not tried.
 constexpr double kBeforeSteady = 0.3;
 
 /// A contact whose resonance on the effective mass is so many times above the highest mode is
