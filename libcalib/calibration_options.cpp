@@ -24,6 +24,7 @@ void require_nothing_known(const ParameterOptions& parameters) {
   require(!unknowns.correlations.empty(), "correlations");
   require(unknowns.per_record != plain.unknowns.per_record, "per_record");
   require(unknowns.damping_width != plain.unknowns.damping_width, "damping_width");
+  require(!std::isnan(unknowns.damping_scatter), "damping_scatter");
   require(!std::isnan(parameters.law_width), "law_width");
 }
 

@@ -74,6 +74,11 @@ void UnknownsOptions::visit(OptionVisitor& visitor) {
           {.choices = choices_of(kDampingChoices)}, damping);
   visitor("damping_width", "relative standard deviation of the prior of each damping ratio",
           {.range = Range::positive()}, damping_width);
+  visitor(
+      "damping_scatter",
+      "of it what each damping ratio has for itself, about a curve that is smooth in the mode's "
+      "number; of a record's 0.3",
+      {.range = Range::positive(), .word = "all"}, damping_scatter);
   std::vector<std::string> free = free_sensors();
   if (response.free) free.emplace_back("response");
   if (exact_sensors) free.emplace_back("exact");

@@ -63,6 +63,9 @@ struct UnknownsOptions {
   /// about the stated one.
   std::string damping = "factor";
   double damping_width = 0.3;  ///< sd of the prior of each ln ζ_n, with "each" [1]
+  /// Of that the scatter of each by itself; the rest is that of a smooth curve in ln n, alike
+  /// within an e-fold of n. NaN: all of it, each by itself [1].
+  double damping_scatter = std::numeric_limits<double>::quiet_NaN();
   /// Gain [1], delay [s] and corner [Hz] of the sensor at x = L.
   std::array<UnknownOption, Sensor::kCount> sensor = {{{.value = 1.0}}};
   ResponseOptions response;

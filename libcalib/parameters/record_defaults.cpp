@@ -39,6 +39,7 @@ UnknownsOptions UnknownsOptions::of_records(double sample_rate, const ModalBasis
   if (damping_choice(damping) == DampingChoice::kAuto) {
     known.damping = "each";
     if (damping_width == UnknownsOptions().damping_width) known.damping_width = 1.0;
+    if (std::isnan(damping_scatter)) known.damping_scatter = std::min(0.3, known.damping_width);
   }
   const bool named = sensors().may_differ();
   known.response.free = !exact_sensors && (response.free || !named);

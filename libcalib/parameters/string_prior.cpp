@@ -73,11 +73,31 @@ void StringUnknowns::state_widths(const std::vector<double>& mean,
     }
   }
   if (!free_.has(Kind::kDampingRatio)) return;
+  std::vector<LinearForm> ratios;
+  std::vector<double> logarithms, places;
   for (std::size_t n = 0; n < modes(); ++n) {
     const ParameterName ratio{Kind::kDampingRatio, n};
     if (priors_.has(ratio) || priors_.fixed(ratio)) continue;
-    equations.add(*coordinate(ratio, {}), std::log(mean[n]), options_.damping_width);
+    ratios.push_back(*coordinate(ratio, {}));
+    logarithms.push_back(std::log(mean[n]));
+    places.push_back(std::log(static_cast<double>(n + 1)));
   }
+  // ln ζ_n scatters about a curve that is itself known to so much; without a scatter of its own
+  // each is as far from the stated one as the others.
+  const auto count = static_cast<Index>(ratios.size());
+  const double whole = options_.damping_width * options_.damping_width;
+  const double own = std::isnan(options_.damping_scatter)
+                         ? whole
+                         : options_.damping_scatter * options_.damping_scatter;
+  Eigen::MatrixXd covariance = whole * Eigen::MatrixXd::Identity(count, count);
+  for (Index i = 0; i < count && own < whole; ++i) {
+    for (Index j = 0; j < i; ++j) {
+      const double apart =
+          places[static_cast<std::size_t>(i)] - places[static_cast<std::size_t>(j)];
+      covariance(i, j) = covariance(j, i) = (whole - own) * std::exp(-0.5 * apart * apart);
+    }
+  }
+  equations.add(ratios, Eigen::Map<const Eigen::VectorXd>(logarithms.data(), count), covariance);
 }
 
 PriorEquations StringUnknowns::stated(const Eigen::VectorXd& theta) const {

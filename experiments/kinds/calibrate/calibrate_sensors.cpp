@@ -79,7 +79,8 @@ std::string default_text(const CalibrationOptions& calibration, const Observatio
                                 known.response.width, known.response.spacing));
   }
   if (known.damping != stated.damping) {
-    texts.push_back(fmt::format("every ln zeta_n +- {:g}", known.damping_width));
+    texts.push_back(fmt::format("every ln zeta_n +- {:g}, {:g} of it each by itself",
+                                known.damping_width, known.damping_scatter));
   }
   if (texts.empty()) return "";
   return fmt::format(

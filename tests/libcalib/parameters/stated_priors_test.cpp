@@ -138,6 +138,33 @@ TEST_F(Posterior, OfWhatTheDataDoNotTellIsThePrior) {
   EXPECT_NEAR(model.basis.zeta[2], 1.2e-3, 1e-7);
 }
 
+// Scatter 0.3 of a width 1: two modes differ by √2·0.3 beside what the smooth curve changes between
+// them, the mean of many is known to almost the width.
+TEST(DampingPrior, HoldsACurveAndAScatter) {
+  UnknownsOptions options;
+  options.damping = "each";
+  options.damping_width = 1.0;
+  options.damping_scatter = 0.3;
+  const ModelPoint point = stiff_string();
+  const StringUnknowns unknowns =
+      StringUnknowns::frequencies(point, options, StatedPriors(options, point));
+  const Eigen::MatrixXd precision =
+      unknowns.prior(unknowns.start(), {Eigen::VectorXd::Constant(50, 2e-3), kInharmonicity})
+          .precision;
+  const auto place = [&](std::size_t mode) {
+    return static_cast<Eigen::Index>(
+        *unknowns.parameters().find(ParameterKind::kDampingRatio, mode - 1));
+  };
+  const Eigen::Index first = place(1), count = static_cast<Eigen::Index>(point.basis.size());
+  const Eigen::MatrixXd covariance = precision.block(first, first, count, count).inverse();
+  const auto between = [&](std::size_t a, std::size_t b) {
+    return covariance(place(a) - first, place(b) - first);
+  };
+  EXPECT_NEAR(between(20, 20), 1.0, 1e-9);
+  EXPECT_NEAR(between(20, 21), 0.91 * std::exp(-0.5 * std::pow(std::log(21.0 / 20.0), 2)), 1e-9);
+  EXPECT_NEAR(between(1, 20), 0.91 * std::exp(-0.5 * std::pow(std::log(20.0), 2)), 1e-9);
+}
+
 TEST(PriorMisfit, IsMeasuredByTheCovarianceStated) {
   const UnknownsOptions options =
       stating({{"gain", 1.0, 0.02}, {"delay", 0.0, 2e-6}}, {{{"gain", "delay"}, 0.5}});
