@@ -173,10 +173,9 @@ class FittedRecord {
   PlanarVector cubed(bool right) const {
     std::vector<Complex> spectrum(fft_.bins());
     for (std::size_t k = 0; k < record_.bins; ++k) {
-      const Complex h1 = left_[k], h2 = right_[k];
-      const double norm = std::sqrt(std::norm(h1) + std::norm(h2));
-      const Complex noise = residual_[k] / norm * (right ? -std::conj(h1) : std::conj(h2));
-      spectrum[k + 1] = (right ? record_.right : record_.left).at(k) - noise;
+      const NoisePair noise =
+          noise_of_residual(record_.noise_at(k), left_[k], right_[k], residual_[k]);
+      spectrum[k + 1] = right ? record_.right.at(k) - noise.right : record_.left.at(k) - noise.left;
     }
     std::vector<double> samples(fft_.length());
     fft_.inverse(spectrum, samples);

@@ -27,8 +27,10 @@ double CostWith(const ModeSurroundings& around, const LikelihoodMode& mode) {
     const C receptance = Scale(InverseDenominator(mode, bins), residue);
     const C left = Sub(Load(around.left, k), Scale(receptance, per_left));
     const C right = AddMul(Load(around.right, k), Scale(receptance, per_right), sensor);
-    const V scale =
-        hn::Div(LoadReal(around.weight.data() + k), hn::Sqrt(hn::Add(Norm(left), Norm(right))));
+    const V variance = ResidualVariance(left, right, LoadReal(around.left_noise.data() + k),
+                                        LoadReal(around.right_noise.data() + k),
+                                        LoadReal(around.mixed_noise.data() + k));
+    const V scale = hn::Div(LoadReal(around.weight.data() + k), hn::Sqrt(variance));
     const C data =
         Sub(Mul(right, Load(around.left_data, k)), Mul(left, Load(around.right_data, k)));
     const C residual = Scale(data, scale);
@@ -66,6 +68,9 @@ ModeSurroundings::ModeSurroundings(std::size_t bins)
       right(bins),
       left_data(bins),
       right_data(bins),
+      left_noise(padded_size(bins)),
+      right_noise(padded_size(bins)),
+      mixed_noise(padded_size(bins)),
       sensor(bins),
       delay(bins),
       omega(padded_size(bins)),

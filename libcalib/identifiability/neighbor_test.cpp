@@ -77,11 +77,11 @@ class Field {
         mode.residue / (mode.omega_squared + s * s + mode.two_zeta_omega * s);
     const Complex delay = record_.delay.at(k);
     const Complex left = left_[k], right = right_[k];
-    const double root = std::sqrt(std::norm(left) + std::norm(right));
-    // h and its orthogonal complement make the data again from force and residual.
-    const Complex residual = Complex(residuals_[2 * k], residuals_[2 * k + 1]) / root;
-    Complex left_data = left * force_[k] + std::conj(right) * residual;
-    Complex right_data = right * force_[k] - std::conj(left) * residual;
+    // Force and residual make the data again.
+    const NoisePair noise = noise_of_residual(record_.noise_at(k), left, right,
+                                              Complex(residuals_[2 * k], residuals_[2 * k + 1]));
+    Complex left_data = left * force_[k] + noise.left;
+    Complex right_data = right * force_[k] + noise.right;
     if (n < amplitudes_.size()) {
       const Complex decay = amplitudes_[n] / (1.0 - mode.pole * delay) +
                             std::conj(amplitudes_[n]) / (1.0 - std::conj(mode.pole) * delay);
@@ -95,6 +95,10 @@ class Field {
     around.sensor.set(j, sensor);
     around.delay.set(j, delay);
     around.omega[j] = record_.omega[k];
+    const NoiseCovariance covariance = record_.noise_at(k);
+    around.left_noise[j] = covariance.left;
+    around.right_noise[j] = covariance.right;
+    around.mixed_noise[j] = covariance.mixed;
   }
 
   const WhitenedRecord& record_;

@@ -35,6 +35,27 @@ HWY_INLINE C ReceptanceSum(const ModeSplit& split, std::span<const std::size_t> 
   return sum;
 }
 
+HWY_INLINE V ResidualVarianceAt(const WhitenedRecord& record, C left, C right, std::size_t bin) {
+  if (record.white()) return hn::Add(Norm(left), Norm(right));
+  return ResidualVariance(left, right, LoadReal(record.left_noise.data() + bin),
+                          LoadReal(record.right_noise.data() + bin),
+                          LoadReal(record.mixed_noise.data() + bin));
+}
+
+// Best estimate of F under that noise, from what both ends read of it; norm: 1/ResidualVarianceAt.
+HWY_INLINE C ForceOf(const WhitenedRecord& record, C left, C right, C from_left, C from_right,
+                     V norm, std::size_t bin) {
+  if (!record.white()) {
+    const V mixed = LoadReal(record.mixed_noise.data() + bin);
+    const C own_left = Scale(left, LoadReal(record.right_noise.data() + bin));
+    const C own_right = Scale(right, LoadReal(record.left_noise.data() + bin));
+    const C other = Scale(left, mixed);
+    left = Sub(own_left, Scale(right, mixed));
+    right = Sub(own_right, other);
+  }
+  return Scale(AddConjMul(ConjMul(left, from_left), right, from_right), norm);
+}
+
 void FillBlock(const WhitenedRecord& record, std::size_t block_index, const ModeSplit& split,
                const PlanarVector* sensor, LikelihoodBlock& block) {
   const std::size_t first = block_index * kBins;
@@ -60,7 +81,7 @@ void FillBlock(const WhitenedRecord& record, std::size_t block_index, const Mode
     }
     auto [left, right] = TransfersOf(record, sums);
     if (sensor) right = Mul(right, Load(*sensor, first + k));
-    const V norm = hn::Div(Real(1.0), hn::Add(Norm(left), Norm(right)));
+    const V norm = hn::Div(Real(1.0), ResidualVarianceAt(record, left, right, first + k));
     const V scale = hn::Mul(hn::Sqrt(norm), LoadReal(record.root_weight.data() + first + k));
     const C a = Scale(right, hn::Mul(per_left, scale));
     C b = Scale(left, hn::Mul(per_right, scale));
@@ -167,7 +188,7 @@ void FinishResidual(const WhitenedRecord& record, std::size_t block_index, const
     StoreColumn(AddScaled(LoadColumn(task.residual, k), change, scale), task.residual, k);
     const C from_left = Add(Load(record.left, first + k), transient.left);
     const C from_right = Add(Load(record.right, first + k), transient.right);
-    const C force = Scale(AddConjMul(ConjMul(left, from_left), right, from_right), norm);
+    const C force = ForceOf(record, left, right, from_left, from_right, norm, first + k);
     Store(force, block.force, k);
     FillSensorColumns(record, task, Scale(left, scale),
                       Sub(Mul(right, force), transient.right_decays), first, k);

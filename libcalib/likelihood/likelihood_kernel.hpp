@@ -39,7 +39,7 @@ struct LikelihoodBlock {
   Planar odd, even;                // κ of odd and even modes, with √w
   Planar odd_decay, even_decay;    // Σ c_n U_n + conj(c_n) U'_n over odd and even modes
   Planar force;                    // F̂
-  alignas(64) double norm[kBins];  // 1/|h|²
+  alignas(64) double norm[kBins];  // 1/|h|², |h|² the variance of h_2n_1 − h_1n_2
 };
 
 /// Length of a column of one block: real parts, then imaginary parts.

@@ -22,7 +22,7 @@ struct LikelihoodOutputs {
   std::vector<double>* residuals = nullptr;  ///< √w e, real and imaginary part in turn: 2K_b
   Eigen::MatrixXd* jacobian = nullptr;       ///< √w J⊥, rows in the same order
   std::vector<Complex>* force = nullptr;     ///< F̂, whitened like y_r, K_b numbers
-  std::vector<double>* gain = nullptr;       ///< |h|², K_b numbers
+  std::vector<double>* gain = nullptr;       ///< hᴴC⁻¹h, K_b numbers
   std::vector<Complex>* amplitudes = nullptr;
   std::vector<Complex>* left = nullptr;   ///< h_1, K_b numbers
   std::vector<Complex>* right = nullptr;  ///< h_2

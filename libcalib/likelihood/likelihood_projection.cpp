@@ -122,7 +122,8 @@ void LikelihoodEvaluation::give(const LikelihoodOutputs& outputs) {
   if (!outputs.gain) return;
   outputs.gain->resize(record_->bins);
   for (std::size_t k = 0; k < record_->bins; ++k) {
-    (*outputs.gain)[k] = 1.0 / blocks_[k / kBins].norm[k % kBins];
+    (*outputs.gain)[k] =
+        1.0 / (blocks_[k / kBins].norm[k % kBins] * record_->noise_at(k).determinant());
   }
 }
 

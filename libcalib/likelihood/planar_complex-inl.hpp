@@ -81,6 +81,12 @@ HWY_INLINE C Inverse(C a) {
   const V scale = hn::Div(Real(1.0), Norm(a));
   return {hn::Mul(a.re, scale), hn::Neg(hn::Mul(a.im, scale))};
 }
+// Variance of h_2n_1 − h_1n_2 under E|n_1|², E|n_2|², E n_1 conj(n_2).
+HWY_INLINE V ResidualVariance(C h1, C h2, V first, V second, V mixed) {
+  const V both = hn::MulAdd(h1.re, h2.re, hn::Mul(h1.im, h2.im));
+  const V alone = hn::MulAdd(second, Norm(h1), hn::Mul(first, Norm(h2)));
+  return hn::NegMulAdd(hn::Mul(Real(2.0), mixed), both, alone);
+}
 HWY_INLINE double Sum(V v) { return hn::GetLane(hn::SumOfLanes(D(), v)); }
 HWY_INLINE std::complex<double> Sum(C z) { return {Sum(z.re), Sum(z.im)}; }
 

@@ -20,10 +20,12 @@ std::vector<LikelihoodMode> likelihood_modes(const ModelPoint& point, double sam
 ///     e = (h_2 y_1 − h_1 y_2)/|h| + Σ_n κ_n u_n        CN(0, 1) at the truth,
 ///     J_i = Σ_n κ_n (F̂ ∂P_n/∂θ_i + ∂u_n/∂θ_i),        F̂ = Σ_r conj(h_r) Y_r/|h|²,
 ///
-/// Y_r the data without their transients. J is ∂e/∂θ without the turn i e Im(hᴴ∂h)/|h|² of the
-/// residual's phase, which changes neither cost nor gradient. The 2N real unknowns c_n are
-/// projected out of both (end_state.hpp); for σ > 0 the static offsets of both records are, in
-/// their place. J is linear in the data at fixed θ.
+/// Y_r the data without their transients. Where noise has a spectrum, C in a bin, |h|² is
+/// hᴴ adj(C) h = C₂₂|h_1|² + C₁₁|h_2|² − 2 C₁₂ Re conj(h_1) h_2, and F̂ = hᴴ adj(C) Y/|h|²: y and h
+/// whitened by C^(−1/2) have the same determinant h_2y_1 − h_1y_2 but for its own. J is ∂e/∂θ
+/// without the turn i e Im(hᴴ∂h)/|h|² of the residual's phase, which changes neither cost nor
+/// gradient. The 2N real unknowns c_n are projected out of both (end_state.hpp); for σ > 0 the
+/// static offsets of both records are, in their place. J is linear in the data at fixed θ.
 class ProjectedLikelihood {
  public:
   using Outputs = LikelihoodOutputs;

@@ -145,7 +145,20 @@ WhitenedRecord WhitenedRecord::of(const NoisyRecords& records, double sigma, dou
     if (sigma > 0.0) record.offset.set(k, norm * (1.0 - rest) / (1.0 - delays[k]));
   }
   record.place_bins();
+  if (!records.noise.white()) record.take_noise(records.noise);
   return record;
+}
+
+void WhitenedRecord::take_noise(const NoiseSpectrum& spectrum) {
+  left_noise.resize(root_weight.size());
+  right_noise.resize(root_weight.size());
+  mixed_noise.resize(root_weight.size());
+  for (std::size_t k = 0; k < root_weight.size(); ++k) {
+    const NoiseCovariance noise = spectrum.at(omega[k] / (2.0 * pi));
+    left_noise[k] = noise.left;
+    right_noise[k] = noise.right;
+    mixed_noise[k] = noise.mixed;
+  }
 }
 
 double WhitenedRecord::block_place(double k) {
@@ -191,6 +204,16 @@ WhitenedRecord WhitenedRecord::slice(std::size_t begin, std::size_t count) const
     part.offset.set(k, offset.at(begin + k));
     part.root_weight[k] = root_weight[begin + k];
   }
+  if (!white()) {
+    const auto cut = [&](const AlignedVector& all, double filling) {
+      AlignedVector own(padded, filling);
+      std::copy_n(all.begin() + static_cast<long>(begin), part.bins, own.begin());
+      return own;
+    };
+    part.left_noise = cut(left_noise, 1.0);
+    part.right_noise = cut(right_noise, 1.0);
+    part.mixed_noise = cut(mixed_noise, 0.0);
+  }
   for (const SignalColumn& signal : signals) {
     SignalColumn& own = part.signals.emplace_back(PlanarVector(padded), PlanarVector(padded));
     for (std::size_t k = 0; k < part.bins; ++k) {
@@ -211,8 +234,12 @@ WhitenedRecord WhitenedRecord::noise(std::uint64_t seed) const {
 void WhitenedRecord::draw_noise(std::uint64_t seed) {
   const std::span<const double> draw = noise_draw(seed, 4 * bins);
   for (std::size_t k = 0; k < bins; ++k) {
-    left.set(k, Complex(draw[4 * k], draw[4 * k + 1]) * std::numbers::sqrt2 * 0.5);
-    right.set(k, Complex(draw[4 * k + 2], draw[4 * k + 3]) * std::numbers::sqrt2 * 0.5);
+    const Complex one = Complex(draw[4 * k], draw[4 * k + 1]) * std::numbers::sqrt2 * 0.5;
+    const Complex other = Complex(draw[4 * k + 2], draw[4 * k + 3]) * std::numbers::sqrt2 * 0.5;
+    const NoiseCovariance noise = noise_at(k);
+    const double root = std::sqrt(noise.left);
+    left.set(k, root * one);
+    right.set(k, (noise.mixed * one + std::sqrt(noise.determinant()) * other) / root);
   }
 }
 

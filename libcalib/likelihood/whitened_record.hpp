@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "libcalib/likelihood/noise_spectrum.hpp"
 #include "libcalib/parameters/free_parameters.hpp"
 #include "libcalib/problem/calibration_data.hpp"
 #include "libsim/base/aligned_vector.hpp"
@@ -14,11 +15,12 @@
 
 namespace modcal {
 
-/// Records of both reactions with the standard deviations of their white noise.
+/// Records of both reactions with the standard deviations and the spectrum of their noise.
 struct NoisyRecords {
   std::array<std::vector<double>, 2> reactions;  ///< R_r [N], one length; index: End
   std::array<double, 2> deviation{};             ///< s_r > 0 [N]
   double sample_rate = 0.0;                      ///< f_s [Hz]
+  NoiseSpectrum noise = {};                      ///< over s_r²
   /// Lines of the mains, whose amplitudes at either end are unknown [Hz].
   std::vector<double> lines = {};
   /// Of unknown amplitudes, for the undamped record: whitened, of all its bins.
@@ -34,9 +36,9 @@ struct NoisyRecords {
                                   std::numeric_limits<double>::quiet_NaN()});
 };
 
-/// Bins k = 1 … of exp(−σt) R_r(t), cut to 8/σ seconds, divided by the standard deviation of their
-/// noise: y_r with noise CN(0, 1). Arrays are padded to whole blocks of kBlock bins; the padding
-/// has weight 0.
+/// Bins k = 1 … of exp(−σt) R_r(t), cut to 8/σ seconds, divided by the standard deviation s_r of
+/// their noise: y_r with noise CN(0, C_k), C_k the identity or that of a spectrum. Arrays are
+/// padded to whole blocks of kBlock bins; the padding has weight 0.
 struct WhitenedRecord {
   static constexpr std::size_t kBlock = 256;
   static constexpr std::size_t kNodes = 16;  ///< Chebyshev nodes of a block
@@ -49,7 +51,9 @@ struct WhitenedRecord {
   std::array<double, 2> deviation{};
   std::vector<double> lines;  ///< [rad/s]
   std::vector<SignalColumn> signals;
-  PlanarVector left, right;   ///< y_1, y_2
+  PlanarVector left, right;  ///< y_1, y_2
+  /// C_k of every bin: E|n_1|², E|n_2|², E n_1 conj(n_2); empty: the identity.
+  AlignedVector left_noise, right_noise, mixed_noise;
   PlanarVector delay;         ///< z^−1 = exp(−s_k/f_s)
   PlanarVector offset;        ///< whitened transform of 1·exp(−σt); zero at σ = 0
   AlignedVector root_weight;  ///< √w_k: 1, in the padding 0
@@ -60,17 +64,23 @@ struct WhitenedRecord {
   /// Place of bin k of a block, and of node j, in [−1, 1].
   static double block_place(double k);
   static double node_place(std::size_t j);
+  bool white() const { return left_noise.empty(); }
+  NoiseCovariance noise_at(std::size_t k) const {
+    if (white()) return {};
+    return {left_noise[k], right_noise[k], mixed_noise[k]};
+  }
   std::size_t blocks() const { return root_weight.size() / kBlock; }
   /// σ ≥ 0 [1/s]; bins up to `highest` [rad/s]. Throws InvalidInput where no bin is left.
   static WhitenedRecord of(const NoisyRecords& records, double sigma, double highest);
   /// `count` bins from index `begin` on, or what there is of them.
   WhitenedRecord slice(std::size_t begin, std::size_t count) const;
-  /// The same bins with pure noise CN(0, 1) in place of the data.
+  /// The same bins with pure noise CN(0, C_k) in place of the data.
   WhitenedRecord noise(std::uint64_t seed) const;
   void draw_noise(std::uint64_t seed);  ///< puts it in the place of the data
 
  private:
   void place_bins();
+  void take_noise(const NoiseSpectrum& spectrum);
 };
 
 }  // namespace modcal

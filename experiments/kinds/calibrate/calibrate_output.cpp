@@ -1,5 +1,6 @@
 // What a calibration found, described once for its tables and its JSON, and its figures.
 
+#include <cmath>
 #include <complex>
 #include <numbers>
 
@@ -125,28 +126,27 @@ void visit_pairs(ResultVisitor& visitor, const ContinuationResult& found) {
                });
 }
 
-// One knot of the smooth response of the sensor at x = L.
-struct ResponseKnot {
-  double frequency = 0.0;
-  std::complex<double> value, deviation;
-};
-
-std::vector<ResponseKnot> response_of(const ContinuationResult& found) {
-  std::vector<ResponseKnot> knots;
+// Knots of the smooth response of the sensor at x = L.
+void visit_response(ResultVisitor& visitor, const ContinuationResult& found) {
   const SmoothResponse& smooth = found.model.sensors.smooth;
-  for (std::size_t k = 0; k < found.response_deviations.size(); ++k) {
-    knots.push_back({static_cast<double>(k) * smooth.spacing / (2.0 * std::numbers::pi),
-                     smooth.knots[k], found.response_deviations[k]});
-  }
-  return knots;
+  visitor.list({.key = "sensor_response"}, found.response_deviations.size(), {},
+               [&](ResultVisitor& row, std::size_t k) {
+                 const std::complex<double> value = smooth.knots[k];
+                 const std::complex<double> deviation = found.response_deviations[k];
+                 row({.key = "frequency_hz"},
+                     static_cast<double>(k) * smooth.spacing / (2.0 * std::numbers::pi));
+                 row({.key = "log_gain"}, value.real());
+                 row({.key = "log_gain_sd"}, deviation.real());
+                 row({.key = "phase_rad"}, value.imag());
+                 row({.key = "phase_sd_rad"}, deviation.imag());
+               });
 }
 
-void visit_response(ResultVisitor& row, const ResponseKnot& knot) {
+void visit_noise(ResultVisitor& row, const NoiseSpectrum::Knot& knot) {
   row({.key = "frequency_hz"}, knot.frequency);
-  row({.key = "log_gain"}, knot.value.real());
-  row({.key = "log_gain_sd"}, knot.deviation.real());
-  row({.key = "phase_rad"}, knot.value.imag());
-  row({.key = "phase_sd_rad"}, knot.deviation.imag());
+  row({.key = "left_power"}, knot.noise.left);
+  row({.key = "right_power"}, knot.noise.right);
+  row({.key = "coherence"}, knot.noise.mixed / std::sqrt(knot.noise.left * knot.noise.right));
 }
 
 void visit_estimate(ResultVisitor& visitor, const ContinuationResult& found) {
@@ -168,7 +168,8 @@ void visit_estimate(ResultVisitor& visitor, const ContinuationResult& found) {
   visitor({.key = "damping_sd"}, found.damping_deviation);
   visitor({.key = "noise_left_n"}, found.noise[0]);
   visitor({.key = "noise_right_n"}, found.noise[1]);
-  visitor.rows({.key = "sensor_response"}, response_of(found), visit_response);
+  visitor.rows({.key = "noise_spectrum"}, found.noise_spectrum.knots, visit_noise);
+  visit_response(visitor, found);
   visitor({.key = "mains_lines_hz"}, found.lines);
   visitor({.key = "restarts"}, found.restarts);
   visitor({.key = "moved_modes"}, found.moved_modes);

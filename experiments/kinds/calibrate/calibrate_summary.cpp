@@ -1,5 +1,7 @@
 #include <fmt/ranges.h>
 
+#include <cmath>
+
 #include "experiments/kinds/calibrate/calibrate.hpp"
 #include "libsim/signal/statistics.hpp"
 
@@ -70,11 +72,29 @@ std::string prior_lines(const PriorMisfit& misfit, std::string_view stage) {
                      misfit.chi2, misfit.count, verdict, misfit.farthest, misfit.deviations);
 }
 
+// How the noise that the fit left is not that of two independent white ones.
+std::string noise_text(const NoiseSpectrum& noise) {
+  if (noise.white()) return "";
+  double coherence = 0.0;
+  std::string powers;
+  for (const NoiseSpectrum::Knot& knot : noise.knots) {
+    const double own = knot.noise.mixed / std::sqrt(knot.noise.left * knot.noise.right);
+    if (std::abs(own) > std::abs(coherence)) coherence = own;
+    powers += fmt::format("{}{:.3g} and {:.3g} at {:.4g} Hz", powers.empty() ? "" : ", ",
+                          std::sqrt(knot.noise.left), std::sqrt(knot.noise.right), knot.frequency);
+  }
+  return fmt::format(
+      "\nnoise of both ends over that read above the modes, by what the fit leaves: {}; coherence "
+      "up to {:.2g}",
+      powers, coherence);
+}
+
 std::string chi2_text(const ContinuationResult& found) {
   std::string text = fmt::format(
       "reduced chi2 {:.4f} (sd {:.4f}): {}; law alone {:.4f}: {}", found.chi2, found.chi2_deviation,
       found.fits ? "the data do not contradict the fit" : "THE FIT IS WRONG", found.law.chi2,
       found.law_holds() ? "accepted" : "contradicted");
+  text += noise_text(found.noise_spectrum);
   if (found.chi2 < 1.0 - 3.0 * found.chi2_deviation) {
     text += fmt::format(
         "\nnoise overstated: the data scatter less than the noise levels say; standard deviations "

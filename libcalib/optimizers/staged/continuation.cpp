@@ -41,20 +41,22 @@ ContinuationResult with_misfit_for_noise(const AttemptInput& input,
   found.stages = std::move(contradicted.stages);
   found.restarts = contradicted.restarts;
   found.noise = contradicted.noise;
+  found.noise_spectrum = contradicted.noise_spectrum;
   return found;
 }
 
-// Where the noise is less than was read, the fit is made again with what it leaves; once more for
+// Where the noise is not what was read, the fit is made again with what it leaves; once more for
 // what the first round changed.
 ContinuationResult attempt(const AttemptInput& input, double shift, std::size_t evaluations) {
   input.records.signals.clear();
+  input.records.noise = {};
+  input.records.deviation = input.read;
   ContinuationResult found = attempt_continuation(input, shift, evaluations);
   for (int round = 0; round < 2; ++round) {
-    const bool less = found.chi2 < 1.0 - 3.0 * found.chi2_deviation;
-    const bool more = !found.fits;
-    const bool changed =
-        (less && input.lower_noise(found.chi2)) || (more && input.correct_noise(found.chi2));
-    if (!changed) break;
+    // Where the law holds, the noise is what it leaves already.
+    if (found.law.accepted && found.chi2 > 1.0 - 3.0 * found.chi2_deviation) break;
+    const ProjectedLikelihood whole(WhitenedRecord::of(input.records, 0.0, input.highest));
+    if (!input.take_noise(whole, found.model, 0.05)) break;
     std::vector<FitStage> stages = std::move(found.stages);
     found = attempt_continuation(input, shift, found.evaluations);
     append_stages(found.stages, "other noise: ", 0, stages);
@@ -81,6 +83,7 @@ void complete_by_single(ContinuationResult& fit) {
   const ContinuationResult& one = fit.single.front();
   fit.frequencies_free = one.frequencies_free;
   fit.noise = one.noise;
+  fit.noise_spectrum = one.noise_spectrum;
   fit.lines = one.lines;
   fit.local = one.local;
   for (const ContinuationResult& single : fit.single) {

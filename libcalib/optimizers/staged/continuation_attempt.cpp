@@ -6,6 +6,7 @@
 
 #include "libcalib/identifiability/mode_verdict.hpp"
 #include "libcalib/identifiability/stated_verdict.hpp"
+#include "libcalib/noise/noise_fit.hpp"
 #include "libcalib/likelihood/parameter_forms.hpp"
 #include "libcalib/optimizers/staged/free_stage.hpp"
 #include "libcalib/parameters/stiff_string_fit.hpp"
@@ -37,13 +38,15 @@ class Attempt {
     if (!priors_.fixed({ParameterKind::kFundamental})) start_.fundamental *= std::exp(shift);
     ContinuationResult result;
     follow_law();
-    // The last damped record says it before the undamped one is taken.
-    const bool as_read = input_.records.deviation == input_.read;
-    if (as_read) input_.lower_noise(stroke_.stages().back().chi2);
     fit_whole("law");
-    if (input_.correct_noise(stroke_.stages().back().chi2)) stroke_.renew();
+    Eigen::MatrixXd covariance = finish_law("law", result);
+    // Where a fit with weights ends: one without fits the noise of bins that tell nothing, too.
+    if (input_.take_noise(stroke_.whole(), law_.model(law_theta_), 0.02)) {
+      stroke_.renew();
+      covariance = finish_law("law, other noise", result);
+    }
     result.noise = input_.records.deviation;
-    const Eigen::MatrixXd covariance = finish_law("law", result);
+    result.noise_spectrum = input_.records.noise;
     report_law(covariance, result);
     if (options().frequencies) {
       const bool accepted = result.law.accepted;
@@ -123,11 +126,14 @@ class Attempt {
     law_ = law(priors_);
     law_theta_ = Eigen::VectorXd::Zero(law_.size());
     law_theta_.head(3) = best.theta;
+    const ProjectedLikelihood last = stroke_.damped(20.0);
     law_theta_ = stroke_
-                     .fit_stage(stroke_.damped_name("law", 20.0), stroke_.damped(20.0), law_,
-                                law_theta_, with_priors(law_, law_theta_, 20, 1e-3))
+                     .fit_stage(stroke_.damped_name("law", 20.0), last, law_, law_theta_,
+                                with_priors(law_, law_theta_, 20, 1e-3))
                      .theta;
     ladder_theta_ = law_theta_;
+    // Before the undamped record is taken, which takes most of the time.
+    if (input_.as_read()) input_.take_noise(last, law_.model(law_theta_), 0.2);
   }
 
   // σ = 0, end state projected out.
@@ -164,7 +170,7 @@ class Attempt {
     law.deviation[0] *= law.fundamental;
     law.deviation[3] = law_.damping_deviation(covariance) * law.damping;
     law.covariance = named_covariance(law_, law_theta_, law.damping, covariance);
-    law.chi2 = stroke_.reduced_chi2(model, taken_by_fit(at, options));
+    law.chi2 = stroke_.reduced_chi2(law_, law_theta_, at, options);
     stroke_.end_stage(name + ", weighted bins", last.objective, law.chi2);
     law.accepted = law.chi2 < 1.0 + 3.0 * result.chi2_deviation;
     law.priors = law_.prior_misfit(law_theta_);
@@ -213,19 +219,22 @@ class Attempt {
 
 }  // namespace
 
-bool AttemptInput::lower_noise(double chi2) const {
+bool AttemptInput::take_noise(const ProjectedLikelihood& likelihood, const ModelPoint& point,
+                              double share) const {
   const bool stated = !std::isnan(options.left_noise) || !std::isnan(options.right_noise);
-  if (stated || misfit_for_noise || !(chi2 < 1.0 / (1.1 * 1.1))) return false;
-  for (double& deviation : records.deviation) deviation *= std::sqrt(chi2);
-  return true;
-}
-
-bool AttemptInput::correct_noise(double chi2) const {
-  const double root = std::sqrt(chi2);
-  const bool lowered = records.deviation[0] < read[0];
-  if (!lowered || misfit_for_noise || !(root > 1.0 / 1.1 && root < 1.1)) return false;
-  if (root * records.deviation[0] > read[0]) return false;
-  for (double& deviation : records.deviation) deviation *= root;
+  if (stated || misfit_for_noise) return false;
+  const NoiseFit found = fit_noise(likelihood, point);
+  for (const NoiseSpectrum::Knot& knot : found.spectrum.knots) {
+    // What a wrong model leaves is noise only where it is less than was taken for noise before.
+    if (found.misfit && (knot.noise.left > 1.0 || knot.noise.right > 1.0)) return false;
+  }
+  if (!found.spectrum.differs_from(records.noise, share)) return false;
+  const NoiseCovariance first = found.spectrum.knots.front().noise;
+  const bool white = found.spectrum.knots.size() == 1 && first.mixed == 0.0;
+  records.noise = white ? NoiseSpectrum{} : found.spectrum;
+  if (!white) return true;
+  records.deviation[0] *= std::sqrt(first.left);
+  records.deviation[1] *= std::sqrt(first.right);
   return true;
 }
 

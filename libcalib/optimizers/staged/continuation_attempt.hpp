@@ -1,7 +1,7 @@
 // One attempt of a continuation: everything between a start of f_0 and a verdict by χ².
 #pragma once
 
-#include "libcalib/likelihood/whitened_record.hpp"
+#include "libcalib/likelihood/projected_likelihood.hpp"
 #include "libcalib/optimizers/staged/continuation.hpp"
 
 namespace modcal {
@@ -9,7 +9,7 @@ namespace modcal {
 /// What all attempts at one record have in common; all must outlive them.
 struct AttemptInput {
   const ModelPoint& initial;
-  NoisyRecords& records;  ///< whose noise levels lower_noise() lowers
+  NoisyRecords& records;  ///< whose noise take_noise() finds
   const ContinuationOptions& options;
   const StatedPriors& priors;
   double highest = 0.0;      ///< ω of the highest bin [rad/s]
@@ -20,14 +20,12 @@ struct AttemptInput {
 
   /// Levels as they were read above the modes, or stated [N].
   std::array<double, 2> read = records.deviation;
-  /// What was read holds what the string still sounds above its modes, too. Where a fit leaves so
-  /// much less, chi2, that error bars are a tenth too wide, what it leaves is the noise. Levels
-  /// that are stated stay. True: they are lowered.
-  bool lower_noise(double chi2) const;
-  /// Lowered by a part of the record, they are what the whole record leaves, chi2: up to a tenth
-  /// more or less, which a misfit of the whole would hide in, and no more than was read. True: they
-  /// have changed.
-  bool correct_noise(double chi2) const;
+  bool as_read() const { return records.noise.white() && records.deviation == read; }
+  /// Levels are read above the modes, where noise may be another and the string may still sound:
+  /// what a fit leaves says more (fit_noise()). Levels that are stated stay. True: the noise of the
+  /// records has changed, by more than `share` of its power somewhere.
+  bool take_noise(const ProjectedLikelihood& likelihood, const ModelPoint& point,
+                  double share) const;
 };
 
 /// From ln f_0 of the start `shift` higher [1]; evaluations: those spent before, which count too.

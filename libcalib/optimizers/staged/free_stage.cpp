@@ -41,7 +41,7 @@ class FreeStage {
     Eigen::MatrixXd covariance = fit_covariance(last, newton_);
     unknowns_.clear_held(covariance);
     report(covariance);
-    result_.chi2 = stroke_.reduced_chi2(result_.model, taken_by_fit(last, newton_));
+    result_.chi2 = stroke_.reduced_chi2(unknowns_, theta_, last, newton_);
     stroke_.end_stage("free, prior as wide as the law's followers", objective_, result_.chi2);
     result_.priors = unknowns_.prior_misfit(theta_, {widths_, inharmonicity_});
     if (!options_.unknowns.tests) return;

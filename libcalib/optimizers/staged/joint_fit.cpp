@@ -47,8 +47,7 @@ class JointFit {
 
   void add(const CalibrationData& stroke) {
     const ProjectedLikelihood whole(whitened(stroke, {options_.left_noise, options_.right_noise},
-                                             fit_.single[all_.records()].noise,
-                                             fit_.single[all_.records()].freed));
+                                             &fit_.single[all_.records()]));
     ProjectedLikelihood weighted = whole;
     const Eigen::VectorXd start = unknowns().own_start(fit_.single[all_.records()].model);
     weighted.set_weights(weights(whole, start));
@@ -58,7 +57,7 @@ class JointFit {
 
   void add(const PluckRecord& pluck) {
     plucks_.push_back(
-        std::make_shared<PluckLikelihood>(whitened(pluck.data, pluck.noise, pluck.noise, {})));
+        std::make_shared<PluckLikelihood>(whitened(pluck.data, pluck.noise, nullptr)));
     all_.add(plucks_.back(), unknowns().start(), unknowns().own_places(false));
   }
 
@@ -86,7 +85,7 @@ class JointFit {
                       .followers = followers_},
                      covariance, fit_);
     const AllRecords::Misfit misfit =
-        all_.misfit(theta_, noise_errors_, taken_by_fit(last, newton));
+        all_.misfit(theta_, noise_errors_, taken_by_fit(last, newton, last.information));
     fit_.chi2 = fit_.stages.back().chi2 = misfit.chi2;
     fit_.chi2_deviation = misfit.deviation;
     fit_.fits = fit_.chi2 < 1.0 + 3.0 * fit_.chi2_deviation;
@@ -120,17 +119,20 @@ class JointFit {
   }
   Index modes() const { return static_cast<Index>(unknowns().modes()); }
   double inharmonicity() const { return fit_.single.front().law.inharmonicity; }
-  // stated: what says how well the noise is known; noise: the level, of a stroke that by itself;
-  // freed: causes of misfit that are free in it.
+  // stated: levels of the noise, or NaN; single: the fit of a stroke by itself, which has found its
+  // noise and the causes of misfit that are free in it.
   WhitenedRecord whitened(const CalibrationData& data, const std::array<double, 2>& stated,
-                          const std::array<double, 2>& noise, const std::vector<ScoreTest>& freed) {
+                          const ContinuationResult* single) {
     if (within_) within_->poll();
     noise_errors_.push_back(noise_power_error(stated, initial_.basis, data));
     const double band = likelihood_band(initial_, options_.highest_frequency, data.sample_rate);
     highest_ = std::max(highest_, band);
-    NoisyRecords records = NoisyRecords::of_data(data, initial_.basis, noise);
+    NoisyRecords records =
+        NoisyRecords::of_data(data, initial_.basis, single ? single->noise : stated);
     records.lines = mains_lines(records, initial_, options_.unknowns.mains);
-    for (const ScoreTest& cause : freed) {
+    if (!single) return WhitenedRecord::of(records, 0.0, band);
+    records.noise = single->noise_spectrum;
+    for (const ScoreTest& cause : single->freed) {
       records.signals.insert(records.signals.end(), cause.columns.begin(), cause.columns.end());
     }
     return WhitenedRecord::of(records, 0.0, band);

@@ -142,9 +142,11 @@ NewtonFit fit_by(Evaluator& evaluator, const FitFunction& function, const FitTar
 
 }  // namespace
 
-double taken_by_fit(const LikelihoodPoint& point, const NewtonOptions& options) {
+double taken_by_fit(const LikelihoodPoint& point, const NewtonOptions& options,
+                    const Eigen::MatrixXd& whole) {
   const UnitDiagonal hessian(hessian_of(point, options));
-  return 2.0 * hessian.factor.solve(hessian.scaled(point.information)).trace();
+  const double followed = hessian.factor.solve(hessian.scaled(point.information)).trace();
+  return 4.0 * followed - 2.0 * whole.cwiseProduct(fit_covariance(point, options)).sum();
 }
 
 Eigen::MatrixXd fit_response(const LikelihoodPoint& point, const NewtonOptions& options,

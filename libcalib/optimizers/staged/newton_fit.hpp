@@ -62,8 +62,12 @@ FitTarget fit_target(const ProjectedLikelihood& likelihood, const StringUnknowns
 LawPosterior law_of_step(const PriorEquations& statements, const LikelihoodPoint& at,
                          const Eigen::VectorXd& theta, NewtonOptions options);
 
-/// How many residuals the fit takes, 2 tr H⁻¹JᵀWJ: an unknown that its prior holds takes none.
-double taken_by_fit(const LikelihoodPoint& point, const NewtonOptions& options);
+/// How much less than at the truth Σ|e|² without weights is expected where a fit with weights ends,
+/// in residuals: 4 tr H⁻¹JᵀWJ − 2 tr (JᵀJ) Cov, of a fit without weights and priors the number of
+/// its unknowns. An unknown that its prior holds takes none; one that the weights leave to its
+/// prior, while noise alone curves the cost, gives some back. whole: JᵀJ without weights.
+double taken_by_fit(const LikelihoodPoint& point, const NewtonOptions& options,
+                    const Eigen::MatrixXd& whole);
 
 /// H⁻¹B for a matrix B of as many rows.
 Eigen::MatrixXd fit_response(const LikelihoodPoint& point, const NewtonOptions& options,

@@ -87,8 +87,13 @@ double StrokeFit::cost(const ProjectedLikelihood& likelihood, const ModelPoint& 
   return likelihood.cost(point);
 }
 
-double StrokeFit::reduced_chi2(const ModelPoint& point, double taken) {
-  return 2.0 * cost(whole(), point) / (whole().degrees_of_freedom(0, point) - taken);
+double StrokeFit::reduced_chi2(const StringUnknowns& unknowns, const Eigen::VectorXd& theta,
+                               const LikelihoodPoint& point, const NewtonOptions& options) {
+  count();
+  const ModelPoint model = unknowns.model(theta);
+  const LikelihoodPoint at = whole().evaluate(model, unknowns.columns(theta));
+  return 2.0 * at.cost /
+         (whole().degrees_of_freedom(0, model) - taken_by_fit(point, options, at.information));
 }
 
 Eigen::MatrixXd StrokeFit::prepare_weights(const StringUnknowns& unknowns,

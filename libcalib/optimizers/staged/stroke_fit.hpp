@@ -52,8 +52,9 @@ class StrokeFit {
   void end_stage(std::string name, double objective, double chi2);
   const std::vector<FitStage>& stages() const { return stages_; }
   double cost(const ProjectedLikelihood& likelihood, const ModelPoint& point);
-  /// Reduced χ² of the whole record; taken: residuals that the fit took.
-  double reduced_chi2(const ModelPoint& point, double taken);
+  /// Reduced χ² of the whole record at θ, where a fit with weights ended; point, options: its own.
+  double reduced_chi2(const StringUnknowns& unknowns, const Eigen::VectorXd& theta,
+                      const LikelihoodPoint& point, const NewtonOptions& options);
 
   /// Weights of the bins and N̄ under them, at θ.
   Eigen::MatrixXd prepare_weights(const StringUnknowns& unknowns, const Eigen::VectorXd& theta);
