@@ -101,9 +101,9 @@ NoiseFit fit_noise(const ProjectedLikelihood& likelihood, const ModelPoint& poin
   std::size_t knots = 2;
   for (std::size_t bins = record.bins; bins >= 4 * kLeastBins; bins /= 2) ++knots;
   std::vector<NoiseRow> rows = rows_of(likelihood, point, knots);
-  if (rows.size() < 8 * kLump) return {{{{record.omega[record.bins - 1], {}}}}, true};
-  const NoiseModel model(rows, knots);
   const double share = independent_share(record), top = record.omega[record.bins - 1] / (2.0 * pi);
+  if (rows.size() < 8 * kLump) return {{{{top, {}}}}, true};
+  const NoiseModel model(rows, knots);
   const double price = std::log(std::max(share * static_cast<double>(rows.size()), 2.0));
   double least = std::numeric_limits<double>::infinity();
   NoiseForm best;

@@ -6,8 +6,8 @@
 
 #include "libcalib/identifiability/mode_verdict.hpp"
 #include "libcalib/identifiability/stated_verdict.hpp"
-#include "libcalib/noise/noise_fit.hpp"
 #include "libcalib/likelihood/parameter_forms.hpp"
+#include "libcalib/noise/noise_fit.hpp"
 #include "libcalib/optimizers/staged/free_stage.hpp"
 #include "libcalib/parameters/stiff_string_fit.hpp"
 #include "libsim/base/error.hpp"
