@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "libinverse/observer/verdict.hpp"
+#include "libinverse/observer/model_check.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/signal/statistics.hpp"
 

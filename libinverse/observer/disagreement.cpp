@@ -15,29 +15,14 @@ namespace {
 // observed_record.cpp), over the share of the record under the window.
 double bins_per_value(double begin) { return 35.0 / 18.0 / (Reference{}.end - begin); }
 
-// |X_k|²/Σ w² under the window, K/2 + 1 bins.
+// |X_k|² of that part of the record, K/2 + 1 bins.
 std::vector<double> windowed_power(std::span<const double> samples, double begin) {
   const auto count = static_cast<double>(samples.size());
-  std::vector<double> windowed(samples.size(), 0.0);
-  const auto first = static_cast<std::size_t>(begin * count);
-  const auto last = static_cast<std::size_t>(Reference{}.end * count);
-  double energy = 0.0, sum = 0.0;
-  std::vector<double> window(last - first);
-  for (std::size_t j = first; j < last; ++j) {
-    const double turn = (static_cast<double>(j - first) + 0.5) / static_cast<double>(last - first);
-    const double w = window[j - first] = std::pow(std::sin(std::numbers::pi * turn), 2);
-    sum += w * samples[j];
-    energy += w * w;
+  std::vector<double> power;
+  for (const Complex bin : hann_spectrum(samples, static_cast<std::size_t>(begin * count),
+                                         static_cast<std::size_t>(Reference{}.end * count))) {
+    power.push_back(std::norm(bin));
   }
-  double weight = 0.0;
-  for (const double w : window) weight += w;
-  for (std::size_t j = first; j < last; ++j) {
-    windowed[j] = window[j - first] * (samples[j] - sum / weight);
-  }
-  const std::vector<Complex> spectrum = RealFft(samples.size()).forward(windowed);
-  std::vector<double> power(spectrum.size());
-  std::ranges::transform(spectrum, power.begin(),
-                         [energy](Complex value) { return std::norm(value) / energy; });
   return power;
 }
 

@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "libinverse/observer/innovation_fit.hpp"
-#include "libinverse/observer/verdict.hpp"
+#include "libinverse/observer/model_check.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/base/task_loop.hpp"
 #include "libsim/signal/fft.hpp"

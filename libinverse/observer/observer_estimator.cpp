@@ -1,6 +1,6 @@
 // The model-based estimate as one of the estimators.
 
-#include "libinverse/observer/verdict.hpp"
+#include "libinverse/observer/model_check.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {

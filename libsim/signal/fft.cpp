@@ -113,14 +113,19 @@ double bin_multiplicity(std::size_t k, std::size_t length) {
   return k == 0 || 2 * k == length ? 1.0 : 2.0;
 }
 
-std::vector<Complex> hann_spectrum(std::span<const double> samples) {
+std::vector<Complex> hann_spectrum(std::span<const double> samples, std::size_t first,
+                                   std::size_t last) {
+  const std::size_t end = std::min(last, samples.size());
   std::vector<double> windowed(samples.begin(), samples.end());
-  remove_mean(windowed);
+  std::fill(windowed.begin(), windowed.begin() + static_cast<long>(first), 0.0);
+  std::fill(windowed.begin() + static_cast<long>(end), windowed.end(), 0.0);
+  const std::span<double> part = std::span(windowed).subspan(first, end - first);
+  remove_mean(part);
   double energy = 0.0;
-  for (std::size_t j = 0; j < windowed.size(); ++j) {
-    const double turn = static_cast<double>(j) / static_cast<double>(windowed.size());
+  for (std::size_t j = 0; j < part.size(); ++j) {
+    const double turn = static_cast<double>(j) / static_cast<double>(part.size());
     const double weight = 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * turn);
-    windowed[j] *= weight;
+    part[j] *= weight;
     energy += weight * weight;
   }
   std::vector<Complex> spectrum = RealFft(windowed.size()).forward(windowed);

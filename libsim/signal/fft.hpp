@@ -7,6 +7,7 @@
 
 #include <complex>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -73,6 +74,9 @@ class InPlaceFft {
 
 /// Σ_j w_j (x_j − x̄) exp(−2πi jk/K)/√(Σ w²) under the Hann window w_j = ½ − ½ cos(2πj/K) in the
 /// unit of the samples: white noise of variance σ² has E|X_k|² = σ². K ≥ 2 samples; K/2 + 1 bins.
-std::vector<Complex> hann_spectrum(std::span<const double> samples);
+/// first, last: of the samples from `first` to before `last` ≥ first + 2, all others 0 in the
+/// transform of all K.
+std::vector<Complex> hann_spectrum(std::span<const double> samples, std::size_t first = 0,
+                                   std::size_t last = std::numeric_limits<std::size_t>::max());
 
 }  // namespace modcal

@@ -1,6 +1,6 @@
 #include "experiments/kinds/invert/invert.hpp"
 #include "experiments/report/result.hpp"
-#include "libinverse/observer/verdict.hpp"
+#include "libinverse/observer/model_check.hpp"
 
 namespace modcal {
 namespace {

@@ -1,4 +1,4 @@
-#include "libinverse/observer/verdict.hpp"
+#include "libinverse/observer/model_check.hpp"
 
 #include <algorithm>
 #include <array>
@@ -16,22 +16,6 @@ namespace {
 
 constexpr std::array kEnds = {End::kLeft, End::kRight};
 constexpr std::array kEndNames = {"x = 0", "x = L"};
-
-// Hann-windowed power of all bins.
-std::vector<double> power_of(std::span<const double> samples) {
-  std::vector<double> windowed(samples.begin(), samples.end());
-  remove_mean(windowed);
-  for (std::size_t j = 0; j < windowed.size(); ++j) {
-    windowed[j] *= std::pow(std::sin(std::numbers::pi * (static_cast<double>(j) + 0.5) /
-                                     static_cast<double>(windowed.size())),
-                            2);
-  }
-  std::vector<double> power;
-  for (const Complex value : RealFft(windowed.size()).forward(windowed)) {
-    power.push_back(std::norm(value));
-  }
-  return power;
-}
 
 }  // namespace
 
@@ -184,7 +168,8 @@ void require_finite_stiffness(const ObserverRuns& runs, const ObserverParameters
 }
 
 double ringing(std::span<const double> force) {
-  const std::vector<double> power = power_of(force);
+  std::vector<double> power;
+  for (const Complex bin : hann_spectrum(force)) power.push_back(std::norm(bin));
   const auto between = [&power](double low, double high) {
     const auto first = static_cast<std::size_t>(low * static_cast<double>(power.size()));
     const auto last = static_cast<std::size_t>(high * static_cast<double>(power.size()));

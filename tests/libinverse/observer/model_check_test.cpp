@@ -1,4 +1,4 @@
-#include "libinverse/observer/verdict.hpp"
+#include "libinverse/observer/model_check.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
