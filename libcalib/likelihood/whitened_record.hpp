@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
-#include "libcalib/likelihood/noise_spectrum.hpp"
 #include "libcalib/parameters/free_parameters.hpp"
 #include "libcalib/problem/calibration_data.hpp"
+#include "libinverse/noise/noise_spectrum.hpp"
 #include "libsim/base/aligned_vector.hpp"
 #include "libsim/model/modal_basis.hpp"
 
@@ -21,6 +21,7 @@ struct NoisyRecords {
   std::array<double, 2> deviation{};             ///< s_r > 0 [N]
   double sample_rate = 0.0;                      ///< f_s [Hz]
   NoiseSpectrum noise = {};                      ///< over s_r²
+  double power_error = 0.0;  ///< relative standard deviation of the noise's power
   /// Lines of the mains, whose amplitudes at either end are unknown [Hz].
   std::vector<double> lines = {};
   /// Of unknown amplitudes, for the undamped record: whitened, of all its bins.

@@ -1,13 +1,16 @@
 #include "libcalib/noise/noise_fit.hpp"
 
+#include <gsl/gsl_cdf.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <utility>
 
-#include "libcalib/noise/noise_model.hpp"
 #include "libcalib/noise/tuning.hpp"
+#include "libinverse/noise/noise_model.hpp"
 
 namespace modcal {
 namespace {
@@ -73,25 +76,27 @@ std::vector<NoiseRow> rows_of(const ProjectedLikelihood& likelihood, const Model
   return rows;
 }
 
-// Under exp(−σt) neighboring bins are not independent: (Σw²)²/(K Σw⁴) of them are.
-double independent_share(const WhitenedRecord& record) {
-  if (record.sigma == 0.0) return 1.0;
-  const double duration = 2.0 * pi / record.spacing;
-  const double second = -std::expm1(-2.0 * record.sigma * duration) / (2.0 * record.sigma);
-  const double fourth = -std::expm1(-4.0 * record.sigma * duration) / (4.0 * record.sigma);
-  return second * second / (fourth * duration);
-}
-
-// Where the signal is least a wrong model leaves least: the third of the bins that have least of
-// it.
-std::vector<NoiseRow> least_signal(std::vector<NoiseRow> rows) {
-  const std::size_t count = rows.size() / kQuiet;
-  std::nth_element(rows.begin(), rows.begin() + static_cast<long>(count), rows.end(),
+// Mean |e|² where the signal is least: a wrong model leaves least there.
+double quiet_power(std::vector<NoiseRow> rows) {
+  const auto count = static_cast<long>(rows.size() / kQuiet);
+  std::nth_element(rows.begin(), rows.begin() + count, rows.end(),
                    [](const NoiseRow& a, const NoiseRow& b) {
                      return a.by[NoiseRow::kNoise] < b.by[NoiseRow::kNoise];
                    });
-  rows.resize(count);
-  return rows;
+  return std::accumulate(rows.begin(), rows.begin() + count, 0.0,
+                         [](double sum, const NoiseRow& row) { return sum + row.power; }) /
+         static_cast<double>(count);
+}
+
+// Probability that noise alone leaves as much more where there is more signal; 1 where it is less.
+double probability(const NoiseModel::Excess& excess) {
+  return excess.above > 0.0 ? gsl_cdf_chisq_Q(excess.statistic, excess.degrees) : 1.0;
+}
+
+// Probability that noise alone has so large a run among those of so many bins, at most 1.
+double probability_of_run(double power, double bins) {
+  constexpr auto kLength = static_cast<double>(kLump);
+  return std::min(1.0, bins / kLength * gsl_cdf_gamma_Q(power, kLength, 1.0));
 }
 
 }  // namespace
@@ -101,10 +106,11 @@ NoiseFit fit_noise(const ProjectedLikelihood& likelihood, const ModelPoint& poin
   std::size_t knots = 2;
   for (std::size_t bins = record.bins; bins >= 4 * kLeastBins; bins /= 2) ++knots;
   std::vector<NoiseRow> rows = rows_of(likelihood, point, knots);
-  const double share = independent_share(record), top = record.omega[record.bins - 1] / (2.0 * pi);
-  if (rows.size() < 8 * kLump) return {{{{top, {}}}}, true};
+  const double top = record.omega[record.bins - 1] / (2.0 * pi);
+  const auto bins = static_cast<double>(rows.size());
+  if (bins < kFewestBins) return {.misfit = true};
   const NoiseModel model(rows, knots);
-  const double price = std::log(std::max(share * static_cast<double>(rows.size()), 2.0));
+  const double price = std::log(bins);
   double least = std::numeric_limits<double>::infinity();
   NoiseForm best;
   Eigen::VectorXd levels = model.white(), best_factors;
@@ -113,19 +119,19 @@ NoiseFit fit_noise(const ProjectedLikelihood& likelihood, const ModelPoint& poin
   for (const NoiseForm& form :
        {NoiseForm{1, 0}, NoiseForm{1, 1}, NoiseForm{knots, 0}, NoiseForm{knots, knots}}) {
     if (form.coherence == 0) factors = levels;
-    const double criterion = share * model.fit(form, factors) + price * form.parameters();
+    const double criterion = model.fit(form, factors) + price * form.parameters();
     if (!(criterion < least)) continue;
     least = criterion;
     best = form;
     best_factors = factors;
   }
-  if (model.probability_of_excess(best, best_factors, share) > kNoiseAlone &&
-      model.probability_of_lump(best_factors, share) > kNoiseAlone) {
-    return {model.spectrum(best, best_factors, top), false};
+  if (probability(model.excess(best, best_factors)) > kNoiseAlone &&
+      probability_of_run(model.largest_run(best_factors, kLump), bins) > kNoiseAlone) {
+    return {.spectrum = model.spectrum(best, best_factors, top), .error = 1.0 / std::sqrt(bins)};
   }
-  const NoiseModel quiet(least_signal(std::move(rows)), knots);
-  quiet.fit({1, 0}, levels);
-  return {quiet.spectrum({1, 0}, levels, top), true};
+  return {.misfit = true,
+          .level = quiet_power(std::move(rows)),
+          .error = std::sqrt(static_cast<double>(kQuiet) / bins)};
 }
 
 }  // namespace modcal

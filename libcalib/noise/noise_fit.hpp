@@ -6,9 +6,10 @@
 namespace modcal {
 
 struct NoiseFit {
-  NoiseSpectrum spectrum;  ///< over the record's s_r²; one knot or more
-  /// More than noise is left.
-  bool misfit = false;
+  NoiseSpectrum spectrum;  ///< over the record's s_r²; one knot or more, none with a misfit
+  bool misfit = false;     ///< more than noise is left
+  double level = 1.0;      ///< with a misfit: power of the noise over that taken for it
+  double error = 0.0;      ///< relative standard deviation of the power
 };
 
 /// Spectra and coherence under which what the model leaves of the record is likeliest,
@@ -18,10 +19,10 @@ struct NoiseFit {
 ///
 /// Bins about modes and lines are left out. Of two levels, these with a coherence, spectra with a
 /// knot for each octave, these with a coherence for each knot, that with the least −2 ln L + p ln K
-/// (Schwarz, 1978). What a wrong model leaves is no noise: it grows with the signal, or fills a few
-/// neighboring bins. Both is tested for, and where it is found two levels are fitted to the third
-/// of the bins that has least signal; of too few bins the levels stay. For a likelihood without
-/// weights.
+/// (Schwarz, 1978). What a wrong model leaves is no noise: it grows
+/// with the signal, or fills a few neighboring bins. Both is tested for, and where it is found the
+/// level is that of the third of the bins that has least signal; of too few bins it stays. For the
+/// likelihood of a whole record (σ = 0) without weights.
 NoiseFit fit_noise(const ProjectedLikelihood& likelihood, const ModelPoint& point);
 
 }  // namespace modcal

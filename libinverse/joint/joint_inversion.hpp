@@ -126,8 +126,8 @@ class JointInversion {
               const JointMethod& method, JointWorkspace& workspace, JointResult& result) const;
 
   /// The noise lowered to what the cross relation leaves in the whole band: the variances v_1, v_2
-  /// of E|R_1 H_2 − R_2 H_1|² = v_1 |H_2|² + v_2 |H_1|² by least squares with weights 1/E², 50 Hz
-  /// to 0.45 f_s, bins above eight times their expectation left out (what wraps around beside
+  /// of E|R_1 H_2 − R_2 H_1|² = v_1 |H_2|² + v_2 |H_1|² by their likelihood (NoiseModel), 50 Hz to
+  /// 0.45 f_s, bins above eight times their expectation left out (what wraps around beside
   /// resonances). Unchanged with one reaction. Throws as invert() does.
   SensorNoiseLevel lowered_noise(const ReactionPair& reactions, SensorNoiseLevel noise,
                                  OffsetRule rule, JointWorkspace& workspace) const;

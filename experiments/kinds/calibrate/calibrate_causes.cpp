@@ -65,6 +65,15 @@ void visit_cause(ResultVisitor& row, const ScoreTest& test) {
   row({.key = "verdict", .shown = ResultVisitor::kInTables}, role(test));
 }
 
+void visit_noise(ResultVisitor& row, const NoiseSpectrum::Knot& knot) {
+  row({.key = "frequency_hz", .name = "frequency", .unit = "Hz", .format = "{:.4g}"},
+      knot.frequency);
+  row({.key = "left_power", .name = "power at x = 0", .format = "{:.3g}"}, knot.noise.left);
+  row({.key = "right_power", .name = "power at x = L", .format = "{:.3g}"}, knot.noise.right);
+  row({.key = "coherence", .format = "{:.2f}"},
+      knot.noise.mixed / std::sqrt(knot.noise.left * knot.noise.right));
+}
+
 }  // namespace
 
 std::string cause_lines(const CalibrationResult& result) {
@@ -98,6 +107,15 @@ std::string cause_contradiction(const ContinuationResult& found) {
 }
 
 void visit_causes(ResultVisitor& visitor, const ContinuationResult& found) {
+  if (!found.noise_spectrum.white()) {
+    visitor.rows(
+        {.key = "noise_spectrum",
+         .table = "noise",
+         .name = "Noise of both reactions",
+         .meaning = "Power over that of the white noise stated above, and the coherence, by "
+                    "what the fit leaves; linear in ln f between the frequencies."},
+        found.noise_spectrum.knots, visit_noise);
+  }
   if (found.tests.empty()) return;
   visitor.rows({.key = "causes",
                 .table = "causes",

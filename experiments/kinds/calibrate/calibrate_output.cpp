@@ -1,6 +1,5 @@
 // What a calibration found, described once for its tables and its JSON, and its figures.
 
-#include <cmath>
 #include <complex>
 #include <numbers>
 
@@ -142,13 +141,6 @@ void visit_response(ResultVisitor& visitor, const ContinuationResult& found) {
                });
 }
 
-void visit_noise(ResultVisitor& row, const NoiseSpectrum::Knot& knot) {
-  row({.key = "frequency_hz"}, knot.frequency);
-  row({.key = "left_power"}, knot.noise.left);
-  row({.key = "right_power"}, knot.noise.right);
-  row({.key = "coherence"}, knot.noise.mixed / std::sqrt(knot.noise.left * knot.noise.right));
-}
-
 void visit_estimate(ResultVisitor& visitor, const ContinuationResult& found) {
   const auto group = [&visitor](std::string_view key, auto visit, const auto& value) {
     visitor.group({.key = key}, [&](ResultVisitor& members) { visit(members, value); });
@@ -168,7 +160,6 @@ void visit_estimate(ResultVisitor& visitor, const ContinuationResult& found) {
   visitor({.key = "damping_sd"}, found.damping_deviation);
   visitor({.key = "noise_left_n"}, found.noise[0]);
   visitor({.key = "noise_right_n"}, found.noise[1]);
-  visitor.rows({.key = "noise_spectrum"}, found.noise_spectrum.knots, visit_noise);
   visit_response(visitor, found);
   visitor({.key = "mains_lines_hz"}, found.lines);
   visitor({.key = "restarts"}, found.restarts);

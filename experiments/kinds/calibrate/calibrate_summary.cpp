@@ -76,17 +76,15 @@ std::string prior_lines(const PriorMisfit& misfit, std::string_view stage) {
 std::string noise_text(const NoiseSpectrum& noise) {
   if (noise.white()) return "";
   double coherence = 0.0;
-  std::string powers;
-  for (const NoiseSpectrum::Knot& knot : noise.knots) {
-    const double own = knot.noise.mixed / std::sqrt(knot.noise.left * knot.noise.right);
-    if (std::abs(own) > std::abs(coherence)) coherence = own;
-    powers += fmt::format("{}{:.3g} and {:.3g} at {:.4g} Hz", powers.empty() ? "" : ", ",
-                          std::sqrt(knot.noise.left), std::sqrt(knot.noise.right), knot.frequency);
+  for (const auto& [frequency, knot] : noise.knots) {
+    coherence = std::max(coherence, std::abs(knot.mixed) / std::sqrt(knot.left * knot.right));
   }
+  const NoiseCovariance &low = noise.knots.front().noise, &high = noise.knots.back().noise;
   return fmt::format(
-      "\nnoise of both ends over that read above the modes, by what the fit leaves: {}; coherence "
-      "up to {:.2g}",
-      powers, coherence);
+      "\nnoise at x = 0 and x = L, by what the fit leaves: {:.3g} and {:.3g} times that read above "
+      "the modes at {:.3g} Hz, {:.3g} and {:.3g} at {:.3g} Hz; coherence up to {:.2g}",
+      std::sqrt(low.left), std::sqrt(low.right), noise.knots.front().frequency,
+      std::sqrt(high.left), std::sqrt(high.right), noise.knots.back().frequency, coherence);
 }
 
 std::string chi2_text(const ContinuationResult& found) {

@@ -27,7 +27,6 @@ ContinuationResult with_misfit_for_noise(const AttemptInput& input,
                                                    .options = input.options,
                                                    .priors = input.priors,
                                                    .highest = input.highest,
-                                                   .noise_error = input.noise_error,
                                                    .misfit_for_noise = true,
                                                    .within = input.within},
                                                   0.0);
@@ -42,6 +41,7 @@ ContinuationResult with_misfit_for_noise(const AttemptInput& input,
   found.restarts = contradicted.restarts;
   found.noise = contradicted.noise;
   found.noise_spectrum = contradicted.noise_spectrum;
+  found.noise_error = contradicted.noise_error;
   return found;
 }
 
@@ -51,6 +51,7 @@ ContinuationResult attempt(const AttemptInput& input, double shift, std::size_t 
   input.records.signals.clear();
   input.records.noise = {};
   input.records.deviation = input.read;
+  input.records.power_error = input.read_error;
   ContinuationResult found = attempt_continuation(input, shift, evaluations);
   for (int round = 0; round < 2; ++round) {
     // Where the law holds, the noise is what it leaves already.
@@ -143,7 +144,7 @@ ContinuationResult calibrate_by_continuation(const ModelPoint& initial, const Ca
   const std::array<double, 2> noise{options.left_noise, options.right_noise};
   NoisyRecords records = NoisyRecords::of_data(data, initial.basis, noise);
   records.lines = mains_lines(records, initial, options.unknowns.mains);
-  const double noise_error = noise_power_error(noise, initial.basis, data);
+  records.power_error = noise_power_error(noise, initial.basis, data);
   const double highest = likelihood_band(initial, options.highest_frequency, data.sample_rate);
   constexpr double kShifts[] = {0.0, 4e-3, -4e-3, 8e-3, -8e-3};
   const AttemptInput input{.initial = initial,
@@ -151,7 +152,6 @@ ContinuationResult calibrate_by_continuation(const ModelPoint& initial, const Ca
                            .options = options,
                            .priors = priors,
                            .highest = highest,
-                           .noise_error = noise_error,
                            .within = within};
   ContinuationResult best;
   std::size_t evaluations = 0;

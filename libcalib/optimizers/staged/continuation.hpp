@@ -130,6 +130,7 @@ struct ContinuationResult {
   std::vector<FitStage> stages;   ///< of all starts, in order
   std::array<double, 2> noise{};  ///< s_r [N]
   NoiseSpectrum noise_spectrum;   ///< over s_r²
+  double noise_error = 0.0;       ///< relative standard deviation of the noise's power
   /// Of causes of misfit in each stroke, where every frequency is free and tests are asked for.
   std::vector<ScoreTest> tests;
   /// Causes that a fit before this one named, whose amplitudes are free in this one.

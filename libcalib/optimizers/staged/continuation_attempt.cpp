@@ -47,6 +47,7 @@ class Attempt {
     }
     result.noise = input_.records.deviation;
     result.noise_spectrum = input_.records.noise;
+    result.noise_error = input_.records.power_error;
     report_law(covariance, result);
     if (options().frequencies) {
       const bool accepted = result.law.accepted;
@@ -132,8 +133,6 @@ class Attempt {
                                 with_priors(law_, law_theta_, 20, 1e-3))
                      .theta;
     ladder_theta_ = law_theta_;
-    // Before the undamped record is taken, which takes most of the time.
-    if (input_.as_read()) input_.take_noise(last, law_.model(law_theta_), 0.2);
   }
 
   // σ = 0, end state projected out.
@@ -149,7 +148,7 @@ class Attempt {
     const auto free_count = static_cast<double>(law_.size() - law_.held_count());
     result.chi2_deviation =
         std::hypot(std::sqrt(2.0 / stroke_.whole().degrees_of_freedom(free_count, reference_)),
-                   input_.noise_error);
+                   input_.records.power_error);
     NewtonOptions options = with_priors(law_, law_theta_, 4, 1e-4);
     options.noise = stroke_.prepare_weights(law_, law_theta_);
     const NewtonFit last = stroke_.fit(stroke_.weighted(), law_, law_theta_, options);
@@ -223,18 +222,19 @@ bool AttemptInput::take_noise(const ProjectedLikelihood& likelihood, const Model
                               double share) const {
   const bool stated = !std::isnan(options.left_noise) || !std::isnan(options.right_noise);
   if (stated || misfit_for_noise) return false;
-  const NoiseFit found = fit_noise(likelihood, point);
-  for (const NoiseSpectrum::Knot& knot : found.spectrum.knots) {
-    // What a wrong model leaves is noise only where it is less than was taken for noise before.
-    if (found.misfit && (knot.noise.left > 1.0 || knot.noise.right > 1.0)) return false;
+  NoiseFit found = fit_noise(likelihood, point);
+  // What a wrong model leaves is noise only where it is less than was taken for noise before.
+  if (found.misfit && !(found.level < 1.0 - share)) return false;
+  if (!found.misfit && !found.spectrum.differs_from(records.noise, share)) return false;
+  records.power_error = std::max(records.power_error, found.error);
+  std::array<double, 2> power{found.level, found.level};
+  if (!found.misfit) {
+    const NoiseCovariance first = found.spectrum.knots.front().noise;
+    const bool white = found.spectrum.knots.size() == 1 && first.mixed == 0.0;
+    if (white) power = {first.left, first.right};
+    records.noise = white ? NoiseSpectrum{} : std::move(found.spectrum);
   }
-  if (!found.spectrum.differs_from(records.noise, share)) return false;
-  const NoiseCovariance first = found.spectrum.knots.front().noise;
-  const bool white = found.spectrum.knots.size() == 1 && first.mixed == 0.0;
-  records.noise = white ? NoiseSpectrum{} : found.spectrum;
-  if (!white) return true;
-  records.deviation[0] *= std::sqrt(first.left);
-  records.deviation[1] *= std::sqrt(first.right);
+  for (std::size_t r = 0; r < 2; ++r) records.deviation[r] *= std::sqrt(power[r]);
   return true;
 }
 

@@ -12,15 +12,14 @@ struct AttemptInput {
   NoisyRecords& records;  ///< whose noise take_noise() finds
   const ContinuationOptions& options;
   const StatedPriors& priors;
-  double highest = 0.0;      ///< ω of the highest bin [rad/s]
-  double noise_error = 0.0;  ///< relative standard deviation of the noise power
+  double highest = 0.0;  ///< ω of the highest bin [rad/s]
   /// The noise is what a wrong model leaves: no mode is said to leave a law by it.
   bool misfit_for_noise = false;
   Evaluator* within = nullptr;
 
   /// Levels as they were read above the modes, or stated [N].
   std::array<double, 2> read = records.deviation;
-  bool as_read() const { return records.noise.white() && records.deviation == read; }
+  double read_error = records.power_error;  ///< relative standard deviation of their power
   /// Levels are read above the modes, where noise may be another and the string may still sound:
   /// what a fit leaves says more (fit_noise()). Levels that are stated stay. True: the noise of the
   /// records has changed, by more than `share` of its power somewhere.

@@ -124,7 +124,8 @@ class JointFit {
   WhitenedRecord whitened(const CalibrationData& data, const std::array<double, 2>& stated,
                           const ContinuationResult* single) {
     if (within_) within_->poll();
-    noise_errors_.push_back(noise_power_error(stated, initial_.basis, data));
+    noise_errors_.push_back(single ? single->noise_error
+                                   : noise_power_error(stated, initial_.basis, data));
     const double band = likelihood_band(initial_, options_.highest_frequency, data.sample_rate);
     highest_ = std::max(highest_, band);
     NoisyRecords records =

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cmath>
+#include <complex>
+#include <numbers>
 
 #include "libcalib/likelihood/projected_likelihood.hpp"
 #include "libsim/base/random.hpp"
@@ -49,6 +51,32 @@ inline NoisyRecords noisy(const BowedCase& bowed, double level, std::uint64_t se
     remove_mean(records.reactions[r]);
   }
   return records;
+}
+
+/// Two first-order processes of variance 1, the second with a share of the first.
+inline NoisyRecords with_colored_noise(const BowedCase& bowed, double level, std::uint64_t seed) {
+  NoisyRecords records = noisy(bowed, level, seed, false);
+  std::vector<double> first(records.samples()), second(records.samples());
+  fill_standard_normal(StreamKey(seed).with(std::uint64_t{0}), first);
+  fill_standard_normal(StreamKey(seed).with(std::uint64_t{1}), second);
+  double state = 0.0;
+  for (std::size_t j = 0; j < first.size(); ++j) {
+    state = 0.9 * state + 0.3 * first[j];
+    records.reactions[0][j] += records.deviation[0] * (state + first[j]);
+    records.reactions[1][j] += records.deviation[1] * (0.6 * (state + first[j]) + second[j]);
+  }
+  for (auto& reaction : records.reactions) remove_mean(reaction);
+  return records;
+}
+/// Their covariance, |1 + 0.3/(1 − 0.9 z⁻¹)|² the power of the first.
+inline NoiseSpectrum colored_spectrum() {
+  NoiseSpectrum spectrum;
+  for (double f = 50.0; f < 11000.0; f *= 1.1) {
+    const double power =
+        std::norm(1.0 + 0.3 / (1.0 - 0.9 * std::polar(1.0, -2.0 * std::numbers::pi * f / 51200.0)));
+    spectrum.knots.push_back({f, {power, 0.36 * power + 1.0, 0.6 * power}});
+  }
+  return spectrum;
 }
 
 }  // namespace modcal

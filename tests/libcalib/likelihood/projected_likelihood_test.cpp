@@ -11,7 +11,6 @@
 
 #include "libcalib/likelihood/decay_kernel.hpp"
 #include "libcalib/likelihood/mode_columns.hpp"
-#include "libcalib/noise/noise_fit.hpp"
 #include "tests/libcalib/likelihood/bowed_case.hpp"
 
 namespace modcal {
@@ -66,32 +65,6 @@ TEST(ProjectedLikelihood, LeavesAlmostNothingOfCleanData) {
   EXPECT_NEAR(2.0 * noisy_one.cost(bowed.truth) / freedom, 1.0, 0.04);
 }
 
-// Two first-order processes of variance 1, the second with a share of the first.
-NoisyRecords with_colored_noise(const BowedCase& bowed, double level, std::uint64_t seed) {
-  NoisyRecords records = noisy(bowed, level, seed, false);
-  std::vector<double> first(records.samples()), second(records.samples());
-  fill_standard_normal(StreamKey(seed).with(std::uint64_t{0}), first);
-  fill_standard_normal(StreamKey(seed).with(std::uint64_t{1}), second);
-  double state = 0.0;
-  for (std::size_t j = 0; j < first.size(); ++j) {
-    state = 0.9 * state + 0.3 * first[j];
-    records.reactions[0][j] += records.deviation[0] * (state + first[j]);
-    records.reactions[1][j] += records.deviation[1] * (0.6 * (state + first[j]) + second[j]);
-  }
-  for (auto& reaction : records.reactions) remove_mean(reaction);
-  return records;
-}
-// Their covariance, |1 + 0.3/(1 − 0.9 z⁻¹)|² the power of the first.
-NoiseSpectrum colored_spectrum() {
-  NoiseSpectrum spectrum;
-  for (double f = 50.0; f < 11000.0; f *= 1.1) {
-    const double power =
-        std::norm(1.0 + 0.3 / (1.0 - 0.9 * std::polar(1.0, -2.0 * pi * f / 51200.0)));
-    spectrum.knots.push_back({f, {power, 0.36 * power + 1.0, 0.6 * power}});
-  }
-  return spectrum;
-}
-
 TEST(ProjectedLikelihood, TakesNoiseWithASpectrumAndACoherence) {
   const BowedCase bowed = bowed_case(0.03, 0.0, 1.0);
   NoisyRecords records = with_colored_noise(bowed, 0.01, 1);
@@ -109,46 +82,6 @@ TEST(ProjectedLikelihood, TakesNoiseWithASpectrumAndACoherence) {
     expected += record.noise_at(k).mixed;
   }
   EXPECT_NEAR(both / expected, 1.0, 0.05);
-}
-
-// √k bins of a level: 1.4 % of a level from 10 000, of which neighboring knots share theirs; four
-// of them and what the straight lines between knots miss.
-TEST(NoiseFit, FindsSpectraAndCoherence) {
-  const BowedCase bowed = bowed_case(0.03, 0.0, 1.0);
-  const NoiseFit found = fit_noise(
-      ProjectedLikelihood(WhitenedRecord::of(with_colored_noise(bowed, 0.01, 1), 0.0, kBand)),
-      bowed.truth);
-  EXPECT_FALSE(found.misfit);
-  ASSERT_GT(found.spectrum.knots.size(), 1u);
-  const NoiseSpectrum truth = colored_spectrum();
-  for (const double f : {800.0, 1600.0, 3200.0, 6400.0}) {
-    SCOPED_TRACE(f);
-    const NoiseCovariance is = found.spectrum.at(f), was = truth.at(f);
-    EXPECT_NEAR(is.left / was.left, 1.0, 0.2);
-    EXPECT_NEAR(is.right / was.right, 1.0, 0.2);
-    EXPECT_NEAR(std::abs(is.mixed - was.mixed) / std::sqrt(was.left * was.right), 0.0, 0.15);
-  }
-}
-
-TEST(NoiseFit, OfWhiteNoiseKeepsTwoLevels) {
-  const BowedCase bowed = bowed_case(0.03, 0.0, 1.0);
-  NoisyRecords records = noisy(bowed, 0.01, 1);
-  records.deviation[1] *= 1.5;  // read too high
-  const NoiseFit found =
-      fit_noise(ProjectedLikelihood(WhitenedRecord::of(records, 0.0, kBand)), bowed.truth);
-  EXPECT_FALSE(found.misfit);
-  ASSERT_EQ(found.spectrum.knots.size(), 1u);
-  EXPECT_NEAR(found.spectrum.knots[0].noise.left, 1.0, 0.06);
-  EXPECT_NEAR(found.spectrum.knots[0].noise.right, 1.0 / 2.25, 0.06 / 2.25);
-}
-
-// What grows with the signal is not taken for noise.
-TEST(NoiseFit, KnowsTheMisfitOfAWrongModel) {
-  BowedCase bowed = bowed_case(0.03, 0.0, 1.0);
-  const ProjectedLikelihood likelihood(WhitenedRecord::of(noisy(bowed, 0.01, 1), 0.0, kBand));
-  bowed.truth.sensors.gain = 1.02;
-  const NoiseFit found = fit_noise(likelihood, bowed.truth);
-  EXPECT_TRUE(found.misfit);
 }
 
 class AtShortRecord : public testing::Test {

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "libcalib/likelihood/noise_spectrum.hpp"
+#include "libinverse/noise/noise_spectrum.hpp"
 
 namespace modcal {
 
@@ -41,13 +41,14 @@ class NoiseModel {
   /// Least −2 ln L from these factors on, by scoring with damping. Where the modes hardly tell C₁₁
   /// from C₂₂, neighboring knots hold each other.
   double fit(const NoiseForm& form, Eigen::VectorXd& factors) const;
-  /// Probability that noise of this form leaves as much more where there is more signal (score test
-  /// of a share of the last term at every knot, Rao, 1948); 1 where it leaves less. share: of
-  /// independent bins.
-  double probability_of_excess(const NoiseForm& form, const Eigen::VectorXd& factors,
-                               double share) const;
-  /// Probability that noise makes the largest mean power of a run of bins, at most 1.
-  double probability_of_lump(const Eigen::VectorXd& factors, double share) const;
+  /// Score test of a share of the last term at every knot (Rao, 1948): χ² of so many degrees where
+  /// noise of this form is all there is; above: the sum of its roots, > 0 where there is more.
+  struct Excess {
+    double statistic = 0.0, degrees = 0.0, above = 0.0;
+  };
+  Excess excess(const NoiseForm& form, const Eigen::VectorXd& factors) const;
+  /// Largest Σ |e|²/v over `length` bins behind each other.
+  double largest_run(const Eigen::VectorXd& factors, std::size_t length) const;
   /// Knots an octave apart, the last at `top` [Hz]; of one level that alone.
   NoiseSpectrum spectrum(const NoiseForm& form, const Eigen::VectorXd& factors, double top) const;
 

@@ -1,12 +1,10 @@
-#include "libcalib/noise/noise_model.hpp"
-
-#include <gsl/gsl_cdf.h>
+#include "libinverse/noise/noise_model.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
-#include "libcalib/noise/tuning.hpp"
+#include "libinverse/noise/tuning.hpp"
 
 namespace modcal {
 namespace {
@@ -48,8 +46,7 @@ double NoiseModel::fit(const NoiseForm& form, Eigen::VectorXd& factors) const {
   return deviance(covariances(factors));
 }
 
-double NoiseModel::probability_of_excess(const NoiseForm& form, const Eigen::VectorXd& factors,
-                                         double share) const {
+NoiseModel::Excess NoiseModel::excess(const NoiseForm& form, const Eigen::VectorXd& factors) const {
   const Sums sum = sums(covariances(factors));
   const Eigen::MatrixXd tied = slopes(factors) * ties(form);
   Eigen::MatrixXd signal = Eigen::MatrixXd::Zero(tied.rows(), static_cast<Index>(knots_));
@@ -61,32 +58,29 @@ double NoiseModel::probability_of_excess(const NoiseForm& form, const Eigen::Vec
   const Eigen::MatrixXd own = tied.transpose() * sum.information * tied;
   const Eigen::MatrixXd cross = tied.transpose() * sum.information * signal;
   information -= cross.transpose() * own.ldlt().solve(cross);
-  double statistic = 0.0, freedom = 0.0, above = 0.0;
-  // Knots by themselves: they hardly overlap. Of less information than one bin has nothing is
-  // told.
+  Excess result;
+  // Knots by themselves: they hardly overlap. Of less information than one bin has nothing is told.
   for (Index j = 0; j < excess.size(); ++j) {
     if (!(information(j, j) > 1.0)) continue;
     const double root = excess[j] / std::sqrt(information(j, j));
-    statistic += root * root;
-    above += root;
-    freedom += 1.0;
+    result.statistic += root * root;
+    result.above += root;
+    result.degrees += 1.0;
   }
-  return above > 0.0 ? gsl_cdf_chisq_Q(share * statistic, freedom) : 1.0;
+  return result;
 }
 
-double NoiseModel::probability_of_lump(const Eigen::VectorXd& factors, double share) const {
+double NoiseModel::largest_run(const Eigen::VectorXd& factors, std::size_t length) const {
   const Eigen::VectorXd theta = covariances(factors);
   double largest = 0.0;
-  for (std::size_t first = 0; first + kLump <= rows_.size(); first += kLump) {
+  for (std::size_t first = 0; first + length <= rows_.size(); first += length) {
     double power = 0.0;
-    for (std::size_t i = first; i < first + kLump; ++i) {
+    for (std::size_t i = first; i < first + length; ++i) {
       power += rows_[i].power / variance(rows_[i], theta);
     }
     largest = std::max(largest, power);
   }
-  const double runs = static_cast<double>(rows_.size() / kLump);
-  return std::min(1.0,
-                  runs * gsl_cdf_gamma_Q(share * largest, share * static_cast<double>(kLump), 1.0));
+  return largest;
 }
 
 NoiseSpectrum NoiseModel::spectrum(const NoiseForm& form, const Eigen::VectorXd& factors,

@@ -1,4 +1,4 @@
-#include "libcalib/likelihood/noise_spectrum.hpp"
+#include "libinverse/noise/noise_spectrum.hpp"
 
 #include <algorithm>
 #include <cmath>
