@@ -112,4 +112,24 @@ void report_joint_fit(const JointEstimate& estimate, const Eigen::MatrixXd& cova
   JointReport(estimate, fit).report(covariance);
 }
 
+Eigen::MatrixXd covariance_of_causes(const std::vector<ContinuationResult>& single,
+                                     const AllRecords& all) {
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(all.size(), all.size());
+  const Eigen::Index unknowns = all.unknowns().size();
+  for (std::size_t c = 0; c < single.front().tests.size(); ++c) {
+    Eigen::VectorXd change = Eigen::VectorXd::Zero(all.size());
+    for (std::size_t r = 0; r < single.size(); ++r) {
+      if (c >= single[r].tests.size() || single[r].tests[c].moved.size() != unknowns) continue;
+      const ScoreTest& test = single[r].tests[c];
+      for (Eigen::Index i = 0; i < unknowns; ++i) {
+        const bool shared = single.size() > 1 && all.place(i, 0) == all.place(i, 1);
+        const double part = shared ? 1.0 / static_cast<double>(single.size()) : 1.0;
+        change[all.place(i, r)] += part * std::sqrt(test.suspicion()) * test.moved[i];
+      }
+    }
+    covariance += change * change.transpose();
+  }
+  return covariance;
+}
+
 }  // namespace modcal

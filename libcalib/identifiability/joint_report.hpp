@@ -23,4 +23,9 @@ struct JointEstimate {
 void report_joint_fit(const JointEstimate& estimate, const Eigen::MatrixXd& covariance,
                       ContinuationResult& fit);
 
+/// What the causes that single strokes are suspected of may change in the fit of all: of what
+/// records share the mean of their changes.
+Eigen::MatrixXd covariance_of_causes(const std::vector<ContinuationResult>& single,
+                                     const AllRecords& all);
+
 }  // namespace modcal

@@ -46,28 +46,33 @@ class FittedRecord {
     }
   }
 
-  // A share of every mode once more, δ above its frequency: q + d, D(δ) d = −(D(δ) − D) q. What
-  // force and decays of the fit are apart is told badly, their sum q, the motion, well. The spectra
-  // are those of a motion that goes on where it began: what d has at t = 0 decays from there.
+  // A share of the reactions once more, of a string whose frequencies are δ higher: of every mode
+  // q + d, D(δ) d = −(D(δ) − D) q, and what is quasi-static stays. What force and decays of the fit
+  // are apart is told badly, their sum q, the motion, well. The spectra are those of a motion that
+  // goes on where it began: what d has at t = 0 decays from there.
   MisfitCause polarization(double detuning) const {
     SignalColumn columns[2] = {{numbers(), {}}, {{}, numbers()}};
+    for (std::size_t k = 0; k < record_.bins; ++k) {
+      const NoisePair ends = fitted(k);
+      columns[0].left.set(k, ends.left);
+      columns[1].right.set(k, ends.right);
+    }
     std::vector<Complex> change(record_.bins);
+    const double more = detuning * (2.0 + detuning);
     for (std::size_t n = 0; n < own_; ++n) {
       const LikelihoodMode& mode = modes_[n];
-      const double more = detuning * (2.0 + detuning) * mode.omega_squared;
       Complex sum, rate_sum;
       for (std::size_t k = 0; k < record_.bins; ++k) {
         const Complex s(0.0, record_.omega[k]);
-        const Complex difference = more + detuning * mode.two_zeta_omega * s;
-        const Complex detuned = mode.omega_squared + s * s + mode.two_zeta_omega * s + difference;
-        change[k] = -difference * motions_[n][k] / detuned;
+        const Complex difference = more * mode.omega_squared + detuning * mode.two_zeta_omega * s;
+        const Complex own = mode.omega_squared + s * s + mode.two_zeta_omega * s;
+        change[k] = ((1.0 + more) * own / (own + difference) - 1.0) * motions_[n][k];
         sum += change[k];
         rate_sum += s * change[k];
       }
       decay(mode, detuning, sum, rate_sum, change);
       for (std::size_t k = 0; k < record_.bins; ++k) {
-        const auto [left, right] =
-            ends(motions_[n][k] + change[k], mode.even, {0.0, record_.omega[k]});
+        const auto [left, right] = ends(change[k], mode.even, {0.0, record_.omega[k]});
         columns[0].left.set(k, columns[0].left.at(k) + left);
         columns[1].right.set(k, columns[1].right.at(k) + right);
       }
@@ -169,13 +174,18 @@ class FittedRecord {
     return driven + amplitude / (1.0 - mode.pole * delay) +
            std::conj(amplitude) / (1.0 - std::conj(mode.pole) * delay);
   }
-  // The record of one end less its noise, e's share of it, cubed over its mean square.
+  // The records less their noise, e's share of them.
+  NoisePair fitted(std::size_t k) const {
+    const NoisePair noise =
+        noise_of_residual(record_.noise_at(k), left_[k], right_[k], residual_[k]);
+    return {record_.left.at(k) - noise.left, record_.right.at(k) - noise.right};
+  }
+  // The record of one end less its noise, cubed over its mean square.
   PlanarVector cubed(bool right) const {
     std::vector<Complex> spectrum(fft_.bins());
     for (std::size_t k = 0; k < record_.bins; ++k) {
-      const NoisePair noise =
-          noise_of_residual(record_.noise_at(k), left_[k], right_[k], residual_[k]);
-      spectrum[k + 1] = right ? record_.right.at(k) - noise.right : record_.left.at(k) - noise.left;
+      const NoisePair ends = fitted(k);
+      spectrum[k + 1] = right ? ends.right : ends.left;
     }
     std::vector<double> samples(fft_.length());
     fft_.inverse(spectrum, samples);
@@ -199,6 +209,8 @@ class FittedRecord {
 };
 
 }  // namespace
+
+double ScoreTest::suspicion() const { return std::max(0.0, 1.0 - 2.0 * std::exp(log_p)); }
 
 bool ScoreTest::refuses() const { return named() && shift > 2.0; }
 

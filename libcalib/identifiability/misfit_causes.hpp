@@ -1,6 +1,7 @@
 // What may be in a record that the model of string and sensors has not, to first order.
 #pragma once
 
+#include <Eigen/Core>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,12 +25,16 @@ struct ScoreTest {
   double log_p = 0.0;           ///< ln of the chance of S or more by noise, in any of those tried
   double amplitude = 0.0;       ///< estimated to first order; of several their root square sum [1]
   double shift = 0.0;           ///< largest change of an unknown, were it free, in its deviations
-  double shift_per_root = 0.0;  ///< the same where √S is 1, by the worst of its amplitudes
+  double shift_per_root = 0.0;  ///< the same where √S is 1, by the worst amplitudes and detuning
   std::string unknown;          ///< that this is of
+  Eigen::VectorXd moved;        ///< change of all unknowns θ, were it free
   std::vector<SignalColumn> columns;  ///< where it is named and frees()
 
   /// Noise does so in one of 8000 tests, of the four causes in one of 2000 records.
   bool named() const { return log_p < -9.0; }
+  /// 1 − 2 times that chance, not below 0: none where half of all records without the cause say as
+  /// much. By so much the deviations hold what it would change.
+  double suspicion() const;
   /// Named, and it moves an unknown by two deviations: out of the interval that holds 95 %.
   bool refuses() const;
   /// Linear enough to be free in a further fit.

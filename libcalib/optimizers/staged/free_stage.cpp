@@ -40,15 +40,13 @@ class FreeStage {
     const LikelihoodPoint last = stroke_.weighted_point(unknowns_, theta_);
     Eigen::MatrixXd covariance = fit_covariance(last, newton_);
     unknowns_.clear_held(covariance);
-    report(covariance);
     result_.chi2 = stroke_.reduced_chi2(unknowns_, theta_, last, newton_);
     stroke_.end_stage("free, prior as wide as the law's followers", objective_, result_.chi2);
     result_.priors = unknowns_.prior_misfit(theta_, {widths_, inharmonicity_});
-    if (!options_.unknowns.tests) return;
-    stroke_.poll();
-    result_.local = local_misfit(stroke_.whole(), result_.model);
-    result_.tests = score_tests(stroke_.weighted(), unknowns_, theta_, newton_,
-                                covariance.diagonal().cwiseMax(0.0).cwiseSqrt(), result_.chi2);
+    if (options_.unknowns.tests) test(covariance.diagonal().cwiseMax(0.0).cwiseSqrt());
+    Eigen::MatrixXd of_causes = covariance_of_causes(result_.tests, covariance.rows());
+    unknowns_.clear_held(of_causes);
+    report(covariance + of_causes, of_causes);
   }
 
  private:
@@ -140,7 +138,14 @@ class FreeStage {
     newton_.at_start = nullptr;
   }
 
-  void report(const Eigen::MatrixXd& covariance) {
+  void test(const Eigen::VectorXd& deviation) {
+    stroke_.poll();
+    result_.local = local_misfit(stroke_.whole(), unknowns_.model(theta_));
+    result_.tests =
+        score_tests(stroke_.weighted(), unknowns_, theta_, newton_, deviation, result_.chi2);
+  }
+
+  void report(const Eigen::MatrixXd& covariance, const Eigen::MatrixXd& of_causes) {
     result_.frequencies_free = true;
     result_.model = unknowns_.model(theta_);
     const Eigen::VectorXd deviation = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
@@ -158,7 +163,8 @@ class FreeStage {
     trust_stated_frequencies(priors_, deviation, result_.modes);
     const LawScatter scatter{followers_.scatters(), inharmonicity_};
     const PriorEquations statements = unknowns_.stated(seen_at_, scatter);
-    result_.found_law = FoundLaw::of(law_of_step(statements, at_, seen_at_, newton_), priors_);
+    result_.found_law =
+        FoundLaw::of(law_of_step(statements, at_, seen_at_, newton_, of_causes), priors_);
     result_.covariance = named_covariance(unknowns_, theta_, result_.damping, covariance);
     raise_to_verdicts(result_.modes, result_.covariance);
   }

@@ -75,6 +75,7 @@ class JointFit {
     }
     const LikelihoodPoint last = point(true);
     Eigen::MatrixXd covariance = fit_covariance(last, newton);
+    covariance += covariance_of_causes(fit_.single, all_);
     all_.clear_held(covariance);
     report_joint_fit({.all = all_,
                       .initial = initial_,
@@ -221,7 +222,8 @@ class JointFit {
     followers_ = find_followers(sight, inharmonicity(), options_.law_width);
     deny_surprises(followers_, sight);
     const Eigen::VectorXd scatters = followers_.scatters();
-    const LawPosterior law = law_of_step(equations(priors_, &scatters), at, theta_, newton);
+    const LawPosterior law = law_of_step(equations(priors_, &scatters), at, theta_, newton,
+                                         covariance_of_causes(fit_.single, all_));
     fit_.found_law = FoundLaw::of(law, priors_);
     fit_.law_width = followers_.prior_width;
     Eigen::VectorXd widths = prior_widths(sight.seen, fit_.law_width, followers_.width);

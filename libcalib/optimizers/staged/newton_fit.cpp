@@ -165,7 +165,8 @@ Eigen::MatrixXd fit_covariance(const LikelihoodPoint& point, const NewtonOptions
 }
 
 LawPosterior law_of_step(const PriorEquations& statements, const LikelihoodPoint& at,
-                         const Eigen::VectorXd& theta, NewtonOptions options) {
+                         const Eigen::VectorXd& theta, NewtonOptions options,
+                         const Eigen::MatrixXd& more) {
   QuadraticPrior prior = statements.solve();
   const Eigen::VectorXd pull = prior.precision * (theta - prior.mean);
   options.prior = std::move(prior.precision);
@@ -173,7 +174,7 @@ LawPosterior law_of_step(const PriorEquations& statements, const LikelihoodPoint
   const Eigen::VectorXd gradient = 2.0 * at.slope + pull;
   const Eigen::VectorXd step =
       hessian.scale.asDiagonal() * hessian.factor.solve(hessian.scale.asDiagonal() * gradient);
-  return statements.law(theta - step, fit_covariance(at, options));
+  return statements.law(theta - step, fit_covariance(at, options) + more);
 }
 
 NewtonFit newton_fit(const FitTarget& target, const Eigen::VectorXd& start,

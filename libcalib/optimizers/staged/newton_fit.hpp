@@ -58,9 +58,10 @@ NewtonFit newton_fit(const ProjectedLikelihood& likelihood, const StringUnknowns
 FitTarget fit_target(const ProjectedLikelihood& likelihood, const StringUnknowns& unknowns);
 
 /// The law under these statements, which take the place of the prior among the options, by one step
-/// from a point with `twice_weighted` at θ.
+/// from a point with `twice_weighted` at θ, whose covariance is so much larger than the fit's.
 LawPosterior law_of_step(const PriorEquations& statements, const LikelihoodPoint& at,
-                         const Eigen::VectorXd& theta, NewtonOptions options);
+                         const Eigen::VectorXd& theta, NewtonOptions options,
+                         const Eigen::MatrixXd& more);
 
 /// How much less than at the truth Σ|e|² without weights is expected where a fit with weights ends,
 /// in residuals: 4 tr H⁻¹JᵀWJ − 2 tr (JᵀJ) Cov, of a fit without weights and priors the number of

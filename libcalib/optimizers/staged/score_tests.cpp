@@ -66,21 +66,23 @@ class Scores {
   std::pair<ScoreTest, Index> test(Index first, Index count, double misfit) const {
     const Eigen::MatrixXd information = information_.block(first, first, count, count);
     const Eigen::VectorXd score = score_.segment(first, count);
-    const Eigen::VectorXd amplitude = -information.ldlt().solve(score);
+    const auto solver = information.ldlt();
+    const Eigen::VectorXd amplitude = -solver.solve(score);
+    const auto taken = taken_.middleCols(first, count);
     ScoreTest test{.statistic = -score.dot(amplitude) / std::max(1.0, misfit),
                    .degrees = static_cast<std::size_t>(count),
-                   .amplitude = count == 1 ? amplitude[0] : amplitude.norm()};
+                   .amplitude = count == 1 ? amplitude[0] : amplitude.norm(),
+                   .moved = -taken * amplitude};
     test.log_p = log_tail(test.statistic, test.degrees);
     Index most = 0;
-    for (Index i = 0; i < taken_.rows(); ++i) {
+    for (Index i = 0; i < taken.rows(); ++i) {
       if (!(deviation_[i] > 0.0)) continue;
-      const auto moved = taken_.row(i).segment(first, count) / deviation_[i];
-      const double shift = std::abs(moved.dot(amplitude));
+      const double shift = std::abs(test.moved[i]) / deviation_[i];
       if (shift > test.shift) test.shift = shift, most = i;
-      for (Index j = 0; j < count; ++j) {
-        test.shift_per_root =
-            std::max(test.shift_per_root, std::abs(moved[j]) / std::sqrt(information(j, j)));
-      }
+      // Of all amplitudes with √S = 1 those that move it most.
+      const Eigen::VectorXd row = taken.row(i);
+      test.shift_per_root =
+          std::max(test.shift_per_root, std::sqrt(row.dot(solver.solve(row))) / deviation_[i]);
     }
     return {test, most};
   }
@@ -126,13 +128,23 @@ std::vector<ScoreTest> score_tests(const ProjectedLikelihood& likelihood,
       continue;
     }
     tried[static_cast<std::size_t>(same - tests.begin())] += 1.0;
+    const double worst = std::max(same->shift_per_root, test.shift_per_root);
     if (test.statistic > same->statistic) *same = std::move(test);
+    same->shift_per_root = worst;
   }
   for (std::size_t i = 0; i < tests.size(); ++i) {
     tests[i].log_p = std::min(0.0, tests[i].log_p + std::log(tried[i]));
     if (!tests[i].named() || !tests[i].frees()) tests[i].columns.clear();
   }
   return tests;
+}
+
+Eigen::MatrixXd covariance_of_causes(const std::vector<ScoreTest>& tests, Index unknowns) {
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(unknowns, unknowns);
+  for (const ScoreTest& test : tests) {
+    covariance += test.suspicion() * test.moved * test.moved.transpose();
+  }
+  return covariance;
 }
 
 }  // namespace modcal
