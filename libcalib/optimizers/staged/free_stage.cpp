@@ -134,6 +134,7 @@ class FreeStage {
     }
     set_prior(unknowns_.prior(theta_, {widths_, inharmonicity_}), newton_);
     newton_.tolerance = 1e-4;
+    newton_.steps = 20;
     search_weighted();
     newton_.at_start = nullptr;
   }
