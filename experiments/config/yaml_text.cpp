@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "experiments/config/document.hpp"
+#include "experiments/config/source_text.hpp"
 
 namespace modcal {
 namespace {
@@ -25,14 +26,13 @@ std::size_t end_of_quoted(std::string_view text, std::size_t start) {
   return std::string_view::npos;
 }
 
-// yaml-cpp's own offset counts differently behind a byte order mark.
-std::size_t offset_of(std::string_view text, const YAML::Mark& mark) {
-  std::size_t start = 0;
-  for (int line = 0; line < mark.line && start != std::string_view::npos; ++line) {
-    start = text.find('\n', start);
-    if (start != std::string_view::npos) ++start;
+// Where every line begins.
+std::vector<std::size_t> line_starts(std::string_view text) {
+  std::vector<std::size_t> starts = {0};
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '\n') starts.push_back(i + 1);
   }
-  return start == std::string_view::npos ? start : start + static_cast<std::size_t>(mark.column);
+  return starts;
 }
 
 SourcePosition position_of(const YAML::Mark& mark) {
@@ -53,16 +53,22 @@ YamlNode node_at(const YAML::Mark& mark, YamlNode::Kind kind = YamlNode::Kind::k
 class TreeBuilder final : public YAML::EventHandler {
  public:
   /// `text`: what is parsed, for what yaml-cpp does not see.
-  TreeBuilder(YamlDocument& document, std::string_view text) : document_(document), text_(text) {}
+  TreeBuilder(YamlDocument& document, std::string_view text)
+      : document_(document), text_(text), line_starts_(line_starts(text)) {}
 
   bool has_root() const { return has_root_; }
+  /// yaml-cpp begins document after document at what it cannot read, and takes nothing of it.
+  bool has_second_document() const { return documents_ > 1; }
   YamlNode take_root() { return std::move(root_); }
   /// The list or map that is open where parsing stopped; null at the top.
   const YamlNode* innermost() const { return levels_.empty() ? nullptr : &levels_.back().node; }
 
   void OnDocumentStart(const YAML::Mark& mark) override {
-    if (++documents_ == 2)
-      refuse(mark, "a second YAML document (---) begins here: keep one in a file");
+    if (++documents_ != 2) return;
+    const bool comma = text_.substr(std::min(offset_of(mark), text_.size())).starts_with(',');
+    refuse(mark, comma ? "a \",\" cannot stand here: begin comments with #, and put a text with it "
+                         "into quotes"
+                       : "a second YAML document (---) begins here: keep one in a file");
   }
   void OnDocumentEnd() override {}
   void OnNull(const YAML::Mark& mark, YAML::anchor_t) override { add(node_at(mark)); }
@@ -113,9 +119,16 @@ class TreeBuilder final : public YAML::EventHandler {
     refuse(mark, fmt::format("the tag {} is not supported: leave it out", tag));
   }
 
+  // yaml-cpp's own offset counts differently behind a byte order mark.
+  std::size_t offset_of(const YAML::Mark& mark) const {
+    const auto line = static_cast<std::size_t>(mark.line);
+    if (mark.is_null() || line >= line_starts_.size()) return text_.size();
+    return line_starts_[line] + static_cast<std::size_t>(mark.column);
+  }
+
   // yaml-cpp takes the end of the file for a closing quote.
   void refuse_open_quote(const YAML::Mark& mark) {
-    const std::size_t start = offset_of(text_, mark);
+    const std::size_t start = offset_of(mark);
     if (start >= text_.size() || (text_[start] != '"' && text_[start] != '\'')) return;
     if (end_of_quoted(text_, start) != std::string_view::npos) return;
     refuse(mark, fmt::format("the quote {0} is not closed: end the text with {0}", text_[start]));
@@ -175,58 +188,12 @@ class TreeBuilder final : public YAML::EventHandler {
 
   YamlDocument& document_;
   std::string_view text_;
+  std::vector<std::size_t> line_starts_;
   std::vector<Level> levels_;
   YamlNode root_;
   bool has_root_ = false;
   std::size_t documents_ = 0;
 };
-
-bool is_continuation(char byte) { return (static_cast<unsigned char>(byte) & 0xC0) == 0x80; }
-
-// Bytes of the UTF-8 character that begins the text; 0 where none does.
-std::size_t character_size(std::string_view text) {
-  const auto first = static_cast<unsigned char>(text[0]);
-  std::size_t size = 0;
-  if (first > 0 && first < 0x80) size = 1;
-  if (first >= 0xC2 && first <= 0xDF) size = 2;
-  if (first >= 0xE0 && first <= 0xEF) size = 3;
-  if (first >= 0xF0 && first <= 0xF4) size = 4;
-  if (size == 0 || size > text.size()) return 0;
-  const std::string_view rest = text.substr(1, size - 1);
-  return std::all_of(rest.begin(), rest.end(), is_continuation) ? size : 0;
-}
-
-bool is_utf8(YamlDocument& document, std::string_view text) {
-  SourcePosition position{1, 1, {}};
-  for (std::size_t i = 0; i < text.size();) {
-    const std::size_t size = character_size(text.substr(i));
-    if (size == 0) {
-      document.mistakes.push_back(
-          {position, fmt::format("byte 0x{:02x} is not UTF-8 text: save the file as UTF-8",
-                                 static_cast<unsigned char>(text[i]))});
-      return false;
-    }
-    position.column += size;
-    if (text[i] == '\n') position = {position.line + 1, 1, {}};
-    i += size;
-  }
-  return true;
-}
-
-bool has_tabs(YamlDocument& document, const std::string& text) {
-  std::istringstream stream(text);
-  std::size_t number = 0;
-  bool found = false;
-  for (std::string line; std::getline(stream, line);) {
-    ++number;
-    const std::size_t first = line.find_first_not_of(" \t\r");
-    const std::size_t tab = line.find('\t');
-    if (first == std::string::npos || line[first] == '#' || tab > first) continue;
-    document.mistakes.push_back({{number, tab + 1, {}}, "a tab in the indentation: use blanks"});
-    found = true;
-  }
-  return found;
-}
 
 SourcePosition end_of(const std::string& text) {
   const std::size_t last = text.find_last_not_of("\r\n");
@@ -272,18 +239,13 @@ Mistake syntax_mistake(const YAML::ParserException& error, const TreeBuilder& bu
 
 }  // namespace
 
-std::size_t count_characters(std::string_view text) {
-  return text.size() -
-         static_cast<std::size_t>(std::count_if(text.begin(), text.end(), is_continuation));
-}
-
 void parse_yaml_text(YamlDocument& document, const std::string& text, std::size_t skip) {
   if (!is_utf8(document, text) || has_tabs(document, text)) return;
   std::istringstream stream(std::string(skip, ' ') + text.substr(skip));
   TreeBuilder builder(document, text);
   try {
     YAML::Parser parser(stream);
-    while (parser.HandleNextDocument(builder)) {
+    while (!builder.has_second_document() && parser.HandleNextDocument(builder)) {
     }
   } catch (const YAML::ParserException& error) {
     document.mistakes.push_back(syntax_mistake(error, builder, text));

@@ -138,6 +138,17 @@ TEST_P(WrongText, IsReportedWithItsPlaceAndTheRemedy) {
 INSTANTIATE_TEST_SUITE_P(
     Kinds, WrongText,
     ::testing::Values(
+        // yaml-cpp takes nothing of such a comma and would begin document after document.
+        Case{"# title\n, continued\n",
+             "a.yaml:2:1: error: a \",\" cannot stand here: begin comments with #, and put a text "
+             "with it into quotes\n"
+             "    , continued\n"
+             "    ^\n"},
+        Case{"[1, 2],\n",
+             "a.yaml:1:7: error: a \",\" cannot stand here: begin comments with #, and put a text "
+             "with it into quotes\n"
+             "    [1, 2],\n"
+             "          ^\n"},
         Case{"", "a.yaml:1:1: error: the file is empty: an experiment starts with kind:\n"},
         Case{"# nothing\n",
              "a.yaml:1:1: error: the file is empty: an experiment starts with kind:\n"
