@@ -42,6 +42,8 @@ MISMATCHES = {
     **{f"polarization_alike_{p:g}": (["--polarization-1", p, "--polarization-2", p], {}) for p in (0.03, 0.1)},
     **{f"polarization_unlike_{p:g}": (["--polarization-1", p, "--polarization-2", 0.3 * p], {}) for p in (0.03, 0.1)},
     "drift_1e-4": (["--drift", 1e-4], {}),
+    # A mode of the body between the string's first and second, heavy and light.
+    **{f"bridge_{kg:g}kg": (["--bridge-mass", kg, "--body-frequency", 430], {}) for kg in (0.2, 0.05)},
     "mid_stroke": (["--start", 0.3], {}),
     "damping_constant": ([], {"damping": "constant"}),
     **{f"hum_{h:g}": ([], {"hum": h}) for h in (0.001, 0.01, 0.05)},

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "benchmarks/truth/bridge.hpp"
 #include "benchmarks/truth/decimator.hpp"
 #include "benchmarks/truth/sensor.hpp"
 
@@ -96,6 +97,12 @@ class Session {
       other.fundamental *= 1.0 + options.mismatch.detuning;
       other_.emplace(transverse(other), grid_);
     }
+    if (options.mismatch.bridge_mass > 0.0) {
+      bridge_.emplace(string, options.mismatch, grid_);
+      support_ = reaction_weights(string, wave_.spacing(), Reactions::kSupport);
+      chord_ = gesture.position / string.length;
+      chord_force_ = string.tension() / string.length;
+    }
     if (const auto* bow = std::get_if<TruthBow>(&gesture.action)) {
       contact_.emplace(bow->friction, grid_.time_step);
     } else if (const auto* pluck = std::get_if<TruthPluck>(&gesture.action)) {
@@ -114,11 +121,17 @@ class Session {
     return (contact_at_.of(wave.change()) + contact_at_.of(wave.last_change())) /
            (2.0 * grid_.time_step);
   }
+  double line_velocity() const {
+    return velocity(wave_) + (bridge_ ? chord_ * bridge_->velocity() : 0.0);
+  }
+  double line_displacement() const {
+    return contact_at_.of(wave_.y()) + (bridge_ ? chord_ * bridge_->displacement() : 0.0);
+  }
   double surface_velocity() const {
-    return velocity(wave_) + (torsion_ ? velocity(*torsion_) : 0.0);
+    return line_velocity() + (torsion_ ? velocity(*torsion_) : 0.0);
   }
   double energy() const { return wave_.energy() + (torsion_ ? torsion_->energy() : 0.0); }
-  double reaction(const Wave& wave, bool right) const;
+  double reaction(const std::vector<double>& weights, const Wave& wave, bool right) const;
   void read_ends();
   ContactState force_at(double time, double free_velocity);
   void wait();  ///< at rest, before the gesture
@@ -132,9 +145,11 @@ class Session {
   Wave wave_;
   std::optional<Wave> torsion_, other_;  ///< other_: the second polarization
   Interpolation contact_at_;
-  std::vector<double> reaction_;
-  double tension_ = 1.0;             ///< over that of the string: drift
-  double line_mobility_, mobility_;  ///< of the centre line, of the surface
+  std::vector<double> reaction_, support_;  ///< support_: of what moves the bridge
+  std::optional<Bridge> bridge_;
+  double chord_ = 0.0, chord_force_ = 0.0;  ///< x_c/L [1], T/L [N/m]
+  double tension_ = 1.0;                    ///< over that of the string: drift
+  double line_mobility_, mobility_;         ///< of the centre line, of the surface
   TruthSensor sensor_;
   std::optional<Contact> contact_;
   std::vector<Decimator> decimators_;  ///< R1, R2, f, y, v
@@ -143,13 +158,13 @@ class Session {
   TruthAudit audit_;
 };
 
-double Session::reaction(const Wave& wave, bool right) const {
+double Session::reaction(const std::vector<double>& weights, const Wave& wave, bool right) const {
   const double* y = wave.y();
   double even = 0.0, odd = 0.0;
-  for (std::size_t i = 0; i < reaction_.size(); i += 2) {
+  for (std::size_t i = 0; i < weights.size(); i += 2) {
     const std::size_t j = i + 1;
-    even += reaction_[i] * y[right ? grid_.intervals - j : j];
-    odd += reaction_[j] * y[right ? grid_.intervals - j - 1 : j + 1];
+    even += weights[i] * y[right ? grid_.intervals - j : j];
+    odd += weights[j] * y[right ? grid_.intervals - j - 1 : j + 1];
   }
   return even + odd;
 }
@@ -157,8 +172,9 @@ double Session::reaction(const Wave& wave, bool right) const {
 void Session::read_ends() {
   double ends[2];
   for (std::size_t r = 0; r < 2; ++r) {
-    ends[r] = tension_ * reaction(wave_, r == 1);
-    if (other_) ends[r] += options_.mismatch.polarization[r] * reaction(*other_, r == 1);
+    ends[r] = tension_ * reaction(reaction_, wave_, r == 1);
+    if (other_) ends[r] += options_.mismatch.polarization[r] * reaction(reaction_, *other_, r == 1);
+    if (bridge_) ends[r] += (r == 1 ? chord_force_ : -chord_force_) * bridge_->displacement();
   }
   decimators_[0].push(ends[0]);
   decimators_[1].push(sensor_.read(ends[1]));
@@ -180,19 +196,24 @@ ContactState Session::force_at(double time, double free_velocity) {
 void Session::wait() {
   read_ends();
   decimators_[2].push(0.0);
-  decimators_[3].push(contact_at_.of(wave_.y()));
+  decimators_[3].push(line_displacement());
   decimators_[4].push(0.0);
 }
 
 void Session::step(std::size_t index) {
   const double time = static_cast<double>(index) * grid_.time_step;
   read_ends();
-  decimators_[3].push(contact_at_.of(wave_.y()));
+  decimators_[3].push(line_displacement());
   if (options_.mismatch.drift != 0.0) drift(time);
+  const double moved = bridge_ ? bridge_->acceleration(reaction(support_, wave_, true)) : 0.0;
   wave_.advance();
+  if (bridge_) {
+    wave_.push_everywhere(bridge_->load(), -moved);
+    bridge_->advance(moved);
+  }
   if (torsion_) torsion_->advance();
   if (other_) other_->advance();
-  const double free = velocity(wave_);
+  const double free = line_velocity();
   const ContactState state = force_at(time, free + (torsion_ ? velocity(*torsion_) : 0.0));
   if (state.force != 0.0) {
     wave_.push(contact_at_, state.force);
@@ -261,6 +282,7 @@ TruthRecord Session::run() {
     channels[c]->assign(from, from + static_cast<std::ptrdiff_t>(count));
   }
   for (std::size_t n = 1; n < grid_.intervals; ++n) record.modes.push_back(wave_.mode(n));
+  if (bridge_) record.modes = bridge_->coupled(record.modes);
   if (options_.noise_level > 0.0) add_noise(record, options_.noise_level, options_.seed);
   return record;
 }
@@ -273,8 +295,9 @@ TruthRecord simulate(const TruthString& string, const TruthGesture& gesture,
           "f0, L and the linear density must be > 0");
   require(string.inharmonicity >= 0.0 && string.loss >= 0.0 && string.diffusion >= 0.0,
           "B and the losses must be >= 0");
-  require(options.mismatch.drift == 0.0 || !options.audit,
-          "a string that goes out of tune does not keep its energy: no audit");
+  require((options.mismatch.drift == 0.0 && options.mismatch.bridge_mass == 0.0) || !options.audit,
+          "the audit is of a string between ends at rest that keeps its tension");
+  require(options.mismatch.bridge_mass >= 0.0, "the mass of the bridge must be >= 0");
   require(options.duration > 0.0, "duration must be > 0");
   const WaveGrid grid = grid_of(string, options);
   const double cell = string.length / static_cast<double>(grid.intervals);

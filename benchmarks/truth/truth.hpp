@@ -76,7 +76,7 @@ enum class Reactions { kTension, kSupport };
 
 /// What a real rig has and a model of a string may not: R2 = (gain exp(−sτ) s/(s + ω_c) (1 + b(s)))
 /// R2, b(s) = peak · 2ζω_r s/(s² + 2ζω_r s + ω_r²), bilinear at the rate of the scheme; a second
-/// polarization; a string that goes out of tune.
+/// polarization; a string that goes out of tune; a bridge that moves.
 struct TruthMismatch {
   double gain = 1.0;              ///< of the sensor at x = L over that at x = 0 [1]
   double delay = 0.0;             ///< of the same, τ [s]
@@ -90,6 +90,9 @@ struct TruthMismatch {
   double detuning = 1.3e-3;
   /// Relative change of f0 from the record's beginning to its end, zero at its middle.
   double drift = 0.0;
+  /// The end at x = L is a mode of the body: m (ü + 2ζω_r u̇ + ω_r² u) = −T y'(L) + EI y'''(L), with
+  /// ω_r and ζ as above; m = 0: it does not move. The string's losses are those of y − u x/L.
+  double bridge_mass = 0.0;  ///< m [kg]
 };
 
 struct TruthOptions {
@@ -131,7 +134,7 @@ struct TruthRecord {
   /// its centre line at the contact. All filtered alike, all at t_i = start + i/rate.
   std::vector<double> r1, r2, f, y, v;
   double noise[2] = {0.0, 0.0};  ///< standard deviations [N]
-  std::vector<WaveMode> modes;   ///< 1 … N − 1, the scheme's own
+  std::vector<WaveMode> modes;   ///< 1 … N − 1, the scheme's own, on the bridge if it moves
   double internal_rate = 0.0;    ///< [Hz]
   std::size_t intervals = 0;
   double stuck = 0.0;     ///< share of the time [1]

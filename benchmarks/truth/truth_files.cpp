@@ -99,7 +99,8 @@ ordered_json json_of(const TruthMismatch& m) {
           {"body", {{"peak", m.body_peak}, {"f", m.body_frequency}, {"zeta", m.body_damping}}},
           {"polarization", {m.polarization[0], m.polarization[1]}},
           {"detuning", m.detuning},
-          {"drift", m.drift}};
+          {"drift", m.drift},
+          {"bridge_mass", m.bridge_mass}};
 }
 
 }  // namespace

@@ -140,6 +140,18 @@ void Wave::push(const Interpolation& contact, double force) {
   }
 }
 
+void Wave::push_everywhere(const std::vector<double>& load, double factor) {
+  double *y = inner(y_), *change = inner(change_);
+  const double scale = response_ * factor;
+  for (std::size_t j = 1; j < grid_.intervals; ++j) {
+    const double moved = scale * load[j];
+    y[j] += moved;
+    change[j] += moved;
+  }
+  mirror(y_);
+  mirror(change_);
+}
+
 double Wave::mobility(const Interpolation& contact) const {
   double square = 0.0;
   for (const double w : contact.weights) square += w * w;

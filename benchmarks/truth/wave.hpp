@@ -71,6 +71,8 @@ class Wave {
   void advance();
   /// Adds its part, the force f [N] at the contact between the last two levels.
   void push(const Interpolation& contact, double force);
+  /// The same of a load on all points 0 … N, h times its density [N], by a factor.
+  void push_everywhere(const std::vector<double>& load, double factor);
 
   /// Sets the tension to (1 + relative) times that of the equation, |relative| << 1, for the
   /// steps to come. mode() stays that of the equation; the balance of energy lacks what this does.
