@@ -19,6 +19,12 @@ std::size_t character_size(std::string_view text) {
   if (first >= 0xE0 && first <= 0xEF) size = 3;
   if (first >= 0xF0 && first <= 0xF4) size = 4;
   if (size == 0 || size > text.size()) return 0;
+  // Longer than need be, a half of a UTF-16 pair, beyond the last character (RFC 3629).
+  const auto second = static_cast<unsigned char>(size > 1 ? text[1] : '\0');
+  if ((first == 0xE0 && second < 0xA0) || (first == 0xED && second >= 0xA0) ||
+      (first == 0xF0 && second < 0x90) || (first == 0xF4 && second >= 0x90)) {
+    return 0;
+  }
   const std::string_view rest = text.substr(1, size - 1);
   return std::all_of(rest.begin(), rest.end(), is_continuation) ? size : 0;
 }

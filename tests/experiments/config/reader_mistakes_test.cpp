@@ -166,6 +166,10 @@ INSTANTIATE_TEST_SUITE_P(
              "a.yaml:1:7: error: byte 0xff is not UTF-8 text: save the file as UTF-8\n"
              "    note: \xFF\n"
              "          ^\n"},
+        Case{"note: \xED\xA0\x80\n",
+             "a.yaml:1:7: error: byte 0xed is not UTF-8 text: save the file as UTF-8\n"
+             "    note: \xED\xA0\x80\n"
+             "          ^\n"},
         Case{"windows: [1, 2\nseeds: 3\n",
              "a.yaml:1:10: error: this \"[\" is not closed: add \"]\" behind its last item\n"
              "    windows: [1, 2\n"
