@@ -18,6 +18,7 @@ constexpr std::string_view kPolarization = "second polarization";
 constexpr std::string_view kDrift = "drift of the tuning";
 constexpr std::string_view kNonlinear = "nonlinear sensor";
 constexpr std::string_view kModesAbove = "modes above";
+constexpr std::string_view kBridge = "bridge that moves";
 
 // What the fit makes of a record: force, transfer functions, what rings.
 class FittedRecord {
@@ -43,6 +44,18 @@ class FittedRecord {
     for (std::size_t n = 0; n < own_; ++n) {
       motions_.emplace_back(record_.bins);
       for (std::size_t k = 0; k < record_.bins; ++k) motions_[n][k] = motion_of(n, k);
+    }
+    const double per_length = point.basis.tension / point.basis.length;
+    for (std::size_t k = 0; k < record_.bins; ++k) {
+      const Complex s(0.0, record_.omega[k]);
+      Complex all, odd;
+      for (std::size_t n = 0; n < own_; ++n) {
+        const Complex part = 2.0 * s * s * inverse_denominator(modes_[n], s);
+        all += part;
+        if (!modes_[n].even) odd += part;
+      }
+      chord_right_.push_back(per_length * (1.0 + all));
+      chord_left_.push_back(-per_length * (1.0 + all - 2.0 * odd));
     }
   }
 
@@ -107,6 +120,32 @@ class FittedRecord {
       }
     }
     return {std::string(kDrift), "", {std::move(column)}};
+  }
+
+  // The end at x = L is on a mode of the body, m (s² + 2ζω_b s + ω_b²) u = −R₂. To first order in
+  // 1/m the reactions of a pinned string have those of the chord u x/L more,
+  //     c₂ = T/L + (2T/L) Σ s²/D_n,   c₁ = −T/L − (2T/L) Σ (−1)^n s²/D_n;
+  // by 1/m and by both parts of what the mode of the body itself still has from before.
+  MisfitCause bridge(double frequency, double zeta) const {
+    const double omega = 2.0 * pi * frequency;
+    const Complex rate(-zeta * omega, omega * std::sqrt(1.0 - zeta * zeta));
+    const Complex pole = std::exp(rate / record_.sample_rate);
+    MisfitCause cause{std::string(kBridge), fmt::format("at {:.0f} Hz", frequency), {}, true};
+    cause.columns.assign(3, {numbers(), numbers()});
+    for (std::size_t k = 0; k < record_.bins; ++k) {
+      const Complex s(0.0, record_.omega[k]), delay = record_.delay.at(k);
+      const Complex sensor = sensor_.response(s);
+      const Complex reaction = fitted(k).right * record_.deviation[1] / sensor;
+      const Complex decay = 1.0 / (1.0 - pole * delay);
+      const Complex other = 1.0 / (1.0 - std::conj(pole) * delay);
+      const Complex moved[] = {-reaction / (s * s + 2.0 * zeta * omega * s + omega * omega),
+                               decay + other, Complex(0.0, 1.0) * (decay - other)};
+      for (std::size_t i = 0; i < cause.columns.size(); ++i) {
+        cause.columns[i].left.set(k, chord_left_[k] * moved[i] / record_.deviation[0]);
+        cause.columns[i].right.set(k, chord_right_[k] * moved[i] * sensor / record_.deviation[1]);
+      }
+    }
+    return cause;
   }
 
   MisfitCause nonlinear_sensors() const {
@@ -205,6 +244,7 @@ class FittedRecord {
   std::size_t own_;  // modes that the model states, the first
   RealFft fft_;
   std::vector<Complex> force_, amplitudes_, left_, right_, residual_;
+  std::vector<Complex> chord_left_, chord_right_;  // reactions to a displacement of x = L [N/m]
   std::vector<std::vector<Complex>> motions_;  // of every stated mode, what rings of it included
 };
 
@@ -223,6 +263,7 @@ std::string_view ScoreTest::remedy() const {
        "sensors"},
       {kDrift, "record when the string has settled, or calibrate a shorter part of the record"},
       {kNonlinear, "play softer, or use sensors of a wider range"},
+      {kBridge, "clamp the bridge or load it, or mount the string on heavier supports"},
       {kModesAbove,
        "the record has not the modes above those stated that the law has: state more modes, or "
        "remainder: none for a simulated record of exactly so many"}};
@@ -243,13 +284,16 @@ std::vector<MisfitCause> misfit_causes(const ProjectedLikelihood& likelihood,
                                        const ModelPoint& point) {
   const FittedRecord fitted(likelihood, point);
   std::vector<MisfitCause> causes;
-  for (const double detuning : {1e-3, 3e-3, 1e-2}) {
+  for (const double detuning : {1e-3, -1e-3, 3e-3, -3e-3, 1e-2, -1e-2}) {
     causes.push_back(fitted.polarization(detuning));
-    causes.push_back(fitted.polarization(-detuning));
   }
   causes.push_back(fitted.drift());
   causes.push_back(fitted.nonlinear_sensors());
   causes.push_back(fitted.modes_above());
+  const double fundamental = point.basis.omega[0] / (2.0 * pi);
+  for (const double part : {0.5, 0.75, 1.5, 2.5, 4.5}) {
+    causes.push_back(fitted.bridge(part * fundamental, 0.03));
+  }
   return causes;
 }
 

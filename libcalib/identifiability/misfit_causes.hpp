@@ -15,6 +15,9 @@ struct MisfitCause {
   std::string name;
   std::string detail;  ///< which of several tried, in words; empty: there is one
   std::vector<SignalColumn> columns;
+  /// Frequencies, damping and the response of the sensors are those of the string with this cause:
+  /// of what it moves x_c alone counts.
+  bool moves_contact_alone = false;
 };
 
 /// What the score test of one cause says (score_tests.hpp).
@@ -27,10 +30,10 @@ struct ScoreTest {
   double shift = 0.0;           ///< largest change of an unknown, were it free, in its deviations
   double shift_per_root = 0.0;  ///< the same where √S is 1, by the worst amplitudes and detuning
   std::string unknown;          ///< that this is of
-  Eigen::VectorXd moved;        ///< change of all unknowns θ, were it free
+  Eigen::VectorXd moved;        ///< change of all unknowns θ that count, were it free
   std::vector<SignalColumn> columns;  ///< where it is named and frees()
 
-  /// Noise does so in one of 8000 tests, of the four causes in one of 2000 records.
+  /// Noise does so in one of 8000 tests, of the five causes in one of 1600 records.
   bool named() const { return log_p < -9.0; }
   /// 1 − 2 times that chance, not below 0: none where half of all records without the cause say as
   /// much. By so much the deviations hold what it would change.

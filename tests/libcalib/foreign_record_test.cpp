@@ -269,6 +269,19 @@ TEST(ForeignRecord, ASecondPolarizationAlikeAtBothEndsIsInTheDeviations) {
   EXPECT_LT(frequency_errors(result).largest, kFour);
 }
 
+// Its frequencies are those of the string on its bridge: what is named does not refuse them.
+TEST(ForeignRecord, ABridgeThatMovesIsNamed) {
+  const CalibrationResult result =
+      calibrated(stroke({.body_frequency = 430.0, .body_damping = 0.02, .bridge_mass = 0.05},
+                        truth::Reactions::kTension),
+                 {.noise = 2e-3});
+  const ScoreTest* cause = first_cause(result.continuation->tests);
+  ASSERT_NE(cause, nullptr);
+  EXPECT_EQ(cause->cause, "bridge that moves");
+  EXPECT_EQ(cause->unknown, "x_c");
+  EXPECT_LT(std::abs(error(result, "x_c", kContact)), kFour);
+}
+
 TEST(ForeignRecord, ANonlinearSensorIsNamed) {
   truth::TruthRecord record = equal_sensors();
   double power = 0.0;
@@ -283,7 +296,7 @@ TEST(ForeignRecord, ANonlinearSensorIsNamed) {
 TEST(ForeignRecord, NoCauseIsSeenWhereThereIsNone) {
   for (const double noise : {0.002, 0.05}) {
     const CalibrationResult result = calibrated(equal_sensors(), {.noise = noise});
-    ASSERT_EQ(result.continuation->tests.size(), 4u);
+    ASSERT_EQ(result.continuation->tests.size(), 5u);
     for (const ScoreTest& test : result.continuation->tests) {
       EXPECT_FALSE(test.named()) << test.cause << " " << test.log_p;
     }

@@ -99,11 +99,16 @@ std::string cause_lines(const CalibrationResult& result) {
 
 std::string cause_contradiction(const ContinuationResult& found) {
   const ScoreTest* cause = first_cause(found.tests);
-  if (!cause || !cause->refuses()) return "";
-  return fmt::format(
-      "what the fit leaves looks like a {} (by chance {}), which the error bars do "
-      "not hold: {}",
-      whole_name(*cause), chance(*cause), cause->remedy());
+  const bool refuses = cause && cause->refuses();
+  if (found.fits && !refuses) return "";
+  if (!cause) {
+    return "none of the causes that are looked for explains it: the report shows at which "
+           "frequencies it is; end the band below them (highest_frequency), or take a part of the "
+           "record that is played steadily";
+  }
+  return fmt::format("what the fit leaves looks like a {} (by chance {}){}: {}", whole_name(*cause),
+                     chance(*cause), refuses ? ", which the error bars do not hold" : "",
+                     cause->remedy());
 }
 
 void visit_causes(ResultVisitor& visitor, const ContinuationResult& found) {

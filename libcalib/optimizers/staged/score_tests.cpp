@@ -62,20 +62,23 @@ class Scores {
     information_ = 2.0 * (at.information.bottomRightCorner(m, m) - mixed.transpose() * taken_);
   }
 
-  // Of `count` amplitudes from `first` on; the number of the unknown that they move most.
-  std::pair<ScoreTest, Index> test(Index first, Index count, double misfit) const {
+  // Of `count` amplitudes from `first` on; the number of the unknown that they move most of all, or
+  // of [begin, end).
+  std::pair<ScoreTest, Index> test(Index first, Index count, double misfit, Index begin,
+                                   Index end) const {
     const Eigen::MatrixXd information = information_.block(first, first, count, count);
     const Eigen::VectorXd score = score_.segment(first, count);
     const auto solver = information.ldlt();
     const Eigen::VectorXd amplitude = -solver.solve(score);
-    const auto taken = taken_.middleCols(first, count);
+    Eigen::MatrixXd taken = Eigen::MatrixXd::Zero(taken_.rows(), count);
+    taken.middleRows(begin, end - begin) = taken_.block(begin, first, end - begin, count);
     ScoreTest test{.statistic = -score.dot(amplitude) / std::max(1.0, misfit),
                    .degrees = static_cast<std::size_t>(count),
                    .amplitude = count == 1 ? amplitude[0] : amplitude.norm(),
                    .moved = -taken * amplitude};
     test.log_p = log_tail(test.statistic, test.degrees);
-    Index most = 0;
-    for (Index i = 0; i < taken.rows(); ++i) {
+    Index most = begin;
+    for (Index i = begin; i < end; ++i) {
       if (!(deviation_[i] > 0.0)) continue;
       const double shift = std::abs(test.moved[i]) / deviation_[i];
       if (shift > test.shift) test.shift = shift, most = i;
@@ -113,7 +116,9 @@ std::vector<ScoreTest> score_tests(const ProjectedLikelihood& likelihood,
   Index first = 0;
   for (MisfitCause& cause : causes) {
     const Index count = std::ssize(cause.columns);
-    auto [test, most] = scores.test(first, count, misfit);
+    const Index begin = cause.moves_contact_alone ? unknowns.contact() : 0;
+    const Index end = cause.moves_contact_alone ? begin + 1 : theta.size();
+    auto [test, most] = scores.test(first, count, misfit, begin, end);
     first += count;
     test.cause = cause.name;
     test.detail = cause.detail;
