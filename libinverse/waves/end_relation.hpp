@@ -8,6 +8,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <optional>
 #include <span>
 
@@ -62,5 +63,20 @@ struct EndRelationFit {
 /// Throws InvalidInput for reactions of different lengths, records shorter than two periods of f₀,
 /// a contact outside the string.
 EndRelationFit fit_end_relations(const EndRecord& record, const StatedString& string);
+
+/// What a record tells of a string of which nothing is known.
+struct ToldString {
+  double fundamental = 0.0;    ///< f₀ [Hz]
+  double inharmonicity = 0.0;  ///< B
+  double contact = 0.0;        ///< x_c/L, from the end of the left reaction [1]
+  double misfit = std::numeric_limits<double>::infinity();  ///< as EndRelationFit's, up to 40 f₀
+  bool explained = false;  ///< the reactions are those of this string
+};
+
+/// f₀, B ≥ 0 and x_c of the string that the ends obey best up to 40 f₀, looked for below 5 f₀ with
+/// x_c anywhere and f₀ near the pitch, the first lag at which both reactions are alike, or, where
+/// no such string explains them, up to eight times as high. Throws InvalidInput for a record
+/// without a period.
+ToldString find_string(const EndRecord& record);
 
 }  // namespace modcal

@@ -65,4 +65,40 @@ constexpr std::size_t kEndPeriods = 8;
 constexpr std::size_t kLeastPeriods = 20;
 constexpr double kDisturbance = 3.0;
 
+/// Modes, in f₀, below which a string of which nothing is known is looked for, and how many bins
+/// have to stand above the noise there. Here and below 213 records are asked: those named above and
+/// the 18 of `make coverage` without noise; as it is all strings are told, f0 to 5.4e-4, B to 4 %,
+/// x_c to 1.6e-4 L.
+/// Source: B of 1e-3 moves the fifth mode by 1 %.
+/// Range tried: 2.5 to 10; 4 to 16.
+/// Doubled: f0 to 6.5e-4, B to 11 %, more than twice the time; as now.
+/// Halved: f0 to 7.9e-4; as now.
+constexpr double kScanBand = 5.0;
+constexpr std::size_t kLeastBins = 8;
+
+/// Misfit from which on a string that was found is none.
+/// Source: the 213 have 0.06 to 1.46 with the right string; with the sign of one reaction turned,
+/// 1.7 to 4.8.
+/// Range tried: 1 to 2.
+/// Doubled: one string of a turned sign in four is believed.
+/// Halved: one right string in four is not.
+constexpr double kToldMisfit = 1.55;
+
+/// Modes, in f₀, among which B is looked for first, and in how many steps to either side of that
+/// stated.
+/// Source: at 20 f₀ a B of 1e-3, that of the stiffest strings, moves a mode by a fifth.
+/// Range tried: 10 to 40; 20 to 80.
+/// Doubled: f0 to 1.2e-2, B to 60 %, false minima; as now.
+/// Halved: f0 to 1.3e-3, B to 9 %; as now, but B up to 5e-4 only.
+constexpr double kStiffBand = 20.0;
+constexpr int kStiffSteps = 40;
+
+/// Least autocorrelation of a note, and that of its first period over the largest.
+/// Source: half a period of a stroke has 0.6 of that of a period.
+/// Range tried: 0.15 to 0.6; 0.42 to 0.93.
+/// Doubled: ten of the 213 are refused; as now, with 0.93.
+/// Halved: as now, and noise of few samples is a note; f0 to 4.4e-4.
+constexpr double kLeastAlike = 0.3;
+constexpr double kAsAlike = 0.85;
+
 }  // namespace modcal
