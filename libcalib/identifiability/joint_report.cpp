@@ -120,11 +120,11 @@ Eigen::MatrixXd covariance_of_causes(const std::vector<ContinuationResult>& sing
     Eigen::VectorXd change = Eigen::VectorXd::Zero(all.size());
     for (std::size_t r = 0; r < single.size(); ++r) {
       if (c >= single[r].tests.size() || single[r].tests[c].moved.size() != unknowns) continue;
-      const ScoreTest& test = single[r].tests[c];
+      const Eigen::VectorXd suspected = single[r].tests[c].suspected();
       for (Eigen::Index i = 0; i < unknowns; ++i) {
         const bool shared = single.size() > 1 && all.place(i, 0) == all.place(i, 1);
         const double part = shared ? 1.0 / static_cast<double>(single.size()) : 1.0;
-        change[all.place(i, r)] += part * std::sqrt(test.suspicion()) * test.moved[i];
+        change[all.place(i, r)] += part * suspected[i];
       }
     }
     covariance += change * change.transpose();

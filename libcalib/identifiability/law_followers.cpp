@@ -199,14 +199,30 @@ LawFollowers LawFollowers::all(Eigen::Index modes, double width) {
 }
 
 Eigen::VectorXd LawFollowers::scatters() const {
-  Eigen::VectorXd widths(static_cast<Eigen::Index>(ties.size()));
+  Eigen::VectorXd widths = disturbances();
   for (Eigen::Index i = 0; i < widths.size(); ++i) {
     const LawTie tie = ties[static_cast<std::size_t>(i)];
     widths[i] = tie == LawTie::kLeaves     ? kDeparted
                 : tie == LawTie::kDoubtful ? std::max(scatter, kWidePrior)
-                                           : std::max(scatter, 1e-3 * kTied);
+                                           : std::hypot(std::max(scatter, 1e-3 * kTied), widths[i]);
   }
   return widths;
+}
+
+Eigen::VectorXd LawFollowers::disturbances() const {
+  const auto size = static_cast<Index>(ties.size());
+  Eigen::VectorXd most = Eigen::VectorXd::Zero(size);
+  const auto leaves = [this](Index n) {
+    return ties[static_cast<std::size_t>(n)] == LawTie::kLeaves;
+  };
+  for (Index m = 0; m < size; ++m) {
+    for (Index n = 0; leaves(m) && n < size; ++n) {
+      if (leaves(n)) continue;
+      const auto apart = static_cast<double>(std::abs(n - m));
+      most[n] = std::max(most[n], std::abs(rest[m]) / (2.0 * apart - 1.0));
+    }
+  }
+  return most;
 }
 
 std::size_t LawFollowers::leaving() const {

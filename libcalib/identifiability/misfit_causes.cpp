@@ -41,21 +41,18 @@ class FittedRecord {
       const Complex e(residuals[2 * k], residuals[2 * k + 1]);
       residual_.push_back(root > 0.0 ? e / root : 0.0);
     }
+    const double per_length = point.basis.tension / point.basis.length;
+    chord_right_.assign(record_.bins, per_length);
+    chord_left_.assign(record_.bins, -per_length);
     for (std::size_t n = 0; n < own_; ++n) {
       motions_.emplace_back(record_.bins);
-      for (std::size_t k = 0; k < record_.bins; ++k) motions_[n][k] = motion_of(n, k);
-    }
-    const double per_length = point.basis.tension / point.basis.length;
-    for (std::size_t k = 0; k < record_.bins; ++k) {
-      const Complex s(0.0, record_.omega[k]);
-      Complex all, odd;
-      for (std::size_t n = 0; n < own_; ++n) {
-        const Complex part = 2.0 * s * s * inverse_denominator(modes_[n], s);
-        all += part;
-        if (!modes_[n].even) odd += part;
+      for (std::size_t k = 0; k < record_.bins; ++k) {
+        const Complex s(0.0, record_.omega[k]), receptance = inverse_denominator(modes_[n], s);
+        motions_[n][k] = motion_of(n, k, receptance);
+        const Complex chord = 2.0 * per_length * s * s * receptance;
+        chord_right_[k] += chord;
+        chord_left_[k] += modes_[n].even ? -chord : chord;
       }
-      chord_right_.push_back(per_length * (1.0 + all));
-      chord_left_.push_back(-per_length * (1.0 + all - 2.0 * odd));
     }
   }
 
@@ -204,10 +201,9 @@ class FittedRecord {
     return {-motion / record_.deviation[0], even ? right : -right};
   }
   // Mode n with what rings of it, in bin k.
-  Complex motion_of(std::size_t n, std::size_t k) const {
+  Complex motion_of(std::size_t n, std::size_t k, Complex receptance) const {
     const LikelihoodMode& mode = modes_[n];
-    const Complex driven =
-        mode.residue * force_[k] * inverse_denominator(mode, {0.0, record_.omega[k]});
+    const Complex driven = mode.residue * force_[k] * receptance;
     if (n >= amplitudes_.size()) return driven;
     const Complex delay = record_.delay.at(k), amplitude = amplitudes_[n];
     return driven + amplitude / (1.0 - mode.pole * delay) +
@@ -250,7 +246,13 @@ class FittedRecord {
 
 }  // namespace
 
-double ScoreTest::suspicion() const { return std::max(0.0, 1.0 - 2.0 * std::exp(log_p)); }
+Eigen::VectorXd ScoreTest::suspected() const { return suspicion() * moved; }
+
+double ScoreTest::suspicion() const {
+  return std::sqrt(std::max(0.0, 1.0 - 2.0 * std::exp(log_p)));
+}
+
+bool ScoreTest::moves_modes_off_law() const { return cause == kBridge; }
 
 bool ScoreTest::refuses() const { return named() && shift > 2.0; }
 
@@ -274,9 +276,7 @@ std::string_view ScoreTest::remedy() const {
 }
 
 const ScoreTest* first_cause(const std::vector<ScoreTest>& tests) {
-  const auto least =
-      std::min_element(tests.begin(), tests.end(),
-                       [](const ScoreTest& a, const ScoreTest& b) { return a.log_p < b.log_p; });
+  const auto least = std::ranges::min_element(tests, {}, &ScoreTest::log_p);
   return least == tests.end() || !least->named() ? nullptr : &*least;
 }
 

@@ -35,11 +35,15 @@ struct ScoreTest {
 
   /// Noise does so in one of 8000 tests, of the five causes in one of 1600 records.
   bool named() const { return log_p < -9.0; }
-  /// 1 − 2 times that chance, not below 0: none where half of all records without the cause say as
-  /// much. By so much the deviations hold what it would change.
-  double suspicion() const;
+  /// The change of all unknowns as far as the cause is suspected. The deviations hold its square.
+  Eigen::VectorXd suspected() const;
   /// Named, and it moves an unknown by two deviations: out of the interval that holds 95 %.
   bool refuses() const;
+  /// √(1 − 2p), 0 where half of all records without the cause say as much.
+  double suspicion() const;
+  /// Moves modes off the law, and those the most beside which it is a resonance: what the modal
+  /// model has not is as large there as the departure.
+  bool moves_modes_off_law() const;
   /// Linear enough to be free in a further fit.
   bool frees() const;
   /// What to do about it, in words.

@@ -123,8 +123,10 @@ Eigen::VectorXd prior_widths(const Eigen::VectorXd& seen, double width, double e
 }
 
 void release(const LawFollowers& followers, ModeSight& sight, Eigen::VectorXd& widths) {
+  const Eigen::VectorXd disturbances = followers.disturbances();
   for (Eigen::Index i = 0; i < widths.size(); ++i) {
     const LawTie tie = followers.ties[static_cast<std::size_t>(i)];
+    widths[i] = std::hypot(widths[i], disturbances[i]);
     if (tie == LawTie::kFollows) continue;
     widths[i] = std::max(widths[i], tie == LawTie::kLeaves ? kDeparted : kWidePrior);
     if (tie == LawTie::kLeaves) sight.seen[i] = std::min(sight.seen[i], sight.error[i]);
@@ -203,13 +205,20 @@ std::vector<std::size_t> not_following(const std::vector<ModeVerdict>& modes) {
   return found.size() + 2 > modes.size() ? std::vector<std::size_t>{} : found;
 }
 
-void report_departures(const FoundLaw& law, std::vector<ModeVerdict>& modes) {
-  for (std::size_t n = 0; n < modes.size(); ++n) {
-    const double number = static_cast<double>(n + 1);
-    const double frequency =
-        number * law.fundamental * std::sqrt(1.0 + law.inharmonicity * number * number);
-    modes[n].departure = modes[n].frequency / frequency - 1.0;
+void report_departures(std::span<const ScoreTest> tests, ContinuationResult& result) {
+  double suspicion = 0.0;
+  for (const ScoreTest& test : tests) {
+    if (test.moves_modes_off_law()) suspicion = std::max(suspicion, test.suspicion());
   }
+  const FoundLaw& law = result.found_law;
+  for (std::size_t n = 0; n < result.modes.size(); ++n) {
+    ModeVerdict& mode = result.modes[n];
+    mode.departure =
+        mode.frequency / stiff_string_frequency(law.fundamental, law.inharmonicity, n + 1) - 1.0;
+    if (mode.tie == LawTie::kFollows) continue;
+    mode.deviation = std::hypot(mode.deviation, suspicion * mode.departure);
+  }
+  raise_to_verdicts(result.modes, result.covariance);
 }
 
 }  // namespace modcal

@@ -37,7 +37,8 @@ void doubt_rivals(const std::vector<Neighbor>& neighbors, ModeSight& sight);
 Eigen::VectorXd prior_widths(const Eigen::VectorXd& seen, double width, double estimated);
 
 /// A mode that leaves the law has the width kDeparted and is seen as far as its information says, a
-/// doubtful one kWidePrior at least: tied to where it is not, it would push the others away.
+/// doubtful one kWidePrior at least: tied to where it is not, it would push the others away. Those
+/// beside a mode that leaves are as wide as what moved it may have moved them, too.
 void release(const LawFollowers& followers, ModeSight& sight, Eigen::VectorXd& widths);
 
 /// All modes by the law with the covariance of (ln f_0, B).
@@ -56,8 +57,10 @@ std::vector<std::size_t> not_following(const std::vector<ModeVerdict>& modes);
 /// Raises the variances of the frequencies to the deviations that the verdicts report.
 void raise_to_verdicts(const std::vector<ModeVerdict>& modes, NamedCovariance& covariance);
 
-/// Fills how far every mode is from n f_0 √(1 + Bn²).
-void report_departures(const FoundLaw& law, std::vector<ModeVerdict>& modes);
+/// Fills how far every mode is from n f_0 √(1 + Bn²). Where `tests` suspect a cause that moves
+/// modes off the law, the deviation of a mode that does not follow it holds as much of the
+/// departure: near its resonance there is one more pole, which no f_n of the string is.
+void report_departures(std::span<const ScoreTest> tests, ContinuationResult& result);
 
 /// Node where |φ_n(x_c)| < 0.1, antinode where |cos(nπx_c/L)| < 0.2 (both ends then react alike,
 /// whatever ω_n is), else noise.

@@ -20,8 +20,9 @@ Eigen::MatrixXd StrokeLikelihood::noise_information(const ModelPoint& point,
   return weighted_.noise_information(point, columns, kNoiseRepeats);
 }
 
-double StrokeLikelihood::unweighted_cost(const ModelPoint& point) const {
-  return whole_.cost(point);
+LikelihoodPoint StrokeLikelihood::unweighted(const ModelPoint& point,
+                                             const LikelihoodColumns& columns) const {
+  return whole_.evaluate(point, columns);
 }
 
 double StrokeLikelihood::degrees_of_freedom(const ModelPoint& point) const {
@@ -100,19 +101,35 @@ std::optional<LinearForm> AllRecords::coordinate(const ParameterName& name,
   return form;
 }
 
-LikelihoodPoint AllRecords::evaluate(const Eigen::VectorXd& theta, bool twice_weighted) const {
+template <typename EvaluateRecord>
+LikelihoodPoint AllRecords::sum_of(const Eigen::VectorXd& theta,
+                                   EvaluateRecord evaluate_record) const {
   LikelihoodPoint sum{.slope = Eigen::VectorXd::Zero(size()),
                       .information = Eigen::MatrixXd::Zero(size(), size())};
-  if (twice_weighted) sum.twice_weighted = sum.information;
   for (std::size_t r = 0; r < records(); ++r) {
     const LikelihoodPoint point =
-        records_[r]->evaluate(model(theta, r), unknowns_.columns(own(theta, r), r), twice_weighted);
+        evaluate_record(*records_[r], model(theta, r), unknowns_.columns(own(theta, r), r));
     sum.cost += point.cost;
     for (Index i = 0; i < unknowns_.size(); ++i) sum.slope[place(i, r)] += point.slope[i];
     add_to(sum.information, point.information, r);
-    if (twice_weighted) add_to(sum.twice_weighted, point.twice_weighted, r);
+    if (point.twice_weighted.size() == 0) continue;
+    if (r == 0) sum.twice_weighted = Eigen::MatrixXd::Zero(size(), size());
+    add_to(sum.twice_weighted, point.twice_weighted, r);
   }
   return sum;
+}
+
+LikelihoodPoint AllRecords::evaluate(const Eigen::VectorXd& theta, bool twice_weighted) const {
+  return sum_of(theta, [&](const RecordLikelihood& record, const ModelPoint& point,
+                           const LikelihoodColumns& columns) {
+    return record.evaluate(point, columns, twice_weighted);
+  });
+}
+
+LikelihoodPoint AllRecords::unweighted(const Eigen::VectorXd& theta) const {
+  return sum_of(theta,
+                [](const RecordLikelihood& record, const ModelPoint& point,
+                   const LikelihoodColumns& columns) { return record.unweighted(point, columns); });
 }
 
 Eigen::MatrixXd AllRecords::noise(const Eigen::VectorXd& theta) const {
@@ -124,13 +141,11 @@ Eigen::MatrixXd AllRecords::noise(const Eigen::VectorXd& theta) const {
   return sum;
 }
 
-AllRecords::Misfit AllRecords::misfit(const Eigen::VectorXd& theta,
+AllRecords::Misfit AllRecords::misfit(const Eigen::VectorXd& theta, double cost,
                                       std::span<const double> noise_errors, double taken) const {
-  double cost = 0.0, freedom = -taken, variance = 0.0;
+  double freedom = -taken, variance = 0.0;
   for (std::size_t r = 0; r < records(); ++r) {
-    const ModelPoint point = model(theta, r);
-    const double own_freedom = records_[r]->degrees_of_freedom(point);
-    cost += records_[r]->unweighted_cost(point);
+    const double own_freedom = records_[r]->degrees_of_freedom(model(theta, r));
     freedom += own_freedom;
     variance += std::pow(own_freedom * noise_errors[r], 2);
   }

@@ -21,7 +21,8 @@ class StrokeLikelihood final : public RecordLikelihood {
                            bool twice_weighted) const override;
   Eigen::MatrixXd noise_information(const ModelPoint& point,
                                     const LikelihoodColumns& columns) const override;
-  double unweighted_cost(const ModelPoint& point) const override;
+  LikelihoodPoint unweighted(const ModelPoint& point,
+                             const LikelihoodColumns& columns) const override;
   double degrees_of_freedom(const ModelPoint& point) const override;
 
  private:
@@ -63,19 +64,22 @@ class AllRecords {
   std::optional<LinearForm> coordinate(const ParameterName& name,
                                        const Eigen::VectorXd& theta) const;
   LikelihoodPoint evaluate(const Eigen::VectorXd& theta, bool twice_weighted) const;
+  LikelihoodPoint unweighted(const Eigen::VectorXd& theta) const;
   Eigen::MatrixXd noise(const Eigen::VectorXd& theta) const;
 
   struct Misfit {
     double chi2 = 0.0;       ///< reduced
     double deviation = 0.0;  ///< its standard deviation
   };
-  /// noise_errors: relative standard deviation of the noise power stated for each record; taken:
-  /// residuals that the fit takes.
-  Misfit misfit(const Eigen::VectorXd& theta, std::span<const double> noise_errors,
+  /// cost: without weights at θ; noise_errors: relative standard deviation of the noise power
+  /// stated for each record; taken: residuals that the fit takes.
+  Misfit misfit(const Eigen::VectorXd& theta, double cost, std::span<const double> noise_errors,
                 double taken) const;
 
  private:
   std::vector<Index> held_places() const;
+  template <typename EvaluateRecord>
+  LikelihoodPoint sum_of(const Eigen::VectorXd& theta, EvaluateRecord evaluate_record) const;
   void add_to(Eigen::MatrixXd& sum, const Eigen::MatrixXd& part, std::size_t record) const;
 
   StringUnknowns unknowns_;

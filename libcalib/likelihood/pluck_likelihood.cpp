@@ -38,7 +38,12 @@ Eigen::MatrixXd PluckLikelihood::noise_information(const ModelPoint& point,
   return sum / static_cast<double>(kNoiseRepeats);
 }
 
-double PluckLikelihood::unweighted_cost(const ModelPoint& point) const {
+LikelihoodPoint PluckLikelihood::unweighted(const ModelPoint& point,
+                                            const LikelihoodColumns& columns) const {
+  return evaluate(point, columns, false);
+}
+
+double PluckLikelihood::cost(const ModelPoint& point) const {
   return PluckEvaluation(record_, point).cost();
 }
 

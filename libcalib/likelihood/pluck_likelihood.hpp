@@ -25,7 +25,9 @@ class PluckLikelihood final : public RecordLikelihood {
   /// By three simulated records.
   Eigen::MatrixXd noise_information(const ModelPoint& point,
                                     const LikelihoodColumns& columns) const override;
-  double unweighted_cost(const ModelPoint& point) const override;
+  LikelihoodPoint unweighted(const ModelPoint& point,
+                             const LikelihoodColumns& columns) const override;
+  double cost(const ModelPoint& point) const;
   double degrees_of_freedom(const ModelPoint& point) const override;
   /// Power that a decay with this pole explains in the bins about it: where it peaks over ω_n is
   /// where the mode rings.

@@ -16,8 +16,9 @@ class RecordLikelihood {
   /// N̄: what noise adds to the information.
   virtual Eigen::MatrixXd noise_information(const ModelPoint& point,
                                             const LikelihoodColumns& columns) const = 0;
-  /// Σ|e|² without weights.
-  virtual double unweighted_cost(const ModelPoint& point) const = 0;
+  /// The same without weights.
+  virtual LikelihoodPoint unweighted(const ModelPoint& point,
+                                     const LikelihoodColumns& columns) const = 0;
   /// Residuals less unknowns projected out.
   virtual double degrees_of_freedom(const ModelPoint& point) const = 0;
 };

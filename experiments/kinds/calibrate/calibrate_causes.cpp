@@ -101,6 +101,8 @@ std::string cause_contradiction(const ContinuationResult& found) {
   const ScoreTest* cause = first_cause(found.tests);
   const bool refuses = cause && cause->refuses();
   if (found.fits && !refuses) return "";
+  if (!found.frequencies_free) return "free all frequencies (frequencies: all) to learn why";
+  if (found.tests.empty()) return "";
   if (!cause) {
     return "none of the causes that are looked for explains it: the report shows at which "
            "frequencies it is; end the band below them (highest_frequency), or take a part of the "

@@ -54,7 +54,7 @@ class Attempt {
       free_frequencies(input_, {law_, accepted ? law_theta_ : ladder_theta_, accepted}, stroke_,
                        result);
       leave_out(result);
-      report_departures(result.found_law, result.modes);
+      report_departures(result.tests, result);
     } else {
       result.found_law = FoundLaw::of(result.law);
     }

@@ -85,8 +85,9 @@ class JointFit {
                       .seen = seen_,
                       .followers = followers_},
                      covariance, fit_);
-    const AllRecords::Misfit misfit =
-        all_.misfit(theta_, noise_errors_, taken_by_fit(last, newton, last.information));
+    const LikelihoodPoint whole = all_.unweighted(theta_);
+    const AllRecords::Misfit misfit = all_.misfit(theta_, whole.cost, noise_errors_,
+                                                  taken_by_fit(last, newton, whole.information));
     fit_.chi2 = fit_.stages.back().chi2 = misfit.chi2;
     fit_.chi2_deviation = misfit.deviation;
     fit_.fits = fit_.chi2 < 1.0 + 3.0 * fit_.chi2_deviation;
@@ -288,7 +289,11 @@ void fit_jointly(const ModelPoint& initial, const ContinuationOptions& options,
   fit.law = alone.law;
   append_stages(alone.stages, "", fit.evaluations, fit.stages);
   fit.evaluations += alone.evaluations;
-  report_departures(fit.found_law, fit.modes);
+  std::vector<ScoreTest> tests;
+  for (const ContinuationResult& single : fit.single) {
+    tests.insert(tests.end(), single.tests.begin(), single.tests.end());
+  }
+  report_departures(tests, fit);
 }
 
 }  // namespace modcal

@@ -62,23 +62,27 @@ class Scores {
     information_ = 2.0 * (at.information.bottomRightCorner(m, m) - mixed.transpose() * taken_);
   }
 
-  // Of `count` amplitudes from `first` on; the number of the unknown that they move most of all, or
-  // of [begin, end).
-  std::pair<ScoreTest, Index> test(Index first, Index count, double misfit, Index begin,
-                                   Index end) const {
+  // What `count` amplitudes from `first` on do to other unknowns does not count.
+  void count_alone(Index unknown, Index first, Index count) {
+    const Eigen::RowVectorXd kept = taken_.row(unknown).segment(first, count);
+    taken_.middleCols(first, count).setZero();
+    taken_.row(unknown).segment(first, count) = kept;
+  }
+
+  // Of `count` amplitudes from `first` on; the number of the unknown that they move most.
+  std::pair<ScoreTest, Index> test(Index first, Index count, double misfit) const {
     const Eigen::MatrixXd information = information_.block(first, first, count, count);
     const Eigen::VectorXd score = score_.segment(first, count);
     const auto solver = information.ldlt();
     const Eigen::VectorXd amplitude = -solver.solve(score);
-    Eigen::MatrixXd taken = Eigen::MatrixXd::Zero(taken_.rows(), count);
-    taken.middleRows(begin, end - begin) = taken_.block(begin, first, end - begin, count);
+    const auto taken = taken_.middleCols(first, count);
     ScoreTest test{.statistic = -score.dot(amplitude) / std::max(1.0, misfit),
                    .degrees = static_cast<std::size_t>(count),
                    .amplitude = count == 1 ? amplitude[0] : amplitude.norm(),
                    .moved = -taken * amplitude};
     test.log_p = log_tail(test.statistic, test.degrees);
-    Index most = begin;
-    for (Index i = begin; i < end; ++i) {
+    Index most = 0;
+    for (Index i = 0; i < taken.rows(); ++i) {
       if (!(deviation_[i] > 0.0)) continue;
       const double shift = std::abs(test.moved[i]) / deviation_[i];
       if (shift > test.shift) test.shift = shift, most = i;
@@ -109,16 +113,14 @@ std::vector<ScoreTest> score_tests(const ProjectedLikelihood& likelihood,
   for (const MisfitCause& cause : causes) {
     signals.insert(signals.end(), cause.columns.begin(), cause.columns.end());
   }
-  const Scores scores(extended_point(likelihood, unknowns, theta, signals), deviation, theta,
-                      options);
+  Scores scores(extended_point(likelihood, unknowns, theta, signals), deviation, theta, options);
   std::vector<ScoreTest> tests;
   std::vector<double> tried;
   Index first = 0;
   for (MisfitCause& cause : causes) {
     const Index count = std::ssize(cause.columns);
-    const Index begin = cause.moves_contact_alone ? unknowns.contact() : 0;
-    const Index end = cause.moves_contact_alone ? begin + 1 : theta.size();
-    auto [test, most] = scores.test(first, count, misfit, begin, end);
+    if (cause.moves_contact_alone) scores.count_alone(unknowns.contact(), first, count);
+    auto [test, most] = scores.test(first, count, misfit);
     first += count;
     test.cause = cause.name;
     test.detail = cause.detail;
@@ -147,7 +149,8 @@ std::vector<ScoreTest> score_tests(const ProjectedLikelihood& likelihood,
 Eigen::MatrixXd covariance_of_causes(const std::vector<ScoreTest>& tests, Index unknowns) {
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(unknowns, unknowns);
   for (const ScoreTest& test : tests) {
-    covariance += test.suspicion() * test.moved * test.moved.transpose();
+    const Eigen::VectorXd suspected = test.suspected();
+    covariance += suspected * suspected.transpose();
   }
   return covariance;
 }

@@ -63,6 +63,36 @@ TEST(LawFollowers, LoseTheModesThatLeaveAndKeepTheirOwnWidth) {
   EXPECT_NEAR(sum / 50.0, 3e-4, 0.2 * 3e-4);
 }
 
+// An end on a mode of the body between f_2 and f_3 moves every f_n by c/(f_b² − n²) in units of
+// f_0. Two modes show it; the others, which the data tell less of, may be off by no more than is
+// said of them.
+TEST(LawFollowers, AreAsWideAsWhatMovedTheirNeighbors) {
+  for (const double at : {2.2, 2.5, 2.8}) {
+    ModeSight sight = drawn(0.0, 7);
+    const auto shift = [at](Eigen::Index i) {
+      const double n = static_cast<double>(i + 1);
+      return 2e-3 / (at * at - n * n);
+    };
+    sight.seen.setConstant(2e-4);
+    for (const Eigen::Index i : {1, 2}) sight.seen[i] = 2e-5;
+    for (Eigen::Index i = 0; i < kModes; ++i) sight.delta[i] = 1e-3 + shift(i);
+    sight.error = sight.seen;
+    const LawFollowers found = find_followers(sight, 0.0);
+    EXPECT_EQ(found.ties[1], LawTie::kLeaves) << at;
+    EXPECT_EQ(found.ties[2], LawTie::kLeaves) << at;
+    const Eigen::VectorXd most = found.disturbances();
+    for (Eigen::Index i = 0; i < kModes; ++i) {
+      if (found.ties[static_cast<std::size_t>(i)] == LawTie::kLeaves) {
+        EXPECT_EQ(most[i], 0.0);
+        continue;
+      }
+      EXPECT_LE(std::abs(shift(i)), 1.05 * most[i] + 1e-5) << at << " " << i + 1;
+      EXPECT_GE(found.scatters()[i], most[i]);
+    }
+    EXPECT_EQ(LawFollowers::all(kModes, 1e-4).disturbances().norm(), 0.0);
+  }
+}
+
 TEST(LawFollowers, AreToldByTheWidthThatIsKnown) {
   ModeSight sight = drawn(0.0, 3);
   sight.delta[4] += 3e-3;  // twenty of its errors

@@ -109,12 +109,24 @@ TEST(Release, OpensThePriorOfAModeThatLeaves) {
 
 TEST(Departures, AreThoseFromTheLaw) {
   Found found;
-  std::vector<ModeVerdict> verdicts = found.verdicts();
-  verdicts[9].frequency *= 1.004;
-  report_departures({.fundamental = 196.0, .inharmonicity = 0.0}, verdicts);
+  ContinuationResult result;
+  result.modes = found.verdicts();
+  result.found_law = {.fundamental = 196.0, .inharmonicity = 0.0};
+  result.modes[9].frequency *= 1.004;
+  result.modes[9].tie = LawTie::kLeaves;
+  const double alone = result.modes[9].deviation;
+  report_departures({}, result);
   // The basis has f_n = n·196 Hz to rounding.
-  EXPECT_NEAR(verdicts[9].departure, 4e-3, 1e-12);
-  EXPECT_NEAR(verdicts[8].departure, 0.0, 1e-12);
+  EXPECT_NEAR(result.modes[9].departure, 4e-3, 1e-12);
+  EXPECT_NEAR(result.modes[8].departure, 0.0, 1e-12);
+  EXPECT_EQ(result.modes[9].deviation, alone);
+  // Of a bridge that moves by one chance in eight, √(1 − 2/8) of the departure.
+  const std::vector<ScoreTest> tests = {{.cause = "drift of the tuning", .log_p = -30.0},
+                                        {.cause = "bridge that moves", .log_p = std::log(0.125)}};
+  const double follows = result.modes[8].deviation;
+  report_departures(tests, result);
+  EXPECT_NEAR(result.modes[9].deviation, std::hypot(alone, std::sqrt(0.75) * 4e-3), 1e-12);
+  EXPECT_EQ(result.modes[8].deviation, follows);
 }
 
 }  // namespace

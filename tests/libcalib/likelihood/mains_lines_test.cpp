@@ -119,7 +119,7 @@ TEST(MainsLines, OfEitherEndAreNoMatterToAPluck) {
   scene.string.inharmonicity = 1.39e-4;
   const ModelPoint truth{make_modal_basis(scene.string), 0.03};
   const auto cost = [&] {
-    return PluckLikelihood(WhitenedRecord::of(records, 0.0, kBand)).unweighted_cost(truth);
+    return PluckLikelihood(WhitenedRecord::of(records, 0.0, kBand)).cost(truth);
   };
   const double without = cost();
   for (std::size_t r = 0; r < 2; ++r) {

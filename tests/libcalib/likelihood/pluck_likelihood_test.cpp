@@ -37,13 +37,13 @@ TEST(PluckLikelihood, IsNoiseAtTheTruth) {
     const PluckLikelihood pluck(WhitenedRecord::of(plucked_records(b, 0.5, 3e-3, 4), 0.0, kBand));
     const ModelPoint truth = paper_point(b);
     const double freedom = pluck.degrees_of_freedom(truth);
-    EXPECT_NEAR(2.0 * pluck.unweighted_cost(truth) / freedom, 1.0, 5.0 * std::sqrt(2.0 / freedom));
+    EXPECT_NEAR(2.0 * pluck.cost(truth) / freedom, 1.0, 5.0 * std::sqrt(2.0 / freedom));
     // Without noise nothing is left of a signal 330 times the noise.
     const PluckLikelihood clean(WhitenedRecord::of(plucked_records(b, 0.5, 3e-3, 0), 0.0, kBand));
-    EXPECT_LT(clean.unweighted_cost(truth) / freedom, 1e-4);
+    EXPECT_LT(clean.cost(truth) / freedom, 1e-4);
     ModelPoint off = truth;
     off.basis.omega[10] *= 1.0005;
-    EXPECT_GT(pluck.unweighted_cost(off), 1.02 * pluck.unweighted_cost(truth));
+    EXPECT_GT(pluck.cost(off), 1.02 * pluck.cost(truth));
   }
 }
 
@@ -60,7 +60,7 @@ TEST(PluckLikelihood, GradientOfEveryUnknownIsTheDifferenceQuotient) {
               : StringUnknowns::frequencies(off, all_free(damping));
       const Eigen::VectorXd start = unknowns.start();
       const LikelihoodPoint at = pluck.evaluate(unknowns.model(start), unknowns.columns(start));
-      EXPECT_NEAR(at.cost, pluck.unweighted_cost(unknowns.model(start)), 1e-9 * at.cost);
+      EXPECT_NEAR(at.cost, pluck.cost(unknowns.model(start)), 1e-9 * at.cost);
       for (Eigen::Index i = 0; i < unknowns.size(); ++i) {
         if (i == unknowns.contact()) {
           EXPECT_EQ(at.slope[i], 0.0);
@@ -73,9 +73,8 @@ TEST(PluckLikelihood, GradientOfEveryUnknownIsTheDifferenceQuotient) {
         Eigen::VectorXd above = start, below = start;
         above[i] += step;
         below[i] -= step;
-        const double quotient = (pluck.unweighted_cost(unknowns.model(above)) -
-                                 pluck.unweighted_cost(unknowns.model(below))) /
-                                (2.0 * step);
+        const double quotient =
+            (pluck.cost(unknowns.model(above)) - pluck.cost(unknowns.model(below))) / (2.0 * step);
         EXPECT_NEAR(2.0 * at.slope[i], quotient, 2e-3 * size * std::sqrt(at.cost))
             << damping << ", unknown " << i;
       }

@@ -136,9 +136,8 @@ TEST_F(WithResponse, GradientOfAPluckIsTheDifferenceQuotient) {
   for (Index i = all.named(); i < all.size(); ++i) {
     Eigen::VectorXd step = Eigen::VectorXd::Zero(all.size());
     step[i] = 1e-3;  // of a nearly linear residual; its square is some 1e-6 of the slope
-    const double quotient = (pluck.unweighted_cost(all.model(start + step)) -
-                             pluck.unweighted_cost(all.model(start - step))) /
-                            2e-3;
+    const double quotient =
+        (pluck.cost(all.model(start + step)) - pluck.cost(all.model(start - step))) / 2e-3;
     // What is projected out leaves rounding of 1e-10 of the cost.
     const double size = std::sqrt(at.information(i, i) * at.cost);
     EXPECT_NEAR(quotient, 2.0 * at.slope[i], 1e-4 * size + 1e-10 * at.cost / 2e-3) << i;
