@@ -18,6 +18,9 @@ struct PlannedSimulations {
   double sample_rate = 0.0;
   OutputRequest outputs;
   std::size_t count = 1;  ///< distinct ones
+  /// Most numbers a sample that the work on one of them holds at a time, about, with its signals.
+  double numbers_per_sample = 100.0;
+  bool are_kept = true;  ///< until the run ends, for other tasks
   /// Those of other scenes: plucks beside strokes.
   std::vector<PlannedSimulations> others = {};
 };
@@ -32,6 +35,11 @@ class Experiment {
   virtual ~Experiment() = default;
   /// Physics and consistency of the settings; nothing is computed.
   virtual std::vector<Finding> lint() const = 0;
+  /// What the recorded files say against the settings; reads them, from the folder of the
+  /// experiment's file.
+  virtual std::vector<Finding> lint_records(const std::filesystem::path& /*folder*/) const {
+    return {};
+  }
   /// What a run would do, one line each.
   virtual std::vector<std::string> plan() const = 0;
   /// What it would simulate; nothing where it simulates nothing.
@@ -42,5 +50,12 @@ class Experiment {
   virtual std::shared_ptr<const LimitQuestion> limit_question() const { return nullptr; }
   virtual StudyResult run(const StudyContext& context) const = 0;
 };
+
+/// Memory that a run on this many threads needs, about, from the sizes of its simulations alone
+/// [B].
+double memory_needed(const Experiment& experiment, std::size_t threads);
+
+/// Memory of the machine, or what of it this process may have [B].
+double machine_memory();
 
 }  // namespace modcal

@@ -1,9 +1,15 @@
 #include "experiments/loader.hpp"
 
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <fstream>
 #include <regex>
+#include <thread>
 
 #include "experiments/config/help.hpp"
 #include "experiments/config/reader.hpp"
+#include "experiments/runs/task_experiment.hpp"
 
 namespace modcal {
 namespace {
@@ -60,13 +66,45 @@ bool is_consequence(const std::string& text) {
   return std::regex_search(text, kNan);
 }
 
+double signals_of(const OutputRequest& outputs) {
+  const bool wanted[] = {outputs.displacement, outputs.velocity, outputs.force,
+                         outputs.left_reaction, outputs.right_reaction};
+  return static_cast<double>(std::count(std::begin(wanted), std::end(wanted), true));
+}
+
+// Before anything is made of that size. False where it is too much.
+bool check_memory(const Experiment& experiment, const Means& means, LoadedExperiment& loaded) {
+  std::optional<PlannedSimulations> planned;
+  try {
+    planned = experiment.planned_simulations();
+  } catch (const InvalidInput&) {
+    return true;  // the lint says it at its place
+  }
+  if (!planned) return true;
+  loaded.memory = memory_needed(experiment, means.threads);
+  const bool is_stated = means.memory > 0.0;
+  const double most = is_stated ? means.memory : machine_memory();
+  const double duration = planned->truth.scene.duration;
+  if (!(loaded.memory > most)) return true;
+  loaded.mistakes.push_back(
+      {position_of_path(loaded.document.root, "scene.duration"),
+       fmt::format(
+           "the run needs about {} of memory, {} {}: {:g} s at {:g} Hz make {:g} samples; "
+           "shorten the record, lower measurement.sample_rate{} or state more with --memory",
+           bytes_text(loaded.memory), is_stated ? "--memory allows" : "there are", bytes_text(most),
+           duration, planned->sample_rate, std::round(duration * planned->sample_rate),
+           planned->count > 1 ? ", take fewer --threads" : "")});
+  return false;
+}
+
 // Lints even where options are wrong, so that one look shows every mistake; what only follows from
 // a wrong option is left out by the lint itself.
-void make_and_lint(LoadedExperiment& loaded) {
+void make_and_lint(LoadedExperiment& loaded, const Means& means) {
   const YamlNode& root = loaded.document.root;
   const bool had_errors = loaded.has_errors();
   try {
     auto experiment = loaded.choice.make();
+    if (!had_errors && !check_memory(*experiment, means, loaded)) return;
     for (const Finding& finding : experiment->lint()) {
       const SourcePosition position = position_of_path(root, finding.path);
       if (had_errors &&
@@ -83,6 +121,50 @@ void make_and_lint(LoadedExperiment& loaded) {
 
 }  // namespace
 
+double memory_needed(const Experiment& experiment, std::size_t threads) {
+  const auto planned = experiment.planned_simulations();
+  if (!planned) return 0.0;
+  const auto* list = dynamic_cast<const TaskExperiment*>(&experiment);
+  const std::size_t tasks = list != nullptr ? list->task_count() : 1;
+  if (threads == 0) threads = std::max(1u, std::thread::hardware_concurrency());
+  double kept = 0.0, work = 0.0;
+  const auto add = [&](const PlannedSimulations& one) {
+    const double samples = one.truth.scene.duration * one.sample_rate;
+    const double all = static_cast<double>(one.count) * signals_of(one.outputs);
+    if (one.are_kept) kept += all * samples;
+    work = std::max(work, one.numbers_per_sample * samples);
+  };
+  add(*planned);
+  for (const PlannedSimulations& other : planned->others) add(other);
+  return sizeof(double) * (kept + static_cast<double>(std::min(threads, tasks)) * work);
+}
+
+double machine_memory() {
+  double bytes =
+      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  // A container's share, and what the shell allows.
+  for (const char* file :
+       {"/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"}) {
+    double share = 0.0;
+    if (std::ifstream(file) >> share && share > 0.0) bytes = std::min(bytes, share);
+  }
+  for (const auto resource : {RLIMIT_AS, RLIMIT_DATA}) {
+    struct rlimit limit {};
+    if (getrlimit(resource, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) continue;
+    bytes = std::min(bytes, static_cast<double>(limit.rlim_cur));
+  }
+  return bytes;
+}
+
+std::string bytes_text(double bytes) {
+  static constexpr std::pair<double, const char*> kUnits[] = {
+      {1e12, "TB"}, {1e9, "GB"}, {1e6, "MB"}, {1e3, "kB"}};
+  for (const auto& [size, unit] : kUnits) {
+    if (bytes >= size) return fmt::format("{:.3g} {}", bytes / size, unit);
+  }
+  return fmt::format("{:.0f} B", bytes);
+}
+
 bool LoadedExperiment::has_errors() const {
   return std::any_of(mistakes.begin(), mistakes.end(),
                      [](const Mistake& mistake) { return !mistake.warning; });
@@ -98,7 +180,7 @@ std::string LoadedExperiment::resolved() const {
   return writer.yaml();
 }
 
-LoadedExperiment load_experiment(YamlDocument document) {
+LoadedExperiment load_experiment(YamlDocument document, const Means& means) {
   LoadedExperiment loaded;
   loaded.document = std::move(document);
   loaded.mistakes = loaded.document.mistakes;
@@ -110,17 +192,25 @@ LoadedExperiment load_experiment(YamlDocument document) {
                  loaded.choice.visit_options(visitor);
                },
                loaded.mistakes, {"kind"});
-  make_and_lint(loaded);
+  make_and_lint(loaded, means);
   return loaded;
 }
 
+void check_records(LoadedExperiment& loaded) {
+  if (!loaded.experiment) return;
+  for (const Finding& finding : loaded.experiment->lint_records(loaded.document.folder())) {
+    loaded.mistakes.push_back(
+        {position_of_path(loaded.document.root, finding.path), finding.text, !finding.is_error});
+  }
+}
+
 LoadedExperiment load_experiment(const std::filesystem::path& file,
-                                 const std::vector<std::string>& assignments) {
+                                 const std::vector<std::string>& assignments, const Means& means) {
   YamlDocument document = read_yaml_file(file);
   for (std::size_t i = 0; i < assignments.size(); ++i) {
     apply_assignment(document, assignments[i], i + 1);
   }
-  return load_experiment(std::move(document));
+  return load_experiment(std::move(document), means);
 }
 
 }  // namespace modcal

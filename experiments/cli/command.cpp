@@ -1,17 +1,24 @@
 #include "experiments/cli/command.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <nlohmann/json.hpp>
-#include <regex>
+#include <sstream>
 #include <string_view>
+#include <system_error>
 
 #include "experiments/report/encoding.hpp"
+#include "libsim/base/files.hpp"
+#include "libsim/base/utf8.hpp"
 
 namespace modcal {
 namespace {
@@ -22,29 +29,125 @@ bool can_rewrite() {
   return isatty(STDERR_FILENO) != 0 && terminal != nullptr && std::string_view(terminal) != "dumb";
 }
 
-std::atomic<bool> flag{false};
+std::atomic<bool> flag{false}, is_polled{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler sets it");
 
 void on_signal(int number) {
+  if (!is_polled.load(std::memory_order_relaxed)) {
+    constexpr std::string_view kSaid = "\ninterrupted\n";
+    static_cast<void>(write(STDERR_FILENO, kSaid.data(), kSaid.size()) < 0);
+    _exit(static_cast<int>(ExitCode::kInterrupted));
+  }
   flag.store(true, std::memory_order_relaxed);
   std::signal(number, SIG_DFL);
 }
 
-}  // namespace
+// Why standard output has not taken a text; 0: it has taken all.
+int output_error = 0;
 
-ExitCode guarded(const Action& action) {
+// Whether what was said has been taken; a command that succeeds without its answer does not.
+ExitCode confirmed(ExitCode code) {
+  errno = 0;
+  const bool taken = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+  if (!taken && output_error == 0) output_error = errno != 0 ? errno : EIO;
+  if (output_error == 0) return code;
+  complain("error: standard output has not taken the answer: {}\n", std::strerror(output_error));
+  return code == ExitCode::kOk ? ExitCode::kOutputLost : code;
+}
+
+ExitCode refused(ExitCode code, std::string_view reason) {
+  complain("error: {}\n", reason);
+  return code;
+}
+
+// What was asked of the command, for the message that memory does not suffice.
+std::string& request() {
+  static std::string text = "this command";
+  return text;
+}
+
+std::string too_large() {
+  return fmt::format(
+      "{}: the memory that there is ({}) does not suffice; shorten the record, lower the sample "
+      "rate or take fewer --threads (modcal plan tells what a run needs)",
+      request(), bytes_text(machine_memory()));
+}
+
+ExitCode outcome_of(const Action& action) {
   try {
     return action();
   } catch (const InvalidInput& error) {
-    fmt::print(stderr, "{} {}\n", colored("error:"), error.what());
-    return ExitCode::kInvalidInput;
+    return refused(ExitCode::kInvalidInput, error.what());
+  } catch (const LostOutput& error) {
+    return refused(ExitCode::kOutputLost, error.what());
+  } catch (const std::bad_alloc&) {
+    return refused(ExitCode::kInvalidInput, too_large());
+  } catch (const std::length_error&) {
+    return refused(ExitCode::kInvalidInput, too_large());
+  } catch (const std::system_error& error) {
+    // A folder that may not be read, no more threads: what the machine refuses.
+    return refused(ExitCode::kInvalidInput, error.what());
   } catch (const Interrupted&) {
     return ExitCode::kInterrupted;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "internal error: {}\nPlease report it with the file and the command.\n",
-               error.what());
+    complain("internal error: {}\nPlease report it with the file and the command.\n", error.what());
     return ExitCode::kInternal;
   }
+}
+
+// Marks a word that begins a line or follows the place of a mistake, "a.yaml:3:7: error: …".
+void mark(std::string& text, std::string_view word, std::string_view code) {
+  for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at)) {
+    const std::string_view before(text.data(), at);
+    const bool begins = before.empty() || before.ends_with('\n') || before.ends_with(": ");
+    const std::string marked = begins ? fmt::format("{}{}\033[0m", code, word) : std::string(word);
+    text.replace(at, word.size(), marked);
+    at += marked.size();
+  }
+}
+
+}  // namespace
+
+ExitCode answer_of(const CLI::App& app, const CLI::ParseError& error) {
+  std::ostringstream out, err;
+  const int code = app.exit(error, out, err);
+  say_text(out.str());
+  complain_text(err.str());
+  return code == 0 ? ExitCode::kOk : ExitCode::kUsage;
+}
+
+ExitCode guarded(const Action& action) { return confirmed(outcome_of(action)); }
+
+void say_text(std::string_view text) {
+  const std::string shown = printable(text);
+  errno = 0;
+  if (std::fwrite(shown.data(), 1, shown.size(), stdout) < shown.size() && output_error == 0) {
+    output_error = errno;
+  }
+}
+
+void complain_text(std::string_view text) { std::fputs(colored(printable(text)).c_str(), stderr); }
+
+bool prepare_streams(int argc, char** argv) {
+  if (argc > 1) request() = fmt::format("modcal {}", fmt::join(argv + 1, argv + argc, " "));
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (fcntl(stream, F_GETFD) >= 0 || errno != EBADF) continue;
+    // The wrong way round: what is said there fails as it would without.
+    static_cast<void>(open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY) < 0);
+  }
+  std::signal(SIGPIPE, SIG_IGN);
+  for (int i = 1; i < argc; ++i) {
+    if (first_not_utf8(argv[i]) == std::string_view::npos) continue;
+    complain("error: \"{}\" is not UTF-8 text: give files and folders names in UTF-8\n", argv[i]);
+    return false;
+  }
+  return true;
+}
+
+std::string stem_of(const std::filesystem::path& file) {
+  const std::string stem = file.stem().string();
+  // "...yaml" would be the folder above.
+  return stem.find_first_not_of('.') == std::string::npos ? file.filename().string() : stem;
 }
 
 std::string shell_word(const std::string& text) {
@@ -58,6 +161,10 @@ void ExperimentArguments::declare_file(CLI::App& command) {
   command.add_option("file", file, "YAML file")->required();
   command.add_option("--set", assignments, "key.path=value, overrides the file")
       ->allow_extra_args(false);
+  command
+      .add_option("--memory", memory,
+                  "most memory that a run may need, such as 8GB; default that of the machine")
+      ->transform(CLI::AsSizeValue(true));
 }
 
 void ExperimentArguments::declare_out(CLI::App& command, const std::string& seen_by) {
@@ -67,8 +174,7 @@ void ExperimentArguments::declare_out(CLI::App& command, const std::string& seen
 }
 
 std::filesystem::path ExperimentArguments::folder() const {
-  return out.empty() ? std::filesystem::path("out") / std::filesystem::path(file).stem()
-                     : std::filesystem::path(out);
+  return out.empty() ? std::filesystem::path("out") / stem_of(file) : std::filesystem::path(out);
 }
 
 std::string ExperimentArguments::assignment_words() const {
@@ -78,40 +184,49 @@ std::string ExperimentArguments::assignment_words() const {
 }
 
 std::string ExperimentArguments::command() const {
-  return fmt::format("modcal run {} --out {}{}{}", shell_word(file), shell_word(folder().string()),
-                     assignment_words(),
-                     threads > 0 ? fmt::format(" --threads {}", threads) : std::string());
+  return fmt::format("modcal run {} --out {}{}{}{}", shell_word(file),
+                     shell_word(folder().string()), assignment_words(),
+                     threads > 0 ? fmt::format(" --threads {}", threads) : std::string(),
+                     memory > 0 ? fmt::format(" --memory {}", memory) : std::string());
 }
 
 void declare_threads(CLI::App& command, int& threads, const char* meaning) {
   command.add_option("--threads", threads, meaning)->check(CLI::Range(1, 4096));
 }
 
-std::optional<LoadedExperiment> load_and_print_mistakes(
-    const std::filesystem::path& file, const std::vector<std::string>& assignments) {
-  std::optional<LoadedExperiment> loaded = load_experiment(file, assignments);
-  fmt::print(stderr, "{}", colored(format_mistakes(loaded->document, loaded->mistakes)));
+std::optional<LoadedExperiment> load_and_print_mistakes(const std::filesystem::path& file,
+                                                        const std::vector<std::string>& assignments,
+                                                        const Means& means) {
+  std::optional<LoadedExperiment> loaded = load_experiment(file, assignments, means);
+  complain_text(format_mistakes(loaded->document, loaded->mistakes));
   if (loaded->has_errors()) loaded.reset();
   return loaded;
 }
 
-void print_json(const nlohmann::ordered_json& object) {
-  fmt::print("{}\n", object.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+std::string json_text(const nlohmann::ordered_json& object) {
+  return object.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
+
+void print_json(const nlohmann::ordered_json& object) { say_text(json_text(object)); }
 
 std::string colored(const std::string& text) {
   const char* refused = std::getenv("NO_COLOR");
   if (!can_rewrite() || (refused != nullptr && *refused != '\0')) return text;
-  // A word that begins a line or follows the place of a mistake, "a.yaml:3:7: error: …".
-  static const std::regex kError("(^|\n|: )(error:)"), kWarning("(^|\n|: )(warning:)");
-  static const std::regex kCaret("(\n *)(\\^)(?=\n)");
-  const std::string red = std::regex_replace(text, kError, "$1\033[1;31m$2\033[0m");
-  const std::string both = std::regex_replace(red, kWarning, "$1\033[1;33m$2\033[0m");
-  return std::regex_replace(both, kCaret, "$1\033[1m$2\033[0m");
+  std::string marked = text;
+  mark(marked, "error:", "\033[1;31m");
+  mark(marked, "warning:", "\033[1;33m");
+  // The caret below a mistake's line stands alone on its own.
+  for (std::size_t at = marked.find("^\n"); at != std::string::npos; at = marked.find("^\n", at)) {
+    const std::size_t start = marked.rfind('\n', at) + 1;  // npos + 1 is 0
+    const bool alone = start > 0 && marked.find_first_not_of(' ', start) == at;
+    if (alone) marked.replace(at, 1, "\033[1m^\033[0m");
+    at += alone ? 9 : 1;
+  }
+  return marked;
 }
 
 Progress::Progress(std::string what)
-    : what_(std::move(what)), terminal_(can_rewrite()), start_(Clock::now()), last_(start_) {}
+    : what_(printable(what)), terminal_(can_rewrite()), start_(Clock::now()), last_(start_) {}
 
 Progress::~Progress() {
   if (shown_ && terminal_) std::fputs("\r\033[K", stderr);
@@ -126,12 +241,7 @@ void Progress::report(double share) {
   const double elapsed = std::chrono::duration<double>(now - start_).count();
   const std::string line = fmt::format("{}: {:.0f} %, {:.0f} s left", what_, 100.0 * share,
                                        elapsed * (1.0 - share) / share);
-  if (terminal_) {
-    fmt::print(stderr, "\r\033[K{}", line);
-  } else {
-    fmt::print(stderr, "{}\n", line);
-  }
-  std::fflush(stderr);
+  std::fputs((terminal_ ? "\r\033[K" + line : line + "\n").c_str(), stderr);
   shown_ = true;
 }
 
@@ -140,8 +250,11 @@ void catch_interrupts() {
   std::signal(SIGTERM, on_signal);
 }
 
-StopToken interrupt_token() { return StopToken(flag); }
+StopToken interrupt_token() {
+  is_polled.store(true, std::memory_order_relaxed);
+  return StopToken(flag);
+}
 
-bool interrupted() { return interrupt_token().requested(); }
+bool interrupted() { return flag.load(std::memory_order_relaxed); }
 
 }  // namespace modcal

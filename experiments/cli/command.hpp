@@ -22,6 +22,7 @@ enum class ExitCode : int {
   kSomeTasksFailed = 4,
   kAcceptanceMissed = 5,
   kNothingMeasured = 6,
+  kOutputLost = 7,
   kInterrupted = 130,
 };
 
@@ -44,12 +45,21 @@ void add_experiment_commands(CLI::App& app, const Chosen& chosen);
 void add_plan_command(CLI::App& app, const Chosen& chosen);
 void add_plugin_commands(CLI::App& app, const Chosen& chosen);
 void add_inspect_command(CLI::App& app, const Chosen& chosen);
+void add_new_command(CLI::App& app, const Chosen& chosen);
 void add_reproduce_command(CLI::App& app, const Chosen& chosen);
 void add_stored_commands(CLI::App& app, const Chosen& chosen);
 void add_submit_command(CLI::App& app, const Chosen& chosen);
 
-/// What `action` returns; an exception becomes one message on stderr and its exit code.
+/// Says what the parser of the command line stopped at: help, version, a mistake.
+ExitCode answer_of(const CLI::App& app, const CLI::ParseError& error);
+
+/// What `action` returns; an exception becomes one message on stderr and its exit code. A signal
+/// that comes before interrupt_token() is called ends the process at once. Where standard output
+/// has not taken what was said, that is an error, too.
 ExitCode guarded(const Action& action);
+
+/// The configs that came with the program, wherever both were moved.
+std::string shipped_configs();
 
 /// One word of a POSIX shell; single-quoted where anything in it could be special.
 std::string shell_word(const std::string& text);
@@ -61,12 +71,15 @@ struct ExperimentArguments {
   std::vector<std::string> assignments;  ///< "key.path=value"
   std::string out;                       ///< empty: out/<name of the file>
   int threads = 0;                       ///< 0: not stated
+  std::uint64_t memory = 0;              ///< [B]; 0: not stated
 
-  /// FILE and --set.
+  /// FILE, --set and --memory.
   void declare_file(CLI::App& command);
   /// --out; seen_by: who else must see the folder, empty: nobody.
   void declare_out(CLI::App& command, const std::string& seen_by = {});
 
+  /// What a run may use.
+  Means means() const { return {static_cast<double>(memory), static_cast<std::size_t>(threads)}; }
   std::filesystem::path folder() const;
   /// Assignments as words of a shell: " --set ..." for each.
   std::string assignment_words() const;
@@ -79,9 +92,36 @@ void declare_threads(CLI::App& command, int& threads, const char* meaning);
 
 /// The experiment, after its mistakes were printed; none where an error is among them.
 std::optional<LoadedExperiment> load_and_print_mistakes(
-    const std::filesystem::path& file, const std::vector<std::string>& assignments = {});
+    const std::filesystem::path& file, const std::vector<std::string>& assignments = {},
+    const Means& means = {});
 
+/// Lines of a file or an answer; text that is not UTF-8 is mended.
+std::string json_text(const nlohmann::ordered_json& object);
 void print_json(const nlohmann::ordered_json& object);
+
+/// Folder of results that a file is run into by default: its name without its extension.
+std::string stem_of(const std::filesystem::path& file);
+
+// What a command says. Control characters of foreign names are written out (printable()). Where
+// nobody listens the work goes on.
+
+/// On standard output.
+void say_text(std::string_view text);
+template <typename... Args>
+void say(fmt::format_string<Args...> text, Args&&... args) {
+  say_text(fmt::format(text, std::forward<Args>(args)...));
+}
+/// On standard error, colored().
+void complain_text(std::string_view text);
+template <typename... Args>
+void complain(fmt::format_string<Args...> text, Args&&... args) {
+  complain_text(fmt::format(text, std::forward<Args>(args)...));
+}
+
+/// Before anything else: standard streams that were closed are opened to nothing, so that no file
+/// takes their place, and a reader that goes away is an error and no signal. False, after a
+/// message, where the words of the command are no UTF-8 text.
+bool prepare_streams(int argc, char** argv);
 
 // Colours of messages on a terminal.
 
@@ -114,8 +154,9 @@ class Progress {
 
 // Ctrl-C and termination, as a wish that the work polls.
 
-/// From now on SIGINT and SIGTERM request a stop; a second one ends the process at once.
+/// From now on SIGINT and SIGTERM end the process at once with kInterrupted.
 void catch_interrupts();
+/// From now on the first of them requests a stop, the second ends the process.
 StopToken interrupt_token();
 bool interrupted();
 

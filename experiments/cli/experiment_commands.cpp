@@ -38,7 +38,8 @@ void declare_run(CLI::App& command, FileArguments& arguments) {
 }
 
 ExitCode run(const FileArguments& arguments) {
-  const auto loaded = load_and_print_mistakes(arguments.file, arguments.assignments);
+  const auto loaded =
+      load_and_print_mistakes(arguments.file, arguments.assignments, arguments.means());
   if (!loaded) return ExitCode::kInvalidInput;
   return run_one(*loaded, {.out = arguments.folder(),
                            .threads = arguments.threads,
@@ -66,7 +67,9 @@ nlohmann::ordered_json mistakes_json(const LoadedExperiment& loaded) {
 }
 
 ExitCode validate(const FileArguments& arguments) {
-  const LoadedExperiment loaded = load_experiment(arguments.file, arguments.assignments);
+  LoadedExperiment loaded =
+      load_experiment(arguments.file, arguments.assignments, arguments.means());
+  check_records(loaded);
   const bool valid = !loaded.has_errors();
   if (arguments.json) {
     print_json({{"file", arguments.file},
@@ -74,8 +77,8 @@ ExitCode validate(const FileArguments& arguments) {
                 {"kind", loaded.kind},
                 {"mistakes", mistakes_json(loaded)}});
   } else {
-    fmt::print(stderr, "{}", colored(format_mistakes(loaded.document, loaded.mistakes)));
-    if (valid) fmt::print("{}: valid, kind {}\n", arguments.file, loaded.kind);
+    complain_text(format_mistakes(loaded.document, loaded.mistakes));
+    if (valid) say("{}: valid, kind {}\n", arguments.file, loaded.kind);
   }
   return valid ? ExitCode::kOk : ExitCode::kInvalidInput;
 }
@@ -83,14 +86,15 @@ ExitCode validate(const FileArguments& arguments) {
 void declare_limit(CLI::App& command, FileArguments& arguments) { arguments.declare_file(command); }
 
 ExitCode limit(const FileArguments& arguments) {
-  const auto loaded = load_and_print_mistakes(arguments.file, arguments.assignments);
+  const auto loaded =
+      load_and_print_mistakes(arguments.file, arguments.assignments, arguments.means());
   if (!loaded) return ExitCode::kInvalidInput;
   const auto question = loaded->experiment->limit_question();
   MODCAL_REQUIRE(question != nullptr,
                  "{} is no calibration: limits exist for the kinds calibrate and calibration_limit",
                  arguments.file);
   TruthCache truths;
-  fmt::print("{}", limit_text(*question, truths));
+  say_text(limit_text(*question, truths));
   return ExitCode::kOk;
 }
 
@@ -102,7 +106,7 @@ struct InspectArguments {
 
 ExitCode print_inspection(const InspectArguments& arguments) {
   const InspectionReport report = inspect(arguments.file, arguments.options);
-  fmt::print("{}", arguments.json ? json(report).dump(2) + "\n" : text(report));
+  say_text(arguments.json ? json_text(json(report)) : text(report));
   return report.problem_count == 0 ? ExitCode::kOk : ExitCode::kInvalidInput;
 }
 
@@ -112,17 +116,6 @@ void declare(CLI::App& command, InspectArguments& arguments) {
   command.add_option("--sample-rate", arguments.options.sample_rate,
                      "[Hz], where the file has none");
   command.add_flag("--json", arguments.json, "as JSON");
-}
-
-// The configs that came with the program, wherever both were moved.
-std::string shipped_configs() {
-  const auto program = std::filesystem::read_symlink("/proc/self/exe").parent_path();
-  std::filesystem::path configs;
-  for (const char* folder : kBuildConfigs) {
-    configs = (program / folder).lexically_normal();
-    if (std::filesystem::is_directory(configs)) break;
-  }
-  return configs.string();
 }
 
 struct ReproduceArguments {
@@ -185,9 +178,19 @@ void declare(CLI::App& command, ReproduceArguments& arguments) {
 
 }  // namespace
 
+std::string shipped_configs() {
+  const auto program = std::filesystem::read_symlink("/proc/self/exe").parent_path();
+  std::filesystem::path configs;
+  for (const char* folder : kBuildConfigs) {
+    configs = (program / folder).lexically_normal();
+    if (std::filesystem::is_directory(configs)) break;
+  }
+  return configs.string();
+}
+
 void add_experiment_commands(CLI::App& app, const Chosen& chosen) {
   add_command(app, chosen, "run", "Run an experiment", declare_run, run);
-  add_command(app, chosen, "validate", "Check an experiment file: every mistake at once",
+  add_command(app, chosen, "validate", "Check an experiment file and its records: every mistake at once",
               declare_validate, validate);
   add_command(app, chosen, "limit", "Say how well a calibration can do, before any experiment",
               declare_limit, limit);

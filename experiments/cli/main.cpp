@@ -13,12 +13,12 @@ bool is_unknown_command(const CLI::App& app, int argc, char** argv) {
   std::vector<std::string> names;
   for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
   if (std::find(names.begin(), names.end(), argv[1]) != names.end()) return false;
-  fmt::print(stderr, "{} unknown command \"{}\"{}\n", colored("error:"), argv[1],
-             suggestion(argv[1], names));
+  complain("error: unknown command \"{}\"{}\n", argv[1], suggestion(argv[1], names));
   return true;
 }
 
 int main_of(int argc, char** argv) {
+  if (!prepare_streams(argc, argv)) return static_cast<int>(ExitCode::kUsage);
   CLI::App app(
       "modcal: calibrates the modal model of a bowed string and identifies the friction "
       "force between bow and string from the reactions at the string's ends");
@@ -37,7 +37,7 @@ int main_of(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::kUsage);
+    return static_cast<int>(guarded([&] { return answer_of(app, error); }));
   }
   catch_interrupts();
   return static_cast<int>(guarded(action));

@@ -33,9 +33,10 @@ class MpiSession {
 };
 
 ExitCode run_shard(const ExperimentArguments& arguments, const Shard& shard) {
-  const LoadedExperiment loaded = load_experiment(arguments.file, arguments.assignments);
+  const LoadedExperiment loaded =
+      load_experiment(arguments.file, arguments.assignments, arguments.means());
   if (shard.index == 1) {
-    fmt::print(stderr, "{}", colored(format_mistakes(loaded.document, loaded.mistakes)));
+    complain_text(format_mistakes(loaded.document, loaded.mistakes));
   }
   if (loaded.has_errors()) return ExitCode::kInvalidInput;
   ExperimentArguments whole = arguments;
@@ -47,6 +48,7 @@ ExitCode run_shard(const ExperimentArguments& arguments, const Shard& shard) {
 }
 
 int main_of(int argc, char** argv) {
+  if (!prepare_streams(argc, argv)) return static_cast<int>(ExitCode::kUsage);
   const MpiSession session(&argc, &argv);
   CLI::App app("modcal-mpi: runs a list of tasks over the ranks of an MPI job");
   ExperimentArguments arguments;
@@ -58,7 +60,7 @@ int main_of(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::kUsage);
+    return static_cast<int>(guarded([&] { return answer_of(app, error); }));
   }
   catch_interrupts();
   const Shard shard = session.shard();

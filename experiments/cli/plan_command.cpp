@@ -99,17 +99,23 @@ struct Plan {
   std::optional<SimulationPlan> simulation;
   double duration = 0.0;
   std::optional<Price> price;
+  double memory = 0.0;  // that a run needs, about [B]
 };
 
+// A simulation that takes longer is not done to tell what a task costs [s].
+constexpr double kLongTask = 10.0;
+
 Plan make_plan(const LoadedExperiment& loaded) {
-  Plan plan{.lines = loaded.experiment->plan(), .simulation = {}, .price = {}};
+  Plan plan{
+      .lines = loaded.experiment->plan(), .simulation = {}, .price = {}, .memory = loaded.memory};
   const auto planned = loaded.experiment->planned_simulations();
   if (planned) {
     plan.duration = planned->truth.scene.duration;
     plan.simulation = plan_of(*planned);
   }
   const auto* list = dynamic_cast<const TaskExperiment*>(loaded.experiment.get());
-  if (list != nullptr) {
+  const bool is_short = !plan.simulation || plan.simulation->seconds(plan.duration) < kLongTask;
+  if (list != nullptr && is_short) {
     SharedWork work(interrupt_token());
     const std::filesystem::path folder = loaded.document.folder();
     plan.price = price_of_tasks(*list, planned ? planned->count : 0,
@@ -136,22 +142,24 @@ Saving saving_of(const Skip& skip, const Plan& plan) {
 }
 
 void print_text(const Plan& plan, std::size_t threads) {
-  for (const std::string& line : plan.lines) fmt::print("{}\n", line);
+  for (const std::string& line : plan.lines) say("{}\n", line);
   if (plan.simulation) {
     const SimulationPlan& one = *plan.simulation;
-    fmt::print("modes: {} of {} move\n", one.modes_moved, one.modes);
-    fmt::print(
-        "one simulation: {:.3g} ms, {:.3g} of it set-up; {:.3g} steps, the longest {:.3g} s\n",
+    say("modes: {} of {} move\n", one.modes_moved, one.modes);
+    say("one simulation: {:.3g} ms, {:.3g} of it set-up; {:.3g} steps, the longest {:.3g} s\n",
         1e3 * one.seconds(plan.duration), 1e3 * one.set_up_seconds,
         one.steps_per_second * plan.duration, one.time_step);
     for (const Skip& skip : one.skips) {
       const Saving saving = saving_of(skip, plan);
-      fmt::print("skipped: {}\n  because {}\n  saves {:.2g} ms ({:.0f} %) a simulation; {}\n",
-                 skip.what, skip.reason, 1e3 * saving.seconds, saving.percent, skip.note);
+      say("skipped: {}\n  because {}\n  saves {:.2g} ms ({:.0f} %) a simulation; {}\n", skip.what,
+          skip.reason, 1e3 * saving.seconds, saving.percent, skip.note);
     }
   }
+  if (plan.memory > 0.0) {
+    say("memory: about {} of {}\n", bytes_text(plan.memory), bytes_text(machine_memory()));
+  }
   if (plan.price) {
-    fmt::print("price: {}\n  {}\n", text_of(*plan.price, threads), plan.price->basis);
+    say("price: {}\n  {}\n", text_of(*plan.price, threads), plan.price->basis);
   }
 }
 
@@ -179,6 +187,7 @@ void print_plan_json(const LoadedExperiment& loaded, const Plan& plan, std::size
                             {"measured_on_first", one.piece},
                             {"skips", std::move(skips)}};
   }
+  if (plan.memory > 0.0) object["memory_bytes"] = plan.memory;
   if (plan.price) {
     const Price& price = *plan.price;
     object["price"] = {{"core_seconds", price.core_seconds},
@@ -192,7 +201,8 @@ void print_plan_json(const LoadedExperiment& loaded, const Plan& plan, std::size
 }
 
 ExitCode plan(const PlanArguments& arguments) {
-  const auto loaded = load_and_print_mistakes(arguments.file, arguments.assignments);
+  const auto loaded =
+      load_and_print_mistakes(arguments.file, arguments.assignments, arguments.means());
   if (!loaded) return ExitCode::kInvalidInput;
   const Plan made = make_plan(*loaded);
   // A run that is no list of tasks simulates on one thread.

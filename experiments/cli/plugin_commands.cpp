@@ -80,7 +80,7 @@ ExitCode list(const PluginArguments& arguments) {
     return ExitCode::kOk;
   }
   for (const auto& row : rows) {
-    fmt::print("{:<22} {}\n", row["name"].get<std::string>(), row["summary"].get<std::string>());
+    say("{:<22} {}\n", row["name"].get<std::string>(), row["summary"].get<std::string>());
   }
   return ExitCode::kOk;
 }
@@ -107,8 +107,8 @@ ExitCode describe(const PluginArguments& arguments) {
                 {"summary", slot->summary(arguments.name)},
                 {"options", options}});
   } else {
-    fmt::print("{} {}: {}\n{}", arguments.kind, arguments.name, slot->summary(arguments.name),
-               options.empty() ? "no options\n" : help_text(options));
+    say("{} {}: {}\n{}", arguments.kind, arguments.name, slot->summary(arguments.name),
+        options.empty() ? "no options\n" : help_text(options));
   }
   return ExitCode::kOk;
 }

@@ -2,7 +2,6 @@
 #include <sys/utsname.h>
 #include <unistd.h>
 
-#include <cstring>
 #include <fstream>
 #include <system_error>
 #include <thread>
@@ -15,16 +14,23 @@
 namespace modcal {
 namespace {
 
+constexpr std::string_view kFolder = "the folder of the results";
+
 nlohmann::json read_provenance(const std::filesystem::path& out) {
-  std::ifstream stream(out / "provenance.json");
-  MODCAL_REQUIRE(stream.good(),
+  const std::filesystem::path file = out / "provenance.json";
+  MODCAL_REQUIRE(std::filesystem::exists(file),
                  "{} holds no run: there is no provenance.json; name the folder given to "
                  "modcal run with --out",
                  out.string());
-  nlohmann::json provenance = nlohmann::json::parse(stream, nullptr, false);
-  const bool good = provenance.is_object() && provenance.contains("folder") &&
-                    provenance.contains("program") && provenance.contains("command");
-  MODCAL_REQUIRE(good, "{}: provenance.json does not say where the run came from", out.string());
+  nlohmann::json provenance = nlohmann::json::parse(content_of_file(file), nullptr, false);
+  for (const char* key : {"folder", "program", "command"}) {
+    const bool good =
+        provenance.is_object() && provenance.contains(key) && provenance[key].is_string();
+    MODCAL_REQUIRE(good,
+                   "{} does not say where the run came from: {} is to be a text; run the same "
+                   "command again",
+                   file.string(), key);
+  }
   return provenance;
 }
 
@@ -86,23 +92,32 @@ OutputDirectory::OutputDirectory(std::filesystem::path path) : path_(std::move(p
   MODCAL_REQUIRE(!error && std::filesystem::is_directory(path_),
                  "the output folder {} cannot be made: {}; choose another one with --out",
                  path_.string(), error ? error.message() : "a file stands there");
-  const std::filesystem::path probe = path_ / ".modcal-write-test";
-  std::ofstream stream(probe);
-  stream << "probe" << std::flush;
-  const bool good = stream.good();
-  const std::string reason = std::strerror(errno);
-  stream.close();
-  std::filesystem::remove(probe, error);
-  MODCAL_REQUIRE(good,
+  const std::string reason = why_not_writable(path_);
+  MODCAL_REQUIRE(reason.empty(),
                  "the output folder {} cannot be written to: {}; choose another one with --out",
                  path_.string(), reason);
+  folder_ = OpenFile::folder(path_, kFolder);
+  remove_abandoned_parts(path_);
+  remove_abandoned_parts(path_ / "figures");
+}
+
+void OutputDirectory::require_in_place() const {
+  folder_.require_in_place(kFolder);
+  for (const std::filesystem::path& file : written_) {
+    if (std::filesystem::exists(file)) continue;
+    throw LostOutput(fmt::format(
+        "{}: the file was deleted or moved while the command worked; run the same command again",
+        file.string()));
+  }
 }
 
 StoredRun::StoredRun(std::filesystem::path out) : out_(std::move(out)) {
   const nlohmann::json provenance = read_provenance(out_);
   folder_ = provenance["folder"].get<std::string>();
   command_ = provenance["command"].get<std::string>();
-  loaded_ = load_experiment(out_ / "resolved.yaml");
+  // What was done elsewhere may have needed more than there is here.
+  constexpr double kAny = std::numeric_limits<double>::infinity();
+  loaded_ = load_experiment(out_ / "resolved.yaml", {}, {.memory = kAny});
   MODCAL_REQUIRE(!loaded_.has_errors(), "{}: the experiment cannot be read:\n{}",
                  (out_ / "resolved.yaml").string(),
                  format_mistakes(loaded_.document, loaded_.mistakes));
@@ -128,11 +143,10 @@ std::string version_text() {
 }
 
 std::string program_identity() {
-  std::string identity = fmt::format("modcal {} {}", kBuildVersion, kBuildCommit);
+  std::string identity =
+      fmt::format("modcal {} {} {} {}", kBuildVersion, kBuildCommit, kBuildCompiler, kBuildType);
   if (!kBuildDirty) return identity;
-  const std::filesystem::path self = "/proc/self/exe";
-  return identity + fmt::format(" {} {}", std::filesystem::file_size(self),
-                                std::filesystem::last_write_time(self).time_since_epoch().count());
+  return identity + " " + digest_of_file("/proc/self/exe");
 }
 
 nlohmann::ordered_json provenance_json(const std::string& command) {

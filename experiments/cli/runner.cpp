@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "experiments/cli/command.hpp"
+#include "libsim/base/utf8.hpp"
 #include "libsim/records/record_file.hpp"
 
 namespace modcal {
@@ -40,7 +41,7 @@ auto with_context(const LoadedExperiment& loaded, const std::filesystem::path& f
 }
 
 void write_signal_file(const OutputDirectory& out, const SignalFile& file) {
-  const std::filesystem::path path = out.path() / file.name;
+  const std::filesystem::path path = out.note(file.name);
   if (path.extension() == ".wav") {
     write_wav(path, file.signals, {.samples = WavSamples::kDouble, .full_scale = file.full_scale});
   } else {
@@ -73,9 +74,12 @@ void record_run(const LoadedExperiment& loaded, const RunSettings& settings,
                 const std::filesystem::path& folder, const OutputDirectory& out) {
   out.write_text("resolved.yaml", resolved_text(loaded, folder));
   nlohmann::ordered_json provenance = provenance_json(settings.command);
-  provenance["folder"] = std::filesystem::absolute(folder / "").lexically_normal().string();
+  const std::string absolute = std::filesystem::absolute(folder / "").lexically_normal().string();
+  MODCAL_REQUIRE(first_not_utf8(absolute) == std::string::npos,
+                 "the folder {} has a name that is not UTF-8 text: rename it", absolute);
+  provenance["folder"] = absolute;
   provenance["seeds"] = seeds_json(loaded);
-  out.write_text("provenance.json", provenance.dump(2) + "\n");
+  out.write_text("provenance.json", json_text(provenance));
 }
 
 ExitCode exit_code_of(const StudyResult& result) {
@@ -87,20 +91,20 @@ void finish_report(report::Report report, const RunSettings& settings, const Out
   report.command = settings.command;
   report.provenance = provenance_lines(settings.command);
   const report::WrittenReport written = report::write_report(report, out.path());
-  if (!written.warning.empty()) fmt::print(stderr, "{} {}\n", colored("warning:"), written.warning);
-  fmt::print(stderr, "report: {}\n", written.page.string());
+  if (!written.warning.empty()) complain("warning: {}\n", written.warning);
+  complain("report: {}\n", written.page.string());
 }
 
 [[noreturn]] void say_interrupted(const RunSettings& settings, bool has_store) {
-  fmt::print(stderr, "\ninterrupted; {} with:\n  {}{}\n",
-             has_store ? "what is finished is kept, go on" : "run again", settings.command,
-             settings.shard.is_whole() ? "" : " --shard " + settings.shard.text());
+  complain("\ninterrupted; {} with:\n  {}{}\n",
+           has_store ? "what is finished is kept, go on" : "run again", settings.command,
+           settings.shard.is_whole() ? "" : " --shard " + settings.shard.text());
   throw Interrupted();
 }
 
 void print_summary(const StudyResult& result, const RunSettings& settings, double seconds) {
   if (!settings.json) {
-    fmt::print("{}", result.summary);
+    say_text(result.summary);
     return;
   }
   const nlohmann::ordered_json summary = {{"out", settings.out.string()},
@@ -108,14 +112,14 @@ void print_summary(const StudyResult& result, const RunSettings& settings, doubl
                                           {"failed_tasks", result.failed_tasks},
                                           {"missed", result.missed},
                                           {"summary", result.summary}};
-  fmt::print("{}\n", summary.dump(2));
+  print_json(summary);
 }
 
 // Goes on where the store ends. A shard's result says how many tasks are left; nobody reads more.
 StudyResult run_list(const TaskExperiment& list, const StudyContext& context, RunStore& store,
                      const Shard& shard) {
   for (const JournalDamage& damage : store.finished().damages()) {
-    fmt::print(stderr, "{} {}\n", colored("warning:"), message_of(damage));
+    complain("warning: {}\n", message_of(damage));
   }
   return list.sum_up(run_tasks(list, context, &store, shard), context);
 }
@@ -167,6 +171,7 @@ ExitCode present(const LoadedExperiment& loaded, StudyResult result, const RunSe
     report.replay = "modcal replay " + shell_word(settings.out.string());
   }
   finish_report(std::move(report), settings, out);
+  out.require_in_place();
   const ExitCode code = exit_code_of(result);
   return code == ExitCode::kOk && !result.missed.empty() ? ExitCode::kAcceptanceMissed : code;
 }
@@ -195,10 +200,10 @@ ExitCode run_one(const LoadedExperiment& loaded, const RunSettings& settings) {
   std::optional<RunStore> store;
   if (list != nullptr) store.emplace(out.path(), settings.shard, program_identity());
   const std::filesystem::path folder = folder_of(loaded, settings);
-  // Before the work, so that an interrupted run says what it was.
+  SharedWork work(interrupt_token());
+  // After the token and before the work: an interrupted run says what it was and how to go on.
   record_run(loaded, settings, folder, out);
   const auto limit = limit_threads(settings.threads);
-  SharedWork work(interrupt_token());
   StudyResult result;
   try {
     result = with_context(loaded, folder, settings.command, work, [&](const StudyContext& context) {
@@ -211,10 +216,15 @@ ExitCode run_one(const LoadedExperiment& loaded, const RunSettings& settings) {
   // Work that does not poll ends by itself; what the user wanted to stop is not written either.
   if (interrupted()) say_interrupted(settings, store.has_value());
   const double seconds = clock.seconds();
-  fmt::print(stderr, "{:.2f} s\n", seconds);
-  if (settings.shard.is_whole()) return present(loaded, std::move(result), settings, seconds);
-  fmt::print(
-      "shard {}: {} of {} tasks of the whole list are done; report with:\n  modcal report {}\n",
+  complain("{:.2f} s\n", seconds);
+  if (settings.shard.is_whole()) {
+    // What was found is written, even where what was written before is gone.
+    const ExitCode code = present(loaded, std::move(result), settings, seconds);
+    out.require_in_place();
+    return code;
+  }
+  out.require_in_place();
+  say("shard {}: {} of {} tasks of the whole list are done; report with:\n  modcal report {}\n",
       settings.shard.text(), list->task_count() - result.pending_tasks, list->task_count(),
       settings.out.string());
   return result.failed_tasks > 0 ? ExitCode::kSomeTasksFailed : ExitCode::kOk;
@@ -232,7 +242,7 @@ ExitCode run_together(const std::vector<LoadedExperiment>& experiments,
   bool missed = false;
   for (const LoadedExperiment& loaded : experiments) {
     if (interrupted()) say_interrupted(settings, false);
-    const std::string name = std::filesystem::path(loaded.document.file).stem().string();
+    const std::string name = stem_of(loaded.document.file);
     const OutputDirectory folder(out.path() / name);
     StudyResult result;
     try {
@@ -246,7 +256,7 @@ ExitCode run_together(const std::vector<LoadedExperiment>& experiments,
     }
     folder.write_text("resolved.yaml", resolved_text(loaded, folder_of(loaded, settings)));
     write_files(folder, result);
-    fmt::print("== {}: {}\n{}", name, loaded.title, result.summary);
+    say("== {}: {}\n{}", name, loaded.title, result.summary);
     for (report::Block& block : result.blocks) {
       // Ids are unique in one report: each table carries the name of its experiment.
       if (auto* table = std::get_if<report::Table>(&block)) {
@@ -259,9 +269,10 @@ ExitCode run_together(const std::vector<LoadedExperiment>& experiments,
     worst = std::max(worst, exit_code_of(result));
     missed = missed || !result.missed.empty();
   }
-  out.write_text("provenance.json", provenance_json(settings.command).dump(2) + "\n");
+  out.write_text("provenance.json", json_text(provenance_json(settings.command)));
   finish_report(std::move(report), settings, out);
-  fmt::print(stderr, "{:.2f} s\n", clock.seconds());
+  out.require_in_place();
+  complain("{:.2f} s\n", clock.seconds());
   return worst == ExitCode::kOk && missed ? ExitCode::kAcceptanceMissed : worst;
 }
 

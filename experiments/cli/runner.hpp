@@ -8,6 +8,7 @@
 #include "experiments/report/encoding.hpp"
 #include "experiments/runs/run_store.hpp"
 #include "experiments/runs/task_experiment.hpp"
+#include "libsim/base/files.hpp"
 
 namespace modcal {
 
@@ -52,8 +53,8 @@ ExitCode run_together(const std::vector<LoadedExperiment>& experiments,
 // Where results come from: version, commit, compiler, libraries, machine, command, time.
 
 std::string version_text();
-/// Equal for programs that give equal results: version and commit, and for a program built from
-/// changed sources the file itself.
+/// Equal for programs that give equal results: version, commit, compiler and kind of build, and for
+/// a program built from changed sources its content.
 std::string program_identity();
 nlohmann::ordered_json provenance_json(const std::string& command);
 /// The seeds of an experiment by their paths, a swept one as its list.
@@ -64,19 +65,28 @@ std::vector<report::ProvenanceLine> provenance_lines(const std::string& command)
 
 class OutputDirectory {
  public:
-  /// Makes the folder and checks that files can be written there, before anything is computed.
-  /// Throws InvalidInput where they cannot.
+  /// Makes the folder and checks that files can be written there, before anything is computed;
+  /// removes what killed runs have left half written. Throws InvalidInput where they cannot.
   explicit OutputDirectory(std::filesystem::path path);
 
   const std::filesystem::path& path() const { return path_; }
+  /// Path of a file that is about to be written.
+  std::filesystem::path note(std::string_view name) const {
+    written_.push_back(path_ / name);
+    return written_.back();
+  }
   /// Writes the whole file under a temporary name and renames it: an existing file is replaced by a
   /// complete one or not at all. Throws InvalidInput where that fails (no space, no permission).
   void write_text(std::string_view name, std::string_view content) const {
-    report::write_file_atomically(path_ / name, content);
+    report::write_file_atomically(note(name), content);
   }
+  /// Throws LostOutput where the folder, or a file that was written, was deleted or moved.
+  void require_in_place() const;
 
  private:
   std::filesystem::path path_;
+  OpenFile folder_;
+  mutable std::vector<std::filesystem::path> written_;
 };
 
 // A folder of results as a run left it, running or dead.

@@ -58,11 +58,12 @@ void submit(const std::filesystem::path& folder) {
   const std::string merge =
       first_line_of(fmt::format("sbatch --parsable --dependency=afterany:{} {}", array,
                                 shell_word((folder / "merge.sh").string())));
-  fmt::print("submitted array {} and merge {}\n", array, merge);
+  say("submitted array {} and merge {}\n", array, merge);
 }
 
 ExitCode submit_to_slurm(const SubmitArguments& arguments) {
-  const auto loaded = load_and_print_mistakes(arguments.file, arguments.assignments);
+  const auto loaded =
+      load_and_print_mistakes(arguments.file, arguments.assignments, arguments.means());
   if (!loaded) return ExitCode::kInvalidInput;
   const std::filesystem::path out = std::filesystem::absolute(arguments.folder());
   const auto threads = static_cast<std::size_t>(std::max(1, arguments.threads));
@@ -81,11 +82,11 @@ ExitCode submit_to_slurm(const SubmitArguments& arguments) {
   const OutputDirectory scripts(folder);
   scripts.write_text("run.sh", slurm_array_script(slurm, bundles));
   scripts.write_text("merge.sh", slurm_merge_script(slurm));
-  fmt::print("{} tasks to do, {:.3g} s each (mean of {} that were run): {:.3g} core-hours\n",
-             pilot.pending, pilot.seconds_per_task, pilot.run,
-             static_cast<double>(pilot.pending) * pilot.seconds_per_task / 3600.0);
-  fmt::print("{} jobs of {} threads, about {:.3g} s each; scripts in {}\n", bundles.count, threads,
-             bundles.seconds, folder.string());
+  say("{} tasks to do, {:.3g} s each (mean of {} that were run): {:.3g} core-hours\n",
+      pilot.pending, pilot.seconds_per_task, pilot.run,
+      static_cast<double>(pilot.pending) * pilot.seconds_per_task / 3600.0);
+  say("{} jobs of {} threads, about {:.3g} s each; scripts in {}\n", bundles.count, threads,
+      bundles.seconds, folder.string());
   if (!arguments.dry_run) submit(folder);
   return ExitCode::kOk;
 }

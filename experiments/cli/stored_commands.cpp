@@ -23,8 +23,14 @@ void declare_folder(CLI::App& command, FolderArguments& arguments) {
 
 void print_damages(const StoredRun& run) {
   for (const JournalDamage& damage : run.damages()) {
-    fmt::print(stderr, "{} {}\n", colored("warning:"), message_of(damage));
+    complain("warning: {}\n", message_of(damage));
   }
+}
+
+std::string failure_of(const StoredRun& run, std::size_t task, const FinishedTask& finished) {
+  return run.outcomes().read(task, finished.outcome, [&run](const std::string& outcome) {
+    return run.list().failure_in(outcome);
+  });
 }
 
 struct Counts {
@@ -43,7 +49,7 @@ Counts count(const StoredRun& run) {
     if (!finished) continue;
     ++counts.done;
     seconds.push_back(finished->seconds);
-    if (!run.list().failure_in(finished->outcome).empty()) ++counts.failed;
+    if (!failure_of(run, task, *finished).empty()) ++counts.failed;
   }
   if (!seconds.empty()) counts.median_seconds = quantile(std::move(seconds), 0.5);
   return counts;
@@ -68,16 +74,15 @@ ExitCode status(const FolderArguments& arguments) {
                 {"command", run.command()}});
     return ExitCode::kOk;
   }
-  fmt::print("{}: {}\n{} of {} tasks done, {} failed, {} to do\n", run.loaded().kind,
-             run.loaded().title, counts.done, counts.all, counts.failed, counts.pending());
-  fmt::print("{}\n", running ? "a run works here now" : "no run works here");
+  say("{}: {}\n{} of {} tasks done, {} failed, {} to do\n", run.loaded().kind, run.loaded().title,
+      counts.done, counts.all, counts.failed, counts.pending());
+  say("{}\n", running ? "a run works here now" : "no run works here");
   if (counts.done > 0) {
-    fmt::print("a task took {:.3g} s (median)", counts.median_seconds);
-    if (counts.pending() > 0)
-      fmt::print("; about {:.3g} core-seconds to go", counts.left_seconds());
-    fmt::print("\n");
+    say("a task took {:.3g} s (median)", counts.median_seconds);
+    if (counts.pending() > 0) say("; about {:.3g} core-seconds to go", counts.left_seconds());
+    say("\n");
   }
-  if (counts.pending() > 0 && !running) fmt::print("go on with:\n  {}\n", run.command());
+  if (counts.pending() > 0 && !running) say("go on with:\n  {}\n", run.command());
   return ExitCode::kOk;
 }
 
@@ -87,7 +92,7 @@ std::size_t add_rows(const StoredRun& run, ResultsDatabase& database) {
   for (std::size_t task = 0; task < run.tasks(); ++task) {
     std::optional<FinishedTask> finished = run.outcomes()[task];
     if (!finished) continue;
-    std::string failure = run.list().failure_in(finished->outcome);
+    std::string failure = failure_of(run, task, *finished);
     database.add({task, run.list().axis_values(task), std::move(failure),
                   std::move(finished->outcome), finished->seconds});
     ++done;
@@ -106,7 +111,7 @@ ExitCode merge(const FolderArguments& arguments) {
                                               {"command", run.command()},
                                               {"tasks", std::to_string(run.tasks())},
                                               {"done", std::to_string(done)}});
-  fmt::print("{}: {} of {} tasks, digest {}\n", file.string(), done, run.tasks(), digest);
+  say("{}: {} of {} tasks, digest {}\n", file.string(), done, run.tasks(), digest);
   return ExitCode::kOk;
 }
 
@@ -125,7 +130,7 @@ ExitCode replay_task(const FolderArguments& arguments) {
   MODCAL_REQUIRE(task < run.tasks(), "task {} does not exist: {} has the tasks 0 to {}", task, out,
                  run.tasks() - 1);
   for (std::size_t axis = 0; axis < run.list().axes().size(); ++axis) {
-    fmt::print(stderr, "{}: {}\n", run.list().axes()[axis], run.list().axis_values(task)[axis]);
+    complain("{}: {}\n", run.list().axes()[axis], run.list().axis_values(task)[axis]);
   }
   SharedWork work(interrupt_token());
   const std::string command = fmt::format("modcal replay {} {}", out, task);
@@ -159,9 +164,10 @@ std::map<Cell, double> losses_of(const StoredRun& run, const std::string& number
   for (std::size_t task = 0; task < run.tasks(); ++task) {
     const std::optional<FinishedTask> finished = run.outcomes()[task];
     if (!finished) continue;
-    const std::optional<double> loss = number.empty()
-                                           ? run.list().loss_in(finished->outcome)
-                                           : run.list().number_in(finished->outcome, number);
+    const auto read = [&](const std::string& outcome) {
+      return number.empty() ? run.list().loss_in(outcome) : run.list().number_in(outcome, number);
+    };
+    const std::optional<double> loss = run.outcomes().read(task, finished->outcome, read);
     any = any || loss;
     losses[cell_of(run, task)] = loss.value_or(1e300);
   }
@@ -195,12 +201,11 @@ ExitCode compare(const FolderArguments& arguments) {
   MODCAL_REQUIRE(!a.empty(), "{} and {} have no finished task with the same values in common",
                  out_a, out_b);
   const MedianRatio ratio = median_ratio(a, b);
-  fmt::print("{} of {} and {} tasks in common\n", a.size(), losses_a.size(), losses_b.size());
-  fmt::print("{}: median {:.4g} in {}, {:.4g} in {}\n",
-             number.empty() ? run_a.list().loss_name() : number, quantile(a, 0.5), out_a,
-             quantile(b, 0.5), out_b);
-  fmt::print("ratio {:.4g}, 95 % interval {:.4g} to {:.4g} (paired bootstrap): {}\n", ratio.ratio,
-             ratio.low, ratio.high, verdict(ratio, out_a, out_b));
+  say("{} of {} and {} tasks in common\n", a.size(), losses_a.size(), losses_b.size());
+  say("{}: median {:.4g} in {}, {:.4g} in {}\n", number.empty() ? run_a.list().loss_name() : number,
+      quantile(a, 0.5), out_a, quantile(b, 0.5), out_b);
+  say("ratio {:.4g}, 95 % interval {:.4g} to {:.4g} (paired bootstrap): {}\n", ratio.ratio,
+      ratio.low, ratio.high, verdict(ratio, out_a, out_b));
   return ExitCode::kOk;
 }
 

@@ -1,14 +1,13 @@
 #include "experiments/config/document.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
-#include <cstring>
-#include <fstream>
 #include <sstream>
 #include <tuple>
 
 #include "libsim/base/error.hpp"
+#include "libsim/base/files.hpp"
+#include "libsim/base/utf8.hpp"
 
 namespace modcal {
 namespace {
@@ -137,15 +136,7 @@ YamlDocument parse_yaml(const std::string& source, std::string file) {
 }
 
 YamlDocument read_yaml_file(const std::filesystem::path& path) {
-  MODCAL_REQUIRE(!std::filesystem::is_directory(path), "{}: this is a folder, not a file",
-                 path.string());
-  errno = 0;
-  std::ifstream stream(path, std::ios::binary);
-  MODCAL_REQUIRE(stream.is_open(), "{}: cannot be opened: {}; check the path and its permissions",
-                 path.string(), std::strerror(errno));
-  std::ostringstream content;
-  content << stream.rdbuf();
-  return parse_yaml(content.str(), path.string());
+  return parse_yaml(content_of_file(path), path.string());
 }
 
 std::string format_mistakes(const YamlDocument& document, std::vector<Mistake> mistakes) {

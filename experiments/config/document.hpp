@@ -86,7 +86,4 @@ std::string format_mistakes(const YamlDocument& document, std::vector<Mistake> m
 /// YAML: places count them.
 void parse_yaml_text(YamlDocument& document, const std::string& text, std::size_t skip);
 
-/// Number of characters of UTF-8 text.
-std::size_t count_characters(std::string_view text);
-
 }  // namespace modcal

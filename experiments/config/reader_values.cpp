@@ -29,6 +29,7 @@ double shifted(std::string_view number, int shift) {
     if (digits.starts_with('+')) digits.remove_prefix(1);
     std::from_chars(digits.data(), digits.data() + digits.size(), exponent);
   }
+  exponent = std::clamp(exponent, -100000, 100000);  // far out of range already
   const std::string text = fmt::format("{}e{}", number.substr(0, mark), exponent + shift);
   double value = std::numeric_limits<double>::quiet_NaN();
   const auto read = std::from_chars(text.data(), text.data() + text.size(), value);

@@ -2,6 +2,7 @@
 // every cell.
 #pragma once
 
+#include <set>
 #include <typeinfo>
 
 #include "experiments/kinds/lint.hpp"
@@ -133,6 +134,13 @@ std::vector<std::string> files_read_by(const Options& options) {
   return {};
 }
 
+/// What recorded files say against options that name some.
+template <typename Options>
+std::vector<Finding> record_findings(const Options& options, const std::filesystem::path& folder) {
+  if constexpr (requires { options.lint_records(folder); }) return options.lint_records(folder);
+  return {};
+}
+
 /// An axis list over a kind of experiment: `Cell` are the options of the kind (StudyExperiment).
 /// `Settings` are the options of the list beside those of its cells: a type with visit() and
 /// kNeedsAxes, whether the axes must be stated. What one task leaves and how outcomes are summed up
@@ -165,6 +173,14 @@ class AxisExperiment : public TaskExperiment {
     }
     return distinct_findings(std::move(findings));
   }
+  std::vector<Finding> lint_records(const std::filesystem::path& folder) const override {
+    std::vector<Finding> findings;
+    std::set<std::vector<std::string>> read;
+    for (const Cell& cell : options_.cells.all()) {
+      if (read.insert(files_read_by(cell)).second) append(findings, record_findings(cell, folder));
+    }
+    return distinct_findings(std::move(findings));
+  }
   std::vector<std::string> plan() const override {
     return axis_plan(options_.cells.plan(), task_count(), planned_simulations());
   }
@@ -185,7 +201,7 @@ class AxisExperiment : public TaskExperiment {
                          visit_scoring(visitor);
                        });
     for (const std::string& file : files_read_by(cell)) {
-      text += record_fingerprint(folder / file);
+      text += fmt::format(" {}", input_digest(folder / file));
     }
     return text;
   }

@@ -11,6 +11,9 @@ class StudyExperiment final : public Experiment {
  public:
   explicit StudyExperiment(Options options) : options_(std::move(options)) {}
   std::vector<Finding> lint() const override { return options_.lint(); }
+  std::vector<Finding> lint_records(const std::filesystem::path& folder) const override {
+    return record_findings(options_, folder);
+  }
   std::vector<std::string> plan() const override { return options_.plan(); }
   std::optional<PlannedSimulations> planned_simulations() const override {
     return options_.planned_simulations();
@@ -59,6 +62,7 @@ class KindList final : public AxisExperiment<Options, KindListSettings> {
   std::string run_task(std::size_t task, const StudyContext& context) const override {
     StudyContext quiet = context;  // the list reports the progress
     quiet.progress = [](double) {};
+    quiet.numbers_alone = true;
     return report::json_line(
         attempted([&] { return run_outcome(this->options_.cells[task].run(quiet)); }));
   }

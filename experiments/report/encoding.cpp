@@ -10,6 +10,18 @@
 #include "libsim/records/signal_file.hpp"
 
 namespace modcal::report {
+namespace {
+
+// What a spreadsheet would compute, or start a program for; "-3 dB" and "-" are texts.
+bool is_formula(std::string_view text) {
+  if (text.empty()) return false;
+  if (std::string_view("=@\t\r").find(text[0]) != std::string_view::npos) return true;
+  if ((text[0] != '+' && text[0] != '-') || text.size() == 1) return false;
+  const bool number = text[1] == '.' || (text[1] >= '0' && text[1] <= '9');
+  return !number || text.find_first_of("=|!(") != std::string_view::npos;
+}
+
+}  // namespace
 
 std::string quoted(std::string_view text, char mark, std::string_view inside) {
   std::string result(1, mark);
@@ -18,6 +30,7 @@ std::string quoted(std::string_view text, char mark, std::string_view inside) {
 }
 
 std::string csv_field(std::string_view text) {
+  if (is_formula(text)) return csv_field(fmt::format("'{}", text));
   return text.find_first_of(",\"\r\n") == std::string_view::npos ? std::string(text)
                                                                  : quoted(text, '"', "\"\"");
 }

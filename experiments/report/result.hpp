@@ -73,7 +73,7 @@ std::string json_file(const Json& document);
 /// JSON on one line from which read_line() gives back every bit.
 template <typename Result>
 std::string json_line(const Result& result) {
-  return json_of(result, NonFinite::kWord).dump();
+  return json_of(result, NonFinite::kWord).dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 /// Throws InvalidInput for a text that json_line() of such a result did not write; `what` names it.

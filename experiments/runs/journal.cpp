@@ -1,8 +1,8 @@
 #include "experiments/runs/journal.hpp"
 
-#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#define XXH_STATIC_LINKING_ONLY  // for a state that needs no allocation
 #include <xxhash.h>
 
 #include <algorithm>
@@ -10,8 +10,8 @@
 #include <charconv>
 #include <cstring>
 #include <fstream>
+#include <map>
 #include <optional>
-#include <system_error>
 
 #include "libsim/base/error.hpp"
 
@@ -55,19 +55,26 @@ std::optional<std::string_view> intact_content(std::string_view line) {
   return intact ? std::optional(content) : std::nullopt;
 }
 
+std::string text_of(const XXH128_hash_t& hash) {
+  return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
+}
+
 // A line without its end, handed on.
 class LineReader {
  public:
   LineReader(const std::filesystem::path& file, const TakeRecord& take,
              std::vector<JournalDamage>& damages)
-      : file_(file), take_(take), damages_(damages) {}
+      : file_(file), take_(take), damages_(damages), others_(damages.size()) {}
 
   void read(std::string_view line, std::size_t offset, bool has_end) {
     ++number_;
     if (line.empty() && has_end) return;
     const std::optional<std::string_view> content = intact_content(line);
     if (!content) return damaged(offset, has_end ? "does not match its checksum" : "is cut off");
-    if (content->starts_with(kHeaderOfAnyVersion)) return require_version(*content);
+    if (content->starts_with(kHeaderOfAnyVersion)) {
+      require_version(*content);
+      return damages_.resize(others_);  // what was damaged before is done again
+    }
     if (!parse_record(*content, record_)) return damaged(offset, "is no record");
     take_(record_, offset, line.size());
   }
@@ -86,6 +93,7 @@ class LineReader {
   const std::filesystem::path& file_;
   const TakeRecord& take_;
   std::vector<JournalDamage>& damages_;
+  std::size_t others_;  // of other files
   JournalRecord record_;
   std::size_t number_ = 0;
 };
@@ -99,11 +107,7 @@ std::string message_of(const JournalDamage& damage) {
 
 void scan_journal(const std::filesystem::path& file, const TakeRecord& take,
                   std::vector<JournalDamage>& damages) {
-  // A device would never end.
-  std::error_code error;
-  if (std::filesystem::exists(file, error) && !std::filesystem::is_regular_file(file, error)) {
-    return;
-  }
+  require_regular_file(file);
   std::ifstream stream(file, std::ios::binary);
   MODCAL_REQUIRE(stream.good(), "{}: the journal cannot be read: {}", file.string(),
                  std::strerror(errno));
@@ -136,45 +140,44 @@ std::vector<std::filesystem::path> journals_in(const std::filesystem::path& fold
   return files;
 }
 
-JournalWriter::JournalWriter(std::filesystem::path file, std::string_view program)
-    : file_(std::move(file)) {
-  descriptor_ = open(file_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
-  MODCAL_REQUIRE(descriptor_ >= 0, "{}: the journal cannot be opened: {}", file_.string(),
-                 std::strerror(errno));
-  const off_t size = lseek(descriptor_, 0, SEEK_END);
+JournalWriter::JournalWriter(const std::filesystem::path& file, std::string program)
+    : file_(OpenFile::for_appending(file, "the journal")), program_(std::move(program)) {
+  const off_t size = lseek(file_.descriptor(), 0, SEEK_END);
   char last = '\n';
-  if (size > 0 && pread(descriptor_, &last, 1, size - 1) == 1 && last != '\n') {
+  if (size > 0 && pread(file_.descriptor(), &last, 1, size - 1) == 1 && last != '\n') {
     // Ends what a killed run left, so that the next line stands for itself.
-    MODCAL_REQUIRE(write(descriptor_, "\n", 1) == 1, "{}: the journal cannot be written: {}",
-                   file_.string(), std::strerror(errno));
+    MODCAL_REQUIRE(write(file_.descriptor(), "\n", 1) == 1, "{}: the journal cannot be written: {}",
+                   file.string(), std::strerror(errno));
   }
-  if (size <= 0) write_line(std::string(kHeader) + std::string(program));
+  if (size <= 0) declare_repaired();
 }
 
-JournalWriter::~JournalWriter() {
-  fdatasync(descriptor_);
-  close(descriptor_);
-}
+JournalWriter::~JournalWriter() { fdatasync(file_.descriptor()); }
 
 JournalWriter::Place JournalWriter::append(const JournalRecord& record) {
-  return write_line(content_of(record));
+  const Place place = write_line(content_of(record));
+  file_.require_in_place("the journal");
+  return place;
 }
+
+void JournalWriter::declare_repaired() { write_line(std::string(kHeader) + program_); }
 
 JournalWriter::Place JournalWriter::write_line(std::string_view content) {
   const std::string line = fmt::format("{} {}\n", checksum_of(content), content);
   const std::lock_guard lock(mutex_);
-  const off_t start = lseek(descriptor_, 0, SEEK_END);
+  const int descriptor = file_.descriptor();
+  const off_t start = lseek(descriptor, 0, SEEK_END);
   std::size_t written = 0;
   while (written < line.size()) {
-    const ssize_t count = write(descriptor_, line.data() + written, line.size() - written);
+    const ssize_t count = write(descriptor, line.data() + written, line.size() - written);
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0) {
       const std::string reason = std::strerror(errno);
-      if (start >= 0) static_cast<void>(ftruncate(descriptor_, start) == 0);
+      if (start >= 0) static_cast<void>(ftruncate(descriptor, start) == 0);
       throw InvalidInput(fmt::format(
           "{}: the journal cannot be written: {}; make room and run the same command again, what "
           "the journal holds is not repeated",
-          file_.string(), reason));
+          file_.path().string(), reason));
     }
     written += static_cast<std::size_t>(count);
   }
@@ -182,8 +185,34 @@ JournalWriter::Place JournalWriter::write_line(std::string_view content) {
 }
 
 std::string digest_of(std::string_view text) {
-  const XXH128_hash_t hash = XXH3_128bits(text.data(), text.size());
-  return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
+  return text_of(XXH3_128bits(text.data(), text.size()));
+}
+
+std::string digest_of_file(const std::filesystem::path& file) {
+  XXH3_state_t state;
+  XXH3_128bits_reset(&state);
+  std::ifstream stream(file, std::ios::binary);
+  std::vector<char> block(1 << 18);
+  while (stream.read(block.data(), static_cast<std::streamsize>(block.size())).gcount() > 0) {
+    XXH3_128bits_update(&state, block.data(), static_cast<std::size_t>(stream.gcount()));
+  }
+  MODCAL_REQUIRE(stream.eof() && !stream.bad(), "{}: cannot be read", file.string());
+  return text_of(XXH3_128bits_digest(&state));
+}
+
+std::string input_digest(const std::filesystem::path& file) {
+  struct stat status {};
+  if (stat(file.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return "missing";
+  // Who sets the time of the content back changes that of the file.
+  const std::string touched = fmt::format(
+      "{} {} {} {} {} {} {}", status.st_dev, status.st_ino, status.st_size, status.st_mtim.tv_sec,
+      status.st_mtim.tv_nsec, status.st_ctim.tv_sec, status.st_ctim.tv_nsec);
+  static std::mutex mutex;
+  static std::map<std::string, std::string> known;
+  const std::lock_guard lock(mutex);
+  std::string& digest = known[touched];
+  if (digest.empty()) digest = digest_of_file(file);
+  return digest;
 }
 
 std::string checksum_of(std::string_view text) {

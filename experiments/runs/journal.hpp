@@ -12,6 +12,8 @@
 #include <string_view>
 #include <vector>
 
+#include "libsim/base/files.hpp"
+
 namespace modcal {
 
 /// One finished task.
@@ -34,8 +36,9 @@ struct JournalDamage {
 std::string message_of(const JournalDamage& damage);
 
 /// Calls `take` for every record of a journal with the place of its line's first byte and the
-/// line's length; holds one line at a time. Throws InvalidInput where the journal cannot be read or
-/// has another version's format.
+/// line's length; holds one line at a time. A damage that JournalWriter::declare_repaired() has
+/// followed is none. Throws InvalidInput where the journal cannot be read or has another version's
+/// format.
 using TakeRecord =
     std::function<void(const JournalRecord& record, std::uint64_t offset, std::size_t length)>;
 void scan_journal(const std::filesystem::path& file, const TakeRecord& take,
@@ -52,8 +55,9 @@ std::vector<std::filesystem::path> journals_in(const std::filesystem::path& fold
 class JournalWriter {
  public:
   /// Opens or makes the file; a line that a killed run left unfinished is ended. `program` is
-  /// written down as the maker. Throws InvalidInput where the file cannot be written.
-  JournalWriter(std::filesystem::path file, std::string_view program);
+  /// written down as the maker. Throws InvalidInput where the file cannot be written, or is one
+  /// that somebody else may have put there (OpenFile).
+  JournalWriter(const std::filesystem::path& file, std::string program);
   ~JournalWriter();
   JournalWriter(const JournalWriter&) = delete;
   JournalWriter& operator=(const JournalWriter&) = delete;
@@ -64,15 +68,18 @@ class JournalWriter {
     std::size_t length = 0;
   };
   /// Hands the record to the system in one write: it outlives the process from then on. Throws
-  /// InvalidInput where that fails (no space); the journal then ends with the record before.
+  /// InvalidInput where that fails (no space), and the journal ends with the record before;
+  /// LostOutput where the journal was deleted or moved.
   Place append(const JournalRecord& record);
-  const std::filesystem::path& file() const { return file_; }
+  /// Writes down that the tasks of damaged lines before were done again.
+  void declare_repaired();
+  const OpenFile& file() const { return file_; }
 
  private:
   Place write_line(std::string_view content);
 
-  std::filesystem::path file_;
-  int descriptor_ = -1;
+  OpenFile file_;
+  std::string program_;
   std::mutex mutex_;
 };
 
@@ -80,6 +87,13 @@ class JournalWriter {
 
 /// 32 hexadecimal digits (XXH3, 128 bits) that are equal for equal texts.
 std::string digest_of(std::string_view text);
+
+/// The same of a file's content. Throws InvalidInput where it cannot be read.
+std::string digest_of_file(const std::filesystem::path& file);
+
+/// digest_of_file() of an input, read once for as long as nothing touches the file; "missing" where
+/// there is none.
+std::string input_digest(const std::filesystem::path& file);
 
 /// 16 hexadecimal digits (XXH3, 64 bits) that tell a damaged line.
 std::string checksum_of(std::string_view text);

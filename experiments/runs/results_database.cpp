@@ -1,10 +1,8 @@
 #include "experiments/runs/results_database.hpp"
 
 #include <sqlite3.h>
-#include <unistd.h>
 
 #include <optional>
-#include <system_error>
 
 #include "experiments/runs/journal.hpp"
 #include "libsim/base/error.hpp"
@@ -145,19 +143,13 @@ void RowsDigest::add(const ResultRow& row) {
                                   framed({row.failure, row.outcome})));
 }
 
-ResultsDatabase::ResultsDatabase(std::filesystem::path file, const std::vector<std::string>& axes)
-    : file_(std::move(file)), temporary_(file_), digest_(axes) {
-  temporary_ += fmt::format(".{}.part", getpid());
-  std::error_code error;
-  std::filesystem::remove(temporary_, error);
-  writer_ = std::make_unique<Writer>(temporary_, axes);
+ResultsDatabase::ResultsDatabase(const std::filesystem::path& file,
+                                 const std::vector<std::string>& axes)
+    : part_(file), digest_(axes), writer_(std::make_unique<Writer>(part_.path(), axes)) {
+  remove_abandoned_parts(file.parent_path());
 }
 
-ResultsDatabase::~ResultsDatabase() {
-  writer_.reset();
-  std::error_code error;
-  std::filesystem::remove(temporary_, error);
-}
+ResultsDatabase::~ResultsDatabase() = default;
 
 void ResultsDatabase::add(const ResultRow& row) {
   digest_.add(row);
@@ -169,9 +161,7 @@ std::string ResultsDatabase::finish(std::vector<std::pair<std::string, std::stri
   facts.emplace_back("digest", digest);
   writer_->finish(facts);
   writer_.reset();
-  std::error_code error;
-  std::filesystem::rename(temporary_, file_, error);
-  MODCAL_REQUIRE(!error, "{} cannot be put in place: {}", file_.string(), error.message());
+  part_.put_in_place();
   return digest;
 }
 

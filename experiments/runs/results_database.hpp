@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "libsim/base/files.hpp"
+
 namespace modcal {
 
 /// One row of the table `tasks`.
@@ -38,7 +40,7 @@ class RowsDigest {
 class ResultsDatabase {
  public:
   /// Throws InvalidInput, as add() and finish() do, where the file cannot be written.
-  ResultsDatabase(std::filesystem::path file, const std::vector<std::string>& axes);
+  ResultsDatabase(const std::filesystem::path& file, const std::vector<std::string>& axes);
   ~ResultsDatabase();
   ResultsDatabase(const ResultsDatabase&) = delete;
   ResultsDatabase& operator=(const ResultsDatabase&) = delete;
@@ -49,7 +51,7 @@ class ResultsDatabase {
 
  private:
   class Writer;
-  std::filesystem::path file_, temporary_;
+  PartFile part_;
   RowsDigest digest_;
   std::unique_ptr<Writer> writer_;
 };

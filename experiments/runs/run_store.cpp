@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cstring>
 #include <fstream>
+#include <set>
 #include <system_error>
 
 #include "libsim/base/error.hpp"
@@ -32,16 +33,9 @@ struct flock whole_file(short type) {
   return lock;
 }
 
-int open_lock_file(const std::filesystem::path& file) {
-  const int descriptor = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  MODCAL_REQUIRE(descriptor >= 0, "{}: the lock cannot be opened: {}", file.string(),
-                 std::strerror(errno));
-  return descriptor;
-}
-
-bool take(int descriptor, short type) {
+bool take(const OpenFile& file, short type) {
   struct flock lock = whole_file(type);
-  return fcntl(descriptor, F_OFD_SETLK, &lock) == 0;
+  return fcntl(file.descriptor(), F_OFD_SETLK, &lock) == 0;
 }
 
 std::string holder_of(const std::filesystem::path& file) {
@@ -81,38 +75,29 @@ Shard parse_shard(std::string_view text) {
   return shard;
 }
 
-RunLock::RunLock(const std::filesystem::path& folder, const Shard& shard) {
-  const std::filesystem::path folder_lock = folder / kFolderLock;
-  const std::filesystem::path shard_lock =
-      folder / fmt::format("shard-{}-of-{}.lock", shard.index, shard.count);
-  folder_descriptor_ = open_lock_file(folder_lock);
-  shard_descriptor_ = open_lock_file(shard_lock);
-  const bool taken = take(folder_descriptor_, shard.is_whole() ? F_WRLCK : F_RDLCK) &&
-                     take(shard_descriptor_, F_WRLCK);
-  if (!taken) {
-    const std::string holder = holder_of(shard_lock);
-    close(folder_descriptor_);
-    close(shard_descriptor_);
-    throw InvalidInput(
-        fmt::format("another run works in {}{}; wait for it, stop it or choose another folder "
-                    "with --out",
-                    folder.parent_path().string(), holder));
-  }
+RunLock::RunLock(const std::filesystem::path& folder, const Shard& shard)
+    : folder_(OpenFile::for_appending(folder / kFolderLock, "the lock")),
+      shard_(OpenFile::for_appending(
+          folder / fmt::format("shard-{}-of-{}.lock", shard.index, shard.count), "the lock")) {
+  const bool taken = take(folder_, shard.is_whole() ? F_WRLCK : F_RDLCK) && take(shard_, F_WRLCK);
+  MODCAL_REQUIRE(taken,
+                 "another run works in {}{}; wait for it, stop it or choose another folder "
+                 "with --out",
+                 folder.parent_path().string(), holder_of(shard_.path()));
   const std::string name = own_name();
-  if (ftruncate(shard_descriptor_, 0) == 0) {
+  if (ftruncate(shard_.descriptor(), 0) == 0) {
     // The name is a courtesy to whoever is refused: the lock holds without it.
-    static_cast<void>(write(shard_descriptor_, name.data(), name.size()) > 0);
+    static_cast<void>(write(shard_.descriptor(), name.data(), name.size()) > 0);
   }
 }
 
 RunLock::~RunLock() {
-  if (ftruncate(shard_descriptor_, 0) != 0) errno = 0;
-  close(shard_descriptor_);
-  close(folder_descriptor_);
+  if (ftruncate(shard_.descriptor(), 0) != 0) errno = 0;
 }
 
 bool is_running(const std::filesystem::path& folder) {
-  const int descriptor = open((folder / kFolderLock).c_str(), O_RDWR | O_CLOEXEC);
+  const int descriptor =
+      open((folder / kFolderLock).c_str(), O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
   if (descriptor < 0) return false;
   struct flock lock = whole_file(F_WRLCK);
   const bool held = fcntl(descriptor, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
@@ -124,31 +109,39 @@ std::filesystem::path journal_folder(const std::filesystem::path& folder) {
   return folder / "journal";
 }
 
-JournalReader::~JournalReader() {
-  for (const auto& [file, descriptor] : files_) close(descriptor);
-}
-
 std::uint32_t JournalReader::add(const std::filesystem::path& file) {
-  const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
-  MODCAL_REQUIRE(descriptor >= 0, "{}: the journal cannot be read: {}", file.string(),
-                 std::strerror(errno));
-  files_.emplace_back(file, descriptor);
+  files_.push_back(OpenFile::for_reading(file, "the journal"));
   return static_cast<std::uint32_t>(files_.size() - 1);
 }
 
+void JournalReader::require_in_place() const {
+  for (const OpenFile& file : files_) file.require_in_place("the journal");
+}
+
+std::string JournalReader::text_of(const RecordPlace& place) const {
+  const std::filesystem::path& file = files_.at(place.file).path();
+  std::ifstream stream(file, std::ios::binary);
+  std::size_t number = 0;
+  std::string line;
+  for (std::uint64_t start = 0; start <= place.offset && std::getline(stream, line); ++number) {
+    start += line.size() + 1;
+  }
+  return fmt::format("{}: line {}", file.string(), number);
+}
+
 JournalRecord JournalReader::read(const RecordPlace& place) const {
-  const auto& [file, descriptor] = files_.at(place.file);
+  const OpenFile& file = files_.at(place.file);
   std::string line(place.length, '\0');
   std::size_t done = 0;
   while (done < line.size()) {
-    const ssize_t count = pread(descriptor, line.data() + done, line.size() - done,
+    const ssize_t count = pread(file.descriptor(), line.data() + done, line.size() - done,
                                 static_cast<off_t>(place.offset + done));
     if (count < 0 && errno == EINTR) continue;
-    MODCAL_REQUIRE(count > 0, "{}: the journal cannot be read: {}", file.string(),
+    MODCAL_REQUIRE(count > 0, "{}: the journal cannot be read: {}", file.path().string(),
                    count < 0 ? std::strerror(errno) : "it has become shorter");
     done += static_cast<std::size_t>(count);
   }
-  return record_of_line(file, line);
+  return record_of_line(file.path(), line);
 }
 
 FinishedTasks::FinishedTasks(const std::filesystem::path& folder, std::string program)
@@ -191,10 +184,29 @@ RecordPlace FinishedTasks::find(const std::string& key) const {
 RunStore::RunStore(const std::filesystem::path& folder, const Shard& shard,
                    const std::string& program)
     : journals_(made_journal_folder(folder)),
+      program_(program),
+      is_whole_(shard.is_whole()),
       lock_(journals_, shard),
       finished_(folder, program),
       writer_(journals_ / fmt::format("shard-{}-of-{}.journal", shard.index, shard.count), program),
-      own_file_(finished_.reader().add(writer_.file())) {}
+      own_file_(finished_.reader().add(writer_.file().path())) {}
+
+void RunStore::finish() {
+  finished_.reader().require_in_place();
+  std::set<std::filesystem::path> damaged;
+  for (const JournalDamage& damage : finished_.damages()) damaged.insert(damage.file);
+  for (const std::filesystem::path& file : damaged) {
+    try {
+      if (file == writer_.file().path()) {
+        writer_.declare_repaired();
+      } else if (is_whole_) {
+        JournalWriter(file, program_).declare_repaired();
+      }
+    } catch (const InvalidInput&) {
+      // Of somebody else, or no space: the damage is named once more.
+    }
+  }
+}
 
 RecordPlace RunStore::append(const JournalRecord& record) {
   const JournalWriter::Place place = writer_.append(record);

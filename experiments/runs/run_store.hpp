@@ -38,8 +38,8 @@ class RunLock {
   RunLock& operator=(const RunLock&) = delete;
 
  private:
-  int folder_descriptor_ = -1;
-  int shard_descriptor_ = -1;
+  OpenFile folder_;
+  OpenFile shard_;
 };
 
 /// Whether a run works in the folder; looks without touching.
@@ -59,18 +59,17 @@ struct RecordPlace {
 /// Reads single records of journals; safe to use from several threads.
 class JournalReader {
  public:
-  JournalReader() = default;
-  ~JournalReader();
-  JournalReader(const JournalReader&) = delete;
-  JournalReader& operator=(const JournalReader&) = delete;
-
   /// Number of the file in places. Throws InvalidInput where it cannot be opened.
   std::uint32_t add(const std::filesystem::path& file);
   /// Throws InvalidInput where the line cannot be read or is not what it was.
   JournalRecord read(const RecordPlace& place) const;
+  /// "out/journal/shard-1-of-1.journal: line 17".
+  std::string text_of(const RecordPlace& place) const;
+  /// Throws LostOutput where a journal was deleted or moved since it was added.
+  void require_in_place() const;
 
  private:
-  std::vector<std::pair<std::filesystem::path, int>> files_;  // with their descriptors
+  std::vector<OpenFile> files_;
 };
 
 /// Finished tasks by their keys: 48 bytes or so a task, the outcomes stay in the journals.
@@ -85,6 +84,7 @@ class FinishedTasks {
   /// Unknown: not finished when the journals were scanned.
   RecordPlace find(const std::string& key) const;
   JournalRecord read(const RecordPlace& place) const { return reader_->read(place); }
+  /// Lines whose tasks were not done again, as far as is known.
   const std::vector<JournalDamage>& damages() const { return damages_; }
   JournalReader& reader() const { return *reader_; }
 
@@ -111,9 +111,14 @@ class RunStore {
 
   const FinishedTasks& finished() const { return finished_; }
   RecordPlace append(const JournalRecord& record);
+  /// Every task of the run is done: the damages that it found, in its own journal or, of a run of
+  /// the whole list, in any, are history. Throws LostOutput where a journal was deleted or moved.
+  void finish();
 
  private:
   std::filesystem::path journals_;
+  std::string program_;
+  bool is_whole_;
   RunLock lock_;
   FinishedTasks finished_;
   JournalWriter writer_;

@@ -34,6 +34,12 @@ std::optional<FinishedTask> TaskOutcomes::operator[](std::size_t task) const {
   return FinishedTask{std::move(record.outcome), record.seconds};
 }
 
+void TaskOutcomes::refuse(std::size_t task, const InvalidInput& error) const {
+  if (finished_ == nullptr) throw error;
+  throw_invalid_input("{}: {}; no run has written that: delete the line, and its task is run again",
+                      finished_->reader().text_of(places_[task]), error.what());
+}
+
 TaskOutcomes stored_outcomes(const TaskExperiment& experiment, const FinishedTasks& finished,
                              const std::filesystem::path& folder) {
   TaskOutcomes outcomes(experiment.task_count(), &finished);
@@ -70,19 +76,27 @@ TaskOutcomes run_tasks(const TaskExperiment& experiment, const StudyContext& con
     context.progress(1.0 - static_cast<double>(--left) / all);
   };
   for_each_task(pending.size(), run, context.stop);
+  if (store != nullptr) store->finish();
   return outcomes;
 }
 
 std::string TaskExperiment::failure_in(const std::string& outcome) const {
-  return parsed(outcome).value("failure", std::string());
+  const nlohmann::json object = parsed(outcome);
+  const auto failure = object.find("failure");
+  if (failure == object.end()) return {};
+  MODCAL_REQUIRE(failure->is_string(), "the stored outcome of a task cannot be read: {}", outcome);
+  return failure->get<std::string>();
 }
 
 std::optional<double> TaskExperiment::number_in(const std::string& outcome,
                                                 const std::string& name) const {
   const nlohmann::json object = parsed(outcome);
   if (object.contains(name) && object[name].is_number()) return object[name].get<double>();
-  for (const auto& number : object.value("numbers", nlohmann::json::array())) {
-    if (number.at(0) == name && number.at(1).is_number()) return number.at(1).get<double>();
+  const auto numbers = object.find("numbers");
+  if (numbers == object.end()) return std::nullopt;
+  for (const auto& number : *numbers) {
+    const bool is_pair = number.is_array() && number.size() >= 2;
+    if (is_pair && number[0] == name && number[1].is_number()) return number[1].get<double>();
   }
   return std::nullopt;
 }

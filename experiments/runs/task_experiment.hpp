@@ -39,12 +39,25 @@ class TaskOutcomes {
   }
   /// nullopt: not run yet.
   std::optional<FinishedTask> operator[](std::size_t task) const;
+  /// What read(outcome) makes of the outcome of a finished task; the InvalidInput that it throws
+  /// for one that no run has written names the journal's line.
+  template <typename Read>
+  auto read(std::size_t task, const std::string& outcome, const Read& read) const
+      -> decltype(read(outcome)) {
+    try {
+      return read(outcome);
+    } catch (const InvalidInput& error) {
+      refuse(task, error);
+    }
+  }
 
   /// Different tasks may be put from different threads.
   void put(std::size_t task, const RecordPlace& place) { places_[task] = place; }
   void put(std::size_t task, FinishedTask finished) { kept_[task] = std::move(finished); }
 
  private:
+  [[noreturn]] void refuse(std::size_t task, const InvalidInput& error) const;
+
   const FinishedTasks* finished_;
   std::vector<RecordPlace> places_;
   std::vector<std::optional<FinishedTask>> kept_;
@@ -125,7 +138,7 @@ void for_each_outcome(const TaskOutcomes& outcomes, StudyResult& result, const T
       ++result.pending_tasks;
       continue;
     }
-    auto outcome = read_outcome<Outcome>(finished->outcome);
+    auto outcome = outcomes.read(task, finished->outcome, read_outcome<Outcome>);
     if (!outcome.failure.empty()) ++result.failed_tasks;
     take(task, std::move(outcome), finished->seconds);
   }

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <system_error>
-
 #include "libsim/base/options.hpp"
 
 namespace modcal {
@@ -68,14 +66,6 @@ std::string fingerprint(const std::function<void(OptionVisitor&)>& visit_options
   FingerprintWriter writer;
   visit_options(writer);
   return writer.line;
-}
-
-std::string record_fingerprint(const std::filesystem::path& file) {
-  std::error_code error;
-  const auto size = std::filesystem::file_size(file, error);
-  if (error) return " missing";
-  const auto changed = std::filesystem::last_write_time(file, error);
-  return fmt::format(" {} {}", size, changed.time_since_epoch().count());
 }
 
 }  // namespace modcal

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <exception>
-#include <filesystem>
 #include <future>
 #include <map>
 #include <mutex>
@@ -13,9 +12,6 @@ namespace modcal {
 
 /// Keys and values in the order of the visit; numbers bit for bit.
 std::string fingerprint(const std::function<void(OptionVisitor&)>& visit_options);
-
-/// Size and time of change of a recorded file; "missing" where there is none.
-std::string record_fingerprint(const std::filesystem::path& file);
 
 // What many tasks need and one computes.
 

@@ -23,6 +23,7 @@ struct StudyContext {
   std::string command;           ///< what makes the results again
   std::function<void(double)> progress = [](double) {};  ///< share done, from any thread
   StopToken stop;                                        ///< set by Ctrl-C
+  bool numbers_alone = false;  ///< nobody reads figures and signals of the result
 
   void throw_if_interrupted() const { stop.throw_if_requested(); }
 };

@@ -84,24 +84,31 @@ double DecimatedDecay::in_band_variance() const {
   return 1.0 / (power * static_cast<double>(stride));
 }
 
-DecimatedDecay decimate(const DecayRecord& record, double highest) {
-  record.require_valid();
-  const double rate = record.sample_rate;
+Decimation decimation_of(std::size_t samples, double rate, double highest) {
   MODCAL_REQUIRE(highest > 0.0 && highest < 0.5 * rate,
                  "a band up to {:g} Hz does not fit into a record of {:g} Hz: take less than half "
                  "of it",
                  highest, rate);
   const auto stride = static_cast<std::size_t>(rate / (2.6 * highest));
-  if (stride <= 1) return {record, 1, {1.0}, rate};
+  if (stride <= 1) return {1, {1.0}, samples, rate};
   const double new_rate = rate / static_cast<double>(stride);
-  const std::vector<double> taps = low_pass(1.02 * highest / rate, 0.5 * new_rate / rate);
-  MODCAL_REQUIRE(record.samples() >= 2 * taps.size(),
+  std::vector<double> taps = low_pass(1.02 * highest / rate, 0.5 * new_rate / rate);
+  MODCAL_REQUIRE(samples >= 2 * taps.size(),
                  "a record of {} samples is too short for a band up to {:g} Hz: its filter has {} "
                  "taps; take a longer record or a wider band",
-                 record.samples(), highest, taps.size());
-  DecimatedDecay result{{.sample_rate = new_rate}, stride, taps, rate};
+                 samples, highest, taps.size());
+  const std::size_t kept = (samples - taps.size()) / stride + 1;
+  return {stride, std::move(taps), kept, new_rate};
+}
+
+DecimatedDecay decimate(const DecayRecord& record, double highest) {
+  record.require_valid();
+  const double rate = record.sample_rate;
+  Decimation how = decimation_of(record.samples(), rate, highest);
+  if (how.stride <= 1) return {record, 1, {1.0}, rate};
+  DecimatedDecay result{{.sample_rate = how.rate}, how.stride, std::move(how.taps), rate};
   for (const auto& channel : record.channels) {
-    result.record.channels.push_back(filtered(channel, taps, stride));
+    result.record.channels.push_back(filtered(channel, result.taps, how.stride));
   }
   return result;
 }

@@ -51,6 +51,16 @@ struct DecimatedDecay {
   double in_band_variance() const;
 };
 
+/// How a record is decimated, from its sizes alone.
+struct Decimation {
+  std::size_t stride = 1;
+  std::vector<double> taps;
+  std::size_t kept = 0;  ///< samples
+  double rate = 0.0;     ///< of them [Hz]
+};
+/// Throws InvalidInput where decimate() does for a record of these sizes.
+Decimation decimation_of(std::size_t samples, double sample_rate, double highest);
+
 /// Keeps 0 … highest [Hz] (to 1e-4 of the amplitude) and stops everything above half the new rate
 /// by 80 dB (Kaiser, 1974); the new rate is the lowest whole fraction of the old one above
 /// 2.6·highest. The record itself where that is the old rate. Throws InvalidInput for an invalid

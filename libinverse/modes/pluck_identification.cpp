@@ -12,9 +12,11 @@ namespace modcal {
 namespace {
 
 DecayRecord after(const DecayRecord& record, double skip) {
-  const auto first = static_cast<std::size_t>(std::ceil(skip * record.sample_rate));
-  MODCAL_REQUIRE(first < record.samples(), "{:g} s are left out of a record of {:g} s", skip,
+  const double skipped = std::ceil(skip * record.sample_rate);
+  MODCAL_REQUIRE(skipped < static_cast<double>(record.samples()),
+                 "{:g} s are left out of a record of {:g} s", skip,
                  static_cast<double>(record.samples()) / record.sample_rate);
+  const auto first = static_cast<std::size_t>(skipped);
   DecayRecord rest{.sample_rate = record.sample_rate};
   for (const auto& channel : record.channels) {
     rest.channels.emplace_back(channel.begin() + static_cast<std::ptrdiff_t>(first), channel.end());
@@ -146,24 +148,22 @@ PluckIdentification identify_pluck(const DecayRecord& record, double fundamental
 }
 
 void require_decay_length(std::size_t samples, double sample_rate, const PluckOptions& options) {
-  const auto skipped = static_cast<std::size_t>(std::ceil(options.skip * sample_rate));
+  const double skipped = std::ceil(options.skip * sample_rate);
   const double duration = static_cast<double>(samples) / sample_rate;
-  MODCAL_REQUIRE(skipped < samples,
+  MODCAL_REQUIRE(skipped < static_cast<double>(samples),
                  "the first {:g} s are left out of a decay of {:.3g} s: record a longer one, or "
                  "skip less",
                  options.skip, duration);
-  // What is kept depends on the length alone.
-  const DecimatedDecay decay =
-      decimate({.sample_rate = sample_rate, .channels = {std::vector<double>(samples - skipped)}},
-               options.highest_frequency);
+  const Decimation left = decimation_of(samples - static_cast<std::size_t>(skipped), sample_rate,
+                                        options.highest_frequency);
   const std::size_t least = 2 * static_cast<std::size_t>(options.block_rows) + 1;
-  const std::size_t kept = decay.record.samples();
+  const std::size_t kept = left.kept;
   MODCAL_REQUIRE(
       kept >= least,
       "a decay of {:.3g} s leaves {} samples at {:g} Hz, too few for {} block rows: record "
       "{:.3g} s more, or take fewer block rows",
-      duration, kept, decay.record.sample_rate, options.block_rows,
-      static_cast<double>(least - std::min(kept, least)) / decay.record.sample_rate);
+      duration, kept, left.rate, options.block_rows,
+      static_cast<double>(least - std::min(kept, least)) / left.rate);
 }
 
 }  // namespace modcal

@@ -86,6 +86,7 @@ class ModelBasedEstimator final : public Estimator {
   ModelBasedResult estimate(const ModalBasis& basis, double contact, double sample_rate,
                             std::span<const double> left, std::span<const double> right,
                             const StopToken& stop = {}, bool recorded = false) const;
+  double numbers_per_sample() const override { return 100.0; }
 
  private:
   std::shared_ptr<const PreparedEstimator> do_prepare(const EstimationModel& model) const override;

@@ -39,6 +39,7 @@ struct Piece {
   const Scene& scene;
   double rate;
   const OutputRequest& outputs;
+  double record_rate;   // the piece has more where many steps make a sample [Hz]
   double length = 0.0;  // [s]
   Simulation result{};
 
@@ -54,6 +55,10 @@ struct Piece {
   }
   // A record of two samples.
   double shortest() const { return 2.0 / rate; }
+  // Ten thousand steps can be simulated in no time.
+  double first_length() const {
+    return std::max(shortest(), std::min(2e-3, 1e4 * simulator.longest_step()));
+  }
 
   // Saving a second of the record, against `other` [s].
   template <typename Other>
@@ -62,10 +67,16 @@ struct Piece {
   }
 };
 
+// A whole multiple of the sample rate at which at most a thousand steps make a sample [Hz].
+double piece_rate(const Simulator& simulator, double sample_rate) {
+  const double steps = 1.0 / (sample_rate * simulator.longest_step());
+  return sample_rate * std::max(1.0, std::ceil(steps / 1000.0));
+}
+
 // A piece that costs a twentieth of the budget or is the whole record.
 double fitting_length(const Piece& piece, double budget) {
   const double whole = piece.scene.duration;
-  double length = std::min(whole, std::max(piece.shortest(), 2e-3));
+  double length = std::min(whole, piece.first_length());
   while (length < whole && piece.seconds(piece.scene, length) < 0.05 * budget) {
     length = std::min(whole, 2.0 * length);
   }
@@ -105,7 +116,7 @@ void add_unread_outputs(const Piece& piece, std::vector<Skip>& skips) {
 }
 
 void add_reconstruction(const Piece& piece, std::vector<Skip>& skips) {
-  const double step_rate = 1.0 / piece.result.time_step, per_sample = step_rate / piece.rate;
+  const double step_rate = 1.0 / piece.result.time_step, per_sample = step_rate / piece.record_rate;
   if (per_sample < 1.5) return;
   const double saved = piece.saving(
       [&] { return piece.run(piece.scene, piece.length, step_rate, piece.outputs).seconds; });
@@ -151,7 +162,8 @@ void add_feature(const Piece& piece, const char* what, const char* reason, const
   try {
     piece.seconds(with, piece.shortest());
     // Several times as slow as the scene itself: a part of it will do.
-    const double length = std::min(piece.length, std::max(2e-3, 0.1 * piece.length));
+    const double length =
+        std::min(piece.length, std::max(piece.first_length(), 0.1 * piece.length));
     saved = difference([&] { return piece.seconds(piece.scene, length); },
                        [&] { return piece.seconds(with, length); }) /
             length;
@@ -202,7 +214,7 @@ Scene with_nodes_carried(Scene scene) {
 
 SimulationPlan plan_simulation(const Scene& scene, const Simulator& simulator, double sample_rate,
                                const OutputRequest& outputs, double budget) {
-  Piece piece{simulator, scene, sample_rate, outputs};
+  Piece piece{simulator, scene, piece_rate(simulator, sample_rate), outputs, sample_rate};
   SimulationPlan plan;
   plan.modes = static_cast<std::size_t>(scene.string.modes);
   plan.samples = sample_count(scene.duration, sample_rate);
@@ -210,7 +222,7 @@ SimulationPlan plan_simulation(const Scene& scene, const Simulator& simulator, d
   plan.piece = piece.length = fitting_length(piece, budget);
   OutputRequest listed = outputs;
   listed.switches_from = 0.0;
-  Timed timed = piece.run(scene, plan.piece, sample_rate, listed);
+  Timed timed = piece.run(scene, plan.piece, piece.rate, listed);
   piece.result = std::move(timed.result);
   const double whole = plan.piece - piece.shortest();
   plan.seconds_per_second =

@@ -11,6 +11,7 @@
 #include <limits>
 
 #include "libsim/base/error.hpp"
+#include "libsim/base/files.hpp"
 
 namespace modcal {
 namespace {
@@ -20,7 +21,7 @@ constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 std::ifstream open_text(const std::filesystem::path& path) {
   const std::string name = path.string();
-  MODCAL_REQUIRE(!std::filesystem::is_directory(path), "{}: this is a folder, not a file", name);
+  require_regular_file(path);
   errno = 0;
   std::ifstream file(path, std::ios::binary);
   MODCAL_REQUIRE(file.is_open(), "{}: cannot be opened: {}; check the path and its permissions",

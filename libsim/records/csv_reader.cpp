@@ -4,6 +4,7 @@
 
 #include "libsim/base/error.hpp"
 #include "libsim/base/units.hpp"
+#include "libsim/base/utf8.hpp"
 #include "libsim/records/csv_grammar.hpp"
 #include "libsim/records/record_file.hpp"
 #include "libsim/records/tuning.hpp"
@@ -99,7 +100,7 @@ void CsvReader::comment(std::string_view text) {
 
 void CsvReader::field(std::size_t index, std::string_view text) {
   if (columns_.empty()) {
-    headings_.emplace_back(text);
+    headings_.push_back(utf8_or_latin1(text));
     return;
   }
   if (index >= columns_.size() || !columns_[index].read) return;

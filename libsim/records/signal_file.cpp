@@ -1,13 +1,11 @@
 #include "libsim/records/signal_file.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <system_error>
 
 #include "libsim/base/error.hpp"
+#include "libsim/base/files.hpp"
 
 namespace modcal {
 namespace {
@@ -53,22 +51,9 @@ void require_one_record(std::span<const Signal> signals, std::string_view file) 
 
 void replace_file(const std::filesystem::path& path,
                   const std::function<void(const std::filesystem::path&)>& write) {
-  std::filesystem::path temporary = path;
-  // Several processes may write the same file: each under a name of its own.
-  temporary += fmt::format(".{}.part", getpid());
-  std::error_code error;
-  try {
-    write(temporary);
-  } catch (...) {
-    std::filesystem::remove(temporary, error);
-    throw;
-  }
-  std::filesystem::rename(temporary, path, error);
-  if (error) {
-    const std::string reason = error.message();
-    std::filesystem::remove(temporary, error);
-    throw_invalid_input("{}: cannot be written: {}", path.string(), reason);
-  }
+  PartFile part(path);
+  write(part.path());
+  part.put_in_place();
 }
 
 std::string wav_comment(std::span<const Signal> signals, double full_scale) {

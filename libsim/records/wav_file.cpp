@@ -3,6 +3,7 @@
 #include <sndfile.hh>
 
 #include "libsim/base/error.hpp"
+#include "libsim/base/files.hpp"
 #include "libsim/records/record_file.hpp"
 #include "libsim/records/signal_file.hpp"
 
@@ -101,7 +102,7 @@ bool is_cut_off(SndfileHandle& file) {
 }
 
 SndfileHandle open_wav(const std::string& name) {
-  MODCAL_REQUIRE(!std::filesystem::is_directory(name), "{}: this is a folder, not a file", name);
+  require_regular_file(name);
   MODCAL_REQUIRE(std::filesystem::exists(name), "{}: there is no such file; check the path", name);
   MODCAL_REQUIRE(std::filesystem::file_size(name) > 0, "{}: the file is empty", name);
   SndfileHandle file(name);

@@ -101,9 +101,14 @@ std::vector<std::string> IdentifyOptions::plan() const {
 }
 
 std::optional<PlannedSimulations> IdentifyOptions::planned_simulations() const {
+  // The fit has columns for every mode; of the samples, the band's share is left.
+  const double left =
+      std::min(1.0, 2.6 * identification.highest_frequency / measurement.sample_rate);
+  const double columns = 13.0 * static_cast<double>(truth.scene.string.modes);
   return PlannedSimulations{.truth = truth,
                             .sample_rate = measurement.sample_rate,
-                            .outputs = {.left_reaction = true, .right_reaction = true}};
+                            .outputs = {.left_reaction = true, .right_reaction = true},
+                            .numbers_per_sample = 12.0 + left * columns};
 }
 
 IdentifyOutcome identify_outcome(const IdentifyOptions& options, const StudyContext& context) {

@@ -154,7 +154,9 @@ std::optional<PlannedSimulations> SchellengExperiment::planned_simulations() con
       .truth = {options_.cell_scene(std::min(middle, options_.cells() - 1)), options_.simulator},
       .sample_rate = options_.sample_rate,
       .outputs = options_.outputs(),
-      .count = options_.cells()};
+      .count = options_.cells(),
+      .numbers_per_sample = 20.0,
+      .are_kept = false};
 }
 
 // The axes are left out: a cell is the same in any map that has it.

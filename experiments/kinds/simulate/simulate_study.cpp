@@ -40,8 +40,10 @@ std::vector<std::string> SimulateOptions::plan() const {
 }
 
 std::optional<PlannedSimulations> SimulateOptions::planned_simulations() const {
-  return PlannedSimulations{
-      .truth = truth, .sample_rate = measurement.sample_rate, .outputs = request_of(outputs)};
+  return PlannedSimulations{.truth = truth,
+                            .sample_rate = measurement.sample_rate,
+                            .outputs = request_of(outputs),
+                            .numbers_per_sample = 3.0 * static_cast<double>(outputs.size()) + 2.0};
 }
 
 namespace {

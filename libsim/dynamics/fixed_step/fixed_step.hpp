@@ -68,6 +68,7 @@ class FixedStepSimulator : public Simulator {
                  const StopToken& stop) const override {
     return simulate_fixed_step(scene, sample_rate, outputs, stop, options_.time_step, kScheme);
   }
+  double stated_step() const override { return options_.time_step; }
   Options options_;
 };
 

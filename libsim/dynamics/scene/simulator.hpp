@@ -1,6 +1,8 @@
 // Simulation of a bowed string in modal form.
 #pragma once
 
+#include <limits>
+
 #include "libsim/base/task_loop.hpp"
 #include "libsim/dynamics/scene/scene.hpp"
 #include "libsim/dynamics/scene/simulation.hpp"
@@ -26,8 +28,11 @@ class Simulator {
   /// What of the scene this simulator cannot simulate, whatever the numbers; simulate() throws
   /// InvalidInput then.
   std::vector<SceneRefusal> refusals(const Scene& scene) const { return unsupported(scene); }
+  /// The longest step that it takes [s]; infinite where steps are no longer than they need be.
+  double longest_step() const { return stated_step(); }
 
  private:
+  virtual double stated_step() const { return std::numeric_limits<double>::infinity(); }
   virtual std::vector<SceneRefusal> unsupported(const Scene& /*scene*/) const { return {}; }
   /// May end early, with any result, once `stop` is requested.
   virtual Simulation run(const Scene& scene, double sample_rate, const OutputRequest& outputs,

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <string_view>
 
 namespace modcal::testing {
 
@@ -17,6 +18,25 @@ inline std::string content_of(const std::filesystem::path& path) {
   text << std::ifstream(path, std::ios::binary).rdbuf();
   return text.str();
 }
+
+/// A simulation of a few milliseconds.
+inline constexpr std::string_view kSmallSimulation = R"(kind: simulate
+title: small
+scene:
+  string: {length: 0.33 m, linear_density: 3.1e-3 kg/m, fundamental: 196 Hz, modes: 10}
+  bow: {position: 30 mm, velocity: 0.1 m/s, normal_force: 1 N}
+  friction: {type: coulomb_exponential, static: 0.4, dynamic: 0.2, decay: 5 s/m}
+  duration: 0.1 s
+simulator: {type: newmark_explicit, time_step: 4 us}
+measurement: {sample_rate: 12.5 kHz, noise_level: 1 %}
+)";
+
+/// Axes that make eight tasks of it.
+inline constexpr std::string_view kEightTasks = R"(sweep:
+  product:
+    scene.bow.normal_force: [0.98 N, 1 N]
+    seed: [1, 2, 3, 4]
+)";
 
 /// A test with a folder of its own.
 class ProgramTest : public ::testing::Test {

@@ -105,8 +105,8 @@ TEST_F(Program, FindsAnUnwritableFolderBeforeComputing) {
   write("file", "kept");
   for (const char* out : {"file", "file/below", "/proc/modcal"}) {
     // An hour of scene: the test would not end if it were simulated first.
-    const Outcome outcome =
-        modcal(std::string("run small.yaml --set scene.duration='3100 s' --out ") + out);
+    const Outcome outcome = modcal(
+        std::string("run small.yaml --memory 1TB --set scene.duration='3100 s' --out ") + out);
     EXPECT_EQ(outcome.code, 3) << out;
     EXPECT_THAT(outcome.err, HasSubstr(std::string("the output folder ") + out));
     EXPECT_THAT(outcome.err, HasSubstr("choose another one with --out"));
@@ -259,7 +259,7 @@ TEST_F(Program, PlansSkipsAndPrice) {
 }
 
 TEST_F(Program, PlansWithoutRunning) {
-  const Outcome outcome = modcal("plan small.yaml --set scene.duration='3100 s'");
+  const Outcome outcome = modcal("plan small.yaml --memory 1TB --set scene.duration='3100 s'");
   EXPECT_EQ(outcome.code, 0);
   EXPECT_THAT(outcome.out, Not(IsEmpty()));
   EXPECT_FALSE(std::filesystem::exists(folder() / "out"));

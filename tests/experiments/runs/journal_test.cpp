@@ -2,8 +2,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdlib>
 #include <fstream>
 #include <limits>
@@ -160,15 +162,47 @@ TEST_F(Journal, ReadsAllJournalsOfAFolderInTheOrderOfTheirNames) {
 }
 
 TEST_F(Journal, SaysWhatAFullDiskMeans) {
-  std::filesystem::create_symlink("/dev/full", file());
+  JournalWriter writer(file(), "program");
+  writer.append(record(0));
+  const std::string before = bytes();
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  rlimit limit{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &limit), 0);
+  const rlimit little{before.size() + 10, limit.rlim_max};  // a part of the next line
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &little), 0);
+  std::string reason = "a full disk goes unnoticed";
   try {
-    JournalWriter writer(file(), "program");
-    writer.append(record(0));
-    FAIL() << "a full disk goes unnoticed";
+    writer.append(record(1));
   } catch (const InvalidInput& error) {
-    EXPECT_THAT(error.what(), HasSubstr("No space left on device"));
-    EXPECT_THAT(error.what(), HasSubstr("what the journal holds is not repeated"));
+    reason = error.what();
   }
+  setrlimit(RLIMIT_FSIZE, &limit);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_THAT(reason, HasSubstr("File too large; make room and run the same command again"));
+  EXPECT_THAT(reason, HasSubstr("what the journal holds is not repeated"));
+  EXPECT_EQ(bytes(), before);
+}
+
+TEST_F(Journal, NoticesThatItIsGone) {
+  JournalWriter writer(file(), "program");
+  writer.append(record(0));
+  std::filesystem::rename(file(), folder() / "elsewhere");
+  EXPECT_THROW(writer.append(record(1)), LostOutput);
+}
+
+TEST_F(Journal, NamesNoDamageWhoseTaskWasDoneAgain) {
+  write_records(0, 3);
+  std::string text = bytes();
+  text[text.size() - 5] ^= 1;
+  replace(text);
+  ASSERT_EQ(read_journal(file()).damages.size(), 1u);
+  {
+    JournalWriter writer(file(), "program");
+    writer.append(record(2));
+    writer.declare_repaired();
+  }
+  EXPECT_TRUE(read_journal(file()).damages.empty());
+  EXPECT_EQ(read_journal(file()).records.size(), 4u);
 }
 
 TEST_F(Journal, KeepsUnusualTimesAndLongOutcomes) {

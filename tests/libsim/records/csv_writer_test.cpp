@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <bit>
 #include <cmath>
+#include <csignal>
 #include <limits>
 #include <sstream>
 
@@ -100,12 +102,18 @@ TEST_F(CsvWriter, RefusesWhatCannotBeOneRecord) {
 
 TEST_F(CsvWriter, LeavesAnExistingFileAloneWhenItFails) {
   write("a.csv", "kept");
-  std::filesystem::create_directory(
-      path(fmt::format("a.csv.{}.part", getpid())));  // in the way of the temporary file
-  EXPECT_THAT(refusal([&] {
-                write_csv(path("a.csv"), std::vector{Signal{"R1", "N", 4.0, {1.0}}});
-              }),
-              HasSubstr("a.csv: cannot be written"));
+  // As on a full disk.
+  const auto before = std::signal(SIGXFSZ, SIG_IGN);
+  rlimit limit{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &limit), 0);
+  const rlimit nothing{0, limit.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &nothing), 0);
+  const std::string reason = refusal([&] {
+    write_csv(path("a.csv"), std::vector{Signal{"R1", "N", 4.0, {1.0}}});
+  });
+  setrlimit(RLIMIT_FSIZE, &limit);
+  std::signal(SIGXFSZ, before);
+  EXPECT_THAT(reason, HasSubstr("a.csv: writing failed: File too large"));
   EXPECT_EQ(content(path("a.csv")), "kept");
 }
 

@@ -1,0 +1,166 @@
+// What earlier runs, other programs and other people have left in a folder of results.
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "experiments/runs/journal.hpp"
+#include "tests/experiments/cli/program_run.hpp"
+
+namespace modcal {
+namespace {
+
+using nlohmann::json;
+using testing::content_of;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+class Leftovers : public testing::ProgramTest {
+ protected:
+  Leftovers() {
+    write("small.yaml", std::string(testing::kSmallSimulation));
+    write("list.yaml", std::string(testing::kSmallSimulation) + std::string(testing::kEightTasks));
+  }
+
+  static constexpr const char* kJournal = "a/journal/shard-1-of-1.journal";
+
+  bool has_parts() const {
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder())) {
+      if (entry.path().extension() == ".part") return true;
+    }
+    return false;
+  }
+};
+
+TEST_F(Leftovers, ADamagedLineIsNamedUntilItsTaskWasDoneAgain) {
+  ASSERT_EQ(modcal("run list.yaml --out a").code, 0);
+  std::string journal = content_of(folder() / kJournal);
+  journal[journal.size() / 2] ^= 1;
+  write(kJournal, journal);
+  EXPECT_THAT(modcal("status a").err, HasSubstr("does not match its checksum"));
+  EXPECT_THAT(modcal("run list.yaml --out a").err, HasSubstr("its task will be run again"));
+  for (const char* command : {"run list.yaml --out a", "status a", "merge a", "report a"}) {
+    const Outcome outcome = modcal(command);
+    EXPECT_EQ(outcome.code, 0) << command;
+    EXPECT_THAT(outcome.err, Not(HasSubstr("checksum"))) << command;
+  }
+  EXPECT_EQ(json::parse(modcal("status a --json").out)["damaged_lines"], 0);
+  // Of another shard, too, once the whole list was run.
+  ASSERT_EQ(
+      modcal("run list.yaml --out a --shard 2/4 --set seed=9 --set scene.duration='0.2 s'").code,
+      0);
+  std::string other = content_of(folder() / "a/journal/shard-2-of-4.journal");
+  other[other.size() / 2] ^= 1;
+  write("a/journal/shard-2-of-4.journal", other);
+  EXPECT_THAT(modcal("run list.yaml --out a").err, HasSubstr("shard-2-of-4.journal: line 2"));
+  EXPECT_THAT(modcal("run list.yaml --out a").err, Not(HasSubstr("checksum")));
+}
+
+TEST_F(Leftovers, AForgedOutcomeIsNamedWithFileAndLine) {
+  for (const char* forged :
+       {R"({"failure":1})", "[]", "3", R"({"failure":"","numbers":[3]})", "no JSON", "{}"}) {
+    ASSERT_EQ(modcal("run list.yaml --out a").code, 0);
+    std::istringstream lines(content_of(folder() / kJournal));
+    std::string text, line;
+    for (int number = 1; std::getline(lines, line); ++number) {
+      if (number == 3) {
+        // "checksum key task seconds outcome"
+        const std::size_t outcome = line.find(" {");
+        const std::string content = line.substr(17, outcome - 17) + " " + forged;
+        line = checksum_of(content) + " " + content;
+      }
+      text += line + "\n";
+    }
+    write(kJournal, text);
+    for (const char* command : {"run list.yaml --out a", "report a", "status a", "merge a"}) {
+      const Outcome outcome = modcal(command);
+      EXPECT_TRUE(outcome.code == 3 || (outcome.code == 0 && forged[0] == '{')) << command;
+      if (outcome.code == 0) continue;
+      EXPECT_THAT(outcome.err, HasSubstr(std::string(kJournal) + ": line 3: ")) << command;
+      EXPECT_THAT(outcome.err, HasSubstr("delete the line, and its task is run again"));
+    }
+    shell("sed -i 3d a/journal/shard-1-of-1.journal");
+    EXPECT_EQ(modcal("run list.yaml --out a").code, 0) << forged;
+    shell("rm -r a");
+  }
+}
+
+TEST_F(Leftovers, HalfWrittenFilesOfKilledRunsAreRemoved) {
+  ASSERT_EQ(modcal("run small.yaml --out a").code, 0);
+  shell(
+      "touch -d '1 hour ago' a/report.html.4711.part a/levels.csv.0badcafe.part "
+      "a/figures.4711.part a/results.sqlite.99.part; mkdir -p a/figures; "
+      "touch -d '1 hour ago' a/figures/x.csv.12.part");
+  ASSERT_EQ(modcal("run small.yaml --out a").code, 0);
+  EXPECT_FALSE(has_parts());
+  ASSERT_EQ(modcal("run list.yaml --out a").code, 0);
+  shell("touch -d '1 hour ago' a/results.sqlite.4711.part");
+  ASSERT_EQ(modcal("merge a").code, 0);
+  EXPECT_FALSE(has_parts());
+}
+
+TEST_F(Leftovers, LinksOfOthersAreNotWrittenThrough) {
+  write("victim", "kept\n");
+  std::filesystem::create_directories(folder() / "a/journal");
+  const auto refuses = [&](const std::string& name, const std::string& how) {
+    shell("ln -f " + how + " \"$PWD\"/victim a/" + name);
+    const Outcome outcome = modcal("run list.yaml --out a");
+    EXPECT_EQ(content_of(folder() / "victim"), "kept\n") << name << how;
+    shell("rm -f a/" + name);
+    return outcome;
+  };
+  for (const char* name :
+       {"journal/shard-1-of-1.journal", "journal/shard-1-of-1.lock", "journal/run.lock"}) {
+    const Outcome symbolic = refuses(name, "-s");
+    EXPECT_EQ(symbolic.code, 3) << name;
+    EXPECT_THAT(symbolic.err, HasSubstr("is a link, not a file")) << name;
+    const Outcome hard = refuses(name, "");
+    EXPECT_EQ(hard.code, 3) << name;
+    EXPECT_THAT(hard.err, HasSubstr("a hard link")) << name;
+  }
+  for (const char* how : {"-s", ""}) {
+    EXPECT_EQ(refuses(".modcal-write-test", how).code, 0);
+    EXPECT_EQ(refuses("report.html", how).code, 0);
+    EXPECT_EQ(refuses("provenance.json", how).code, 0);
+  }
+  // A full device in the place of the journal, as a link can put it there.
+  shell("rm -r a; mkdir -p a/journal; ln -s /dev/full a/journal/shard-1-of-1.journal");
+  EXPECT_EQ(modcal("run list.yaml --out a").code, 3);
+}
+
+TEST_F(Leftovers, TablesHoldNoFormulas) {
+  write("formula.yaml", std::string(testing::kSmallSimulation) +
+                            "sweep:\n  product:\n    title: [\"=cmd|' /C calc'!A0\", '@SUM(1)', "
+                            "'-2+3+cmd|x', '+1 dB', '-3 dB', '-1']\n");
+  const Outcome run = modcal("run formula.yaml --out a");
+  if (run.code != 0) GTEST_SKIP() << "no text can be an axis: " << run.err;
+  const std::string table = content_of(folder() / "a/tasks.csv");
+  EXPECT_THAT(table, HasSubstr("'=cmd|"));
+  EXPECT_THAT(table, Not(HasSubstr(",=cmd")));
+}
+
+TEST_F(Leftovers, NamesReachNoTerminalRaw) {
+  const std::string name = "evil\033[2J\r.yaml";
+  write(name, std::string(testing::kSmallSimulation));
+  const Outcome valid = modcal("validate \"$(printf 'evil\\033[2J\\r.yaml')\"");
+  EXPECT_EQ(valid.code, 0) << valid.err;
+  EXPECT_EQ(valid.out, "evil\\x1b[2J\\x0d.yaml: valid, kind simulate\n");
+  const Outcome wrong =
+      modcal("run \"$(printf 'evil\\033[2J\\r.yaml')\" --set \"$(printf 'ti\\033[31mtle=1')\"");
+  EXPECT_EQ(wrong.code, 3);
+  EXPECT_THAT(wrong.err, HasSubstr("\\x1b[31m"));
+  EXPECT_THAT(wrong.err + wrong.out, Not(HasSubstr("\033")));
+  write("title.yaml", "kind: simulate\ntitle: \"a\\e[31mb\"\nnonsense\\e: 1\n");
+  EXPECT_THAT(modcal("validate title.yaml").err, Not(HasSubstr("\033")));
+}
+
+TEST_F(Leftovers, AFileOfDotsGetsAFolderOfItsOwn) {
+  write("...yaml", std::string(testing::kSmallSimulation));
+  EXPECT_EQ(modcal("run ...yaml").code, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder() / "out/...yaml/report.html"));
+  EXPECT_FALSE(std::filesystem::exists(folder() / "report.html"));
+  EXPECT_FALSE(std::filesystem::exists(folder() / "out/report.html"));
+}
+
+}  // namespace
+}  // namespace modcal

@@ -1,0 +1,121 @@
+// What a command has computed reaches the user, or its exit code says that it has not.
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/experiments/cli/program_run.hpp"
+
+namespace modcal {
+namespace {
+
+using testing::content_of;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+constexpr int kOutputLost = 7;
+
+class Output : public testing::ProgramTest {
+ protected:
+  Output() {
+    write("small.yaml", std::string(testing::kSmallSimulation));
+    write("list.yaml", std::string(testing::kSmallSimulation) + std::string(testing::kEightTasks));
+  }
+
+  // Runs a list of tasks and `harm` as soon as its journal holds a task; tasks take long enough.
+  Outcome run_while(const std::string& file, const std::string& harm) const {
+    return shell("'" MODCAL_PROGRAM "' run " + file +
+                 " --out a --threads 1 --set scene.duration='3 s' & "
+                 "while [ $(cat a/journal/*.journal 2>/dev/null | wc -l) -lt 3 ]; do sleep 0.01; "
+                 "done; " +
+                 harm + "; wait $!");
+  }
+};
+
+TEST_F(Output, IsAnErrorWhereStandardOutputTakesNothing) {
+  ASSERT_EQ(modcal("run list.yaml --out a").code, 0);
+  for (const char* command :
+       {"run small.yaml --out b", "run list.yaml --out a", "validate small.yaml",
+        "validate small.yaml --json", "list", "describe simulator modal_exact", "schema",
+        "plan small.yaml", "merge a", "status a", "status a --json", "report a", "--help",
+        "--version", "run --help"}) {
+    const Outcome full = modcal(std::string(command) + " >/dev/full");
+    EXPECT_EQ(full.code, kOutputLost) << command;
+    EXPECT_THAT(full.err, HasSubstr("standard output has not taken the answer: No space left"))
+        << command;
+    EXPECT_THAT(full.err, Not(HasSubstr("internal"))) << command;
+  }
+  // What was computed is there nevertheless.
+  EXPECT_TRUE(std::filesystem::exists(folder() / "b/report.html"));
+  EXPECT_EQ(modcal("validate small.yaml >&-").code, kOutputLost);
+  EXPECT_EQ(modcal("run small.yaml --out c >&-").code, kOutputLost);
+  // Nothing was to be said there.
+  EXPECT_EQ(modcal("validate missing.yaml >&-").code, 3);
+}
+
+TEST_F(Output, AReaderThatGoesAwayEndsNoRun) {
+  const Outcome gone = shell("{ '" MODCAL_PROGRAM
+                             "' run list.yaml --out a; echo $? >code; } 2>&1 "
+                             "| true");
+  EXPECT_EQ(gone.code, 0);
+  EXPECT_EQ(content_of(folder() / "code"), "7\n");
+  EXPECT_TRUE(std::filesystem::exists(folder() / "a/report.html"));
+}
+
+TEST_F(Output, WorksOnWhereStandardErrorTakesNothing) {
+  for (const char* error : {"2>/dev/full", "2>&-"}) {
+    const Outcome run = modcal(std::string("run list.yaml --out a --set seed=1 ") + error);
+    EXPECT_EQ(run.code, 0) << error;
+    EXPECT_THAT(run.out, Not(IsEmpty()));
+    // Nothing that was to be said there stands in a file.
+    const std::string journal = content_of(folder() / "a/journal/shard-1-of-1.journal");
+    EXPECT_EQ(std::count(journal.begin(), journal.end(), '\n'), 1 + 8);
+    std::filesystem::remove_all(folder() / "a");
+    EXPECT_EQ(modcal(std::string("validate missing.yaml ") + error).code, 3);
+    EXPECT_EQ(modcal(std::string("nonsense ") + error).code, 2);
+  }
+}
+
+TEST_F(Output, NoticesThatResultsAreDeletedOrMovedWhileItWorks) {
+  for (const char* harm : {"rm -r a", "mv a b", "rm -r a/journal", "mv a/journal j",
+                           "rm a/journal/*.journal", "mv a/journal/shard-1-of-1.journal x"}) {
+    const Outcome outcome = run_while("list.yaml", harm);
+    EXPECT_EQ(outcome.code, kOutputLost) << harm << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("was deleted, moved or replaced while the command worked"))
+        << harm;
+    EXPECT_THAT(outcome.err, HasSubstr("shard-1-of-1.journal")) << harm;
+    shell("rm -rf a b j x");
+  }
+  for (const char* file : {"resolved.yaml", "provenance.json"}) {
+    const Outcome outcome = run_while("list.yaml", std::string("rm a/") + file);
+    EXPECT_EQ(outcome.code, kOutputLost) << file << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr(std::string("a/") + file + ": the file was deleted"));
+    // All else is there.
+    EXPECT_TRUE(std::filesystem::exists(folder() / "a/report.html"));
+    shell("rm -rf a");
+  }
+}
+
+TEST_F(Output, NoticesThatAnotherShardsJournalIsGone) {
+  ASSERT_EQ(modcal("run list.yaml --out a --shard 1/4 --set scene.duration='3 s'").code, 0);
+  const Outcome outcome = shell(
+      "'" MODCAL_PROGRAM
+      "' run list.yaml --out a --threads 1 --set scene.duration='3 s' & "
+      "while [ $(cat a/journal/shard-1-of-1.journal 2>/dev/null | wc -l) -lt 3 ]; do sleep 0.01; "
+      "done; rm a/journal/shard-1-of-4.journal; wait $!");
+  EXPECT_EQ(outcome.code, kOutputLost);
+  EXPECT_THAT(outcome.err, HasSubstr("a/journal/shard-1-of-4.journal: the journal was deleted"));
+}
+
+TEST_F(Output, WritesWhatItFoundWhereTheFolderOfASingleRunIsGone) {
+  const Outcome outcome = shell("'" MODCAL_PROGRAM
+                                "' run small.yaml --out a --set scene.duration='60 s' & "
+                                "while [ ! -e a/provenance.json ]; do sleep 0.01; done; "
+                                "mv a b; wait $!");
+  EXPECT_EQ(outcome.code, kOutputLost);
+  EXPECT_THAT(outcome.err, HasSubstr("the folder of the results was deleted, moved or replaced"));
+  EXPECT_TRUE(std::filesystem::exists(folder() / "a/report.html"));
+}
+
+}  // namespace
+}  // namespace modcal

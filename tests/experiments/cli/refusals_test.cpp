@@ -1,0 +1,196 @@
+// Whatever a user gives: refused at once, in words, and never an internal error.
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/experiments/cli/program_run.hpp"
+
+namespace modcal {
+namespace {
+
+using nlohmann::json;
+using testing::content_of;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class Refusals : public testing::ProgramTest {
+ protected:
+  Refusals() {
+    write("small.yaml", std::string(testing::kSmallSimulation));
+    write("list.yaml", std::string(testing::kSmallSimulation) + std::string(testing::kEightTasks));
+  }
+  // Within `seconds`, or the code is 124.
+  Outcome within(int seconds, const std::string& arguments) const {
+    return shell("timeout " + std::to_string(seconds) + " '" MODCAL_PROGRAM "' " + arguments);
+  }
+};
+
+TEST_F(Refusals, WhatIsNoFileIsNotOpened) {
+  ASSERT_EQ(modcal("run list.yaml --out a").code, 0);
+  shell("mkfifo pipe.yaml pipe.csv pipe.wav; ln -s /dev/zero zero.csv; mkdir folder.yaml");
+  for (const char* command :
+       {"validate pipe.yaml", "validate /dev/zero", "validate folder.yaml", "inspect pipe.csv",
+        "inspect pipe.wav", "inspect --format wav /dev/zero", "inspect --format csv /dev/zero",
+        "inspect zero.csv", "inspect folder.yaml --format wav"}) {
+    const Outcome outcome = within(20, command);
+    EXPECT_EQ(outcome.code, 3) << command << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr(", not a file")) << command;
+  }
+  for (const char* name :
+       {"journal/pipe.journal", "provenance.json", "resolved.yaml", "journal/shard-1-of-1.lock"}) {
+    const std::string file = std::string("a/") + name;
+    for (const char* make : {"mkfifo ", "mkdir ", "ln -s /dev/zero "}) {
+      shell("mv " + file + " kept; " + make + file);
+      for (const char* command : {"status a", "merge a", "report a", "run list.yaml --out a"}) {
+        const Outcome outcome = within(20, command);
+        EXPECT_TRUE(outcome.code == 3 || outcome.code == 0) << command << name << outcome.code;
+        EXPECT_THAT(outcome.err, Not(HasSubstr("internal"))) << command << name;
+      }
+      shell("rm -rf " + file + "; mv kept " + file);
+    }
+  }
+  EXPECT_EQ(modcal("status a").code, 0);
+}
+
+TEST_F(Refusals, ProvenanceOfWrongTypes) {
+  ASSERT_EQ(modcal("run list.yaml --out a").code, 0);
+  const json good = json::parse(content_of(folder() / "a/provenance.json"));
+  for (const char* key : {"folder", "program", "command"}) {
+    for (const json& value : {json(3), json(nullptr), json::array(), json::object()}) {
+      json wrong = good;
+      wrong[key] = value;
+      write("a/provenance.json", wrong.dump());
+      const Outcome outcome = modcal("status a");
+      EXPECT_EQ(outcome.code, 3) << wrong;
+      EXPECT_THAT(outcome.err, HasSubstr(std::string("a/provenance.json does not say where the "
+                                                     "run came from: ") +
+                                         key));
+    }
+  }
+  for (const char* text : {"", "[]", "3", "{", "\xFF"}) {
+    write("a/provenance.json", text);
+    EXPECT_EQ(modcal("report a").code, 3) << text;
+  }
+}
+
+TEST_F(Refusals, NamesThatAreNotUtf8) {
+  const Outcome run = shell("cp small.yaml \"$(printf 'caf\\351.yaml')\"; '" MODCAL_PROGRAM
+                            "' run \"$(printf 'caf\\351.yaml')\"");
+  EXPECT_EQ(run.code, 2);
+  EXPECT_THAT(run.err, HasSubstr("\"caf\\xe9.yaml\" is not UTF-8 text"));
+  const Outcome inside =
+      shell("mkdir \"$(printf 'd\\351')\"; cd \"$(printf 'd\\351')\"; '" MODCAL_PROGRAM
+            "' run ../small.yaml");
+  EXPECT_EQ(inside.code, 0) << inside.err;
+  const Outcome here =
+      shell("cd \"$(printf 'd\\351')\"; cp ../small.yaml .; '" MODCAL_PROGRAM "' run small.yaml");
+  EXPECT_EQ(here.code, 3) << here.err;
+  EXPECT_THAT(here.err, HasSubstr("has a name that is not UTF-8 text: rename it"));
+  const Outcome journal = shell("'" MODCAL_PROGRAM
+                                "' run list.yaml --out a; cp a/journal/*.journal"
+                                " \"$(printf 'a/journal/\\351.journal')\"; '" MODCAL_PROGRAM
+                                "' merge a && '" MODCAL_PROGRAM "' run list.yaml --out a");
+  EXPECT_EQ(journal.code, 0) << journal.err;
+}
+
+TEST_F(Refusals, ColumnsNamedInLatin1AreRead) {
+  std::string text = "t [s],Kraft l\xE4ngs [\xB5N],R2 [N]\n";
+  for (int i = 0; i < 64; ++i) {
+    text += std::to_string(i) + "e-3," + std::to_string(i * i % 7) + "," +
+            std::to_string(i * i % 11) + "\n";
+  }
+  write("a.csv", text);
+  const Outcome inspected = modcal("inspect a.csv --json");
+  EXPECT_THAT(inspected.err, Not(HasSubstr("internal")));
+  const json report = json::parse(inspected.out);
+  EXPECT_EQ(report["channels"][0]["name"], "Kraft längs");
+  EXPECT_EQ(report["channels"][0]["unit"], "µN");
+  EXPECT_THAT(modcal("inspect a.csv").out, HasSubstr("Kraft längs"));
+  // A field that is none.
+  write("b.csv", "t [s],R1 [N]\n0,1\n1,2\xB0\n");
+  EXPECT_THAT(modcal("inspect b.csv").out + modcal("inspect b.csv").err, HasSubstr("\\xb0"));
+  EXPECT_EQ(json::parse(modcal("inspect b.csv --json").out)["file"], "b.csv");
+}
+
+TEST_F(Refusals, WhatNeedsMoreMemoryThanThereIs) {
+  const Outcome samples = within(5, "validate small.yaml --set scene.duration=160000");
+  EXPECT_EQ(samples.code, 3);
+  EXPECT_THAT(samples.err, HasSubstr("the run needs about 352 GB of memory, there are "));
+  EXPECT_THAT(samples.err, HasSubstr("160000 s at 12500 Hz make 2e+09 samples; shorten the "
+                                     "record, lower measurement.sample_rate"));
+  // What may be used can be stated, and threads that share a list count.
+  EXPECT_EQ(modcal("validate small.yaml --memory 1TB --set scene.duration=160000").code, 0);
+  const Outcome little = modcal("validate small.yaml --memory 100kB");
+  EXPECT_EQ(little.code, 3);
+  EXPECT_THAT(little.err, HasSubstr("of memory, --memory allows 100 kB"));
+  EXPECT_EQ(modcal("validate small.yaml --memory 1MB").code, 0);
+  EXPECT_EQ(modcal("validate small.yaml --memory nonsense").code, 2);
+  // Whoever goes on with a run goes on with what it may use.
+  EXPECT_EQ(modcal("run list.yaml --memory 1GB --out a").code, 0);
+  EXPECT_THAT(modcal("status a --json").out, HasSubstr(" --memory 1000000000"));
+  const json plan = json::parse(modcal("plan small.yaml --json").out);
+  EXPECT_EQ(plan["memory_bytes"], 8 * 22 * 1250);
+  EXPECT_THAT(modcal("plan small.yaml").out, HasSubstr("memory: about 220 kB of "));
+  EXPECT_EQ(within(5, "run small.yaml --set scene.duration=160000").code, 3);
+}
+
+TEST_F(Refusals, LongDecaysAreJudgedByTheirSizes) {
+  std::string text(testing::kSmallSimulation);
+  text.replace(text.find("simulate"), 8, "identify");
+  text.replace(text.find("  duration"), 0,
+               "  initial: {type: pluck, position: 43 mm, displacement: 1 mm, width: 3 mm}\n");
+  text += "identification: {highest_frequency: 2 kHz}\n";
+  write("identify.yaml", text);
+  const Outcome decay = shell("ulimit -v 2000000; timeout 10 '" MODCAL_PROGRAM
+                              "' validate identify.yaml --memory 1TB "
+                              "--set scene.duration='20000 s'");
+  EXPECT_EQ(decay.code, 0) << decay.err;
+  for (const char* option : {"scene.duration", "identification.skip"}) {
+    const Outcome forever =
+        within(10, std::string("validate identify.yaml --set ") + option + "='1e15 s'");
+    EXPECT_EQ(forever.code, 3) << forever.err;
+  }
+  EXPECT_EQ(within(10, "validate small.yaml --set scene.duration='1e300 s'").code, 3);
+}
+
+TEST_F(Refusals, MemoryThatIsNotThereIsNoInternalError) {
+  const Outcome outcome = shell("ulimit -v 600000; '" MODCAL_PROGRAM
+                                "' run small.yaml --memory 1TB --set scene.duration='2000 s' --set "
+                                "simulator='{type: modal_exact, time_step: 80 us}' --out a");
+  EXPECT_EQ(outcome.code, 3) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("modcal run small.yaml --memory 1TB"));
+  EXPECT_THAT(outcome.err, HasSubstr("does not suffice; shorten the record"));
+}
+
+TEST_F(Refusals, APlanTakesItsSecondHoweverLongTheRunWould) {
+  for (const char* file : {"small.yaml", "list.yaml"}) {
+    const Outcome plan =
+        within(60, std::string("plan ") + file + " --json --set simulator.time_step='1e-12 s'");
+    EXPECT_EQ(plan.code, 0) << file << plan.err;
+    const json object = json::parse(plan.out);
+    // Ten times the steps take ten times as long, whatever was tried out.
+    EXPECT_GT(object["price"]["core_seconds"], 100.0) << file;
+    EXPECT_NEAR(object["simulation"]["longest_step"], 1e-12, 1e-15);
+    EXPECT_EQ(object["simulation"]["samples"], 1250);
+  }
+}
+
+TEST_F(Refusals, ParsingAndValidationEndAtOnceWhenAsked) {
+  // A list of lists that takes seconds to read.
+  std::string text = std::string(testing::kSmallSimulation) + "figures: [";
+  for (int i = 0; i < 400000; ++i) text += "{id: a, quantities: [y]}, ";
+  write("long.yaml", text + "]\n");
+  for (const char* signal : {"INT", "TERM"}) {
+    const Outcome outcome = shell(std::string("timeout --foreground -k 2 -s ") + signal +
+                                  " 0.2 '" MODCAL_PROGRAM "' validate long.yaml");
+    // 124: timeout's own code for a program that ended when it was told to; 137: it had to kill.
+    EXPECT_EQ(outcome.code, 124) << outcome.code;
+  }
+  const Outcome code = shell("'" MODCAL_PROGRAM
+                             "' validate long.yaml & sleep 0.2; kill -TERM $!; "
+                             "wait $!");
+  EXPECT_EQ(code.code, 130);
+}
+
+}  // namespace
+}  // namespace modcal
