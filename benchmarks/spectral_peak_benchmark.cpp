@@ -71,8 +71,7 @@ const Case& the_case() {
 
 // All 50 frequencies, blind modes included: the work the paper describes.
 CalibrationOptions all_modes(bool skip_settled = false) {
-  CalibrationOptions options;
-  options.parameters.frequencies = "all";
+  CalibrationOptions options = calibration_of_the_paper();
   options.optimizer =
       Choice<Optimizer>::of<ModeByMode>("mode_by_mode", {.skip_settled = skip_settled});
   options.excitation_threshold = 0.0;

@@ -56,9 +56,7 @@ bool at_optimum(StopReason stop) {
 // Standard deviations of what was searched, where (JᵀJ)⁻¹ is the covariance.
 void add_deviations(const Objective& objective, const ObjectiveFunction& function,
                     const std::vector<Variable>& variables, CalibrationResult& result) {
-  const bool bounded =
-      std::any_of(result.parameters.begin(), result.parameters.end(),
-                  [](const CalibratedParameter& parameter) { return parameter.at_bound; });
+  const bool bounded = std::ranges::any_of(result.parameters, &CalibratedParameter::at_bound);
   const bool known = objective.whitened() && function.capabilities().least_squares;
   if (!known || bounded || !at_optimum(result.search.stop)) return;
   const Covariance covariance = covariance_at(function, variables, result.search.x);
@@ -191,21 +189,22 @@ void report_estimate(const Problem& problem, const std::vector<Variable>& variab
   result.model = found.model;
   result.parameters = found_parameters(problem.model, found, problem.parameters.unknowns);
   for (CalibratedParameter& parameter : result.parameters) {
-    // Bounds of logarithms come back with their rounding.
-    const auto of = std::find_if(variables.begin(), variables.end(), [&](const Variable& variable) {
-      return variable.name == parameter.name;
-    });
+    const auto of = std::ranges::find(variables, parameter.name, &Variable::name);
     if (of == variables.end()) continue;
-    const double margin = 1e-9 * (of->upper - of->lower);
-    parameter.at_bound =
-        parameter.final <= of->lower + margin || parameter.final >= of->upper - margin;
+    // A damping ratio may be as many times larger as smaller, and nothing lies below the 0 of what
+    // can only rise; bounds of logarithms come back with their rounding.
+    const ParameterType& type = type_of(*parse_parameter(parameter.name));
+    const bool ratio = type.moves == Moves::kDamping && type.range_kind == RangeKind::kShare;
+    const double upper = ratio ? parameter.initial * parameter.initial / of->lower : of->upper;
+    const double margin = 1e-9 * (upper - of->lower);
+    const bool low = type.range_kind != RangeKind::kRise && parameter.final <= of->lower + margin;
+    parameter.at_bound = low || parameter.final >= upper - margin;
   }
   result.modes = found_modes(problem.model, found, problem.excitation_threshold);
 }
 
 bool any_recorded(const Problem& problem) {
-  return std::any_of(problem.records.begin(), problem.records.end(),
-                     [](const CalibrationRecord& record) { return record.recorded; });
+  return std::ranges::any_of(problem.records, &CalibrationRecord::recorded);
 }
 
 // What the sensors feel of the modes above the stated ones, where it belongs to the model.

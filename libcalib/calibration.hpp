@@ -16,11 +16,12 @@
 
 namespace modcal {
 
-/// Section "calibration" of an experiment.
+/// Section "calibration" of an experiment. Unless told otherwise everything is free and the joint
+/// likelihood is maximized in stages.
 struct CalibrationOptions {
-  ParameterOptions parameters;
-  Choice<Objective> objective{"spectral_peak"};
-  Choice<Optimizer> optimizer{"mode_by_mode"};
+  ParameterOptions parameters{.frequencies = "all", .law = true, .contact = true};
+  Choice<Objective> objective{"joint_likelihood"};
+  Choice<Optimizer> optimizer{"staged"};
   Budget budget;
   /// Modes with |φ_n(x_c)| below this are blind: nothing in the reactions tells their frequency
   /// [1].
@@ -39,6 +40,9 @@ struct CalibrationOptions {
 /// Calibration to the bound: the joint likelihood in stages over law, contact, one damping factor
 /// and every frequency.
 CalibrationOptions calibration_to_the_bound();
+/// The paper's: every frequency by the spectral peak, mode by mode (Debut, Delaune and Antunes
+/// 2010, section 6).
+CalibrationOptions calibration_of_the_paper();
 
 struct CalibratedParameter {
   std::string name;

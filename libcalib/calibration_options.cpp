@@ -31,8 +31,7 @@ void require_nothing_known(const ParameterOptions& parameters) {
 }  // namespace
 
 void CalibrationOptions::visit(OptionVisitor& visitor) {
-  // Required where nothing is free by default.
-  visitor("parameters", "what is free", {.required = !parameters.frees_any()}, parameters);
+  visitor("parameters", "what is free", parameters);
   visitor("objective", "what is minimized", objective);
   visitor("optimizer", "how it is minimized", optimizer);
   visitor("budget", "what the search may spend", budget);
@@ -89,12 +88,15 @@ void CalibrationOptions::require_read(std::size_t strokes, std::size_t plucks) c
 }
 
 CalibrationOptions calibration_to_the_bound() {
-  CalibrationOptions options{.objective = Choice<Objective>("joint_likelihood"),
-                             .optimizer = Choice<Optimizer>("staged")};
-  options.parameters.frequencies = "all";
-  options.parameters.law = options.parameters.contact = true;
+  CalibrationOptions options;
   options.parameters.unknowns.damping = "factor";
   return options;
+}
+
+CalibrationOptions calibration_of_the_paper() {
+  return {.parameters = {.frequencies = "all"},
+          .objective = Choice<Objective>("spectral_peak"),
+          .optimizer = Choice<Optimizer>("mode_by_mode")};
 }
 
 }  // namespace modcal

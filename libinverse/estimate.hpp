@@ -58,6 +58,7 @@ struct InversionOutputs {
   bool displacement = false;
   bool velocity = false;
   bool force_spectrum = false;
+  bool side_misfit = false;  ///< Estimate::side_misfit
 };
 
 /// Identified motion at the contact; what was not asked for is empty.

@@ -11,7 +11,7 @@ namespace modcal {
 
 /// Section "inversion" of an experiment: how reactions are turned into a force.
 struct InversionOptions {
-  Choice<Estimator> estimator{"one_sided"};
+  Choice<Estimator> estimator{"joint"};
   Choice<Regularizer> regularizer{"water_level"};
   Choice<ParameterChoice> parameter_choice{"minimal_product"};
 

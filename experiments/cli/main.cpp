@@ -30,6 +30,7 @@ int main_of(int argc, char** argv) {
   add_plan_command(app, chosen);
   add_plugin_commands(app, chosen);
   add_inspect_command(app, chosen);
+  add_new_command(app, chosen);
   add_reproduce_command(app, chosen);
   add_stored_commands(app, chosen);
   add_submit_command(app, chosen);

@@ -107,6 +107,18 @@ std::vector<Finding> lint_observation(const ObservationOptions& options) {
   return findings;
 }
 
+std::optional<Observation> lint_record(const std::string& path, const ObservationOptions& options,
+                                       const std::filesystem::path& folder,
+                                       std::vector<Finding>& findings) {
+  std::optional<Observation> observation;
+  if (!options.has_record) return observation;
+  lint_making(findings, path, [&] {
+    TruthCache none;
+    observation = observe(options, {}, none, StreamKey(0), folder);
+  });
+  return observation;
+}
+
 std::vector<Finding> lint_scores(const ScoreOptions& score, const ObservationOptions& options) {
   std::vector<Finding> findings;
   if (!options.has_scene || !is_known(options.truth.scene.string)) return findings;

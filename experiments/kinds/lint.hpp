@@ -17,6 +17,11 @@ std::vector<Finding> lint_scene(const Scene& scene, const Choice<Simulator>& sim
 /// source is stated.
 std::vector<Finding> lint_observation(const ObservationOptions& options);
 /// Score windows inside the record.
+/// A finding at `path` where a recorded observation cannot be made of its file; what it is, else.
+/// Nothing of a scene.
+std::optional<Observation> lint_record(const std::string& path, const ObservationOptions& options,
+                                       const std::filesystem::path& folder,
+                                       std::vector<Finding>& findings);
 std::vector<Finding> lint_scores(const ScoreOptions& score, const ObservationOptions& options);
 /// Ids used twice, contents that this kind of experiment does not have.
 std::vector<Finding> lint_figures(const std::vector<FigureOptions>& figures,

@@ -22,8 +22,9 @@ EndRelationFit relations_of(const ObservationOptions& options, const Signal& lef
 }
 
 constexpr std::string_view kSign =
-    "turn the sign of one column and leave it at that where the force at the contact then has the "
-    "right sign, else turn the other one (a force > 0 pushes both reactions below 0)";
+    "state turned: true for one of them and leave it at that where the force at the contact then "
+    "has "
+    "the right sign, else for the other one (a force > 0 pushes both reactions below 0)";
 
 std::string remedy_of(EndRelation relation, const ObservationOptions& options,
                       const EndRelationFit& fit) {
@@ -107,6 +108,22 @@ void require_told_fundamental(const ObservationOptions& options, const Observati
                  "the {:g} Hz stated, which an inversion takes for granted: calibrate the string "
                  "first (kind: calibrate), or check the sample rate",
                  options.record.file, told, 100.0 * difference, options.string.fundamental);
+}
+
+std::optional<ToldString> told_string(const Observation& observation) {
+  const auto& left = observation.reaction(End::kLeft);
+  const auto& right = observation.reaction(End::kRight);
+  if (observation.truth || !left || !right) return std::nullopt;
+  try {
+    const ToldString told =
+        find_string({.left = left->samples,
+                     .right = right->samples,
+                     .sample_rate = observation.sample_rate,
+                     .noise = {white_noise_rms(left->samples), white_noise_rms(right->samples)}});
+    return told.explained ? std::optional(told) : std::nullopt;
+  } catch (const InvalidInput&) {
+    return std::nullopt;  // no note of a string: the calibration says so
+  }
 }
 
 }  // namespace modcal

@@ -72,6 +72,8 @@ struct Layout {
   }
 };
 
+}  // namespace
+
 std::vector<TimeWindow> windows_or_all(const FigureOptions& options, double duration) {
   std::vector<TimeWindow> windows = options.windows;
   if (windows.empty()) windows.emplace_back();
@@ -85,6 +87,8 @@ std::vector<TimeWindow> windows_or_all(const FigureOptions& options, double dura
   return windows;
 }
 
+namespace {
+
 report::Axis axis_of(const std::string& quantity) {
   if (quantity == "reaction") return {.label = quantity, .unit = "N"};
   return {.label = quantity, .unit = std::string(quantity_of(quantity).unit)};
@@ -92,9 +96,10 @@ report::Axis axis_of(const std::string& quantity) {
 
 Series window_series(const Trace& trace, const TimeWindow& window, double rate) {
   Series series{.label = trace.label, .style = trace.style, .color = trace.color};
-  const auto first = static_cast<std::size_t>(std::ceil(window.start * rate));
-  const auto last = static_cast<std::size_t>(std::floor(window.stop * rate)) + 1;
-  for (std::size_t k = first; k < std::min(last, trace.samples->size()); ++k) {
+  const auto end = static_cast<double>(trace.samples->size());
+  const auto first = static_cast<std::size_t>(std::min(end, std::ceil(window.start * rate)));
+  const auto last = static_cast<std::size_t>(std::min(end, std::floor(window.stop * rate) + 1.0));
+  for (std::size_t k = first; k < last; ++k) {
     series.add(static_cast<double>(k) / rate, (*trace.samples)[k]);
   }
   return series;

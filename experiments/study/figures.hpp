@@ -14,12 +14,26 @@ struct Quantity {
   bool OutputRequest::*wanted;
   Signal Simulation::*simulated;
   std::vector<double> InversionResult::*identified;  ///< null: measured, not identified
+  double Estimate::*deviation = nullptr;             ///< of every sample
+  std::vector<double> Estimate::*deviations =
+      nullptr;  ///< of each, where they differ; null: none do
+  std::vector<double> Estimate::*unaliased = nullptr;       ///< what sampling has not folded back
+  std::optional<Signal> Observation::*reference = nullptr;  ///< the same, measured
+
+  /// Standard deviation at sample j; NaN: not known.
+  double deviation_at(const Estimate& estimate, std::size_t j) const {
+    const bool differs = deviations != nullptr && !(estimate.*deviations).empty();
+    return differs ? (estimate.*deviations)[j] : estimate.*deviation;
+  }
 };
 inline constexpr Quantity kQuantities[] = {
     {"y", "m", &OutputRequest::displacement, &Simulation::displacement,
-     &InversionResult::displacement},
-    {"v", "m/s", &OutputRequest::velocity, &Simulation::velocity, &InversionResult::velocity},
-    {"f_c", "N", &OutputRequest::force, &Simulation::force, &InversionResult::force},
+     &InversionResult::displacement, &Estimate::displacement_deviation},
+    {"v", "m/s", &OutputRequest::velocity, &Simulation::velocity, &InversionResult::velocity,
+     &Estimate::velocity_deviation, &Estimate::velocity_deviations},
+    {"f_c", "N", &OutputRequest::force, &Simulation::force, &InversionResult::force,
+     &Estimate::force_deviation, &Estimate::force_deviations, &Estimate::unaliased_force,
+     &Observation::reference},
     {"R1", "N", &OutputRequest::left_reaction, &Simulation::left_reaction, nullptr},
     {"R2", "N", &OutputRequest::right_reaction, &Simulation::right_reaction, nullptr},
 };
@@ -49,6 +63,10 @@ struct FigureOptions {
   void visit(OptionVisitor& visitor);
 };
 
+/// The windows of a figure with their ends; all of the record where none is stated. Throws
+/// InvalidInput for one that holds nothing of it.
+std::vector<TimeWindow> windows_or_all(const FigureOptions& options, double duration);
+
 /// Simulated reactions side by side, or the motion at the contact in one column (paper, figs. 2,
 /// 3): rows are quantities × windows.
 report::Figure simulation_figure(const FigureOptions& options, const Simulation& simulation);
@@ -58,5 +76,11 @@ report::Figure simulation_figure(const FigureOptions& options, const Simulation&
 /// (first row) and criterion curves (second row) (figs. 9 and 21).
 report::Figure identification_figure(const FigureOptions& options, const Observation& observation,
                                      const std::vector<SideIdentification>& sides);
+
+/// What every identification shows unasked: the force with its 95 % band, the motion, the force
+/// over the velocity, the spectra of reactions and force with the noise of the sensors, and what
+/// both reactions contradict each other by. The estimates must have all three signals.
+std::vector<report::Figure> overview_figures(const Observation& observation,
+                                             const std::vector<SideIdentification>& sides);
 
 }  // namespace modcal

@@ -59,8 +59,11 @@ InversionCache::Prepared prepare_estimator(const AssumedModel& model,
 }  // namespace
 
 void ScoreOptions::visit(OptionVisitor& visitor) {
-  visitor("windows", "starts of the windows in which forces are compared; none: the whole record",
-          {.unit = "s", .range = Range::non_negative()}, windows);
+  visitor(
+      "windows",
+      "starts of the windows in which forces are compared; none: the record but for two periods "
+      "at either end",
+      {.unit = "s", .range = Range::non_negative()}, windows);
   visitor("periods", "length of a window in periods of the fundamental",
           {.range = Range::positive()}, periods);
   visitor("whole",
@@ -75,35 +78,76 @@ void ScoreOptions::visit(OptionVisitor& visitor) {
 
 void WindowScore::visit(ResultVisitor& visitor) const {
   visitor({.key = "window_start", .name = "window from", .unit = "s"}, known(start));
+  visitor({.key = "window_stop", .name = "to", .unit = "s"}, known(stop));
   visitor({.key = "correlation", .name = "correlation R"}, known(correlation));
   visitor({.key = "relative_rms_error", .name = "relative rms error"}, known(relative_rms_error));
   visitor({.key = "anti_aliased", .name = "R, anti-aliased"}, known(anti_aliased));
+  visitor({.key = "coverage", .name = "within the 95 % band", .format = "{:.3f}"}, known(coverage));
 }
 
 std::string WindowScore::text() const {
-  return fmt::format("window from {:g} s: R = {:.4f}, relative rms error {:.4f}", start,
-                     correlation, relative_rms_error);
+  return fmt::format(
+      "{:.4g} s to {:.4g} s: R = {:.4f}, relative rms error {:.4f}{}", start, stop, correlation,
+      relative_rms_error,
+      std::isnan(coverage) ? "" : fmt::format(", {:.1f} % within the 95 % band", 100.0 * coverage));
 }
 
-ForceScores score_force(std::span<const double> identified, const ScoreReference& reference,
-                        const ScoreOptions& options, std::span<const double> unaliased) {
+ScoredForce::ScoredForce(const Estimate& estimate)
+    : samples(estimate.result.force),
+      unaliased(estimate.unaliased_force),
+      deviation(estimate.force_deviation),
+      deviations(estimate.force_deviations),
+      band_limit(estimate.band_limit) {}
+
+namespace {
+
+// Of two windows with equal means, the share that differs by less than 1.96 deviations.
+double coverage_of(std::span<const double> identified, std::span<const double> truth,
+                   double deviation, std::span<const double> deviations) {
+  if (deviations.empty() && std::isnan(deviation)) return deviation;
+  constexpr double kBand = 1.96;
+  double apart = 0.0;
+  for (std::size_t j = 0; j < truth.size(); ++j) apart += identified[j] - truth[j];
+  apart /= static_cast<double>(truth.size());
+  std::size_t held = 0;
+  for (std::size_t j = 0; j < truth.size(); ++j) {
+    const double width = kBand * (deviations.empty() ? deviation : deviations[j]);
+    if (std::abs(identified[j] - truth[j] - apart) <= width) ++held;
+  }
+  return static_cast<double>(held) / static_cast<double>(truth.size());
+}
+
+}  // namespace
+
+ForceScores score_force(const ScoredForce& identified, const ScoreReference& reference,
+                        const ScoreOptions& options) {
   const Signal& truth = reference.truth;
   const double rate = truth.sample_rate;
   std::vector<double> smooth;
   if (reference.anti_aliased) {
-    smooth = low_passed(unaliased.empty() ? identified : unaliased, rate, reference.anti_alias_cut);
+    smooth = low_passed(identified.unaliased.empty() ? identified.samples : identified.unaliased,
+                        rate, reference.anti_alias_cut);
   }
+  const std::vector<double> in_band = std::isnan(identified.band_limit)
+                                          ? truth.samples
+                                          : low_passed(truth.samples, rate, identified.band_limit);
   const auto place = [rate](double time) {
-    return static_cast<std::size_t>(std::round(time * rate));
+    constexpr double kFarBehind = 1e15;  // any record
+    return static_cast<std::size_t>(std::min(std::round(time * rate), kFarBehind));
   };
   const auto score = [&](double start, std::size_t length) {
     const auto part = [first = place(start), length](std::span<const double> samples) {
       return samples.subspan(first, length);
     };
     const std::span<const double> exact = part(truth.samples);
+    const std::span<const double> found = part(identified.samples);
     WindowScore result{.start = start,
-                       .correlation = correlation(part(identified), exact),
-                       .relative_rms_error = relative_rms_error(part(identified), exact)};
+                       .stop = start + static_cast<double>(length) / rate,
+                       .correlation = correlation(found, exact),
+                       .relative_rms_error = relative_rms_error(found, exact)};
+    result.coverage = coverage_of(
+        found, part(in_band), identified.deviation,
+        identified.deviations.empty() ? identified.deviations : part(identified.deviations));
     if (!smooth.empty()) {
       result.anti_aliased = correlation(part(smooth), part(reference.anti_aliased->samples));
     }
@@ -112,7 +156,11 @@ ForceScores score_force(std::span<const double> identified, const ScoreReference
 
   ForceScores found;
   const std::size_t length = place(options.periods / reference.fundamental);
-  if (options.windows.empty()) found.scores.push_back(score(0.0, truth.size()));
+  if (options.windows.empty()) {
+    const double end = kUnscoredPeriods / reference.fundamental;
+    const std::size_t cut = 6 * place(end) < 2 * truth.size() ? place(end) : 0;
+    found.scores.push_back(score(cut > 0 ? end : 0.0, truth.size() - 2 * cut));
+  }
   for (const double start : options.windows) {
     MODCAL_REQUIRE(length >= 2 && place(start) + length <= truth.size(),
                    "the score window from {:g} s over {:g} periods ({} samples) is not inside the "
@@ -146,15 +194,15 @@ std::vector<double> low_passed(std::span<const double> samples, double sample_ra
   return kept;
 }
 
-ForceScores scores_of(const Observation& observation, std::span<const double> force,
-                      const ScoreOptions* score, std::span<const double> unaliased) {
+ForceScores scores_of(const Observation& observation, const ScoredForce& force,
+                      const ScoreOptions* score) {
   if (score == nullptr || !observation.reference) return {};
   return score_force(force,
                      {.truth = *observation.reference,
                       .anti_aliased = observation.anti_aliased,
                       .anti_alias_cut = observation.anti_alias_cut,
                       .fundamental = observation.fundamental},
-                     *score, unaliased);
+                     *score);
 }
 
 InversionCache::Prepared InversionCache::get(const AssumedModel& model,
@@ -180,8 +228,7 @@ std::vector<SideIdentification> identify(const Observation& observation, const A
                                           : prepare_estimator(model, observation, recipe);
   std::vector<SideIdentification> sides;
   for (Estimate& estimate : estimator->estimate(record_of(observation), recipe.method(outputs))) {
-    const ForceScores scores =
-        scores_of(observation, estimate.result.force, score, estimate.unaliased_force);
+    const ForceScores scores = scores_of(observation, ScoredForce(estimate), score);
     sides.push_back({scores, std::move(estimate)});
   }
   return sides;

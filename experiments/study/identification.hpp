@@ -11,7 +11,7 @@ namespace modcal {
 
 /// Windows over which an identified force is compared with the true one.
 struct ScoreOptions {
-  std::vector<double> windows;    ///< starts [s]; none: the whole record at once
+  std::vector<double> windows;    ///< starts [s]; none: the record but for its ends
   double periods = 2.0;           ///< length in periods of the fundamental
   std::vector<double> whole;      ///< start and stop of the long window [s]; none: no long window
   std::int64_t oversampling = 1;  ///< of the truth behind the anti-aliased figures; 1: none
@@ -20,15 +20,19 @@ struct ScoreOptions {
 
 struct WindowScore {
   double start = 0.0;                                                    ///< [s]
+  double stop = std::numeric_limits<double>::quiet_NaN();                ///< [s]
   double correlation = std::numeric_limits<double>::quiet_NaN();         ///< R of eq. 16
   double relative_rms_error = std::numeric_limits<double>::quiet_NaN();  ///< static parts removed
   /// R of both forces below the cut, neither folded back by sampling (the true one low-passed
   /// before it was sampled): one re-sticking jump on the wrong side of a sample weighs no more than
   /// it lasts.
   double anti_aliased = std::numeric_limits<double>::quiet_NaN();
+  /// Share of the samples whose 95 % band holds the true force, static parts removed and, where the
+  /// estimate has a band limit, below that; NaN: the estimate has no band [1].
+  double coverage = std::numeric_limits<double>::quiet_NaN();
 
   void visit(ResultVisitor& visitor) const;
-  /// "window from 0.78 s: R = 0.9876, relative rms error 0.1234".
+  /// "0.78 s to 0.79 s: R = 0.9876, relative rms error 0.1234, 95.1 % within the 95 % band".
   std::string text() const;
 };
 
@@ -45,12 +49,28 @@ struct ScoreReference {
   double fundamental = 0.0;                   ///< f₀ [Hz]
 };
 
-/// Scores over every window of `periods`/`fundamental` seconds and over the long one. `unaliased`:
-/// the identified force where sampling has not folded it back, for the anti-aliased score; empty:
-/// the samples, of which nothing was above half the rate. Throws InvalidInput where a window leaves
-/// the record or the long one is not two rising instants inside it.
-ForceScores score_force(std::span<const double> identified, const ScoreReference& reference,
-                        const ScoreOptions& options, std::span<const double> unaliased = {});
+/// An identified force with its band.
+struct ScoredForce {
+  std::span<const double> samples;  ///< [N]
+  /// Where sampling has not folded it back, for the anti-aliased score; empty: the samples, of
+  /// which nothing was above half the rate [N].
+  std::span<const double> unaliased = {};
+  double deviation = std::numeric_limits<double>::quiet_NaN();   ///< of every sample; NaN: none [N]
+  std::span<const double> deviations = {};                       ///< where they differ [N]
+  double band_limit = std::numeric_limits<double>::quiet_NaN();  ///< of the deviation [Hz]
+
+  explicit ScoredForce(std::span<const double> force) : samples(force) {}
+  explicit ScoredForce(const Estimate& estimate);
+};
+
+/// Scores over every window of `periods`/`fundamental` seconds and over the long one. Where no
+/// windows are stated: over the record but for kUnscoredPeriods periods at either end, in which no wave
+/// has gone from the contact to both ends and back (a record that has not three times as many
+/// periods: all of it). Throws InvalidInput where a window leaves the record or the long one is not
+/// two rising instants inside it.
+ForceScores score_force(const ScoredForce& identified, const ScoreReference& reference,
+                        const ScoreOptions& options);
+inline constexpr double kUnscoredPeriods = 2.0;
 
 /// The part below `cut` [Hz] of a signal, sampled at every `step`-th instant.
 std::vector<double> low_passed(std::span<const double> samples, double sample_rate, double cut,
@@ -79,8 +99,8 @@ class InversionCache {
 
 /// Scores of an identified force of the observation; none where `score` is null or the observation
 /// has no reference.
-ForceScores scores_of(const Observation& observation, std::span<const double> force,
-                      const ScoreOptions* score, std::span<const double> unaliased = {});
+ForceScores scores_of(const Observation& observation, const ScoredForce& force,
+                      const ScoreOptions* score);
 
 /// Inverts the reactions of the observation with the model. `score` null: no scores; `cache` null:
 /// the estimator is prepared for this call alone.

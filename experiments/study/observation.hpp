@@ -3,6 +3,7 @@
 #pragma once
 
 #include "experiments/study/fingerprint.hpp"
+#include "libinverse/waves/end_relation.hpp"
 #include "libsim/dynamics/scene/simulator.hpp"
 #include "libsim/model/transfer.hpp"
 #include "libsim/records/recording.hpp"
@@ -128,5 +129,9 @@ void require_one_string(const ObservationOptions& options, const RecordedSignals
 /// Throws InvalidInput where both reactions of a record tell an f₀ more than 0.2 % from the one
 /// stated, which they tell to 0.05 %: an inversion takes it for granted, and modes are 2ζ wide.
 void require_told_fundamental(const ObservationOptions& options, const Observation& observation);
+
+/// The string that explains both recorded reactions (find_string()); none where there is none, or
+/// one reaction, or a simulation.
+std::optional<ToldString> told_string(const Observation& observation);
 
 }  // namespace modcal

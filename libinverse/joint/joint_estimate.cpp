@@ -19,8 +19,11 @@ std::vector<Estimate> estimate_with(const JointInversion& inversion, const Estim
   estimate.force_variance = std::move(result.force_variance);
   estimate.velocity_variance = std::move(result.velocity_variance);
   estimate.side_misfit = std::move(result.side_misfit);
+  const bool both = !record.reactions[0].empty() && !record.reactions[1].empty();
   estimate.side = side;
-  estimate.label = label;
+  estimate.label = both                          ? label
+                   : record.reactions[0].empty() ? "from R2 (x = L)"
+                                                 : "from R1 (x = 0)";
   estimate.result = std::move(result.identified);
   estimate.largest_transfer = inversion.largest_transfer();
   estimate.force_deviation = result.deviation.force;
@@ -42,7 +45,6 @@ std::vector<Estimate> estimate_with(const JointInversion& inversion, const Estim
         "ends of the record limit the estimate, and its error bars are widened",
         std::sqrt(result.misfit)));
   }
-  const bool both = !record.reactions[0].empty() && !record.reactions[1].empty();
   if (!both) {
     estimate.warnings.push_back(
         fmt::format("reaction {} is missing: the estimate rests on the other one alone",

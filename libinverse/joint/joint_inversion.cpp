@@ -258,7 +258,8 @@ void JointInversion::invert(const ReactionPair& reactions, const SensorNoiseLeve
       transient_.subtract(setting, spectra, workspace.transient);
     }
   }
-  compare_sides(weights, offset_rule, method.variances, workspace, result);
+  compare_sides(weights, offset_rule, method.variances || method.outputs.side_misfit, workspace,
+                result);
   combine(weights, workspace);
   choose_amplitude(weights, method, workspace, result);
   if (method.known_variance.empty()) {

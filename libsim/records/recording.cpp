@@ -51,7 +51,7 @@ std::vector<Role> chosen_roles(const RecordOptions& options) {
   return roles;
 }
 
-/// Newtons per recorded 1.
+/// Newtons per recorded 1, without the sensor's sign.
 double newtons(const RecordedChannel& channel, const Role& role, const std::string& file) {
   const double calibration = role.options->calibration;
   const bool states_force = std::isfinite(channel.full_scale) && is_unit_of(channel.unit, "N");
@@ -102,7 +102,7 @@ Window crop_window(const RecordOptions& options, double sample_rate, std::size_t
 
 Signal force_signal(const RecordedChannel& channel, const Role& role, double sample_rate,
                     const Window& window, const std::string& file) {
-  const double scale = newtons(channel, role, file);
+  const double scale = (role.options->turned ? -1.0 : 1.0) * newtons(channel, role, file);
   std::vector<double> samples = advanced(channel.samples, role.options->delay, sample_rate);
   samples.erase(samples.begin() + static_cast<std::ptrdiff_t>(window.last), samples.end());
   samples.erase(samples.begin(), samples.begin() + static_cast<std::ptrdiff_t>(window.first));
@@ -241,6 +241,7 @@ void RecordedForceOptions::visit(OptionVisitor& visitor) {
           "force per unit of the column (CSV) or per full scale (WAV), negative "
           "to turn the sign; \"file\": the file states a unit of force",
           {.unit = "N", .word = "file"}, calibration);
+  visitor("turned", "the sensor reads the force with the other sign", turned);
   visitor("delay", "lag behind the other channels; it is shifted back", {.unit = "s"}, delay);
 }
 

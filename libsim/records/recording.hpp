@@ -73,7 +73,8 @@ std::vector<std::size_t> find_channels(const std::vector<std::string>& names,
 struct RecordedForceOptions {
   std::string channel;
   double calibration = std::numeric_limits<double>::quiet_NaN();  ///< [N] per recorded 1; NaN: file
-  double delay = 0.0;                                             ///< [s]
+  bool turned = false;  ///< the sensor reads the force with the other sign
+  double delay = 0.0;   ///< [s]
   void visit(OptionVisitor& visitor);
 };
 

@@ -15,8 +15,7 @@ namespace modcal {
 namespace {
 
 CalibrationOptions refine_all(std::int64_t loops) {
-  CalibrationOptions options;
-  options.parameters.frequencies = "all";
+  CalibrationOptions options = calibration_of_the_paper();
   options.optimizer = Choice<Optimizer>::of<ModeByMode>("mode_by_mode", {.loops = loops});
   return options;
 }
@@ -68,8 +67,7 @@ TEST(Calibrate, ReportsParametersWithUnitsAndBounds) {
   const CalibrationData data = exact_data(truth, 3200, 6400.0, 196.0);
   ModelPoint initial = truth;
   initial.contact = 0.032;
-  CalibrationOptions options;
-  options.parameters.contact = true;
+  CalibrationOptions options{.parameters = {.contact = true}};
   options.parameters.ranges.contact = 1e-3;  // the truth lies 1 mm beyond
   options.objective = Choice<Objective>("contact_location");
   options.optimizer = Choice<Optimizer>::of<Grid>("grid", {.points = 11});
@@ -85,8 +83,7 @@ TEST(Calibrate, ReportsParametersWithUnitsAndBounds) {
 }
 
 CalibrationOptions contact_by(Choice<Objective> objective, const char* optimizer) {
-  CalibrationOptions options;
-  options.parameters.contact = true;
+  CalibrationOptions options{.parameters = {.contact = true}};
   options.parameters.ranges.contact = 1e-4;
   options.objective = std::move(objective);
   options.optimizer = Choice<Optimizer>(optimizer);
@@ -116,7 +113,8 @@ TEST(Calibrate, HasStandardDeviationsWhereResidualsAreWhite) {
 
 TEST(Calibrate, RefusesWhatCannotBeCalibrated) {
   const CalibrationData data = exact_data(paper_truth(12), 3200, 6400.0, 196.0);
-  CalibrationOptions options;
+  CalibrationOptions options = calibration_of_the_paper();
+  options.parameters = {};
   EXPECT_THROW(calibrate(paper_truth(12), data, options), InvalidInput);  // nothing is free
   options.parameters = {.frequencies = "listed", .modes = {11}};
   EXPECT_THROW(calibrate(paper_truth(12), data, options), InvalidInput);  // a blind mode only

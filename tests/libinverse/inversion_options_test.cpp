@@ -6,9 +6,10 @@
 namespace modcal {
 namespace {
 
-TEST(InversionOptions, AreThePapersUnlessToldOtherwise) {
+TEST(InversionOptions, AreJointUnlessToldOtherwise) {
   const InversionOptions options;
-  EXPECT_EQ(options.regularizer.selected(), "water_level");
+  EXPECT_EQ(options.estimator.selected(), "joint");
+  EXPECT_EQ(options.regularizer.selected(), "water_level");  // the paper's, of one side
   EXPECT_EQ(options.parameter_choice.selected(), "minimal_product");
 }
 
@@ -26,7 +27,6 @@ TEST(InversionOptions, MakeTheMethodTheyName) {
 
 TEST(InversionOptions, RefuseAnUnknownEstimator) {
   InversionOptions options;
-  EXPECT_EQ(options.estimator.selected(), "one_sided");
   EXPECT_THROW(options.estimator.select("psychic"), InvalidInput);
 }
 

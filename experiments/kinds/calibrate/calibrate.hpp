@@ -90,6 +90,7 @@ struct CalibrateOptions {
   void visit(OptionVisitor& visitor);
   std::int64_t& seed_slot() { return inversion.seed; }
   std::vector<Finding> lint() const;
+  std::vector<Finding> lint_records(const std::filesystem::path& folder) const;
   std::vector<std::string> plan() const;
   std::optional<PlannedSimulations> planned_simulations() const;
   std::vector<std::string> files_read() const;
@@ -102,10 +103,18 @@ struct CalibrationOutcome {
   AssumedModel initial;
   AssumedModel refined;
   CalibrationResult result;
-  std::optional<StiffStringFit> law;     ///< where blind modes were filled
+  std::optional<StiffStringFit> law;  ///< where blind modes were filled
+  std::string start;  ///< where the record told another start than the one stated, and which
   std::vector<double> true_frequencies;  ///< [Hz]; empty for a record
 
-  /// Tables of the report and calibration.json.
+  /// Whether ζ_n of some mode was free.
+  bool frees_damping_of_modes() const {
+    return std::ranges::any_of(result.parameters,
+                               [](const auto& one) { return one.name.starts_with("zeta_"); });
+  }
+  /// Table of the parameters, f_n and ζ_n aside.
+  void visit_parameters(ResultVisitor& visitor) const;
+  /// All other tables of the report, and calibration.json.
   void visit(ResultVisitor& visitor) const;
 };
 
@@ -174,6 +183,11 @@ std::string default_text(const CalibrationOptions& calibration, const Observatio
 
 /// What was taken out, for a report; empty for equal sensors or where x = L was not recorded.
 std::string correction_text(const Observation& observation, const Sensor& sensors);
+
+/// Draws the frequencies found against their law and the ratio of the reactions, which no force
+/// changes, against the models'. Of a search with an estimate.
+void add_calibration_overview(const CalibrationOutcome& outcome, const Observation& observation,
+                              const StringSupport& support, StudyResult& result);
 
 // What a calibration says in a few lines.
 

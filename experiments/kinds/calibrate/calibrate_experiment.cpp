@@ -27,8 +27,7 @@ void lint_noise(const CalibrateOptions& options, std::vector<Finding>& findings)
   if (!known || !observation.has_scene || !is_known(observation.string_model())) return;
   const CalibrationOptions& calibration = options.calibration;
   const double rate = observation.measurement.sample_rate;
-  const auto samples =
-      static_cast<std::size_t>(std::round(observation.truth.scene.duration * rate));
+  const std::size_t samples = sample_count(observation.truth.scene.duration, rate);
   lint_making(findings, "calibration.objective", [&] {
     calibration.objective.make()->require_record(make_modal_basis(observation.string_model()), rate,
                                                  samples);
@@ -87,7 +86,7 @@ void lint_simulated(const std::string& path, const PluckRecordOptions& pluck,
   }
   lint_making(findings, path + ".sample_rate", [&] {
     require_noise_known({pluck.left_noise, pluck.right_noise}, basis, pluck.sample_rate,
-                        static_cast<std::size_t>(std::round(pluck.duration * pluck.sample_rate)));
+                        sample_count(pluck.duration, pluck.sample_rate));
   });
 }
 
@@ -164,6 +163,30 @@ std::vector<Finding> CalibrateOptions::lint() const {
   return findings;
 }
 
+std::vector<Finding> CalibrateOptions::lint_records(const std::filesystem::path& folder) const {
+  std::vector<Finding> findings;
+  const ObservationOptions& first = inversion.observation;
+  const auto observed = lint_record("record.file", first, folder, findings);
+  if (observed) {
+    lint_windows(inversion, *observed, findings);
+    lint_making(findings, "calibration", [&] {
+      if (calibration.by_schedule()) {
+        require_both_reactions(*observed, "the joint likelihood", "calibration.objective");
+      }
+    });
+  }
+  for (std::size_t i = 0; i < further.files.size(); ++i) {
+    ObservationOptions stroke = first;
+    stroke.record.file = further.files[i];
+    lint_record(fmt::format("further_strokes.records.{}", i), stroke, folder, findings);
+  }
+  for (std::size_t i = 0; i < plucks.size(); ++i) {
+    if (plucks[i].file.empty()) continue;
+    lint_record(fmt::format("plucks.{}.record", i), plucks[i].observation(first), folder, findings);
+  }
+  return findings;
+}
+
 std::vector<std::string> CalibrateOptions::plan() const {
   std::vector<std::string> lines;
   const ObservationOptions& observation = inversion.observation;
@@ -190,8 +213,8 @@ std::vector<std::string> CalibrateOptions::plan() const {
 
 std::optional<PlannedSimulations> CalibrateOptions::planned_simulations() const {
   const ObservationOptions& first = inversion.observation;
-  auto planned =
-      planned_truths(first, truth_outputs(inversion.figures), 1 + further.contacts.size());
+  auto planned = planned_truths(first, truth_outputs(inversion.figures, inversion.overview),
+                                1 + further.contacts.size());
   for (const PluckRecordOptions& pluck : plucks) {
     if (planned && pluck.file.empty()) add_planned(pluck.observation(first), *planned);
   }
@@ -219,65 +242,10 @@ LimitQuestion CalibrateOptions::limit_question() const {
   return question;
 }
 
-void visit_pluck(OptionVisitor& visitor, Choice<InitialMotion>& start, double& duration,
-                 double& noise_level) {
-  visitor("initial", "how a simulated string is plucked; a recorded one needs none", start);
-  visitor("duration", "length of the simulated free decay",
-          {.unit = "s", .range = Range::positive()}, duration);
-  visitor("noise_level",
-          "standard deviation of the simulated noise, relative to that of each "
-          "reaction",
-          {.range = Range::non_negative()}, noise_level);
-}
-
-void PluckRecordOptions::visit(OptionVisitor& visitor) {
-  visit_pluck(visitor, start, duration, noise_level);
-  visitor("sample_rate", "sample rate of the simulated reactions",
-          {.unit = "Hz", .range = Range::positive()}, sample_rate);
-  visitor("record",
-          "a recorded file in the place of a simulated pluck, with the channels of "
-          "the stroke's; it begins when the string has been let go",
-          file);
-  visit_noise_levels(visitor, left_noise, right_noise);
-}
-
-ObservationOptions PluckRecordOptions::observation(const ObservationOptions& first) const {
-  ObservationOptions options = first;
-  if (!file.empty()) {
-    options.record.file = file;
-    return options;
-  }
-  Scene& scene = options.truth.scene;
-  scene.bow.velocity = 0.0;
-  scene.bow.normal_force = 0.0;
-  scene.start = start;
-  scene.duration = duration;
-  options.measurement.noise_level = noise_level;
-  options.measurement.sample_rate = sample_rate;
-  return options;
-}
-
 void require_plucks(const std::vector<PluckRecordOptions>& plucks, const ObservationOptions& first,
                     const CalibrationOptions& calibration) {
   const std::vector<Finding> findings = lint_plucks(plucks, first, calibration);
   if (!findings.empty()) throw InvalidInput(findings.front().text);
-}
-
-std::vector<CalibrationRecord> observe_plucks(const std::vector<PluckRecordOptions>& plucks,
-                                              const ObservationOptions& first, const StreamKey& key,
-                                              const StudyContext& context) {
-  std::vector<CalibrationRecord> records;
-  for (const PluckRecordOptions& pluck : plucks) {
-    context.throw_if_interrupted();
-    const StreamKey own = key.with("pluck").with(static_cast<std::uint64_t>(records.size() + 1));
-    const Observation found =
-        observe(pluck.observation(first), {.left_reaction = true, .right_reaction = true},
-                context.work.truths, own, context.folder);
-    records.push_back({.data = calibration_data(found),
-                       .noise = {pluck.left_noise, pluck.right_noise},
-                       .pluck = true});
-  }
-  return records;
 }
 
 }  // namespace modcal

@@ -8,16 +8,9 @@
 namespace modcal {
 namespace {
 
-using report::ColorRole;
-using report::SeriesStyle;
-
 constexpr auto kInJson = ResultVisitor::kInJson;
 constexpr auto kInTables = ResultVisitor::kInTables;
 constexpr std::size_t kPairsShown = 20;
-
-double refined_frequency(const CalibrationOutcome& outcome, std::size_t n) {
-  return outcome.refined.basis.frequency(n - 1);
-}
 
 void visit_parameter(ResultVisitor& row, const CalibratedParameter& parameter) {
   row({.key = "name"}, parameter.name);
@@ -43,7 +36,7 @@ void visit_verdict(ResultVisitor& row, const ContinuationResult& fit, std::size_
 }
 
 void visit_mode(ResultVisitor& row, const CalibrationOutcome& outcome, const CalibratedMode& mode) {
-  const double refined = refined_frequency(outcome, mode.number);
+  const double refined = outcome.refined.basis.frequency(mode.number - 1);
   std::optional<double> truth, error;
   if (!outcome.true_frequencies.empty()) {
     truth = outcome.true_frequencies[mode.number - 1];
@@ -58,6 +51,15 @@ void visit_mode(ResultVisitor& row, const CalibrationOutcome& outcome, const Cal
       error);
   if (const auto& found = outcome.result.continuation) {
     visit_verdict(row, *found, mode.number - 1);
+  }
+  const auto damping = std::ranges::find(
+      outcome.result.parameters, fmt::format("zeta_{}", mode.number), &CalibratedParameter::name);
+  if (outcome.frees_damping_of_modes()) {
+    const bool is_free = damping != outcome.result.parameters.end();
+    row({.key = "zeta", .name = "damping ratio", .format = "{:.3g}", .shown = kInTables},
+        outcome.refined.basis.zeta[mode.number - 1]);
+    row({.key = "zeta_sd", .name = "its sd", .format = "{:.2g}", .shown = kInTables},
+        is_free ? known(damping->deviation) : std::nullopt);
   }
   row({.key = "excited"}, mode.excited);
   row({.key = "searched", .shown = kInJson}, mode.searched);
@@ -172,6 +174,15 @@ void visit_estimate(ResultVisitor& visitor, const ContinuationResult& found) {
 
 }  // namespace
 
+void CalibrationOutcome::visit_parameters(ResultVisitor& visitor) const {
+  std::vector<CalibratedParameter> beside_frequencies = result.parameters;
+  std::erase_if(beside_frequencies, [](const auto& one) {
+    return one.name.starts_with("f_") || one.name.starts_with("zeta_");
+  });
+  visitor.rows({.table = "parameters", .name = "Parameters", .shown = kInTables},
+               beside_frequencies, visit_parameter);
+}
+
 void CalibrationOutcome::visit(ResultVisitor& visitor) const {
   const OptimizationResult& search = result.search;
   const auto& found = result.continuation;
@@ -198,10 +209,6 @@ void CalibrationOutcome::visit(ResultVisitor& visitor) const {
         found->stages, visit_stage);
   }
   visitor.rows({.key = "parameters", .shown = kInJson}, result.parameters, visit_parameter);
-  std::vector<CalibratedParameter> beside_frequencies = result.parameters;
-  std::erase_if(beside_frequencies, [](const auto& one) { return one.name.starts_with("f_"); });
-  visitor.rows({.table = "parameters", .name = "Parameters", .shown = kInTables},
-               beside_frequencies, visit_parameter);
   if (found) visit_pairs(visitor, *found);
   if (found) visit_causes(visitor, *found);
   visitor.rows(
@@ -214,78 +221,6 @@ void CalibrationOutcome::visit(ResultVisitor& visitor) const {
   if (!found) return;
   visitor.group({.key = "continuation", .shown = kInJson},
                 [&](ResultVisitor& members) { visit_estimate(members, *found); });
-}
-
-report::Figure objective_figure(const FigureOptions& options, const CalibrationOutcome& outcome) {
-  report::Figure figure{.id = options.id, .title = options.title, .columns = 3};
-  figure.caption =
-      "First loop over the candidates; dotted: true frequency; square: the candidate "
-      "chosen in the last loop.";
-  for (const CoordinateScan& scan : outcome.result.search.scans) {
-    if (scan.loop != 1) continue;
-    const CalibratedParameter& parameter = outcome.result.parameters[scan.variable];
-    if (!parameter.name.starts_with("f_")) continue;
-    const auto n = static_cast<std::size_t>(std::stoul(parameter.name.substr(2)));
-    if (n > static_cast<std::size_t>(options.modes)) continue;
-    report::Panel panel;
-    panel.title = fmt::format("mode {}", n);
-    panel.x = {.label = fmt::format("f_{}", n), .unit = "Hz"};
-    panel.y = {.label = "C", .unit = "N"};
-    panel.series.push_back({.label = "objective, first loop",
-                            .x = scan.candidates,
-                            .y = scan.values,
-                            .style = SeriesStyle::kLineWithPoints});
-    for (const CoordinateScan& last : outcome.result.search.scans) {
-      if (last.variable != scan.variable || last.loop == 1) continue;
-      const auto best = std::min_element(last.values.begin(), last.values.end());
-      panel.series.push_back({.label = fmt::format("chosen, loop {}", last.loop),
-                              .x = {last.chosen},
-                              .y = {*best},
-                              .style = SeriesStyle::kPoints,
-                              .color = ColorRole::kSecond});
-    }
-    if (!outcome.true_frequencies.empty()) {
-      panel.markers.push_back({.value = outcome.true_frequencies[n - 1], .label = "true"});
-    }
-    figure.panels.push_back(std::move(panel));
-  }
-  return figure;
-}
-
-report::Figure frequency_error_figure(const FigureOptions& options,
-                                      const CalibrationOutcome& outcome) {
-  report::Figure figure{.id = options.id, .title = options.title, .columns = 1};
-  figure.caption = "Open points: modes that the contact does not excite.";
-  report::Series absolute[2], relative[2], shape[2];
-  for (const CalibratedMode& mode : outcome.result.modes) {
-    const std::size_t group = mode.excited ? 0 : 1;
-    const auto n = static_cast<double>(mode.number);
-    shape[group].add(n, std::abs(mode.shape));
-    if (outcome.true_frequencies.empty()) continue;
-    const double truth = outcome.true_frequencies[mode.number - 1];
-    const double error = refined_frequency(outcome, mode.number) - truth;
-    absolute[group].add(n, std::abs(error));
-    relative[group].add(n, 100.0 * std::abs(error) / truth);
-  }
-  const auto add = [&figure](report::Series* series, report::Axis y) {
-    report::Panel panel;
-    panel.x = {.label = "mode number n"};
-    panel.y = std::move(y);
-    for (int group = 0; group < 2; ++group) {
-      if (series[group].x.empty()) continue;
-      series[group].label = group == 0 ? "excited" : "blind";
-      series[group].style = SeriesStyle::kPoints;
-      series[group].color = group == 0 ? ColorRole::kFirst : ColorRole::kSecond;
-      panel.series.push_back(std::move(series[group]));
-    }
-    figure.panels.push_back(std::move(panel));
-  };
-  if (!outcome.true_frequencies.empty()) {
-    add(absolute, {.label = "|f_n - true|", .unit = "Hz"});
-    add(relative, {.label = "relative error", .unit = "%"});
-  }
-  add(shape, {.label = "|phi_n(x_c)|"});
-  return figure;
 }
 
 }  // namespace modcal

@@ -38,6 +38,29 @@ void follow_tension(const Observation& observation, CalibrationOutcome& outcome)
   outcome.refined.basis.tension *= ratio * ratio;
 }
 
+// The string that the ends of a record tell, unless what is stated of it is more than a start: from
+// B = 0, where it is 1e-4, the thirtieth mode starts nearer to the next one than to itself, and
+// ends there.
+void start_from_record(const Observation& observation, const CalibrationOptions& calibration,
+                       CalibrationOutcome& outcome) {
+  const UnknownsOptions& unknowns = calibration.parameters.unknowns;
+  if (!calibration.by_schedule() || !unknowns.fixed.empty() || !unknowns.priors.empty()) return;
+  const auto told = told_string(observation);
+  if (!told) return;
+  ModalBasis& basis = outcome.initial.basis;
+  std::vector<double> frequencies;
+  for (std::size_t n = 1; n <= basis.size(); ++n) {
+    frequencies.push_back(stiff_string_frequency(told->fundamental, told->inharmonicity, n));
+  }
+  const double contact = told->contact * basis.length;
+  outcome.start = fmt::format(
+      "Started from the string that the ends of the record tell: f0 {:.6g} Hz, B {:.3g}, x_c "
+      "{:.4g} mm.",
+      told->fundamental, told->inharmonicity, 1e3 * contact);
+  basis = with_frequencies(std::move(basis), frequencies);
+  if (calibration.parameters.contact) outcome.initial.contact = contact;
+}
+
 // Strokes after the first: the same scene bowed elsewhere, or other files; noise of their own.
 std::vector<Observation> further_observations(const CalibrateOptions& options,
                                               const StudyContext& context) {
@@ -79,41 +102,76 @@ void add_search_figures(const std::vector<FigureOptions>& figures,
   }
 }
 
-}  // namespace
+// What a calibration and the identification with its model found.
+struct Found {
+  const CalibrationOutcome& outcome;
+  const Observation& measured;     // as recorded
+  const Observation& observation;  // the sensors' differences taken out
+  const Sensor& sensors;
+  const std::vector<SideIdentification>& sides;
+  const ContinuationResult* estimate() const { return outcome.result.continuation.get(); }
+};
 
-void FurtherStrokes::visit(OptionVisitor& visitor) {
-  visitor("contacts", "contact points x_c of further simulated strokes",
-          {.unit = "m", .range = Range::positive()}, contacts);
-  visitor("records",
-          "further recorded files with the channels of the first; each stroke's "
-          "contact point is found by itself, started from the bow's",
-          files);
+void note(StudyResult& result, const std::string& text,
+          report::Text::Kind kind = report::Text::Kind::kNote) {
+  if (!text.empty()) result.blocks.emplace_back(report::Text{text, kind});
 }
 
-void FurtherStrokes::require_fit_to(const ObservationOptions& first,
-                                    const CalibrationOptions& calibration) const {
-  if (contacts.empty() && files.empty()) return;
-  MODCAL_REQUIRE(calibration.by_schedule(),
-                 "{} further strokes are fitted together by the joint likelihood alone: state "
-                 "objective: joint_likelihood, optimizer: staged",
-                 contacts.size() + files.size());
-  MODCAL_REQUIRE(contacts.empty() || first.has_scene,
-                 "{} further contacts are simulated, but there is no scene: name further records",
-                 contacts.size());
-  MODCAL_REQUIRE(files.empty() || first.has_record,
-                 "{} further records go with a first one: state record, or name further contacts",
-                 files.size());
-  const double length = first.string_model().length;
-  for (const double contact : contacts) {
-    MODCAL_REQUIRE(contact < length, "contact at {} m is not on the string of {} m", contact,
-                   length);
+// What was asked: the verdict, the parameters, the frequencies against their law, the force.
+void add_answer(const CalibrateOptions& options, const InvertOptions& shown, const Found& found,
+                StudyResult& result) {
+  add_calibration_summary(found.outcome, result);
+  add_calibration_warnings(found.outcome, result);
+  if (const ContinuationResult* estimate = found.estimate()) {
+    note(result, chi2_text(*estimate),
+         estimate->fits ? report::Text::Kind::kNote : report::Text::Kind::kFailure);
+  }
+  result.add(report::tables_of(
+      [&found](ResultVisitor& visitor) { found.outcome.visit_parameters(visitor); }));
+  if (shown.overview) {
+    add_calibration_overview(
+        found.outcome, found.observation,
+        options.calibration.support.support(found.observation.truth == nullptr), result);
+  }
+  add_identification_figures(shown, found.observation, found.sides, result);
+  if (options.audio) {
+    result.blocks.emplace_back(
+        calibration_audio(options, found.observation, found.outcome.refined));
   }
 }
 
+// How it was found, and all numbers.
+void add_account(const CalibrateOptions& options, const InvertOptions& shown, const Found& found,
+                 StudyResult& result) {
+  add_search_figures(shown.figures, found.outcome, result);
+  const ContinuationResult* estimate = found.estimate();
+  if (estimate) {
+    note(result, cause_lines(found.outcome.result));
+    report::Figure misfit = misfit_figure(*estimate);
+    if (!misfit.panels.empty()) result.blocks.emplace_back(std::move(misfit));
+  }
+  for (const std::string& text : {found.measured.modes_taken, found.outcome.start,
+                                  default_text(options.calibration, found.measured),
+                                  correction_text(found.measured, found.sensors)}) {
+    if (!text.empty()) result.summary += text + "\n";
+    note(result, text);
+  }
+  add_warnings(found.observation, found.sides, result);
+  result.summary += score_lines(found.sides);
+  if (estimate) result.summary += covariance_text(*estimate);
+  result.add(report::tables_of(found.outcome));
+  result.add({identification_table(found.sides)});
+  result.files.emplace_back("calibration.json", report::json_file(report::json_of(found.outcome)));
+  if (shown.write_signals) {
+    result.signal_files.push_back(identified_signals(found.observation, found.sides));
+  }
+}
+
+}  // namespace
+
 void CalibrateOptions::visit(OptionVisitor& visitor) {
   inversion.visit(visitor);
-  visitor("calibration", "what is refined, by which objective and optimizer", {.required = true},
-          calibration);
+  visitor("calibration", "what is refined, by which objective and optimizer", calibration);
   visitor("further_strokes", "strokes of the same string that are fitted together with the first",
           further);
   visitor("plucks", "plucks of the same string that are fitted together with the strokes", plucks);
@@ -162,6 +220,7 @@ CalibrationOutcome calibrate_strokes(const CalibrateOptions& options,
   outcome.initial =
       with_errors(observation.basis, observation.contact, options.inversion.model_error,
                   options.inversion.key().with("model error"));
+  start_from_record(observation, options.calibration, outcome);
   std::vector<CalibrationRecord> records;
   for (const Observation& stroke : strokes) {
     records.push_back({.data = calibration_data(stroke), .recorded = stroke.truth == nullptr});
@@ -180,7 +239,8 @@ CalibrationOutcome calibrate_strokes(const CalibrateOptions& options,
 }
 
 StudyResult CalibrateOptions::run(const StudyContext& context) const {
-  OutputRequest outputs = truth_outputs(inversion.figures);
+  const InvertOptions shown = inversion.as_read_by(context);
+  OutputRequest outputs = truth_outputs(shown.figures, shown.overview);
   if (audio) outputs.velocity = true;
   const Observation measured =
       observe(inversion.observation, outputs, context.work.truths, inversion.key(), context.folder);
@@ -198,43 +258,12 @@ StudyResult CalibrateOptions::run(const StudyContext& context) const {
   const Observation observation = with_sensors_alike(measured, sensors);
   const auto sides =
       identify(observation, outcome.refined, inversion.inversion,
-               inversion_outputs(inversion.figures, inversion.write_signals), &inversion.score);
+               inversion_outputs(shown.figures, shown.wants_all()), &inversion.score);
 
   StudyResult result;
-  add_calibration_summary(outcome, result);
-  add_calibration_warnings(outcome, result);
-  for (const std::string& text : {measured.modes_taken, default_text(calibration, measured),
-                                  correction_text(measured, sensors)}) {
-    if (text.empty()) continue;
-    result.summary += text + "\n";
-    result.blocks.emplace_back(report::Text{text, report::Text::Kind::kNote});
-  }
-  if (const auto& found = outcome.result.continuation) {
-    result.blocks.emplace_back(report::Text{
-        chi2_text(*found), found->fits ? report::Text::Kind::kNote : report::Text::Kind::kFailure});
-  }
-  add_warnings(observation, sides, result);
-  add_search_figures(inversion.figures, outcome, result);
-  if (outcome.result.continuation) {
-    report::Figure misfit = misfit_figure(*outcome.result.continuation);
-    const std::string causes = cause_lines(outcome.result);
-    if (!causes.empty())
-      result.blocks.emplace_back(report::Text{causes, report::Text::Kind::kNote});
-    if (!misfit.panels.empty()) result.blocks.emplace_back(std::move(misfit));
-  }
-  add_identification_figures(inversion.figures, observation, sides, result);
-  if (audio) {
-    result.blocks.emplace_back(calibration_audio(*this, observation, outcome.refined));
-  }
-  if (const auto& found = outcome.result.continuation) {
-    result.summary += covariance_text(*found);
-  }
-  result.add(report::tables_of(outcome));
-  result.add({identification_table(sides)});
-  result.files.emplace_back("calibration.json", report::json_file(report::json_of(outcome)));
-  if (inversion.write_signals) {
-    result.signal_files.push_back(identified_signals(observation, sides));
-  }
+  const Found found{outcome, measured, observation, sensors, sides};
+  add_answer(*this, shown, found, result);
+  add_account(*this, shown, found, result);
   return result;
 }
 

@@ -178,7 +178,8 @@ void add_calibration_summary(const CalibrationOutcome& outcome, StudyResult& res
                                   median_relative_error(outcome));
   }
   for (const CalibratedParameter& parameter : outcome.result.parameters) {
-    if (parameter.name.starts_with("f_")) continue;
+    // Of every mode: those stand in the tables.
+    if (parameter.name.starts_with("f_") || parameter.name.starts_with("zeta_")) continue;
     result.summary +=
         fmt::format("{}: {:.8g} -> {:.8g}{}", parameter.name, parameter.initial, parameter.final,
                     parameter.unit == "1" ? "" : " " + parameter.unit);

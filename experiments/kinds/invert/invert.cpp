@@ -3,26 +3,8 @@
 #include "experiments/kinds/lint.hpp"
 #include "experiments/report/result.hpp"
 #include "experiments/study/observation.hpp"
-#include "libinverse/waves/wave_reconstruction.hpp"
 
 namespace modcal {
-namespace {
-
-struct Method {
-  const char* name;
-  decltype(&reconstruct_from_waves) reconstruct;
-  OutgoingWave outgoing;
-};
-
-constexpr Method kMethods[] = {
-    {"ideal string, wave to x = 0", reconstruct_from_waves, OutgoingWave::kLeft},
-    {"ideal string, wave to x = L", reconstruct_from_waves, OutgoingWave::kRight},
-    {"loss and dispersion, wave to x = 0", reconstruct_with_loss, OutgoingWave::kLeft},
-    {"loss and dispersion, wave to x = L", reconstruct_with_loss, OutgoingWave::kRight},
-};
-
-}  // namespace
-
 void InvertOptions::visit(OptionVisitor& visitor) {
   observation.visit(visitor);
   visitor("model_error", "errors put into the model that inverts", model_error);
@@ -33,8 +15,11 @@ void InvertOptions::visit(OptionVisitor& visitor) {
           wave_based);
   visitor("score", "where identified and true force are compared", score);
   visitor("seed", "key of noise and model errors", {.range = Range::non_negative()}, seed);
-  visitor("write_signals", "write the identified signals as CSV", write_signals);
-  visitor("figures", "what is drawn", figures);
+  visitor("write_signals", "write force, displacement and velocity at the contact as CSV",
+          write_signals);
+  visitor("overview", "draw force, motion, spectra and misfit, beside the figures asked for",
+          overview);
+  visitor("figures", "what is drawn beside", figures);
 }
 
 std::vector<Finding> lint_inversion(const InvertOptions& options) {
@@ -57,11 +42,32 @@ std::vector<Finding> InvertOptions::lint() const {
   return findings;
 }
 
+void lint_windows(const InvertOptions& options, const Observation& observation,
+                  std::vector<Finding>& findings) {
+  const std::vector<double> silence(observation.samples());
+  lint_making(findings, "score",
+              [&] { scores_of(observation, ScoredForce(silence), &options.score); });
+  const double duration = static_cast<double>(observation.samples()) / observation.sample_rate;
+  for (const FigureOptions& figure : options.figures) {
+    lint_making(findings, "figures", [&] { windows_or_all(figure, duration); });
+  }
+}
+
+std::vector<Finding> InvertOptions::lint_records(const std::filesystem::path& folder) const {
+  std::vector<Finding> findings;
+  const auto observed = lint_record("record.file", observation, folder, findings);
+  if (!observed) return findings;
+  lint_making(findings, "string.fundamental",
+              [&] { require_told_fundamental(observation, *observed); });
+  lint_windows(*this, *observed, findings);
+  return findings;
+}
+
 std::vector<std::string> InvertOptions::plan() const {
   std::vector<std::string> lines;
   const auto planned = planned_simulations();
   lines.push_back(planned ? plan_line(*planned) : "record: " + observation.record.file);
-  const InversionOutputs outputs = inversion_outputs(figures, write_signals);
+  const InversionOutputs outputs = inversion_outputs(figures, wants_all());
   if (!outputs.displacement)
     lines.emplace_back("skipped: identified displacement, which nobody reads");
   if (!outputs.velocity) lines.emplace_back("skipped: identified velocity, which nobody reads");
@@ -69,11 +75,17 @@ std::vector<std::string> InvertOptions::plan() const {
 }
 
 std::optional<PlannedSimulations> InvertOptions::planned_simulations() const {
-  return planned_truths(observation, truth_outputs(figures));
+  auto planned = planned_truths(observation, truth_outputs(figures, overview));
+  if (planned) planned->numbers_per_sample = inversion.estimator.make()->numbers_per_sample();
+  return planned;
 }
 
-OutputRequest truth_outputs(const std::vector<FigureOptions>& figures) {
-  OutputRequest request{.force = true, .left_reaction = true, .right_reaction = true};
+OutputRequest truth_outputs(const std::vector<FigureOptions>& figures, bool all) {
+  OutputRequest request{.displacement = all,
+                        .velocity = all,
+                        .force = true,
+                        .left_reaction = true,
+                        .right_reaction = true};
   for (const FigureOptions& figure : figures) {
     if (figure.content != "waveforms" && figure.content != "spectra") continue;
     for (const std::string& name : figure.quantities) request.*quantity_of(name).wanted = true;
@@ -83,8 +95,18 @@ OutputRequest truth_outputs(const std::vector<FigureOptions>& figures) {
 
 InversionOutputs inversion_outputs(const std::vector<FigureOptions>& figures, bool all) {
   const OutputRequest drawn = truth_outputs(figures);
-  return {
-      .force = true, .displacement = all || drawn.displacement, .velocity = all || drawn.velocity};
+  return {.force = true,
+          .displacement = all || drawn.displacement,
+          .velocity = all || drawn.velocity,
+          .side_misfit = all};
+}
+
+InvertOptions InvertOptions::as_read_by(const StudyContext& context) const {
+  InvertOptions options = *this;
+  if (!context.numbers_alone) return options;
+  options.write_signals = options.overview = false;
+  options.figures.clear();
+  return options;
 }
 
 report::Cell side_cell(const std::string& side) {
@@ -129,6 +151,16 @@ report::Table identification_table(const std::vector<SideIdentification>& sides)
   return table;
 }
 
+void add_identification_figures(const InvertOptions& options, const Observation& observation,
+                                const std::vector<SideIdentification>& sides, StudyResult& result) {
+  if (options.overview) {
+    for (report::Figure& figure : overview_figures(observation, sides)) {
+      result.blocks.emplace_back(std::move(figure));
+    }
+  }
+  add_identification_figures(options.figures, observation, sides, result);
+}
+
 void add_identification_figures(const std::vector<FigureOptions>& figures,
                                 const Observation& observation,
                                 const std::vector<SideIdentification>& sides, StudyResult& result) {
@@ -142,22 +174,29 @@ SignalFile identified_signals(const Observation& observation,
                               const std::vector<SideIdentification>& sides) {
   SignalFile file{.name = "identified.csv"};
   for (const SideIdentification& side : sides) {
-    const bool numbered = side.estimate.side.size() == 1;
-    for (const std::string_view name : {"f_c", "y", "v"}) {
-      const Quantity& quantity = quantity_of(name);
-      const std::vector<double>& samples = side.estimate.result.*quantity.identified;
-      if (samples.empty()) continue;
-      file.signals.push_back({fmt::format("{}{}{}", name, numbered ? "" : "_", side.estimate.side),
-                              std::string(quantity.unit), observation.sample_rate, samples});
-    }
-    const auto add = [&](const char* name, const char* unit, const std::vector<double>& samples) {
+    const Estimate& estimate = side.estimate;
+    const bool numbered = estimate.side.size() == 1;
+    const auto add = [&](std::string name, std::string_view unit, std::vector<double> samples) {
       if (samples.empty()) return;
-      file.signals.push_back({fmt::format(fmt::runtime(name), side.estimate.side), unit,
-                              observation.sample_rate, samples});
+      file.signals.push_back(
+          {std::move(name), std::string(unit), observation.sample_rate, std::move(samples)});
     };
-    add("f_c_{}_unaliased", "N", side.estimate.unaliased_force);
-    add("f_c_{}_deviation", "N", side.estimate.force_deviations);
-    add("v_{}_deviation", "m/s", side.estimate.velocity_deviations);
+    for (const Quantity& quantity : kQuantities) {
+      if (quantity.identified == nullptr) continue;
+      const std::string column =
+          fmt::format("{}{}{}", quantity.name, numbered ? "" : "_", estimate.side);
+      add(column, quantity.unit, estimate.result.*quantity.identified);
+      if (quantity.unaliased != nullptr) {
+        add(column + "_unaliased", quantity.unit, estimate.*quantity.unaliased);
+      }
+      std::vector<double> deviations(observation.samples());
+      for (std::size_t j = 0; j < deviations.size(); ++j) {
+        deviations[j] = quantity.deviation_at(estimate, j);
+      }
+      if (!std::isnan(deviations.front())) {
+        add(column + "_deviation", quantity.unit, std::move(deviations));
+      }
+    }
   }
   return file;
 }
@@ -177,13 +216,16 @@ void add_warnings(const Observation& observation, const std::vector<SideIdentifi
 }
 
 StudyResult InvertOptions::run(const StudyContext& context) const {
-  const Observation observed = observe(observation, truth_outputs(figures), context.work.truths,
-                                       key(), context.folder, score.oversampling);
+  const InvertOptions shown = as_read_by(context);
+  const Observation observed =
+      observe(observation, truth_outputs(shown.figures, shown.overview), context.work.truths, key(),
+              context.folder, score.oversampling);
   require_told_fundamental(observation, observed);
   const AssumedModel model =
       with_errors(observed.basis, observed.contact, model_error, key().with("model error"));
-  const auto sides = identify(observed, model, inversion, inversion_outputs(figures, write_signals),
-                              &score, &context.work.inversions);
+  const auto sides =
+      identify(observed, model, inversion, inversion_outputs(shown.figures, shown.wants_all()),
+               &score, &context.work.inversions);
 
   StudyResult result;
   if (!observed.modes_taken.empty()) {
@@ -191,46 +233,30 @@ StudyResult InvertOptions::run(const StudyContext& context) const {
     result.blocks.emplace_back(report::Text{observed.modes_taken, report::Text::Kind::kNote});
   }
   add_warnings(observed, sides, result);
-  add_identification_figures(figures, observed, sides, result);
+  add_identification_figures(shown, observed, sides, result);
   result.add({identification_table(sides)});
-  if (write_signals) result.signal_files.push_back(identified_signals(observed, sides));
+  if (shown.write_signals) result.signal_files.push_back(identified_signals(observed, sides));
   if (wave_based) add_wave_based(observed, model, score, result);
   if (has_model_based) {
     const ModelIdentification by_model =
         identify_by_model(observed, model, model_based, score, context.stop);
     add_model_based(observed, by_model, score, result);
-    if (write_signals) add_model_signals(observed, by_model.result, result.signal_files.back());
+    if (shown.write_signals)
+      add_model_signals(observed, by_model.result, result.signal_files.back());
   }
-  for (const SideIdentification& side : sides) {
-    for (const WindowScore& window : side.scores) {
-      result.summary += fmt::format("side {}  parameter {:.4g} N/N  {}\n", side.estimate.side,
-                                    side.estimate.result.choice.parameter(), window.text());
-    }
-  }
+  result.summary += score_lines(sides);
   return result;
 }
 
-void add_wave_based(const Observation& observation, const AssumedModel& model,
-                    const ScoreOptions& score, StudyResult& result) {
-  require_both_reactions(observation, "the wave-based reconstruction", "wave_based");
-  if (!observation.reference) return;
-  report::Table table{.id = "wave_based",
-                      .title = "Wave-based reconstruction",
-                      .caption = "f = 2 Z0 (v1o - v2i) and its mirror, from the two reactions."};
-  for (const Method& method : kMethods) {
-    const WaveReconstruction wave =
-        method.reconstruct(model.basis, model.contact, observation.sample_rate,
-                           observation.reaction(End::kLeft)->samples,
-                           observation.reaction(End::kRight)->samples, method.outgoing);
-    for (const WindowScore& window : scores_of(observation, wave.force, &score).scores) {
-      report::add_row(table, [&](ResultVisitor& row) {
-        row({.key = "method"}, method.name);
-        row({}, window);
-      });
-      result.summary += fmt::format("waves, {}  {}\n", method.name, window.text());
+std::string score_lines(const std::vector<SideIdentification>& sides) {
+  std::string lines;
+  for (const SideIdentification& side : sides) {
+    for (const WindowScore& window : side.scores) {
+      lines += fmt::format("side {}  parameter {:.4g} N/N  {}\n", side.estimate.side,
+                           side.estimate.result.choice.parameter(), window.text());
     }
   }
-  result.add({std::move(table)});
+  return lines;
 }
 
 }  // namespace modcal

@@ -17,7 +17,8 @@ struct InvertOptions {
   ScoreOptions score;
   std::vector<FigureOptions> figures;
   std::int64_t seed = 1;
-  bool write_signals = false;
+  bool write_signals = true;
+  bool overview = true;
   void visit(OptionVisitor& visitor);
   std::int64_t& seed_slot() { return seed; }
   StreamKey key() const { return StreamKey(static_cast<std::uint64_t>(seed)); }
@@ -27,7 +28,13 @@ struct InvertOptions {
     return {observation.record.file};
   }
 
+  /// Whether all signals at the contact are wanted.
+  bool wants_all() const { return write_signals || overview; }
+  /// Without figures and signals where the context reads numbers alone.
+  InvertOptions as_read_by(const StudyContext& context) const;
+
   std::vector<Finding> lint() const;
+  std::vector<Finding> lint_records(const std::filesystem::path& folder) const;
   std::vector<std::string> plan() const;
   std::optional<PlannedSimulations> planned_simulations() const;
   StudyResult run(const StudyContext& context) const;
@@ -35,10 +42,13 @@ struct InvertOptions {
 
 /// Findings about an inversion, without its figures.
 std::vector<Finding> lint_inversion(const InvertOptions& options);
+/// Windows of scores and figures that hold nothing of the record.
+void lint_windows(const InvertOptions& options, const Observation& observation,
+                  std::vector<Finding>& findings);
 
-/// Signals of the truth that the figures and scores need.
-OutputRequest truth_outputs(const std::vector<FigureOptions>& figures);
-/// What an inversion has to compute for them.
+/// Signals of the truth that the figures and scores need; `all` for an overview.
+OutputRequest truth_outputs(const std::vector<FigureOptions>& figures, bool all = false);
+/// What an inversion has to compute for them; `all` signals and what an overview shows.
 InversionOutputs inversion_outputs(const std::vector<FigureOptions>& figures, bool all);
 /// One row a side and window: parameter, share of bins kept, correlation, relative rms error.
 report::Table identification_table(const std::vector<SideIdentification>& sides);
@@ -46,11 +56,16 @@ report::Table identification_table(const std::vector<SideIdentification>& sides)
 void add_identification_figures(const std::vector<FigureOptions>& figures,
                                 const Observation& observation,
                                 const std::vector<SideIdentification>& sides, StudyResult& result);
+/// The same after the overview, where it is wanted.
+void add_identification_figures(const InvertOptions& options, const Observation& observation,
+                                const std::vector<SideIdentification>& sides, StudyResult& result);
 /// A side in a table: 1 and 2 are numbers, as the paper counts them.
 report::Cell side_cell(const std::string& side);
 /// identified.csv: every identified signal.
 SignalFile identified_signals(const Observation& observation,
                               const std::vector<SideIdentification>& sides);
+/// One line a side and window of the scores.
+std::string score_lines(const std::vector<SideIdentification>& sides);
 /// Warnings of the observation and of parameter choices that had to settle for a stand-in.
 void add_warnings(const Observation& observation, const std::vector<SideIdentification>& sides,
                   StudyResult& result);

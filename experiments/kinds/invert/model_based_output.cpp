@@ -7,13 +7,15 @@ namespace {
 
 std::vector<ModelScore> model_scores(const ModelBasedResult& result, const Observation& observation,
                                      const ScoreOptions& options) {
-  const ForceScores model = scores_of(observation, result.force, &options, result.unaliased_force);
-  const ForceScores linear = scores_of(observation, result.linear.force, &options);
+  ScoredForce force(result.force);
+  force.unaliased = result.unaliased_force;
+  const ForceScores model = scores_of(observation, force, &options);
+  const ForceScores linear = scores_of(observation, ScoredForce(result.linear.force), &options);
   std::vector<ModelScore> scores;
   for (std::size_t i = 0; i < model.scores.size(); ++i) {
-    const bool all = options.windows.empty();
-    scores.push_back({all ? "all" : fmt::format("{:g} s", model.scores[i].start), model.scores[i],
-                      linear.scores[i]});
+    scores.push_back(
+        {fmt::format("{:.4g} s to {:.4g} s", model.scores[i].start, model.scores[i].stop),
+         model.scores[i], linear.scores[i]});
   }
   if (!scores.empty() && !options.whole.empty()) {
     scores.push_back({fmt::format("{:g} s to {:g} s", options.whole[0], options.whole[1]),

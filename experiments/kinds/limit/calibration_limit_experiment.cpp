@@ -207,9 +207,8 @@ LimitOutcome CalibrationLimitExperiment::calibrate_draw(std::size_t task,
   const ContinuationResult& found = *calibrated.continuation;
   LimitOutcome outcome = outcome_of(found);
   if (options_.paper_method) {
-    CalibrationOptions paper;
-    paper.parameters.frequencies = "all";
-    outcome.paper_error = median_error(calibrate(start, data, paper).model.basis, truth.point);
+    outcome.paper_error =
+        median_error(calibrate(start, data, calibration_of_the_paper()).model.basis, truth.point);
   }
   if (options_.has_inversion) {
     outcome.force_correlation = force_correlation(truth, level, found.model, options_.inversion);

@@ -58,11 +58,11 @@ CalibrationOutcome refine(const PluckThenBowOptions& options, const Observation&
                           const AssumedModel& start, std::size_t modes,
                           const StudyContext& context) {
   const RefinementOptions& refinement = options.refinement;
-  CalibrationOptions calibration{.objective = refinement.objective,
+  CalibrationOptions calibration{.parameters = {.frequencies = "listed"},
+                                 .objective = refinement.objective,
                                  .optimizer = refinement.optimizer,
                                  .budget = refinement.budget,
                                  .excitation_threshold = refinement.excitation_threshold};
-  calibration.parameters.frequencies = "listed";
   for (std::size_t n = 1; n <= modes; ++n) {
     calibration.parameters.modes.push_back(static_cast<std::int64_t>(n));
   }
@@ -111,8 +111,8 @@ ModelStage with_contact(const PluckThenBowOptions& options, const CalibrationDat
   const auto lowest = std::min_element(curve.values.begin(), curve.values.end());
   const ModelPoint start{before.model.basis,
                          curve.positions[static_cast<std::size_t>(lowest - curve.values.begin())]};
-  CalibrationOptions calibration{.objective = options.contact.objective};
-  calibration.parameters.contact = true;
+  CalibrationOptions calibration{.parameters = {.contact = true},
+                                 .objective = options.contact.objective};
   calibration.parameters.ranges.contact = curve.positions[1] - curve.positions[0];
   calibration.optimizer = Choice<Optimizer>::of<GslOptimizer>("gsl", {.algorithm = "brent"});
   const CalibrationResult found = calibrate(start, data, calibration, polling_clock(context));

@@ -5,12 +5,13 @@
 namespace modcal {
 namespace {
 
-// A score is a list of four in the store.
+// A score is a list of six in the store.
 void visit_score(ResultVisitor& visitor, std::string_view key, WindowScore& score) {
-  std::array values = {score.start, score.correlation, score.relative_rms_error,
-                       score.anti_aliased};
+  std::array values = {score.start,        score.stop,
+                       score.correlation,  score.relative_rms_error,
+                       score.anti_aliased, score.coverage};
   visitor({.key = key}, values);
-  score = {values[0], values[1], values[2], values[3]};
+  score = {values[0], values[1], values[2], values[3], values[4], values[5]};
 }
 
 // Draws of a sweep summed up row by row.

@@ -69,6 +69,7 @@ void write_score(report::RowWriter& row, const ScoreRow& item,
   scored("R", score.correlation);
   scored("relative_rms_error", score.relative_rms_error);
   row({.key = "R_anti_aliased"}, known(score.anti_aliased));
+  row({.key = "coverage"}, known(score.coverage));
   row({.key = "R_whole"}, known(side.whole.correlation));
   row({.key = "whole_relative_rms_error"}, known(side.whole.relative_rms_error));
   row({.key = "R_whole_anti_aliased"}, known(side.whole.anti_aliased));

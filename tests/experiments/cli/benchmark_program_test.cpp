@@ -25,7 +25,7 @@ measurement: {sample_rate: 12.5 kHz, noise_level: 1 %}
 model_error: {frequencies: 0.2 %}
 inversion: {estimator: one_sided, regularizer: {type: water_level}, parameter_choice: {type: minimal_product}}
 calibration:
-  parameters: {law: true, frequency_range: 1 %, inharmonicity_range: 1e-4}
+  parameters: {frequencies: none, contact: false, frequency_range: 1 %, inharmonicity_range: 1e-4}
   objective: spectral_peak
   optimizer: {type: nlopt, algorithm: LN_SBPLX}
   budget: {evaluations: 200}

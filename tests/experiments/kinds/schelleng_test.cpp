@@ -1,10 +1,11 @@
+#include "experiments/kinds/schelleng/schelleng.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/kinds/schelleng/schelleng.hpp"
 #include "experiments/runs/task_experiment.hpp"
 #include "libsim/dynamics/event/modal_event.hpp"
 #include "libsim/dynamics/scene/simulator.hpp"

@@ -1,6 +1,7 @@
 // The paper's case as a pair of measured reactions, with the converged truth.
 #pragma once
 
+#include "libinverse/observer/model_based_estimator.hpp"
 #include "libsim/dynamics/event/modal_event.hpp"
 #include "libsim/dynamics/gestures/gesture.hpp"
 #include "libsim/model/modal_basis.hpp"
@@ -74,6 +75,15 @@ inline BowedRecord swinging_record(double noise) {
   swing.frequency = 1.0 / scene.duration;
   scene.bow.velocity_gesture = Choice<Gesture>::of<SineGesture>("sine", swing);
   return record_of(scene, kLightRate, noise);
+}
+
+/// The exponential law alone, by few substeps.
+inline ModelBasedOptions quick_fit(std::int64_t rounds) {
+  ModelBasedOptions options;
+  options.laws = {"exponential"};
+  options.substeps = 4;
+  options.rounds = rounds;
+  return options;
 }
 
 }  // namespace modcal

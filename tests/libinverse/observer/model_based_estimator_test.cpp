@@ -12,14 +12,6 @@
 namespace modcal {
 namespace {
 
-ModelBasedOptions quick() {
-  ModelBasedOptions options;
-  options.laws = {"exponential"};
-  options.substeps = 4;
-  options.rounds = 1;
-  return options;
-}
-
 ModelBasedResult estimate(const BowedRecord& r, const ModelBasedOptions& options,
                           double contact_error = 0.0) {
   return ModelBasedEstimator(options).estimate(r.basis, r.scene.bow.position + contact_error,
@@ -31,7 +23,7 @@ ModelBasedResult estimate(const BowedRecord& r, const ModelBasedOptions& options
 // a linear estimate reaches (0.84).
 TEST(ModelBasedEstimator, RecoversForceAndFrictionLaw) {
   const BowedRecord r = bowed_record(0.2, 0.02);
-  const ModelBasedResult result = estimate(r, quick());
+  const ModelBasedResult result = estimate(r, quick_fit(1));
   EXPECT_GT(correlation(result.force, r.truth.force.samples), 0.95);
   EXPECT_GT(correlation(result.velocity, r.truth.velocity.samples), 0.999);
   EXPECT_LT(correlation(result.linear.force, r.truth.force.samples), 0.93);
@@ -70,7 +62,7 @@ TEST(ModelBasedEstimator, RecoversForceAndFrictionLaw) {
 
 TEST(ModelBasedEstimator, SaysThatTheModelIsWrong) {
   const BowedRecord r = light_record(0.06, 0.02);
-  const ModelBasedResult result = estimate(r, quick(), 2e-3);
+  const ModelBasedResult result = estimate(r, quick_fit(1), 2e-3);
   EXPECT_GT(result.misfit, 1.3);
   ASSERT_FALSE(result.warnings.empty());
   EXPECT_NE(result.warnings[0].find("innovation misfit"), std::string::npos);
@@ -78,11 +70,11 @@ TEST(ModelBasedEstimator, SaysThatTheModelIsWrong) {
 
 TEST(ModelBasedEstimator, ABowMovingBackGivesTheMirrorImage) {
   BowedRecord r = light_record(0.05, 0.02);
-  const ModelBasedResult forward = estimate(r, quick());
+  const ModelBasedResult forward = estimate(r, quick_fit(1));
   for (Signal* signal : {&r.left, &r.right}) {
     for (double& value : signal->samples) value = -value;
   }
-  const ModelBasedResult back = estimate(r, quick());
+  const ModelBasedResult back = estimate(r, quick_fit(1));
   EXPECT_FALSE(forward.negated);
   EXPECT_TRUE(back.negated);
   for (std::size_t k = 0; k < forward.force.size(); ++k) {
@@ -93,9 +85,9 @@ TEST(ModelBasedEstimator, ABowMovingBackGivesTheMirrorImage) {
 
 TEST(ModelBasedEstimator, SameBitsForAnyNumberOfThreads) {
   const BowedRecord r = light_record(0.04, 0.02);
-  const ModelBasedResult several = estimate(r, quick());
+  const ModelBasedResult several = estimate(r, quick_fit(1));
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-  const ModelBasedResult alone = estimate(r, quick());
+  const ModelBasedResult alone = estimate(r, quick_fit(1));
   EXPECT_EQ(several.force, alone.force);
   EXPECT_EQ(several.misfit, alone.misfit);
 }
@@ -104,7 +96,7 @@ TEST(ModelBasedEstimator, SameBitsForAnyNumberOfThreads) {
 TEST(ModelBasedEstimator, FindsTheGainOfASensor) {
   BowedRecord r = light_record(0.08, 0.01);
   for (double& value : r.left.samples) value *= 1.02;
-  ModelBasedOptions options = quick();
+  ModelBasedOptions options = quick_fit(1);
   options.gain = true;
   const ModelBasedResult result = estimate(r, options);
   EXPECT_NEAR(result.parameters.gain, 1.02, 0.004);
@@ -118,7 +110,7 @@ TEST(ModelBasedEstimator, SaysHowFarTheStaticPartIsRecovered) {
   BowedRecord r = light_record(0.06, 0.0);
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     measure_again(r, 0.1, seed);
-    ModelBasedOptions options = quick();
+    ModelBasedOptions options = quick_fit(1);
     options.rounds = 0;
     const ModelBasedResult result = estimate(r, options);
     const double off = result.static_part.level - mean(r.truth.force.samples);
@@ -134,7 +126,7 @@ TEST(ModelBasedEstimator, SaysHowFarTheStaticPartIsRecovered) {
 TEST(ModelBasedEstimator, AStringOfFewModesRipplesBeforeTheFirstWave) {
   BowedRecord r = light_record(0.06, 0.0);
   measure_again(r, 0.01);
-  ModelBasedOptions options = quick();
+  ModelBasedOptions options = quick_fit(1);
   options.rounds = 0;
   const ModelBasedResult result = estimate(r, options);
   const double off = result.static_part.level - mean(r.truth.force.samples);
@@ -149,12 +141,12 @@ TEST(ModelBasedEstimator, AStringOfFewModesRipplesBeforeTheFirstWave) {
 // ones have the knots 0.098, 1.191, 0, -1.191, -0.098 times the swing.
 TEST(ModelBasedEstimator, FollowsABowVelocityThatDrifts) {
   const BowedRecord r = swinging_record(0.01);
-  ModelBasedOptions options = quick();
+  ModelBasedOptions options = quick_fit(1);
   options.rounds = 0;
   const ModelBasedResult constant = estimate(r, options);
   ASSERT_FALSE(constant.warnings.empty());
   EXPECT_THAT(constant.warnings[0], testing::HasSubstr("velocity_knots"));
-  options = quick();
+  options = quick_fit(1);
   options.velocity_knots = 5;
   const ModelBasedResult result = estimate(r, options);
   EXPECT_TRUE(result.warnings.empty());
@@ -172,7 +164,7 @@ TEST(ModelBasedEstimator, FollowsABowVelocityThatDrifts) {
 // The contact point 0.1 mm off in the model, and freed.
 TEST(ModelBasedEstimator, FindsTheContactPoint) {
   const BowedRecord r = light_record(0.08, 0.02);
-  ModelBasedOptions options = quick();
+  ModelBasedOptions options = quick_fit(1);
   options.contact = true;
   const ModelBasedResult result = estimate(r, options, 1e-4);
   EXPECT_NEAR(result.parameters.contact, 0.03, 1e-5);
@@ -190,7 +182,7 @@ TEST(ModelBasedEstimator, FindsTheDelayOfASensor) {
     left[k] = fine.left_reaction.samples[kFiner * k - 1];
   }
   measure_again(r, 0.02);
-  ModelBasedOptions options = quick();
+  ModelBasedOptions options = quick_fit(1);
   options.delay = true;
   const ModelBasedResult result = estimate(r, options);
   double information = 0.0;
@@ -216,7 +208,7 @@ TEST(ModelBasedEstimator, FindsTheModalFrequencies) {
   BowedRecord r = record_of(scene, 0.25 * kRecordRate, 0.01);
   const auto off = [](std::size_t n) { return n % 2 == 0 ? -2e-4 : 2e-4; };
   for (std::size_t n = 0; n < r.basis.size(); ++n) r.basis.omega[n] /= 1.0 + off(n);
-  ModelBasedOptions options = quick();
+  ModelBasedOptions options = quick_fit(1);
   options.frequencies = true;
   const ModelBasedResult result = estimate(r, options);
   ASSERT_EQ(result.parameters.detuning.size(), 12u);
@@ -243,7 +235,7 @@ TEST(ModelBasedEstimator, FollowsANormalForceThatDrifts) {
   ramp.duration = scene.duration;
   scene.bow.force_gesture = Choice<Gesture>::of<RampGesture>("ramp", ramp);
   const BowedRecord r = record_of(scene, kLightRate, 0.02);
-  ModelBasedOptions options = quick();
+  ModelBasedOptions options = quick_fit(1);
   options.force_knots = 3;
   const ModelBasedResult result = estimate(r, options);
   EXPECT_TRUE(result.warnings.empty());
@@ -258,10 +250,10 @@ TEST(ModelBasedEstimator, FollowsANormalForceThatDrifts) {
 TEST(ModelBasedEstimator, StopsWhenAsked) {
   const BowedRecord r = light_record(0.08, 0.02);
   const std::atomic<bool> asked = true;
-  EXPECT_THROW(
-      ModelBasedEstimator(quick()).estimate(r.basis, r.scene.bow.position, r.rate, r.left.samples,
-                                            r.right.samples, StopToken(asked)),
-      Interrupted);
+  EXPECT_THROW(ModelBasedEstimator(quick_fit(1))
+                   .estimate(r.basis, r.scene.bow.position, r.rate, r.left.samples, r.right.samples,
+                             StopToken(asked)),
+               Interrupted);
 }
 
 }  // namespace

@@ -62,14 +62,6 @@ TEST(Stiffness, OfARigidContactIsRefused) {
   }
 }
 
-ModelBasedOptions quick() {
-  ModelBasedOptions options;
-  options.laws = {"exponential"};
-  options.substeps = 4;
-  options.rounds = 0;
-  return options;
-}
-
 TEST(ModelBasedOptions, AllLawsAreFittedUnlessStated) {
   const auto names = friction_law_names();
   EXPECT_EQ(ModelBasedOptions{}.laws, (std::vector<std::string>(names.begin(), names.end())));
@@ -77,7 +69,7 @@ TEST(ModelBasedOptions, AllLawsAreFittedUnlessStated) {
 
 TEST(ModelBasedEstimator, MayBeToldTheNoise) {
   const BowedRecord r = light_record(0.04, 0.02);
-  ModelBasedOptions options = quick();
+  ModelBasedOptions options = quick_fit(0);
   options.noise_rms[0] = 1.5e-3;
   options.noise_rms[1] = 2.5e-3;
   const ModelBasedResult result = ModelBasedEstimator(options).estimate(
@@ -89,8 +81,9 @@ TEST(ModelBasedEstimator, MayBeToldTheNoise) {
 // The bow's velocity swings by 10 %, which a constant one does not explain.
 TEST(ModelBasedEstimator, BarsHoldTheErrorOfAWrongModel) {
   const BowedRecord r = swinging_record(0.01);
-  const ModelBasedResult result = ModelBasedEstimator(quick()).estimate(
-      r.basis, r.scene.bow.position, r.rate, r.left.samples, r.right.samples);
+  const ModelBasedResult result =
+      ModelBasedEstimator(quick_fit(0))
+          .estimate(r.basis, r.scene.bow.position, r.rate, r.left.samples, r.right.samples);
   EXPECT_FALSE(result.explained());
   EXPECT_GT(result.model_error.force_square, 0.0);
   const auto held = [&](const std::vector<double>& x, const std::vector<double>& truth,

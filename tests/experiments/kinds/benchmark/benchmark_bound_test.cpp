@@ -44,8 +44,8 @@ std::vector<double> bounds(const std::string& parameters, double noise) {
 
 // Information is proportional to 1/σ², so the bound of the law is proportional to the noise.
 TEST(FrequencyBounds, GrowsWithTheNoise) {
-  const std::vector<double> low = bounds("law: true, contact: true", 0.01);
-  const std::vector<double> high = bounds("law: true, contact: true", 0.03);
+  const std::vector<double> low = bounds("frequencies: none", 0.01);
+  const std::vector<double> high = bounds("frequencies: none", 0.03);
   ASSERT_EQ(low.size(), 8u);
   for (std::size_t n = 0; n < low.size(); ++n) {
     EXPECT_GT(low[n], 0.0);
@@ -55,9 +55,9 @@ TEST(FrequencyBounds, GrowsWithTheNoise) {
 
 // Whoever knows more has a smaller bound: x_c known, then the law, against every frequency free.
 TEST(FrequencyBounds, FallsWithWhatIsKnown) {
-  const std::vector<double> known_contact = bounds("law: true", 0.01);
-  const std::vector<double> law = bounds("law: true, contact: true", 0.01);
-  const std::vector<double> free = bounds("frequencies: all, contact: true", 0.01);
+  const std::vector<double> known_contact = bounds("frequencies: none, contact: false", 0.01);
+  const std::vector<double> law = bounds("frequencies: none", 0.01);
+  const std::vector<double> free = bounds("law: false", 0.01);
   for (std::size_t n = 0; n < law.size(); ++n) {
     EXPECT_LE(known_contact[n], law[n] * (1.0 + 1e-9));
     EXPECT_LE(law[n], free[n] * (1.0 + 1e-9));
@@ -67,7 +67,7 @@ TEST(FrequencyBounds, FallsWithWhatIsKnown) {
 // f_n = n f_0 √(1 + B n²) with B = 0: the relative deviation of f_1 is that of ln f_0 + B/2. With
 // the damping among the unknowns the bound can only be larger.
 TEST(FrequencyBounds, FollowsFromTheLimitOfTheLaw) {
-  const CalibrateOptions options = options_of("law: true, contact: true", 0.01);
+  const CalibrateOptions options = options_of("frequencies: none", 0.01);
   TruthCache truths;
   const auto truth = truths.get(options.inversion.observation.truth, 12500.0,
                                 {.force = true, .left_reaction = true, .right_reaction = true});
@@ -91,8 +91,8 @@ TEST(FrequencyBounds, FollowsFromTheLimitOfTheLaw) {
 }
 
 TEST(FrequencyBounds, IsAbsentWithoutNoiseOrFrequencies) {
-  EXPECT_TRUE(bounds("law: true", 0.0).empty());
-  EXPECT_TRUE(bounds("contact: true", 0.01).empty());
+  EXPECT_TRUE(bounds("frequencies: none, contact: false", 0.0).empty());
+  EXPECT_TRUE(bounds("frequencies: none, law: false", 0.01).empty());
   EXPECT_TRUE(std::isnan(rms_bound(nullptr, {1})));
 }
 

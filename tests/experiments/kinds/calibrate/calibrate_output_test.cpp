@@ -69,7 +69,9 @@ TEST(CalibrateOutput, TablesHaveDeviationsWhereTheyAreKnown) {
     return *std::find_if(tables.begin(), tables.end(),
                          [id](const report::Table& table) { return table.id == id; });
   };
-  const report::Table parameters = table_called("parameters");
+  const report::Table parameters =
+      report::tables_of([&outcome](ResultVisitor& visitor) { outcome.visit_parameters(visitor); })
+          .at(0);
   ASSERT_EQ(parameters.rows.size(), 2u);
   const report::Table modes = table_called("modes");
   ASSERT_EQ(modes.rows.size(), 1u);

@@ -12,12 +12,14 @@ namespace {
 
 TEST(SweepOutcome, ComesBackBitForBit) {
   TaskOutcome outcome;
-  outcome.sides.push_back(
-      {"1", 0.1, ChoiceStatus::kChosen, {{0.78, 1.0 / 3.0, 5e-324}, {0.7, -0.0, 1e308}}});
+  outcome.sides.push_back({"1",
+                           0.1,
+                           ChoiceStatus::kChosen,
+                           {{0.78, 0.79, 1.0 / 3.0, 5e-324}, {0.7, 0.71, -0.0, 1e308}}});
   outcome.sides.push_back({"joint",
                            std::numeric_limits<double>::infinity(),
                            ChoiceStatus::kNoInteriorMinimum,
-                           {{0.0, std::nan(""), 1.0}}});
+                           {{0.0, 1.0, std::nan(""), 1.0}}});
   outcome.sides[0].misfit = 1.0 + 1e-15;
   const std::string text = report::json_line(outcome);
   EXPECT_EQ(text.find('\n'), std::string::npos);
@@ -30,6 +32,8 @@ TEST(SweepOutcome, ComesBackBitForBit) {
   EXPECT_TRUE(std::isnan(again.sides[1].misfit));
   EXPECT_EQ(again.sides[0].scores[0].correlation, 1.0 / 3.0);
   EXPECT_EQ(again.sides[0].scores[0].relative_rms_error, 5e-324);
+  EXPECT_EQ(again.sides[0].scores[0].stop, 0.79);
+  EXPECT_TRUE(std::isnan(again.sides[0].scores[0].coverage));
   EXPECT_TRUE(std::signbit(again.sides[0].scores[1].correlation));
   EXPECT_EQ(again.sides[1].status, ChoiceStatus::kNoInteriorMinimum);
   EXPECT_TRUE(std::isinf(again.sides[1].parameter));

@@ -1,9 +1,8 @@
-#include "experiments/kinds/sweep/sweep.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "experiments/kinds/sweep/sweep.hpp"
 #include "experiments/runs/task_experiment.hpp"
 #include "libinverse/observer/model_based_estimator.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
@@ -18,6 +17,7 @@ InvertOptions cell_with(double noise_level, double window) {
   cell.observation.truth.scene.duration = 0.05;
   cell.observation.measurement.noise_level = noise_level;
   cell.score.windows = {window};
+  cell.inversion.estimator.select("one_sided");
   return cell;
 }
 

@@ -16,7 +16,7 @@ namespace {
 class StagedSearch : public testing::Test {
  protected:
   StagedSearch() {
-    options.parameters.law = options.parameters.contact = true;
+    options.parameters = {.law = true, .contact = true};
     options.objective = Choice<Objective>::of<JointLikelihood>(
         "joint_likelihood",
         {.left_noise = records.deviation[0], .right_noise = records.deviation[1]});

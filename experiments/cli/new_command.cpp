@@ -1,0 +1,182 @@
+// new: an experiment file to start from.
+#include <fmt/format.h>
+
+#include <fstream>
+
+#include "experiments/cli/command.hpp"
+#include "experiments/config/reader.hpp"
+#include "experiments/records/inspection.hpp"
+#include "libinverse/waves/end_relation.hpp"
+#include "libsim/records/levels.hpp"
+#include "libsim/records/recording.hpp"
+
+namespace modcal {
+namespace {
+
+struct NewArguments {
+  std::string kind, record, out;
+  std::string length, linear_density;
+};
+
+// A file of configs/ that shows a kind at its simplest.
+struct Example {
+  std::string_view kind, file;
+};
+constexpr Example kExamples[] = {
+    {"benchmark", "benchmark/optimizers.yaml"},
+    {"calibrate", "beyond/calibrate_to_the_bound.yaml"},
+    {"calibration_limit", "beyond/calibration_limit.yaml"},
+    {"identify", "calibration/pluck.yaml"},
+    {"invert", "beyond/friction_law.yaml"},
+    {"pluck_then_bow", "paper/section7.yaml"},
+    {"schelleng", "schelleng.yaml"},
+    {"simulate", "scenes/thermal.yaml"},
+    {"sweep", "beyond/table1_joint.yaml"},
+};
+
+std::string example_of(const std::string& kind) {
+  std::vector<std::string> kinds;
+  for (const Example& example : kExamples) {
+    kinds.emplace_back(example.kind);
+    if (example.kind != kind) continue;
+    const std::filesystem::path file = std::filesystem::path(shipped_configs()) / example.file;
+    std::ifstream stream(file);
+    MODCAL_REQUIRE(stream.good(), "{} cannot be read: install modcal with its configs",
+                   file.string());
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+  throw_invalid_input("unknown kind \"{}\"{}", kind, suggestion(kind, kinds));
+}
+
+constexpr double kViolin = 0.33;  // [m], where nobody states a length
+
+double stated(const std::string& text, const char* option, const char* unit, double otherwise) {
+  if (text.empty()) return otherwise;
+  const ScalarNumber number = parse_number(text, unit);
+  MODCAL_REQUIRE(number.error.empty(), "{}: {}", option, number.error);
+  MODCAL_REQUIRE(number.value > 0.0, "{} {} must be > 0", option, text);
+  return number.value;
+}
+
+// Files in experiments are relative to the folder of the experiment's file.
+std::string seen_from(const std::string& out, const std::string& record) {
+  if (out.empty()) return record;
+  const auto folder = std::filesystem::absolute(out).parent_path();
+  return std::filesystem::proximate(std::filesystem::absolute(record), folder).string();
+}
+
+std::string channel_line(const char* end, const RecordedForceOptions& force) {
+  std::string keys = fmt::format("channel: \"{}\"", force.channel), comment;
+  if (!std::isnan(force.calibration)) {
+    keys += ", calibration: 1";
+    comment = "  # N per unit of the column: state yours";
+  }
+  if (force.turned) {
+    keys += ", turned: true";
+    comment += "  # or the other one's: a force > 0 pushes both below 0";
+  }
+  return fmt::format("  {}: {{{}}}{}\n", end, keys, comment);
+}
+
+ToldString told_by(const RecordOptions& record) {
+  const RecordedSignals signals = load_record(record, ".");
+  const std::span<const double> left = signals.left->samples, right = signals.right->samples;
+  return find_string({.left = left,
+                      .right = right,
+                      .sample_rate = signals.sample_rate,
+                      .noise = {white_noise_rms(left), white_noise_rms(right)}});
+}
+
+std::string file_for_record(const NewArguments& arguments) {
+  MODCAL_REQUIRE(arguments.kind == "invert" || arguments.kind == "calibrate",
+                 "a record is read by the kinds invert and calibrate, not by {}: leave the record "
+                 "out, or name one of these",
+                 arguments.kind);
+  const InspectionReport report = inspect(arguments.record);
+  MODCAL_REQUIRE(report.problem_count == 0, "{}", report.problems.front());
+  RecordOptions record = report.record;
+  MODCAL_REQUIRE(record.has_left && record.has_right,
+                 "{} has one channel: which string it is takes both reactions; state it by hand as "
+                 "`modcal inspect` shows",
+                 arguments.record);
+  ToldString told = told_by(record);
+  // One sensor may read with the other sign.
+  RecordOptions other = record;
+  other.right.turned = true;
+  const ToldString turned = told_by(other);
+  if (turned.misfit < told.misfit) {
+    told = turned;
+    record = other;
+  }
+  const double length = stated(arguments.length, "--length", "m", kViolin);
+  const double density = stated(arguments.linear_density, "--linear-density", "kg/m", 1e-3);
+  const bool invert = arguments.kind == "invert";
+  std::string text = fmt::format(
+      "# {} with {}: modcal run runs it as it is.\n"
+      "kind: {}\n"
+      "title: {}\n"
+      "record:\n"
+      "  file: \"{}\"\n",
+      arguments.kind, arguments.record, arguments.kind, arguments.record,
+      seen_from(arguments.out, arguments.record));
+  text += channel_line("left", record.left) + channel_line("right", record.right);
+  if (record.has_reference) text += channel_line("reference", record.reference);
+  text += fmt::format(
+      "string:\n"
+      "  length: {:.6g} m{}\n"
+      "  linear_density: {:.6g} kg/m{}\n"
+      "  fundamental: {:.6g} Hz  # as the record has it\n"
+      "  inharmonicity: {:.3g}  # B of f_n = n f0 sqrt(1 + B n^2), as the record has it\n"
+      "  damping: {{type: constant, ratio: 1e-3}}{}\n"
+      "bow:\n"
+      "  position: {:.5g} mm  # as the record has it: {:.4f} of the length from the end of "
+      "\"{}\"\n",
+      length,
+      arguments.length.empty() ? "  # not in the record: state yours; positions go with it" : "",
+      density,
+      arguments.linear_density.empty()
+          ? "  # not in the record: the motion goes with its inverse, the force does not"
+          : "",
+      told.fundamental, told.inharmonicity,
+      invert ? "  # state yours, or calibrate first"
+             : "  # a start: the calibration finds every mode's own",
+      1e3 * told.contact * length, told.contact, record.left.channel);
+  if (!told.explained) {
+    text += "# The reactions are not quite those of one string: modcal validate says why.\n";
+  }
+  return text;
+}
+
+ExitCode write_new(const NewArguments& arguments) {
+  const std::string text =
+      arguments.record.empty() ? example_of(arguments.kind) : file_for_record(arguments);
+  if (arguments.out.empty()) {
+    say_text(text);
+    return ExitCode::kOk;
+  }
+  MODCAL_REQUIRE(!std::filesystem::exists(arguments.out),
+                 "{} exists and is not overwritten: name another file with --out", arguments.out);
+  std::ofstream stream(arguments.out);
+  stream << text << std::flush;
+  MODCAL_REQUIRE(stream.good(), "{} cannot be written", arguments.out);
+  say("{0}\nmodcal run {1}\n", arguments.out, shell_word(arguments.out));
+  return ExitCode::kOk;
+}
+
+void declare(CLI::App& command, NewArguments& arguments) {
+  command.add_option("kind", arguments.kind, "kind of experiment, see modcal list experiment")
+      ->required();
+  command.add_option("record", arguments.record,
+                     "recorded file, of which the string and the contact point are read");
+  command.add_option("--length", arguments.length, "vibrating length, \"0.33 m\"");
+  command.add_option("--linear-density", arguments.linear_density, "mass per length, \"1 g/m\"");
+  command.add_option("--out", arguments.out, "file to write; default: standard output");
+}
+
+}  // namespace
+
+void add_new_command(CLI::App& app, const Chosen& chosen) {
+  add_command(app, chosen, "new", "Write an experiment file to start from", declare, write_new);
+}
+
+}  // namespace modcal

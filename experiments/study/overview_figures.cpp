@@ -1,0 +1,261 @@
+// Figures that every identification shows unasked.
+#include <cmath>
+
+#include "experiments/study/figures.hpp"
+#include "libsim/signal/statistics.hpp"
+
+namespace modcal {
+namespace {
+
+using report::ColorRole;
+using report::Figure;
+using report::Panel;
+using report::Series;
+using report::SeriesStyle;
+
+constexpr double kBand = 1.96;          // deviations of 95 %
+constexpr double kPeriodsShown = 6.0;   // where single strokes are to be seen
+constexpr double kMostPeriods = 500.0;  // of an overview: more are a black bar
+
+// Samples from `first` on, one past the last, and the scale of their time axis.
+struct Part {
+  std::size_t first = 0, last = 0;
+  double per_second = 1.0;
+  const char* unit = "s";
+};
+
+// A signal of an estimate as it is drawn.
+struct Shown {
+  std::string_view quantity;  // of kQuantities
+  const char* label;
+  const char* unit;
+  double scale;  // unit per SI unit
+};
+constexpr Shown kForce{"f_c", "force f_c", "N", 1.0};
+constexpr Shown kDisplacement{"y", "displacement y", "µm", 1e6};
+constexpr Shown kVelocity{"v", "velocity v", "mm/s", 1e3};
+
+struct Drawing {
+  const Observation& observation;
+  const std::vector<SideIdentification>& sides;
+
+  double rate() const { return observation.sample_rate; }
+  std::size_t samples() const { return observation.samples(); }
+  double fundamental() const { return observation.fundamental; }
+
+  // The middle of the record, a few periods long.
+  Part middle() const {
+    const auto half =
+        static_cast<std::size_t>(std::ceil(0.5 * kPeriodsShown * rate() / fundamental()));
+    const std::size_t center = samples() / 2;
+    return {center - std::min(center, half), std::min(samples(), center + half + 1), 1e3, "ms"};
+  }
+  Part all() const {
+    const auto most = static_cast<std::size_t>(kMostPeriods * rate() / fundamental());
+    return {0, std::min(samples(), most), 1.0, "s"};
+  }
+};
+
+// The true signal without its static part, which no reaction tells; empty: not known.
+std::vector<double> truth_of(const Observation& observation, const Quantity& quantity) {
+  std::vector<double> samples;
+  if (observation.truth) {
+    samples = (observation.truth->simulation.*quantity.simulated).samples;
+  } else if (quantity.reference != nullptr && observation.*quantity.reference) {
+    samples = (observation.*quantity.reference)->samples;
+  }
+  if (!samples.empty()) remove_mean(samples);
+  return samples;
+}
+
+Panel signal_panel(const Drawing& drawing, const SideIdentification& side, const Shown& shown,
+                   const Part& part) {
+  Panel panel{.title = side.estimate.label,
+              .x = {.label = "time", .unit = part.unit},
+              .y = {.label = shown.label, .unit = shown.unit}};
+  const Quantity& quantity = quantity_of(shown.quantity);
+  std::vector<double> found = side.estimate.result.*quantity.identified;
+  if (!found.empty()) remove_mean(found);
+  Series identified{.label = "identified"};
+  const bool banded = !std::isnan(quantity.deviation_at(side.estimate, part.first));
+  if (banded) identified.label += ", 95 % band";
+  for (std::size_t j = part.first; j < std::min(part.last, found.size()); ++j) {
+    const double time = part.per_second * static_cast<double>(j) / drawing.rate();
+    const double value = shown.scale * found[j];
+    if (!banded) {
+      identified.add(time, value);
+      continue;
+    }
+    const double width = kBand * shown.scale * quantity.deviation_at(side.estimate, j);
+    identified.add(time, value, value - width, value + width);
+  }
+  panel.series.push_back(std::move(identified));
+  const std::vector<double> truth = truth_of(drawing.observation, quantity);
+  if (truth.empty()) return panel;
+  Series reference{.label = drawing.observation.truth ? "true" : "measured",
+                   .style = SeriesStyle::kDotted,
+                   .color = ColorRole::kReference};
+  for (std::size_t j = part.first; j < std::min(part.last, truth.size()); ++j) {
+    reference.add(part.per_second * static_cast<double>(j) / drawing.rate(),
+                  shown.scale * truth[j]);
+  }
+  panel.series.push_back(std::move(reference));
+  return panel;
+}
+
+Figure force_figure(const Drawing& drawing) {
+  Figure figure{.id = "identified_force",
+                .title = "Contact force",
+                .caption = fmt::format("Above: {:g} periods from the middle of the record. Below: "
+                                       "the record. Static parts are left out.",
+                                       kPeriodsShown),
+                .columns = drawing.sides.size()};
+  for (const Part& part : {drawing.middle(), drawing.all()}) {
+    for (const SideIdentification& side : drawing.sides) {
+      figure.panels.push_back(signal_panel(drawing, side, kForce, part));
+    }
+  }
+  return figure;
+}
+
+Figure motion_figure(const Drawing& drawing) {
+  Figure figure{.id = "identified_motion",
+                .title = "Motion of the string at the contact",
+                .caption = fmt::format("{:g} periods from the middle of the record, static parts "
+                                       "left out.",
+                                       kPeriodsShown),
+                .columns = drawing.sides.size()};
+  for (const Shown& shown : {kDisplacement, kVelocity}) {
+    for (const SideIdentification& side : drawing.sides) {
+      figure.panels.push_back(signal_panel(drawing, side, shown, drawing.middle()));
+    }
+  }
+  return figure;
+}
+
+Figure friction_loop_figure(const Drawing& drawing) {
+  Figure figure{.id = "identified_force_over_velocity",
+                .title = "Contact force over the velocity of the string",
+                .caption = fmt::format(
+                    "{:g} periods from the middle of the record, static parts left out: a string "
+                    "that sticks stands at the bow's velocity.",
+                    kPeriodsShown),
+                .columns = drawing.sides.size()};
+  const Part part = drawing.middle();
+  for (const SideIdentification& side : drawing.sides) {
+    const InversionResult& found = side.estimate.result;
+    Panel panel{.title = side.estimate.label,
+                .x = {.label = kVelocity.label, .unit = kVelocity.unit},
+                .y = {.label = kForce.label, .unit = kForce.unit}};
+    Series loop{.label = "identified", .style = SeriesStyle::kPoints};
+    for (std::size_t j = part.first; j < std::min(part.last, found.force.size()); ++j) {
+      loop.add(kVelocity.scale * found.velocity[j], found.force[j]);
+    }
+    panel.series.push_back(std::move(loop));
+    figure.panels.push_back(std::move(panel));
+  }
+  return figure;
+}
+
+// |X_k|/f_s below the highest mode's neighborhood, frequencies in kHz.
+Series spectrum_of(std::span<const double> samples, double rate, double highest,
+                   std::string label) {
+  Series series{.label = std::move(label)};
+  const RealFft fft(samples.size());
+  const std::vector<Complex> spectrum = fft.forward(samples);
+  for (std::size_t k = 1; k < spectrum.size(); ++k) {
+    const double f = static_cast<double>(k) * rate / static_cast<double>(fft.length());
+    if (f <= highest) series.add(1e-3 * f, std::abs(spectrum[k]) / rate);
+  }
+  return series;
+}
+
+// Standard deviation of the noise of a reaction as the estimate took it; NaN: it took none.
+double noise_of(const std::vector<SideIdentification>& sides, std::size_t reaction) {
+  const std::string name = fmt::format("noise_rms_{}", reaction + 1);
+  for (const SideIdentification& side : sides) {
+    for (const auto& [key, value] : side.estimate.figures) {
+      if (key == name) return value;
+    }
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+Figure spectra_figure(const Drawing& drawing) {
+  Figure figure{.id = "reaction_spectra",
+                .title = "Spectra of the reactions and of the force",
+                .caption = "Dotted: the noise of the sensor."};
+  const Observation& observation = drawing.observation;
+  const double highest = std::min(0.5 * drawing.rate(),
+                                  1.1 * observation.basis.frequency(observation.basis.size() - 1));
+  const auto add = [&](std::string title, std::string label, std::span<const double> samples) {
+    Panel panel{.title = std::move(title),
+                .x = {.label = "frequency", .unit = "kHz"},
+                .y = {.label = std::move(label), .unit = "N s", .logarithmic = true}};
+    panel.series.push_back(spectrum_of(samples, drawing.rate(), highest, "record"));
+    figure.panels.push_back(std::move(panel));
+  };
+  for (const End end : kEnds) {
+    const auto& reaction = observation.reaction(end);
+    if (!reaction) continue;
+    const auto r = static_cast<std::size_t>(end);
+    add(fmt::format("reaction at {}", label_of(end)), fmt::format("|R{}|", r + 1),
+        reaction->samples);
+    const double noise = noise_of(drawing.sides, r);
+    if (!(noise > 0.0)) continue;
+    const double floor = noise * std::sqrt(static_cast<double>(reaction->size())) / drawing.rate();
+    Series level{.label = "noise of the sensor",
+                 .style = SeriesStyle::kDotted,
+                 .color = ColorRole::kReference};
+    level.add(0.0, floor);
+    level.add(1e-3 * highest, floor);
+    figure.panels.back().series.push_back(std::move(level));
+  }
+  for (const SideIdentification& side : drawing.sides) {
+    add("force " + side.estimate.label, "|F_c|", side.estimate.result.force);
+    figure.panels.back().series.front().label = "identified";
+  }
+  figure.columns = std::min<std::size_t>(figure.panels.size(), 2);
+  return figure;
+}
+
+Figure misfit_figure(const Drawing& drawing) {
+  Figure figure{.id = "reaction_misfit",
+                .title = "What the two reactions contradict each other by",
+                .caption =
+                    "Power of R1 H2 - R2 H1, about 40 Hz smoothed, over what the noise puts "
+                    "there: 1 where one force explains both reactions."};
+  for (const SideIdentification& side : drawing.sides) {
+    const std::vector<double>& misfit = side.estimate.side_misfit;
+    if (misfit.empty()) continue;
+    Panel panel{.title = side.estimate.label,
+                .x = {.label = "frequency", .unit = "kHz"},
+                .y = {.label = "misfit", .logarithmic = true}};
+    Series series{.label = "misfit"};
+    const double width = drawing.rate() / static_cast<double>(drawing.samples());
+    for (std::size_t k = 1; k < misfit.size(); ++k) {
+      const double f = static_cast<double>(k) * width;
+      if (side.estimate.band_limit < f) break;
+      series.add(1e-3 * f, misfit[k]);
+    }
+    panel.series.push_back(std::move(series));
+    panel.markers.push_back(
+        {.direction = report::Marker::Direction::kHorizontal, .value = 1.0, .label = "noise"});
+    figure.panels.push_back(std::move(panel));
+  }
+  return figure;
+}
+
+}  // namespace
+
+std::vector<Figure> overview_figures(const Observation& observation,
+                                     const std::vector<SideIdentification>& sides) {
+  const Drawing drawing{observation, sides};
+  std::vector<Figure> figures = {force_figure(drawing), motion_figure(drawing),
+                                 friction_loop_figure(drawing), spectra_figure(drawing),
+                                 misfit_figure(drawing)};
+  std::erase_if(figures, [](const Figure& figure) { return figure.panels.empty(); });
+  return figures;
+}
+
+}  // namespace modcal

@@ -1,0 +1,131 @@
+// What a newcomer does: from a recorded file to the string and the force with their error bars.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "tests/experiments/cli/program_run.hpp"
+
+namespace modcal {
+namespace {
+
+using testing::content_of;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+// The record that comes with the program, of a string by finite differences whose law and contact
+// its first lines state.
+class FirstHour : public testing::ProgramTest {
+ protected:
+  FirstHour() {
+    std::filesystem::copy_file(std::string(MODCAL_EXAMPLES) + "/bowed_violin_d.csv",
+                               folder() / "record.csv");
+  }
+  std::string first_line(const std::string& file) const {
+    std::istringstream stream(content_of(folder() / file));
+    std::string line;
+    while (std::getline(stream, line) && line.starts_with("#")) {
+    }
+    return line;
+  }
+};
+
+TEST_F(FirstHour, GoesFromARecordToTheForceWithItsBand) {
+  ASSERT_EQ(modcal("new calibrate record.csv --length '0.33 m' --out mine.yaml").code, 0);
+  const Outcome valid = modcal("validate mine.yaml");
+  ASSERT_EQ(valid.code, 0) << valid.err;
+  const Outcome run = modcal("run mine.yaml");
+  ASSERT_EQ(run.code, 0) << run.out << run.err;
+  EXPECT_THAT(run.out, HasSubstr("within the 95 % band"));
+  const auto found =
+      nlohmann::json::parse(content_of(folder() / "out/mine/calibration.json")).at("parameters");
+  const std::map<std::string, double> truth = {{"f0", 294.0}, {"B", 1.1e-4}, {"x_c", 0.041}};
+  std::size_t judged = 0;
+  for (const auto& parameter : found) {
+    const auto known = truth.find(parameter.at("name"));
+    if (known == truth.end()) continue;
+    ++judged;
+    const double deviation = parameter.at("sd");
+    EXPECT_LT(std::abs(parameter.at("final").get<double>() - known->second), 2.5 * deviation)
+        << known->first;
+    EXPECT_LT(deviation, 1e-3 * known->second) << known->first;
+  }
+  EXPECT_EQ(judged, 3u);
+  EXPECT_EQ(first_line("out/mine/identified.csv"),
+            "t [s],y_joint [m],y_joint_deviation [m],v_joint [m/s],v_joint_deviation [m/s],"
+            "f_c_joint [N],f_c_joint_deviation [N]");
+  const std::string page = content_of(folder() / "out/mine/report.html");
+  for (const char* figure : {"identified_force", "identified_motion", "frequencies_against_law",
+                             "reaction_spectra", "reaction_ratio"}) {
+    EXPECT_THAT(page, HasSubstr(figure));
+  }
+}
+
+TEST_F(FirstHour, NeedsNoObjectiveNorEstimator) {
+  ASSERT_EQ(modcal("new invert record.csv --length '0.33 m' --out mine.yaml").code, 0);
+  EXPECT_THAT(content_of(folder() / "mine.yaml"), Not(HasSubstr("estimator")));
+  const Outcome run = modcal("run mine.yaml");
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("side joint"));
+  // One reaction is enough for a force with a band.
+  const Outcome one = modcal(
+      "new invert record.csv --length '0.33 m' | grep -v right: > one.yaml && '" MODCAL_PROGRAM
+      "' run one.yaml");
+  ASSERT_EQ(one.code, 0) << one.err;
+  EXPECT_THAT(one.out, HasSubstr("reaction 2 is missing"));
+  EXPECT_THAT(first_line("out/one/identified.csv"), HasSubstr("f_c_joint_deviation [N]"));
+}
+
+TEST_F(FirstHour, NeedNotKnowHowASensorWasMounted) {
+  // The reaction at x = L with the other sign.
+  ASSERT_EQ(
+      shell("awk -F, '/^-?[0-9]/ {print $1 \",\" (-$2); next} /^#/ {print; next} {print $1 \",\" "
+            "$2}' record.csv > turned.csv")
+          .code,
+      0);
+  const Outcome written =
+      modcal("new invert turned.csv --length '0.33 m' --out turned.yaml && cat turned.yaml");
+  EXPECT_THAT(written.out, HasSubstr("turned: true"));
+  EXPECT_EQ(modcal("validate turned.yaml").code, 0);
+  const Outcome without = modcal("validate turned.yaml --set record.right.turned=false");
+  EXPECT_EQ(without.code, 3);
+  EXPECT_THAT(without.err, HasSubstr("state turned: true"));
+}
+
+TEST_F(FirstHour, IsToldAtValidateWhatTheRecordLacks) {
+  ASSERT_EQ(modcal("new calibrate record.csv --length '0.33 m' --out mine.yaml").code, 0);
+  const auto refused = [this](const std::string& set, const std::string& place,
+                              const std::string& reason) {
+    const Outcome outcome = modcal("validate mine.yaml --set " + set);
+    EXPECT_EQ(outcome.code, 3) << set;
+    EXPECT_THAT(outcome.err, HasSubstr(place)) << set;
+    EXPECT_THAT(outcome.err, HasSubstr(reason)) << set;
+  };
+  refused("record.file=nowhere.csv", "--set", "cannot be opened");
+  refused("record.left.channel=R7", "mine.yaml:5:", "there is no channel \"R7\"");
+  refused("record.start='2 s'", "mine.yaml:5:", "record");
+  refused("bow.position='290 mm'", "mine.yaml:5:", "exchanged");
+  refused("'score={windows: [0.6 s]}'", "--set", "is not inside the record");
+  refused("'figures=[{id: late, windows: [{start: 3 s}]}]'", "--set", "holds nothing of a record");
+}
+
+TEST_F(FirstHour, HasAnExampleOfEveryKind) {
+  const Outcome kinds = modcal("list experiment");
+  ASSERT_EQ(kinds.code, 0);
+  std::istringstream lines(kinds.out);
+  std::size_t count = 0;
+  for (std::string line; std::getline(lines, line);) {
+    const std::string kind = line.substr(0, line.find(' '));
+    if (kind.empty()) continue;
+    ++count;
+    const Outcome written = modcal("new " + kind + " --out " + kind + ".yaml");
+    EXPECT_EQ(written.code, 0) << kind << written.err;
+    EXPECT_EQ(modcal("validate " + kind + ".yaml").code, 0) << kind;
+  }
+  EXPECT_GE(count, 9u);
+  EXPECT_THAT(modcal("new calibrte").err, HasSubstr("did you mean \"calibrate\"?"));
+  EXPECT_EQ(modcal("new invert --out invert.yaml").code, 3);  // is there
+}
+
+}  // namespace
+}  // namespace modcal
