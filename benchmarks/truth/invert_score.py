@@ -5,10 +5,12 @@ invert_score.py BUILD OUT adds noise to records of benchmarks/truth as score.py 
 violin D string under exponential and thermal friction, 0, 1 and 5 %, one draw), inverts each with the true string by every
 estimator of --estimators and prints, between a tenth of the record and 95 % of it and without the means, which sensors do not give:
 the relative rms error of the force below 9 kHz and the share of true samples within the 95 % bands of force and velocity. A band
-is compared with what it is of: the truth below the limit of the band that the estimate states. What is finished stays in OUT.
+is compared with what it is of: the truth below the limit of the band that the estimate states. --sides R1 R2 both inverts one
+reaction, too, --start 0.2 the record from there on. What is finished stays in OUT.
 """
 import cmath
 import csv
+import itertools
 import json
 import math
 import subprocess
@@ -88,9 +90,9 @@ def held(found, true, deviation):
     return sum(abs(d) <= 1.96 * s for d, s in zip(off, sd)) / len(off)
 
 
-def judged(folder, side, truth_path, rate):
+def judged(folder, side, truth_path, rate, start):
     found = columns(folder / "out/identified.csv")
-    true = columns(Path(f"{truth_path}.csv"))
+    true = {name: values[round(start * rate):] for name, values in columns(Path(f"{truth_path}.csv")).items()}
     force = found.get(f"f_c_{side}_unaliased", found[f"f_c_{side}"])
     exact = inner(below(true["f_c"], rate, CUT))
     off = inner(below([a - b for a, b in zip(force, true["f_c"])], rate, CUT))
@@ -110,21 +112,22 @@ def judged(folder, side, truth_path, rate):
     return line
 
 
-def configuration(truth, name, noise, estimator, keys, a):
+def configuration(truth, name, noise, sides, estimator, keys, a):
     text = score.configuration(truth, name, "none", noise, 0, a)
     damping = text.split("damping: ")[1].split("\nbow")[0]
     string = truth["string"]
     if keys and estimator != "model_based":
         keys = ", " + keys
-    return (f"kind: invert\nrecord: {{file: record.csv, left: {{channel: R1}}, right: {{channel: R2}}}}\n"
+    ends = {"both": "left: {channel: R1}, right: {channel: R2}", "R1": "left: {channel: R1}", "R2": "right: {channel: R2}"}[sides]
+    return (f"kind: invert\nrecord: {{file: record.csv, {ends}, start: {a.start:g} s}}\n"
             f"string: {{length: {string['L']} m, linear_density: {string['rho_L']} kg/m, fundamental: {string['f0']:.9g} Hz, "
             f"inharmonicity: {string['B']:.6g}, damping: {damping}\nbow: {{position: {1e3 * truth['x_c']:.9g} mm}}\n"
             + ESTIMATORS[estimator][0].format(keys=keys) + "write_signals: true\n")
 
 
-def inverted(path, name, noise, draw, estimator, keys, a):
+def inverted(path, name, noise, draw, sides, estimator, keys, a):
     truth = json.loads(Path(f"{path}.json").read_text())
-    text = configuration(truth, name, noise, estimator, keys, a)
+    text = configuration(truth, name, noise, sides, estimator, keys, a)
     folder = a.out / "runs" / f"{path.name}-{noise:g}-{draw}-{estimator}-{score.digest(a.program, text)}"
     if (folder / "score.json").exists():
         return json.loads((folder / "score.json").read_text())
@@ -137,14 +140,14 @@ def inverted(path, name, noise, draw, estimator, keys, a):
     (folder / "said.txt").write_text(done.stdout)
     line = {"seconds": time.monotonic() - begin, "exit": done.returncode, "said": done.stdout[-600:]}
     if done.returncode == 0:
-        line |= judged(folder, ESTIMATORS[estimator][1], path, a.rate)
+        line |= judged(folder, ESTIMATORS[estimator][1], path, a.rate, a.start)
     (folder / "score.json").write_text(json.dumps(line))
     return line
 
 
 def options():
-    """Those of score.py, with defaults of our own, and two more."""
-    more = {"--estimators": ["joint", "model_based"], "--keys": [""]}
+    """Those of score.py, with defaults of our own, and four more."""
+    more = {"--estimators": ["joint", "model_based"], "--keys": [""], "--sides": ["both"], "--start": ["0"]}
     rest, given, name = [], {}, None
     for word in sys.argv[1:]:
         name = word if word.startswith("--") else name
@@ -160,6 +163,8 @@ def options():
     a = score.arguments()
     a.estimators = given.get("--estimators", more["--estimators"])
     a.keys = " ".join(given.get("--keys", more["--keys"]))
+    a.sides = given.get("--sides", more["--sides"])
+    a.start = float(given.get("--start", more["--start"])[0])
     return a
 
 
@@ -171,10 +176,10 @@ def main():
         path = score.simulated(name, action, "none", a, truth_digest)
         for noise in a.noise:
             for draw in range(a.draws):
-                for estimator in a.estimators:
-                    line = inverted(path, name, noise, draw, estimator, "" if estimator == "joint" else a.keys, a)
+                for sides, estimator in itertools.product(a.sides, a.estimators):
+                    line = inverted(path, name, noise, draw, sides, estimator, "" if estimator == "joint" else a.keys, a)
                     text = "  ".join(f"{k} {v:.4g}" for k, v in line.items() if k not in ("said", "exit"))
-                    print(f"{name} {action} {100 * noise:g} % {estimator:11} "
+                    print(f"{name} {action} {100 * noise:g} % {sides:4} {estimator:11} "
                           + (text if line["exit"] == 0 else f"exit {line['exit']} {line['said']}"), flush=True)
 
 

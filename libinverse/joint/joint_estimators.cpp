@@ -41,7 +41,7 @@ class PreparedJoint : public PreparedEstimator {
         sample_rate_(model.sample_rate),
         options_(options),
         recorded_(model.recorded),
-        truncation_(truncation_of(options.truncation)),
+        arrival_(first_arrivals(basis_, contact_, options.sensors)),
         support_(options.transfer.support(model.recorded)),
         noise_(basis_, contact_, samples_, sample_rate_, support_, options.sensors),
         prior_(std::move(prior)) {}
@@ -49,12 +49,13 @@ class PreparedJoint : public PreparedEstimator {
   std::vector<Estimate> estimate(const EstimationRecord& record,
                                  const InversionMethod& method) const override {
     SensorNoiseLevel noise = noise_of(record);
-    const bool shifted = truncation_ == Truncation::kShiftedContour;
-    if (recorded_ && noise.measured && shifted) noise = lowered(record.reactions, noise);
-    JointMethod how = this->method(method.outputs);
+    const RecordEnds ends = ends_of(record.reactions, noise);
+    if (recorded_ && noise.measured && ends.at_rest) noise = lowered(record.reactions, noise);
+    JointMethod how = this->method(method.outputs, ends);
     how.variances = method.variances;
-    std::vector<Estimate> estimates = estimate_with(of(record.reactions, noise), record, noise, how,
-                                                    "joint", "from both reactions");
+    std::vector<Estimate> estimates = estimate_with(of(record.reactions, noise, ends), record,
+                                                    noise, how, "joint", "from both reactions");
+    report_ends(ends, estimates[0]);
     if (limited_by_default()) {
       estimates[0].notes.push_back(fmt::format(
           "the force is identified up to {:.5g} Hz, {} modes below the highest of {}, next to "
@@ -70,17 +71,38 @@ class PreparedJoint : public PreparedEstimator {
   std::size_t samples() const { return samples_; }
   double sample_rate() const { return sample_rate_; }
 
-  // The inversion on the contour that suits the record, see contour_of.
-  const JointInversion& of(const ReactionPair& reactions, const SensorNoiseLevel& noise) const {
-    return at(sigma_for(reactions, noise));
+  struct RecordEnds {
+    Truncation truncation;
+    OffsetRule offset;
+    bool at_rest;  // at first
+  };
+  // As stated, else what suits the record: unknown ends for those of real strings, which cost a
+  // few times as much and leave nothing of the wrap, and for one reaction, whose H_r has zeros
+  // between its poles, lines of what wraps around; else the contour, where the record permits it.
+  RecordEnds ends_of(const ReactionPair& reactions, const SensorNoiseLevel& noise) const {
+    const bool both = !reactions[0].empty() && !reactions[1].empty();
+    const bool at_rest =
+        starts_at_rest(reactions, noise, arrival_, basis_.frequency(0), sample_rate_);
+    const auto stated = truncation_of(options_.truncation);
+    Truncation truncation = stated.value_or(Truncation::kTransient);
+    const bool contour = (both && at_rest && !recorded_) || !std::isnan(options_.sigma);
+    if (!stated && contour) truncation = Truncation::kShiftedContour;
+    const bool level_known = truncation == Truncation::kShiftedContour || (!stated && at_rest);
+    return {truncation, level_known ? offset_rule_of(options_.offset) : OffsetRule::kNone, at_rest};
   }
 
-  const JointInversion& at(double sigma) const {
+  // The inversion on the contour that suits the record, see contour_of.
+  const JointInversion& of(const ReactionPair& reactions, const SensorNoiseLevel& noise,
+                           const RecordEnds& ends) const {
+    return at(ends.truncation, sigma_for(reactions, noise, ends.truncation));
+  }
+
+  const JointInversion& at(Truncation truncation, double sigma) const {
     const std::lock_guard lock(mutex_);
-    auto& slot = by_sigma_[sigma];
+    auto& slot = prepared_[{truncation, sigma}];
     if (!slot) {
       slot = std::make_unique<const JointInversion>(basis_, contact_, samples_, sample_rate_,
-                                                    JointModel{.truncation = truncation_,
+                                                    JointModel{.truncation = truncation,
                                                                .sigma = sigma,
                                                                .support = support_,
                                                                .sensors = options_.sensors},
@@ -89,7 +111,7 @@ class PreparedJoint : public PreparedEstimator {
     return *slot;
   }
 
-  JointMethod method(const InversionOutputs& outputs) const {
+  JointMethod method(const InversionOutputs& outputs, const RecordEnds& ends) const {
     double limit = options_.band_limit;
     if (limited_by_default()) {
       limit = basis_.frequency(basis_.size() - 1 - modes_kept_off());
@@ -98,13 +120,24 @@ class PreparedJoint : public PreparedEstimator {
       limit = 1.01 * *std::max_element(basis_.omega.begin(), basis_.omega.end()) /
               (2.0 * std::numbers::pi);
     }
-    return {.prior = *prior_,
-            .offset = offset_rule_of(options_.offset),
-            .band_limit = limit,
-            .outputs = outputs};
+    return {.prior = *prior_, .offset = ends.offset, .band_limit = limit, .outputs = outputs};
   }
 
  private:
+  void report_ends(const RecordEnds& ends, Estimate& estimate) const {
+    if (ends.at_rest) return;
+    if (ends.truncation == Truncation::kTransient) {
+      estimate.notes.emplace_back(
+          "nothing shows that the record starts at rest: the mean of the force, which sensors do "
+          "not "
+          "give, is left out");
+    } else if (ends.truncation == Truncation::kShiftedContour) {
+      estimate.warnings.emplace_back(
+          "nothing shows that the record starts at rest, as the shifted contour supposes: "
+          "truncation transient takes any state");
+    }
+  }
+
   // What lies above the modes of a real string the data do not tell.
   bool limited_by_default() const {
     return recorded_ && std::isnan(options_.band_limit) && !options_.limit_to_top_mode;
@@ -116,7 +149,7 @@ class PreparedJoint : public PreparedEstimator {
     JointWorkspace workspace;
     const double duration = static_cast<double>(samples_) / sample_rate_;
     SensorNoiseLevel result =
-        at(kNoiseContour / duration)
+        at(Truncation::kShiftedContour, kNoiseContour / duration)
             .lowered_noise(reactions, noise, offset_rule_of(options_.offset), workspace);
     for (std::size_t r = 0; r < 2; ++r) {
       if (!std::isnan(options_.noise_rms[r])) result.rms[r] = noise.rms[r];
@@ -148,8 +181,9 @@ class PreparedJoint : public PreparedEstimator {
   }
 
   // Quarters of 1/T: few contours serve all records of a length.
-  double sigma_for(const ReactionPair& reactions, const SensorNoiseLevel& noise) const {
-    if (truncation_ != Truncation::kShiftedContour) return 0.0;
+  double sigma_for(const ReactionPair& reactions, const SensorNoiseLevel& noise,
+                   Truncation truncation) const {
+    if (truncation != Truncation::kShiftedContour) return 0.0;
     if (!std::isnan(options_.sigma)) return options_.sigma;
     const double duration = static_cast<double>(samples_) / sample_rate_;
     const double best = contour_of(basis_, duration, noise_share(reactions, noise));
@@ -162,12 +196,12 @@ class PreparedJoint : public PreparedEstimator {
   double sample_rate_;
   JointOptions options_;
   bool recorded_;
-  Truncation truncation_;
+  std::array<double, 2> arrival_;
   StringSupport support_;
   SensorNoise noise_;
   std::shared_ptr<const ForcePrior> prior_;
   mutable std::mutex mutex_;
-  mutable std::map<double, std::unique_ptr<const JointInversion>> by_sigma_;
+  mutable std::map<std::pair<Truncation, double>, std::unique_ptr<const JointInversion>> prepared_;
 };
 
 class PreparedLimit final : public PreparedJoint {
@@ -186,9 +220,10 @@ class PreparedLimit final : public PreparedJoint {
       const double stated = record.stated_noise[r];
       if (std::isfinite(stated)) noise.rms[r] = stated;
     }
-    const JointInversion& inversion = of(record.reactions, noise);
+    const RecordEnds ends = ends_of(record.reactions, noise);
+    const JointInversion& inversion = of(record.reactions, noise, ends);
     const std::vector<double> spectrum = true_spectrum(record.true_force, inversion.sigma());
-    JointMethod how = this->method(method.outputs);
+    JointMethod how = this->method(method.outputs, ends);
     how.known_variance = spectrum;
     return estimate_with(inversion, record, noise, how, "linear_limit",
                          "linear limit (true spectra known)");

@@ -91,10 +91,7 @@ JointInversion::JointInversion(const ModalBasis& basis, double contact, std::siz
       largest_transfer_ = std::max(largest_transfer_, std::abs(value));
     }
   }
-  const double density = 2.0 * basis.mass.at(0) / basis.length;
-  const double speed = std::sqrt(basis.tension / density);
-  arrival_[0] = contact / speed + model.sensors[0].delay;
-  arrival_[1] = (basis.length - contact) / speed + model.sensors[1].delay;
+  arrival_ = first_arrivals(basis, contact, model.sensors);
   weight_power_ = static_cast<double>(samples);
   if (model.sigma > 0.0) {
     decay_.resize(samples);
@@ -109,7 +106,8 @@ JointInversion::JointInversion(const ModalBasis& basis, double contact, std::siz
   }
   grid_ = {.bins = fft_.bins(), .samples = samples, .sample_rate = sample_rate};
   if (model.truncation == Truncation::kTransient) {
-    transient_ = TransientFit(basis, grid, sample_rate, model.support.bending, model.sensors);
+    transient_ =
+        TransientFit(basis, contact, grid, sample_rate, model.support.bending, model.sensors);
   }
 }
 
@@ -153,6 +151,8 @@ double JointInversion::offset_of(std::span<const double> reaction, std::size_t s
 
 void JointInversion::transform(const ReactionPair& reactions, OffsetRule rule,
                                JointWorkspace& workspace, JointResult& result) const {
+  // On the frequency axis bin 0 is the static level, which sensors give only from rest.
+  workspace.level_known = !decay_.empty() || rule == OffsetRule::kArrival;
   for (std::size_t r = 0; r < 2; ++r) {
     result.offset[r] = 0.0;
     workspace.spectrum[r].resize(fft_.bins());
@@ -171,8 +171,7 @@ void JointInversion::transform(const ReactionPair& reactions, OffsetRule rule,
                      [offset](double x, double w) { return (x - offset) * w; });
     }
     fft_.forward(workspace.spectrum[r]);
-    // On the frequency axis bin 0 is the static level, which sensors do not give.
-    if (decay_.empty()) workspace.spectrum[r][0] = 0.0;
+    if (!workspace.level_known) workspace.spectrum[r][0] = 0.0;
   }
 }
 
@@ -225,7 +224,36 @@ void JointInversion::combine(const Weights& weights, JointWorkspace& workspace) 
   workspace.gain.resize(fft_.bins());
   joint_kernels().combine_sides(weights.inverse_variance, transfer_, workspace.spectrum,
                                 workspace.gain);
-  if (decay_.empty()) workspace.gain[0] = 0.0;
+  if (!workspace.level_known) workspace.gain[0] = 0.0;
+}
+
+TransientFit::Setting JointInversion::setting_of(const Weights& weights,
+                                                 const JointWorkspace& workspace) const {
+  TransientFit::Setting setting;
+  setting.prior = workspace.learned;
+  setting.level_known = workspace.level_known;
+  for (std::size_t r = 0; r < 2; ++r) {
+    setting.transfer[r] = transfer_[r];
+    setting.noise_variance[r] =
+        weights.inverse_variance[r] > 0.0 ? weight_power_ / weights.inverse_variance[r] : 0.0;
+  }
+  return setting;
+}
+
+// The force's amplitude and the decays are found in turn: the first round's amplitude still holds
+// what the decays explain.
+void JointInversion::take_out_decays(const Weights& weights, const JointMethod& method,
+                                     JointWorkspace& workspace, JointResult& result) const {
+  workspace.recorded = workspace.spectrum;
+  for (int round = 0; round < 2; ++round) {
+    combine(weights, workspace);
+    choose_amplitude(weights, method, workspace, result);
+    workspace.learned.assign(workspace.variance.begin(), workspace.variance.end());
+    for (double& variance : workspace.learned) variance *= weight_power_;
+    workspace.spectrum = workspace.recorded;
+    transient_.subtract(setting_of(weights, workspace),
+                        {workspace.spectrum[0], workspace.spectrum[1]}, workspace.transient);
+  }
 }
 
 void JointInversion::invert(const ReactionPair& reactions, const SensorNoiseLevel& noise,
@@ -233,39 +261,18 @@ void JointInversion::invert(const ReactionPair& reactions, const SensorNoiseLeve
                             JointResult& result) const {
   const Weights weights(require_record(reactions, noise), noise);
   result.noise_amplitude = std::sqrt(weights.mean_variance);
-  const bool from_rest = model_.truncation == Truncation::kShiftedContour;
-  const OffsetRule offset_rule = from_rest ? method.offset : OffsetRule::kNone;
-  transform(reactions, offset_rule, workspace, result);
+  transform(reactions, method.offset, workspace, result);
   if (model_.truncation == Truncation::kTransient) {
-    // The force's amplitude and the decays are found in turn: the first round's amplitude still
-    // holds what the decays explain.
-    const SideSpectra kept = workspace.spectrum;
-    for (int round = 0; round < 2; ++round) {
-      combine(weights, workspace);
-      choose_amplitude(weights, method, workspace, result);
-      workspace.learned.assign(workspace.variance.begin(), workspace.variance.end());
-      for (double& variance : workspace.learned) variance *= weight_power_;
-      workspace.spectrum = kept;
-      TransientFit::Setting setting;
-      setting.prior = workspace.learned;
-      std::array<std::span<Complex>, 2> spectra;
-      for (std::size_t r = 0; r < 2; ++r) {
-        setting.transfer[r] = transfer_[r];
-        setting.noise_variance[r] =
-            weights.inverse_variance[r] > 0.0 ? weight_power_ / weights.inverse_variance[r] : 0.0;
-        spectra[r] = workspace.spectrum[r];
-      }
-      transient_.subtract(setting, spectra, workspace.transient);
-    }
+    take_out_decays(weights, method, workspace, result);
   }
-  compare_sides(weights, offset_rule, method.variances || method.outputs.side_misfit, workspace,
+  compare_sides(weights, method.offset, method.variances || method.outputs.side_misfit, workspace,
                 result);
   combine(weights, workspace);
   choose_amplitude(weights, method, workspace, result);
   if (method.known_variance.empty()) {
     learn_spectrum(method.prior, method.band_limit, workspace);
   }
-  apply_posterior(method, workspace, result);
+  apply_posterior(weights, method, workspace, result);
 }
 
 }  // namespace modcal

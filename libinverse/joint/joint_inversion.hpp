@@ -12,6 +12,7 @@
 #include "libinverse/joint/joint_kernels.hpp"
 #include "libinverse/joint/sensor_noise.hpp"
 #include "libinverse/joint/string_transfer.hpp"
+#include "libinverse/joint/transient_fit.hpp"
 #include "libinverse/spectral/one_sided/one_sided_inversion.hpp"
 #include "libsim/signal/fft.hpp"
 
@@ -81,11 +82,16 @@ struct JointWorkspace {
   std::vector<double> misfit;  ///< of the sides in every bin, smoothed; empty: as the noise allows
   std::vector<double> power;   ///< |Σ_r conj(H_r) R_r/v_r|² of a unit sum of weights
   std::vector<double> terms[3];
-  std::vector<double> learned;
+  SideSpectra recorded;         ///< before the decays are taken out
+  std::vector<double> learned;  ///< prior variance of F_k that they were fitted with
+  /// Variances of force, displacement and velocity by the errors of the decays, on the scale of
+  /// `variance`.
+  std::array<std::vector<double>, 3> by_decays;
   std::vector<double> scratch;
   std::vector<Complex> contact;
   EvidenceCurve::Cells cells;
   TransientFit::Workspace transient;
+  bool level_known = false;  ///< bin 0 tells the force's
 };
 
 /// F = Σ_r conj(H_r) R_r/v_r ÷ (Σ_r |H_r|²/v_r + 1/P) on s = σ + iω, with noise variances v_r and a
@@ -159,13 +165,19 @@ class JointInversion {
                         JointWorkspace& workspace, JointResult& result) const;
   void limit_band(double limit, JointWorkspace& workspace) const;
   void learn_spectrum(const ForcePrior& prior, double band_limit, JointWorkspace& workspace) const;
-  void apply_posterior(const JointMethod& method, JointWorkspace& workspace,
+  TransientFit::Setting setting_of(const Weights& weights, const JointWorkspace& workspace) const;
+  void take_out_decays(const Weights& weights, const JointMethod& method, JointWorkspace& workspace,
+                       JointResult& result) const;
+  void find_errors_of_decays(const Weights& weights, const JointMethod& method,
+                             JointWorkspace& workspace) const;
+  void apply_posterior(const Weights& weights, const JointMethod& method, JointWorkspace& workspace,
                        JointResult& result) const;
   void widen_by_misfit(JointWorkspace& workspace) const;
   void count_bins(double kept_pairs, JointWorkspace& workspace, InversionResult& identified) const;
-  double deviation_of(double sum, std::span<const Complex> transfer,
+  double deviation_of(double sum, std::span<const Complex> transfer, std::span<const double> more,
                       const JointWorkspace& workspace) const;
-  double write_signal(std::span<const Complex> transfer, bool wanted, JointWorkspace& workspace,
+  enum class ContactSignal { kForce, kDisplacement, kVelocity };
+  double write_signal(ContactSignal what, bool wanted, JointWorkspace& workspace,
                       std::vector<double>& signal) const;
 
   InPlaceFft fft_;
@@ -174,7 +186,7 @@ class JointInversion {
   SideSpectra transfer_;
   std::vector<Complex> receptance_;
   std::vector<Complex> mobility_;
-  double arrival_[2] = {0.0, 0.0};  ///< [s]
+  std::array<double, 2> arrival_ = {0.0, 0.0};  ///< [s]
   double largest_transfer_ = 0.0;
   std::vector<double> decay_;   ///< exp(−σ t_j), empty for σ = 0
   std::vector<double> growth_;  ///< exp(σ t_j)/K

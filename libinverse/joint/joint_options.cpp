@@ -7,13 +7,14 @@
 namespace modcal {
 namespace {
 
-constexpr std::array<std::string_view, 3> kTruncations = {"shifted_contour", "transient",
-                                                          "wrapped"};
+constexpr std::array<std::string_view, 4> kTruncations = {"shifted_contour", "transient", "wrapped",
+                                                          "auto"};
 constexpr std::array<std::string_view, 2> kOffsetRules = {"arrival", "none"};
 
 }  // namespace
 
-Truncation truncation_of(const std::string& name) {
+std::optional<Truncation> truncation_of(const std::string& name) {
+  if (name == kTruncations.back()) return std::nullopt;
   return enum_of<Truncation>(kTruncations, "truncation", name);
 }
 
@@ -22,7 +23,8 @@ OffsetRule offset_rule_of(const std::string& name) {
 }
 
 void JointOptions::require() const {
-  const bool shifted = truncation_of(truncation) == Truncation::kShiftedContour;
+  const Truncation stated = truncation_of(truncation).value_or(Truncation::kShiftedContour);
+  const bool shifted = stated == Truncation::kShiftedContour;
   offset_rule_of(offset);
   MODCAL_REQUIRE(points >= 3 && points <= 1280, "{} points on the curve: 3 to 1280 are possible",
                  points);
@@ -34,9 +36,9 @@ void JointOptions::require() const {
 
 void JointOptions::visit(OptionVisitor& visitor) {
   visitor("truncation",
-          "what is done about the ends of the record: shifted_contour (at rest at "
-          "first), transient (any state at either end, unknowns) or wrapped "
-          "(nothing)",
+          "what is done about the ends of the record: shifted_contour (both reactions, at rest at "
+          "first), transient (any state at either end, unknowns), wrapped (nothing) or auto (what "
+          "suits the record)",
           {.choices = choices_of(kTruncations)}, truncation);
   visitor("sigma",
           "contour's distance from the frequency axis; auto: from length, noise "

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 
 #include "libinverse/joint/joint_inversion.hpp"
@@ -12,7 +13,7 @@ namespace modcal {
 
 /// Section "inversion" of an estimator on both reactions.
 struct JointOptions {
-  std::string truncation = "shifted_contour";
+  std::string truncation = "auto";
   double sigma = std::numeric_limits<double>::quiet_NaN();  ///< [1/s]; NaN: see contour_of
   std::string offset = "arrival";
   /// Standard deviations of the noise of one sample [N]; NaN: from the record.
@@ -30,8 +31,8 @@ struct JointOptions {
   void require() const;
 };
 
-/// Throw InvalidInput for an unknown name.
-Truncation truncation_of(const std::string& name);
+/// Throw InvalidInput for an unknown name. None of "auto": by the record.
+std::optional<Truncation> truncation_of(const std::string& name);
 OffsetRule offset_rule_of(const std::string& name);
 
 }  // namespace modcal

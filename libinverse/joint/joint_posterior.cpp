@@ -33,7 +33,7 @@ void JointInversion::fill_cells(const Weights& weights, JointWorkspace& workspac
   const auto add_single = [&](std::size_t k) {
     cells.add(g[k], 1.0, 0.5 * reduced[k], 0.5 * solution[k]);
   };
-  if (!decay_.empty()) add_single(0);
+  if (workspace.level_known) add_single(0);
   if (end < bins && end > 0) add_single(end);
   if (end <= 1) return;
   const auto pairs = [end](const std::vector<double>& values) {
@@ -82,8 +82,9 @@ void JointInversion::learn_spectrum(const ForcePrior& prior, double band_limit,
 }
 
 // The signal's standard deviation from the sum over all bins of its variance, which counts the
-// first bin and the last of an even length twice.
+// first bin and the last of an even length twice, and what else the bins between them have.
 double JointInversion::deviation_of(double sum, std::span<const Complex> transfer,
+                                    std::span<const double> more,
                                     const JointWorkspace& workspace) const {
   const auto variance_at = [&](std::size_t k) {
     return workspace.variance[k] * (transfer.empty() ? 1.0 : std::norm(transfer[k]));
@@ -91,15 +92,20 @@ double JointInversion::deviation_of(double sum, std::span<const Complex> transfe
   double variance = 2.0 * sum - variance_at(0);
   const std::size_t last = fft_.bins() - 1;
   if (samples() % 2 == 0 && last > 0) variance -= variance_at(last);
+  for (const double value : more) variance += 2.0 * value;
   return std::sqrt(variance / static_cast<double>(samples()));
 }
 
-double JointInversion::write_signal(std::span<const Complex> transfer, bool wanted,
-                                    JointWorkspace& workspace, std::vector<double>& signal) const {
+double JointInversion::write_signal(ContactSignal what, bool wanted, JointWorkspace& workspace,
+                                    std::vector<double>& signal) const {
   if (!wanted) {
     signal.clear();
     return std::numeric_limits<double>::quiet_NaN();
   }
+  const std::span<const Complex> transfer =
+      what == ContactSignal::kForce          ? std::span<const Complex>{}
+      : what == ContactSignal::kDisplacement ? std::span<const Complex>(receptance_)
+                                             : std::span<const Complex>(mobility_);
   double sum = 0.0;
   std::span<Complex> spectrum = workspace.spectrum[0];  // the force comes last
   if (transfer.empty()) {
@@ -109,6 +115,11 @@ double JointInversion::write_signal(std::span<const Complex> transfer, bool want
     spectrum = workspace.contact;
     sum = joint_kernels().through_transfer(transfer, workspace.spectrum[0], workspace.variance,
                                            spectrum);
+    if (model_.truncation == Truncation::kTransient) {
+      const bool velocity = what == ContactSignal::kVelocity;
+      transient_.add_motion(velocity, velocity || workspace.level_known ? 0 : 1, spectrum,
+                            workspace.transient);
+    }
   }
   signal.resize(samples());
   fft_.inverse(spectrum);
@@ -121,7 +132,8 @@ double JointInversion::write_signal(std::span<const Complex> transfer, bool want
     std::transform(weighted.begin(), weighted.end(), growth_.begin(), signal.begin(),
                    [](double x, double w) { return x * w; });
   }
-  return deviation_of(sum, transfer, workspace);
+  return deviation_of(sum, transfer, workspace.by_decays[static_cast<std::size_t>(what)],
+                      workspace);
 }
 
 // Means of about 20 bins of noise stay below 2.
@@ -136,35 +148,67 @@ void JointInversion::widen_by_misfit(JointWorkspace& workspace) const {
 
 void JointInversion::count_bins(double kept_pairs, JointWorkspace& workspace,
                                 InversionResult& identified) const {
-  const std::size_t bins = fft_.bins(), last = bins - 1, first = decay_.empty() ? 1 : 0;
+  const std::size_t bins = fft_.bins(), last = bins - 1, first = workspace.level_known ? 0 : 1;
   const auto share = [&](std::size_t k) { return workspace.gain[k] * workspace.variance[k]; };
   double kept = 2.0 * kept_pairs - share(0), all = 2.0 * static_cast<double>(bins) - 1.0;
   if (samples() % 2 == 0 && last > 0) {
     kept -= share(last);
     all -= 1.0;
   }
-  if (first == 1) all -= 1.0;  // the gain of bin 0 is 0 on the frequency axis
+  if (first == 1) all -= 1.0;  // the gain of bin 0 is 0
   identified.bins = bins - first;
   identified.blind_bins = static_cast<std::size_t>(std::count(
       workspace.gain.begin() + static_cast<std::ptrdiff_t>(first), workspace.gain.end(), 0.0));
   identified.choice.kept_share = all > 0.0 ? std::clamp(kept / all, 0.0, 1.0) : 0.0;
 }
 
-void JointInversion::apply_posterior(const JointMethod& method, JointWorkspace& workspace,
-                                     JointResult& result) const {
+void JointInversion::find_errors_of_decays(const Weights& weights, const JointMethod& method,
+                                           JointWorkspace& workspace) const {
+  for (auto& variance : workspace.by_decays) variance.clear();
+  if (model_.truncation != Truncation::kTransient) return;
+  const InversionOutputs& outputs = method.outputs;
+  TransientFit::Effect effect{.motion = {receptance_, mobility_},
+                              .motion_scale = 1.0 / std::sqrt(weight_power_)};
+  const bool wanted[] = {outputs.force || method.variances, outputs.displacement,
+                         outputs.velocity || method.variances};
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!wanted[i]) continue;
+    workspace.by_decays[i].assign(fft_.bins(), 0.0);
+    effect.variance[i] = workspace.by_decays[i];
+  }
+  // F errs by Σ conj(H_r) D_r/v_r over q + 1/P, and the rows have that over √q √(1 + q P).
+  workspace.scratch.resize(fft_.bins());
+  for (std::size_t k = 0; k < fft_.bins(); ++k) {
+    const double gain = workspace.gain[k];
+    workspace.scratch[k] = workspace.variance[k] *
+                           std::sqrt(gain * (1.0 + gain / weight_power_ * workspace.learned[k]));
+  }
+  effect.force = workspace.scratch;
+  transient_.error_variances(setting_of(weights, workspace),
+                             {workspace.recorded[0], workspace.recorded[1]}, effect,
+                             workspace.transient);
+}
+
+void JointInversion::apply_posterior(const Weights& weights, const JointMethod& method,
+                                     JointWorkspace& workspace, JointResult& result) const {
   InversionResult& identified = result.identified;
   std::vector<Complex>& force = workspace.spectrum[0];
   const double kept = joint_kernels().apply_posterior(workspace.gain, workspace.variance, force);
   count_bins(kept, workspace, identified);
+  find_errors_of_decays(weights, method, workspace);
   if (method.variances) {
     result.force_variance = workspace.variance;
     result.velocity_variance = workspace.variance;
     for (std::size_t k = 0; k < mobility_.size(); ++k) {
       result.velocity_variance[k] *= std::norm(mobility_[k]);
     }
+    for (std::size_t k = 0; k < workspace.by_decays[0].size(); ++k) {
+      result.force_variance[k] += workspace.by_decays[0][k];
+      result.velocity_variance[k] += workspace.by_decays[2][k];
+    }
   }
   widen_by_misfit(workspace);
-  if (decay_.empty()) workspace.variance[0] = 0.0;
+  if (!workspace.level_known) workspace.variance[0] = 0.0;
   force.front() = force.front().real();
   if (samples() % 2 == 0) force.back() = force.back().real();
   identified.force_spectrum.clear();
@@ -172,11 +216,12 @@ void JointInversion::apply_posterior(const JointMethod& method, JointWorkspace& 
     identified.force_spectrum.assign(force.begin(), force.end());
   }
   const InversionOutputs& outputs = method.outputs;
-  result.deviation.displacement =
-      write_signal(receptance_, outputs.displacement, workspace, identified.displacement);
+  result.deviation.displacement = write_signal(ContactSignal::kDisplacement, outputs.displacement,
+                                               workspace, identified.displacement);
   result.deviation.velocity =
-      write_signal(mobility_, outputs.velocity, workspace, identified.velocity);
-  result.deviation.force = write_signal({}, outputs.force, workspace, identified.force);
+      write_signal(ContactSignal::kVelocity, outputs.velocity, workspace, identified.velocity);
+  result.deviation.force =
+      write_signal(ContactSignal::kForce, outputs.force, workspace, identified.force);
 }
 
 }  // namespace modcal

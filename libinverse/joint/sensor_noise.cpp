@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "libinverse/joint/tuning.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {
@@ -96,6 +97,27 @@ SensorNoiseLevel SensorNoise::estimate(const ReactionPair& reactions, Workspace&
   if (both && expected > 0.0) level.noise_share = std::clamp(cross / expected, kLeastShare, 1.0);
   for (std::size_t r = 0; r < 2; ++r) level.rms[r] = std::sqrt(power[r] * level.noise_share);
   return level;
+}
+
+bool starts_at_rest(const ReactionPair& reactions, const SensorNoiseLevel& noise,
+                    const std::array<double, 2>& arrivals, double fundamental, double sample_rate) {
+  bool told = false;
+  for (std::size_t r = 0; r < 2; ++r) {
+    const double time = kBeforeArrival * std::max(0.0, arrivals[r]);
+    const std::size_t count =
+        std::min(static_cast<std::size_t>(time * sample_rate), reactions[r].size());
+    if (count < 4) continue;
+    // Of n normal values the variance scatters by √(2/(n − 1)).
+    const double by_noise =
+        noise.rms[r] * noise.rms[r] * (1.0 + 5.0 * std::sqrt(2.0 / static_cast<double>(count - 1)));
+    const double ramp = std::min(1.0, time * fundamental) * standard_deviation(reactions[r]);
+    const double least = kStillShare * ramp * ramp;
+    if (by_noise > least) continue;
+    const double found = standard_deviation(reactions[r].first(count));
+    if (found * found > by_noise + least) return false;
+    told = true;
+  }
+  return told;
 }
 
 }  // namespace modcal

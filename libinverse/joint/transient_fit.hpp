@@ -1,0 +1,102 @@
+// The string's states at both ends of a record, as unknowns beside the force.
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <array>
+#include <span>
+#include <vector>
+
+#include "libinverse/record.hpp"
+#include "libsim/model/transfer.hpp"
+
+namespace modcal {
+
+/// A record cut out of a motion is its periodic continuation's response plus one free decay a mode,
+/// q_n(t) = Re(c_n exp(λ_n t)), which makes up for what the wrap takes for the past: 2N real
+/// unknowns shared by both reactions. Their sampled transforms are geometric sums with the
+/// string's own poles, exact at any length of the record.
+class TransientFit {
+ public:
+  TransientFit() = default;
+  TransientFit(const ModalBasis& basis, double contact, const FrequencyGrid& grid,
+               double sample_rate, bool bending, const SensorPair& sensors);
+
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  struct Workspace {
+    Eigen::MatrixXd normal;
+    Eigen::VectorXd right;
+    Rows rows;  ///< of a block of bins
+    Eigen::VectorXd data;
+    Eigen::LDLT<Eigen::MatrixXd> factor;
+    Eigen::VectorXd decays;  ///< Re c_1, Im c_1, … of the last fit, scaled
+  };
+
+  /// What is known of the record at bin k = 1 … : transfer functions, noise variances of a bin
+  /// (0: side missing), prior variance of F_k.
+  struct Setting {
+    std::array<std::span<const Complex>, 2> transfer;
+    std::array<double, 2> noise_variance;
+    std::span<const double> prior;
+    bool level_known = false;  ///< bin 0 holds the reactions', too
+  };
+  using Spectra = std::array<std::span<Complex>, 2>;
+
+  /// Least squares with the covariance of noise and force over all bins but the static one, then
+  /// takes the decays out of the spectra (Golub and Pereyra, 1973: the force is eliminated bin by
+  /// bin).
+  void subtract(const Setting& setting, Spectra spectra, Workspace& workspace) const;
+
+  /// Adds the decays' own displacement, or velocity, at the contact to its spectrum, from bin
+  /// `first` on.
+  void add_motion(bool velocity, std::size_t first, std::span<Complex> spectrum,
+                  const Workspace& workspace) const;
+
+  /// What the errors of the decays do to the estimates in bin k: F_k errs by −κ_k times the error
+  /// along the force, divided by its scale, and the motions by that times their transfer function,
+  /// less the error of their own decay.
+  struct Effect {
+    std::span<const double> force;  ///< κ_k
+    std::array<std::span<const Complex>, 2> motion =
+        {};                     ///< receptance, mobility; empty: not asked
+    double motion_scale = 1.0;  ///< that κ_k has
+    /// Variances by signal: force, displacement, velocity; empty where not asked for.
+    std::array<std::span<double>, 3> variance;
+  };
+
+  /// Variances of the estimates by the errors of the last fit to these spectra, from which nothing
+  /// was subtracted. A played note has lines, which the smooth prior does not hold, so that the
+  /// covariance is estimated from the residuals e_g of the equations a_g of clusters of bins, with
+  /// their leverages H_g,
+  ///
+  ///     N⁻¹ Σ_g x_g x_gᵀ N⁻¹,  x_g = a_gᵀ (I − H_g)⁻¹ e_g
+  ///
+  /// (White, 1980; the cluster jackknife of Bell and McCaffrey, 2002). A cluster is f_1 wide: near
+  /// a zero of H_r a line of the force is told from a decay by the bins around it together. They
+  /// are means over the record but for a fifteenth at either end: a decay is also what a blow of
+  /// the force at t = 0 makes.
+  void error_variances(const Setting& setting, Spectra spectra, const Effect& effect,
+                       Workspace& workspace) const;
+
+ private:
+  void fill_rows(const Setting& setting, std::size_t begin, std::size_t end, const Spectra& spectra,
+                 Workspace& workspace) const;
+  Eigen::MatrixXd covariance_root(const Setting& setting, const Spectra& spectra,
+                                  Workspace& workspace) const;
+  void fill_motion(const Effect& effect, bool velocity, std::size_t k, Eigen::Index row,
+                   const Rows& force, Rows& rows) const;
+  std::array<Complex, 2> decay_of(std::size_t n, Complex shift) const;
+  std::array<Complex, 2> motion_of(bool velocity, std::size_t n, Complex shift) const;
+  Complex shift_of(std::size_t k) const;
+  Complex reading(std::size_t side, std::size_t k) const;
+
+  FrequencyGrid grid_;
+  double sample_rate_ = 0.0;
+  SensorPair sensors_;
+  std::vector<Complex> poles_;    ///< exp(λ_n/f_s)
+  std::vector<Complex> rates_;    ///< λ_n [1/s]
+  std::vector<double> gains_[2];  ///< g_rn, scaled to at most 1
+  std::vector<double> contact_;   ///< φ_n(x_c), scaled so
+};
+
+}  // namespace modcal
