@@ -51,11 +51,4 @@ class Experiment {
   virtual StudyResult run(const StudyContext& context) const = 0;
 };
 
-/// Memory that a run on this many threads needs, about, from the sizes of its simulations alone
-/// [B].
-double memory_needed(const Experiment& experiment, std::size_t threads);
-
-/// Memory of the machine, or what of it this process may have [B].
-double machine_memory();
-
 }  // namespace modcal

@@ -34,9 +34,6 @@ LoadedExperiment load_experiment(const std::filesystem::path& file,
                                  const Means& means = {});
 LoadedExperiment load_experiment(YamlDocument document, const Means& means = {});
 
-/// "27.3 GB".
-std::string bytes_text(double bytes);
-
 /// Reads the recorded files, too, and adds what they say against the settings to the mistakes.
 void check_records(LoadedExperiment& loaded);
 

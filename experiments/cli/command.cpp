@@ -16,6 +16,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "experiments/memory.hpp"
 #include "experiments/report/encoding.hpp"
 #include "libsim/base/files.hpp"
 #include "libsim/base/utf8.hpp"

@@ -3,6 +3,7 @@
 #include <thread>
 
 #include "experiments/cli/command.hpp"
+#include "experiments/memory.hpp"
 #include "experiments/runs/task_experiment.hpp"
 #include "experiments/study/sample.hpp"
 #include "libsim/dynamics/plan.hpp"
