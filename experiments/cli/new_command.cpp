@@ -1,12 +1,13 @@
 // new: an experiment file to start from.
 #include <fmt/format.h>
 
-#include <fstream>
-
 #include "experiments/cli/command.hpp"
+#include "experiments/config/help.hpp"
 #include "experiments/config/reader.hpp"
 #include "experiments/records/inspection.hpp"
+#include "experiments/report/encoding.hpp"
 #include "libinverse/waves/end_relation.hpp"
+#include "libsim/base/files.hpp"
 #include "libsim/records/levels.hpp"
 #include "libsim/records/recording.hpp"
 
@@ -40,10 +41,9 @@ std::string example_of(const std::string& kind) {
     kinds.emplace_back(example.kind);
     if (example.kind != kind) continue;
     const std::filesystem::path file = std::filesystem::path(shipped_configs()) / example.file;
-    std::ifstream stream(file);
-    MODCAL_REQUIRE(stream.good(), "{} cannot be read: install modcal with its configs",
+    MODCAL_REQUIRE(std::filesystem::exists(file), "{} is not there: install modcal with its configs",
                    file.string());
-    return {std::istreambuf_iterator<char>(stream), {}};
+    return content_of_file(file);
   }
   throw_invalid_input("unknown kind \"{}\"{}", kind, suggestion(kind, kinds));
 }
@@ -66,7 +66,7 @@ std::string seen_from(const std::string& out, const std::string& record) {
 }
 
 std::string channel_line(const char* end, const RecordedForceOptions& force) {
-  std::string keys = fmt::format("channel: \"{}\"", force.channel), comment;
+  std::string keys = fmt::format("channel: {}", yaml_string(force.channel)), comment;
   if (!std::isnan(force.calibration)) {
     keys += ", calibration: 1";
     comment = "  # N per unit of the column: state yours";
@@ -112,13 +112,13 @@ std::string file_for_record(const NewArguments& arguments) {
   const double density = stated(arguments.linear_density, "--linear-density", "kg/m", 1e-3);
   const bool invert = arguments.kind == "invert";
   std::string text = fmt::format(
-      "# {} with {}: modcal run runs it as it is.\n"
+      "# As it is, modcal run runs it.\n"
       "kind: {}\n"
       "title: {}\n"
       "record:\n"
-      "  file: \"{}\"\n",
-      arguments.kind, arguments.record, arguments.kind, arguments.record,
-      seen_from(arguments.out, arguments.record));
+      "  file: {}\n",
+      arguments.kind, yaml_string(arguments.record),
+      yaml_string(seen_from(arguments.out, arguments.record)));
   text += channel_line("left", record.left) + channel_line("right", record.right);
   if (record.has_reference) text += channel_line("reference", record.reference);
   text += fmt::format(
@@ -129,8 +129,7 @@ std::string file_for_record(const NewArguments& arguments) {
       "  inharmonicity: {:.3g}  # B of f_n = n f0 sqrt(1 + B n^2), as the record has it\n"
       "  damping: {{type: constant, ratio: 1e-3}}{}\n"
       "bow:\n"
-      "  position: {:.5g} mm  # as the record has it: {:.4f} of the length from the end of "
-      "\"{}\"\n",
+      "  position: {:.5g} mm  # as the record has it: {:.4f} of the length from the end of {}\n",
       length,
       arguments.length.empty() ? "  # not in the record: state yours; positions go with it" : "",
       density,
@@ -140,7 +139,7 @@ std::string file_for_record(const NewArguments& arguments) {
       told.fundamental, told.inharmonicity,
       invert ? "  # state yours, or calibrate first"
              : "  # a start: the calibration finds every mode's own",
-      1e3 * told.contact * length, told.contact, record.left.channel);
+      1e3 * told.contact * length, told.contact, yaml_string(record.left.channel));
   if (!told.explained) {
     text += "# The reactions are not quite those of one string: modcal validate says why.\n";
   }
@@ -156,9 +155,7 @@ ExitCode write_new(const NewArguments& arguments) {
   }
   MODCAL_REQUIRE(!std::filesystem::exists(arguments.out),
                  "{} exists and is not overwritten: name another file with --out", arguments.out);
-  std::ofstream stream(arguments.out);
-  stream << text << std::flush;
-  MODCAL_REQUIRE(stream.good(), "{} cannot be written", arguments.out);
+  report::write_file_atomically(arguments.out, text);
   say("{0}\nmodcal run {1}\n", arguments.out, shell_word(arguments.out));
   return ExitCode::kOk;
 }

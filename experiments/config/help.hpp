@@ -44,6 +44,9 @@ class ResolvedWriter final : public OptionVisitor {
 
 // Values on one line, as YAML writes them.
 
+/// A text in YAML's double-quoted form, which is JSON's.
+std::string yaml_string(const std::string& text);
+
 /// A node on one line: 30 mm, [1, 2], {type: grid, points: 5}. A scalar stands as it was written.
 std::string flow_text(const YamlNode& node);
 

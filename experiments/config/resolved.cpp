@@ -10,9 +10,6 @@
 namespace modcal {
 namespace {
 
-// YAML's double-quoted form, which is JSON's.
-std::string yaml_string(const std::string& text) { return nlohmann::json(text).dump(); }
-
 // Numbers, units and words as they were written; what would not read back so, in quotes.
 std::string flow_scalar(const std::string& text) {
   const bool plain = !text.empty() && text != "null" && text != "~" &&
@@ -66,6 +63,8 @@ std::string swept_maps(const std::vector<Members>& maps) {
 }
 
 }  // namespace
+
+std::string yaml_string(const std::string& text) { return nlohmann::json(text).dump(); }
 
 void ResolvedWriter::line(const OptionInfo& info, const std::string& value) {
   const std::string entry = fmt::format("{}{}:{}{}", std::string(2 * level_, ' '), info.key,

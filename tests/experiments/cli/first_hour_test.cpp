@@ -104,6 +104,20 @@ TEST_F(FirstHour, IsToldAtValidateWhatTheRecordLacks) {
   refused("record.file=nowhere.csv", "--set", "cannot be opened");
   refused("record.left.channel=R7", "mine.yaml:5:", "there is no channel \"R7\"");
   refused("record.start='2 s'", "mine.yaml:5:", "record");
+TEST_F(FirstHour, MayHaveNamesThatYamlWouldMisread) {
+  ASSERT_EQ(shell("sed 's/^R1 \\[N\\],R2/\"a: \"\"1\"\" #2\\\\ [N]\",- b/' record.csv > 'it: "
+                  "\"mine\" #1.csv'")
+                .code,
+            0);
+  const Outcome written =
+      modcal("new invert 'it: \"mine\" #1.csv' --length '0.33 m' --out mine.yaml");
+  ASSERT_EQ(written.code, 0) << written.err;
+  EXPECT_THAT(content_of(folder() / "mine.yaml"), HasSubstr(R"("a: \"1\" #2\\")"));
+  const Outcome valid = modcal("validate mine.yaml");
+  EXPECT_EQ(valid.code, 0) << valid.err;
+  EXPECT_EQ(modcal("new invert record.csv --out nowhere/mine.yaml").code, 3);
+}
+
   refused("bow.position='290 mm'", "mine.yaml:5:", "exchanged");
   refused("'score={windows: [0.6 s]}'", "--set", "is not inside the record");
   refused("'figures=[{id: late, windows: [{start: 3 s}]}]'", "--set", "holds nothing of a record");
