@@ -57,6 +57,13 @@ void start_from_record(const Observation& observation, const CalibrationOptions&
       "Started from the string that the ends of the record tell: f0 {:.6g} Hz, B {:.3g}, x_c "
       "{:.4g} mm.",
       told->fundamental, told->inharmonicity, 1e3 * contact);
+  const double stated = basis.frequency(0);
+  if (std::abs(frequencies[0] / stated - 1.0) > 0.03 ||
+      std::abs(contact - outcome.initial.contact) > 0.02 * basis.length) {
+    outcome.start += fmt::format(
+        " That is far from the f_1 {:.6g} Hz and x_c {:.4g} mm stated: check which are right.",
+        stated, 1e3 * outcome.initial.contact);
+  }
   basis = with_frequencies(std::move(basis), frequencies);
   if (calibration.parameters.contact) outcome.initial.contact = contact;
 }
