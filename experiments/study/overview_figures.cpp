@@ -1,4 +1,5 @@
 // Figures that every identification shows unasked.
+#include <algorithm>
 #include <cmath>
 
 #include "experiments/study/figures.hpp"
@@ -13,15 +14,17 @@ using report::Panel;
 using report::Series;
 using report::SeriesStyle;
 
-constexpr double kBand = 1.96;          // deviations of 95 %
-constexpr double kPeriodsShown = 6.0;   // where single strokes are to be seen
-constexpr double kMostPeriods = 500.0;  // of an overview: more are a black bar
+constexpr double kBand = 1.96;         // deviations of 95 %
+constexpr double kPeriodsShown = 6.0;  // where single strokes are to be seen
+constexpr std::size_t kStretches = 1000;
 
-// Samples from `first` on, one past the last, and the scale of their time axis.
+// Samples from `first` on, one past the last, and the scale of their time axis. Of every `stretch`
+// of samples the lowest and the highest are drawn, without bands, where it is longer than 1.
 struct Part {
   std::size_t first = 0, last = 0;
   double per_second = 1.0;
   const char* unit = "s";
+  std::size_t stretch = 1;
 };
 
 // A signal of an estimate as it is drawn.
@@ -51,10 +54,24 @@ struct Drawing {
     return {center - std::min(center, half), std::min(samples(), center + half + 1), 1e3, "ms"};
   }
   Part all() const {
-    const auto most = static_cast<std::size_t>(kMostPeriods * rate() / fundamental());
-    return {0, std::min(samples(), most), 1.0, "s"};
+    return {0, samples(), 1.0, "s", std::max<std::size_t>(2, samples() / kStretches)};
   }
 };
+
+// Indices of a part's samples that are drawn.
+std::vector<std::size_t> drawn_of(const Part& part, std::span<const double> samples) {
+  std::vector<std::size_t> drawn;
+  const std::size_t last = std::min(part.last, samples.size());
+  for (std::size_t j = part.first; j < last; j += part.stretch) {
+    const auto stretch = samples.subspan(j, std::min(part.stretch, last - j));
+    const auto [low, high] = std::ranges::minmax_element(stretch);
+    const auto a = j + static_cast<std::size_t>(low - stretch.begin());
+    const auto b = j + static_cast<std::size_t>(high - stretch.begin());
+    drawn.push_back(std::min(a, b));
+    if (a != b) drawn.push_back(std::max(a, b));
+  }
+  return drawn;
+}
 
 // The true signal without its static part, which no reaction tells; empty: not known.
 std::vector<double> truth_of(const Observation& observation, const Quantity& quantity) {
@@ -77,17 +94,20 @@ Panel signal_panel(const Drawing& drawing, const SideIdentification& side, const
   std::vector<double> found = side.estimate.result.*quantity.identified;
   if (!found.empty()) remove_mean(found);
   Series identified{.label = "identified"};
-  const bool banded = !std::isnan(quantity.deviation_at(side.estimate, part.first));
+  const bool banded =
+      part.stretch == 1 && !std::isnan(quantity.deviation_at(side.estimate, part.first));
   if (banded) identified.label += ", 95 % band";
-  for (std::size_t j = part.first; j < std::min(part.last, found.size()); ++j) {
-    const double time = part.per_second * static_cast<double>(j) / drawing.rate();
+  const auto time = [&](std::size_t j) {
+    return part.per_second * static_cast<double>(j) / drawing.rate();
+  };
+  for (const std::size_t j : drawn_of(part, found)) {
     const double value = shown.scale * found[j];
     if (!banded) {
-      identified.add(time, value);
+      identified.add(time(j), value);
       continue;
     }
     const double width = kBand * shown.scale * quantity.deviation_at(side.estimate, j);
-    identified.add(time, value, value - width, value + width);
+    identified.add(time(j), value, value - width, value + width);
   }
   panel.series.push_back(std::move(identified));
   const std::vector<double> truth = truth_of(drawing.observation, quantity);
@@ -95,27 +115,36 @@ Panel signal_panel(const Drawing& drawing, const SideIdentification& side, const
   Series reference{.label = drawing.observation.truth ? "true" : "measured",
                    .style = SeriesStyle::kDotted,
                    .color = ColorRole::kReference};
-  for (std::size_t j = part.first; j < std::min(part.last, truth.size()); ++j) {
-    reference.add(part.per_second * static_cast<double>(j) / drawing.rate(),
-                  shown.scale * truth[j]);
-  }
+  for (const std::size_t j : drawn_of(part, truth)) reference.add(time(j), shown.scale * truth[j]);
   panel.series.push_back(std::move(reference));
   return panel;
+}
+
+struct Row {
+  Shown shown;
+  Part part;
+};
+
+// A panel of every row and side.
+Figure signal_figure(const Drawing& drawing, Figure figure, std::initializer_list<Row> rows) {
+  figure.columns = drawing.sides.size();
+  for (const Row& row : rows) {
+    for (const SideIdentification& side : drawing.sides) {
+      figure.panels.push_back(signal_panel(drawing, side, row.shown, row.part));
+    }
+  }
+  return figure;
 }
 
 Figure force_figure(const Drawing& drawing) {
   Figure figure{.id = "identified_force",
                 .title = "Contact force",
                 .caption = fmt::format("Above: {:g} periods from the middle of the record. Below: "
-                                       "the record. Static parts are left out.",
-                                       kPeriodsShown),
-                .columns = drawing.sides.size()};
-  for (const Part& part : {drawing.middle(), drawing.all()}) {
-    for (const SideIdentification& side : drawing.sides) {
-      figure.panels.push_back(signal_panel(drawing, side, kForce, part));
-    }
-  }
-  return figure;
+                                       "the lowest and highest values along all of it. Static "
+                                       "parts are left out.",
+                                       kPeriodsShown)};
+  return signal_figure(drawing, std::move(figure),
+                       {{kForce, drawing.middle()}, {kForce, drawing.all()}});
 }
 
 Figure motion_figure(const Drawing& drawing) {
@@ -123,14 +152,9 @@ Figure motion_figure(const Drawing& drawing) {
                 .title = "Motion of the string at the contact",
                 .caption = fmt::format("{:g} periods from the middle of the record, static parts "
                                        "left out.",
-                                       kPeriodsShown),
-                .columns = drawing.sides.size()};
-  for (const Shown& shown : {kDisplacement, kVelocity}) {
-    for (const SideIdentification& side : drawing.sides) {
-      figure.panels.push_back(signal_panel(drawing, side, shown, drawing.middle()));
-    }
-  }
-  return figure;
+                                       kPeriodsShown)};
+  return signal_figure(drawing, std::move(figure),
+                       {{kDisplacement, drawing.middle()}, {kVelocity, drawing.middle()}});
 }
 
 Figure friction_loop_figure(const Drawing& drawing) {
