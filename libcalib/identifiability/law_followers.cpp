@@ -183,6 +183,20 @@ LawFollowers followers_of(LawLine line, double width) {
   return found;
 }
 
+// Most that a pole nearer to mode m than to any other moves mode n by, over what it moves m by:
+// |c² − m²|/|c² − n²| grows with the distance from m on either side.
+double reach(Index m, Index n) {
+  const auto squared = [](double x) { return x * x; };
+  const double own = squared(static_cast<double>(m + 1)),
+               other = squared(static_cast<double>(n + 1));
+  double most = 0.0;
+  for (const double side : {-0.5, 0.5}) {
+    const double pole = squared(static_cast<double>(m + 1) + side);
+    most = std::max(most, std::abs(pole - own) / std::abs(pole - other));
+  }
+  return most;
+}
+
 }  // namespace
 
 std::string_view name_of(LawTie tie) {
@@ -218,8 +232,7 @@ Eigen::VectorXd LawFollowers::disturbances() const {
   for (Index m = 0; m < size; ++m) {
     for (Index n = 0; leaves(m) && n < size; ++n) {
       if (leaves(n)) continue;
-      const auto apart = static_cast<double>(std::abs(n - m));
-      most[n] = std::max(most[n], std::abs(rest[m]) / (2.0 * apart - 1.0));
+      most[n] = std::max(most[n], std::abs(rest[m]) * reach(m, n));
     }
   }
   return most;

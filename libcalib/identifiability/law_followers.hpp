@@ -38,9 +38,9 @@ struct LawFollowers {
   /// Widths of all modes about the law for the law's own sake.
   Eigen::VectorXd scatters() const;
   /// How far what makes some modes leave the law may have moved the others. An end on a mode of the
-  /// body, f_b and m_b, yields: the string is longer by T/(4π² m_b (f_b² − f_n²)), so that beside a
-  /// mode m with δ_m beyond the law no |δ_n| is above |δ_m|/(2|n − m| − 1), f_b half way to the
-  /// next. 0 for modes that leave.
+  /// body, f_b = c f_0 and m_b, yields: the string is longer by T/(4π² m_b (f_b² − f_n²)), so that
+  /// beside a mode m with δ_m beyond the law, c nearer to m than to any other, no |δ_n| is above
+  /// |δ_m| |c² − m²|/|c² − n²| at c = m ± ½. 0 for modes that leave.
   Eigen::VectorXd disturbances() const;
   static LawFollowers all(Eigen::Index modes, double width);
   void follow_all() { ties.assign(ties.size(), LawTie::kFollows); }
