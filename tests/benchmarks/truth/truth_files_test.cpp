@@ -9,14 +9,14 @@
 #include <numbers>
 
 #include "libsim/records/recording.hpp"
-#include "tests/libsim/records/record_folder.hpp"
+#include "tests/folder_test.hpp"
 
 namespace modcal::truth {
 namespace {
 
 using nlohmann::json;
 
-class TruthFiles : public RecordFolder {
+class TruthFiles : public FolderTest {
  protected:
   json truth_of(const std::string& name) const {
     std::ifstream file(path(name));

@@ -9,7 +9,6 @@ namespace modcal {
 namespace {
 
 using nlohmann::json;
-using testing::content_of;
 using ::testing::HasSubstr;
 using ::testing::Not;
 

@@ -8,7 +8,6 @@
 namespace modcal {
 namespace {
 
-using testing::content_of;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;

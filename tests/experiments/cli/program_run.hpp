@@ -1,23 +1,16 @@
 // Runs the program as a user does and keeps what it says.
 #pragma once
 
-#include <gtest/gtest.h>
 #include <sys/wait.h>
 
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <sstream>
 #include <string>
 #include <string_view>
 
-namespace modcal::testing {
+#include "tests/folder_test.hpp"
 
-inline std::string content_of(const std::filesystem::path& path) {
-  std::ostringstream text;
-  text << std::ifstream(path, std::ios::binary).rdbuf();
-  return text.str();
-}
+namespace modcal::testing {
 
 /// A simulation of a few milliseconds.
 inline constexpr std::string_view kSmallSimulation = R"(kind: simulate
@@ -39,7 +32,7 @@ inline constexpr std::string_view kEightTasks = R"(sweep:
 )";
 
 /// A test with a folder of its own.
-class ProgramTest : public ::testing::Test {
+class ProgramTest : public FolderTest {
  protected:
   struct Outcome {
     int code = -1;
@@ -47,30 +40,16 @@ class ProgramTest : public ::testing::Test {
     std::string err;
   };
 
-  ProgramTest() {
-    std::string name = (std::filesystem::temp_directory_path() / "modcal-test-XXXXXX").string();
-    folder_ = mkdtemp(name.data());
-  }
-  ~ProgramTest() override { std::filesystem::remove_all(folder_); }
-
-  const std::filesystem::path& folder() const { return folder_; }
-
   /// `modcal` followed by `arguments`, words of a shell, in the test's folder.
   Outcome modcal(const std::string& arguments) const {
     return shell("'" MODCAL_PROGRAM "' " + arguments);
   }
   Outcome shell(const std::string& command) const {
-    const std::string line = "cd '" + folder_.string() + "' && { " + command + "; } >.out 2>.err";
+    const std::string line = "cd '" + folder().string() + "' && { " + command + "; } >.out 2>.err";
     const int status = std::system(line.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content_of(folder_ / ".out"),
-            content_of(folder_ / ".err")};
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content_of(folder() / ".out"),
+            content_of(folder() / ".err")};
   }
-  void write(const std::string& name, const std::string& content) const {
-    std::ofstream(folder_ / name, std::ios::binary) << content;
-  }
-
- private:
-  std::filesystem::path folder_;
 };
 
 }  // namespace modcal::testing

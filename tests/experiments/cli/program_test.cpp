@@ -10,7 +10,6 @@ namespace modcal {
 namespace {
 
 using nlohmann::json;
-using testing::content_of;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;

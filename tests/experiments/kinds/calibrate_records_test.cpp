@@ -11,6 +11,7 @@
 #include "libsim/dynamics/scene/scene.hpp"
 #include "libsim/records/record_file.hpp"
 #include "libsim/signal/statistics.hpp"
+#include "tests/folder_test.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
 namespace modcal {
@@ -18,17 +19,9 @@ namespace {
 
 using nlohmann::json;
 
-class CalibrateRecords : public testing::Test {
+class CalibrateRecords : public FolderTest {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() /
-              (std::string("modcal_calibrate_records_") +
-               testing::UnitTest::GetInstance()->current_test_info()->name());
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  StudyContext context() { return {.work = work_, .folder = folder_, .command = "test"}; }
+  StudyContext context() { return {.work = work_, .folder = folder(), .command = "test"}; }
 
   // The law of the paper's string from a stroke with 1 % noise.
   static CalibrateOptions simulated(double duration, double sample_rate) {
@@ -47,11 +40,11 @@ class CalibrateRecords : public testing::Test {
 
   Observation stroke(const CalibrateOptions& options) {
     return observe(options.inversion.observation, {.force = true}, work_.truths,
-                   options.inversion.key(), folder_);
+                   options.inversion.key(), folder());
   }
 
   void write(const std::string& file, const std::vector<Signal>& signals) {
-    write_csv(folder_ / file, signals);
+    write_csv(folder() / file, signals);
   }
 
   // What was recorded is a simulation of exactly the stated modes.
@@ -69,12 +62,10 @@ class CalibrateRecords : public testing::Test {
                        "calibration: {parameters: {frequencies: none, damping: factor" +
                        sensors + "}, objective: {type: joint_likelihood" + noise +
                        "}, remainder: none}\n" + further,
-                   (folder_ / "experiment.yaml").string()));
+                   (folder() / "experiment.yaml").string()));
     EXPECT_EQ(format_mistakes(loaded.document, loaded.mistakes), "");
     return loaded.experiment ? loaded.experiment->run(context()) : StudyResult();
   }
-
-  std::filesystem::path folder_;
   SharedWork work_;
 };
 
@@ -232,7 +223,7 @@ TEST_F(CalibrateRecords, TakeTheDifferenceOfTheSensorsOutOnce) {
                    "bow: {position: 30 mm}\n"
                    "calibration: {parameters: {frequencies: none" +
                        differing + "}}\ninversion: {estimator: " + estimator + "}\n",
-                   (folder_ / "experiment.yaml").string()));
+                   (folder() / "experiment.yaml").string()));
     return format_mistakes(loaded.document, loaded.mistakes);
   };
   for (const char* estimator : {"{type: joint, gain2: 1.05}", "{type: joint, delay2: 20 us}",

@@ -7,6 +7,7 @@
 #include <cstdlib>
 
 #include "experiments/loader.hpp"
+#include "tests/folder_test.hpp"
 
 namespace modcal {
 namespace {
@@ -93,15 +94,34 @@ TEST(KindList, ReplaysATaskAsTheExperimentThatItIs) {
   EXPECT_EQ(run_outcome(again).numbers, run_outcome(one).numbers);
 }
 
-TEST(KindList, GoesOnWhereAStoreEnds) {
-  std::string name = (std::filesystem::temp_directory_path() / "modcal-kinds-XXXXXX").string();
-  const std::filesystem::path folder = mkdtemp(name.data());
+TEST(KindList, MakesNoFiguresAndSignalsThatNobodyReads) {
+  const LoadedExperiment loaded = loaded_from("kind: invert\n" + std::string(kScene) +
+                                              "measurement: {sample_rate: 12.5 kHz}\n");
+  ASSERT_NE(loaded.experiment, nullptr) << format_mistakes(loaded.document, loaded.mistakes);
+  SharedWork work;
+  const auto figures = [](const StudyResult& result) {
+    return std::ranges::count_if(result.blocks, [](const report::Block& block) {
+      return std::holds_alternative<report::Figure>(block);
+    });
+  };
+  const StudyResult full = loaded.experiment->run({.work = work});
+  EXPECT_GT(figures(full), 0);
+  EXPECT_EQ(full.signal_files.size(), 1u);
+  const StudyResult quiet = loaded.experiment->run({.work = work, .numbers_alone = true});
+  EXPECT_EQ(figures(quiet), 0);
+  EXPECT_EQ(quiet.signal_files.size(), 0u);
+  EXPECT_EQ(run_outcome(quiet).numbers, run_outcome(full).numbers);
+}
+
+class KindListStore : public FolderTest {};
+
+TEST_F(KindListStore, GoesOnWhereItEnds) {
   const LoadedExperiment loaded = loaded_from(kSimulate);
   const TaskExperiment& list = list_of(loaded);
   SharedWork work;
-  const StudyContext context{.work = work, .folder = folder};
+  const StudyContext context{.work = work, .folder = folder()};
   {
-    RunStore store(folder, {1, 2}, "p");
+    RunStore store(folder(), {1, 2}, "p");
     const TaskOutcomes half = run_tasks(list, context, &store, {1, 2});
     EXPECT_EQ(list.sum_up(half, context).pending_tasks, 2u);
   }
@@ -109,11 +129,10 @@ TEST(KindList, GoesOnWhereAStoreEnds) {
   std::string edited = kSimulate;
   edited.replace(edited.find("[1, 2]"), 6, "[3, 1]");
   const LoadedExperiment other = loaded_from(edited);
-  const FinishedTasks finished(folder, "p");
-  const TaskOutcomes found = stored_outcomes(list_of(other), finished, folder);
+  const FinishedTasks finished(folder(), "p");
+  const TaskOutcomes found = stored_outcomes(list_of(other), finished, folder());
   EXPECT_FALSE(found.has(0));
   EXPECT_TRUE(found.has(1));
-  std::filesystem::remove_all(folder);
 }
 
 TEST(KindList, IsTheExperimentItselfWithoutAxes) {

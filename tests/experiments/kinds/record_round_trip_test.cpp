@@ -11,30 +11,23 @@
 #include "experiments/loader.hpp"
 #include "experiments/records/inspection.hpp"
 #include "libsim/records/record_file.hpp"
+#include "tests/folder_test.hpp"
 
 namespace modcal {
 namespace {
 
-class RecordRoundTrip : public testing::Test {
+class RecordRoundTrip : public FolderTest {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() /
-              (std::string("modcal_round_trip_") +
-               testing::UnitTest::GetInstance()->current_test_info()->name());
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   LoadedExperiment load(const std::string& yaml) const {
     LoadedExperiment loaded =
-        load_experiment(parse_yaml(yaml, (folder_ / "experiment.yaml").string()));
+        load_experiment(parse_yaml(yaml, (folder() / "experiment.yaml").string()));
     EXPECT_EQ(format_mistakes(loaded.document, loaded.mistakes), "");
     return loaded;
   }
   StudyResult run(const std::string& yaml) {
     const LoadedExperiment loaded = load(yaml);
     if (!loaded.experiment) return {};
-    return loaded.experiment->run({.work = work_, .folder = folder_, .command = "test"});
+    return loaded.experiment->run({.work = work_, .folder = folder(), .command = "test"});
   }
   void write_record() {
     const StudyResult simulated = run(kScene + R"(
@@ -45,8 +38,8 @@ files: [csv, wav]
 seed: 3
 )");
     ASSERT_EQ(simulated.signal_files.size(), 2u);
-    write_csv(folder_ / "signals.csv", simulated.signal_files[0].signals);
-    write_wav(folder_ / "signals.wav", simulated.signal_files[1].signals,
+    write_csv(folder() / "signals.csv", simulated.signal_files[0].signals);
+    write_wav(folder() / "signals.wav", simulated.signal_files[1].signals,
               {.samples = WavSamples::kDouble, .full_scale = 1.0});
   }
   static std::string record(const std::string& file) {
@@ -67,7 +60,6 @@ scene:
   duration: 0.42 s
 simulator: modal_exact
 )";
-  std::filesystem::path folder_;
   SharedWork work_;
 };
 
@@ -115,9 +107,9 @@ calibration: {parameters: {law: false, contact: false}, objective: spectral_peak
 
 TEST_F(RecordRoundTrip, TheInspectedStanzaAsksForTheStringAndNothingElse) {
   write_record();
-  const InspectionReport report = inspect(folder_ / "signals.csv");
+  const InspectionReport report = inspect(folder() / "signals.csv");
   LoadedExperiment loaded =
-      load_experiment(parse_yaml(stanza(report), (folder_ / "mine.yaml").string()));
+      load_experiment(parse_yaml(stanza(report), (folder() / "mine.yaml").string()));
   EXPECT_TRUE(loaded.has_errors());
   for (const Mistake& mistake : loaded.mistakes) {
     EXPECT_NE(mistake.text.find("there is no value"), std::string::npos) << mistake.text;

@@ -11,7 +11,7 @@
 #include "libsim/base/random.hpp"
 #include "libsim/records/record_file.hpp"
 #include "libsim/records/recording.hpp"
-#include "tests/libsim/records/record_folder.hpp"
+#include "tests/folder_test.hpp"
 
 namespace modcal {
 namespace {
@@ -20,7 +20,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-class Inspect : public RecordFolder {};
+class Inspect : public FolderTest {};
 
 constexpr double kRate = 51200.0;
 

@@ -8,6 +8,7 @@
 
 #include "experiments/report/drawing.hpp"
 #include "tests/experiments/report/sample_report.hpp"
+#include "tests/folder_test.hpp"
 
 namespace modcal::report {
 namespace {
@@ -15,21 +16,9 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-class Gnuplot : public testing::Test {
+class Gnuplot : public FolderTest {
  protected:
-  Gnuplot() : folder_(fs::path(testing::TempDir()) / unique_name()) {
-    fs::create_directories(folder_);
-  }
-  ~Gnuplot() override { fs::remove_all(folder_); }
-  static std::string unique_name() {
-    return std::string("modcal_") + testing::UnitTest::GetInstance()->current_test_info()->name() +
-           std::to_string(::getpid());
-  }
-  std::string content(const std::string& name) const {
-    std::ifstream stream(folder_ / name, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-  }
-  fs::path folder_;
+  std::string content(const std::string& name) const { return content_of(path(name)); }
 };
 
 TEST_F(Gnuplot, DrawsEveryFigureAsSvgAndPdf) {
@@ -37,7 +26,7 @@ TEST_F(Gnuplot, DrawsEveryFigureAsSvgAndPdf) {
                                        curve_figure(), long_figure()};
   std::vector<DrawnFigure> drawn;
   for (const Figure& figure : figures) drawn.push_back(draw_figure(figure, 300));
-  EXPECT_EQ(draw_with_gnuplot(drawn, folder_, "gnuplot"), "");
+  EXPECT_EQ(draw_with_gnuplot(drawn, folder(), "gnuplot"), "");
   for (const Figure& figure : figures) {
     const std::string svg = content(figure.id + ".svg");
     EXPECT_THAT(svg, testing::StartsWith("<?xml"));
@@ -49,7 +38,7 @@ TEST_F(Gnuplot, DrawsEveryFigureAsSvgAndPdf) {
     EXPECT_THAT(pdf, HasSubstr("%%EOF"));
   }
   EXPECT_THAT(content("long.svg"), HasSubstr("no data"));
-  for (const auto& entry : fs::directory_iterator(folder_)) {
+  for (const auto& entry : fs::directory_iterator(folder())) {
     EXPECT_THAT(entry.path().filename().string(), testing::Not(HasSubstr(".part")));
   }
 }
@@ -61,41 +50,41 @@ TEST_F(Gnuplot, HostileTextIsOnlyText) {
   panel.title = "it's `touch stolen` _{x} % \" \\ \n system('touch stolen')";
   panel.x.label = panel.y.label = panel.series[0].label = panel.markers[0].label = panel.title;
   const std::vector<DrawnFigure> drawn = {draw_figure(figure, 100)};
-  EXPECT_EQ(draw_with_gnuplot(drawn, folder_, "gnuplot"), "");
-  EXPECT_FALSE(fs::exists(folder_ / "stolen"));
+  EXPECT_EQ(draw_with_gnuplot(drawn, folder(), "gnuplot"), "");
+  EXPECT_FALSE(fs::exists(folder() / "stolen"));
   EXPECT_THAT(content("fig13.svg"), HasSubstr("`touch stolen` _{x} %"));
 }
 
 TEST_F(Gnuplot, KeptScriptsCanBeRunByHand) {
   const Figure figure = curve_figure();
   const std::vector<DrawnFigure> drawn = {draw_figure(figure, 100)};
-  ASSERT_EQ(draw_with_gnuplot(drawn, folder_, "gnuplot"), "");
-  fs::remove(folder_ / "fig9.svg");
-  EXPECT_TRUE(run_process({"gnuplot", "fig9.gp"}, folder_).succeeded());
+  ASSERT_EQ(draw_with_gnuplot(drawn, folder(), "gnuplot"), "");
+  fs::remove(folder() / "fig9.svg");
+  EXPECT_TRUE(run_process({"gnuplot", "fig9.gp"}, folder()).succeeded());
   EXPECT_THAT(content("fig9.svg"), HasSubstr("</svg>"));
 }
 
 TEST_F(Gnuplot, SaysWhenTheProgramIsMissing) {
   const Figure figure = curve_figure();
   const std::vector<DrawnFigure> drawn = {draw_figure(figure, 100)};
-  EXPECT_THAT(draw_with_gnuplot(drawn, folder_, "no-such-gnuplot"),
+  EXPECT_THAT(draw_with_gnuplot(drawn, folder(), "no-such-gnuplot"),
               testing::AllOf(HasSubstr("no-such-gnuplot"), HasSubstr("gnuplot-nox")));
-  EXPECT_TRUE(fs::exists(folder_ / "fig9.gp"));
-  EXPECT_FALSE(fs::exists(folder_ / "fig9.svg"));
+  EXPECT_TRUE(fs::exists(folder() / "fig9.gp"));
+  EXPECT_FALSE(fs::exists(folder() / "fig9.svg"));
 }
 
 TEST_F(Gnuplot, SaysWhatTheProgramSaidWhenItFails) {
   const Figure figure = curve_figure();
   const std::vector<DrawnFigure> drawn = {draw_figure(figure, 100)};
-  std::ofstream(folder_ / "broken") << "#!/bin/sh\n"
-                                       "printf '<svg>half' > fig9.svg.part\n"
-                                       "echo disk full >&2; exit 3\n";
-  fs::permissions(folder_ / "broken", fs::perms::owner_all);
-  EXPECT_THAT(draw_with_gnuplot(drawn, folder_, (folder_ / "broken").string()),
+  std::ofstream(folder() / "broken") << "#!/bin/sh\n"
+                                        "printf '<svg>half' > fig9.svg.part\n"
+                                        "echo disk full >&2; exit 3\n";
+  fs::permissions(folder() / "broken", fs::perms::owner_all);
+  EXPECT_THAT(draw_with_gnuplot(drawn, folder(), (folder() / "broken").string()),
               testing::AllOf(HasSubstr("exit code 3"), HasSubstr("fig9.svg, fig9.pdf"),
                              HasSubstr("disk full")));
-  EXPECT_FALSE(fs::exists(folder_ / "fig9.svg")) << "a half-drawn figure is no figure";
-  EXPECT_FALSE(fs::exists(folder_ / "fig9.svg.part"));
+  EXPECT_FALSE(fs::exists(folder() / "fig9.svg")) << "a half-drawn figure is no figure";
+  EXPECT_FALSE(fs::exists(folder() / "fig9.svg.part"));
 }
 
 TEST(GnuplotQuoted, DoublesQuotesAndJoinsLines) {

@@ -1,5 +1,3 @@
-#include "experiments/report/report.hpp"
-
 #include <gmock/gmock.h>
 #include <unistd.h>
 
@@ -8,8 +6,10 @@
 #include <iterator>
 
 #include "experiments/report/encoding.hpp"
+#include "experiments/report/report.hpp"
 #include "libsim/base/error.hpp"
 #include "tests/experiments/report/sample_report.hpp"
+#include "tests/folder_test.hpp"
 
 namespace modcal::report {
 namespace {
@@ -17,53 +17,40 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-class WriteReport : public testing::Test {
- protected:
-  WriteReport()
-      : folder_(fs::path(testing::TempDir()) /
-                (std::string("modcal_") +
-                 testing::UnitTest::GetInstance()->current_test_info()->name() +
-                 std::to_string(::getpid()))) {}
-  ~WriteReport() override { fs::remove_all(folder_); }
-  static std::string content(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-  }
-  fs::path folder_;
-};
+class WriteReport : public FolderTest {};
 
 TEST_F(WriteReport, LeavesEveryFileItNames) {
-  const WrittenReport written = write_report(sample_report(), folder_ / "made" / "here");
+  const WrittenReport written = write_report(sample_report(), folder() / "made" / "here");
   EXPECT_EQ(written.warning, "");
-  EXPECT_EQ(written.page, folder_ / "made" / "here" / "report.html");
+  EXPECT_EQ(written.page, folder() / "made" / "here" / "report.html");
   // 6 figures with csv, dat, gp, svg and pdf, a table with csv and json, and the page.
   EXPECT_EQ(written.files.size(), 6u * 5u + 2u + 1u);
   std::size_t found = 0;
-  for (const auto& entry : fs::recursive_directory_iterator(folder_)) {
+  for (const auto& entry : fs::recursive_directory_iterator(folder())) {
     if (entry.is_regular_file()) ++found;
   }
   EXPECT_EQ(found, written.files.size()) << "no temporary file is left";
   for (const fs::path& file : written.files) EXPECT_GT(fs::file_size(file), 0u) << file;
-  EXPECT_THAT(content(written.page), HasSubstr("href=\"figures/fig8.pdf\""));
+  EXPECT_THAT(content_of(written.page), HasSubstr("href=\"figures/fig8.pdf\""));
 }
 
 TEST_F(WriteReport, GoesOnWithoutGnuplotAndSaysSo) {
-  fs::create_directories(folder_ / "figures");
-  std::ofstream(folder_ / "figures" / "fig9.svg") << "of an earlier report";
+  fs::create_directories(folder() / "figures");
+  std::ofstream(folder() / "figures" / "fig9.svg") << "of an earlier report";
   const WrittenReport written =
-      write_report(sample_report(), folder_, {.gnuplot = "no-such-gnuplot"});
+      write_report(sample_report(), folder(), {.gnuplot = "no-such-gnuplot"});
   EXPECT_THAT(written.warning, HasSubstr("could not be started"));
-  const std::string page = content(written.page);
+  const std::string page = content_of(written.page);
   EXPECT_THAT(page, HasSubstr("could not be started"));
   EXPECT_THAT(page, HasSubstr("href=\"figures/fig9.csv\""));
   EXPECT_THAT(page, testing::Not(HasSubstr("fig9.svg"))) << "not the earlier report's figure";
 }
 
 TEST_F(WriteReport, VectorFiguresCanBeLeftOut) {
-  const WrittenReport written = write_report(sample_report(), folder_, {.vector_figures = false});
+  const WrittenReport written = write_report(sample_report(), folder(), {.vector_figures = false});
   EXPECT_EQ(written.warning, "");
-  EXPECT_FALSE(fs::exists(folder_ / "figures" / "fig9.gp"));
-  EXPECT_TRUE(fs::exists(folder_ / "figures" / "fig9.csv"));
+  EXPECT_FALSE(fs::exists(folder() / "figures" / "fig9.gp"));
+  EXPECT_TRUE(fs::exists(folder() / "figures" / "fig9.csv"));
 }
 
 // So many figures of 3 × 2 panels, no two series alike, and one long record.
@@ -84,8 +71,8 @@ Report large_report(int figures) {
 }
 
 TEST_F(WriteReport, TwentyFiguresKeepTheSamplesOfShortWindowsUnderTwoMegabytes) {
-  const WrittenReport written = write_report(large_report(20), folder_, {.vector_figures = false});
-  const std::string page = content(written.page);
+  const WrittenReport written = write_report(large_report(20), folder(), {.vector_figures = false});
+  const std::string page = content_of(written.page);
   EXPECT_LT(page.size(), 2'000'000u);
   const std::size_t thinned = page.find("Long series");
   ASSERT_NE(thinned, std::string::npos) << "the long record";
@@ -93,22 +80,22 @@ TEST_F(WriteReport, TwentyFiguresKeepTheSamplesOfShortWindowsUnderTwoMegabytes) 
 }
 
 TEST_F(WriteReport, EightyFiguresAreThinnedToStayUnderTwoMegabytes) {
-  const WrittenReport written = write_report(large_report(80), folder_, {.vector_figures = false});
+  const WrittenReport written = write_report(large_report(80), folder(), {.vector_figures = false});
   EXPECT_LT(fs::file_size(written.page), 2'000'000u);
 }
 
 TEST_F(WriteReport, RefusesTwoFiguresOfOneNameBeforeWriting) {
   Report report = sample_report();
   report.sections[0].blocks.push_back(waveform_figure());
-  EXPECT_THROW(write_report(report, folder_), InvalidInput);
-  EXPECT_FALSE(fs::exists(folder_));
+  EXPECT_THROW(write_report(report, path("made")), InvalidInput);
+  EXPECT_FALSE(fs::exists(path("made")));
 }
 
 TEST_F(WriteReport, SaysWhichFileCannotBeWritten) {
-  fs::create_directories(folder_);
-  std::ofstream(folder_ / "file") << "in the way";
-  EXPECT_THROW(write_report(sample_report(), folder_ / "file"), InvalidInput);
-  EXPECT_EQ(content(folder_ / "file"), "in the way");
+  fs::create_directories(folder());
+  std::ofstream(folder() / "file") << "in the way";
+  EXPECT_THROW(write_report(sample_report(), folder() / "file"), InvalidInput);
+  EXPECT_EQ(content_of(folder() / "file"), "in the way");
 }
 
 TEST_F(WriteReport, AnEmptyReportIsAPage) {
@@ -118,21 +105,21 @@ TEST_F(WriteReport, AnEmptyReportIsAPage) {
                       .sections = {},
                       .provenance = {},
                       .command = ""};
-  const WrittenReport written = write_report(report, folder_);
+  const WrittenReport written = write_report(report, folder());
   EXPECT_EQ(written.files.size(), 1u);
-  EXPECT_FALSE(fs::exists(folder_ / "figures"));
+  EXPECT_FALSE(fs::exists(folder() / "figures"));
 }
 
 TEST_F(WriteReport, FilesAreReplacedAsAWhole) {
-  fs::create_directories(folder_);
-  write_file_atomically(folder_ / "a.txt", "first, and longer");
-  write_file_atomically(folder_ / "a.txt", "second");
-  EXPECT_EQ(content(folder_ / "a.txt"), "second");
+  fs::create_directories(folder());
+  write_file_atomically(folder() / "a.txt", "first, and longer");
+  write_file_atomically(folder() / "a.txt", "second");
+  EXPECT_EQ(content_of(folder() / "a.txt"), "second");
   // A folder cannot be replaced by a file: the old one stays and no temporary file is left.
-  fs::create_directories(folder_ / "b.txt" / "inside");
-  EXPECT_THROW(write_file_atomically(folder_ / "b.txt", "x"), InvalidInput);
-  EXPECT_THROW(write_file_atomically(folder_ / "no" / "such" / "folder", "x"), InvalidInput);
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 2);
+  fs::create_directories(folder() / "b.txt" / "inside");
+  EXPECT_THROW(write_file_atomically(folder() / "b.txt", "x"), InvalidInput);
+  EXPECT_THROW(write_file_atomically(folder() / "no" / "such" / "folder", "x"), InvalidInput);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder()), fs::directory_iterator()), 2);
 }
 
 }  // namespace

@@ -4,26 +4,19 @@
 #include <fstream>
 
 #include "experiments/runs/journal.hpp"
+#include "tests/folder_test.hpp"
 
 namespace modcal {
 namespace {
 
 namespace fs = std::filesystem;
 
-class FileDigest : public ::testing::Test {
+class FileDigest : public FolderTest {
  protected:
-  FileDigest() {
-    std::string name = (fs::temp_directory_path() / "modcal-digest-XXXXXX").string();
-    folder_ = mkdtemp(name.data());
-    write("0.1 0.2 0.3");
-  }
-  ~FileDigest() override { fs::remove_all(folder_); }
+  FileDigest() { write("0.1 0.2 0.3"); }
 
-  fs::path file() const { return folder_ / "record.csv"; }
-  void write(const std::string& text) const { std::ofstream(file()) << text; }
-
- private:
-  fs::path folder_;
+  fs::path file() const { return folder() / "record.csv"; }
+  void write(const std::string& text) const { FolderTest::write("record.csv", text); }
 };
 
 TEST_F(FileDigest, TellsAnExchangedFileOfTheSameSizeAndTime) {

@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "libsim/base/error.hpp"
+#include "tests/folder_test.hpp"
 
 namespace modcal {
 namespace {
@@ -45,16 +46,9 @@ JournalContents read_journals(const std::filesystem::path& folder) {
   return contents;
 }
 
-class Journal : public ::testing::Test {
+class Journal : public FolderTest {
  protected:
-  Journal() {
-    std::string name = (std::filesystem::temp_directory_path() / "modcal-journal-XXXXXX").string();
-    folder_ = mkdtemp(name.data());
-  }
-  ~Journal() override { std::filesystem::remove_all(folder_); }
-
-  std::filesystem::path file() const { return folder_ / "one.journal"; }
-  const std::filesystem::path& folder() const { return folder_; }
+  std::filesystem::path file() const { return folder() / "one.journal"; }
 
   static JournalRecord record(std::uint64_t task) {
     return {"0123456789abcdef0123456789abcde" + std::to_string(task % 10), task,
@@ -65,17 +59,10 @@ class Journal : public ::testing::Test {
     JournalWriter writer(file(), "program 1");
     for (std::uint64_t task = first; task <= last; ++task) writer.append(record(task));
   }
-  std::string bytes() const {
-    std::ostringstream text;
-    text << std::ifstream(file(), std::ios::binary).rdbuf();
-    return text.str();
-  }
+  std::string bytes() const { return content_of(file()); }
   void replace(const std::string& bytes) const {
     std::ofstream(file(), std::ios::binary | std::ios::trunc) << bytes;
   }
-
- private:
-  std::filesystem::path folder_;
 };
 
 void expect_equal(const JournalRecord& a, const JournalRecord& b) {

@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "libsim/base/error.hpp"
+#include "tests/folder_test.hpp"
 
 namespace modcal {
 namespace {
@@ -48,10 +49,10 @@ std::string ask(const std::filesystem::path& file, const std::string& sql) {
   return answer;
 }
 
-TEST(ResultsDatabase, AnswersQuestionsAboutTheRows) {
-  std::string name = (std::filesystem::temp_directory_path() / "modcal-db-XXXXXX").string();
-  const std::filesystem::path folder = mkdtemp(name.data());
-  const std::filesystem::path file = folder / "results.sqlite";
+class ResultsDatabaseFile : public FolderTest {};
+
+TEST_F(ResultsDatabaseFile, AnswersQuestionsAboutTheRows) {
+  const std::filesystem::path file = path("results.sqlite");
   const std::string digest =
       write_results_database(file, {"noise", "strange \" name"}, rows(), {{"kind", "sweep"}});
   EXPECT_EQ(ask(file, "SELECT count(*) FROM tasks"), "2");
@@ -65,7 +66,7 @@ TEST(ResultsDatabase, AnswersQuestionsAboutTheRows) {
   // Written again over the first.
   write_results_database(file, {"noise", "x"}, {}, {});
   EXPECT_EQ(ask(file, "SELECT count(*) FROM tasks"), "0");
-  std::filesystem::remove_all(folder);
+  std::filesystem::remove_all(folder());
   EXPECT_THROW(write_results_database(file, {}, rows(), {}), InvalidInput);
 }
 

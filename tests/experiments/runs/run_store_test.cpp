@@ -7,24 +7,14 @@
 #include <optional>
 
 #include "libsim/base/error.hpp"
+#include "tests/folder_test.hpp"
 
 namespace modcal {
 namespace {
 
 using ::testing::HasSubstr;
 
-class Store : public ::testing::Test {
- protected:
-  Store() {
-    std::string name = (std::filesystem::temp_directory_path() / "modcal-store-XXXXXX").string();
-    folder_ = mkdtemp(name.data());
-  }
-  ~Store() override { std::filesystem::remove_all(folder_); }
-  const std::filesystem::path& folder() const { return folder_; }
-
- private:
-  std::filesystem::path folder_;
-};
+class Store : public FolderTest {};
 
 void finish(RunStore& store, const std::string& fingerprint) {
   store.append({store.finished().key_of(fingerprint), 0, 0.1, "{}"});

@@ -6,6 +6,8 @@
 #include <atomic>
 #include <cstdlib>
 
+#include "tests/folder_test.hpp"
+
 namespace modcal {
 namespace {
 
@@ -47,17 +49,10 @@ class Squares final : public TaskExperiment {
   std::size_t tasks_;
 };
 
-class TaskList : public ::testing::Test {
+class TaskList : public FolderTest {
  protected:
-  TaskList() {
-    std::string name = (std::filesystem::temp_directory_path() / "modcal-tasks-XXXXXX").string();
-    folder = mkdtemp(name.data());
-  }
-  ~TaskList() override { std::filesystem::remove_all(folder); }
-
   StudyContext context() { return {.work = work}; }
 
-  std::filesystem::path folder;
   SharedWork work;
 };
 
@@ -75,11 +70,11 @@ TEST_F(TaskList, GoesOnAfterAnInterruptionWithoutRepeatingWork) {
   StudyContext stopping = context();
   stopping.stop = StopToken(squares.wish);
   {
-    RunStore store(folder, {}, "p");
+    RunStore store(folder(), {}, "p");
     EXPECT_THROW(run_tasks(squares, stopping, &store, {}), Interrupted);
   }
   EXPECT_GE(squares.runs, 4);
-  RunStore store(folder, {}, "p");
+  RunStore store(folder(), {}, "p");
   const auto outcomes = run_tasks(squares, context(), &store, {});
   EXPECT_EQ(squares.runs, 9);
   EXPECT_EQ(squares.sum_up(outcomes, context()).summary, squares.run(context()).summary);
@@ -89,7 +84,7 @@ TEST_F(TaskList, RunsTheTasksOfAShardAndTakesThoseOfOthersFromTheStore) {
   const Squares squares(7);
   for (std::size_t index = 1; index <= 3; ++index) {
     const Shard shard{index, 3};
-    RunStore store(folder, shard, "p");
+    RunStore store(folder(), shard, "p");
     const auto outcomes = run_tasks(squares, context(), &store, shard);
     const StudyResult result = squares.sum_up(outcomes, context());
     std::size_t done = 0;

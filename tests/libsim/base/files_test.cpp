@@ -7,6 +7,8 @@
 #include <fstream>
 
 #include "libsim/base/error.hpp"
+#include "tests/folder_test.hpp"
+#include "tests/refusal.hpp"
 
 namespace modcal {
 namespace {
@@ -14,49 +16,24 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
-class Files : public ::testing::Test {
+class Files : public FolderTest {
  protected:
-  Files() {
-    std::string name = (fs::temp_directory_path() / "modcal-files-XXXXXX").string();
-    folder_ = mkdtemp(name.data());
-  }
-  ~Files() override { fs::remove_all(folder_); }
-
-  fs::path path(const std::string& name) const { return folder_ / name; }
-  fs::path write(const std::string& name, const std::string& content) const {
-    std::ofstream(path(name)) << content;
-    return path(name);
-  }
   std::vector<std::string> names() const {
     std::vector<std::string> found;
-    for (const auto& entry : fs::directory_iterator(folder_)) {
+    for (const auto& entry : fs::directory_iterator(folder())) {
       found.push_back(entry.path().filename().string());
     }
     return found;
   }
-  const fs::path& folder() const { return folder_; }
-
- private:
-  fs::path folder_;
 };
-
-template <typename Act>
-std::string refusal(const Act& act) {
-  try {
-    act();
-  } catch (const InvalidInput& error) {
-    return error.what();
-  }
-  return "nothing was refused";
-}
 
 TEST_F(Files, RefusesWhatIsNoFileWithoutOpeningIt) {
   ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
   fs::create_symlink("/dev/zero", path("zero"));
-  EXPECT_THAT(refusal([&] { content_of_file(path("pipe")); }), HasSubstr("this is a pipe"));
-  EXPECT_THAT(refusal([&] { content_of_file(path("zero")); }), HasSubstr("this is a device"));
-  EXPECT_THAT(refusal([&] { content_of_file(folder()); }), HasSubstr("this is a folder"));
-  EXPECT_THAT(refusal([&] { OpenFile::for_reading(path("pipe"), "the journal"); }),
+  EXPECT_THAT(refusal_of([&] { content_of_file(path("pipe")); }), HasSubstr("this is a pipe"));
+  EXPECT_THAT(refusal_of([&] { content_of_file(path("zero")); }), HasSubstr("this is a device"));
+  EXPECT_THAT(refusal_of([&] { content_of_file(folder()); }), HasSubstr("this is a folder"));
+  EXPECT_THAT(refusal_of([&] { OpenFile::for_reading(path("pipe"), "the journal"); }),
               HasSubstr("the journal is a pipe, not a file"));
   EXPECT_EQ(content_of_file(write("a", "text")), "text");
 }
@@ -67,7 +44,7 @@ TEST_F(Files, AppendsToNoFileOfOthers) {
   fs::create_hard_link(victim, path("hard"));
   ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
   const auto open = [&](const char* name) {
-    return refusal([&] { OpenFile::for_appending(path(name), "the lock"); });
+    return refusal_of([&] { OpenFile::for_appending(path(name), "the lock"); });
   };
   EXPECT_THAT(open("symbolic"), HasSubstr("the lock is a link"));
   EXPECT_THAT(open("hard"), HasSubstr("a second name elsewhere"));

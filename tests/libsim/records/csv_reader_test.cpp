@@ -5,7 +5,8 @@
 #include <limits>
 
 #include "libsim/records/record_file.hpp"
-#include "tests/libsim/records/record_folder.hpp"
+#include "tests/folder_test.hpp"
+#include "tests/refusal.hpp"
 
 namespace modcal {
 namespace {
@@ -13,14 +14,14 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-class CsvReader : public RecordFolder {
+class CsvReader : public FolderTest {
  protected:
   Recording read(std::string_view content, const ReadOptions& options = {}) const {
     return read_csv(write("r.csv", content), options);
   }
   /// The message for this content, with the folder cut off.
   std::string error(std::string_view content, const ReadOptions& options = {}) const {
-    std::string text = refusal([&] { read(content, options); });
+    std::string text = refusal_of([&] { read(content, options); });
     const std::string prefix = folder().string() + "/";
     for (std::size_t at; (at = text.find(prefix)) != std::string::npos;) {
       text.erase(at, prefix.size());
@@ -284,9 +285,9 @@ TEST_F(CsvReader, ReportsFilesThatHoldNoRecord) {
   EXPECT_EQ(error("t,R1\n"), "r.csv: there is a header but no row of samples");
   EXPECT_THAT(error(std::string_view("R\0i\0f\0f\0", 8)), HasSubstr("this is not 8-bit text"));
   EXPECT_THAT(error("\xFF\xFEt"), HasSubstr("save it as UTF-8 text"));
-  EXPECT_THAT(refusal([&] { read_csv(path("missing.csv")); }),
+  EXPECT_THAT(refusal_of([&] { read_csv(path("missing.csv")); }),
               HasSubstr("missing.csv: cannot be opened: No such file or directory"));
-  EXPECT_THAT(refusal([&] { read_csv(folder()); }), HasSubstr("this is a folder, not a file"));
+  EXPECT_THAT(refusal_of([&] { read_csv(folder()); }), HasSubstr("this is a folder, not a file"));
 }
 
 TEST_F(CsvReader, ReportsMisplacedQuotes) {

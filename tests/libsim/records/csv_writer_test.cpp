@@ -11,14 +11,15 @@
 
 #include "libsim/base/random.hpp"
 #include "libsim/records/record_file.hpp"
-#include "tests/libsim/records/record_folder.hpp"
+#include "tests/folder_test.hpp"
+#include "tests/refusal.hpp"
 
 namespace modcal {
 namespace {
 
 using testing::HasSubstr;
 
-class CsvWriter : public RecordFolder {};
+class CsvWriter : public FolderTest {};
 
 Signal noise(std::string quantity, std::string unit, double rate, std::size_t size) {
   Signal signal{quantity, unit, rate, std::vector<double>(size)};
@@ -82,7 +83,7 @@ TEST_F(CsvWriter, WritesHeaderUnitsAndProvenance) {
 TEST_F(CsvWriter, RefusesWhatCannotBeOneRecord) {
   const Signal good{"R1", "N", 4.0, {1.0, 2.0}};
   const auto message = [&](std::vector<Signal> signals) {
-    return refusal([&] { write_csv(path("a.csv"), signals); });
+    return refusal_of([&] { write_csv(path("a.csv"), signals); });
   };
   EXPECT_THAT(message({}), HasSubstr("there is no signal to write"));
   EXPECT_THAT(message({{"R1", "N", 0.0, {1.0}}}), HasSubstr("a sample rate of 0 Hz"));
@@ -95,7 +96,7 @@ TEST_F(CsvWriter, RefusesWhatCannotBeOneRecord) {
   EXPECT_THAT(message({{"R1", "N", 4.0, {1.0, NAN}}}),
               HasSubstr("sample 1 of R1 is nan; only numbers are written"));
   EXPECT_THAT(message({{"R1 [x]", "", 4.0, {1.0}}}), HasSubstr("cannot be told from its heading"));
-  EXPECT_THAT(refusal([&] { write_csv(path("no/a.csv"), std::vector{good}); }),
+  EXPECT_THAT(refusal_of([&] { write_csv(path("no/a.csv"), std::vector{good}); }),
               HasSubstr("cannot be written: No such file or directory"));
   EXPECT_FALSE(std::filesystem::exists(path("a.csv")));
 }
@@ -108,7 +109,7 @@ TEST_F(CsvWriter, LeavesAnExistingFileAloneWhenItFails) {
   ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &limit), 0);
   const rlimit nothing{0, limit.rlim_max};
   ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &nothing), 0);
-  const std::string reason = refusal([&] {
+  const std::string reason = refusal_of([&] {
     write_csv(path("a.csv"), std::vector{Signal{"R1", "N", 4.0, {1.0}}});
   });
   setrlimit(RLIMIT_FSIZE, &limit);

@@ -9,7 +9,8 @@
 
 #include "libsim/base/random.hpp"
 #include "libsim/records/record_file.hpp"
-#include "tests/libsim/records/record_folder.hpp"
+#include "tests/folder_test.hpp"
+#include "tests/refusal.hpp"
 
 namespace modcal {
 namespace {
@@ -17,7 +18,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-class Wav : public RecordFolder {
+class Wav : public FolderTest {
  protected:
   /// A file as another program writes it: no comment of ours.
   std::filesystem::path foreign(std::string_view name, int format, int channels,
@@ -115,11 +116,11 @@ TEST_F(Wav, ReadsEightChannelsByNameAndNumber) {
   EXPECT_EQ(record.channels[0].samples, signals[6].samples);
   EXPECT_EQ(record.channels[1].samples, signals[1].samples);
   EXPECT_THAT(
-      refusal([&] { read_wav(path("a.wav"), {.channels = {"R9"}}); }),
+      refusal_of([&] { read_wav(path("a.wav"), {.channels = {"R9"}}); }),
       HasSubstr("there is no channel \"R9\", did you mean \"R1\"?; the file has 8 channels"));
-  EXPECT_THAT(refusal([&] { read_wav(path("a.wav"), {.channels = {"9"}}); }),
+  EXPECT_THAT(refusal_of([&] { read_wav(path("a.wav"), {.channels = {"9"}}); }),
               HasSubstr("there is no channel \"9\""));
-  EXPECT_THAT(refusal([&] {
+  EXPECT_THAT(refusal_of([&] {
                 read_wav(path("a.wav"), {.channels = {"1", "R1"}});
               }),
               HasSubstr("channel \"R1\" is asked for twice"));
@@ -129,7 +130,7 @@ TEST_F(Wav, KeepsTheNamesOfManyChannels) {
   const std::vector<Signal> signals = noises(150, 2);
   write_wav(path("a.wav"), signals);
   EXPECT_EQ(read_wav(path("a.wav")).channels[149].name, "R150");
-  EXPECT_THAT(refusal([&] { write_wav(path("b.wav"), noises(300, 2)); }),
+  EXPECT_THAT(refusal_of([&] { write_wav(path("b.wav"), noises(300, 2)); }),
               HasSubstr("the names of 300 channels do not fit"));
 }
 
@@ -174,7 +175,7 @@ TEST_F(Wav, RefusesSamplesThatAreNoNumbers) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double inf = std::numeric_limits<double>::infinity();
   const auto file = foreign("a.wav", SF_FORMAT_WAV | SF_FORMAT_FLOAT, 2, {0, 0, 0, nan, inf, 0});
-  const std::string message = refusal([&] { read_wav(file); });
+  const std::string message = refusal_of([&] { read_wav(file); });
   EXPECT_THAT(message,
               HasSubstr("sample 2 of channel 1 is inf; repair the record or crop it away"));
   EXPECT_THAT(message, HasSubstr("sample 1 of channel 2 is nan"));
@@ -182,18 +183,20 @@ TEST_F(Wav, RefusesSamplesThatAreNoNumbers) {
 }
 
 TEST_F(Wav, RefusesFilesThatHoldNoRecord) {
-  EXPECT_THAT(refusal([&] { read_wav(write("a.wav", "")); }), HasSubstr("the file is empty"));
-  EXPECT_THAT(refusal([&] { read_wav(write("a.wav", "t,R1\n0,1\n")); }),
+  EXPECT_THAT(refusal_of([&] { read_wav(write("a.wav", "")); }), HasSubstr("the file is empty"));
+  EXPECT_THAT(refusal_of([&] { read_wav(write("a.wav", "t,R1\n0,1\n")); }),
               HasSubstr("cannot be read as an audio file"));
-  EXPECT_THAT(refusal([&] { read_wav(path("missing.wav")); }), HasSubstr("there is no such file"));
-  EXPECT_THAT(refusal([&] { read_wav(folder()); }), HasSubstr("this is a folder"));
-  EXPECT_THAT(refusal([&] { read_wav(foreign("e.wav", SF_FORMAT_WAV | SF_FORMAT_FLOAT, 1, {})); }),
-              HasSubstr("no samples"));
+  EXPECT_THAT(refusal_of([&] { read_wav(path("missing.wav")); }),
+              HasSubstr("there is no such file"));
+  EXPECT_THAT(refusal_of([&] { read_wav(folder()); }), HasSubstr("this is a folder"));
+  EXPECT_THAT(
+      refusal_of([&] { read_wav(foreign("e.wav", SF_FORMAT_WAV | SF_FORMAT_FLOAT, 1, {})); }),
+      HasSubstr("no samples"));
 }
 
 TEST_F(Wav, RefusesWhatTheFormatCannotHold) {
   const auto message = [&](Signal signal, WavWriteOptions options) {
-    return refusal([&] { write_wav(path("a.wav"), std::vector{signal}, options); });
+    return refusal_of([&] { write_wav(path("a.wav"), std::vector{signal}, options); });
   };
   EXPECT_THAT(message({"R1", "N", 0.5, {1.0}}, {}),
               HasSubstr("cannot hold a sample rate of 0.5 Hz, only whole numbers of hertz; write "
@@ -205,7 +208,7 @@ TEST_F(Wav, RefusesWhatTheFormatCannotHold) {
   EXPECT_THAT(message({"R1", "N", 8.0, {1.0}}, {.full_scale = 0.0}),
               HasSubstr("full_scale = 0 cannot be used: it must be > 0"));
   EXPECT_FALSE(std::filesystem::exists(path("a.wav")));
-  EXPECT_THAT(refusal([&] { write_wav(path("no/a.wav"), noises(1, 2)); }),
+  EXPECT_THAT(refusal_of([&] { write_wav(path("no/a.wav"), noises(1, 2)); }),
               HasSubstr("cannot be written"));
 }
 
