@@ -15,7 +15,7 @@ using report::Series;
 using report::SeriesStyle;
 
 constexpr double kBand = 1.96;         // deviations of 95 %
-constexpr double kPeriodsShown = 6.0;  // where single strokes are to be seen
+constexpr double kPeriodsShown = 4.0;  // where single strokes are to be seen
 constexpr std::size_t kStretches = 1000;
 
 // Samples from `first` on, one past the last, and the scale of their time axis. Of every `stretch`
@@ -212,11 +212,12 @@ Figure spectra_figure(const Drawing& drawing) {
   const Observation& observation = drawing.observation;
   const double highest = std::min(0.5 * drawing.rate(),
                                   1.1 * observation.basis.frequency(observation.basis.size() - 1));
-  const auto add = [&](std::string title, std::string label, std::span<const double> samples) {
+  const auto add = [&](std::string title, std::string label, std::span<const double> samples,
+                       double limit) {
     Panel panel{.title = std::move(title),
                 .x = {.label = "frequency", .unit = "kHz"},
                 .y = {.label = std::move(label), .unit = "N s", .logarithmic = true}};
-    panel.series.push_back(spectrum_of(samples, drawing.rate(), highest, "record"));
+    panel.series.push_back(spectrum_of(samples, drawing.rate(), limit, "record"));
     figure.panels.push_back(std::move(panel));
   };
   for (const End end : kEnds) {
@@ -224,7 +225,7 @@ Figure spectra_figure(const Drawing& drawing) {
     if (!reaction) continue;
     const auto r = static_cast<std::size_t>(end);
     add(fmt::format("reaction at {}", label_of(end)), fmt::format("|R{}|", r + 1),
-        reaction->samples);
+        reaction->samples, highest);
     const double noise = noise_of(drawing.sides, r);
     if (!(noise > 0.0)) continue;
     const double floor = noise * std::sqrt(static_cast<double>(reaction->size())) / drawing.rate();
@@ -236,7 +237,9 @@ Figure spectra_figure(const Drawing& drawing) {
     figure.panels.back().series.push_back(std::move(level));
   }
   for (const SideIdentification& side : drawing.sides) {
-    add("force " + side.estimate.label, "|F_c|", side.estimate.result.force);
+    // Above the limit of its band a force is rounding. Of NaN fmin takes the other.
+    add("force " + side.estimate.label, "|F_c|", side.estimate.result.force,
+        std::fmin(highest, side.estimate.band_limit));
     figure.panels.back().series.front().label = "identified";
   }
   figure.columns = std::min<std::size_t>(figure.panels.size(), 2);

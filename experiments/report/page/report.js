@@ -260,6 +260,16 @@ function link_zoom(figure) {
   });
 }
 
+// Scales a chart, labels and all, to its column of the paper, 700 pixels wide: what is drawn at
+// another size while the browser prints stays blank.
+function fit_to_paper(item) {
+  var width = item.element.clientWidth;
+  if (!width) return;  // filtered away
+  var paper = Number(getComputedStyle(item.figure).getPropertyValue('--columns')) > 1 ? 342 : 700;
+  item.element.style.setProperty('--drawn', width + 'px');
+  item.element.style.setProperty('--fit', (paper / width).toFixed(4));
+}
+
 function repaint() {
   charts.forEach(function (item) { item.chart.updateOptions(looks(item.series)); });
 }
@@ -299,10 +309,12 @@ window.matchMedia('(prefers-color-scheme: dark)').addEventListener('change', rep
 window.addEventListener('beforeprint', function () {
   draw_waiting(Infinity);
   root.classList.add('printing');
+  charts.forEach(fit_to_paper);
   repaint();
 });
 window.addEventListener('afterprint', function () {
   root.classList.remove('printing');
   repaint();
 });
-draw_waiting(performance.now() + 60);
+// What is not drawn before the page has loaded is not in a PDF that is made at once.
+draw_waiting(performance.now() + 500);

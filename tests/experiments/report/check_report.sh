@@ -55,6 +55,11 @@ cat >>"$probe" <<'JS'
     bubbles: true, clientX: box.left + 0.4 * box.width, clientY: box.top + 0.6 * box.height}));
   seen.cell = map.parentNode.querySelector('.values').lastChild.textContent;
   window.dispatchEvent(new Event('beforeprint'));
+  seen.fits = Array.prototype.filter.call(document.querySelectorAll('.chart'), function (chart) {
+    var columns = Number(getComputedStyle(chart.closest('figure')).getPropertyValue('--columns'));
+    var paper = parseFloat(chart.style.getPropertyValue('--drawn')) * chart.style.getPropertyValue('--fit');
+    return Math.abs(paper - (columns > 1 ? 342 : 700)) < 1;
+  }).length;
   window.dispatchEvent(new Event('afterprint'));
   seen.printed = picture(panels[0]) === start[0];
 })();
@@ -71,5 +76,6 @@ expect "zoom (own, linked, other figure, reset button hidden)" "$(seen zoomed)" 
 expect "reset (own, linked, button hidden, values)" "$(seen reset)" "true,true,true,"
 expect "cell of the map" "$(seen cell)" "■ one slip"
 expect "printing restores the picture" "$(seen printed)" true
+expect "charts that fit their column of the paper" "$(seen fits)" "$charts"
 give_verdict
 echo "$charts charts drawn, linked and reset without an error"
