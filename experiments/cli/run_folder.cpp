@@ -14,10 +14,11 @@
 namespace modcal {
 namespace {
 
-constexpr std::string_view kFolder = "the folder of the results";
+constexpr std::string_view kResolvedWords =
+    " with every default written out. Relative paths start at ";
 
 nlohmann::json read_provenance(const std::filesystem::path& out) {
-  const std::filesystem::path file = out / "provenance.json";
+  const std::filesystem::path file = out / kProvenanceFile;
   MODCAL_REQUIRE(std::filesystem::exists(file),
                  "{} holds no run: there is no provenance.json; name the folder given to "
                  "modcal run with --out",
@@ -86,29 +87,14 @@ void collect_swept_seeds(const YamlNode& root, nlohmann::ordered_json& seeds) {
 
 }  // namespace
 
-OutputDirectory::OutputDirectory(std::filesystem::path path) : path_(std::move(path)) {
-  std::error_code error;
-  std::filesystem::create_directories(path_, error);
-  MODCAL_REQUIRE(!error && std::filesystem::is_directory(path_),
-                 "the output folder {} cannot be made: {}; choose another one with --out",
-                 path_.string(), error ? error.message() : "a file stands there");
-  const std::string reason = why_not_writable(path_);
-  MODCAL_REQUIRE(reason.empty(),
-                 "the output folder {} cannot be written to: {}; choose another one with --out",
-                 path_.string(), reason);
-  folder_ = OpenFile::folder(path_, kFolder);
-  remove_abandoned_parts(path_);
-  remove_abandoned_parts(path_ / "figures");
+std::string resolved_text(const LoadedExperiment& loaded, const std::filesystem::path& folder) {
+  return fmt::format("# {}{}{}.\n{}", loaded.document.file, kResolvedWords, folder.string(),
+                     loaded.resolved());
 }
 
-void OutputDirectory::require_in_place() const {
-  folder_.require_in_place(kFolder);
-  for (const std::filesystem::path& file : written_) {
-    if (std::filesystem::exists(file)) continue;
-    throw LostOutput(fmt::format(
-        "{}: the file was deleted or moved while the command worked; run the same command again",
-        file.string()));
-  }
+bool is_resolved_text(std::string_view text) {
+  return text.starts_with("# ") &&
+         text.substr(0, text.find('\n')).find(kResolvedWords) != std::string_view::npos;
 }
 
 StoredRun::StoredRun(std::filesystem::path out) : out_(std::move(out)) {
@@ -117,9 +103,9 @@ StoredRun::StoredRun(std::filesystem::path out) : out_(std::move(out)) {
   command_ = provenance["command"].get<std::string>();
   // What was done elsewhere may have needed more than there is here.
   constexpr double kAny = std::numeric_limits<double>::infinity();
-  loaded_ = load_experiment(out_ / "resolved.yaml", {}, {.memory = kAny});
+  loaded_ = load_experiment(out_ / kResolvedFile, {}, {.memory = kAny});
   MODCAL_REQUIRE(!loaded_.has_errors(), "{}: the experiment cannot be read:\n{}",
-                 (out_ / "resolved.yaml").string(),
+                 (out_ / kResolvedFile).string(),
                  format_mistakes(loaded_.document, loaded_.mistakes));
   list_ = dynamic_cast<const TaskExperiment*>(loaded_.experiment.get());
   MODCAL_REQUIRE(list_ != nullptr, "{} holds a run of kind {}, which is no list of tasks",

@@ -5,8 +5,7 @@
 #include <cstdio>
 
 #include "experiments/cli/command.hpp"
-#include "libsim/base/utf8.hpp"
-#include "libsim/records/record_file.hpp"
+#include "experiments/cli/write_results.hpp"
 
 namespace modcal {
 namespace {
@@ -16,16 +15,6 @@ std::optional<tbb::global_control> limit_threads(int threads) {
   return std::optional<tbb::global_control>(std::in_place,
                                             tbb::global_control::max_allowed_parallelism,
                                             static_cast<std::size_t>(threads));
-}
-
-std::string title_of(const LoadedExperiment& loaded) {
-  return loaded.title.empty() ? loaded.kind : loaded.title;
-}
-
-std::filesystem::path folder_of(const LoadedExperiment& loaded, const RunSettings& settings) {
-  const std::filesystem::path folder =
-      settings.folder.empty() ? loaded.document.folder() : settings.folder;
-  return folder.empty() ? "." : folder;
 }
 
 // Calls work(context) with the progress shown and Ctrl-C polled.
@@ -40,79 +29,11 @@ auto with_context(const LoadedExperiment& loaded, const std::filesystem::path& f
                            .stop = interrupt_token()});
 }
 
-void write_signal_file(const OutputDirectory& out, const SignalFile& file) {
-  const std::filesystem::path path = out.note(file.name);
-  if (path.extension() == ".wav") {
-    write_wav(path, file.signals, {.samples = WavSamples::kDouble, .full_scale = file.full_scale});
-  } else {
-    write_csv(path, file.signals, {.provenance = {version_text()}});
-  }
-}
-
-void write_files(const OutputDirectory& out, const StudyResult& result) {
-  for (const auto& [name, content] : result.files) out.write_text(name, content);
-  for (const SignalFile& file : result.signal_files) write_signal_file(out, file);
-}
-
-// Counts of a list, "312 of 560 tasks done, 2 failed"; empty where the experiment is no list.
-std::string status_text(const LoadedExperiment& loaded, const StudyResult& result) {
-  const auto* list = dynamic_cast<const TaskExperiment*>(loaded.experiment.get());
-  if (list == nullptr) return {};
-  const std::size_t all = list->task_count();
-  std::string text = fmt::format("{} of {} tasks done", all - result.pending_tasks, all);
-  if (result.failed_tasks > 0) text += fmt::format(", {} failed", result.failed_tasks);
-  return text;
-}
-
-// Every default written out; reads back to the same experiment from the folder that is named.
-std::string resolved_text(const LoadedExperiment& loaded, const std::filesystem::path& folder) {
-  return fmt::format("# {} with every default written out. Relative paths start at {}.\n{}",
-                     loaded.document.file, folder.string(), loaded.resolved());
-}
-
-void record_run(const LoadedExperiment& loaded, const RunSettings& settings,
-                const std::filesystem::path& folder, const OutputDirectory& out) {
-  out.write_text("resolved.yaml", resolved_text(loaded, folder));
-  nlohmann::ordered_json provenance = provenance_json(settings.command);
-  const std::string absolute = std::filesystem::absolute(folder / "").lexically_normal().string();
-  MODCAL_REQUIRE(first_not_utf8(absolute) == std::string::npos,
-                 "the folder {} has a name that is not UTF-8 text: rename it", absolute);
-  provenance["folder"] = absolute;
-  provenance["seeds"] = seeds_json(loaded);
-  out.write_text("provenance.json", json_text(provenance));
-}
-
-ExitCode exit_code_of(const StudyResult& result) {
-  if (result.status == report::Status::kFailed) return ExitCode::kNothingMeasured;
-  return result.failed_tasks > 0 ? ExitCode::kSomeTasksFailed : ExitCode::kOk;
-}
-
-void finish_report(report::Report report, const RunSettings& settings, const OutputDirectory& out) {
-  report.command = settings.command;
-  report.provenance = provenance_lines(settings.command);
-  const report::WrittenReport written = report::write_report(report, out.path());
-  if (!written.warning.empty()) complain("warning: {}\n", written.warning);
-  complain("report: {}\n", written.page.string());
-}
-
 [[noreturn]] void say_interrupted(const RunSettings& settings, bool has_store) {
   complain("\ninterrupted; {} with:\n  {}{}\n",
            has_store ? "what is finished is kept, go on" : "run again", settings.command,
            settings.shard.is_whole() ? "" : " --shard " + settings.shard.text());
   throw Interrupted();
-}
-
-void print_summary(const StudyResult& result, const RunSettings& settings, double seconds) {
-  if (!settings.json) {
-    say_text(result.summary);
-    return;
-  }
-  const nlohmann::ordered_json summary = {{"out", settings.out.string()},
-                                          {"seconds", seconds},
-                                          {"failed_tasks", result.failed_tasks},
-                                          {"missed", result.missed},
-                                          {"summary", result.summary}};
-  print_json(summary);
 }
 
 // Goes on where the store ends. A shard's result says how many tasks are left; nobody reads more.
@@ -155,35 +76,14 @@ PilotRun run_some_tasks(const TaskExperiment& list, const StudyContext& context,
 
 }  // namespace
 
-ExitCode present(const LoadedExperiment& loaded, StudyResult result, const RunSettings& settings,
-                 double seconds) {
-  result.state_command(settings.command);
-  const OutputDirectory out(settings.out);
-  write_files(out, result);
-  print_summary(result, settings, seconds);
-  report::Report report;
-  report.title = title_of(loaded);
-  report.description = loaded.description;
-  report.status = result.status;
-  report.status_text = status_text(loaded, result);
-  report.sections.push_back({"Results", std::move(result.blocks)});
-  if (dynamic_cast<const TaskExperiment*>(loaded.experiment.get()) != nullptr) {
-    report.replay = "modcal replay " + shell_word(settings.out.string());
-  }
-  finish_report(std::move(report), settings, out);
-  out.require_in_place();
-  const ExitCode code = exit_code_of(result);
-  return code == ExitCode::kOk && !result.missed.empty() ? ExitCode::kAcceptanceMissed : code;
-}
-
 PilotRun run_pilot(const LoadedExperiment& loaded, const RunSettings& settings) {
   const auto* list = dynamic_cast<const TaskExperiment*>(loaded.experiment.get());
   MODCAL_REQUIRE(list != nullptr, "kind {} is no list of tasks: there is nothing to share out",
                  loaded.kind);
-  const OutputDirectory out(settings.out);
+  OutputDirectory out(settings.out);
   RunStore store(out.path(), Shard{}, program_identity());
   const std::filesystem::path folder = folder_of(loaded, settings);
-  record_run(loaded, settings, folder, out);
+  record_run(loaded, settings, out);
   SharedWork work;
   return with_context(loaded, folder, settings.command, work, [&](const StudyContext& context) {
     return run_some_tasks(*list, context, store);
@@ -192,7 +92,7 @@ PilotRun run_pilot(const LoadedExperiment& loaded, const RunSettings& settings) 
 
 ExitCode run_one(const LoadedExperiment& loaded, const RunSettings& settings) {
   const Stopwatch clock;
-  const OutputDirectory out(settings.out);
+  OutputDirectory out(settings.out);
   const auto* list = dynamic_cast<const TaskExperiment*>(loaded.experiment.get());
   MODCAL_REQUIRE(list != nullptr || settings.shard.is_whole(),
                  "kind {} is no list of tasks and cannot be run in shards; leave out --shard",
@@ -201,8 +101,13 @@ ExitCode run_one(const LoadedExperiment& loaded, const RunSettings& settings) {
   if (list != nullptr) store.emplace(out.path(), settings.shard, program_identity());
   const std::filesystem::path folder = folder_of(loaded, settings);
   SharedWork work(interrupt_token());
+  Beside beside;
+  beside.database = list != nullptr && out.holds(kResolvedFile, resolved_text(loaded, folder));
+  // The journal of a list needs its settings at once. Other results keep theirs until they are
+  // replaced.
+  beside.settings = list != nullptr || !std::filesystem::exists(out.path() / report::kPageFile);
   // After the token and before the work: an interrupted run says what it was and how to go on.
-  record_run(loaded, settings, folder, out);
+  if (beside.settings) record_run(loaded, settings, out);
   const auto limit = limit_threads(settings.threads);
   StudyResult result;
   try {
@@ -219,8 +124,9 @@ ExitCode run_one(const LoadedExperiment& loaded, const RunSettings& settings) {
   complain("{:.2f} s\n", seconds);
   if (settings.shard.is_whole()) {
     // What was found is written, even where what was written before is gone.
-    const ExitCode code = present(loaded, std::move(result), settings, seconds);
-    out.require_in_place();
+    const std::exception_ptr lost = out.what_is_lost();
+    const ExitCode code = write_results(loaded, std::move(result), settings, seconds, beside);
+    if (lost) std::rethrow_exception(lost);
     return code;
   }
   out.require_in_place();
@@ -233,20 +139,20 @@ ExitCode run_one(const LoadedExperiment& loaded, const RunSettings& settings) {
 ExitCode run_together(const std::vector<LoadedExperiment>& experiments,
                       const RunSettings& settings) {
   const Stopwatch clock;
-  const OutputDirectory out(settings.out);
+  const OutputDirectory before(settings.out);
   const auto limit = limit_threads(settings.threads);
   SharedWork work(interrupt_token());
   report::Report report;
   report.title = settings.title;
   ExitCode worst = ExitCode::kOk;
-  bool missed = false;
+  bool missed = false, apart = false;
   for (const LoadedExperiment& loaded : experiments) {
     if (interrupted()) say_interrupted(settings, false);
     const std::string name = stem_of(loaded.document.file);
-    const OutputDirectory folder(out.path() / name);
+    OutputDirectory(settings.out / name);
+    const std::string command = fmt::format("modcal run {}", loaded.document.file);
     StudyResult result;
     try {
-      const std::string command = fmt::format("modcal run {}", loaded.document.file);
       result = with_context(
           loaded, loaded.document.folder(), command, work,
           [&](const StudyContext& context) { return loaded.experiment->run(context); });
@@ -254,8 +160,12 @@ ExitCode run_together(const std::vector<LoadedExperiment>& experiments,
     } catch (const Interrupted&) {
       say_interrupted(settings, false);
     }
-    folder.write_text("resolved.yaml", resolved_text(loaded, folder_of(loaded, settings)));
+    OutputDirectory folder = free_folder(settings.out / name, names_of(result));
+    apart = apart || folder.path() != settings.out / name;
+    record_run(loaded, {.command = command, .folder = settings.folder}, folder);
+    folder.announce(names_of(result));
     write_files(folder, result);
+    folder.remove_earlier();
     say("== {}: {}\n{}", name, loaded.title, result.summary);
     for (report::Block& block : result.blocks) {
       // Ids are unique in one report: each table carries the name of its experiment.
@@ -269,10 +179,16 @@ ExitCode run_together(const std::vector<LoadedExperiment>& experiments,
     worst = std::max(worst, exit_code_of(result));
     missed = missed || !result.missed.empty();
   }
-  out.write_text("provenance.json", json_text(provenance_json(settings.command)));
+  OutputDirectory out = free_folder(settings.out, report::file_names(report));
+  apart = apart || out.path() != settings.out;
+  out.write_provenance(provenance_json(settings.command));
+  out.announce(report::file_names(report));
   finish_report(std::move(report), settings, out);
+  out.remove_earlier();
   out.require_in_place();
+  before.require_in_place();
   complain("{:.2f} s\n", clock.seconds());
+  if (apart) return ExitCode::kInvalidInput;
   return worst == ExitCode::kOk && missed ? ExitCode::kAcceptanceMissed : worst;
 }
 

@@ -5,10 +5,8 @@
 
 #include "experiments/cli/command.hpp"
 #include "experiments/loader.hpp"
-#include "experiments/report/encoding.hpp"
 #include "experiments/runs/run_store.hpp"
 #include "experiments/runs/task_experiment.hpp"
-#include "libsim/base/files.hpp"
 
 namespace modcal {
 
@@ -30,7 +28,9 @@ struct RunSettings {
 /// works in the folder.
 ExitCode run_one(const LoadedExperiment& loaded, const RunSettings& settings);
 
-/// Writes files, summary and report of a result and gives the exit code that stands for it.
+/// Writes files, summary and report of a result and gives the exit code that stands for it. Where
+/// a file that no run wrote has a name of theirs they stand in a folder below, and the code says
+/// so.
 ExitCode present(const LoadedExperiment& loaded, StudyResult result, const RunSettings& settings,
                  double seconds);
 
@@ -50,6 +50,16 @@ PilotRun run_pilot(const LoadedExperiment& loaded, const RunSettings& settings);
 ExitCode run_together(const std::vector<LoadedExperiment>& experiments,
                       const RunSettings& settings);
 
+// What every folder of results holds.
+inline constexpr const char* kProvenanceFile = "provenance.json";
+inline constexpr const char* kResolvedFile = "resolved.yaml";
+inline constexpr const char* kDatabaseFile = "results.sqlite";
+
+/// Every default written out; reads back to the same experiment from the folder that is named.
+std::string resolved_text(const LoadedExperiment& loaded, const std::filesystem::path& folder);
+/// Whether a run has written it.
+bool is_resolved_text(std::string_view text);
+
 // Where results come from: version, commit, compiler, libraries, machine, command, time.
 
 std::string version_text();
@@ -60,34 +70,6 @@ nlohmann::ordered_json provenance_json(const std::string& command);
 /// The seeds of an experiment by their paths, a swept one as its list.
 nlohmann::ordered_json seeds_json(const LoadedExperiment& loaded);
 std::vector<report::ProvenanceLine> provenance_lines(const std::string& command);
-
-// The folder a run leaves its results in.
-
-class OutputDirectory {
- public:
-  /// Makes the folder and checks that files can be written there, before anything is computed;
-  /// removes what killed runs have left half written. Throws InvalidInput where they cannot.
-  explicit OutputDirectory(std::filesystem::path path);
-
-  const std::filesystem::path& path() const { return path_; }
-  /// Path of a file that is about to be written.
-  std::filesystem::path note(std::string_view name) const {
-    written_.push_back(path_ / name);
-    return written_.back();
-  }
-  /// Writes the whole file under a temporary name and renames it: an existing file is replaced by a
-  /// complete one or not at all. Throws InvalidInput where that fails (no space, no permission).
-  void write_text(std::string_view name, std::string_view content) const {
-    report::write_file_atomically(note(name), content);
-  }
-  /// Throws LostOutput where the folder, or a file that was written, was deleted or moved.
-  void require_in_place() const;
-
- private:
-  std::filesystem::path path_;
-  OpenFile folder_;
-  mutable std::vector<std::filesystem::path> written_;
-};
 
 // A folder of results as a run left it, running or dead.
 

@@ -2,6 +2,7 @@
 
 #include <cstdio>
 
+#include "experiments/cli/output_directory.hpp"
 #include "experiments/cli/runner.hpp"
 
 namespace modcal {

@@ -2,6 +2,7 @@
 #include <cstdio>
 
 #include "experiments/cli/command.hpp"
+#include "experiments/cli/output_directory.hpp"
 #include "experiments/cli/runner.hpp"
 #include "experiments/runs/results_database.hpp"
 #include "experiments/study/sample.hpp"
@@ -103,7 +104,10 @@ std::size_t add_rows(const StoredRun& run, ResultsDatabase& database) {
 ExitCode merge(const FolderArguments& arguments) {
   const StoredRun run(arguments.folder);
   print_damages(run);
-  const std::filesystem::path file = run.out() / "results.sqlite";
+  OutputDirectory out(run.out());
+  const std::filesystem::path file = run.out() / kDatabaseFile;
+  MODCAL_REQUIRE(out.foreign_among({kDatabaseFile}).empty(),
+                 "{}: no run of modcal wrote this file; move it away", file.string());
   ResultsDatabase database(file, run.list().axes());
   const std::size_t done = add_rows(run, database);
   const std::string digest = database.finish({{"kind", run.loaded().kind},
@@ -111,6 +115,7 @@ ExitCode merge(const FolderArguments& arguments) {
                                               {"command", run.command()},
                                               {"tasks", std::to_string(run.tasks())},
                                               {"done", std::to_string(done)}});
+  out.announce({kDatabaseFile});
   say("{}: {} of {} tasks, digest {}\n", file.string(), done, run.tasks(), digest);
   return ExitCode::kOk;
 }

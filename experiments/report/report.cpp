@@ -202,6 +202,18 @@ std::string wav_data_uri(const std::vector<double>& samples, double sample_rate)
   return "data:audio/wav;base64," + base64(wav.bytes);
 }
 
+std::vector<std::string> file_names(const Report& report) {
+  std::vector<std::string> names = {kPageFile};
+  for (const Table* table : items_of<Table>(report)) {
+    names.insert(names.end(), {table->id + ".csv", table->id + ".json"});
+  }
+  for (const Figure* figure : items_of<Figure>(report)) {
+    names.push_back(figure_file(figure->id, ".csv"));
+    for (const char* extension : kDrawnFiles) names.push_back(figure_file(figure->id, extension));
+  }
+  return names;
+}
+
 WrittenReport write_report(const Report& report, const fs::path& directory,
                            const WriteOptions& options) {
   const auto figures = items_of<Figure>(report);
@@ -231,10 +243,9 @@ WrittenReport write_report(const Report& report, const fs::path& directory,
     }
   }
   links.files = {folder.names().begin(), folder.names().end()};
-  folder.write("report.html", html_page(report, drawn, data, links));
+  folder.write(kPageFile, html_page(report, drawn, data, links));
 
-  WrittenReport written{
-      .page = folder.root() / "report.html", .files = {}, .warning = links.warning};
+  WrittenReport written{.page = folder.root() / kPageFile, .files = {}, .warning = links.warning};
   for (const std::string& name : folder.names()) written.files.push_back(folder.root() / name);
   return written;
 }

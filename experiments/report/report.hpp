@@ -80,6 +80,11 @@ struct WrittenReport {
   std::string warning;                       ///< why SVG and PDF are missing; empty: they are not
 };
 
+inline constexpr const char* kPageFile = "report.html";
+
+/// Names of all files that write_report() may write, relative to its directory.
+std::vector<std::string> file_names(const Report& report);
+
 /// Writes into `directory` (made if it is not there) report.html, ID.csv and ID.json of every table
 /// and figures/ID.{csv,dat,gp,svg,pdf} of every figure, each of them under a temporary name first.
 /// A report without vector figures is complete otherwise and says so. Throws InvalidInput where a

@@ -1,0 +1,141 @@
+#include "experiments/cli/output_directory.hpp"
+
+#include <algorithm>
+#include <system_error>
+
+#include "experiments/cli/runner.hpp"
+
+namespace modcal {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kFolder = "the folder of the results";
+
+bool stands(const fs::path& file) {
+  std::error_code error;
+  return fs::exists(fs::symlink_status(file, error));
+}
+
+bool is_regular(const fs::path& file) {
+  std::error_code error;
+  return fs::is_regular_file(file, error);
+}
+
+// A list of names that somebody else wrote must not lead out of the folder.
+bool may_be_removed(const fs::path& folder, const fs::path& name) {
+  if (name.is_absolute() || name != name.lexically_normal() || *name.begin() == "..") return false;
+  std::error_code error;
+  if (name.has_parent_path() && fs::is_symlink(folder / name.parent_path(), error)) return false;
+  return name == name.filename() || name == fs::path("figures") / name.filename();
+}
+
+}  // namespace
+
+OutputDirectory::OutputDirectory(fs::path path) : path_(std::move(path)) {
+  std::error_code error;
+  fs::create_directories(path_, error);
+  MODCAL_REQUIRE(!error && fs::is_directory(path_),
+                 "the output folder {} cannot be made: {}; choose another one with --out",
+                 path_.string(), error ? error.message() : "a file stands there");
+  const std::string reason = why_not_writable(path_);
+  MODCAL_REQUIRE(reason.empty(),
+                 "the output folder {} cannot be written to: {}; choose another one with --out",
+                 path_.string(), reason);
+  folder_ = OpenFile::folder(path_, kFolder);
+  remove_abandoned_parts(path_);
+  remove_abandoned_parts(path_ / "figures");
+  read_provenance();
+  const std::string foreign = foreign_among({kProvenanceFile, kResolvedFile, report::kPageFile});
+  MODCAL_REQUIRE(foreign.empty(),
+                 "{}: no run of modcal wrote this file, and the results would replace it; choose "
+                 "another folder with --out",
+                 (path_ / foreign).string());
+}
+
+void OutputDirectory::read_provenance() {
+  using Json = nlohmann::ordered_json;
+  const fs::path file = path_ / kProvenanceFile, resolved = path_ / kResolvedFile;
+  const Json read = is_regular(file) ? Json::parse(content_of_file(file), nullptr, false) : Json();
+  if (read.is_object() && read.contains("program")) {
+    provenance_ = read;
+  } else if (!is_regular(resolved) || !is_resolved_text(content_of_file(resolved))) {
+    earlier_.emplace();  // no run was here
+    return;
+  }
+  const auto files = provenance_.find("files");
+  if (files == provenance_.end() || !files->is_array()) return;
+  earlier_.emplace();
+  for (const Json& name : *files) {
+    if (name.is_string()) earlier_->insert(name.get<std::string>());
+  }
+}
+
+std::string OutputDirectory::foreign_among(const std::vector<std::string>& names) const {
+  const auto foreign = std::find_if(names.begin(), names.end(), [this](const std::string& name) {
+    return earlier_ && !earlier_->contains(name) && !announced_.contains(name) &&
+           stands(path_ / name);
+  });
+  return foreign == names.end() ? std::string() : *foreign;
+}
+
+bool OutputDirectory::holds(const std::string& name, std::string_view content) const {
+  return is_regular(path_ / name) && content_of_file(path_ / name) == content;
+}
+
+void OutputDirectory::write_provenance(nlohmann::ordered_json provenance) {
+  provenance_ = std::move(provenance);
+  announce({kProvenanceFile, kResolvedFile});
+  note(kProvenanceFile);
+}
+
+void OutputDirectory::announce(const std::vector<std::string>& names) {
+  announced_.insert(names.begin(), names.end());
+  write_names();
+}
+
+void OutputDirectory::write_names() {
+  provenance_.erase("files");
+  if (earlier_) {
+    std::set<std::string> names = announced_;
+    names.insert(earlier_->begin(), earlier_->end());
+    provenance_["files"] = names;
+  }
+  report::write_file_atomically(path_ / kProvenanceFile, json_text(provenance_));
+}
+
+void OutputDirectory::remove_earlier() {
+  for (const std::string& name : earlier_.value_or(std::set<std::string>())) {
+    const fs::path file = path_ / name;
+    if (announced_.contains(name) || !may_be_removed(path_, name)) continue;
+    std::error_code error;
+    if (!fs::is_directory(fs::symlink_status(file, error))) fs::remove(file, error);
+    MODCAL_REQUIRE(!error, "{}, of an earlier run, cannot be removed: {}", file.string(),
+                   error.message());
+  }
+  std::error_code ignored;
+  fs::remove(path_ / "figures", ignored);  // where nothing is left in it
+  earlier_.emplace();
+  write_names();
+}
+
+std::exception_ptr OutputDirectory::what_is_lost() const {
+  try {
+    require_in_place();
+  } catch (const LostOutput&) {
+    return std::current_exception();
+  }
+  return nullptr;
+}
+
+void OutputDirectory::require_in_place() const {
+  folder_.require_in_place(kFolder);
+  for (const fs::path& file : written_) {
+    if (fs::exists(file)) continue;
+    throw LostOutput(fmt::format(
+        "{}: the file was deleted or moved while the command worked; run the same command again",
+        file.string()));
+  }
+}
+
+}  // namespace modcal

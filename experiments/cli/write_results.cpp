@@ -1,0 +1,151 @@
+#include "experiments/cli/write_results.hpp"
+
+#include "libsim/base/utf8.hpp"
+#include "libsim/records/record_file.hpp"
+
+namespace modcal {
+namespace {
+
+// Below a folder where files of others are in the way.
+constexpr const char* kApart = "results";
+
+void write_signal_file(const OutputDirectory& out, const SignalFile& file) {
+  const std::filesystem::path path = out.note(file.name);
+  if (path.extension() == ".wav") {
+    write_wav(path, file.signals, {.samples = WavSamples::kDouble, .full_scale = file.full_scale});
+  } else {
+    write_csv(path, file.signals, {.provenance = {version_text()}});
+  }
+}
+
+// Counts of a list, "312 of 560 tasks done, 2 failed"; empty where the experiment is no list.
+std::string status_text(const LoadedExperiment& loaded, const StudyResult& result) {
+  const auto* list = dynamic_cast<const TaskExperiment*>(loaded.experiment.get());
+  if (list == nullptr) return {};
+  const std::size_t all = list->task_count();
+  std::string text = fmt::format("{} of {} tasks done", all - result.pending_tasks, all);
+  if (result.failed_tasks > 0) text += fmt::format(", {} failed", result.failed_tasks);
+  return text;
+}
+
+void print_summary(const StudyResult& result, const RunSettings& settings, double seconds) {
+  if (!settings.json) {
+    say_text(result.summary);
+    return;
+  }
+  const nlohmann::ordered_json summary = {{"out", settings.out.string()},
+                                          {"seconds", seconds},
+                                          {"failed_tasks", result.failed_tasks},
+                                          {"missed", result.missed},
+                                          {"summary", result.summary}};
+  print_json(summary);
+}
+
+report::Report report_of(const LoadedExperiment& loaded, StudyResult& result,
+                         const RunSettings& settings) {
+  report::Report report;
+  report.title = title_of(loaded);
+  report.description = loaded.description;
+  report.status = result.status;
+  report.status_text = status_text(loaded, result);
+  report.sections.push_back({"Results", std::move(result.blocks)});
+  if (dynamic_cast<const TaskExperiment*>(loaded.experiment.get()) != nullptr) {
+    report.replay = "modcal replay " + shell_word(settings.out.string());
+  }
+  return report;
+}
+
+}  // namespace
+
+std::string title_of(const LoadedExperiment& loaded) {
+  return loaded.title.empty() ? loaded.kind : loaded.title;
+}
+
+std::filesystem::path folder_of(const LoadedExperiment& loaded, const RunSettings& settings) {
+  const std::filesystem::path folder =
+      settings.folder.empty() ? loaded.document.folder() : settings.folder;
+  return folder.empty() ? "." : folder;
+}
+
+void record_run(const LoadedExperiment& loaded, const RunSettings& settings, OutputDirectory& out) {
+  const std::filesystem::path folder = folder_of(loaded, settings);
+  nlohmann::ordered_json provenance = provenance_json(settings.command);
+  const std::string absolute = std::filesystem::absolute(folder / "").lexically_normal().string();
+  MODCAL_REQUIRE(first_not_utf8(absolute) == std::string::npos,
+                 "the folder {} has a name that is not UTF-8 text: rename it", absolute);
+  provenance["folder"] = absolute;
+  provenance["seeds"] = seeds_json(loaded);
+  out.write_provenance(std::move(provenance));
+  out.write_text(kResolvedFile, resolved_text(loaded, folder));
+}
+
+ExitCode exit_code_of(const StudyResult& result) {
+  if (result.status == report::Status::kFailed) return ExitCode::kNothingMeasured;
+  return result.failed_tasks > 0 ? ExitCode::kSomeTasksFailed : ExitCode::kOk;
+}
+
+std::vector<std::string> names_of(const StudyResult& result) {
+  std::vector<std::string> names;
+  for (const auto& [name, content] : result.files) names.push_back(name);
+  for (const SignalFile& file : result.signal_files) names.push_back(file.name);
+  return names;
+}
+
+OutputDirectory free_folder(const std::filesystem::path& folder,
+                            const std::vector<std::string>& names) {
+  OutputDirectory out(folder);
+  const std::string foreign = out.foreign_among(names);
+  if (foreign.empty()) return out;
+  complain(
+      "error: {}: no run of modcal wrote this file, and it is kept; the results stand in {}: "
+      "choose another folder with --out\n",
+      (folder / foreign).string(), (folder / kApart).string());
+  return free_folder(folder / kApart, names);
+}
+
+void write_files(const OutputDirectory& out, const StudyResult& result) {
+  for (const auto& [name, content] : result.files) out.write_text(name, content);
+  for (const SignalFile& file : result.signal_files) write_signal_file(out, file);
+}
+
+void finish_report(report::Report report, const RunSettings& settings, const OutputDirectory& out) {
+  report.command = settings.command;
+  report.provenance = provenance_lines(settings.command);
+  const report::WrittenReport written = report::write_report(report, out.path());
+  if (!written.warning.empty()) complain("warning: {}\n", written.warning);
+  complain("report: {}\n", written.page.string());
+}
+
+ExitCode write_results(const LoadedExperiment& loaded, StudyResult result, RunSettings settings,
+                       double seconds, const Beside& beside) {
+  result.state_command(settings.command);
+  report::Report report = report_of(loaded, result, settings);
+  std::vector<std::string> names = report::file_names(report);
+  for (std::string& name : names_of(result)) names.push_back(std::move(name));
+  OutputDirectory out = free_folder(settings.out, names);
+  const bool apart = out.path() != settings.out;
+  settings.out = out.path();
+  if (!beside.settings || apart) {
+    record_run(loaded, settings, out);
+  } else if (!out.has_provenance()) {
+    out.write_provenance(provenance_json(settings.command));
+  }
+  names.insert(names.end(), {kProvenanceFile, kResolvedFile});
+  if (beside.database) names.push_back(kDatabaseFile);
+  out.announce(names);
+  write_files(out, result);
+  print_summary(result, settings, seconds);
+  finish_report(std::move(report), settings, out);
+  out.remove_earlier();
+  out.require_in_place();
+  if (apart) return ExitCode::kInvalidInput;
+  const ExitCode code = exit_code_of(result);
+  return code == ExitCode::kOk && !result.missed.empty() ? ExitCode::kAcceptanceMissed : code;
+}
+
+ExitCode present(const LoadedExperiment& loaded, StudyResult result, const RunSettings& settings,
+                 double seconds) {
+  return write_results(loaded, std::move(result), settings, seconds, {});
+}
+
+}  // namespace modcal
