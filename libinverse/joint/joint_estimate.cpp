@@ -39,7 +39,7 @@ std::vector<Estimate> estimate_with(const JointInversion& inversion, const Estim
                       {"offset_2", result.offset[1]},
                       {"force_deviation", result.deviation.force},
                       {"misfit_of_sides", result.misfit}};
-  if (result.misfit > JointInversion::kContradiction) {
+  if (result.misfit > inversion.contradiction()) {
     estimate.warnings.push_back(fmt::format(
         "the reactions contradict each other {:.2g} times more than their noise: the model or the "
         "ends of the record limit the estimate, and its error bars are widened",

@@ -209,7 +209,8 @@ void JointInversion::compare_sides(const Weights& weights, OffsetRule rule, bool
                                    transfer_, workspace.spectrum, workspace.misfit);
   const double excess = allow_for_offsets(rule, workspace.misfit);
   result.misfit = (sum - excess) / static_cast<double>(bins);
-  const bool contradict = !(result.misfit < kContradiction);
+  const bool contradict =
+      model_.truncation == Truncation::kTransient || !(result.misfit < kContradiction);
   if (contradict || keep_misfit) {
     workspace.scratch.resize(bins);
     const double half = std::max(4.0, 0.25 * kMisfitWidth / grid_.bin_width());

@@ -66,9 +66,8 @@ constexpr double kClusterWidth = 1.0;
 /// stated for.
 /// Source: the same records, R1 alone, clusters of half an f_1: the band holds 90 to 100 % of the
 /// force, 44 and 51 % of the one of 5 % of noise.
-/// Range tried: 1 to 16, and the whole record, of which the ends take up to a hundred times as much.
-/// Doubled: 91 to 100 %, 47 and 61 %.
-/// Halved: not tried; at 1 89 to 100 %, 39 and 40 %.
+/// Range tried: 1 to 16, and the whole record, of which the ends take up to a hundred times as
+/// much. Doubled: 91 to 100 %, 47 and 61 %. Halved: not tried; at 1 89 to 100 %, 39 and 40 %.
 constexpr int kEndsOrder = 8;
 
 }  // namespace modcal
