@@ -143,6 +143,14 @@ std::vector<double> fill_unexcited_modes(std::span<const double> frequencies,
   return filled;
 }
 
+std::string inharmonicity_text(double inharmonicity, double deviation) {
+  // Mode 5000 moves by its 1e-5th part, mode 50 by its 1e-9th.
+  if (std::abs(inharmonicity) < 1e-12) return "0";
+  const bool near_zero = std::abs(inharmonicity) < 3.0 * deviation;
+  return fmt::format("{:.4g}{}", inharmonicity,
+                     near_zero ? fmt::format(" (sd {:.2g})", deviation) : std::string());
+}
+
 void StiffStringFit::visit(ResultVisitor& visitor) const {
   visitor({.key = "f0_hz", .name = "f_0", .unit = "Hz", .format = "{:.4f}"}, fundamental);
   visitor({.key = "f0_sd_hz", .name = "its deviation", .unit = "Hz", .format = "{:.2g}"},

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <limits>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace modcal {
@@ -27,6 +28,11 @@ struct StiffStringFit {
   /// f₀ and B with their deviations.
   void visit(ResultVisitor& visitor) const;
 };
+
+/// B for a sentence: a value that no mode could tell from zero is 0, one within three standard
+/// deviations of zero stands with its deviation.
+std::string inharmonicity_text(double inharmonicity,
+                               double deviation = std::numeric_limits<double>::quiet_NaN());
 
 /// Minimum of Σ_n w_n (f_n − n f₀ √(1 + B n²))² (Debut, Delaune and Antunes, 2010, eq. 18, with the
 /// ideal fundamental f₀), started from the linear fit of f_n²/n² = f₀² + f₀² B n² and refined by

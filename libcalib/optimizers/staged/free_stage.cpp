@@ -58,6 +58,7 @@ class FreeStage {
     const NewtonFit found = stroke_.fit(stroke_.weighted(), unknowns_, theta_, newton_);
     theta_ = found.theta;
     objective_ = found.objective;
+    converged_ = found.converged;
   }
   QuadraticPrior prior() const { return {newton_.prior, newton_.prior_mean}; }
 
@@ -73,6 +74,12 @@ class FreeStage {
                                     : stroke_.prepare_weights(unknowns_, theta_);
     newton_.steps = 5;
     search_weighted();
+    if (!converged_) {
+      // The weights are those of where it began, and what is seen of the law would be, too.
+      newton_.noise = stroke_.prepare_weights(unknowns_, theta_);
+      newton_.steps = 20;
+      search_weighted();
+    }
     stroke_.end_stage("free, weighted bins", objective_, std::numeric_limits<double>::quiet_NaN());
     at_ = stroke_.weighted_point(unknowns_, theta_);
     seen_at_ = theta_;
@@ -183,6 +190,7 @@ class FreeStage {
   Eigen::VectorXd seen_at_;
   LikelihoodPoint at_;      // where the modes were seen, with the weights of then
   double objective_ = 0.0;  // of the last fit with weights
+  bool converged_ = false;  // the same
   ModeSight sight_;
   LawFollowers followers_;
   ContinuationResult& result_;
