@@ -12,7 +12,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string_view>
 #include <system_error>
 
@@ -109,14 +108,6 @@ void mark(std::string& text, std::string_view word, std::string_view code) {
 
 }  // namespace
 
-ExitCode answer_of(const CLI::App& app, const CLI::ParseError& error) {
-  std::ostringstream out, err;
-  const int code = app.exit(error, out, err);
-  say_text(out.str());
-  complain_text(err.str());
-  return code == 0 ? ExitCode::kOk : ExitCode::kUsage;
-}
-
 ExitCode guarded(const Action& action) { return confirmed(outcome_of(action)); }
 
 void say_text(std::string_view text) {
@@ -169,9 +160,11 @@ void ExperimentArguments::declare_file(CLI::App& command) {
 }
 
 void ExperimentArguments::declare_out(CLI::App& command, const std::string& seen_by) {
-  command.add_option("--out", out,
-                     fmt::format("folder of the results{}{}; default out/<name of the file>",
-                                 seen_by.empty() ? "" : ", seen by all ", seen_by));
+  command
+      .add_option("--out", out,
+                  fmt::format("folder of the results{}{}; default out/<name of the file>",
+                              seen_by.empty() ? "" : ", seen by all ", seen_by))
+      ->check(complaint_about_name);
 }
 
 std::filesystem::path ExperimentArguments::folder() const {

@@ -50,13 +50,17 @@ void add_reproduce_command(CLI::App& app, const Chosen& chosen);
 void add_stored_commands(CLI::App& app, const Chosen& chosen);
 void add_submit_command(CLI::App& app, const Chosen& chosen);
 
-/// Says what the parser of the command line stopped at: help, version, a mistake.
+/// Says what the parser of the command line stopped at: help, version, a mistake. An option that
+/// the chosen command does not have is what the mistake is about, whatever else is missing.
 ExitCode answer_of(const CLI::App& app, const CLI::ParseError& error);
 
 /// What `action` returns; an exception becomes one message on stderr and its exit code. A signal
 /// that comes before interrupt_token() is called ends the process at once. Where standard output
 /// has not taken what was said, that is an error, too.
 ExitCode guarded(const Action& action);
+
+/// Whether the first word is no command, after a message. CLI11 would say that one is missing.
+bool is_unknown_command(const CLI::App& app, int argc, char** argv);
 
 /// The configs that came with the program, wherever both were moved.
 std::string shipped_configs();
@@ -86,6 +90,10 @@ struct ExperimentArguments {
   /// The command line that makes the same results again, of the whole list.
   std::string command() const;
 };
+
+/// What is wrong with a name of a file or folder; empty: nothing. A script's unset variable gives
+/// an empty one.
+std::string complaint_about_name(const std::string& name);
 
 /// --threads with its range.
 void declare_threads(CLI::App& command, int& threads, const char* meaning);

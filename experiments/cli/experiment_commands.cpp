@@ -172,7 +172,8 @@ void declare(CLI::App& command, ReproduceArguments& arguments) {
   command.add_option("target", arguments.target, "paper, table1, fig02 ... fig17, section7")
       ->required();
   command.add_option("--configs", arguments.configs, "folder of the experiment files");
-  command.add_option("--out", arguments.out, "folder of the results; default out/<target>");
+  command.add_option("--out", arguments.out, "folder of the results; default out/<target>")
+      ->check(complaint_about_name);
   declare_threads(command, arguments.threads, "number of threads; default all");
 }
 
@@ -190,8 +191,9 @@ std::string shipped_configs() {
 
 void add_experiment_commands(CLI::App& app, const Chosen& chosen) {
   add_command(app, chosen, "run", "Run an experiment", declare_run, run);
-  add_command(app, chosen, "validate", "Check an experiment file and its records: every mistake at once",
-              declare_validate, validate);
+  add_command(app, chosen, "validate",
+              "Check an experiment file and its records: every mistake at once", declare_validate,
+              validate);
   add_command(app, chosen, "limit", "Say how well a calibration can do, before any experiment",
               declare_limit, limit);
 }

@@ -2,20 +2,9 @@
 
 #include "experiments/cli/command.hpp"
 #include "experiments/cli/runner.hpp"
-#include "experiments/config/reader.hpp"
 
 namespace modcal {
 namespace {
-
-// CLI11 would say that a command is missing.
-bool is_unknown_command(const CLI::App& app, int argc, char** argv) {
-  if (argc < 2 || argv[1][0] == '-') return false;
-  std::vector<std::string> names;
-  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
-  if (std::find(names.begin(), names.end(), argv[1]) != names.end()) return false;
-  complain("error: unknown command \"{}\"{}\n", argv[1], suggestion(argv[1], names));
-  return true;
-}
 
 int main_of(int argc, char** argv) {
   if (!prepare_streams(argc, argv)) return static_cast<int>(ExitCode::kUsage);

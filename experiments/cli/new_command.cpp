@@ -41,8 +41,8 @@ std::string example_of(const std::string& kind) {
     kinds.emplace_back(example.kind);
     if (example.kind != kind) continue;
     const std::filesystem::path file = std::filesystem::path(shipped_configs()) / example.file;
-    MODCAL_REQUIRE(std::filesystem::exists(file), "{} is not there: install modcal with its configs",
-                   file.string());
+    MODCAL_REQUIRE(std::filesystem::exists(file),
+                   "{} is not there: install modcal with its configs", file.string());
     return content_of_file(file);
   }
   throw_invalid_input("unknown kind \"{}\"{}", kind, suggestion(kind, kinds));
@@ -167,7 +167,8 @@ void declare(CLI::App& command, NewArguments& arguments) {
                      "recorded file, of which the string and the contact point are read");
   command.add_option("--length", arguments.length, "vibrating length, \"0.33 m\"");
   command.add_option("--linear-density", arguments.linear_density, "mass per length, \"1 g/m\"");
-  command.add_option("--out", arguments.out, "file to write; default: standard output");
+  command.add_option("--out", arguments.out, "file to write; default: standard output")
+      ->check(complaint_about_name);
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 // status, merge, report, replay and compare: what is done with the folders that runs have left.
+#include <charconv>
 #include <cstdio>
 
 #include "experiments/cli/command.hpp"
@@ -219,10 +220,18 @@ void declare_status(CLI::App& command, FolderArguments& arguments) {
   command.add_flag("--json", arguments.json, "as JSON");
 }
 
+std::string complaint_about_task(const std::string& text) {
+  std::size_t task = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), task);
+  if (error == std::errc() && end == text.data() + text.size()) return {};
+  return fmt::format("\"{}\" is no task: they are numbered 0, 1, 2, ...", text);
+}
+
 void declare_replay(CLI::App& command, FolderArguments& arguments) {
   declare_folder(command, arguments);
   command.add_option("task", arguments.task, "number of the task, from 0; see tasks.csv")
-      ->required();
+      ->required()
+      ->check(complaint_about_task);
 }
 
 void declare_compare(CLI::App& command, FolderArguments& arguments) {

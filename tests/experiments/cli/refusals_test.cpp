@@ -191,5 +191,24 @@ TEST_F(Refusals, ParsingAndValidationEndAtOnceWhenAsked) {
   EXPECT_EQ(code.code, 130);
 }
 
+TEST_F(Refusals, WordsThatTheCommandLineDoesNotKnow) {
+  const auto refuses = [&](const std::string& words, int code, const std::string& text) {
+    const Outcome outcome = modcal(words);
+    EXPECT_EQ(outcome.code, code) << words;
+    EXPECT_THAT(outcome.err, HasSubstr(text)) << words;
+  };
+  refuses("run --ouput x small.yaml", 2, "unknown option \"--ouput\"; did you mean \"--out\"?");
+  refuses("run small.yaml --otu=b", 2, "unknown option \"--otu\"; did you mean \"--out\"?");
+  refuses("run --threds 2", 2, "did you mean \"--threads\"?");
+  refuses("run small.yaml -o b", 2, "unknown option \"-o\"; known: --help");
+  refuses("small.yaml run", 2, "the command comes first: modcal run small.yaml");
+  refuses("rum small.yaml", 2, "did you mean \"run\"?");
+  refuses("run small.yaml --out ''", 2, "--out: the name is empty");
+  refuses("new invert --out ''", 2, "--out: the name is empty");
+  refuses("replay a -1", 2, "\"-1\" is no task: they are numbered 0, 1, 2");
+  refuses("replay a x", 2, "\"x\" is no task");
+  EXPECT_FALSE(std::filesystem::exists(path("out")));
+}
+
 }  // namespace
 }  // namespace modcal
