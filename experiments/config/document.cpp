@@ -36,21 +36,40 @@ std::string_view source_line(const YamlDocument& document, const SourcePosition&
   return in_file ? std::string_view(document.lines[at.line - 1]) : std::string_view();
 }
 
+// The bytes of a text from `start` on, `size` at most, without characters cut in two; "..." stands
+// where some are left out.
+std::string part_of(std::string_view text, std::size_t start, std::size_t size) {
+  const auto at_character = [text](std::size_t at) {
+    while (at > 0 && at < text.size() && (static_cast<unsigned char>(text[at]) & 0xC0) == 0x80)
+      --at;
+    return std::min(at, text.size());
+  };
+  const std::size_t first = at_character(start), last = at_character(start + size);
+  return fmt::format("{}{}{}", first > 0 ? "..." : "", text.substr(first, last - first),
+                     last < text.size() ? "..." : "");
+}
+
+// A line or a message that somebody else's program wrote may have a million characters.
+constexpr std::size_t kShownLine = 200, kShownBefore = 80, kShownText = 2000;  // bytes
+
 std::string format_mistake(const YamlDocument& document, const Mistake& mistake) {
   const SourcePosition& at = mistake.position;
   const std::string_view line = source_line(document, at);
   const std::string_view before = line.substr(0, std::min(line.size(), at.column - 1));
   // Columns count characters, tabs stay tabs: the caret stands below its place.
+  const std::size_t start =
+      before.size() > kShownLine - kShownBefore ? before.size() - kShownBefore : 0;
+  const std::string shown = part_of(line, start, kShownLine);
   std::string indent;
-  for (const char byte : before) {
+  for (const char byte : part_of(before, start, kShownLine)) {
     if (count_characters({&byte, 1}) == 1) indent += byte == '\t' ? '\t' : ' ';
   }
   const std::string place = at.origin.empty() ? fmt::format("{}:{}:{}", document.file, at.line,
                                                             count_characters(before) + 1)
                                               : at.origin;
-  std::string text =
-      fmt::format("{}: {}: {}\n", place, mistake.warning ? "warning" : "error", mistake.text);
-  if (!line.empty()) text += fmt::format("    {}\n    {}^\n", line, indent);
+  std::string text = fmt::format("{}: {}: {}\n", place, mistake.warning ? "warning" : "error",
+                                 part_of(mistake.text, 0, kShownText));
+  if (!line.empty()) text += fmt::format("    {}\n    {}^\n", shown, indent);
   return text;
 }
 

@@ -89,7 +89,17 @@ bool YamlReader::read(const OptionInfo& info, const YamlNode& node, std::int64_t
   }
   std::int64_t parsed = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), parsed);
-  const bool whole = scalar && error == std::errc() && end == text.data() + text.size();
+  const bool read_all = scalar && end == text.data() + text.size();
+  if (read_all && error == std::errc::result_out_of_range) {
+    constexpr auto kMost = std::numeric_limits<std::int64_t>::max();
+    mistake(node, fmt::format("{} is {}: the number is too {}; it must be {}", info.key, text,
+                              text.starts_with('-') ? "small" : "large",
+                              std::isfinite(info.range.highest)
+                                  ? info.range.text()
+                                  : fmt::format("{}, {} at most", info.range.text(), kMost)));
+    return false;
+  }
+  const bool whole = read_all && error == std::errc();
   if (!whole) {
     mistake(node, fmt::format("{} must be a whole number{}, not {}", info.key,
                               info.word.empty() ? "" : fmt::format(" or {}", info.word),

@@ -216,6 +216,8 @@ std::string explain(const std::string& message) {
       {YAML::ErrorMsg::END_OF_SEQ, kIndentation},
       {YAML::ErrorMsg::FLOW_END, "a closing bracket without an opening one: delete it"},
       {YAML::ErrorMsg::UNKNOWN_ANCHOR, "aliases (*name) are not supported: write the value out"},
+      // What yaml-cpp says where its recursion would go too deep.
+      {YAML::ErrorMsg::BAD_FILE, "lists and maps are nested too deeply here: delete brackets"},
       {YAML::ErrorMsg::UNKNOWN_TOKEN,
        "this character cannot begin a value: put the text into quotes"}};
   for (const auto& [known, advice] : kAdvice) {

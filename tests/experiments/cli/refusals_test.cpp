@@ -210,5 +210,45 @@ TEST_F(Refusals, WordsThatTheCommandLineDoesNotKnow) {
   EXPECT_FALSE(std::filesystem::exists(path("out")));
 }
 
+TEST_F(Refusals, LongLinesAreShownInPart) {
+  const auto shown = [&](const std::string& text) {
+    write("long.yaml", text);
+    const Outcome outcome = modcal("validate long.yaml");
+    EXPECT_EQ(outcome.code, 3);
+    return outcome.err;
+  };
+  const std::string deep = shown(std::string(100'000, '['));
+  EXPECT_LT(deep.size(), 500u);
+  EXPECT_THAT(deep, HasSubstr("nested too deeply"));
+  EXPECT_LT(shown("kind: simulate\nscene: " + std::string(100'000, '{')).size(), 500u);
+  EXPECT_LT(shown("kind: " + std::string(1'000'000, 'x')).size(), 5000u);
+  // The caret stands below its place, between characters of several bytes, too.
+  std::string far =
+      "kind: simulate\n"
+      "note: {";
+  for (int i = 0; i < 300; ++i) far += "\xC3\xA4: 1, ";
+  const std::string message = shown(far + "& }\n");
+  std::istringstream lines(message);
+  std::string place, line, caret;
+  std::getline(lines, place);
+  std::getline(lines, line);
+  std::getline(lines, caret);
+  EXPECT_LT(line.size(), 300u);
+  EXPECT_EQ(caret.find_first_not_of(' '), caret.size() - 1);
+}
+
+TEST_F(Refusals, NumbersThatAreTooLarge) {
+  const auto said = [&](const std::string& assignment) {
+    const Outcome outcome = modcal("validate small.yaml --set " + assignment);
+    EXPECT_EQ(outcome.code, 3) << assignment;
+    return outcome.err;
+  };
+  EXPECT_THAT(said("scene.string.modes=100000000000000000000"),
+              HasSubstr("the number is too large; it must be in [1, 5000]"));
+  EXPECT_THAT(said("seed=100000000000000000000"),
+              HasSubstr("the number is too large; it must be >= 0, 9223372036854775807 at most"));
+  EXPECT_THAT(said("seed=-100000000000000000000"), HasSubstr("the number is too small"));
+}
+
 }  // namespace
 }  // namespace modcal
