@@ -173,9 +173,22 @@ std::vector<Finding> lint_priors(const std::string& path, const UnknownsOptions&
   return findings;
 }
 
-std::vector<Finding> lint_figures(const std::vector<FigureOptions>& figures,
-                                  const std::vector<std::string_view>& contents) {
+std::vector<Finding> lint_figure_windows(const std::vector<FigureOptions>& figures,
+                                         double duration) {
   std::vector<Finding> findings;
+  for (std::size_t i = 0; i < figures.size(); ++i) {
+    for (std::size_t j = 0; j < figures[i].windows.size(); ++j) {
+      lint_making(findings, fmt::format("figures.{}.windows.{}", i, j),
+                  [&] { require_inside(figures[i].id, figures[i].windows[j], duration); });
+    }
+  }
+  return findings;
+}
+
+std::vector<Finding> lint_figures(const std::vector<FigureOptions>& figures,
+                                  const std::vector<std::string_view>& contents, double duration) {
+  std::vector<Finding> findings;
+  if (!std::isnan(duration)) findings = lint_figure_windows(figures, duration);
   std::set<std::string> ids;
   for (const FigureOptions& figure : figures) {
     if (!report::is_file_stem(figure.id)) {

@@ -23,9 +23,18 @@ std::optional<Observation> lint_record(const std::string& path, const Observatio
                                        const std::filesystem::path& folder,
                                        std::vector<Finding>& findings);
 std::vector<Finding> lint_scores(const ScoreOptions& score, const ObservationOptions& options);
-/// Ids used twice, contents that this kind of experiment does not have.
+/// Of the record of a scene; NaN where it is not known before the record is read.
+inline double stated_duration(const ObservationOptions& options) {
+  return options.has_scene ? options.truth.scene.duration
+                           : std::numeric_limits<double>::quiet_NaN();
+}
+/// Windows of figures that hold nothing of a record of `duration`, each at its own place.
+std::vector<Finding> lint_figure_windows(const std::vector<FigureOptions>& figures,
+                                         double duration);
+/// Ids used twice, contents that this kind of experiment does not have; windows, unless the
+/// duration is NaN: not known before the record is read.
 std::vector<Finding> lint_figures(const std::vector<FigureOptions>& figures,
-                                  const std::vector<std::string_view>& contents);
+                                  const std::vector<std::string_view>& contents, double duration);
 /// What require_priors() has against each fixed parameter, prior and correlation, at its own place.
 /// path: of the unknowns.
 std::vector<Finding> lint_priors(const std::string& path, const UnknownsOptions& unknowns,

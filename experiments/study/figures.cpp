@@ -74,15 +74,19 @@ struct Layout {
 
 }  // namespace
 
+void require_inside(const std::string& id, const TimeWindow& window, double duration) {
+  const double stop = std::isnan(window.stop) ? duration : window.stop;
+  MODCAL_REQUIRE(window.start < stop && window.start < duration,
+                 "figure {}: the window from {:g} s to {:g} s holds nothing of a record of {:g} s",
+                 id, window.start, stop, duration);
+}
+
 std::vector<TimeWindow> windows_or_all(const FigureOptions& options, double duration) {
   std::vector<TimeWindow> windows = options.windows;
   if (windows.empty()) windows.emplace_back();
   for (TimeWindow& window : windows) {
+    require_inside(options.id, window, duration);
     if (std::isnan(window.stop)) window.stop = duration;
-    MODCAL_REQUIRE(
-        window.start < window.stop && window.start < duration,
-        "figure {}: the window from {:g} s to {:g} s holds nothing of a record of {:g} s",
-        options.id, window.start, window.stop, duration);
   }
   return windows;
 }

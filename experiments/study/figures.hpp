@@ -63,6 +63,8 @@ struct FigureOptions {
   void visit(OptionVisitor& visitor);
 };
 
+/// Throws InvalidInput where the window holds nothing of the record; the figure's `id` is named.
+void require_inside(const std::string& id, const TimeWindow& window, double duration);
 /// The windows of a figure with their ends; all of the record where none is stated. Throws
 /// InvalidInput for one that holds nothing of it.
 std::vector<TimeWindow> windows_or_all(const FigureOptions& options, double duration);

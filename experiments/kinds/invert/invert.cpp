@@ -38,7 +38,8 @@ std::vector<Finding> lint_inversion(const InvertOptions& options) {
 
 std::vector<Finding> InvertOptions::lint() const {
   std::vector<Finding> findings = lint_inversion(*this);
-  append(findings, lint_figures(figures, {"waveforms", "spectra", "parameter_curves"}));
+  append(findings, lint_figures(figures, {"waveforms", "spectra", "parameter_curves"},
+                                stated_duration(observation)));
   return findings;
 }
 
@@ -48,9 +49,7 @@ void lint_windows(const InvertOptions& options, const Observation& observation,
   lint_making(findings, "score",
               [&] { scores_of(observation, ScoredForce(silence), &options.score); });
   const double duration = static_cast<double>(observation.samples()) / observation.sample_rate;
-  for (const FigureOptions& figure : options.figures) {
-    lint_making(findings, "figures", [&] { windows_or_all(figure, duration); });
-  }
+  append(findings, lint_figure_windows(options.figures, duration));
 }
 
 std::vector<Finding> InvertOptions::lint_records(const std::filesystem::path& folder) const {

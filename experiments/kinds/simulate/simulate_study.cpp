@@ -24,7 +24,7 @@ void SimulateOptions::visit(OptionVisitor& visitor) {
 
 std::vector<Finding> SimulateOptions::lint() const {
   std::vector<Finding> findings = lint_scene(truth.scene, truth.simulator, measurement);
-  append(findings, lint_figures(figures, {"waveforms"}));
+  append(findings, lint_figures(figures, {"waveforms"}, truth.scene.duration));
   for (const FigureOptions& figure : figures) {
     for (const std::string& quantity : figure.quantities) {
       if (std::find(outputs.begin(), outputs.end(), quantity) != outputs.end()) continue;

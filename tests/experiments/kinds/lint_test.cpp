@@ -372,5 +372,19 @@ TEST(LintNoise, RefusesARecordThatDoesNotShowTheNoiseToEstimate) {
               refused("8"));
 }
 
+TEST(LintFigures, NamesTheLineOfAWindowOutsideTheRecord) {
+  const std::string text = config("thermal", "", "modal_event") +
+                           "figures:\n"
+                           "  - {id: a, quantities: [v], windows: [{start: 0 s}]}\n"
+                           "  - id: b\n"
+                           "    quantities: [v]\n"
+                           "    windows:\n"
+                           "      - {start: 1 ms, stop: 2 ms}\n"
+                           "      - {start: 20 ms, stop: 30 ms}\n";
+  EXPECT_THAT(messages_of(text),
+              testing::StartsWith("scene.yaml:15:9: error: figure b: the window from 0.02 s to "
+                                  "0.03 s holds nothing of a record of 0.01 s\n"));
+}
+
 }  // namespace
 }  // namespace modcal
