@@ -36,7 +36,7 @@ class ResolvedWriter final : public OptionVisitor {
   void sweep(const OptionInfo& info, SweepSlot& slot) override;
 
  private:
-  void line(const OptionInfo& info, const std::string& value);
+  void line(const OptionInfo& info, const std::string& value, const std::string& note = {});
 
   std::size_t level_ = 0;
   std::string yaml_;

@@ -66,16 +66,18 @@ std::string swept_maps(const std::vector<Members>& maps) {
 
 std::string yaml_string(const std::string& text) { return nlohmann::json(text).dump(); }
 
-void ResolvedWriter::line(const OptionInfo& info, const std::string& value) {
+void ResolvedWriter::line(const OptionInfo& info, const std::string& value,
+                          const std::string& note) {
   const std::string entry = fmt::format("{}{}:{}{}", std::string(2 * level_, ' '), info.key,
                                         value.empty() ? "" : " ", value);
-  yaml_ += fmt::format(
-      "{:<32}  # {}{}\n", entry, info.meaning,
-      info.required && value.empty() ? fmt::format(" [{}]: fill in", info.unit) : std::string());
+  yaml_ += fmt::format("{:<32}  # {}{}{}\n", entry, info.meaning, note.empty() ? "" : " ", note);
 }
 
 void ResolvedWriter::value(const OptionInfo& info, OptionValue value) {
-  line(info, std::visit([&info](const auto* held) { return text_of(info, *held); }, value));
+  const std::string text =
+      std::visit([&info](const auto* held) { return text_of(info, *held); }, value);
+  const bool missing = info.required && text.empty();
+  line(info, text, missing ? fmt::format("[{}]: fill in", info.unit) : std::string());
 }
 
 void ResolvedWriter::plugin(const OptionInfo& info, PluginSlot& slot) {

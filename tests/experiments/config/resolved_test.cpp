@@ -84,5 +84,15 @@ TEST(ResolvedWriter, WritesTextsThatReadBackAsTheSame) {
   }
 }
 
+TEST(ResolvedWriter, AsksForValuesAloneThatAreMissing) {
+  EXPECT_EQ(resolved(awkward()).find("fill in"), std::string::npos);
+  ExampleOptions options = awkward();
+  options.string.length = std::numeric_limits<double>::quiet_NaN();
+  const std::string yaml = resolved(options);
+  const std::size_t asked = yaml.find("[m]: fill in");
+  ASSERT_NE(asked, std::string::npos);
+  EXPECT_EQ(yaml.find("fill in", asked + 8), std::string::npos);
+}
+
 }  // namespace
 }  // namespace modcal
