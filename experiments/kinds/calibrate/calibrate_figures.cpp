@@ -40,8 +40,9 @@ report::Figure law_figure(const CalibrationOutcome& outcome) {
   report::Figure figure{
       .id = "frequencies_against_law",
       .title = "Modal frequencies against the law",
-      .caption = fmt::format("f_n over n f0 sqrt(1 + B n²) with f0 = {:.6g} Hz and B = {:.4g}.",
-                             law.fundamental, law.inharmonicity)};
+      .caption =
+          fmt::format("f_n over n f0 sqrt(1 + B n²) with f0 = {:.6g} Hz and B = {}.",
+                      law.fundamental, inharmonicity_text(law.inharmonicity, law.deviation[1]))};
   report::Panel panel{.x = {.label = "mode number n"},
                       .y = {.label = "departure from the law", .unit = "‰"}};
   for (const bool identified : {true, false}) {

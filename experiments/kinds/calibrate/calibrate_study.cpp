@@ -54,9 +54,9 @@ void start_from_record(const Observation& observation, const CalibrationOptions&
   }
   const double contact = told->contact * basis.length;
   outcome.start = fmt::format(
-      "Started from the string that the ends of the record tell: f0 {:.6g} Hz, B {:.3g}, x_c "
+      "Started from the string that the ends of the record tell: f0 {:.6g} Hz, B {}, x_c "
       "{:.4g} mm.",
-      told->fundamental, told->inharmonicity, 1e3 * contact);
+      told->fundamental, inharmonicity_text(told->inharmonicity), 1e3 * contact);
   const double stated = basis.frequency(0);
   if (std::abs(frequencies[0] / stated - 1.0) > 0.03 ||
       std::abs(contact - outcome.initial.contact) > 0.02 * basis.length) {

@@ -37,6 +37,11 @@ std::string verdict_lines(const ContinuationResult& found) {
   return text;
 }
 
+// Of B, the one parameter without unit that may be zero, rounding leaves 1e-20.
+std::string value_text(const std::string& unit, double value) {
+  return unit == "1" && std::abs(value) < 1e-12 ? "0" : fmt::format("{:.8g}", value);
+}
+
 std::string stroke_lines(const CalibrationOutcome& outcome) {
   std::string text;
   if (!outcome.result.continuation) return text;
@@ -181,7 +186,8 @@ void add_calibration_summary(const CalibrationOutcome& outcome, StudyResult& res
     // Of every mode: those stand in the tables.
     if (parameter.name.starts_with("f_") || parameter.name.starts_with("zeta_")) continue;
     result.summary +=
-        fmt::format("{}: {:.8g} -> {:.8g}{}", parameter.name, parameter.initial, parameter.final,
+        fmt::format("{}: {} -> {}{}", parameter.name, value_text(parameter.unit, parameter.initial),
+                    value_text(parameter.unit, parameter.final),
                     parameter.unit == "1" ? "" : " " + parameter.unit);
     result.summary +=
         std::isnan(parameter.deviation) ? "\n" : fmt::format(", sd {:.3g}\n", parameter.deviation);
@@ -191,8 +197,9 @@ void add_calibration_summary(const CalibrationOutcome& outcome, StudyResult& res
   }
   result.summary += stroke_lines(outcome);
   if (outcome.law) {
-    result.summary += fmt::format("stiff-string law: f0 = {:.6g} Hz, B = {:.4g}\n",
-                                  outcome.law->fundamental, outcome.law->inharmonicity);
+    result.summary += fmt::format(
+        "stiff-string law: f0 = {:.6g} Hz, B = {}\n", outcome.law->fundamental,
+        inharmonicity_text(outcome.law->inharmonicity, outcome.law->inharmonicity_deviation));
   }
 }
 

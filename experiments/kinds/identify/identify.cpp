@@ -59,8 +59,9 @@ std::string sentence_of(const IdentifyOutcome& outcome) {
     text += fmt::format(", {} missing below the highest", outcome.found.missing.size());
   }
   if (outcome.law) {
-    text += fmt::format("; f0 = {:.6g} Hz, B = {:.4g}", outcome.law->fundamental,
-                        outcome.law->inharmonicity);
+    text += fmt::format(
+        "; f0 = {:.6g} Hz, B = {}", outcome.law->fundamental,
+        inharmonicity_text(outcome.law->inharmonicity, outcome.law->inharmonicity_deviation));
   }
   return text + "\n";
 }

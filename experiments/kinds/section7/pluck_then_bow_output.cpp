@@ -70,10 +70,10 @@ report::Table sides_table(std::string id, std::string title,
 
 std::string line_of(const ModelStage& stage) {
   return fmt::format(
-      "{:<44} f0 {:.4f} Hz, B {:.4g}, x_c {:.3f} mm, frequencies off by {:.2g} "
+      "{:<44} f0 {:.4f} Hz, B {}, x_c {:.3f} mm, frequencies off by {:.2g} "
       "(largest {:.2g})\n",
-      stage.title, stage.law.fundamental, stage.law.inharmonicity, 1e3 * stage.model.contact,
-      stage.median_error, stage.largest_error);
+      stage.title, stage.law.fundamental, inharmonicity_text(stage.law.inharmonicity),
+      1e3 * stage.model.contact, stage.median_error, stage.largest_error);
 }
 
 /// Rms distance of the first refined frequencies from those of the pluck test, in its standard

@@ -97,5 +97,13 @@ TEST(StiffStringFit, RefusesWhatHasNoLaw) {
                InvalidInput);
 }
 
+TEST(InharmonicityText, NearZeroIsZeroOrHasItsDeviation) {
+  EXPECT_EQ(inharmonicity_text(-7.778e-20), "0");
+  EXPECT_EQ(inharmonicity_text(-7.778e-20, 1e-19), "0");
+  EXPECT_EQ(inharmonicity_text(2.4695622e-9, 5.77e-9), "2.47e-09 (sd 5.8e-09)");
+  EXPECT_EQ(inharmonicity_text(1.4e-4, 1e-6), "0.00014");
+  EXPECT_EQ(inharmonicity_text(1.4e-4), "0.00014");
+}
+
 }  // namespace
 }  // namespace modcal
