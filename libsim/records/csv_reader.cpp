@@ -21,6 +21,19 @@ std::string lower_case(std::string text) {
   return text;
 }
 
+// The time, and it alone, may have its unit behind a mark: "time/ms", "t_s".
+ColumnHeading heading_of(std::string_view text) {
+  ColumnHeading heading = parse_heading(text);
+  constexpr const char* kMarks = "/_. ";
+  const std::size_t mark = heading.name.find_first_of(kMarks);
+  const std::size_t start = heading.name.find_first_not_of(kMarks, mark);
+  if (!heading.unit.empty() || mark >= start || start == std::string::npos) return heading;
+  const std::string name = lower_case(heading.name.substr(0, mark));
+  const std::string unit = heading.name.substr(start);
+  const bool is_time = (name == "t" || name == "time") && is_unit_of(unit, "s");
+  return is_time ? ColumnHeading{heading.name.substr(0, mark), unit} : heading;
+}
+
 bool is_time(const ColumnHeading& heading) {
   const std::string name = lower_case(heading.name);
   return (heading.unit.empty() && (name == "t" || name == "time")) || is_unit_of(heading.unit, "s");
@@ -149,7 +162,7 @@ void CsvReader::settle_columns() {
                  file_.place(0));
   columns_.resize(headings_.size());
   for (std::size_t i = 0; i < headings_.size(); ++i) {
-    const ColumnHeading heading = parse_heading(headings_[i]);
+    const ColumnHeading heading = heading_of(headings_[i]);
     MODCAL_REQUIRE(!heading.name.empty(), "{}: column {} has no name; name every column",
                    file_.place(i), i + 1);
     for (std::size_t j = 0; j < i; ++j) {

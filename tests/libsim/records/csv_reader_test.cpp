@@ -298,5 +298,16 @@ TEST_F(CsvReader, ReportsMisplacedQuotes) {
             "\"\"quoted\"\" word\"");
 }
 
+TEST_F(CsvReader, TakesTheTimeWithItsUnitBehindAMark) {
+  for (const char* heading : {"time/ms", "time / ms", "t (ms)", "time_ms", "Time ms", "T.ms", "t/ms"}) {
+    write("r.csv", std::string(heading) + ",R1/N,t_max\n0,1,2\n0.5,2,3\n1,3,4\n");
+    const Recording record = read_csv(path("r.csv"));
+    EXPECT_DOUBLE_EQ(record.sample_rate, 2000.0) << heading;
+    ASSERT_EQ(record.channels.size(), 2u) << heading;
+    EXPECT_EQ(record.channels[0].name, "R1/N");
+    EXPECT_EQ(record.channels[1].name, "t_max");
+  }
+}
+
 }  // namespace
 }  // namespace modcal
