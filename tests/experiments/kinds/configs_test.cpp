@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "experiments/loader.hpp"
 #include "experiments/study/study.hpp"
@@ -138,6 +140,36 @@ TEST(PaperFigure14, RefinesTheExcitedModesToTwoPerMille) {
   std::nth_element(errors.begin(), errors.begin() + 23, errors.end());
   EXPECT_LE(errors[23], 2e-3);
   EXPECT_EQ(document["loops"], 10);
+}
+
+TEST(Regularizers, AreComparedInACellEach) {
+  YamlDocument document = read_yaml_file(std::string(MODCAL_CONFIGS) + "/beyond/regularizers.yaml");
+  for (YamlNode::Member& axis : document.root.find("sweep")->find("product")->members) {
+    if (axis.key != "inversion.regularizer") axis.value.items.resize(1);
+  }
+  const LoadedExperiment loaded = load_experiment(std::move(document));
+  ASSERT_NE(loaded.experiment, nullptr);
+  const StudyResult result = run(loaded);
+  ASSERT_FALSE(result.blocks.empty());
+  const auto* table = std::get_if<report::Table>(&result.blocks.back());
+  ASSERT_NE(table, nullptr);
+  ASSERT_EQ(table->rows.size(), 7u);
+  const auto column = std::find_if(table->columns.begin(), table->columns.end(), [](const auto& c) {
+    return c.key == "identification.1.correlation";
+  });
+  ASSERT_NE(column, table->columns.end());
+  const auto place = static_cast<std::size_t>(column - table->columns.begin());
+  std::map<std::string, double> correlations;
+  std::set<double> different;
+  for (const auto& row : table->rows) {
+    const double correlation = std::get<double>(row[place].value);
+    correlations[report::cell_text(row[0], table->columns[0])] = correlation;
+    different.insert(correlation);
+  }
+  EXPECT_EQ(correlations.size(), 7u);
+  // One filter under two names: a bin of a spectrum has one singular value, |H|.
+  EXPECT_EQ(correlations.at("truncated_svd"), correlations.at("water_level"));
+  EXPECT_EQ(different.size(), 6u);
 }
 
 }  // namespace
