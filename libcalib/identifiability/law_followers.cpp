@@ -12,7 +12,6 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr double kWellSeen = 5e-4;
 constexpr double kDoubt = 3.0;
 constexpr double kFewest = 4.0, kFewestTested = 8.0;
 

@@ -15,6 +15,9 @@ inline constexpr double kTied = 1e-5;
 /// Width of the prior of a mode that leaves the law: nothing beside the data tells where it is [1].
 inline constexpr double kDeparted = 1e-2;
 
+/// Modes seen better than this tell of the law [1].
+inline constexpr double kWellSeen = 5e-4;
+
 /// What the data tell of the frequencies under the wide prior alone.
 struct ModeSight {
   Eigen::VectorXd delta;  ///< δ_n, relative to a model near the law

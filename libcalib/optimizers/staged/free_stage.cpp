@@ -37,6 +37,12 @@ class FreeStage {
   void run() {
     see_modes();
     follow_law();
+    if (has_moved()) {
+      // What was seen of the law was so from where the modes were no more.
+      search_from_here();
+      see();
+      follow_law();
+    }
     const LikelihoodPoint last = stroke_.weighted_point(unknowns_, theta_);
     Eigen::MatrixXd covariance = fit_covariance(last, newton_);
     unknowns_.clear_held(covariance);
@@ -58,41 +64,58 @@ class FreeStage {
     const NewtonFit found = stroke_.fit(stroke_.weighted(), unknowns_, theta_, newton_);
     theta_ = found.theta;
     objective_ = found.objective;
-    converged_ = found.converged;
   }
   QuadraticPrior prior() const { return {newton_.prior, newton_.prior_mean}; }
 
   // What the data tell under a prior that only keeps a mode from wandering.
   void see_modes() {
-    const Eigen::VectorXd wide = Eigen::VectorXd::Constant(modes(), kWidePrior);
-    set_prior(unknowns_.prior(theta_, {wide, inharmonicity_}), newton_);
+    set_prior(unknowns_.prior(theta_, {wide(), inharmonicity_}), newton_);
     if (!start_.from_law) descend();
     search("free, whole record", stroke_.whole());
-    const std::vector<Neighbor> left = leave_neighbors(stroke_.whole());
+    left_ = leave_neighbors(stroke_.whole());
     // Where the law holds, its weights serve: a bin tells of every unknown by what force is in it.
     newton_.noise = start_.from_law ? stroke_.noise_at(unknowns_, theta_)
                                     : stroke_.prepare_weights(unknowns_, theta_);
     newton_.steps = 5;
     search_weighted();
-    if (!converged_) {
-      // The weights are those of where it began, and what is seen of the law would be, too.
-      newton_.noise = stroke_.prepare_weights(unknowns_, theta_);
-      newton_.steps = 20;
-      search_weighted();
-    }
     stroke_.end_stage("free, weighted bins", objective_, std::numeric_limits<double>::quiet_NaN());
+    see();
+  }
+
+  // Whether a mode that is well seen is not where it was seen.
+  bool has_moved() const {
+    for (Eigen::Index i = 0; i < modes(); ++i) {
+      const bool well = sight_.seen[i] < kWellSeen;
+      if (well && std::abs(theta_[i] - seen_at_[i]) > 3.0 * sight_.seen[i]) return true;
+    }
+    return false;
+  }
+
+  void search_from_here() {
+    set_prior(unknowns_.prior(theta_, {wide(), inharmonicity_}), newton_);
+    newton_.noise = stroke_.prepare_weights(unknowns_, theta_);
+    search_weighted();
+    stroke_.end_stage("free, weighted bins again", objective_,
+                      std::numeric_limits<double>::quiet_NaN());
+  }
+
+  Eigen::VectorXd wide() const { return Eigen::VectorXd::Constant(modes(), kWidePrior); }
+
+  // What the data tell of the modes here.
+  void see() {
     at_ = stroke_.weighted_point(unknowns_, theta_);
     seen_at_ = theta_;
     // A prior of a mode's frequency is no sight of it.
     NewtonOptions unstated = newton_;
-    set_prior(unknowns_.under(priors_.without_frequencies()).prior(theta_, {wide, inharmonicity_}),
-              unstated);
+    set_prior(
+        unknowns_.under(priors_.without_frequencies()).prior(theta_, {wide(), inharmonicity_}),
+        unstated);
     const Eigen::VectorXd deviation = fit_covariance(at_, unstated).diagonal().cwiseMax(0.0);
     const ModelPoint point = unknowns_.model(theta_);
     sight_ = sight_of(theta_.head(modes()), deviation.head(modes()).cwiseSqrt(), at_.information,
                       newton_.noise, nodes(point.basis, {point.contact}));
     leave_out_of_band(point, highest_, sight_);
-    doubt_rivals(left, sight_);
+    doubt_rivals(left_, sight_);
   }
 
   // Free frequencies on damped records, where the law does not hold: wide basins first.
@@ -190,8 +213,8 @@ class FreeStage {
   Eigen::VectorXd seen_at_;
   LikelihoodPoint at_;      // where the modes were seen, with the weights of then
   double objective_ = 0.0;  // of the last fit with weights
-  bool converged_ = false;  // the same
   ModeSight sight_;
+  std::vector<Neighbor> left_;  // better minima that moving did not reach
   LawFollowers followers_;
   ContinuationResult& result_;
 };
