@@ -195,8 +195,9 @@ double JointInversion::allow_for_offsets(OffsetRule rule, std::span<double> misf
   return fallen;
 }
 
-void JointInversion::compare_sides(const Weights& weights, OffsetRule rule, bool keep_misfit,
+void JointInversion::compare_sides(const Weights& weights, const JointMethod& method,
                                    JointWorkspace& workspace, JointResult& result) const {
+  const bool keep_misfit = method.variances || method.outputs.side_misfit;
   result.side_misfit.clear();
   result.misfit = std::numeric_limits<double>::quiet_NaN();
   workspace.misfit.clear();
@@ -207,8 +208,16 @@ void JointInversion::compare_sides(const Weights& weights, OffsetRule rule, bool
   const double sum =
       joint_kernels().cross_misfit({1.0 / inverse[0], 1.0 / inverse[1]}, 1.0 / weight_power_,
                                    transfer_, workspace.spectrum, workspace.misfit);
-  const double excess = allow_for_offsets(rule, workspace.misfit);
+  const double excess = allow_for_offsets(method.offset, workspace.misfit);
   result.misfit = (sum - excess) / static_cast<double>(bins);
+  if (!std::isnan(method.band_limit)) {
+    // Above the limit nothing is identified, and the model need not hold.
+    const double within = std::floor(method.band_limit / grid_.bin_width()) + 1.0;
+    const auto count = static_cast<std::ptrdiff_t>(std::min(within, static_cast<double>(bins)));
+    result.misfit =
+        std::accumulate(workspace.misfit.begin(), workspace.misfit.begin() + count, 0.0) /
+        static_cast<double>(count);
+  }
   const bool contradict =
       model_.truncation == Truncation::kTransient || !(result.misfit < kContradiction);
   if (contradict || keep_misfit) {
@@ -266,8 +275,7 @@ void JointInversion::invert(const ReactionPair& reactions, const SensorNoiseLeve
   if (model_.truncation == Truncation::kTransient) {
     take_out_decays(weights, method, workspace, result);
   }
-  compare_sides(weights, method.offset, method.variances || method.outputs.side_misfit, workspace,
-                result);
+  compare_sides(weights, method, workspace, result);
   combine(weights, workspace);
   choose_amplitude(weights, method, workspace, result);
   if (method.known_variance.empty()) {

@@ -68,8 +68,8 @@ struct JointResult {
   std::vector<double> side_misfit;            ///< of every bin, smoothed; where wanted
   std::array<double, 2> offset = {0.0, 0.0};  ///< subtracted from the reactions [N]
   double noise_amplitude = 0.0;               ///< √v̄, v̄ the mean variance of the sides [N]
-  /// Mean over the bins of |R_1 H_2 − R_2 H_1|² over what the noise puts there: 1 where the model
-  /// holds, NaN with one reaction.
+  /// Mean over the bins of the band of |R_1 H_2 − R_2 H_1|² over what the noise puts there: 1 where
+  /// the model holds, NaN with one reaction.
   double misfit = std::numeric_limits<double>::quiet_NaN();
 };
 
@@ -162,8 +162,8 @@ class JointInversion {
   void transform(const ReactionPair& reactions, OffsetRule rule, JointWorkspace& workspace,
                  JointResult& result) const;
   double allow_for_offsets(OffsetRule rule, std::span<double> misfit) const;
-  void compare_sides(const Weights& weights, OffsetRule rule, bool keep_misfit,
-                     JointWorkspace& workspace, JointResult& result) const;
+  void compare_sides(const Weights& weights, const JointMethod& method, JointWorkspace& workspace,
+                     JointResult& result) const;
   void combine(const Weights& weights, JointWorkspace& workspace) const;
   void set_prior(const JointMethod& method, JointWorkspace& workspace) const;
   void fill_cells(const Weights& weights, JointWorkspace& workspace) const;
