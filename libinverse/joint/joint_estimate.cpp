@@ -46,9 +46,10 @@ std::vector<Estimate> estimate_with(const JointInversion& inversion, const Estim
         std::sqrt(result.misfit)));
   }
   if (!both) {
-    estimate.warnings.push_back(
-        fmt::format("reaction {} is missing: the estimate rests on the other one alone",
-                    record.reactions[0].empty() ? 1 : 2));
+    estimate.warnings.push_back(fmt::format(
+        "reaction {} is missing: the estimate rests on the other one alone, and nothing "
+        "tells whether the string is the one stated, which the band takes for granted",
+        record.reactions[0].empty() ? 1 : 2));
   }
   if (!noise.measured) {
     estimate.warnings.emplace_back(

@@ -99,11 +99,11 @@ struct JointWorkspace {
 /// exp(−σt) before and exp(σt) after. With one reaction it is the Wiener estimate of that side.
 ///
 /// The deviations are those of the posterior where the two reactions agree within the noise. Where
-/// they contradict each other by far more (a record of less than 0.1 % noise, whose aliases and
-/// wrapped end no noise level tells of; a model that is wrong), the variance that the data leave is
-/// multiplied by the misfit of the cross relation around each bin (Birge, 1932): what the model
-/// lacks is supposed to be as large along the force as across it. For bowed strings the 95 % band
-/// then holds 93 % to 98 % of the truth at 0.1 % to 10 % of noise and more of it below.
+/// they contradict each other by far more (on the contour a record of less than 0.1 % noise, whose
+/// aliases and wrapped end no noise level tells of; a model that is wrong), the variance that the
+/// data leave is multiplied by the misfit of the cross relation around each bin (Birge, 1932): what
+/// the model lacks is supposed to be as large along the force as across it. For bowed strings the
+/// 95 % band then holds 93 % to 98 % of the truth at 0.1 % to 10 % of noise and more of it below.
 ///
 /// The parameter reported is λ = √(v̄/A), A the prior's amplitude: the |H| [N/N] at which a bin of
 /// prior shape 1 is kept by half. Prepared once per model and record length; const and safe to use

@@ -1,5 +1,7 @@
 #include "libinverse/joint/transient_fit.hpp"
 
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
@@ -17,11 +19,11 @@ Index equations_of(const TransientFit::Setting& setting) {
   return setting.noise_variance[0] > 0.0 && setting.noise_variance[1] > 0.0 ? 4 : 2;
 }
 
-// Calls visit(begin, end) for every block of the bins from 1 on.
+// Calls visit(begin, end) for every block of the bins from `first` on, below `last`.
 template <typename Visit>
-void for_blocks(std::size_t bins, std::size_t size, Visit visit) {
-  for (std::size_t begin = 1; begin < bins; begin += size) {
-    visit(begin, std::min(bins, begin + size));
+void for_blocks(std::size_t first, std::size_t last, std::size_t size, Visit visit) {
+  for (std::size_t begin = first; begin < last; begin += size) {
+    visit(begin, std::min(last, begin + size));
   }
 }
 
@@ -153,15 +155,14 @@ void TransientFit::subtract(const Setting& setting, Spectra spectra, Workspace& 
   const auto columns = static_cast<Index>(2 * poles_.size());
   workspace.normal = Eigen::MatrixXd::Zero(columns, columns);
   workspace.right = Eigen::VectorXd::Zero(columns);
-  for_blocks(grid_.bins, kBlock, [&](std::size_t begin, std::size_t end) {
+  for_blocks(1, grid_.bins, kBlock, [&](std::size_t begin, std::size_t end) {
     fill_rows(setting, begin, end, spectra, workspace);
     workspace.normal.selfadjointView<Eigen::Lower>().rankUpdate(workspace.rows.transpose());
     workspace.right.noalias() += workspace.rows.transpose() * workspace.data;
   });
   // A mode that the record does not show keeps no decay.
   workspace.normal.diagonal().array() += 1e-13 * workspace.normal.diagonal().maxCoeff() + 1e-300;
-  workspace.factor.compute(workspace.normal);
-  workspace.decays = workspace.factor.solve(workspace.right);
+  workspace.decays = workspace.normal.selfadjointView<Eigen::Lower>().ldlt().solve(workspace.right);
   for (std::size_t k = setting.level_known ? 0 : 1; k < grid_.bins; ++k) {
     const Complex shift = shift_of(k);
     std::array<Complex, 2> sum;
@@ -191,38 +192,32 @@ void TransientFit::add_motion(bool velocity, std::size_t first, std::span<Comple
   }
 }
 
-// A with AᵀA the covariance. With N = Pᵀ L D Lᵀ P, T = D^(−1/2) L⁻¹ P has TᵀT = N⁻¹, and A = Gᵀ T
-// where G Gᵀ is the scatter of T a e over clusters of equations, each with the residuals that it
-// has where it is left out of the fit: T Σ a (I − H)⁻¹ e = (I − V Vᵀ)⁻¹ V e with V = T a.
-Eigen::MatrixXd TransientFit::covariance_root(const Setting& setting, const Spectra& spectra,
-                                              Workspace& workspace) const {
+// A row a cluster g: by how much the decays move where its equations a_g, with residuals e_g, are
+// left out, (N − a_gᵀ a_g)⁻¹ a_gᵀ e_g; no more rows than unknowns.
+Eigen::MatrixXd TransientFit::moves_without_clusters(const Setting& setting, const Spectra& spectra,
+                                                     Workspace& workspace) const {
   const auto columns = static_cast<Index>(2 * poles_.size());
-  const auto whiten = [&](Eigen::MatrixXd& matrix) {
-    matrix = workspace.factor.transpositionsP() * matrix;
-    workspace.factor.matrixL().solveInPlace(matrix);
-    matrix = workspace.factor.vectorD().cwiseMax(1e-300).cwiseSqrt().cwiseInverse().asDiagonal() *
-             matrix;
-  };
-  Eigen::MatrixXd a = Eigen::MatrixXd::Identity(columns, columns);
-  whiten(a);
-  Eigen::MatrixXd white, left, scatter = Eigen::MatrixXd::Zero(columns, columns);
-  const double cluster = std::round(kClusterWidth * rates_.front().imag() / grid_.spacing);
-  const auto size = std::max<std::size_t>(1, static_cast<std::size_t>(cluster));
-  for_blocks(grid_.bins, size, [&](std::size_t begin, std::size_t end) {
-    fill_rows(setting, begin, end, spectra, workspace);
-    const Eigen::VectorXd error = workspace.data - workspace.rows * workspace.decays;
-    white = workspace.rows.transpose();
-    whiten(white);
+  const double width = std::round(kClusterWidth * rates_.front().imag() / grid_.spacing);
+  const auto size = std::max<std::size_t>(1, static_cast<std::size_t>(width));
+  const auto clusters = static_cast<Index>((grid_.bins + size - 2) / size);
+  Eigen::MatrixXd moves(clusters, columns), rest;
+  Eigen::VectorXd slope;
+  Index cluster = 0;
+  for_blocks(1, grid_.bins, size, [&](std::size_t first, std::size_t last) {
     // What only these equations tell has no residual to judge it by.
-    left = Eigen::MatrixXd::Identity(columns, columns) * (1.0 + 1e-3);
-    left.selfadjointView<Eigen::Lower>().rankUpdate(white, -1.0);
-    const Eigen::VectorXd moved = left.selfadjointView<Eigen::Lower>().ldlt().solve(white * error);
-    scatter.selfadjointView<Eigen::Lower>().rankUpdate(moved);
+    rest = (1.0 + 1e-3) * workspace.normal;
+    slope = Eigen::VectorXd::Zero(columns);
+    for_blocks(first, last, kBlock, [&](std::size_t begin, std::size_t end) {
+      fill_rows(setting, begin, end, spectra, workspace);
+      workspace.data.noalias() -= workspace.rows * workspace.decays;
+      rest.selfadjointView<Eigen::Lower>().rankUpdate(workspace.rows.transpose(), -1.0);
+      slope.noalias() += workspace.rows.transpose() * workspace.data;
+    });
+    moves.row(cluster++) = rest.selfadjointView<Eigen::Lower>().ldlt().solve(slope);
   });
-  const Eigen::LDLT<Eigen::MatrixXd> root(scatter);
-  a = root.transpositionsP() * a;
-  a = root.matrixU() * a;
-  return root.vectorD().cwiseMax(0.0).cwiseSqrt().asDiagonal() * a;
+  if (clusters <= columns) return moves;
+  const Eigen::HouseholderQR<Eigen::MatrixXd> factor(moves);
+  return factor.matrixQR().topRows(columns).triangularView<Eigen::Upper>();
 }
 
 // What the errors of the decays do to the motion: with the force's error, and by themselves.
@@ -243,18 +238,18 @@ void TransientFit::fill_motion(const Effect& effect, bool velocity, std::size_t 
 
 void TransientFit::error_variances(const Setting& setting, Spectra spectra, const Effect& effect,
                                    Workspace& workspace) const {
-  const Eigen::MatrixXd root = covariance_root(setting, spectra, workspace);
+  const Eigen::MatrixXd moves = moves_without_clusters(setting, spectra, workspace);
   const Index equations = equations_of(setting);
   const std::vector<double> window = inner_window();
   const std::size_t order = window.size() - 1;
   Rows force, motion, moved, windowed;
-  for_blocks(grid_.bins, kBlock, [&](std::size_t begin, std::size_t end) {
+  for_blocks(1, grid_.bins, kBlock, [&](std::size_t begin, std::size_t end) {
     // With the bins beside the block, which the window mixes in.
     const std::size_t first = begin > order ? begin - order : 1;
     const std::size_t last = std::min(grid_.bins, end + order);
     const auto row_of = [&](std::size_t k) { return 2 * static_cast<Index>(k - first); };
     const auto write = [&](const Rows& rows, std::span<double> variance) {
-      moved.noalias() = rows * root.transpose();
+      moved.noalias() = rows * moves.transpose();
       for (std::size_t k = begin; k < end; ++k) {
         windowed = window.front() * moved.middleRows(row_of(k), 2);
         for (std::size_t m = 1; m < window.size(); ++m) {

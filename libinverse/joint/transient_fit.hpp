@@ -1,7 +1,6 @@
 // The string's states at both ends of a record, as unknowns beside the force.
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <array>
 #include <span>
@@ -28,7 +27,6 @@ class TransientFit {
     Eigen::VectorXd right;
     Rows rows;  ///< of a block of bins
     Eigen::VectorXd data;
-    Eigen::LDLT<Eigen::MatrixXd> factor;
     Eigen::VectorXd decays;  ///< Re c_1, Im c_1, … of the last fit, scaled
   };
 
@@ -66,23 +64,22 @@ class TransientFit {
 
   /// Variances of the estimates by the errors of the last fit to these spectra, from which nothing
   /// was subtracted. A played note has lines, which the smooth prior does not hold, so that the
-  /// covariance is estimated from the residuals e_g of the equations a_g of clusters of bins, with
-  /// their leverages H_g,
+  /// covariance is that of the jackknife, from what becomes of the decays c where the equations a_g
+  /// of clusters of bins, with residuals e_g, are left out:
   ///
-  ///     N⁻¹ Σ_g x_g x_gᵀ N⁻¹,  x_g = a_gᵀ (I − H_g)⁻¹ e_g
+  ///     C = Σ_g Δ_g Δ_gᵀ,  Δ_g = (N − a_gᵀ a_g)⁻¹ a_gᵀ e_g
   ///
-  /// (White, 1980; the cluster jackknife of Bell and McCaffrey, 2002). A cluster is f_1 wide: near
-  /// a zero of H_r a line of the force is told from a decay by the bins around it together. They
-  /// are means over the record but for a fifteenth at either end: a decay is also what a blow of
-  /// the force at t = 0 makes.
+  /// (Bell and McCaffrey, 2002). A cluster is f_1 wide: near a zero of H_r a line of the force is
+  /// told from a decay by the bins around it together. The variances are means over the record but
+  /// for a fifteenth at either end: a decay is also what a blow of the force at t = 0 makes.
   void error_variances(const Setting& setting, Spectra spectra, const Effect& effect,
                        Workspace& workspace) const;
 
  private:
   void fill_rows(const Setting& setting, std::size_t begin, std::size_t end, const Spectra& spectra,
                  Workspace& workspace) const;
-  Eigen::MatrixXd covariance_root(const Setting& setting, const Spectra& spectra,
-                                  Workspace& workspace) const;
+  Eigen::MatrixXd moves_without_clusters(const Setting& setting, const Spectra& spectra,
+                                         Workspace& workspace) const;
   void fill_motion(const Effect& effect, bool velocity, std::size_t k, Eigen::Index row,
                    const Rows& force, Rows& rows) const;
   std::array<Complex, 2> decay_of(std::size_t n, Complex shift) const;

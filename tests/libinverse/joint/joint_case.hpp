@@ -4,10 +4,13 @@
 #pragma once
 
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <string>
 #include <vector>
 
 #include "libinverse/joint/force_prior.hpp"
+#include "libinverse/joint/joint_estimators.hpp"
 #include "libinverse/joint/joint_inversion.hpp"
 #include "libsim/base/random.hpp"
 #include "libsim/model/damping.hpp"
@@ -129,6 +132,25 @@ inline double middle_error(std::span<const double> x, std::span<const double> y)
   const std::size_t edge = y.size() / 8;
   return relative_rms_error(x.subspan(edge, y.size() - 2 * edge),
                             y.subspan(edge, y.size() - 2 * edge));
+}
+
+inline Estimate estimate_with(const JointOptions& joint, const ModalBasis& basis,
+                              const ReactionPair& reactions, bool recorded = false) {
+  const std::size_t samples = std::max(reactions[0].size(), reactions[1].size());
+  JointEstimator::Options options;
+  options.joint = joint;
+  const auto prepared =
+      JointEstimator(options).prepare({basis, kPosition, samples, kRate, recorded});
+  const auto regularizer = Choice<Regularizer>("none").make();
+  const auto rule = Choice<ParameterChoice>("gcv").make();
+  EstimationRecord record;
+  record.reactions = reactions;
+  return prepared->estimate(record, {*regularizer, *rule, kEverything}).front();
+}
+
+inline double figure(const Estimate& estimate, const std::string& name) {
+  const std::map<std::string, double> figures(estimate.figures.begin(), estimate.figures.end());
+  return figures.at(name);
 }
 
 }  // namespace modcal

@@ -31,6 +31,33 @@ TEST(SensorNoise, IsMeasuredFromTheRecordAlone) {
   EXPECT_LT(sensors.estimate(clean.pair(), workspace).noise_share, 1e-2);
 }
 
+// A ramp of the period of 196 Hz at 51.2 kHz, which the far sensor sees for 107 samples before a
+// wave arrives from 0.1 L, the near one for 11.
+TEST(StartsAtRest, WhereTheReactionsAreStillBeforeAWaveArrives) {
+  const ModalBasis basis = violin_g();
+  const std::array<double, 2> arrivals = first_arrivals(basis, 0.033, {});
+  const std::size_t samples = 4096;
+  const auto told = [&](double before, double noise, bool far) {
+    std::vector<double> reaction = normal_draw(samples, StreamKey(3));
+    const auto quiet = static_cast<std::size_t>(arrivals[far ? 1 : 0] * kRate);
+    for (std::size_t j = 0; j < samples; ++j) {
+      const double turn = static_cast<double>(j) * 196.0 / kRate;
+      reaction[j] *= noise;
+      reaction[j] += (j < quiet ? before : 1.0) * (turn - std::floor(turn) - 0.5);
+    }
+    ReactionPair pair;
+    pair[far ? 1 : 0] = reaction;
+    return starts_at_rest(pair, {.rms = {noise, noise}}, arrivals, 196.0, kRate);
+  };
+  for (const bool far : {false, true}) {
+    EXPECT_TRUE(told(0.0, 1e-3, far)) << far;
+    EXPECT_FALSE(told(1.0, 1e-3, far)) << far;  // in mid-motion
+  }
+  EXPECT_TRUE(told(0.0, 0.02, true));
+  EXPECT_FALSE(told(0.0, 0.02, false));  // the noise hides what the near one would show
+  EXPECT_FALSE(starts_at_rest({}, {}, arrivals, 196.0, kRate));
+}
+
 TEST(ContourOf, LiesBetweenOneAndFourOverTheRecord) {
   const ModalBasis basis = violin_g();
   EXPECT_NEAR(contour_of(basis, 1.0, 1e-12), 4.0, 1e-12);
