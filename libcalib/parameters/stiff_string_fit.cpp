@@ -143,9 +143,12 @@ std::vector<double> fill_unexcited_modes(std::span<const double> frequencies,
   return filled;
 }
 
+double without_rounding(double inharmonicity) {
+  return std::abs(inharmonicity) < 1e-12 ? 0.0 : inharmonicity;
+}
+
 std::string inharmonicity_text(double inharmonicity, double deviation) {
-  // Mode 5000 moves by its 1e-5th part, mode 50 by its 1e-9th.
-  if (std::abs(inharmonicity) < 1e-12) return "0";
+  if (without_rounding(inharmonicity) == 0.0) return "0";
   const bool near_zero = std::abs(inharmonicity) < 3.0 * deviation;
   return fmt::format("{:.4g}{}", inharmonicity,
                      near_zero ? fmt::format(" (sd {:.2g})", deviation) : std::string());

@@ -39,7 +39,7 @@ std::string verdict_lines(const ContinuationResult& found) {
 
 // Of B, the one parameter without unit that may be zero, rounding leaves 1e-20.
 std::string value_text(const std::string& unit, double value) {
-  return unit == "1" && std::abs(value) < 1e-12 ? "0" : fmt::format("{:.8g}", value);
+  return fmt::format("{:.8g}", unit == "1" ? without_rounding(value) : value);
 }
 
 std::string stroke_lines(const CalibrationOutcome& outcome) {

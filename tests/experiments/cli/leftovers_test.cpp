@@ -14,13 +14,8 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
-class Leftovers : public testing::ProgramTest {
+class Leftovers : public testing::SmallRuns {
  protected:
-  Leftovers() {
-    write("small.yaml", std::string(testing::kSmallSimulation));
-    write("list.yaml", std::string(testing::kSmallSimulation) + std::string(testing::kEightTasks));
-  }
-
   static constexpr const char* kJournal = "a/journal/shard-1-of-1.journal";
 
   bool has_parts() const {
@@ -128,7 +123,7 @@ TEST_F(Leftovers, LinksOfOthersAreNotWrittenThrough) {
 }
 
 TEST_F(Leftovers, TablesHoldNoFormulas) {
-  write("formula.yaml", std::string(testing::kSmallSimulation) +
+  write("formula.yaml", testing::kSmallSimulation +
                             "sweep:\n  product:\n    title: [\"=cmd|' /C calc'!A0\", '@SUM(1)', "
                             "'-2+3+cmd|x', '+1 dB', '-3 dB', '-1']\n");
   const Outcome run = modcal("run formula.yaml --out a");
@@ -140,7 +135,7 @@ TEST_F(Leftovers, TablesHoldNoFormulas) {
 
 TEST_F(Leftovers, NamesReachNoTerminalRaw) {
   const std::string name = "evil\033[2J\r.yaml";
-  write(name, std::string(testing::kSmallSimulation));
+  write(name, testing::kSmallSimulation);
   const Outcome valid = modcal("validate \"$(printf 'evil\\033[2J\\r.yaml')\"");
   EXPECT_EQ(valid.code, 0) << valid.err;
   EXPECT_EQ(valid.out, "evil\\x1b[2J\\x0d.yaml: valid, kind simulate\n");
@@ -154,7 +149,7 @@ TEST_F(Leftovers, NamesReachNoTerminalRaw) {
 }
 
 TEST_F(Leftovers, AFileOfDotsGetsAFolderOfItsOwn) {
-  write("...yaml", std::string(testing::kSmallSimulation));
+  write("...yaml", testing::kSmallSimulation);
   EXPECT_EQ(modcal("run ...yaml").code, 0);
   EXPECT_TRUE(std::filesystem::exists(folder() / "out/...yaml/report.html"));
   EXPECT_FALSE(std::filesystem::exists(folder() / "report.html"));

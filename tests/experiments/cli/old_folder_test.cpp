@@ -12,11 +12,9 @@ namespace {
 using nlohmann::json;
 using ::testing::HasSubstr;
 
-class OldFolder : public testing::ProgramTest {
+class OldFolder : public testing::SmallRuns {
  protected:
   OldFolder() {
-    write("small.yaml", std::string(testing::kSmallSimulation));
-    write("list.yaml", std::string(testing::kSmallSimulation) + std::string(testing::kEightTasks));
     std::string invert(testing::kSmallSimulation);
     invert.replace(invert.find("simulate"), 8, "invert");
     write("invert.yaml", invert);

@@ -14,13 +14,8 @@ using ::testing::Not;
 
 constexpr int kOutputLost = 7;
 
-class Output : public testing::ProgramTest {
+class Output : public testing::SmallRuns {
  protected:
-  Output() {
-    write("small.yaml", std::string(testing::kSmallSimulation));
-    write("list.yaml", std::string(testing::kSmallSimulation) + std::string(testing::kEightTasks));
-  }
-
   // Runs a list of tasks and `harm` as soon as its journal holds a task; tasks take long enough.
   Outcome run_while(const std::string& file, const std::string& harm) const {
     return shell("'" MODCAL_PROGRAM "' run " + file +

@@ -12,17 +12,17 @@
 
 namespace modcal::testing {
 
-/// A simulation of a few milliseconds.
-inline constexpr std::string_view kSmallSimulation = R"(kind: simulate
-title: small
-scene:
+/// A scene of a few milliseconds of work.
+inline const std::string kSmallScene = R"(scene:
   string: {length: 0.33 m, linear_density: 3.1e-3 kg/m, fundamental: 196 Hz, modes: 10}
   bow: {position: 30 mm, velocity: 0.1 m/s, normal_force: 1 N}
   friction: {type: coulomb_exponential, static: 0.4, dynamic: 0.2, decay: 5 s/m}
   duration: 0.1 s
 simulator: {type: newmark_explicit, time_step: 4 us}
-measurement: {sample_rate: 12.5 kHz, noise_level: 1 %}
 )";
+inline const std::string kSmallSimulation =
+    "kind: simulate\ntitle: small\n" + kSmallScene +
+    "measurement: {sample_rate: 12.5 kHz, noise_level: 1 %}\n";
 
 /// Axes that make eight tasks of it.
 inline constexpr std::string_view kEightTasks = R"(sweep:
@@ -49,6 +49,15 @@ class ProgramTest : public FolderTest {
     const int status = std::system(line.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content_of(folder() / ".out"),
             content_of(folder() / ".err")};
+  }
+};
+
+/// One with a small simulation in small.yaml and a list of eight in list.yaml.
+class SmallRuns : public ProgramTest {
+ protected:
+  SmallRuns() {
+    write("small.yaml", kSmallSimulation);
+    write("list.yaml", kSmallSimulation + std::string(kEightTasks));
   }
 };
 

@@ -15,22 +15,15 @@ using ::testing::IsEmpty;
 using ::testing::Not;
 using ::testing::StartsWith;
 
-constexpr std::string_view kExperiment = R"(kind: invert
-title: small
-scene:
-  string: {length: 0.33 m, linear_density: 3.1e-3 kg/m, fundamental: 196 Hz, modes: 10}
-  bow: {position: 30 mm, velocity: 0.1 m/s, normal_force: 1 N}
-  friction: {type: coulomb_exponential, static: 0.4, dynamic: 0.2, decay: 5 s/m}
-  duration: 0.1 s
-simulator: {type: newmark_explicit, time_step: 4 us}
-measurement: {sample_rate: 12.5 kHz}
+const std::string kExperiment = "kind: invert\ntitle: small\n" + testing::kSmallScene +
+                                R"(measurement: {sample_rate: 12.5 kHz}
 inversion: {estimator: one_sided, regularizer: none}
 seed: 7
 )";
 
 class Program : public testing::ProgramTest {
  protected:
-  Program() { write("small.yaml", std::string(kExperiment)); }
+  Program() { write("small.yaml", kExperiment); }
 };
 
 std::vector<std::string> names_in(const std::filesystem::path& folder) {

@@ -12,12 +12,8 @@ using nlohmann::json;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-class Refusals : public testing::ProgramTest {
+class Refusals : public testing::SmallRuns {
  protected:
-  Refusals() {
-    write("small.yaml", std::string(testing::kSmallSimulation));
-    write("list.yaml", std::string(testing::kSmallSimulation) + std::string(testing::kEightTasks));
-  }
   // Within `seconds`, or the code is 124.
   Outcome within(int seconds, const std::string& arguments) const {
     return shell("timeout " + std::to_string(seconds) + " '" MODCAL_PROGRAM "' " + arguments);
@@ -176,7 +172,7 @@ TEST_F(Refusals, APlanTakesItsSecondHoweverLongTheRunWould) {
 
 TEST_F(Refusals, ParsingAndValidationEndAtOnceWhenAsked) {
   // A list of lists that takes seconds to read.
-  std::string text = std::string(testing::kSmallSimulation) + "figures: [";
+  std::string text = testing::kSmallSimulation + "figures: [";
   for (int i = 0; i < 400000; ++i) text += "{id: a, quantities: [y]}, ";
   write("long.yaml", text + "]\n");
   for (const char* signal : {"INT", "TERM"}) {

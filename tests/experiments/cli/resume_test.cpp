@@ -13,15 +13,8 @@ using nlohmann::json;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-constexpr std::string_view kSweep = R"(kind: sweep
-title: small sweep
-scene:
-  string: {length: 0.33 m, linear_density: 3.1e-3 kg/m, fundamental: 196 Hz, modes: 10}
-  bow: {position: 30 mm, velocity: 0.1 m/s, normal_force: 1 N}
-  friction: {type: coulomb_exponential, static: 0.4, dynamic: 0.2, decay: 5 s/m}
-  duration: 0.1 s
-simulator: {type: newmark_explicit, time_step: 4 us}
-measurement: {sample_rate: 12.5 kHz}
+const std::string kSweep = "kind: sweep\ntitle: small sweep\n" + testing::kSmallScene +
+                           R"(measurement: {sample_rate: 12.5 kHz}
 inversion: {estimator: one_sided, regularizer: {type: water_level}, parameter_choice: {type: minimal_product}}
 score: {windows: [50 ms], periods: 2}
 sweep:
@@ -34,7 +27,7 @@ constexpr int kTasks = 40;
 
 class Resume : public testing::ProgramTest {
  protected:
-  Resume() { write("sweep.yaml", std::string(kSweep)); }
+  Resume() { write("sweep.yaml", kSweep); }
 
   std::string tables_of(const std::string& out) const {
     return content_of(folder() / out / "tasks.csv") + content_of(folder() / out / "table.csv") +
