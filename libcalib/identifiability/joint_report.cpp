@@ -120,12 +120,17 @@ Eigen::MatrixXd covariance_of_causes(const std::vector<ContinuationResult>& sing
     Eigen::VectorXd change = Eigen::VectorXd::Zero(all.size());
     for (std::size_t r = 0; r < single.size(); ++r) {
       if (c >= single[r].tests.size() || single[r].tests[c].moved.size() != unknowns) continue;
-      const Eigen::VectorXd suspected = single[r].tests[c].suspected();
+      const ScoreTest& test = single[r].tests[c];
+      std::vector<Eigen::Index> places;
+      Eigen::VectorXd part = Eigen::VectorXd::Ones(unknowns);
       for (Eigen::Index i = 0; i < unknowns; ++i) {
         const bool shared = single.size() > 1 && all.place(i, 0) == all.place(i, 1);
-        const double part = shared ? 1.0 / static_cast<double>(single.size()) : 1.0;
-        change[all.place(i, r)] += part * suspected[i];
+        if (shared) part[i] /= static_cast<double>(single.size());
+        places.push_back(all.place(i, r));
       }
+      change(places) += part.cwiseProduct(test.suspected());
+      if (test.untold.size() == 0) continue;
+      covariance(places, places) += part.asDiagonal() * test.untold * part.asDiagonal();
     }
     covariance += change * change.transpose();
   }

@@ -14,11 +14,8 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr std::string_view kPolarization = "second polarization";
-constexpr std::string_view kDrift = "drift of the tuning";
-constexpr std::string_view kNonlinear = "nonlinear sensor";
-constexpr std::string_view kModesAbove = "modes above";
-constexpr std::string_view kBridge = "bridge that moves";
+// From one place where a mode of the body is tried to the next; the mode is half as wide.
+constexpr double kBodyStep = 1.14, kBodyDamping = 0.03;
 
 // What the fit makes of a record: force, transfer functions, what rings.
 class FittedRecord {
@@ -28,6 +25,7 @@ class FittedRecord {
         sensor_(point.sensors),
         modes_(likelihood_modes(point, record_.sample_rate)),
         own_(point.basis.size()),
+        per_length_(point.basis.tension / point.basis.length),
         fft_(samples()) {
     std::vector<double> residuals;
     likelihood.evaluate(point, {},
@@ -41,15 +39,14 @@ class FittedRecord {
       const Complex e(residuals[2 * k], residuals[2 * k + 1]);
       residual_.push_back(root > 0.0 ? e / root : 0.0);
     }
-    const double per_length = point.basis.tension / point.basis.length;
-    chord_right_.assign(record_.bins, per_length);
-    chord_left_.assign(record_.bins, -per_length);
+    chord_right_.assign(record_.bins, per_length_);
+    chord_left_.assign(record_.bins, -per_length_);
     for (std::size_t n = 0; n < own_; ++n) {
       motions_.emplace_back(record_.bins);
       for (std::size_t k = 0; k < record_.bins; ++k) {
         const Complex s(0.0, record_.omega[k]), receptance = inverse_denominator(modes_[n], s);
         motions_[n][k] = motion_of(n, k, receptance);
-        const Complex chord = 2.0 * per_length * s * s * receptance;
+        const Complex chord = 2.0 * per_length_ * s * s * receptance;
         chord_right_[k] += chord;
         chord_left_[k] += modes_[n].even ? -chord : chord;
       }
@@ -122,12 +119,22 @@ class FittedRecord {
   // The end at x = L is on a mode of the body, m (s² + 2ζω_b s + ω_b²) u = −R₂. To first order in
   // 1/m the reactions of a pinned string have those of the chord u x/L more,
   //     c₂ = T/L + (2T/L) Σ s²/D_n,   c₁ = −T/L − (2T/L) Σ (−1)^n s²/D_n;
-  // by 1/m and by both parts of what the mode of the body itself still has from before.
+  // by 1/m and by both parts of what the mode of the body itself still has from before. The poles
+  // become s_n (1 − (T/mL)/(s_n² + 2ζω_b s_n + ω_b²)).
   MisfitCause bridge(double frequency, double zeta) const {
     const double omega = 2.0 * pi * frequency;
     const Complex rate(-zeta * omega, omega * std::sqrt(1.0 - zeta * zeta));
     const Complex pole = std::exp(rate / record_.sample_rate);
-    MisfitCause cause{std::string(kBridge), fmt::format("at {:.0f} Hz", frequency), {}, true};
+    MisfitCause cause{
+        std::string(kBridge), fmt::format("at {:.0f} Hz", frequency), {}, frequency, {}, 0.0};
+    cause.modes.resize(static_cast<Eigen::Index>(own_));
+    for (std::size_t n = 0; n < own_; ++n) {
+      const Complex s(0.0, std::sqrt(modes_[n].omega_squared));
+      const Complex body = s * s + 2.0 * zeta * omega * s + omega * omega;
+      const double coupling = 2.0 * per_length_ * modes_[n].omega_squared / std::norm(body);
+      cause.modes[static_cast<Eigen::Index>(n)] = -per_length_ / body;
+      cause.coupling = std::max(cause.coupling, coupling);
+    }
     cause.columns.assign(3, {numbers(), numbers()});
     for (std::size_t k = 0; k < record_.bins; ++k) {
       const Complex s(0.0, record_.omega[k]), delay = record_.delay.at(k);
@@ -237,7 +244,8 @@ class FittedRecord {
   const WhitenedRecord& record_;
   const Sensor& sensor_;
   std::vector<LikelihoodMode> modes_;
-  std::size_t own_;  // modes that the model states, the first
+  std::size_t own_;    // modes that the model states, the first
+  double per_length_;  // T/L [N/m]
   RealFft fft_;
   std::vector<Complex> force_, amplitudes_, left_, right_, residual_;
   std::vector<Complex> chord_left_, chord_right_;  // reactions to a displacement of x = L [N/m]
@@ -245,40 +253,6 @@ class FittedRecord {
 };
 
 }  // namespace
-
-Eigen::VectorXd ScoreTest::suspected() const { return suspicion() * moved; }
-
-double ScoreTest::suspicion() const {
-  return std::sqrt(std::max(0.0, 1.0 - 2.0 * std::exp(log_p)));
-}
-
-bool ScoreTest::moves_modes_off_law() const { return cause == kBridge; }
-
-bool ScoreTest::refuses() const { return named() && shift > 2.0; }
-
-bool ScoreTest::frees() const { return cause == kDrift; }
-
-std::string_view ScoreTest::remedy() const {
-  constexpr std::pair<std::string_view, std::string_view> kRemedies[] = {
-      {kPolarization,
-       "the string moves across the plane of the sensors, too: bow it in that plane, or turn the "
-       "sensors"},
-      {kDrift, "record when the string has settled, or calibrate a shorter part of the record"},
-      {kNonlinear, "play softer, or use sensors of a wider range"},
-      {kBridge, "clamp the bridge or load it, or mount the string on heavier supports"},
-      {kModesAbove,
-       "the record has not the modes above those stated that the law has: state more modes, or "
-       "remainder: none for a simulated record of exactly so many"}};
-  for (const auto& [name, text] : kRemedies) {
-    if (cause == name) return text;
-  }
-  return "";
-}
-
-const ScoreTest* first_cause(const std::vector<ScoreTest>& tests) {
-  const auto least = std::ranges::min_element(tests, {}, &ScoreTest::log_p);
-  return least == tests.end() || !least->named() ? nullptr : &*least;
-}
 
 std::vector<MisfitCause> misfit_causes(const ProjectedLikelihood& likelihood,
                                        const ModelPoint& point) {
@@ -291,8 +265,20 @@ std::vector<MisfitCause> misfit_causes(const ProjectedLikelihood& likelihood,
   causes.push_back(fitted.nonlinear_sensors());
   causes.push_back(fitted.modes_above());
   const double fundamental = point.basis.omega[0] / (2.0 * pi);
-  for (const double part : {0.5, 0.75, 1.5, 2.5, 4.5}) {
-    causes.push_back(fitted.bridge(part * fundamental, 0.03));
+  for (double place = 0.5; place < 6.2; place *= kBodyStep) {
+    causes.push_back(fitted.bridge(place * fundamental, kBodyDamping));
+  }
+  return causes;
+}
+
+std::vector<MisfitCause> bridges_about(const ProjectedLikelihood& likelihood,
+                                       const ModelPoint& point, double place) {
+  const FittedRecord fitted(likelihood, point);
+  std::vector<MisfitCause> causes;
+  for (const double part : {-0.875, -0.75, -0.625, -0.5, -0.375, -0.25, -0.125}) {
+    for (const double side : {part, -part}) {
+      causes.push_back(fitted.bridge(place * std::pow(kBodyStep, side), kBodyDamping));
+    }
   }
   return causes;
 }

@@ -10,34 +10,57 @@
 
 namespace modcal {
 
+/// Names of causes.
+inline constexpr std::string_view kPolarization = "second polarization";
+inline constexpr std::string_view kDrift = "drift of the tuning";
+inline constexpr std::string_view kNonlinear = "nonlinear sensor";
+inline constexpr std::string_view kModesAbove = "modes above";
+inline constexpr std::string_view kBridge = "bridge that moves";
+
 /// A cause of misfit: amplitudes of what it adds to both records, to first order.
 struct MisfitCause {
   std::string name;
   std::string detail;  ///< which of several tried, in words; empty: there is one
   std::vector<SignalColumn> columns;
-  /// Frequencies, damping and the response of the sensors are those of the string with this cause:
-  /// of what it moves x_c alone counts.
-  bool moves_contact_alone = false;
+  double place = 0.0;  ///< of a bridge that moves [Hz]
+  /// What an amplitude of 1 of the first column makes of the modes: relative change of s_n, the
+  /// real part of f_n, the imaginary one added to ζ_n. The f_n and ζ_n reported are those of the
+  /// string with this cause; the response of the sensors, which holds a part of it, does not count.
+  /// Empty: the modes are the string's own.
+  Eigen::VectorXcd modes = {};
+  /// The largest κ_n = 2(T/L) ω_n²/|s_n² + 2ζω_b s_n + ω_b²|², by an amplitude of 1: the square of
+  /// how far mode n and that of the body push each other apart, over their distance. Above some
+  /// tenths `modes` is too small.
+  double coupling = 0.0;
 };
 
 /// What the score test of one cause says (score_tests.hpp).
 struct ScoreTest {
   std::string cause, detail;
+  double place = 0.0;      ///< of a bridge that moves [Hz]
   double statistic = 0.0;  ///< S, χ² of `degrees` where the cause is not there [1]
   std::size_t degrees = 0;
-  double log_p = 0.0;           ///< ln of the chance of S or more by noise, in any of those tried
-  double amplitude = 0.0;       ///< estimated to first order; of several their root square sum [1]
-  double shift = 0.0;           ///< largest change of an unknown, were it free, in its deviations
+  double log_p = 0.0;      ///< ln of the chance of S or more by noise, in any of those tried
+  double amplitude = 0.0;  ///< estimated to first order; of several their root square sum [1]; of a
+                           ///< bridge 1/m [1/kg]
+  double shift = 0.0;      ///< largest change of an unknown, were it free, in its deviations
   double shift_per_root = 0.0;  ///< the same where √S is 1, by the worst amplitudes and detuning
   std::string unknown;          ///< that this is of
   Eigen::VectorXd moved;        ///< change of all unknowns θ that count, were it free
+  double contradiction = 0.0;   ///< the shift of what is wrong where the cause is in the record
+  double coupling = 0.0;        ///< κ of the amplitude estimated (MisfitCause)
+  /// Covariance of such changes by amplitudes that the data do not tell, at all places tried, by
+  /// what speaks for each; empty: a cause that is taken for absent until it is suspected.
+  Eigen::MatrixXd untold;
   std::vector<SignalColumn> columns;  ///< where it is named and frees()
 
   /// Noise does so in one of 8000 tests, of the five causes in one of 1600 records.
   bool named() const { return log_p < -9.0; }
   /// The change of all unknowns as far as the cause is suspected. The deviations hold its square.
   Eigen::VectorXd suspected() const;
-  /// Named, and it moves an unknown by two deviations: out of the interval that holds 95 %.
+  /// Named, and it moves an unknown by two deviations, out of the interval that holds 95 %: of a
+  /// bridge that moves x_c alone, while κ < 0.1. f_n and ζ_n are those on this bridge, and the
+  /// deviations hold what it does to them.
   bool refuses() const;
   /// √(1 − 2p), 0 where half of all records without the cause say as much.
   double suspicion() const;
@@ -58,10 +81,14 @@ const ScoreTest* first_cause(const std::vector<ScoreTest>& tests);
 ///   x = L; δ = ±0.1, 0.3 and 1 %;
 /// - "drift of the tuning": ω_n(t) = ω_n (1 + p (t/T − 1/2)), p the drift over the record;
 /// - "nonlinear sensor": p y³/⟨y²⟩ in each record, y what the fit leaves of it without noise;
-/// - "modes above": p_0 and p_1 s² times the force at either end.
+/// - "modes above": p_0 and p_1 s² times the force at either end;
+/// - "bridge that moves": x = L is on a mode of a body, of 1/m, at twenty frequencies.
 ///
 /// All take the motion or the force of the fit. Weights of `likelihood` play no part; σ = 0.
 std::vector<MisfitCause> misfit_causes(const ProjectedLikelihood& likelihood,
                                        const ModelPoint& point);
+/// "bridge that moves" between the places of misfit_causes() on either side of `place` [Hz].
+std::vector<MisfitCause> bridges_about(const ProjectedLikelihood& likelihood,
+                                       const ModelPoint& point, double place);
 
 }  // namespace modcal

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 namespace modcal {
@@ -62,23 +63,41 @@ class Scores {
     information_ = 2.0 * (at.information.bottomRightCorner(m, m) - mixed.transpose() * taken_);
   }
 
-  // What `count` amplitudes from `first` on do to other unknowns does not count.
-  void count_alone(Index unknown, Index first, Index count) {
-    const Eigen::RowVectorXd kept = taken_.row(unknown).segment(first, count);
-    taken_.middleCols(first, count).setZero();
-    taken_.row(unknown).segment(first, count) = kept;
+  // The modes that count are those with the cause, of its amplitudes from `first` on: what the
+  // unknowns take of it is no error as far as it is what the cause makes of them.
+  void count_modes(const StringUnknowns& unknowns, const ModelPoint& point,
+                   const MisfitCause& cause, Index first) {
+    const Index count = std::ssize(cause.columns);
+    for (Index i = 0; i < taken_.rows(); ++i) {
+      const bool named = i < unknowns.named();
+      const ParameterName name =
+          named ? unknowns.parameters()[static_cast<std::size_t>(i)] : ParameterName{};
+      const auto n = static_cast<Index>(name.index);
+      if (named && name.kind == ParameterKind::kFrequency) {
+        taken_(i, first) -= cause.modes[n].real();
+      } else if (named && name.kind == ParameterKind::kDampingRatio) {
+        taken_(i, first) -= cause.modes[n].imag() / point.basis.zeta[name.index];
+      } else if (i != unknowns.contact()) {
+        taken_.row(i).segment(first, count).setZero();
+      }
+    }
   }
 
-  // Of `count` amplitudes from `first` on; the number of the unknown that they move most.
-  std::pair<ScoreTest, Index> test(Index first, Index count, double misfit) const {
+  // Of the amplitudes from `first` on; the number of the unknown that they move most.
+  std::pair<ScoreTest, Index> test(const MisfitCause& cause, Index first, Index contact,
+                                   double misfit) const {
+    const Index count = std::ssize(cause.columns);
     const Eigen::MatrixXd information = information_.block(first, first, count, count);
     const Eigen::VectorXd score = score_.segment(first, count);
     const auto solver = information.ldlt();
     const Eigen::VectorXd amplitude = -solver.solve(score);
     const auto taken = taken_.middleCols(first, count);
-    ScoreTest test{.statistic = -score.dot(amplitude) / std::max(1.0, misfit),
+    ScoreTest test{.cause = cause.name,
+                   .detail = cause.detail,
+                   .place = cause.place,
+                   .statistic = -score.dot(amplitude) / std::max(1.0, misfit),
                    .degrees = static_cast<std::size_t>(count),
-                   .amplitude = count == 1 ? amplitude[0] : amplitude.norm(),
+                   .amplitude = count == 1 || cause.place > 0.0 ? amplitude[0] : amplitude.norm(),
                    .moved = -taken * amplitude};
     test.log_p = log_tail(test.statistic, test.degrees);
     Index most = 0;
@@ -86,10 +105,18 @@ class Scores {
       if (!(deviation_[i] > 0.0)) continue;
       const double shift = std::abs(test.moved[i]) / deviation_[i];
       if (shift > test.shift) test.shift = shift, most = i;
+      if (cause.modes.size() == 0 || i == contact) {
+        test.contradiction = std::max(test.contradiction, shift);
+      }
       // Of all amplitudes with √S = 1 those that move it most.
       const Eigen::VectorXd row = taken.row(i);
       test.shift_per_root =
           std::max(test.shift_per_root, std::sqrt(row.dot(solver.solve(row))) / deviation_[i]);
+    }
+    if (cause.modes.size() > 0) {
+      test.coupling = cause.coupling * std::abs(amplitude[0]);
+      if (amplitude[0] > 0.0) test.detail += fmt::format(", of {:.3g} kg", 1.0 / amplitude[0]);
+      test.untold = std::max(1.0, misfit) * taken * solver.solve(taken.transpose());
     }
     return {test, most};
   }
@@ -101,6 +128,57 @@ class Scores {
   Eigen::MatrixXd information_;  // left of the amplitudes'
 };
 
+// Tests of one cause by one name each: of those tried at several places the one found best, with
+// what all of them leave untold.
+class BestTests {
+ public:
+  void add(ScoreTest test) {
+    const double weight = 0.5 * test.statistic;
+    const auto same = std::ranges::find(tests_, test.cause, &ScoreTest::cause);
+    if (same == tests_.end()) {
+      tests_.push_back(std::move(test));
+      tried_.push_back({1.0, weight});
+      return;
+    }
+    Tried& tried = tried_[static_cast<std::size_t>(same - tests_.begin())];
+    tried.count += 1.0;
+    test.shift_per_root = std::max(same->shift_per_root, test.shift_per_root);
+    // The likelihoods of both, e^(S/2), are their weights.
+    const double sum = std::max(weight, tried.log_weight) +
+                       std::log1p(std::exp(-std::abs(weight - tried.log_weight)));
+    test.untold =
+        std::exp(weight - sum) * test.untold + std::exp(tried.log_weight - sum) * same->untold;
+    tried.log_weight = sum;
+    if (test.statistic > same->statistic) {
+      *same = std::move(test);
+    } else {
+      same->shift_per_root = test.shift_per_root;
+      same->untold = std::move(test.untold);
+    }
+  }
+
+  std::optional<double> named_place() const {
+    const auto found = std::ranges::find_if(
+        tests_, [](const ScoreTest& test) { return test.place > 0.0 && test.named(); });
+    return found == tests_.end() ? std::nullopt : std::optional(found->place);
+  }
+
+  std::vector<ScoreTest> take() {
+    for (std::size_t i = 0; i < tests_.size(); ++i) {
+      tests_[i].log_p = std::min(0.0, tests_[i].log_p + std::log(tried_[i].count));
+      if (!tests_[i].named() || !tests_[i].frees()) tests_[i].columns.clear();
+    }
+    return std::move(tests_);
+  }
+
+ private:
+  struct Tried {
+    double count, log_weight;
+  };
+  std::vector<ScoreTest> tests_;
+  std::vector<Tried> tried_;
+};
+
 }  // namespace
 
 std::vector<ScoreTest> score_tests(const ProjectedLikelihood& likelihood,
@@ -108,42 +186,29 @@ std::vector<ScoreTest> score_tests(const ProjectedLikelihood& likelihood,
                                    const NewtonOptions& options, const Eigen::VectorXd& deviation,
                                    double misfit) {
   const ModelPoint point = unknowns.model(theta);
-  std::vector<MisfitCause> causes = misfit_causes(likelihood, point);
-  std::vector<SignalColumn> signals;
-  for (const MisfitCause& cause : causes) {
-    signals.insert(signals.end(), cause.columns.begin(), cause.columns.end());
-  }
-  Scores scores(extended_point(likelihood, unknowns, theta, signals), deviation, theta, options);
-  std::vector<ScoreTest> tests;
-  std::vector<double> tried;
-  Index first = 0;
-  for (MisfitCause& cause : causes) {
-    const Index count = std::ssize(cause.columns);
-    if (cause.moves_contact_alone) scores.count_alone(unknowns.contact(), first, count);
-    auto [test, most] = scores.test(first, count, misfit);
-    first += count;
-    test.cause = cause.name;
-    test.detail = cause.detail;
-    test.unknown = name_of_unknown(unknowns, point, most);
-    test.columns = std::move(cause.columns);
-    const auto same = std::find_if(tests.begin(), tests.end(), [&](const ScoreTest& other) {
-      return other.cause == test.cause;
-    });
-    if (same == tests.end()) {
-      tests.push_back(std::move(test));
-      tried.push_back(1.0);
-      continue;
+  BestTests tests;
+  const auto test_all = [&](std::vector<MisfitCause> causes) {
+    std::vector<SignalColumn> signals;
+    for (const MisfitCause& cause : causes) {
+      signals.insert(signals.end(), cause.columns.begin(), cause.columns.end());
     }
-    tried[static_cast<std::size_t>(same - tests.begin())] += 1.0;
-    const double worst = std::max(same->shift_per_root, test.shift_per_root);
-    if (test.statistic > same->statistic) *same = std::move(test);
-    same->shift_per_root = worst;
+    Scores scores(extended_point(likelihood, unknowns, theta, signals), deviation, theta, options);
+    Index first = 0;
+    for (MisfitCause& cause : causes) {
+      if (cause.modes.size() > 0) scores.count_modes(unknowns, point, cause, first);
+      auto [test, most] = scores.test(cause, first, unknowns.contact(), misfit);
+      first += std::ssize(cause.columns);
+      test.unknown = name_of_unknown(unknowns, point, most);
+      test.columns = std::move(cause.columns);
+      tests.add(std::move(test));
+    }
+  };
+  test_all(misfit_causes(likelihood, point));
+  // What is named at a place is looked for about it.
+  if (const std::optional<double> place = tests.named_place()) {
+    test_all(bridges_about(likelihood, point, *place));
   }
-  for (std::size_t i = 0; i < tests.size(); ++i) {
-    tests[i].log_p = std::min(0.0, tests[i].log_p + std::log(tried[i]));
-    if (!tests[i].named() || !tests[i].frees()) tests[i].columns.clear();
-  }
-  return tests;
+  return tests.take();
 }
 
 Eigen::MatrixXd covariance_of_causes(const std::vector<ScoreTest>& tests, Index unknowns) {
@@ -151,6 +216,7 @@ Eigen::MatrixXd covariance_of_causes(const std::vector<ScoreTest>& tests, Index 
   for (const ScoreTest& test : tests) {
     const Eigen::VectorXd suspected = test.suspected();
     covariance += suspected * suspected.transpose();
+    if (test.untold.size() > 0) covariance += test.untold;
   }
   return covariance;
 }

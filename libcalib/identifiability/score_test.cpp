@@ -1,0 +1,47 @@
+// What follows from the score test of a cause.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "libcalib/identifiability/misfit_causes.hpp"
+
+namespace modcal {
+
+Eigen::VectorXd ScoreTest::suspected() const { return suspicion() * moved; }
+
+double ScoreTest::suspicion() const {
+  return std::sqrt(std::max(0.0, 1.0 - 2.0 * std::exp(log_p)));
+}
+
+bool ScoreTest::moves_modes_off_law() const { return cause == kBridge; }
+
+bool ScoreTest::refuses() const {
+  constexpr double kDeviations = 2.0, kCoupling = 0.1;
+  return named() && (contradiction > kDeviations || coupling > kCoupling);
+}
+
+bool ScoreTest::frees() const { return cause == kDrift; }
+
+std::string_view ScoreTest::remedy() const {
+  constexpr std::pair<std::string_view, std::string_view> kRemedies[] = {
+      {kPolarization,
+       "the string moves across the plane of the sensors, too: bow it in that plane, or turn the "
+       "sensors"},
+      {kDrift, "record when the string has settled, or calibrate a shorter part of the record"},
+      {kNonlinear, "play softer, or use sensors of a wider range"},
+      {kBridge, "clamp the bridge or load it, or mount the string on heavier supports"},
+      {kModesAbove,
+       "the record has not the modes above those stated that the law has: state more modes, or "
+       "remainder: none for a simulated record of exactly so many"}};
+  for (const auto& [name, text] : kRemedies) {
+    if (cause == name) return text;
+  }
+  return "";
+}
+
+const ScoreTest* first_cause(const std::vector<ScoreTest>& tests) {
+  const auto least = std::ranges::min_element(tests, {}, &ScoreTest::log_p);
+  return least == tests.end() || !least->named() ? nullptr : &*least;
+}
+
+}  // namespace modcal
