@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -86,7 +87,9 @@ class FittedRecord {
     }
     return {std::string(kPolarization),
             fmt::format("detuned by {:+.2g} %", 100.0 * detuning),
-            {std::move(columns[0]), std::move(columns[1])}};
+            {std::move(columns[0]), std::move(columns[1])},
+            0.0,
+            kPolarizationWidth};
   }
 
   // Mode by mode D_n q_n = f − 2ω_n² p (t/T − 1/2) q_n: the motion as it is fitted, in the time
@@ -125,8 +128,13 @@ class FittedRecord {
     const double omega = 2.0 * pi * frequency;
     const Complex rate(-zeta * omega, omega * std::sqrt(1.0 - zeta * zeta));
     const Complex pole = std::exp(rate / record_.sample_rate);
-    MisfitCause cause{
-        std::string(kBridge), fmt::format("at {:.0f} Hz", frequency), {}, frequency, {}, 0.0};
+    MisfitCause cause{std::string(kBridge),
+                      fmt::format("at {:.0f} Hz", frequency),
+                      {},
+                      frequency,
+                      std::numeric_limits<double>::infinity(),
+                      {},
+                      0.0};
     cause.modes.resize(static_cast<Eigen::Index>(own_));
     for (std::size_t n = 0; n < own_; ++n) {
       const Complex s(0.0, std::sqrt(modes_[n].omega_squared));

@@ -17,12 +17,19 @@ inline constexpr std::string_view kNonlinear = "nonlinear sensor";
 inline constexpr std::string_view kModesAbove = "modes above";
 inline constexpr std::string_view kBridge = "bridge that moves";
 
+/// Prior sd of the share of a second polarization at either end: what a record cannot tell of one
+/// is in its deviations [1].
+inline constexpr double kPolarizationWidth = 0.03;
+
 /// A cause of misfit: amplitudes of what it adds to both records, to first order.
 struct MisfitCause {
   std::string name;
   std::string detail;  ///< which of several tried, in words; empty: there is one
   std::vector<SignalColumn> columns;
   double place = 0.0;  ///< of a bridge that moves [Hz]
+  /// Prior sd of the amplitudes of a cause that may be in any record: the deviations hold what the
+  /// record leaves untold of it. ∞: nothing is known; 0: it is taken for absent until suspected.
+  double width = 0.0;
   /// What an amplitude of 1 of the first column makes of the modes: relative change of s_n, the
   /// real part of f_n, the imaginary one added to ζ_n. The f_n and ζ_n reported are those of the
   /// string with this cause; the response of the sensors, which holds a part of it, does not count.

@@ -269,6 +269,9 @@ TEST(ForeignRecord, ASecondPolarizationAlikeAtBothEndsIsInTheDeviations) {
       {.noise = 5e-3});
   const ScoreTest& test = test_of(result, "second polarization");
   EXPECT_EQ(test.detail, "detuned by +0.1 %");
+  // Both ends alike by ±3 % move f_n by that share of the detuning, less where the record tells it.
+  EXPECT_GT(test.untold(9, 9), 0.0);
+  EXPECT_LT(std::sqrt(test.untold(9, 9)), std::sqrt(2.0) * kPolarizationWidth * kDetuning);
   const double amplitude = std::sqrt(2.0) * kShare / (1.0 + kShare);
   EXPECT_NEAR(test.amplitude, amplitude, kFour * test.amplitude / std::sqrt(test.statistic));
   EXPECT_GT(test.statistic, 4.0 * kFour);

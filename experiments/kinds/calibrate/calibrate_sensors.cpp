@@ -85,8 +85,10 @@ std::string default_text(const CalibrationOptions& calibration, const Observatio
   if (texts.empty()) return "";
   return fmt::format(
       "Free unasked in a record, with standard deviations of the priors: {}. sensors: [exact] and "
-      "damping: fixed hold them.",
-      fmt::join(texts, ", "));
+      "damping: fixed hold them. In the deviations besides: a second polarization +- {:g}, a "
+      "bridge "
+      "that moves as far as the record does not tell it.",
+      fmt::join(texts, ", "), kPolarizationWidth);
 }
 
 std::string correction_text(const Observation& observation, const Sensor& sensors) {

@@ -116,7 +116,12 @@ class Scores {
     if (cause.modes.size() > 0) {
       test.coupling = cause.coupling * std::abs(amplitude[0]);
       if (amplitude[0] > 0.0) test.detail += fmt::format(", of {:.3g} kg", 1.0 / amplitude[0]);
-      test.untold = std::max(1.0, misfit) * taken * solver.solve(taken.transpose());
+    }
+    if (cause.width > 0.0) {
+      const Eigen::MatrixXd told =
+          information / std::max(1.0, misfit) +
+          Eigen::MatrixXd::Identity(count, count) / (cause.width * cause.width);
+      test.untold = taken * told.ldlt().solve(taken.transpose());
     }
     return {test, most};
   }
