@@ -55,6 +55,32 @@ bool is_known_mistake(const std::vector<Mistake>& mistakes, const SourcePosition
   });
 }
 
+// The node at a dotted path; null: the file does not have it.
+const YamlNode* node_at(const YamlNode& root, std::string_view path) {
+  const YamlNode* node = &root;
+  while (node != nullptr && !path.empty()) {
+    const std::size_t dot = path.find('.');
+    node = node->child(path.substr(0, dot));
+    path.remove_prefix(dot == std::string_view::npos ? path.size() : dot + 1);
+  }
+  return node;
+}
+
+// What a section says of itself follows from a key that it lacks.
+bool lacks_a_key(const YamlNode& node, const std::vector<Mistake>& mistakes) {
+  const auto is_missing = [&node](const Mistake& mistake) {
+    return mistake.text.starts_with("missing key") && mistake.position.line == node.position.line &&
+           mistake.position.column == node.position.column &&
+           mistake.position.origin == node.position.origin;
+  };
+  return std::any_of(mistakes.begin(), mistakes.end(), is_missing) ||
+         std::any_of(node.items.begin(), node.items.end(),
+                     [&](const YamlNode& item) { return lacks_a_key(item, mistakes); }) ||
+         std::any_of(node.members.begin(), node.members.end(), [&](const YamlNode::Member& member) {
+           return lacks_a_key(member.value, mistakes);
+         });
+}
+
 // A number prints as nan only where its option could not be read, which is a mistake already.
 bool is_consequence(const std::string& text) {
   static const std::regex kNan("\\bnan\\b");
@@ -96,8 +122,10 @@ void make_and_lint(LoadedExperiment& loaded, const Means& means) {
     if (!had_errors && !check_memory(*experiment, means, loaded)) return;
     for (const Finding& finding : experiment->lint()) {
       const SourcePosition position = position_of_path(root, finding.path);
+      const YamlNode* node = node_at(root, finding.path);
       if (had_errors &&
-          (is_known_mistake(loaded.mistakes, position) || is_consequence(finding.text))) {
+          (is_known_mistake(loaded.mistakes, position) || is_consequence(finding.text) ||
+           (node != nullptr && lacks_a_key(*node, loaded.mistakes)))) {
         continue;
       }
       loaded.mistakes.push_back({position, finding.text, !finding.is_error});

@@ -32,7 +32,7 @@ constexpr Example kExamples[] = {
     {"pluck_then_bow", "paper/section7.yaml"},
     {"schelleng", "schelleng.yaml"},
     {"simulate", "scenes/thermal.yaml"},
-    {"sweep", "beyond/table1_joint.yaml"},
+    {"sweep", "beyond/joint_violin_d.yaml"},
 };
 
 std::string example_of(const std::string& kind) {

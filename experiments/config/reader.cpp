@@ -34,17 +34,27 @@ void YamlReader::finish() {
     if (std::find(seen_.begin(), seen_.end(), member.key) != seen_.end()) continue;
     if (member.key == "<<") continue;  // reported by the parser
     const std::string_view moved = moved_key(member.key);
-    mistakes_.push_back({member.position, moved.empty()
-                                              ? fmt::format("unknown key \"{}\"{}", member.key,
-                                                            suggestion(member.key, seen_))
-                                              : fmt::format("\"{}\" {}", member.key, moved)});
+    mistakes_.push_back(
+        {member.position,
+         moved.empty() ? fmt::format("unknown key \"{}\"{}", member.key, remedy_of(member.key))
+                       : fmt::format("\"{}\" {}", member.key, moved)});
   }
 }
 
-void YamlReader::read_members(const YamlNode& node, const VisitMembers& visit_members) {
+void YamlReader::read_members(const YamlNode& node, const VisitMembers& visit_members,
+                              std::string_view section) {
   YamlReader inner(node, mistakes_);
   visit_members(inner);
   inner.finish();
+  for (const std::string& key : inner.seen_) inner_.emplace_back(key, section);
+}
+
+// What to do about a key that is not known.
+std::string YamlReader::remedy_of(const std::string& key) const {
+  const auto inner = std::find_if(inner_.begin(), inner_.end(),
+                                  [&key](const auto& known) { return known.first == key; });
+  if (inner == inner_.end()) return suggestion(key, seen_);
+  return fmt::format("; it belongs to \"{}\": indent it below", inner->second);
 }
 
 void YamlReader::skip_section(const OptionInfo& info, const VisitMembers& visit_members) {
@@ -67,7 +77,7 @@ void YamlReader::group(const OptionInfo& info, const VisitMembers& visit_members
             fmt::format("{} must be a map of keys and values, not {}", info.key, kind_name(*node)));
     return;
   }
-  read_members(*node, visit_members);
+  read_members(*node, visit_members, info.key);
 }
 
 void YamlReader::optional_group(const OptionInfo& info, bool& present,
@@ -129,7 +139,8 @@ void YamlReader::list(const OptionInfo& info, ListSlot& slot) {
       mistake(item, fmt::format("each of {} must be a map, not {}", info.key, kind_name(item)));
       continue;
     }
-    read_members(item, [&slot, i](OptionVisitor& inner) { slot.visit_item(i, inner); });
+    read_members(
+        item, [&slot, i](OptionVisitor& inner) { slot.visit_item(i, inner); }, info.key);
   }
 }
 

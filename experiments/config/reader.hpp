@@ -39,7 +39,9 @@ class YamlReader final : public OptionVisitor {
   const YamlNode* take(const OptionInfo& info);
   /// Says what a section that is left out would have needed.
   void skip_section(const OptionInfo& info, const VisitMembers& visit_members);
-  void read_members(const YamlNode& node, const VisitMembers& visit_members);
+  void read_members(const YamlNode& node, const VisitMembers& visit_members,
+                    std::string_view section);
+  std::string remedy_of(const std::string& key) const;
   void mistake(const YamlNode& node, std::string text);
   // False with a mistake where the node holds no such value.
   bool read(const OptionInfo& info, const YamlNode& node, double& value);
@@ -57,6 +59,8 @@ class YamlReader final : public OptionVisitor {
   std::vector<Mistake>& mistakes_;
   std::vector<std::string> seen_;
   std::vector<std::string> missing_;
+  /// Keys of the sections that stand in the map, and their section.
+  std::vector<std::pair<std::string, std::string>> inner_;
 };
 
 /// Reads a whole map with one visit and reports unknown keys; `allowed`: keys read elsewhere.

@@ -52,9 +52,10 @@ std::string unit_mistake(std::string_view text, std::string_view unit, std::stri
 
 bool YamlReader::read(const OptionInfo& info, const YamlNode& node, double& value) {
   if (node.kind != YamlNode::Kind::kScalar || node.quoted) {
-    mistake(node, fmt::format("{} must be a number{}, not {}", info.key,
-                              info.unit == "1" ? "" : fmt::format(" in {}", info.unit),
-                              node.quoted ? "a quoted text" : kind_name(node)));
+    mistake(node,
+            fmt::format("{} must be a number{}, not {}", info.key,
+                        info.unit == "1" ? "" : fmt::format(" in {}", info.unit),
+                        node.quoted ? "a quoted text: leave out the quotes" : kind_name(node)));
     return false;
   }
   if (!info.word.empty() && node.text == info.word) {

@@ -54,7 +54,8 @@ class Reader {
     require_axes();
     if (good()) add_combinations(count);
     add_points();
-    if (good() && table_.values.empty()) mistake(node_.position, "the sweep has no cells left");
+    if (good() && table_.values.empty())
+      mistake(node_.position, "the sweep has no cells left: exclude fewer of them");
     return good() ? std::move(table_) : SweepTable{};
   }
 
@@ -101,8 +102,13 @@ class Reader {
         axes.push_back(&member);
         continue;
       }
+      const bool nested =
+          member.value.kind == YamlNode::Kind::kMap && !member.value.members.empty();
       mistake(member.value.position,
-              fmt::format("{} needs a list of values, at least one", member.key));
+              nested
+                  ? fmt::format("an axis is one path with dots and its values: write {}.{}: [...]",
+                                member.key, member.value.members.front().key)
+                  : fmt::format("{} needs a list of values, at least one", member.key));
     }
     return axes;
   }

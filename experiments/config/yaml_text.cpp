@@ -4,6 +4,7 @@
 #include <yaml-cpp/parser.h>
 
 #include <algorithm>
+#include <optional>
 #include <sstream>
 
 #include "experiments/config/document.hpp"
@@ -11,29 +12,6 @@
 
 namespace modcal {
 namespace {
-
-// Byte behind the closing quote of the text that begins at `start`; npos where it is not closed.
-std::size_t end_of_quoted(std::string_view text, std::size_t start) {
-  const char quote = text[start];
-  for (std::size_t i = start + 1; i < text.size(); ++i) {
-    if (quote == '"' && text[i] == '\\') {
-      ++i;
-    } else if (text[i] == quote) {
-      if (quote == '"' || i + 1 >= text.size() || text[i + 1] != quote) return i + 1;
-      ++i;
-    }
-  }
-  return std::string_view::npos;
-}
-
-// Where every line begins.
-std::vector<std::size_t> line_starts(std::string_view text) {
-  std::vector<std::size_t> starts = {0};
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text[i] == '\n') starts.push_back(i + 1);
-  }
-  return starts;
-}
 
 SourcePosition position_of(const YAML::Mark& mark) {
   if (mark.is_null()) return {};
@@ -110,6 +88,10 @@ class TreeBuilder final : public YAML::EventHandler {
     SourcePosition key_position;
   };
 
+  static bool kind_is_nothing(const YamlNode& node) {
+    return node.kind == YamlNode::Kind::kScalar && node.text.empty() && !node.quoted;
+  }
+
   void refuse(const YAML::Mark& mark, std::string text) {
     document_.mistakes.push_back({position_of(mark), std::move(text)});
   }
@@ -176,6 +158,8 @@ class TreeBuilder final : public YAML::EventHandler {
 
   void add_member(Level& level, YamlNode node) {
     level.has_key = false;
+    // yaml-cpp puts what is not there at the next word, in another line.
+    if (kind_is_nothing(node)) node.position = level.key_position;
     for (const YamlNode::Member& member : level.node.members) {
       if (member.key != level.key) continue;
       document_.mistakes.push_back(
@@ -229,6 +213,15 @@ std::string explain(const std::string& message) {
 Mistake syntax_mistake(const YAML::ParserException& error, const TreeBuilder& builder,
                        const std::string& text) {
   const YamlNode* inner = builder.innermost();
+  if (error.msg == YAML::ErrorMsg::MAP_VALUE && !error.mark.is_null()) {
+    if (auto above = mistake_above(text, position_of(error.mark).line)) return *std::move(above);
+  }
+  const bool in_flow =
+      error.msg == YAML::ErrorMsg::END_OF_SEQ_FLOW || error.msg == YAML::ErrorMsg::END_OF_MAP_FLOW;
+  if (inner != nullptr && in_flow && !error.mark.is_null() && is_closed(text, inner->position)) {
+    return {position_of(error.mark),
+            "a \",\" is missing before this: entries between brackets are separated by commas"};
+  }
   if (inner != nullptr && error.msg == YAML::ErrorMsg::END_OF_SEQ_FLOW) {
     return {inner->position, "this \"[\" is not closed: add \"]\" behind its last item"};
   }

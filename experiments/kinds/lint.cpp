@@ -11,6 +11,22 @@ bool is_known(const StringModel& string) {
 
 namespace {
 
+// Transverse waves of a string run at the root of its stress over its density: 650 m/s at the
+// strength of the best steel wire, and no string that sounds is slower than 1 m/s.
+void lint_speed(const std::string& path, const StringModel& string,
+                std::vector<Finding>& findings) {
+  constexpr double kSlowest = 1.0, kFastest = 5000.0;  // [m/s]
+  if (!is_known(string)) return;
+  const double speed = 2.0 * string.length * string.fundamental;
+  if (speed >= kSlowest && speed <= kFastest) return;
+  findings.push_back({path + ".length",
+                      fmt::format("length {:g} m and fundamental {:g} Hz make waves of {:.3g} m/s, "
+                                  "which no string carries: check the units, a bare number is in m "
+                                  "or Hz",
+                                  string.length, string.fundamental, speed),
+                      false});
+}
+
 void lint_string(const std::string& path, const StringModel& string, double position,
                  const std::string& bow_path, std::vector<Finding>& findings) {
   if (!is_known(string)) return;
@@ -42,6 +58,16 @@ void lint_fit(const Scene& scene, const Choice<Simulator>& simulator,
   for (const SceneRefusal& refusal : simulator.make()->refusals(scene)) {
     add_finding(findings, "scene." + refusal.key, "{}", refusal.reason);
   }
+}
+
+// What a simulator of fixed steps refuses once it knows the scene's response to one of them.
+void lint_step(const Scene& scene, const Choice<Simulator>& simulator, double sample_rate,
+               std::vector<Finding>& findings) {
+  const auto made = simulator.make();
+  if (!is_known(scene.string) || !std::isfinite(made->longest_step())) return;
+  Scene begin = scene;
+  begin.duration = std::min(scene.duration, 2.0 / sample_rate);
+  lint_making(findings, "simulator.time_step", [&] { made->simulate(begin, sample_rate, {}); });
 }
 
 void lint_decay(const Scene& scene, std::vector<Finding>& findings) {
@@ -90,6 +116,8 @@ std::vector<Finding> lint_scene(const Scene& scene, const Choice<Simulator>& sim
   if (findings.size() == before) lint_fit(scene, simulator, findings);
   lint_making(findings, "scene.duration",
               [&] { sample_count(scene.duration, measurement.sample_rate); });
+  if (findings.size() == before) lint_step(scene, simulator, measurement.sample_rate, findings);
+  lint_speed("scene.string", scene.string, findings);
   return findings;
 }
 
@@ -104,6 +132,7 @@ std::vector<Finding> lint_observation(const ObservationOptions& options) {
     return findings;
   }
   lint_string("string", options.string.before_reading(), options.contact.position, "bow", findings);
+  lint_speed("string", options.string, findings);
   return findings;
 }
 
@@ -190,31 +219,36 @@ std::vector<Finding> lint_figures(const std::vector<FigureOptions>& figures,
   std::vector<Finding> findings;
   if (!std::isnan(duration)) findings = lint_figure_windows(figures, duration);
   std::set<std::string> ids;
-  for (const FigureOptions& figure : figures) {
+  for (std::size_t i = 0; i < figures.size(); ++i) {
+    const FigureOptions& figure = figures[i];
+    const std::string place = fmt::format("figures.{}", i);
     if (!report::is_file_stem(figure.id)) {
-      add_finding(findings, "figures",
+      add_finding(findings, place,
                   "\"{}\" cannot name a figure's files: use letters, "
                   "digits, - and _",
                   figure.id);
     }
     if (!ids.insert(figure.id).second) {
-      add_finding(findings, "figures", "two figures have the id \"{}\"", figure.id);
+      add_finding(findings, place + ".id", "two figures have the id \"{}\": give each its own",
+                  figure.id);
     }
     if (figure.quantities.empty()) {
-      add_finding(findings, "figures", "figure {} has no quantities", figure.id);
+      add_finding(findings, place, "figure {} has no quantities: name one, or leave the key out",
+                  figure.id);
     }
     const bool identified =
         std::find(contents.begin(), contents.end(), "spectra") != contents.end();
     for (const std::string& name : figure.quantities) {
       if (!identified || (name != "R1" && name != "R2")) continue;
-      add_finding(findings, "figures",
+      add_finding(findings, place,
                   "figure {} draws {}, which is measured, not "
                   "identified: use y, v or f_c",
                   figure.id, name);
     }
     if (std::find(contents.begin(), contents.end(), figure.content) == contents.end()) {
-      add_finding(findings, "figures", "figure {}: this kind of experiment has no {}", figure.id,
-                  figure.content);
+      add_finding(findings, place + ".content",
+                  "figure {}: this kind of experiment has no {}; it has {}", figure.id,
+                  figure.content, fmt::join(contents, ", "));
     }
   }
   return findings;

@@ -61,6 +61,10 @@ std::string remedy_of(EndRelation relation, const ObservationOptions& options,
 
 void require_one_string(const ObservationOptions& options, const RecordedSignals& signals) {
   const RecordOptions& record = options.record;
+  MODCAL_REQUIRE(signals.sample_rate > 2.0 * options.string.fundamental,
+                 "{}: a sample rate of {:g} Hz does not show a string of f0 = {:g} Hz: check the "
+                 "units of the rate or of the time column (a bare number is in Hz or s), and f0",
+                 record.file, signals.sample_rate, options.string.fundamental);
   const double duration = static_cast<double>(signals.size()) / signals.sample_rate;
   MODCAL_REQUIRE(duration * options.string.fundamental >= 2.0,
                  "{}: {} samples at {:g} Hz are {:.3g} s, less than two periods of the string of "
@@ -82,7 +86,7 @@ void require_one_string(const ObservationOptions& options, const RecordedSignals
   MODCAL_REQUIRE(best == EndRelation::kString, "{} {}", pair, remedy_of(best, options, fit));
   MODCAL_REQUIRE(fit.explained(),
                  "{} are not those of one string with f0 within 3 % of {:g} Hz and the contact "
-                 "within 2 % of L of {:g} mm: the best, with f0 = {:.5g} Hz, leaves {:.2g} % of "
+                 "within 2 % of L of {:g} mm: the best, with f0 = {:.5g} Hz, leaves {:.3g} % of "
                  "their power unexplained; check channels, sample rate, f0 and bow.position",
                  pair, options.string.fundamental, 1e3 * options.contact.position, fit.fundamental,
                  100.0 * fit.unexplained);
@@ -102,6 +106,17 @@ void require_told_fundamental(const ObservationOptions& options, const Observati
       relations_of(options, *observation.reaction(End::kLeft), *observation.reaction(End::kRight))
           .fundamental;
   const double difference = told / options.string.fundamental - 1.0;
+  if (std::abs(difference) < 3e-3) return;
+  const std::optional<ToldString> alone = told_string(observation);
+  const double contact = options.contact.position / options.string.length;
+  if (alone && std::abs(alone->fundamental / options.string.fundamental - 1.0) < 3e-3) {
+    throw_invalid_input(
+        "{}: the reactions are those of a string with the f0 stated, but with the contact at "
+        "{:.4g} "
+        "of its length, {:.4g} mm, and not at {:.4g}: state bow.position, or calibrate the string "
+        "first (kind: calibrate)",
+        options.record.file, alone->contact, 1e3 * alone->contact * options.string.length, contact);
+  }
   // Told to 0.23 % where B is stated 20 % wrong.
   MODCAL_REQUIRE(std::abs(difference) < 3e-3,
                  "{}: the reactions are those of a string with f0 near {:.5g} Hz, {:+.2g} % from "

@@ -43,7 +43,13 @@ std::string nearest_name(std::string_view text, const std::vector<std::string>& 
       best = name;
     }
   }
-  return best;
+  if (!best.empty() || text.size() < 4) return best;
+  const auto holds_text = [text](const std::string& name) {
+    return std::search(name.begin(), name.end(), text.begin(), text.end(), same_letter) !=
+           name.end();
+  };
+  const auto found = std::find_if(names.begin(), names.end(), holds_text);
+  return found != names.end() ? *found : best;
 }
 
 }  // namespace modcal

@@ -32,8 +32,8 @@ std::vector<std::string_view> choices_of(const std::array<std::string_view, kNam
 // "Did you mean …?"
 
 /// The name with the smallest edit distance (Damerau, 1964: a swap of neighbors counts once;
-/// letters' case ignored) from `text`; empty where even that one differs in more than a third of
-/// the letters (but 1 is always allowed).
+/// letters' case ignored) from `text`; where even that one differs in more than a third of the
+/// letters (but 1 is always allowed), the first name that holds the text; empty where none does.
 std::string nearest_name(std::string_view text, const std::vector<std::string>& names);
 
 }  // namespace modcal

@@ -75,6 +75,7 @@ class CsvReader final : public CsvHandler {
   void choose_columns();
   void settle_sample_rate();
   void use_time_axis(double stated);
+  void refuse_hidden_row(std::string_view text);
   void report_ragged_row(std::size_t fields);
   void report_sample(std::size_t index, NumberKind kind, std::string_view text);
 
@@ -91,7 +92,23 @@ class CsvReader final : public CsvHandler {
   std::size_t commented_rate_line_ = 0;
 };
 
+// A spreadsheet's #DIV/0! begins a row as "#" begins a comment: its sample would be lost.
+void CsvReader::refuse_hidden_row(std::string_view text) {
+  const std::size_t first = text.find(file_.separator());
+  const auto separators = std::count(text.begin(), text.end(), file_.separator());
+  if (first == std::string_view::npos || separators + 1 != std::ssize(columns_)) return;
+  const std::string_view second =
+      text.substr(first + 1, text.find(file_.separator(), first + 1) - first - 1);
+  if (parse_number(second).kind != NumberKind::kNumber) return;
+  record_.add_problem(
+      fmt::format("{}:{}:1: \"#{}\" begins a row of samples, which is left out as a comment; write "
+                  "its number, or "
+                  "crop the record before it",
+                  file_.name(), file_.line(), text.substr(0, first)));
+}
+
 void CsvReader::comment(std::string_view text) {
+  if (rows_ > 0) refuse_hidden_row(text);
   const std::size_t colon = text.find(':');
   if (colon == std::string_view::npos) return;
   std::string key = lower_case(parse_heading(text.substr(0, colon)).name);

@@ -106,9 +106,11 @@ SndfileHandle open_wav(const std::string& name) {
   MODCAL_REQUIRE(std::filesystem::exists(name), "{}: there is no such file; check the path", name);
   MODCAL_REQUIRE(std::filesystem::file_size(name) > 0, "{}: the file is empty", name);
   SndfileHandle file(name);
+  std::string reason = file.strError();
+  reason.erase(reason.find_last_not_of(". ") + 1);
   MODCAL_REQUIRE(file.error() == SF_ERR_NO_ERROR,
-                 "{}: cannot be read as an audio file: {} for a CSV file, state format: csv", name,
-                 file.strError());
+                 "{}: cannot be read as an audio file ({}); for a CSV file, state format: csv",
+                 name, reason);
   MODCAL_REQUIRE(file.frames() > 0, "{}: the file has {} channels but no samples", name,
                  file.channels());
   return file;

@@ -154,6 +154,16 @@ std::vector<Finding> CalibrateOptions::lint() const {
   const std::size_t strokes = 1 + further.contacts.size() + further.files.size();
   append(findings, lint_priors("calibration.parameters", calibration.parameters.unknowns,
                                inversion.observation.string_model(), strokes + plucks.size()));
+  // How many there are, a record may have to tell.
+  if (!inversion.observation.string_model().modes_of_record()) {
+    for (const std::int64_t mode : calibration.parameters.modes) {
+      if (mode <= string.modes) continue;
+      add_finding(findings, "calibration.parameters.modes",
+                  "mode {} is free, but the string has {} modes: leave it out, or raise "
+                  "string.modes",
+                  mode, string.modes);
+    }
+  }
   lint_making(findings, "calibration.parameters", [&] {
     const UnknownsOptions& unknowns = calibration.parameters.unknowns;
     unknowns.require_found_by(calibration.optimizer.selected(), calibration.by_schedule());

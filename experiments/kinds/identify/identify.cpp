@@ -79,17 +79,31 @@ void IdentifyOptions::visit(OptionVisitor& visitor) {
 std::vector<Finding> IdentifyOptions::lint() const {
   std::vector<Finding> findings = lint_scene(truth.scene, truth.simulator, measurement);
   if (truth.scene.start.selected() == "rest") {
-    add_finding(findings, "scene.initial", "a string at rest has no free decay: pluck it");
+    add_finding(
+        findings, "scene.initial",
+        "a string at rest has no free decay: pluck it (scene.initial: {{type: pluck, ...}})");
   }
   const double rate = measurement.sample_rate;
   if (!(identification.highest_frequency < 0.5 * rate)) {
     add_finding(findings, "identification.highest_frequency",
                 "{:g} Hz lie above half the sample rate {:g} Hz", identification.highest_frequency,
                 rate);
+  } else if (!(identification.highest_frequency > truth.scene.string.fundamental)) {
+    add_finding(findings, "identification.highest_frequency",
+                "no mode lies below {:g} Hz: the fundamental is {:g} Hz",
+                identification.highest_frequency, truth.scene.string.fundamental);
   } else if (findings.empty()) {
     lint_making(findings, "scene.duration", [&] {
       require_decay_length(sample_count(truth.scene.duration, rate), rate, identification);
     });
+  }
+  if (truth.scene.bow.normal_force != 0.0) {
+    findings.push_back(
+        {"scene.bow.normal_force",
+         fmt::format("a bow that presses with {:g} N holds the string, whose decay is "
+                     "then not free: state normal_force: 0 N",
+                     truth.scene.bow.normal_force),
+         false});
   }
   return findings;
 }

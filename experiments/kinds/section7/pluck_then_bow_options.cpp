@@ -57,6 +57,13 @@ std::vector<Finding> PluckThenBowOptions::lint() const {
   lint_making(findings, "inversion", [&] { InversionRecipe recipe(inversion); });
   lint_making(findings, "refinement.objective", [&] { refinement.objective.make(); });
   lint_making(findings, "refinement.optimizer", [&] { refinement.optimizer.make(); });
+  const std::int64_t modes = truth.scene.string.modes;
+  if (!(refinement.first_modes <= refinement.law_modes && refinement.law_modes <= modes)) {
+    add_finding(findings, "refinement",
+                "first_modes is {} and law_modes {}: the law goes through modes that were refined, "
+                "so that first_modes <= law_modes <= {}, the modes of the string",
+                refinement.first_modes, refinement.law_modes, modes);
+  }
   lint_making(findings, "contact.objective", [&] { contact.objective.make(); });
   lint_making(findings, "pluck.initial", [&] {
     const Scene test = pluck_test(pluck.identification.method).truth.scene;
@@ -64,7 +71,9 @@ std::vector<Finding> PluckThenBowOptions::lint() const {
     if (is_known(test.string)) initial_state(test, make_modal_basis(test.string));
   });
   if (pluck.start.selected() == "rest") {
-    add_finding(findings, "pluck.initial", "a string at rest has no free decay: pluck it");
+    add_finding(
+        findings, "pluck.initial",
+        "a string at rest has no free decay: pluck it (pluck.initial: {{type: pluck, ...}})");
   }
   lint_making(findings, "pluck.duration", [&] {
     const double rate = measurement.sample_rate;
@@ -77,7 +86,10 @@ std::vector<Finding> PluckThenBowOptions::lint() const {
   }
   if (!(contact.start - contact.range > 0.0 &&
         contact.start + contact.range < truth.scene.string.length)) {
-    add_finding(findings, "contact.range", "the search leaves the string: narrow it");
+    add_finding(findings, "contact.range",
+                "the search from {:g} m to {:g} m leaves the string of {:g} m: narrow it",
+                contact.start - contact.range, contact.start + contact.range,
+                truth.scene.string.length);
   }
   return findings;
 }

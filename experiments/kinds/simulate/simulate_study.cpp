@@ -28,7 +28,9 @@ std::vector<Finding> SimulateOptions::lint() const {
   for (const FigureOptions& figure : figures) {
     for (const std::string& quantity : figure.quantities) {
       if (std::find(outputs.begin(), outputs.end(), quantity) != outputs.end()) continue;
-      add_finding(findings, "outputs", "figure {} draws {}, which is not among the outputs",
+      add_finding(findings, "outputs",
+                  "figure {} draws {}, which is not among the outputs: "
+                  "add it there, or draw another one",
                   figure.id, quantity);
     }
   }

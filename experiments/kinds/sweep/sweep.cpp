@@ -180,6 +180,15 @@ std::vector<Finding> SweepExperiment::lint() const {
   return findings;
 }
 
+std::vector<Finding> SweepExperiment::lint_records(const std::filesystem::path& folder) const {
+  std::vector<Finding> findings = AxisExperiment::lint_records(folder);
+  if (options_.list.has_comparison) {
+    lint_making(findings, "compare_with.table",
+                [&] { read_published(folder / options_.list.comparison.table); });
+  }
+  return findings;
+}
+
 std::string SweepExperiment::run_task(std::size_t task, const StudyContext& context) const {
   return report::json_line(attempted([&] { return run_cell(options_.cells[task], context); }));
 }

@@ -106,6 +106,7 @@ class SweepExperiment final : public AxisExperiment<InvertOptions, SweepOptions>
  public:
   using AxisExperiment::AxisExperiment;
   std::vector<Finding> lint() const override;
+  std::vector<Finding> lint_records(const std::filesystem::path& folder) const override;
   std::string run_task(std::size_t task, const StudyContext& context) const override;
   std::string loss_name() const override { return "mean relative rms error of the force"; }
   std::optional<double> loss_in(const std::string& outcome) const override;

@@ -68,14 +68,16 @@ INSTANTIATE_TEST_SUITE_P(
              "    stop: never\n"
              "          ^\n"},
         Case{"decay:\n",
-             "a.yaml:4:1: error: decay: there is no value: a number in s/m, such as 5 s/m, is "
-             "needed\n"},
+             "a.yaml:3:1: error: decay: there is no value: a number in s/m, such as 5 s/m, is "
+             "needed\n"
+             "    decay:\n"
+             "    ^\n"},
         Case{"decay: {a: 1}\n",
              "a.yaml:3:8: error: decay must be a number in s/m, not a map\n"
              "    decay: {a: 1}\n"
              "           ^\n"},
         Case{"decay: \"5\"\n",
-             "a.yaml:3:8: error: decay must be a number in s/m, not a quoted text\n"
+             "a.yaml:3:8: error: decay must be a number in s/m, not a quoted text: leave out the quotes\n"
              "    decay: \"5\"\n"
              "           ^\n"},
         Case{"remove_mean: yes\n",

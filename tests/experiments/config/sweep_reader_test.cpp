@@ -75,7 +75,7 @@ TEST(SweepReader, NamesMistakesWithTheirPlaces) {
       cells("product: {a: [1]}\nexclude: [{a: 1.0}]"),
       ElementsAre("2:11: no cell agrees with this: write the values as they stand on the axes"));
   EXPECT_THAT(cells("product: {a: [1]}\nexclude: [{a: 1}]"),
-              ElementsAre("1:1: the sweep has no cells left"));
+              ElementsAre("1:1: the sweep has no cells left: exclude fewer of them"));
   EXPECT_THAT(cells("produkt: {a: [1]}"),
               ElementsAre("1:1: unknown key \"produkt\"; known: product, zip, exclude, include"));
   EXPECT_THAT(cells("product: {a: 1}"),
