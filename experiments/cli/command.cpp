@@ -23,12 +23,6 @@
 namespace modcal {
 namespace {
 
-// A terminal that understands codes: it can clear a line and color a text.
-bool can_rewrite() {
-  const char* terminal = std::getenv("TERM");
-  return isatty(STDERR_FILENO) != 0 && terminal != nullptr && std::string_view(terminal) != "dumb";
-}
-
 std::atomic<bool> flag{false}, is_polled{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler sets it");
 
@@ -40,19 +34,6 @@ void on_signal(int number) {
   }
   flag.store(true, std::memory_order_relaxed);
   std::signal(number, SIG_DFL);
-}
-
-// Why standard output has not taken a text; 0: it has taken all.
-int output_error = 0;
-
-// Whether what was said has been taken; a command that succeeds without its answer does not.
-ExitCode confirmed(ExitCode code) {
-  errno = 0;
-  const bool taken = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
-  if (!taken && output_error == 0) output_error = errno != 0 ? errno : EIO;
-  if (output_error == 0) return code;
-  complain("error: standard output has not taken the answer: {}\n", std::strerror(output_error));
-  return code == ExitCode::kOk ? ExitCode::kOutputLost : code;
 }
 
 ExitCode refused(ExitCode code, std::string_view reason) {
@@ -95,30 +76,9 @@ ExitCode outcome_of(const Action& action) {
   }
 }
 
-// Marks a word that begins a line or follows the place of a mistake, "a.yaml:3:7: error: …".
-void mark(std::string& text, std::string_view word, std::string_view code) {
-  for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at)) {
-    const std::string_view before(text.data(), at);
-    const bool begins = before.empty() || before.ends_with('\n') || before.ends_with(": ");
-    const std::string marked = begins ? fmt::format("{}{}\033[0m", code, word) : std::string(word);
-    text.replace(at, word.size(), marked);
-    at += marked.size();
-  }
-}
-
 }  // namespace
 
-ExitCode guarded(const Action& action) { return confirmed(outcome_of(action)); }
-
-void say_text(std::string_view text) {
-  const std::string shown = printable(text);
-  errno = 0;
-  if (std::fwrite(shown.data(), 1, shown.size(), stdout) < shown.size() && output_error == 0) {
-    output_error = errno;
-  }
-}
-
-void complain_text(std::string_view text) { std::fputs(colored(printable(text)).c_str(), stderr); }
+ExitCode guarded(const Action& action) { return finish_answer(outcome_of(action)); }
 
 bool prepare_streams(int argc, char** argv) {
   if (argc > 1) request() = fmt::format("modcal {}", fmt::join(argv + 1, argv + argc, " "));
@@ -149,14 +109,21 @@ std::string shell_word(const std::string& text) {
   return report::quoted(text, '\'', "'\\''");
 }
 
+void declare_style(CLI::App& command) {
+  command.add_flag("--json", answer_style().json,
+                   "the answer, or the error, as one JSON object on standard output");
+  command.add_flag("-q,--quiet", answer_style().quiet, "no progress, no remarks");
+}
+
 void ExperimentArguments::declare_file(CLI::App& command) {
-  command.add_option("file", file, "YAML file")->required();
+  command.add_option("file", file, "YAML file")->required()->check(complaint_about_name);
   command.add_option("--set", assignments, "key.path=value, overrides the file")
       ->allow_extra_args(false);
   command
       .add_option("--memory", memory,
                   "most memory that a run may need, such as 8GB; default that of the machine")
-      ->transform(CLI::AsSizeValue(true));
+      ->transform(CLI::AsSizeValue(true))
+      ->transform(require_size);  // which is asked first
 }
 
 void ExperimentArguments::declare_out(CLI::App& command, const std::string& seen_by) {
@@ -193,50 +160,22 @@ std::optional<LoadedExperiment> load_and_print_mistakes(const std::filesystem::p
                                                         const Means& means) {
   std::optional<LoadedExperiment> loaded = load_experiment(file, assignments, means);
   complain_text(format_mistakes(loaded->document, loaded->mistakes));
-  if (loaded->has_errors()) loaded.reset();
-  return loaded;
+  if (!loaded->has_errors()) return loaded;
+  add_to_json("mistakes", mistakes_json(*loaded));
+  return std::nullopt;
 }
 
-std::string json_text(const nlohmann::ordered_json& object) {
-  return object.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
-}
-
-void print_json(const nlohmann::ordered_json& object) { say_text(json_text(object)); }
-
-std::string colored(const std::string& text) {
-  const char* refused = std::getenv("NO_COLOR");
-  if (!can_rewrite() || (refused != nullptr && *refused != '\0')) return text;
-  std::string marked = text;
-  mark(marked, "error:", "\033[1;31m");
-  mark(marked, "warning:", "\033[1;33m");
-  // The caret below a mistake's line stands alone on its own.
-  for (std::size_t at = marked.find("^\n"); at != std::string::npos; at = marked.find("^\n", at)) {
-    const std::size_t start = marked.rfind('\n', at) + 1;  // npos + 1 is 0
-    const bool alone = start > 0 && marked.find_first_not_of(' ', start) == at;
-    if (alone) marked.replace(at, 1, "\033[1m^\033[0m");
-    at += alone ? 9 : 1;
+nlohmann::ordered_json mistakes_json(const LoadedExperiment& loaded) {
+  auto list = nlohmann::ordered_json::array();
+  for (const Mistake& mistake : loaded.mistakes) {
+    const SourcePosition& at = mistake.position;
+    list.push_back({{"severity", mistake.warning ? "warning" : "error"},
+                    {"place", at.origin.empty() ? loaded.document.file : at.origin},
+                    {"line", at.line},
+                    {"column", at.column},
+                    {"text", mistake.text}});
   }
-  return marked;
-}
-
-Progress::Progress(std::string what)
-    : what_(printable(what)), terminal_(can_rewrite()), start_(Clock::now()), last_(start_) {}
-
-Progress::~Progress() {
-  if (shown_ && terminal_) std::fputs("\r\033[K", stderr);
-}
-
-void Progress::report(double share) {
-  const std::lock_guard lock(mutex_);
-  const Clock::time_point now = Clock::now();
-  const auto pause = terminal_ ? std::chrono::milliseconds(100) : std::chrono::milliseconds(5000);
-  if (now - last_ < pause || share <= 0.0) return;
-  last_ = now;
-  const double elapsed = std::chrono::duration<double>(now - start_).count();
-  const std::string line = fmt::format("{}: {:.0f} %, {:.0f} s left", what_, 100.0 * share,
-                                       elapsed * (1.0 - share) / share);
-  std::fputs((terminal_ ? "\r\033[K" + line : line + "\n").c_str(), stderr);
-  shown_ = true;
+  return list;
 }
 
 void catch_interrupts() {

@@ -26,9 +26,22 @@ enum class ExitCode : int {
   kInterrupted = 130,
 };
 
+/// In words, for help and errors.
+std::string_view meaning_of(ExitCode code);
+
+/// What --json and --quiet ask of all that is said.
+struct AnswerStyle {
+  bool json = false;   ///< one object on standard output, an error, too
+  bool quiet = false;  ///< no progress and no remarks
+};
+AnswerStyle& answer_style();
+
 using Action = std::function<ExitCode()>;
 /// Called with the chosen command's action while the command line is being parsed.
 using Chosen = std::function<void(Action)>;
+
+/// --json and --quiet.
+void declare_style(CLI::App& command);
 
 /// A command of the line: `declare` says what it reads, `act` what it does with that.
 template <typename Arguments>
@@ -38,6 +51,7 @@ void add_command(CLI::App& app, const Chosen& chosen, const char* name, const ch
   CLI::App* command = app.add_subcommand(name, meaning);
   auto arguments = std::make_shared<Arguments>();
   declare(*command, *arguments);
+  declare_style(*command);
   command->callback([=] { chosen([=] { return act(*arguments); }); });
 }
 
@@ -49,15 +63,22 @@ void add_new_command(CLI::App& app, const Chosen& chosen);
 void add_reproduce_command(CLI::App& app, const Chosen& chosen);
 void add_stored_commands(CLI::App& app, const Chosen& chosen);
 void add_submit_command(CLI::App& app, const Chosen& chosen);
+/// After all others: they are what it speaks of.
+void add_tree_commands(CLI::App& app, const Chosen& chosen);
+
+/// "modcal run FILE [OPTIONS]".
+std::string usage_of(const CLI::App& app, const CLI::App& command);
 
 /// Says what the parser of the command line stopped at: help, version, a mistake. An option that
 /// the chosen command does not have is what the mistake is about, whatever else is missing.
 ExitCode answer_of(const CLI::App& app, const CLI::ParseError& error);
 
 /// What `action` returns; an exception becomes one message on stderr and its exit code. A signal
-/// that comes before interrupt_token() is called ends the process at once. Where standard output
-/// has not taken what was said, that is an error, too.
+/// that comes before interrupt_token() is called ends the process at once.
 ExitCode guarded(const Action& action);
+/// Writes what --json asks for. Where standard output has not taken what was said, that is an
+/// error, too.
+ExitCode finish_answer(ExitCode code);
 
 /// Whether the first word is no command, after a message. CLI11 would say that one is missing.
 bool is_unknown_command(const CLI::App& app, int argc, char** argv);
@@ -95,6 +116,9 @@ struct ExperimentArguments {
 /// an empty one.
 std::string complaint_about_name(const std::string& name);
 
+/// The text where it is a size such as 8GB. Throws CLI::ValidationError.
+std::string require_size(std::string text);
+
 /// --threads with its range.
 void declare_threads(CLI::App& command, int& threads, const char* meaning);
 
@@ -103,9 +127,14 @@ std::optional<LoadedExperiment> load_and_print_mistakes(
     const std::filesystem::path& file, const std::vector<std::string>& assignments = {},
     const Means& means = {});
 
+/// Errors and warnings of an experiment with their places.
+nlohmann::ordered_json mistakes_json(const LoadedExperiment& loaded);
+
 /// Lines of a file or an answer; text that is not UTF-8 is mended.
 std::string json_text(const nlohmann::ordered_json& object);
 void print_json(const nlohmann::ordered_json& object);
+/// One more value of what --json answers; without --json nothing.
+void add_to_json(const std::string& key, const nlohmann::ordered_json& value);
 
 /// Folder of results that a file is run into by default: its name without its extension.
 std::string stem_of(const std::filesystem::path& file);
@@ -113,7 +142,7 @@ std::string stem_of(const std::filesystem::path& file);
 // What a command says. Control characters of foreign names are written out (printable()). Where
 // nobody listens the work goes on.
 
-/// On standard output.
+/// On standard output; with --json a part of its text.
 void say_text(std::string_view text);
 template <typename... Args>
 void say(fmt::format_string<Args...> text, Args&&... args) {
@@ -124,6 +153,13 @@ void complain_text(std::string_view text);
 template <typename... Args>
 void complain(fmt::format_string<Args...> text, Args&&... args) {
   complain_text(fmt::format(text, std::forward<Args>(args)...));
+}
+
+/// On standard error, what is neither an error nor a warning; not with --quiet.
+void remark_text(std::string_view text);
+template <typename... Args>
+void remark(fmt::format_string<Args...> text, Args&&... args) {
+  remark_text(fmt::format(text, std::forward<Args>(args)...));
 }
 
 /// Before anything else: standard streams that were closed are opened to nothing, so that no file

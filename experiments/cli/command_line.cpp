@@ -1,6 +1,7 @@
-// What is wrong with the words of a command line.
+// What is wrong with the words of a command line, and what a command takes.
 #include <algorithm>
 #include <cctype>
+#include <regex>
 #include <sstream>
 
 #include "experiments/cli/command.hpp"
@@ -9,12 +10,27 @@
 namespace modcal {
 namespace {
 
+const CLI::App& chosen_of(const CLI::App& app) {
+  return app.get_subcommands().empty() ? app : *app.get_subcommands().front();
+}
+
+std::string name_of(const CLI::App& app, const CLI::App& command) {
+  return &command == &app ? "modcal" : "modcal " + command.get_name();
+}
+
+// A positional as the usage has it.
+std::string upper_case(std::string text) {
+  if (text.starts_with('-')) return text;
+  for (char& letter : text) {
+    letter = static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
+  }
+  return text;
+}
+
 // About the first word left over that looks like an option; empty: there is none.
 std::string unknown_option(const CLI::App& app) {
   std::vector<std::string> names;
-  const CLI::App* command = &app;
-  if (!app.get_subcommands().empty()) command = app.get_subcommands().front();
-  for (const CLI::Option* option : command->get_options()) {
+  for (const CLI::Option* option : chosen_of(app).get_options()) {
     if (!option->get_positional()) names.push_back(option->get_name());
   }
   for (const std::string& word : app.remaining(true)) {
@@ -27,23 +43,62 @@ std::string unknown_option(const CLI::App& app) {
   return {};
 }
 
+// What CLI11 says, with what to do about it.
+std::string mistake_of(const CLI::App& app, const CLI::ParseError& error) {
+  const CLI::App& command = chosen_of(app);
+  const std::string name = name_of(app, command), usage = usage_of(app, command);
+  const std::string text = error.what();
+  if (error.get_name() == "RequiredError" && &command != &app) {
+    return fmt::format("{} is missing: {}", upper_case(text.substr(0, text.find(' '))), usage);
+  }
+  std::smatch match;
+  if (std::regex_match(text, match, std::regex("The following .* not expected: (.*)"))) {
+    return fmt::format("{} does not take \"{}\": {}", name, match.str(1), usage);
+  }
+  if (std::regex_match(text, match, std::regex("(--?[^:]+): .* missing"))) {
+    return fmt::format("{} needs a value: {}", match.str(1), usage);
+  }
+  if (std::regex_match(text, match, std::regex("Could not convert: (\\S+) = (.*)"))) {
+    return fmt::format("{}: \"{}\" is not what it takes: see {} --help", match.str(1), match.str(2),
+                       name);
+  }
+  return fmt::format("{}; see {} --help", text, name);
+}
+
 }  // namespace
 
-ExitCode answer_of(const CLI::App& app, const CLI::ParseError& error) {
-  const std::string unknown = error.get_exit_code() == 0 ? std::string() : unknown_option(app);
-  if (!unknown.empty()) {
-    complain("error: {}\n", unknown);
-    return ExitCode::kUsage;
+std::string usage_of(const CLI::App& app, const CLI::App& command) {
+  std::string text = name_of(app, command);
+  if (&command == &app) return text + " COMMAND ...";
+  for (const CLI::Option* option : command.get_options()) {
+    if (!option->get_positional() && !option->get_required()) continue;
+    const std::string name = option->get_name();
+    const std::string word = option->get_positional() ? upper_case(name) : name;
+    text += option->get_required() ? " " + word : " [" + word + "]";
   }
-  std::ostringstream out, err;
-  const int code = app.exit(error, out, err);
-  say_text(out.str());
-  complain_text(err.str());
-  return code == 0 ? ExitCode::kOk : ExitCode::kUsage;
+  return text + " [OPTIONS]";
+}
+
+ExitCode answer_of(const CLI::App& app, const CLI::ParseError& error) {
+  if (error.get_exit_code() == 0) {
+    std::ostringstream out, unused;
+    app.exit(error, out, unused);
+    say_text(out.str());
+    return ExitCode::kOk;
+  }
+  const std::string unknown = unknown_option(app);
+  complain("error: {}\n", unknown.empty() ? mistake_of(app, error) : unknown);
+  return ExitCode::kUsage;
 }
 
 bool is_unknown_command(const CLI::App& app, int argc, char** argv) {
-  if (argc < 2 || argv[1][0] == '-') return false;
+  if (argc < 2) return false;
+  const std::string first = argv[1];
+  const auto is_option_of_all = [&] {
+    const CLI::Option* option = app.get_option_no_throw(first.substr(0, first.find('=')));
+    return option != nullptr;
+  };
+  if (first.starts_with('-') && is_option_of_all()) return false;
   std::vector<std::string> names;
   for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
   const auto is_command = [&](const char* word) {
@@ -52,15 +107,24 @@ bool is_unknown_command(const CLI::App& app, int argc, char** argv) {
   if (is_command(argv[1])) return false;
   const auto later = std::find_if(argv + 2, argv + argc, is_command);
   if (later != argv + argc) {
-    complain("error: the command comes first: modcal {} {}\n", *later, shell_word(argv[1]));
+    complain("error: the command comes first: modcal {} {}\n", *later, shell_word(first));
+  } else if (first.starts_with('-')) {
+    return false;
   } else {
-    complain("error: unknown command \"{}\"{}\n", argv[1], suggestion(argv[1], names));
+    complain("error: unknown command \"{}\"{}\n", first, suggestion(first, names));
   }
   return true;
 }
 
 std::string complaint_about_name(const std::string& name) {
   return name.empty() ? "the name is empty: write one, or leave the option out" : "";
+}
+
+std::string require_size(std::string text) {
+  static const std::regex size("[0-9]+ ?([kmgtpe]i?)?b?", std::regex::icase);
+  if (std::regex_match(text, size)) return text;
+  throw CLI::ValidationError(
+      fmt::format("\"{}\" is no size: write one such as 8GB or 500MB", text));
 }
 
 }  // namespace modcal

@@ -14,7 +14,6 @@ namespace {
 
 struct FileArguments : ExperimentArguments {
   std::string shard = "1/1";
-  bool json = false;
 };
 
 std::string complaint_about_shard(const std::string& text) {
@@ -34,7 +33,6 @@ void declare_run(CLI::App& command, FileArguments& arguments) {
                   "K/N: part K of N of the task list; every part may run elsewhere")
       ->check(complaint_about_shard);
   declare_threads(command, arguments.threads, "number of threads; default all");
-  command.add_flag("--json", arguments.json, "summary as JSON");
 }
 
 ExitCode run(const FileArguments& arguments) {
@@ -43,47 +41,28 @@ ExitCode run(const FileArguments& arguments) {
   if (!loaded) return ExitCode::kInvalidInput;
   return run_one(*loaded, {.out = arguments.folder(),
                            .threads = arguments.threads,
-                           .json = arguments.json,
                            .command = arguments.command(),
                            .shard = parse_shard(arguments.shard)});
 }
 
-void declare_validate(CLI::App& command, FileArguments& arguments) {
-  arguments.declare_file(command);
-  command.add_flag("--json", arguments.json, "as JSON");
-}
-
-nlohmann::ordered_json mistakes_json(const LoadedExperiment& loaded) {
-  auto list = nlohmann::ordered_json::array();
-  for (const Mistake& mistake : loaded.mistakes) {
-    const SourcePosition& at = mistake.position;
-    list.push_back({{"severity", mistake.warning ? "warning" : "error"},
-                    {"place", at.origin.empty() ? loaded.document.file : at.origin},
-                    {"line", at.line},
-                    {"column", at.column},
-                    {"text", mistake.text}});
-  }
-  return list;
-}
+void declare_file(CLI::App& command, FileArguments& arguments) { arguments.declare_file(command); }
 
 ExitCode validate(const FileArguments& arguments) {
   LoadedExperiment loaded =
       load_experiment(arguments.file, arguments.assignments, arguments.means());
   check_records(loaded);
   const bool valid = !loaded.has_errors();
-  if (arguments.json) {
+  complain_text(format_mistakes(loaded.document, loaded.mistakes));
+  if (answer_style().json) {
     print_json({{"file", arguments.file},
                 {"valid", valid},
                 {"kind", loaded.kind},
                 {"mistakes", mistakes_json(loaded)}});
-  } else {
-    complain_text(format_mistakes(loaded.document, loaded.mistakes));
-    if (valid) say("{}: valid, kind {}\n", arguments.file, loaded.kind);
+  } else if (valid) {
+    say("{}: valid, kind {}\n", arguments.file, loaded.kind);
   }
   return valid ? ExitCode::kOk : ExitCode::kInvalidInput;
 }
-
-void declare_limit(CLI::App& command, FileArguments& arguments) { arguments.declare_file(command); }
 
 ExitCode limit(const FileArguments& arguments) {
   const auto loaded =
@@ -94,19 +73,26 @@ ExitCode limit(const FileArguments& arguments) {
                  "{} is no calibration: limits exist for the kinds calibrate and calibration_limit",
                  arguments.file);
   TruthCache truths;
-  say_text(limit_text(*question, truths));
+  if (answer_style().json) {
+    print_json(limit_json(*question, truths));
+  } else {
+    say_text(limit_text(*question, truths));
+  }
   return ExitCode::kOk;
 }
 
 struct InspectArguments {
   std::string file;
   InspectionOptions options;
-  bool json = false;
 };
 
 ExitCode print_inspection(const InspectArguments& arguments) {
   const InspectionReport report = inspect(arguments.file, arguments.options);
-  say_text(arguments.json ? json_text(json(report)) : text(report));
+  if (answer_style().json) {
+    print_json(json(report));
+  } else {
+    say_text(text(report));
+  }
   return report.problem_count == 0 ? ExitCode::kOk : ExitCode::kInvalidInput;
 }
 
@@ -115,7 +101,6 @@ void declare(CLI::App& command, InspectArguments& arguments) {
   command.add_option("--format", arguments.options.format, "auto, csv or wav");
   command.add_option("--sample-rate", arguments.options.sample_rate,
                      "[Hz], where the file has none");
-  command.add_flag("--json", arguments.json, "as JSON");
 }
 
 struct ReproduceArguments {
@@ -192,10 +177,10 @@ std::string shipped_configs() {
 void add_experiment_commands(CLI::App& app, const Chosen& chosen) {
   add_command(app, chosen, "run", "Run an experiment", declare_run, run);
   add_command(app, chosen, "validate",
-              "Check an experiment file and its records: every mistake at once", declare_validate,
+              "Check an experiment file and its records: every mistake at once", declare_file,
               validate);
   add_command(app, chosen, "limit", "Say how well a calibration can do, before any experiment",
-              declare_limit, limit);
+              declare_file, limit);
 }
 
 void add_inspect_command(CLI::App& app, const Chosen& chosen) {

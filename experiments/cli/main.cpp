@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cstdio>
+#include <string_view>
 
 #include "experiments/cli/command.hpp"
 #include "experiments/cli/runner.hpp"
@@ -6,15 +8,9 @@
 namespace modcal {
 namespace {
 
-int main_of(int argc, char** argv) {
-  if (!prepare_streams(argc, argv)) return static_cast<int>(ExitCode::kUsage);
-  CLI::App app(
-      "modcal: calibrates the modal model of a bowed string and identifies the friction "
-      "force between bow and string from the reactions at the string's ends");
-  app.set_version_flag("--version", version_text());
-  app.require_subcommand(1);
-  Action action;
-  const Chosen chosen = [&action](Action chosen_action) { action = std::move(chosen_action); };
+int refused(ExitCode code) { return static_cast<int>(finish_answer(code)); }
+
+void add_commands(CLI::App& app, const Chosen& chosen) {
   add_experiment_commands(app, chosen);
   add_plan_command(app, chosen);
   add_plugin_commands(app, chosen);
@@ -23,7 +19,26 @@ int main_of(int argc, char** argv) {
   add_reproduce_command(app, chosen);
   add_stored_commands(app, chosen);
   add_submit_command(app, chosen);
-  if (is_unknown_command(app, argc, argv)) return static_cast<int>(ExitCode::kUsage);
+  add_tree_commands(app, chosen);
+}
+
+int main_of(int argc, char** argv) {
+  // What stops before the command line is read is said as it asks for, too.
+  answer_style().json = std::find(argv, argv + argc, std::string_view("--json")) != argv + argc;
+  if (!prepare_streams(argc, argv)) return refused(ExitCode::kUsage);
+  CLI::App app(
+      "modcal: calibrates the modal model of a bowed string and identifies the friction "
+      "force between bow and string from the reactions at the string's ends",
+      "modcal");
+  app.set_version_flag("-V,--version", version_text());
+  app.require_subcommand(1);
+  Action action;
+  add_commands(app, [&action](Action chosen_action) { action = std::move(chosen_action); });
+  if (argc == 1) {
+    complain_text(app.help());
+    return refused(ExitCode::kUsage);
+  }
+  if (is_unknown_command(app, argc, argv)) return refused(ExitCode::kUsage);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

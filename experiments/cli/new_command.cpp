@@ -1,6 +1,8 @@
 // new: an experiment file to start from.
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "experiments/cli/command.hpp"
 #include "experiments/config/help.hpp"
 #include "experiments/config/reader.hpp"
@@ -87,6 +89,16 @@ ToldString told_by(const RecordOptions& record) {
                       .noise = {white_noise_rms(left), white_noise_rms(right)}});
 }
 
+double length_of(const NewArguments& arguments, const ToldString& told) {
+  const double length = stated(arguments.length, "--length", "m", kViolin);
+  constexpr double kFastest = 5000.0;  // waves, 2 L f0 [m/s]: ten times those of a string
+  MODCAL_REQUIRE(2.0 * length * told.fundamental < kFastest,
+                 "--length {} is {:g} m, too long for a string of {:.4g} Hz: write its unit, as in "
+                 "\"330 mm\"",
+                 arguments.length, length, told.fundamental);
+  return length;
+}
+
 std::string file_for_record(const NewArguments& arguments) {
   MODCAL_REQUIRE(arguments.kind == "invert" || arguments.kind == "calibrate",
                  "a record is read by the kinds invert and calibrate, not by {}: leave the record "
@@ -108,7 +120,7 @@ std::string file_for_record(const NewArguments& arguments) {
     told = turned;
     record = other;
   }
-  const double length = stated(arguments.length, "--length", "m", kViolin);
+  const double length = length_of(arguments, told);
   const double density = stated(arguments.linear_density, "--linear-density", "kg/m", 1e-3);
   const bool invert = arguments.kind == "invert";
   std::string text = fmt::format(
@@ -156,6 +168,7 @@ ExitCode write_new(const NewArguments& arguments) {
   MODCAL_REQUIRE(!std::filesystem::exists(arguments.out),
                  "{} exists and is not overwritten: name another file with --out", arguments.out);
   report::write_file_atomically(arguments.out, text);
+  add_to_json("file", arguments.out);
   say("{0}\nmodcal run {1}\n", arguments.out, shell_word(arguments.out));
   return ExitCode::kOk;
 }

@@ -11,9 +11,7 @@
 namespace modcal {
 namespace {
 
-struct PlanArguments : ExperimentArguments {
-  bool json = false;
-};
+using PlanArguments = ExperimentArguments;
 
 struct Price {
   double core_seconds = 0.0;         ///< processor time of everything that is priced [s]
@@ -211,7 +209,7 @@ ExitCode plan(const PlanArguments& arguments) {
   const std::size_t tasks = list != nullptr ? list->task_count() : 1;
   const std::size_t threads = std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1,
                                                       std::max<std::size_t>(tasks, 1));
-  if (arguments.json) {
+  if (answer_style().json) {
     print_plan_json(*loaded, made, threads);
   } else {
     print_text(made, threads);
@@ -219,10 +217,7 @@ ExitCode plan(const PlanArguments& arguments) {
   return ExitCode::kOk;
 }
 
-void declare(CLI::App& command, PlanArguments& arguments) {
-  arguments.declare_file(command);
-  command.add_flag("--json", arguments.json, "as JSON");
-}
+void declare(CLI::App& command, PlanArguments& arguments) { arguments.declare_file(command); }
 
 }  // namespace
 

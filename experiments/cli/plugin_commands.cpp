@@ -56,12 +56,10 @@ const PluginKind& find_plugin_kind(std::string_view name) {
 struct PluginArguments {
   std::string kind;
   std::string name;
-  bool json = false;
 };
 
 void declare_list(CLI::App& command, PluginArguments& arguments) {
   command.add_option("kind", arguments.kind, "kind of plug-in");
-  command.add_flag("--json", arguments.json, "as JSON");
 }
 
 ExitCode list(const PluginArguments& arguments) {
@@ -75,7 +73,7 @@ ExitCode list(const PluginArguments& arguments) {
     const auto slot = find_plugin_kind(arguments.kind).slot();
     for (const std::string_view name : slot->names()) add(name, slot->summary(name));
   }
-  if (arguments.json) {
+  if (answer_style().json) {
     print_json(rows);
     return ExitCode::kOk;
   }
@@ -88,7 +86,6 @@ ExitCode list(const PluginArguments& arguments) {
 void declare_describe(CLI::App& command, PluginArguments& arguments) {
   command.add_option("kind", arguments.kind, "kind of plug-in")->required();
   command.add_option("name", arguments.name, "name of the plug-in")->required();
-  command.add_flag("--json", arguments.json, "as JSON");
 }
 
 ExitCode describe(const PluginArguments& arguments) {
@@ -101,7 +98,7 @@ ExitCode describe(const PluginArguments& arguments) {
   slot->select(arguments.name);
   const auto options =
       describe_options([&slot](OptionVisitor& visitor) { slot->visit_options(visitor); });
-  if (arguments.json) {
+  if (answer_style().json) {
     print_json({{"kind", arguments.kind},
                 {"name", arguments.name},
                 {"summary", slot->summary(arguments.name)},

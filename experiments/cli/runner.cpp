@@ -121,7 +121,7 @@ ExitCode run_one(const LoadedExperiment& loaded, const RunSettings& settings) {
   // Work that does not poll ends by itself; what the user wanted to stop is not written either.
   if (interrupted()) say_interrupted(settings, store.has_value());
   const double seconds = clock.seconds();
-  complain("{:.2f} s\n", seconds);
+  remark("{:.2f} s\n", seconds);
   if (settings.shard.is_whole()) {
     // What was found is written, even where what was written before is gone.
     const std::exception_ptr lost = out.what_is_lost();
@@ -130,6 +130,8 @@ ExitCode run_one(const LoadedExperiment& loaded, const RunSettings& settings) {
     return code;
   }
   out.require_in_place();
+  add_to_json("done", list->task_count() - result.pending_tasks);
+  add_to_json("tasks", list->task_count());
   say("shard {}: {} of {} tasks of the whole list are done; report with:\n  modcal report {}\n",
       settings.shard.text(), list->task_count() - result.pending_tasks, list->task_count(),
       settings.out.string());
@@ -187,7 +189,7 @@ ExitCode run_together(const std::vector<LoadedExperiment>& experiments,
   out.remove_earlier();
   out.require_in_place();
   before.require_in_place();
-  complain("{:.2f} s\n", clock.seconds());
+  remark("{:.2f} s\n", clock.seconds());
   if (apart) return ExitCode::kInvalidInput;
   return worst == ExitCode::kOk && missed ? ExitCode::kAcceptanceMissed : worst;
 }

@@ -12,8 +12,7 @@ namespace modcal {
 
 struct RunSettings {
   std::filesystem::path out;
-  int threads = 0;    ///< 0: all
-  bool json = false;  ///< summary on stdout as JSON
+  int threads = 0;  ///< 0: all
   /// The command line that makes the same results again, of the whole list.
   std::string command;
   std::string title;  ///< of the report; empty: the experiment's

@@ -1,6 +1,8 @@
 #include "experiments/cli/slurm.hpp"
 
 #include <cstdio>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
 
 #include "experiments/cli/output_directory.hpp"
 #include "experiments/cli/runner.hpp"
@@ -59,6 +61,8 @@ void submit(const std::filesystem::path& folder) {
   const std::string merge =
       first_line_of(fmt::format("sbatch --parsable --dependency=afterany:{} {}", array,
                                 shell_word((folder / "merge.sh").string())));
+  add_to_json("array", array);
+  add_to_json("merge", merge);
   say("submitted array {} and merge {}\n", array, merge);
 }
 
@@ -83,6 +87,9 @@ ExitCode submit_to_slurm(const SubmitArguments& arguments) {
   const OutputDirectory scripts(folder);
   scripts.write_text("run.sh", slurm_array_script(slurm, bundles));
   scripts.write_text("merge.sh", slurm_merge_script(slurm));
+  add_to_json("tasks", pilot.pending);
+  add_to_json("jobs", bundles.count);
+  add_to_json("scripts", folder.string());
   say("{} tasks to do, {:.3g} s each (mean of {} that were run): {:.3g} core-hours\n",
       pilot.pending, pilot.seconds_per_task, pilot.run,
       static_cast<double>(pilot.pending) * pilot.seconds_per_task / 3600.0);
@@ -99,7 +106,11 @@ void declare(CLI::App& command, SubmitArguments& arguments) {
   command.add_option("--partition", arguments.partition, "partition of the cluster");
   declare_threads(command, arguments.threads, "threads of a job");
   command.add_option("--bundle-seconds", arguments.bundle_seconds, "length of a job to aim at")
-      ->check(CLI::PositiveNumber);
+      ->check([](const std::string& text) {
+        return std::strtod(text.c_str(), nullptr) > 0.0
+                   ? std::string()
+                   : fmt::format("\"{}\" is no length of a job: write seconds > 0", text);
+      });
   command
       .add_option("--most-jobs", arguments.most_jobs,
                   "largest array; see MaxArraySize of the cluster")

@@ -1,6 +1,7 @@
 // status, merge, report, replay and compare: what is done with the folders that runs have left.
 #include <charconv>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "experiments/cli/command.hpp"
 #include "experiments/cli/output_directory.hpp"
@@ -16,7 +17,6 @@ struct FolderArguments {
   std::string other;
   std::string number;
   std::size_t task = 0;
-  bool json = false;
 };
 
 void declare_folder(CLI::App& command, FolderArguments& arguments) {
@@ -62,7 +62,7 @@ ExitCode status(const FolderArguments& arguments) {
   const Counts counts = count(run);
   const bool running = is_running(journal_folder(arguments.folder));
   print_damages(run);
-  if (arguments.json) {
+  if (answer_style().json) {
     print_json({{"kind", run.loaded().kind},
                 {"title", run.loaded().title},
                 {"running", running},
@@ -117,6 +117,10 @@ ExitCode merge(const FolderArguments& arguments) {
                                               {"tasks", std::to_string(run.tasks())},
                                               {"done", std::to_string(done)}});
   out.announce({kDatabaseFile});
+  add_to_json("database", file.string());
+  add_to_json("tasks", run.tasks());
+  add_to_json("done", done);
+  add_to_json("digest", digest);
   say("{}: {} of {} tasks, digest {}\n", file.string(), done, run.tasks(), digest);
   return ExitCode::kOk;
 }
@@ -135,9 +139,12 @@ ExitCode replay_task(const FolderArguments& arguments) {
   const StoredRun run(out);
   MODCAL_REQUIRE(task < run.tasks(), "task {} does not exist: {} has the tasks 0 to {}", task, out,
                  run.tasks() - 1);
+  auto cell = nlohmann::ordered_json::object();
   for (std::size_t axis = 0; axis < run.list().axes().size(); ++axis) {
-    complain("{}: {}\n", run.list().axes()[axis], run.list().axis_values(task)[axis]);
+    remark("{}: {}\n", run.list().axes()[axis], run.list().axis_values(task)[axis]);
+    cell[run.list().axes()[axis]] = run.list().axis_values(task)[axis];
   }
+  add_to_json("axes", cell);
   SharedWork work(interrupt_token());
   const std::string command = fmt::format("modcal replay {} {}", out, task);
   const StudyResult result = run.list().replay(task, context_of(run, work, command));
@@ -207,17 +214,18 @@ ExitCode compare(const FolderArguments& arguments) {
   MODCAL_REQUIRE(!a.empty(), "{} and {} have no finished task with the same values in common",
                  out_a, out_b);
   const MedianRatio ratio = median_ratio(a, b);
+  add_to_json("tasks_in_common", a.size());
+  add_to_json("number", number.empty() ? run_a.list().loss_name() : number);
+  add_to_json("medians", {quantile(a, 0.5), quantile(b, 0.5)});
+  add_to_json("ratio", ratio.ratio);
+  add_to_json("interval", {ratio.low, ratio.high});
+  add_to_json("verdict", verdict(ratio, out_a, out_b));
   say("{} of {} and {} tasks in common\n", a.size(), losses_a.size(), losses_b.size());
   say("{}: median {:.4g} in {}, {:.4g} in {}\n", number.empty() ? run_a.list().loss_name() : number,
       quantile(a, 0.5), out_a, quantile(b, 0.5), out_b);
   say("ratio {:.4g}, 95 % interval {:.4g} to {:.4g} (paired bootstrap): {}\n", ratio.ratio,
       ratio.low, ratio.high, verdict(ratio, out_a, out_b));
   return ExitCode::kOk;
-}
-
-void declare_status(CLI::App& command, FolderArguments& arguments) {
-  declare_folder(command, arguments);
-  command.add_flag("--json", arguments.json, "as JSON");
 }
 
 std::string complaint_about_task(const std::string& text) {
@@ -259,7 +267,7 @@ ExitCode report_stored_run(const std::string& out) {
 }
 
 void add_stored_commands(CLI::App& app, const Chosen& chosen) {
-  add_command(app, chosen, "status", "Say how far a run is, running or dead", declare_status,
+  add_command(app, chosen, "status", "Say how far a run is, running or dead", declare_folder,
               status);
   add_command(app, chosen, "merge", "Put the results of all journals into one SQLite file",
               declare_folder, merge);

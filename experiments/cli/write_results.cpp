@@ -1,5 +1,7 @@
 #include "experiments/cli/write_results.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include "libsim/base/utf8.hpp"
 #include "libsim/records/record_file.hpp"
 
@@ -29,16 +31,12 @@ std::string status_text(const LoadedExperiment& loaded, const StudyResult& resul
 }
 
 void print_summary(const StudyResult& result, const RunSettings& settings, double seconds) {
-  if (!settings.json) {
-    say_text(result.summary);
-    return;
-  }
-  const nlohmann::ordered_json summary = {{"out", settings.out.string()},
-                                          {"seconds", seconds},
-                                          {"failed_tasks", result.failed_tasks},
-                                          {"missed", result.missed},
-                                          {"summary", result.summary}};
-  print_json(summary);
+  if (!answer_style().json) return say_text(result.summary);
+  add_to_json("out", settings.out.string());
+  add_to_json("seconds", seconds);
+  add_to_json("failed_tasks", result.failed_tasks);
+  add_to_json("missed", result.missed);
+  add_to_json("summary", result.summary);
 }
 
 report::Report report_of(const LoadedExperiment& loaded, StudyResult& result,
@@ -113,7 +111,8 @@ void finish_report(report::Report report, const RunSettings& settings, const Out
   report.provenance = provenance_lines(settings.command);
   const report::WrittenReport written = report::write_report(report, out.path());
   if (!written.warning.empty()) complain("warning: {}\n", written.warning);
-  complain("report: {}\n", written.page.string());
+  add_to_json("report", written.page.string());
+  remark("report: {}\n", written.page.string());
 }
 
 ExitCode write_results(const LoadedExperiment& loaded, StudyResult result, RunSettings settings,

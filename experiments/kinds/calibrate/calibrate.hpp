@@ -2,6 +2,8 @@
 // and the limit of a calibration, which `modcal limit` can state.
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "experiments/kinds/invert/invert.hpp"
 #include "libcalib/calibration.hpp"
 #include "libcalib/identifiability/expected_limit.hpp"
@@ -33,6 +35,8 @@ LimitCase limit_case(const LimitQuestion& question, TruthCache& truths, OutputRe
 /// The standard deviation to expect of every parameter, a verdict for each mode, and contact points
 /// that remove blind modes. Throws InvalidInput for a record: the truth has to be simulated.
 std::string limit_text(const LimitQuestion& question, TruthCache& truths);
+/// The numbers of it.
+nlohmann::ordered_json limit_json(const LimitQuestion& question, TruthCache& truths);
 
 // Plucks that a calibration fits together with its strokes.
 

@@ -1,3 +1,5 @@
+#include <nlohmann/json.hpp>
+
 #include "experiments/kinds/limit/limit.hpp"
 #include "libcalib/likelihood/noise_level.hpp"
 #include "libsim/signal/statistics.hpp"
@@ -185,17 +187,47 @@ LimitCase limit_case(const LimitQuestion& question, TruthCache& truths, OutputRe
   return result;
 }
 
-std::string limit_text(const LimitQuestion& question, TruthCache& truths) {
+namespace {
+
+LimitCase stated_case(const LimitQuestion& question, TruthCache& truths) {
   MODCAL_REQUIRE(question.observation.has_scene,
                  "a limit is computed from a simulated truth: state a scene, not a record");
   MODCAL_REQUIRE(
       question.noise_level > 0.0,
       "without noise there is no limit: state measurement.noise_level (noise_levels of a "
       "calibration_limit) > 0");
-  const LimitCase records = limit_case(question, truths);
+  return limit_case(question, truths);
+}
+
+}  // namespace
+
+std::string limit_text(const LimitQuestion& question, TruthCache& truths) {
+  const LimitCase records = stated_case(question, truths);
   const ExpectedLimit limit = expected_limit(records);
   return record_lines(question, records) + law_lines(limit) + mode_lines(limit) +
          proposals(question, limit, records.truth, truths);
+}
+
+nlohmann::ordered_json limit_json(const LimitQuestion& question, TruthCache& truths) {
+  const ExpectedLimit limit = expected_limit(stated_case(question, truths));
+  auto parameters = nlohmann::ordered_json::array(), modes = nlohmann::ordered_json::array();
+  for (const ParameterLimit& row : limit.parameters) {
+    parameters.push_back({{"name", row.parameter},
+                          {"sd", row.law},
+                          {"attainable_sd", row.attainable},
+                          {"sd_with_free_frequencies", row.free},
+                          {"correlations", row.correlations}});
+  }
+  for (const ModeVerdict& mode : limit.modes) {
+    modes.push_back({{"frequency", mode.frequency},
+                     {"relative_sd", mode.deviation},
+                     {"verdict", name_of(mode.source)},
+                     {"reason", name_of(mode.reason)}});
+  }
+  return {{"noise_level", question.noise_level},
+          {"parameters", std::move(parameters)},
+          {"modes", std::move(modes)},
+          {"blind_modes", limit.blind_modes}};
 }
 
 }  // namespace modcal

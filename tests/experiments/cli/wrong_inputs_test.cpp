@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <regex>
 #include <vector>
 
@@ -123,6 +124,30 @@ TEST_F(WrongInputs, Records) {
   for (const Row& row : rows) {
     ASSERT_EQ(shell(row.line('$')).code, 0) << row.name;
     expect_told(row, modcal("validate wrong.yaml"), 3);
+  }
+}
+
+TEST_F(WrongInputs, CommandLines) {
+  write("small.yaml", bases_.at("simulate"));
+  write("list.yaml", bases_.at("simulate") + "sweep:\n  product:\n    seed: [1, 2, 3]\n");
+  ASSERT_EQ(modcal("run list.yaml --out listed").code, 0);
+  const std::vector<Row> rows = rows_of("commands.txt");
+  EXPECT_GE(rows.size(), 40u);
+  for (const Row& row : rows) {
+    const int code = std::stoi(row.line('!'));
+    const Outcome outcome = modcal(row.name);
+    expect_told(row, outcome, code);
+    EXPECT_EQ(outcome.out, "") << row.name;
+    // The same for programs.
+    std::string words = row.name;
+    words.insert(std::min(words.find(' '), words.size()), " --json");
+    const Outcome answer = modcal(words);
+    EXPECT_EQ(answer.code, code) << row.name;
+    const auto error = nlohmann::json::parse(answer.out, nullptr, false);
+    ASSERT_FALSE(error.is_discarded()) << row.name << answer.out;
+    EXPECT_EQ(error["error"]["exit_code"], code) << row.name;
+    const std::string told = std::regex_replace(answer.err, std::regex("error: "), "");
+    EXPECT_THAT(told, HasSubstr(error["error"]["message"])) << row.name;
   }
 }
 

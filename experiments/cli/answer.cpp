@@ -1,0 +1,245 @@
+// What a command says: texts and messages, or one JSON object, and how far it is.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <string_view>
+
+#include "experiments/cli/command.hpp"
+#include "libsim/base/utf8.hpp"
+
+namespace modcal {
+namespace {
+
+// A terminal that understands codes: it can clear a line and color a text.
+bool can_rewrite() {
+  const char* terminal = std::getenv("TERM");
+  return isatty(STDERR_FILENO) != 0 && terminal != nullptr && std::string_view(terminal) != "dumb";
+}
+
+// Why standard output has not taken a text; 0: it has taken all.
+int output_error = 0;
+
+void write_out(std::string_view text) {
+  errno = 0;
+  if (std::fwrite(text.data(), 1, text.size(), stdout) < text.size() && output_error == 0) {
+    output_error = errno;
+  }
+}
+
+// What --json answers when the command has ended.
+struct JsonAnswer {
+  nlohmann::ordered_json data;  ///< null: nothing was said as data
+  std::string text;             ///< said on standard output as text
+  nlohmann::ordered_json warnings = nlohmann::ordered_json::array();
+  std::vector<std::string> errors;
+};
+JsonAnswer& json_answer() {
+  static JsonAnswer answer;
+  return answer;
+}
+
+// The errors and warnings of a text that goes to standard error.
+void note(std::string_view text) {
+  static const std::regex message("(?:^|: |internal )(error|warning): ");
+  std::match_results<std::string_view::const_iterator> match;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    const std::string_view line = text.substr(at, end - at);
+    at = end + 1;
+    if (!std::regex_search(line.begin(), line.end(), match, message)) continue;
+    const std::string place(match.prefix().first, match.prefix().second);
+    const std::string said(match.suffix().first, match.suffix().second);
+    const std::string told = place.empty() ? said : place + ": " + said;
+    if (match.str(1) == "warning") {
+      json_answer().warnings.push_back(told);
+    } else {
+      json_answer().errors.push_back(told);
+    }
+  }
+}
+
+std::string_view kind_of(ExitCode code) {
+  switch (code) {
+    case ExitCode::kOk:
+      return "none";
+    case ExitCode::kUsage:
+      return "usage";
+    case ExitCode::kInvalidInput:
+      return "invalid_input";
+    case ExitCode::kSomeTasksFailed:
+      return "some_tasks_failed";
+    case ExitCode::kAcceptanceMissed:
+      return "acceptance_missed";
+    case ExitCode::kNothingMeasured:
+      return "nothing_measured";
+    case ExitCode::kOutputLost:
+      return "output_lost";
+    case ExitCode::kInterrupted:
+      return "interrupted";
+    case ExitCode::kInternal:
+      break;
+  }
+  return "internal";
+}
+
+// {"option"} or {"file", "line", "column"} where a message begins with them, null else.
+nlohmann::ordered_json place_of(const std::string& message) {
+  static const std::regex option(R"(^(?:command line, )?(--[a-z-]+(?: \d+)?): )");
+  static const std::regex place(R"(^([^\s:][^:]*):(\d+):(?:(\d+):)? )");
+  static const std::regex file(R"(^([^\s:]+\.[a-z]+): )");
+  std::smatch match;
+  if (std::regex_search(message, match, option)) return {{"option", match.str(1)}};
+  if (std::regex_search(message, match, file)) return {{"file", match.str(1)}};
+  if (!std::regex_search(message, match, place)) return nullptr;
+  nlohmann::ordered_json result = {{"file", match.str(1)}, {"line", std::stoul(match.str(2))}};
+  if (match[3].matched) result["column"] = std::stoul(match.str(3));
+  return result;
+}
+
+nlohmann::ordered_json error_json(ExitCode code, const std::vector<std::string>& errors) {
+  nlohmann::ordered_json error = {{"kind", kind_of(code)}, {"exit_code", static_cast<int>(code)}};
+  error["message"] = errors.empty() ? std::string(meaning_of(code)) : errors.front();
+  if (!errors.empty()) error["place"] = place_of(errors.front());
+  if (errors.size() > 1) error["further"] = std::vector(errors.begin() + 1, errors.end());
+  return error;
+}
+
+void write_json_answer(ExitCode code) {
+  JsonAnswer& answer = json_answer();
+  if (answer.data.is_array() && code == ExitCode::kOk) return write_out(json_text(answer.data));
+  nlohmann::ordered_json object =
+      answer.data.is_object() ? std::move(answer.data) : nlohmann::ordered_json::object();
+  if (!answer.text.empty()) object["text"] = answer.text;
+  if (!answer.warnings.empty()) object["warnings"] = answer.warnings;
+  if (code != ExitCode::kOk) object["error"] = error_json(code, answer.errors);
+  write_out(json_text(object));
+}
+
+// Marks a word that begins a line or follows the place of a mistake, "a.yaml:3:7: error: …".
+void mark(std::string& text, std::string_view word, std::string_view code) {
+  for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at)) {
+    const std::string_view before(text.data(), at);
+    const bool begins = before.empty() || before.ends_with('\n') || before.ends_with(": ");
+    const std::string marked = begins ? fmt::format("{}{}\033[0m", code, word) : std::string(word);
+    text.replace(at, word.size(), marked);
+    at += marked.size();
+  }
+}
+
+}  // namespace
+
+AnswerStyle& answer_style() {
+  static AnswerStyle style;
+  return style;
+}
+
+std::string_view meaning_of(ExitCode code) {
+  switch (code) {
+    case ExitCode::kOk:
+      return "ok";
+    case ExitCode::kUsage:
+      return "wrong usage";
+    case ExitCode::kInvalidInput:
+      return "invalid input";
+    case ExitCode::kSomeTasksFailed:
+      return "some tasks failed";
+    case ExitCode::kAcceptanceMissed:
+      return "an accepted figure was missed";
+    case ExitCode::kNothingMeasured:
+      return "nothing could be measured";
+    case ExitCode::kOutputLost:
+      return "what was computed is lost";
+    case ExitCode::kInterrupted:
+      return "interrupted";
+    case ExitCode::kInternal:
+      break;
+  }
+  return "internal error";
+}
+
+ExitCode finish_answer(ExitCode code) {
+  if (answer_style().json) write_json_answer(code);
+  errno = 0;
+  const bool taken = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+  if (!taken && output_error == 0) output_error = errno != 0 ? errno : EIO;
+  if (output_error == 0) return code;
+  complain("error: standard output has not taken the answer: {}\n", std::strerror(output_error));
+  return code == ExitCode::kOk ? ExitCode::kOutputLost : code;
+}
+
+void say_text(std::string_view text) {
+  if (answer_style().json) {
+    json_answer().text += text;
+  } else {
+    write_out(printable(text));
+  }
+}
+
+void complain_text(std::string_view text) {
+  note(text);
+  std::fputs(colored(printable(text)).c_str(), stderr);
+}
+
+void remark_text(std::string_view text) {
+  if (!answer_style().quiet) std::fputs(printable(text).c_str(), stderr);
+}
+
+std::string json_text(const nlohmann::ordered_json& object) {
+  return object.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+void print_json(const nlohmann::ordered_json& object) {
+  if (answer_style().json) {
+    json_answer().data = object;
+  } else {
+    say_text(json_text(object));
+  }
+}
+
+void add_to_json(const std::string& key, const nlohmann::ordered_json& value) {
+  if (answer_style().json && !json_answer().data.is_array()) json_answer().data[key] = value;
+}
+
+std::string colored(const std::string& text) {
+  const char* refused = std::getenv("NO_COLOR");
+  if (!can_rewrite() || (refused != nullptr && *refused != '\0')) return text;
+  std::string marked = text;
+  mark(marked, "error:", "\033[1;31m");
+  mark(marked, "warning:", "\033[1;33m");
+  // The caret below a mistake's line stands alone on its own.
+  for (std::size_t at = marked.find("^\n"); at != std::string::npos; at = marked.find("^\n", at)) {
+    const std::size_t start = marked.rfind('\n', at) + 1;  // npos + 1 is 0
+    const bool alone = start > 0 && marked.find_first_not_of(' ', start) == at;
+    if (alone) marked.replace(at, 1, "\033[1m^\033[0m");
+    at += alone ? 9 : 1;
+  }
+  return marked;
+}
+
+Progress::Progress(std::string what)
+    : what_(printable(what)), terminal_(can_rewrite()), start_(Clock::now()), last_(start_) {}
+
+Progress::~Progress() {
+  if (shown_ && terminal_) std::fputs("\r\033[K", stderr);
+}
+
+void Progress::report(double share) {
+  const std::lock_guard lock(mutex_);
+  const Clock::time_point now = Clock::now();
+  const auto pause = terminal_ ? std::chrono::milliseconds(100) : std::chrono::milliseconds(5000);
+  if (answer_style().quiet || now - last_ < pause || share <= 0.0) return;
+  last_ = now;
+  const double elapsed = std::chrono::duration<double>(now - start_).count();
+  const std::string line = fmt::format("{}: {:.0f} %, {:.0f} s left", what_, 100.0 * share,
+                                       elapsed * (1.0 - share) / share);
+  std::fputs((terminal_ ? "\r\033[K" + line : line + "\n").c_str(), stderr);
+  shown_ = true;
+}
+
+}  // namespace modcal
