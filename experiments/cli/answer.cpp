@@ -105,7 +105,7 @@ nlohmann::ordered_json place_of(const std::string& message) {
 nlohmann::ordered_json error_json(ExitCode code, const std::vector<std::string>& errors) {
   nlohmann::ordered_json error = {{"kind", kind_of(code)}, {"exit_code", static_cast<int>(code)}};
   error["message"] = errors.empty() ? std::string(meaning_of(code)) : errors.front();
-  if (!errors.empty()) error["place"] = place_of(errors.front());
+  error["place"] = errors.empty() ? nlohmann::ordered_json() : place_of(errors.front());
   if (errors.size() > 1) error["further"] = std::vector(errors.begin() + 1, errors.end());
   return error;
 }

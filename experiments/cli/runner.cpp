@@ -135,6 +135,7 @@ ExitCode run_one(const LoadedExperiment& loaded, const RunSettings& settings) {
   say("shard {}: {} of {} tasks of the whole list are done; report with:\n  modcal report {}\n",
       settings.shard.text(), list->task_count() - result.pending_tasks, list->task_count(),
       settings.out.string());
+  print_failures(loaded, result, settings);
   return result.failed_tasks > 0 ? ExitCode::kSomeTasksFailed : ExitCode::kOk;
 }
 

@@ -1,5 +1,7 @@
 #include "experiments/cli/write_results.hpp"
 
+#include <fmt/ranges.h>
+
 #include <nlohmann/json.hpp>
 
 #include "libsim/base/utf8.hpp"
@@ -30,11 +32,43 @@ std::string status_text(const LoadedExperiment& loaded, const StudyResult& resul
   return text;
 }
 
+// How many tasks of a list failed, which and why; empty: none.
+std::string failures_text(const LoadedExperiment& loaded, const StudyResult& result,
+                          const RunSettings& settings) {
+  const auto* list = dynamic_cast<const TaskExperiment*>(loaded.experiment.get());
+  if (list == nullptr || result.failures.empty()) return {};
+  constexpr std::size_t kShown = 5;
+  std::string text =
+      fmt::format("{} of {} tasks failed:\n", result.failed_tasks, list->task_count());
+  for (std::size_t i = 0; i < std::min(kShown, result.failures.size()); ++i) {
+    const FailedTasks& failed = result.failures[i];
+    text +=
+        fmt::format("  {}{}: {}\n", fmt::join(failed.first, ", "),
+                    failed.count > failed.first.size() ? fmt::format(" … ({} tasks)", failed.count)
+                                                       : std::string(),
+                    failed.reason.substr(0, failed.reason.find('\n')));
+  }
+  if (result.failures.size() > kShown) {
+    text += fmt::format("  and {} other reasons, see tasks.csv\n", result.failures.size() - kShown);
+  }
+  return text + fmt::format("one of them again, with all that is drawn: modcal replay {} {}\n",
+                            shell_word(settings.out.string()), result.failures[0].first[0]);
+}
+
+nlohmann::ordered_json failures_json(const StudyResult& result) {
+  auto list = nlohmann::ordered_json::array();
+  for (const FailedTasks& failed : result.failures) {
+    list.push_back({{"reason", failed.reason}, {"count", failed.count}, {"first", failed.first}});
+  }
+  return list;
+}
+
 void print_summary(const StudyResult& result, const RunSettings& settings, double seconds) {
   if (!answer_style().json) return say_text(result.summary);
   add_to_json("out", settings.out.string());
   add_to_json("seconds", seconds);
   add_to_json("failed_tasks", result.failed_tasks);
+  if (!result.failures.empty()) add_to_json("failures", failures_json(result));
   add_to_json("missed", result.missed);
   add_to_json("summary", result.summary);
 }
@@ -115,6 +149,11 @@ void finish_report(report::Report report, const RunSettings& settings, const Out
   remark("report: {}\n", written.page.string());
 }
 
+void print_failures(const LoadedExperiment& loaded, const StudyResult& result,
+                    const RunSettings& settings) {
+  if (!answer_style().json) say_text(failures_text(loaded, result, settings));
+}
+
 ExitCode write_results(const LoadedExperiment& loaded, StudyResult result, RunSettings settings,
                        double seconds, const Beside& beside) {
   result.state_command(settings.command);
@@ -135,6 +174,7 @@ ExitCode write_results(const LoadedExperiment& loaded, StudyResult result, RunSe
   write_files(out, result);
   print_summary(result, settings, seconds);
   finish_report(std::move(report), settings, out);
+  print_failures(loaded, result, settings);
   out.remove_earlier();
   out.require_in_place();
   if (apart) return ExitCode::kInvalidInput;

@@ -30,6 +30,10 @@ struct Beside {
   bool database = true;  ///< of this list
 };
 
+/// On standard output: how many tasks of a list failed, which, why, and how to see one.
+void print_failures(const LoadedExperiment& loaded, const StudyResult& result,
+                    const RunSettings& settings);
+
 /// present(), with what is missing beside the results.
 ExitCode write_results(const LoadedExperiment& loaded, StudyResult result, RunSettings settings,
                        double seconds, const Beside& beside);

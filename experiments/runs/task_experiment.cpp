@@ -14,6 +14,12 @@ void find_finished(const TaskExperiment& experiment, const FinishedTasks& finish
   for_each_task(outcomes.size(), find, stop);
 }
 
+// The same for texts that differ in their numbers alone.
+std::string without_numbers(std::string text) {
+  std::erase_if(text, [](char c) { return c >= '0' && c <= '9'; });
+  return text;
+}
+
 nlohmann::json parsed(const std::string& outcome) {
   nlohmann::json object = nlohmann::json::parse(outcome, nullptr, false);
   MODCAL_REQUIRE(object.is_object(), "the stored outcome of a task cannot be read: {}", outcome);
@@ -103,6 +109,20 @@ std::optional<double> TaskExperiment::number_in(const std::string& outcome,
 
 StudyResult TaskExperiment::run(const StudyContext& context) const {
   return sum_up(run_tasks(*this, context, nullptr, Shard{}), context);
+}
+
+void add_failure(std::size_t task, const std::string& reason, StudyResult& result) {
+  constexpr std::size_t kNamed = 5;
+  ++result.failed_tasks;
+  const std::string text = without_numbers(reason);
+  auto known = std::find_if(
+      result.failures.begin(), result.failures.end(),
+      [&text](const FailedTasks& failed) { return without_numbers(failed.reason) == text; });
+  if (known == result.failures.end()) {
+    known = result.failures.insert(known, {.reason = reason, .count = 0, .first = {}});
+  }
+  ++known->count;
+  if (known->first.size() < kNamed) known->first.push_back(task);
 }
 
 }  // namespace modcal

@@ -128,6 +128,9 @@ auto attempted(const Work& work) -> decltype(work()) {
   }
 }
 
+/// Counts the failed task among those of its reason.
+void add_failure(std::size_t task, const std::string& reason, StudyResult& result);
+
 /// Calls take(task, outcome, seconds) for every outcome there is, in the order of the tasks, one
 /// read at a time; counts what failed and what is not run yet and sets the status.
 template <typename Outcome, typename Take>
@@ -139,7 +142,7 @@ void for_each_outcome(const TaskOutcomes& outcomes, StudyResult& result, const T
       continue;
     }
     auto outcome = outcomes.read(task, finished->outcome, read_outcome<Outcome>);
-    if (!outcome.failure.empty()) ++result.failed_tasks;
+    if (!outcome.failure.empty()) add_failure(task, outcome.failure, result);
     take(task, std::move(outcome), finished->seconds);
   }
   if (result.failed_tasks == 0) return;

@@ -14,8 +14,10 @@ std::shared_ptr<const Truth> simulate_truth(const TruthOptions& options, double 
   truth->contact = options.scene.bow.position;
   truth->simulation = options.simulator.make()->simulate(options.scene, sample_rate, outputs, stop);
   MODCAL_REQUIRE(!truth->simulation.diverged_at,
-                 "the simulation by {} diverges at {:g} s: use a smaller time step or modal_exact",
-                 options.simulator.selected(), *truth->simulation.diverged_at);
+                 "the simulation by {} stops at {:g} s: {}; check the values of scene.bow and "
+                 "scene.friction, take a shorter simulator.time_step, or another simulator",
+                 options.simulator.selected(), *truth->simulation.diverged_at,
+                 truth->simulation.explanation);
   return truth;
 }
 

@@ -35,6 +35,13 @@ struct SignalFile {
   double full_scale = 1.0;  ///< of a sound file: what 1.0 stands for, in the signals' units
 };
 
+/// Tasks of a list that failed for the same reason, up to its numbers.
+struct FailedTasks {
+  std::string reason;  ///< of the first
+  std::size_t count = 0;
+  std::vector<std::size_t> first;  ///< a few of them
+};
+
 struct StudyResult {
   std::vector<report::Block> blocks;                       ///< the section of the report
   std::vector<std::pair<std::string, std::string>> files;  ///< name and content
@@ -42,6 +49,7 @@ struct StudyResult {
   std::string summary;  ///< for standard output
   report::Status status = report::Status::kOk;
   std::size_t failed_tasks = 0;
+  std::vector<FailedTasks> failures;
   std::size_t pending_tasks = 0;  ///< not run yet: the figures stand on the others
   /// Accepted figures that were missed, one sentence each.
   std::vector<std::string> missed;

@@ -200,9 +200,12 @@ StudyResult IdentifyOptions::run(const StudyContext& context) const {
   result.summary = sentence_of(outcome);
   if (outcome.found.modes.empty() || !outcome.found.converged) {
     result.status = report::Status::kFailed;
-    result.summary += outcome.found.modes.empty()
-                          ? "no pole is stable over the orders: nothing was identified\n"
-                          : "the fit did not converge: its modes and error bars are not final\n";
+    result.summary +=
+        outcome.found.modes.empty()
+            ? "no pole is stable over the orders: nothing was identified; record a "
+              "longer decay with less noise, or raise identification's orders\n"
+            : "the fit did not converge: its modes and error bars are not final; take "
+              "method: era, or lower identification.highest_frequency\n";
   }
   return result;
 }

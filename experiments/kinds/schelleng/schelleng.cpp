@@ -76,8 +76,9 @@ CellOutcome judge_cell(const Scene& scene, const Simulation& simulation,
                        const RegimeCriteria& criteria) {
   CellOutcome outcome;
   if (simulation.diverged_at) {
-    outcome.failure =
-        fmt::format("stopped at {:g} s: {}", *simulation.diverged_at, simulation.explanation);
+    outcome.failure = fmt::format(
+        "stopped at {:g} s: {}; take a shorter simulator.time_step or another simulator",
+        *simulation.diverged_at, simulation.explanation);
     return outcome;
   }
   outcome.features = regime_features(scene, simulation, criteria);

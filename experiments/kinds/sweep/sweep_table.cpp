@@ -289,10 +289,6 @@ void sum_up_sweep(const SweepOptions& options, const std::vector<std::string>& a
   }
   result.blocks.emplace_back(correlation_figure(options.name, rows));
   result.files.emplace_back("tasks.csv", report::table_csv(task_table(axes, tasks)));
-  if (result.failed_tasks > 0) {
-    result.summary += fmt::format("{} of {} tasks failed; see tasks.csv\n", result.failed_tasks,
-                                  tasks.size() + result.pending_tasks);
-  }
 }
 
 }  // namespace modcal
