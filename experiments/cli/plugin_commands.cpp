@@ -110,8 +110,9 @@ ExitCode describe(const PluginArguments& arguments) {
   return ExitCode::kOk;
 }
 
+// A kind that does not exist is one mistake of "kind", and each kind is judged by its own part.
 ExitCode print_schema(const PluginArguments& /*arguments*/) {
-  auto variants = nlohmann::ordered_json::array();
+  auto cases = nlohmann::ordered_json::array();
   Choice<Experiment> choice;
   for (const std::string_view name : choice.names()) {
     choice.select(name);
@@ -121,12 +122,16 @@ ExitCode print_schema(const PluginArguments& /*arguments*/) {
     schema["properties"]["kind"] = {{"const", name}};
     schema["properties"]["title"] = {{"type", "string"}};
     schema["properties"]["description"] = {{"type", "string"}};
-    schema["required"].push_back("kind");
-    variants.push_back(std::move(schema));
+    cases.push_back(
+        {{"if", {{"properties", {{"kind", {{"const", name}}}}}, {"required", {"kind"}}}},
+         {"then", std::move(schema)}});
   }
-  print_json({{"$schema", "https://json-schema.org/draft/2020-12/schema"},
-              {"title", "modcal experiment"},
-              {"oneOf", std::move(variants)}});
+  print_json(with_shared_parts({{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+                                {"title", "modcal experiment"},
+                                {"type", "object"},
+                                {"properties", {{"kind", {{"enum", choice.names()}}}}},
+                                {"required", {"kind"}},
+                                {"allOf", std::move(cases)}}));
   return ExitCode::kOk;
 }
 

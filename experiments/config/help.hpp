@@ -18,6 +18,9 @@ std::string help_text(const nlohmann::ordered_json& options);
 /// JSON schema (2020-12) of a map with these options; numbers may be texts with a unit.
 nlohmann::ordered_json options_schema(const std::function<void(OptionVisitor&)>& visit);
 
+/// The schema with what stands in it more than once under "$defs".
+nlohmann::ordered_json with_shared_parts(nlohmann::ordered_json schema);
+
 // Writes an options struct as YAML to paste and edit.
 
 /// Visitor that writes `key: value  # meaning [unit]`, one option a line, indented by two blanks a

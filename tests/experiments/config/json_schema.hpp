@@ -67,6 +67,10 @@ class JsonSchema {
         right = std::find(argument.begin(), argument.end(), value) != argument.end();
       } else if (word == "oneOf") {
         right = matches(argument, value) == 1;
+      } else if (word == "allOf") {
+        right = matches(argument, value) == argument.size();
+      } else if (word == "if") {
+        right = !accepts(argument, value) || accepts(schema["then"], value);
       } else if (word == "anyOf") {
         right = matches(argument, value) > 0;
       } else if (word == "minimum") {
@@ -88,8 +92,9 @@ class JsonSchema {
         right = !value.is_object() || accepts_object(schema, value);
       } else if (word == "items") {
         for (const Json& item : value) right = right && accepts(argument, item);
-      } else if (word != "required" && word != "additionalProperties" && word != "description" &&
-                 word != "title" && word != "default" && word != "$schema" && word != "$defs") {
+      } else if (word != "required" && word != "then" && word != "additionalProperties" &&
+                 word != "description" && word != "title" && word != "default" &&
+                 word != "$schema" && word != "$defs") {
         throw std::logic_error("unknown keyword " + word);
       }
       if (!right) return false;
