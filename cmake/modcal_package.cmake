@@ -1,0 +1,20 @@
+# `cpack -G DEB` in the folder of a build: program, libraries with headers and docs as one Debian package.
+# What the program needs at run time is read off it; what a program linked with the libraries needs to be
+# built is suggested.
+file(STRINGS ${PROJECT_SOURCE_DIR}/packages.txt development REGEX "^lib[a-z0-9.+-]+-dev$")
+list(REMOVE_ITEM development libgtest-dev libgmock-dev libbenchmark-dev)
+list(JOIN development ", " CPACK_DEBIAN_PACKAGE_SUGGESTS)
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME modcal)
+set(CPACK_PACKAGE_CONTACT "The authors of modcal <modcal@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "calibrates bowed strings and identifies the force of the bow")
+set(CPACK_PACKAGE_DESCRIPTION
+    "modcal calibrates the modal model of a bowed string and identifies the friction force between bow and
+ string from the reactions at the string's ends, both with standard deviations.")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS gnuplot-nox)
+include(CPack)

@@ -1,0 +1,40 @@
+#!/usr/bin/env bash
+# The Debian package of what is built: it is made, unpacked and used from where it was unpacked, and holds no
+# path of the machine that built it. package_test.sh ROOT BUILD CPACK
+set -euo pipefail
+root=$(cd "${1:?usage: package_test.sh ROOT BUILD CPACK}" && pwd)
+build=$(cd "$2" && pwd) cpack=$3
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+fail() { echo "$*"; exit 1; }
+quietly() { "$@" >"$work/log" 2>&1 || fail "$(cat "$work/log")"; }
+
+quietly "$cpack" -G DEB --config "$build/CPackConfig.cmake" -B "$work/made"
+package=$(ls "$work"/made/*.deb)
+field() { dpkg-deb --field "$package" "$1"; }
+[ "$(field Package)" = modcal ] || fail "the package is called $(field Package)"
+for library in libc6 libfftw3-double3 libyaml-cpp; do
+  field Depends | grep -q "$library" || fail "the package does not depend on $library: $(field Depends)"
+done
+quietly dpkg-deb -x "$package" "$work/there"
+there=$work/there/usr
+for file in bin/modcal lib/libmodcal_calib.a include/modcal/libcalib/calibration.hpp \
+  lib/cmake/modcal/modcalConfig.cmake lib/pkgconfig/modcal-calib.pc share/modcal/configs/paper/table1.yaml \
+  share/doc/modcal/README.md share/doc/modcal/docs/commands.md share/man/man1/modcal.1 \
+  share/bash-completion/completions/modcal share/zsh/vendor-completions/_modcal \
+  share/fish/vendor_completions.d/modcal.fish; do
+  [ -s "$there/$file" ] || fail "the package lacks $file"
+done
+
+names_the_machine() { strings -a "$1" | grep -F -e "$root" -e "$build"; }
+printf 'text %s text' "$build" >"$work/planted"
+names_the_machine "$work/planted" >/dev/null || fail "self-check: a path goes unnoticed"
+while IFS= read -r -d '' file; do
+  if names_the_machine "$file"; then fail "$file names the machine it was built on"; fi
+done < <(find "$there" -type f -print0)
+
+cd "$work" # away from the tree
+[ "$("$there/bin/modcal" man)" = "$(cat "$there/share/man/man1/modcal.1")" ] || fail "another manual page"
+quietly "$there/bin/modcal" reproduce fig02
+quietly "$there/bin/modcal" new calibrate --out mine.yaml
+quietly "$there/bin/modcal" validate mine.yaml
