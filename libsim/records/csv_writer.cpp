@@ -32,10 +32,9 @@ void append_comment(fmt::memory_buffer& out, const std::string& text) {
   }
 }
 
+// Headings first: numpy.genfromtxt(names=True) takes the first line for them.
 void append_preamble(fmt::memory_buffer& out, std::span<const Signal> signals,
                      const CsvWriteOptions& options) {
-  append_comment(out, fmt::format("sample_rate: {} Hz", signals.front().sample_rate));
-  for (const std::string& line : options.provenance) append_comment(out, line);
   std::string_view separator;
   if (options.time_column) {
     out.append(std::string_view("t [s]"));
@@ -47,6 +46,8 @@ void append_preamble(fmt::memory_buffer& out, std::span<const Signal> signals,
     separator = ",";
   }
   out.push_back('\n');
+  append_comment(out, fmt::format("sample_rate: {} Hz", signals.front().sample_rate));
+  for (const std::string& line : options.provenance) append_comment(out, line);
 }
 
 void append_row(fmt::memory_buffer& out, std::span<const Signal> signals, std::size_t i,

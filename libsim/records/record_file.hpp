@@ -32,8 +32,8 @@ struct CsvWriteOptions {
   std::vector<std::string> provenance = {};
 };
 
-/// Writes signals of one rate and length: comments with the sample rate and the provenance, the
-/// headings `quantity [unit]`, one row per sample. Numbers are the shortest decimals that read back
+/// Writes signals of one rate and length: the headings `quantity [unit]`, comments with the sample
+/// rate and the provenance, one row per sample. Numbers are the shortest decimals that read back
 /// to the same double, so read_csv returns the same bits. An existing file is replaced only when
 /// the new one is complete. Throws InvalidInput for no signals, different rates or lengths, equal
 /// names, samples that are not finite, and where the file cannot be written.

@@ -66,7 +66,8 @@ TEST_F(CsvWriter, TimeColumnAloneGivesTheRateBack) {
   const std::vector<Signal> signals{noise("R1", "N", 51200.0, 120000)};
   write_csv(path("a.csv"), signals);
   std::string text = content(path("a.csv"));
-  text.erase(0, text.find('\n') + 1);
+  const std::size_t comment = text.find('#');
+  text.erase(comment, text.find('\n', comment) + 1 - comment);
   const Recording record = read_csv(write("b.csv", text));
   EXPECT_EQ(record.sample_rate, 51200.0);
   EXPECT_EQ(record.rate_source, "column t");
@@ -77,7 +78,7 @@ TEST_F(CsvWriter, WritesHeaderUnitsAndProvenance) {
   const std::vector<Signal> signals{{"R1", "N", 4.0, {0.1, 1e-300}}};
   write_csv(path("a.csv"), signals, {.time_column = true, .provenance = {"made: here"}});
   EXPECT_EQ(content(path("a.csv")),
-            "# sample_rate: 4 Hz\n# made: here\nt [s],R1 [N]\n0,0.1\n0.25,1e-300\n");
+            "t [s],R1 [N]\n# sample_rate: 4 Hz\n# made: here\n0,0.1\n0.25,1e-300\n");
 }
 
 TEST_F(CsvWriter, RefusesWhatCannotBeOneRecord) {
