@@ -3,6 +3,7 @@
 #include "experiments/kinds/lint.hpp"
 #include "experiments/report/result.hpp"
 #include "experiments/study/observation.hpp"
+#include "libsim/signal/statistics.hpp"
 
 namespace modcal {
 void InvertOptions::visit(OptionVisitor& visitor) {
@@ -200,6 +201,33 @@ SignalFile identified_signals(const Observation& observation,
   return file;
 }
 
+// What to try against what an estimate warns of.
+std::vector<std::string> remedies_of(const SideIdentification& side, bool is_recorded) {
+  std::vector<std::string> remedies;
+  if (side.estimate.warnings.empty()) return remedies;
+  const std::vector<double>& misfit = side.estimate.side_misfit;
+  const bool contradicted = !misfit.empty() && mean(misfit) > 1.0;
+  if (contradicted && is_recorded) {
+    remedies.emplace_back("calibrate the string first (kind: calibrate)");
+    remedies.emplace_back("use another part of the record (record.start, record.stop)");
+  } else if (contradicted) {
+    remedies.emplace_back("a longer scene.duration, or a smaller model_error");
+  }
+  switch (side.estimate.result.choice.status) {
+    case ChoiceStatus::kNoInteriorMinimum:
+    case ChoiceStatus::kEdgeOfRange:
+    case ChoiceStatus::kNotReached:
+    case ChoiceStatus::kNotComputed:
+      remedies.emplace_back(
+          "choose the parameter by another rule (inversion.parameter_choice, modcal list "
+          "parameter_choice), or identify from both reactions (inversion.estimator: joint)");
+      break;
+    default:
+      break;
+  }
+  return remedies;
+}
+
 void add_warnings(const Observation& observation, const std::vector<SideIdentification>& sides,
                   StudyResult& result) {
   for (const std::string& warning : observation.warnings) result.warn(warning);
@@ -210,6 +238,12 @@ void add_warnings(const Observation& observation, const std::vector<SideIdentifi
     }
     for (const std::string& warning : side.estimate.warnings) {
       result.warn(fmt::format("Estimate {}: {}", side.estimate.label, warning));
+    }
+    for (const std::string& remedy : remedies_of(side, !observation.truth)) {
+      const std::string text = fmt::format("to try: {}", remedy);
+      if (result.summary.find(text) != std::string::npos) continue;
+      result.summary += text + "\n";
+      result.blocks.emplace_back(report::Text{text, report::Text::Kind::kNote});
     }
   }
 }

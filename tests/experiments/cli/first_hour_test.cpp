@@ -72,6 +72,13 @@ TEST_F(FirstHour, NeedsNoObjectiveNorEstimator) {
   const Outcome run = modcal("run mine.yaml");
   ASSERT_EQ(run.code, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("side joint"));
+  // The damping is a guess.
+  EXPECT_THAT(run.out, HasSubstr("the reactions contradict each other"));
+  EXPECT_THAT(run.out, HasSubstr("\nto try: calibrate the string first (kind: calibrate)\n"));
+  const Outcome edge = modcal(
+      "run mine.yaml --out edge --set 'inversion={estimator: one_sided, "
+      "parameter_choice: {type: l_curve, lowest: 100, highest: 200}}'");
+  EXPECT_THAT(edge.out, HasSubstr("\nto try: choose the parameter by another rule"));
   // One reaction is enough for a force with a band.
   const Outcome one = modcal(
       "new invert record.csv --length '0.33 m' | grep -v right: > one.yaml && '" MODCAL_PROGRAM
