@@ -8,6 +8,7 @@
 #include <numbers>
 #include <utility>
 
+#include "libcalib/identifiability/tuning.hpp"
 #include "libsim/signal/fft.hpp"
 
 namespace modcal {

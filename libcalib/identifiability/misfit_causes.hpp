@@ -17,10 +17,6 @@ inline constexpr std::string_view kNonlinear = "nonlinear sensor";
 inline constexpr std::string_view kModesAbove = "modes above";
 inline constexpr std::string_view kBridge = "bridge that moves";
 
-/// Prior sd of the share of a second polarization at either end: what a record cannot tell of one
-/// is in its deviations [1].
-inline constexpr double kPolarizationWidth = 0.03;
-
 /// A cause of misfit: amplitudes of what it adds to both records, to first order.
 struct MisfitCause {
   std::string name;

@@ -7,6 +7,7 @@
 
 #include "benchmarks/truth/truth.hpp"
 #include "libcalib/calibration.hpp"
+#include "libcalib/identifiability/tuning.hpp"
 #include "libcalib/objectives/joint_likelihood.hpp"
 #include "libsim/model/damping.hpp"
 

@@ -1,6 +1,7 @@
 #include <fmt/ranges.h>
 
 #include "experiments/kinds/calibrate/calibrate.hpp"
+#include "libcalib/identifiability/tuning.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {
