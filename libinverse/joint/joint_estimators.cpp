@@ -81,8 +81,8 @@ class PreparedJoint : public PreparedEstimator {
   // between its poles, lines of what wraps around; else the contour, where the record permits it.
   RecordEnds ends_of(const ReactionPair& reactions, const SensorNoiseLevel& noise) const {
     const bool both = !reactions[0].empty() && !reactions[1].empty();
-    const bool at_rest =
-        starts_at_rest(reactions, noise, arrival_, basis_.frequency(0), sample_rate_);
+    const bool at_rest = record_start(reactions, noise.rms, arrival_, basis_.frequency(0),
+                                      sample_rate_) == RecordStart::kRest;
     const auto stated = truncation_of(options_.truncation);
     Truncation truncation = stated.value_or(Truncation::kTransient);
     const bool contour = (both && at_rest && !recorded_) || !std::isnan(options_.sigma);

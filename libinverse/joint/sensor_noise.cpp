@@ -99,8 +99,9 @@ SensorNoiseLevel SensorNoise::estimate(const ReactionPair& reactions, Workspace&
   return level;
 }
 
-bool starts_at_rest(const ReactionPair& reactions, const SensorNoiseLevel& noise,
-                    const std::array<double, 2>& arrivals, double fundamental, double sample_rate) {
+RecordStart record_start(const ReactionPair& reactions, const std::array<double, 2>& rms,
+                         const std::array<double, 2>& arrivals, double fundamental,
+                         double sample_rate) {
   bool told = false;
   for (std::size_t r = 0; r < 2; ++r) {
     const double time = kBeforeArrival * std::max(0.0, arrivals[r]);
@@ -109,15 +110,15 @@ bool starts_at_rest(const ReactionPair& reactions, const SensorNoiseLevel& noise
     if (count < 4) continue;
     // Of n normal values the variance scatters by √(2/(n − 1)).
     const double by_noise =
-        noise.rms[r] * noise.rms[r] * (1.0 + 5.0 * std::sqrt(2.0 / static_cast<double>(count - 1)));
+        rms[r] * rms[r] * (1.0 + 5.0 * std::sqrt(2.0 / static_cast<double>(count - 1)));
     const double ramp = std::min(1.0, time * fundamental) * standard_deviation(reactions[r]);
     const double least = kStillShare * ramp * ramp;
     if (by_noise > least) continue;
     const double found = standard_deviation(reactions[r].first(count));
-    if (found * found > by_noise + least) return false;
+    if (found * found > by_noise + least) return RecordStart::kMoving;
     told = true;
   }
-  return told;
+  return told ? RecordStart::kRest : RecordStart::kUntold;
 }
 
 }  // namespace modcal

@@ -46,10 +46,13 @@ class SensorNoise {
   std::vector<Complex> direction_[2];
 };
 
-/// Whether the reactions are still before the first wave arrives [s], and one of them would have
-/// shown it else: their variance there is no more than noise has in that many samples and a share
+enum class RecordStart { kRest, kMoving, kUntold };
+
+/// Whether the reactions are still before the first wave arrives [s], where one of them shows it:
+/// their variance there is no more than noise of rms [N] has in that many samples and a share
 /// (kStillShare) of that of a Helmholtz motion, a ramp, in that time.
-bool starts_at_rest(const ReactionPair& reactions, const SensorNoiseLevel& noise,
-                    const std::array<double, 2>& arrivals, double fundamental, double sample_rate);
+RecordStart record_start(const ReactionPair& reactions, const std::array<double, 2>& rms,
+                         const std::array<double, 2>& arrivals, double fundamental,
+                         double sample_rate);
 
 }  // namespace modcal

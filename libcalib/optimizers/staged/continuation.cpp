@@ -9,6 +9,8 @@
 #include "libcalib/likelihood/noise_level.hpp"
 #include "libcalib/optimizers/staged/continuation_attempt.hpp"
 #include "libcalib/optimizers/staged/joint_fit.hpp"
+#include "libinverse/joint/sensor_noise.hpp"
+#include "libinverse/joint/string_transfer.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -28,6 +30,7 @@ ContinuationResult with_misfit_for_noise(const AttemptInput& input,
                                                    .priors = input.priors,
                                                    .highest = input.highest,
                                                    .misfit_for_noise = true,
+                                                   .moving = input.moving,
                                                    .within = input.within},
                                                   0.0);
   found.chi2 *= misfit;
@@ -43,6 +46,12 @@ ContinuationResult with_misfit_for_noise(const AttemptInput& input,
   found.noise_spectrum = contradicted.noise_spectrum;
   found.noise_error = contradicted.noise_error;
   return found;
+}
+
+bool begins_moving(const NoisyRecords& records, const ModelPoint& point) {
+  const auto arrivals = first_arrivals(point.basis, point.contact, {});
+  return record_start({records.reactions[0], records.reactions[1]}, records.deviation, arrivals,
+                      point.basis.frequency(0), records.sample_rate) == RecordStart::kMoving;
 }
 
 // Where the noise is not what was read, the fit is made again with what it leaves; once more for
@@ -152,6 +161,7 @@ ContinuationResult calibrate_by_continuation(const ModelPoint& initial, const Ca
                            .options = options,
                            .priors = priors,
                            .highest = highest,
+                           .moving = begins_moving(records, initial),
                            .within = within};
   ContinuationResult best;
   std::size_t evaluations = 0;

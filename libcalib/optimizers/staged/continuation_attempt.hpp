@@ -15,6 +15,9 @@ struct AttemptInput {
   double highest = 0.0;  ///< ω of the highest bin [rad/s]
   /// The noise is what a wrong model leaves: no mode is said to leave a law by it.
   bool misfit_for_noise = false;
+  /// The record begins in mid-stroke: damped, it would be told by what rings at its start, so that
+  /// its first part stands for it, undamped.
+  bool moving = false;
   Evaluator* within = nullptr;
 
   /// Levels as they were read above the modes, or stated [N].

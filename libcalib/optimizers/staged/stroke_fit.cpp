@@ -20,10 +20,22 @@ void set_prior(QuadraticPrior prior, NewtonOptions& options) {
 
 ProjectedLikelihood StrokeFit::damped(double sigma) const {
   poll();
-  return ProjectedLikelihood(WhitenedRecord::of(input_.records, sigma * unit_, input_.highest));
+  if (!input_.moving) {
+    return ProjectedLikelihood(WhitenedRecord::of(input_.records, sigma * unit_, input_.highest));
+  }
+  NoisyRecords first = input_.records;
+  first.signals.clear();
+  const double samples = 8.0 / (sigma * unit_) * first.sample_rate;
+  for (std::vector<double>& reaction : first.reactions) {
+    if (samples < static_cast<double>(reaction.size())) {
+      reaction.resize(static_cast<std::size_t>(samples));
+    }
+  }
+  return ProjectedLikelihood(WhitenedRecord::of(first, 0.0, input_.highest));
 }
 
 std::string StrokeFit::damped_name(std::string_view unknowns, double sigma) const {
+  if (input_.moving) return fmt::format("{}, first {:.3g} s", unknowns, 8.0 / (sigma * unit_));
   return fmt::format("{}, sigma = {:.3g} 1/s", unknowns, sigma * unit_);
 }
 

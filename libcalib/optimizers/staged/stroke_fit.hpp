@@ -26,8 +26,9 @@ class StrokeFit {
   }
   /// σ [1/s] of a string of 196 Hz, in proportion to f_0 on others.
   void scale_damping(double fundamental) { unit_ = fundamental / 196.0; }
-  /// "law, sigma = 200 1/s".
+  /// "law, sigma = 200 1/s"; of a record that begins in mid-stroke "law, first 0.04 s".
   std::string damped_name(std::string_view unknowns, double sigma) const;
+  /// The record damped and cut to 8/σ; of one that begins in mid-stroke its first 8/σ as they are.
   ProjectedLikelihood damped(double sigma) const;
   /// σ = 0, the end state projected out; made once.
   const ProjectedLikelihood& whole();

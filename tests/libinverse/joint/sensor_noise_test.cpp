@@ -47,15 +47,16 @@ TEST(StartsAtRest, WhereTheReactionsAreStillBeforeAWaveArrives) {
     }
     ReactionPair pair;
     pair[far ? 1 : 0] = reaction;
-    return starts_at_rest(pair, {.rms = {noise, noise}}, arrivals, 196.0, kRate);
+    return record_start(pair, {noise, noise}, arrivals, 196.0, kRate);
   };
   for (const bool far : {false, true}) {
-    EXPECT_TRUE(told(0.0, 1e-3, far)) << far;
-    EXPECT_FALSE(told(1.0, 1e-3, far)) << far;  // in mid-motion
+    EXPECT_EQ(told(0.0, 1e-3, far), RecordStart::kRest) << far;
+    EXPECT_EQ(told(1.0, 1e-3, far), RecordStart::kMoving) << far;
   }
-  EXPECT_TRUE(told(0.0, 0.02, true));
-  EXPECT_FALSE(told(0.0, 0.02, false));  // the noise hides what the near one would show
-  EXPECT_FALSE(starts_at_rest({}, {}, arrivals, 196.0, kRate));
+  EXPECT_EQ(told(0.0, 0.02, true), RecordStart::kRest);
+  // The noise hides what the near one would show.
+  EXPECT_EQ(told(0.0, 0.02, false), RecordStart::kUntold);
+  EXPECT_EQ(record_start({}, {}, arrivals, 196.0, kRate), RecordStart::kUntold);
 }
 
 TEST(ContourOf, LiesBetweenOneAndFourOverTheRecord) {
