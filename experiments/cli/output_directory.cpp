@@ -27,7 +27,22 @@ bool may_be_removed(const fs::path& folder, const fs::path& name) {
   if (name.is_absolute() || name != name.lexically_normal() || *name.begin() == "..") return false;
   std::error_code error;
   if (name.has_parent_path() && fs::is_symlink(folder / name.parent_path(), error)) return false;
-  return name == name.filename() || name == fs::path("figures") / name.filename();
+  return name == name.filename() || name == fs::path("figures") / name.filename() ||
+         name == fs::path(kSlurmFolder) / name.filename();
+}
+
+bool is_folder_below(const fs::path& folder, const fs::path& name) {
+  std::error_code error;
+  return name == name.filename() && name != "." && name != ".." &&
+         fs::is_directory(fs::symlink_status(folder / name, error));
+}
+
+std::set<std::string> texts_in(const nlohmann::ordered_json& list) {
+  std::set<std::string> texts;
+  for (const auto& text : list) {
+    if (text.is_string()) texts.insert(text.get<std::string>());
+  }
+  return texts;
 }
 
 }  // namespace
@@ -46,7 +61,11 @@ OutputDirectory::OutputDirectory(fs::path path) : path_(std::move(path)) {
   remove_abandoned_parts(path_);
   remove_abandoned_parts(path_ / "figures");
   read_provenance();
-  const std::string foreign = foreign_among({kProvenanceFile, kResolvedFile, report::kPageFile});
+  require_own({kProvenanceFile, kResolvedFile, report::kPageFile});
+}
+
+void OutputDirectory::require_own(const std::vector<std::string>& names) const {
+  const std::string foreign = foreign_among(names);
   MODCAL_REQUIRE(foreign.empty(),
                  "{}: no run of modcal wrote this file, and the results would replace it; choose "
                  "another folder with --out",
@@ -57,18 +76,15 @@ void OutputDirectory::read_provenance() {
   using Json = nlohmann::ordered_json;
   const fs::path file = path_ / kProvenanceFile, resolved = path_ / kResolvedFile;
   const Json read = is_regular(file) ? Json::parse(content_of_file(file), nullptr, false) : Json();
-  if (read.is_object() && read.contains("program")) {
+  if (read.is_object() && read.value("program", Json()).is_string()) {
     provenance_ = read;
   } else if (!is_regular(resolved) || !is_resolved_text(content_of_file(resolved))) {
     earlier_.emplace();  // no run was here
     return;
   }
+  earlier_folders_ = texts_in(provenance_.value("folders", Json::array()));
   const auto files = provenance_.find("files");
-  if (files == provenance_.end() || !files->is_array()) return;
-  earlier_.emplace();
-  for (const Json& name : *files) {
-    if (name.is_string()) earlier_->insert(name.get<std::string>());
-  }
+  if (files != provenance_.end() && files->is_array()) earlier_ = texts_in(*files);
 }
 
 std::string OutputDirectory::foreign_among(const std::vector<std::string>& names) const {
@@ -94,17 +110,49 @@ void OutputDirectory::announce(const std::vector<std::string>& names) {
   write_names();
 }
 
+void OutputDirectory::announce_folders(const std::vector<std::string>& names) {
+  announced_folders_.insert(names.begin(), names.end());
+  write_names();
+}
+
 void OutputDirectory::write_names() {
   provenance_.erase("files");
+  provenance_.erase("folders");
   if (earlier_) {
     std::set<std::string> names = announced_;
     names.insert(earlier_->begin(), earlier_->end());
     provenance_["files"] = names;
   }
+  std::set<std::string> folders = announced_folders_;
+  folders.insert(earlier_folders_.begin(), earlier_folders_.end());
+  if (!folders.empty()) provenance_["folders"] = folders;
   report::write_file_atomically(path_ / kProvenanceFile, json_text(provenance_));
 }
 
+void OutputDirectory::make_way() {
+  if (!earlier_ || !has_provenance()) return;  // no run was here, or what it wrote is not known
+  announce({kProvenanceFile, kResolvedFile});
+  remove_earlier();
+}
+
 void OutputDirectory::remove_earlier() {
+  remove_files();
+  for (const std::string& name : earlier_folders_) {
+    if (announced_folders_.contains(name) || !is_folder_below(path_, name)) continue;
+    OutputDirectory(path_ / name).remove_run();
+  }
+  earlier_.emplace();
+  earlier_folders_.clear();
+  write_names();
+}
+
+void OutputDirectory::remove_run() {
+  remove_files();
+  std::error_code ignored;
+  fs::remove(path_, ignored);
+}
+
+void OutputDirectory::remove_files() {
   for (const std::string& name : earlier_.value_or(std::set<std::string>())) {
     const fs::path file = path_ / name;
     if (announced_.contains(name) || !may_be_removed(path_, name)) continue;
@@ -114,9 +162,9 @@ void OutputDirectory::remove_earlier() {
                    error.message());
   }
   std::error_code ignored;
-  fs::remove(path_ / "figures", ignored);  // where nothing is left in it
-  earlier_.emplace();
-  write_names();
+  for (const char* folder : {"figures", kSlurmFolder}) {
+    fs::remove(path_ / folder, ignored);  // where nothing is left in it
+  }
 }
 
 std::exception_ptr OutputDirectory::what_is_lost() const {

@@ -16,7 +16,8 @@
 namespace modcal {
 
 /// Knows from provenance.json, whose "files" names them, which files of the folder runs have
-/// written: those are replaced, or removed once other results stand; no other file is touched.
+/// written: those are replaced, or removed once other results stand; no other file is touched. Its
+/// "folders" are those below that hold results of the same run.
 class OutputDirectory {
  public:
   /// Makes the folder and checks that files can be written there, before anything is computed;
@@ -31,6 +32,10 @@ class OutputDirectory {
   bool holds(const std::string& name, std::string_view content) const;
   /// Whether what runs have written here is said to come from somewhere.
   bool has_provenance() const { return !provenance_.empty(); }
+  /// program_identity() of the run that wrote here last; empty: not known.
+  std::string program() const { return provenance_.value("program", std::string()); }
+  /// Throws InvalidInput where a file that no run wrote has one of the names.
+  void require_own(const std::vector<std::string>& names) const;
   /// Path of a file that is about to be written.
   std::filesystem::path note(std::string_view name) const {
     written_.push_back(path_ / name);
@@ -45,8 +50,11 @@ class OutputDirectory {
   void write_provenance(nlohmann::ordered_json provenance);
   /// Before files of these names are written, so that those of a killed run are known as well.
   void announce(const std::vector<std::string>& names);
+  void announce_folders(const std::vector<std::string>& names);
   /// Once they stand: removes what earlier runs wrote and this one has not announced.
   void remove_earlier();
+  /// Before settings are written whose results do not stand yet: no others stay beside them.
+  void make_way();
   /// Throws LostOutput where the folder, or a file that was written, was deleted or moved.
   void require_in_place() const;
   /// The LostOutput that require_in_place() would throw; null: nothing is lost.
@@ -55,6 +63,9 @@ class OutputDirectory {
  private:
   void read_provenance();
   void write_names();
+  void remove_files();
+  /// All that runs have written, and the folder where nothing else stands in it.
+  void remove_run();
 
   std::filesystem::path path_;
   OpenFile folder_;
@@ -62,6 +73,7 @@ class OutputDirectory {
   /// What runs have written; none: a run was here and what it wrote is not known.
   std::optional<std::set<std::string>> earlier_;
   std::set<std::string> announced_;
+  std::set<std::string> earlier_folders_, announced_folders_;
   mutable std::vector<std::filesystem::path> written_;
 };
 

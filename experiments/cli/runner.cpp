@@ -45,6 +45,41 @@ StudyResult run_list(const TaskExperiment& list, const StudyContext& context, Ru
   return list.sum_up(run_tasks(list, context, &store, shard), context);
 }
 
+// Of the files that the results of a list have whatever its tasks give.
+std::vector<std::string> names_of_list(const TaskExperiment& list,
+                                       const std::filesystem::path& folder) {
+  SharedWork none;
+  report::Report report;
+  StudyResult empty =
+      list.sum_up(TaskOutcomes(list.task_count()), {.work = none, .folder = folder});
+  std::vector<std::string> names = names_of(empty);
+  report.sections.push_back({"", std::move(empty.blocks)});
+  for (std::string& name : report::file_names(report)) names.push_back(std::move(name));
+  return names;
+}
+
+// Whether what stands in the folder is of these settings and this program.
+bool is_same_run(const LoadedExperiment& loaded, const RunSettings& settings,
+                 const OutputDirectory& out) {
+  return out.program() == program_identity() &&
+         out.holds(kResolvedFile, resolved_text(loaded, folder_of(loaded, settings)));
+}
+
+// Settings whose results do not stand yet.
+void begin_run(const LoadedExperiment& loaded, const RunSettings& settings, OutputDirectory& out) {
+  if (!is_same_run(loaded, settings, out)) out.make_way();
+  record_run(loaded, settings, out);
+}
+
+// The folder with one of each name below it: what is in the way is found before anything is run.
+OutputDirectory begin_together(const std::vector<std::string>& names, const RunSettings& settings) {
+  OutputDirectory out(settings.out);
+  for (const std::string& name : names) OutputDirectory(settings.out / name);
+  if (!out.has_provenance()) out.write_provenance(provenance_json(settings.command));
+  out.announce_folders(names);
+  return out;
+}
+
 PilotRun run_some_tasks(const TaskExperiment& list, const StudyContext& context, RunStore& store) {
   constexpr std::size_t kMost = 20;
   constexpr double kSeconds = 10.0;
@@ -81,9 +116,10 @@ PilotRun run_pilot(const LoadedExperiment& loaded, const RunSettings& settings) 
   MODCAL_REQUIRE(list != nullptr, "kind {} is no list of tasks: there is nothing to share out",
                  loaded.kind);
   OutputDirectory out(settings.out);
-  RunStore store(out.path(), Shard{}, program_identity());
   const std::filesystem::path folder = folder_of(loaded, settings);
-  record_run(loaded, settings, out);
+  out.require_own(names_of_list(*list, folder));
+  RunStore store(out.path(), Shard{}, program_identity());
+  begin_run(loaded, settings, out);
   SharedWork work;
   return with_context(loaded, folder, settings.command, work, [&](const StudyContext& context) {
     return run_some_tasks(*list, context, store);
@@ -98,16 +134,19 @@ ExitCode run_one(const LoadedExperiment& loaded, const RunSettings& settings) {
                  "kind {} is no list of tasks and cannot be run in shards; leave out --shard",
                  loaded.kind);
   std::optional<RunStore> store;
-  if (list != nullptr) store.emplace(out.path(), settings.shard, program_identity());
   const std::filesystem::path folder = folder_of(loaded, settings);
+  if (list != nullptr) {
+    out.require_own(names_of_list(*list, folder));
+    store.emplace(out.path(), settings.shard, program_identity());
+  }
   SharedWork work(interrupt_token());
   Beside beside;
-  beside.database = list != nullptr && out.holds(kResolvedFile, resolved_text(loaded, folder));
+  beside.database = list != nullptr && is_same_run(loaded, settings, out);
   // The journal of a list needs its settings at once. Other results keep theirs until they are
   // replaced.
   beside.settings = list != nullptr || !std::filesystem::exists(out.path() / report::kPageFile);
   // After the token and before the work: an interrupted run says what it was and how to go on.
-  if (beside.settings) record_run(loaded, settings, out);
+  if (beside.settings) begin_run(loaded, settings, out);
   const auto limit = limit_threads(settings.threads);
   StudyResult result;
   try {
@@ -142,7 +181,9 @@ ExitCode run_one(const LoadedExperiment& loaded, const RunSettings& settings) {
 ExitCode run_together(const std::vector<LoadedExperiment>& experiments,
                       const RunSettings& settings) {
   const Stopwatch clock;
-  const OutputDirectory before(settings.out);
+  std::vector<std::string> names;
+  for (const LoadedExperiment& one : experiments) names.push_back(stem_of(one.document.file));
+  const OutputDirectory before = begin_together(names, settings);
   const auto limit = limit_threads(settings.threads);
   SharedWork work(interrupt_token());
   report::Report report;
@@ -152,7 +193,6 @@ ExitCode run_together(const std::vector<LoadedExperiment>& experiments,
   for (const LoadedExperiment& loaded : experiments) {
     if (interrupted()) say_interrupted(settings, false);
     const std::string name = stem_of(loaded.document.file);
-    OutputDirectory(settings.out / name);
     const std::string command = fmt::format("modcal run {}", loaded.document.file);
     StudyResult result;
     try {
@@ -186,6 +226,7 @@ ExitCode run_together(const std::vector<LoadedExperiment>& experiments,
   apart = apart || out.path() != settings.out;
   out.write_provenance(provenance_json(settings.command));
   out.announce(report::file_names(report));
+  if (out.path() == settings.out) out.announce_folders(names);
   finish_report(std::move(report), settings, out);
   out.remove_earlier();
   out.require_in_place();

@@ -1,6 +1,7 @@
 // Runs loaded experiments and leaves their results in a folder.
 #pragma once
 
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "experiments/cli/command.hpp"
@@ -53,6 +54,9 @@ ExitCode run_together(const std::vector<LoadedExperiment>& experiments,
 inline constexpr const char* kProvenanceFile = "provenance.json";
 inline constexpr const char* kResolvedFile = "resolved.yaml";
 inline constexpr const char* kDatabaseFile = "results.sqlite";
+inline constexpr const char* kSlurmFolder = "slurm";
+/// Below it, the scripts that `submit` writes.
+inline constexpr std::array kSlurmScripts = {"slurm/run.sh", "slurm/merge.sh"};
 
 /// Every default written out; reads back to the same experiment from the folder that is named.
 std::string resolved_text(const LoadedExperiment& loaded, const std::filesystem::path& folder);

@@ -19,7 +19,7 @@ std::string head(const SlurmSettings& settings, std::string_view name, std::size
   option("job-name", fmt::format("modcal-{}", name));
   option("cpus-per-task", std::to_string(threads));
   option("time", std::to_string(minutes));
-  option("output", (settings.out / "slurm" / (std::string(name) + "-%A_%a.log")).string());
+  option("output", (settings.out / kSlurmFolder / (std::string(name) + "-%A_%a.log")).string());
   // A job that a node's failure ends is put back: it goes on where its journal ends.
   option("requeue", "");
   text.erase(text.size() - 2, 1);
@@ -75,6 +75,7 @@ ExitCode submit_to_slurm(const SubmitArguments& arguments) {
   const RunSettings settings{
       .out = out,
       .command = fmt::format("modcal run {} --out {}", file_words(arguments), out.string())};
+  OutputDirectory(out).require_own({kSlurmScripts.begin(), kSlurmScripts.end()});
   const PilotRun pilot = run_pilot(*loaded, settings);
   const SlurmBundles bundles = slurm_bundles(pilot.pending, pilot.seconds_per_task, threads,
                                              arguments.bundle_seconds, arguments.most_jobs);
@@ -83,8 +84,9 @@ ExitCode submit_to_slurm(const SubmitArguments& arguments) {
                             .out = out,
                             .partition = arguments.partition,
                             .threads = threads};
-  const std::filesystem::path folder = out / "slurm";
+  const std::filesystem::path folder = out / kSlurmFolder;
   const OutputDirectory scripts(folder);
+  OutputDirectory(out).announce({kSlurmScripts.begin(), kSlurmScripts.end()});
   scripts.write_text("run.sh", slurm_array_script(slurm, bundles));
   scripts.write_text("merge.sh", slurm_merge_script(slurm));
   add_to_json("tasks", pilot.pending);

@@ -169,7 +169,10 @@ ExitCode write_results(const LoadedExperiment& loaded, StudyResult result, RunSe
     out.write_provenance(provenance_json(settings.command));
   }
   names.insert(names.end(), {kProvenanceFile, kResolvedFile});
-  if (beside.database) names.push_back(kDatabaseFile);
+  if (beside.database) {
+    names.emplace_back(kDatabaseFile);
+    names.insert(names.end(), kSlurmScripts.begin(), kSlurmScripts.end());
+  }
   out.announce(names);
   write_files(out, result);
   print_summary(result, settings, seconds);

@@ -27,7 +27,7 @@ void finish_report(report::Report report, const RunSettings& settings, const Out
 /// What stands in a folder beside the results.
 struct Beside {
   bool settings = true;  ///< resolved.yaml and provenance.json of this run
-  bool database = true;  ///< of this list
+  bool database = true;  ///< and scripts of this list
 };
 
 /// On standard output: how many tasks of a list failed, which, why, and how to see one.

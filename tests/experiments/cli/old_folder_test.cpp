@@ -113,5 +113,76 @@ TEST_F(OldFolder, WhoseListOfFilesIsForgedLosesNothingElse) {
   EXPECT_EQ(content_of(path("other/victim")), "kept\n");
 }
 
+// A part of a list leaves what an interrupted one leaves: settings and a journal.
+TEST_F(OldFolder, HoldsNoResultsOfOthersWhileAListIsNotDone) {
+  const std::set<std::string> settings = {"notes.txt", "provenance.json", "resolved.yaml"};
+  ASSERT_EQ(modcal("run small.yaml --out a").code, 0);
+  write("a/notes.txt", "mine\n");
+  ASSERT_EQ(modcal("run list.yaml --out a --shard 1/2").code, 0);
+  EXPECT_EQ(files_in("a"), settings);
+  ASSERT_EQ(modcal("run list.yaml --out a").code, 0);
+  ASSERT_EQ(modcal("merge a").code, 0);
+  const std::set<std::string> whole = files_in("a");
+  // The same list keeps what it has, of the same program.
+  ASSERT_EQ(modcal("run list.yaml --out a --shard 1/2").code, 0);
+  EXPECT_EQ(files_in("a"), whole);
+  json provenance = json::parse(content_of(path("a/provenance.json")));
+  provenance["program"] = "modcal of yesterday";
+  write("a/provenance.json", provenance.dump());
+  ASSERT_EQ(modcal("run list.yaml --out a --shard 1/2").code, 0);
+  EXPECT_EQ(files_in("a"), settings);
+}
+
+TEST_F(OldFolder, WithAFileInTheWayOfAListIsRefusedBeforeATaskIsRun) {
+  std::filesystem::create_directories(path("a"));
+  write("a/tasks.csv", "mine\n");
+  const Outcome outcome = modcal("run list.yaml --out a");
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("a/tasks.csv: no run of modcal wrote this file"));
+  EXPECT_EQ(files_in("a"), std::set<std::string>{"tasks.csv"});
+  EXPECT_EQ(content_of(path("a/tasks.csv")), "mine\n");
+}
+
+TEST_F(OldFolder, LosesTheExperimentsThatAReproductionNoLongerHas) {
+  std::filesystem::create_directories(path("configs/paper"));
+  for (const char* name : {"one", "two", "three"}) {
+    write(std::string("configs/paper/") + name + ".yaml", testing::kSmallSimulation);
+  }
+  const auto reproduce = [this] {
+    return modcal("reproduce paper --configs configs --out a").code;
+  };
+  ASSERT_EQ(reproduce(), 0);
+  write("a/three/notes.txt", "mine\n");
+  std::filesystem::remove(path("configs/paper/two.yaml"));
+  std::filesystem::remove(path("configs/paper/three.yaml"));
+  write("configs/paper/four.yaml", testing::kSmallSimulation);
+  ASSERT_EQ(reproduce(), 0);
+  EXPECT_TRUE(std::filesystem::exists(path("a/one/resolved.yaml")));
+  EXPECT_FALSE(std::filesystem::exists(path("a/two")));
+  EXPECT_EQ(files_in("a/three"), std::set<std::string>{"notes.txt"});
+  EXPECT_TRUE(std::filesystem::exists(path("a/four/resolved.yaml")));
+  ASSERT_EQ(modcal("run small.yaml --out a").code, 0);
+  EXPECT_FALSE(std::filesystem::exists(path("a/one")));
+}
+
+TEST_F(OldFolder, KeepsScriptsThatSubmitDidNotWrite) {
+  const std::string submit = "submit list.yaml --slurm --dry-run --out a";
+  std::filesystem::create_directories(path("a/slurm"));
+  write("a/slurm/merge.sh", "mine\n");
+  const Outcome outcome = modcal(submit);
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("a/slurm/merge.sh: no run of modcal wrote this file"));
+  EXPECT_EQ(files_in("a"), std::set<std::string>{"slurm/merge.sh"});
+  std::filesystem::remove(path("a/slurm/merge.sh"));
+  ASSERT_EQ(modcal(submit).code, 0);
+  const std::string other = " --set scene.duration='0.2 s'";
+  ASSERT_EQ(modcal(submit + other).code, 0);  // its own are replaced
+  EXPECT_THAT(content_of(path("a/slurm/run.sh")), HasSubstr("0.2 s"));
+  ASSERT_EQ(modcal("run list.yaml --out a" + other).code, 0);
+  EXPECT_TRUE(files_in("a").contains("slurm/run.sh"));
+  ASSERT_EQ(modcal("run small.yaml --out a").code, 0);
+  EXPECT_FALSE(std::filesystem::exists(path("a/slurm")));
+}
+
 }  // namespace
 }  // namespace modcal
