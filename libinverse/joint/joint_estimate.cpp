@@ -48,13 +48,15 @@ std::vector<Estimate> estimate_with(const JointInversion& inversion, const Estim
   if (!both) {
     estimate.warnings.push_back(fmt::format(
         "reaction {} is missing: the estimate rests on the other one alone, and nothing "
-        "tells whether the string is the one stated, which the band takes for granted",
+        "tells whether the string is the one stated, which the band takes for granted: record both "
+        "ends, or check the string on a pluck (kind: identify)",
         record.reactions[0].empty() ? 1 : 2));
   }
   if (!noise.measured) {
     estimate.warnings.emplace_back(
         "the sample rate leaves no band above the modes to measure the noise in: 1 % of each "
-        "reaction is supposed");
+        "reaction is supposed: state noise_rms1 and noise_rms2 of the estimator, or record at a "
+        "higher rate");
   }
   std::string warning = warning_of(estimate.result.choice);
   if (!warning.empty()) estimate.warnings.push_back(std::move(warning));

@@ -154,7 +154,8 @@ class PreparedAuto final : public PreparedEstimator {
     if (!model.explained()) {
       result.warnings.push_back(fmt::format(
           "no friction law of the list explains the record (misfit {:.4g}, at most {:.4g} of a "
-          "right one), yet the best ({}) is closer to it than the noise of the joint estimate",
+          "right one), yet the best ({}) is closer to it than the noise of the joint estimate: "
+          "compare with that one, and free what may differ (force_knots, velocity_knots, laws)",
           model.steady_misfit, model.misfit_limit, model.laws[0].law));
     }
     return result;

@@ -78,7 +78,8 @@ void add_warnings(const ModelBasedOptions& options, const ObservedRecord& record
     if (level > 5.0 * deviation) {
       result.warnings.push_back(fmt::format(
           "the fitted offset of the reaction at {} is {:.3g} N away from its level before the "
-          "first wave, {:.2g} standard deviations: the record may not start at rest",
+          "first wave, {:.2g} standard deviations: the record may not start at rest: "
+          "begin it before the bow moves, or compare with the joint estimate, which need not",
           kEndNames[r], level, level / deviation));
     }
   }

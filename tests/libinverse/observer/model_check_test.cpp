@@ -62,6 +62,18 @@ TEST(Stiffness, OfARigidContactIsRefused) {
   }
 }
 
+TEST(Offset, BesideTheLevelBeforeTheFirstWaveIsWarnedOfWithARemedy) {
+  const BowedRecord r = light_record(0.04, 0.02);
+  const ObservedRecord record =
+      observe_record(r.basis, r.scene.bow.position, r.rate, r.left.samples, r.right.samples);
+  ModelBasedResult result;
+  result.parameters.offset[0] = 1.0;
+  add_warnings({.misfit_limit = 2.0}, record, std::vector<double>{1e-6, 1e-6}, result);
+  EXPECT_THAT(result.warnings,
+              testing::Contains(testing::AllOf(HasSubstr("offset of the reaction at x = 0"),
+                                               HasSubstr("compare with the joint estimate"))));
+}
+
 TEST(ModelBasedOptions, AllLawsAreFittedUnlessStated) {
   const auto names = friction_law_names();
   EXPECT_EQ(ModelBasedOptions{}.laws, (std::vector<std::string>(names.begin(), names.end())));
