@@ -127,8 +127,9 @@ report::Figure waterfall_figure(const BenchmarkGrid& grid) {
         if (!(task.outcome.frequency_error > 0.0)) return std::nullopt;
         return task.outcome.frequency_error;
       },
-      [](report::Series& series, double /*before*/, double after,
+      [](report::Series& series, double before, double after,
          const std::pair<double, std::int64_t>& value) {
+        add_task(series, before, value.first, value.second);
         add_task(series, after, value.first, value.second);
       });
 }

@@ -138,6 +138,16 @@ function category_at(map, x, y) {
   return i < 0 || j < 0 ? null : map.categories[map.cells[j * (map.x.length - 1) + i]] || null;
 }
 
+// Baseline of a label from `left` on: below those written before that would be in its way.
+function free_line(labels, left, width, y) {
+  var in_the_way = function (l) {
+    return l.left < left + width + 4 && left < l.left + l.width + 4 && Math.abs(l.y - y) < 12;
+  };
+  while (labels.some(in_the_way)) y += 13;
+  labels.push({left: left, width: width, y: y});
+  return y;
+}
+
 function draw_markers(panel) {
   return function (c, area, chart) {
     c.save();
@@ -147,6 +157,7 @@ function draw_markers(panel) {
     if (panel.map) draw_map(c, area, chart, panel.map);
     c.setLineDash([2, 3]);
     c.font = '11px system-ui, sans-serif';
+    var labels = [];
     panel.markers.forEach(function (m) {
       var share = m.vertical ? chart.toPercentXCoord(m.value) : chart.toPercentYCoord(m.value);
       if (!(share >= 0 && share <= 1)) return;
@@ -159,8 +170,9 @@ function draw_markers(panel) {
       c.stroke();
       var left = m.vertical && share <= 0.6;
       c.textAlign = left ? 'left' : 'right';
-      c.fillText(m.label, m.vertical ? x + (left ? 5 : -5) : area.x + area.w - 5,
-                 m.vertical ? area.y + 12 : y - 5);
+      var at = m.vertical ? x + (left ? 5 : -5) : area.x + area.w - 5;
+      var width = c.measureText(m.label).width;
+      c.fillText(m.label, at, free_line(labels, left ? at : at - width, width, m.vertical ? area.y + 12 : y - 5));
     });
     c.restore();
   };

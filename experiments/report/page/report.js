@@ -167,7 +167,7 @@ function chart_options(item) {
     legend: 'never',
     xlabel: escaped(panel.x.text),
     ylabel: escaped(panel.y.text),
-    axes: {x: axis_options(panel.x, 52, 48), y: axis_options(panel.y, 28, 62)},
+    axes: {x: axis_options(panel.x, 52, 48), y: axis_options(panel.y, 28, 76)},
     dateWindow: panel.x.window,
     valueRange: panel.y.window,
     yRangePad: panel.y.window ? 0 : 8,
