@@ -55,19 +55,21 @@ constexpr double kBeforeArrival = 0.8;
 constexpr double kStillShare = 0.25;
 
 /// Width of the clusters of bins whose residuals tell how well the decays at the ends of a record
-/// are known, in f_1: a line of a note and a zero of H_r each. Source: 12 records of
-/// benchmarks/truth (as for kBeforeArrival), R1 alone: the 95 % band holds 91 to 100 % of the
-/// force, 55 % of one of 5 % of noise whose fifth partial lies in a zero of H_1. Range tried: 0.5
-/// to 2, and single equations, by which it holds 34 to 100 %. Doubled: 75 to 100 %. Halved: 44 to
-/// 100 %.
+/// are known, in f_1: a line of a note and a zero of H_r each.
+/// Source: 12 records of benchmarks/truth (as for kBeforeArrival), R1 alone: the 95 % band holds 91
+/// to 100 % of the force, 55 % of one of 5 % of noise whose fifth partial lies in a zero of H_1.
+/// Range tried: 0.5 to 2, and single equations, by which it holds 34 to 100 %.
+/// Doubled: 75 to 100 %.
+/// Halved: 44 to 100 %.
 constexpr double kClusterWidth = 1.0;
 
 /// Order p of the window 1 − cos^(2p)(πt/T) whose part of a record the errors of its decays are
 /// stated for.
 /// Source: the same records, R1 alone, clusters of half an f_1: the band holds 90 to 100 % of the
 /// force, 44 and 51 % of the one of 5 % of noise.
-/// Range tried: 1 to 16, and the whole record, of which the ends take up to a hundred times as
-/// much. Doubled: 91 to 100 %, 47 and 61 %. Halved: not tried; at 1 89 to 100 %, 39 and 40 %.
+/// Range tried: 1 to 16, and the whole record, of which the ends take up to 100 times as much.
+/// Doubled: 91 to 100 %, 47 and 61 %.
+/// Halved: not tried; at 1 89 to 100 %, 39 and 40 %.
 constexpr int kEndsOrder = 8;
 
 }  // namespace modcal
