@@ -8,6 +8,7 @@
 #include <numbers>
 #include <utility>
 
+#include "libcalib/identifiability/law_followers.hpp"
 #include "libcalib/identifiability/tuning.hpp"
 #include "libsim/signal/fft.hpp"
 
@@ -15,9 +16,6 @@ namespace modcal {
 namespace {
 
 using std::numbers::pi;
-
-// From one place where a mode of the body is tried to the next; the mode is half as wide.
-constexpr double kBodyStep = 1.14, kBodyDamping = 0.03;
 
 // What the fit makes of a record: force, transfer functions, what rings.
 class FittedRecord {
@@ -86,11 +84,10 @@ class FittedRecord {
         columns[1].right.set(k, columns[1].right.at(k) + right);
       }
     }
-    return {std::string(kPolarization),
-            fmt::format("detuned by {:+.2g} %", 100.0 * detuning),
-            {std::move(columns[0]), std::move(columns[1])},
-            0.0,
-            kPolarizationWidth};
+    return {.name = std::string(kPolarization),
+            .detail = fmt::format("detuned by {:+.2g} %", 100.0 * detuning),
+            .columns = {std::move(columns[0]), std::move(columns[1])},
+            .widths = Eigen::Vector2d::Constant(kPolarizationWidth)};
   }
 
   // Mode by mode D_n q_n = f − 2ω_n² p (t/T − 1/2) q_n: the motion as it is fitted, in the time
@@ -117,7 +114,7 @@ class FittedRecord {
         column.right.set(k, column.right.at(k) + right);
       }
     }
-    return {std::string(kDrift), "", {std::move(column)}};
+    return {.name = std::string(kDrift), .columns = {std::move(column)}};
   }
 
   // The end at x = L is on a mode of the body, m (s² + 2ζω_b s + ω_b²) u = −R₂. To first order in
@@ -129,14 +126,10 @@ class FittedRecord {
     const double omega = 2.0 * pi * frequency;
     const Complex rate(-zeta * omega, omega * std::sqrt(1.0 - zeta * zeta));
     const Complex pole = std::exp(rate / record_.sample_rate);
-    MisfitCause cause{std::string(kBridge),
-                      fmt::format("at {:.0f} Hz", frequency),
-                      {},
-                      frequency,
-                      std::numeric_limits<double>::infinity(),
-                      {},
-                      0.0};
-    cause.modes.resize(static_cast<Eigen::Index>(own_));
+    MisfitCause cause{.name = std::string(kBridge),
+                      .detail = fmt::format("at {:.0f} Hz", frequency),
+                      .place = frequency,
+                      .modes = Eigen::VectorXcd(own_)};
     for (std::size_t n = 0; n < own_; ++n) {
       const Complex s(0.0, std::sqrt(modes_[n].omega_squared));
       const Complex body = s * s + 2.0 * zeta * omega * s + omega * omega;
@@ -144,6 +137,10 @@ class FittedRecord {
       cause.modes[static_cast<Eigen::Index>(n)] = -per_length_ / body;
       cause.coupling = std::max(cause.coupling, coupling);
     }
+    // No more than a mode that leaves the law may be off; what the body had before is not known.
+    constexpr double kUnknown = std::numeric_limits<double>::infinity();
+    cause.widths =
+        Eigen::Vector3d(kDeparted / cause.modes.cwiseAbs().maxCoeff(), kUnknown, kUnknown);
     cause.columns.assign(3, {numbers(), numbers()});
     for (std::size_t k = 0; k < record_.bins; ++k) {
       const Complex s(0.0, record_.omega[k]), delay = record_.delay.at(k);
@@ -163,11 +160,12 @@ class FittedRecord {
 
   MisfitCause nonlinear_sensors() const {
     SignalColumn columns[2] = {{cubed(false), {}}, {{}, cubed(true)}};
-    return {std::string(kNonlinear), "", {std::move(columns[0]), std::move(columns[1])}};
+    return {.name = std::string(kNonlinear),
+            .columns = {std::move(columns[0]), std::move(columns[1])}};
   }
 
   MisfitCause modes_above() const {
-    MisfitCause cause{std::string(kModesAbove), "", {}};
+    MisfitCause cause{.name = std::string(kModesAbove)};
     const double top = record_.omega[record_.bins - 1];
     for (const bool right : {false, true}) {
       for (const int power : {0, 2}) {
@@ -274,7 +272,7 @@ std::vector<MisfitCause> misfit_causes(const ProjectedLikelihood& likelihood,
   causes.push_back(fitted.nonlinear_sensors());
   causes.push_back(fitted.modes_above());
   const double fundamental = point.basis.omega[0] / (2.0 * pi);
-  for (double place = 0.5; place < 6.2; place *= kBodyStep) {
+  for (double place = 0.5; place < kHighestBody; place *= kBodyStep) {
     causes.push_back(fitted.bridge(place * fundamental, kBodyDamping));
   }
   return causes;

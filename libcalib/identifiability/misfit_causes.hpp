@@ -20,12 +20,13 @@ inline constexpr std::string_view kBridge = "bridge that moves";
 /// A cause of misfit: amplitudes of what it adds to both records, to first order.
 struct MisfitCause {
   std::string name;
-  std::string detail;  ///< which of several tried, in words; empty: there is one
-  std::vector<SignalColumn> columns;
+  std::string detail = {};  ///< which of several tried, in words; empty: there is one
+  std::vector<SignalColumn> columns = {};
   double place = 0.0;  ///< of a bridge that moves [Hz]
   /// Prior sd of the amplitudes of a cause that may be in any record: the deviations hold what the
-  /// record leaves untold of it. ∞: nothing is known; 0: it is taken for absent until suspected.
-  double width = 0.0;
+  /// record leaves untold of it. ∞: nothing is known. Empty: it is taken for absent until
+  /// suspected.
+  Eigen::VectorXd widths = {};
   /// What an amplitude of 1 of the first column makes of the modes: relative change of s_n, the
   /// real part of f_n, the imaginary one added to ζ_n. The f_n and ζ_n reported are those of the
   /// string with this cause; the response of the sensors, which holds a part of it, does not count.
@@ -52,8 +53,9 @@ struct ScoreTest {
   Eigen::VectorXd moved;        ///< change of all unknowns θ that count, were it free
   double contradiction = 0.0;   ///< the shift of what is wrong where the cause is in the record
   double coupling = 0.0;        ///< κ of the amplitude estimated (MisfitCause)
-  /// Covariance of such changes by amplitudes that the data do not tell, at all places tried, by
-  /// what speaks for each; empty: a cause that is taken for absent until it is suspected.
+  /// Covariance of such changes by amplitudes that the data do not tell: of every unknown the most
+  /// at any place tried, by what speaks for it; empty: a cause that is taken for absent until it is
+  /// suspected.
   Eigen::MatrixXd untold;
   std::vector<SignalColumn> columns;  ///< where it is named and frees()
 
@@ -85,7 +87,8 @@ const ScoreTest* first_cause(const std::vector<ScoreTest>& tests);
 /// - "drift of the tuning": ω_n(t) = ω_n (1 + p (t/T − 1/2)), p the drift over the record;
 /// - "nonlinear sensor": p y³/⟨y²⟩ in each record, y what the fit leaves of it without noise;
 /// - "modes above": p_0 and p_1 s² times the force at either end;
-/// - "bridge that moves": x = L is on a mode of a body, of 1/m, at twenty frequencies.
+/// - "bridge that moves": x = L is on a mode of a body, of 1/m, at frequencies from f_1/2 to 20
+/// f_1.
 ///
 /// All take the motion or the force of the fit. Weights of `likelihood` play no part; σ = 0.
 std::vector<MisfitCause> misfit_causes(const ProjectedLikelihood& likelihood,

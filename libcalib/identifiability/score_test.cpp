@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "libcalib/identifiability/misfit_causes.hpp"
+#include "libcalib/identifiability/tuning.hpp"
 
 namespace modcal {
 
@@ -16,8 +17,7 @@ double ScoreTest::suspicion() const {
 bool ScoreTest::moves_modes_off_law() const { return cause == kBridge; }
 
 bool ScoreTest::refuses() const {
-  constexpr double kDeviations = 2.0, kCoupling = 0.1;
-  return named() && (contradiction > kDeviations || coupling > kCoupling);
+  return named() && (contradiction > 2.0 || coupling > kMostCoupling);
 }
 
 bool ScoreTest::frees() const { return cause == kDrift; }

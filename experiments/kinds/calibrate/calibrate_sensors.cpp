@@ -86,9 +86,8 @@ std::string default_text(const CalibrationOptions& calibration, const Observatio
   if (texts.empty()) return "";
   return fmt::format(
       "Free unasked in a record, with standard deviations of the priors: {}. sensors: [exact] and "
-      "damping: fixed hold them. In the deviations besides: a second polarization +- {:g}, a "
-      "bridge "
-      "that moves as far as the record does not tell it.",
+      "damping: fixed hold them. In the deviations besides: a second polarization +- {:g}, and a "
+      "bridge that moves as far as the record does not tell it.",
       fmt::join(texts, ", "), kPolarizationWidth);
 }
 

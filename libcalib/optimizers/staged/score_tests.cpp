@@ -115,12 +115,10 @@ class Scores {
     }
     if (cause.modes.size() > 0) {
       test.coupling = cause.coupling * std::abs(amplitude[0]);
-      if (amplitude[0] > 0.0) test.detail += fmt::format(", of {:.3g} kg", 1.0 / amplitude[0]);
     }
-    if (cause.width > 0.0) {
-      const Eigen::MatrixXd told =
-          information / std::max(1.0, misfit) +
-          Eigen::MatrixXd::Identity(count, count) / (cause.width * cause.width);
+    if (cause.widths.size() > 0) {
+      Eigen::MatrixXd told = information / std::max(1.0, misfit);
+      told.diagonal() += cause.widths.cwiseAbs2().cwiseInverse();
       test.untold = taken * told.ldlt().solve(taken.transpose());
     }
     return {test, most};
@@ -134,32 +132,25 @@ class Scores {
 };
 
 // Tests of one cause by one name each: of those tried at several places the one found best, with
-// what all of them leave untold.
+// what they leave untold. There may be a mode of the body at any place: of every unknown it is the
+// most of all, each by its likelihood e^(S/2) over that of the best.
 class BestTests {
  public:
   void add(ScoreTest test) {
-    const double weight = 0.5 * test.statistic;
     const auto same = std::ranges::find(tests_, test.cause, &ScoreTest::cause);
     if (same == tests_.end()) {
+      tried_.push_back({1.0, test.untold.diagonal()});
       tests_.push_back(std::move(test));
-      tried_.push_back({1.0, weight});
       return;
     }
     Tried& tried = tried_[static_cast<std::size_t>(same - tests_.begin())];
+    const Eigen::VectorXd own = test.untold.diagonal();
+    const double weight = std::exp(0.5 * (same->statistic - test.statistic));
+    if (weight < 1.0) std::swap(*same, test);
+    same->shift_per_root = std::max(same->shift_per_root, test.shift_per_root);
+    same->untold += std::min(weight, 1.0 / weight) * test.untold;
     tried.count += 1.0;
-    test.shift_per_root = std::max(same->shift_per_root, test.shift_per_root);
-    // The likelihoods of both, e^(S/2), are their weights.
-    const double sum = std::max(weight, tried.log_weight) +
-                       std::log1p(std::exp(-std::abs(weight - tried.log_weight)));
-    test.untold =
-        std::exp(weight - sum) * test.untold + std::exp(tried.log_weight - sum) * same->untold;
-    tried.log_weight = sum;
-    if (test.statistic > same->statistic) {
-      *same = std::move(test);
-    } else {
-      same->shift_per_root = test.shift_per_root;
-      same->untold = std::move(test.untold);
-    }
+    tried.most = (std::min(weight, 1.0) * tried.most).cwiseMax(std::min(1.0, 1.0 / weight) * own);
   }
 
   std::optional<double> named_place() const {
@@ -170,15 +161,24 @@ class BestTests {
 
   std::vector<ScoreTest> take() {
     for (std::size_t i = 0; i < tests_.size(); ++i) {
-      tests_[i].log_p = std::min(0.0, tests_[i].log_p + std::log(tried_[i].count));
-      if (!tests_[i].named() || !tests_[i].frees()) tests_[i].columns.clear();
+      ScoreTest& test = tests_[i];
+      test.log_p = std::min(0.0, test.log_p + std::log(tried_[i].count));
+      // With the correlations of their sum.
+      const Eigen::ArrayXd sum = test.untold.diagonal();
+      const Eigen::VectorXd part = (sum > 0.0).select((tried_[i].most.array() / sum).sqrt(), 0.0);
+      test.untold = part.asDiagonal() * test.untold * part.asDiagonal();
+      if (!test.named() || !test.frees()) test.columns.clear();
+      if (test.named() && test.place > 0.0 && test.amplitude > 0.0) {
+        test.detail += fmt::format(", of {:.3g} kg", 1.0 / test.amplitude);
+      }
     }
     return std::move(tests_);
   }
 
  private:
   struct Tried {
-    double count, log_weight;
+    double count;          // places
+    Eigen::VectorXd most;  // of the diagonals of what they leave untold
   };
   std::vector<ScoreTest> tests_;
   std::vector<Tried> tried_;
