@@ -1,7 +1,7 @@
 # Every target can be the first one run on a fresh Debian 12 (root or sudo).
 PRESET ?= release
 
-.PHONY: reproduce test test-cluster bench accuracy stress format tidy clean build
+.PHONY: reproduce test test-cluster bench accuracy stress format tidy docs clean build
 .PHONY: packages packages-test packages-cluster packages-develop
 
 build: packages
@@ -47,6 +47,10 @@ stress: packages
 	@cmake --preset $(PRESET) >/dev/null
 	@cmake --build --preset $(PRESET) --target stability_map
 	@benchmarks/stress/run.sh build/$(PRESET)
+
+# The site: build/release/docs/html/index.html.
+docs: packages-test
+	@cmake/site/build.sh build/$(PRESET)/docs
 
 format: packages-develop
 	@git ls-files -co --exclude-standard -- '*.cpp' '*.hpp' | xargs ls 2>/dev/null | xargs clang-format -i

@@ -93,12 +93,13 @@ def long_sentences(name, text):
         yield f"{name}: a tenth of the sentences has {tenth} words and more, {MOST} are allowed"
 
 
+def leads_nowhere(folder, path):
+    return path and not re.match(r"[a-z]+:", path) and not (folder / path).exists()
+
+
 def dead_links(name, text, root):
     for target in re.findall(r"\]\(([^)\s]+)\)", re.sub(r"`[^`]*`", "", text)):
-        path = target.split("#")[0]
-        if not path or re.match(r"[a-z]+:", path):
-            continue
-        if not (root / name).parent.joinpath(path).exists():
+        if leads_nowhere((root / name).parent, target.split("#")[0]):
             yield f"{name}: {target} leads nowhere"
 
 
