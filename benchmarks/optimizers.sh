@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Runs configs/benchmark/optimizers.yaml (or goes on with it), renders its report into
-# docs/benchmark.png and puts its conclusion into docs/optimizers.md: optimizers.sh BUILD_DIRECTORY [OUT].
+# docs/benchmark.png and puts its conclusion into docs/choosing.md: optimizers.sh BUILD_DIRECTORY [OUT].
 # OUT is relative to the project, so that the picture shows a command that works everywhere.
 set -euo pipefail
 build=$(cd "${1:?usage: optimizers.sh BUILD_DIRECTORY [OUT]}" && pwd)
@@ -24,5 +24,5 @@ stat -c '%n: %s bytes' docs/benchmark.png
 awk -v text="$profile/conclusion" '
   /<!-- conclusion of the benchmark -->/ { print; print ""; while ((getline line < text) > 0) print "* " line; print ""; skip = 1; next }
   /<!-- end of the conclusion -->/ { skip = 0 }
-  !skip { print }' docs/optimizers.md >"$profile/optimizers.md"
-cp "$profile/optimizers.md" docs/optimizers.md
+  !skip { print }' docs/choosing.md >"$profile/choosing.md"
+cp "$profile/choosing.md" docs/choosing.md

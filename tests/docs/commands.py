@@ -2,8 +2,8 @@
 """Runs the commands of README and docs/ and holds what they print against what the pages show.
 
 commands.py ROOT MODCAL [PAGE]. Every page has a folder of its own, with copies of examples/ and configs/, in which its blocks
-of code run in their order. A block is one of commands if it begins with a prompt ("$ ") or a program. What stands behind
-a command with a prompt is what it prints to standard output, or to standard error where that stays empty:
+of code run in their order. A block is one of commands if it begins with a prompt ("$ ", further lines "> ") or a program. What
+stands behind a command with a prompt is what it prints to standard output, or to standard error where that stays empty:
 
 * words are equal, so are whole numbers; other numbers agree to two units of the last digit shown;
 * "…" in a line is any text, "…" in a line of its own any lines.
@@ -27,6 +27,7 @@ from prose import blocks, pages
 
 MOST_SECONDS = 120  # a block that takes longer is marked
 NUMBER = r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
+MARKS = {"not run", "numbers vary", "file", "first"}
 PROGRAM = re.compile(r"(\$ |(build/release/)?modcal |make |mpirun |benchmarks/)")
 
 
@@ -39,10 +40,13 @@ class Block:
 
     def commands(self):
         """(command, what is shown of its output; None: nothing)."""
+        before = [(self.marks["first"], None)] if "first" in self.marks else []
+        if not self.has_commands:
+            return before
         if not self.text.startswith("$ "):
-            return [(line, None) for line in self.text.splitlines()]
-        parts = re.split(r"^\$ (.*)\n", self.text, flags=re.M)[1:]
-        return list(zip(parts[::2], parts[1::2]))
+            return before + [(line, None) for line in self.text.splitlines()]
+        parts = re.split(r"^\$ (.*(?:\n> .*)*)\n", self.text, flags=re.M)[1:]
+        return before + list(zip((command.replace("\n> ", "\n") for command in parts[::2]), parts[1::2]))
 
 
 def blocks_of(text):
@@ -107,15 +111,15 @@ class Folder:
         (path / "build/release/modcal").symlink_to(program)
 
     def run(self, command):
-        return subprocess.run(["bash", "-c", f'PATH="$PWD/build/release:$PATH"; {command}'], cwd=self.path, text=True,
+        # /usr/bin: the python3 that has the packages of packages.txt
+        return subprocess.run(["bash", "-c", f'PATH="$PWD/build/release:/usr/bin:$PATH"; {command}'], cwd=self.path, text=True,
                               capture_output=True, stdin=subprocess.DEVNULL, timeout=MOST_SECONDS)
 
     def faults(self, block):
-        if "first" in block.marks:
-            self.run(block.marks["first"])
+        yield from (f"there is no mark \"{mark}\"" for mark in set(block.marks) - MARKS)
         if block.is_file:
             (self.path / block.marks["file"]).write_text(block.text)
-        for command, shown in block.commands() if block.has_commands else ():
+        for command, shown in block.commands():
             try:
                 done = self.run(command)
             except subprocess.TimeoutExpired:
@@ -131,6 +135,8 @@ class Folder:
 
 def self_check(folder):
     planted = {
+        "there is no mark": "<!-- not ran: planted -->\n\n    some text",
+        "false: exit code 1": "<!-- first: false -->\n\n    $ true",
         "exit code 3": "    modcal run nowhere.yaml",
         "this is not what is printed": "    $ echo right\n    wrong",
         "there is more of it": "    $ printf 'a\\nb\\n'\n    a",

@@ -42,6 +42,8 @@ def blocks(text):
             lines.append(line)
         if item:
             in_list = True
+        elif line.startswith("#") and not fence:
+            in_list = False
         elif now == "prose" and not line.startswith(" "):
             in_list = in_list and kind == "prose" and len(lines) > 1
     if kind and lines:
