@@ -12,8 +12,6 @@ from pathlib import Path
 
 MEDIAN, MOST = 18, 30  # words; of a tenth of the sentences there may be more
 README_LINES = 150
-# Pages whose sentences are not held to it yet.
-EXEMPT = {"docs/trust.md", "docs/physics.md"}
 
 
 def pages(root):
@@ -83,8 +81,6 @@ def figures(counts):
 
 
 def long_sentences(name, text):
-    if name in EXEMPT:
-        return
     counts = lengths(text)
     if len(counts) < 5:
         return
