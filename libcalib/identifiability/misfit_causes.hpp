@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,22 +17,23 @@ inline constexpr std::string_view kDrift = "drift of the tuning";
 inline constexpr std::string_view kNonlinear = "nonlinear sensor";
 inline constexpr std::string_view kModesAbove = "modes above";
 inline constexpr std::string_view kBridge = "bridge that moves";
+inline constexpr std::string_view kResonance = "resonance of a sensor";
 
 /// A cause of misfit: amplitudes of what it adds to both records, to first order.
 struct MisfitCause {
   std::string name;
   std::string detail = {};  ///< which of several tried, in words; empty: there is one
   std::vector<SignalColumn> columns = {};
-  double place = 0.0;  ///< of a bridge that moves [Hz]
+  double place = 0.0;  ///< of a mode of the body or a resonance [Hz]
   /// Prior sd of the amplitudes of a cause that may be in any record: the deviations hold what the
   /// record leaves untold of it. ∞: nothing is known. Empty: it is taken for absent until
   /// suspected.
   Eigen::VectorXd widths = {};
-  /// What an amplitude of 1 of the first column makes of the modes: relative change of s_n, the
-  /// real part of f_n, the imaginary one added to ζ_n. The f_n and ζ_n reported are those of the
-  /// string with this cause; the response of the sensors, which holds a part of it, does not count.
-  /// Empty: the modes are the string's own.
-  Eigen::VectorXcd modes = {};
+  /// What an amplitude of 1 of the first columns makes of the modes, a column each: relative change
+  /// of s_n, the real part of f_n, the imaginary one added to ζ_n. The f_n and ζ_n reported are
+  /// those of the string with this cause; the response of the sensors, which holds a part of it,
+  /// does not count. Empty: the modes are the string's own.
+  Eigen::MatrixXcd modes = {};
   /// The largest κ_n = 2(T/L) ω_n²/|s_n² + 2ζω_b s_n + ω_b²|², by an amplitude of 1: the square of
   /// how far mode n and that of the body push each other apart, over their distance. Above some
   /// tenths `modes` is too small.
@@ -41,13 +43,14 @@ struct MisfitCause {
 /// What the score test of one cause says (score_tests.hpp).
 struct ScoreTest {
   std::string cause, detail;
-  double place = 0.0;      ///< of a bridge that moves [Hz]
+  double place = 0.0;      ///< of a mode of the body or a resonance [Hz]
   double statistic = 0.0;  ///< S, χ² of `degrees` where the cause is not there [1]
   std::size_t degrees = 0;
   double log_p = 0.0;      ///< ln of the chance of S or more by noise, in any of those tried
   double amplitude = 0.0;  ///< estimated to first order; of several their root square sum [1]; of a
                            ///< bridge 1/m [1/kg]
-  double shift = 0.0;      ///< largest change of an unknown, were it free, in its deviations
+  Eigen::VectorXd amplitudes;   ///< all, of `columns`
+  double shift = 0.0;           ///< largest change of an unknown, were it free, in its deviations
   double shift_per_root = 0.0;  ///< the same where √S is 1, by the worst amplitudes and detuning
   std::string unknown;          ///< that this is of
   Eigen::VectorXd moved;        ///< change of all unknowns θ that count, were it free
@@ -72,7 +75,7 @@ struct ScoreTest {
   /// Moves modes off the law, and those the most beside which it is a resonance: what the modal
   /// model has not is as large there as the departure.
   bool moves_modes_off_law() const;
-  /// Linear enough to be free in a further fit.
+  /// Linear enough to be free in a further fit; a bridge that moves where κ < 0.05.
   bool frees() const;
   /// What to do about it, in words.
   std::string_view remedy() const;
@@ -93,8 +96,15 @@ const ScoreTest* first_cause(const std::vector<ScoreTest>& tests);
 /// All take the motion or the force of the fit. Weights of `likelihood` play no part; σ = 0.
 std::vector<MisfitCause> misfit_causes(const ProjectedLikelihood& likelihood,
                                        const ModelPoint& point);
-/// "bridge that moves" between the places of misfit_causes() on either side of `place` [Hz].
-std::vector<MisfitCause> bridges_about(const ProjectedLikelihood& likelihood,
-                                       const ModelPoint& point, double place);
+/// "bridge that moves" at these places [Hz]; of a record that it was taken out of by what is
+/// recorded at x = L. beside: with two modes more, an eighth of a step of misfit_causes() lower and
+/// higher, by which the place and the damping are free to first order.
+std::vector<MisfitCause> bridges_at(const ProjectedLikelihood& likelihood, const ModelPoint& point,
+                                    std::span<const double> places, bool beside);
+/// "bridge that moves" between the places of misfit_causes() on either side of `place` [Hz], and
+/// what may look like it: "resonance of a sensor", shares of what the fit leaves of either record
+/// without noise, times 2ζ_b ω_b s and ω_b² over s² + 2ζ_b ω_b s + ω_b².
+std::vector<MisfitCause> resonances_about(const ProjectedLikelihood& likelihood,
+                                          const ModelPoint& point, double place);
 
 }  // namespace modcal

@@ -20,7 +20,10 @@ bool ScoreTest::refuses() const {
   return named() && (contradiction > 2.0 || coupling > kMostCoupling);
 }
 
-bool ScoreTest::frees() const { return cause == kDrift; }
+bool ScoreTest::frees() const {
+  return cause == kDrift || cause == kResonance ||
+         (cause == kBridge && coupling < kMostCouplingTaken);
+}
 
 std::string_view ScoreTest::remedy() const {
   constexpr std::pair<std::string_view, std::string_view> kRemedies[] = {
@@ -29,6 +32,8 @@ std::string_view ScoreTest::remedy() const {
        "sensors"},
       {kDrift, "record when the string has settled, or calibrate a shorter part of the record"},
       {kNonlinear, "play softer, or use sensors of a wider range"},
+      {kResonance,
+       "fix the sensor more stiffly, or end the band below its resonance (highest_frequency)"},
       {kBridge, "clamp the bridge or load it, or mount the string on heavier supports"},
       {kModesAbove,
        "the record has not the modes above those stated that the law has: state more modes, or "

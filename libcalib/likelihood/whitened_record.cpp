@@ -130,12 +130,16 @@ WhitenedRecord WhitenedRecord::of(const NoisyRecords& records, double sigma, dou
     }
   }
   const double norm = 1.0 / std::sqrt(energy);
-  const auto whiten_end = [&](std::size_t r, PlanarVector& out) {
-    whiten(std::span(records.reactions[r]).first(length), decay, norm / records.deviation[r],
-           record.bins, out);
+  const auto whiten_end = [&](std::span<const double> reaction, std::size_t r, PlanarVector& out) {
+    whiten(reaction.first(length), decay, norm / records.deviation[r], record.bins, out);
   };
-  whiten_end(0, record.left);
-  whiten_end(1, record.right);
+  whiten_end(records.reactions[0], 0, record.left);
+  whiten_end(records.reactions[1], 1, record.right);
+  if (sigma == 0.0 && !records.on_bridge.empty()) {
+    record.on_bridge = PlanarVector(padded);
+    whiten_end(records.on_bridge, 1, record.on_bridge);
+    record.body = records.body;
+  }
   const double rest = sigma == 0.0 ? 1.0 : decay.back() * std::exp(-sigma / records.sample_rate);
   const Complex turn(0.0, -record.spacing / records.sample_rate);
   const std::vector<Complex> delays =

@@ -26,6 +26,9 @@ struct NoisyRecords {
   std::vector<double> lines = {};
   /// Of unknown amplitudes, for the undamped record: whitened, of all its bins.
   std::vector<SignalColumn> signals = {};
+  /// Where a bridge that moves was taken out of `reactions`: R_2 as recorded [N], and the
+  /// frequencies of the body's modes [Hz]; else empty.
+  std::vector<double> on_bridge = {}, body = {};
 
   std::size_t samples() const { return reactions[0].size(); }
   /// The records behind spectra of both ends. deviation: s_r [N]; NaN: estimated by
@@ -53,6 +56,8 @@ struct WhitenedRecord {
   std::vector<double> lines;  ///< [rad/s]
   std::vector<SignalColumn> signals;
   PlanarVector left, right;  ///< y_1, y_2
+  PlanarVector on_bridge;    ///< that of the records, at σ = 0, whole; else empty
+  std::vector<double> body;  ///< [Hz]
   /// C_k of every bin: E|n_1|², E|n_2|², E n_1 conj(n_2); empty: the identity.
   AlignedVector left_noise, right_noise, mixed_noise;
   PlanarVector delay;         ///< z^−1 = exp(−s_k/f_s)

@@ -74,15 +74,23 @@ void visit_noise(ResultVisitor& row, const NoiseSpectrum::Knot& knot) {
       knot.noise.mixed / std::sqrt(knot.noise.left * knot.noise.right));
 }
 
+std::string freed_line(const ScoreTest& freed) {
+  if (freed.cause == kBridge) {
+    return fmt::format("{} was found and taken out of the record; f_n and zeta_n are on it\n",
+                       whole_name(freed));
+  }
+  return fmt::format("{} of {:.3g} (sd {:.2g}) was found and is free in the fit\n",
+                     whole_name(freed), freed.amplitude,
+                     std::abs(freed.amplitude) / std::sqrt(freed.statistic));
+}
+
 }  // namespace
 
 std::string cause_lines(const CalibrationResult& result) {
   const ContinuationResult& found = *result.continuation;
   std::string text = found.tests.empty() ? "" : departures(result);
   for (const ScoreTest& freed : found.freed) {
-    text += fmt::format("{} of {:.3g} (sd {:.2g}) was found and is free in the fit\n",
-                        whole_name(freed), freed.amplitude,
-                        std::abs(freed.amplitude) / std::sqrt(freed.statistic));
+    text += freed_line(freed);
   }
   for (const ScoreTest& test : found.tests) {
     if (!test.named()) continue;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "libcalib/identifiability/moving_bridge.hpp"
 #include "libcalib/likelihood/mains_lines.hpp"
 #include "libcalib/likelihood/noise_level.hpp"
 #include "libcalib/optimizers/staged/continuation_attempt.hpp"
@@ -56,8 +57,8 @@ bool begins_moving(const NoisyRecords& records, const ModelPoint& point) {
 
 // Where the noise is not what was read, the fit is made again with what it leaves; once more for
 // what the first round changed.
-ContinuationResult attempt(const AttemptInput& input, double shift, std::size_t evaluations) {
-  input.records.signals.clear();
+ContinuationResult attempt_with_its_noise(const AttemptInput& input, double shift,
+                                          std::size_t evaluations) {
   input.records.noise = {};
   input.records.deviation = input.read;
   input.records.power_error = input.read_error;
@@ -72,9 +73,57 @@ ContinuationResult attempt(const AttemptInput& input, double shift, std::size_t 
     append_stages(found.stages, "other noise: ", 0, stages);
     found.stages = std::move(stages);
   }
+  return found;
+}
+
+// Of a fit, to compare it with one of another noise.
+double power_left(const ContinuationResult& fit) { return fit.chi2 * fit.noise[0] * fit.noise[1]; }
+
+// A bridge that moves is taken out of the record, by as many modes of its body as the fits of what
+// is left ask for: they are those of a pinned string, whose modes are then put on the bridge. The
+// fit before, of the string on its bridge, is near enough to begin with, so that there are two.
+ContinuationResult on_moving_bridge(const AttemptInput& input, double shift,
+                                    ContinuationResult found) {
+  NoisyRecords& records = input.records;
+  const std::array<std::vector<double>, 2> recorded = records.reactions;
+  std::vector<ScoreTest> body, taken_out;
+  for (std::size_t fit = 0; fit < 6; ++fit) {
+    const ScoreTest* cause = first_cause(found.tests);
+    // A mass is positive; a further mode may take from one found too light.
+    const bool more = cause && cause->cause == kBridge && cause->frees() &&
+                      (!body.empty() || cause->amplitude > 0.0);
+    if (!more && fit != 1) break;
+    if (more) body.push_back(*cause);
+    records.reactions = recorded;
+    take_out(body, found.model, input.highest, records);
+    ContinuationResult next = attempt_with_its_noise(input, shift, found.evaluations);
+    found.evaluations = next.evaluations;
+    if (!(power_left(next) < power_left(found))) break;
+    append_stages(next.stages, "bridge taken out: ", 0, found.stages);
+    next.stages = std::move(found.stages);
+    found = std::move(next);
+    taken_out = body;
+  }
+  records.reactions = recorded;
+  records.on_bridge.clear();
+  records.body.clear();
+  put_on_bridge(found.model.basis, taken_out);
+  for (std::size_t n = 0; n < found.modes.size(); ++n) {
+    found.modes[n].frequency = found.model.basis.frequency(n);
+  }
+  found.freed = std::move(taken_out);
+  return found;
+}
+
+ContinuationResult attempt(const AttemptInput& input, double shift, std::size_t evaluations) {
+  input.records.signals.clear();
+  ContinuationResult found = attempt_with_its_noise(input, shift, evaluations);
   const ScoreTest* cause = first_cause(found.tests);
   if (!cause || !cause->frees()) return found;
-  // To first order its amplitude is one more number of the record, as long as it is small.
+  if (cause->cause == kBridge) {
+    return input.alone ? on_moving_bridge(input, shift, std::move(found)) : found;
+  }
+  // To first order its amplitudes are further numbers of the record, as long as they are small.
   std::vector<ScoreTest> freed = {*cause};
   input.records.signals = freed.front().columns;
   std::vector<FitStage> stages = std::move(found.stages);
@@ -86,6 +135,45 @@ ContinuationResult attempt(const AttemptInput& input, double shift, std::size_t 
   }
   found.freed = std::move(freed);
   return found;
+}
+
+// alone: there are no other records.
+ContinuationResult calibrate_stroke(const ModelPoint& initial, const CalibrationData& data,
+                                    const ContinuationOptions& options, const StatedPriors& priors,
+                                    bool alone, Evaluator* within) {
+  const std::array<double, 2> noise{options.left_noise, options.right_noise};
+  NoisyRecords records = NoisyRecords::of_data(data, initial.basis, noise);
+  records.lines = mains_lines(records, initial, options.unknowns.mains);
+  records.power_error = noise_power_error(noise, initial.basis, data);
+  const double highest = likelihood_band(initial, options.highest_frequency, data.sample_rate);
+  constexpr double kShifts[] = {0.0, 4e-3, -4e-3, 8e-3, -8e-3};
+  const AttemptInput input{.initial = initial,
+                           .records = records,
+                           .options = options,
+                           .priors = priors,
+                           .highest = highest,
+                           .moving = begins_moving(records, initial),
+                           .alone = alone,
+                           .within = within};
+  ContinuationResult best;
+  std::size_t evaluations = 0;
+  std::vector<FitStage> stages;
+  for (std::size_t i = 0; i <= static_cast<std::size_t>(options.restarts); ++i) {
+    ContinuationResult found = attempt(input, kShifts[i], evaluations);
+    evaluations = found.evaluations;
+    append_stages(found.stages, i == 0 ? "" : fmt::format("restart {}: ", i), 0, stages);
+    found.restarts = i;
+    if (i == 0 || found.chi2 < best.chi2) best = std::move(found);
+    if (best.fits) break;
+  }
+  best.evaluations = evaluations;
+  best.stages = std::move(stages);
+  if (!best.fits && options.frequencies) best = with_misfit_for_noise(input, std::move(best));
+  best.lines = records.lines;
+  best.contacts = {best.model.contact};
+  best.contact_deviations = {best.contact_deviation};
+  best.values = {{best.model.sensors, best.sensor_deviation, best.damping, best.damping_deviation}};
+  return best;
 }
 
 // What is the first record's, and the stages of all fits in order.
@@ -150,38 +238,7 @@ ContinuationResult calibrate_by_continuation(const ModelPoint& initial, const Ca
 ContinuationResult calibrate_by_continuation(const ModelPoint& initial, const CalibrationData& data,
                                              const ContinuationOptions& options,
                                              const StatedPriors& priors, Evaluator* within) {
-  const std::array<double, 2> noise{options.left_noise, options.right_noise};
-  NoisyRecords records = NoisyRecords::of_data(data, initial.basis, noise);
-  records.lines = mains_lines(records, initial, options.unknowns.mains);
-  records.power_error = noise_power_error(noise, initial.basis, data);
-  const double highest = likelihood_band(initial, options.highest_frequency, data.sample_rate);
-  constexpr double kShifts[] = {0.0, 4e-3, -4e-3, 8e-3, -8e-3};
-  const AttemptInput input{.initial = initial,
-                           .records = records,
-                           .options = options,
-                           .priors = priors,
-                           .highest = highest,
-                           .moving = begins_moving(records, initial),
-                           .within = within};
-  ContinuationResult best;
-  std::size_t evaluations = 0;
-  std::vector<FitStage> stages;
-  for (std::size_t i = 0; i <= static_cast<std::size_t>(options.restarts); ++i) {
-    ContinuationResult found = attempt(input, kShifts[i], evaluations);
-    evaluations = found.evaluations;
-    append_stages(found.stages, i == 0 ? "" : fmt::format("restart {}: ", i), 0, stages);
-    found.restarts = i;
-    if (i == 0 || found.chi2 < best.chi2) best = std::move(found);
-    if (best.fits) break;
-  }
-  best.evaluations = evaluations;
-  best.stages = std::move(stages);
-  if (!best.fits && options.frequencies) best = with_misfit_for_noise(input, std::move(best));
-  best.lines = records.lines;
-  best.contacts = {best.model.contact};
-  best.contact_deviations = {best.contact_deviation};
-  best.values = {{best.model.sensors, best.sensor_deviation, best.damping, best.damping_deviation}};
-  return best;
+  return calibrate_stroke(initial, data, options, priors, true, within);
 }
 
 ContinuationResult calibrate_records(const ModelPoint& initial,
@@ -194,9 +251,10 @@ ContinuationResult calibrate_records(const ModelPoint& initial,
   stated.sensors = options.unknowns.sensors();
   const StatedPriors priors(options.unknowns, stated, strokes.size() + plucks.size());
   ContinuationResult fit;
+  const bool alone = strokes.size() + plucks.size() == 1;
   for (std::size_t r = 0; r < strokes.size(); ++r) {
     fit.single.push_back(
-        calibrate_by_continuation(initial, strokes[r], options, priors.of_record(r), within));
+        calibrate_stroke(initial, strokes[r], options, priors.of_record(r), alone, within));
   }
   fit_jointly(initial, options, priors, strokes, plucks, within, fit);
   complete_by_single(fit);

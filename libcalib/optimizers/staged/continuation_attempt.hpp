@@ -18,6 +18,8 @@ struct AttemptInput {
   /// The record begins in mid-stroke: damped, it would be told by what rings at its start, so that
   /// its first part stands for it, undamped.
   bool moving = false;
+  /// No other record has a part in the answer: a bridge that moves may be taken out of this one.
+  bool alone = true;
   Evaluator* within = nullptr;
 
   /// Levels as they were read above the modes, or stated [N].

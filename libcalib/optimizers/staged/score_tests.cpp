@@ -73,10 +73,11 @@ class Scores {
       const ParameterName name =
           named ? unknowns.parameters()[static_cast<std::size_t>(i)] : ParameterName{};
       const auto n = static_cast<Index>(name.index);
+      auto own = taken_.row(i).segment(first, cause.modes.cols());
       if (named && name.kind == ParameterKind::kFrequency) {
-        taken_(i, first) -= cause.modes[n].real();
+        own -= cause.modes.row(n).real();
       } else if (named && name.kind == ParameterKind::kDampingRatio) {
-        taken_(i, first) -= cause.modes[n].imag() / point.basis.zeta[name.index];
+        own -= cause.modes.row(n).imag() / point.basis.zeta[name.index];
       } else if (i != unknowns.contact()) {
         taken_.row(i).segment(first, count).setZero();
       }
@@ -92,13 +93,15 @@ class Scores {
     const auto solver = information.ldlt();
     const Eigen::VectorXd amplitude = -solver.solve(score);
     const auto taken = taken_.middleCols(first, count);
-    ScoreTest test{.cause = cause.name,
-                   .detail = cause.detail,
-                   .place = cause.place,
-                   .statistic = -score.dot(amplitude) / std::max(1.0, misfit),
-                   .degrees = static_cast<std::size_t>(count),
-                   .amplitude = count == 1 || cause.place > 0.0 ? amplitude[0] : amplitude.norm(),
-                   .moved = -taken * amplitude};
+    ScoreTest test{
+        .cause = cause.name,
+        .detail = cause.detail,
+        .place = cause.place,
+        .statistic = -score.dot(amplitude) / std::max(1.0, misfit),
+        .degrees = static_cast<std::size_t>(count),
+        .amplitude = count == 1 || cause.name == kBridge ? amplitude[0] : amplitude.norm(),
+        .amplitudes = amplitude,
+        .moved = -taken * amplitude};
     test.log_p = log_tail(test.statistic, test.degrees);
     Index most = 0;
     for (Index i = 0; i < taken.rows(); ++i) {
@@ -153,9 +156,15 @@ class BestTests {
     tried.most = (std::min(weight, 1.0) * tried.most).cwiseMax(std::min(1.0, 1.0 / weight) * own);
   }
 
+  // At a place where there is a mode of the body what it leaves untold counts whole.
+  void add_known(const ScoreTest& test) {
+    if (known_.size() == 0) known_.setZero(test.untold.rows(), test.untold.cols());
+    known_ += test.untold;
+  }
+
   std::optional<double> named_place() const {
     const auto found = std::ranges::find_if(
-        tests_, [](const ScoreTest& test) { return test.place > 0.0 && test.named(); });
+        tests_, [](const ScoreTest& test) { return test.cause == kBridge && test.named(); });
     return found == tests_.end() ? std::nullopt : std::optional(found->place);
   }
 
@@ -167,21 +176,33 @@ class BestTests {
       const Eigen::ArrayXd sum = test.untold.diagonal();
       const Eigen::VectorXd part = (sum > 0.0).select((tried_[i].most.array() / sum).sqrt(), 0.0);
       test.untold = part.asDiagonal() * test.untold * part.asDiagonal();
+      if (test.cause == kBridge && known_.size() > 0) test.untold += known_;
       if (!test.named() || !test.frees()) test.columns.clear();
-      if (test.named() && test.place > 0.0 && test.amplitude > 0.0) {
+      if (test.named() && test.cause == kBridge && test.amplitude > 0.0) {
         test.detail += fmt::format(", of {:.3g} kg", 1.0 / test.amplitude);
       }
     }
+    doubt_resonance();
     return std::move(tests_);
   }
 
  private:
+  // Between two modes of the string a bridge looks like a sensor's resonance: what explains not
+  // twice as much may be a bridge.
+  void doubt_resonance() {
+    const double bridge = std::ranges::find(tests_, kBridge, &ScoreTest::cause)->statistic;
+    std::erase_if(tests_, [&](const ScoreTest& test) {
+      return test.cause == kResonance && test.statistic < 2.0 * bridge;
+    });
+  }
+
   struct Tried {
     double count;          // places
     Eigen::VectorXd most;  // of the diagonals of what they leave untold
   };
   std::vector<ScoreTest> tests_;
   std::vector<Tried> tried_;
+  Eigen::MatrixXd known_;
 };
 
 }  // namespace
@@ -192,7 +213,7 @@ std::vector<ScoreTest> score_tests(const ProjectedLikelihood& likelihood,
                                    double misfit) {
   const ModelPoint point = unknowns.model(theta);
   BestTests tests;
-  const auto test_all = [&](std::vector<MisfitCause> causes) {
+  const auto test_all = [&](std::vector<MisfitCause> causes, bool known = false) {
     std::vector<SignalColumn> signals;
     for (const MisfitCause& cause : causes) {
       signals.insert(signals.end(), cause.columns.begin(), cause.columns.end());
@@ -205,13 +226,15 @@ std::vector<ScoreTest> score_tests(const ProjectedLikelihood& likelihood,
       first += std::ssize(cause.columns);
       test.unknown = name_of_unknown(unknowns, point, most);
       test.columns = std::move(cause.columns);
-      tests.add(std::move(test));
+      known ? tests.add_known(test) : tests.add(std::move(test));
     }
   };
   test_all(misfit_causes(likelihood, point));
-  // What is named at a place is looked for about it.
+  const std::vector<double>& body = likelihood.record().body;
+  if (!body.empty()) test_all(bridges_at(likelihood, point, body, true), true);
+  // A bridge that is named is looked for about its place, with what may look like it.
   if (const std::optional<double> place = tests.named_place()) {
-    test_all(bridges_about(likelihood, point, *place));
+    test_all(resonances_about(likelihood, point, *place));
   }
   return tests.take();
 }

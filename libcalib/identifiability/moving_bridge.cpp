@@ -1,0 +1,84 @@
+#include "libcalib/identifiability/moving_bridge.hpp"
+
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <vector>
+
+#include "libcalib/identifiability/tuning.hpp"
+#include "libsim/base/error.hpp"
+#include "libsim/signal/fft.hpp"
+
+namespace modcal {
+namespace {
+
+using Complex = std::complex<double>;
+
+// u/(−R₂), the receptance of the body at x = L.
+Complex receptance(std::span<const ScoreTest> body, Complex s) {
+  Complex sum;
+  for (const ScoreTest& mode : body) {
+    const double omega = 2.0 * std::numbers::pi * mode.place;
+    sum += mode.amplitude / (s * s + 2.0 * kBodyDamping * omega * s + omega * omega);
+  }
+  return sum;
+}
+
+}  // namespace
+
+void take_out(std::span<const ScoreTest> body, const ModelPoint& model, double highest,
+              NoisyRecords& records) {
+  records.on_bridge = records.reactions[1];
+  records.body.clear();
+  for (const ScoreTest& mode : body) records.body.push_back(mode.place);
+  const ProjectedLikelihood whole(WhitenedRecord::of(records, 0.0, highest));
+  const std::vector<MisfitCause> causes = bridges_at(whole, model, records.body, false);
+  const RealFft fft(records.samples());
+  std::vector<double> samples(fft.length());
+  for (std::size_t r = 0; r < 2; ++r) {
+    std::vector<Complex> spectrum(fft.bins());
+    for (std::size_t i = 0; i < body.size(); ++i) {
+      for (std::size_t j = 0; j < causes[i].columns.size(); ++j) {
+        const SignalColumn& column = causes[i].columns[j];
+        const double amplitude = body[i].amplitudes[static_cast<Eigen::Index>(j)];
+        for (std::size_t k = 0; k < whole.record().bins; ++k) {
+          spectrum[k + 1] += amplitude * (r == 0 ? column.left : column.right).at(k);
+        }
+      }
+    }
+    // A whitened spectrum is over s_r √N.
+    const double scale = records.deviation[r] * std::sqrt(static_cast<double>(samples.size()));
+    fft.inverse(spectrum, samples);
+    for (std::size_t j = 0; j < samples.size(); ++j) {
+      records.reactions[r][j] -= scale * samples[j];
+    }
+  }
+}
+
+void put_on_bridge(ModalBasis& basis, std::span<const ScoreTest> body) {
+  if (body.empty()) return;
+  const ModalBasis pinned = basis;
+  const double per_length = pinned.tension / pinned.length;
+  // Every round leaves a part of the error as large as ScoreTest::coupling.
+  for (std::size_t n = 0; n < pinned.size(); ++n) {
+    const double omega = pinned.omega[n], zeta = pinned.zeta[n];
+    const Complex own = omega * Complex(-zeta, std::sqrt(1.0 - zeta * zeta));
+    Complex s = own;
+    for (int round = 0; round < 60; ++round) {
+      Complex others = 1.0;
+      for (std::size_t m = 0; m < pinned.size(); ++m) {
+        if (m == n) continue;
+        const double other = pinned.omega[m];
+        others += 2.0 * s * s / (s * s + 2.0 * pinned.zeta[m] * other * s + other * other);
+      }
+      const Complex stiff = per_length * receptance(body, s);
+      s = own - 2.0 * s * s * stiff / ((1.0 + stiff * others) * (s - std::conj(own)));
+    }
+    MODCAL_REQUIRE(std::isfinite(std::abs(s)), "mode {} of the string on its bridge is not found",
+                   n + 1);
+    basis.omega[n] = std::abs(s);
+    basis.zeta[n] = -s.real() / std::abs(s);
+  }
+}
+
+}  // namespace modcal
