@@ -141,10 +141,21 @@ std::optional<Observation> lint_record(const std::string& path, const Observatio
                                        std::vector<Finding>& findings) {
   std::optional<Observation> observation;
   if (!options.has_record) return observation;
+  // Keys that a file does not bear stand beside its name, where it has a section of its own.
+  constexpr std::string_view kFile = ".file";
+  std::string place = path;
   lint_making(findings, path, [&] {
     TruthCache none;
-    observation = observe(options, {}, none, StreamKey(0), folder);
+    try {
+      observation = observe(options, {}, none, StreamKey(0), folder);
+    } catch (const WrongRecordKey& error) {
+      if (path.ends_with(kFile)) {
+        place.replace(path.size() - kFile.size() + 1, std::string::npos, error.key());
+      }
+      throw;
+    }
   });
+  if (!observation) findings.back().path = place;
   return observation;
 }
 

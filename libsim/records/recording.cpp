@@ -51,6 +51,16 @@ std::vector<Role> chosen_roles(const RecordOptions& options) {
   return roles;
 }
 
+// What `work` gives; its InvalidInput is said of the key.
+template <typename Work>
+auto at_key(const std::string& key, const Work& work) {
+  try {
+    return work();
+  } catch (const InvalidInput& error) {
+    throw WrongRecordKey(key, error.what());
+  }
+}
+
 /// Newtons per recorded 1, without the sensor's sign.
 double newtons(const RecordedChannel& channel, const Role& role, const std::string& file) {
   const double calibration = role.options->calibration;
@@ -102,7 +112,9 @@ Window crop_window(const RecordOptions& options, double sample_rate, std::size_t
 
 Signal force_signal(const RecordedChannel& channel, const Role& role, double sample_rate,
                     const Window& window, const std::string& file) {
-  const double scale = (role.options->turned ? -1.0 : 1.0) * newtons(channel, role, file);
+  const double scale =
+      (role.options->turned ? -1.0 : 1.0) *
+      at_key(fmt::format("{}.calibration", role.key), [&] { return newtons(channel, role, file); });
   std::vector<double> samples = advanced(channel.samples, role.options->delay, sample_rate);
   samples.erase(samples.begin() + static_cast<std::ptrdiff_t>(window.last), samples.end());
   samples.erase(samples.begin(), samples.begin() + static_cast<std::ptrdiff_t>(window.first));
@@ -124,6 +136,22 @@ void judge_samples(const Recording& recording, const RecordedChannel& channel, c
   const Clipping clipping = find_clipping(used);
   if (clipping.samples == 0) return;
   warnings.push_back(fmt::format("{}: channel {}: {}", file, channel.name, text(clipping)));
+}
+
+Recording read_channels(const RecordOptions& options, const std::filesystem::path& path,
+                        const std::vector<Role>& roles) {
+  std::vector<std::string> channels;
+  for (const Role& role : roles) {
+    MODCAL_REQUIRE(!role.options->channel.empty(),
+                   "record.{}.channel is empty; name a channel of {}", role.key, path.string());
+    channels.push_back(role.options->channel);
+  }
+  try {
+    return read_record(path, options.format,
+                       {.channels = channels, .sample_rate = options.sample_rate});
+  } catch (const WrongChannel& error) {
+    throw WrongRecordKey(fmt::format("{}.channel", roles[error.place()].key), error.what());
+  }
 }
 
 }  // namespace
@@ -175,13 +203,15 @@ std::vector<std::size_t> find_channels(const std::vector<std::string>& names,
                                        const std::vector<std::string>& wanted,
                                        std::string_view where) {
   std::vector<std::size_t> result;
-  for (const std::string& text : wanted) {
-    const std::size_t index = find_channel(names, text, where);
-    MODCAL_REQUIRE(std::find(result.begin(), result.end(), index) == result.end(),
-                   "{}: channel \"{}\" is asked for twice; give every role a channel of its own",
-                   where, names[index]);
-    result.push_back(index);
-  }
+  for (const std::string& text : wanted) try {
+      const std::size_t index = find_channel(names, text, where);
+      MODCAL_REQUIRE(std::find(result.begin(), result.end(), index) == result.end(),
+                     "{}: channel \"{}\" is asked for twice; give every role a channel of its own",
+                     where, names[index]);
+      result.push_back(index);
+    } catch (const InvalidInput& error) {
+      throw WrongChannel(result.size(), error.what());
+    }
   return result;
 }
 
@@ -209,19 +239,16 @@ RecordedSignals load_record(const RecordOptions& options, const std::filesystem:
   const std::filesystem::path path = folder / options.file;
   const std::string name = path.string();
   const std::vector<Role> roles = chosen_roles(options);
-  std::vector<std::string> channels;
-  for (const Role& role : roles) {
-    MODCAL_REQUIRE(!role.options->channel.empty(),
-                   "record.{}.channel is empty; name a channel of {}", role.key, name);
-    channels.push_back(role.options->channel);
+  const Recording recording = read_channels(options, path, roles);
+  if (!recording.contradictions.empty()) {
+    throw WrongRecordKey(
+        "sample_rate", fmt::format("record.sample_rate is stated and the file contradicts it: {}; "
+                                   "leave record.sample_rate out, or correct the file",
+                                   recording.contradictions.front()));
   }
-  const Recording recording =
-      read_record(path, options.format, {.channels = channels, .sample_rate = options.sample_rate});
-  MODCAL_REQUIRE(recording.contradictions.empty(),
-                 "record.sample_rate is stated and the file contradicts it: {}; leave "
-                 "record.sample_rate out, or correct the file",
-                 recording.contradictions.front());
-  const Window window = crop_window(options, recording.sample_rate, recording.frames(), name);
+  const Window window = at_key(std::isnan(options.stop) ? "start" : "stop", [&] {
+    return crop_window(options, recording.sample_rate, recording.frames(), name);
+  });
   RecordedSignals signals;
   signals.sample_rate = recording.sample_rate;
   signals.warnings = recording.warnings;

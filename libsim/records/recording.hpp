@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "libsim/base/error.hpp"
 #include "libsim/base/options.hpp"
 #include "libsim/signal/signal.hpp"
 
@@ -60,8 +61,18 @@ struct Recording {
   void refuse_problems() const;
 };
 
+/// A channel that cannot be had.
+class WrongChannel : public InvalidInput {
+ public:
+  WrongChannel(std::size_t place, const std::string& text) : InvalidInput(text), place_(place) {}
+  std::size_t place() const { return place_; }  ///< among those wanted
+
+ private:
+  std::size_t place_;
+};
+
 /// Indices into `names` of the wanted channels, in their order: each by its name or, where no name
-/// equals the text, by its number 1 … size. Throws InvalidInput for a channel that is not there
+/// equals the text, by its number 1 … size. Throws WrongChannel for a channel that is not there
 /// (with the nearest name) or is wanted twice; `where` opens the message.
 std::vector<std::size_t> find_channels(const std::vector<std::string>& names,
                                        const std::vector<std::string>& wanted,
@@ -114,11 +125,22 @@ struct RecordedSignals {
   std::size_t size() const { return left ? left->size() : right->size(); }
 };
 
+/// What one key of the section `record` states and the file does not bear.
+class WrongRecordKey : public InvalidInput {
+ public:
+  WrongRecordKey(std::string key, const std::string& text)
+      : InvalidInput(text), key_(std::move(key)) {}
+  const std::string& key() const { return key_; }  ///< below `record`: "left.channel"
+
+ private:
+  std::string key_;
+};
+
 /// Reads the chosen channels of the file (relative to `folder`), converts them to newtons, shifts
-/// them by their delays and crops them. Throws InvalidInput for a file that cannot be used, a
-/// channel without a unit of force and without a calibration, a channel used twice, a window
-/// outside the record, reactions whose samples tell against them (find_fault()), and a stated
-/// sample rate that the file contradicts.
+/// them by their delays and crops them. Throws WrongRecordKey for a channel that is not there or
+/// used twice or has neither a unit of force nor a calibration, a window outside the record and a
+/// stated sample rate that the file contradicts, and InvalidInput for a file that cannot be used
+/// and reactions whose samples tell against them (find_fault()).
 RecordedSignals load_record(const RecordOptions& options, const std::filesystem::path& folder);
 
 }  // namespace modcal

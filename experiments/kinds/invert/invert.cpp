@@ -23,20 +23,6 @@ void InvertOptions::visit(OptionVisitor& visitor) {
   visitor("figures", "what is drawn beside", figures);
 }
 
-std::vector<Finding> lint_inversion(const InvertOptions& options) {
-  std::vector<Finding> findings = lint_observation(options.observation);
-  lint_making(findings, "inversion", [&] { InversionRecipe recipe(options.inversion); });
-  append(findings, lint_scores(options.score, options.observation));
-  if (findings.empty() && is_known(options.observation.string_model())) {
-    lint_making(findings, "model_error", [&] {
-      with_errors(make_modal_basis(options.observation.string_model().before_reading()),
-                  options.observation.contact_point(), options.model_error,
-                  options.key().with("model error"));
-    });
-  }
-  return findings;
-}
-
 std::vector<Finding> InvertOptions::lint() const {
   std::vector<Finding> findings = lint_inversion(*this);
   append(findings, lint_figures(figures, {"waveforms", "spectra", "parameter_curves"},

@@ -134,8 +134,8 @@ TEST_F(FirstHour, IsToldAtValidateWhatTheRecordLacks) {
     EXPECT_THAT(outcome.err, HasSubstr(reason)) << set;
   };
   refused("record.file=nowhere.csv", "--set", "cannot be opened");
-  refused("record.left.channel=R7", "mine.yaml:5:", "there is no channel \"R7\"");
-  refused("record.start='2 s'", "mine.yaml:5:", "record");
+  refused("record.left.channel=R7", "--set", "there is no channel \"R7\"");
+  refused("record.start='2 s'", "--set", "is not in the record");
   refused("bow.position='290 mm'", "mine.yaml:5:", "exchanged");
   refused("'score={windows: [0.6 s]}'", "--set", "is not inside the record");
   refused("'figures=[{id: late, windows: [{start: 3 s}]}]'", "--set", "holds nothing of a record");

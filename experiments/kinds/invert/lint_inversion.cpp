@@ -1,0 +1,40 @@
+#include "experiments/kinds/invert/invert.hpp"
+#include "experiments/kinds/lint.hpp"
+#include "experiments/study/fingerprint.hpp"
+
+namespace modcal {
+namespace {
+
+// A rule that chooses nothing.
+void lint_parameter_choice(const InversionOptions& inversion, std::vector<Finding>& findings) {
+  const auto text_of = [](Choice<ParameterChoice> choice) {
+    return fingerprint([&choice](OptionVisitor& visitor) { visitor("", "", choice); });
+  };
+  const bool stated =
+      text_of(inversion.parameter_choice) != text_of(InversionOptions().parameter_choice);
+  if (!stated || inversion.regularizer.make()->has_parameter()) return;
+  add_finding(findings, "inversion.parameter_choice",
+              "regularizer {} has no parameter to choose: leave parameter_choice out, or take "
+              "another regularizer (modcal list regularizer)",
+              inversion.regularizer.selected());
+}
+
+}  // namespace
+
+std::vector<Finding> lint_inversion(const InvertOptions& options) {
+  std::vector<Finding> findings = lint_observation(options.observation);
+  const std::size_t before = findings.size();
+  lint_making(findings, "inversion", [&] { InversionRecipe recipe(options.inversion); });
+  if (findings.size() == before) lint_parameter_choice(options.inversion, findings);
+  append(findings, lint_scores(options.score, options.observation));
+  if (findings.empty() && is_known(options.observation.string_model())) {
+    lint_making(findings, "model_error", [&] {
+      with_errors(make_modal_basis(options.observation.string_model().before_reading()),
+                  options.observation.contact_point(), options.model_error,
+                  options.key().with("model error"));
+    });
+  }
+  return findings;
+}
+
+}  // namespace modcal
