@@ -7,7 +7,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <nlohmann/json.hpp>
-#include <regex>
 #include <string_view>
 
 #include "experiments/cli/command.hpp"
@@ -37,31 +36,11 @@ struct JsonAnswer {
   nlohmann::ordered_json data;  ///< null: nothing was said as data
   std::string text;             ///< said on standard output as text
   nlohmann::ordered_json warnings = nlohmann::ordered_json::array();
-  std::vector<std::string> errors;
+  std::vector<Complaint> errors;
 };
 JsonAnswer& json_answer() {
   static JsonAnswer answer;
   return answer;
-}
-
-// The errors and warnings of a text that goes to standard error.
-void note(std::string_view text) {
-  static const std::regex message("(?:^|: |internal )(error|warning): ");
-  std::match_results<std::string_view::const_iterator> match;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = std::min(text.find('\n', at), text.size());
-    const std::string_view line = text.substr(at, end - at);
-    at = end + 1;
-    if (!std::regex_search(line.begin(), line.end(), match, message)) continue;
-    const std::string place(match.prefix().first, match.prefix().second);
-    const std::string said(match.suffix().first, match.suffix().second);
-    const std::string told = place.empty() ? said : place + ": " + said;
-    if (match.str(1) == "warning") {
-      json_answer().warnings.push_back(told);
-    } else {
-      json_answer().errors.push_back(told);
-    }
-  }
 }
 
 std::string_view kind_of(ExitCode code) {
@@ -88,25 +67,21 @@ std::string_view kind_of(ExitCode code) {
   return "internal";
 }
 
-// {"option"} or {"file", "line", "column"} where a message begins with them, null else.
-nlohmann::ordered_json place_of(const std::string& message) {
-  static const std::regex option(R"(^(?:command line, )?(--[a-z-]+(?: \d+)?): )");
-  static const std::regex place(R"(^([^\s:][^:]*):(\d+):(?:(\d+):)? )");
-  static const std::regex file(R"(^([^\s:]+\.[a-z]+): )");
-  std::smatch match;
-  if (std::regex_search(message, match, option)) return {{"option", match.str(1)}};
-  if (std::regex_search(message, match, file)) return {{"file", match.str(1)}};
-  if (!std::regex_search(message, match, place)) return nullptr;
-  nlohmann::ordered_json result = {{"file", match.str(1)}, {"line", std::stoul(match.str(2))}};
-  if (match[3].matched) result["column"] = std::stoul(match.str(3));
+// {"option"} or {"file", "line", "column"}, as far as they are known; null: nothing is.
+nlohmann::ordered_json json_of(const InputPlace& place) {
+  if (place.empty()) return nullptr;
+  if (!place.option.empty()) return {{"option", place.option}};
+  nlohmann::ordered_json result = {{"file", place.file}};
+  if (place.line > 0) result["line"] = place.line;
+  if (place.column > 0) result["column"] = place.column;
   return result;
 }
 
-nlohmann::ordered_json error_json(ExitCode code, const std::vector<std::string>& errors) {
+nlohmann::ordered_json error_json(ExitCode code, const std::vector<Complaint>& errors) {
   nlohmann::ordered_json error = {{"kind", kind_of(code)}, {"exit_code", static_cast<int>(code)}};
-  error["message"] = errors.empty() ? std::string(meaning_of(code)) : errors.front();
-  error["place"] = errors.empty() ? nlohmann::ordered_json() : place_of(errors.front());
-  if (errors.size() > 1) error["further"] = std::vector(errors.begin() + 1, errors.end());
+  error["message"] = errors.empty() ? std::string(meaning_of(code)) : message_of(errors.front());
+  error["place"] = errors.empty() ? nlohmann::ordered_json() : json_of(errors.front().place);
+  for (std::size_t i = 1; i < errors.size(); ++i) error["further"].push_back(message_of(errors[i]));
   return error;
 }
 
@@ -169,7 +144,8 @@ ExitCode finish_answer(ExitCode code) {
   const bool taken = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
   if (!taken && output_error == 0) output_error = errno != 0 ? errno : EIO;
   if (output_error == 0) return code;
-  complain("error: standard output has not taken the answer: {}\n", std::strerror(output_error));
+  complain({.text = fmt::format("standard output has not taken the answer: {}",
+                                std::strerror(output_error))});
   return code == ExitCode::kOk ? ExitCode::kOutputLost : code;
 }
 
@@ -181,10 +157,20 @@ void say_text(std::string_view text) {
   }
 }
 
-void complain_text(std::string_view text) {
-  note(text);
-  std::fputs(colored(printable(text)).c_str(), stderr);
+void complain(const Complaint& complaint) {
+  if (complaint.grade == Complaint::Grade::kWarning) {
+    json_answer().warnings.push_back(message_of(complaint));
+  } else {
+    json_answer().errors.push_back(complaint);
+  }
+  hint_text(printed(complaint));
 }
+
+void complain(const std::vector<Complaint>& complaints) {
+  for (const Complaint& complaint : complaints) complain(complaint);
+}
+
+void hint_text(std::string_view text) { std::fputs(colored(printable(text)).c_str(), stderr); }
 
 void remark_text(std::string_view text) {
   if (!answer_style().quiet) std::fputs(printable(text).c_str(), stderr);

@@ -36,9 +36,16 @@ void on_signal(int number) {
   std::signal(number, SIG_DFL);
 }
 
-ExitCode refused(ExitCode code, std::string_view reason) {
-  complain("error: {}\n", reason);
+ExitCode refused(ExitCode code, std::string reason) {
+  complain({.text = std::move(reason)});
   return code;
+}
+
+// The place, which the text begins with, as a value.
+Complaint complaint_of(const InvalidInput& error) {
+  const std::string text = error.what();
+  if (error.place().empty()) return {.text = text};
+  return {.place = place_named(error.place()), .text = text.substr(error.place().size() + 2)};
 }
 
 // What was asked of the command, for the message that memory does not suffice.
@@ -58,7 +65,8 @@ ExitCode outcome_of(const Action& action) {
   try {
     return action();
   } catch (const InvalidInput& error) {
-    return refused(ExitCode::kInvalidInput, error.what());
+    complain(complaint_of(error));
+    return ExitCode::kInvalidInput;
   } catch (const LostOutput& error) {
     return refused(ExitCode::kOutputLost, error.what());
   } catch (const std::bad_alloc&) {
@@ -71,7 +79,9 @@ ExitCode outcome_of(const Action& action) {
   } catch (const Interrupted&) {
     return ExitCode::kInterrupted;
   } catch (const std::exception& error) {
-    complain("internal error: {}\nPlease report it with the file and the command.\n", error.what());
+    complain({.grade = Complaint::Grade::kInternalError,
+              .text = error.what(),
+              .source = "Please report it with the file and the command.\n"});
     return ExitCode::kInternal;
   }
 }
@@ -90,7 +100,8 @@ bool prepare_streams(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);
   for (int i = 1; i < argc; ++i) {
     if (first_not_utf8(argv[i]) == std::string_view::npos) continue;
-    complain("error: \"{}\" is not UTF-8 text: give files and folders names in UTF-8\n", argv[i]);
+    complain({.text = fmt::format("\"{}\" is not UTF-8 text: give files and folders names in UTF-8",
+                                  argv[i])});
     return false;
   }
   return true;
@@ -159,7 +170,7 @@ std::optional<LoadedExperiment> load_and_print_mistakes(const std::filesystem::p
                                                         const std::vector<std::string>& assignments,
                                                         const Means& means) {
   std::optional<LoadedExperiment> loaded = load_experiment(file, assignments, means);
-  complain_text(format_mistakes(loaded->document, loaded->mistakes));
+  complain(complaints_of(loaded->document, loaded->mistakes));
   if (!loaded->has_errors()) return loaded;
   add_to_json("mistakes", mistakes_json(*loaded));
   return std::nullopt;

@@ -148,12 +148,17 @@ template <typename... Args>
 void say(fmt::format_string<Args...> text, Args&&... args) {
   say_text(fmt::format(text, std::forward<Args>(args)...));
 }
-/// On standard error, colored().
-void complain_text(std::string_view text);
+/// On standard error, colored(); with --json among what is answered.
+void complain(const Complaint& complaint);
+void complain(const std::vector<Complaint>& complaints);
 template <typename... Args>
-void complain(fmt::format_string<Args...> text, Args&&... args) {
-  complain_text(fmt::format(text, std::forward<Args>(args)...));
+void warn(fmt::format_string<Args...> text, Args&&... args) {
+  complain({.grade = Complaint::Grade::kWarning,
+            .text = fmt::format(text, std::forward<Args>(args)...)});
 }
+
+/// On standard error whatever is asked for: help, what an interrupted run leaves.
+void hint_text(std::string_view text);
 
 /// On standard error, what is neither an error nor a warning; not with --quiet.
 void remark_text(std::string_view text);

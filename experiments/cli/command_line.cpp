@@ -44,25 +44,29 @@ std::string unknown_option(const CLI::App& app) {
 }
 
 // What CLI11 says, with what to do about it.
-std::string mistake_of(const CLI::App& app, const CLI::ParseError& error) {
+Complaint mistake_of(const CLI::App& app, const CLI::ParseError& error) {
   const CLI::App& command = chosen_of(app);
   const std::string name = name_of(app, command), usage = usage_of(app, command);
   const std::string text = error.what();
   if (error.get_name() == "RequiredError" && &command != &app) {
-    return fmt::format("{} is missing: {}", upper_case(text.substr(0, text.find(' '))), usage);
+    const std::string missing = upper_case(text.substr(0, text.find(' ')));
+    return {.text = fmt::format("{} is missing: {}", missing, usage)};
   }
   std::smatch match;
   if (std::regex_match(text, match, std::regex("The following .* not expected: (.*)"))) {
-    return fmt::format("{} does not take \"{}\": {}", name, match.str(1), usage);
+    return {.text = fmt::format("{} does not take \"{}\": {}", name, match.str(1), usage)};
   }
   if (std::regex_match(text, match, std::regex("(--?[^:]+): .* missing"))) {
-    return fmt::format("{} needs a value: {}", match.str(1), usage);
+    return {.text = fmt::format("{} needs a value: {}", match.str(1), usage)};
   }
   if (std::regex_match(text, match, std::regex("Could not convert: (\\S+) = (.*)"))) {
-    return fmt::format("{}: \"{}\" is not what it takes: see {} --help", match.str(1), match.str(2),
-                       name);
+    return {.place = place_named(match.str(1)),
+            .text = fmt::format("\"{}\" is not what it takes: see {} --help", match.str(2), name)};
   }
-  return fmt::format("{}; see {} --help", text, name);
+  const std::string told = fmt::format("{}; see {} --help", text, name);
+  const std::size_t colon = told.find(": ");
+  if (!told.starts_with("--") || colon == std::string::npos) return {.text = told};
+  return {.place = {.option = told.substr(0, colon)}, .text = told.substr(colon + 2)};
 }
 
 }  // namespace
@@ -87,7 +91,7 @@ ExitCode answer_of(const CLI::App& app, const CLI::ParseError& error) {
     return ExitCode::kOk;
   }
   const std::string unknown = unknown_option(app);
-  complain("error: {}\n", unknown.empty() ? mistake_of(app, error) : unknown);
+  complain(unknown.empty() ? mistake_of(app, error) : Complaint{.text = unknown});
   return ExitCode::kUsage;
 }
 
@@ -107,11 +111,12 @@ bool is_unknown_command(const CLI::App& app, int argc, char** argv) {
   if (is_command(argv[1])) return false;
   const auto later = std::find_if(argv + 2, argv + argc, is_command);
   if (later != argv + argc) {
-    complain("error: the command comes first: modcal {} {}\n", *later, shell_word(first));
+    complain(
+        {.text = fmt::format("the command comes first: modcal {} {}", *later, shell_word(first))});
   } else if (first.starts_with('-')) {
     return false;
   } else {
-    complain("error: unknown command \"{}\"{}\n", first, suggestion(first, names));
+    complain({.text = fmt::format("unknown command \"{}\"{}", first, suggestion(first, names))});
   }
   return true;
 }

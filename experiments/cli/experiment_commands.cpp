@@ -52,7 +52,7 @@ ExitCode validate(const FileArguments& arguments) {
       load_experiment(arguments.file, arguments.assignments, arguments.means());
   check_records(loaded);
   const bool valid = !loaded.has_errors();
-  complain_text(format_mistakes(loaded.document, loaded.mistakes));
+  complain(complaints_of(loaded.document, loaded.mistakes));
   if (answer_style().json) {
     print_json({{"file", arguments.file},
                 {"valid", valid},

@@ -35,7 +35,7 @@ int main_of(int argc, char** argv) {
   Action action;
   add_commands(app, [&action](Action chosen_action) { action = std::move(chosen_action); });
   if (argc == 1) {
-    complain_text(app.help());
+    hint_text(app.help());
     return refused(ExitCode::kUsage);
   }
   if (is_unknown_command(app, argc, argv)) return refused(ExitCode::kUsage);

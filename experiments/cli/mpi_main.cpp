@@ -36,7 +36,7 @@ ExitCode run_shard(const ExperimentArguments& arguments, const Shard& shard) {
   const LoadedExperiment loaded =
       load_experiment(arguments.file, arguments.assignments, arguments.means());
   if (shard.index == 1) {
-    complain_text(format_mistakes(loaded.document, loaded.mistakes));
+    complain(complaints_of(loaded.document, loaded.mistakes));
   }
   if (loaded.has_errors()) return ExitCode::kInvalidInput;
   ExperimentArguments whole = arguments;

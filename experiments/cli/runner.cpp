@@ -30,9 +30,10 @@ auto with_context(const LoadedExperiment& loaded, const std::filesystem::path& f
 }
 
 [[noreturn]] void say_interrupted(const RunSettings& settings, bool has_store) {
-  complain("\ninterrupted; {} with:\n  {}{}\n",
-           has_store ? "what is finished is kept, go on" : "run again", settings.command,
-           settings.shard.is_whole() ? "" : " --shard " + settings.shard.text());
+  hint_text(fmt::format("\ninterrupted; {} with:\n  {}{}\n",
+                        has_store ? "what is finished is kept, go on" : "run again",
+                        settings.command,
+                        settings.shard.is_whole() ? "" : " --shard " + settings.shard.text()));
   throw Interrupted();
 }
 
@@ -40,7 +41,7 @@ auto with_context(const LoadedExperiment& loaded, const std::filesystem::path& f
 StudyResult run_list(const TaskExperiment& list, const StudyContext& context, RunStore& store,
                      const Shard& shard) {
   for (const JournalDamage& damage : store.finished().damages()) {
-    complain("warning: {}\n", message_of(damage));
+    warn("{}", message_of(damage));
   }
   return list.sum_up(run_tasks(list, context, &store, shard), context);
 }

@@ -25,7 +25,7 @@ void declare_folder(CLI::App& command, FolderArguments& arguments) {
 
 void print_damages(const StoredRun& run) {
   for (const JournalDamage& damage : run.damages()) {
-    complain("warning: {}\n", message_of(damage));
+    warn("{}", message_of(damage));
   }
 }
 

@@ -128,10 +128,10 @@ OutputDirectory free_folder(const std::filesystem::path& folder,
   OutputDirectory out(folder);
   const std::string foreign = out.foreign_among(names);
   if (foreign.empty()) return out;
-  complain(
-      "error: {}: no run of modcal wrote this file, and it is kept; the results stand in {}: "
-      "choose another folder with --out\n",
-      (folder / foreign).string(), (folder / kApart).string());
+  complain({.place = {.file = (folder / foreign).string()},
+            .text = fmt::format("no run of modcal wrote this file, and it is kept; the results "
+                                "stand in {}: choose another folder with --out",
+                                (folder / kApart).string())});
   return free_folder(folder / kApart, names);
 }
 
@@ -144,7 +144,7 @@ void finish_report(report::Report report, const RunSettings& settings, const Out
   report.command = settings.command;
   report.provenance = provenance_lines(settings.command);
   const report::WrittenReport written = report::write_report(report, out.path());
-  if (!written.warning.empty()) complain("warning: {}\n", written.warning);
+  if (!written.warning.empty()) warn("{}", written.warning);
   add_to_json("report", written.page.string());
   remark("report: {}\n", written.page.string());
 }

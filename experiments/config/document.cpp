@@ -52,7 +52,7 @@ std::string part_of(std::string_view text, std::size_t start, std::size_t size) 
 // A line or a message that somebody else's program wrote may have a million characters.
 constexpr std::size_t kShownLine = 200, kShownBefore = 80, kShownText = 2000;  // bytes
 
-std::string format_mistake(const YamlDocument& document, const Mistake& mistake) {
+Complaint complaint_of(const YamlDocument& document, const Mistake& mistake) {
   const SourcePosition& at = mistake.position;
   const std::string_view line = source_line(document, at);
   const std::string_view before = line.substr(0, std::min(line.size(), at.column - 1));
@@ -64,13 +64,13 @@ std::string format_mistake(const YamlDocument& document, const Mistake& mistake)
   for (const char byte : part_of(before, start, kShownLine)) {
     if (count_characters({&byte, 1}) == 1) indent += byte == '\t' ? '\t' : ' ';
   }
-  const std::string place = at.origin.empty() ? fmt::format("{}:{}:{}", document.file, at.line,
-                                                            count_characters(before) + 1)
-                                              : at.origin;
-  std::string text = fmt::format("{}: {}: {}\n", place, mistake.warning ? "warning" : "error",
-                                 part_of(mistake.text, 0, kShownText));
-  if (!line.empty()) text += fmt::format("    {}\n    {}^\n", shown, indent);
-  return text;
+  Complaint complaint{
+      .grade = mistake.warning ? Complaint::Grade::kWarning : Complaint::Grade::kError,
+      .place = {.line = at.line, .column = count_characters(before) + 1, .option = at.origin},
+      .text = part_of(mistake.text, 0, kShownText)};
+  if (at.origin.empty()) complaint.place.file = document.file;
+  if (!line.empty()) complaint.source = fmt::format("    {}\n    {}^\n", shown, indent);
+  return complaint;
 }
 
 // Values put into a document from elsewhere: sweeps and the command line.
@@ -158,12 +158,18 @@ YamlDocument read_yaml_file(const std::filesystem::path& path) {
   return parse_yaml(content_of_file(path), path.string());
 }
 
-std::string format_mistakes(const YamlDocument& document, std::vector<Mistake> mistakes) {
+std::vector<Complaint> complaints_of(const YamlDocument& document, std::vector<Mistake> mistakes) {
   std::stable_sort(mistakes.begin(), mistakes.end(), [](const Mistake& a, const Mistake& b) {
     return order_of(a.position) < order_of(b.position);
   });
+  std::vector<Complaint> complaints;
+  for (const Mistake& mistake : mistakes) complaints.push_back(complaint_of(document, mistake));
+  return complaints;
+}
+
+std::string format_mistakes(const YamlDocument& document, const std::vector<Mistake>& mistakes) {
   std::string text;
-  for (const Mistake& mistake : mistakes) text += format_mistake(document, mistake);
+  for (const Complaint& complaint : complaints_of(document, mistakes)) text += printed(complaint);
   return text;
 }
 
@@ -189,7 +195,7 @@ void set_value(YamlDocument& document, std::string_view path, YamlNode value,
 }
 
 void apply_assignment(YamlDocument& document, std::string_view assignment, std::size_t number) {
-  const SourcePosition start{1, 1, fmt::format("command line, --set {}", number)};
+  const SourcePosition start{1, 1, fmt::format("--set {}", number)};
   document.arguments.emplace_back(start.origin, assignment);
   const std::size_t equals = assignment.find('=');
   if (equals == std::string_view::npos || equals == 0 ||

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "experiments/config/complaint.hpp"
+
 namespace modcal {
 
 /// Place in a file or in an argument of the command line; line and column count from 1, the column
@@ -14,7 +16,7 @@ namespace modcal {
 struct SourcePosition {
   std::size_t line = 1;
   std::size_t column = 1;
-  /// "command line, --set 1"; empty: the file.
+  /// "--set 1"; empty: the file.
   std::string origin = {};
 };
 
@@ -77,8 +79,10 @@ void set_value(YamlDocument& document, std::string_view path, YamlNode value,
 /// "key.path=value" of the command line: the value is parsed as YAML.
 void apply_assignment(YamlDocument& document, std::string_view assignment, std::size_t number);
 
-/// All mistakes, by place: "file:line:column: error: text", the source line, a caret.
-std::string format_mistakes(const YamlDocument& document, std::vector<Mistake> mistakes);
+/// All mistakes, by place, each with its source line and a caret.
+std::vector<Complaint> complaints_of(const YamlDocument& document, std::vector<Mistake> mistakes);
+/// The same as they are printed.
+std::string format_mistakes(const YamlDocument& document, const std::vector<Mistake>& mistakes);
 
 // YAML text to a document's tree.
 

@@ -14,6 +14,15 @@ namespace modcal {
 class InvalidInput : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
+  /// of a text that begins with "place: "
+  InvalidInput(const std::string& text, std::string place)
+      : std::runtime_error(text), place_(std::move(place)) {}
+
+  /// "record.csv:4": the file and its line, the folder or the option; empty: none is known.
+  const std::string& place() const { return place_; }
+
+ private:
+  std::string place_;
 };
 
 /// Work stopped because the user asked for it (Ctrl-C).
@@ -22,9 +31,13 @@ class Interrupted : public std::runtime_error {
   Interrupted() : std::runtime_error("interrupted") {}
 };
 
+/// The arguments before the first ": " of a format that begins with "{}: " or "{}:{}: " are a
+/// place.
+[[noreturn]] void throw_formatted(fmt::string_view text, fmt::format_args args);
+
 template <typename... Args>
 [[noreturn]] void throw_invalid_input(fmt::format_string<Args...> text, Args&&... args) {
-  throw InvalidInput(fmt::format(text, std::forward<Args>(args)...));
+  throw_formatted(text, fmt::make_format_args(args...));
 }
 
 }  // namespace modcal

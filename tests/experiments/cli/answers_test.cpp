@@ -80,6 +80,13 @@ TEST_F(Answers, TellErrorsAndWarningsAsData) {
   const json usage = json::parse(modcal("run --json").out);
   EXPECT_EQ(usage["error"]["kind"], "usage");
   EXPECT_EQ(usage["error"]["place"], nullptr);
+  const json absent = json::parse(modcal("inspect 'no: record.csv' --json").out);
+  EXPECT_EQ(absent["error"]["place"], json({{"file", "no: record.csv"}}));
+  write("a b.csv", "R1 [N],R2 [N]\n1,2\n1,\"2\n");
+  const json damaged = json::parse(modcal("inspect 'a b.csv' --sample-rate 1000 --json").out);
+  EXPECT_EQ(damaged["error"]["place"], json({{"file", "a b.csv"}, {"line", 3}}));
+  const json length = json::parse(modcal("new calibrate record.csv --length x --json").out);
+  EXPECT_EQ(length["error"]["place"], json({{"option", "--length"}}));
   const json warned = json::parse(
       modcal("validate small.yaml --set scene.string.fundamental='0.196 Hz' --json").out);
   EXPECT_EQ(warned["valid"], true);

@@ -234,7 +234,7 @@ TEST_F(Program, ValidatesAsJson) {
   for (const json& mistake : report["mistakes"]) {
     if (mistake["severity"] != "error") continue;
     ++errors;
-    EXPECT_THAT(mistake["place"], StartsWith("command line"));
+    EXPECT_THAT(mistake["place"], StartsWith("--set "));
   }
   EXPECT_EQ(errors, 2u);
 }
