@@ -30,9 +30,14 @@ std::string quoted(std::string_view text, char mark, std::string_view inside) {
 }
 
 std::string csv_field(std::string_view text) {
-  if (is_formula(text)) return csv_field(fmt::format("'{}", text));
-  return text.find_first_of(",\"\r\n") == std::string_view::npos ? std::string(text)
-                                                                 : quoted(text, '"', "\"\"");
+  std::string field = is_formula(text) ? fmt::format("'{}", text) : std::string(text);
+  // NumPy knows no quotes, and pandas takes what follows a # for a comment wherever it stands.
+  constexpr std::string_view kRead = ",\"\r\n#", kWritten = ";'  .";
+  for (char& c : field) {
+    const std::size_t place = kRead.find(c);
+    if (place != std::string_view::npos) c = kWritten[place];
+  }
+  return field;
 }
 
 std::string csv_field(double value) { return std::isnan(value) ? "nan" : fmt::format("{}", value); }

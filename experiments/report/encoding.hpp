@@ -13,8 +13,8 @@ namespace modcal::report {
 /// The text between two marks, marks inside it written as `inside`.
 std::string quoted(std::string_view text, char mark, std::string_view inside);
 
-/// A field of a CSV file, quoted where it has to be (RFC 4180); what a spreadsheet would take for a
-/// formula has an apostrophe before it.
+/// A field of a CSV file without commas, quotes, line ends and #; what a spreadsheet would take for
+/// a formula has an apostrophe before it.
 std::string csv_field(std::string_view text);
 /// With all its digits; "nan" for a NaN.
 std::string csv_field(double value);

@@ -28,7 +28,7 @@ TEST(FigureCsv, SharesAbscissaeAndStatesUnits) {
            {.title = "v", .x = time, .y = {.label = "v", .unit = "m/s"}, .series = {banded}}},
       .command = ""};
   EXPECT_EQ(figure_csv(figure),
-            "t [s],\"y: a, b [m]\",v [m/s],v low [m/s],v high [m/s],t [s],y: c [m]\n"
+            "t [s],y: a; b [m],v [m/s],v low [m/s],v high [m/s],t [s],y: c [m]\n"
             "0,1,3,2,4,1,7\n"
             "0.5,2,nan,2,4,2,8\n"
             ",,,,,3,9\n");

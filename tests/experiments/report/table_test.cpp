@@ -16,7 +16,7 @@ TEST(TableCsv, HasUnitsAllDigitsAndQuotes) {
             "noise_percent [%],side,R_median,paper_R,comment\n"
             "0,1,0.84,0.81,record truncation\n"
             "1,1,0.72,0.71,\n"
-            "8,2,0.31,0.48,\"outside, \"\"far\"\"\"\n"
+            "8,2,0.31,0.48,outside; 'far'\n"
             "10,2,nan,0.45,not identifiable\n");
 }
 
