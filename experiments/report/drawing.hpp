@@ -60,6 +60,9 @@ struct DrawnFigure {
 /// check_figure() does. The result points into `figure`.
 DrawnFigure draw_figure(const Figure& figure, std::size_t columns);
 
+/// The figure with SI prefixes in the units of linear axes whose numbers would be long: µm, kHz.
+Figure in_readable_units(Figure figure);
+
 // Which samples of a long series are worth drawing.
 
 /// Indices, growing, of the samples to draw when [x_0, x_last] is `columns` ≥ 1 pixels wide: in

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <regex>
 
 #include "experiments/report/drawing.hpp"
 #include "experiments/report/encoding.hpp"
@@ -60,9 +61,19 @@ std::string dense_tics(char name, const std::array<double, 2>& window) {
                      fmt::join(tics, ","));
 }
 
+// f_c as a symbol with a subscript; nothing else in the text is special.
+std::string symbols(const std::string& text) {
+  static const std::regex special(R"([\\^_{}@&~])");
+  static const std::regex subscript(
+      R"((^|[^A-Za-z0-9])([A-Za-z]|φ)\\_([A-Za-z0-9]{1,2})(?![A-Za-z0-9_]))");
+  const std::string plain = std::regex_replace(text, special, R"(\$&)");
+  return std::regex_replace(plain, subscript, "$1$2_{$3}");
+}
+
 std::string axis_settings(char name, const Axis& axis, const std::array<double, 2>& window) {
-  std::string text = fmt::format("set {}label {} noenhanced offset {}\n", name,
-                                 gnuplot_quoted(axis.text()), name == 'x' ? "0,0.5" : "0.5,0");
+  std::string text =
+      fmt::format("set {}label {} offset {}\n", name, gnuplot_quoted(symbols(axis.text())),
+                  name == 'x' ? "0,0.5" : "0.5,0");
   const bool dense = axis.logarithmic && window[1] < 30.0 * window[0];
   text += dense ? dense_tics(name, window)
           : axis.logarithmic

@@ -94,7 +94,7 @@ struct DrawnFigures {
 };
 
 // Figures thinned to as many pixel columns as a page under 2 MB can hold.
-DrawnFigures draw_all(const std::vector<const Figure*>& figures, std::size_t other_bytes,
+DrawnFigures draw_all(const std::vector<Figure>& figures, std::size_t other_bytes,
                       const std::string& replay) {
   constexpr std::size_t kPage = 1'700'000;     // bytes; 0.2 MB of scripts go beside
   constexpr std::size_t kLeastData = 200'000;  // where a report holds more sound than fits
@@ -102,7 +102,7 @@ DrawnFigures draw_all(const std::vector<const Figure*>& figures, std::size_t oth
   DrawnFigures drawn;
   for (const std::size_t columns : {1000u, 500u, 250u, 120u, 60u, 30u, 15u}) {
     drawn.figures.clear();
-    for (const Figure* figure : figures) drawn.figures.push_back(draw_figure(*figure, columns));
+    for (const Figure& figure : figures) drawn.figures.push_back(draw_figure(figure, columns));
     drawn.data = chart_data_json(drawn.figures, replay);
     if (drawn.data.size() <= largest) break;
   }
@@ -220,7 +220,9 @@ WrittenReport write_report(const Report& report, const fs::path& directory,
   const auto tables = items_of<Table>(report);
   const auto sounds = items_of<Audio>(report);
   check(figures, tables, sounds);
-  const auto [drawn, data] = draw_all(figures, bytes_beside_charts(tables, sounds), report.replay);
+  std::vector<Figure> readable;
+  for (const Figure* figure : figures) readable.push_back(in_readable_units(*figure));
+  const auto [drawn, data] = draw_all(readable, bytes_beside_charts(tables, sounds), report.replay);
 
   ReportFolder folder(directory, !figures.empty());
   remove_drawn_files(drawn, folder.figures());

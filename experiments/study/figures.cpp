@@ -205,7 +205,7 @@ Figure parameter_curve_figure(const Layout& layout, const std::vector<SideIdenti
   for (const SideIdentification& side : sides) {
     figure.panels.push_back(
         {.title = side.estimate.label,
-         .x = {.label = "epsilon", .unit = "N/N", .logarithmic = true},
+         .x = {.label = "ε", .unit = "N/N", .logarithmic = true},
          .y = {.label = "criterion", .unit = "1", .logarithmic = true},
          .series = curve_with_choice(side.estimate.result.choice, "criterion",
                                      &CurvePoint::parameter, &CurvePoint::criterion)});

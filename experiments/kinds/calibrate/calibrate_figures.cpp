@@ -197,7 +197,7 @@ report::Figure frequency_error_figure(const FigureOptions& options,
     add(absolute, {.label = "|f_n - true|", .unit = "Hz"});
     add(relative, {.label = "relative error", .unit = "%"});
   }
-  add(shape, {.label = "|phi_n(x_c)|"});
+  add(shape, {.label = "|φ_n(x_c)|"});
   return figure;
 }
 

@@ -40,6 +40,11 @@ function power(exponent) {
   });
 }
 
+// f_c as a symbol with a subscript; for HTML.
+function symbols(html) {
+  return html.replace(/(^|[^A-Za-z0-9])([A-Za-z\u03b1-\u03c9])_([A-Za-z0-9]{1,2})(?![A-Za-z0-9_])/g, '$1$2<sub>$3</sub>');
+}
+
 // Shortest text of a number with so many significant digits.
 function shown(value, digits) {
   if (!isFinite(value)) return 'NaN';

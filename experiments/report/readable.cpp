@@ -1,0 +1,94 @@
+// Units as people read them: 200 µm and 20 kHz, where the data have 2×10⁻⁴ m and 20000 Hz.
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "experiments/report/drawing.hpp"
+
+namespace modcal::report {
+namespace {
+
+struct Prefix {
+  const char* name;
+  double factor;
+};
+constexpr Prefix kPrefixes[] = {{"n", 1e-9}, {"µ", 1e-6}, {"m", 1e-3},
+                                {"k", 1e3},  {"M", 1e6},  {"G", 1e9}};
+
+// Whether a prefix may stand before it: its first factor is a plain unit without an exponent.
+bool takes_prefix(std::string_view unit) {
+  const std::string_view first = unit.substr(0, unit.find_first_of("/ "));
+  constexpr std::string_view kPlain[] = {"m", "s", "Hz", "N", "W", "J", "V", "Pa"};
+  return std::find(std::begin(kPlain), std::end(kPlain), first) != std::end(kPlain);
+}
+
+/// Null: the numbers are short as they are.
+const Prefix* prefix_for(double largest) {
+  if (largest == 0.0 || (largest >= 0.01 && largest < 1e4)) return nullptr;
+  const Prefix* best = nullptr;
+  for (const Prefix& prefix : kPrefixes) {
+    if (prefix.factor <= largest) best = &prefix;
+  }
+  return best;
+}
+
+double largest_of(const std::array<double, 2>& window) {
+  return std::max(std::abs(window[0]), std::abs(window[1]));
+}
+
+void scale(std::vector<double>& values, double factor) {
+  for (double& value : values) value /= factor;
+}
+
+void scale_range(Axis& axis, const Prefix& prefix) {
+  axis.unit = prefix.name + axis.unit;
+  if (axis.range)
+    *axis.range = {(*axis.range)[0] / prefix.factor, (*axis.range)[1] / prefix.factor};
+}
+
+void scale_markers(Panel& panel, Marker::Direction direction, double factor) {
+  for (Marker& marker : panel.markers) {
+    if (marker.direction == direction) marker.value /= factor;
+  }
+}
+
+void scale_x(Panel& panel, const Prefix& prefix) {
+  scale_range(panel.x, prefix);
+  scale_markers(panel, Marker::Direction::kVertical, prefix.factor);
+  for (Series& series : panel.series) scale(series.x, prefix.factor);
+  if (panel.map) scale(panel.map->x_edges, prefix.factor);
+}
+
+void scale_y(Panel& panel, const Prefix& prefix) {
+  scale_range(panel.y, prefix);
+  scale_markers(panel, Marker::Direction::kHorizontal, prefix.factor);
+  for (Series& series : panel.series) {
+    for (auto* values : {&series.y, &series.y_low, &series.y_high}) scale(*values, prefix.factor);
+  }
+  if (panel.map) scale(panel.map->y_edges, prefix.factor);
+}
+
+bool may_change(const Axis& axis) { return !axis.logarithmic && takes_prefix(axis.unit); }
+
+}  // namespace
+
+Figure in_readable_units(Figure figure) {
+  // Panels with the same quantity keep the same unit.
+  std::map<std::string, double> largest;
+  const DrawnFigure drawn = draw_figure(figure, 1);
+  for (const DrawnPanel& panel : drawn.panels) {
+    double& x = largest[panel.source->x.text()];
+    x = std::max(x, largest_of(panel.x_window));
+    double& y = largest[panel.source->y.text()];
+    y = std::max(y, largest_of(panel.y_window));
+  }
+  for (Panel& panel : figure.panels) {
+    const Prefix* x = may_change(panel.x) ? prefix_for(largest[panel.x.text()]) : nullptr;
+    const Prefix* y = may_change(panel.y) ? prefix_for(largest[panel.y.text()]) : nullptr;
+    if (x != nullptr) scale_x(panel, *x);
+    if (y != nullptr) scale_y(panel, *y);
+  }
+  return figure;
+}
+
+}  // namespace modcal::report

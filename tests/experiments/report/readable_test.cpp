@@ -1,0 +1,63 @@
+// Units of a figure as people read them.
+#include <gmock/gmock.h>
+
+#include "experiments/report/drawing.hpp"
+
+namespace modcal::report {
+namespace {
+
+using ::testing::DoubleNear;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+Figure figure_of(const Axis& x, const Axis& y, double largest_y) {
+  Figure figure{.id = "a"};
+  Series series;
+  series.add(0.0, 0.0, -largest_y, 0.0);
+  series.add(2e4, largest_y, 0.0, largest_y);
+  figure.panels.push_back({.x = x, .y = y, .series = {series}});
+  figure.panels.back().markers.push_back(
+      {.direction = Marker::Direction::kHorizontal, .value = largest_y});
+  return figure;
+}
+
+TEST(ReadableUnits, TakePrefixesForPowersOfTen) {
+  const Figure figure =
+      in_readable_units(figure_of({.label = "f", .unit = "Hz"}, {.label = "y", .unit = "m"}, 2e-4));
+  const Panel& panel = figure.panels.front();
+  EXPECT_EQ(panel.x.text(), "f [kHz]");
+  EXPECT_EQ(panel.y.text(), "y [µm]");
+  EXPECT_THAT(panel.series[0].x, ElementsAre(0.0, DoubleNear(20.0, 1e-9)));
+  EXPECT_THAT(panel.series[0].y, ElementsAre(0.0, DoubleNear(200.0, 1e-9)));
+  EXPECT_NEAR(panel.series[0].y_low[0], -200.0, 1e-9);
+  EXPECT_NEAR(panel.markers[0].value, 200.0, 1e-9);
+}
+
+TEST(ReadableUnits, LeaveOthersAlone) {
+  for (const Axis& y :
+       {Axis{.label = "y", .unit = "kg"}, Axis{.label = "y", .unit = "1"},
+        Axis{.label = "y", .unit = "m²"}, Axis{.label = "y", .unit = "m", .logarithmic = true}}) {
+    EXPECT_EQ(in_readable_units(figure_of({}, y, 2e-4)).panels[0].y.text(), y.text());
+  }
+  // Short as it is.
+  EXPECT_EQ(in_readable_units(figure_of({}, {.label = "F", .unit = "N"}, 0.5)).panels[0].y.unit,
+            "N");
+}
+
+TEST(ReadableUnits, AreThoseOfAllPanelsOfAQuantity) {
+  const Axis y{.label = "y", .unit = "m"};
+  Figure figure = figure_of({}, y, 0.02);
+  figure.panels.push_back(figure_of({}, y, 2e-4).panels.front());
+  EXPECT_EQ(in_readable_units(figure).panels[1].y.unit, "m");
+}
+
+TEST(Symbols, HaveSubscriptsInPrint) {
+  const Figure figure =
+      figure_of({.label = "water_level"}, {.label = "force f_c", .unit = "N"}, 1.0);
+  const std::string script = gnuplot_script(draw_figure(figure, 100));
+  EXPECT_THAT(script, HasSubstr(R"('force f_{c} [N]')"));
+  EXPECT_THAT(script, HasSubstr(R"('water\_level')"));
+}
+
+}  // namespace
+}  // namespace modcal::report
