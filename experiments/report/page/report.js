@@ -270,6 +270,11 @@ function fit_to_paper(item) {
   item.element.style.setProperty('--fit', (paper / width).toFixed(4));
 }
 
+// A table wider than the paper would make the browser shrink all that is on the page.
+function fit_table_to_paper(table) {
+  if (table.offsetWidth > 700) table.style.zoom = (700 / table.offsetWidth).toFixed(4);
+}
+
 function repaint() {
   charts.forEach(function (item) { item.chart.updateOptions(looks(item.series)); });
 }
@@ -310,10 +315,12 @@ window.addEventListener('beforeprint', function () {
   draw_waiting(Infinity);
   root.classList.add('printing');
   charts.forEach(fit_to_paper);
+  document.querySelectorAll('table').forEach(fit_table_to_paper);
   repaint();
 });
 window.addEventListener('afterprint', function () {
   root.classList.remove('printing');
+  document.querySelectorAll('table').forEach(function (table) { table.style.zoom = ''; });
   repaint();
 });
 // What is not drawn before the page has loaded is not in a PDF that is made at once.

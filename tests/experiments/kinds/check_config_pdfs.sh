@@ -1,0 +1,61 @@
+#!/usr/bin/env bash
+# check_config_pdfs.sh WRITE_CONFIG_REPORTS CONFIGS: prints the reports of the experiment files, run
+# at a small size, to PDF by headless Chromium and fails on blank pages, on words that overlap or
+# leave the page, on charts and tables that are cut, split over two pages or not beside each other.
+# Exit code 77: there is no browser or no pdftotext.
+set -euo pipefail
+here=$(dirname "$0")
+. "$here/../report/browser.sh"
+find_browser
+command -v pdftotext >/dev/null || { echo "no pdftotext: install poppler-utils"; exit 77; }
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+
+# Words that nobody reads stand in the corners of every chart and at the end of every table's head:
+# their places in the PDF are those of the chart and of the table.
+cat >"$folder/marks" <<'JS'
+<style>
+.chart { position: relative; }
+.probe { position: absolute; font: 3px/3px sans-serif; color: #fefefe; z-index: 99; }
+th .probe { position: static; }
+</style>
+<script>
+window.addEventListener('beforeprint', function () {
+  function mark(parent, text, style) {
+    var word = document.createElement('span');
+    word.className = 'probe';
+    word.textContent = text;
+    word.style = style;
+    parent.appendChild(word);
+  }
+  document.querySelectorAll('figure').forEach(function (figure, f) {
+    var columns = Number(getComputedStyle(figure).getPropertyValue('--columns')) > 1 ? 2 : 1;
+    figure.querySelectorAll('.chart').forEach(function (chart, c) {
+      var name = [f, c, columns].join('x');
+      mark(chart, 'qqtop' + name, 'left: 0; top: 0');
+      mark(chart, 'qqend' + name, 'right: 0; bottom: 0');
+    });
+  });
+  document.querySelectorAll('table').forEach(function (table, t) {
+    mark(table.querySelector('th:last-child'), 'qqtable' + t, '');
+  });
+});
+</script>
+JS
+"$1" "$2" "$folder/out" >"$folder/pages"
+pages=0
+while read -r page; do
+  pages=$((pages + 1))
+  pdf=${page%.html}.pdf
+  { cat "$page"; cat "$folder/marks"; } >"${page%.html}_marked.html"
+  "$browser" --headless --no-sandbox --disable-gpu --no-first-run --disable-background-networking \
+    --disable-component-update --disable-sync --user-data-dir="$folder/profile" \
+    --virtual-time-budget=100000 --no-pdf-header-footer --print-to-pdf="$pdf" \
+    "file://${page%.html}_marked.html" 2>"$folder/log" || { cat "$folder/log"; exit 1; }
+  pdftotext -bbox "$pdf" "$pdf.words"
+  python3 "$here/pdf_findings.py" "$pdf.words" "$page" |
+    sed "s|^|${page#"$folder/out/"}: |" >>"$folder/found"
+done <"$folder/pages"
+[ "$pages" -gt 10 ] || { echo "only $pages reports"; exit 1; }
+[ ! -s "$folder/found" ] || { cat "$folder/found"; exit 1; }
+echo "$pages reports printed without an error"
