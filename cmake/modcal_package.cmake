@@ -6,15 +6,24 @@ list(REMOVE_ITEM development libgtest-dev libgmock-dev libbenchmark-dev)
 list(JOIN development ", " CPACK_DEBIAN_PACKAGE_SUGGESTS)
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME modcal)
-set(CPACK_PACKAGE_CONTACT "The authors of modcal <modcal@localhost>")
+# As Debian's own tools take them from the environment; a package for others needs a name that can be asked.
+if(DEFINED ENV{DEBEMAIL})
+  set(maintainer "$ENV{DEBFULLNAME} <$ENV{DEBEMAIL}>")
+else()
+  set(maintainer "The authors of modcal <modcal@localhost>")
+endif()
+set(MODCAL_PACKAGE_MAINTAINER "${maintainer}" CACHE STRING "Maintainer of the Debian package, \"Name <address>\"")
+set(CPACK_PACKAGE_CONTACT "${MODCAL_PACKAGE_MAINTAINER}")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "calibrates bowed strings and identifies the force of the bow")
 set(CPACK_PACKAGE_DESCRIPTION
-    "modcal calibrates the modal model of a bowed string and identifies the friction force between bow and
- string from the reactions at the string's ends, both with standard deviations.")
+    "modcal calibrates the modal model of a bowed string and identifies the
+ friction force between bow and string from the reactions at the string's
+ ends, both with standard deviations.")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS gnuplot-nox)
+set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/cmake/debian_files.cmake)
 include(CPack)
