@@ -148,7 +148,7 @@ void CsvFile::parse(CsvHandler& handler) {
     const std::size_t first = text_.find_first_not_of(" \t\n");
     if (open_quote_line == 0) {
       if (first == std::string::npos) continue;
-      if (text_[first] == '#') {
+      if (text_[first] == '#' || text_[first] == '%') {
         handler.comment(std::string_view(text_).substr(first + 1, text_.size() - first - 2));
         continue;
       }

@@ -15,7 +15,7 @@ namespace modcal {
 class CsvHandler {
  public:
   virtual ~CsvHandler() = default;
-  /// A line whose first character (blanks aside) is '#'; `text` is what follows it.
+  /// A line whose first character (blanks aside) is '#' or '%'; `text` is what follows it.
   virtual void comment(std::string_view text) = 0;
   /// Field `index` (from 0) of the current row, without its quotes and the blanks around it.
   virtual void field(std::size_t index, std::string_view text) = 0;

@@ -254,6 +254,13 @@ TEST_F(CsvReader, SurveyKeepsGoing) {
   EXPECT_EQ(record.channels[1].samples[2], 3.0);
 }
 
+// Octave's and Matlab's.
+TEST_F(CsvReader, PercentBeginsAComment) {
+  const Recording record = read("% sample_rate: 100 Hz\n% by hand\nR1 [N]\n1\n2\n");
+  EXPECT_EQ(record.sample_rate, 100.0);
+  EXPECT_EQ(record.frames(), 2u);
+}
+
 TEST_F(CsvReader, ReportsBadHeaders) {
   EXPECT_EQ(error("t,R1,R1 [N]\n0,1,2\n"),
             "r.csv:1:6: columns 2 and 3 are both named \"R1\"; give them different names");
