@@ -30,8 +30,7 @@ done
 if command -v lintian >/dev/null; then
   # Who maintains it and where programs for other machines are built is for who packages it.
   others=bogus-mail-host,bogus-mail-host-in-debian-changelog,pkg-config-unavailable-for-cross-compilation
-  lintian --allow-root --suppress-tags "$others" "$package" >"$work/lint" 2>&1 || true
-  ! grep -E '^[EW]:' "$work/lint" || fail "the package is not as Debian asks"
+  quietly lintian --allow-root --fail-on error,warning --suppress-tags "$others" "$package"
 fi
 
 names_the_machine() { strings -a "$1" | grep -F -e "$root" -e "$build"; }
