@@ -3,10 +3,10 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "libcalib/identifiability/tuning.hpp"
-#include "libsim/base/error.hpp"
 #include "libsim/signal/fft.hpp"
 
 namespace modcal {
@@ -55,30 +55,32 @@ void take_out(std::span<const ScoreTest> body, const ModelPoint& model, double h
   }
 }
 
-void put_on_bridge(ModalBasis& basis, std::span<const ScoreTest> body) {
-  if (body.empty()) return;
-  const ModalBasis pinned = basis;
-  const double per_length = pinned.tension / pinned.length;
-  // Every round leaves a part of the error as large as ScoreTest::coupling.
-  for (std::size_t n = 0; n < pinned.size(); ++n) {
-    const double omega = pinned.omega[n], zeta = pinned.zeta[n];
+bool put_on_bridge(ModalBasis& basis, std::span<const ScoreTest> body) {
+  if (body.empty()) return true;
+  ModalBasis found = basis;
+  const double per_length = basis.tension / basis.length;
+  for (std::size_t n = 0; n < basis.size(); ++n) {
+    const double omega = basis.omega[n], zeta = basis.zeta[n];
     const Complex own = omega * Complex(-zeta, std::sqrt(1.0 - zeta * zeta));
-    Complex s = own;
-    for (int round = 0; round < 60; ++round) {
+    Complex s = own, last = 0.0;
+    // Every round leaves a part of the error as large as ScoreTest::coupling.
+    for (int round = 0; round < 60 && std::abs(s - last) > 1e-14 * omega; ++round) {
       Complex others = 1.0;
-      for (std::size_t m = 0; m < pinned.size(); ++m) {
+      for (std::size_t m = 0; m < basis.size(); ++m) {
         if (m == n) continue;
-        const double other = pinned.omega[m];
-        others += 2.0 * s * s / (s * s + 2.0 * pinned.zeta[m] * other * s + other * other);
+        const double other = basis.omega[m];
+        others += 2.0 * s * s / (s * s + 2.0 * basis.zeta[m] * other * s + other * other);
       }
       const Complex stiff = per_length * receptance(body, s);
+      last = s;
       s = own - 2.0 * s * s * stiff / ((1.0 + stiff * others) * (s - std::conj(own)));
     }
-    MODCAL_REQUIRE(std::isfinite(std::abs(s)), "mode {} of the string on its bridge is not found",
-                   n + 1);
-    basis.omega[n] = std::abs(s);
-    basis.zeta[n] = -s.real() / std::abs(s);
+    if (!(std::abs(s - last) < 1e-9 * omega)) return false;
+    found.omega[n] = std::abs(s);
+    found.zeta[n] = -s.real() / std::abs(s);
   }
+  basis = std::move(found);
+  return true;
 }
 
 }  // namespace modcal

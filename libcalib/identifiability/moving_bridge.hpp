@@ -21,7 +21,8 @@ void take_out(std::span<const ScoreTest> body, const ModelPoint& model, double h
 ///     1 + (T/L) (1 + 2 Σ_m s²/D_m(s)) Σ_i κ_i/(s² + 2ζ_b ω_i s + ω_i²),
 ///
 /// D_m(s) = s² + 2ζ_m ω_m s + ω_m², κ_i the first amplitude and ω_i the place of each of `body`,
-/// ζ_b = kBodyDamping. Of κ_i so small that the modes do not change places (ScoreTest::frees()).
-void put_on_bridge(ModalBasis& basis, std::span<const ScoreTest> body);
+/// ζ_b = kBodyDamping. False, and nothing changed, where they are not found: a mode of the body so
+/// near to one of the string, or so light, that they change places.
+bool put_on_bridge(ModalBasis& basis, std::span<const ScoreTest> body);
 
 }  // namespace modcal

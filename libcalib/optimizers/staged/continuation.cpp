@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "libcalib/identifiability/moving_bridge.hpp"
@@ -32,7 +33,8 @@ ContinuationResult with_misfit_for_noise(const AttemptInput& input,
                                                    .highest = input.highest,
                                                    .misfit_for_noise = true,
                                                    .moving = input.moving,
-                                                   .within = input.within},
+                                                   .within = input.within,
+                                                   .first_law = input.first_law},
                                                   0.0);
   found.chi2 *= misfit;
   found.law.chi2 *= misfit;
@@ -63,7 +65,7 @@ ContinuationResult attempt_with_its_noise(const AttemptInput& input, double shif
   input.records.deviation = input.read;
   input.records.power_error = input.read_error;
   ContinuationResult found = attempt_continuation(input, shift, evaluations);
-  for (int round = 0; round < 2; ++round) {
+  for (int round = 0; round < 2 && !found.repeats; ++round) {
     // Where the law holds, the noise is what it leaves already.
     if (found.law.accepted && found.chi2 > 1.0 - 3.0 * found.chi2_deviation) break;
     const ProjectedLikelihood whole(WhitenedRecord::of(input.records, 0.0, input.highest));
@@ -87,6 +89,7 @@ ContinuationResult on_moving_bridge(const AttemptInput& input, double shift,
   NoisyRecords& records = input.records;
   const std::array<std::vector<double>, 2> recorded = records.reactions;
   std::vector<ScoreTest> body, taken_out;
+  ModalBasis on_bridge = found.model.basis;
   for (std::size_t fit = 0; fit < 6; ++fit) {
     const ScoreTest* cause = first_cause(found.tests);
     // A mass is positive; a further mode may take from one found too light.
@@ -98,16 +101,19 @@ ContinuationResult on_moving_bridge(const AttemptInput& input, double shift,
     take_out(body, found.model, input.highest, records);
     ContinuationResult next = attempt_with_its_noise(input, shift, found.evaluations);
     found.evaluations = next.evaluations;
-    if (!(power_left(next) < power_left(found))) break;
+    ModalBasis basis = next.model.basis;
+    const bool serves = !next.repeats && power_left(next) < power_left(found);
+    if (!serves || !put_on_bridge(basis, body)) break;
     append_stages(next.stages, "bridge taken out: ", 0, found.stages);
     next.stages = std::move(found.stages);
     found = std::move(next);
     taken_out = body;
+    on_bridge = std::move(basis);
   }
   records.reactions = recorded;
   records.on_bridge.clear();
   records.body.clear();
-  put_on_bridge(found.model.basis, taken_out);
+  found.model.basis = std::move(on_bridge);
   for (std::size_t n = 0; n < found.modes.size(); ++n) {
     found.modes[n].frequency = found.model.basis.frequency(n);
   }
@@ -147,6 +153,7 @@ ContinuationResult calibrate_stroke(const ModelPoint& initial, const Calibration
   records.power_error = noise_power_error(noise, initial.basis, data);
   const double highest = likelihood_band(initial, options.highest_frequency, data.sample_rate);
   constexpr double kShifts[] = {0.0, 4e-3, -4e-3, 8e-3, -8e-3};
+  std::optional<LawEstimate> first_law;
   const AttemptInput input{.initial = initial,
                            .records = records,
                            .options = options,
@@ -154,7 +161,8 @@ ContinuationResult calibrate_stroke(const ModelPoint& initial, const Calibration
                            .highest = highest,
                            .moving = begins_moving(records, initial),
                            .alone = alone,
-                           .within = within};
+                           .within = within,
+                           .first_law = first_law};
   ContinuationResult best;
   std::size_t evaluations = 0;
   std::vector<FitStage> stages;
@@ -163,7 +171,7 @@ ContinuationResult calibrate_stroke(const ModelPoint& initial, const Calibration
     evaluations = found.evaluations;
     append_stages(found.stages, i == 0 ? "" : fmt::format("restart {}: ", i), 0, stages);
     found.restarts = i;
-    if (i == 0 || found.chi2 < best.chi2) best = std::move(found);
+    if (!found.repeats && (i == 0 || found.chi2 < best.chi2)) best = std::move(found);
     if (best.fits) break;
   }
   best.evaluations = evaluations;

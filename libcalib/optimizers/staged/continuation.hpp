@@ -121,9 +121,10 @@ struct ContinuationResult {
   double law_width = 0.0;  ///< τ
   double chi2 = 0.0;       ///< reduced, of `model`
   double chi2_deviation = 0.0;
-  bool fits = false;   ///< χ² does not contradict the result: χ² < 1 + 3 sd
-  PriorMisfit priors;  ///< of `model` to what was stated beforehand
-  bool right = false;  ///< neither χ² nor priors nor a cause of misfit contradict the result
+  bool fits = false;     ///< χ² does not contradict the result: χ² < 1 + 3 sd
+  PriorMisfit priors;    ///< of `model` to what was stated beforehand
+  bool right = false;    ///< neither χ² nor priors nor a cause of misfit contradict the result
+  bool repeats = false;  ///< found what another start had led to, and no more was done
   std::size_t restarts = 0;
   std::size_t moved_modes = 0;  ///< modes found in a neighboring minimum and moved
   std::size_t evaluations = 0;

@@ -15,6 +15,13 @@
 namespace modcal {
 namespace {
 
+// To a hundredth of a deviation: far less than from one minimum to the next.
+bool same(const LawEstimate& one, const LawEstimate& other) {
+  return std::abs(one.fundamental - other.fundamental) < 0.01 * other.deviation[0] &&
+         std::abs(one.inharmonicity - other.inharmonicity) < 0.01 * other.deviation[1] &&
+         std::abs(one.contact - other.contact) < 0.01 * other.deviation[2];
+}
+
 // One attempt: everything between a start of f_0 and a verdict by χ².
 class Attempt {
  public:
@@ -49,7 +56,9 @@ class Attempt {
     result.noise_spectrum = input_.records.noise;
     result.noise_error = input_.records.power_error;
     report_law(covariance, result);
-    if (options().frequencies) {
+    if (!input_.first_law) input_.first_law = result.law;
+    result.repeats = shift != 0.0 && same(result.law, *input_.first_law);
+    if (options().frequencies && !result.repeats) {
       const bool accepted = result.law.accepted;
       free_frequencies(input_, {law_, accepted ? law_theta_ : ladder_theta_, accepted}, stroke_,
                        result);

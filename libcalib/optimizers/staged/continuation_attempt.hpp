@@ -1,6 +1,8 @@
 // One attempt of a continuation: everything between a start of f_0 and a verdict by χ².
 #pragma once
 
+#include <optional>
+
 #include "libcalib/likelihood/projected_likelihood.hpp"
 #include "libcalib/optimizers/staged/continuation.hpp"
 
@@ -21,6 +23,8 @@ struct AttemptInput {
   /// No other record has a part in the answer: a bridge that moves may be taken out of this one.
   bool alone = true;
   Evaluator* within = nullptr;
+  /// What the first attempt found of the law, by itself.
+  std::optional<LawEstimate>& first_law;
 
   /// Levels as they were read above the modes, or stated [N].
   std::array<double, 2> read = records.deviation;
@@ -33,6 +37,8 @@ struct AttemptInput {
 };
 
 /// From ln f_0 of the start `shift` higher [1]; evaluations: those spent before, which count too.
+/// Where another start has led to the first law again, all else would follow again, too: the result
+/// holds the law alone (ContinuationResult::repeats).
 ContinuationResult attempt_continuation(const AttemptInput& input, double shift,
                                         std::size_t evaluations = 0);
 
