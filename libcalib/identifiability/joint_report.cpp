@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -116,24 +118,26 @@ Eigen::MatrixXd covariance_of_causes(const std::vector<ContinuationResult>& sing
                                      const AllRecords& all) {
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(all.size(), all.size());
   const Eigen::Index unknowns = all.unknowns().size();
-  for (std::size_t c = 0; c < single.front().tests.size(); ++c) {
-    Eigen::VectorXd change = Eigen::VectorXd::Zero(all.size());
-    for (std::size_t r = 0; r < single.size(); ++r) {
-      if (c >= single[r].tests.size() || single[r].tests[c].moved.size() != unknowns) continue;
-      const ScoreTest& test = single[r].tests[c];
-      std::vector<Eigen::Index> places;
-      Eigen::VectorXd part = Eigen::VectorXd::Ones(unknowns);
-      for (Eigen::Index i = 0; i < unknowns; ++i) {
-        const bool shared = single.size() > 1 && all.place(i, 0) == all.place(i, 1);
-        if (shared) part[i] /= static_cast<double>(single.size());
-        places.push_back(all.place(i, r));
-      }
+  // A cause is one in all records.
+  std::map<std::string, Eigen::VectorXd> changes;
+  for (std::size_t r = 0; r < single.size(); ++r) {
+    std::vector<Eigen::Index> places;
+    Eigen::VectorXd part = Eigen::VectorXd::Ones(unknowns);
+    for (Eigen::Index i = 0; i < unknowns; ++i) {
+      const bool shared = single.size() > 1 && all.place(i, 0) == all.place(i, 1);
+      if (shared) part[i] /= static_cast<double>(single.size());
+      places.push_back(all.place(i, r));
+    }
+    for (const ScoreTest& test : single[r].tests) {
+      if (test.moved.size() != unknowns) continue;
+      Eigen::VectorXd& change =
+          changes.try_emplace(test.cause, Eigen::VectorXd::Zero(all.size())).first->second;
       change(places) += part.cwiseProduct(test.suspected());
       if (test.untold.size() == 0) continue;
       covariance(places, places) += part.asDiagonal() * test.untold * part.asDiagonal();
     }
-    covariance += change * change.transpose();
   }
+  for (const auto& [cause, change] : changes) covariance += change * change.transpose();
   return covariance;
 }
 
