@@ -49,7 +49,8 @@ std::string role(const ScoreTest& test) {
   return test.refuses() ? "contradicts the fit" : "seen, held by the deviations";
 }
 
-void visit_cause(ResultVisitor& row, const ScoreTest& test) {
+// A cause that a fit before this one named: of this fit it says nothing more.
+void visit_freed(ResultVisitor& row, const ScoreTest& test) {
   row({.key = "cause"}, test.cause);
   row({.key = "detail", .name = "of those tried the likeliest"}, test.detail);
   row({.key = "statistic", .name = "S", .format = "{:.4g}"}, test.statistic);
@@ -57,6 +58,10 @@ void visit_cause(ResultVisitor& row, const ScoreTest& test) {
   row({.key = "chance", .shown = ResultVisitor::kInTables}, chance(test));
   row({.key = "log_p", .shown = ResultVisitor::kInJson}, test.log_p);
   row({.key = "amplitude", .format = "{:.2e}"}, test.amplitude);
+}
+
+void visit_cause(ResultVisitor& row, const ScoreTest& test) {
+  visit_freed(row, test);
   row({.key = "shift", .name = "would move, in its sd", .format = "{:.2f}"}, test.shift);
   row({.key = "unknown", .name = "most"}, test.unknown);
   row({.key = "shift_per_root", .name = "shift/√S", .format = "{:.2f}"}, test.shift_per_root);
@@ -145,7 +150,7 @@ void visit_causes(ResultVisitor& visitor, const ContinuationResult& found) {
                  row({.key = "chi2"}, band.chi2);
                  row({.key = "bins"}, band.bins);
                });
-  visitor.rows({.key = "freed_causes", .shown = ResultVisitor::kInJson}, found.freed, visit_cause);
+  visitor.rows({.key = "freed_causes", .shown = ResultVisitor::kInJson}, found.freed, visit_freed);
 }
 
 report::Figure misfit_figure(const ContinuationResult& found) {
