@@ -1,0 +1,247 @@
+#include "libcalib/identifiability/fitted_record.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include "libcalib/identifiability/law_followers.hpp"
+#include "libcalib/identifiability/tuning.hpp"
+
+namespace modcal {
+
+using std::numbers::pi;
+
+FittedRecord::FittedRecord(const ProjectedLikelihood& likelihood, const ModelPoint& point)
+    : record_(likelihood.record()),
+      sensor_(point.sensors),
+      modes_(likelihood_modes(point, record_.sample_rate)),
+      own_(point.basis.size()),
+      per_length_(point.basis.tension / point.basis.length),
+      fft_(samples()) {
+  std::vector<double> residuals;
+  likelihood.evaluate(point, {},
+                      {.residuals = &residuals,
+                       .force = &force_,
+                       .amplitudes = &amplitudes_,
+                       .left = &left_,
+                       .right = &right_});
+  for (std::size_t k = 0; k < record_.bins; ++k) {
+    const double root = record_.root_weight[k];
+    const Complex e(residuals[2 * k], residuals[2 * k + 1]);
+    residual_.push_back(root > 0.0 ? e / root : 0.0);
+  }
+  chord_right_.assign(record_.bins, per_length_);
+  chord_left_.assign(record_.bins, -per_length_);
+  for (std::size_t n = 0; n < own_; ++n) {
+    motions_.emplace_back(record_.bins);
+    for (std::size_t k = 0; k < record_.bins; ++k) {
+      const Complex s(0.0, record_.omega[k]), receptance = inverse_denominator(modes_[n], s);
+      motions_[n][k] = motion_of(n, k, receptance);
+      const Complex chord = 2.0 * per_length_ * s * s * receptance;
+      chord_right_[k] += chord;
+      chord_left_[k] += modes_[n].even ? -chord : chord;
+    }
+  }
+}
+
+MisfitCause FittedRecord::polarization(double detuning) const {
+  SignalColumn columns[2] = {{numbers(), {}}, {{}, numbers()}};
+  for (std::size_t k = 0; k < record_.bins; ++k) {
+    const NoisePair ends = fitted(k);
+    columns[0].left.set(k, ends.left);
+    columns[1].right.set(k, ends.right);
+  }
+  std::vector<Complex> change(record_.bins);
+  const double more = detuning * (2.0 + detuning);
+  for (std::size_t n = 0; n < own_; ++n) {
+    const LikelihoodMode& mode = modes_[n];
+    Complex sum, rate_sum;
+    for (std::size_t k = 0; k < record_.bins; ++k) {
+      const Complex s(0.0, record_.omega[k]);
+      const Complex difference = more * mode.omega_squared + detuning * mode.two_zeta_omega * s;
+      const Complex own = mode.omega_squared + s * s + mode.two_zeta_omega * s;
+      change[k] = ((1.0 + more) * own / (own + difference) - 1.0) * motions_[n][k];
+      sum += change[k];
+      rate_sum += s * change[k];
+    }
+    decay(mode, detuning, sum, rate_sum, change);
+    for (std::size_t k = 0; k < record_.bins; ++k) {
+      const auto [left, right] = ends(change[k], mode.even, {0.0, record_.omega[k]});
+      columns[0].left.set(k, columns[0].left.at(k) + left);
+      columns[1].right.set(k, columns[1].right.at(k) + right);
+    }
+  }
+  return {.name = std::string(kPolarization),
+          .detail = fmt::format("detuned by {:+.2g} %", 100.0 * detuning),
+          .columns = {std::move(columns[0]), std::move(columns[1])},
+          .widths = Eigen::Vector2d::Constant(kPolarizationWidth)};
+}
+
+MisfitCause FittedRecord::drift() const {
+  SignalColumn column{numbers(), numbers()};
+  std::vector<Complex> spectrum(fft_.bins());
+  std::vector<double> motion(fft_.length());
+  for (std::size_t n = 0; n < own_; ++n) {
+    const LikelihoodMode& mode = modes_[n];
+    std::fill(spectrum.begin(), spectrum.end(), 0.0);
+    for (std::size_t k = 0; k < record_.bins; ++k) spectrum[k + 1] = motions_[n][k];
+    fft_.inverse(spectrum, motion);
+    for (std::size_t j = 0; j < motion.size(); ++j) {
+      motion[j] *= static_cast<double>(j) / static_cast<double>(motion.size()) - 0.5;
+    }
+    fft_.forward(motion, spectrum);
+    for (std::size_t k = 0; k < record_.bins; ++k) {
+      const Complex s(0.0, record_.omega[k]);
+      const Complex change =
+          -2.0 * mode.omega_squared * spectrum[k + 1] * inverse_denominator(mode, s);
+      const auto [left, right] = ends(change, mode.even, s);
+      column.left.set(k, column.left.at(k) + left);
+      column.right.set(k, column.right.at(k) + right);
+    }
+  }
+  return {.name = std::string(kDrift), .columns = {std::move(column)}};
+}
+
+MisfitCause FittedRecord::bridge(double frequency, double zeta) const {
+  const double omega = 2.0 * pi * frequency;
+  const Complex rate(-zeta * omega, omega * std::sqrt(1.0 - zeta * zeta));
+  const Complex pole = std::exp(rate / record_.sample_rate);
+  MisfitCause cause{.name = std::string(kBridge),
+                    .detail = fmt::format("at {:.0f} Hz", frequency),
+                    .place = frequency,
+                    .modes = Eigen::MatrixXcd(own_, 1)};
+  for (std::size_t n = 0; n < own_; ++n) {
+    const Complex s(0.0, std::sqrt(modes_[n].omega_squared));
+    const Complex body = s * s + 2.0 * zeta * omega * s + omega * omega;
+    const double coupling = 2.0 * per_length_ * modes_[n].omega_squared / std::norm(body);
+    cause.modes(static_cast<Eigen::Index>(n), 0) = -per_length_ / body;
+    cause.coupling = std::max(cause.coupling, coupling);
+  }
+  // No more than a mode that leaves the law may be off; what the body had before is not known.
+  constexpr double kUnknown = std::numeric_limits<double>::infinity();
+  cause.widths = Eigen::Vector3d(kDeparted / cause.modes.cwiseAbs().maxCoeff(), kUnknown, kUnknown);
+  cause.columns.assign(3, {numbers(), numbers()});
+  for (std::size_t k = 0; k < record_.bins; ++k) {
+    const Complex s(0.0, record_.omega[k]), delay = record_.delay.at(k);
+    const Complex sensor = sensor_.response(s);
+    const bool taken_out = record_.on_bridge.size() > 0;
+    const Complex right = taken_out ? record_.on_bridge.at(k) : fitted(k).right;
+    const Complex reaction = right * record_.deviation[1] / sensor;
+    const Complex decay = 1.0 / (1.0 - pole * delay);
+    const Complex other = 1.0 / (1.0 - std::conj(pole) * delay);
+    const Complex moved[] = {-reaction / (s * s + 2.0 * zeta * omega * s + omega * omega),
+                             decay + other, Complex(0.0, 1.0) * (decay - other)};
+    for (std::size_t i = 0; i < cause.columns.size(); ++i) {
+      cause.columns[i].left.set(k, chord_left_[k] * moved[i] / record_.deviation[0]);
+      cause.columns[i].right.set(k, chord_right_[k] * moved[i] * sensor / record_.deviation[1]);
+    }
+  }
+  return cause;
+}
+
+MisfitCause FittedRecord::resonance(bool right, double frequency, double zeta) const {
+  const double omega = 2.0 * pi * frequency;
+  MisfitCause cause{.name = std::string(kResonance),
+                    .detail = fmt::format("at x = {}, at {:.0f} Hz", right ? "L" : "0", frequency),
+                    .place = frequency};
+  for (const bool quasistatic : {false, true}) {
+    PlanarVector change = numbers();
+    for (std::size_t k = 0; k < record_.bins; ++k) {
+      const Complex s(0.0, record_.omega[k]), loss = 2.0 * zeta * omega * s;
+      const NoisePair both = fitted(k);
+      change.set(k, (right ? both.right : both.left) * (quasistatic ? omega * omega : loss) /
+                        (s * s + loss + omega * omega));
+    }
+    cause.columns.push_back(right ? SignalColumn{numbers(), std::move(change)}
+                                  : SignalColumn{std::move(change), numbers()});
+  }
+  return cause;
+}
+
+MisfitCause FittedRecord::nonlinear_sensors() const {
+  SignalColumn columns[2] = {{cubed(false), {}}, {{}, cubed(true)}};
+  return {.name = std::string(kNonlinear),
+          .columns = {std::move(columns[0]), std::move(columns[1])}};
+}
+
+MisfitCause FittedRecord::modes_above() const {
+  MisfitCause cause{.name = std::string(kModesAbove)};
+  const double top = record_.omega[record_.bins - 1];
+  for (const bool right : {false, true}) {
+    for (const int power : {0, 2}) {
+      PlanarVector change = numbers();
+      for (std::size_t k = 0; k < record_.bins; ++k) {
+        change.set(k, std::pow(record_.omega[k] / top, power) * force_[k]);
+      }
+      cause.columns.push_back(right ? SignalColumn{{}, std::move(change)}
+                                    : SignalColumn{std::move(change), {}});
+    }
+  }
+  return cause;
+}
+
+std::size_t FittedRecord::samples() const {
+  return static_cast<std::size_t>(std::lround(2.0 * pi * record_.sample_rate / record_.spacing));
+}
+
+Complex FittedRecord::inverse_denominator(const LikelihoodMode& mode, Complex s) {
+  return 1.0 / (mode.omega_squared + s * s + mode.two_zeta_omega * s);
+}
+
+void FittedRecord::decay(const LikelihoodMode& mode, double detuning, Complex sum, Complex rate_sum,
+                         std::vector<Complex>& motion) const {
+  const Complex rate = std::log(mode.pole) * (1.0 + detuning) * record_.sample_rate;
+  const double per_sample = 1.0 / static_cast<double>(fft_.length());
+  const double real = sum.real() * per_sample;
+  const Complex amplitude(real, (real * rate.real() - rate_sum.real() * per_sample) / rate.imag());
+  const Complex pole = std::exp(rate / record_.sample_rate);
+  const Complex whole = amplitude * (1.0 - std::pow(pole, static_cast<double>(fft_.length())));
+  for (std::size_t k = 0; k < record_.bins; ++k) {
+    const Complex delay = record_.delay.at(k);
+    motion[k] -= whole / (1.0 - pole * delay) + std::conj(whole) / (1.0 - std::conj(pole) * delay);
+  }
+}
+
+FittedRecord::Ends FittedRecord::ends(Complex motion, bool even, Complex s) const {
+  const Complex right = motion * sensor_.response(s) / record_.deviation[1];
+  return {-motion / record_.deviation[0], even ? right : -right};
+}
+
+Complex FittedRecord::motion_of(std::size_t n, std::size_t k, Complex receptance) const {
+  const LikelihoodMode& mode = modes_[n];
+  const Complex driven = mode.residue * force_[k] * receptance;
+  if (n >= amplitudes_.size()) return driven;
+  const Complex delay = record_.delay.at(k), amplitude = amplitudes_[n];
+  return driven + amplitude / (1.0 - mode.pole * delay) +
+         std::conj(amplitude) / (1.0 - std::conj(mode.pole) * delay);
+}
+
+NoisePair FittedRecord::fitted(std::size_t k) const {
+  const NoisePair noise = noise_of_residual(record_.noise_at(k), left_[k], right_[k], residual_[k]);
+  return {record_.left.at(k) - noise.left, record_.right.at(k) - noise.right};
+}
+
+PlanarVector FittedRecord::cubed(bool right) const {
+  std::vector<Complex> spectrum(fft_.bins());
+  for (std::size_t k = 0; k < record_.bins; ++k) {
+    const NoisePair ends = fitted(k);
+    spectrum[k + 1] = right ? ends.right : ends.left;
+  }
+  std::vector<double> samples(fft_.length());
+  fft_.inverse(spectrum, samples);
+  double power = 0.0;
+  for (const double y : samples) power += y * y;
+  const double mean = power / static_cast<double>(samples.size());
+  for (double& y : samples) y *= y * y / mean;
+  fft_.forward(samples, spectrum);
+  PlanarVector result = numbers();
+  for (std::size_t k = 0; k < record_.bins; ++k) result.set(k, spectrum[k + 1]);
+  return result;
+}
+
+}  // namespace modcal
