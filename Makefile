@@ -1,8 +1,8 @@
 # Every target can be the first one run on a fresh Debian 12 (root or sudo).
 PRESET ?= release
 
-.PHONY: reproduce test test-cluster bench accuracy stress format tidy docs clean build
-.PHONY: packages packages-test packages-cluster packages-develop
+.PHONY: reproduce test sanitize fuzz test-cluster python bench accuracy stress format tidy docs clean build
+.PHONY: packages packages-test packages-python packages-cluster packages-develop packages-fuzz
 
 build: packages
 	@cmake --preset $(PRESET) >/dev/null
@@ -14,8 +14,14 @@ packages:
 packages-test:
 	@cmake/install_packages.sh test
 
+packages-python:
+	@cmake/install_packages.sh python
+
 packages-cluster:
 	@cmake/install_packages.sh cluster
+
+packages-fuzz:
+	@cmake/install_packages.sh fuzz
 
 packages-develop:
 	@cmake/install_packages.sh develop
@@ -27,6 +33,26 @@ test: packages-test
 	@cmake --preset $(PRESET) -DMODCAL_WERROR=ON >/dev/null
 	@cmake --build --preset $(PRESET)
 	@ctest --preset $(PRESET) --parallel $$(nproc)
+
+# Addresses, undefined behavior and threads: the tests that tests/CMakeLists.txt lists for them.
+sanitize: packages-test packages-fuzz
+	@for preset in asan-ubsan tsan; do \
+	  cmake --preset $$preset >/dev/null && cmake --build --preset $$preset && \
+	  ctest --preset $$preset --parallel $$(nproc) || exit 1; \
+	done
+
+# Each fuzzer for SECONDS; 0: the corpora once. What they find: build/asan-ubsan/findings.
+SECONDS ?= 60
+fuzz: packages-test packages-fuzz
+	@cmake --preset asan-ubsan >/dev/null
+	@cmake --build --preset fuzz
+	@tests/fuzz/run.sh build/asan-ubsan $(SECONDS)
+
+# The package of Python: build/release/python.
+python: packages-python
+	@cmake --preset $(PRESET) -DMODCAL_PYTHON=ON >/dev/null
+	@cmake --build --preset $(PRESET) --target modcal modcal_python_package
+	@ctest --preset $(PRESET) --tests-regex '^python_'
 
 test-cluster: packages-cluster
 	@cmake --preset $(PRESET) >/dev/null

@@ -7,9 +7,9 @@ target_include_directories(modcal_flags INTERFACE ${PROJECT_SOURCE_DIR})
 target_compile_options(
   modcal_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual
                          -Wcast-align -Wformat=2 -Wno-missing-field-initializers)
-# clang-tidy does not know GCC's own flags. -Wno-restrict, -Wno-maybe-uninitialized: GCC 12 reports
+# Clang and clang-tidy do not know GCC's own flags. -Wno-restrict, -Wno-maybe-uninitialized: GCC 12 reports
 # both falsely inside std::string at -O3 (GCC bugs 105651 and 105562).
-if(NOT MODCAL_TIDY)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND NOT MODCAL_TIDY)
   target_compile_options(modcal_flags INTERFACE -Wno-restrict -Wno-maybe-uninitialized
                                                 -fcx-limited-range)
 endif()

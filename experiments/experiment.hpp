@@ -26,6 +26,7 @@ struct PlannedSimulations {
 };
 
 struct LimitQuestion;
+struct SearchTask;
 
 class Experiment {
  public:
@@ -48,6 +49,11 @@ class Experiment {
   virtual std::vector<std::string> files_read() const { return {}; }
   /// What it calibrates, whose limit can be stated; null where it calibrates nothing.
   virtual std::shared_ptr<const LimitQuestion> limit_question() const { return nullptr; }
+  /// Its search with the records made or read, for who searches by himself; null where it
+  /// calibrates nothing.
+  virtual std::shared_ptr<const SearchTask> search_task(const StudyContext& /*context*/) const {
+    return nullptr;
+  }
   virtual StudyResult run(const StudyContext& context) const = 0;
 };
 

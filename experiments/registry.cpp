@@ -3,6 +3,7 @@
 #include "experiments/kinds/schelleng/schelleng.hpp"
 #include "experiments/kinds/section7/pluck_then_bow.hpp"
 #include "experiments/kinds/simulate/simulate_study.hpp"
+#include "experiments/kinds/structure/structure_kinds.hpp"
 #include "experiments/kinds/sweep/sweep.hpp"
 
 namespace modcal {
@@ -15,7 +16,10 @@ Registry<Experiment> Experiment::registry() {
                                 "refine the modal model, then identify force and motion with it"),
       entry_of<Experiment, CalibrationLimitExperiment>(
           "calibration_limit", "calibration error against noise beside the Cramer-Rao bound"),
+      kind_of<FitModesOptions>("fit_modes", "modes of any structure from a strike that was measured"),
       kind_of<IdentifyOptions>("identify", "modes of a plucked string from its end reactions"),
+      kind_of<IdentifyForceOptions>("identify_force",
+                                    "force at a contact of any structure from its responses"),
       kind_of<InvertOptions>("invert",
                              "contact force and motion from simulated or recorded reactions"),
       kind_of<PluckThenBowOptions>(

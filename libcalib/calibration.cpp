@@ -14,26 +14,6 @@
 namespace modcal {
 namespace {
 
-struct Names {
-  std::vector<std::string> free;
-  std::vector<std::string> blind;
-};
-
-Names split_names(const ParameterOptions& parameters, const std::vector<bool>& excited) {
-  Names names;
-  names.free = parameters.names(excited.size());
-  for (std::size_t i = 0; i < excited.size(); ++i) {
-    if (excited[i]) continue;
-    const std::string name = fmt::format("f_{}", i + 1);
-    if (std::erase(names.free, name) > 0) names.blind.push_back(name);
-  }
-  MODCAL_REQUIRE(!names.free.empty(),
-                 "every parameter asked for is the frequency of a mode the contact does not excite "
-                 "({}): nothing can be calibrated",
-                 fmt::join(names.blind, ", "));
-  return names;
-}
-
 std::vector<CalibratedParameter> report_parameters(const std::vector<Variable>& variables,
                                                    const std::vector<double>& x) {
   std::vector<CalibratedParameter> result;
@@ -203,79 +183,26 @@ void report_estimate(const Problem& problem, const std::vector<Variable>& variab
   result.modes = found_modes(problem.model, found, problem.excitation_threshold);
 }
 
-bool any_recorded(const Problem& problem) {
-  return std::ranges::any_of(problem.records, &CalibrationRecord::recorded);
-}
-
-// What the sensors feel of the modes above the stated ones, where it belongs to the model.
-void add_higher_modes(const Problem& problem, ModelPoint& initial) {
-  const StringSupport support = problem.support.support(any_recorded(problem));
-  if (!support.remainder) return;
-  const StiffStringFit law = fit_stiff_string(frequencies_of(initial.basis));
-  double highest = problem.objective->highest_frequency();
-  if (std::isnan(highest)) highest = band_of_modes(initial.basis);
-  initial.higher = HigherModeLaw::above(initial.basis, law.fundamental, law.inharmonicity, highest,
-                                        support.bending);
-  double widest = 0.0;
-  for (const CalibrationRecord& record : problem.records) {
-    widest = std::max(widest, likelihood_band(initial, problem.objective->highest_frequency(),
-                                              record.data.sample_rate) /
-                                  (2.0 * std::numbers::pi));
-  }
-  initial.higher->ringing = ringing_modes(initial.basis, widest);
-}
-
-// The problem with what is meant where nothing is stated of damping and sensors.
-Problem with_defaults(Problem problem, const Optimizer& optimizer) {
-  UnknownsOptions& unknowns = problem.parameters.unknowns;
-  const bool to_the_bound = optimizer.needs().schedule && any_recorded(problem);
-  if (!to_the_bound) {
-    unknowns.require_found_by(optimizer.name(), optimizer.needs().schedule);
-    unknowns = unknowns.of_simulations(problem.model.basis);
-    return problem;
-  }
-  // What is stated of a record's ζ_n is seldom more than their order of magnitude.
-  const ParameterOptions plain;
-  double& range = problem.parameters.ranges.damping;
-  const bool ratios = unknowns.damping == plain.unknowns.damping;
-  if (ratios && range == plain.ranges.damping) range = 0.9;
-  unknowns = unknowns.of_records(problem.records.front().data.sample_rate, problem.model.basis);
-  return problem;
-}
-
 }  // namespace
-
-std::vector<bool> excited_modes(const ModelPoint& point, double threshold) {
-  std::vector<bool> excited;
-  for (const double shape : point.basis.shape_at(point.contact)) {
-    excited.push_back(std::abs(shape) >= threshold);
-  }
-  return excited;
-}
 
 CalibrationResult calibrate(const Problem& stated_problem, const Optimizer& optimizer,
                             const Budget& budget, SecondsClock clock) {
-  const Problem problem = with_defaults(stated_problem, optimizer);
-  ModelPoint initial = problem.model;
-  const Sensor stated = problem.parameters.unknowns.sensors();
-  if (!stated.alike()) initial.sensors = stated;
-  add_higher_modes(problem, initial);
-  const std::vector<bool> excited = excited_modes(initial, problem.excitation_threshold);
-  Names names = split_names(problem.parameters, excited);
-  const ParameterSet parameters(initial, names.free, problem.parameters.ranges);
-  const auto function = problem.objective->bind(problem, parameters);
-  const std::vector<Variable> variables = parameters.variables();
+  BoundProblem bound = bind(stated_problem, optimizer);
+  const Problem& problem = bound.problem;
+  const std::vector<Variable> variables = bound.parameters.variables();
   CalibrationResult result;
-  result.search = optimizer.minimize(*function, variables, budget, std::move(clock));
+  result.search = optimizer.minimize(*bound.function, variables, budget, std::move(clock));
   if (result.search.estimate) {
     report_estimate(problem, variables, result);
     return result;
   }
-  result.blind = std::move(names.blind);
-  result.model = parameters.model(result.search.x);
+  result.blind = std::move(bound.blind);
+  result.model = bound.parameters.model(result.search.x);
   result.parameters = report_parameters(variables, result.search.x);
-  result.modes = report_modes(parameters, result.model, excited);
-  add_deviations(*problem.objective, *function, variables, result);
+  result.modes =
+      report_modes(bound.parameters, result.model,
+                   excited_modes(bound.parameters.initial(), problem.excitation_threshold));
+  add_deviations(*problem.objective, *bound.function, variables, result);
   return result;
 }
 

@@ -81,6 +81,17 @@ struct CalibrationResult {
 /// Marks the modes with |φ_n(x_c)| ≥ threshold.
 std::vector<bool> excited_modes(const ModelPoint& point, double threshold);
 
+/// A problem as a search sees it: a function of free parameters with bounds and a start.
+struct BoundProblem {
+  Problem problem;  ///< with what is meant where nothing is stated
+  ParameterSet parameters;
+  std::unique_ptr<const ObjectiveFunction> function;
+  std::vector<std::string> blind;  ///< asked for and left out, see CalibrationResult
+};
+
+/// Throws InvalidInput where objective, optimizer, records and parameters do not fit together.
+BoundProblem bind(const Problem& problem, const Optimizer& optimizer);
+
 /// Minimizes the objective over the parameters asked for, save the frequencies of blind modes. What
 /// each further record has for itself follows among the parameters with its number, "x_c 2",
 /// "gain 3". The clock is read before every evaluation. Throws InvalidInput where objective,

@@ -25,6 +25,10 @@ bool can_rewrite() {
 int output_error = 0;
 
 void write_out(std::string_view text) {
+  if (Caller* caller = Caller::here()) {
+    caller->said += text;
+    return;
+  }
   errno = 0;
   if (std::fwrite(text.data(), 1, text.size(), stdout) < text.size() && output_error == 0) {
     output_error = errno;
@@ -38,8 +42,9 @@ struct JsonAnswer {
   nlohmann::ordered_json warnings = nlohmann::ordered_json::array();
   std::vector<Complaint> errors;
 };
+// Of the thread that was asked: several may answer at a time.
 JsonAnswer& json_answer() {
-  static JsonAnswer answer;
+  static thread_local JsonAnswer answer;
   return answer;
 }
 
@@ -109,6 +114,19 @@ void mark(std::string& text, std::string_view word, std::string_view code) {
 
 }  // namespace
 
+namespace {
+thread_local Caller* caller_here = nullptr;
+}
+
+Caller::Caller(const std::atomic<bool>& stop_flag, std::function<void(double)> told)
+    : stop(stop_flag), progress(std::move(told)) {
+  caller_here = this;
+}
+
+Caller::~Caller() { caller_here = nullptr; }
+
+Caller* Caller::here() { return caller_here; }
+
 AnswerStyle& answer_style() {
   static AnswerStyle style;
   return style;
@@ -140,10 +158,12 @@ std::string_view meaning_of(ExitCode code) {
 
 ExitCode finish_answer(ExitCode code) {
   if (answer_style().json) write_json_answer(code);
+  if (Caller::here() != nullptr) return code;
   errno = 0;
   const bool taken = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
   if (!taken && output_error == 0) output_error = errno != 0 ? errno : EIO;
-  if (output_error == 0) return code;
+  // A reader that closes its pipe, such as head, has what it wanted.
+  if (output_error == 0 || output_error == EPIPE) return code;
   complain({.text = fmt::format("standard output has not taken the answer: {}",
                                 std::strerror(output_error))});
   return code == ExitCode::kOk ? ExitCode::kOutputLost : code;
@@ -170,10 +190,13 @@ void complain(const std::vector<Complaint>& complaints) {
   for (const Complaint& complaint : complaints) complain(complaint);
 }
 
-void hint_text(std::string_view text) { std::fputs(colored(printable(text)).c_str(), stderr); }
+void hint_text(std::string_view text) {
+  if (Caller::here() == nullptr) std::fputs(colored(printable(text)).c_str(), stderr);
+}
 
 void remark_text(std::string_view text) {
-  if (!answer_style().quiet) std::fputs(printable(text).c_str(), stderr);
+  if (!answer_style().quiet && Caller::here() == nullptr)
+    std::fputs(printable(text).c_str(), stderr);
 }
 
 std::string json_text(const nlohmann::ordered_json& object) {
@@ -216,6 +239,7 @@ Progress::~Progress() {
 }
 
 void Progress::report(double share) {
+  if (caller_ != nullptr) return caller_->progress(share);
   const std::lock_guard lock(mutex_);
   const Clock::time_point now = Clock::now();
   const auto pause = terminal_ ? std::chrono::milliseconds(100) : std::chrono::milliseconds(5000);

@@ -41,13 +41,6 @@ ExitCode refused(ExitCode code, std::string reason) {
   return code;
 }
 
-// The place, which the text begins with, as a value.
-Complaint complaint_of(const InvalidInput& error) {
-  const std::string text = error.what();
-  if (error.place().empty()) return {.text = text};
-  return {.place = place_named(error.place()), .text = text.substr(error.place().size() + 2)};
-}
-
 // What was asked of the command, for the message that memory does not suffice.
 std::string& request() {
   static std::string text = "this command";
@@ -195,10 +188,14 @@ void catch_interrupts() {
 }
 
 StopToken interrupt_token() {
+  if (const Caller* caller = Caller::here()) return StopToken(caller->stop);
   is_polled.store(true, std::memory_order_relaxed);
   return StopToken(flag);
 }
 
-bool interrupted() { return flag.load(std::memory_order_relaxed); }
+bool interrupted() {
+  if (const Caller* caller = Caller::here()) return caller->stop.load(std::memory_order_relaxed);
+  return flag.load(std::memory_order_relaxed);
+}
 
 }  // namespace modcal

@@ -4,6 +4,7 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <atomic>
 #include <chrono>
 #include <mutex>
 #include <nlohmann/json_fwd.hpp>
@@ -58,7 +59,7 @@ void add_command(CLI::App& app, const Chosen& chosen, const char* name, const ch
 void add_experiment_commands(CLI::App& app, const Chosen& chosen);
 void add_plan_command(CLI::App& app, const Chosen& chosen);
 void add_plugin_commands(CLI::App& app, const Chosen& chosen);
-void add_inspect_command(CLI::App& app, const Chosen& chosen);
+void add_record_commands(CLI::App& app, const Chosen& chosen);
 void add_new_command(CLI::App& app, const Chosen& chosen);
 void add_reproduce_command(CLI::App& app, const Chosen& chosen);
 void add_stored_commands(CLI::App& app, const Chosen& chosen);
@@ -81,7 +82,28 @@ ExitCode guarded(const Action& action);
 ExitCode finish_answer(ExitCode code);
 
 /// Whether the first word is no command, after a message. CLI11 would say that one is missing.
-bool is_unknown_command(const CLI::App& app, int argc, char** argv);
+bool is_unknown_command(const CLI::App& app, int argc, const char* const* argv);
+
+/// What the words of a command line ask for. `begin` is called where a command is chosen, before it
+/// is done.
+ExitCode answer_words(int argc, const char* const* argv, void (*begin)());
+
+/// Who asks in the place of a terminal: commands of its thread say nothing elsewhere, for as long
+/// as this lives.
+class Caller {
+ public:
+  /// `stop`: in the place of Ctrl-C; `progress`: told of the share done, from any thread.
+  Caller(const std::atomic<bool>& stop, std::function<void(double)> progress);
+  ~Caller();
+  Caller(const Caller&) = delete;
+  Caller& operator=(const Caller&) = delete;
+  /// Of this thread; null: there is a terminal.
+  static Caller* here();
+
+  const std::atomic<bool>& stop;
+  std::function<void(double)> progress;
+  std::string said;  ///< all that standard output would have got
+};
 
 /// The configs that came with the program, wherever both were moved.
 std::string shipped_configs();
@@ -195,6 +217,7 @@ class Progress {
   using Clock = std::chrono::steady_clock;
   std::mutex mutex_;
   std::string what_;
+  Caller* caller_ = Caller::here();
   bool terminal_;
   bool shown_ = false;
   Clock::time_point start_;

@@ -1,4 +1,6 @@
 // What is wrong with the words of a command line, and what a command takes.
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cctype>
 #include <regex>
@@ -43,30 +45,51 @@ std::string unknown_option(const CLI::App& app) {
   return {};
 }
 
+template <typename Kind>
+bool is(const CLI::ParseError& error) {
+  return dynamic_cast<const Kind*>(&error) != nullptr;
+}
+
+// The option that CLI11's text is about, which its errors have nowhere else; null: none.
+const CLI::Option* option_in(const std::string& text, const CLI::App& command) {
+  for (const CLI::Option* option : command.get_options()) {
+    const std::string name = option->get_name();
+    if (text.starts_with(name + ":") || text.find(": " + name + " = ") != std::string::npos) {
+      return option;
+    }
+  }
+  return nullptr;
+}
+
 // What CLI11 says, with what to do about it.
 Complaint mistake_of(const CLI::App& app, const CLI::ParseError& error) {
   const CLI::App& command = chosen_of(app);
   const std::string name = name_of(app, command), usage = usage_of(app, command);
   const std::string text = error.what();
-  if (error.get_name() == "RequiredError" && &command != &app) {
+  if (is<CLI::RequiredError>(error) && &command != &app) {
     const std::string missing = upper_case(text.substr(0, text.find(' ')));
     return {.text = fmt::format("{} is missing: {}", missing, usage)};
   }
-  std::smatch match;
-  if (std::regex_match(text, match, std::regex("The following .* not expected: (.*)"))) {
-    return {.text = fmt::format("{} does not take \"{}\": {}", name, match.str(1), usage)};
+  if (is<CLI::ExtrasError>(error)) {
+    return {.text = fmt::format("{} does not take \"{}\": {}", name,
+                                fmt::join(app.remaining(true), " "), usage)};
   }
-  if (std::regex_match(text, match, std::regex("(--?[^:]+): .* missing"))) {
-    return {.text = fmt::format("{} needs a value: {}", match.str(1), usage)};
+  const CLI::Option* option = option_in(text, command);
+  if (option == nullptr) return {.text = fmt::format("{}; see {} --help", text, name)};
+  const std::string what = option->get_name();
+  if (is<CLI::ArgumentMismatch>(error)) {
+    const std::size_t given = option->results().size();
+    if (given < 2) return {.text = fmt::format("{} needs a value: {}", what, usage)};
+    return {.text = fmt::format("{} is given {} times: leave one of them", what, given)};
   }
-  if (std::regex_match(text, match, std::regex("Could not convert: (\\S+) = (.*)"))) {
-    return {.place = place_named(match.str(1)),
-            .text = fmt::format("\"{}\" is not what it takes: see {} --help", match.str(2), name)};
+  const InputPlace place = what.starts_with("--") ? InputPlace{.option = what} : InputPlace{};
+  if (is<CLI::ConversionError>(error)) {
+    return {.place = place,
+            .text = fmt::format("\"{}\" is not what it takes: see {} --help",
+                                fmt::join(option->results(), " "), name)};
   }
-  const std::string told = fmt::format("{}; see {} --help", text, name);
-  const std::size_t colon = told.find(": ");
-  if (!told.starts_with("--") || colon == std::string::npos) return {.text = told};
-  return {.place = {.option = told.substr(0, colon)}, .text = told.substr(colon + 2)};
+  const std::string told = place.empty() ? text : text.substr(what.size() + 2);
+  return {.place = place, .text = fmt::format("{}; see {} --help", told, name)};
 }
 
 }  // namespace
@@ -95,7 +118,7 @@ ExitCode answer_of(const CLI::App& app, const CLI::ParseError& error) {
   return ExitCode::kUsage;
 }
 
-bool is_unknown_command(const CLI::App& app, int argc, char** argv) {
+bool is_unknown_command(const CLI::App& app, int argc, const char* const* argv) {
   if (argc < 2) return false;
   const std::string first = argv[1];
   const auto is_option_of_all = [&] {

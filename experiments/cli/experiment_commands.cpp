@@ -7,7 +7,6 @@
 #include "experiments/cli/runner.hpp"
 #include "experiments/config/reader.hpp"
 #include "experiments/kinds/calibrate/calibrate.hpp"
-#include "experiments/records/inspection.hpp"
 
 namespace modcal {
 namespace {
@@ -79,28 +78,6 @@ ExitCode limit(const FileArguments& arguments) {
     say_text(limit_text(*question, truths));
   }
   return ExitCode::kOk;
-}
-
-struct InspectArguments {
-  std::string file;
-  InspectionOptions options;
-};
-
-ExitCode print_inspection(const InspectArguments& arguments) {
-  const InspectionReport report = inspect(arguments.file, arguments.options);
-  if (answer_style().json) {
-    print_json(json(report));
-  } else {
-    say_text(text(report));
-  }
-  return report.problem_count == 0 ? ExitCode::kOk : ExitCode::kInvalidInput;
-}
-
-void declare(CLI::App& command, InspectArguments& arguments) {
-  command.add_option("file", arguments.file, "CSV or sound file")->required();
-  command.add_option("--format", arguments.options.format, "auto, csv or wav");
-  command.add_option("--sample-rate", arguments.options.sample_rate,
-                     "[Hz], where the file has none");
 }
 
 struct ReproduceArguments {
@@ -181,11 +158,6 @@ void add_experiment_commands(CLI::App& app, const Chosen& chosen) {
               validate);
   add_command(app, chosen, "limit", "Say how well a calibration can do, before any experiment",
               declare_file, limit);
-}
-
-void add_inspect_command(CLI::App& app, const Chosen& chosen) {
-  add_command(app, chosen, "inspect", "Show what a recorded file holds and the YAML to use it",
-              declare, print_inspection);
 }
 
 void add_reproduce_command(CLI::App& app, const Chosen& chosen) {

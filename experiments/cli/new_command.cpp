@@ -6,6 +6,7 @@
 #include "experiments/cli/command.hpp"
 #include "experiments/config/help.hpp"
 #include "experiments/config/reader.hpp"
+#include "experiments/loader.hpp"
 #include "experiments/records/inspection.hpp"
 #include "experiments/report/encoding.hpp"
 #include "libinverse/waves/end_relation.hpp"
@@ -29,26 +30,15 @@ constexpr Example kExamples[] = {
     {"benchmark", "benchmark/optimizers.yaml"},
     {"calibrate", "beyond/calibrate_to_the_bound.yaml"},
     {"calibration_limit", "beyond/calibration_limit.yaml"},
+    {"fit_modes", "structures/fit_plate.yaml"},
     {"identify", "calibration/pluck.yaml"},
+    {"identify_force", "structures/force_on_plate.yaml"},
     {"invert", "beyond/friction_law.yaml"},
     {"pluck_then_bow", "paper/section7.yaml"},
     {"schelleng", "schelleng.yaml"},
     {"simulate", "scenes/thermal.yaml"},
     {"sweep", "beyond/joint_violin_d.yaml"},
 };
-
-std::string example_of(const std::string& kind) {
-  std::vector<std::string> kinds;
-  for (const Example& example : kExamples) {
-    kinds.emplace_back(example.kind);
-    if (example.kind != kind) continue;
-    const std::filesystem::path file = std::filesystem::path(shipped_configs()) / example.file;
-    MODCAL_REQUIRE(std::filesystem::exists(file),
-                   "{} is not there: install modcal with its configs", file.string());
-    return content_of_file(file);
-  }
-  throw_invalid_input("unknown kind \"{}\"{}", kind, suggestion(kind, kinds));
-}
 
 constexpr double kViolin = 0.33;  // [m], where nobody states a length
 
@@ -67,7 +57,26 @@ std::string seen_from(const std::string& out, const std::string& record) {
   return std::filesystem::proximate(std::filesystem::absolute(record), folder).string();
 }
 
-std::string channel_line(const char* end, const RecordedForceOptions& force) {
+std::string example_of(const std::string& kind, const std::string& out) {
+  std::vector<std::string> kinds;
+  for (const Example& example : kExamples) {
+    kinds.emplace_back(example.kind);
+    if (example.kind != kind) continue;
+    const std::filesystem::path file = std::filesystem::path(shipped_configs()) / example.file;
+    MODCAL_REQUIRE(std::filesystem::exists(file),
+                   "{} is not there: install modcal with its configs", file.string());
+    std::string text = content_of_file(file);
+    for (const std::string& read : load_experiment(file).experiment->files_read()) {
+      const std::size_t at = text.find(": " + read);
+      if (at == std::string::npos) continue;
+      text.replace(at + 2, read.size(), yaml_string(seen_from(out, file.parent_path() / read)));
+    }
+    return text;
+  }
+  throw_invalid_input("unknown kind \"{}\"{}", kind, suggestion(kind, kinds));
+}
+
+std::string channel_line(const char* end, const RecordedChannelOptions& force) {
   std::string keys = fmt::format("channel: {}", yaml_string(force.channel)), comment;
   if (!std::isnan(force.calibration)) {
     keys += ", calibration: 1";
@@ -78,6 +87,18 @@ std::string channel_line(const char* end, const RecordedForceOptions& force) {
     comment += "  # or the other one's: a force > 0 pushes both below 0";
   }
   return fmt::format("  {}: {{{}}}{}\n", end, keys, comment);
+}
+
+std::string channel_lines(const RecordOptions& record) {
+  std::string text = channel_line("left", record.left) + channel_line("right", record.right);
+  if (record.has_reference) text += channel_line("reference", record.reference);
+  if (record.has_reference_velocity) {
+    text += channel_line("reference_velocity", record.reference_velocity);
+  }
+  if (record.has_reference_displacement) {
+    text += channel_line("reference_displacement", record.reference_displacement);
+  }
+  return text;
 }
 
 ToldString told_by(const RecordOptions& record) {
@@ -131,8 +152,7 @@ std::string file_for_record(const NewArguments& arguments) {
       "  file: {}\n",
       arguments.kind, yaml_string(arguments.record),
       yaml_string(seen_from(arguments.out, arguments.record)));
-  text += channel_line("left", record.left) + channel_line("right", record.right);
-  if (record.has_reference) text += channel_line("reference", record.reference);
+  text += channel_lines(record);
   text += fmt::format(
       "string:\n"
       "  length: {:.6g} m{}\n"
@@ -159,8 +179,8 @@ std::string file_for_record(const NewArguments& arguments) {
 }
 
 ExitCode write_new(const NewArguments& arguments) {
-  const std::string text =
-      arguments.record.empty() ? example_of(arguments.kind) : file_for_record(arguments);
+  const std::string text = arguments.record.empty() ? example_of(arguments.kind, arguments.out)
+                                                    : file_for_record(arguments);
   if (arguments.out.empty()) {
     say_text(text);
     return ExitCode::kOk;

@@ -12,15 +12,18 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kFolder = "the folder of the results";
 
-bool stands(const fs::path& file) {
+// What cannot be looked at is not taken for missing.
+fs::file_type type_of(const fs::path& file, bool follow) {
   std::error_code error;
-  return fs::exists(fs::symlink_status(file, error));
+  const fs::file_status status = follow ? fs::status(file, error) : fs::symlink_status(file, error);
+  MODCAL_REQUIRE(status.type() != fs::file_type::none, "{}: cannot be looked at: {}", file.string(),
+                 error.message());
+  return status.type();
 }
 
-bool is_regular(const fs::path& file) {
-  std::error_code error;
-  return fs::is_regular_file(file, error);
-}
+bool stands(const fs::path& file) { return type_of(file, false) != fs::file_type::not_found; }
+
+bool is_regular(const fs::path& file) { return type_of(file, true) == fs::file_type::regular; }
 
 // A list of names that somebody else wrote must not lead out of the folder.
 bool may_be_removed(const fs::path& folder, const fs::path& name) {

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <fstream>
+#include <sstream>
 #include <system_error>
 #include <thread>
 
@@ -33,6 +34,22 @@ nlohmann::json read_provenance(const std::filesystem::path& out) {
                    file.string(), key);
   }
   return provenance;
+}
+
+// The file that this code was loaded from: the program, or the module of another one.
+std::string own_file() {
+  constexpr const char* kProgram = "/proc/self/exe";
+  const auto own = reinterpret_cast<std::uintptr_t>(&own_file);
+  std::ifstream maps("/proc/self/maps");
+  for (std::string line; std::getline(maps, line);) {
+    std::uintptr_t begin = 0, end = 0;
+    char dash = 0;
+    std::istringstream(line) >> std::hex >> begin >> dash >> end;
+    if (own < begin || own >= end) continue;
+    const std::string file = line.substr(line.find('/'));
+    if (file != std::filesystem::read_symlink(kProgram)) return file;
+  }
+  return kProgram;
 }
 
 std::string processor() {
@@ -132,7 +149,7 @@ std::string program_identity() {
   std::string identity =
       fmt::format("modcal {} {} {} {}", kBuildVersion, kBuildCommit, kBuildCompiler, kBuildType);
   if (!kBuildDirty) return identity;
-  return identity + " " + digest_of_file("/proc/self/exe");
+  return identity + " " + digest_of_file(own_file());
 }
 
 nlohmann::ordered_json provenance_json(const std::string& command) {

@@ -109,6 +109,7 @@ ExitCode merge(const FolderArguments& arguments) {
   const std::filesystem::path file = run.out() / kDatabaseFile;
   MODCAL_REQUIRE(out.foreign_among({kDatabaseFile}).empty(),
                  "{}: no run of modcal wrote this file; move it away", file.string());
+  out.announce({kDatabaseFile});  // first: one that is not announced is somebody else's
   ResultsDatabase database(file, run.list().axes());
   const std::size_t done = add_rows(run, database);
   const std::string digest = database.finish({{"kind", run.loaded().kind},
@@ -116,7 +117,6 @@ ExitCode merge(const FolderArguments& arguments) {
                                               {"command", run.command()},
                                               {"tasks", std::to_string(run.tasks())},
                                               {"done", std::to_string(done)}});
-  out.announce({kDatabaseFile});
   add_to_json("database", file.string());
   add_to_json("tasks", run.tasks());
   add_to_json("done", done);

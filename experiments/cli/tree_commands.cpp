@@ -23,6 +23,7 @@ constexpr Example kExamples[] = {
     {"describe", "modcal describe experiment calibrate", "every key of a file"},
     {"schema", "modcal schema > modcal.schema.json", "for an editor"},
     {"inspect", "modcal inspect record.csv", "channels, rate, levels, noise"},
+    {"convert", "modcal convert record.uff record.csv", "the same channels in another format"},
     {"new", "modcal new calibrate record.csv --length '0.33 m' --out mine.yaml",
      "an experiment on a record"},
     {"new", "modcal new simulate", "an example of a kind"},

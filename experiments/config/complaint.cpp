@@ -41,6 +41,12 @@ InputPlace place_named(std::string_view name) {
   return {.file = std::string(name.substr(0, colon)), .line = line};
 }
 
+Complaint complaint_of(const InvalidInput& error) {
+  const std::string text = error.what();
+  if (error.place().empty()) return {.text = text};
+  return {.place = place_named(error.place()), .text = text.substr(error.place().size() + 2)};
+}
+
 std::string message_of(const Complaint& complaint) {
   if (complaint.place.empty()) return complaint.text;
   return fmt::format("{}: {}", text_of(complaint.place), complaint.text);

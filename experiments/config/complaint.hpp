@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "libsim/base/error.hpp"
+
 namespace modcal {
 
 /// A file, where it is known with line and column (from 1), or an option of the command line.
@@ -28,6 +30,9 @@ struct Complaint {
   std::string text = {};    ///< reason and remedy
   std::string source = {};  ///< lines to be shown below: what stands there, and a caret
 };
+
+/// With the place, which the text begins with, as a value.
+Complaint complaint_of(const InvalidInput& error);
 
 /// "a.yaml:3:7: text", without the grade.
 std::string message_of(const Complaint& complaint);

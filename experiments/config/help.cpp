@@ -20,6 +20,22 @@ struct ItemOf<std::vector<Item>> {
   using Type = Item;
 };
 
+struct SweepPart {
+  std::string_view key, type, meaning;
+};
+constexpr SweepPart kSweepParts[] = {
+    {"product", "map of axes, such as {scene.bow.normal_force: [0.5 N, 1 N], seed: [1, 2, 3]}",
+     "every value of one axis with every value of the others"},
+    {"zip",
+     "list of maps of axes, such as [{scene.bow.velocity: [0.1, 0.2], scene.bow.position: [30 mm, "
+     "40 mm]}]",
+     "axes of one map move together: first values, second values, ..."},
+    {"exclude", "list of cells, such as [{scene.bow.normal_force: 1 N, seed: 3}]",
+     "combinations to leave out, with values as they stand on the axes"},
+    {"include", "list of cells, such as [{scene.bow.position: 45 mm}]",
+     "single cells to add, of any keys above"},
+};
+
 class Describer final : public OptionVisitor {
  public:
   Json entries = Json::array();
@@ -53,7 +69,13 @@ class Describer final : public OptionVisitor {
     slot.resize(0);
     add(info, "list of sections")["options"] = inner.entries;
   }
-  void sweep(const OptionInfo& info, SweepSlot& /*slot*/) override { add(info, "sweep"); }
+  void sweep(const OptionInfo& info, SweepSlot& /*slot*/) override {
+    Json parts = Json::array();
+    for (const auto& [key, type, meaning] : kSweepParts) {
+      parts.push_back({{"key", key}, {"type", type}, {"meaning", meaning}});
+    }
+    add(info, "section")["options"] = std::move(parts);
+  }
 
  private:
   template <typename Value>

@@ -211,8 +211,8 @@ std::string_view kind_name(const YamlNode& node) {
 
 std::string_view moved_key(std::string_view key) {
   if (key != "continuation") return {};
-  return "is now the optimizer \"staged\": write objective: {type: joint_likelihood, left_noise, "
-         "right_noise, highest_frequency}, optimizer: {type: staged, restarts}, and what is free "
+  return "is now the optimizer \"staged\": write objective: {type: joint_likelihood, noise_rms_1, "
+         "noise_rms_2, highest_frequency}, optimizer: {type: staged, restarts}, and what is free "
          "or "
          "known under parameters: {frequencies: all, law: true, contact: true, damping: factor, "
          "law_width, sensors: [gain, ...], per_record, fixed, priors, correlations}";

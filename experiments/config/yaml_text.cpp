@@ -192,7 +192,7 @@ std::string explain(const std::string& message) {
   constexpr const char* kIndentation =
       "the indentation fits neither the entry above nor the one around it: begin the line in the "
       "column of the entries it belongs to";
-  static constexpr std::pair<const char*, const char*> kAdvice[] = {
+  static const std::pair<const char*, const char*> kAdvice[] = {
       {YAML::ErrorMsg::MAP_VALUE,
        "a \":\" cannot stand here: begin the keys of one map in one column, and put a text with "
        "\": \" in it into quotes"},

@@ -157,7 +157,7 @@ class AxisExperiment : public TaskExperiment {
       list.visit(visitor);
       // Last: every cell is read with the keys above known.
       visitor.sweep({.key = "sweep",
-                     .meaning = "axes: option paths and their values",
+                     .meaning = "axes: paths of the keys above, each with a list of its values",
                      .required = Settings::kNeedsAxes},
                     cells);
     }

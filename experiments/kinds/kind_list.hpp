@@ -25,6 +25,10 @@ class StudyExperiment final : public Experiment {
     }
     return nullptr;
   }
+  std::shared_ptr<const SearchTask> search_task(const StudyContext& context) const override {
+    if constexpr (requires { options_.search_task(context); }) return options_.search_task(context);
+    return nullptr;
+  }
   StudyResult run(const StudyContext& context) const override { return options_.run(context); }
 
  private:

@@ -12,10 +12,12 @@ namespace modcal {
 struct InspectionOptions {
   std::string format = "auto";
   double sample_rate = std::numeric_limits<double>::quiet_NaN();  ///< [Hz]; NaN: from the file
+  bool headers_only = false;  ///< measure nothing; large files are never measured
 };
 
 struct ChannelInspection {
   std::string name;
+  std::string kind;  ///< of quantity; empty where the file does not tell
   std::string unit;  ///< of the levels; "full scale" where the file states none for audio samples
   Levels levels;
   Clipping clipping;
@@ -32,6 +34,7 @@ struct InspectionReport {
   std::string rate_source;
   double time_jitter;  ///< [s]; NaN: no time column to check
   std::size_t frames;
+  bool measured;  ///< else headers alone were read, and there are no levels
   std::vector<ChannelInspection> channels;
   std::vector<std::string> problems;  ///< what a run would refuse, with file, line and column
   std::size_t problem_count;
@@ -39,8 +42,8 @@ struct InspectionReport {
   RecordOptions record;  ///< a proposal: the channels by their names or their order
 };
 
-/// Reads the whole file and measures every channel; errors in its rows are listed, not thrown.
-/// Throws InvalidInput where the file cannot be read at all.
+/// Reads the file and measures every channel, of a large one the headers alone; errors in its rows
+/// are listed, not thrown. Throws InvalidInput where the file cannot be read at all.
 InspectionReport inspect(const std::filesystem::path& path, const InspectionOptions& options = {});
 
 /// For a terminal; ends with the stanza.

@@ -257,8 +257,8 @@ Figure identification_figure(const FigureOptions& options, const Observation& ob
                    options.id, name);
     if (observation.truth) {
       truth[name] = zero_mean((observation.truth->simulation.*quantity_of(name).simulated).samples);
-    } else if (name == "f_c" && observation.reference) {
-      truth[name] = zero_mean(observation.reference->samples);
+    } else if (const auto& measured = observation.*quantity_of(name).reference) {
+      truth[name] = zero_mean(measured->samples);
     }
   }
   const TraceLookup traces = [&](const std::string& name, std::size_t column) {

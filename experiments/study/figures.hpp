@@ -7,38 +7,6 @@
 
 namespace modcal {
 
-/// A signal of a bowed string: its name in figures and files, and where it stands.
-struct Quantity {
-  std::string_view name;
-  std::string_view unit;
-  bool OutputRequest::*wanted;
-  Signal Simulation::*simulated;
-  std::vector<double> InversionResult::*identified;  ///< null: measured, not identified
-  double Estimate::*deviation = nullptr;             ///< of every sample
-  std::vector<double> Estimate::*deviations =
-      nullptr;  ///< of each, where they differ; null: none do
-  std::vector<double> Estimate::*unaliased = nullptr;       ///< what sampling has not folded back
-  std::optional<Signal> Observation::*reference = nullptr;  ///< the same, measured
-
-  /// Standard deviation at sample j; NaN: not known.
-  double deviation_at(const Estimate& estimate, std::size_t j) const {
-    const bool differs = deviations != nullptr && !(estimate.*deviations).empty();
-    return differs ? (estimate.*deviations)[j] : estimate.*deviation;
-  }
-};
-inline constexpr Quantity kQuantities[] = {
-    {"y", "m", &OutputRequest::displacement, &Simulation::displacement,
-     &InversionResult::displacement, &Estimate::displacement_deviation},
-    {"v", "m/s", &OutputRequest::velocity, &Simulation::velocity, &InversionResult::velocity,
-     &Estimate::velocity_deviation, &Estimate::velocity_deviations},
-    {"f_c", "N", &OutputRequest::force, &Simulation::force, &InversionResult::force,
-     &Estimate::force_deviation, &Estimate::force_deviations, &Estimate::unaliased_force,
-     &Observation::reference},
-    {"R1", "N", &OutputRequest::left_reaction, &Simulation::left_reaction, nullptr},
-    {"R2", "N", &OutputRequest::right_reaction, &Simulation::right_reaction, nullptr},
-};
-/// The one of this name.
-const Quantity& quantity_of(std::string_view name);
 /// The outputs of these names.
 OutputRequest request_of(const std::vector<std::string>& names);
 

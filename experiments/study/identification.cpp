@@ -205,6 +205,29 @@ ForceScores scores_of(const Observation& observation, const ScoredForce& force,
                      *score);
 }
 
+std::vector<MotionScore> motion_scores(const Observation& observation, const Estimate& estimate,
+                                       const ScoreOptions* score) {
+  std::vector<MotionScore> found;
+  if (score == nullptr) return found;
+  for (const Quantity& quantity : kQuantities) {
+    const bool is_motion =
+        quantity.reference != nullptr && quantity.reference != &Observation::reference;
+    if (!is_motion || !(observation.*quantity.reference)) continue;
+    ScoredForce signal(estimate.result.*quantity.identified);
+    if (signal.samples.empty()) continue;
+    signal.deviation = estimate.*quantity.deviation;
+    if (quantity.deviations != nullptr) signal.deviations = estimate.*quantity.deviations;
+    signal.band_limit = estimate.band_limit;
+    const ForceScores scores = score_force(signal,
+                                           {.truth = *(observation.*quantity.reference),
+                                            .anti_aliased = std::nullopt,
+                                            .fundamental = observation.fundamental},
+                                           *score);
+    for (const WindowScore& window : scores.scores) found.push_back({quantity.name, window});
+  }
+  return found;
+}
+
 InversionCache::Prepared InversionCache::get(const AssumedModel& model,
                                              const Observation& observation,
                                              const InversionOptions& options,
@@ -229,7 +252,8 @@ std::vector<SideIdentification> identify(const Observation& observation, const A
   std::vector<SideIdentification> sides;
   for (Estimate& estimate : estimator->estimate(record_of(observation), recipe.method(outputs))) {
     const ForceScores scores = scores_of(observation, ScoredForce(estimate), score);
-    sides.push_back({scores, std::move(estimate)});
+    auto motion = motion_scores(observation, estimate, score);
+    sides.push_back({scores, std::move(estimate), std::move(motion)});
   }
   return sides;
 }

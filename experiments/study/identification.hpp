@@ -64,8 +64,8 @@ struct ScoredForce {
 };
 
 /// Scores over every window of `periods`/`fundamental` seconds and over the long one. Where no
-/// windows are stated: over the record but for kUnscoredPeriods periods at either end, in which no wave
-/// has gone from the contact to both ends and back (a record that has not three times as many
+/// windows are stated: over the record but for kUnscoredPeriods periods at either end, in which no
+/// wave has gone from the contact to both ends and back (a record that has not three times as many
 /// periods: all of it). Throws InvalidInput where a window leaves the record or the long one is not
 /// two rising instants inside it.
 ForceScores score_force(const ScoredForce& identified, const ScoreReference& reference,
@@ -78,9 +78,51 @@ std::vector<double> low_passed(std::span<const double> samples, double sample_ra
 
 // Identified force and motion at the contact, scored where a reference is known.
 
+/// A signal of a bowed string: its name in figures and files, and where it stands.
+struct Quantity {
+  std::string_view name;
+  std::string_view unit;
+  bool OutputRequest::*wanted;
+  Signal Simulation::*simulated;
+  std::vector<double> InversionResult::*identified;  ///< null: measured, not identified
+  double Estimate::*deviation = nullptr;             ///< of every sample
+  std::vector<double> Estimate::*deviations =
+      nullptr;  ///< of each, where they differ; null: none do
+  std::vector<double> Estimate::*unaliased = nullptr;       ///< what sampling has not folded back
+  std::optional<Signal> Observation::*reference = nullptr;  ///< the same, measured
+
+  /// Standard deviation at sample j; NaN: not known.
+  double deviation_at(const Estimate& estimate, std::size_t j) const {
+    const bool differs = deviations != nullptr && !(estimate.*deviations).empty();
+    return differs ? (estimate.*deviations)[j] : estimate.*deviation;
+  }
+};
+inline constexpr Quantity kQuantities[] = {
+    {"y", "m", &OutputRequest::displacement, &Simulation::displacement,
+     &InversionResult::displacement, &Estimate::displacement_deviation, nullptr, nullptr,
+     &Observation::reference_displacement},
+    {"v", "m/s", &OutputRequest::velocity, &Simulation::velocity, &InversionResult::velocity,
+     &Estimate::velocity_deviation, &Estimate::velocity_deviations, nullptr,
+     &Observation::reference_velocity},
+    {"f_c", "N", &OutputRequest::force, &Simulation::force, &InversionResult::force,
+     &Estimate::force_deviation, &Estimate::force_deviations, &Estimate::unaliased_force,
+     &Observation::reference},
+    {"R1", "N", &OutputRequest::left_reaction, &Simulation::left_reaction, nullptr},
+    {"R2", "N", &OutputRequest::right_reaction, &Simulation::right_reaction, nullptr},
+};
+/// The one of this name.
+const Quantity& quantity_of(std::string_view name);
+
+/// A signal of the motion that was measured beside, in one window.
+struct MotionScore {
+  std::string_view quantity;  ///< y or v
+  WindowScore score;
+};
+
 /// One estimate of a record with its scores; empty without a reference.
 struct SideIdentification : ForceScores {
   Estimate estimate;
+  std::vector<MotionScore> motion = {};
 };
 
 /// Estimators prepared for one model and record length, shared by the cells of a sweep that assume
@@ -101,6 +143,9 @@ class InversionCache {
 /// has no reference.
 ForceScores scores_of(const Observation& observation, const ScoredForce& force,
                       const ScoreOptions* score);
+/// The same of the motion at the contact, where it was measured.
+std::vector<MotionScore> motion_scores(const Observation& observation, const Estimate& estimate,
+                                       const ScoreOptions* score);
 
 /// Inverts the reactions of the observation with the model. `score` null: no scores; `cache` null:
 /// the estimator is prepared for this call alone.

@@ -57,6 +57,8 @@ Observation observe_record(const ObservationOptions& options, const std::filesys
   observation.reactions[0] = std::move(record.left);
   observation.reactions[1] = std::move(record.right);
   observation.reference = std::move(record.reference);
+  observation.reference_velocity = std::move(record.reference_velocity);
+  observation.reference_displacement = std::move(record.reference_displacement);
   observation.warnings = std::move(record.warnings);
   for (auto& reaction : observation.reactions) {
     if (reaction && options.measurement.remove_mean) remove_mean(reaction->samples);

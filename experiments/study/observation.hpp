@@ -95,6 +95,7 @@ struct Observation {
   double noise_level = 0.0;            ///< as stated for a simulated measurement
   std::shared_ptr<const Truth> truth;  ///< null for a record
   std::optional<Signal> reference;  ///< true or recorded contact force, means removed with the rest
+  std::optional<Signal> reference_velocity, reference_displacement;  ///< at the contact, recorded
   /// The true force low-passed before it was sampled, where a score asks for it.
   std::optional<Signal> anti_aliased;
   double anti_alias_cut = 0.0;  ///< [Hz]

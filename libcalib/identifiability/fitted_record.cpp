@@ -112,7 +112,7 @@ MisfitCause FittedRecord::bridge(double frequency, double zeta) const {
   const Complex rate(-zeta * omega, omega * std::sqrt(1.0 - zeta * zeta));
   const Complex pole = std::exp(rate / record_.sample_rate);
   MisfitCause cause{.name = std::string(kBridge),
-                    .detail = fmt::format("at {:.0f} Hz", frequency),
+                    .detail = bridge_detail(frequency, 0.0),
                     .place = frequency,
                     .modes = Eigen::MatrixXcd(own_, 1)};
   for (std::size_t n = 0; n < own_; ++n) {
@@ -123,7 +123,6 @@ MisfitCause FittedRecord::bridge(double frequency, double zeta) const {
     cause.coupling = std::max(cause.coupling, coupling);
   }
   // No more than a mode that leaves the law may be off; what the body had before is not known.
-  constexpr double kUnknown = std::numeric_limits<double>::infinity();
   cause.widths = Eigen::Vector3d(kDeparted / cause.modes.cwiseAbs().maxCoeff(), kUnknown, kUnknown);
   cause.columns.assign(3, {numbers(), numbers()});
   for (std::size_t k = 0; k < record_.bins; ++k) {

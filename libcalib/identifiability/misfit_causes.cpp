@@ -9,15 +9,15 @@
 namespace modcal {
 namespace {
 
-// The first column of one cause, with what it makes of the modes, before those of another.
+// The first column of one cause, with what it makes of the modes, after those of another.
 void join(MisfitCause one, MisfitCause& all) {
-  all.columns.insert(all.columns.begin(), std::move(one.columns.front()));
-  Eigen::MatrixXcd modes(all.modes.rows(), all.modes.cols() + 1);
-  modes << one.modes.col(0), all.modes;
-  all.modes = std::move(modes);
-  Eigen::VectorXd widths(all.widths.size() + 1);
-  widths << one.widths[0], all.widths;
-  all.widths = std::move(widths);
+  const Eigen::Index count = std::ssize(all.columns), before = all.modes.cols();
+  all.columns.push_back(std::move(one.columns.front()));
+  all.modes.conservativeResize(Eigen::NoChange, count + 1);
+  all.modes.rightCols(count + 1 - before).setZero();
+  all.modes.col(count) = one.modes.col(0);
+  all.widths.conservativeResize(count + 1);
+  all.widths[count] = one.widths[0];
 }
 
 }  // namespace
@@ -39,15 +39,18 @@ std::vector<MisfitCause> misfit_causes(const ProjectedLikelihood& likelihood,
   return causes;
 }
 
+std::array<double, 2> places_beside(double place) {
+  const double quarter = std::pow(kBodyStep, 0.25);
+  return {place / quarter, place * quarter};
+}
+
 std::vector<MisfitCause> bridges_at(const ProjectedLikelihood& likelihood, const ModelPoint& point,
-                                    std::span<const double> places, bool beside) {
+                                    std::span<const double> places) {
   const FittedRecord fitted(likelihood, point);
   std::vector<MisfitCause> causes;
   for (const double place : places) {
     MisfitCause cause = fitted.bridge(place, kBodyDamping);
-    for (const double side : {-0.125, 0.125}) {
-      if (beside) join(fitted.bridge(place * std::pow(kBodyStep, side), kBodyDamping), cause);
-    }
+    for (const double near : places_beside(place)) join(fitted.bridge(near, kBodyDamping), cause);
     causes.push_back(std::move(cause));
   }
   return causes;
@@ -57,9 +60,9 @@ std::vector<MisfitCause> resonances_about(const ProjectedLikelihood& likelihood,
                                           const ModelPoint& point, double place) {
   const FittedRecord fitted(likelihood, point);
   std::vector<MisfitCause> causes;
-  for (int eighth = -7; eighth <= 7; ++eighth) {
-    const double near = place * std::pow(kBodyStep, 0.125 * eighth);
-    if (eighth != 0) causes.push_back(fitted.bridge(near, kBodyDamping));
+  for (int quarter = -3; quarter <= 3; ++quarter) {
+    const double near = place * std::pow(kBodyStep, 0.25 * quarter);
+    if (quarter != 0) causes.push_back(fitted.bridge(near, kBodyDamping));
     for (const bool right : {false, true}) {
       causes.push_back(fitted.resonance(right, near, kBodyDamping));
     }

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -18,6 +20,9 @@ inline constexpr std::string_view kNonlinear = "nonlinear sensor";
 inline constexpr std::string_view kModesAbove = "modes above";
 inline constexpr std::string_view kBridge = "bridge that moves";
 inline constexpr std::string_view kResonance = "resonance of a sensor";
+
+/// Width of an amplitude of which nothing is known before.
+inline constexpr double kUnknown = std::numeric_limits<double>::infinity();
 
 /// A cause of misfit: amplitudes of what it adds to both records, to first order.
 struct MisfitCause {
@@ -60,7 +65,10 @@ struct ScoreTest {
   /// at any place tried, by what speaks for it; empty: a cause that is taken for absent until it is
   /// suspected.
   Eigen::MatrixXd untold;
+  double log_evidence = 0.0;  ///< ln of the cause's likelihood by its widths over that without it
   std::vector<SignalColumn> columns;  ///< where it is named and frees()
+  /// Of a bridge that moves: a resonance of a sensor, from which S does not tell it.
+  std::vector<ScoreTest> rivals;
 
   /// Noise does so in one of 8000 tests, of the five causes in one of 1600 records.
   bool named() const { return log_p < -9.0; }
@@ -80,6 +88,8 @@ struct ScoreTest {
   /// What to do about it, in words.
   std::string_view remedy() const;
 };
+/// A mode of the body in words: its place [Hz] and, where 1/m > 0, its mass.
+std::string bridge_detail(double place, double inverse_mass);
 /// The named test of the least chance; null: none is.
 const ScoreTest* first_cause(const std::vector<ScoreTest>& tests);
 
@@ -96,11 +106,13 @@ const ScoreTest* first_cause(const std::vector<ScoreTest>& tests);
 /// All take the motion or the force of the fit. Weights of `likelihood` play no part; σ = 0.
 std::vector<MisfitCause> misfit_causes(const ProjectedLikelihood& likelihood,
                                        const ModelPoint& point);
+/// Places of modes beside one of the body, a quarter of a step of misfit_causes() lower and higher.
+std::array<double, 2> places_beside(double place);
 /// "bridge that moves" at these places [Hz]; of a record that it was taken out of by what is
-/// recorded at x = L. beside: with two modes more, an eighth of a step of misfit_causes() lower and
-/// higher, by which the place and the damping are free to first order.
+/// recorded at x = L. With two modes beside each, whose 1/m stand last: by these the place and the
+/// damping are free to first order.
 std::vector<MisfitCause> bridges_at(const ProjectedLikelihood& likelihood, const ModelPoint& point,
-                                    std::span<const double> places, bool beside);
+                                    std::span<const double> places);
 /// "bridge that moves" between the places of misfit_causes() on either side of `place` [Hz], and
 /// what may look like it: "resonance of a sensor", shares of what the fit leaves of either record
 /// without noise, times 2ζ_b ω_b s and ω_b² over s² + 2ζ_b ω_b s + ω_b².

@@ -1,5 +1,6 @@
 #include "libcalib/identifiability/moving_bridge.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -14,17 +15,40 @@ namespace {
 
 using Complex = std::complex<double>;
 
+// Amplitudes of a mode of the body itself: 1/m and two of what it has from before.
+constexpr Eigen::Index kOwn = 3;
+
 // u/(−R₂), the receptance of the body at x = L.
 Complex receptance(std::span<const ScoreTest> body, Complex s) {
   Complex sum;
   for (const ScoreTest& mode : body) {
-    const double omega = 2.0 * std::numbers::pi * mode.place;
-    sum += mode.amplitude / (s * s + 2.0 * kBodyDamping * omega * s + omega * omega);
+    const auto add = [&](double amplitude, double place) {
+      const double omega = 2.0 * std::numbers::pi * place;
+      sum += amplitude / (s * s + 2.0 * kBodyDamping * omega * s + omega * omega);
+    };
+    add(mode.amplitudes[0], mode.place);
+    if (mode.amplitudes.size() <= kOwn) continue;
+    const auto [below, above] = places_beside(mode.place);
+    add(mode.amplitudes[kOwn], below);
+    add(mode.amplitudes[kOwn + 1], above);
   }
   return sum;
 }
 
 }  // namespace
+
+void add_to_body(const ScoreTest& further, std::vector<ScoreTest>& body) {
+  const auto same = std::ranges::find(body, further.place, &ScoreTest::place);
+  if (same == body.end()) {
+    body.push_back(further);
+    return;
+  }
+  const Eigen::Index count = std::max(same->amplitudes.size(), further.amplitudes.size());
+  same->amplitudes.conservativeResizeLike(Eigen::VectorXd::Zero(count));
+  same->amplitudes.head(further.amplitudes.size()) += further.amplitudes;
+  same->amplitude = same->amplitudes[0] + same->amplitudes.tail(count - kOwn).sum();
+  same->detail = bridge_detail(same->place, same->amplitude);
+}
 
 void take_out(std::span<const ScoreTest> body, const ModelPoint& model, double highest,
               NoisyRecords& records) {
@@ -32,15 +56,15 @@ void take_out(std::span<const ScoreTest> body, const ModelPoint& model, double h
   records.body.clear();
   for (const ScoreTest& mode : body) records.body.push_back(mode.place);
   const ProjectedLikelihood whole(WhitenedRecord::of(records, 0.0, highest));
-  const std::vector<MisfitCause> causes = bridges_at(whole, model, records.body, false);
+  const std::vector<MisfitCause> causes = bridges_at(whole, model, records.body);
   const RealFft fft(records.samples());
   std::vector<double> samples(fft.length());
   for (std::size_t r = 0; r < 2; ++r) {
     std::vector<Complex> spectrum(fft.bins());
     for (std::size_t i = 0; i < body.size(); ++i) {
-      for (std::size_t j = 0; j < causes[i].columns.size(); ++j) {
-        const SignalColumn& column = causes[i].columns[j];
-        const double amplitude = body[i].amplitudes[static_cast<Eigen::Index>(j)];
+      for (Eigen::Index j = 0; j < body[i].amplitudes.size(); ++j) {
+        const SignalColumn& column = causes[i].columns[static_cast<std::size_t>(j)];
+        const double amplitude = body[i].amplitudes[j];
         for (std::size_t k = 0; k < whole.record().bins; ++k) {
           spectrum[k + 1] += amplitude * (r == 0 ? column.left : column.right).at(k);
         }

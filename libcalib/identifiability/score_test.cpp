@@ -1,4 +1,6 @@
 // What follows from the score test of a cause.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -42,6 +44,11 @@ std::string_view ScoreTest::remedy() const {
     if (cause == name) return text;
   }
   return "";
+}
+
+std::string bridge_detail(double place, double inverse_mass) {
+  if (!(inverse_mass > 0.0)) return fmt::format("at {:.0f} Hz", place);
+  return fmt::format("at {:.0f} Hz, of {:.3g} kg", place, 1.0 / inverse_mass);
 }
 
 const ScoreTest* first_cause(const std::vector<ScoreTest>& tests) {

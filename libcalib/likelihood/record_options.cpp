@@ -12,9 +12,9 @@ void visit_record_options(OptionVisitor& visitor, double& highest_frequency, dou
 }
 
 void visit_noise_levels(OptionVisitor& visitor, double& left_noise, double& right_noise) {
-  visitor("left_noise", "noise standard deviation of the reaction at x = 0",
+  visitor("noise_rms_1", "noise standard deviation of the reaction at x = 0",
           {.unit = "N", .range = Range::positive(), .word = "estimated"}, left_noise);
-  visitor("right_noise", "noise standard deviation of the reaction at x = L",
+  visitor("noise_rms_2", "noise standard deviation of the reaction at x = L",
           {.unit = "N", .range = Range::positive(), .word = "estimated"}, right_noise);
 }
 

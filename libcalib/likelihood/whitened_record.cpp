@@ -219,7 +219,8 @@ WhitenedRecord WhitenedRecord::slice(std::size_t begin, std::size_t count) const
     part.mixed_noise = cut(mixed_noise, 0.0);
   }
   for (const SignalColumn& signal : signals) {
-    SignalColumn& own = part.signals.emplace_back(PlanarVector(padded), PlanarVector(padded));
+    SignalColumn& own =
+        part.signals.emplace_back(SignalColumn{PlanarVector(padded), PlanarVector(padded)});
     for (std::size_t k = 0; k < part.bins; ++k) {
       own.left.set(k, signal.left.at(begin + k));
       own.right.set(k, signal.right.at(begin + k));

@@ -55,7 +55,7 @@ std::vector<Estimate> estimate_with(const JointInversion& inversion, const Estim
   if (!noise.measured) {
     estimate.warnings.emplace_back(
         "the sample rate leaves no band above the modes to measure the noise in: 1 % of each "
-        "reaction is supposed: state noise_rms1 and noise_rms2 of the estimator, or record at a "
+        "reaction is supposed: state noise_rms_1 and noise_rms_2 of the estimator, or record at a "
         "higher rate");
   }
   std::string warning = warning_of(estimate.result.choice);

@@ -103,7 +103,7 @@ double CrossMisfit(const std::array<double, 2>& noise_variance, double scale,
   ForBins(misfit.size(), [&](auto d, std::size_t k) HWY_ATTR {
     const auto a = Bins(d, h0, k), b = Bins(d, h1, k), x = Bins(d, x0, k), y = Bins(d, x1, k);
     const auto left = Times(x, b), right = Times(y, a);
-    const auto apart = ComplexOf{hn::Sub(left.re, right.re), hn::Sub(left.im, right.im)};
+    const decltype(left) apart{hn::Sub(left.re, right.re), hn::Sub(left.im, right.im)};
     const auto noise =
         hn::MulAdd(hn::Set(d, first), Power(b), hn::Mul(hn::Set(d, second), Power(a)));
     const auto seen = hn::Gt(noise, hn::Zero(d));

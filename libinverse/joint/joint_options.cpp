@@ -49,7 +49,7 @@ void JointOptions::visit(OptionVisitor& visitor) {
           "arrives, for records that start at rest",
           {.choices = choices_of(kOffsetRules)}, offset);
   for (std::size_t r = 0; r < 2; ++r) {
-    visitor(r == 0 ? "noise_rms1" : "noise_rms2",
+    visitor(r == 0 ? "noise_rms_1" : "noise_rms_2",
             r == 0 ? "noise of one sample of the reaction at x = 0"
                    : "noise of one sample of the reaction at x = L",
             {.unit = "N", .range = Range::non_negative(), .word = "measured"}, noise_rms[r]);

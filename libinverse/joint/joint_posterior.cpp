@@ -24,7 +24,7 @@ void JointInversion::fill_cells(const Weights& weights, JointWorkspace& workspac
   workspace.power.resize(bins);
   for (auto& term : workspace.terms) term.resize(bins);
   joint_kernels().scaled_power(workspace.spectrum[0], 1.0 / weight_power_, workspace.power);
-  auto& [g, reduced, solution] = workspace.terms;
+  auto &g = workspace.terms[0], &reduced = workspace.terms[1], &solution = workspace.terms[2];
   joint_kernels().evidence_terms(workspace.gain, workspace.variance, workspace.power,
                                  weights.mean_variance, g, reduced, solution);
   EvidenceCurve::Cells& cells = workspace.cells;

@@ -109,7 +109,7 @@ void ModelBasedOptions::visit(OptionVisitor& visitor) {
           "auto: by its sampling deviation",
           {.range = Range::positive(), .word = "auto"}, misfit_limit);
   for (std::size_t r = 0; r < 2; ++r) {
-    visitor(r == 0 ? "noise_rms1" : "noise_rms2",
+    visitor(r == 0 ? "noise_rms_1" : "noise_rms_2",
             r == 0 ? "noise of one sample of the reaction at x = 0"
                    : "noise of one sample of the reaction at x = L",
             {.unit = "N", .range = Range::positive(), .word = "measured"}, noise_rms[r]);

@@ -4,11 +4,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <random>
-#include <sstream>
 #include <system_error>
 #include <utility>
 
@@ -108,9 +108,13 @@ std::string content_of_file(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   MODCAL_REQUIRE(stream.is_open(), "{}: cannot be opened: {}; check the path and its permissions",
                  file.string(), std::strerror(errno));
-  std::ostringstream content;
-  content << stream.rdbuf();
-  return std::move(content).str();
+  std::string content;
+  for (std::array<char, 1 << 14> block{}; stream;) {
+    stream.read(block.data(), block.size());
+    content.append(block.data(), static_cast<std::size_t>(stream.gcount()));
+  }
+  MODCAL_REQUIRE(!stream.bad(), "{}: cannot be read: {}", file.string(), std::strerror(errno));
+  return content;
 }
 
 OpenFile::OpenFile(fs::path path, int flags, std::string_view what) : path_(std::move(path)) {

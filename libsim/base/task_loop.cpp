@@ -1,10 +1,14 @@
 #include "libsim/base/task_loop.hpp"
 
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <exception>
 #include <mutex>
+#include <thread>
+#include <vector>
 
 namespace modcal {
 namespace {
@@ -33,6 +37,30 @@ class FirstFailure {
   std::exception_ptr error_;
 };
 
+#ifdef __SANITIZE_THREAD__
+// The sanitizer does not see how a oneTBB that is not built for it hands work over.
+template <typename Task>
+void spread(std::size_t count, const Task& task) {
+  const std::size_t allowed =
+      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    for (std::size_t i = next++; i < count; i = next++) task(i);
+  };
+  std::vector<std::thread> others;
+  for (std::size_t i = 1; i < std::min(count, allowed); ++i) others.emplace_back(work);
+  work();
+  for (std::thread& other : others) other.join();
+}
+#else
+// Isolated: a thread that waits for a loop inside a task would otherwise begin another task of the
+// outer loop, and come back when that one, and all it began, has ended.
+template <typename Task>
+void spread(std::size_t count, const Task& task) {
+  tbb::this_task_arena::isolate([&] { tbb::parallel_for(std::size_t{0}, count, task); });
+}
+#endif
+
 }  // namespace
 
 void for_each_task(std::size_t count, const std::function<void(std::size_t)>& task,
@@ -46,9 +74,7 @@ void for_each_task(std::size_t count, const std::function<void(std::size_t)>& ta
       failure.keep(index, std::current_exception());
     }
   };
-  // Isolated: a thread that waits for a loop inside a task would otherwise begin another task of
-  // the outer loop, and come back when that one, and all it began, has ended.
-  tbb::this_task_arena::isolate([&] { tbb::parallel_for(std::size_t{0}, count, guarded); });
+  spread(count, guarded);
   stop.throw_if_requested();
   failure.rethrow();
 }

@@ -71,6 +71,17 @@ bool same_dimension(const Unit& from, const Unit& to) {
   return ratio && ut_is_dimensionless(ratio.get()) != 0 && !has_angle(ratio.get());
 }
 
+// Of two units of one name that of the dimension asked for: sensors of acceleration count in g.
+Unit parse_towards(std::string_view text, const Unit& to) {
+  static constexpr std::array<std::pair<std::string_view, const char*>, 1> kSecond = {
+      {{"g", "gravity"}}};
+  Unit unit = parse(text);
+  for (const auto& [name, second] : kSecond) {
+    if (name == text && to && unit && !same_dimension(unit, to)) return parse(second);
+  }
+  return unit;
+}
+
 std::optional<int> decimal_exponent(double factor) {
   if (!(factor > 0.0)) return std::nullopt;
   const double exponent = std::round(std::log10(factor));
@@ -91,8 +102,8 @@ bool is_unit(std::string_view unit) {
 
 std::optional<UnitScale> unit_scale(std::string_view unit, std::string_view si_unit) {
   const std::lock_guard lock(library_mutex());
-  const Unit from = parse(unit);
   const Unit to = parse(si_unit);
+  const Unit from = parse_towards(unit, to);
   if (!from || !to || !same_dimension(from, to)) return std::nullopt;
   const Converter convert(ut_get_converter(from.get(), to.get()));
   if (!convert) return std::nullopt;

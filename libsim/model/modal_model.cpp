@@ -1,12 +1,11 @@
 #include "libsim/model/modal_model.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "libsim/base/error.hpp"
+#include "libsim/base/task_loop.hpp"
 #include "libsim/model/modal_kernel.hpp"
 
 namespace modcal {
@@ -136,7 +135,7 @@ void ModalModel::evaluate_in_parallel(const FrequencyGrid& grid, const BinRange&
   constexpr std::size_t kBlock = 1024;
   const ModalSums sums(*this);
   out.resize(sums.rows(), bins.size());
-  tbb::parallel_for(std::size_t{0}, (bins.size() + kBlock - 1) / kBlock, [&](std::size_t block) {
+  for_each_task((bins.size() + kBlock - 1) / kBlock, [&](std::size_t block) {
     const std::size_t begin = block * kBlock, first = bins.first + begin;
     sums.evaluate(grid, {first, std::min(bins.last, first + kBlock)}, begin, out);
   });

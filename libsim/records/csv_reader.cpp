@@ -21,7 +21,7 @@ std::string lower_case(std::string text) {
   return text;
 }
 
-// The time, and it alone, may have its unit behind a mark: "time/ms", "t_s".
+// The time may have its unit behind any mark, "time/ms", "t_s", a force behind a stroke: "F_l/mN".
 ColumnHeading heading_of(std::string_view text) {
   ColumnHeading heading = parse_heading(text);
   constexpr const char* kMarks = "/_. ";
@@ -31,7 +31,11 @@ ColumnHeading heading_of(std::string_view text) {
   const std::string name = lower_case(heading.name.substr(0, mark));
   const std::string unit = heading.name.substr(start);
   const bool is_time = (name == "t" || name == "time") && is_unit_of(unit, "s");
-  return is_time ? ColumnHeading{heading.name.substr(0, mark), unit} : heading;
+  if (is_time) return {heading.name.substr(0, mark), unit};
+  const std::size_t stroke = heading.name.rfind('/');
+  if (stroke == std::string::npos || stroke == 0) return heading;
+  const std::string force = heading.name.substr(stroke + 1);
+  return is_unit_of(force, "N") ? ColumnHeading{heading.name.substr(0, stroke), force} : heading;
 }
 
 bool is_time(const ColumnHeading& heading) {

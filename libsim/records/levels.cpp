@@ -132,11 +132,12 @@ bool is_signal(Samples samples, const Run& run) {
 Fault find_held(Samples samples, double sample_count) {
   std::size_t equal = 0;
   for (std::size_t i = 1; i < samples.size(); ++i) equal += samples[i] == samples[i - 1];
-  const auto [low, high] = std::minmax_element(samples.begin(), samples.end());
+  const auto extremes = std::minmax_element(samples.begin(), samples.end());
   Fault fault;
   for_each_run(samples, [&](const Run& run) {
     const double level = samples[run.first];
-    if (fault || run.count < Clipping::kShortestRun || level == *low || level == *high) return;
+    const bool extreme = level == *extremes.first || level == *extremes.second;
+    if (fault || run.count < Clipping::kShortestRun || extreme) return;
     const double others = sample_count - static_cast<double>(run.count);
     const double share = (static_cast<double>(equal - (run.count - 1)) + 1.0) / (others + 1.0);
     const double chance =

@@ -16,6 +16,8 @@ struct ReadOptions {
   /// Keep going over errors in the samples: they are listed in Recording::problems, and what is no
   /// number is NaN. Otherwise they throw.
   bool survey = false;
+  /// Read no samples: Recording::stated_frames counts them. Formats without a header read all.
+  bool headers_only = false;
 };
 
 /// Reads a CSV record: an optional preamble of comments (# …), one row of headings `name [unit]`,
@@ -47,8 +49,22 @@ void write_csv(const std::filesystem::path& path, std::span<const Signal> signal
 /// file, channel, sample and remedy.
 Recording read_wav(const std::filesystem::path& path, const ReadOptions& options = {});
 
-/// One of these, as `format` says: "csv", "wav" or, for "auto", told by the extension (.csv, .tsv,
-/// .txt; .wav, .wave, .rf64, .bwf, .w64). Throws InvalidInput for another one.
+/// A recording in memory that is read by its name, in the place of a file in any folder, for as
+/// long as this lives.
+class GivenRecording {
+ public:
+  /// Throws InvalidInput for a name that another one has and for samples that no file may have.
+  GivenRecording(std::string name, Recording recording);
+  ~GivenRecording();
+  GivenRecording(const GivenRecording&) = delete;
+  GivenRecording& operator=(const GivenRecording&) = delete;
+
+ private:
+  std::string name_;
+};
+
+/// A given recording, or a record of the named format (libsim/records/formats.hpp) or, for "auto",
+/// of the one that its extension tells. Throws InvalidInput for another one.
 Recording read_record(const std::filesystem::path& path, const std::string& format,
                       const ReadOptions& options = {});
 

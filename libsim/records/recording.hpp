@@ -17,6 +17,8 @@ struct RecordedChannel {
   /// `unit` per recorded 1.0. 1 for CSV; for audio files only where the file states it, else NaN.
   double full_scale = 1.0;
   std::vector<double> samples;
+  /// What the file says it measures ("force", "acceleration"); empty where it does not.
+  std::string kind = {};
 };
 
 /// Line of every sample of a text file; comments and blank lines between rows are the exception.
@@ -45,12 +47,17 @@ struct Recording {
   /// Those of the warnings that tell of another sample rate than the one stated by more than 0.05
   /// %, or of gaps in time: one of both is wrong.
   std::vector<std::string> contradictions;
-  SampleLines lines;  ///< empty for audio files
+  SampleLines lines;              ///< empty but for CSV files
+  std::size_t stated_frames = 0;  ///< as the header says, where only headers were read
 
   static constexpr std::size_t kMaxProblems = 10;
 
-  std::size_t frames() const { return channels.empty() ? 0 : channels.front().samples.size(); }
+  std::size_t frames() const {
+    return channels.empty() ? 0 : std::max(stated_frames, channels.front().samples.size());
+  }
   void add_problem(std::string text);
+  /// Every sample that is not finite is a problem.
+  void check_finite(std::string_view file);
   /// A warning that is a contradiction.
   void contradict(std::string text);
   /// Takes the rate stated by the user in the place of that of the file (NaN: it tells none). More
@@ -80,17 +87,19 @@ std::vector<std::size_t> find_channels(const std::vector<std::string>& names,
 
 // The `record:` section of an experiment: which channels of which file are what.
 
-/// One force channel of a recorded file.
-struct RecordedForceOptions {
+/// One channel of a recorded file.
+struct RecordedChannelOptions {
   std::string channel;
-  double calibration = std::numeric_limits<double>::quiet_NaN();  ///< [N] per recorded 1; NaN: file
-  bool turned = false;  ///< the sensor reads the force with the other sign
-  double delay = 0.0;   ///< [s]
+  double calibration =
+      std::numeric_limits<double>::quiet_NaN();  ///< [unit] per recorded 1; NaN: file
+  bool turned = false;                           ///< the sensor reads with the other sign
+  double delay = 0.0;                            ///< [s]
+  std::string_view unit = "N";
   void visit(OptionVisitor& visitor);
 };
 
-/// A recorded experiment: the reactions at one or both ends and, where it was measured, the force
-/// at the contact.
+/// A recorded experiment: the reactions at one or both ends and, where they were measured, force
+/// and motion at the contact.
 struct RecordOptions {
   std::string file;
   std::string format = "auto";
@@ -98,11 +107,15 @@ struct RecordOptions {
   bool has_left = false;
   bool has_right = false;
   bool has_reference = false;
-  RecordedForceOptions left;                               ///< R1, at x = 0
-  RecordedForceOptions right;                              ///< R2, at x = L
-  RecordedForceOptions reference;                          ///< f_c, used for scoring only
-  double start = 0.0;                                      ///< [s] after the first sample
-  double stop = std::numeric_limits<double>::quiet_NaN();  ///< [s]; NaN: the end
+  bool has_reference_velocity = false;
+  bool has_reference_displacement = false;
+  RecordedChannelOptions left;                                 ///< R1, at x = 0
+  RecordedChannelOptions right;                                ///< R2, at x = L
+  RecordedChannelOptions reference;                            ///< f_c, used for scoring only
+  RecordedChannelOptions reference_velocity{.unit = "m/s"};    ///< v, for the same
+  RecordedChannelOptions reference_displacement{.unit = "m"};  ///< y
+  double start = 0.0;                                          ///< [s] after the first sample
+  double stop = std::numeric_limits<double>::quiet_NaN();      ///< [s]; NaN: the end
   void visit(OptionVisitor& visitor);
 };
 
@@ -112,14 +125,16 @@ struct ContactOptions {
   void visit(OptionVisitor& visitor);
 };
 
-// Recorded forces, ready for inversion and calibration.
+// Recorded signals, ready for inversion and calibration.
 
-/// Forces [N] of one sample rate [Hz] and one length; at least one reaction.
+/// In SI units, of one sample rate [Hz] and one length; at least one reaction.
 struct RecordedSignals {
   double sample_rate = 0.0;
-  std::optional<Signal> left;       ///< R1 at x = 0
-  std::optional<Signal> right;      ///< R2 at x = L
-  std::optional<Signal> reference;  ///< f_c at the contact
+  std::optional<Signal> left;                    ///< R1 at x = 0
+  std::optional<Signal> right;                   ///< R2 at x = L
+  std::optional<Signal> reference;               ///< f_c at the contact
+  std::optional<Signal> reference_velocity;      ///< v
+  std::optional<Signal> reference_displacement;  ///< y
   std::vector<std::string> warnings;
 
   std::size_t size() const { return left ? left->size() : right->size(); }
@@ -136,10 +151,10 @@ class WrongRecordKey : public InvalidInput {
   std::string key_;
 };
 
-/// Reads the chosen channels of the file (relative to `folder`), converts them to newtons, shifts
+/// Reads the chosen channels of the file (relative to `folder`), converts them to SI units, shifts
 /// them by their delays and crops them. Throws WrongRecordKey for a channel that is not there or
-/// used twice or has neither a unit of force nor a calibration, a window outside the record and a
-/// stated sample rate that the file contradicts, and InvalidInput for a file that cannot be used
+/// used twice or has neither a unit of its kind nor a calibration, a window outside the record and
+/// a stated sample rate that the file contradicts, and InvalidInput for a file that cannot be used
 /// and reactions whose samples tell against them (find_fault()).
 RecordedSignals load_record(const RecordOptions& options, const std::filesystem::path& folder);
 

@@ -142,21 +142,11 @@ void read_samples(SndfileHandle& file, const std::vector<std::size_t>& chosen, R
       for (std::size_t i = 0; i < frames; ++i) samples.push_back(block[i * width + chosen[c]]);
     }
   }
-  MODCAL_REQUIRE(recording.frames() == static_cast<std::size_t>(file.frames()),
+  const std::size_t frames_read = recording.channels.front().samples.size();
+  MODCAL_REQUIRE(frames_read == static_cast<std::size_t>(file.frames()),
                  "{}: the header announces {} samples, the file has {}; it was cut off: copy it "
                  "again",
-                 name, file.frames(), recording.frames());
-}
-
-void check_samples(Recording& recording, const std::string& name) {
-  for (const RecordedChannel& channel : recording.channels) {
-    for (std::size_t i = 0; i < channel.samples.size(); ++i) {
-      if (std::isfinite(channel.samples[i])) continue;
-      recording.add_problem(
-          fmt::format("{}: sample {} of channel {} is {}; repair the record or crop it away", name,
-                      i, channel.name, channel.samples[i]));
-    }
-  }
+                 name, file.frames(), frames_read);
 }
 
 }  // namespace
@@ -213,8 +203,10 @@ Recording read_wav(const std::filesystem::path& path, const ReadOptions& options
     recording.compare_rate(options.sample_rate, 0.0, name);
   }
   for (const std::size_t index : chosen) recording.channels.push_back(std::move(channels[index]));
+  recording.stated_frames = static_cast<std::size_t>(file.frames());
+  if (options.headers_only) return recording;
   read_samples(file, chosen, recording, name);
-  check_samples(recording, name);
+  recording.check_finite(name);
   if (!options.survey) recording.refuse_problems();
   return recording;
 }

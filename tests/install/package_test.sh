@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The Debian package of what is built: it is made, unpacked and used from where it was unpacked, and holds no
-# path of the machine that built it. package_test.sh ROOT BUILD CPACK
+# path of the machine that built it; that of Python, where it is built, likewise. package_test.sh ROOT BUILD CPACK
 set -euo pipefail
 root=$(cd "${1:?usage: package_test.sh ROOT BUILD CPACK}" && pwd)
 build=$(cd "$2" && pwd) cpack=$3
@@ -10,13 +10,14 @@ fail() { echo "$*"; exit 1; }
 quietly() { "$@" >"$work/log" 2>&1 || fail "$(cat "$work/log")"; }
 
 quietly "$cpack" -G DEB --config "$build/CPackConfig.cmake" -B "$work/made"
-package=$(ls "$work"/made/*.deb)
+package=$(ls "$work"/made/modcal_*.deb) python=$(find "$work/made" -maxdepth 1 -name "python3-modcal_*.deb")
 field() { dpkg-deb --field "$package" "$1"; }
 [ "$(field Package)" = modcal ] || fail "the package is called $(field Package)"
 for library in libc6 libfftw3-double3 libyaml-cpp; do
   field Depends | grep -q "$library" || fail "the package does not depend on $library: $(field Depends)"
 done
 quietly dpkg-deb -x "$package" "$work/there"
+[ -z "$python" ] || quietly dpkg-deb -x "$python" "$work/there"
 there=$work/there/usr
 for file in bin/modcal lib/libmodcal_calib.a include/modcal/libcalib/calibration.hpp \
   lib/cmake/modcal/modcalConfig.cmake lib/pkgconfig/modcal-calib.pc share/modcal/configs/paper/table1.yaml \
@@ -30,7 +31,8 @@ done
 if command -v lintian >/dev/null; then
   # Who maintains it and where programs for other machines are built is for who packages it.
   others=bogus-mail-host,bogus-mail-host-in-debian-changelog,pkg-config-unavailable-for-cross-compilation
-  quietly lintian --allow-root --fail-on error,warning --suppress-tags "$others" "$package"
+  # shellcheck disable=SC2086 # no package of Python is no word
+  quietly lintian --allow-root --fail-on error,warning --suppress-tags "$others" "$package" $python
 fi
 
 names_the_machine() { strings -a "$1" | grep -F -e "$root" -e "$build"; }
@@ -45,3 +47,7 @@ cd "$work" # away from the tree
 quietly "$there/bin/modcal" reproduce fig02
 quietly "$there/bin/modcal" new calibrate --out mine.yaml
 quietly "$there/bin/modcal" validate mine.yaml
+if [ -n "$python" ]; then
+  export PYTHONPATH=$there/lib/python3/dist-packages
+  quietly /usr/bin/python3 -c 'import modcal; assert not modcal.validate("mine.yaml"), modcal.validate("mine.yaml")'
+fi

@@ -12,7 +12,7 @@ from functools import cache
 from pathlib import Path
 
 LIBRARIES = ("libsim", "libinverse", "libcalib")
-PROGRAM = LIBRARIES + ("experiments",)
+PROGRAM = LIBRARIES + ("experiments", "python")
 FOLDERS = PROGRAM + ("tests", "benchmarks", "examples")
 INCLUDE = re.compile(r'^\s*#\s*include\s*["<]([^">]+)[">]', re.M)
 
@@ -112,13 +112,14 @@ DIRECTIONS = [
     (r"libinverse/", r"(libsim|libinverse)/"),
     (r"libcalib/", r"(libsim|libinverse|libcalib)/"),
     (r"experiments/", r"(libsim|libinverse|libcalib|experiments)/"),
+    (r"python/", r"(libsim|libinverse|libcalib|experiments|python)/"),
 ]
 # Packages and the one place that includes them.
 DOORS = [
     (r"fftw3", r"libsim/signal/fft\.cpp"),
     (r"(ceres/|nlopt|gsl/)", r"libcalib/"),
     (r"(yaml-cpp/|CLI/)", r"experiments/"),
-    (r"nlohmann/", r"experiments/|libsim/records/"),
+    (r"nlohmann/", r"experiments/|python/|libsim/records/"),
     (r"(sndfile|csv\.h$)", r"libsim/records/"),
     (r"(udunits2|converter\.h$)", r"libsim/base/"),
     (r"(sqlite3|xxhash)", r"experiments/runs/"),

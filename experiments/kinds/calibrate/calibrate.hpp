@@ -42,6 +42,7 @@ nlohmann::ordered_json limit_json(const LimitQuestion& question, TruthCache& tru
 
 struct CalibrationOptions;
 struct StudyContext;
+struct SearchTask;
 
 /// Keys of a simulated pluck.
 void visit_pluck(OptionVisitor& visitor, Choice<InitialMotion>& start, double& duration,
@@ -99,7 +100,26 @@ struct CalibrateOptions {
   std::optional<PlannedSimulations> planned_simulations() const;
   std::vector<std::string> files_read() const;
   LimitQuestion limit_question() const;
+  std::unique_ptr<const SearchTask> search_task(const StudyContext& context) const;
   StudyResult run(const StudyContext& context) const;
+};
+
+/// Every record of a calibration, the stroke that is identified first.
+struct ObservedRecords {
+  std::vector<Observation> strokes;
+  std::vector<CalibrationRecord> plucks;
+};
+/// Simulates or reads them. `outputs`: what the first stroke is simulated with.
+ObservedRecords observe_records(const CalibrateOptions& options, const OutputRequest& outputs,
+                                const StudyContext& context);
+
+/// The search of a calibration, before it is begun.
+struct SearchTask {
+  BoundProblem bound;
+  std::shared_ptr<const Optimizer> optimizer;
+  Budget budget;
+  /// Of a simulated string, values of the free parameters where its model is right; else empty.
+  std::vector<double> truth;
 };
 
 /// A calibration together with what it is judged by.

@@ -33,8 +33,11 @@ std::vector<Finding> InvertOptions::lint() const {
 void lint_windows(const InvertOptions& options, const Observation& observation,
                   std::vector<Finding>& findings) {
   const std::vector<double> silence(observation.samples());
-  lint_making(findings, "score",
-              [&] { scores_of(observation, ScoredForce(silence), &options.score); });
+  lint_making(findings, "score", [&] {
+    scores_of(observation, ScoredForce(silence), &options.score);
+    const Estimate still{.result = {.displacement = silence, .velocity = silence}};
+    motion_scores(observation, still, &options.score);
+  });
   const double duration = static_cast<double>(observation.samples()) / observation.sample_rate;
   append(findings, lint_figure_windows(options.figures, duration));
 }
@@ -93,48 +96,6 @@ InvertOptions InvertOptions::as_read_by(const StudyContext& context) const {
   options.write_signals = options.overview = false;
   options.figures.clear();
   return options;
-}
-
-report::Cell side_cell(const std::string& side) {
-  if (side == "1" || side == "2") return side[0] - '0';
-  return side;
-}
-
-report::Table identification_table(const std::vector<SideIdentification>& sides) {
-  report::Table table{.id = "identification", .title = "Identification"};
-  const bool limited = std::ranges::any_of(sides, [](const SideIdentification& side) {
-    return std::isfinite(side.estimate.band_limit);
-  });
-  const auto add = [&table, limited](const SideIdentification& side, const WindowScore& score) {
-    const ChosenParameter& choice = side.estimate.result.choice;
-    const bool free = choice.status == ChoiceStatus::kNoParameter;
-    const auto parameter = free ? std::nullopt : std::optional(choice.parameter());
-    report::add_row(table, [&](report::RowWriter& row) {
-      row.cell({.key = "side"}, side_cell(side.estimate.side));
-      row({.key = "parameter", .unit = "N/N"}, parameter);
-      row({.key = "relative_parameter", .name = "parameter / max|H|"},
-          free ? parameter : *parameter / side.estimate.largest_transfer);
-      row({.key = "kept_share", .name = "share of bins kept"}, choice.kept_share);
-      row({.key = "choice", .name = "parameter choice"}, name_of(choice.status));
-      row({}, score);
-      row({.key = "force_deviation",
-           .name = "standard deviation of the force, posterior",
-           .unit = "N"},
-          known(side.estimate.force_deviation));
-      if (!limited) return;
-      row({.key = "velocity_deviation",
-           .name = "standard deviation of the velocity, posterior",
-           .unit = "m/s"},
-          known(side.estimate.velocity_deviation));
-      row({.key = "band_limit", .name = "identified up to", .unit = "Hz"},
-          known(side.estimate.band_limit));
-    });
-  };
-  for (const SideIdentification& side : sides) {
-    if (side.scores.empty()) add(side, {.start = std::nan("")});
-    for (const WindowScore& score : side.scores) add(side, score);
-  }
-  return table;
 }
 
 void add_identification_figures(const InvertOptions& options, const Observation& observation,
@@ -234,6 +195,27 @@ void add_warnings(const Observation& observation, const std::vector<SideIdentifi
   }
 }
 
+namespace {
+
+// How good the identified force is, in a sentence.
+std::string answer_of(const std::vector<SideIdentification>& sides) {
+  std::string answer;
+  for (const SideIdentification& side : sides) {
+    const Estimate& estimate = side.estimate;
+    answer += fmt::format("{} {}", answer.empty() ? "Force" : ";", estimate.label);
+    if (!side.scores.empty()) {
+      answer += ", " + side.scores.front().text();
+    } else if (!std::isnan(estimate.force_deviation)) {
+      answer += fmt::format(", standard deviation {:.3g} N", estimate.force_deviation);
+    } else {
+      answer += ": neither a band nor a measured force to hold it against";
+    }
+  }
+  return answer;
+}
+
+}  // namespace
+
 StudyResult InvertOptions::run(const StudyContext& context) const {
   const InvertOptions shown = as_read_by(context);
   const Observation observed =
@@ -247,13 +229,14 @@ StudyResult InvertOptions::run(const StudyContext& context) const {
                &score, &context.work.inversions);
 
   StudyResult result;
+  result.blocks.emplace_back(report::Text{answer_of(sides), report::Text::Kind::kNote});
   if (!observed.modes_taken.empty()) {
     result.summary += observed.modes_taken + "\n";
     result.blocks.emplace_back(report::Text{observed.modes_taken, report::Text::Kind::kNote});
   }
   add_warnings(observed, sides, result);
   add_identification_figures(shown, observed, sides, result);
-  result.add({identification_table(sides)});
+  add_identification_tables(sides, result);
   if (shown.write_signals) result.signal_files.push_back(identified_signals(observed, sides));
   if (wave_based) add_wave_based(observed, model, score, result);
   if (has_model_based) {
@@ -265,17 +248,6 @@ StudyResult InvertOptions::run(const StudyContext& context) const {
   }
   result.summary += score_lines(sides);
   return result;
-}
-
-std::string score_lines(const std::vector<SideIdentification>& sides) {
-  std::string lines;
-  for (const SideIdentification& side : sides) {
-    for (const WindowScore& window : side.scores) {
-      lines += fmt::format("side {}  parameter {:.4g} N/N  {}\n", side.estimate.side,
-                           side.estimate.result.choice.parameter(), window.text());
-    }
-  }
-  return lines;
 }
 
 }  // namespace modcal

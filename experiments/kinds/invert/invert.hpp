@@ -52,6 +52,8 @@ OutputRequest truth_outputs(const std::vector<FigureOptions>& figures, bool all 
 InversionOutputs inversion_outputs(const std::vector<FigureOptions>& figures, bool all);
 /// One row a side and window: parameter, share of bins kept, correlation, relative rms error.
 report::Table identification_table(const std::vector<SideIdentification>& sides);
+/// It, and what was measured of the motion beside, where it was.
+void add_identification_tables(const std::vector<SideIdentification>& sides, StudyResult& result);
 /// Draws the waveforms, spectra and parameter curves among the figures asked for.
 void add_identification_figures(const std::vector<FigureOptions>& figures,
                                 const Observation& observation,

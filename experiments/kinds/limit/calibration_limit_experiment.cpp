@@ -112,7 +112,7 @@ void CalibrationLimitOptions::visit(OptionVisitor& visitor) {
   visitor("calibration", "how the calibration is done", calibration);
   visitor("noise_levels", "noise standard deviations over those of the signals",
           {.range = Range::non_negative()}, noise_levels);
-  visitor("seeds", "noise draws a level", {.range = Range::at_least(1)}, seeds);
+  visitor("seeds", "noise draws a level", {.range = Range::closed(1, 10000)}, seeds);
   visitor("seed", "key of noise and starts", {.range = Range::non_negative()}, seed);
   visitor("known_noise", "the calibration is told the noise level, where there is any",
           known_noise);

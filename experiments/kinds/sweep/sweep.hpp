@@ -33,7 +33,7 @@ TaskOutcome run_cell(const InvertOptions& options, const StudyContext& context);
 struct ComparisonOptions {
   std::string table;         ///< CSV: noise_percent, R1, epsilon1, R2, epsilon2
   double lowest_row = 0.01;  ///< rows below are shown, not judged
-  double mean_difference = std::numeric_limits<double>::infinity();
+  double mean_difference = std::numeric_limits<double>::quiet_NaN();
   std::int64_t inside_band = 0;  ///< cells whose published R must lie within q10–q90
   double parameter_factor = 2.0;
   std::int64_t parameter_cells = 0;  ///< cells whose ε must agree within the factor

@@ -96,7 +96,7 @@ ContinuationResult on_moving_bridge(const AttemptInput& input, double shift,
     const bool more = cause && cause->cause == kBridge && cause->frees() &&
                       (!body.empty() || cause->amplitude > 0.0);
     if (!more && fit != 1) break;
-    if (more) body.push_back(*cause);
+    if (more) add_to_body(*cause, body);
     records.reactions = recorded;
     take_out(body, found.model, input.highest, records);
     ContinuationResult next = attempt_with_its_noise(input, shift, found.evaluations);
@@ -121,25 +121,46 @@ ContinuationResult on_moving_bridge(const AttemptInput& input, double shift,
   return found;
 }
 
+// To first order the amplitudes of a cause are further numbers of the record, as long as they are
+// small.
+ContinuationResult with_cause_free(const AttemptInput& input, double shift, ScoreTest cause,
+                                   std::vector<FitStage> stages, std::size_t evaluations) {
+  input.records.signals = cause.columns;
+  ContinuationResult found = attempt_continuation(input, shift, evaluations);
+  append_stages(found.stages, cause.cause + " free: ", 0, stages);
+  found.stages = std::move(stages);
+  for (ScoreTest& test : found.tests) {
+    if (test.cause == cause.cause) test.detail = "beyond what is free of it";
+  }
+  found.freed = {std::move(cause)};
+  return found;
+}
+
 ContinuationResult attempt(const AttemptInput& input, double shift, std::size_t evaluations) {
   input.records.signals.clear();
   ContinuationResult found = attempt_with_its_noise(input, shift, evaluations);
-  const ScoreTest* cause = first_cause(found.tests);
-  if (!cause || !cause->frees()) return found;
-  if (cause->cause == kBridge) {
-    return input.alone ? on_moving_bridge(input, shift, std::move(found)) : found;
+  const ScoreTest* first = first_cause(found.tests);
+  if (!first || !first->frees()) return found;
+  const ScoreTest cause = *first;
+  if (cause.cause != kBridge) {
+    return with_cause_free(input, shift, cause, found.stages, found.evaluations);
   }
-  // To first order its amplitudes are further numbers of the record, as long as they are small.
-  std::vector<ScoreTest> freed = {*cause};
-  input.records.signals = freed.front().columns;
-  std::vector<FitStage> stages = std::move(found.stages);
-  found = attempt_continuation(input, shift, found.evaluations);
-  append_stages(found.stages, freed.front().cause + " free: ", 0, stages);
-  found.stages = std::move(stages);
-  for (ScoreTest& test : found.tests) {
-    if (test.cause == freed.front().cause) test.detail = "beyond what is free of it";
+  if (!input.alone) return found;
+  const NoisyRecords before = input.records;
+  found = on_moving_bridge(input, shift, std::move(found));
+  // S is of first order: by what the whole fit leaves a bridge and a resonance differ.
+  for (const ScoreTest& rival : cause.rivals) {
+    const NoisyRecords of_bridge = std::exchange(input.records, before);
+    ContinuationResult other =
+        with_cause_free(input, shift, rival, found.stages, found.evaluations);
+    if (power_left(other) < power_left(found)) {
+      found = std::move(other);
+    } else {
+      input.records = of_bridge;
+      found.evaluations = other.evaluations;
+      found.stages = std::move(other.stages);
+    }
   }
-  found.freed = std::move(freed);
   return found;
 }
 

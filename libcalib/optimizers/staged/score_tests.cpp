@@ -7,10 +7,13 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <optional>
 #include <utility>
+
+#include "libcalib/optimizers/staged/best_tests.hpp"
 
 namespace modcal {
 namespace {
@@ -45,6 +48,36 @@ std::string name_of_unknown(const StringUnknowns& unknowns, const ModelPoint& po
   const double spacing = point.sensors.smooth.spacing / (2.0 * std::numbers::pi);
   const auto knot = static_cast<double>((i - unknowns.named()) / 2);
   return fmt::format("response at {:.0f} Hz", knot * spacing);
+}
+
+// ln of the likelihood of a cause over that of its amplitudes being 0, by their priors; of those
+// without one the likeliest. A bridge has a mass.
+double log_evidence(const MisfitCause& cause, const Eigen::MatrixXd& information,
+                    const Eigen::VectorXd& amplitudes) {
+  std::vector<Index> known;
+  for (Index i = 0; i < cause.widths.size(); ++i) {
+    if (cause.widths[i] < kUnknown) known.push_back(i);
+  }
+  const Eigen::MatrixXd inverse =
+      information.ldlt().solve(Eigen::MatrixXd::Identity(information.rows(), information.cols()));
+  const Eigen::MatrixXd own = inverse(known, known);
+  Eigen::MatrixXd wide = own;
+  wide.diagonal() += cause.widths(known).cwiseAbs2();
+  const Eigen::VectorXd a = amplitudes(known);
+  const Eigen::LDLT<Eigen::MatrixXd> narrow_solver(own), wide_solver(wide);
+  const auto log_determinant = [](const Eigen::LDLT<Eigen::MatrixXd>& solver) {
+    return solver.vectorD().array().max(std::numeric_limits<double>::min()).log().sum();
+  };
+  double result = 0.5 * (a.dot(narrow_solver.solve(a)) - a.dot(wide_solver.solve(a)) +
+                         log_determinant(narrow_solver) - log_determinant(wide_solver));
+  if (cause.name == kBridge) {
+    // Twice the part of its posterior that lies above 0.
+    const double width = cause.widths[0];
+    const double z = a[0] * width / std::sqrt(own(0, 0) * wide(0, 0));
+    result +=
+        std::log(std::max(std::erfc(-z / std::sqrt(2.0)), std::numeric_limits<double>::min()));
+  }
+  return result;
 }
 
 // Scores of all amplitudes with the unknowns projected out.
@@ -123,6 +156,7 @@ class Scores {
       Eigen::MatrixXd told = information / std::max(1.0, misfit);
       told.diagonal() += cause.widths.cwiseAbs2().cwiseInverse();
       test.untold = taken * told.ldlt().solve(taken.transpose());
+      test.log_evidence = log_evidence(cause, information / std::max(1.0, misfit), amplitude);
     }
     return {test, most};
   }
@@ -132,77 +166,6 @@ class Scores {
   Eigen::VectorXd score_;
   Eigen::MatrixXd taken_;        // K: what of an amplitude's column the unknowns take
   Eigen::MatrixXd information_;  // left of the amplitudes'
-};
-
-// Tests of one cause by one name each: of those tried at several places the one found best, with
-// what they leave untold. There may be a mode of the body at any place: of every unknown it is the
-// most of all, each by its likelihood e^(S/2) over that of the best.
-class BestTests {
- public:
-  void add(ScoreTest test) {
-    const auto same = std::ranges::find(tests_, test.cause, &ScoreTest::cause);
-    if (same == tests_.end()) {
-      tried_.push_back({1.0, test.untold.diagonal()});
-      tests_.push_back(std::move(test));
-      return;
-    }
-    Tried& tried = tried_[static_cast<std::size_t>(same - tests_.begin())];
-    const Eigen::VectorXd own = test.untold.diagonal();
-    const double weight = std::exp(0.5 * (same->statistic - test.statistic));
-    if (weight < 1.0) std::swap(*same, test);
-    same->shift_per_root = std::max(same->shift_per_root, test.shift_per_root);
-    same->untold += std::min(weight, 1.0 / weight) * test.untold;
-    tried.count += 1.0;
-    tried.most = (std::min(weight, 1.0) * tried.most).cwiseMax(std::min(1.0, 1.0 / weight) * own);
-  }
-
-  // At a place where there is a mode of the body what it leaves untold counts whole.
-  void add_known(const ScoreTest& test) {
-    if (known_.size() == 0) known_.setZero(test.untold.rows(), test.untold.cols());
-    known_ += test.untold;
-  }
-
-  std::optional<double> named_place() const {
-    const auto found = std::ranges::find_if(
-        tests_, [](const ScoreTest& test) { return test.cause == kBridge && test.named(); });
-    return found == tests_.end() ? std::nullopt : std::optional(found->place);
-  }
-
-  std::vector<ScoreTest> take() {
-    for (std::size_t i = 0; i < tests_.size(); ++i) {
-      ScoreTest& test = tests_[i];
-      test.log_p = std::min(0.0, test.log_p + std::log(tried_[i].count));
-      // With the correlations of their sum.
-      const Eigen::ArrayXd sum = test.untold.diagonal();
-      const Eigen::VectorXd part = (sum > 0.0).select((tried_[i].most.array() / sum).sqrt(), 0.0);
-      test.untold = part.asDiagonal() * test.untold * part.asDiagonal();
-      if (test.cause == kBridge && known_.size() > 0) test.untold += known_;
-      if (!test.named() || !test.frees()) test.columns.clear();
-      if (test.named() && test.cause == kBridge && test.amplitude > 0.0) {
-        test.detail += fmt::format(", of {:.3g} kg", 1.0 / test.amplitude);
-      }
-    }
-    doubt_resonance();
-    return std::move(tests_);
-  }
-
- private:
-  // Between two modes of the string a bridge looks like a sensor's resonance: what explains not
-  // twice as much may be a bridge.
-  void doubt_resonance() {
-    const double bridge = std::ranges::find(tests_, kBridge, &ScoreTest::cause)->statistic;
-    std::erase_if(tests_, [&](const ScoreTest& test) {
-      return test.cause == kResonance && test.statistic < 2.0 * bridge;
-    });
-  }
-
-  struct Tried {
-    double count;          // places
-    Eigen::VectorXd most;  // of the diagonals of what they leave untold
-  };
-  std::vector<ScoreTest> tests_;
-  std::vector<Tried> tried_;
-  Eigen::MatrixXd known_;
 };
 
 }  // namespace
@@ -226,12 +189,12 @@ std::vector<ScoreTest> score_tests(const ProjectedLikelihood& likelihood,
       first += std::ssize(cause.columns);
       test.unknown = name_of_unknown(unknowns, point, most);
       test.columns = std::move(cause.columns);
-      known ? tests.add_known(test) : tests.add(std::move(test));
+      known ? tests.add_known(std::move(test)) : tests.add(std::move(test));
     }
   };
   test_all(misfit_causes(likelihood, point));
   const std::vector<double>& body = likelihood.record().body;
-  if (!body.empty()) test_all(bridges_at(likelihood, point, body, true), true);
+  if (!body.empty()) test_all(bridges_at(likelihood, point, body), true);
   // A bridge that is named is looked for about its place, with what may look like it.
   if (const std::optional<double> place = tests.named_place()) {
     test_all(resonances_about(likelihood, point, *place));

@@ -1,11 +1,10 @@
 #include "libinverse/spectral/one_sided/mode_scan.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cstddef>
 #include <span>
 
+#include "libsim/base/task_loop.hpp"
 #include "libsim/model/modal_kernel.hpp"
 
 #undef HWY_TARGET_INCLUDE
@@ -156,7 +155,7 @@ void ModeScan::integrate(const ModalModel& model, std::size_t mode, const Freque
   if (blocks == 1) {
     integrate_block(0);
   } else {
-    tbb::parallel_for(std::size_t{0}, blocks, integrate_block);
+    for_each_task(blocks, integrate_block);
   }
   std::fill(integrals.begin(), integrals.end(), 0.0);
   for (std::size_t j = 0; j < partial_.size(); ++j) integrals[j % candidates.size()] += partial_[j];

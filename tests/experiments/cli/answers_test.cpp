@@ -46,6 +46,7 @@ TEST_F(Answers, AreOneJsonObjectOfEveryCommand) {
       {"describe", {"describe optimizer nlopt", "options"}},
       {"schema", {"schema", "$schema"}},
       {"inspect", {"inspect record.csv", "channels"}},
+      {"convert", {"convert record.csv other.uff", "channels"}},
       {"new", {"new calibrate record.csv --length '0.33 m' --out mine.yaml", "file"}},
       {"reproduce", {"reproduce fig02", "report"}},
       {"status", {"status listed", "pending"}},

@@ -48,13 +48,22 @@ TEST_F(Output, IsAnErrorWhereStandardOutputTakesNothing) {
   EXPECT_EQ(modcal("validate missing.yaml >&-").code, 3);
 }
 
-TEST_F(Output, AReaderThatGoesAwayEndsNoRun) {
-  const Outcome gone = shell("{ '" MODCAL_PROGRAM
-                             "' run list.yaml --out a; echo $? >code; } 2>&1 "
-                             "| true");
-  EXPECT_EQ(gone.code, 0);
-  EXPECT_EQ(content_of(folder() / "code"), "7\n");
+TEST_F(Output, AReaderThatGoesAwayEndsNoRunAndIsNoError) {
+  // Nobody reads any longer when the command begins to say something.
+  const auto to_nobody = [this](const std::string& arguments) {
+    const Outcome gone =
+        shell("{ sleep 0.2; '" MODCAL_PROGRAM "' " + arguments + " 2>err; echo $? >code; } | true");
+    return Outcome{gone.code, content_of(folder() / "code"), content_of(folder() / "err")};
+  };
+  const Outcome run = to_nobody("run list.yaml --out a");
+  EXPECT_EQ(run.out, "0\n");
   EXPECT_TRUE(std::filesystem::exists(folder() / "a/report.html"));
+  for (const char* command : {"schema", "describe simulator modal_exact", "list --json"}) {
+    const Outcome gone = to_nobody(command);
+    EXPECT_EQ(gone.out, "0\n") << command;
+    EXPECT_EQ(gone.err, "") << command;
+  }
+  EXPECT_EQ(to_nobody("validate missing.yaml").out, "3\n");
 }
 
 TEST_F(Output, WorksOnWhereStandardErrorTakesNothing) {

@@ -206,6 +206,22 @@ TEST_F(Program, ListsAndDescribesEveryPlugin) {
   EXPECT_THAT(modcal("describe damping constnt").err, HasSubstr("did you mean \"constant\"?"));
 }
 
+TEST_F(Program, ExplainsAxesByExamplesThatRun) {
+  write("small.yaml", testing::kSmallSimulation);
+  const json described = json::parse(modcal("describe experiment sweep --json").out);
+  std::string sweep;
+  for (const json& part : described["options"].back()["options"]) {
+    const std::string type = part["type"];
+    sweep += part["key"].get<std::string>() + ": " + type.substr(type.find("such as ") + 8) + ", ";
+  }
+  const Outcome plan = modcal("plan small.yaml --set 'sweep={" + sweep + "}'");
+  EXPECT_EQ(plan.code, 0) << plan.err;
+  // 2 x 3 of the product with 2 pairs, 2 excluded, 1 added.
+  EXPECT_THAT(plan.out, HasSubstr("tasks: 11\n"));
+  EXPECT_THAT(modcal("describe experiment simulate").out,
+              HasSubstr("every value of one axis with every value of the others"));
+}
+
 TEST_F(Program, PrintsASchemaThatTellsRightFromWrong) {
   const std::string text = modcal("schema").out;
   EXPECT_LT(text.size(), 300'000u);  // editors read it at every key

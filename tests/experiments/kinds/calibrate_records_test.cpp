@@ -137,7 +137,7 @@ TEST_F(CalibrateRecords, SayWhereTheNoiseStatedIsTooMuch) {
   const double spread[] = {standard_deviation(observed.reaction(End::kLeft)->samples),
                            standard_deviation(observed.reaction(End::kRight)->samples)};
   const StudyResult overstated = run(
-      fmt::format(", left_noise: {:g} N, right_noise: {:g} N", 0.03 * spread[0], 0.03 * spread[1]),
+      fmt::format(", noise_rms_1: {:g} N, noise_rms_2: {:g} N", 0.03 * spread[0], 0.03 * spread[1]),
       "");
   // Three times the noise there is: within the 2 % to which 0.3 s tell it, three of them.
   const double chi2 = calibration_of(overstated)["continuation"]["chi2"];

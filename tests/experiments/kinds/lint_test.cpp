@@ -346,9 +346,9 @@ std::string sampled(const std::string& rate, const std::string& calibration,
 
 TEST(LintNoise, RefusesARecordThatDoesNotShowTheNoiseToEstimate) {
   const auto refused = [](const std::string& line) {
-    return testing::AllOf(testing::HasSubstr("scene.yaml:" + line + ":"),
-                          testing::HasSubstr("22050 Hz"),
-                          testing::HasSubstr("State left_noise and right_noise, or sample faster"));
+    return testing::AllOf(
+        testing::HasSubstr("scene.yaml:" + line + ":"), testing::HasSubstr("22050 Hz"),
+        testing::HasSubstr("State noise_rms_1 and noise_rms_2, or sample faster"));
   };
   EXPECT_THAT(messages_of(sampled("22.05 kHz", "objective: joint_likelihood, optimizer: staged")),
               refused("7"));
@@ -358,7 +358,8 @@ TEST(LintNoise, RefusesARecordThatDoesNotShowTheNoiseToEstimate) {
                                   "1, objective: joint_likelihood}]}, optimizer: ceres")),
               refused("7"));
   const std::string stated =
-      "objective: {type: joint_likelihood, left_noise: 3 mN, right_noise: 4 mN}, optimizer: staged";
+      "objective: {type: joint_likelihood, noise_rms_1: 3 mN, noise_rms_2: 4 mN}, optimizer: "
+      "staged";
   EXPECT_EQ(messages_of(sampled("22.05 kHz", stated)).find("error"), std::string::npos);
   EXPECT_EQ(messages_of(sampled("25.6 kHz", "objective: joint_likelihood, optimizer: staged"))
                 .find("error"),

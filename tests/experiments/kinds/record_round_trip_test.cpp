@@ -33,7 +33,7 @@ class RecordRoundTrip : public FolderTest {
     const StudyResult simulated = run(kScene + R"(
 kind: simulate
 measurement: {sample_rate: 51.2 kHz, noise_level: 1 %, remove_mean: true}
-outputs: [f_c, R1, R2]
+outputs: [y, v, f_c, R1, R2]
 files: [csv, wav]
 seed: 3
 )");
@@ -90,6 +90,36 @@ seed: 3
     }
     EXPECT_NE(from_file.summary.find("R = "), std::string::npos);  // scored by the reference
   }
+}
+
+TEST_F(RecordRoundTrip, MeasuredMotionIsDrawnAndScored) {
+  write_record();
+  std::string yaml = record("signals.csv");
+  const std::string force = "reference: {channel: f_c}";
+  yaml.replace(yaml.find(force), force.size(),
+               "reference_velocity: {channel: v}, reference_displacement: {channel: y}");
+  const StudyResult result = run(yaml);
+  EXPECT_NE(result.summary.find("v at the contact"), std::string::npos) << result.summary;
+  const report::Table* motion = nullptr;
+  std::size_t measured = 0;
+  for (const report::Block& block : result.blocks) {
+    const auto* table = std::get_if<report::Table>(&block);
+    if (table != nullptr && table->id == "motion") motion = table;
+    const auto* figure = std::get_if<report::Figure>(&block);
+    if (figure == nullptr || figure->id != "identified_motion") continue;
+    for (const report::Panel& panel : figure->panels) {
+      for (const report::Series& series : panel.series) measured += series.label == "measured";
+    }
+  }
+  EXPECT_EQ(measured, 4u);  // y and v of both sides
+  ASSERT_NE(motion, nullptr);
+  ASSERT_EQ(motion->rows.size(), 4u);
+  EXPECT_NE(result.summary.find("v at the contact  0.01"), std::string::npos) << result.summary;
+  // A window that holds nothing of the record is told by validate.
+  LoadedExperiment loaded = load_experiment(
+      parse_yaml(yaml + "score: {windows: [9 s]}\n", (folder() / "e.yaml").string()));
+  check_records(loaded);
+  EXPECT_TRUE(loaded.has_errors());
 }
 
 TEST_F(RecordRoundTrip, ACalibrationRunsOnARecord) {

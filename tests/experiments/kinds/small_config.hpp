@@ -23,7 +23,8 @@ inline std::vector<std::string> config_files(const std::filesystem::path& folder
 inline LoadedExperiment load_small(const std::string& file, const LoadedExperiment& full) {
   // Coarser steps; in a sweep one value on each axis, on a map a few cells.
   YamlDocument document = read_yaml_file(file);
-  if (full.document.root.find("simulator")->find("type")->text != "modal_event") {
+  const YamlNode* simulator = full.document.root.find("simulator");
+  if (simulator && simulator->find("type")->text != "modal_event") {
     apply_assignment(document, "simulator.time_step=4 us", 1);
   }
   if (full.kind == "schelleng") {

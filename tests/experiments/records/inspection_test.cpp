@@ -169,6 +169,26 @@ TEST_F(Inspect, ProposesOneReactionWhereOnlyOneIsNamed) {
   EXPECT_EQ(record["right"]["channel"].as<std::string>(), "R2");
 }
 
+TEST_F(Inspect, ProposesByUnitsWhereNamesSayNothing) {
+  const auto file = write("r.csv",
+                          "time/ms,temp [degC],v [mm/s],bow [m/s],bridge/mN,nut [N]\n"
+                          "0,20,3,4,2,6\n1,21,4,5,4,9\n2,21,2,5,8,9\n");
+  const InspectionReport report = inspect(file);
+  const YAML::Node record = YAML::Load(stanza(report))["record"];
+  EXPECT_EQ(record["left"]["channel"].as<std::string>(), "bridge");
+  EXPECT_EQ(record["right"]["channel"].as<std::string>(), "nut");
+  EXPECT_EQ(record["reference_velocity"]["channel"].as<std::string>(), "v");
+  EXPECT_FALSE(record["reference"].IsDefined());
+  const RecordedSignals loaded = load_record(report.record, "");
+  EXPECT_THAT(loaded.left->samples, ElementsAre(2e-3, 4e-3, 8e-3));
+  EXPECT_THAT(loaded.reference_velocity->samples, ElementsAre(3e-3, 4e-3, 2e-3));
+  // One force alone: what moves is no reaction.
+  const auto one = write("one.csv", "t,x [mm],F [N]\n0,1,1\n1,2,2\n");
+  const YAML::Node other = YAML::Load(stanza(inspect(one)))["record"];
+  EXPECT_EQ(other["left"]["channel"].as<std::string>(), "F");
+  EXPECT_FALSE(other["right"].IsDefined());
+}
+
 TEST_F(Inspect, ProposalLoadsAsItStands) {
   const std::vector<Signal> signals{{"x", "mN", kRate, {1.0, 2.0, 4.0}},
                                     {"y", "N", kRate, {3.0, 4.0, 5.0}}};

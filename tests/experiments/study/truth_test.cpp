@@ -1,10 +1,10 @@
 #include <gtest/gtest.h>
-#include <tbb/parallel_for.h>
 
 #include <array>
 
 #include "experiments/study/observation.hpp"
 #include "experiments/study/study.hpp"
+#include "libsim/base/task_loop.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
 namespace modcal {
@@ -20,10 +20,10 @@ TruthOptions short_truth() {
 TEST(TruthCache, SimulatesADistinctSceneOnceForAllThreads) {
   TruthCache cache;
   std::array<std::shared_ptr<const Truth>, 16> truths;
-  tbb::parallel_for(0, 16, [&](int i) {
+  for_each_task(truths.size(), [&](std::size_t i) {
     TruthOptions options = short_truth();
     options.scene.bow.normal_force = i % 2 == 0 ? 1.0 : 1.1;
-    truths[static_cast<std::size_t>(i)] = cache.get(options, 51200.0, {.force = true});
+    truths[i] = cache.get(options, 51200.0, {.force = true});
   });
   EXPECT_EQ(cache.simulated(), 2u);
   EXPECT_EQ(truths[0], truths[14]);

@@ -75,5 +75,31 @@ TEST(MovingBridge, AddsModesOfTheBody) {
   EXPECT_EQ(rigid.omega, pinned().basis.omega);
 }
 
+// A change by all five amplitudes is a mode of the body at each of three places.
+TEST(MovingBridge, ChangesAModeOfTheBody) {
+  ScoreTest change = body(430.0, 0.5);
+  change.amplitudes = Eigen::VectorXd{{2.0, 0.25, 0.5, -3.0, 4.0}};
+  std::vector<ScoreTest> changed = {body(430.0, 0.1)};
+  add_to_body(change, changed);
+  ASSERT_EQ(changed.size(), 1u);
+  EXPECT_DOUBLE_EQ(changed[0].amplitude, 13.0);
+  EXPECT_EQ(changed[0].detail, "at 430 Hz, of 0.0769 kg");
+  EXPECT_EQ(changed[0].amplitudes, (Eigen::VectorXd{{12.0, 0.25, 0.5, -3.0, 4.0}}));
+  const auto [below, above] = places_beside(430.0);
+  std::vector<ScoreTest> three;
+  for (const ScoreTest& mode :
+       {body(430.0, 1.0 / 12.0), body(below, -1.0 / 3.0), body(above, 0.25)}) {
+    add_to_body(mode, three);
+  }
+  ASSERT_EQ(three.size(), 3u);
+  ModalBasis one = pinned().basis, other = one;
+  ASSERT_TRUE(put_on_bridge(one, changed));
+  ASSERT_TRUE(put_on_bridge(other, three));
+  for (std::size_t n = 0; n < kModes; ++n) {
+    EXPECT_NEAR(other.omega[n] / one.omega[n], 1.0, 1e-13);
+    EXPECT_NEAR(other.zeta[n], one.zeta[n], 1e-13);
+  }
+}
+
 }  // namespace
 }  // namespace modcal

@@ -49,7 +49,7 @@ TEST(NoiseBand, IsThatOfThePaperWhereTheModesLeaveIt) {
 TEST(NoiseBand, RefusesARecordWithoutRoomAboveTheModes) {
   EXPECT_THAT(refusal_of([] { NoiseBand::above(9800.0, 22050.0, 22050); }),
               testing::AllOf(testing::HasSubstr("22050 Hz with modes up to 9800 Hz"),
-                             testing::HasSubstr("State left_noise and right_noise")));
+                             testing::HasSubstr("State noise_rms_1 and noise_rms_2")));
   // 1711 bins in 1 s; 171 in 0.1 s.
   EXPECT_EQ(refusal_of([] { NoiseBand::above(9800.0, 25600.0, 25600); }), "accepted");
   EXPECT_THAT(refusal_of([] { NoiseBand::above(9800.0, 25600.0, 2560); }),

@@ -38,6 +38,12 @@ TEST_F(Files, RefusesWhatIsNoFileWithoutOpeningIt) {
   EXPECT_EQ(content_of_file(write("a", "text")), "text");
 }
 
+TEST_F(Files, TakesNoFailedReadForTheEndOfAFile) {
+  // A file whose first byte cannot be read.
+  EXPECT_THAT(refusal_of([] { content_of_file("/proc/self/mem"); }),
+              HasSubstr("cannot be read: Input/output error"));
+}
+
 TEST_F(Files, AppendsToNoFileOfOthers) {
   const fs::path victim = write("victim", "kept");
   fs::create_symlink(victim, path("symbolic"));

@@ -305,14 +305,16 @@ TEST_F(CsvReader, ReportsMisplacedQuotes) {
             "\"\"quoted\"\" word\"");
 }
 
-TEST_F(CsvReader, TakesTheTimeWithItsUnitBehindAMark) {
+TEST_F(CsvReader, TakesTimeAndForceWithTheirUnitsBehindAMark) {
   for (const char* heading : {"time/ms", "time / ms", "t (ms)", "time_ms", "Time ms", "T.ms", "t/ms"}) {
-    write("r.csv", std::string(heading) + ",R1/N,t_max\n0,1,2\n0.5,2,3\n1,3,4\n");
+    write("r.csv", std::string(heading) + ",R1/mN,t_max,a/b\n0,1,2,1\n0.5,2,3,1\n1,3,4,1\n");
     const Recording record = read_csv(path("r.csv"));
     EXPECT_DOUBLE_EQ(record.sample_rate, 2000.0) << heading;
-    ASSERT_EQ(record.channels.size(), 2u) << heading;
-    EXPECT_EQ(record.channels[0].name, "R1/N");
+    ASSERT_EQ(record.channels.size(), 3u) << heading;
+    EXPECT_EQ(record.channels[0].name, "R1");
+    EXPECT_EQ(record.channels[0].unit, "mN");
     EXPECT_EQ(record.channels[1].name, "t_max");
+    EXPECT_EQ(record.channels[2].name, "a/b");
   }
 }
 

@@ -57,6 +57,28 @@ TEST_F(LoadRecord, ConvertsUnitsAndAppliesCalibrations) {
   EXPECT_THAT(signals.warnings, IsEmpty());
 }
 
+TEST_F(LoadRecord, TurnsTheSignOfAChannelInNewtons) {
+  RecordOptions options = csv(kRecord);
+  options.left.turned = true;
+  EXPECT_THAT(load(options).left->samples, ElementsAre(-1.0, -2.0, -3.0, -5.0));
+}
+
+TEST_F(LoadRecord, ReadsTheMotionAtTheContact) {
+  RecordOptions options =
+      csv("t [s],R1 [N],R2 [N],v [mm/s],y [um]\n0,1,2,3,4\n1,2,3,4,8\n2,4,3,4,2\n");
+  options.has_reference_velocity = options.has_reference_displacement = true;
+  options.reference_velocity.channel = "v";
+  options.reference_displacement.channel = "y";
+  const RecordedSignals signals = load(options);
+  EXPECT_THAT(signals.reference_velocity->samples, ElementsAre(3e-3, 4e-3, 4e-3));
+  EXPECT_EQ(signals.reference_velocity->unit, "m/s");
+  EXPECT_THAT(signals.reference_displacement->samples, ElementsAre(4e-6, 8e-6, 2e-6));
+  options.reference_velocity.channel = "y";
+  options.has_reference_displacement = false;
+  EXPECT_THAT(error(options), HasSubstr("is in \"um\", which is no unit of velocity; state "
+                                        "record.reference_velocity.calibration, the velocity per"));
+}
+
 TEST_F(LoadRecord, TakesOneReactionAlone) {
   RecordOptions options = csv(kRecord);
   options.has_left = false;
@@ -138,7 +160,7 @@ TEST_F(LoadRecord, TellsTheFormatByTheExtension) {
   EXPECT_THAT(refusal_of([] { read_record("a/b.rf64", "auto"); }), HasSubstr(wav_missing));
   EXPECT_THAT(refusal_of([] { read_record("a/b.dat", "csv"); }), HasSubstr(csv_missing));
   EXPECT_EQ(refusal_of([] { read_record("b.dat", "auto"); }),
-            "b.dat: the extension \".dat\" does not tell the format; state format: csv or wav");
+            "b.dat: the extension \".dat\" does not tell the format; state format: csv, wav, uff");
   EXPECT_THAT(refusal_of([] { read_record("b.csv", "mat"); }), HasSubstr("unknown format \"mat\""));
 }
 

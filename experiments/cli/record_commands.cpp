@@ -1,0 +1,93 @@
+#include <cmath>
+
+#include "experiments/cli/command.hpp"
+#include "experiments/cli/runner.hpp"
+#include "experiments/records/inspection.hpp"
+#include "libsim/records/formats.hpp"
+
+namespace modcal {
+namespace {
+
+std::string format_words() { return fmt::format("{}", fmt::join(record_format_choices(), ", ")); }
+
+struct InspectArguments {
+  std::string file;
+  InspectionOptions options;
+};
+
+ExitCode print_inspection(const InspectArguments& arguments) {
+  const InspectionReport report = inspect(arguments.file, arguments.options);
+  if (answer_style().json) {
+    print_json(json(report));
+  } else {
+    say_text(text(report));
+  }
+  return report.problem_count == 0 ? ExitCode::kOk : ExitCode::kInvalidInput;
+}
+
+void declare(CLI::App& command, InspectArguments& arguments) {
+  command.add_option("file", arguments.file, "recorded file")->required();
+  command.add_option("--format", arguments.options.format, format_words());
+  command.add_flag("--headers", arguments.options.headers_only,
+                   "read headers alone where the format has them");
+  command.add_option("--sample-rate", arguments.options.sample_rate,
+                     "[Hz], where the file has none");
+}
+
+struct ConvertArguments {
+  std::string from, to;
+  std::string from_format = "auto", to_format = "auto";
+  double sample_rate = std::numeric_limits<double>::quiet_NaN();
+};
+
+// In the unit that the file states; audio samples without one stay as they are.
+Signal signal_of(RecordedChannel& channel, double sample_rate) {
+  const bool scaled = std::isfinite(channel.full_scale) && channel.full_scale != 1.0;
+  for (double& value : channel.samples) value *= scaled ? channel.full_scale : 1.0;
+  return {channel.name, channel.unit, sample_rate, std::move(channel.samples)};
+}
+
+ExitCode convert(const ConvertArguments& arguments) {
+  const RecordFormat& target = record_format(arguments.to, arguments.to_format);
+  MODCAL_REQUIRE(target.write != nullptr, "{}: files of the format {} are read only", arguments.to,
+                 target.name);
+  std::error_code error;
+  const auto status = std::filesystem::symlink_status(arguments.to, error);
+  MODCAL_REQUIRE(!std::filesystem::exists(status),
+                 "{}: something of this name stands there, and it is not replaced; choose another "
+                 "name",
+                 arguments.to);
+  Recording recording =
+      read_record(arguments.from, arguments.from_format, {.sample_rate = arguments.sample_rate});
+  std::vector<Signal> signals;
+  for (RecordedChannel& channel : recording.channels) {
+    signals.push_back(signal_of(channel, recording.sample_rate));
+  }
+  for (const std::string& text : recording.warnings) warn("{}", text);
+  target.write(arguments.to, signals, version_text());
+  add_to_json("file", arguments.to);
+  add_to_json("channels", signals.size());
+  say("{}: {} channel{}, {} samples at {} Hz\n", arguments.to, signals.size(),
+      signals.size() == 1 ? "" : "s", signals.front().size(), recording.sample_rate);
+  return ExitCode::kOk;
+}
+
+void declare(CLI::App& command, ConvertArguments& arguments) {
+  command.add_option("from", arguments.from, "recorded file")->required();
+  command.add_option("to", arguments.to, "file to write, which is not there yet")
+      ->required()
+      ->check(complaint_about_name);
+  command.add_option("--from-format", arguments.from_format, format_words());
+  command.add_option("--to-format", arguments.to_format, format_words());
+  command.add_option("--sample-rate", arguments.sample_rate, "[Hz], where the file has none");
+}
+
+}  // namespace
+
+void add_record_commands(CLI::App& app, const Chosen& chosen) {
+  add_command(app, chosen, "inspect", "Show what a recorded file holds and the YAML to use it",
+              declare, print_inspection);
+  add_command(app, chosen, "convert", "Write a recorded file in another format", declare, convert);
+}
+
+}  // namespace modcal

@@ -1,0 +1,183 @@
+#include "experiments/kinds/structure/structure_files.hpp"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "libsim/base/units.hpp"
+#include "libsim/records/formats.hpp"
+
+namespace modcal {
+namespace {
+
+struct Kind {
+  SensorKind kind;
+  std::string_view name, unit;
+};
+constexpr std::array kKinds = {
+    Kind{SensorKind::kAcceleration, "acceleration", "m/s2"},
+    Kind{SensorKind::kDisplacement, "displacement", "m"}, Kind{SensorKind::kForce, "force", "N"},
+    Kind{SensorKind::kStrain, "strain", "1"}, Kind{SensorKind::kVelocity, "velocity", "m/s"}};
+
+// SI per recorded 1. A column without a unit is taken to be in SI, which is said.
+double scale_of(const StructureChannelOptions& options, const RecordedChannel& channel,
+                std::string_view si_unit, std::vector<std::string>& unstated) {
+  const double sign = options.turned ? -1.0 : 1.0;
+  if (!std::isnan(options.calibration)) return sign * options.calibration;
+  if (channel.unit.empty()) {
+    unstated.push_back(fmt::format("{} ({})", channel.name, si_unit));
+    return sign;
+  }
+  MODCAL_REQUIRE(is_unit_of(channel.unit, si_unit),
+                 "channel {} is in \"{}\", which is no unit of what it is said to be ({}): state "
+                 "its kind, or calibration, the {} per recorded 1",
+                 channel.name, channel.unit, si_unit, si_unit);
+  return sign *
+         to_si(std::isfinite(channel.full_scale) ? channel.full_scale : 1.0, channel.unit, si_unit);
+}
+
+// Until then no signal has left its level at first by a hundredth of its largest departure.
+std::size_t quiet_samples(const std::vector<std::vector<double>>& signals) {
+  std::size_t quiet = signals.front().size();
+  for (const std::vector<double>& signal : signals) {
+    const std::size_t few = std::min<std::size_t>(5, signal.size());
+    double level = 0.0, most = 0.0;
+    for (std::size_t j = 0; j < few; ++j) level += signal[j] / static_cast<double>(few);
+    for (const double x : signal) most = std::max(most, std::abs(x - level));
+    std::size_t j = 0;
+    while (j < quiet && std::abs(signal[j] - level) < 0.01 * most) ++j;
+    quiet = std::min(quiet, j);
+  }
+  // A rise is slow at first.
+  return quiet * 4 / 5;
+}
+
+void remove_level(const StructureRecordOptions& options, LoadedStructureRecord& loaded) {
+  StructureRecord& record = loaded.record;
+  // By the responses alone: a force that is only compared with must not change the answer.
+  const std::size_t count =
+      std::isnan(options.rest)
+          ? quiet_samples(record.responses)
+          : static_cast<std::size_t>(std::llround(options.rest * record.sample_rate));
+  MODCAL_REQUIRE(count < record.samples(), "record.rest = {:g} s is all of the record's {:g} s",
+                 options.rest, record.duration());
+  constexpr std::size_t kFewest = 8;
+  if (count < kFewest) return;
+  loaded.rest = static_cast<double>(count) / record.sample_rate;
+  const auto remove_from = [count](std::vector<double>& signal) {
+    double mean = 0.0;
+    for (std::size_t j = 0; j < count; ++j) mean += signal[j] / static_cast<double>(count);
+    for (double& x : signal) x -= mean;
+  };
+  std::ranges::for_each(record.responses, remove_from);
+  if (!record.force.empty()) remove_from(record.force);
+}
+
+}  // namespace
+
+std::vector<std::string_view> sensor_kind_names() {
+  std::vector<std::string_view> names;
+  for (const Kind& kind : kKinds) names.push_back(kind.name);
+  return names;
+}
+
+SensorKind sensor_kind_of(std::string_view name) {
+  return std::ranges::find(kKinds, name, &Kind::name)->kind;
+}
+
+std::string_view name_of(SensorKind kind) {
+  return std::ranges::find(kKinds, kind, &Kind::kind)->name;
+}
+
+std::string_view unit_of(SensorKind kind) {
+  return std::ranges::find(kKinds, kind, &Kind::kind)->unit;
+}
+
+void StructureForceChannel::visit(OptionVisitor& visitor) {
+  visitor("channel", "column or channel of the file, by name or by number from 1",
+          {.required = true}, channel);
+  visitor("calibration", "SI unit per recorded 1; \"file\": the file states a unit, or it is SI",
+          {.word = "file"}, calibration);
+  visitor("turned", "the sensor reads with the other sign", turned);
+}
+
+void StructureChannelOptions::visit(OptionVisitor& visitor) {
+  visitor("channel", "column or channel of the file, by name or by number from 1",
+          {.required = true}, channel);
+  visitor("kind", "what the sensor reads", {.choices = sensor_kind_names()}, kind);
+  visitor("calibration", "SI unit per recorded 1; \"file\": the file states a unit, or it is SI",
+          {.word = "file"}, calibration);
+  visitor("turned", "the sensor reads with the other sign", turned);
+}
+
+void StructureRecordOptions::visit(OptionVisitor& visitor) {
+  visitor("file", "recorded file, relative to the folder of the experiment's file",
+          {.required = true}, file);
+  visitor("format", "format of the file; auto: by its extension",
+          {.choices = record_format_choices()}, format);
+  visitor("sample_rate", "sample rate; \"file\": the file states it",
+          {.unit = "Hz", .range = Range::positive(), .word = "file"}, sample_rate);
+  visitor("responses", "channels of the sensors", {.required = true}, responses);
+  visitor("force", "measured force of the strike", has_force, force);
+  visitor("start", "begin of the part that is used, after the first sample",
+          {.unit = "s", .range = Range::non_negative()}, start);
+  visitor("stop", "end of the part that is used, after the first sample",
+          {.unit = "s", .range = Range::positive(), .word = "end"}, stop);
+  visitor("rest",
+          "nothing moves so long from the start on: the mean of it is taken out of every channel; "
+          "automatic: until a channel leaves its level by 1 % of its largest departure",
+          {.unit = "s", .range = Range::non_negative(), .word = "automatic"}, rest);
+}
+
+LoadedStructureRecord load_structure_record(const StructureRecordOptions& options,
+                                            const std::filesystem::path& folder) {
+  ReadOptions read{.sample_rate = options.sample_rate};
+  for (const StructureChannelOptions& response : options.responses) {
+    read.channels.push_back(response.channel);
+  }
+  if (options.has_force) read.channels.push_back(options.force.channel);
+  const Recording recording = read_record(folder / options.file, options.format, read);
+  MODCAL_REQUIRE(std::isfinite(recording.sample_rate),
+                 "{}: the file does not tell its sample rate: state record.sample_rate",
+                 options.file);
+  LoadedStructureRecord loaded{.warnings = recording.warnings};
+  loaded.record.sample_rate = recording.sample_rate;
+  const auto index = [&](double time) {
+    return std::min(recording.frames(),
+                    static_cast<std::size_t>(std::llround(time * recording.sample_rate)));
+  };
+  const std::size_t first = index(options.start);
+  const std::size_t last = std::isnan(options.stop) ? recording.frames() : index(options.stop);
+  MODCAL_REQUIRE(first < last, "{}: no sample lies between record.start = {:g} s and its end",
+                 options.file, options.start);
+  const auto part = [&](std::size_t channel, double scale) {
+    std::vector<double> samples(
+        recording.channels[channel].samples.begin() + static_cast<std::ptrdiff_t>(first),
+        recording.channels[channel].samples.begin() + static_cast<std::ptrdiff_t>(last));
+    for (double& x : samples) x *= scale;
+    return samples;
+  };
+  std::vector<std::string> unstated;
+  for (std::size_t k = 0; k < options.responses.size(); ++k) {
+    const SensorKind kind = sensor_kind_of(options.responses[k].kind);
+    loaded.kinds.push_back(kind);
+    loaded.names.push_back(recording.channels[k].name);
+    loaded.record.responses.push_back(
+        part(k, scale_of(options.responses[k], recording.channels[k], unit_of(kind), unstated)));
+  }
+  if (options.has_force) {
+    loaded.record.force = part(options.responses.size(),
+                               scale_of(options.force, recording.channels.back(), "N", unstated));
+  }
+  if (!unstated.empty()) {
+    loaded.warnings.push_back(fmt::format(
+        "no unit is stated of {}: taken to be SI; state calibration where it is another one",
+        fmt::join(unstated, ", ")));
+  }
+  remove_level(options, loaded);
+  return loaded;
+}
+
+}  // namespace modcal

@@ -1,0 +1,66 @@
+// Records of any structure and the file of its modes, as experiments state them.
+#pragma once
+
+#include <filesystem>
+
+#include "libinverse/structure/structure_record.hpp"
+#include "libinverse/structure/structure_table.hpp"
+#include "libsim/base/options.hpp"
+
+namespace modcal {
+
+/// One channel of a recorded file.
+struct StructureChannelOptions {
+  std::string channel;
+  std::string kind = "acceleration";  ///< of a response
+  double calibration = std::numeric_limits<double>::quiet_NaN();
+  bool turned = false;
+  void visit(OptionVisitor& visitor);
+};
+
+/// The force of a strike.
+struct StructureForceChannel : StructureChannelOptions {
+  void visit(OptionVisitor& visitor);
+};
+
+/// The `record:` section of a structure: responses and, where it was measured, the force.
+struct StructureRecordOptions {
+  std::string file;
+  std::string format = "auto";
+  double sample_rate = std::numeric_limits<double>::quiet_NaN();
+  bool has_force = false;
+  StructureForceChannel force;
+  std::vector<StructureChannelOptions> responses;
+  double start = 0.0;
+  double stop = std::numeric_limits<double>::quiet_NaN();
+  double rest = std::numeric_limits<double>::quiet_NaN();
+  void visit(OptionVisitor& visitor);
+};
+
+/// A record in SI units, the mean of its quiet beginning taken out.
+struct LoadedStructureRecord {
+  StructureRecord record;
+  std::vector<SensorKind> kinds;
+  std::vector<std::string> names;
+  double rest = 0.0;  ///< of which the mean was taken [s]
+  std::vector<std::string> warnings;
+};
+
+/// Throws InvalidInput where the file or a channel cannot be had, or has another unit than its
+/// kind.
+LoadedStructureRecord load_structure_record(const StructureRecordOptions& options,
+                                            const std::filesystem::path& folder);
+
+/// Modes and sensors as YAML that reads back to the same values.
+std::string table_text(const StructureTable& table);
+/// Throws InvalidInput with all mistakes of the file, each at its place.
+StructureTable read_table(const std::filesystem::path& path);
+
+/// What sensors may read, by name.
+std::vector<std::string_view> sensor_kind_names();
+SensorKind sensor_kind_of(std::string_view name);
+/// "acceleration" and its unit.
+std::string_view name_of(SensorKind kind);
+std::string_view unit_of(SensorKind kind);
+
+}  // namespace modcal

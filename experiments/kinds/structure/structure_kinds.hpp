@@ -1,0 +1,58 @@
+// Kinds "fit_modes" and "identify_force": any structure, from a strike to the force.
+#pragma once
+
+#include "experiments/experiment.hpp"
+#include "experiments/kinds/structure/structure_files.hpp"
+#include "libinverse/structure/strike_fit.hpp"
+#include "libinverse/structure/structure_force.hpp"
+
+namespace modcal {
+
+/// Kind "fit_modes": a table of modes from a strike whose force was measured.
+struct FitModesOptions {
+  StructureRecordOptions record;
+  double low = 0.0, high = 0.0;
+  double contour = std::numeric_limits<double>::quiet_NaN();
+  std::int64_t most_modes = 60;
+  std::int64_t seed = 0;  ///< nothing is drawn: all tasks of a list have this one
+  void visit(OptionVisitor& visitor);
+
+  std::vector<Finding> lint() const;
+  std::vector<Finding> lint_records(const std::filesystem::path& folder) const;
+  std::vector<std::string> plan() const;
+  std::optional<PlannedSimulations> planned_simulations() const { return std::nullopt; }
+  std::vector<std::string> files_read() const { return {record.file}; }
+  StudyResult run(const StudyContext& context) const;
+};
+
+/// How far the structure may have changed since its table was made.
+struct StructureChangeOptions : StructureChange {
+  void visit(OptionVisitor& visitor);
+};
+
+/// Kind "identify_force": the force at a structure's contact from K responses and a table.
+struct IdentifyForceOptions {
+  std::string table;
+  StructureRecordOptions record;
+  std::string shape = "auto";
+  bool non_negative = false;
+  double window = std::numeric_limits<double>::quiet_NaN();
+  double contour = std::numeric_limits<double>::quiet_NaN();
+  bool refines = false;
+  StructureChangeOptions change;
+  std::int64_t draws = 12;
+  std::int64_t seed = 1;
+  void visit(OptionVisitor& visitor);
+
+  std::vector<Finding> lint() const;
+  std::vector<Finding> lint_records(const std::filesystem::path& folder) const;
+  std::vector<std::string> plan() const;
+  std::optional<PlannedSimulations> planned_simulations() const { return std::nullopt; }
+  std::vector<std::string> files_read() const { return {table, record.file}; }
+  StudyResult run(const StudyContext& context) const;
+};
+
+/// What a record of a structure states wrongly.
+std::vector<Finding> lint_structure_record(const StructureRecordOptions& record);
+
+}  // namespace modcal

@@ -1,0 +1,136 @@
+// The file of a structure's modes.
+#include "experiments/config/help.hpp"
+#include "experiments/config/reader.hpp"
+#include "experiments/kinds/structure/structure_files.hpp"
+#include "libsim/base/error.hpp"
+
+namespace modcal {
+namespace {
+
+// The table as a file states it.
+struct ModeOptions {
+  double frequency = 0.0, ratio = 0.0, frequency_sd = 0.0, ratio_sd = 0.0;
+  std::vector<double> constants, quadrature;
+  void visit(OptionVisitor& visitor) {
+    visitor("frequency", "of the pair of poles",
+            {.unit = "Hz", .range = Range::positive(), .required = true}, frequency);
+    visitor("damping_ratio", "of the pair of poles",
+            {.range = Range::open(0.0, 1.0), .required = true}, ratio);
+    visitor("constants", "real parts of the modal constants, one a sensor", {.required = true},
+            constants);
+    visitor("quadrature", "their imaginary parts; none: proportional damping", quadrature);
+    visitor("frequency_deviation", "relative standard deviation", {.range = Range::non_negative()},
+            frequency_sd);
+    visitor("damping_deviation", "relative standard deviation", {.range = Range::non_negative()},
+            ratio_sd);
+  }
+};
+
+struct SensorOptions {
+  std::string name, kind = "acceleration";
+  ResidualTerms residual;
+  SensorScatter scatter{.modal = 0.05};
+  void visit(OptionVisitor& visitor) {
+    visitor("name", "channel of the record it was fitted to", name);
+    visitor("kind", "what it reads", {.required = true, .choices = sensor_kind_names()}, kind);
+    visitor("below", "static term of the modes below the band", residual.below);
+    visitor("constant", "static term of the modes above the band", residual.constant);
+    visitor("scatter", "share of a mode's response by which the model may be off",
+            {.range = Range::non_negative()}, scatter.modal);
+    visitor("noise", "standard deviation of a sample, in the sensor's SI unit",
+            {.range = Range::non_negative()}, scatter.noise);
+  }
+};
+
+struct TableOptions {
+  std::vector<SensorOptions> sensors;
+  std::vector<ModeOptions> modes;
+  double low = 0.0, high = 0.0, pulse_step = 0.0;
+  std::vector<double> pulse;
+  void visit(OptionVisitor& visitor) {
+    visitor("low", "least frequency of the band",
+            {.unit = "Hz", .range = Range::positive(), .required = true}, low);
+    visitor("high", "largest frequency of the band",
+            {.unit = "Hz", .range = Range::positive(), .required = true}, high);
+    visitor("sensors", "in the order of the record's responses", {.required = true}, sensors);
+    visitor("modes", "pairs of poles with a modal constant a sensor", {.required = true}, modes);
+    visitor("pulse_step", "between the magnitudes of pulse", {.unit = "Hz"}, pulse_step);
+    visitor("pulse", "spectrum of a pulse of the force at 0, pulse_step, …, 1 at 0 Hz", pulse);
+  }
+};
+
+StructureTable table_of(const TableOptions& options, const std::string& file) {
+  constexpr double kTurn = 6.283185307179586;
+  MODCAL_REQUIRE(options.low < options.high, "{}: low = {:g} Hz is not below high = {:g} Hz", file,
+                 options.low, options.high);
+  MODCAL_REQUIRE(options.pulse.empty() || options.pulse_step > 0.0,
+                 "{}: pulse needs a positive pulse_step, not {:g} Hz", file, options.pulse_step);
+  StructureTable table{
+      .low = options.low, .high = options.high, .lag = options.pulse_step, .pulse = options.pulse};
+  for (const SensorOptions& sensor : options.sensors) {
+    table.names.push_back(sensor.name);
+    table.model.sensors.push_back(sensor_kind_of(sensor.kind));
+    table.model.residuals.push_back(sensor.residual);
+    table.scatters.push_back(sensor.scatter);
+  }
+  for (std::size_t n = 0; n < options.modes.size(); ++n) {
+    const ModeOptions& mode = options.modes[n];
+    const bool real = mode.quadrature.empty();
+    MODCAL_REQUIRE(mode.constants.size() == options.sensors.size() &&
+                       (real || mode.quadrature.size() == options.sensors.size()),
+                   "{}: modes.{} has {} constants and {} quadratures for {} sensors", file, n,
+                   mode.constants.size(), mode.quadrature.size(), options.sensors.size());
+    table.model.poles.push_back({kTurn * mode.frequency, mode.ratio});
+    table.frequency_deviations.push_back(mode.frequency_sd);
+    table.damping_deviations.push_back(mode.ratio_sd);
+  }
+  for (std::size_t k = 0; k < options.sensors.size(); ++k) {
+    for (const ModeOptions& mode : options.modes) {
+      table.model.constants.push_back(mode.constants[k]);
+      table.model.quadrature.push_back(mode.quadrature.empty() ? 0.0 : mode.quadrature[k]);
+    }
+  }
+  return table;
+}
+
+}  // namespace
+
+std::string table_text(const StructureTable& table) {
+  TableOptions options{
+      .low = table.low, .high = table.high, .pulse_step = table.lag, .pulse = table.pulse};
+  const std::size_t modes = table.model.poles.size();
+  for (std::size_t k = 0; k < table.model.sensors.size(); ++k) {
+    options.sensors.push_back({.name = table.names[k],
+                               .kind = std::string(name_of(table.model.sensors[k])),
+                               .residual = table.model.residuals[k],
+                               .scatter = table.scatters[k]});
+  }
+  for (std::size_t n = 0; n < modes; ++n) {
+    ModeOptions& mode = options.modes.emplace_back();
+    mode.frequency = table.frequency(n);
+    mode.ratio = table.model.poles[n].zeta;
+    mode.frequency_sd = table.frequency_deviations[n];
+    mode.ratio_sd = table.damping_deviations[n];
+    for (std::size_t k = 0; k < options.sensors.size(); ++k) {
+      mode.constants.push_back(table.model.constant(k, n));
+      mode.quadrature.push_back(table.model.quadrature[k * modes + n]);
+    }
+  }
+  ResolvedWriter writer;
+  options.visit(writer);
+  return writer.yaml();
+}
+
+StructureTable read_table(const std::filesystem::path& path) {
+  const YamlDocument document = read_yaml_file(path);
+  TableOptions options;
+  std::vector<Mistake> mistakes = document.mistakes;
+  if (mistakes.empty()) {
+    read_options(
+        document.root, [&](OptionVisitor& visitor) { options.visit(visitor); }, mistakes);
+  }
+  if (!mistakes.empty()) throw InvalidInput(format_mistakes(document, mistakes));
+  return table_of(options, path.string());
+}
+
+}  // namespace modcal

@@ -1,0 +1,141 @@
+// An inspection in words, for programs, and as the start of an experiment.
+#include <cmath>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "experiments/config/help.hpp"
+#include "experiments/records/inspection.hpp"
+#include "libsim/base/units.hpp"
+#include "libsim/model/string_model.hpp"
+#include "libsim/records/record_file.hpp"
+
+namespace modcal {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::string number(double value) {
+  return std::isfinite(value) ? fmt::format("{:.6g}", value) : "unknown";
+}
+
+ordered_json null_if_unknown(double value) {
+  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
+}
+
+double duration(const InspectionReport& report) {
+  return static_cast<double>(report.frames) / report.sample_rate;
+}
+
+std::string channel_text(const ChannelInspection& channel, bool measured) {
+  const Levels& levels = channel.levels;
+  std::string result =
+      fmt::format("  {} [{}]{}{}\n", channel.name, channel.unit.empty() ? "no unit" : channel.unit,
+                  channel.kind.empty() ? "" : ", ", channel.kind);
+  if (!measured) return result;
+  result += fmt::format(
+      "    rms {}, peak {}, std {}, mean (DC) {}\n"
+      "    clipping: {}\n",
+      number(levels.rms), number(levels.peak), number(levels.std), number(levels.mean),
+      text(channel.clipping));
+  result += std::isfinite(channel.noise_rms)
+                ? fmt::format("    noise: {} rms ({:.3g} % of std)\n", number(channel.noise_rms),
+                              100.0 * channel.noise_rms / levels.std)
+                : "    noise: unknown (too few samples, or some are missing)\n";
+  if (levels.not_finite > 0) {
+    result += fmt::format("    {} samples are no numbers, first sample {}\n", levels.not_finite,
+                          levels.first_not_finite);
+  }
+  return result;
+}
+
+std::string list_text(std::string_view title, const std::vector<std::string>& lines,
+                      std::size_t count) {
+  if (lines.empty()) return {};
+  std::string result = fmt::format("{}\n", title);
+  for (const std::string& line : lines) result += fmt::format("  {}\n", line);
+  if (count > lines.size()) result += fmt::format("  … and {} more\n", count - lines.size());
+  return result;
+}
+
+ordered_json channel_json(const ChannelInspection& channel, bool measured) {
+  const Levels& levels = channel.levels;
+  ordered_json result = {{"name", channel.name}, {"unit", channel.unit}};
+  if (!channel.kind.empty()) result["kind"] = channel.kind;
+  if (!measured) return result;
+  result.update({{"rms", null_if_unknown(levels.rms)},
+                 {"peak", null_if_unknown(levels.peak)},
+                 {"std", null_if_unknown(levels.std)},
+                 {"mean", null_if_unknown(levels.mean)},
+                 {"lowest", null_if_unknown(levels.lowest)},
+                 {"highest", null_if_unknown(levels.highest)},
+                 {"not_finite", levels.not_finite},
+                 {"clipping",
+                  {{"runs", channel.clipping.runs},
+                   {"samples", channel.clipping.samples},
+                   {"first", channel.clipping.first}}},
+                 {"noise_rms", null_if_unknown(channel.noise_rms)}});
+  return result;
+}
+
+}  // namespace
+
+std::string text(const InspectionReport& report) {
+  std::string result = fmt::format(
+      "{}\n  {}\n  {} channel{}, {} samples at {} Hz ({}), {} s\n", report.file, report.format,
+      report.channels.size(), report.channels.size() == 1 ? "" : "s", report.frames,
+      number(report.sample_rate), report.rate_source.empty() ? "not stated" : report.rate_source,
+      number(duration(report)));
+  if (std::isfinite(report.time_jitter)) {
+    result += fmt::format(
+        "  time column: at most {:.3g} s ({:.3g} sampling periods) off a uniform "
+        "grid\n",
+        report.time_jitter, report.time_jitter * report.sample_rate);
+  }
+  for (const ChannelInspection& channel : report.channels) {
+    result += channel_text(channel, report.measured);
+  }
+  result += report.measured
+                ? fmt::format(
+                      "  (noise is taken to be white: its level between {} and {} of the Nyquist "
+                      "frequency, extended to all frequencies)\n",
+                      kNoiseBandLow, kNoiseBandHigh)
+                : "  (headers alone were read; nothing was measured)\n";
+  result += list_text("A run would refuse this file:", report.problems, report.problem_count);
+  result += list_text("Warnings:", report.warnings, report.warnings.size());
+  return result + "\nTo use it in an experiment:\n\n" + stanza(report);
+}
+
+ordered_json json(const InspectionReport& report) {
+  ordered_json channels = ordered_json::array();
+  for (const ChannelInspection& channel : report.channels) {
+    channels.push_back(channel_json(channel, report.measured));
+  }
+  return {{"file", report.file},
+          {"format", report.format},
+          {"sample_rate", null_if_unknown(report.sample_rate)},
+          {"rate_source", report.rate_source},
+          {"time_jitter", null_if_unknown(report.time_jitter)},
+          {"samples", report.frames},
+          {"measured", report.measured},
+          {"duration", null_if_unknown(duration(report))},
+          {"channels", channels},
+          {"noise_assumption", "white"},
+          {"noise_band_of_nyquist", {kNoiseBandLow, kNoiseBandHigh}},
+          {"problems", report.problems},
+          {"problem_count", report.problem_count},
+          {"warnings", report.warnings},
+          {"stanza", stanza(report)}};
+}
+
+std::string stanza(const InspectionReport& report) {
+  RecordOptions record = report.record;
+  StringModel string{.modes = 0};
+  ContactOptions bow;
+  ResolvedWriter writer;
+  writer("record", "recorded forces", record);
+  writer("string", "the string", string);
+  writer("bow", "where the force acts", bow);
+  return "kind: invert\n" + writer.yaml();
+}
+
+}  // namespace modcal

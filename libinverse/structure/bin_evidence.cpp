@@ -1,0 +1,133 @@
+#include "libinverse/structure/bin_evidence.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "libinverse/structure/tuning.hpp"
+
+namespace modcal {
+namespace {
+
+double spacing_of(const ContourSpectra& spectra) {
+  return spectra.grid.spacing / (2.0 * std::numbers::pi);
+}
+
+// E|F|² by what F̂ has and its variance explains; never less than a tenth of what F̂ has.
+std::vector<double> power_of_force(const ContourSpectra& spectra, const BinEvidence& evidence) {
+  std::vector<double> found, own;
+  for (std::size_t m = 0; m < spectra.count(); ++m) {
+    const double told = std::max(evidence.told[m], 1e-300);
+    // A bin that tells little has little weight in the mean.
+    found.push_back(std::norm(evidence.score[m]) / told);
+    own.push_back(told);
+  }
+  const double spacing = spacing_of(spectra);
+  const std::vector<double> sum = smoothed(found, spacing, kReach);
+  const std::vector<double> weight = smoothed(own, spacing, kReach);
+  std::vector<double> result;
+  for (std::size_t m = 0; m < spectra.count(); ++m) {
+    result.push_back(std::max(sum[m] - 1.0, 0.1 * sum[m]) / weight[m]);
+  }
+  return result;
+}
+
+// Squares of what the best force leaves of the sensors about every bin, over what is expected
+// without `more`, per degree of freedom; tells the same of each sensor.
+std::vector<double> contradiction(const ContourSpectra& spectra, const Transfers& transfers,
+                                  const std::vector<double>& more, BinVariances& variances) {
+  const std::size_t sensors = transfers.size(), bins = spectra.count();
+  const BinEvidence whole = evidence_of(spectra, transfers, variances, kNone);
+  std::vector<double> left(bins, 0.0);
+  variances.by_sensor.assign(sensors, 0.0);
+  variances.left.assign(sensors, 0.0);
+  for (std::size_t k = 0; k < sensors; ++k) {
+    double power = 0.0;
+    for (std::size_t m = 0; m < bins; ++m) {
+      const Complex force = whole.score[m] / whole.told[m], response = spectra.responses[k][m];
+      const double rest = std::norm(response - transfers[k][m] * force);
+      const double own = rest / variances.of[k][m] * more[m];
+      power += std::norm(response);
+      variances.left[k] += rest;
+      left[m] += own / static_cast<double>(sensors - 1);
+      variances.by_sensor[k] += own / static_cast<double>(bins);
+    }
+    variances.left[k] = std::sqrt(variances.left[k] / power);
+  }
+  return left;
+}
+
+}  // namespace
+
+Transfers transfers_of(const ModalModel& model, const ContourSpectra& spectra) {
+  SplitSpectra split;
+  model.evaluate(spectra.grid, spectra.bins, split);
+  Transfers result;
+  for (std::size_t k = 0; k < model.pairs(); ++k) result.push_back(split.joined(k));
+  return result;
+}
+
+BinEvidence evidence_of(const ContourSpectra& spectra, const Transfers& transfers,
+                        const BinVariances& variances, std::size_t left_out) {
+  BinEvidence result{std::vector<double>(spectra.count()), std::vector<Complex>(spectra.count())};
+  for (std::size_t k = 0; k < transfers.size(); ++k) {
+    if (k == left_out) continue;
+    for (std::size_t m = 0; m < spectra.count(); ++m) {
+      const double weight = 1.0 / variances.of[k][m];
+      result.told[m] += weight * std::norm(transfers[k][m]);
+      result.score[m] += weight * std::conj(transfers[k][m]) * spectra.responses[k][m];
+    }
+  }
+  return result;
+}
+
+BinVariances variances_of(const StructureTable& table, const ContourSpectra& spectra,
+                          const Transfers& transfers) {
+  const std::size_t sensors = transfers.size(), bins = spectra.count();
+  std::vector<std::vector<double>> modal(sensors);
+  for (std::size_t k = 0; k < sensors; ++k) {
+    for (std::size_t m = 0; m < bins; ++m) {
+      modal[k].push_back(modal_power(table.model, k, spectra.s(m)));
+    }
+  }
+  BinVariances result{.of = modal};
+  const double noise_power = spectra.noise_power();
+  std::vector<double> more(bins, 1.0);
+  for (int round = 0; round < 4; ++round) {
+    const BinEvidence evidence = evidence_of(spectra, transfers, result, kNone);
+    // Once they are variances: at first they are relative weights alone.
+    std::vector<double> power(bins);
+    if (round == 0) {
+      std::vector<double> squares;
+      for (std::size_t m = 0; m < bins; ++m) {
+        squares.push_back(std::norm(evidence.score[m] / std::max(evidence.told[m], 1e-300)));
+      }
+      power = smoothed(squares, spacing_of(spectra), kReach);
+    } else {
+      power = power_of_force(spectra, evidence);
+    }
+    for (std::size_t k = 0; k < sensors; ++k) {
+      const SensorScatter& scatter = table.scatters[k];
+      for (std::size_t m = 0; m < bins; ++m) {
+        result.of[k][m] = more[m] * (scatter.modal * scatter.modal * power[m] * modal[k][m] +
+                                     scatter.noise * scatter.noise * noise_power) +
+                          1e-300;
+      }
+    }
+    if (sensors < 2) continue;
+    const std::vector<double> left = contradiction(spectra, transfers, more, result);
+    double mean = 0.0;
+    for (const double x : left) mean += x / static_cast<double>(bins);
+    result.misfit = mean;
+    const std::vector<double> next = smoothed(left, spacing_of(spectra), kReach);
+    for (std::size_t m = 0; m < bins; ++m) {
+      const double factor = std::max(next[m], 0.05) / more[m];
+      for (std::size_t k = 0; k < sensors; ++k) result.of[k][m] *= factor;
+      more[m] *= factor;
+    }
+  }
+  for (double& x : result.by_sensor) x = std::sqrt(x);
+  return result;
+}
+
+}  // namespace modcal

@@ -1,0 +1,39 @@
+// What every bin of a record tells of the force, the sensors weighted by how far they may be off.
+#pragma once
+
+#include "libinverse/structure/structure_record.hpp"
+#include "libinverse/structure/structure_table.hpp"
+
+namespace modcal {
+
+using Transfers = std::vector<std::vector<Complex>>;  ///< H of every sensor at every bin
+
+/// F of a bin has the likelihood exp(−told |F|² + 2 Re conj(score) F).
+struct BinEvidence {
+  std::vector<double> told;    ///< Σ_k |H_k|²/V_k [1/N²]
+  std::vector<Complex> score;  ///< Σ_k conj(H_k) Y_k/V_k [1/N]
+};
+
+/// Variances of the sensors' bins about a force.
+struct BinVariances {
+  std::vector<std::vector<double>> of;  ///< V_k, K
+  double misfit = std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> by_sensor;  ///< rms of what each leaves over what is expected
+  std::vector<double> left;       ///< rms of what each leaves over that of its response
+};
+
+/// H of the table's model at the bins.
+Transfers transfers_of(const ModalModel& model, const ContourSpectra& spectra);
+
+/// V_k = ε_k² |F|² Σ_n |H_kn|² + noise, |F|² the power that the responses tell, smoothed, times the
+/// mean square by which the sensors contradict each other about the bin (K > 1).
+BinVariances variances_of(const StructureTable& table, const ContourSpectra& spectra,
+                          const Transfers& transfers);
+
+/// Without the sensor `left_out`, if there is such a one.
+BinEvidence evidence_of(const ContourSpectra& spectra, const Transfers& transfers,
+                        const BinVariances& variances, std::size_t left_out);
+
+inline constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+
+}  // namespace modcal

@@ -1,0 +1,51 @@
+// A table's modes refined by the responses of K sensors to a force that nobody measured.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "libinverse/structure/bin_evidence.hpp"
+
+namespace modcal {
+
+/// How far the structure may be from its table: standard deviations of the priors.
+struct StructureChange {
+  double frequency = 0.01;  ///< of ln f_n [1]
+  double damping = 0.3;     ///< of ln ζ_n [1]
+  double residue = 0.05;  ///< of each modal constant, real and imaginary part of d_kn [1]; 0: known
+};
+
+/// The unknowns are, for mode n, ln f_n and ln ζ_n, then Re d_kn and Im d_kn, A_kn → A_kn (1 +
+/// d_kn), of every sensor and mode in turn.
+struct BlindFit {
+  ModalModel model;
+  Eigen::VectorXd change;              ///< θ from the table
+  Eigen::MatrixXd covariance;          ///< of θ
+  Eigen::MatrixXd root;                ///< its lower triangular factor
+  double misfit = 0.0;                 ///< 2|e|² over its degrees of freedom
+  double degrees = 0.0;                ///< 2B(K − 1)/κ − 2N − p_eff
+  std::vector<Complex> force;          ///< F of every bin
+  std::vector<double> force_variance;  ///< of |F|², noise alone
+
+  /// A model as the data allow it: θ moved by covariance^½ times standard normal numbers, one an
+  /// unknown.
+  ModalModel drawn(std::span<const double> normal) const;
+};
+
+/// Least of J = 2|e|²/κ + Σ θ_i²/sd_i², e = P (y − X c): y the responses whitened by V, P = I − h
+/// hᴴ/|h|² without the force of every bin, c what rings at the record's begin and end, common to
+/// all sensors (unless the structure rests and the contour leaves nothing of the end). Levenberg
+/// and Marquardt with the Jacobian −P (dh F + dX c), projected off PX. A factor common to all d_kn
+/// is the scale of the force: the responses do not see it. start_at: θ to begin with, empty: 0.
+/// Throws InvalidInput for K < 2: one response explains any model.
+BlindFit fit_blindly(const ModalModel& table, const ContourSpectra& spectra,
+                     const BinVariances& variances, const StructureChange& change, bool at_rest,
+                     const Eigen::VectorXd& start_at = {});
+
+/// The fit of a record that begins at rest: on the contours σ, σ/2 and σ/4, the lower ones as far
+/// as the record is long enough for nothing to be left of its end, each from what the one before
+/// has found, with variances_of() the model so far. The covariance is χ² times as large where it is
+/// above 1. The table is not changed.
+BlindFit refined_table(const StructureTable& table, const StructureRecord& record, double sigma,
+                       const StructureChange& change);
+
+}  // namespace modcal

@@ -1,0 +1,57 @@
+// The likelihood of K responses when the force of every bin is eliminated.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "libinverse/structure/bin_evidence.hpp"
+
+namespace modcal {
+
+/// A model with the force and the end state that explain most, and what they leave.
+struct BlindPoint {
+  Transfers weighted;        ///< h = H/√V, K
+  std::vector<double> told;  ///< |h|²
+  Eigen::MatrixXd basis;     ///< orthonormal columns of PX; none: at rest
+  Eigen::VectorXd ends;      ///< c: real and imaginary part of every mode
+  Eigen::VectorXd residual;  ///< e = P (y − X c), real over imaginary parts, of all sensors in turn
+  std::vector<Complex> force;  ///< F of every bin
+  double cost = 0.0;           ///< 2|e|²/κ
+};
+
+/// P = I − h hᴴ/|h|², whitened by V; X holds r_kn c_n U_n + conj(r_kn c_n) U'_n, what rings at the
+/// record's begin and end (strike_columns.hpp), c common to all sensors. e has K numbers a bin, of
+/// rank K − 1.
+class BlindLikelihood {
+ public:
+  /// All but at_rest must outlive this. The models must have a quadrature.
+  BlindLikelihood(const ContourSpectra& spectra, const std::vector<SensorKind>& kinds,
+                  const BinVariances& variances, bool at_rest);
+
+  BlindPoint at(const ModalModel& model) const;
+  /// Derivatives of e by ln f and ln ζ of the modes, then, if they are free, by real and imaginary
+  /// part of factors 1 + d of the modal constants of `start`: −P (dh F + dX c), off PX. The other
+  /// half of dP y lies along h, orthogonal to e.
+  Eigen::MatrixXd jacobian(const ModalModel& start, const ModalModel& model,
+                           const BlindPoint& point, bool factors) const;
+  double correlated() const { return spectra_.correlated(); }
+  /// Numbers that the data have when force and ends are eliminated.
+  double numbers(std::size_t modes) const;
+
+ private:
+  std::size_t bins() const { return spectra_.count(); }
+  std::size_t sensors() const { return roots_.size(); }
+  Eigen::VectorXd projected(const BlindPoint& point, const Transfers& v) const;
+  std::vector<Complex> made_by(const BlindPoint& point, std::size_t k, std::size_t n,
+                               const ModalPole& pole, Complex constant) const;
+  std::vector<Complex> end_column(std::size_t k, const ModalPole& pole, Complex constant,
+                                  Complex state) const;
+  void fit_ends(const ModalModel& model, BlindPoint& point, Transfers& data) const;
+
+  const ContourSpectra& spectra_;
+  const std::vector<SensorKind>& kinds_;
+  bool free_ends_;
+  std::vector<Complex> delay_;              // exp(−s/f_s)
+  std::vector<std::vector<double>> roots_;  // 1/√V, K
+};
+
+}  // namespace modcal

@@ -1,0 +1,48 @@
+#include "libinverse/structure/force_band.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace modcal {
+
+double power_outside(const ContourSpectra& spectra, const std::vector<double>& power) {
+  const double below = static_cast<double>(spectra.bins.first) - 0.5;
+  double x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, n = 0.0;
+  for (std::size_t m = power.size() / 2; m < power.size(); ++m) {
+    const double at = std::log(spectra.s(m).imag()), value = std::log(power[m]);
+    x += at, y += value, xx += at * at, xy += at * value, n += 1.0;
+  }
+  const double spread = xx * n - x * x;
+  const double slope = spread > 0.0 ? std::min(0.0, (xy * n - x * y) / spread) : 0.0;
+  const double end = (y + slope * (n * std::log(spectra.s(power.size() - 1).imag()) - x)) / n;
+  double sum = below * power.front();
+  for (std::size_t k = spectra.bins.last; 2 * k < spectra.samples; ++k) {
+    sum += std::exp(end + slope * std::log(static_cast<double>(k) /
+                                           static_cast<double>(spectra.bins.last - 1)));
+  }
+  return sum;
+}
+
+Eigen::VectorXd variance_of_shape(const Eigen::VectorXd& force, double rate, double high) {
+  const auto samples = force.size();
+  const RealFft fft(4 * static_cast<std::size_t>(samples));
+  std::vector<double> signal(fft.length(), 0.0);
+  std::ranges::copy(force, signal.begin());
+  std::vector<Complex> spectrum = fft.forward(signal);
+  for (std::size_t k = 0; k < spectrum.size(); ++k) {
+    const double at = rate * static_cast<double>(k) / static_cast<double>(fft.length());
+    if (at <= high) spectrum[k] = 0.0;
+  }
+  std::vector<double> turned(fft.length());
+  fft.inverse(spectrum, signal);
+  for (Complex& x : spectrum) x *= Complex(0.0, -1.0);
+  fft.inverse(spectrum, turned);
+  Eigen::VectorXd result(samples);
+  for (Eigen::Index j = 0; j < samples; ++j) {
+    const auto i = static_cast<std::size_t>(j);
+    result[j] = signal[i] * signal[i] + turned[i] * turned[i];
+  }
+  return result;
+}
+
+}  // namespace modcal

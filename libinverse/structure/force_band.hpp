@@ -1,0 +1,19 @@
+// What is not known of a force outside of the measured band.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "libinverse/structure/structure_record.hpp"
+
+namespace modcal {
+
+/// Sum over the bins outside of the band of a force of `power` in those of the band: below as at
+/// its lower end, above as its upper octave goes on by a power of frequency, which does not rise.
+double power_outside(const ContourSpectra& spectra, const std::vector<double>& power);
+
+/// Variance of the samples of pulses whose spectrum above `high` [Hz] is supposed, not measured:
+/// all of it may be otherwise, at the instants where it stands (its envelope, by Hilbert's
+/// transform).
+Eigen::VectorXd variance_of_shape(const Eigen::VectorXd& force, double rate, double high);
+
+}  // namespace modcal

@@ -1,0 +1,219 @@
+#include "libinverse/structure/pole_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "libsim/base/task_loop.hpp"
+
+namespace modcal {
+namespace {
+
+using Index = Eigen::Index;
+
+// Steps of a fit are small against a mode's width and what damping may be off.
+constexpr double kFrequencyStep = 0.02, kDampingStep = 0.5;
+constexpr double kLeastDamping = 1e-5, kMostDamping = 0.5;
+
+ModalPole moved(const ModalPole& pole, double frequency, double damping) {
+  return {.omega = pole.omega * std::exp(frequency),
+          .zeta = std::clamp(pole.zeta * std::exp(damping), kLeastDamping, kMostDamping)};
+}
+
+std::size_t power_index(SensorKind kind) { return static_cast<std::size_t>(power_of_s(kind)); }
+
+}  // namespace
+
+PoleSearch::PoleSearch(const ContourSpectra& spectra, std::span<const double> force,
+                       const std::vector<SensorKind>& kinds,
+                       const std::vector<std::vector<double>>& weights)
+    : spectra_(spectra), strike_(spectra, force), kinds_(kinds), weights_(weights) {
+  for (std::size_t k = 0; k < kinds.size(); ++k) {
+    powers_[power_index(kinds[k])] = true;
+    data_.push_back(weighted(k, spectra.responses[k]));
+    Eigen::MatrixXd columns(data_[k].size(), kStatics);
+    for (Index i = 0; i < kStatics; ++i) {
+      std::vector<Complex> column(spectra.count());
+      for (std::size_t m = 0; m < column.size(); ++m) {
+        const Complex s = spectra.s(m);
+        const Complex own = power_of_s(kinds[k]) == 0 ? 1.0 : power_of_s(kinds[k]) == 1 ? s : s * s;
+        column[m] = own * (i == 0 ? 1.0 / (s * s) : 1.0) * spectra.force[m];
+      }
+      columns.col(i) = weighted(k, column);
+    }
+    static_.push_back(std::move(columns));
+  }
+  lay_grid();
+}
+
+Eigen::VectorXd PoleSearch::weighted(std::size_t k, const std::vector<Complex>& spectrum) const {
+  const auto count = static_cast<Index>(spectrum.size());
+  Eigen::VectorXd result(2 * count);
+  for (Index m = 0; m < count; ++m) {
+    const auto i = static_cast<std::size_t>(m);
+    result[m] = weights_[k][i] * spectrum[i].real();
+    result[m + count] = weights_[k][i] * spectrum[i].imag();
+  }
+  return result;
+}
+
+void PoleSearch::lay_grid() {
+  // No resonance is narrower on the contour than 2σ.
+  const double width = std::max(2.0 * spectra_.grid.sigma, spectra_.grid.spacing);
+  const double low = spectra_.s(0).imag(), high = spectra_.s(spectra_.count() - 1).imag();
+  const auto count = static_cast<std::size_t>(std::ceil((high - low) / width));
+  for (std::size_t i = 0; i < count; ++i) {
+    const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
+    for (const double zeta : {0.002, 0.006, 0.02})
+      grid_.push_back({low + share * (high - low), zeta});
+  }
+  for (std::size_t k = 0; k < sensors(); ++k) {
+    grid_columns_.emplace_back(data_[k].size(), 2 * std::ssize(grid_));
+  }
+  for_each_task(grid_.size(), [&](std::size_t i) {
+    const Columns columns = strike_.of(grid_[i], powers_);
+    for (std::size_t k = 0; k < sensors(); ++k) {
+      for (const std::size_t turned : {0, 1}) {
+        const auto at = static_cast<Index>(2 * i + turned);
+        grid_columns_[k].col(at) = weighted(k, columns[power_index(kinds_[k])][turned]);
+        grid_columns_[k].col(at).normalize();
+      }
+    }
+  });
+}
+
+SensorFit PoleSearch::sensor_at(std::size_t k, const std::vector<Columns>& columns,
+                                const std::vector<ModalPole>& poles) const {
+  SensorFit fit;
+  const Index modes = std::ssize(poles);
+  fit.columns.resize(data_[k].size(), 2 * modes + kStatics);
+  for (Index n = 0; n < modes; ++n) {
+    const ColumnPair& pair = columns[static_cast<std::size_t>(n)][power_index(kinds_[k])];
+    for (const std::size_t turned : {0, 1}) {
+      fit.columns.col(2 * n + static_cast<Index>(turned)) = weighted(k, pair[turned]);
+    }
+  }
+  fit.columns.rightCols(kStatics) = static_[k];
+  fit.norms = fit.columns.colwise().norm();
+  fit.columns.array().rowwise() /= fit.norms.transpose().array();
+  Eigen::MatrixXd gram = fit.columns.transpose() * fit.columns;
+  gram.diagonal().array() += 1e-12;
+  fit.gram.compute(gram);
+  fit.amplitudes = fit.gram.solve(fit.columns.transpose() * data_[k]);
+  fit.residual = data_[k] - fit.columns * fit.amplitudes;
+  return fit;
+}
+
+std::vector<SensorFit> PoleSearch::at(const std::vector<ModalPole>& poles) const {
+  std::vector<Columns> columns(poles.size());
+  for_each_task(poles.size(), [&](std::size_t n) { columns[n] = strike_.of(poles[n], powers_); });
+  std::vector<SensorFit> result(sensors());
+  for_each_task(sensors(), [&](std::size_t k) { result[k] = sensor_at(k, columns, poles); });
+  return result;
+}
+
+double PoleSearch::cost(const std::vector<ModalPole>& poles) const {
+  double sum = 0.0;
+  for (const SensorFit& fit : at(poles)) sum += fit.cost();
+  return sum;
+}
+
+PoleSearch::Equations PoleSearch::equations(const std::vector<ModalPole>& poles) const {
+  // Where the errors of central differences by rounding and by curvature are alike; damping changes
+  // a column by a hundredth of what a frequency does.
+  const double near = std::cbrt(std::numeric_limits<double>::epsilon()), far = 100.0 * near;
+  const std::vector<SensorFit> fits = at(poles);
+  const Index unknowns = 2 * std::ssize(poles);
+  std::vector<std::array<Columns, 4>> beside(poles.size());
+  for_each_task(poles.size(), [&](std::size_t n) {
+    beside[n] = {strike_.of(moved(poles[n], near, 0.0), powers_),
+                 strike_.of(moved(poles[n], -near, 0.0), powers_),
+                 strike_.of(moved(poles[n], 0.0, far), powers_),
+                 strike_.of(moved(poles[n], 0.0, -far), powers_)};
+  });
+  std::vector<Equations> parts(sensors());
+  for_each_task(sensors(), [&](std::size_t k) {
+    Eigen::MatrixXd slopes(data_[k].size(), unknowns);
+    for (Index i = 0; i < unknowns; ++i) {
+      const auto n = static_cast<std::size_t>(i / 2);
+      const auto up = static_cast<std::size_t>(2 * (i % 2));
+      const double step = 2.0 * (i % 2 == 0 ? near : far);
+      slopes.col(i).setZero();
+      for (const std::size_t turned : {0, 1}) {
+        const Index at = 2 * static_cast<Index>(n) + static_cast<Index>(turned);
+        const std::size_t p = power_index(kinds_[k]);
+        slopes.col(i) +=
+            fits[k].amplitudes[at] / fits[k].norms[at] / step *
+            (weighted(k, beside[n][up][p][turned]) - weighted(k, beside[n][up + 1][p][turned]));
+      }
+    }
+    const Eigen::MatrixXd jacobian = -fits[k].project(slopes);
+    parts[k] = {jacobian.transpose() * jacobian, jacobian.transpose() * fits[k].residual};
+  });
+  Equations sum{Eigen::MatrixXd::Zero(unknowns, unknowns), Eigen::VectorXd::Zero(unknowns)};
+  for (const Equations& part : parts) {
+    sum.matrix += part.matrix;
+    sum.slope += part.slope;
+  }
+  return sum;
+}
+
+Eigen::MatrixXd PoleSearch::information(const std::vector<ModalPole>& poles) const {
+  return equations(poles).matrix;
+}
+
+double PoleSearch::fit(std::vector<ModalPole>& poles, int steps) const {
+  double here = cost(poles), damping = 1e-3;
+  for (int step = 0; step < steps; ++step) {
+    const Equations equations = this->equations(poles);
+    bool better = false;
+    for (int round = 0; round < 8 && !better; ++round) {
+      Eigen::MatrixXd matrix = equations.matrix;
+      matrix.diagonal() *= 1.0 + damping;
+      matrix.diagonal().array() += 1e-12 * matrix.diagonal().maxCoeff();
+      const Eigen::VectorXd change = -matrix.ldlt().solve(equations.slope);
+      std::vector<ModalPole> next = poles;
+      for (std::size_t n = 0; n < poles.size(); ++n) {
+        const auto i = static_cast<Index>(2 * n);
+        next[n] = moved(poles[n], std::clamp(change[i], -kFrequencyStep, kFrequencyStep),
+                        std::clamp(change[i + 1], -kDampingStep, kDampingStep));
+      }
+      const double there = cost(next);
+      better = there < here;
+      damping = better ? 0.1 * damping : 10.0 * damping;
+      if (!better) continue;
+      const double gain = here - there;
+      poles = std::move(next);
+      here = there;
+      if (gain < 1e-7 * here) return here;
+    }
+    if (!better) break;
+  }
+  return here;
+}
+
+ModalPole PoleSearch::best_addition(const std::vector<ModalPole>& poles) const {
+  const std::vector<SensorFit> fits = at(poles);
+  std::vector<Eigen::VectorXd> gains(sensors());
+  for_each_task(sensors(), [&](std::size_t k) {
+    const Eigen::MatrixXd& grid = grid_columns_[k];
+    const Eigen::MatrixXd mixed = fits[k].columns.transpose() * grid;
+    const Eigen::MatrixXd taken = fits[k].gram.solve(mixed);
+    const Eigen::VectorXd score = grid.transpose() * fits[k].residual;
+    gains[k].resize(std::ssize(grid_));
+    for (Index i = 0; i < gains[k].size(); ++i) {
+      Eigen::Matrix2d left = grid.middleCols(2 * i, 2).transpose() * grid.middleCols(2 * i, 2) -
+                             mixed.middleCols(2 * i, 2).transpose() * taken.middleCols(2 * i, 2);
+      left.diagonal().array() += 1e-9;
+      const Eigen::Vector2d own = score.segment(2 * i, 2);
+      gains[k][i] = own.dot(left.ldlt().solve(own));
+    }
+  });
+  Eigen::VectorXd sum = gains.front();
+  for (std::size_t k = 1; k < sensors(); ++k) sum += gains[k];
+  Index best = 0;
+  sum.maxCoeff(&best);
+  return grid_[static_cast<std::size_t>(best)];
+}
+
+}  // namespace modcal

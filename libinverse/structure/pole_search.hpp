@@ -1,0 +1,68 @@
+// Least squares over poles with the linear unknowns of every sensor eliminated.
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+#include "libinverse/structure/strike_columns.hpp"
+
+namespace modcal {
+
+/// One sensor at given poles: y = M x + r, columns of unit norm.
+struct SensorFit {
+  Eigen::MatrixXd columns;  ///< weighted; real over imaginary parts
+  Eigen::VectorXd norms;    ///< of the columns before
+  Eigen::LDLT<Eigen::MatrixXd> gram;
+  Eigen::VectorXd amplitudes;  ///< of the columns as they are
+  Eigen::VectorXd residual;
+
+  double cost() const { return residual.squaredNorm(); }
+  /// What of v no column takes.
+  Eigen::MatrixXd project(const Eigen::MatrixXd& v) const {
+    return v - columns * gram.solve(columns.transpose() * v);
+  }
+};
+
+class PoleSearch {
+ public:
+  /// weights: 1/σ of every bin, by sensor. The arguments must outlive this.
+  PoleSearch(const ContourSpectra& spectra, std::span<const double> force,
+             const std::vector<SensorKind>& kinds, const std::vector<std::vector<double>>& weights);
+
+  std::vector<SensorFit> at(const std::vector<ModalPole>& poles) const;
+  double cost(const std::vector<ModalPole>& poles) const;
+  /// Fits the poles by at most `steps` of Levenberg and Marquardt; returns the cost.
+  double fit(std::vector<ModalPole>& poles, int steps) const;
+  /// Of the pairs of poles on a grid over the band the one that takes most from the cost.
+  ModalPole best_addition(const std::vector<ModalPole>& poles) const;
+  /// JᵀJ of ln f and ln ζ of every mode in turn, the linear unknowns eliminated.
+  Eigen::MatrixXd information(const std::vector<ModalPole>& poles) const;
+  /// Static terms of a sensor: powers of s besides its own, −2 and 0 (an acceleration, a velocity)
+  /// or −2 and 0 (a displacement).
+  static constexpr Eigen::Index kStatics = 2;
+  std::size_t sensors() const { return kinds_.size(); }
+
+ private:
+  using Columns = std::array<ColumnPair, 3>;
+  struct Equations {
+    Eigen::MatrixXd matrix;  // JᵀJ
+    Eigen::VectorXd slope;   // Jᵀr
+  };
+  Equations equations(const std::vector<ModalPole>& poles) const;
+  SensorFit sensor_at(std::size_t k, const std::vector<Columns>& columns,
+                      const std::vector<ModalPole>& poles) const;
+  Eigen::VectorXd weighted(std::size_t k, const std::vector<Complex>& spectrum) const;
+  void lay_grid();
+
+  const ContourSpectra& spectra_;
+  StrikeColumns strike_;
+  const std::vector<SensorKind>& kinds_;
+  const std::vector<std::vector<double>>& weights_;
+  std::array<bool, 3> powers_ = {false, false, false};
+  std::vector<Eigen::VectorXd> data_;    // weighted, K
+  std::vector<Eigen::MatrixXd> static_;  // weighted columns, K
+  std::vector<ModalPole> grid_;
+  std::vector<Eigen::MatrixXd> grid_columns_;  // two a pole, K
+};
+
+}  // namespace modcal

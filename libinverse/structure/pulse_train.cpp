@@ -1,0 +1,96 @@
+#include "libinverse/structure/pulse_train.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "libsim/base/error.hpp"
+#include "libsim/base/task_loop.hpp"
+
+namespace modcal {
+namespace {
+
+using Index = Eigen::Index;
+
+constexpr double kTurn = 2.0 * std::numbers::pi;
+
+}  // namespace
+
+PulseTrain::PulseTrain(const StructureTable& table, const ContourSpectra& spectra, double window)
+    : table_(table), spectra_(spectra) {
+  step_ = std::max(1.0 / (3.0 * table.high), 0.5 / spectra.sample_rate);
+  const auto count = static_cast<std::size_t>(window / step_);
+  MODCAL_REQUIRE(count >= 1 && count <= 4000,
+                 "a window of {:g} s holds {} instants of a pulse, {:g} s apart: state a window of "
+                 "1 to 4000 of them, or shape: smooth",
+                 window, count, step_);
+  decay_.resize(static_cast<Index>(count));
+  for (std::size_t i = 0; i < count; ++i) {
+    instants_.push_back(step_ * static_cast<double>(i));
+    decay_[static_cast<Index>(i)] = std::exp(-spectra.grid.sigma * instants_.back());
+  }
+}
+
+std::pair<Eigen::MatrixXd, Eigen::VectorXd> PulseTrain::normal_of(
+    const BinEvidence& evidence) const {
+  const Index count = std::ssize(instants_);
+  const double share = 2.0 / spectra_.correlated();
+  Eigen::VectorXd lags = Eigen::VectorXd::Zero(count), score = Eigen::VectorXd::Zero(count);
+  for (std::size_t m = 0; m < spectra_.count(); ++m) {
+    const double omega = spectra_.s(m).imag(), pulse = table_.pulse_at(omega / kTurn);
+    const Complex step = std::polar(1.0, omega * step_);
+    const Complex right = share * pulse * evidence.score[m];
+    const double weight = share * pulse * pulse * evidence.told[m];
+    Complex turn = 1.0;
+    for (Index i = 0; i < count; ++i) {
+      lags[i] += weight * turn.real();
+      score[i] += turn.real() * right.real() - turn.imag() * right.imag();
+      turn *= step;
+    }
+  }
+  Eigen::MatrixXd matrix(count, count);
+  for (Index i = 0; i < count; ++i) {
+    score[i] *= decay_[i];
+    for (Index j = 0; j < count; ++j) {
+      matrix(i, j) = lags[std::abs(i - j)] * decay_[i] * decay_[j];
+    }
+  }
+  return {std::move(matrix), std::move(score)};
+}
+
+std::vector<Complex> PulseTrain::spectrum(const Eigen::VectorXd& amplitudes) const {
+  std::vector<Complex> result;
+  for (std::size_t m = 0; m < spectra_.count(); ++m) {
+    const Complex step = std::exp(-spectra_.s(m) * step_);
+    Complex sum, turn = 1.0;
+    for (const double amplitude : amplitudes) {
+      sum += amplitude * turn;
+      turn *= step;
+    }
+    result.push_back(sum * table_.pulse_at(spectra_.s(m).imag() / kTurn));
+  }
+  return result;
+}
+
+Eigen::MatrixXd PulseTrain::columns(Index samples) const {
+  // Long enough that no pulse comes round to the other end; |G| beyond the band is that of its end.
+  const std::size_t length = 4 * static_cast<std::size_t>(samples) + 1024;
+  const RealFft fft(length);
+  const double spacing = kTurn * spectra_.sample_rate / static_cast<double>(length);
+  Eigen::MatrixXd result(samples, std::ssize(instants_));
+  for_each_task(instants_.size(), [&](std::size_t i) {
+    std::vector<Complex> spectrum(fft.bins());
+    for (std::size_t k = 0; k < spectrum.size(); ++k) {
+      const double omega = spacing * static_cast<double>(k);
+      spectrum[k] = std::polar(table_.pulse_at(omega / kTurn), -omega * instants_[i]);
+    }
+    std::vector<double> signal(length);
+    fft.inverse(spectrum, signal);
+    for (Index j = 0; j < samples; ++j) {
+      result(j, static_cast<Index>(i)) = signal[static_cast<std::size_t>(j)];
+    }
+  });
+  return result;
+}
+
+}  // namespace modcal

@@ -1,0 +1,28 @@
+// Sparse amplitudes by automatic relevance determination.
+#pragma once
+
+#include <Eigen/Core>
+
+namespace modcal {
+
+/// Posterior of amplitudes p_j ~ N(0, a_j) under the likelihood exp(bᵀp − pᵀAp/2).
+struct Relevance {
+  Eigen::VectorXd widths;  ///< a_j
+  Eigen::VectorXd mean;
+  Eigen::MatrixXd covariance;
+  double evidence = 0.0;  ///< ln of it, over that of p = 0
+};
+
+/// The a_j of largest evidence: a_j ← μ_j²/γ_j, γ_j = 1 − C_jj/a_j (MacKay, 1992; Tipping, 2001).
+/// Those below 1e-6 of the largest stay there.
+Relevance determine_relevance(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
+
+/// The same with the widths given.
+Relevance posterior_of(const Eigen::MatrixXd& a, const Eigen::VectorXd& b,
+                       const Eigen::VectorXd& widths);
+
+/// Largest posterior density of p ≥ 0 (active set of Lawson and Hanson, 1974).
+Eigen::VectorXd non_negative_mean(const Eigen::MatrixXd& a, const Eigen::VectorXd& b,
+                                  const Eigen::VectorXd& widths);
+
+}  // namespace modcal

@@ -1,0 +1,237 @@
+#include "libinverse/structure/strike_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "libinverse/structure/pole_search.hpp"
+#include "libsim/base/error.hpp"
+
+namespace modcal {
+namespace {
+
+using Index = Eigen::Index;
+
+double mean_power(const std::vector<Complex>& spectrum) {
+  double sum = 0.0;
+  for (const Complex& x : spectrum) sum += std::norm(x);
+  return sum / static_cast<double>(spectrum.size());
+}
+
+// 1/σ of every bin: a share of the response about it, and a tenth of that share of its rms.
+std::vector<std::vector<double>> weights_of(const ContourSpectra& spectra, double share) {
+  std::vector<std::vector<double>> result;
+  const double spacing = spectra.grid.spacing / (2.0 * std::numbers::pi);
+  for (const std::vector<Complex>& response : spectra.responses) {
+    std::vector<double> power;
+    for (const Complex& y : response) power.push_back(std::norm(y));
+    std::vector<double>& weights = result.emplace_back();
+    const double floor = 0.01 * mean_power(response);
+    for (const double p : smoothed(power, spacing, 3.0)) {
+      weights.push_back(1.0 / (share * std::sqrt(p + floor)));
+    }
+  }
+  return result;
+}
+
+// Least squares of |residual|² = ε² |F|² Σ_n |H_n|² + noise with neither negative.
+SensorScatter scatter_of(const std::vector<double>& left, const std::vector<double>& modal,
+                         double noise_power) {
+  double mm = 0.0, m1 = 0.0, lm = 0.0, l1 = 0.0;
+  const auto n = static_cast<double>(left.size());
+  const double unit = std::max(1e-300, *std::max_element(modal.begin(), modal.end()));
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    const double x = modal[i] / unit;
+    mm += x * x;
+    m1 += x;
+    lm += left[i] * x;
+    l1 += left[i];
+  }
+  const double determinant = mm * n - m1 * m1;
+  double slope = determinant > 0.0 ? (lm * n - l1 * m1) / determinant : 0.0;
+  double level = determinant > 0.0 ? (mm * l1 - m1 * lm) / determinant : l1 / n;
+  if (slope < 0.0) slope = 0.0, level = l1 / n;
+  if (level < 0.0) level = 0.0, slope = lm / mm;
+  return {.modal = std::sqrt(slope / unit), .noise = std::sqrt(level / noise_power)};
+}
+
+class Fit {
+ public:
+  Fit(const StructureRecord& record, const std::vector<SensorKind>& kinds,
+      const StrikeFitOptions& options)
+      : record_(record), kinds_(kinds), options_(options) {
+    const double sigma = std::isnan(options.sigma)
+                             ? std::min(20.0 / record.duration(), options.high / 50.0)
+                             : options.sigma;
+    // What comes later has a part of e^−12 in the power, and the columns know of the end.
+    const auto count = static_cast<std::size_t>(6.0 / sigma * record.sample_rate);
+    if (count < record.samples()) {
+      record_.force.resize(count);
+      for (std::vector<double>& response : record_.responses) response.resize(count);
+    }
+    result_.spectra = ContourSpectra::of(record_, sigma, options.low, options.high);
+    weights_ = weights_of(result_.spectra, options.relative_error);
+  }
+
+  StrikeFit run() {
+    const PoleSearch search(result_.spectra, record_.force, kinds_, weights_);
+    std::vector<ModalPole> poles, best;
+    double least = std::numeric_limits<double>::infinity();
+    while (poles.size() < options_.most_modes && parameters(poles.size() + 1) < 0.75 * numbers()) {
+      poles.push_back(search.best_addition(poles));
+      const double cost = search.fit(poles, 3);
+      const double told = parameters(poles.size());
+      const double criterion =
+          numbers() * std::log(cost / counted_twice() / numbers()) + told * std::log(numbers());
+      result_.steps.push_back({.modes = poles.size(),
+                               .misfit = cost / counted_twice() / (numbers() - told),
+                               .criterion = criterion});
+      if (criterion < least) least = criterion, best = poles;
+      if (poles.size() > best.size() + 3) break;
+    }
+    MODCAL_REQUIRE(!best.empty(),
+                   "the record tells {:.3g} numbers in its band, a mode takes {:g}: state a wider "
+                   "band or a smaller contour",
+                   numbers(), parameters(1));
+    const double cost = search.fit(best, 30);
+    result_.misfit = cost / counted_twice() / (numbers() - parameters(best.size()));
+    std::ranges::sort(best, {}, &ModalPole::omega);
+    tell(search, best);
+    return std::move(result_);
+  }
+
+ private:
+  // Bins that tell alike count as one; of real and imaginary part each.
+  double numbers() const {
+    return 2.0 * static_cast<double>(result_.spectra.count() * kinds_.size()) /
+           result_.spectra.correlated();
+  }
+  double counted_twice() const { return result_.spectra.correlated(); }
+  double parameters(std::size_t modes) const {
+    const auto n = static_cast<double>(modes), k = static_cast<double>(kinds_.size());
+    return n * (2.0 + 2.0 * k) + 2.0 * k;
+  }
+
+  // |G| of the largest pulse, ten periods of the band's top to either side of its peak, fading out.
+  void tell_pulse() {
+    const std::vector<double>& force = record_.force;
+    const auto larger = [](double a, double b) { return std::abs(a) < std::abs(b); };
+    const auto peak = std::max_element(force.begin(), force.end(), larger) - force.begin();
+    const auto reach = static_cast<std::ptrdiff_t>(10.0 * record_.sample_rate / options_.high);
+    const RealFft fft(static_cast<std::size_t>(4 * reach));
+    std::vector<double> pulse(fft.length(), 0.0);
+    for (std::ptrdiff_t j = -reach; j <= reach; ++j) {
+      if (peak + j < 0 || peak + j >= std::ssize(force)) continue;
+      const double fading = std::cos(0.5 * std::numbers::pi * static_cast<double>(j) /
+                                     (static_cast<double>(reach) + 1.0));
+      pulse[static_cast<std::size_t>(j + reach)] =
+          fading * fading * force[static_cast<std::size_t>(peak + j)];
+    }
+    const std::vector<Complex> spectrum = fft.forward(pulse);
+    StructureTable& table = result_.table;
+    table.lag = record_.sample_rate / static_cast<double>(fft.length());
+    for (const Complex& g : spectrum) {
+      table.pulse.push_back(std::abs(g) / std::max(std::abs(spectrum[0]), 1e-300));
+    }
+  }
+
+  void tell(const PoleSearch& search, const std::vector<ModalPole>& poles) {
+    StructureTable& table = result_.table;
+    tell_pulse();
+    const std::size_t modes = poles.size();
+    table.low = options_.low, table.high = options_.high;
+    table.model = {.poles = poles, .sensors = kinds_};
+    tell_deviations(search, poles);
+    const std::vector<SensorFit> fits = search.at(poles);
+    for (std::size_t k = 0; k < kinds_.size(); ++k) {
+      const Eigen::VectorXd x = fits[k].amplitudes.cwiseQuotient(fits[k].norms);
+      for (std::size_t n = 0; n < modes; ++n) {
+        const double scale = std::pow(poles[n].omega, 2 - power_of_s(kinds_[k]));
+        table.model.constants.push_back(scale * x[static_cast<Index>(2 * n)]);
+        table.model.quadrature.push_back(scale * x[static_cast<Index>(2 * n + 1)]);
+      }
+      const auto first = static_cast<Index>(2 * modes);
+      table.model.residuals.push_back({.below = x[first], .constant = x[first + 1]});
+      tell_rest(k, fits[k]);
+    }
+  }
+
+  void tell_deviations(const PoleSearch& search, const std::vector<ModalPole>& poles) {
+    const Eigen::MatrixXd information = search.information(poles);
+    const Eigen::MatrixXd covariance = information.ldlt().solve(Eigen::MatrixXd::Identity(
+                                           information.rows(), information.cols())) *
+                                       counted_twice() * result_.misfit;
+    for (std::size_t n = 0; n < poles.size(); ++n) {
+      const auto i = static_cast<Index>(2 * n);
+      result_.table.frequency_deviations.push_back(std::sqrt(std::max(0.0, covariance(i, i))));
+      result_.table.damping_deviations.push_back(
+          std::sqrt(std::max(0.0, covariance(i + 1, i + 1))));
+    }
+  }
+
+  void tell_rest(std::size_t k, const SensorFit& fit) {
+    const ContourSpectra& spectra = result_.spectra;
+    const ModalModel& model = result_.table.model;
+    std::vector<double> left, modal;
+    std::vector<Complex>& modeled = result_.modeled.emplace_back();
+    double rest = 0.0;
+    for (std::size_t m = 0; m < spectra.count(); ++m) {
+      const auto i = static_cast<Index>(m), count = static_cast<Index>(spectra.count());
+      const Complex residual = Complex(fit.residual[i], fit.residual[i + count]) / weights_[k][m];
+      modeled.push_back(spectra.responses[k][m] - residual);
+      left.push_back(std::norm(residual));
+      rest += std::norm(residual);
+      modal.push_back(std::norm(spectra.force[m]) * modal_power(model, k, spectra.s(m)));
+    }
+    result_.residuals.push_back(
+        std::sqrt(rest / static_cast<double>(left.size()) / mean_power(spectra.responses[k])));
+    result_.table.scatters.push_back(scatter_of(left, modal, spectra.noise_power()));
+  }
+
+  StructureRecord record_;
+  const std::vector<SensorKind>& kinds_;
+  const StrikeFitOptions& options_;
+  std::vector<std::vector<double>> weights_;
+  StrikeFit result_;
+};
+
+}  // namespace
+
+double StructureTable::frequency(std::size_t n) const {
+  return model.poles[n].omega / (2.0 * std::numbers::pi);
+}
+
+double StructureTable::pulse_at(double frequency) const {
+  if (pulse.empty()) return 1.0;
+  const double at = frequency / lag;
+  const auto i = static_cast<std::size_t>(at);
+  if (i + 1 >= pulse.size()) return pulse.back();
+  const double share = at - static_cast<double>(i);
+  return (1.0 - share) * pulse[i] + share * pulse[i + 1];
+}
+
+double modal_power(const ModalModel& model, std::size_t pair, Complex s) {
+  const SensorKind kind = model.sensors[pair / model.contacts];
+  double sum = 0.0;
+  for (std::size_t n = 0; n < model.poles.size(); ++n) {
+    const ModalPole& pole = model.poles[n];
+    const Complex constant(
+        model.constant(pair, n),
+        model.quadrature.empty() ? 0.0 : model.quadrature[pair * model.poles.size() + n]);
+    sum += std::norm(numerator_of(kind, pole, constant, s) / pole.denominator(s));
+  }
+  return sum;
+}
+
+StrikeFit fit_strike(const StructureRecord& record, const std::vector<SensorKind>& kinds,
+                     const StrikeFitOptions& options) {
+  MODCAL_REQUIRE(!record.force.empty(),
+                 "modes from a strike need the force of {} record: name its "
+                 "channel",
+                 1);
+  MODCAL_REQUIRE(kinds.size() == record.responses.size(), "{} kinds of sensors for {} responses",
+                 kinds.size(), record.responses.size());
+  return Fit(record, kinds, options).run();
+}
+
+}  // namespace modcal

@@ -1,0 +1,45 @@
+// Modes of a structure from a strike whose force was measured.
+#pragma once
+
+#include "libinverse/structure/structure_record.hpp"
+#include "libinverse/structure/structure_table.hpp"
+
+namespace modcal {
+
+/// How the modes are fitted.
+struct StrikeFitOptions {
+  double low = 0.0, high = 0.0;  ///< band [Hz]
+  /// Contour [1/s]; NaN: 20 over the duration, which leaves nothing of the end, but no more than
+  /// weighs 50 periods of `high` by 1/e: a shorter record keeps its end, of which the columns know.
+  double sigma = std::numeric_limits<double>::quiet_NaN();
+  std::size_t most_modes = 60;
+  /// Error of the model in a bin, as a share of the response about it [1].
+  double relative_error = 0.02;
+};
+
+/// One step of the search: so many modes, how much they leave.
+struct ModeCount {
+  std::size_t modes = 0;
+  double misfit = 0.0;     ///< weighted cost over its degrees of freedom
+  double criterion = 0.0;  ///< BIC
+};
+
+struct StrikeFit {
+  StructureTable table;
+  std::vector<ModeCount> steps;
+  std::vector<double> residuals;  ///< rms of what is left over rms of the response, K
+  double misfit = 0.0;            ///< χ² over its degrees of freedom
+  ContourSpectra spectra;
+  std::vector<std::vector<Complex>> modeled;  ///< responses of the model at its bins, K
+};
+
+/// Poles common to all sensors, complex modal constants and static terms (ModalModel), by weighted
+/// least squares on a contour s = σ + iω, linear unknowns eliminated (Golub and Pereyra, 1973;
+/// Kaufman, 1975). One mode more at a time, where it takes most from the misfit, as long as
+/// BIC = n ln(cost/n) + p ln n falls (Schwarz, 1978); n bins that tell alike count as one. The
+/// structure is at rest at t = 0; rebounds are part of the force. Throws InvalidInput for a record
+/// without force, a band without bins, or one that has fewer numbers than one mode takes.
+StrikeFit fit_strike(const StructureRecord& record, const std::vector<SensorKind>& kinds,
+                     const StrikeFitOptions& options);
+
+}  // namespace modcal

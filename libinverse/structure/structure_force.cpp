@@ -1,0 +1,264 @@
+#include "libinverse/structure/structure_force.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include "libinverse/structure/bin_evidence.hpp"
+#include "libinverse/structure/force_band.hpp"
+#include "libinverse/structure/pulse_train.hpp"
+#include "libinverse/structure/relevance.hpp"
+#include "libinverse/structure/tuning.hpp"
+#include "libsim/base/error.hpp"
+#include "libsim/base/random.hpp"
+#include "libsim/base/task_loop.hpp"
+
+namespace modcal {
+namespace {
+
+using Index = Eigen::Index;
+
+constexpr double kTurn = 2.0 * std::numbers::pi;
+
+// 97.5 % quantile of Student's t, from 2 degrees of freedom on: Cornish and Fisher's expansion,
+// to 1 % there.
+double student(std::size_t degrees) {
+  const double z = 1.959964, z3 = z * z * z, z5 = z3 * z * z, z7 = z5 * z * z;
+  const double n = static_cast<double>(degrees);
+  return z + (z3 + z) / (4.0 * n) + (5.0 * z5 + 16.0 * z3 + 3.0 * z) / (96.0 * n * n) +
+         (3.0 * z7 + 19.0 * z5 + 17.0 * z3 - 15.0 * z) / (384.0 * n * n * n);
+}
+
+// Force signals in the window, linear in unknown amplitudes of pulses or bins.
+class ForceSearch {
+ public:
+  ForceSearch(const StructureTable& table, const StructureRecord& record,
+              const StructureForceOptions& options)
+      : table_(table), options_(options) {
+    result_.window = std::isnan(options.window) ? record.duration() : options.window;
+    MODCAL_REQUIRE(result_.window > 0.0 && result_.window <= record.duration(),
+                   "a window of {:g} s does not lie in the record's {:g} s", result_.window,
+                   record.duration());
+    result_.sigma = std::isnan(options.sigma) ? 2.0 / result_.window : options.sigma;
+    spectra_ = ContourSpectra::of(record, result_.sigma, table.low, table.high);
+    if (options.change)
+      result_.refined = refined_table(table_, record, result_.sigma, *options.change);
+    if (result_.refined) table_.model = result_.refined->model;
+    transfers_ = transfers_of(table_.model, spectra_);
+    variances_ = variances_of(table_, spectra_, transfers_);
+    samples_ = static_cast<Index>(std::floor(result_.window * record.sample_rate));
+  }
+
+  StructureForce run() {
+    result_.misfit = variances_.misfit;
+    result_.sensor_misfit = variances_.by_sensor;
+    result_.sensor_left = variances_.left;
+    const BinEvidence evidence = evidence_of(spectra_, transfers_, variances_, kNone);
+    find_power(evidence);
+    if (options_.shape != ForceShape::kSmooth) find_pulses(evidence);
+    const Eigen::VectorXd best = force_of(evidence);
+    const Eigen::VectorXd own = variance_of(evidence);
+    const Eigen::VectorXd drawn = by_models(best), left_out = by_sensors();
+    result_.force.assign(best.begin(), best.end());
+    for (Index j = 0; j < best.size(); ++j) {
+      const double model = std::max(drawn[j], left_out.size() > 0 ? left_out[j] : 0.0);
+      result_.by_model.push_back(std::sqrt(model));
+      result_.deviation.push_back(std::sqrt(own[j] + model));
+    }
+    return std::move(result_);
+  }
+
+ private:
+  double rate() const { return spectra_.sample_rate; }
+
+  // Pulses on a background of a share of the force's power: the share of largest evidence. All of
+  // it and no pulse is a smooth force.
+  void find_pulses(const BinEvidence& evidence) {
+    train_.emplace(table_, spectra_, result_.window);
+    result_.evidence_impacts = -std::numeric_limits<double>::infinity();
+    for (const double share : {1e-6, 1e-4, 1e-2}) {
+      std::vector<double> background = power_;
+      for (double& power : background) power *= share;
+      const auto [matrix, score] = train_->normal_of(beside(evidence, background));
+      const Relevance found = determine_relevance(matrix, score);
+      const double told = found.evidence + evidence_of_power(evidence, background);
+      const bool wanted = options_.shape == ForceShape::kImpacts || told > result_.evidence_smooth;
+      if (!(told > result_.evidence_impacts)) continue;
+      result_.evidence_impacts = told;
+      if (!wanted) continue;
+      result_.shape = ForceShape::kImpacts;
+      result_.background = share;
+      widths_ = found.widths;
+      background_ = background;
+    }
+    if (result_.shape == ForceShape::kImpacts) pulses_ = train_->columns(samples_);
+  }
+
+  // What the bins tell of another force when a background of such power may add to it.
+  BinEvidence beside(const BinEvidence& evidence, const std::vector<double>& power) const {
+    BinEvidence result = evidence;
+    for (std::size_t m = 0; m < spectra_.count(); ++m) {
+      const double share = 1.0 / (1.0 + power[m] * evidence.told[m]);
+      result.told[m] *= share;
+      result.score[m] *= share;
+    }
+    return result;
+  }
+
+  double evidence_of_power(const BinEvidence& evidence, const std::vector<double>& power) const {
+    double sum = 0.0;
+    for (std::size_t m = 0; m < spectra_.count(); ++m) {
+      const double gain = power[m] * evidence.told[m];
+      sum += power[m] * std::norm(evidence.score[m]) / (1.0 + gain) - std::log1p(gain);
+    }
+    return sum / spectra_.correlated();
+  }
+
+  void find_power(const BinEvidence& evidence) {
+    const double spacing = spectra_.grid.spacing / kTurn;
+    std::vector<double> found;
+    for (std::size_t m = 0; m < spectra_.count(); ++m) {
+      const double told = evidence.told[m];
+      found.push_back(std::max(0.0, std::norm(evidence.score[m] / told) - 1.0 / told));
+    }
+    power_ = smoothed(found, spacing, kReach);
+    for (double& power : power_) power = std::max(power, 1e-300);
+    background_ = power_;
+    result_.evidence_smooth = evidence_of_power(evidence, power_);
+  }
+
+  Eigen::VectorXd force_of(const BinEvidence& evidence) const {
+    Eigen::VectorXd force = Eigen::VectorXd::Zero(samples_);
+    std::vector<Complex> sum(spectra_.count());
+    if (result_.shape == ForceShape::kImpacts) {
+      const auto [matrix, score] = train_->normal_of(beside(evidence, background_));
+      const Eigen::VectorXd amplitudes = options_.non_negative
+                                             ? non_negative_mean(matrix, score, widths_)
+                                             : posterior_of(matrix, score, widths_).mean;
+      sum = train_->spectrum(amplitudes);
+      force = pulses_ * amplitudes;
+    }
+    const RealFft fft(spectra_.samples);
+    std::vector<Complex> spectrum(fft.bins());
+    for (std::size_t m = 0; m < spectra_.count(); ++m) {
+      spectrum[spectra_.bins.first + m] = (evidence.score[m] - evidence.told[m] * sum[m]) /
+                                          (evidence.told[m] + 1.0 / background_[m]);
+    }
+    std::vector<double> samples(spectra_.samples);
+    fft.inverse(spectrum, samples);
+    for (Index j = 0; j < samples_; ++j) {
+      force[j] += samples[static_cast<std::size_t>(j)] *
+                  std::exp(result_.sigma * static_cast<double>(j) / rate());
+    }
+    return force;
+  }
+
+  Eigen::VectorXd variance_of(const BinEvidence& evidence) const {
+    double bins = power_outside(spectra_, background_);
+    for (std::size_t m = 0; m < spectra_.count(); ++m) {
+      bins += 1.0 / (evidence.told[m] + 1.0 / background_[m]);
+    }
+    // White noise of variance v has v Σ_j exp(−2σt_j) in every bin.
+    const double share = 2.0 / (static_cast<double>(spectra_.samples) * spectra_.noise_power());
+    Eigen::VectorXd variance = Eigen::VectorXd::Constant(samples_, share * bins);
+    if (result_.shape == ForceShape::kSmooth) return variance;
+    const auto [matrix, score] = train_->normal_of(beside(evidence, background_));
+    const Relevance found = posterior_of(matrix, score, widths_);
+    return variance + (pulses_ * found.covariance).cwiseProduct(pulses_).rowwise().sum() +
+           variance_of_shape(pulses_ * found.mean, rate(), table_.high);
+  }
+
+  // Variance of the force by models drawn from the table's deviations.
+  Eigen::VectorXd by_models(const Eigen::VectorXd& best) const {
+    std::vector<Eigen::VectorXd> forces(options_.draws);
+    for_each_task(options_.draws, [&](std::size_t draw) {
+      const Transfers transfers = transfers_of(drawn(draw), spectra_);
+      forces[draw] = force_of(evidence_of(spectra_, transfers, variances_, kNone));
+    });
+    Eigen::VectorXd variance = Eigen::VectorXd::Zero(best.size());
+    for (const Eigen::VectorXd& force : forces) {
+      variance += (force - best).cwiseAbs2() / static_cast<double>(options_.draws);
+    }
+    return variance;
+  }
+
+  ModalModel drawn(std::size_t draw) const {
+    if (result_.refined) {
+      std::vector<double> normal(static_cast<std::size_t>(result_.refined->change.size()));
+      fill_standard_normal(StreamKey(options_.seed).with("model").with(draw), normal);
+      return result_.refined->drawn(normal);
+    }
+    ModalModel model = table_.model;
+    const std::size_t modes = model.poles.size(), pairs = model.pairs();
+    std::vector<double> normal(2 * modes + 2 * modes * pairs);
+    fill_standard_normal(StreamKey(options_.seed).with("model").with(draw), normal);
+    for (std::size_t n = 0; n < modes; ++n) {
+      if (!table_.frequency_deviations.empty()) {
+        model.poles[n].omega *= std::exp(table_.frequency_deviations[n] * normal[n]);
+      }
+      if (!table_.damping_deviations.empty()) {
+        model.poles[n].zeta *=
+            std::exp(std::clamp(table_.damping_deviations[n], 0.0, 1.0) * normal[modes + n]);
+      }
+    }
+    model.quadrature.resize(model.constants.size());
+    for (std::size_t i = 0; i < model.constants.size(); ++i) {
+      // Half of a complex number's power each.
+      const double scatter =
+          std::sqrt(0.5 * contradiction()) * table_.scatters[i / modes / model.contacts].modal;
+      const Complex factor(1.0 + scatter * normal[2 * modes + 2 * i],
+                           scatter * normal[2 * modes + 2 * i + 1]);
+      const Complex constant = factor * Complex(model.constants[i], model.quadrature[i]);
+      model.constants[i] = constant.real();
+      model.quadrature[i] = constant.imag();
+    }
+    return model;
+  }
+
+  // Where the sensors contradict each other by more than the table says, so is it off by more.
+  double contradiction() const {
+    return std::isnan(variances_.misfit) ? 1.0 : std::max(1.0, variances_.misfit);
+  }
+
+  // Jackknife over the sensors, as wide as Student's t of so few; nothing below three.
+  Eigen::VectorXd by_sensors() const {
+    const std::size_t sensors = transfers_.size();
+    if (sensors < 3) return {};
+    std::vector<Eigen::VectorXd> forces(sensors);
+    for_each_task(sensors, [&](std::size_t k) {
+      forces[k] = force_of(evidence_of(spectra_, transfers_, variances_, k));
+    });
+    const auto count = static_cast<double>(sensors);
+    Eigen::VectorXd mean = Eigen::VectorXd::Zero(samples_), sum = mean;
+    for (const Eigen::VectorXd& force : forces) mean += force / count;
+    for (const Eigen::VectorXd& force : forces) sum += (force - mean).cwiseAbs2();
+    const double wide = student(sensors - 1) / 1.959964;
+    return (count - 1.0) / count * wide * wide * sum;
+  }
+
+  StructureTable table_;
+  const StructureForceOptions& options_;
+  ContourSpectra spectra_;
+  Transfers transfers_;
+  BinVariances variances_;
+  Index samples_ = 0;
+  std::optional<PulseTrain> train_;
+  Eigen::VectorXd widths_;
+  Eigen::MatrixXd pulses_;
+  std::vector<double> power_, background_;  // of the force, and of what adds to its pulses
+  StructureForce result_;
+};
+
+}  // namespace
+
+StructureForce structure_force(const StructureTable& table, const StructureRecord& record,
+                               const StructureForceOptions& options) {
+  MODCAL_REQUIRE(table.model.pairs() == record.responses.size(),
+                 "the model has {} sensors, the record {}: name the channels of all of them",
+                 table.model.pairs(), record.responses.size());
+  return ForceSearch(table, record, options).run();
+}
+
+}  // namespace modcal

@@ -1,0 +1,59 @@
+// The force at a contact of a structure from the responses of K sensors.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "libinverse/structure/blind_fit.hpp"
+
+namespace modcal {
+
+/// What is supposed about the force before the responses are looked at.
+enum class ForceShape {
+  kAuto,     ///< the one of larger evidence
+  kImpacts,  ///< pulses of the table's shape, few of all instants
+  kSmooth,   ///< a stationary force of a smooth spectrum
+};
+
+struct StructureForceOptions {
+  ForceShape shape = ForceShape::kAuto;
+  bool non_negative = false;  ///< pulses of one sign
+  /// The force acts from t = 0 until then [s]; NaN: as long as the record.
+  double window = std::numeric_limits<double>::quiet_NaN();
+  /// Contour [1/s]; NaN: 2 over the window, what the force does later weighs little then.
+  double sigma = std::numeric_limits<double>::quiet_NaN();
+  std::size_t draws = 12;  ///< models drawn from the table's deviations for the band
+  std::uint64_t seed = 1;
+  /// The structure may have changed since its table was made: the modes are refined first.
+  std::optional<StructureChange> change;
+};
+
+struct StructureForce {
+  ForceShape shape = ForceShape::kSmooth;
+  double sigma = 0.0;             ///< of the contour [1/s]
+  double window = 0.0;            ///< [s]
+  std::vector<double> force;      ///< f_j [N], from t = 0 to the window's end
+  std::vector<double> deviation;  ///< of each [N]
+  std::vector<double> by_model;   ///< share of the table's errors in it [N]
+  double background = 0.0;        ///< of impacts: share of the force's power that adds to them
+  double evidence_impacts = 0.0;  ///< ln p(data) over that without force
+  double evidence_smooth = 0.0;
+  double misfit =
+      0.0;  ///< (K − 1) sensors against the last, over what the scatter expects; NaN: K = 1
+  std::vector<double> sensor_misfit;  ///< rms of what each leaves over what is expected, K
+  std::vector<double> sensor_left;    ///< the same over its response, K; both empty: K = 1
+  std::optional<BlindFit> refined;    ///< where a change was allowed for
+};
+
+/// F = Σ_k conj(H_k) Y_k/V_k ÷ (Σ_k |H_k|²/V_k + 1/P) in every bin of a contour, or, for impacts,
+/// F = G Σ_j p_j exp(−s t_j), p_j ~ N(0, a_j) with the a_j of largest evidence (automatic relevance
+/// determination in time; Tipping, 2001, MacKay's update), on a smooth background of 1e-6, 1e-4 or
+/// 1e-2 of the power. V_k is the table's scatter,
+/// ε_k² |F|² Σ_n |H_kn|² and noise, times what the sensors contradict each other by. The band holds
+/// the posterior, the table's errors (models drawn, solved again) and, from three sensors on, the
+/// jackknife over them, the larger of both. Rest at t = 0. Throws InvalidInput for a record whose
+/// sensors are not those of the table.
+StructureForce structure_force(const StructureTable& table, const StructureRecord& record,
+                               const StructureForceOptions& options);
+
+}  // namespace modcal

@@ -1,0 +1,76 @@
+#include "libinverse/structure/structure_record.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "libsim/base/error.hpp"
+
+namespace modcal {
+namespace {
+
+std::vector<Complex> spectrum_of(std::span<const double> samples, const ContourSpectra& at,
+                                 const RealFft& fft, const std::string& name) {
+  MODCAL_REQUIRE(samples.size() == at.samples,
+                 "{} has {} samples, the first response {}: state signals of one record", name,
+                 samples.size(), at.samples);
+  std::vector<double> weighted(samples.begin(), samples.end());
+  for (std::size_t j = 0; j < weighted.size(); ++j) {
+    MODCAL_REQUIRE(std::isfinite(weighted[j]), "sample {} of {} is {}: take it out of the record",
+                   j, name, weighted[j]);
+    weighted[j] *= std::exp(-at.grid.sigma * static_cast<double>(j) / at.sample_rate);
+  }
+  const std::vector<Complex> all = fft.forward(weighted);
+  return {all.begin() + static_cast<std::ptrdiff_t>(at.bins.first),
+          all.begin() + static_cast<std::ptrdiff_t>(at.bins.last)};
+}
+
+}  // namespace
+
+ContourSpectra ContourSpectra::of(const StructureRecord& record, double sigma, double low,
+                                  double high) {
+  MODCAL_REQUIRE(!record.responses.empty(), "a record needs at least {} response", 1);
+  MODCAL_REQUIRE(sigma >= 0.0, "a contour at {:g} 1/s lies left of the axis: state 0 or more",
+                 sigma);
+  constexpr double kTurn = 2.0 * std::numbers::pi;
+  ContourSpectra result{.sample_rate = record.sample_rate, .samples = record.samples()};
+  result.grid = FrequencyGrid::of_record(result.samples, result.sample_rate);
+  result.grid.sigma = sigma;
+  result.bins = bins_between(result.grid, kTurn * low, kTurn * high);
+  MODCAL_REQUIRE(result.count() > 0 && high < 0.5 * record.sample_rate,
+                 "no bin of the record lies from {:g} Hz to {:g} Hz, below half its rate {:g} Hz",
+                 low, high, record.sample_rate);
+  const RealFft fft(result.samples);
+  if (!record.force.empty()) result.force = spectrum_of(record.force, result, fft, "the force");
+  for (std::size_t k = 0; k < record.responses.size(); ++k) {
+    result.responses.push_back(
+        spectrum_of(record.responses[k], result, fft, fmt::format("response {}", k + 1)));
+  }
+  return result;
+}
+
+double ContourSpectra::noise_power() const {
+  const double step = 2.0 * grid.sigma / sample_rate, count = static_cast<double>(samples);
+  return step > 0.0 ? -std::expm1(-step * count) / -std::expm1(-step) : count;
+}
+
+Complex numerator_of(SensorKind kind, const ModalPole& pole, Complex constant, Complex s) {
+  const int p = power_of_s(kind);
+  const Complex own = p == 0 ? 1.0 : p == 1 ? s : s * s;
+  const Complex turned = p == 0 ? s / pole.omega : -pole.omega / s;
+  return own * (constant.real() + constant.imag() * turned);
+}
+
+std::vector<double> smoothed(std::span<const double> values, double spacing_hz, double reach) {
+  const auto half = static_cast<std::size_t>(std::max(1.0, std::round(reach / spacing_hz)));
+  std::vector<double> sums(values.size() + 1, 0.0), result(values.size());
+  for (std::size_t m = 0; m < values.size(); ++m) sums[m + 1] = sums[m] + values[m];
+  for (std::size_t m = 0; m < values.size(); ++m) {
+    const std::size_t first = m > half ? m - half : 0;
+    const std::size_t last = std::min(values.size(), m + half + 1);
+    result[m] = (sums[last] - sums[first]) / static_cast<double>(last - first);
+  }
+  return result;
+}
+
+}  // namespace modcal

@@ -1,0 +1,37 @@
+// Modes of a structure as a table, with what is known of their errors.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "libsim/model/modal_model.hpp"
+
+namespace modcal {
+
+/// How a sensor's response departs from the model: of mode n by ε_k of what the mode makes, and
+/// noise.
+struct SensorScatter {
+  double modal = 0.0;  ///< ε_k [1]
+  double noise = 0.0;  ///< standard deviation of one sample, in the sensor's unit
+};
+
+/// A modal model with error bars, between `low` and `high` [Hz].
+struct StructureTable {
+  ModalModel model;
+  std::vector<std::string> names;            ///< of the sensors, K
+  std::vector<double> frequency_deviations;  ///< of ln f_n; empty: exact
+  std::vector<double> damping_deviations;    ///< of ln ζ_n; empty: exact
+  std::vector<SensorScatter> scatters;       ///< K
+  double low = 0.0, high = 0.0;              ///< band [Hz]
+  double lag = 0.0;                          ///< of the pulse's spectrum [Hz]
+  std::vector<double> pulse;                 ///< |G| at 0, lag, 2 lag, … [1]; empty: 1
+
+  /// |G| of the force's pulse at a frequency [Hz].
+  double pulse_at(double frequency) const;
+  double frequency(std::size_t n) const;  ///< [Hz]
+};
+
+/// Σ_n |H_n(s)|² of a pair: what its modes make, each by itself.
+double modal_power(const ModalModel& model, std::size_t pair, Complex s);
+
+}  // namespace modcal

@@ -1,0 +1,30 @@
+// The formats of recorded files: readers, writers, schema and help know them from here.
+#pragma once
+
+#include <span>
+
+#include "libsim/records/record_file.hpp"
+
+namespace modcal {
+
+struct RecordFormat {
+  std::string_view name;     ///< of `format:` in YAML
+  std::string_view meaning;  ///< for help
+  std::vector<std::string_view> extensions;
+  Recording (*read)(const std::filesystem::path& path, const ReadOptions& options);
+  /// Keeps every bit of the samples; nothing: the format is only read.
+  void (*write)(const std::filesystem::path& path, std::span<const Signal> signals,
+                const std::string& provenance) = nullptr;
+  bool has_headers = true;  ///< channels and rate are told without reading the samples
+};
+
+/// Those this program was built with.
+std::span<const RecordFormat> record_formats();
+
+/// "auto" and the names of all formats, for options.
+std::vector<std::string_view> record_format_choices();
+
+/// The format named, or for "auto" the one that the extension tells. Throws InvalidInput.
+const RecordFormat& record_format(const std::filesystem::path& path, const std::string& name);
+
+}  // namespace modcal

@@ -1,0 +1,78 @@
+#include <cmath>
+#include <map>
+#include <memory>
+#include <mutex>
+
+#include "libsim/records/formats.hpp"
+
+namespace modcal {
+namespace {
+
+// Recordings in memory by their names.
+struct Given {
+  std::mutex mutex;
+  std::map<std::string, std::shared_ptr<const Recording>, std::less<>> recordings;
+};
+Given& given() {
+  static Given table;
+  return table;
+}
+
+std::shared_ptr<const Recording> find_given(const std::string& name) {
+  const std::lock_guard lock(given().mutex);
+  const auto found = given().recordings.find(name);
+  return found == given().recordings.end() ? nullptr : found->second;
+}
+
+Recording read_given(const Recording& whole, const std::string& name, const ReadOptions& options) {
+  Recording recording;
+  recording.format = whole.format;
+  recording.sample_rate = whole.sample_rate;
+  recording.rate_source = whole.rate_source;
+  if (std::isfinite(options.sample_rate)) recording.compare_rate(options.sample_rate, 0.0, name);
+  std::vector<std::string> names;
+  for (const RecordedChannel& channel : whole.channels) names.push_back(channel.name);
+  for (const std::size_t index :
+       find_channels(names, options.channels.empty() ? names : options.channels, name)) {
+    recording.channels.push_back(whole.channels[index]);
+  }
+  return recording;
+}
+
+}  // namespace
+
+GivenRecording::GivenRecording(std::string name, Recording recording) : name_(std::move(name)) {
+  recording.check_finite(name_);
+  recording.refuse_problems();
+  const std::lock_guard lock(given().mutex);
+  const bool is_new =
+      given()
+          .recordings.emplace(name_, std::make_shared<const Recording>(std::move(recording)))
+          .second;
+  MODCAL_REQUIRE(is_new, "{}: another recording has this name; choose a different one", name_);
+}
+
+GivenRecording::~GivenRecording() {
+  const std::lock_guard lock(given().mutex);
+  given().recordings.erase(name_);
+}
+
+void Recording::check_finite(std::string_view file) {
+  for (const RecordedChannel& channel : channels) {
+    for (std::size_t i = 0; i < channel.samples.size(); ++i) {
+      if (std::isfinite(channel.samples[i])) continue;
+      add_problem(
+          fmt::format("{}: sample {} of channel {} is {}; repair the record or crop it away", file,
+                      i, channel.name, channel.samples[i]));
+    }
+  }
+}
+
+Recording read_record(const std::filesystem::path& path, const std::string& format,
+                      const ReadOptions& options) {
+  const std::string name = path.filename().string();
+  if (const auto recording = find_given(name)) return read_given(*recording, name, options);
+  return record_format(path, format).read(path, options);
+}
+
+}  // namespace modcal

@@ -1,0 +1,148 @@
+#include "libsim/records/stored_channels.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libsim/base/error.hpp"
+#include "libsim/records/csv_grammar.hpp"
+#include "libsim/records/tuning.hpp"
+
+namespace modcal {
+namespace {
+
+bool same_grid(const StoredChannel& a, const StoredChannel& b) {
+  const bool same_rate =
+      a.sample_rate == b.sample_rate || (std::isnan(a.sample_rate) && std::isnan(b.sample_rate));
+  return same_rate && a.size == b.size;
+}
+
+std::string grid_text(const StoredChannel& channel) {
+  if (!channel.other_than_time.empty()) return channel.other_than_time;
+  const std::string rate = std::isnan(channel.sample_rate)
+                               ? std::string("a rate that is not stated")
+                               : fmt::format("{:.9g} Hz", channel.sample_rate);
+  return fmt::format("{} samples at {}", channel.size, rate);
+}
+
+std::vector<std::string> different_names(const std::vector<StoredChannel>& stored) {
+  std::vector<std::string> names;
+  for (const StoredChannel& channel : stored) {
+    const std::string plain =
+        channel.head.name.empty() ? fmt::format("{}", names.size() + 1) : channel.head.name;
+    std::string name = plain;
+    for (int i = 2; std::find(names.begin(), names.end(), name) != names.end(); ++i) {
+      name = fmt::format("{} ({})", plain, i);
+    }
+    names.push_back(name);
+  }
+  return names;
+}
+
+// What is asked for, or all that can stand in one record with the first channel in time.
+std::vector<std::size_t> choose(const std::vector<StoredChannel>& stored,
+                                const std::vector<std::string>& names, const ReadOptions& options,
+                                const std::string& file, Recording& recording) {
+  std::vector<std::size_t> chosen = find_channels(names, options.channels, file);
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    const StoredChannel& channel = stored[chosen[i]];
+    if (channel.other_than_time.empty() && same_grid(channel, stored[chosen[0]])) continue;
+    throw WrongChannel(
+        i, channel.other_than_time.empty()
+               ? fmt::format("{}: channel \"{}\" has {}, \"{}\" has {}; one record needs one rate "
+                             "and one length",
+                             file, names[chosen[i]], grid_text(channel), names[chosen[0]],
+                             grid_text(stored[chosen[0]]))
+               : fmt::format("{}: channel \"{}\" is no record in time but a {}", file,
+                             names[chosen[i]], channel.other_than_time));
+  }
+  if (!options.channels.empty()) return chosen;
+  for (std::size_t i = 0; i < stored.size(); ++i) {
+    const bool fits = stored[i].other_than_time.empty() &&
+                      (chosen.empty() || same_grid(stored[i], stored[chosen[0]]));
+    if (fits) {
+      chosen.push_back(i);
+    } else {
+      recording.warnings.push_back(fmt::format("{}: \"{}\" [{}] is left out: {}", file, names[i],
+                                               stored[i].head.unit, grid_text(stored[i])));
+    }
+  }
+  return chosen;
+}
+
+void use_times(const StoredChannel& channel, const ReadOptions& options, const std::string& file,
+               Recording& recording) {
+  const std::vector<double> times = channel.read_times();
+  const auto finite = [](double value) { return std::isfinite(value); };
+  MODCAL_REQUIRE(std::all_of(times.begin(), times.end(), finite),
+                 "{}: an instant of \"{}\" is no number", file, channel.head.name);
+  double largest = 0.0;
+  for (const double time : times) largest = std::max(largest, std::abs(time));
+  const TimeAxis axis = examine_time_axis(times, channel.time_resolution * largest);
+  recording.sample_rate = axis.sample_rate;
+  recording.time_jitter = axis.jitter;
+  for (const TimeFinding& finding : axis.findings) {
+    std::string text = fmt::format("{}: sample {}: {}", file, finding.sample, finding.text);
+    if (std::isnan(options.sample_rate)) {
+      recording.add_problem(std::move(text));
+    } else if (finding.breaks) {
+      recording.contradict(std::move(text));
+    } else {
+      recording.warnings.push_back(std::move(text));
+    }
+  }
+}
+
+void settle_rate(const StoredChannel& channel, const ReadOptions& options, const std::string& file,
+                 Recording& recording) {
+  const bool given = std::isfinite(options.sample_rate);
+  MODCAL_REQUIRE(std::isnan(options.sample_rate) || (given && options.sample_rate > 0.0),
+                 "sample_rate = {} Hz cannot be used: it must be > 0", options.sample_rate);
+  recording.sample_rate = channel.sample_rate;
+  recording.rate_source = channel.rate_source;
+  if (channel.read_times && !options.headers_only) use_times(channel, options, file, recording);
+  if (given) {
+    recording.compare_rate(options.sample_rate, 0.0, file);
+  } else if (!std::isfinite(recording.sample_rate) && !options.headers_only &&
+             recording.problem_count == 0) {
+    recording.add_problem(fmt::format("{}: the sample rate is not known; state sample_rate", file));
+  }
+}
+
+}  // namespace
+
+double rate_of_period(double period, double resolution) {
+  const double rate = 1.0 / period;
+  const double whole = std::round(rate);
+  const bool is_whole = whole > 0.0 && std::abs(rate - whole) <= resolution * rate;
+  return is_whole ? whole : rate;
+}
+
+Recording assemble(std::string format, std::vector<StoredChannel> stored,
+                   const ReadOptions& options, const std::string& file) {
+  const std::vector<std::string> names = different_names(stored);
+  Recording recording;
+  recording.format = std::move(format);
+  const std::vector<std::size_t> chosen = choose(stored, names, options, file, recording);
+  if (chosen.empty()) {
+    recording.add_problem(fmt::format("{}: no channel of it is a record in time", file));
+  } else {
+    settle_rate(stored[chosen[0]], options, file, recording);
+    recording.stated_frames = stored[chosen[0]].size;
+  }
+  for (const std::size_t index : chosen) {
+    StoredChannel& channel = stored[index];
+    channel.head.name = names[index];
+    if (!options.headers_only) channel.head.samples = channel.read();
+    for (std::size_t i = 0; i < channel.head.samples.size(); ++i) {
+      if (std::isfinite(channel.head.samples[i])) continue;
+      recording.add_problem(fmt::format(
+          "{}: sample {} of channel {} is {}; repair the record or crop it away",
+          channel.place.empty() ? file : channel.place, i, names[index], channel.head.samples[i]));
+    }
+    recording.channels.push_back(std::move(channel.head));
+  }
+  if (!options.survey) recording.refuse_problems();
+  return recording;
+}
+
+}  // namespace modcal

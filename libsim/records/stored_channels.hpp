@@ -1,0 +1,38 @@
+// Channels of a file that keeps each by itself: chosen first, read afterwards.
+#pragma once
+
+#include <functional>
+
+#include "libsim/records/record_file.hpp"
+
+namespace modcal {
+
+/// A channel as its header describes it.
+struct StoredChannel {
+  RecordedChannel head;  ///< without samples
+  std::size_t size = 0;
+  double sample_rate = std::numeric_limits<double>::quiet_NaN();  ///< [Hz]; NaN: not known
+  std::string rate_source;
+  /// What it is where it is no function of time ("frequency response, 801 lines"); else empty.
+  std::string other_than_time = {};
+  std::string place = {};  ///< "data.uff: dataset 58 at line 12"
+  /// Reads the samples; may be empty where only headers are wanted.
+  std::function<std::vector<double>()> read = {};
+  /// Reads the instants [s] where the file states them one by one; else empty. Then they tell the
+  /// sample rate.
+  std::function<std::vector<double>()> read_times = {};
+  double time_resolution = 0.0;  ///< of the largest instant as it was stored, relative
+};
+
+/// The wanted channels as one record. Unasked those in time that have the first one's rate and
+/// length are taken; the others are warnings. Throws WrongChannel for a wanted one that is not
+/// there, is no function of time or differs from the first in rate or length, and InvalidInput for
+/// samples that are not finite and a rate that is not known (listed by a survey).
+Recording assemble(std::string format, std::vector<StoredChannel> stored,
+                   const ReadOptions& options, const std::string& file);
+
+/// A rate whose period was printed to a relative `resolution`: the whole number of hertz within it,
+/// where there is one.
+double rate_of_period(double period, double resolution);
+
+}  // namespace modcal

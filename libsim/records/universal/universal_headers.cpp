@@ -1,0 +1,251 @@
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "libsim/base/error.hpp"
+#include "libsim/base/utf8.hpp"
+#include "libsim/records/csv_grammar.hpp"
+#include "libsim/records/universal/universal_file.hpp"
+
+namespace modcal {
+namespace {
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t\f\0");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t\f\0") - first + 1);
+}
+
+bool is_delimiter(std::string_view line) { return trimmed(line) == "-1"; }
+
+std::string known(std::string_view text) {
+  const std::string_view word = trimmed(text);
+  return word == "NONE" ? std::string() : std::string(word);
+}
+
+// A line in columns of characters, whatever bytes they have.
+class Columns {
+ public:
+  Columns(std::string_view line, std::string where)
+      : text_(utf8_or_latin1(line)), where_(std::move(where)) {}
+
+  std::string_view text(std::size_t first, std::size_t count) const {
+    return std::string_view(text_).substr(byte(first), byte(first + count) - byte(first));
+  }
+  long long whole(std::size_t first, std::size_t count) const {
+    const std::string_view field = trimmed(text(first, count));
+    long long value = 0;
+    const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+    const bool good = error == std::errc() && end == field.data() + field.size();
+    MODCAL_REQUIRE(good || field.empty(), "{}: \"{}\" in column {} is no whole number", where_,
+                   field, first + 1);
+    return value;
+  }
+  int small(std::size_t first, std::size_t count) const {
+    return static_cast<int>(std::clamp<long long>(whole(first, count), -9999999, 9999999));
+  }
+  double number(std::size_t first, std::size_t count) const {
+    std::string field(trimmed(text(first, count)));
+    std::replace(field.begin(), field.end(), 'D', 'E');
+    if (field.empty()) return 0.0;
+    const ParsedNumber parsed = parse_number(field);
+    MODCAL_REQUIRE(parsed.kind == NumberKind::kNumber, "{}: \"{}\" in column {} is no number",
+                   where_, field, first + 1);
+    return parsed.value;
+  }
+
+ private:
+  std::size_t byte(std::size_t column) const {
+    std::size_t at = 0;
+    for (; column > 0 && at < text_.size(); --column) {
+      at += std::max<std::size_t>(1, utf8_size(std::string_view(text_).substr(at)));
+    }
+    return std::min(at, text_.size());
+  }
+  std::string text_, where_;
+};
+
+class HeaderReader {
+ public:
+  explicit HeaderReader(const std::filesystem::path& path) : file_(path) {}
+
+  UniversalFile read() {
+    std::string line;
+    while (file_.next(line)) {
+      if (trimmed(line).empty()) continue;
+      MODCAL_REQUIRE(is_delimiter(line),
+                     "{}:{}: byte {}: a dataset of a universal file begins with -1", file_.name(),
+                     file_.place().line - 1, file_.place().byte);
+      read_dataset();
+    }
+    return std::move(result_);
+  }
+
+ private:
+  std::string where() const {
+    return fmt::format("{}:{}: dataset {}{}", file_.name(), file_.place().line - 1, number_,
+                       binary_ ? "b" : "");
+  }
+  Columns line() {
+    std::string text;
+    MODCAL_REQUIRE(file_.next(text),
+                   "{}: the file ends at byte {}, within its header; it was cut off", where(),
+                   file_.size());
+    MODCAL_REQUIRE(!is_delimiter(text), "{}: it ends within its header", where());
+    return {text, where()};
+  }
+
+  void read_dataset();
+  void read_units();
+  void read_function(const Columns& heading);
+  void skip_to_end();
+  void skip_values(const UniversalFunction& function);
+  void find_width(UniversalFunction& function) const;
+
+  LineFile file_;
+  UniversalFile result_;
+  int number_ = 0;
+  bool binary_ = false;
+};
+
+void HeaderReader::read_dataset() {
+  number_ = 0;
+  binary_ = false;
+  const Columns heading = line();
+  number_ = heading.small(0, 6);
+  MODCAL_REQUIRE(number_ > 0, "{}: a number of a dataset is expected", where());
+  binary_ = trimmed(heading.text(6, 1)) == "b";
+  if (number_ == 58) return read_function(heading);
+  if (number_ == 164) return read_units();
+  auto& others = result_.other_datasets;
+  if (std::find(others.begin(), others.end(), number_) == others.end()) others.push_back(number_);
+  MODCAL_REQUIRE(!binary_, "{}: binary datasets other than 58b are not read", where());
+  skip_to_end();
+}
+
+void HeaderReader::skip_to_end() {
+  const std::string begin = where();
+  std::string text;
+  do {
+    MODCAL_REQUIRE(file_.next(text), "{}: it has no end, -1, up to byte {}; the file was cut off",
+                   begin, file_.size());
+  } while (!is_delimiter(text));
+}
+
+void HeaderReader::read_units() {
+  UniversalUnits units;
+  units.code = line().small(0, 10);
+  const Columns factors = line();
+  for (std::size_t i = 0; i < 3; ++i) {
+    units.factors[i] = factors.number(25 * i, 25);
+    MODCAL_REQUIRE(units.factors[i] > 0.0, "{}: a factor of units must be > 0", where());
+  }
+  result_.units = units;
+  skip_to_end();
+}
+
+UniversalAxis axis_of(const Columns& line) {
+  return {line.small(0, 10),
+          {line.small(10, 5), line.small(15, 5), line.small(20, 5)},
+          known(line.text(26, 20)),
+          known(line.text(47, 20))};
+}
+
+std::string name_of(const UniversalFunction& function, const std::string& entity) {
+  if (entity.empty()) {
+    const std::string id = known(function.id_lines[0]);
+    return id.empty() && function.response_node > 0
+               ? fmt::format("node {} {:+d}", function.response_node, function.response_direction)
+               : id;
+  }
+  if (function.response_node == 0) return entity;
+  return fmt::format("{} {} {:+d}", entity, function.response_node, function.response_direction);
+}
+
+void HeaderReader::read_function(const Columns& heading) {
+  UniversalFunction function;
+  function.header = {file_.place().byte, file_.place().line - 1};
+  for (std::string& id : function.id_lines) id = std::string(trimmed(line().text(0, 80)));
+  const Columns dof = line();
+  function.type = dof.small(0, 5);
+  function.response_node = dof.small(41, 10);
+  function.response_direction = dof.small(51, 4);
+  function.reference_node = dof.small(66, 10);
+  function.reference_direction = dof.small(76, 4);
+  function.name = name_of(function, known(dof.text(31, 10)));
+  const Columns form = line();
+  const int data_type = form.small(0, 10);
+  MODCAL_REQUIRE(data_type == 2 || (data_type >= 4 && data_type <= 6),
+                 "{}: values of type {} are not read; 2, 4, 5 and 6 are possible", where(),
+                 data_type);
+  function.is_double = data_type == 4 || data_type == 6;
+  function.is_complex = data_type >= 5;
+  const long long size = form.whole(10, 10);
+  MODCAL_REQUIRE(size >= 0, "{}: {} values are announced", where(), size);
+  function.size = static_cast<std::uint64_t>(size);
+  function.is_even = form.small(20, 10) == 1;
+  function.first = form.number(30, 13);
+  function.step = form.number(43, 13);
+  PrintedDigits digits;
+  digits.add(trimmed(form.text(43, 13)));
+  if (function.step > 0.0) {
+    function.step_resolution = 0.5 * digits.resolution(function.step) / function.step;
+  }
+  function.abscissa = axis_of(line());
+  function.ordinate = axis_of(line());
+  function.denominator = axis_of(line());
+  line();
+  function.values = file_.place();
+  function.binary = binary_;
+  if (binary_) {
+    function.little_endian = heading.small(7, 6) == 1;
+    MODCAL_REQUIRE(heading.small(13, 6) == 2, "{}: numbers that are not IEEE are not read",
+                   where());
+    const long long bytes = heading.whole(31, 12);
+    MODCAL_REQUIRE(bytes >= 0, "{}: {} bytes are announced", where(), bytes);
+    function.byte_count = static_cast<std::uint64_t>(bytes);
+    find_width(function);
+  }
+  skip_values(function);
+  result_.functions.push_back(std::move(function));
+}
+
+// Some writers keep an uneven abscissa in floats beside doubles, as the text form does.
+void HeaderReader::find_width(UniversalFunction& function) const {
+  const std::uint64_t value = function.is_double ? 8 : 4, parts = function.is_complex ? 2 : 1;
+  const std::uint64_t per_value = value * (parts + (function.is_even ? 0 : 1));
+  function.abscissa_is_single = function.is_double && !function.is_even &&
+                                function.byte_count == function.size * (per_value - 4);
+  MODCAL_REQUIRE(function.abscissa_is_single || function.byte_count == function.size * per_value,
+                 "{}: {} bytes are announced for {} values of {} bytes", where(),
+                 function.byte_count, function.size, per_value);
+}
+
+void HeaderReader::skip_values(const UniversalFunction& function) {
+  if (function.binary) {
+    file_.skip(function.byte_count);
+  } else {
+    // A number of text has two characters at least.
+    MODCAL_REQUIRE(function.size <= file_.left(),
+                   "{}: {} values are announced, {} bytes are left; it was cut off", where(),
+                   function.size, file_.left());
+  }
+  std::string text;
+  const std::string begin = where();
+  do {
+    MODCAL_REQUIRE(file_.next(text),
+                   "{}: its values have no end, -1, up to byte {}; it was cut off", begin,
+                   file_.size());
+    MODCAL_REQUIRE(!function.binary || trimmed(text).empty() || is_delimiter(text),
+                   "{}: byte {}: more than the {} bytes announced stand before its end, -1", begin,
+                   file_.place().byte, function.byte_count);
+  } while (!is_delimiter(text));
+}
+
+}  // namespace
+
+UniversalFile read_universal_headers(const std::filesystem::path& path) {
+  return HeaderReader(path).read();
+}
+
+}  // namespace modcal

@@ -1,0 +1,128 @@
+#include <cmath>
+#include <limits>
+
+#include "libsim/base/error.hpp"
+#include "libsim/base/units.hpp"
+#include "libsim/records/csv_grammar.hpp"
+#include "libsim/records/quantities.hpp"
+#include "libsim/records/stored_channels.hpp"
+#include "libsim/records/universal/universal_file.hpp"
+
+namespace modcal {
+namespace {
+
+enum SpecificData : int { kTime = 17 };
+constexpr std::string_view kRateLine = "sample_rate: ";
+
+std::string_view type_name(int type) {
+  constexpr std::array<std::string_view, 8> kNames = {"general function",
+                                                      "time response",
+                                                      "auto spectrum",
+                                                      "cross spectrum",
+                                                      "frequency response function",
+                                                      "transmissibility",
+                                                      "coherence",
+                                                      "auto correlation"};
+  if (type == 9) return "power spectral density";
+  return type >= 0 && type < 8 ? kNames[static_cast<std::size_t>(type)]
+                               : "function of another type";
+}
+
+// The unit by its label; where there is none, SI with the factors of dataset 164.
+void set_unit(const UniversalAxis& axis, const std::optional<UniversalUnits>& units,
+              RecordedChannel& channel) {
+  const Quantity* const stated = quantity_of_code(axis.code);
+  const Quantity* const quantity = stated != nullptr ? stated : quantity_of_unit(axis.unit);
+  if (quantity != nullptr) channel.kind = quantity->kind;
+  channel.unit = axis.unit;
+  if (!axis.unit.empty() || quantity == nullptr) return;
+  channel.unit = quantity->unit;
+  if (!units) return;
+  const std::array<int, 3> powers = {quantity->length, quantity->force, quantity->temperature};
+  for (std::size_t i = 0; i < 3; ++i) {
+    channel.full_scale *= std::pow(units->factors[i], -powers[i]);
+  }
+}
+
+// A file that modcal wrote has the rate to its last digit in its last ID line.
+void set_rate(const UniversalFunction& function, StoredChannel& channel) {
+  const double second =
+      is_unit_of(function.abscissa.unit, "s") ? to_si(1.0, function.abscissa.unit, "s") : 1.0;
+  const std::string& id = function.id_lines[4];
+  if (id.starts_with(kRateLine)) {
+    const ParsedNumber stated = parse_number(std::string_view(id).substr(kRateLine.size()));
+    const double off = stated.value * function.step * second - 1.0;
+    if (stated.kind == NumberKind::kNumber && std::abs(off) <= 2 * function.step_resolution) {
+      channel.sample_rate = stated.value;
+      channel.rate_source = "ID line 5";
+      return;
+    }
+  }
+  if (!function.is_even || !(function.step > 0.0)) return;
+  channel.sample_rate = rate_of_period(function.step * second, function.step_resolution);
+  channel.rate_source = fmt::format("increment {:g} s", function.step * second);
+}
+
+// Text has six digits, floats have seven.
+double resolution_of(const UniversalFunction& function) {
+  if (!function.binary) return 1e-5;
+  const bool is_single = !function.is_double || function.abscissa_is_single;
+  return is_single ? static_cast<double>(std::numeric_limits<float>::epsilon())
+                   : std::numeric_limits<double>::epsilon();
+}
+
+StoredChannel stored(const std::filesystem::path& path, const UniversalFunction& function,
+                     const std::optional<UniversalUnits>& units) {
+  StoredChannel channel;
+  channel.head.name = function.name;
+  set_unit(function.ordinate, units, channel.head);
+  channel.size = function.size;
+  channel.place = fmt::format("{}: dataset 58{} at line {}", path.string(),
+                              function.binary ? "b" : "", function.header.line);
+  const bool in_time =
+      function.abscissa.code == kTime || (function.type == 1 && function.abscissa.code <= 1);
+  if (!in_time || function.is_complex || function.size == 0) {
+    channel.other_than_time = fmt::format(
+        "{}{} with {} values over {}", function.is_complex ? "complex " : "",
+        type_name(function.type), function.size,
+        function.abscissa.label.empty() ? "another axis than time" : function.abscissa.label);
+    return channel;
+  }
+  set_rate(function, channel);
+  channel.read = [path, function] {
+    std::vector<double> samples;
+    samples.reserve(function.size);
+    for (const auto& value : read_universal_values(path, function).values) {
+      samples.push_back(value.real());
+    }
+    return samples;
+  };
+  if (!function.is_even) {
+    channel.read_times = [path, function] {
+      const auto& unit = function.abscissa.unit;
+      std::vector<double> times = read_universal_values(path, function).abscissa;
+      for (double& time : times) time *= is_unit_of(unit, "s") ? to_si(1.0, unit, "s") : 1.0;
+      return times;
+    };
+    channel.time_resolution = resolution_of(function);
+  }
+  return channel;
+}
+
+}  // namespace
+
+Recording read_universal(const std::filesystem::path& path, const ReadOptions& options) {
+  const UniversalFile file = read_universal_headers(path);
+  MODCAL_REQUIRE(!file.functions.empty(), "{}: no function (dataset 58) stands in it{}{}",
+                 path.string(), file.other_datasets.empty() ? "" : ", only datasets ",
+                 fmt::join(file.other_datasets, ", "));
+  std::vector<StoredChannel> channels;
+  for (const UniversalFunction& function : file.functions) {
+    channels.push_back(stored(path, function, file.units));
+  }
+  std::string format = fmt::format("universal file, {} function{}", channels.size(),
+                                   channels.size() == 1 ? "" : "s");
+  return assemble(std::move(format), std::move(channels), options, path.string());
+}
+
+}  // namespace modcal

@@ -1,0 +1,19 @@
+"""modcal: modal models of bowed strings and the force of the bow, from the reactions at the ends.
+
+    import modcal
+    found = modcal.run("mine.yaml")
+    found.parameters, found.f_c_joint, found.plot()
+"""
+from modcal.errors import InvalidInput, Mistake, SearchOver
+from modcal.experiments import (ask, calibrate, describe, invert, limit, load, new, plugins, run, schema, simulate,
+                                validate)
+from modcal.inverter import Estimate, Inverter
+from modcal.problem import Problem, Search, Variable, minimize
+from modcal.records import Record
+from modcal.results import Result, Table
+
+__all__ = [
+    "Estimate", "InvalidInput", "Inverter", "Mistake", "Problem", "Record", "Result", "Search", "SearchOver",
+    "Table", "Variable", "ask", "calibrate", "describe", "invert", "limit", "load", "minimize", "new", "plugins",
+    "run", "schema", "simulate", "validate",
+]

@@ -1,0 +1,51 @@
+"""Inversions of many records by one prepared model."""
+from __future__ import annotations
+
+from typing import Any, Mapping, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from modcal import _core, yaml
+from modcal.errors import InvalidInput
+from modcal.records import as_samples
+
+Array = NDArray[np.float64]
+
+
+class Estimate(NamedTuple):
+    """Force [N] and motion at the contact with their standard deviations, numbers or one a sample."""
+
+    side: str  #: "joint", or "1" and "2" for each reaction
+    force: Array
+    displacement: Array  #: empty where no motion is wanted
+    velocity: Array
+    force_deviation: float | Array
+    velocity_deviation: float | Array
+    displacement_deviation: float
+    parameter: float  #: of the regularization
+    band_limit: float  #: nothing is identified above it [Hz]; NaN: no limit
+    warnings: list[str]
+
+
+class Inverter:
+    """The model of a string, prepared for records of one length: called with the reactions of each.
+
+    The library's own inversion: what `invert` judges of a record and draws besides is left out.
+    string, position, inversion: as `invert` takes them. recorded: a real string has modes above those stated.
+    """
+
+    def __init__(self, string: Mapping[str, Any], position: float | str, *, samples: int, rate: float,
+                 inversion: Mapping[str, Any] | None = None, recorded: bool = True) -> None:
+        options = {"string": string, "bow": {"position": position}, "inversion": inversion or {}}
+        self.samples = samples
+        self._core = _core.Inverter(yaml.flow(options), samples, rate, recorded)
+
+    def __call__(self, left: ArrayLike | None = None, right: ArrayLike | None = None, *,
+                 motion: bool = False) -> list[Estimate]:
+        """The estimates of one record; motion: displacement and velocity, too."""
+        if left is None and right is None:
+            raise InvalidInput("a record needs a reaction; give left= or right=")
+        found = self._core.estimate(None if left is None else as_samples("left", left),
+                                    None if right is None else as_samples("right", right), motion)
+        return [Estimate(**told) for told in found]

@@ -1,0 +1,136 @@
+"""Calibrations as functions to be minimized."""
+from __future__ import annotations
+
+from typing import Any, Callable, Mapping, NamedTuple, Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from modcal import _core, yaml
+from modcal.errors import InvalidInput
+from modcal.experiments import Progress, Source, _told, open_experiment
+
+Array = NDArray[np.float64]
+
+
+class Variable(NamedTuple):
+    """A number that a search may change, in the unit of a reader."""
+
+    name: str
+    unit: str
+    initial: float
+    lower: float
+    upper: float
+    scale: float = 1.0  #: searches see (x - initial)/scale
+
+
+class Search(NamedTuple):
+    """What a search found."""
+
+    x: Array
+    value: float
+    stop: str  #: why it ended: "converged", "evaluation_budget", …
+    message: str
+    initial_value: float
+    evaluations: int
+    seconds: float
+    trace: dict[str, Array]  #: evaluations, seconds and value of every better point
+
+
+def _search(told: Mapping[str, Any]) -> Search:
+    return Search(**{key: told[key] for key in Search._fields})
+
+
+def _options(optimizer: str | Mapping[str, Any] | None, budget: Mapping[str, Any] | None) -> str:
+    stated: dict[str, Any] = {}
+    if optimizer is not None:
+        stated["optimizer"] = {"type": optimizer} if isinstance(optimizer, str) else optimizer
+    if budget is not None:
+        stated["budget"] = budget
+    return yaml.flow(stated)
+
+
+class Problem:
+    """What an experiment of kind: calibrate minimizes, with its records made or read.
+
+    x holds the free parameters in the units of `variables`. The functions may be called from several
+    threads.
+    """
+
+    def __init__(self, source: Source, overrides: Mapping[str, Any] | None = None, *,
+                 progress: Progress = None) -> None:
+        self._core = open_experiment(source, overrides).search(_told(progress))
+        self.variables = [Variable(**one) for one in self._core.variables]
+
+    @property
+    def names(self) -> list[str]:
+        return [one.name for one in self.variables]
+
+    @property
+    def x0(self) -> Array:
+        """The start."""
+        return np.array([one.initial for one in self.variables])
+
+    @property
+    def bounds(self) -> list[tuple[float, float]]:
+        """As scipy.optimize takes them."""
+        return [(one.lower, one.upper) for one in self.variables]
+
+    @property
+    def truth(self) -> Array | None:
+        """Of a simulated string: x where its model is right."""
+        truth = self._core.truth
+        return truth if truth.size else None
+
+    @property
+    def capabilities(self) -> dict[str, bool]:
+        """Whether the objective itself gives a gradient, residuals and their Jacobian."""
+        return dict(self._core.capabilities)
+
+    def objective(self, x: ArrayLike) -> float:
+        return self._core.value(x)
+
+    def gradient(self, x: ArrayLike) -> Array:
+        """By differences where the objective gives none."""
+        return self._core.gradient(x)
+
+    def residuals(self, x: ArrayLike) -> Array:
+        """r with objective = r·r/2."""
+        return self._core.residuals(x)
+
+    def jacobian(self, x: ArrayLike) -> Array:
+        """dr_j/dx_i, a row for each residual."""
+        return self._core.jacobian(x)
+
+    def minimize(self, optimizer: str | Mapping[str, Any] | Callable[[_core.Evaluator], str | None] = "nlopt", *,
+                 budget: Mapping[str, Any] | None = None, progress: Progress = None) -> Search:
+        """Searches by one of modcal's optimizers, {"type": "nlopt", ...}, or by one of your own.
+
+        Your own is called with an evaluator, which scales, bounds, counts, traces and ends the search:
+        evaluator.value(z) from evaluator.start within evaluator.lower and evaluator.upper. It may return
+        why it ended, such as "converged".
+        """
+        if callable(optimizer):
+            return _search(_core.search(self._core, optimizer, _options(None, budget)))
+        return _search(self._core.minimize(_options(optimizer, budget), _told(progress)))
+
+    def __repr__(self) -> str:
+        return f"<modcal.Problem {self._core.objective} of {', '.join(self.names)}>"
+
+
+def minimize(objective: Callable[[Array], float] | None, variables: Sequence[Variable], *,
+             optimizer: str | Mapping[str, Any] = "nlopt", budget: Mapping[str, Any] | None = None,
+             gradient: Callable[[Array], ArrayLike] | None = None,
+             residuals: Callable[[Array], ArrayLike] | None = None,
+             jacobian: Callable[[Array], ArrayLike] | None = None, progress: Progress = None) -> Search:
+    """Minimizes a function of your own by one of modcal's optimizers.
+
+    objective: of x; None where it is half the sum of squares of the residuals.
+    """
+    if objective is None and residuals is None:
+        raise InvalidInput("nothing to minimize; give an objective or residuals")
+    callables = {"value": objective, "gradient": gradient, "residuals": residuals, "jacobian": jacobian}
+    start = np.array([one.initial for one in variables])
+    count = len(np.asarray(residuals(start))) if residuals is not None else 0
+    stated = [one._asdict() for one in variables]
+    return _search(_core.minimize(callables, count, stated, _options(optimizer, budget), _told(progress)))

@@ -1,0 +1,81 @@
+"""Recorded forces as arrays."""
+from __future__ import annotations
+
+import itertools
+from typing import Any, Iterator
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from modcal import _core
+from modcal.errors import InvalidInput
+
+_numbers = itertools.count(1)
+
+
+def as_samples(what: str, given: ArrayLike) -> NDArray[np.float64]:
+    """A row of double precision; a view where it is one already."""
+    array = np.asarray(given)
+    if array.dtype.kind not in "fiub":
+        raise InvalidInput(f"{what} is an array of {array.dtype}, not of real numbers; convert it with "
+                           "astype(float)")
+    if array.ndim != 1:
+        raise InvalidInput(f"{what} has the shape {array.shape}; give one row of samples")
+    if array.size == 0:
+        raise InvalidInput(f"{what} is empty; give at least one sample")
+    return np.ascontiguousarray(array, dtype=np.float64)
+
+
+def _rate(time: ArrayLike) -> float:
+    t = as_samples("time", time)
+    steps = np.diff(t)
+    if t.size < 2 or not np.all(np.isfinite(t)) or not np.all(steps > 0.0):
+        raise InvalidInput("time does not rise from sample to sample; give instants in seconds, or rate=")
+    rate = (t.size - 1) / (t[-1] - t[0])
+    if np.max(np.abs(t - (t[0] + np.arange(t.size) / rate))) > 0.1 / rate:
+        raise InvalidInput("the instants of time are not evenly spaced; resample the record")
+    return float(rate)
+
+
+class Record:
+    """Reactions at the ends of a string, of one length [N].
+
+    rate: samples a second [Hz]; or time: the instant of every sample [s].
+    left: at x = 0. right: at x = L. One is enough to invert, a calibration takes both.
+    force: at the contact where it was measured, for scores alone.
+    """
+
+    def __init__(self, *, rate: float | None = None, time: ArrayLike | None = None,
+                 left: ArrayLike | None = None, right: ArrayLike | None = None,
+                 force: ArrayLike | None = None) -> None:
+        if (rate is None) == (time is None):
+            raise InvalidInput("a record needs either rate= or time=; state one of them")
+        self.rate = float(rate) if rate is not None else _rate(time)  # type: ignore[arg-type]
+        if not (self.rate > 0.0 and np.isfinite(self.rate)):
+            raise InvalidInput(f"rate = {self.rate} Hz cannot be a sample rate; it is > 0")
+        given = {"left": left, "right": right, "reference": force}
+        names = {"left": "R1", "right": "R2", "reference": "f_c"}
+        self._channels = {role: as_samples(role, held) for role, held in given.items() if held is not None}
+        if not {"left", "right"} & set(self._channels):
+            raise InvalidInput("a record needs a reaction; give left= or right=")
+        sizes = {role: held.size for role, held in self._channels.items()}
+        if time is not None:
+            sizes["time"] = np.asarray(time).size
+        if len(set(sizes.values())) > 1:
+            told = ", ".join(f"{role} {size}" for role, size in sizes.items())
+            raise InvalidInput(f"the channels of a record differ in length ({told}); cut them to one")
+        self.name = f"<array {next(_numbers)}>"
+        self._given = _core.GivenRecording(
+            self.name, self.rate, [(names[role], held) for role, held in self._channels.items()])
+        self._names = names
+
+    def __len__(self) -> int:
+        return int(next(iter(self._channels.values())).size)
+
+    def __repr__(self) -> str:
+        return f"<modcal.Record of {len(self)} samples at {self.rate:g} Hz: {', '.join(self._channels)}>"
+
+    def section(self) -> dict[str, Any]:
+        """The section `record` of an experiment. The record has to live while that runs."""
+        roles: Iterator[str] = iter(self._channels)
+        return {"file": self.name, **{role: {"channel": self._names[role]} for role in roles}}

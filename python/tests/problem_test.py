@@ -1,0 +1,183 @@
+"""Calibrations as functions, and searches of one's own."""
+import time
+import warnings
+
+import numpy as np
+from cases import CALIBRATE, SIMULATE, Folder, main
+
+import modcal
+from modcal import Variable
+
+
+class Functions(Folder):
+    @classmethod
+    def setUpClass(cls):
+        cls.problem = modcal.Problem(CALIBRATE)
+
+    def test_variables(self):
+        problem = self.problem
+        self.assertEqual(problem.names, ["f0", "B", "x_c"])
+        self.assertEqual([one.unit for one in problem.variables], ["Hz", "1", "m"])
+        np.testing.assert_allclose(problem.truth, [196, 1e-4, 0.03], rtol=1e-9)
+        self.assertAlmostEqual(problem.x0[2], 0.0304)
+        for (low, high), start in zip(problem.bounds, problem.x0):
+            self.assertTrue(low < start < high)
+
+    def test_slopes_are_those_of_the_value(self):
+        problem, x = self.problem, self.problem.x0
+        residuals, jacobian = problem.residuals(x), problem.jacobian(x)
+        self.assertEqual(jacobian.shape, (residuals.size, 3))
+        self.assertAlmostEqual(0.5 * residuals @ residuals, problem.objective(x), delta=1e-9 * problem.objective(x))
+        np.testing.assert_allclose(problem.gradient(x), jacobian.T @ residuals, rtol=1e-9)
+        for i, variable in enumerate(problem.variables):
+            step = np.zeros(3)
+            step[i] = 1e-4 * variable.scale
+            slope = (problem.objective(x + step) - problem.objective(x - step)) / (2 * step[i])
+            self.assertAlmostEqual(problem.gradient(x)[i] / slope, 1.0, delta=1e-3)
+
+    def test_objective_without_slopes(self):
+        problem = modcal.Problem(CALIBRATE, {"calibration.objective": "innovation_misfit",
+                                             "calibration.parameters.law": False,
+                                             "calibration.optimizer": "nlopt"})
+        self.assertFalse(problem.capabilities["gradient"])
+        x, step = problem.x0, 6e-6 * problem.variables[0].scale
+        slope = (problem.objective(x + step) - problem.objective(x - step)) / (2 * step)
+        self.assertAlmostEqual(problem.gradient(x)[0] / slope, 1.0, delta=0.2)
+
+    def test_scipy_finds_what_the_program_finds(self):
+        from scipy.optimize import least_squares
+
+        problem = self.problem
+        scale = np.array([one.scale for one in problem.variables])
+        low, high = np.transpose(problem.bounds)
+        theirs = least_squares(problem.residuals, problem.x0, problem.jacobian, bounds=(low, high), x_scale=scale,
+                               xtol=1e-12, ftol=1e-12, gtol=1e-12)
+        ours = {one["name"]: one["final"] for one in modcal.run(CALIBRATE).parameters}
+        np.testing.assert_allclose(theirs.x, [ours[name] for name in problem.names], rtol=1e-3)
+
+    def test_optimizers_of_modcal(self):
+        found = self.problem.minimize({"type": "gsl", "algorithm": "dogleg"})
+        ours = {one["name"]: one["final"] for one in modcal.run(CALIBRATE).parameters}
+        np.testing.assert_array_equal(found.x, [ours[name] for name in self.problem.names])
+        self.assertLess(found.value, found.initial_value)
+        self.assertTrue(np.all(np.diff(found.trace["value"]) < 0))
+        few = self.problem.minimize("nlopt", budget={"evaluations": 5})
+        self.assertEqual((few.stop, few.evaluations), ("evaluation_budget", 5))
+
+    def test_refusals(self):
+        with self.assertRaisesRegex(modcal.InvalidInput, "2 values: the problem has 3 variables"):
+            self.problem.objective([1.0, 2.0])
+        with self.assertRaisesRegex(modcal.InvalidInput, "searches nothing"):
+            modcal.Problem(SIMULATE)
+        with self.assertRaisesRegex(modcal.InvalidInput, "unknown optimizer"):
+            self.problem.minimize("nloptt")
+        with self.assertRaisesRegex(modcal.InvalidInput, "<options>"):
+            self.problem.minimize({"type": "nlopt", "algorthm": "sbplx"})
+
+
+class OwnOptimizer(Folder):
+    def test_budget_bounds_and_trace(self):
+        problem = modcal.Problem(CALIBRATE)
+
+        def compass(evaluator):
+            z, best, step = evaluator.start, evaluator.value(evaluator.start), 1.0
+            while step > 1e-4:
+                better = False
+                for i in range(evaluator.dimension):
+                    for sign in (1, -1):
+                        trial = z.copy()
+                        trial[i] += sign * step
+                        trial = np.clip(trial, evaluator.lower, evaluator.upper)
+                        value = evaluator.value(trial)
+                        if value < best:
+                            z, best, better = trial, value, True
+                step *= 1.0 if better else 0.5
+            return "small_step"
+
+        found = problem.minimize(compass)
+        self.assertEqual(found.stop, "small_step")
+        ours = problem.minimize({"type": "gsl", "algorithm": "dogleg"})
+        self.assertAlmostEqual(found.x[2], ours.x[2], delta=1e-5)
+        self.assertEqual(found.value, problem.objective(found.x))
+        few = problem.minimize(compass, budget={"evaluations": 10})
+        self.assertEqual((few.stop, few.evaluations), ("evaluation_budget", 10))
+
+    def test_its_errors_come_out(self):
+        problem = modcal.Problem(CALIBRATE)
+        kept = []
+
+        def wrong(evaluator):
+            kept.append(evaluator)
+            raise LookupError("mine")
+
+        with self.assertRaisesRegex(LookupError, "mine"):
+            problem.minimize(wrong)
+        with self.assertRaisesRegex(modcal.InvalidInput, "search of this evaluator is over"):
+            kept[0].value([0, 0, 0])
+        with self.assertRaisesRegex(modcal.InvalidInput, "unknown reason"):
+            problem.minimize(lambda evaluator: "why not")
+
+
+class OwnObjective(Folder):
+    VARIABLES = [Variable("a", "", -1.0, -5.0, 5.0), Variable("b", "m", 1.0, -5.0, 5.0)]
+
+    def test_value(self):
+        found = modcal.minimize(lambda x: float((x[0] - 1) ** 2 + 10 * (x[1] + 2) ** 2), self.VARIABLES)
+        np.testing.assert_allclose(found.x, [1, -2], atol=1e-3)
+
+    def test_residuals(self):
+        found = modcal.minimize(
+            None, self.VARIABLES, residuals=lambda x: [x[0] - 1, 10 * (x[1] - x[0] ** 2)],
+            jacobian=lambda x: [[1, 0], [-20 * x[0], 10]], optimizer={"type": "gsl", "algorithm": "dogleg"})
+        np.testing.assert_allclose(found.x, [1, 1], atol=1e-6)
+
+    def test_its_errors_come_out(self):
+        def wrong(x):
+            raise LookupError("mine")
+
+        with self.assertRaisesRegex(LookupError, "mine"):
+            modcal.minimize(wrong, self.VARIABLES)
+        with self.assertRaisesRegex(modcal.InvalidInput, "nothing to minimize"):
+            modcal.minimize(None, self.VARIABLES)
+        with self.assertRaisesRegex(modcal.InvalidInput, "3 values in the place of 2"):
+            modcal.minimize(lambda x: 0.0, self.VARIABLES, gradient=lambda x: [0, 0, 0],
+                            optimizer={"type": "nlopt", "algorithm": "LD_LBFGS"})
+
+
+class Cost(Folder):
+    def test_evaluations_of_a_python_optimizer(self):
+        """What the door itself costs: the same evaluations with and without it."""
+        calibration = {"parameters": {"frequencies": "none", "law": False, "contact": True},
+                       "objective": "contact_location", "optimizer": "nlopt"}
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # so short a record is not for calibrating
+            problem = modcal.Problem({**CALIBRATE, "calibration": calibration}, {"scene.duration": 0.02})
+        calls = 10000
+
+        def own(evaluator):
+            z = evaluator.start
+            for _ in range(calls):
+                evaluator.value(z)
+
+        def cost(optimizer):
+            begin = time.process_time()
+            found = problem.minimize(optimizer, budget={"evaluations": calls + 1})
+            return (time.process_time() - begin) / found.evaluations
+
+        ours, engine = (min(cost(one) for _ in range(7)) for one in (own, {"type": "grid", "points": calls}))
+        print(f"an evaluation: {1e6 * engine:.2f} µs, {1e6 * (ours - engine):.2f} µs more by an optimizer in Python")
+        self.assertLess(ours - engine, 2e-6)
+
+    def test_evaluations_are_counted(self):
+        count = []
+
+        def cheap(x):
+            count.append(None)
+            return float(x @ x)
+
+        back = modcal.minimize(cheap, [Variable("a", "", 1, -2, 2), Variable("b", "", 1, -2, 2)])
+        self.assertEqual(back.evaluations, len(count))
+
+
+if __name__ == "__main__":
+    main()

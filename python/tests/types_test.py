@@ -1,0 +1,53 @@
+"""The stubs say what the module has; the package and a program that uses it are typed strictly."""
+import os
+import shutil
+import subprocess
+import sys
+
+from cases import Folder, main
+
+try:
+    import mypy  # noqa: F401
+except ImportError:
+    sys.exit(77)
+
+USER = '''
+import modcal
+
+found: modcal.Result = modcal.run("mine.yaml", {"seed": 2})
+problem = modcal.Problem("mine.yaml")
+value: float = problem.objective(problem.x0)
+search: modcal.Search = problem.minimize("nlopt", budget={"evaluations": 10})
+'''
+
+
+class Types(Folder):
+    def mypy(self, *words, fine=True, path=os.environ["PYTHONPATH"]):
+        environment = {**os.environ, "MYPYPATH": path, "PYTHONPATH": path}
+        done = subprocess.run([sys.executable, "-m", *words], cwd=self.folder, env=environment, capture_output=True,
+                              text=True)
+        self.assertEqual(done.returncode == 0, fine, done.stdout + done.stderr)
+
+    def test_stubs_say_what_the_module_has(self):
+        allowed = self.folder / "allowed"
+        # pybind11's classes have a metaclass, and a constructor that takes anything.
+        allowed.write_text(r"modcal\._core\.[A-Z]\w+(\.__init__)?" + "\n", encoding="utf-8")
+        words = ("mypy.stubtest", "modcal._core", "--ignore-unused-allowlist", "--allowlist", str(allowed))
+        self.mypy(*words)
+        package = self.folder / "modcal"
+        shutil.copytree(os.environ["PYTHONPATH"] + "/modcal", package)
+        with open(package / "_core.pyi", "a", encoding="utf-8") as stub:
+            stub.write("def planted() -> None: ...\n")
+        self.mypy(*words, fine=False, path=str(self.folder))
+
+    def test_strict(self):
+        self.mypy("mypy", "--strict", "--exclude", "_core.pyi", os.environ["PYTHONPATH"] + "/modcal")
+        user = self.folder / "user.py"
+        user.write_text(USER, encoding="utf-8")
+        self.mypy("mypy", "--strict", str(user))
+        user.write_text(USER.replace("value: float", "value: str"), encoding="utf-8")
+        self.mypy("mypy", "--strict", str(user), fine=False)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,128 @@
+#!/usr/bin/env python3
+"""What the fuzzers begin with, besides tests/fuzz/corpus: seeds.py ROOT CORPUS TARGET... fills CORPUS/TARGET.
+
+Experiments are those of configs/ and the tests' wrong ones; records are a short one, the tests' wrong
+ones made of it, and one of every kind of sound file. The dictionary holds the words of all experiments.
+"""
+import re
+import struct
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+ROWS = 60  # of the record: enough for every test, short enough to be changed everywhere
+
+
+def tables(path):
+    """(name, {mark: lines}) of the groups of a table of tests/experiments/cli/wrong."""
+    for group in re.split(r"\n\s*\n", path.read_text()):
+        lines = [line for line in group.split("\n") if line and line[0] != "#"]
+        marks = {}
+        for line in lines[1:]:
+            marks.setdefault(line[0], []).append(line[2:])
+        if lines:
+            yield lines[0], marks
+
+
+def experiments(root):
+    for path in sorted((root / "configs").rglob("*.yaml")):
+        yield path.stem, path.read_text()
+    wrong = root / "tests/experiments/cli/wrong"
+    bases = {name: "\n".join(marks["|"]) + "\n" for name, marks in tables(wrong / "bases.txt")}
+    yield from bases.items()
+    for name, marks in tables(wrong / "files.txt"):
+        text = bases[marks["@"][0]]
+        new = "\n".join(marks.get("+", [""])).replace("\\n", "\n").replace("\\t", "\t")
+        old = "\n".join(marks.get("-", [""])).replace("\\n", "\n").replace("\\t", "\t")
+        yield name, text.replace(old, new, 1) if old else text + new
+
+
+def csv_records(root):
+    with tempfile.TemporaryDirectory() as folder:
+        good = (root / "examples/bowed_violin_d.csv").read_text().split("\n")[:ROWS]
+        Path(folder, "good.csv").write_text("\n".join(good) + "\n")
+        yield "good", Path(folder, "good.csv").read_bytes()
+        for name, marks in tables(root / "tests/experiments/cli/wrong/records.txt"):
+            for command in marks["$"]:
+                subprocess.run(["sh", "-c", command], cwd=folder, stderr=subprocess.DEVNULL)
+            record = Path(folder, "record.csv")
+            if record.is_file():
+                yield name, record.read_bytes()[:20000]
+                record.unlink()
+
+
+def chunk(name, content):
+    return name + struct.pack("<I", len(content)) + content + b"\0" * (len(content) % 2)
+
+
+def riff(code, bits, samples, comment=b"", extensible=False, rf64=False):
+    frame = 2 * bits // 8
+    form = struct.pack("<HHIIHH", 0xFFFE if extensible else code, 2, 8000, 8000 * frame, frame, bits)
+    if extensible:
+        form += struct.pack("<HHI", 22, bits, 3) + struct.pack("<H", code) + bytes.fromhex(
+            "000000001000800000aa00389b71")
+    info = chunk(b"LIST", b"INFO" + chunk(b"ICMT", comment + b"\0")) if comment else b""
+    body = b"WAVE"
+    if rf64:
+        body += chunk(b"ds64", struct.pack("<QQQI", len(samples) + 80, len(samples), len(samples) // frame, 0))
+    body += chunk(b"fmt ", form) + info + chunk(b"data", samples)
+    return (b"RF64" + struct.pack("<I", 0xFFFFFFFF) + body) if rf64 else chunk(b"RIFF", body)
+
+
+def wave64(samples):
+    tail = bytes.fromhex("f3acd3118cd100c04f8edb8a")
+    guid = b"riff" + bytes.fromhex("2e91cf11a5d628db04c10000")
+    form = struct.pack("<HHIIHH", 1, 2, 8000, 32000, 4, 16)
+    body = b"wave" + tail
+    body += b"fmt " + tail + struct.pack("<Q", 24 + len(form)) + form
+    body += b"data" + tail + struct.pack("<Q", 24 + len(samples)) + samples
+    return guid + struct.pack("<Q", 24 + len(body)) + body
+
+
+def sounds():
+    values = [0.5 * ((7 * i) % 13 - 6) / 6 for i in range(64)]
+    pcm16 = b"".join(struct.pack("<h", round(32767 * x)) for x in values)
+    comment = b'{"modcal":{"full_scale":10,"channels":[["R1","N"],["R2","N"]]}}'
+    yield "pcm8", riff(1, 8, bytes(round(128 + 127 * x) for x in values))
+    yield "pcm16", riff(1, 16, pcm16, comment)
+    yield "pcm24", riff(1, 24, b"".join(struct.pack("<i", round(8388607 * x))[:3] for x in values))
+    yield "pcm32", riff(1, 32, b"".join(struct.pack("<i", round(2147483647 * x)) for x in values))
+    yield "float", riff(3, 32, b"".join(struct.pack("<f", x) for x in values), comment)
+    yield "double", riff(3, 64, b"".join(struct.pack("<d", x) for x in values), comment)
+    yield "extensible", riff(3, 32, b"".join(struct.pack("<f", x) for x in values), extensible=True)
+    yield "rf64", riff(1, 16, pcm16, rf64=True)
+    yield "w64", wave64(pcm16)
+    yield "cut", riff(1, 16, pcm16)[:-20]
+    yield "nan", riff(3, 32, struct.pack("<4f", 0.1, float("nan"), float("inf"), -0.1))
+    big = b"".join(struct.pack(">h", round(32767 * x)) for x in values)
+    yield "au", b".snd" + struct.pack(">IIIII", 24, len(big), 3, 8000, 2) + big
+    common = struct.pack(">hIh", 2, 32, 16) + bytes.fromhex("400bfa00000000000000")
+    ssnd = struct.pack(">II", 0, 0) + big
+    aiff = b"AIFFCOMM" + struct.pack(">I", len(common)) + common + b"SSND" + struct.pack(">I", len(ssnd)) + ssnd
+    yield "aiff", b"FORM" + struct.pack(">I", len(aiff)) + aiff
+
+
+def words(root):
+    text = "\n".join(t for _, t in experiments(root))
+    found = set(re.findall(r"[A-Za-z_][A-Za-z_0-9]{2,}", text))
+    found |= {": ", "- ", "{", "}", "[", "]", "#", "--set ", "&a ", "*a", "<<: ", "!!str ", "---", "|", ">", "? "}
+    return "".join(f'"{word}"\n' for word in sorted(found))
+
+
+def main():
+    root, corpus = Path(sys.argv[1]), Path(sys.argv[2])
+    for target, seeds in (("experiment", lambda: ((n, t.encode()) for n, t in experiments(root))),
+                          ("csv", lambda: csv_records(root)), ("wav", sounds)):
+        if target not in sys.argv[3:]:
+            continue
+        folder = corpus / target
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, content in seeds():
+            (folder / re.sub(r"\W+", "_", name)).write_bytes(content)
+        if target == "experiment":
+            (corpus / "experiment.dict").write_text(words(root))
+
+
+if __name__ == "__main__":
+    main()

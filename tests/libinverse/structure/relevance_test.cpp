@@ -1,0 +1,72 @@
+// Sparse amplitudes: what the data ask for is found, what they do not is left out.
+#include "libinverse/structure/relevance.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "libsim/base/random.hpp"
+
+namespace modcal {
+namespace {
+
+using Index = Eigen::Index;
+
+struct Equations {
+  Eigen::MatrixXd matrix;
+  Eigen::VectorXd score;
+};
+
+// y = M p + e, e ~ N(0, 1): A = MᵀM, b = Mᵀy.
+Equations equations_of(const Eigen::VectorXd& amplitudes) {
+  const Index rows = 200, columns = amplitudes.size();
+  std::vector<double> normal(static_cast<std::size_t>(rows * (columns + 1)));
+  fill_standard_normal(StreamKey(3).with("relevance"), normal);
+  const Eigen::Map<Eigen::MatrixXd> all(normal.data(), rows, columns + 1);
+  const Eigen::MatrixXd matrix = all.leftCols(columns);
+  const Eigen::VectorXd y = matrix * amplitudes + all.col(columns);
+  return {matrix.transpose() * matrix, matrix.transpose() * y};
+}
+
+TEST(Relevance, FindsTheFewThatAreThere) {
+  Eigen::VectorXd truth = Eigen::VectorXd::Zero(60);
+  truth[7] = 5.0, truth[31] = -3.0, truth[50] = 1.5;
+  const auto [matrix, score] = equations_of(truth);
+  const Relevance found = determine_relevance(matrix, score);
+  // An amplitude has the deviation 1/√200 = 0.07 of the noise; four of them.
+  for (Index j = 0; j < truth.size(); ++j) EXPECT_NEAR(found.mean[j], truth[j], 0.29) << j;
+  EXPECT_LT((found.mean.array().abs() > 1e-3).count(), 30);
+  for (const Index j : {7, 31, 50}) {
+    EXPECT_NEAR(std::sqrt(found.covariance(j, j)), 0.07, 0.02);
+  }
+}
+
+TEST(Relevance, OfNoiseAloneHasNoEvidence) {
+  const auto [matrix, score] = equations_of(Eigen::VectorXd::Zero(60));
+  const Relevance found = determine_relevance(matrix, score);
+  EXPECT_LT(found.mean.cwiseAbs().maxCoeff(), 0.29);
+  // Its largest evidence is gained by the few amplitudes that noise favors, about 1 each.
+  EXPECT_GE(found.evidence, 0.0);
+  EXPECT_LT(found.evidence, 30.0);
+}
+
+TEST(Relevance, OfOneSignIsTheLeastOfTheQuadratic) {
+  Eigen::VectorXd truth = Eigen::VectorXd::Zero(20);
+  truth[3] = 2.0, truth[4] = -2.0, truth[12] = 1.0;
+  const auto [matrix, score] = equations_of(truth);
+  const Eigen::VectorXd widths = Eigen::VectorXd::Constant(20, 10.0);
+  const Eigen::VectorXd p = non_negative_mean(matrix, score, widths);
+  Eigen::MatrixXd ridged = matrix;
+  ridged.diagonal() += widths.cwiseInverse();
+  const Eigen::VectorXd slope = ridged * p - score;
+  // The conditions of Karush, Kuhn and Tucker, to the rounding of the score's size.
+  for (Index j = 0; j < p.size(); ++j) {
+    EXPECT_GE(p[j], 0.0);
+    EXPECT_GE(slope[j], -1e-8 * score.norm());
+    EXPECT_NEAR(p[j] * slope[j], 0.0, 1e-7 * score.norm());
+  }
+  EXPECT_EQ(p[4], 0.0);
+}
+
+}  // namespace
+}  // namespace modcal
