@@ -12,6 +12,7 @@ import concurrent.futures
 import hashlib
 import json
 import math
+import operator
 import os
 import random
 import resource
@@ -50,6 +51,8 @@ MISMATCHES = {
     **{f"pink_{p:g}": ([], {"pink": p}) for p in (0.1, 0.5)},
     **{f"correlated_{c:g}": ([], {"correlated": c}) for c in (0.3, 0.9)},
     "8_bit": ([], {"bits": 8}),
+    # Sensors and damping as far from those stated as the priors say: the error bars should hold what they promise.
+    "as_stated": ([], {"drawn": True}),
 }
 CALIBRATION = """  parameters: {frequencies: all, law: true, contact: true}
   objective: joint_likelihood
@@ -157,6 +160,31 @@ def noise_of(normal, count, how):
     return channels
 
 
+def relative_sensor(normal, rate, spacing):
+    """A sensor drawn from the priors of modcal's defaults, as a filter of the samples: gain (2 %), delay (one sample), a
+    response whose logarithm's real and imaginary part have 0.5 % and do not turn within a knot, and a corner (1 Hz)."""
+    delay, reach = normal(0.0, 1.0), round(rate / (4.0 * spacing))
+    taps = [normal(0.0, 0.005 * math.sqrt(2.0 / (2 * reach + 1))) for _ in range(2 * reach + 1)]
+    for i in range(2 * reach + 1):
+        late = i - reach - delay
+        window = 0.5 + 0.5 * math.cos(math.pi * late / (reach + 4.0)) if abs(late) < reach + 4.0 else 0.0
+        taps[i] += window * (math.sin(math.pi * late) / (math.pi * late) if late else 1.0)
+    gain, keep = math.exp(normal(0.0, 0.02)), math.exp(-2.0 * math.pi * abs(normal(0.0, 1.0)) / rate)
+    return [gain * tap for tap in reversed(taps)], reach, keep
+
+
+def read_by(sensor, x):
+    """What the sensor reads; before and after the record stands its first and its last sample."""
+    taps, reach, keep = sensor
+    padded = [x[0]] * reach + x + [x[-1]] * reach
+    slow, result = sum(taps) * x[0], []
+    for i in range(len(x)):
+        value = sum(map(operator.mul, taps, padded[i:i + len(taps)]))
+        slow = keep * slow + (1.0 - keep) * value
+        result.append(value - slow)
+    return result
+
+
 def with_noise(path, noise, draw, how, folder):
     """Writes folder/record.csv: R1 and R2 with noise of this share of their standard deviations, hum of 50 Hz and its
     harmonics (1/h) likewise, rounded to so many bits of the peak."""
@@ -166,6 +194,10 @@ def with_noise(path, noise, draw, how, folder):
     noisy = []
     for column, draws in zip((1, 2), noise_of(normal, len(rows), how)):
         x = [float(row[column]) for row in rows]
+        if "drawn" in how and column == 2:
+            truth = json.loads(Path(f"{path}.json").read_text())
+            drawn = random.Random(f"sensor {path.name} {noise} {draw}").gauss
+            x = read_by(relative_sensor(drawn, rate, min(300.0, truth["string"]["f0"])), x)
         mean = sum(x) / len(x)
         sigma = math.sqrt(sum((v - mean) ** 2 for v in x) / len(x))
         x = [v + noise * sigma * d for v, d in zip(x, draws)]
@@ -185,6 +217,11 @@ def configuration(truth, name, mismatch, noise, draw, a):
     off = random.Random(f"start {name} {noise} {draw}").uniform
     string = truth["string"]
     table = [(f, z) for f, z in zip(truth["modes"]["f"], truth["modes"]["zeta"]) if f < 0.5 * a.rate]
+    if "drawn" in MISMATCHES[mismatch][1]:
+        # All of them by a factor e, each by 30 %.
+        drawn = random.Random(f"damping {name} {noise} {draw}").gauss
+        factor = drawn(0.0, 1.0)
+        table = [(f, z * math.exp(factor + drawn(0.0, 0.3))) for f, z in table]
     damping = "{type: constant, ratio: 1e-3}"
     if MISMATCHES[mismatch][1].get("damping", a.damping) == "table":
         damping = (f"{{type: table, frequencies: [{', '.join(f'{f:.9g} Hz' for f, _ in table)}], "
