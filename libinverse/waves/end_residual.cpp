@@ -18,7 +18,19 @@ double mode_number(double ratio, double inharmonicity) {
   return ratio * std::sqrt(2.0 / (1.0 + std::sqrt(1.0 + b)));
 }
 
-/// What the relation leaves over time, below 10 f₀.
+// Half a cosine from 0 below `from` to 1 above `to`.
+double rise(double value, double from, double to) {
+  const double share = std::clamp((value - from) / (to - from), 0.0, 1.0);
+  return 0.5 - 0.5 * std::cos(std::numbers::pi * share);
+}
+
+// Below its first mode a string says little, and hum whatever it likes.
+double pass(double ratio) {
+  return rise(ratio, 0.5 * kRelationBottom, kRelationBottom) *
+         rise(-ratio, -kRelationTop, -0.5 * kRelationTop);
+}
+
+/// What the relation leaves over time, between 0.75 and 10 f₀.
 struct EndResidual {
   std::vector<double> error, left, right;  ///< a R₁ − b R₂, a R₁, b R₂
   double noise = 0.0;                      ///< variance of a sample of `error`
@@ -39,10 +51,7 @@ EndResidual residual_of(const EndRecord& record, const StatedString& string) {
   EndResidual residual;
   for (std::size_t k = 0; k < fft.bins(); ++k) {
     const double frequency = static_cast<double>(k) * width;
-    const double share = frequency / (kRelationTop * string.fundamental);
-    const double gain =
-        share < 0.5 ? 1.0
-                    : (share < 1.0 ? 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * share) : 0.0);
+    const double gain = pass(frequency / string.fundamental);
     const EndFactors factors = gain > 0.0 ? end_factors(frequency, string) : EndFactors{0.0, 0.0};
     const double a = gain * factors.left, b = gain * factors.right;
     spectra[0][k] *= a;
