@@ -224,6 +224,13 @@ void add_calibration_warnings(const CalibrationOutcome& outcome, StudyResult& re
   };
   if (const auto& found = outcome.result.continuation) {
     if (!found->right) fail(contradiction(*found));
+    const double deviations =
+        found->found_law.deviation[0] + found->found_law.deviation[1] + found->contact_deviation;
+    if (std::isnan(deviations)) {
+      fail(
+          "what the record tells of f0, B and x_c is not known: record for longer, or with less "
+          "noise");
+    }
     return;
   }
   const StopReason stop = outcome.result.search.stop;

@@ -5,6 +5,7 @@
 #include <gsl/gsl_sf_gamma.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -13,6 +14,7 @@
 #include <optional>
 #include <utility>
 
+#include "libcalib/identifiability/tuning.hpp"
 #include "libcalib/optimizers/staged/best_tests.hpp"
 
 namespace modcal {
@@ -80,6 +82,18 @@ double log_evidence(const MisfitCause& cause, const Eigen::MatrixXd& information
   return result;
 }
 
+// What the noise adds to the information of the unknowns is taken out there and not of the
+// amplitudes, of which it may leave less than nothing: of the variance of their scores, J, a share.
+Eigen::MatrixXd at_least_a_share(const Eigen::MatrixXd& information, const Eigen::MatrixXd& j) {
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(information, j);
+  if (solver.info() != Eigen::Success || !(solver.eigenvalues().minCoeff() < kLeastShare)) {
+    return information;
+  }
+  const Eigen::MatrixXd roots = j * solver.eigenvectors() *
+                                solver.eigenvalues().cwiseMax(kLeastShare).cwiseSqrt().asDiagonal();
+  return roots * roots.transpose();
+}
+
 // Scores of all amplitudes with the unknowns projected out.
 class Scores {
  public:
@@ -93,7 +107,10 @@ class Scores {
     const Eigen::VectorXd gradient =
         2.0 * at.slope.head(n) + options.prior * (theta - options.prior_mean);
     score_ = 2.0 * at.slope.tail(m) - taken_.transpose() * gradient;
-    information_ = 2.0 * (at.information.bottomRightCorner(m, m) - mixed.transpose() * taken_);
+    const Eigen::MatrixXd told = 2.0 * mixed.transpose() * taken_;
+    information_ = 2.0 * at.information.bottomRightCorner(m, m) - told;
+    variance_ = information_ - told.transpose() +
+                taken_.transpose() * (2.0 * own.information + options.prior) * taken_;
   }
 
   // The modes that count are those with the cause, of its amplitudes from `first` on: what the
@@ -121,7 +138,9 @@ class Scores {
   std::pair<ScoreTest, Index> test(const MisfitCause& cause, Index first, Index contact,
                                    double misfit) const {
     const Index count = std::ssize(cause.columns);
-    const Eigen::MatrixXd information = information_.block(first, first, count, count);
+    const Eigen::MatrixXd variance = variance_.block(first, first, count, count);
+    const Eigen::MatrixXd information =
+        at_least_a_share(information_.block(first, first, count, count), variance);
     const Eigen::VectorXd score = score_.segment(first, count);
     const auto solver = information.ldlt();
     const Eigen::VectorXd amplitude = -solver.solve(score);
@@ -130,7 +149,7 @@ class Scores {
         .cause = cause.name,
         .detail = cause.detail,
         .place = cause.place,
-        .statistic = -score.dot(amplitude) / std::max(1.0, misfit),
+        .statistic = score.dot(variance.ldlt().solve(score)) / std::max(1.0, misfit),
         .degrees = static_cast<std::size_t>(count),
         .amplitude = count == 1 || cause.name == kBridge ? amplitude[0] : amplitude.norm(),
         .amplitudes = amplitude,
@@ -166,6 +185,7 @@ class Scores {
   Eigen::VectorXd score_;
   Eigen::MatrixXd taken_;        // K: what of an amplitude's column the unknowns take
   Eigen::MatrixXd information_;  // left of the amplitudes'
+  Eigen::MatrixXd variance_;     // of their scores
 };
 
 }  // namespace
