@@ -2,9 +2,10 @@
 #include <cmath>
 
 #include "libsim/base/units.hpp"
-#include "libsim/records/levels.hpp"
 #include "libsim/records/formats.hpp"
+#include "libsim/records/levels.hpp"
 #include "libsim/records/record_file.hpp"
+#include "libsim/records/record_keys.hpp"
 #include "libsim/records/recording.hpp"
 #include "libsim/signal/measurement.hpp"
 
@@ -200,19 +201,11 @@ void RecordedChannelOptions::visit(OptionVisitor& visitor) {
 }
 
 void RecordOptions::visit(OptionVisitor& visitor) {
-  visitor("file", "recorded file, relative to the folder of the experiment's file",
-          {.required = true}, file);
-  visitor("format", "format of the file; auto: by its extension",
-          {.choices = record_format_choices()}, format);
-  visitor("sample_rate", "sample rate; \"file\": the file states it",
-          {.unit = "Hz", .range = Range::positive(), .word = "file"}, sample_rate);
+  visit_record_file(visitor, *this);
   for (const RoleName& role : kRoles) {
     visitor(role.key, role.meaning, this->*role.present, this->*role.options);
   }
-  visitor("start", "begin of the part that is used, after the first sample",
-          {.unit = "s", .range = Range::non_negative()}, start);
-  visitor("stop", "end of the part that is used, after the first sample",
-          {.unit = "s", .range = Range::positive(), .word = "end"}, stop);
+  visit_record_part(visitor, *this);
 }
 
 void ContactOptions::visit(OptionVisitor& visitor) {

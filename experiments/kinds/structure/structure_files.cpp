@@ -8,6 +8,7 @@
 
 #include "libsim/base/units.hpp"
 #include "libsim/records/formats.hpp"
+#include "libsim/records/record_keys.hpp"
 
 namespace modcal {
 namespace {
@@ -20,6 +21,14 @@ constexpr std::array kKinds = {
     Kind{SensorKind::kAcceleration, "acceleration", "m/s2"},
     Kind{SensorKind::kDisplacement, "displacement", "m"}, Kind{SensorKind::kForce, "force", "N"},
     Kind{SensorKind::kStrain, "strain", "1"}, Kind{SensorKind::kVelocity, "velocity", "m/s"}};
+
+// What any sensor's channel has.
+template <typename Channel>
+void visit_reading(OptionVisitor& visitor, Channel& channel) {
+  visitor("calibration", "SI unit per recorded 1; \"file\": the file states a unit, or it is SI",
+          {.word = "file"}, channel.calibration);
+  visitor("turned", "the sensor reads with the other sign", channel.turned);
+}
 
 // SI per recorded 1. A column without a unit is taken to be in SI, which is said.
 double scale_of(const StructureChannelOptions& options, const RecordedChannel& channel,
@@ -98,33 +107,21 @@ std::string_view unit_of(SensorKind kind) {
 void StructureForceChannel::visit(OptionVisitor& visitor) {
   visitor("channel", "column or channel of the file, by name or by number from 1",
           {.required = true}, channel);
-  visitor("calibration", "SI unit per recorded 1; \"file\": the file states a unit, or it is SI",
-          {.word = "file"}, calibration);
-  visitor("turned", "the sensor reads with the other sign", turned);
+  visit_reading(visitor, *this);
 }
 
 void StructureChannelOptions::visit(OptionVisitor& visitor) {
   visitor("channel", "column or channel of the file, by name or by number from 1",
           {.required = true}, channel);
   visitor("kind", "what the sensor reads", {.choices = sensor_kind_names()}, kind);
-  visitor("calibration", "SI unit per recorded 1; \"file\": the file states a unit, or it is SI",
-          {.word = "file"}, calibration);
-  visitor("turned", "the sensor reads with the other sign", turned);
+  visit_reading(visitor, *this);
 }
 
 void StructureRecordOptions::visit(OptionVisitor& visitor) {
-  visitor("file", "recorded file, relative to the folder of the experiment's file",
-          {.required = true}, file);
-  visitor("format", "format of the file; auto: by its extension",
-          {.choices = record_format_choices()}, format);
-  visitor("sample_rate", "sample rate; \"file\": the file states it",
-          {.unit = "Hz", .range = Range::positive(), .word = "file"}, sample_rate);
+  visit_record_file(visitor, *this);
   visitor("responses", "channels of the sensors", {.required = true}, responses);
   visitor("force", "measured force of the strike", has_force, force);
-  visitor("start", "begin of the part that is used, after the first sample",
-          {.unit = "s", .range = Range::non_negative()}, start);
-  visitor("stop", "end of the part that is used, after the first sample",
-          {.unit = "s", .range = Range::positive(), .word = "end"}, stop);
+  visit_record_part(visitor, *this);
   visitor("rest",
           "nothing moves so long from the start on: the mean of it is taken out of every channel; "
           "automatic: until a channel leaves its level by 1 % of its largest departure",
