@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "experiments/config/complaint.hpp"
+#include "experiments/config/reader.hpp"
 
 namespace modcal::python {
 
@@ -17,6 +18,15 @@ class Refusal : public std::runtime_error {
  private:
   std::vector<Complaint> complaints_;
 };
+
+/// Reads the keys that `visit` names from a text of YAML. Throws Refusal with all mistakes.
+template <typename Visit>
+void read_keys(const std::string& yaml, const Visit& visit) {
+  const YamlDocument document = parse_yaml(yaml, "<options>");
+  std::vector<Mistake> mistakes = document.mistakes;
+  if (mistakes.empty()) read_options(document.root, visit, mistakes);
+  if (!mistakes.empty()) throw Refusal(complaints_of(document, mistakes));
+}
 
 /// From now on InvalidInput and Refusal are raised as modcal.InvalidInput, Interrupted as
 /// KeyboardInterrupt, LostOutput as OSError.

@@ -1,7 +1,6 @@
 // An inversion with its model prepared: arrays in, arrays out, nothing judged.
 #include <pybind11/stl.h>
 
-#include "experiments/config/reader.hpp"
 #include "libinverse/invert.hpp"
 #include "libsim/records/recording.hpp"
 #include "python/core/arrays.hpp"
@@ -19,19 +18,11 @@ struct InverterOptions {
 
   static InverterOptions read(const std::string& yaml) {
     InverterOptions options;
-    const YamlDocument document = parse_yaml(yaml, "<options>");
-    std::vector<Mistake> mistakes = document.mistakes;
-    if (mistakes.empty()) {
-      read_options(
-          document.root,
-          [&options](OptionVisitor& visitor) {
-            visitor("string", "the string", options.string);
-            visitor("bow", "where the force acts", options.contact);
-            visitor("inversion", "how the reactions are inverted", options.inversion);
-          },
-          mistakes);
-    }
-    if (!mistakes.empty()) throw Refusal(complaints_of(document, mistakes));
+    read_keys(yaml, [&options](OptionVisitor& visitor) {
+      visitor("string", "the string", options.string);
+      visitor("bow", "where the force acts", options.contact);
+      visitor("inversion", "how the reactions are inverted", options.inversion);
+    });
     return options;
   }
 };

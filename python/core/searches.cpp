@@ -2,7 +2,6 @@
 
 #include <pybind11/stl.h>
 
-#include "experiments/config/reader.hpp"
 #include "python/core/errors.hpp"
 #include "python/core/module.hpp"
 #include "python/core/watched.hpp"
@@ -135,18 +134,10 @@ py::dict described(const OptimizationResult& result) {
 
 SearchOptions SearchOptions::read(const std::string& yaml) {
   SearchOptions options;
-  const YamlDocument document = parse_yaml(yaml, "<options>");
-  std::vector<Mistake> mistakes = document.mistakes;
-  if (mistakes.empty()) {
-    read_options(
-        document.root,
-        [&options](OptionVisitor& visitor) {
-          visitor("optimizer", "how it is searched", options.optimizer);
-          visitor("budget", "what the search may spend", options.budget);
-        },
-        mistakes);
-  }
-  if (!mistakes.empty()) throw Refusal(complaints_of(document, mistakes));
+  read_keys(yaml, [&options](OptionVisitor& visitor) {
+    visitor("optimizer", "how it is searched", options.optimizer);
+    visitor("budget", "what the search may spend", options.budget);
+  });
   return options;
 }
 
