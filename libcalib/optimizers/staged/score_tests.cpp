@@ -86,9 +86,8 @@ double log_evidence(const MisfitCause& cause, const Eigen::MatrixXd& information
 // amplitudes, of which it may leave less than nothing: of the variance of their scores, J, a share.
 Eigen::MatrixXd at_least_a_share(const Eigen::MatrixXd& information, const Eigen::MatrixXd& j) {
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(information, j);
-  if (solver.info() != Eigen::Success || !(solver.eigenvalues().minCoeff() < kLeastShare)) {
-    return information;
-  }
+  if (solver.info() != Eigen::Success) return kLeastShare * j;  // nothing is seen of one of them
+  if (solver.eigenvalues().minCoeff() >= kLeastShare) return information;
   const Eigen::MatrixXd roots = j * solver.eigenvectors() *
                                 solver.eigenvalues().cwiseMax(kLeastShare).cwiseSqrt().asDiagonal();
   return roots * roots.transpose();
