@@ -16,7 +16,8 @@ Registry<Experiment> Experiment::registry() {
                                 "refine the modal model, then identify force and motion with it"),
       entry_of<Experiment, CalibrationLimitExperiment>(
           "calibration_limit", "calibration error against noise beside the Cramer-Rao bound"),
-      kind_of<FitModesOptions>("fit_modes", "modes of any structure from a strike that was measured"),
+      kind_of<FitModesOptions>("fit_modes",
+                               "modes of any structure from a strike that was measured"),
       kind_of<IdentifyOptions>("identify", "modes of a plucked string from its end reactions"),
       kind_of<IdentifyForceOptions>("identify_force",
                                     "force at a contact of any structure from its responses"),

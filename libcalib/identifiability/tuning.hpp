@@ -15,10 +15,10 @@ constexpr double kPolarizationWidth = 0.03;
 
 /// From one place where a mode of the body is tried to the next.
 /// Source: a mode of 3 % of the critical damping is 6 % wide.
-/// Range tried: 1.035 to 1.14, by 72 records of six strings with a bridge of 0.2 kg at 430 Hz, 1 and
-/// 5 % of noise, of which the worst five were tried with all.
-/// Doubled: five of 72 are accepted with an f_n off by 5.8 to 9.5 of its own.
-/// Halved: of these five the largest is 2.0; 1.8 as it is.
+/// Range tried: 1.035 to 1.14, by 72 records of six strings with a bridge of 0.2 kg at 430 Hz, 1
+/// and 5 % of noise, of which the worst five were tried with all. Doubled: five of 72 are accepted
+/// with an f_n off by 5.8 to 9.5 of its own. Halved: of these five the largest is 2.0; 1.8 as it
+/// is.
 constexpr double kBodyStep = 1.07;
 
 /// Highest place where a mode of the body is tried, in f_1.

@@ -62,8 +62,7 @@ TEST_F(Convert, ADamagedFileIsRefusedWithItsPlace) {
   const Outcome refused = modcal("inspect c.uff");
   EXPECT_EQ(refused.code, 3);
   // The header holds the path of the folder, so the line of a byte depends on where the tests run.
-  EXPECT_THAT(refused.err,
-              ContainsRegex("c[.]uff:[0-9]+: dataset 58b: the file ends at byte 700"));
+  EXPECT_THAT(refused.err, ContainsRegex("c[.]uff:[0-9]+: dataset 58b: the file ends at byte 700"));
 }
 
 }  // namespace

@@ -306,7 +306,8 @@ TEST_F(CsvReader, ReportsMisplacedQuotes) {
 }
 
 TEST_F(CsvReader, TakesTimeAndForceWithTheirUnitsBehindAMark) {
-  for (const char* heading : {"time/ms", "time / ms", "t (ms)", "time_ms", "Time ms", "T.ms", "t/ms"}) {
+  for (const char* heading :
+       {"time/ms", "time / ms", "t (ms)", "time_ms", "Time ms", "T.ms", "t/ms"}) {
     write("r.csv", std::string(heading) + ",R1/mN,t_max,a/b\n0,1,2,1\n0.5,2,3,1\n1,3,4,1\n");
     const Recording record = read_csv(path("r.csv"));
     EXPECT_DOUBLE_EQ(record.sample_rate, 2000.0) << heading;
