@@ -13,9 +13,7 @@
 namespace modcal {
 namespace {
 
-Eigen::VectorXd deviations(const Eigen::MatrixXd& matrix) {
-  return matrix.diagonal().cwiseMax(0.0).cwiseSqrt();
-}
+Eigen::VectorXd deviations(const Eigen::MatrixXd& matrix) { return matrix.diagonal().cwiseSqrt(); }
 
 ParameterLimit& entry(const std::string& name, ExpectedLimit& limit) {
   for (ParameterLimit& known : limit.parameters) {

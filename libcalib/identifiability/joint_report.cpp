@@ -21,7 +21,7 @@ class JointReport {
   JointReport(const JointEstimate& estimate, ContinuationResult& fit) : at_(estimate), fit_(fit) {}
 
   void report(const Eigen::MatrixXd& covariance) {
-    const Eigen::VectorXd deviation = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+    const Eigen::VectorXd deviation = covariance.diagonal().cwiseSqrt();
     fit_.model = at_.all.model(at_.theta, 0);
     for (std::size_t r = 0; r < fit_.single.size(); ++r) {
       fit_.contacts.push_back(at_.all.model(at_.theta, r).contact);

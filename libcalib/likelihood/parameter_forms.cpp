@@ -61,7 +61,7 @@ class FormList {
 }  // namespace
 
 double ParameterForm::deviation(const Eigen::MatrixXd& covariance) const {
-  return std::sqrt(std::max(slope.dot(covariance * slope), 0.0));
+  return std::sqrt(slope.dot(covariance * slope));
 }
 
 std::vector<ParameterForm> parameter_forms(const AllRecords& all, const FormPoint& at) {

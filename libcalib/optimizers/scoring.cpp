@@ -148,8 +148,7 @@ class Search {
     const Eigen::MatrixXd scaled = scale.asDiagonal() * h * scale.asDiagonal();
     const Eigen::MatrixXd inverse =
         scaled.ldlt().solve(Eigen::MatrixXd::Identity(h.rows(), h.cols()));
-    const Eigen::VectorXd least =
-        kMoved * scale.cwiseProduct(inverse.diagonal().cwiseMax(0.0).cwiseSqrt());
+    const Eigen::VectorXd least = kMoved * scale.cwiseProduct(inverse.diagonal().cwiseSqrt());
     std::vector<std::size_t> result;
     for (Index i = 0; i < moves.size(); ++i) {
       if (std::abs(moves[i]) > least[i]) result.push_back(static_cast<std::size_t>(i));

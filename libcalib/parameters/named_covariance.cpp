@@ -19,7 +19,15 @@ std::optional<std::size_t> NamedCovariance::find(std::string_view name) const {
 
 double NamedCovariance::deviation(std::size_t i) const {
   const auto at = static_cast<Index>(i);
-  return std::sqrt(std::max(matrix(at, at), 0.0));
+  return std::sqrt(matrix(at, at));
+}
+
+std::vector<std::string> NamedCovariance::unknown() const {
+  std::vector<std::string> result;
+  for (std::size_t i = 0; i < size(); ++i) {
+    if (std::isnan(deviation(i))) result.push_back(names[i]);
+  }
+  return result;
 }
 
 Eigen::MatrixXd NamedCovariance::correlations() const {

@@ -19,8 +19,10 @@ struct NamedCovariance {
 
   std::size_t size() const { return names.size(); }
   std::optional<std::size_t> find(std::string_view name) const;
-  /// √ of a diagonal entry.
+  /// √ of a diagonal entry; NaN where that is below zero: less is told than the noise hides.
   double deviation(std::size_t i) const;
+  /// The names whose deviation is NaN.
+  std::vector<std::string> unknown() const;
   /// r_ij = C_ij/(s_i s_j), 1 on the diagonal; 0 beside what has no variance.
   Eigen::MatrixXd correlations() const;
   /// Singular values of the whitened Jacobian in units of the standard deviations, the roots of the

@@ -9,8 +9,6 @@ namespace {
 using Index = Eigen::Index;
 using Kind = ParameterKind;
 
-double root(double variance) { return std::sqrt(std::max(variance, 0.0)); }
-
 }  // namespace
 
 double StringUnknowns::mean_damping_change(const ModelPoint& from, const ModelPoint& to) const {
@@ -48,13 +46,13 @@ double StringUnknowns::damping_power(const Eigen::VectorXd& theta) const {
 
 double StringUnknowns::damping_power_deviation(const Eigen::MatrixXd& covariance) const {
   if (!free_.has(Kind::kDampingPower)) return 0.0;
-  return root(covariance(damping() + 1, damping() + 1));
+  return std::sqrt(covariance(damping() + 1, damping() + 1));
 }
 
 std::vector<double> StringUnknowns::ratio_deviations(const Eigen::MatrixXd& covariance) const {
   std::vector<double> result;
   for (Index i = damping(); free_.has(Kind::kDampingRatio) && i < damping() + damping_count_; ++i) {
-    result.push_back(held(i) ? 0.0 : root(covariance(i, i)));
+    result.push_back(held(i) ? 0.0 : std::sqrt(covariance(i, i)));
   }
   return result;
 }
@@ -69,7 +67,7 @@ double StringUnknowns::damping_deviation(const Eigen::MatrixXd& covariance) cons
     theta[damping() + i] = 1.0;
     slope[i] = std::log(damping_factor(theta));
   }
-  return root(slope.dot(covariance.block(damping(), damping(), count, count) * slope));
+  return std::sqrt(slope.dot(covariance.block(damping(), damping(), count, count) * slope));
 }
 
 }  // namespace modcal

@@ -14,8 +14,6 @@ using Kind = ParameterKind;
 using Complex = std::complex<double>;
 using std::numbers::pi;
 
-double root(double variance) { return std::sqrt(std::max(variance, 0.0)); }
-
 }  // namespace
 
 StringUnknowns StringUnknowns::law(const ModelPoint& reference, double fundamental,
@@ -178,7 +176,7 @@ std::array<double, Sensor::kCount> StringUnknowns::sensor_deviation(
     if (free_[i].kind != Kind::kSensor) continue;
     const double unit = free_.type(i).slope(value_of(free_[i], model));
     const auto at = static_cast<Index>(i);
-    result[free_[i].index] = unit * root(covariance(at, at));
+    result[free_[i].index] = unit * std::sqrt(covariance(at, at));
   }
   return result;
 }
@@ -187,7 +185,7 @@ std::vector<Complex> StringUnknowns::response_deviations(const Eigen::MatrixXd& 
   std::vector<Complex> result;
   for (std::size_t k = 0; k < knots_; ++k) {
     const Index i = knot(k);
-    result.emplace_back(root(covariance(i, i)), root(covariance(i + 1, i + 1)));
+    result.emplace_back(std::sqrt(covariance(i, i)), std::sqrt(covariance(i + 1, i + 1)));
   }
   return result;
 }

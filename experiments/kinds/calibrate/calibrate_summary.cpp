@@ -1,5 +1,6 @@
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "experiments/kinds/calibrate/calibrate.hpp"
@@ -203,6 +204,23 @@ void add_calibration_summary(const CalibrationOutcome& outcome, StudyResult& res
   }
 }
 
+// What of the law, the contact and everything free has no deviation; empty: nothing.
+std::string unknown_values(const ContinuationResult& found) {
+  constexpr std::size_t kNamed = 3;
+  std::vector<std::string> names = found.covariance.unknown();
+  const auto add = [&names](const char* name, double deviation) {
+    if (std::isnan(deviation) && !std::ranges::count(names, name)) names.emplace_back(name);
+  };
+  add("f0", found.found_law.deviation[0]);
+  add("B", found.found_law.deviation[1]);
+  add("x_c", found.contact_deviation);
+  if (names.size() > kNamed) {
+    names[kNamed - 1] = fmt::format("{} more", names.size() - kNamed + 1);
+    names.resize(kNamed);
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
 void add_calibration_warnings(const CalibrationOutcome& outcome, StudyResult& result) {
   std::vector<std::string> bound;
   for (const CalibratedParameter& parameter : outcome.result.parameters) {
@@ -224,12 +242,10 @@ void add_calibration_warnings(const CalibrationOutcome& outcome, StudyResult& re
   };
   if (const auto& found = outcome.result.continuation) {
     if (!found->right) fail(contradiction(*found));
-    const double deviations =
-        found->found_law.deviation[0] + found->found_law.deviation[1] + found->contact_deviation;
-    if (std::isnan(deviations)) {
-      fail(
-          "what the record tells of f0, B and x_c is not known: record for longer, or with less "
-          "noise");
+    if (const auto unknown = unknown_values(*found); !unknown.empty()) {
+      fail(fmt::format(
+          "what the record tells of {} is not known: record for longer, or with less noise",
+          unknown));
     }
     return;
   }

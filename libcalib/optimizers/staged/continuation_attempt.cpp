@@ -173,7 +173,7 @@ class Attempt {
     law.damping = law_.damping_factor(law_theta_);
     for (std::size_t i = 0; i < 3; ++i) {
       const auto j = static_cast<Eigen::Index>(i);
-      law.deviation[i] = std::sqrt(std::max(covariance(j, j), 0.0));
+      law.deviation[i] = std::sqrt(covariance(j, j));
     }
     law.deviation[0] *= law.fundamental;
     law.deviation[3] = law_.damping_deviation(covariance) * law.damping;

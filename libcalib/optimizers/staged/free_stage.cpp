@@ -49,7 +49,7 @@ class FreeStage {
     result_.chi2 = stroke_.reduced_chi2(unknowns_, theta_, last, newton_);
     stroke_.end_stage("free, prior as wide as the law's followers", objective_, result_.chi2);
     result_.priors = unknowns_.prior_misfit(theta_, {widths_, inharmonicity_});
-    if (options_.unknowns.tests) test(covariance.diagonal().cwiseMax(0.0).cwiseSqrt());
+    if (options_.unknowns.tests) test(covariance.diagonal().cwiseSqrt());
     Eigen::MatrixXd of_causes = covariance_of_causes(result_.tests, covariance.rows());
     unknowns_.clear_held(of_causes);
     report(covariance + of_causes, of_causes);
@@ -110,7 +110,7 @@ class FreeStage {
     set_prior(
         unknowns_.under(priors_.without_frequencies()).prior(theta_, {wide(), inharmonicity_}),
         unstated);
-    const Eigen::VectorXd deviation = fit_covariance(at_, unstated).diagonal().cwiseMax(0.0);
+    const Eigen::VectorXd deviation = fit_covariance(at_, unstated).diagonal();
     const ModelPoint point = unknowns_.model(theta_);
     sight_ = sight_of(theta_.head(modes()), deviation.head(modes()).cwiseSqrt(), at_.information,
                       newton_.noise, nodes(point.basis, {point.contact}));
@@ -179,7 +179,7 @@ class FreeStage {
   void report(const Eigen::MatrixXd& covariance, const Eigen::MatrixXd& of_causes) {
     result_.frequencies_free = true;
     result_.model = unknowns_.model(theta_);
-    const Eigen::VectorXd deviation = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+    const Eigen::VectorXd deviation = covariance.diagonal().cwiseSqrt();
     result_.contact_deviation = deviation[unknowns_.contact()];
     // The law's damping made the reference of the free frequencies.
     const StringUnknowns& law = start_.law;

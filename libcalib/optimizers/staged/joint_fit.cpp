@@ -210,7 +210,7 @@ class JointFit {
     NewtonOptions unstated = newton;
     state(equations(priors_.without_frequencies(), &wide), unstated);
     const Eigen::VectorXd deviation =
-        fit_covariance(at, unstated).diagonal().head(modes()).cwiseMax(0.0).cwiseSqrt();
+        fit_covariance(at, unstated).diagonal().head(modes()).cwiseSqrt();
     const ModelPoint model = all_.model(theta_, 0);
     Eigen::VectorXd delta(modes());
     for (Index i = 0; i < modes(); ++i) {

@@ -30,6 +30,14 @@ TEST(NamedCovariance, HasDeviationsAndCorrelations) {
   EXPECT_FALSE(covariance.find("gain"));
 }
 
+TEST(NamedCovariance, WhatIsToldLessThanTheNoiseHidesIsUnknownAndNotExact) {
+  NamedCovariance covariance = three();
+  EXPECT_TRUE(covariance.unknown().empty());
+  covariance.matrix(1, 1) = -1e-20;
+  EXPECT_TRUE(std::isnan(covariance.deviation(1)));
+  EXPECT_EQ(covariance.unknown(), std::vector<std::string>{"B"});
+}
+
 TEST(NamedCovariance, SingularValuesAreThoseOfTwoCorrelatedParameters) {
   // R of two has the eigenvalues 1 + r and 1 - r.
   NamedCovariance pair{.names = {"f0", "B"}, .matrix = Eigen::MatrixXd::Zero(2, 2)};

@@ -32,5 +32,22 @@ TEST(FitVerdict, TellsAWrongFitFromWrongPriors) {
   EXPECT_EQ(contradiction(result_of(true, {})), "");
 }
 
+TEST(CalibrationWarnings, RefuseWhatHasNoDeviation) {
+  CalibrationOutcome outcome;
+  ContinuationResult found = result_of(true, {});
+  found.covariance.names = {"f1", "f2", "f3", "f4", "x_c"};
+  found.covariance.matrix = Eigen::MatrixXd::Identity(5, 5);
+  outcome.result.continuation = std::make_shared<ContinuationResult>(found);
+  StudyResult right;
+  add_calibration_warnings(outcome, right);
+  EXPECT_EQ(right.status, report::Status::kOk);
+  for (Eigen::Index i = 0; i < 4; ++i) found.covariance.matrix(i, i) = -1.0;
+  outcome.result.continuation = std::make_shared<ContinuationResult>(found);
+  StudyResult refused;
+  add_calibration_warnings(outcome, refused);
+  EXPECT_EQ(refused.status, report::Status::kFailed);
+  EXPECT_THAT(refused.summary, HasSubstr("tells of f1, f2, 2 more is not known"));
+}
+
 }  // namespace
 }  // namespace modcal
