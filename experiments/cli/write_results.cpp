@@ -80,7 +80,14 @@ report::Report report_of(const LoadedExperiment& loaded, StudyResult& result,
   report.description = loaded.description;
   report.status = result.status;
   report.status_text = status_text(loaded, result);
-  report.sections.push_back({"Results", std::move(result.blocks)});
+  if (report.status_text.empty()) report.status_text = result.answer;
+  const auto answer = result.blocks.begin() + static_cast<std::ptrdiff_t>(result.first_screen);
+  if (result.first_screen > 0 && answer != result.blocks.end()) {
+    report.sections.push_back(
+        {"Details", {std::move_iterator(answer), std::move_iterator(result.blocks.end())}});
+    result.blocks.erase(answer, result.blocks.end());
+  }
+  report.sections.insert(report.sections.begin(), {"Results", std::move(result.blocks)});
   if (dynamic_cast<const TaskExperiment*>(loaded.experiment.get()) != nullptr) {
     report.replay = "modcal replay " + shell_word(settings.out.string());
   }

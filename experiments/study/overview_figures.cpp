@@ -139,12 +139,19 @@ Figure signal_figure(const Drawing& drawing, Figure figure, std::initializer_lis
 Figure force_figure(const Drawing& drawing) {
   Figure figure{.id = "identified_force",
                 .title = "Contact force",
-                .caption = fmt::format("Above: {:g} periods from the middle of the record. Below: "
-                                       "the lowest and highest values along all of it. Static "
-                                       "parts are left out.",
+                .caption = fmt::format("{:g} periods from the middle of the record, static part "
+                                       "left out.",
                                        kPeriodsShown)};
-  return signal_figure(drawing, std::move(figure),
-                       {{kForce, drawing.middle()}, {kForce, drawing.all()}});
+  return signal_figure(drawing, std::move(figure), {{kForce, drawing.middle()}});
+}
+
+Figure force_record_figure(const Drawing& drawing) {
+  Figure figure{.id = "identified_force_record",
+                .title = "Contact force along the record",
+                .caption =
+                    "The lowest and the highest values of each stretch, static part left "
+                    "out."};
+  return signal_figure(drawing, std::move(figure), {{kForce, drawing.all()}});
 }
 
 Figure motion_figure(const Drawing& drawing) {
@@ -161,8 +168,8 @@ Figure friction_loop_figure(const Drawing& drawing) {
   Figure figure{.id = "identified_force_over_velocity",
                 .title = "Contact force over the velocity of the string",
                 .caption = fmt::format(
-                    "{:g} periods from the middle of the record, static parts left out: a string "
-                    "that sticks stands at the bow's velocity.",
+                    "{:g} periods from the middle of the record: a string that sticks stands at "
+                    "the bow's velocity.",
                     kPeriodsShown),
                 .columns = drawing.sides.size()};
   const Part part = drawing.middle();
@@ -278,9 +285,9 @@ Figure misfit_figure(const Drawing& drawing) {
 std::vector<Figure> overview_figures(const Observation& observation,
                                      const std::vector<SideIdentification>& sides) {
   const Drawing drawing{observation, sides};
-  std::vector<Figure> figures = {force_figure(drawing), motion_figure(drawing),
-                                 friction_loop_figure(drawing), spectra_figure(drawing),
-                                 misfit_figure(drawing)};
+  std::vector<Figure> figures = {force_figure(drawing),         misfit_figure(drawing),
+                                 force_record_figure(drawing),  motion_figure(drawing),
+                                 friction_loop_figure(drawing), spectra_figure(drawing)};
   std::erase_if(figures, [](const Figure& figure) { return figure.panels.empty(); });
   return figures;
 }

@@ -43,7 +43,9 @@ struct FailedTasks {
 };
 
 struct StudyResult {
-  std::vector<report::Block> blocks;                       ///< the section of the report
+  std::string answer;                 ///< in a sentence, for the head of the report
+  std::vector<report::Block> blocks;  ///< of the report
+  std::size_t first_screen = 0;       ///< blocks that answer the question; 0: all
   std::vector<std::pair<std::string, std::string>> files;  ///< name and content
   std::vector<SignalFile> signal_files;
   std::string summary;  ///< for standard output
@@ -63,6 +65,8 @@ struct StudyResult {
     };
     for (report::Block& block : blocks) std::visit(state, block);
   }
+  /// What is added from here on are details.
+  void end_first_screen() { first_screen = blocks.size(); }
   void add(std::vector<report::Table> tables) {
     std::move(tables.begin(), tables.end(), std::back_inserter(blocks));
   }

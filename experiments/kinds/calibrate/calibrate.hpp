@@ -208,12 +208,20 @@ std::string default_text(const CalibrationOptions& calibration, const Observatio
 /// What was taken out, for a report; empty for equal sensors or where x = L was not recorded.
 std::string correction_text(const Observation& observation, const Sensor& sensors);
 
-/// Draws the frequencies found against their law and the ratio of the reactions, which no force
-/// changes, against the models'. Of a search with an estimate.
-void add_calibration_overview(const CalibrationOutcome& outcome, const Observation& observation,
-                              const StringSupport& support, StudyResult& result);
+/// The frequencies found against their law, and the ratio of the reactions, which no force changes,
+/// against the models'. Of a search with an estimate.
+std::vector<report::Figure> calibration_overview(const CalibrationOutcome& outcome,
+                                                 const Observation& observation,
+                                                 const StringSupport& support);
 
 // What a calibration says in a few lines.
+
+/// A value to two digits of its width; to eight where that is not known.
+std::string rounded(double value, double width);
+
+/// The law and the contact with 95 % and the verdict, in a sentence; of a search without an
+/// estimate the values alone, of a fit that is not right what contradicts it.
+std::string calibration_answer(const CalibrationOutcome& outcome);
 
 /// Adds the search, its parameters with standard deviations, and the verdicts of the fit.
 void add_calibration_summary(const CalibrationOutcome& outcome, StudyResult& result);

@@ -121,12 +121,14 @@ report::Figure ratio_figure(const CalibrationOutcome& outcome, const Observation
 
 }  // namespace
 
-void add_calibration_overview(const CalibrationOutcome& outcome, const Observation& observation,
-                              const StringSupport& support, StudyResult& result) {
-  if (!outcome.result.continuation) return;
-  for (report::Figure figure : {law_figure(outcome), ratio_figure(outcome, observation, support)}) {
-    if (!figure.panels.empty()) result.blocks.emplace_back(std::move(figure));
-  }
+std::vector<report::Figure> calibration_overview(const CalibrationOutcome& outcome,
+                                                 const Observation& observation,
+                                                 const StringSupport& support) {
+  if (!outcome.result.continuation) return {};
+  std::vector<report::Figure> figures = {law_figure(outcome),
+                                         ratio_figure(outcome, observation, support)};
+  std::erase_if(figures, [](const report::Figure& figure) { return figure.panels.empty(); });
+  return figures;
 }
 
 report::Figure objective_figure(const FigureOptions& options, const CalibrationOutcome& outcome) {

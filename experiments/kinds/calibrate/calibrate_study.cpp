@@ -47,14 +47,29 @@ void add_answer(const CalibrateOptions& options, const InvertOptions& shown, con
     note(result, chi2_text(*estimate),
          estimate->fits ? report::Text::Kind::kNote : report::Text::Kind::kFailure);
   }
+  result.answer = calibration_answer(found.outcome);
+  std::vector<report::Figure> overview;
+  std::vector<report::Figure> force;
+  if (shown.overview) {
+    overview = calibration_overview(
+        found.outcome, found.observation,
+        options.calibration.support.support(found.observation.truth == nullptr));
+    force = overview_figures(found.observation, found.sides);
+  }
+  const auto add_figures = [&result](auto from, auto to) {
+    std::move(from, to, std::back_inserter(result.blocks));
+  };
+  const auto first = [](std::vector<report::Figure>& figures) {
+    return figures.begin() + (figures.empty() ? 0 : 1);
+  };
+  add_figures(overview.begin(), first(overview));
+  add_figures(force.begin(), first(force));
   result.add(report::tables_of(
       [&found](ResultVisitor& visitor) { found.outcome.visit_parameters(visitor); }));
-  if (shown.overview) {
-    add_calibration_overview(
-        found.outcome, found.observation,
-        options.calibration.support.support(found.observation.truth == nullptr), result);
-  }
-  add_identification_figures(shown, found.observation, found.sides, result);
+  result.end_first_screen();
+  add_figures(first(overview), overview.end());
+  add_figures(first(force), force.end());
+  add_identification_figures(shown.figures, found.observation, found.sides, result);
   if (options.audio) {
     result.blocks.emplace_back(
         calibration_audio(options, found.observation, found.outcome.refined));

@@ -186,10 +186,11 @@ void add_calibration_summary(const CalibrationOutcome& outcome, StudyResult& res
   for (const CalibratedParameter& parameter : outcome.result.parameters) {
     // Of every mode: those stand in the tables.
     if (parameter.name.starts_with("f_") || parameter.name.starts_with("zeta_")) continue;
-    result.summary +=
-        fmt::format("{}: {} -> {}{}", parameter.name, value_text(parameter.unit, parameter.initial),
-                    value_text(parameter.unit, parameter.final),
-                    parameter.unit == "1" ? "" : " " + parameter.unit);
+    result.summary += fmt::format(
+        "{}: {} -> {}{}", parameter.name, value_text(parameter.unit, parameter.initial),
+        std::isnan(parameter.deviation) ? value_text(parameter.unit, parameter.final)
+                                        : rounded(parameter.final, 0.1 * parameter.deviation),
+        parameter.unit == "1" ? "" : " " + parameter.unit);
     result.summary +=
         std::isnan(parameter.deviation) ? "\n" : fmt::format(", sd {:.3g}\n", parameter.deviation);
   }

@@ -98,16 +98,6 @@ InvertOptions InvertOptions::as_read_by(const StudyContext& context) const {
   return options;
 }
 
-void add_identification_figures(const InvertOptions& options, const Observation& observation,
-                                const std::vector<SideIdentification>& sides, StudyResult& result) {
-  if (options.overview) {
-    for (report::Figure& figure : overview_figures(observation, sides)) {
-      result.blocks.emplace_back(std::move(figure));
-    }
-  }
-  add_identification_figures(options.figures, observation, sides, result);
-}
-
 void add_identification_figures(const std::vector<FigureOptions>& figures,
                                 const Observation& observation,
                                 const std::vector<SideIdentification>& sides, StudyResult& result) {
@@ -229,14 +219,21 @@ StudyResult InvertOptions::run(const StudyContext& context) const {
                &score, &context.work.inversions);
 
   StudyResult result;
-  result.blocks.emplace_back(report::Text{answer_of(sides), report::Text::Kind::kNote});
+  result.answer = answer_of(sides);
+  std::vector<report::Figure> drawn;
+  if (shown.overview) drawn = overview_figures(observed, sides);
+  // The force and what the reactions contradict each other by.
+  const auto first = drawn.begin() + std::min<std::ptrdiff_t>(2, std::ssize(drawn));
+  std::move(drawn.begin(), first, std::back_inserter(result.blocks));
+  add_identification_tables(sides, result);
+  result.end_first_screen();
   if (!observed.modes_taken.empty()) {
     result.summary += observed.modes_taken + "\n";
     result.blocks.emplace_back(report::Text{observed.modes_taken, report::Text::Kind::kNote});
   }
   add_warnings(observed, sides, result);
-  add_identification_figures(shown, observed, sides, result);
-  add_identification_tables(sides, result);
+  std::move(first, drawn.end(), std::back_inserter(result.blocks));
+  add_identification_figures(shown.figures, observed, sides, result);
   if (shown.write_signals) result.signal_files.push_back(identified_signals(observed, sides));
   if (wave_based) add_wave_based(observed, model, score, result);
   if (has_model_based) {

@@ -58,9 +58,6 @@ void add_identification_tables(const std::vector<SideIdentification>& sides, Stu
 void add_identification_figures(const std::vector<FigureOptions>& figures,
                                 const Observation& observation,
                                 const std::vector<SideIdentification>& sides, StudyResult& result);
-/// The same after the overview, where it is wanted.
-void add_identification_figures(const InvertOptions& options, const Observation& observation,
-                                const std::vector<SideIdentification>& sides, StudyResult& result);
 /// A side in a table: 1 and 2 are numbers, as the paper counts them.
 report::Cell side_cell(const std::string& side);
 /// identified.csv: every identified signal.

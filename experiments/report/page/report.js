@@ -265,7 +265,8 @@ function link_zoom(figure) {
 function fit_to_paper(item) {
   var width = item.element.clientWidth;
   if (!width) return;  // filtered away
-  var paper = Number(getComputedStyle(item.figure).getPropertyValue('--columns')) > 1 ? 342 : 700;
+  var columns = Number(getComputedStyle(item.figure).getPropertyValue('--columns'));
+  var paper = columns > 1 || item.figure.closest('.row') ? 342 : 700;
   item.element.style.setProperty('--drawn', width + 'px');
   item.element.style.setProperty('--fit', (paper / width).toFixed(4));
 }
@@ -311,7 +312,14 @@ function draw_waiting(until) {
 }
 
 window.matchMedia('(prefers-color-scheme: dark)').addEventListener('change', repaint);
+// What is folded is found by a link to it and printed.
+function unfold(details) { details.forEach(function (each) { each.open = true; }); }
+window.addEventListener('hashchange', function () {
+  var target = document.getElementById(location.hash.slice(1));
+  if (target) unfold(target.querySelectorAll('details.fold'));
+});
 window.addEventListener('beforeprint', function () {
+  unfold(document.querySelectorAll('details'));
   draw_waiting(Infinity);
   root.classList.add('printing');
   charts.forEach(fit_to_paper);

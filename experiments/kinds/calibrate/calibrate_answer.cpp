@@ -1,0 +1,51 @@
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "experiments/kinds/calibrate/calibrate.hpp"
+
+namespace modcal {
+namespace {
+
+// "30.00021 ± 0.00058 mm".
+std::string answer_of(const CalibratedParameter& parameter, bool is_length) {
+  constexpr double kBand = 1.96;
+  const double scale = is_length ? 1e3 : 1.0;
+  const std::string unit = is_length ? " mm" : parameter.unit == "1" ? "" : " " + parameter.unit;
+  const double value = scale * parameter.final;
+  const double width = scale * kBand * parameter.deviation;
+  const std::string text = fmt::format("{} = {}", parameter.name, rounded(value, width));
+  return std::isnan(width) ? text + unit : fmt::format("{} ± {:.2g}{}", text, width, unit);
+}
+
+}  // namespace
+
+std::string rounded(double value, double width) {
+  constexpr int kDigits = 8;
+  if (!(width > 0.0)) return fmt::format("{:.{}g}", value, kDigits);
+  if (value == 0.0) return "0";
+  const auto place = [](double x) { return static_cast<int>(std::floor(std::log10(std::abs(x)))); };
+  return fmt::format("{:.{}g}", value, std::clamp(place(value) - place(width) + 2, 1, 17));
+}
+
+std::string calibration_answer(const CalibrationOutcome& outcome) {
+  const ContinuationResult* found = outcome.result.continuation.get();
+  if (found && !found->right) return contradiction(*found);
+  std::vector<std::string> values;
+  for (const CalibratedParameter& parameter : outcome.result.parameters) {
+    const auto name = parse_parameter(parameter.name);
+    if (!name) continue;
+    const Moves moves = type_of(*name).moves;
+    const bool of_law = moves == Moves::kFrequencies && !type_of(*name).of_mode;
+    if (of_law || moves == Moves::kContact)
+      values.push_back(answer_of(parameter, moves == Moves::kContact));
+  }
+  if (!found) return fmt::format("{}", fmt::join(values, ", "));
+  const auto identified =
+      std::ranges::count(found->modes, ModeSource::kIdentified, &ModeVerdict::source);
+  return fmt::format("{} (95 %); {} of {} modes identified; the data do not contradict the fit.",
+                     fmt::join(values, ", "), identified, found->modes.size());
+}
+
+}  // namespace modcal

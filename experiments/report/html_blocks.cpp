@@ -1,0 +1,201 @@
+#include "experiments/report/html_blocks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <initializer_list>
+
+#include "experiments/report/encoding.hpp"
+
+namespace modcal::report {
+namespace {
+
+std::string legend_html(const DrawnPanel& panel) {
+  std::string html;
+  for (const auto& [label, look, is_cell] : panel.legend) {
+    const std::string text = html_escaped(label);
+    html += fmt::format(
+        "<span class=\"key\"{}><span class=\"mark{} ink-{}\" "
+        "aria-hidden=\"true\">{}</span>{}</span>",
+        is_cell ? "" : " data-label=\"" + text + "\"",
+        is_cell       ? " cell"
+        : look.dotted ? " dotted"
+        : look.line   ? " line"
+                      : "",
+        look.ink->name, look.points ? look.ink->glyph : "", text);
+  }
+  return html;
+}
+
+std::string links_html(const PageLinks& links, const std::string& stem,
+                       std::initializer_list<std::pair<const char*, const char*>> kinds) {
+  std::string html;
+  for (const auto& [extension, name] : kinds) {
+    const std::string file = stem + extension;
+    if (!links.files.contains(file)) continue;
+    html += fmt::format("<a href=\"{}\">{}</a> ", html_escaped(file), name);
+  }
+  return html.empty() ? html : "<div class=\"files\">" + html + "</div>\n";
+}
+
+std::string tags_attribute(const Tags& tags) {
+  if (tags.empty()) return {};
+  return fmt::format(" data-tags=\"{}\"", html_escaped(tags_text(tags)));
+}
+
+std::string panel_html(const DrawnPanel& drawn, std::size_t place, bool legend_in_panel) {
+  const Panel& panel = *drawn.source;
+  std::string html = "<div class=\"panel\"><div class=\"head\">";
+  html += fmt::format("<span class=\"title\">{}</span>", html_escaped(panel.title));
+  if (legend_in_panel) html += fmt::format("<span class=\"keys\">{}</span>", legend_html(drawn));
+  html += "<output class=\"values\"></output></div>\n";
+  if (!drawn.has_values()) return html + "<div class=\"nothing\">no data</div></div>\n";
+  return html + fmt::format(
+                    "<div class=\"chart{}\" data-panel=\"{}\" tabindex=\"0\" role=\"img\" "
+                    "aria-label=\"{}: {} over {}\"></div></div>\n",
+                    panel.map ? " map" : "", place, html_escaped(panel.title),
+                    html_escaped(panel.y.text()), html_escaped(panel.x.text()));
+}
+
+std::string heading_html(const Column& column, bool is_text) {
+  const std::string& name = column.name.empty() ? column.key : column.name;
+  const std::string unit = column.unit.empty() || column.unit == "1"
+                               ? ""
+                               : " <span class=\"unit\">[" + html_escaped(column.unit) + "]</span>";
+  return fmt::format("<th scope=\"col\"{}>{}{}</th>", is_text ? " class=\"text\"" : "",
+                     html_escaped(name), unit);
+}
+
+std::string cell_html(const Cell& cell, const Column& column, bool is_text) {
+  const std::string text = cell_text(cell, column);
+  std::string kind = is_text ? "text" : "number";
+  std::string mark;
+  if (cell.highlight == Highlight::kPass) {
+    kind += " pass";
+    mark = " <span class=\"verdict\" title=\"passed\">✓</span>";
+  } else if (cell.highlight == Highlight::kFail || text == "NaN") {
+    kind += " fail";
+    mark = " <span class=\"verdict\" title=\"failed\">✗</span>";
+  }
+  std::string more;
+  if (cell.heat >= 0.0) {
+    kind += " heat";
+    more += fmt::format(" style=\"--h:{:.2f}\"", std::min(cell.heat, 1.0));
+  }
+  if (cell.task >= 0) more += fmt::format(" data-task=\"{}\"", cell.task);
+  return fmt::format("<td class=\"{}\"{}>{}{}</td>", kind, more, html_escaped(text), mark);
+}
+
+// Whether a figure has room beside another one.
+bool is_narrow(const Block& block) {
+  const auto* figure = std::get_if<Figure>(&block);
+  return figure && figure->columns == 1 &&
+         std::ranges::none_of(figure->panels,
+                              [](const Panel& panel) { return panel.map.has_value(); });
+}
+
+}  // namespace
+
+std::string command_html(const std::string& command) {
+  if (command.empty()) return {};
+  return fmt::format(
+      "<details class=\"command\"><summary>Reproduce this</summary><code>{}</code></details>\n",
+      html_escaped(command));
+}
+
+std::string box_html(std::string_view kind, std::string_view name, const std::string& text) {
+  return fmt::format("<div class=\"box {}\" role=\"note\"><strong>{}</strong>{}</div>\n", kind,
+                     name, html_paragraphs(text));
+}
+
+std::string BlockWriter::section(const Section& section, bool is_answer) {
+  is_answer_ = is_answer;
+  std::string html;
+  bool in_row = false;
+  for (const Block& block : section.blocks) {
+    if (in_row != is_narrow(block)) html += in_row ? "</div>\n" : "<div class=\"row\">\n";
+    in_row = is_narrow(block);
+    html += std::visit(*this, block);
+  }
+  return html + (in_row ? "</div>\n" : "");
+}
+
+std::string BlockWriter::operator()(const Text& text) const {
+  switch (text.kind) {
+    case Text::Kind::kPreformatted:
+      return "<pre>" + html_escaped(text.text) + "</pre>\n";
+    case Text::Kind::kNote:
+      return box_html("note", "Note", text.text);
+    case Text::Kind::kWarning:
+      return box_html("warning", "Warning", text.text);
+    case Text::Kind::kFailure:
+      return box_html("failure", "Failed", text.text);
+    case Text::Kind::kParagraph:
+      break;
+  }
+  return html_paragraphs(text.text);
+}
+
+std::string BlockWriter::operator()(const Figure& figure) {
+  const DrawnFigure& drawn = figures_[next_++];
+  std::string html = fmt::format(
+      "<figure id=\"{0}\" class=\"columns-{1}\" style=\"--columns:{1}\">\n<div "
+      "class=\"caption-head\"><h3>{2}</h3>{3}<button type=\"button\" class=\"reset\" "
+      "hidden>Reset zoom</button></div>\n<div class=\"grid\">\n",
+      figure.id, figure.columns, html_escaped(figure.title),
+      drawn.shared_legend ? "<span class=\"keys\">" + legend_html(drawn.panels.front()) + "</span>"
+                          : "");
+  for (std::size_t i = 0; i < drawn.panels.size(); ++i) {
+    html += panel_html(drawn.panels[i], i, !drawn.shared_legend);
+  }
+  html += "</div>\n<figcaption>" + html_paragraphs(figure.caption);
+  for (const std::string& note : drawn.notes) {
+    html += "<p class=\"remark\">" + html_escaped(note) + "</p>\n";
+  }
+  html += links_html(links_, links_.figures + "/" + figure.id,
+                     {{".svg", "SVG"}, {".pdf", "PDF"}, {".csv", "CSV"}, {".gp", "gnuplot"}});
+  return html + command_html(figure.command) + "</figcaption></figure>\n";
+}
+
+std::string BlockWriter::operator()(const Table& table) const {
+  constexpr std::size_t kShownRows = 12;
+  const bool folded = !is_answer_ && table.rows.size() > kShownRows;
+  std::string html = fmt::format("<div class=\"table\" id=\"{}\">", table.id);
+  html += folded ? fmt::format("<details class=\"fold\"><summary><h3>{}</h3> {} rows</summary>\n",
+                               html_escaped(table.title), table.rows.size())
+                 : fmt::format("<h3>{}</h3>\n", html_escaped(table.title));
+  html += "<div class=\"scroll\"><table><thead><tr>";
+  std::vector<bool> is_text(table.columns.size());
+  for (std::size_t j = 0; j < table.columns.size(); ++j) {
+    is_text[j] = std::any_of(table.rows.begin(), table.rows.end(), [j](const auto& row) {
+      return std::holds_alternative<std::string>(row[j].value);
+    });
+    html += heading_html(table.columns[j], is_text[j]);
+  }
+  html += "</tr></thead>\n<tbody>\n";
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    const auto& row = table.rows[i];
+    html += "<tr" + (table.row_tags.empty() ? "" : tags_attribute(table.row_tags[i])) + ">";
+    for (std::size_t j = 0; j < row.size(); ++j)
+      html += cell_html(row[j], table.columns[j], is_text[j]);
+    html += "</tr>\n";
+  }
+  html += "</tbody></table></div>\n<div class=\"about\">" + html_paragraphs(table.caption);
+  html += links_html(links_, table.id, {{".csv", "CSV"}, {".json", "JSON"}});
+  return html + command_html(table.command) +
+         (folded ? "</div></details></div>\n" : "</div></div>\n");
+}
+
+std::string BlockWriter::operator()(const Audio& audio) const {
+  std::string html = fmt::format("<div class=\"sound\" id=\"{}\"><h3>{}</h3>\n<ul>\n", audio.id,
+                                 html_escaped(audio.title));
+  for (const Track& track : audio.tracks) {
+    html += fmt::format(
+        "<li><span>{0}</span><audio controls preload=\"metadata\" aria-label=\"{0}\" "
+        "src=\"{1}\"></audio></li>\n",
+        html_escaped(track.label), wav_data_uri(track.samples, audio.sample_rate));
+  }
+  return html + "</ul>\n" + html_paragraphs(audio.caption) + "</div>\n";
+}
+
+}  // namespace modcal::report
