@@ -1,6 +1,9 @@
 #include "experiments/loader.hpp"
 
+#include <algorithm>
 #include <regex>
+#include <set>
+#include <tuple>
 
 #include "experiments/config/help.hpp"
 #include "experiments/config/reader.hpp"
@@ -48,12 +51,35 @@ void visit_head(OptionVisitor& visitor, LoadedExperiment& loaded) {
   visitor("description", "what the experiment is for", loaded.description);
 }
 
-bool is_known_mistake(const std::vector<Mistake>& mistakes, const SourcePosition& position) {
-  return std::any_of(mistakes.begin(), mistakes.end(), [&](const Mistake& mistake) {
-    return mistake.position.line == position.line && mistake.position.column == position.column &&
-           mistake.position.origin == position.origin;
-  });
-}
+// Where mistakes stand, to be asked of every finding.
+class Places {
+ public:
+  explicit Places(const std::vector<Mistake>& mistakes) {
+    for (const Mistake& mistake : mistakes) add(mistake);
+  }
+  void add(const Mistake& mistake) {
+    all_.insert(key_of(mistake.position));
+    if (mistake.text.starts_with("missing key")) missing_.insert(key_of(mistake.position));
+  }
+  bool known(const SourcePosition& position) const { return all_.contains(key_of(position)); }
+  // What a section says of itself follows from a key that it lacks.
+  bool lacks_a_key(const YamlNode& node) const {
+    if (missing_.empty()) return false;
+    return missing_.contains(key_of(node.position)) ||
+           std::ranges::any_of(node.items,
+                               [this](const YamlNode& item) { return lacks_a_key(item); }) ||
+           std::ranges::any_of(node.members, [this](const YamlNode::Member& member) {
+             return lacks_a_key(member.value);
+           });
+  }
+
+ private:
+  using Key = std::tuple<std::size_t, std::size_t, std::string>;
+  static Key key_of(const SourcePosition& position) {
+    return {position.line, position.column, position.origin};
+  }
+  std::set<Key> all_, missing_;
+};
 
 // The node at a dotted path; null: the file does not have it.
 const YamlNode* node_at(const YamlNode& root, std::string_view path) {
@@ -64,21 +90,6 @@ const YamlNode* node_at(const YamlNode& root, std::string_view path) {
     path.remove_prefix(dot == std::string_view::npos ? path.size() : dot + 1);
   }
   return node;
-}
-
-// What a section says of itself follows from a key that it lacks.
-bool lacks_a_key(const YamlNode& node, const std::vector<Mistake>& mistakes) {
-  const auto is_missing = [&node](const Mistake& mistake) {
-    return mistake.text.starts_with("missing key") && mistake.position.line == node.position.line &&
-           mistake.position.column == node.position.column &&
-           mistake.position.origin == node.position.origin;
-  };
-  return std::any_of(mistakes.begin(), mistakes.end(), is_missing) ||
-         std::any_of(node.items.begin(), node.items.end(),
-                     [&](const YamlNode& item) { return lacks_a_key(item, mistakes); }) ||
-         std::any_of(node.members.begin(), node.members.end(), [&](const YamlNode::Member& member) {
-           return lacks_a_key(member.value, mistakes);
-         });
 }
 
 // A number prints as nan only where its option could not be read, which is a mistake already.
@@ -120,15 +131,16 @@ void make_and_lint(LoadedExperiment& loaded, const Means& means) {
   try {
     auto experiment = loaded.choice.make();
     if (!had_errors && !check_memory(*experiment, means, loaded)) return;
+    Places mistakes(loaded.mistakes);
     for (const Finding& finding : experiment->lint()) {
       const SourcePosition position = position_of_path(root, finding.path);
       const YamlNode* node = node_at(root, finding.path);
-      if (had_errors &&
-          (is_known_mistake(loaded.mistakes, position) || is_consequence(finding.text) ||
-           (node != nullptr && lacks_a_key(*node, loaded.mistakes)))) {
+      if (had_errors && (mistakes.known(position) || is_consequence(finding.text) ||
+                         (node != nullptr && mistakes.lacks_a_key(*node)))) {
         continue;
       }
       loaded.mistakes.push_back({position, finding.text, !finding.is_error});
+      mistakes.add(loaded.mistakes.back());
     }
     if (!loaded.has_errors()) loaded.experiment = std::move(experiment);
   } catch (const InvalidInput& error) {

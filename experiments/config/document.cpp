@@ -162,8 +162,21 @@ std::vector<Complaint> complaints_of(const YamlDocument& document, std::vector<M
   std::stable_sort(mistakes.begin(), mistakes.end(), [](const Mistake& a, const Mistake& b) {
     return order_of(a.position) < order_of(b.position);
   });
+  // Whoever has made so many mends the first ones first.
+  constexpr std::size_t kMost = 50;
+  const std::size_t shown = std::min(kMost, mistakes.size());
   std::vector<Complaint> complaints;
-  for (const Mistake& mistake : mistakes) complaints.push_back(complaint_of(document, mistake));
+  for (std::size_t i = 0; i < shown; ++i) {
+    complaints.push_back(complaint_of(document, mistakes[i]));
+  }
+  const auto is_error = [](const Mistake& mistake) { return !mistake.warning; };
+  const auto hidden = mistakes.begin() + static_cast<std::ptrdiff_t>(shown);
+  if (hidden != mistakes.end()) {
+    const bool is_warning = std::none_of(hidden, mistakes.end(), is_error);
+    complaints.push_back(
+        {.grade = is_warning ? Complaint::Grade::kWarning : Complaint::Grade::kError,
+         .text = fmt::format("{} more: mend these first", mistakes.size() - shown)});
+  }
   return complaints;
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <optional>
 #include <sstream>
+#include <unordered_map>
 
 #include "experiments/config/document.hpp"
 #include "experiments/config/source_text.hpp"
@@ -86,6 +87,7 @@ class TreeBuilder final : public YAML::EventHandler {
     bool has_key = false;
     std::string key;
     SourcePosition key_position;
+    std::unordered_map<std::string, std::size_t> lines;  // of the keys that were read
   };
 
   static bool kind_is_nothing(const YamlNode& node) {
@@ -160,11 +162,11 @@ class TreeBuilder final : public YAML::EventHandler {
     level.has_key = false;
     // yaml-cpp puts what is not there at the next word, in another line.
     if (kind_is_nothing(node)) node.position = level.key_position;
-    for (const YamlNode::Member& member : level.node.members) {
-      if (member.key != level.key) continue;
+    const auto [known, is_new] = level.lines.try_emplace(level.key, level.key_position.line);
+    if (!is_new) {
       document_.mistakes.push_back(
           {level.key_position, fmt::format("duplicate key \"{}\": it stands in line {} already",
-                                           level.key, member.position.line)});
+                                           level.key, known->second)});
       return;
     }
     level.node.members.push_back({level.key, level.key_position, std::move(node)});

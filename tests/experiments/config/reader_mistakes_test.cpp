@@ -1,4 +1,5 @@
 // Wrong values and wrong texts, each reported with its place and the remedy.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <string>
@@ -77,7 +78,8 @@ INSTANTIATE_TEST_SUITE_P(
              "    decay: {a: 1}\n"
              "           ^\n"},
         Case{"decay: \"5\"\n",
-             "a.yaml:3:8: error: decay must be a number in s/m, not a quoted text: leave out the quotes\n"
+             "a.yaml:3:8: error: decay must be a number in s/m, not a quoted text: leave out the "
+             "quotes\n"
              "    decay: \"5\"\n"
              "           ^\n"},
         Case{"remove_mean: yes\n",
@@ -191,6 +193,18 @@ INSTANTIATE_TEST_SUITE_P(
              "linear_density, fundamental\n"
              "    windows: [1]\n"
              "    ^\n"}));
+
+// Of 60 000 wrong keys in one line the first are shown, in the time of a line: what looks through
+// all others at each of them takes minutes.
+TEST(ManyMistakes, AreShownFromTheFirstAndCounted) {
+  std::string yaml = "band: {low: 1, high: 2";
+  for (int i = 0; i < 60000; ++i) yaml += fmt::format(", k{}: 1", i);
+  const std::string text = mistakes_after_string(yaml + "}\n");
+  EXPECT_NE(text.find("unknown key \"k0\""), std::string::npos);
+  EXPECT_NE(text.find("unknown key \"k49\""), std::string::npos);
+  EXPECT_EQ(text.find("unknown key \"k50\""), std::string::npos);
+  EXPECT_NE(text.find("error: 59950 more: mend these first\n"), std::string::npos);
+}
 
 }  // namespace
 }  // namespace modcal
