@@ -11,6 +11,17 @@ if(CHANGES)
 else()
   set(DIRTY "false")
 endif()
+# A program is known by what it is built of: commits do not tell of new files, archives or flags.
+file(GLOB_RECURSE SOURCES "${SOURCE_DIR}/libsim/*" "${SOURCE_DIR}/libinverse/*" "${SOURCE_DIR}/libcalib/*"
+     "${SOURCE_DIR}/experiments/*")
+list(SORT SOURCES)
+set(DIGESTS "${FLAGS}")
+foreach(source IN LISTS SOURCES)
+  file(SHA256 "${source}" digest)
+  string(APPEND DIGESTS "${digest}")
+endforeach()
+string(SHA256 SOURCES "${DIGESTS}")
+string(SUBSTRING "${SOURCES}" 0 16 SOURCES)
 # LIBRARIES: name=version,name=version
 string(REPLACE "," ";" LIBRARIES "${LIBRARIES}")
 list(LENGTH LIBRARIES LIBRARY_COUNT)
@@ -28,6 +39,7 @@ inline constexpr char kBuildCommit[] = "@COMMIT@";
 inline constexpr bool kBuildDirty = @DIRTY@;
 inline constexpr char kBuildCompiler[] = "@COMPILER@";
 inline constexpr char kBuildType[] = "@BUILD_TYPE@";
+inline constexpr char kBuildSources[] = "@SOURCES@";
 inline constexpr std::array<std::pair<const char*, const char*>, @LIBRARY_COUNT@> kBuildLibraries = {{@LIBRARY_TABLE@}};
 // Seen from the program's folder.
 inline constexpr std::array kBuildConfigs = {"@INSTALLED_CONFIGS@", "@BUILD_CONFIGS@"};

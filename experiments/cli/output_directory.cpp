@@ -36,12 +36,13 @@ bool may_be_removed(const fs::path& folder, const fs::path& name) {
 
 bool is_folder_below(const fs::path& folder, const fs::path& name) {
   std::error_code error;
-  return name == name.filename() && name != "." && name != ".." &&
+  return !name.empty() && name == name.filename() && name != "." && name != ".." &&
          fs::is_directory(fs::symlink_status(folder / name, error));
 }
 
 std::set<std::string> texts_in(const nlohmann::ordered_json& list) {
   std::set<std::string> texts;
+  if (!list.is_array()) return texts;
   for (const auto& text : list) {
     if (text.is_string()) texts.insert(text.get<std::string>());
   }

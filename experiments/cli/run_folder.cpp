@@ -36,22 +36,6 @@ nlohmann::json read_provenance(const std::filesystem::path& out) {
   return provenance;
 }
 
-// The file that this code was loaded from: the program, or the module of another one.
-std::string own_file() {
-  constexpr const char* kProgram = "/proc/self/exe";
-  const auto own = reinterpret_cast<std::uintptr_t>(&own_file);
-  std::ifstream maps("/proc/self/maps");
-  for (std::string line; std::getline(maps, line);) {
-    std::uintptr_t begin = 0, end = 0;
-    char dash = 0;
-    std::istringstream(line) >> std::hex >> begin >> dash >> end;
-    if (own < begin || own >= end) continue;
-    const std::string file = line.substr(line.find('/'));
-    if (file != std::filesystem::read_symlink(kProgram)) return file;
-  }
-  return kProgram;
-}
-
 std::string processor() {
   std::ifstream info("/proc/cpuinfo");
   for (std::string line; std::getline(info, line);) {
@@ -146,10 +130,8 @@ std::string version_text() {
 }
 
 std::string program_identity() {
-  std::string identity =
-      fmt::format("modcal {} {} {} {}", kBuildVersion, kBuildCommit, kBuildCompiler, kBuildType);
-  if (!kBuildDirty) return identity;
-  return identity + " " + digest_of_file(own_file());
+  return fmt::format("modcal {} {} {} {} {}", kBuildVersion, kBuildCommit, kBuildCompiler,
+                     kBuildType, kBuildSources);
 }
 
 nlohmann::ordered_json provenance_json(const std::string& command) {

@@ -45,10 +45,14 @@ void lint_rate(const StringModel& string, double sample_rate, const std::string&
   const auto top_mode = static_cast<std::size_t>(string.modes);
   const double top = stiff_string_frequency(string.fundamental, string.inharmonicity, top_mode);
   if (top < 0.5 * sample_rate) return;
-  const auto most = std::floor(0.5 * sample_rate / string.fundamental);
+  std::size_t most = top_mode;
+  while (most > 0 && !(stiff_string_frequency(string.fundamental, string.inharmonicity, most) <
+                       0.5 * sample_rate)) {
+    --most;
+  }
   add_finding(findings, string_path + ".modes",
               "mode {} at {:.6g} Hz is not below half the sample rate, {:.6g} Hz: use at most "
-              "about {:g} modes or a higher measurement.sample_rate",
+              "{} modes or a higher measurement.sample_rate",
               string.modes, top, 0.5 * sample_rate, most);
 }
 

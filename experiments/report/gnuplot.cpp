@@ -6,17 +6,16 @@
 #include <cstdio>
 #include <fstream>
 #include <iterator>
-#include <system_error>
+#include <memory>
 
 #include "experiments/report/drawing.hpp"
 #include "experiments/report/encoding.hpp"
+#include "libsim/base/files.hpp"
 
 namespace modcal::report {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr const char* kSuffix = ".part";
 
 struct Format {
   const char* extension;
@@ -35,17 +34,42 @@ bool is_complete(const fs::path& file, std::string_view ending) {
   return tail.find(ending) != std::string::npos;
 }
 
-// Gives the drawn file its name; false where there is none.
-bool publish(const fs::path& file, std::string_view ending) {
-  const fs::path part = file.string() + kSuffix;
-  std::error_code error;
-  if (is_complete(part, ending)) {
-    fs::rename(part, file, error);
-    if (!error) return true;
+// Files that gnuplot draws one figure to: new ones, which no link in the folder leads elsewhere.
+class Drawn {
+ public:
+  Drawn(const fs::path& directory, const std::string& id) : id_(id) {
+    for (const auto& [extension, ending] : kFormats) {
+      parts_.push_back(std::make_unique<PartFile>(directory / (id + extension)));
+    }
   }
-  fs::remove(part, error);
-  return false;
-}
+
+  // Sets the names that the figure's script draws to.
+  std::string names() const {
+    std::string text;
+    for (std::size_t i = 0; i < kFormats.size(); ++i) {
+      text += fmt::format("output_{} = '{}'; ", std::string_view(kFormats[i].extension).substr(1),
+                          parts_[i]->path().filename().string());
+    }
+    return text;
+  }
+
+  // Gives what was drawn to its end its name; returns what was not.
+  std::vector<std::string> publish() {
+    std::vector<std::string> missing;
+    for (std::size_t i = 0; i < kFormats.size(); ++i) {
+      if (is_complete(parts_[i]->path(), kFormats[i].ending)) {
+        parts_[i]->put_in_place();
+      } else {
+        missing.push_back(id_ + kFormats[i].extension);
+      }
+    }
+    return missing;
+  }
+
+ private:
+  std::string id_;
+  std::vector<std::unique_ptr<PartFile>> parts_;
+};
 
 // What the shell ends with where it cannot run a program.
 constexpr int kNotExecutable = 126, kNotFound = 127;
@@ -71,22 +95,19 @@ ProcessOutcome run_process(const std::vector<std::string>& arguments, const fs::
 std::string draw_with_gnuplot(std::span<const DrawnFigure> figures, const fs::path& directory,
                               const std::string& program) {
   if (figures.empty()) return {};
-  std::vector<std::string> arguments = {program, "-e", fmt::format("suffix = '{}'", kSuffix)};
+  std::vector<std::string> arguments = {program};
+  std::vector<Drawn> all;
   for (const DrawnFigure& figure : figures) {
     const std::string& id = figure.source->id;
     write_file_atomically(directory / (id + ".dat"), gnuplot_data(figure));
     write_file_atomically(directory / (id + ".gp"), gnuplot_script(figure));
-    arguments.push_back(id + ".gp");
+    all.emplace_back(directory, id);
+    arguments.insert(arguments.end(), {"-e", all.back().names(), id + ".gp"});
   }
   const ProcessOutcome outcome = run_process(arguments, directory);
   std::vector<std::string> missing;
-  for (const DrawnFigure& figure : figures) {
-    const fs::path stem = directory / figure.source->id;
-    for (const auto& [extension, ending] : kFormats) {
-      if (!publish(stem.string() + extension, ending)) {
-        missing.push_back(figure.source->id + extension);
-      }
-    }
+  for (Drawn& drawn : all) {
+    for (std::string& name : drawn.publish()) missing.push_back(std::move(name));
   }
   if (!outcome.started) {
     return fmt::format(

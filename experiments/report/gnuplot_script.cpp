@@ -241,7 +241,8 @@ std::string gnuplot_script(const DrawnFigure& figure) {
   std::string text = fmt::format(
       "# {0}.svg and {0}.pdf: run \"gnuplot {0}.gp\" in this folder; the data are in {0}.dat.\n"
       "reset\n"
-      "if (!exists(\"suffix\")) suffix = ''\n"
+      "if (!exists(\"output_svg\")) output_svg = '{0}.svg'\n"
+      "if (!exists(\"output_pdf\")) output_pdf = '{0}.pdf'\n"
       "set encoding utf8\n"
       "set style line 100 linecolor rgb '#d9d9d9' linewidth 0.5\n",
       id);
@@ -254,7 +255,7 @@ std::string gnuplot_script(const DrawnFigure& figure) {
                           sheet.width, sheet.height)}};
   for (const auto& [format, terminal] : terminals) {
     text += fmt::format("set terminal {}\n", terminal);
-    text += fmt::format("set output '{}.{}'.suffix\n", id, format);
+    text += fmt::format("set output output_{}\n", format);
     text += "set grid linestyle 100\n";
     text += "set border 3 linewidth 0.8\nset tics out nomirror scale 0.6\n";
     text += sheet.layout();

@@ -7,6 +7,7 @@
 #include "experiments/report/encoding.hpp"
 #include "experiments/report/html_page.hpp"
 #include "libsim/base/error.hpp"
+#include "libsim/base/files.hpp"
 
 namespace modcal::report {
 namespace {
@@ -114,9 +115,9 @@ class ReportFolder {
  public:
   ReportFolder(fs::path root, bool has_figures) : root_(std::move(root)) {
     std::error_code error;
-    const fs::path folder = has_figures ? figures() : root_;
-    fs::create_directories(folder, error);
-    MODCAL_REQUIRE(!error, "the folder {} cannot be made: {}", folder.string(), error.message());
+    fs::create_directories(root_, error);
+    MODCAL_REQUIRE(!error, "the folder {} cannot be made: {}", root_.string(), error.message());
+    if (has_figures) make_own_folder(figures());
   }
   void write(const std::string& name, std::string_view content) {
     write_file_atomically(root_ / name, content);

@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "libsim/base/error.hpp"
+#include "libsim/base/files.hpp"
 
 namespace modcal {
 namespace {
@@ -53,10 +54,7 @@ std::string own_name() {
 
 std::filesystem::path made_journal_folder(const std::filesystem::path& folder) {
   std::filesystem::path journals = journal_folder(folder);
-  std::error_code error;
-  std::filesystem::create_directories(journals, error);
-  MODCAL_REQUIRE(!error, "the folder {} cannot be made: {}; choose another one with --out",
-                 journals.string(), error.message());
+  make_own_folder(journals);
   return journals;
 }
 

@@ -202,6 +202,15 @@ void PartFile::put_in_place() {
   part_.clear();
 }
 
+void make_own_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  MODCAL_REQUIRE(!error, "the folder {} cannot be made: {}; choose another one with --out",
+                 folder.string(), error.message());
+  MODCAL_REQUIRE(!fs::is_symlink(fs::symlink_status(folder, error)),
+                 "{}: this is a link, not a folder: remove it", folder.string());
+}
+
 void remove_abandoned_parts(const fs::path& folder) {
   std::error_code error;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end;

@@ -69,6 +69,10 @@ class PartFile {
   int descriptor_ = -1;
 };
 
+/// Makes a folder of ours, and those above it. Throws InvalidInput where that fails, and where a
+/// link stands in its place: what is written below would go where somebody else wants it.
+void make_own_folder(const std::filesystem::path& folder);
+
 /// Removes the part files in a folder, not below it, that no process is writing.
 void remove_abandoned_parts(const std::filesystem::path& folder);
 

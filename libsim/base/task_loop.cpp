@@ -7,6 +7,9 @@
 #include <algorithm>
 #include <exception>
 #include <mutex>
+#include <stdexcept>
+#include <string>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -57,7 +60,14 @@ void spread(std::size_t count, const Task& task) {
 // outer loop, and come back when that one, and all it began, has ended.
 template <typename Task>
 void spread(std::size_t count, const Task& task) {
-  tbb::this_task_arena::isolate([&] { tbb::parallel_for(std::size_t{0}, count, task); });
+  try {
+    tbb::this_task_arena::isolate([&] { tbb::parallel_for(std::size_t{0}, count, task); });
+  } catch (const std::runtime_error& error) {
+    // The tasks keep what they throw: this is of oneTBB, and of the system's limits.
+    throw std::system_error(std::make_error_code(std::errc::resource_unavailable_try_again),
+                            std::string("the threads of the tasks cannot be started (") +
+                                error.what() + "); raise the limits (ulimit -a) or --threads 1");
+  }
 }
 #endif
 

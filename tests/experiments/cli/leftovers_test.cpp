@@ -122,6 +122,45 @@ TEST_F(Leftovers, LinksOfOthersAreNotWrittenThrough) {
   EXPECT_EQ(modcal("run list.yaml --out a").code, 3);
 }
 
+TEST_F(Leftovers, FoldersOfOthersAreNotWrittenTo) {
+  write("drawn.yaml", testing::kSmallSimulation + "figures: [{id: fig1, quantities: [y, R1]}]\n");
+  std::filesystem::create_directories(folder() / "elsewhere");
+  for (const auto& [file, place] :
+       {std::pair{"list.yaml", "journal"}, std::pair{"drawn.yaml", "figures"}}) {
+    shell("rm -rf a; mkdir a; ln -s ../elsewhere a/" + std::string(place));
+    const Outcome outcome = modcal("run " + std::string(file) + " --out a");
+    EXPECT_EQ(outcome.code, 3) << place;
+    EXPECT_THAT(outcome.err, HasSubstr("is a link, not a folder")) << place;
+    EXPECT_TRUE(std::filesystem::is_empty(folder() / "elsewhere")) << place;
+  }
+}
+
+TEST_F(Leftovers, WhatIsDrawnGoesToNewFiles) {
+  write("drawn.yaml", testing::kSmallSimulation + "figures: [{id: fig1, quantities: [y, R1]}]\n");
+  write("victim", "kept\n");
+  std::filesystem::create_directories(folder() / "a/figures");
+  for (const char* how : {"-s", ""}) {
+    for (const char* name : {"fig1.svg.part", "fig1.pdf.part", "fig1.svg", "fig1.pdf"}) {
+      shell(std::string("ln -f ") + how + " \"$PWD\"/victim a/figures/" + name);
+      modcal("run drawn.yaml --out a");
+      EXPECT_EQ(content_of(folder() / "victim"), "kept\n") << name << how;
+      shell("rm -f a/figures/" + std::string(name));
+    }
+  }
+}
+
+TEST_F(Leftovers, AForgedListOfFoldersRemovesNothingOfThisRun) {
+  ASSERT_EQ(modcal("run list.yaml --out a").code, 0);
+  for (const char* folders : {"[\"\"]", "\"\"", "[\".\"]"}) {
+    std::string text = content_of(folder() / "a/provenance.json");
+    text.insert(text.find('{') + 1, std::string("\"folders\": ") + folders + ",");
+    write("a/provenance.json", text);
+    EXPECT_EQ(modcal("report a").code, 0) << folders;
+    EXPECT_TRUE(std::filesystem::exists(folder() / "a/report.html")) << folders;
+    EXPECT_TRUE(std::filesystem::exists(folder() / "a/resolved.yaml")) << folders;
+  }
+}
+
 TEST_F(Leftovers, TablesHoldNoFormulas) {
   write("formula.yaml", testing::kSmallSimulation +
                             "sweep:\n  product:\n    title: [\"=cmd|' /C calc'!A0\", '@SUM(1)', "
