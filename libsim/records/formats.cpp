@@ -5,6 +5,7 @@
 
 #include "libsim/base/error.hpp"
 #include "libsim/base/words.hpp"
+#include "libsim/records/matlab/matlab_file.hpp"
 #include "libsim/records/universal/universal_file.hpp"
 
 namespace modcal {
@@ -34,6 +35,7 @@ const std::vector<RecordFormat>& table() {
        {".uff", ".unv", ".uf58"},
        read_universal,
        write_universal},
+      {"mat", "MAT files of MATLAB and Octave", {".mat"}, read_matlab, write_matlab},
   };
   return formats;
 }

@@ -1,0 +1,169 @@
+#include "libsim/records/matlab/matlab_content.hpp"
+
+#include <hdf5.h>
+
+#include <array>
+#include <bit>
+#include <cstring>
+#include <fstream>
+#include <mutex>
+
+#include "libsim/base/error.hpp"
+#include "libsim/base/files.hpp"
+
+namespace modcal {
+namespace {
+
+using Path = std::filesystem::path;
+using Variable = std::unique_ptr<matvar_t, decltype(&Mat_VarFree)>;
+using File = std::unique_ptr<mat_t, decltype(&Mat_Close)>;
+
+// HDF5, which holds version 7.3, is not made for threads.
+std::mutex& library() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+Variable owned(matvar_t* variable) { return {variable, &Mat_VarFree}; }
+
+// libmatio takes the end of a file that was cut off for the end of its variables. Version 5: a
+// header of 128 bytes, then variables, each with its size before it.
+void require_whole(const Path& path) {
+  constexpr std::streamoff kHeader = 128, kOrder = 126, kTag = 8;
+  std::ifstream file(path, std::ios::binary);
+  std::array<char, kHeader> header{};
+  const auto size = static_cast<std::streamoff>(std::filesystem::file_size(path));
+  file.read(header.data(), kHeader);
+  if (!file || std::strncmp(header.data(), "MATLAB 5.0", 10) != 0) return;
+  const bool is_swapped = (header[kOrder] == 'I') != (std::endian::native == std::endian::little);
+  for (std::streamoff at = kHeader; at < size;) {
+    std::array<std::uint32_t, 2> tag{};
+    file.seekg(at);
+    file.read(reinterpret_cast<char*>(tag.data()), kTag);
+    const std::uint32_t bytes = is_swapped ? __builtin_bswap32(tag[1]) : tag[1];
+    MODCAL_REQUIRE(file && at + kTag + static_cast<std::streamoff>(bytes) <= size,
+                   "{}: the file is cut off: the variable at byte {} is not whole; copy or save "
+                   "it again",
+                   path.string(), at);
+    at += kTag + static_cast<std::streamoff>(bytes);
+  }
+}
+
+File opened(const Path& path) {
+  require_regular_file(path);
+  MODCAL_REQUIRE(std::filesystem::exists(path), "{}: there is no such file; check the path",
+                 path.string());
+  MODCAL_REQUIRE(std::filesystem::file_size(path) > 0, "{}: the file is empty", path.string());
+  require_whole(path);
+  // What HDF5 says on the terminal is said by the refusal.
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  File file(Mat_Open(path.c_str(), MAT_ACC_RDONLY), &Mat_Close);
+  MODCAL_REQUIRE(file != nullptr,
+                 "{}: cannot be read as a MAT file; save it again (save -v7), or export it as CSV",
+                 path.string());
+  return file;
+}
+
+std::size_t size_of(const matvar_t& variable) {
+  std::size_t size = 1;
+  for (int i = 0; i < variable.rank; ++i) size *= variable.dims[i];
+  return variable.rank > 0 ? size : 0;
+}
+
+template <typename Number>
+double number_at(const matvar_t& variable, std::size_t i) {
+  return static_cast<double>(static_cast<const Number*>(variable.data)[i]);
+}
+
+using NumberAt = double (*)(const matvar_t&, std::size_t);
+
+// How a number of a class is read; null: it has no numbers.
+NumberAt number_of_class(matio_classes type) {
+  static const std::map<matio_classes, NumberAt> kClasses = {
+      {MAT_C_DOUBLE, number_at<double>},      {MAT_C_SINGLE, number_at<float>},
+      {MAT_C_INT8, number_at<std::int8_t>},   {MAT_C_UINT8, number_at<std::uint8_t>},
+      {MAT_C_INT16, number_at<std::int16_t>}, {MAT_C_UINT16, number_at<std::uint16_t>},
+      {MAT_C_INT32, number_at<std::int32_t>}, {MAT_C_UINT32, number_at<std::uint32_t>},
+      {MAT_C_INT64, number_at<std::int64_t>}, {MAT_C_UINT64, number_at<std::uint64_t>}};
+  const auto found = kClasses.find(type);
+  return found == kClasses.end() ? nullptr : found->second;
+}
+
+void add_leaves(matvar_t* variable, MatlabLeaf at, std::vector<MatlabLeaf>& leaves) {
+  if (variable->class_type != MAT_C_STRUCT) {
+    at.type = variable->class_type;
+    at.is_complex = variable->isComplex != 0;
+    at.dims.assign(variable->dims, variable->dims + variable->rank);
+    leaves.push_back(std::move(at));
+    return;
+  }
+  if (size_of(*variable) != 1) return;
+  char* const* const names = Mat_VarGetStructFieldnames(variable);
+  for (std::size_t i = 0; i < Mat_VarGetNumberOfFields(variable); ++i) {
+    matvar_t* const field = Mat_VarGetStructFieldByIndex(variable, i, 0);
+    if (field == nullptr) continue;
+    MatlabLeaf below = at;
+    below.path.emplace_back(names[i]);
+    below.fields.push_back(i);
+    add_leaves(field, std::move(below), leaves);
+  }
+}
+
+}  // namespace
+
+bool MatlabLeaf::has_numbers() const { return number_of_class(type) != nullptr; }
+
+MatlabContent::MatlabContent(Path path) : path_(std::move(path)) {
+  const std::lock_guard lock(library());
+  const File file = opened(path_);
+  for (;;) {
+    const Variable variable = owned(Mat_VarReadNextInfo(file.get()));
+    if (variable == nullptr) break;
+    add_leaves(variable.get(), {.path = {variable->name}}, leaves_);
+  }
+}
+
+std::vector<double> MatlabContent::column(const MatlabLeaf& leaf, std::size_t j) {
+  const matvar_t& field = this->field(leaf);
+  const NumberAt read = number_of_class(field.class_type);
+  std::vector<double> samples(leaf.rows());
+  // Numbers stand column by column; a channel may be a row.
+  const bool is_row = leaf.dims[0] < leaf.dims[1];
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    samples[i] = read(field, is_row ? j + i * leaf.dims[0] : i + j * leaf.dims[0]);
+  }
+  return samples;
+}
+
+double MatlabContent::number(const MatlabLeaf& leaf) {
+  const matvar_t& field = this->field(leaf);
+  return number_of_class(field.class_type)(field, 0);
+}
+
+std::string MatlabContent::text(const MatlabLeaf& leaf) {
+  const matvar_t& field = this->field(leaf);
+  const auto* const letters = static_cast<const char*>(field.data);
+  const bool is_bytes = field.data_type == MAT_T_UINT8 || field.data_type == MAT_T_INT8 ||
+                        field.data_type == MAT_T_UTF8;
+  return is_bytes ? std::string(letters, std::min(size_of(field), field.nbytes)) : std::string();
+}
+
+const matvar_t& MatlabContent::field(const MatlabLeaf& leaf) {
+  const std::lock_guard lock(library());
+  Variable& variable = read_.try_emplace(leaf.path[0], owned(nullptr)).first->second;
+  if (variable == nullptr) {
+    const File file = opened(path_);
+    variable = owned(Mat_VarRead(file.get(), leaf.path[0].c_str()));
+  }
+  matvar_t* found = variable.get();
+  for (const std::size_t place : leaf.fields) {
+    if (found != nullptr) found = Mat_VarGetStructFieldByIndex(found, place, 0);
+  }
+  MODCAL_REQUIRE(found != nullptr && found->data != nullptr && size_of(*found) == leaf.size() &&
+                     found->class_type == leaf.type,
+                 "{}: the variable {} cannot be read: the file is damaged; save it again",
+                 path_.string(), leaf.text());
+  return *found;
+}
+
+}  // namespace modcal

@@ -1,0 +1,27 @@
+// MATLAB's MAT files, versions 4, 5 and 7.3, by libmatio.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "libsim/records/record_file.hpp"
+
+namespace modcal {
+
+/// The structure in which write_matlab() keeps names and units.
+inline constexpr const char* kMatlabHeads = "modcal";
+
+/// Reads vectors and the columns of matrices as channels, fields of structures with dots in their
+/// names. The sample rate [Hz] is a number called sample_rate, fs or the like, or one over a number
+/// called dt or increment [s], in the same structure or around it; else a vector called t or time
+/// [s] tells it. Names and units are those of a structure `modcal` where write_matlab() left it;
+/// other files state no units. Throws InvalidInput for what is no whole MAT file.
+Recording read_matlab(const std::filesystem::path& path, const ReadOptions& options = {});
+
+/// Writes version 5: a column a signal, `sample_rate`, and a structure `modcal` with names and
+/// units. An existing file is replaced only when the new one is complete. Throws InvalidInput where
+/// it cannot be written.
+void write_matlab(const std::filesystem::path& path, std::span<const Signal> signals,
+                  const std::string& provenance);
+
+}  // namespace modcal

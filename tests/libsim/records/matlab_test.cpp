@@ -1,0 +1,196 @@
+// MAT files: what modcal writes, and what MATLAB and other programs do, made here with libmatio.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <matio.h>
+
+#include <cmath>
+#include <fstream>
+#include <memory>
+
+#include "libsim/records/formats.hpp"
+#include "tests/folder_test.hpp"
+#include "tests/refusal.hpp"
+
+namespace modcal {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class Matlab : public FolderTest {
+ protected:
+  std::filesystem::path file() const { return path("a.mat"); }
+  Recording read(const ReadOptions& options = {}) const {
+    return read_record(file(), "auto", options);
+  }
+  std::string refusal() const {
+    return refusal_of([&] { read(); });
+  }
+};
+
+// Variables of one file, made by the calls that every MAT file goes through.
+class MatWriter {
+ public:
+  MatWriter(const std::filesystem::path& path, mat_ft version)
+      : file_(Mat_CreateVer(path.c_str(), nullptr, version)) {}
+  ~MatWriter() { Mat_Close(file_); }
+  MatWriter(const MatWriter&) = delete;
+  MatWriter& operator=(const MatWriter&) = delete;
+
+  template <typename Number>
+  static matvar_t* made(const char* name, matio_classes type, matio_types data, std::size_t rows,
+                        std::vector<Number> numbers) {
+    std::size_t dims[] = {rows, numbers.size() / rows};
+    return Mat_VarCreate(name, type, data, 2, dims, numbers.data(), 0);
+  }
+  static matvar_t* doubles(const char* name, std::size_t rows, std::vector<double> numbers) {
+    return made(name, MAT_C_DOUBLE, MAT_T_DOUBLE, rows, std::move(numbers));
+  }
+  void write(matvar_t* variable, matio_compression compression = MAT_COMPRESSION_NONE) {
+    EXPECT_EQ(Mat_VarWrite(file_, variable, compression), 0);
+    Mat_VarFree(variable);
+  }
+
+ private:
+  mat_t* file_;
+};
+
+std::vector<Signal> two_signals() {
+  return {{"R1 left", "N", 51200.0, {0.1, -2.5, 1e-300, 3.0}},
+          {"R1_left", "mm/s", 51200.0, {4.0, 5.0, -0.0, 1.0 / 3.0}}};
+}
+
+TEST_F(Matlab, KeepsEveryBitNameAndUnitOfWhatIsWritten) {
+  const std::vector<Signal> signals = two_signals();
+  record_format(file(), "mat").write(file(), signals, "a test");
+  const Recording found = read();
+  EXPECT_EQ(found.sample_rate, 51200.0);
+  ASSERT_EQ(found.channels.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(found.channels[i].name, signals[i].quantity);
+    EXPECT_EQ(found.channels[i].unit, signals[i].unit);
+    EXPECT_EQ(found.channels[i].samples, signals[i].samples);
+  }
+}
+
+// Rows, columns and matrices of any class, with the rate or the instants beside them.
+TEST_F(Matlab, ReadsVectorsAndMatricesOfEveryVersion) {
+  for (const mat_ft version : {MAT_FT_MAT4, MAT_FT_MAT5, MAT_FT_MAT73}) {
+    {
+      MatWriter out(file(), version);
+      out.write(MatWriter::doubles("force", 1, {1.0, 2.0, 3.0}));
+      out.write(MatWriter::doubles("a", 3, {1.0, 2.0, 3.0, 4.0, 5.0, 6.0}));
+      out.write(MatWriter::doubles("Fs", 1, {44100.0}));
+    }
+    // Version 7.3 keeps its variables in the order of their names.
+    const Recording found = read({.channels = {"force", "a_1", "a_2"}});
+    EXPECT_EQ(found.sample_rate, 44100.0) << version;
+    ASSERT_EQ(found.channels.size(), 3u) << version;
+    EXPECT_EQ(found.channels[0].name, "force");
+    EXPECT_THAT(found.channels[0].samples, ElementsAre(1.0, 2.0, 3.0));
+    EXPECT_EQ(found.channels[1].name, "a_1");
+    EXPECT_EQ(found.channels[2].name, "a_2");
+    EXPECT_THAT(found.channels[2].samples, ElementsAre(4.0, 5.0, 6.0));
+    std::filesystem::remove(file());
+  }
+}
+
+TEST_F(Matlab, ReadsIntegersSinglesAndCompressedVariables) {
+  {
+    MatWriter out(file(), MAT_FT_MAT5);
+    out.write(
+        MatWriter::made<std::int16_t>("counts", MAT_C_INT16, MAT_T_INT16, 4, {-32768, 0, 1, 32767}),
+        MAT_COMPRESSION_ZLIB);
+    out.write(MatWriter::made<float>("v", MAT_C_SINGLE, MAT_T_SINGLE, 4, {0.5f, 1.5f, 2.5f, 3.5f}));
+    out.write(MatWriter::doubles("time", 1, {0.0, 0.001, 0.002, 0.003}));
+  }
+  const Recording found = read();
+  EXPECT_NEAR(found.sample_rate, 1000.0, 1e-9);
+  ASSERT_EQ(found.channels.size(), 2u);
+  EXPECT_THAT(found.channels[0].samples, ElementsAre(-32768.0, 0.0, 1.0, 32767.0));
+  EXPECT_THAT(found.channels[1].samples, ElementsAre(0.5, 1.5, 2.5, 3.5));
+}
+
+// As modal analyzers export: a structure a signal, its increment beside its values.
+TEST_F(Matlab, ReadsStructuresWithTheirOwnRates) {
+  for (const mat_ft version : {MAT_FT_MAT5, MAT_FT_MAT73}) {
+    {
+      MatWriter out(file(), version);
+      std::size_t dims[] = {1, 1};
+      for (const char* name : {"hammer", "plate"}) {
+        const char* axis[] = {"start_value", "increment"};
+        matvar_t* x = Mat_VarCreateStruct(nullptr, 2, dims, axis, 2);
+        Mat_VarSetStructFieldByName(x, "start_value", 0, MatWriter::doubles(nullptr, 1, {0.0}));
+        Mat_VarSetStructFieldByName(x, "increment", 0,
+                                    MatWriter::doubles(nullptr, 1, {1.0 / 8192}));
+        const char* values[] = {"values"};
+        matvar_t* y = Mat_VarCreateStruct(nullptr, 2, dims, values, 1);
+        Mat_VarSetStructFieldByName(y, "values", 0,
+                                    MatWriter::doubles(nullptr, 3, {7.0, 8.0, 9.0}));
+        const char* fields[] = {"x_values", "y_values"};
+        matvar_t* signal = Mat_VarCreateStruct(name, 2, dims, fields, 2);
+        Mat_VarSetStructFieldByName(signal, "x_values", 0, x);
+        Mat_VarSetStructFieldByName(signal, "y_values", 0, y);
+        out.write(signal);
+      }
+    }
+    const Recording found = read({.channels = {"plate.y_values.values"}});
+    EXPECT_EQ(found.sample_rate, 8192.0) << version;
+    ASSERT_EQ(found.channels.size(), 1u);
+    EXPECT_THAT(found.channels[0].samples, ElementsAre(7.0, 8.0, 9.0));
+    std::filesystem::remove(file());
+  }
+}
+
+TEST_F(Matlab, ComplexVariablesAndTextsAreNoRecords) {
+  {
+    MatWriter out(file(), MAT_FT_MAT5);
+    double re[] = {1.0, 2.0}, im[] = {3.0, 4.0};
+    mat_complex_split_t both{re, im};
+    std::size_t dims[] = {2, 1};
+    out.write(Mat_VarCreate("H", MAT_C_DOUBLE, MAT_T_DOUBLE, 2, dims, &both, MAT_F_COMPLEX));
+  }
+  EXPECT_THAT(refusal(), HasSubstr("no channel of it is a record in time"));
+}
+
+TEST_F(Matlab, AFileCutOffAnywhereIsRefused) {
+  record_format(file(), "mat").write(file(), two_signals(), "a test");
+  std::ifstream whole(file(), std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(whole), {}};
+  for (std::size_t size = 0; size < bytes.size(); ++size) {
+    std::ofstream(file(), std::ios::binary | std::ios::trunc) << bytes.substr(0, size);
+    const std::string said = refusal();
+    // Between two variables a file may end; without the heads it is another one.
+    if (said != "accepted") {
+      EXPECT_THAT(said, HasSubstr("a.mat")) << size;
+      continue;
+    }
+    for (const RecordedChannel& channel : read().channels) {
+      EXPECT_EQ(channel.samples.size(), 4u) << size;
+      EXPECT_EQ(channel.unit, "") << size;
+    }
+  }
+}
+
+TEST_F(Matlab, AFileOfVersion73CutOffIsRefused) {
+  {
+    MatWriter out(file(), MAT_FT_MAT73);
+    out.write(MatWriter::doubles("force", 1, {1.0, 2.0, 3.0}));
+    out.write(MatWriter::doubles("fs", 1, {1000.0}));
+  }
+  const std::string bytes = content_of(file());
+  for (std::size_t size = 0; size < bytes.size(); size += 101) {
+    write("a.mat", std::string_view(bytes).substr(0, size));
+    EXPECT_THAT(refusal(), HasSubstr("a.mat")) << size;
+  }
+}
+
+TEST_F(Matlab, OtherFilesAreRefused) {
+  std::ofstream(file()) << "t,f\n1,2\n";
+  EXPECT_THAT(refusal(), HasSubstr("cannot be read as a MAT file"));
+  std::ofstream(file(), std::ios::trunc);
+  EXPECT_THAT(refusal(), HasSubstr("the file is empty"));
+}
+
+}  // namespace
+}  // namespace modcal
