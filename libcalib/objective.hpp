@@ -27,6 +27,9 @@ class Objective {
  public:
   static constexpr std::string_view kKind = "objective";
   static Registry<Objective> registry();
+  /// One of the program's own, which experiments choose by its name from now on; it has no options.
+  /// Throws InvalidInput for a name that is taken.
+  static void add(std::string name, std::string summary, std::shared_ptr<const Objective> product);
 
   virtual ~Objective() = default;
   /// The objective as a function of the parameters; keeps copies of what it needs. Throws

@@ -1,6 +1,7 @@
 // Optimizers: how an objective is minimized.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -14,6 +15,9 @@ class Optimizer {
  public:
   static constexpr std::string_view kKind = "optimizer";
   static Registry<Optimizer> registry();
+  /// One of the program's own, which experiments choose by its name from now on; it has no options.
+  /// Throws InvalidInput for a name that is taken.
+  static void add(std::string name, std::string summary, std::shared_ptr<const Optimizer> product);
 
   virtual ~Optimizer() = default;
   virtual std::string_view name() const = 0;

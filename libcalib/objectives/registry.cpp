@@ -1,5 +1,3 @@
-#include <array>
-
 #include "libcalib/objectives/force_difference.hpp"
 #include "libcalib/objectives/frequency_prior.hpp"
 #include "libcalib/objectives/innovation_misfit.hpp"
@@ -7,11 +5,13 @@
 #include "libcalib/objectives/smooth_spectral_peak.hpp"
 #include "libcalib/objectives/spectral_peak.hpp"
 #include "libcalib/objectives/weighted_sum.hpp"
+#include "libsim/base/registry_table.hpp"
 
 namespace modcal {
+namespace {
 
-Registry<Objective> Objective::registry() {
-  static constexpr std::array kTable = {
+RegistryTable<Objective>& table() {
+  static RegistryTable<Objective> rows = {
       entry_of<Objective, ContactLocation>(
           "contact_location", "relative difference of the two identified force waveforms"),
       entry_of<Objective, ContactLocationSquares>(
@@ -30,7 +30,16 @@ Registry<Objective> Objective::registry() {
                                         "the paper's integral of the force spectrum over a band"),
       entry_of<Objective, WeightedSum>("weighted_sum", "a weighted sum of other objectives"),
   };
-  return kTable;
+  return rows;
+}
+
+}  // namespace
+
+Registry<Objective> Objective::registry() { return table().rows(); }
+
+void Objective::add(std::string name, std::string summary,
+                    std::shared_ptr<const Objective> product) {
+  table().add(std::move(name), std::move(summary), std::move(product));
 }
 
 }  // namespace modcal

@@ -1,5 +1,3 @@
-#include <array>
-
 #include "libcalib/optimizers/ceres_optimizer.hpp"
 #include "libcalib/optimizers/gsl_optimizer.hpp"
 #include "libcalib/optimizers/nlopt_optimizer.hpp"
@@ -7,11 +5,13 @@
 #include "libcalib/optimizers/staged/staged.hpp"
 #include "libcalib/optimizers/systematic_search.hpp"
 #include "libcalib/optimizers/tiny_least_squares.hpp"
+#include "libsim/base/registry_table.hpp"
 
 namespace modcal {
+namespace {
 
-Registry<Optimizer> Optimizer::registry() {
-  static constexpr std::array kTable = {
+RegistryTable<Optimizer>& table() {
+  static RegistryTable<Optimizer> rows = {
       entry_of<Optimizer, CeresOptimizer>("ceres", "trust-region least squares of Ceres Solver"),
       entry_of<Optimizer, CeresLineSearch>("ceres_line_search",
                                            "quasi-Newton line search of Ceres Solver"),
@@ -28,7 +28,16 @@ Registry<Optimizer> Optimizer::registry() {
       entry_of<Optimizer, TinyLeastSquares>("tiny_least_squares",
                                             "least squares for few parameters, without allocation"),
   };
-  return kTable;
+  return rows;
+}
+
+}  // namespace
+
+Registry<Optimizer> Optimizer::registry() { return table().rows(); }
+
+void Optimizer::add(std::string name, std::string summary,
+                    std::shared_ptr<const Optimizer> product) {
+  table().add(std::move(name), std::move(summary), std::move(product));
 }
 
 }  // namespace modcal

@@ -270,4 +270,22 @@ OptimizationResult Evaluator::finish(StopReason reason) {
   return std::move(result_);
 }
 
+std::vector<double> gradient_at(const ObjectiveFunction& function,
+                                std::span<const Variable> variables, std::span<const double> x) {
+  std::vector<double> gradient(x.size());
+  if (function.capabilities().gradient) {
+    function.evaluate(x, {.gradient = gradient.data()});
+    return gradient;
+  }
+  Evaluator evaluator(function, variables, {});
+  std::vector<double> z(x.size());
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    z[i] = (x[i] - variables[i].initial) / variables[i].scale;
+  }
+  double value = 0.0;
+  evaluator.evaluate(z, {.value = &value, .gradient = gradient.data()});
+  for (std::size_t i = 0; i < x.size(); ++i) gradient[i] /= variables[i].scale;
+  return gradient;
+}
+
 }  // namespace modcal

@@ -154,4 +154,9 @@ class Evaluator {
   OptimizationResult result_;
 };
 
+/// df/dx_i at x in the units of the variables: the function's own, or by the differences above
+/// where it gives none.
+std::vector<double> gradient_at(const ObjectiveFunction& function,
+                                std::span<const Variable> variables, std::span<const double> x);
+
 }  // namespace modcal
