@@ -120,6 +120,9 @@ struct SearchTask {
   Budget budget;
   /// Of a simulated string, values of the free parameters where its model is right; else empty.
   std::vector<double> truth;
+  /// Standard deviations at the truth, (JᵀJ)⁻¹ of residuals that are independent and of variance 1;
+  /// empty without such residuals or without a truth. J holds the noise of the record.
+  std::vector<double> bound_deviations() const;
 };
 
 /// A calibration together with what it is judged by.

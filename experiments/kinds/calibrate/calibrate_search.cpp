@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "experiments/kinds/calibrate/calibrate.hpp"
+#include "libcalib/problem/covariance.hpp"
 
 namespace modcal {
 namespace {
@@ -169,6 +170,17 @@ CalibrationOutcome calibrate_strokes(const CalibrateOptions& options,
   }
   if (options.fill_blind_modes) fill_blind(outcome);
   return outcome;
+}
+
+std::vector<double> SearchTask::bound_deviations() const {
+  const Problem& problem = bound.problem;
+  if (truth.empty() || !problem.objective->whitened()) return {};
+  const Covariance covariance = covariance_at(*bound.function, bound.parameters.variables(), truth);
+  std::vector<double> deviations;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    deviations.push_back(covariance.standard_deviation(i));
+  }
+  return deviations;
 }
 
 std::unique_ptr<const SearchTask> CalibrateOptions::search_task(const StudyContext& context) const {
