@@ -1,4 +1,5 @@
 // Objectives and optimizers written in Python.
+#include <pybind11/complex.h>
 #include <pybind11/stl.h>
 
 #include "python/core/module.hpp"
@@ -13,12 +14,37 @@ struct Callables {
   py::object value, gradient, residuals, jacobian;
 };
 
-/// What of a calibration's search is that of Python's function.
+// Of what is registered the program says whose exception it is; elsewhere that goes to its caller.
+template <typename Call>
+auto told_by(const std::string& name, const Call& call) {
+  try {
+    return call();
+  } catch (const py::error_already_set& error) {
+    if (name.empty() || error.matches(py::module_::import("modcal.errors").attr("SearchOver"))) {
+      throw;
+    }
+    if (error.matches(PyExc_KeyboardInterrupt)) throw Interrupted();
+    throw_invalid_input("\"{}\", written in Python, has failed: {}", name, error.what());
+  }
+}
+
+/// What of a calibration's search is that of Python's function. told: its name where it is
+/// registered.
 class OwnFunction final : public ObjectiveFunction {
  public:
-  OwnFunction(Callables callables, std::size_t dimension, std::size_t residuals)
-      : callables_(std::move(callables)), dimension_(dimension), residual_count_(residuals) {}
-  std::string_view name() const override { return "own"; }
+  OwnFunction(Callables callables, std::size_t dimension, std::size_t residuals,
+              std::string told = {})
+      : callables_(std::move(callables)),
+        dimension_(dimension),
+        residual_count_(residuals),
+        told_(std::move(told)) {}
+  ~OwnFunction() override {
+    const py::gil_scoped_acquire locked;
+    callables_ = {};
+  }
+  OwnFunction(const OwnFunction&) = delete;
+  OwnFunction& operator=(const OwnFunction&) = delete;
+  std::string_view name() const override { return told_.empty() ? "own" : told_; }
   std::size_t dimension() const override { return dimension_; }
   std::size_t residual_count() const override { return residual_count_; }
   Capabilities capabilities() const override {
@@ -31,10 +57,12 @@ class OwnFunction final : public ObjectiveFunction {
   void do_evaluate(std::span<const double> x, const ObjectiveOutputs& outputs) const override {
     const py::gil_scoped_acquire locked;
     const py::array at = array_of({x.begin(), x.end()});
-    if (outputs.value != nullptr) *outputs.value = value_at(at);
-    fill(callables_.gradient, at, dimension_, "the gradient", outputs.gradient);
-    fill(callables_.residuals, at, residual_count_, "the residuals", outputs.residuals);
-    fill(callables_.jacobian, at, residual_count_ * dimension_, "the Jacobian", outputs.jacobian);
+    told_by(told_, [&] {
+      if (outputs.value != nullptr) *outputs.value = value_at(at);
+      fill(callables_.gradient, at, dimension_, "the gradient", outputs.gradient);
+      fill(callables_.residuals, at, residual_count_, "the residuals", outputs.residuals);
+      fill(callables_.jacobian, at, residual_count_ * dimension_, "the Jacobian", outputs.jacobian);
+    });
   }
   // Of residuals alone it is half their sum of squares.
   double value_at(const py::array& at) const {
@@ -57,6 +85,7 @@ class OwnFunction final : public ObjectiveFunction {
 
   Callables callables_;
   std::size_t dimension_, residual_count_;
+  std::string told_;
 };
 
 /// The evaluator of a search, for as long as that lasts.
@@ -100,18 +129,20 @@ StopReason reason_named(const py::object& word) {
                       name);
 }
 
-/// A search by search(evaluator) -> word or None.
+/// A search by search(evaluator) -> word or None. told: its name where it is registered.
 class OwnOptimizer final : public Optimizer {
  public:
-  explicit OwnOptimizer(py::object search) : search_(std::move(search)) {}
-  std::string_view name() const override { return "own"; }
+  explicit OwnOptimizer(py::object search, std::string told = {})
+      : search_(std::move(search)), told_(std::move(told)) {}
+  std::string_view name() const override { return told_.empty() ? "own" : told_; }
 
  private:
   StopReason search(Evaluator& evaluator) const override {
+    const py::gil_scoped_acquire locked;
     const py::object lent = py::cast(OwnEvaluator{&evaluator});
     auto& own = lent.cast<OwnEvaluator&>();
     try {
-      const py::object word = search_(lent);
+      const py::object word = told_by(told_, [&] { return search_(lent); });
       own.evaluator = nullptr;
       return reason_named(word);
     } catch (const py::error_already_set& error) {
@@ -119,10 +150,67 @@ class OwnOptimizer final : public Optimizer {
       const py::object over = py::module_::import("modcal.errors").attr("SearchOver");
       if (error.matches(over)) throw Evaluator::Stopped();
       throw;
+    } catch (...) {
+      own.evaluator = nullptr;
+      throw;
     }
   }
   py::object search_;
+  std::string told_;
 };
+
+py::array spectrum_of(const std::vector<Complex>& spectrum) {
+  return py::array_t<Complex>(static_cast<py::ssize_t>(spectrum.size()), spectrum.data());
+}
+
+// What an objective of Python's is bound to.
+py::object record_of(const CalibrationData& data, const ParameterSet& parameters) {
+  std::vector<std::string> names;
+  for (const Variable& variable : parameters.variables()) names.push_back(variable.name);
+  const auto model = [parameters](const Numbers& x) {
+    MODCAL_REQUIRE(static_cast<std::size_t>(x.size()) == parameters.size(),
+                   "x has {} values: the problem has {} variables, give one for each", x.size(),
+                   parameters.size());
+    const ModelPoint point = parameters.model(span_of(x));
+    py::dict told;
+    told["frequencies"] = array_of(frequencies_of(point.basis));
+    told["damping_ratios"] = array_of({point.basis.zeta.begin(), point.basis.zeta.end()});
+    told["contact"] = point.contact;
+    return told;
+  };
+  return py::module_::import("types").attr("SimpleNamespace")(
+      py::arg("rate") = data.sample_rate, py::arg("samples") = data.samples,
+      py::arg("left") = spectrum_of(data.reaction(End::kLeft)),
+      py::arg("right") = spectrum_of(data.reaction(End::kRight)), py::arg("names") = names,
+      py::arg("x0") = array_of(parameters.start()), py::arg("model") = py::cpp_function(model));
+}
+
+/// An objective by bind(record) -> function of x.
+class OwnObjective final : public Objective {
+ public:
+  OwnObjective(py::object bind, std::string told)
+      : bind_(std::move(bind)), told_(std::move(told)) {}
+  Capabilities capabilities() const override { return {}; }
+
+ private:
+  std::unique_ptr<const ObjectiveFunction> do_bind(const CalibrationData& data,
+                                                   const ParameterSet& parameters) const override {
+    const py::gil_scoped_acquire locked;
+    const py::object value = told_by(told_, [&] { return bind_(record_of(data, parameters)); });
+    return std::make_unique<OwnFunction>(Callables{value, py::none(), py::none(), py::none()},
+                                         parameters.size(), 0, told_);
+  }
+  py::object bind_;
+  std::string told_;
+};
+
+void add_optimizer(const std::string& name, const py::object& search, const std::string& summary) {
+  Optimizer::add(name, summary, std::make_shared<OwnOptimizer>(search, name));
+}
+
+void add_objective(const std::string& name, const py::object& bind, const std::string& summary) {
+  Objective::add(name, summary, std::make_shared<OwnObjective>(bind, name));
+}
 
 std::vector<Variable> variables_of(const py::list& list) {
   std::vector<Variable> variables;
@@ -187,6 +275,9 @@ void add_own_searches(py::module_& module) {
       .def("value_and_gradient", &OwnEvaluator::value_and_gradient, py::arg("z"));
   module.def("minimize", &minimize, py::arg("callables"), py::arg("residuals"),
              py::arg("variables"), py::arg("options"), py::arg("progress"));
+  module.def("add_optimizer", &add_optimizer, py::arg("name"), py::arg("search"),
+             py::arg("summary"));
+  module.def("add_objective", &add_objective, py::arg("name"), py::arg("bind"), py::arg("summary"));
   module.def("search", &search, py::arg("problem"), py::arg("search"), py::arg("options"));
 }
 

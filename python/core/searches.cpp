@@ -9,21 +9,6 @@
 namespace modcal::python {
 namespace {
 
-// Slopes of an objective that gives none, as an optimizer gets them.
-std::vector<double> difference_gradient(const ObjectiveFunction& function,
-                                        const std::vector<Variable>& variables,
-                                        std::span<const double> x) {
-  Evaluator evaluator(function, variables, {});
-  std::vector<double> z(x.size()), gradient(x.size());
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    z[i] = (x[i] - variables[i].initial) / variables[i].scale;
-  }
-  double value = 0.0;
-  evaluator.evaluate(z, {.value = &value, .gradient = gradient.data()});
-  for (std::size_t i = 0; i < x.size(); ++i) gradient[i] /= variables[i].scale;
-  return gradient;
-}
-
 py::dict capabilities_of(const ObjectiveFunction& function) {
   const Capabilities known = function.capabilities();
   py::dict told;
@@ -61,14 +46,10 @@ double Search::value(const Numbers& x) const {
 
 py::array Search::gradient(const Numbers& x) const {
   const auto at = point(x);
-  std::vector<double> gradient(at.size());
+  std::vector<double> gradient;
   {
     const py::gil_scoped_release unlocked;
-    if (function().capabilities().gradient) {
-      function().evaluate(at, {.gradient = gradient.data()});
-    } else {
-      gradient = difference_gradient(function(), variables_, at);
-    }
+    gradient = gradient_at(function(), variables_, at);
   }
   return array_of(std::move(gradient));
 }
@@ -155,6 +136,15 @@ void add_searches(py::module_& module) {
       .def_property_readonly("objective", [](const Search& self) { return self.function().name(); })
       .def_property_readonly("truth",
                              [](const Search& self) { return array_of(self.task().truth); })
+      .def_property_readonly("bound",
+                             [](const Search& self) {
+                               std::vector<double> bound;
+                               {
+                                 const py::gil_scoped_release unlocked;
+                                 bound = self.task().bound_deviations();
+                               }
+                               return array_of(std::move(bound));
+                             })
       .def_property_readonly("blind", [](const Search& self) { return self.task().bound.blind; })
       .def_property_readonly("residual_count",
                              [](const Search& self) { return self.function().residual_count(); })

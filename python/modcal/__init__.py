@@ -8,12 +8,12 @@ from modcal.errors import InvalidInput, Mistake, SearchOver
 from modcal.experiments import (ask, calibrate, describe, invert, limit, load, new, plugins, run, schema, simulate,
                                 validate)
 from modcal.inverter import Estimate, Inverter
-from modcal.problem import Problem, Search, Variable, minimize
+from modcal.problem import Problem, Search, Variable, add_objective, add_optimizer, minimize
 from modcal.records import Record
 from modcal.results import Result, Table
 
 __all__ = [
     "Estimate", "InvalidInput", "Inverter", "Mistake", "Problem", "Record", "Result", "Search", "SearchOver",
-    "Table", "Variable", "ask", "calibrate", "describe", "invert", "limit", "load", "minimize", "new", "plugins",
+    "Table", "Variable", "add_objective", "add_optimizer", "ask", "calibrate", "describe", "invert", "limit", "load", "minimize", "new", "plugins",
     "run", "schema", "simulate", "validate",
 ]

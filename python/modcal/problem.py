@@ -83,6 +83,16 @@ class Problem:
         return truth if truth.size else None
 
     @property
+    def bound(self) -> Array | None:
+        """Standard deviations that no unbiased estimate from these records goes below.
+
+        By the Jacobian of the residuals at the truth, which holds the noise of the records; of an objective with
+        white residuals (joint_likelihood).
+        """
+        bound = self._core.bound
+        return bound if bound.size else None
+
+    @property
     def capabilities(self) -> dict[str, bool]:
         """Whether the objective itself gives a gradient, residuals and their Jacobian."""
         return dict(self._core.capabilities)
@@ -116,6 +126,24 @@ class Problem:
 
     def __repr__(self) -> str:
         return f"<modcal.Problem {self._core.objective} of {', '.join(self.names)}>"
+
+
+def add_optimizer(name: str, search: Callable[[_core.Evaluator], str | None], summary: str = "in Python") -> None:
+    """Makes an optimizer of your own one that experiments choose by its name, until Python ends.
+
+    search: as Problem.minimize() takes it. Every kind of experiment may then say `optimizer: NAME`.
+    """
+    _core.add_optimizer(name, search, summary)
+
+
+def add_objective(name: str, bind: Callable[[Any], Callable[[Array], float]], summary: str = "in Python") -> None:
+    """Makes an objective of your own one that experiments choose by its name, until Python ends.
+
+    bind(record) returns the objective as a function of x. record has the spectra of the reactions, left and
+    right, their rate and number of samples, the names of x, x0, and model(x): frequencies [Hz],
+    damping_ratios and contact [m] there.
+    """
+    _core.add_objective(name, bind, summary)
 
 
 def minimize(objective: Callable[[Array], float] | None, variables: Sequence[Variable], *,

@@ -23,6 +23,14 @@ class Functions(Folder):
         for (low, high), start in zip(problem.bounds, problem.x0):
             self.assertTrue(low < start < high)
 
+    def test_bound_is_that_of_the_truth(self):
+        problem = modcal.Problem(CALIBRATE, {"calibration.objective": "joint_likelihood"})
+        jacobian = problem.jacobian(problem.truth)
+        deviations = np.sqrt(np.diag(np.linalg.inv(jacobian.T @ jacobian)))
+        # The normal equations square the condition of J, 1e4 with the units of these three.
+        np.testing.assert_allclose(problem.bound, deviations, rtol=1e-6)
+        self.assertIsNone(modcal.Problem(CALIBRATE, {"calibration.objective": "contact_location_squares"}).bound)
+
     def test_slopes_are_those_of_the_value(self):
         problem, x = self.problem, self.problem.x0
         residuals, jacobian = problem.residuals(x), problem.jacobian(x)
@@ -116,6 +124,58 @@ class OwnOptimizer(Folder):
             kept[0].value([0, 0, 0])
         with self.assertRaisesRegex(modcal.InvalidInput, "unknown reason"):
             problem.minimize(lambda evaluator: "why not")
+
+
+class Registered(Folder):
+    """Plug-ins of Python that experiments choose by their names."""
+
+    def test_optimizer(self):
+        def halving(evaluator):
+            z, best, step = evaluator.start, evaluator.value(evaluator.start), 1.0
+            while abs(step) > 1e-3:
+                value = evaluator.value(z + step)
+                if value < best:
+                    z, best = z + step, value
+                else:
+                    step *= -0.5
+            return "small_step"
+
+        modcal.add_optimizer("halving", halving, "a step that turns and halves")
+        contact = {"calibration.parameters.law": False, "calibration.optimizer": "halving"}
+        found = modcal.run(CALIBRATE, contact)
+        problem = modcal.Problem(CALIBRATE, {"calibration.parameters.law": False})
+        self.assertEqual(found.parameters[0]["final"], problem.minimize(halving).x[0])
+        self.assertEqual(problem.minimize("halving").evaluations, problem.minimize(halving).evaluations)
+        few = modcal.run(CALIBRATE, {**contact, "calibration.budget.evaluations": 5})
+        self.assertIn("5 evaluations", few.summary)
+        with self.assertRaisesRegex(modcal.InvalidInput, "is there already"):
+            modcal.add_optimizer("nlopt", halving)
+
+    def test_optimizer_that_fails(self):
+        def wrong(evaluator):
+            raise LookupError("mine")
+
+        modcal.add_optimizer("wrong", wrong)
+        with self.assertRaisesRegex(modcal.InvalidInput, '"wrong", written in Python, has failed: LookupError: mine'):
+            modcal.run(CALIBRATE, {"calibration.optimizer": "wrong"})
+
+    def test_objective(self):
+        seen = []
+
+        def bind(record):
+            seen.append(record)
+            true = record.model(record.x0)["contact"] - 0.4e-3
+            return lambda x: float((1e3 * (record.model(x)["contact"] - true)) ** 2)
+
+        modcal.add_objective("distance", bind)
+        found = modcal.run(CALIBRATE, {"calibration.objective": "distance", "calibration.parameters.law": False,
+                                       "calibration.optimizer": {"type": "nlopt", "algorithm": "LN_BOBYQA"}})
+        # The minimum of a parabola is found to the root of the digits of its values: 1e-8 of 1 mm or so.
+        self.assertAlmostEqual(found.parameters[0]["final"], 0.03, delta=1e-8)
+        record = seen[0]
+        self.assertEqual((record.rate, record.names), (12800, ["x_c"]))
+        self.assertEqual(record.left.shape, (record.samples // 2 + 1,))
+        self.assertEqual(record.model([0.03])["frequencies"].shape, (12,))
 
 
 class OwnObjective(Folder):
