@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "libinverse/spectral/regularizers/filter_terms.hpp"
 #include "libinverse/spectral/regularizers/regularizers.hpp"
@@ -169,6 +170,24 @@ TEST(Tikhonov, KeepsTheDigitsOfASmallResidual) {
       .trace({{.problem = &problem, .power = power}, Measure::kSolution}, std::vector{1e-12},
              std::span(&point, 1));
   EXPECT_NEAR(point.residual_norm, 1e-24, 1e-39);
+}
+
+// Whoever compares a solution with normal equations takes the penalty from the regularizer: here it
+// is a number of its own. One product and one root round to 1 ulp each.
+TEST(Penalty, OfTheWienerFilterIsFlatBelowItsCornerAndRisesAsTheFrequencyAbove) {
+  const double corner = 80.0, reference = 3.0;  // the latter must not matter
+  const WienerFilter filter({.corner = corner});
+  for (const auto& [ratio, expected] :
+       {std::pair{0.0, 1.0}, {1.0, std::numbers::sqrt2}, {0.75, 1.25}, {2.4, 2.6}, {1e9, 1e9}}) {
+    const double omega = 2.0 * std::numbers::pi * corner * ratio;
+    EXPECT_NEAR(filter.penalty(omega, reference), expected, 4.5e-16 * expected) << ratio;
+  }
+}
+
+TEST(Penalty, OfTikhonovIsThePowerOfTheFrequencyThatItsOrderSays) {
+  for (const auto& [order, expected] : {std::pair<int, double>{0, 1.0}, {1, 2.5}, {2, 6.25}}) {
+    EXPECT_EQ(Tikhonov({.order = order}).penalty(10.0, 4.0), expected) << order;
+  }
 }
 
 TEST(SpectralOperator, SortsAndRemembersTheOrder) {
