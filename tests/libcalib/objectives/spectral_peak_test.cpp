@@ -119,6 +119,24 @@ TEST(SpectralPeak, GradientIsThatOfTheValue) {
   }
 }
 
+// 20 lies 5 % above 19: of bands of 4 % to either side, the bins between 0.96 f_20 and 1.04 f_19
+// are in both and count twice, in the value and in its slopes.
+TEST(SpectralPeak, BinsOfTwoBandsCountTwice) {
+  const CalibrationData data = exact_data(paper_truth(20, 1e-4), kSamples, kRate, 196.0);
+  const ModelPoint initial = with_frequency_errors(paper_truth(20, 1e-4), 0.005, 3);
+  const ParameterSet parameters(initial, Names{"f_19", "f_20", "x_c"});
+  const double left = initial.basis.frequency(18), right = initial.basis.frequency(19);
+  ASSERT_LT(0.96 * right + 4.0 * kRate / kSamples, 1.04 * left);
+  const auto function = kPaper.bind(data, parameters);
+  std::vector<double> x = parameters.start();
+  x[0] *= 1.002;
+  const ModelPoint model = parameters.model(x);
+  const double expected = integral(data, model, left) + integral(data, model, right);
+  EXPECT_NEAR(function->value(x), expected, 1e-11 * expected);  // as in the first test
+  // Steps and their errors are those of GradientIsThatOfTheValue.
+  expect_slopes_match(*function, parameters.variables(), x, 1e-5, 1e-5);
+}
+
 // 10 lies 11 % above 9, 28 lies 6.7 % below 30, and the half band is 4 %.
 TEST(SpectralPeak, ReachOfAFrequencyIsTwiceTheHalfBand) {
   const CalibrationData data = exact_data(paper_truth(30), 25600, 25600.0, 196.0);
