@@ -1,7 +1,7 @@
 # Every target can be the first one run on a fresh Debian 12 (root or sudo).
 PRESET ?= release
 
-.PHONY: reproduce test sanitize fuzz test-cluster python bench accuracy stress format tidy docs clean build
+.PHONY: reproduce test sanitize fuzz mutation test-cluster python bench accuracy stress format tidy docs clean build
 .PHONY: packages packages-test packages-python packages-cluster packages-develop packages-fuzz
 
 build: packages
@@ -53,6 +53,14 @@ python: packages-python
 	@cmake --preset $(PRESET) -DMODCAL_PYTHON=ON >/dev/null
 	@cmake --build --preset $(PRESET) --target modcal modcal_python_package
 	@ctest --preset $(PRESET) --tests-regex '^python_'
+
+# Small wrong changes to the kernels: COUNT of them, drawn by SEED; those that no test sees are printed.
+SEED ?= 1
+COUNT ?= 20
+mutation: packages-test
+	@cmake --preset $(PRESET) -DMODCAL_WERROR=ON >/dev/null
+	@cmake --build --preset $(PRESET)
+	@tests/mutation/mutate.py . build/$(PRESET) --seed $(SEED) --count $(COUNT)
 
 test-cluster: packages-cluster
 	@cmake --preset $(PRESET) >/dev/null
