@@ -23,6 +23,18 @@ class AnyOptimizer : public testing::TestWithParam<OptimizerCase> {
   }
 };
 
+/// The cases that a test is about. What it is not about has no test, rather than one that returns.
+template <typename Condition>
+std::vector<OptimizerCase> cases_where(Condition holds) {
+  std::vector<OptimizerCase> cases = optimizer_cases();
+  std::erase_if(cases, [&](const OptimizerCase& one) { return !holds(one); });
+  return cases;
+}
+
+inline std::string label_of(const testing::TestParamInfo<OptimizerCase>& info) {
+  return info.param.label;
+}
+
 /// The first variable of a function of two, the other at rest.
 class FirstVariable final : public ObjectiveFunction {
  public:

@@ -10,8 +10,46 @@
 namespace modcal {
 namespace {
 
-INSTANTIATE_TEST_SUITE_P(All, AnyOptimizer, testing::ValuesIn(optimizer_cases()),
-                         [](const auto& parameter) { return parameter.param.label; });
+bool searches(const OptimizerCase& one) { return one.way != Way::kSystematic; }
+bool has_slopes(const OptimizerCase& one) {
+  return one.way == Way::kLeastSquares || one.way == Way::kGradient;
+}
+
+/// Goes where the values lead it.
+class Search : public AnyOptimizer {};
+INSTANTIATE_TEST_SUITE_P(All, Search, testing::ValuesIn(cases_where(searches)), label_of);
+
+class SearchOfSeveral : public AnyOptimizer {};
+INSTANTIATE_TEST_SUITE_P(All, SearchOfSeveral,
+                         testing::ValuesIn(cases_where([](const OptimizerCase& one) {
+                           return searches(one) && one.way != Way::kLine;
+                         })),
+                         label_of);
+
+class BySlopes : public AnyOptimizer {};
+INSTANTIATE_TEST_SUITE_P(All, BySlopes, testing::ValuesIn(cases_where(has_slopes)), label_of);
+
+/// Steepest descent never gets through a curved valley.
+class ThroughValleys : public AnyOptimizer {};
+INSTANTIATE_TEST_SUITE_P(All, ThroughValleys,
+                         testing::ValuesIn(cases_where([](const OptimizerCase& one) {
+                           return has_slopes(one) && !one.label.ends_with("steepest_descent");
+                         })),
+                         label_of);
+
+class ByResiduals : public AnyOptimizer {};
+INSTANTIATE_TEST_SUITE_P(All, ByResiduals,
+                         testing::ValuesIn(cases_where([](const OptimizerCase& one) {
+                           return one.way == Way::kLeastSquares;
+                         })),
+                         label_of);
+
+class InTheWholeBox : public AnyOptimizer {};
+INSTANTIATE_TEST_SUITE_P(All, InTheWholeBox,
+                         testing::ValuesIn(cases_where([](const OptimizerCase& one) {
+                           return one.way == Way::kGlobal;
+                         })),
+                         label_of);
 
 /// What is promised in a box ten wide with curvatures of order one.
 double quadratic_digits(Way way) {
@@ -33,16 +71,14 @@ double quadratic_digits(Way way) {
   }
 }
 
-TEST_P(AnyOptimizer, AVariableMayStartOnItsBound) {
-  if (way() == Way::kSystematic || one_variable()) return;
+TEST_P(SearchOfSeveral, AVariableMayStartOnItsBound) {
   const Quadratic function;
   const auto on_bound = optimizer().minimize(function, box(5.0, 0.0, -5.0, 5.0), enough());
   EXPECT_NEAR(on_bound.x[0], 3.0, quadratic_digits(way()));
   EXPECT_NEAR(on_bound.x[1], -1.0, quadratic_digits(way()));
 }
 
-TEST_P(AnyOptimizer, SolvesTheQuadratic) {
-  if (way() == Way::kSystematic) return;
+TEST_P(Search, SolvesTheQuadratic) {
   const Quadratic function;
   const Problem problem(function, box(0.0, 0.0, -5.0, 5.0), one_variable());
   const auto result = problem.minimize(optimizer(), enough());
@@ -81,8 +117,7 @@ double rejected_step_digits(Way way) {
   return way == Way::kGlobal ? 0.1 : quadratic_digits(way);
 }
 
-TEST_P(AnyOptimizer, OneValueThatIsNotFiniteIsARejectedStepAndNotTheEnd) {
-  if (way() == Way::kSystematic) return;
+TEST_P(Search, OneValueThatIsNotFiniteIsARejectedStepAndNotTheEnd) {
   for (const int at : {1, 2, 4}) {
     const OnceUndefined function(at);
     const Problem problem(function, box(0.0, 0.0, -5.0, 5.0), one_variable());
@@ -96,9 +131,7 @@ TEST_P(AnyOptimizer, OneValueThatIsNotFiniteIsARejectedStepAndNotTheEnd) {
   }
 }
 
-TEST_P(AnyOptimizer, SolvesRosenbrocksProblem) {
-  if (way() != Way::kLeastSquares && way() != Way::kGradient) return;
-  if (GetParam().label.ends_with("steepest_descent")) return;  // it never gets through the valley
+TEST_P(ThroughValleys, SolvesRosenbrocksProblem) {
   const auto result = optimizer().minimize(Rosenbrock(), box(-1.2, 1.0, -2.0, 2.0), {});
   // Residuals vanish at the optimum: Gauss–Newton steps are quadratic. The least curvature of the
   // valley is 0.4, so that quasi-Newton steps end at 1e-10/0.4 of slope or sooner by rounding of a
@@ -110,8 +143,7 @@ TEST_P(AnyOptimizer, SolvesRosenbrocksProblem) {
   EXPECT_NEAR(result.x[1], 1.0, 2.0 * tolerance);
 }
 
-TEST_P(AnyOptimizer, SolvesPowellsBadlyScaledProblem) {
-  if (way() != Way::kLeastSquares) return;
+TEST_P(ByResiduals, SolvesPowellsBadlyScaledProblem) {
   const auto found = optimizer().minimize(
       PowellBadlyScaled(), {{{"x", "1", 0.0, -1.0, 1.0, 1.0}, {"y", "1", 1.0, 0.0, 20.0, 1.0}}},
       {});
@@ -120,8 +152,7 @@ TEST_P(AnyOptimizer, SolvesPowellsBadlyScaledProblem) {
   EXPECT_NEAR(found.x[1], PowellBadlyScaled::kY, 1e-9 * PowellBadlyScaled::kY);
 }
 
-TEST_P(AnyOptimizer, SolvesPowellsSingularProblem) {
-  if (way() != Way::kLeastSquares) return;
+TEST_P(ByResiduals, SolvesPowellsSingularProblem) {
   std::vector<Variable> four;
   for (const double start : {3.0, -1.0, 0.0, 1.0}) four.push_back({"x", "1", start, -9.0, 9.0});
   const auto found = optimizer().minimize(PowellSingular(), four, {});
@@ -133,9 +164,7 @@ TEST_P(AnyOptimizer, SolvesPowellsSingularProblem) {
   for (const double value : found.x) EXPECT_NEAR(value, 0.0, 2.0 * x);
 }
 
-TEST_P(AnyOptimizer, FitsASumOfDampedSinusoids) {
-  if (way() != Way::kLeastSquares && way() != Way::kGradient) return;
-  if (GetParam().label.ends_with("steepest_descent")) return;
+TEST_P(ThroughValleys, FitsASumOfDampedSinusoids) {
   const std::vector<Variable> variables = {{"omega_1", "rad/s", 11.7, 10.0, 14.0, 0.5},
                                            {"d_1", "1/s", 1.0, 0.1, 3.0, 0.5},
                                            {"omega_2", "rad/s", 19.4, 17.0, 21.0, 0.5},
@@ -148,8 +177,7 @@ TEST_P(AnyOptimizer, FitsASumOfDampedSinusoids) {
   }
 }
 
-TEST_P(AnyOptimizer, FindsBraninsMinimum) {
-  if (way() != Way::kGlobal) return;
+TEST_P(InTheWholeBox, FindsBraninsMinimum) {
   const auto result = optimizer().minimize(Branin(), branin_box(), {.evaluations = 5000});
   // Curvatures at the three equal minima are below 60: 1e-2 of the variables is 3e-3 of the value.
   EXPECT_NEAR(result.value, Branin::kMinimum, 3e-3);
@@ -157,11 +185,9 @@ TEST_P(AnyOptimizer, FindsBraninsMinimum) {
 
 // Slopes that the objective does not give.
 
-TEST_P(AnyOptimizer, FormsMissingSlopesByDifferences) {
-  const bool least_squares = way() == Way::kLeastSquares;
-  if (!least_squares && way() != Way::kGradient) return;
+TEST_P(BySlopes, FormsMissingSlopesByDifferences) {
   const Quadratic quadratic;
-  const Without function(quadratic, {.residuals = least_squares});
+  const Without function(quadratic, {.residuals = way() == Way::kLeastSquares});
   const auto result = optimizer().minimize(function, box(0.0, 0.0, -5.0, 5.0), {});
   EXPECT_EQ(result.evaluations, quadratic.calls);
   EXPECT_GT(result.difference_evaluations, 0);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <thread>
 
@@ -19,8 +20,33 @@ namespace {
 
 using testing::HasSubstr;
 
-INSTANTIATE_TEST_SUITE_P(All, AnyOptimizer, testing::ValuesIn(optimizer_cases()),
-                         [](const auto& parameter) { return parameter.param.label; });
+INSTANTIATE_TEST_SUITE_P(All, AnyOptimizer, testing::ValuesIn(optimizer_cases()), label_of);
+
+bool needs_squares(const OptimizerCase& one) { return one.optimizer->needs().sum_of_squares(); }
+
+/// Takes a value that is no sum of squares.
+class OfAnyValue : public AnyOptimizer {};
+INSTANTIATE_TEST_SUITE_P(All, OfAnyValue,
+                         testing::ValuesIn(cases_where(std::not_fn(needs_squares))), label_of);
+
+/// Goes where the values lead it, too.
+class SearchOfAnyValue : public AnyOptimizer {};
+INSTANTIATE_TEST_SUITE_P(All, SearchOfAnyValue,
+                         testing::ValuesIn(cases_where([](const OptimizerCase& one) {
+                           return !needs_squares(one) && one.way != Way::kSystematic;
+                         })),
+                         label_of);
+
+class OfSquares : public AnyOptimizer {};
+INSTANTIATE_TEST_SUITE_P(All, OfSquares, testing::ValuesIn(cases_where(needs_squares)), label_of);
+
+/// Scans of single variables do not look at the target: their values are parts of the objective.
+class TowardsATarget : public AnyOptimizer {};
+INSTANTIATE_TEST_SUITE_P(All, TowardsATarget,
+                         testing::ValuesIn(cases_where([](const OptimizerCase& one) {
+                           return one.optimizer->name() != "mode_by_mode";
+                         })),
+                         label_of);
 
 TEST(Optimizer, NamesAreThoseOfTheRegistryAndEveryOneIsTested) {
   const auto cases = optimizer_cases();
@@ -124,14 +150,15 @@ TEST_P(AnyOptimizer, AThrowingClockInterruptsTheSearch) {
   EXPECT_THROW(problem.minimize(optimizer(), {}, clock), Interrupted);
 }
 
-TEST_P(AnyOptimizer, NotANumberIsARejectedStep) {
+TEST_P(OfSquares, SaysThatAValueIsNone) {
+  const ValueOnly function(2, [](std::span<const double> x) { return x[0]; });
+  EXPECT_NE(optimizer().explain_unsatisfied(function), "");
+}
+
+TEST_P(OfAnyValue, NotANumberIsARejectedStep) {
   const ValueOnly function(2, [](std::span<const double> x) {
     return x[0] < 0.9999 ? std::numeric_limits<double>::quiet_NaN() : x[0] + x[1] * x[1];
   });
-  if (optimizer().needs().sum_of_squares()) {
-    EXPECT_NE(optimizer().explain_unsatisfied(function), "");
-    return;
-  }
   const Problem problem(function, box(1.0, 1.0, -2.0, 2.0), one_variable());
   const OptimizationResult result = problem.minimize(optimizer(), enough());
   EXPECT_NE(result.stop, StopReason::kNotFinite);
@@ -165,8 +192,7 @@ TEST_P(AnyOptimizer, NotANumberAtTheInitialPointEndsTheSearchAndIsReported) {
   EXPECT_EQ(function.calls, 1);
 }
 
-TEST_P(AnyOptimizer, AnInfiniteValueIsNeverTheAnswer) {
-  if (optimizer().needs().sum_of_squares()) return;
+TEST_P(OfAnyValue, AnInfiniteValueIsNeverTheAnswer) {
   const ValueOnly function(2, [](std::span<const double> x) {
     return x[0] < 0.9 ? std::numeric_limits<double>::infinity() : x[0] + x[1] * x[1];
   });
@@ -176,9 +202,7 @@ TEST_P(AnyOptimizer, AnInfiniteValueIsNeverTheAnswer) {
   EXPECT_GE(result.x[0], 0.9);
 }
 
-TEST_P(AnyOptimizer, StopsAtTheTarget) {
-  // Scans of single variables do not look at the target: their values are parts of the objective.
-  if (optimizer().name() == "mode_by_mode") return;
+TEST_P(TowardsATarget, StopsAtTheTarget) {
   const Quadratic function;
   const Problem problem(function, box(1.0, -1.0, -5.0, 5.0, 5.0), one_variable());
   const OptimizationResult result = problem.minimize(optimizer(), {.target = 0.5});
@@ -205,22 +229,29 @@ TEST_P(AnyOptimizer, TheSameRunGivesTheSameBitsOnAnyThread) {
   }
 }
 
-TEST_P(AnyOptimizer, RespectsTheBounds) {
+double bowl_outside(std::span<const double> x) {
+  return std::pow(x[0] - 3.0, 2) + 4.0 * std::pow(x[1] + 1.0, 2);
+}
+
+TEST_P(OfAnyValue, RespectsTheBounds) {
   double least = 0.0, most = 0.0;
   const ValueOnly function(2, [&](std::span<const double> x) {
     for (const double value : x) {
       least = std::min(least, value);
       most = std::max(most, value);
     }
-    return std::pow(x[0] - 3.0, 2) + 4.0 * std::pow(x[1] + 1.0, 2);
+    return bowl_outside(x);
   });
-  if (optimizer().needs().sum_of_squares()) return;
   const Problem problem(function, box(0.25, 0.25, -0.5, 0.5), one_variable());
-  const auto result = problem.minimize(optimizer(), {.evaluations = 3000});
+  problem.minimize(optimizer(), {.evaluations = 3000});
   EXPECT_GE(least, -0.5);
   EXPECT_LE(most, 0.5);
-  if (way() == Way::kSystematic) return;
-  // The bound cuts the optimum off at the corner (0.5, −0.5).
+}
+
+TEST_P(SearchOfAnyValue, EndsInTheCornerWhereTheBoundsCutTheOptimumOff) {
+  const ValueOnly function(2, bowl_outside);
+  const Problem problem(function, box(0.25, 0.25, -0.5, 0.5), one_variable());
+  const auto result = problem.minimize(optimizer(), {.evaluations = 3000});
   const double tolerance = way() == Way::kGlobal ? 1e-2 : 1e-6;
   EXPECT_NEAR(result.x[0], 0.5, tolerance);
   EXPECT_NEAR(one_variable() ? -0.5 : result.x[1], -0.5, tolerance);
