@@ -331,7 +331,7 @@ TEST_F(BadRecords, GiveARightAnswerOrOneClearRefusal) {
     const std::string said = run(record, "calibrate", result);
     if (row.refusal[0] == '\0') {
       EXPECT_EQ(said, "accepted");
-      if (said.empty()) expect_right(result);
+      if (said == "accepted") expect_right(result);
       continue;
     }
     if (row.refusal == kContradicted) {
@@ -341,7 +341,7 @@ TEST_F(BadRecords, GiveARightAnswerOrOneClearRefusal) {
     }
     EXPECT_THAT(said, testing::HasSubstr(row.refusal));
     // An inversion takes no worse records.
-    EXPECT_EQ(run(record, "invert", result).empty(), false);
+    EXPECT_NE(run(record, "invert", result), "accepted");
   }
 }
 
