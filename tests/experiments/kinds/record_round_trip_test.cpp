@@ -5,12 +5,15 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
 
 #include "experiments/kinds/invert/invert.hpp"
 #include "experiments/kinds/simulate/simulate_study.hpp"
 #include "experiments/loader.hpp"
 #include "experiments/records/inspection.hpp"
 #include "libsim/records/record_file.hpp"
+#include "libsim/signal/statistics.hpp"
 #include "tests/folder_test.hpp"
 
 namespace modcal {
@@ -132,7 +135,47 @@ calibration: {parameters: {law: false, contact: false}, objective: spectral_peak
 )");
   ASSERT_FALSE(result.files.empty());
   EXPECT_EQ(result.files[0].first, "calibration.json");
-  EXPECT_NE(result.files[0].second.find("\"f_true_hz\": null"), std::string::npos);
+  const auto document = nlohmann::json::parse(result.files[0].second);
+  ASSERT_EQ(document["modes"].size(), 50u);
+  std::vector<double> errors, initial;
+  for (const auto& mode : document["modes"]) {
+    EXPECT_TRUE(mode["f_true_hz"].is_null());  // a record does not tell
+    if (!mode["excited"].get<bool>()) continue;
+    const double truth = 196.0 * mode["n"].get<double>();
+    errors.push_back(std::abs(mode["f_hz"].get<double>() / truth - 1.0));
+    initial.push_back(std::abs(mode["f_initial_hz"].get<double>() / truth - 1.0));
+  }
+  // Two loops of candidates that lie 0.12 % apart, where the start is uniform within 1 %.
+  ASSERT_GT(errors.size(), 30u);
+  EXPECT_NEAR(quantile(initial, 0.5), 5e-3, 2e-3);
+  EXPECT_LT(quantile(errors, 0.5), 1.2e-3);
+}
+
+TEST_F(RecordRoundTrip, ACalibrationFindsTheStringOfARecord) {
+  write_record();
+  std::string yaml = record("signals.csv");
+  for (const auto& [from, to] : {std::pair<std::string, std::string>{"invert", "calibrate"},
+                                 {"196 Hz", "197.5 Hz"},
+                                 {"30 mm", "30.6 mm"},
+                                 {"inversion: {estimator: one_sided}", ""}}) {
+    yaml.replace(yaml.find(from), from.size(), to);
+  }
+  const StudyResult result =
+      run(yaml + "calibration: {remainder: none, parameters: {frequencies: none}}\n");
+  EXPECT_EQ(result.status, report::Status::kOk) << result.summary;
+  ASSERT_FALSE(result.files.empty());
+  const auto document = nlohmann::json::parse(result.files[0].second);
+  std::map<std::string, double> truth = {{"f0", 196.0}, {"B", 0.0}, {"x_c", 0.03}};
+  for (const auto& parameter : document["parameters"]) {
+    const auto known = truth.find(parameter["name"].get<std::string>());
+    if (known == truth.end()) continue;
+    const double sd = parameter["sd"].get<double>();
+    EXPECT_LT(std::abs(parameter["final"].get<double>() - known->second), 2.5 * sd) << known->first;
+    EXPECT_GT(sd, 0.0);
+    EXPECT_LT(sd, known->first == "B" ? 1e-6 : 1e-3 * known->second) << known->first;
+    truth.erase(known);
+  }
+  EXPECT_TRUE(truth.empty());
 }
 
 TEST_F(RecordRoundTrip, TheInspectedStanzaAsksForTheStringAndNothingElse) {
