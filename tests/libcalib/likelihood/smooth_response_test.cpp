@@ -94,6 +94,20 @@ TEST_F(WithResponse, StandsBehindWhatHasAName) {
   EXPECT_FALSE(law.admits(theta));
 }
 
+TEST_F(WithResponse, HasTheRootsOfItsVariancesForDeviations) {
+  const StringUnknowns law = unknowns(true)[0];
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Constant(law.size(), law.size(), 0.1);
+  for (Index i = 0; i < law.size(); ++i) {
+    covariance(i, i) = static_cast<double>((i + 1) * (i + 1));
+  }
+  const std::vector<Complex> deviations = law.response_deviations(covariance);
+  ASSERT_EQ(deviations.size(), options(true).response.knots);
+  for (std::size_t k = 0; k < deviations.size(); ++k) {
+    const double place = static_cast<double>(law.named()) + 2.0 * static_cast<double>(k) + 1.0;
+    EXPECT_EQ(deviations[k], Complex(place, place + 1.0)) << k;
+  }
+}
+
 TEST_F(WithResponse, IsHeldByItsPriorAboutNothing) {
   const StringUnknowns law = unknowns(false)[0];
   const QuadraticPrior prior = law.prior(law.start());

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "experiments/kinds/calibrate/calibrate.hpp"
@@ -87,6 +88,51 @@ double deviation_of(std::size_t mode, const std::string& text) {
     if (words >> number >> frequency >> deviation && number == mode) return deviation;
   }
   return std::numeric_limits<double>::quiet_NaN();
+}
+
+// Numbers behind "NAME sd": the deviation, and in brackets, where it stands, the attainable one.
+std::vector<double> printed_deviations(const std::string& text, const std::string& name) {
+  std::istringstream lines(text);
+  std::string line, first, second, number;
+  while (std::getline(lines, line)) {
+    std::istringstream words(line);
+    if (!(words >> first >> second >> number) || first != name || second != "sd") continue;
+    std::vector<double> result = {std::stod(number)};
+    if (words >> number && number[0] == '(') result.push_back(std::stod(number.substr(1)));
+    return result;
+  }
+  return {};
+}
+
+// Text and file have the same deviations, each in its place, to the text's three digits.
+TEST(LimitJson, HasEveryDeviationOfTheText) {
+  const LoadedExperiment loaded =
+      load_experiment(parse_yaml(config(", damping: power, sensors: [gain]", ""), "scene.yaml"));
+  TruthCache truths;
+  const LimitQuestion question = *loaded.experiment->limit_question();
+  const auto document = limit_json(question, truths);
+  const std::string text = limit_text(question, truths);
+  const std::string free = text.substr(text.find("every frequency free"));
+  ASSERT_EQ(document.at("modes").size(), 11u);
+  for (std::size_t n = 1; n <= 11; ++n) {
+    const double stated = document.at("modes")[n - 1].at("relative_sd").get<double>();
+    EXPECT_NEAR(deviation_of(n, text) / stated, 1.0, 0.006) << n;
+  }
+  std::size_t with_frequencies = 0;
+  for (const auto& row : document.at("parameters")) {
+    const auto name = row.at("name").get<std::string>();
+    const std::vector<double> law = printed_deviations(text, name);
+    ASSERT_EQ(law.size(), 2u) << name;
+    EXPECT_NEAR(law[0] / row.at("sd").get<double>(), 1.0, 0.006) << name;
+    EXPECT_NEAR(law[1] / row.at("attainable_sd").get<double>(), 1.0, 0.006) << name;
+    // At 0.5 % noise a force that is not known costs next to nothing.
+    EXPECT_NEAR(law[1] / law[0], 1.0, 0.1) << name;
+    const std::vector<double> alone = printed_deviations(free, name);
+    if (alone.empty()) continue;
+    EXPECT_NEAR(alone[0] / row.at("sd_with_free_frequencies").get<double>(), 1.0, 0.006) << name;
+    ++with_frequencies;
+  }
+  EXPECT_EQ(with_frequencies, 2u);  // damping_power and gain; x_c and damping have no row there
 }
 
 TEST(LimitText, CountsWhatASmoothResponseTakes) {

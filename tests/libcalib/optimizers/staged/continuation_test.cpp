@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <cmath>
 
 #include "libcalib/identifiability/mode_verdict.hpp"
@@ -48,8 +49,10 @@ void expect_frequencies(const ContinuationResult& result, const ModelPoint& trut
     count += 1.0;
   }
   // Mean of `count` squares of unit variance: sd √(2/count), correlations left aside; five of them.
+  // Deviations that are twice as large as the errors would leave a quarter.
   EXPECT_GT(count, 10.0);
   EXPECT_LT(square / count, 1.0 + 5.0 * std::sqrt(2.0 / count));
+  EXPECT_GT(square / count, 0.3);
 }
 
 TEST(Continuation, FindsThePapersStringFromFarAway) {
@@ -139,6 +142,28 @@ BowedCase deviating_case(double contact, const std::vector<double>& factors) {
   return result;
 }
 
+// Frequencies known far better than they follow the law are 45 draws about it: its deviations are
+// those of a straight line through ln(f_n/n) over n², whose slope is B/2.
+void expect_law_of_scatter(const ContinuationResult& result) {
+  Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
+  for (std::size_t n = 0; n < result.modes.size(); ++n) {
+    const ModeVerdict& mode = result.modes[n];
+    if (mode.source != ModeSource::kIdentified) continue;
+    const double number = static_cast<double>(n + 1);
+    const Eigen::Vector2d row(1.0, 0.5 * number * number);
+    normal +=
+        row * row.transpose() / std::norm(std::complex(result.law_width, mode.data_deviation));
+  }
+  const Eigen::Matrix2d covariance = normal.inverse();
+  // The scatter of the frequencies is an estimate itself, to √(1/(2·40)) = 11 %, and weak modes
+  // take part with less: a third.
+  const FoundLaw& law = result.found_law;
+  EXPECT_NEAR(law.deviation[0] / (196.0 * std::sqrt(covariance(0, 0))), 1.0, 0.33);
+  EXPECT_NEAR(law.deviation[1] / std::sqrt(covariance(1, 1)), 1.0, 0.33);
+  EXPECT_LT(std::abs(law.fundamental - 196.0), 4.0 * law.deviation[0]);
+  EXPECT_LT(std::abs(law.inharmonicity), 4.0 * law.deviation[1]);
+}
+
 TEST(Continuation, FreesTheModesOfAStringThatLeavesTheLaw) {
   std::vector<double> factors(50);
   fill_uniform(StreamKey(3).with("law"), factors);
@@ -151,6 +176,7 @@ TEST(Continuation, FreesTheModesOfAStringThatLeavesTheLaw) {
   expect_frequencies(result, bowed.truth);
   // Uniform ±0.1 % has standard deviation 5.8e-4; √(1/(2·40)) of it is the estimate's own.
   EXPECT_NEAR(result.law_width, 5.8e-4, 2.5e-4);
+  expect_law_of_scatter(result);
   EXPECT_LT(std::abs(result.model.contact - 0.0285), kSix * result.contact_deviation);
 }
 
