@@ -29,6 +29,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 from operators import OPERATORS, mutants_of  # noqa: E402
 
 LIBRARIES = ("libsim", "libinverse", "libcalib")
+LINKING = 0.7  # seconds
 # Files, texts and lists of names hold no numerics.
 NO_KERNEL = re.compile(r"^libsim/(base|records)/|/registry\.cpp$|_options\.cpp$|_text\.cpp$")
 
@@ -73,7 +74,7 @@ class Build:
                 self.source[output] = os.path.relpath(os.path.join(folder, edge["file"]), root)
             elif output.endswith(".a"):
                 self.members[output] = {word for word in inputs if word.endswith(".o")}
-            elif re.fullmatch(r"tests/\w+_test", output):
+            elif re.fullmatch(r"tests/(?!experiments_cli_)\w+_test", output):  # those run the program
                 self.link[output] = (command, inputs)
         self.includers = self.objects_by_header()
         self.seconds = self.measured_seconds()
@@ -143,10 +144,13 @@ class Judge:
                 return None
 
     def is_sound(self, test):
-        """Whether it passes without any mutant; others tell nothing."""
+        """Whether it passes without any mutant, linked as with one; others tell nothing."""
         with self.lock:
             if test not in self.sound:
-                self.sound[test] = self.run([str(self.build.folder / test)], self.scratch, 600) == 0
+                folder = self.scratch / "sound"
+                folder.mkdir(exist_ok=True)
+                program = self.link_test(test, [], folder)
+                self.sound[test] = self.run([program], folder, 600) == 0
                 if not self.sound[test]:
                     print(f"{test} fails without any mutant: build the tests first", flush=True)
             return self.sound[test]
@@ -177,7 +181,7 @@ class Judge:
             objects.append(str(folder / f"{i}.o"))
         return objects
 
-    def fails(self, test, objects, folder):
+    def link_test(self, test, objects, folder):
         command, inputs = self.build.link[test]
         program = folder / "test"
         command = command.replace(f" -o {test} ", f" -o {program} ", 1)
@@ -186,8 +190,11 @@ class Judge:
         linked = subprocess.run(command, shell=True, cwd=self.build.folder, capture_output=True)
         if linked.returncode:
             raise RuntimeError(f"{test} cannot be linked: {linked.stderr.decode()[-400:]}")
+        return str(program)
+
+    def fails(self, test, objects, folder):
         seconds = self.slack + 10.0 * self.build.seconds.get(test, 0.0)
-        code = self.run([str(program)], folder, seconds)
+        code = self.run([self.link_test(test, objects, folder)], folder, seconds)
         return code != 0 and self.is_sound(test)
 
     def verdict(self, number, mutant):
@@ -200,7 +207,7 @@ class Judge:
                 return mutant, "not compiled" if objects is None else "in no library", ""
             spent, ran = 0.0, 0
             for test in self.build.tests_of(mutant.path):
-                seconds = self.build.seconds.get(test, 1.0)
+                seconds = LINKING + self.build.seconds.get(test, 1.0)
                 if ran > 0 and spent + seconds > self.most_seconds:
                     continue
                 spent, ran = spent + seconds, ran + 1
