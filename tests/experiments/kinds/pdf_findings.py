@@ -1,7 +1,7 @@
-"""What is wrong with a report on paper, by the boxes of its words.
+"""What is wrong with a report or a figure on paper, by the boxes of its words.
 
-pdf_findings.py WORDS PAGE: prints a line for every mistake. WORDS is what `pdftotext -bbox` says of
-the PDF of the report PAGE marked by check_config_pdfs.sh.
+pdf_findings.py WORDS [PAGE]: prints a line for every mistake. WORDS is what `pdftotext -bbox` says
+of a figure's PDF or of that of the report PAGE marked by check_config_pdfs.sh.
 """
 import collections
 import html
@@ -12,6 +12,7 @@ Word = collections.namedtuple("Word", "text left top right bottom")
 
 MARK = re.compile(r"qq(top|end|table)([0-9x]+)")
 MARGIN = 20  # points of paper that stay white
+SHEET_MARGIN = 1  # of a figure
 WIDTHS = {"1": 525, "2": 256}  # of charts alone in a row and of two
 LETTERS = 0.22  # a box is so much taller, above and below, than its letters
 
@@ -41,13 +42,15 @@ def overlap(a, b):
             min(one[3], other[3]) - max(one[1], other[1]) > 1)
 
 
-def findings_of_words(place, width, height, words):
+def findings_of_words(place, width, height, words, margin=MARGIN):
     if not words:
         yield f"{place} is blank"
     for word in words:
-        if (word.left < MARGIN or word.right > width - MARGIN or word.top < MARGIN
-                or word.bottom > height - MARGIN):
+        if (word.left < margin or word.right > width - margin or word.top < margin
+                or word.bottom > height - margin):
             yield f'{place}: "{word.text}" leaves the page'
+        if margin < MARGIN and re.fullmatch(r"[0-9.]{9,}", word.text):
+            yield f'{place}: "{word.text}": numbers run together'
     words = sorted((word for word in words if not MARK.search(word.text)), key=lambda w: w.top)
     for i, word in enumerate(words):
         for other in words[i + 1:]:
@@ -88,9 +91,12 @@ def findings_of_marks(pages, charts, tables):
 
 def main():
     pages = pages_of(sys.argv[1])
+    margin = MARGIN if len(sys.argv) > 2 else SHEET_MARGIN
     for number, (width, height, words) in enumerate(pages):
-        for finding in findings_of_words(f"page {number + 1}", width, height, words):
+        for finding in findings_of_words(f"page {number + 1}", width, height, words, margin):
             print(finding)
+    if len(sys.argv) == 2:
+        return
     source = open(sys.argv[2], encoding="utf-8").read()
     charts = len(re.findall(r'<div class="chart[" ]', source))
     for finding in findings_of_marks(pages, charts, source.count("<table>")):

@@ -1,5 +1,6 @@
-// write_config_reports CONFIGS DIR runs every experiment file at a small size and writes the report
-// of each that has a figure or table which those before it have not: for the browser's test.
+// write_config_reports CONFIGS DIR [FIGURES] runs every experiment file at a small size and writes
+// the report of each that has a figure or table which those before it have not: for the browser's
+// test. With a third argument, whatever it is, gnuplot draws their figures, too.
 #include <cstdio>
 #include <set>
 
@@ -22,7 +23,8 @@ std::set<std::string> looks_of(const std::string& kind, const StudyResult& resul
   return looks;
 }
 
-void write_reports(const std::string& configs, const std::filesystem::path& folder) {
+void write_reports(const std::string& configs, const std::filesystem::path& folder,
+                   bool vector_figures) {
   std::set<std::string> seen;
   for (const std::string& file : config_files(configs)) {
     const LoadedExperiment small = load_small(file, load_experiment(file));
@@ -35,8 +37,9 @@ void write_reports(const std::string& configs, const std::filesystem::path& fold
     report::Report report{.title = small.title, .description = small.description};
     report.sections.push_back({"Results", std::move(result.blocks)});
     std::filesystem::path name = std::filesystem::relative(file, configs).replace_extension();
-    const auto written = write_report(report, folder / name, {.vector_figures = false});
+    const auto written = write_report(report, folder / name, {.vector_figures = vector_figures});
     std::printf("%s\n", written.page.c_str());
+    if (!written.warning.empty()) std::fprintf(stderr, "%s\n", written.warning.c_str());
   }
 }
 
@@ -44,12 +47,12 @@ void write_reports(const std::string& configs, const std::filesystem::path& fold
 }  // namespace modcal
 
 int main(int argc, char** argv) {
-  if (argc != 3) {
-    std::fputs("usage: write_config_reports CONFIGS DIR\n", stderr);
+  if (argc != 3 && argc != 4) {
+    std::fputs("usage: write_config_reports CONFIGS DIR [FIGURES]\n", stderr);
     return 2;
   }
   try {
-    modcal::write_reports(argv[1], argv[2]);
+    modcal::write_reports(argv[1], argv[2], argc == 4);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;
