@@ -6,6 +6,7 @@
 #include <cstring>
 #include <fstream>
 
+#include "experiments/report/typeset.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/records/signal_file.hpp"
 
@@ -78,7 +79,7 @@ std::string html_paragraphs(std::string_view text) {
     const std::size_t end = text.find("\n\n");
     const std::string_view paragraph = text.substr(0, end);
     if (paragraph.find_first_not_of(" \t\n") != std::string_view::npos) {
-      html += "<p>" + html_escaped(paragraph) + "</p>\n";
+      html += "<p>" + typeset_html(paragraph) + "</p>\n";
     }
     text.remove_prefix(end == std::string_view::npos ? text.size() : end + 2);
   }

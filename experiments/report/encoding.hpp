@@ -26,7 +26,7 @@ std::string csv_text(const std::vector<std::string>& headings, std::size_t rows,
 /// Text for HTML content and quoted attributes: & < > " ' are escaped.
 std::string html_escaped(std::string_view text);
 
-/// The escaped text as <p> elements; an empty line starts a new one.
+/// The text, escaped and with its formulas set, as <p> elements; an empty line starts a new one.
 std::string html_paragraphs(std::string_view text);
 
 /// RFC 4648 with padding.

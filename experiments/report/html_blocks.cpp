@@ -6,6 +6,7 @@
 #include <initializer_list>
 
 #include "experiments/report/encoding.hpp"
+#include "experiments/report/typeset.hpp"
 
 namespace modcal::report {
 namespace {
@@ -22,7 +23,7 @@ std::string legend_html(const DrawnPanel& panel) {
         : look.dotted ? " dotted"
         : look.line   ? " line"
                       : "",
-        look.ink->name, look.points ? look.ink->glyph : "", text);
+        look.ink->name, look.points ? look.ink->glyph : "", typeset_html(label));
   }
   return html;
 }
@@ -46,7 +47,7 @@ std::string tags_attribute(const Tags& tags) {
 std::string panel_html(const DrawnPanel& drawn, std::size_t place, bool legend_in_panel) {
   const Panel& panel = *drawn.source;
   std::string html = "<div class=\"panel\"><div class=\"head\">";
-  html += fmt::format("<span class=\"title\">{}</span>", html_escaped(panel.title));
+  html += fmt::format("<span class=\"title\">{}</span>", typeset_html(panel.title));
   if (legend_in_panel) html += fmt::format("<span class=\"keys\">{}</span>", legend_html(drawn));
   html += "<output class=\"values\"></output></div>\n";
   if (!drawn.has_values()) return html + "<div class=\"nothing\">no data</div></div>\n";
@@ -63,7 +64,7 @@ std::string heading_html(const Column& column, bool is_text) {
                                ? ""
                                : " <span class=\"unit\">[" + html_escaped(column.unit) + "]</span>";
   return fmt::format("<th scope=\"col\"{}>{}{}</th>", is_text ? " class=\"text\"" : "",
-                     html_escaped(name), unit);
+                     typeset_html(name), unit);
 }
 
 std::string cell_html(const Cell& cell, const Column& column, bool is_text) {
@@ -83,7 +84,7 @@ std::string cell_html(const Cell& cell, const Column& column, bool is_text) {
     more += fmt::format(" style=\"--h:{:.2f}\"", std::min(cell.heat, 1.0));
   }
   if (cell.task >= 0) more += fmt::format(" data-task=\"{}\"", cell.task);
-  return fmt::format("<td class=\"{}\"{}>{}{}</td>", kind, more, html_escaped(text), mark);
+  return fmt::format("<td class=\"{}\"{}>{}{}</td>", kind, more, typeset_html(text), mark);
 }
 
 // Whether a figure has room beside another one.
@@ -142,7 +143,7 @@ std::string BlockWriter::operator()(const Figure& figure) {
       "<figure id=\"{0}\" class=\"columns-{1}\" style=\"--columns:{1}\">\n<div "
       "class=\"caption-head\"><h3>{2}</h3>{3}<button type=\"button\" class=\"reset\" "
       "hidden>Reset zoom</button></div>\n<div class=\"grid\">\n",
-      figure.id, figure.columns, html_escaped(figure.title),
+      figure.id, figure.columns, typeset_html(figure.title),
       drawn.shared_legend ? "<span class=\"keys\">" + legend_html(drawn.panels.front()) + "</span>"
                           : "");
   for (std::size_t i = 0; i < drawn.panels.size(); ++i) {
@@ -162,8 +163,8 @@ std::string BlockWriter::operator()(const Table& table) const {
   const bool folded = !is_answer_ && table.rows.size() > kShownRows;
   std::string html = fmt::format("<div class=\"table\" id=\"{}\">", table.id);
   html += folded ? fmt::format("<details class=\"fold\"><summary><h3>{}</h3> {} rows</summary>\n",
-                               html_escaped(table.title), table.rows.size())
-                 : fmt::format("<h3>{}</h3>\n", html_escaped(table.title));
+                               typeset_html(table.title), table.rows.size())
+                 : fmt::format("<h3>{}</h3>\n", typeset_html(table.title));
   html += "<div class=\"scroll\"><table><thead><tr>";
   std::vector<bool> is_text(table.columns.size());
   for (std::size_t j = 0; j < table.columns.size(); ++j) {

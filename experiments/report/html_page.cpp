@@ -4,6 +4,7 @@
 
 #include "experiments/report/encoding.hpp"
 #include "experiments/report/html_blocks.hpp"
+#include "experiments/report/typeset.hpp"
 
 namespace modcal::report {
 namespace {
@@ -34,7 +35,7 @@ std::string palette_style() {
 std::string contents_html(const Report& report) {
   std::string html = "<nav aria-label=\"Contents\"><h2>Contents</h2><ol>\n";
   const auto entry = [](const std::string& anchor, const std::string& title) {
-    return fmt::format("<li><a href=\"#{}\">{}</a></li>\n", anchor, html_escaped(title));
+    return fmt::format("<li><a href=\"#{}\">{}</a></li>\n", anchor, typeset_html(title));
   };
   for (std::size_t i = 0; i < report.sections.size(); ++i) {
     const Section& section = report.sections[i];
@@ -63,7 +64,7 @@ std::string header_html(const Report& report, const PageLinks& links) {
                                                        : Look{"partial", "Partly failed"};
   std::string html = fmt::format(
       "<header class=\"{}\"><h1>{}</h1>\n<p class=\"status\"><strong>{}</strong> {}</p>\n",
-      look.kind, html_escaped(report.title), look.word, html_escaped(report.status_text));
+      look.kind, html_escaped(report.title), look.word, typeset_html(report.status_text));
   html += html_paragraphs(report.description) + command_html(report.command);
   if (!links.warning.empty()) html += box_html("warning", "Warning", links.warning);
   html +=
@@ -114,8 +115,8 @@ std::string html_page(const Report& report, std::span<const DrawnFigure> figures
   page += fmt::format("<script type=\"application/json\" id=\"modcal-data\">{}</script>\n", data);
   page += fmt::format("<script>{}</script>\n<script>{}</script>\n", kDygraphsScript,
                       kDygraphsSynchronizer);
-  page += fmt::format("<script>(function () {{\n'use strict';\n{}\n{}\n{}\n{}}})();</script>\n",
-                      kPageValues, kPageMarks, kPageFilters, kPageScript);
+  page += fmt::format("<script>(function () {{\n'use strict';\n{}\n{}\n{}\n{}\n{}}})();</script>\n",
+                      kPageValues, kPageMarks, kPageFilters, kPagePrint, kPageScript);
   return page + "</body></html>\n";
 }
 

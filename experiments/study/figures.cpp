@@ -191,14 +191,18 @@ std::vector<Series> curve_with_choice(const ChosenParameter& choice, std::string
 
 Figure parameter_curve_figure(const Layout& layout, const std::vector<SideIdentification>& sides) {
   Figure figure = layout.empty();
+  figure.caption =
+      "Above: roughness of the force over the misfit of its reaction, one point a parameter. "
+      "Below: "
+      "the criterion whose minimum chooses the parameter. Square: the parameter chosen.";
   for (const SideIdentification& side : sides) {
     const auto& [label, name] = std::pair(side.estimate.label, side.estimate.side);
     figure.panels.push_back(
         {.title = label,
-         .x = {.label = fmt::format("||R_{0} - H_{0} F({0})||", name),
+         .x = {.label = fmt::format("‖R_{0} − H_{0} F_{0}‖", name),
                .unit = "N",
                .logarithmic = true},
-         .y = {.label = fmt::format("||dF({})/dt||", name), .unit = "N/s", .logarithmic = true},
+         .y = {.label = fmt::format("‖d F_{}/dt‖", name), .unit = "N/s", .logarithmic = true},
          .series = curve_with_choice(side.estimate.result.choice, "all parameters",
                                      &CurvePoint::residual_norm, &CurvePoint::solution_norm)});
   }

@@ -231,7 +231,7 @@ Figure spectra_figure(const Drawing& drawing) {
     const auto& reaction = observation.reaction(end);
     if (!reaction) continue;
     const auto r = static_cast<std::size_t>(end);
-    add(fmt::format("reaction at {}", label_of(end)), fmt::format("|R{}|", r + 1),
+    add(fmt::format("reaction at {}", label_of(end)), fmt::format("|R_{}|", r + 1),
         reaction->samples, highest);
     const double noise = noise_of(drawing.sides, r);
     if (!(noise > 0.0)) continue;
@@ -257,7 +257,7 @@ Figure misfit_figure(const Drawing& drawing) {
   Figure figure{.id = "reaction_misfit",
                 .title = "What the two reactions contradict each other by",
                 .caption =
-                    "Power of R1 H2 - R2 H1, about 40 Hz smoothed, over what the noise puts "
+                    "Power of R_1 H_2 − R_2 H_1, about 40 Hz smoothed, over what the noise puts "
                     "there: 1 where one force explains both reactions."};
   for (const SideIdentification& side : drawing.sides) {
     const std::vector<double>& misfit = side.estimate.side_misfit;

@@ -40,9 +40,10 @@ report::Figure law_figure(const CalibrationOutcome& outcome) {
   report::Figure figure{
       .id = "frequencies_against_law",
       .title = "Modal frequencies against the law",
-      .caption =
-          fmt::format("f_n over n f0 sqrt(1 + B n²) with f0 = {:.6g} Hz and B = {}.",
-                      law.fundamental, inharmonicity_text(law.inharmonicity, law.deviation[1]))};
+      .caption = fmt::format(
+          "f_n over n f_0 √(1 + B n²) with f_0 = {:.6g} Hz and B = {}. Bars: 95 %; grey: "
+          "what the data do not tell by themselves.",
+          law.fundamental, inharmonicity_text(law.inharmonicity, law.deviation[1]))};
   report::Panel panel{.x = {.label = "mode number n"},
                       .y = {.label = "departure from the law", .unit = "‰"}};
   for (const bool identified : {true, false}) {
@@ -86,8 +87,8 @@ report::Figure ratio_figure(const CalibrationOutcome& outcome, const Observation
   report::Figure figure{.id = "reaction_ratio",
                         .title = "Ratio of the reactions, measured and of the model",
                         .caption =
-                            "The force cancels in R1/R2 = H1/H2. Averaged over a tenth of "
-                            "f0; noise fills the zeros of the measured one."};
+                            "The force cancels in R_1/R_2 = H_1/H_2. Averaged over a tenth of "
+                            "f_0; noise fills the zeros of the measured one."};
   const auto& left = observation.reaction(End::kLeft);
   const auto& right = observation.reaction(End::kRight);
   if (!left || !right) return figure;
@@ -96,7 +97,7 @@ report::Figure ratio_figure(const CalibrationOutcome& outcome, const Observation
   const auto bins =
       std::max<std::size_t>(1, static_cast<std::size_t>(0.1 * observation.fundamental / width));
   report::Panel panel{.x = {.label = "frequency", .unit = "kHz"},
-                      .y = {.label = "|R1/R2|", .logarithmic = true}};
+                      .y = {.label = "|R_1/R_2|", .logarithmic = true}};
   const RealFft fft(observation.samples());
   panel.series.push_back(
       ratio_of(fft.forward(left->samples), fft.forward(right->samples), width, bins, highest));
@@ -196,7 +197,7 @@ report::Figure frequency_error_figure(const FigureOptions& options,
     figure.panels.push_back(std::move(panel));
   };
   if (!outcome.true_frequencies.empty()) {
-    add(absolute, {.label = "|f_n - true|", .unit = "Hz"});
+    add(absolute, {.label = "|f_n − true|", .unit = "Hz"});
     add(relative, {.label = "relative error", .unit = "%"});
   }
   add(shape, {.label = "|φ_n(x_c)|"});

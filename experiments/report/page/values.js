@@ -40,8 +40,11 @@ function power(exponent) {
   });
 }
 
-// f_c as a symbol with a subscript; for HTML.
+// f_c and f0 as symbols with subscripts; for HTML. As typeset.cpp does in texts.
 function symbols(html) {
+  html = html.replace(/(^|[^A-Za-z0-9/._])(f0|[RH][12])(?![A-Za-z0-9_])/g, function (all, before, name) {
+    return before + name[0] + '<sub>' + name[1] + '</sub>';
+  });
   return html.replace(/(^|[^A-Za-z0-9])([A-Za-z\u03b1-\u03c9])_([A-Za-z0-9]{1,2})(?![A-Za-z0-9_])/g, '$1$2<sub>$3</sub>');
 }
 
