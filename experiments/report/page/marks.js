@@ -90,7 +90,7 @@ function points_only(e) {
 function series_options(s, bars, dense) {
   var points = s.style === 'points' || s.style === 'line_with_points';
   return {
-    strokeWidth: s.style === 'points' ? 0 : 1.4,
+    strokeWidth: s.style === 'points' ? 0 : s.style === 'dotted' ? 1 : 1.4,
     strokePattern: s.style === 'dotted' ? [2, 3] : null,
     drawPoints: points,
     pointSize: dense ? 1.6 : 3.2,
@@ -138,16 +138,7 @@ function category_at(map, x, y) {
   return i < 0 || j < 0 ? null : map.categories[map.cells[j * (map.x.length - 1) + i]] || null;
 }
 
-// Baseline of a label from `left` on: below those written before that would be in its way.
-function free_line(labels, left, width, y) {
-  var in_the_way = function (l) {
-    return l.left < left + width + 4 && left < l.left + l.width + 4 && Math.abs(l.y - y) < 12;
-  };
-  while (labels.some(in_the_way)) y += 13;
-  labels.push({left: left, width: width, y: y});
-  return y;
-}
-
+// The lines of the markers; their labels stand outside the axes, where no curve runs.
 function draw_markers(panel) {
   return function (c, area, chart) {
     c.save();
@@ -156,24 +147,66 @@ function draw_markers(panel) {
     c.clip();
     if (panel.map) draw_map(c, area, chart, panel.map);
     c.setLineDash([2, 3]);
-    c.font = '11px system-ui, sans-serif';
-    var labels = [];
+    c.lineWidth = 1;
     panel.markers.forEach(function (m) {
-      var share = m.vertical ? chart.toPercentXCoord(m.value) : chart.toPercentYCoord(m.value);
+      var share = share_of(chart, m);
       if (!(share >= 0 && share <= 1)) return;
-      c.strokeStyle = c.fillStyle = color(m.ink);
+      c.strokeStyle = color(m.ink);
       var x = area.x + share * area.w;
       var y = area.y + share * area.h;
       c.beginPath();
       c.moveTo(m.vertical ? x : area.x, m.vertical ? area.y : y);
       c.lineTo(m.vertical ? x : area.x + area.w, m.vertical ? area.y + area.h : y);
       c.stroke();
-      var left = m.vertical && share <= 0.6;
-      c.textAlign = left ? 'left' : 'right';
-      var at = m.vertical ? x + (left ? 5 : -5) : area.x + area.w - 5;
-      var width = c.measureText(m.label).width;
-      c.fillText(m.label, at, free_line(labels, left ? at : at - width, width, m.vertical ? area.y + 12 : y - 5));
     });
     c.restore();
   };
+}
+
+function share_of(chart, marker) {
+  return marker.vertical ? chart.toPercentXCoord(marker.value) : chart.toPercentYCoord(marker.value);
+}
+
+function labelled(panel, vertical) {
+  return panel.markers.filter(function (m) { return m.label && m.vertical === vertical; });
+}
+
+// Lines of labels above the axes, should all vertical markers stand at one place.
+function marker_lines(panel) { return Math.min(3, labelled(panel, true).length); }
+
+// Pixels beside the axes that the labels of horizontal markers take.
+function marker_margin(panel) {
+  var c = document.createElement('canvas').getContext('2d');
+  c.font = '12px system-ui, "DejaVu Sans", sans-serif';
+  return labelled(panel, false).reduce(function (widest, m) {
+    return Math.max(widest, c.measureText(m.label).width + 10);
+  }, 0);
+}
+
+// Puts the labels above the axes or right of them, each where no other one stands.
+function label_markers(chart, panel) {
+  var area = chart.getArea();
+  var root_ = chart.graphDiv;
+  root_.querySelectorAll('.marker').forEach(function (old) { old.remove(); });
+  var taken = [];
+  panel.markers.forEach(function (m) {
+    var share = share_of(chart, m);
+    if (!m.label || !(share >= 0 && share <= 1)) return;
+    var label = document.createElement('span');
+    label.className = 'marker ink-' + m.ink;
+    label.innerHTML = symbols(escaped(m.label));
+    root_.appendChild(label);
+    var wide = label.offsetWidth;
+    var left = m.vertical
+        ? Math.max(0, Math.min(area.x + share * area.w - wide / 2, root_.clientWidth - wide))
+        : area.x + area.w + 5;
+    var top = m.vertical ? area.y - 14 : area.y + share * area.h - 7;
+    var in_the_way = function (t) {
+      return t.left < left + wide + 4 && left < t.left + t.wide + 4 && Math.abs(t.top - top) < 12;
+    };
+    while (taken.some(in_the_way)) top += m.vertical ? -13 : 13;
+    taken.push({left: left, top: top, wide: wide});
+    label.style.left = left + 'px';
+    label.style.top = top + 'px';
+  });
 }

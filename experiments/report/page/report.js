@@ -10,7 +10,7 @@ function escaped(text) {
 
 function span_of(text, ink) {
   var span = document.createElement('span');
-  span.textContent = text;
+  span.innerHTML = symbols(escaped(text));
   if (ink) span.className = 'ink-' + ink;
   return span;
 }
@@ -121,7 +121,10 @@ function looks(series) {
 }
 
 function read_series(panel) {
-  return panel.series.map(function (s) {
+  // A dotted reference lies behind a band about what is compared with it.
+  var banded = panel.series.some(function (s) { return s.low !== undefined && s.style !== 'points'; });
+  var behind = function (s) { return banded && s.style === 'dotted' && s.ink === 'reference' ? 0 : 1; };
+  return panel.series.slice().sort(function (a, b) { return behind(a) - behind(b); }).map(function (s) {
     return {label: s.label, style: s.style, ink: s.ink, shape: s.shape, x: numbers(s.x), y: numbers(s.y),
             low: numbers(s.low), high: numbers(s.high), path: numbers(s.path), task: numbers(s.task),
             tags: s.tags, rows: []};
@@ -168,6 +171,8 @@ function chart_options(item) {
     xlabel: symbols(escaped(panel.x.text)),
     ylabel: symbols(escaped(panel.y.text)),
     axes: {x: axis_options(panel.x, 52, 48), y: axis_options(panel.y, 28, 76)},
+    title: marker_lines(panel) ? '\u00a0' : null,  // room for the labels of vertical markers
+    titleHeight: 14 * marker_lines(panel),
     dateWindow: panel.x.window,
     valueRange: panel.y.window,
     yRangePad: panel.y.window ? 0 : 8,
@@ -175,13 +180,16 @@ function chart_options(item) {
     axisLabelFontSize: 12,
     xLabelHeight: 18,
     yLabelWidth: 18,
-    rightGap: 24,
+    rightGap: Math.max(24, marker_margin(panel)),
     highlightCircleSize: 3.5,
     drawGrid: !panel.map,
     underlayCallback: draw_markers(panel),
     interactionModel: Object.assign({}, Dygraph.defaultInteractionModel,
                                     {dblclick: function () { reset(item); }}),
-    drawCallback: function (chart, initial) { if (!initial) update_reset_button(item.figure); },
+    drawCallback: function (chart, initial) {
+      label_markers(chart, panel);
+      if (!initial) update_reset_button(item.figure);
+    },
     highlightCallback: function (event, x, points, row) {
       item.row = row;
       var y = panel.map && item.chart.toDataYCoord(item.chart.eventToDomCoords(event)[1]);
@@ -260,22 +268,6 @@ function link_zoom(figure) {
   });
 }
 
-// Scales a chart, labels and all, to its column of the paper, 700 pixels wide: what is drawn at
-// another size while the browser prints stays blank.
-function fit_to_paper(item) {
-  var width = item.element.clientWidth;
-  if (!width) return;  // filtered away
-  var columns = Number(getComputedStyle(item.figure).getPropertyValue('--columns'));
-  var paper = columns > 1 || item.figure.closest('.row') ? 342 : 700;
-  item.element.style.setProperty('--drawn', width + 'px');
-  item.element.style.setProperty('--fit', (paper / width).toFixed(4));
-}
-
-// A table wider than the paper would make the browser shrink all that is on the page.
-function fit_table_to_paper(table) {
-  if (table.offsetWidth > 700) table.style.zoom = (700 / table.offsetWidth).toFixed(4);
-}
-
 function repaint() {
   charts.forEach(function (item) { item.chart.updateOptions(looks(item.series)); });
 }
@@ -322,14 +314,13 @@ window.addEventListener('beforeprint', function () {
   unfold(document.querySelectorAll('details'));
   draw_waiting(Infinity);
   root.classList.add('printing');
-  charts.forEach(fit_to_paper);
+  charts.forEach(put_on_paper);
   document.querySelectorAll('table').forEach(fit_table_to_paper);
-  repaint();
 });
 window.addEventListener('afterprint', function () {
   root.classList.remove('printing');
   document.querySelectorAll('table').forEach(function (table) { table.style.zoom = ''; });
-  repaint();
+  charts.forEach(take_from_paper);
 });
 // What is not drawn before the page has loaded is not in a PDF that is made at once.
 draw_waiting(performance.now() + 500);
