@@ -1,6 +1,7 @@
 // Units as people read them: 200 µm and 20 kHz, where the data have 2×10⁻⁴ m and 20000 Hz.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "experiments/report/drawing.hpp"
@@ -22,18 +23,32 @@ bool takes_prefix(std::string_view unit) {
   return std::find(std::begin(kPlain), std::end(kPlain), first) != std::end(kPlain);
 }
 
+// What the axes of one quantity show.
+struct Shown {
+  double least = std::numeric_limits<double>::infinity();  ///< size of the smallest lower end
+  double largest = 0.0;
+
+  void add(const std::array<double, 2>& window) {
+    least = std::min(least, std::abs(window[0]));
+    largest = std::max({largest, std::abs(window[0]), std::abs(window[1])});
+  }
+  // A spectrum is read in kHz, the neighbourhood of one mode in Hz.
+  bool is_spectrum(std::string_view unit) const {
+    constexpr std::string_view kFrequency = "Hz";
+    return unit == kFrequency && largest >= 2000.0 && least <= 0.1 * largest;
+  }
+};
+
 /// Null: the numbers are short as they are.
-const Prefix* prefix_for(double largest) {
-  if (largest == 0.0 || (largest >= 0.01 && largest < 1e4)) return nullptr;
+const Prefix* prefix_for(const Shown& shown, std::string_view unit) {
+  const double largest = shown.largest;
+  const bool is_short = largest == 0.0 || (largest >= 0.01 && largest < 1e4);
+  if (is_short && !shown.is_spectrum(unit)) return nullptr;
   const Prefix* best = nullptr;
   for (const Prefix& prefix : kPrefixes) {
     if (prefix.factor <= largest) best = &prefix;
   }
   return best;
-}
-
-double largest_of(const std::array<double, 2>& window) {
-  return std::max(std::abs(window[0]), std::abs(window[1]));
 }
 
 void scale(std::vector<double>& values, double factor) {
@@ -74,17 +89,18 @@ bool may_change(const Axis& axis) { return !axis.logarithmic && takes_prefix(axi
 
 Figure in_readable_units(Figure figure) {
   // Panels with the same quantity keep the same unit.
-  std::map<std::string, double> largest;
+  std::map<std::string, Shown> shown;
   const DrawnFigure drawn = draw_figure(figure, 1);
   for (const DrawnPanel& panel : drawn.panels) {
-    double& x = largest[panel.source->x.text()];
-    x = std::max(x, largest_of(panel.x_window));
-    double& y = largest[panel.source->y.text()];
-    y = std::max(y, largest_of(panel.y_window));
+    shown[panel.source->x.text()].add(panel.x_window);
+    shown[panel.source->y.text()].add(panel.y_window);
   }
   for (Panel& panel : figure.panels) {
-    const Prefix* x = may_change(panel.x) ? prefix_for(largest[panel.x.text()]) : nullptr;
-    const Prefix* y = may_change(panel.y) ? prefix_for(largest[panel.y.text()]) : nullptr;
+    const auto prefix_of = [&shown](const Axis& axis) {
+      return may_change(axis) ? prefix_for(shown[axis.text()], axis.unit) : nullptr;
+    };
+    const Prefix* x = prefix_of(panel.x);
+    const Prefix* y = prefix_of(panel.y);
     if (x != nullptr) scale_x(panel, *x);
     if (y != nullptr) scale_y(panel, *y);
   }

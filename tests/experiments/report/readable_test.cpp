@@ -44,6 +44,18 @@ TEST(ReadableUnits, LeaveOthersAlone) {
             "N");
 }
 
+// The figure reaches from 0 to 20 kHz; its middle is stretched about a mode.
+TEST(ReadableUnits, AreThoseOfSpectraOrOfSingleModes) {
+  const auto unit_of = [](double low, double high) {
+    Figure figure = figure_of({.label = "f", .unit = "Hz"}, {}, 1.0);
+    figure.panels[0].x.range = {{low, high}};
+    return in_readable_units(figure).panels[0].x.unit;
+  };
+  EXPECT_EQ(unit_of(100.0, 3000.0), "kHz");
+  EXPECT_EQ(unit_of(2300.0, 2400.0), "Hz");
+  EXPECT_EQ(unit_of(0.0, 800.0), "Hz");
+}
+
 TEST(ReadableUnits, AreThoseOfAllPanelsOfAQuantity) {
   const Axis y{.label = "y", .unit = "m"};
   Figure figure = figure_of({}, y, 0.02);
