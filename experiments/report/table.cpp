@@ -60,6 +60,7 @@ void check_table(const Table& table) {
 }
 
 std::string cell_text(const Cell& cell, const Column& column) {
+  if (!cell.shown.empty()) return cell.shown;
   return std::visit(Overloaded{[](std::monostate) { return std::string("–"); },
                                [](bool flag) { return std::string(flag ? "yes" : "no"); },
                                [](std::int64_t number) { return std::to_string(number); },

@@ -28,6 +28,9 @@ struct Cell {
       : value(static_cast<std::int64_t>(number)), highlight(mark) {}
 
   Value value = {};
+  /// What the page shows in its place: rounded, in another unit. Empty: the value by the column's
+  /// format. The files keep the value.
+  std::string shown = {};
   Highlight highlight = Highlight::kNone;
   double heat = -1.0;      ///< shade of its ground in the page, 0 to 1; below: none
   std::int64_t task = -1;  ///< task behind it, whose replay the page offers; below 0: none
@@ -54,7 +57,7 @@ struct Table {
 /// key is empty or used twice, a format cannot print a number or the id cannot be a file name.
 void check_table(const Table& table);
 
-/// What the page shows: numbers by the column's format, "NaN" for a NaN, "–" for no value.
+/// What the page shows: the cell's own text or, without one, numbers by the column's format, "NaN" for a NaN, "–" for no value.
 std::string cell_text(const Cell& cell, const Column& column);
 
 /// Heading line of "key [unit]", then one line a row; numbers with all their digits, "nan" for a

@@ -141,6 +141,8 @@ struct CalibrationOutcome {
   }
   /// Table of the parameters, f_n and ζ_n aside.
   void visit_parameters(ResultVisitor& visitor) const;
+  /// The parameters but frequencies and damping ratios of single modes.
+  std::vector<CalibratedParameter> beside_modes() const;
   /// All other tables of the report, and calibration.json.
   void visit(ResultVisitor& visitor) const;
 };
@@ -218,6 +220,14 @@ std::vector<report::Figure> calibration_overview(const CalibrationOutcome& outco
                                                  const StringSupport& support);
 
 // What a calibration says in a few lines.
+
+// Columns of the table of parameters that the page shows in its own units.
+inline constexpr std::string_view kInitialKey = "initial", kFinalKey = "final",
+                                  kDeviationKey = "sd", kUnitKey = "unit";
+
+/// The parameters of visit_parameters() as a report shows them: lengths in mm, values to two digits
+/// of their deviation; the files keep SI units and all digits.
+std::vector<report::Table> parameter_tables(const CalibrationOutcome& outcome);
 
 /// A value to two digits of its width; to eight where that is not known.
 std::string rounded(double value, double width);

@@ -19,7 +19,48 @@ std::string answer_of(const CalibratedParameter& parameter, bool is_length) {
   return std::isnan(width) ? text + unit : fmt::format("{} ± {:.2g}{}", text, width, unit);
 }
 
+// With the last digit that the deviation leaves two of; plain where the deviation is not known.
+std::string to_deviation(double value, double deviation) {
+  constexpr double kLeastPlain = 1e-3, kMostPlain = 1e6;
+  if (!(deviation > 0.0) || value == 0.0) return fmt::format("{:.6g}", value);
+  const auto place = [](double x) { return static_cast<int>(std::floor(std::log10(std::abs(x)))); };
+  const int last = place(deviation) - 1;
+  const double size = std::abs(value);
+  if (size >= kLeastPlain && size < kMostPlain) {
+    return fmt::format("{:.{}f}", value, std::clamp(-last, 0, 17));
+  }
+  return fmt::format("{:.{}e}", value, std::clamp(place(value) - last, 0, 17));
+}
+
+constexpr std::string_view kMeter = "m";
+
+// What the page shows of a parameter: lengths in mm, no digit that says nothing.
+void show(const CalibratedParameter& parameter, const report::Table& table,
+          std::vector<report::Cell>& row) {
+  const bool is_length = parameter.unit == kMeter;
+  const double scale = is_length ? 1e3 : 1.0;
+  const double deviation = scale * parameter.deviation;
+  const auto cell = [&](std::string_view key) -> report::Cell& {
+    const auto column = std::ranges::find(table.columns, key, &report::Column::key);
+    return row.at(static_cast<std::size_t>(column - table.columns.begin()));
+  };
+  cell(kInitialKey).shown = to_deviation(scale * parameter.initial, deviation);
+  cell(kFinalKey).shown = to_deviation(scale * parameter.final, deviation);
+  if (!std::isnan(deviation)) cell(kDeviationKey).shown = fmt::format("{:.2g}", deviation);
+  if (is_length) cell(kUnitKey).shown = "mm";
+}
+
 }  // namespace
+
+std::vector<report::Table> parameter_tables(const CalibrationOutcome& outcome) {
+  std::vector<report::Table> tables =
+      report::tables_of([&outcome](ResultVisitor& visitor) { outcome.visit_parameters(visitor); });
+  const std::vector<CalibratedParameter> parameters = outcome.beside_modes();
+  for (report::Table& table : tables) {
+    for (std::size_t i = 0; i < table.rows.size(); ++i) show(parameters[i], table, table.rows[i]);
+  }
+  return tables;
+}
 
 std::string rounded(double value, double width) {
   constexpr int kDigits = 8;

@@ -14,11 +14,12 @@ constexpr std::size_t kPairsShown = 20;
 
 void visit_parameter(ResultVisitor& row, const CalibratedParameter& parameter) {
   row({.key = "name"}, parameter.name);
-  row({.key = "initial", .format = "{:.8g}"}, parameter.initial);
-  row({.key = "final", .format = "{:.8g}"}, parameter.final);
+  row({.key = kInitialKey, .format = "{:.8g}"}, parameter.initial);
+  row({.key = kFinalKey, .format = "{:.8g}"}, parameter.final);
   row({.key = "at_bound", .shown = kInJson}, parameter.at_bound);
-  row({.key = "sd", .name = "standard deviation", .format = "{:.3g}"}, known(parameter.deviation));
-  row({.key = "unit"}, parameter.unit);
+  row({.key = kDeviationKey, .name = "standard deviation", .format = "{:.3g}"},
+      known(parameter.deviation));
+  row({.key = kUnitKey}, parameter.unit);
   row({.key = "meaning"}, meaning_of_parameter(parameter.name));
 }
 
@@ -32,7 +33,7 @@ void visit_verdict(ResultVisitor& row, const ContinuationResult& fit, std::size_
   row({.key = "law", .shown = kInJson}, name_of(found.tie));
   row({.key = "beyond_law", .shown = kInJson}, found.departure);
   if (fit.local.modes.empty()) return;
-  row({.key = "chi2", .name = "chi2 about it", .format = "{:.2f}"}, fit.local.modes[n].chi2);
+  row({.key = "chi2", .name = "chi2 about it", .format = "{:.2f}"}, known(fit.local.modes[n].chi2));
 }
 
 void visit_mode(ResultVisitor& row, const CalibrationOutcome& outcome, const CalibratedMode& mode) {
@@ -174,13 +175,17 @@ void visit_estimate(ResultVisitor& visitor, const ContinuationResult& found) {
 
 }  // namespace
 
-void CalibrationOutcome::visit_parameters(ResultVisitor& visitor) const {
-  std::vector<CalibratedParameter> beside_frequencies = result.parameters;
-  std::erase_if(beside_frequencies, [](const auto& one) {
+std::vector<CalibratedParameter> CalibrationOutcome::beside_modes() const {
+  std::vector<CalibratedParameter> beside = result.parameters;
+  std::erase_if(beside, [](const auto& one) {
     return one.name.starts_with("f_") || one.name.starts_with("zeta_");
   });
-  visitor.rows({.table = "parameters", .name = "Parameters", .shown = kInTables},
-               beside_frequencies, visit_parameter);
+  return beside;
+}
+
+void CalibrationOutcome::visit_parameters(ResultVisitor& visitor) const {
+  visitor.rows({.table = "parameters", .name = "Parameters", .shown = kInTables}, beside_modes(),
+               visit_parameter);
 }
 
 void CalibrationOutcome::visit(ResultVisitor& visitor) const {

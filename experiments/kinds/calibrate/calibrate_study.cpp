@@ -64,8 +64,7 @@ void add_answer(const CalibrateOptions& options, const InvertOptions& shown, con
   };
   add_figures(overview.begin(), first(overview));
   add_figures(force.begin(), first(force));
-  result.add(report::tables_of(
-      [&found](ResultVisitor& visitor) { found.outcome.visit_parameters(visitor); }));
+  result.add(parameter_tables(found.outcome));
   result.end_first_screen();
   add_figures(first(overview), overview.end());
   add_figures(first(force), force.end());

@@ -30,6 +30,13 @@ TEST(TableJson, IsAListOfRowsWithNullForWhatIsNoNumber) {
   EXPECT_EQ(rows[2]["comment"], "outside, \"far\"");
 }
 
+TEST(TableCsv, KeepsTheValueThatThePageShowsInAnotherUnit) {
+  Table table{.id = "t", .columns = {{.key = "x_c", .unit = "m"}}, .rows = {{0.030000214}}};
+  table.rows[0][0].shown = "30.0002";
+  EXPECT_EQ(cell_text(table.rows[0][0], table.columns[0]), "30.0002");
+  EXPECT_EQ(table_csv(table), "x_c [m]\n0.030000214\n");
+}
+
 TEST(TableJson, KeepsEveryDigit) {
   const double third = 1.0 / 3.0;
   const Table table{.id = "t",

@@ -69,9 +69,9 @@ TEST(CalibrateOutput, TablesHaveDeviationsWhereTheyAreKnown) {
     return *std::find_if(tables.begin(), tables.end(),
                          [id](const report::Table& table) { return table.id == id; });
   };
-  const report::Table parameters =
-      report::tables_of([&outcome](ResultVisitor& visitor) { outcome.visit_parameters(visitor); })
-          .at(0);
+  const report::Table parameters = report::tables_of([&outcome](ResultVisitor& visitor) {
+                                     outcome.visit_parameters(visitor);
+                                   }).at(0);
   ASSERT_EQ(parameters.rows.size(), 2u);
   const report::Table modes = table_called("modes");
   ASSERT_EQ(modes.rows.size(), 1u);
@@ -84,6 +84,42 @@ TEST(CalibrateOutput, TablesHaveDeviationsWhereTheyAreKnown) {
   EXPECT_EQ(std::get<std::string>(modes.rows[0][7].value), "identified");
   EXPECT_EQ(verdict_text({.source = ModeSource::kLaw, .reason = WeakReason::kNode}),
             "from the law (node)");
+}
+
+TEST(CalibrateOutput, ShowsLengthsInMillimetersAndTwoDigitsOfTheDeviation) {
+  CalibrationOutcome outcome = outcome_of({});
+  outcome.result.parameters = {
+      {.name = "x_c", .unit = "m", .initial = 0.029, .final = 0.030000214, .deviation = 5.84e-6},
+      {.name = "B", .unit = "1", .initial = 0.0, .final = 2.98765e-9, .deviation = 4e-11},
+      {.name = "gain", .unit = "1", .initial = 1.0, .final = 1.00012345, .deviation = kNone}};
+  const report::Table table = parameter_tables(outcome).at(0);
+  const auto shown = [&table](std::size_t i, std::size_t j) {
+    return report::cell_text(table.rows[i][j], table.columns[j]);
+  };
+  EXPECT_EQ(shown(0, 1), "29.0000");
+  EXPECT_EQ(shown(0, 2), "30.0002");
+  EXPECT_EQ(shown(0, 3), "0.0058");
+  EXPECT_EQ(shown(0, 4), "mm");
+  EXPECT_EQ(shown(1, 2), "2.988e-09");
+  EXPECT_EQ(shown(2, 2), "1.00012");
+  EXPECT_EQ(shown(2, 3), "–");
+  EXPECT_THAT(report::table_csv(table), HasSubstr("x_c,0.029,0.030000214,5.84e-06,m,"));
+}
+
+// Beyond the band nothing is left over to judge by: that is no failure.
+TEST(CalibrateOutput, LeavesTheChi2OfAModeBeyondTheBandEmpty) {
+  CalibrationOutcome outcome = outcome_of({});
+  auto found = std::make_shared<ContinuationResult>(*outcome.result.continuation);
+  found->local.modes = {{.chi2 = kNone}};
+  outcome.result.continuation = found;
+  for (const report::Table& table : report::tables_of(outcome)) {
+    for (std::size_t j = 0; j < table.columns.size(); ++j) {
+      if (table.columns[j].name != "chi2 about it") continue;
+      EXPECT_EQ(report::cell_text(table.rows.at(0)[j], table.columns[j]), "–");
+      return;
+    }
+  }
+  ADD_FAILURE() << "no such column";
 }
 
 TEST(CalibrateOutput, SaysWhichModesLeaveTheLawAndWhichAreDrawnToIt) {
