@@ -169,9 +169,17 @@ report::Table benchmark_table(const BenchmarkGrid& grid, const std::vector<Bench
 report::Table success_map(const BenchmarkGrid& grid, const std::vector<BenchmarkCell>& cells);
 /// Heat map of the frequency RMSE over the Cramér–Rao bound; no rows where there is no bound.
 report::Table bound_map(const BenchmarkGrid& grid, const std::vector<BenchmarkCell>& cells);
-/// One sentence a condition: which methods to use; then which methods fail, where and why.
-std::vector<std::string> conclusion(const BenchmarkGrid& grid,
-                                    const std::vector<BenchmarkCell>& cells);
+/// Which methods to use: a sentence for neighbouring conditions with the same best method.
+std::vector<std::string> recommendations(const BenchmarkGrid& grid,
+                                         const std::vector<BenchmarkCell>& cells);
+/// Which methods fail, where and why.
+std::vector<std::string> failing_methods(const BenchmarkGrid& grid,
+                                         const std::vector<BenchmarkCell>& cells);
+/// Cells of one condition, best first; equals in the order of the methods.
+std::vector<const BenchmarkCell*> ranked_cells(const std::vector<BenchmarkCell>& cells,
+                                               std::size_t condition);
+/// "20 draws", "18 to 20 draws": of a method under a condition.
+std::string draws_text(const BenchmarkGrid& grid);
 
 /// RMS frequency error against noise with the band from 10 % to 90 % of the draws and the
 /// Cramér–Rao bound. Like the other figures: a panel an objective, tags for the page's filters, the

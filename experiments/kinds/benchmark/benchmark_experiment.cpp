@@ -149,10 +149,14 @@ StudyResult BenchmarkExperiment::sum_up(const TaskOutcomes& outcomes,
   StudyResult result;
   const BenchmarkGrid grid = this->grid(outcomes, result);
   const std::vector<BenchmarkCell> cells = benchmark_cells(grid);
-  const std::vector<std::string> sentences = conclusion(grid, cells);
-  for (const std::string& sentence : sentences) result.summary += sentence + "\n";
-  result.blocks.emplace_back(report::Text{fmt::format("{}", fmt::join(sentences, "\n\n"))});
+  const std::vector<std::string> use = recommendations(grid, cells);
+  const std::vector<std::string> fail = failing_methods(grid, cells);
+  for (const std::string& sentence : use) result.summary += sentence + "\n";
+  for (const std::string& sentence : fail) result.summary += sentence + "\n";
+  result.blocks.emplace_back(report::Text{fmt::format("{}", fmt::join(use, "\n\n"))});
   result.blocks.emplace_back(success_map(grid, cells));
+  result.end_first_screen();
+  result.blocks.emplace_back(report::Text{fmt::format("{}", fmt::join(fail, "\n\n"))});
   report::Table bounds = bound_map(grid, cells);
   if (!bounds.rows.empty()) result.blocks.emplace_back(std::move(bounds));
   for (report::Figure figure :

@@ -76,6 +76,16 @@ report::Series trace_series(const BenchmarkGrid& grid, const BenchmarkTask& task
 
 }  // namespace
 
+std::string draws_text(const BenchmarkGrid& grid) {
+  std::map<std::pair<std::size_t, std::size_t>, std::size_t> counts;
+  for (const BenchmarkTask& task : grid.tasks) ++counts[{task.method, task.condition}];
+  if (counts.empty()) return "no draws";
+  const auto fewer = [](const auto& a, const auto& b) { return a.second < b.second; };
+  const auto [least, most] = std::minmax_element(counts.begin(), counts.end(), fewer);
+  return least->second == most->second ? fmt::format("{} draws", most->second)
+                                       : fmt::format("{} to {} draws", least->second, most->second);
+}
+
 report::Tags method_tags(const BenchmarkGrid& grid, std::size_t method) {
   return {{"objective", {grid.objectives[method]}}, {"optimizer", {grid.searches[method]}}};
 }
@@ -158,9 +168,11 @@ report::Figure error_figure(const BenchmarkGrid& grid, const std::vector<Benchma
   return panel_figure(
       {.id = "error_against_noise",
        .title = "Frequency error against noise",
-       .caption = "Root mean square over the excited modes: median and band from 10 % to 90 % of "
-                  "the draws. The bound is that of both reactions with the force unknown: no "
-                  "unbiased estimate has a smaller error."},
+       .caption = fmt::format(
+           "Root mean square over the excited modes: median and band from 10 % to 90 % of {} a "
+           "point. The bound is that of both reactions with the force unknown: no unbiased "
+           "estimate has a smaller error.",
+           draws_text(grid))},
       objective_panels(grid, {.label = "noise", .unit = "%"},
                        {.label = "relative rms error of f_n", .logarithmic = true}, add));
 }
@@ -180,7 +192,8 @@ report::Figure work_precision_figure(const BenchmarkGrid& grid,
   return panel_figure(
       {.id = "work_precision",
        .title = "Error against time",
-       .caption = "One point a method and condition, medians over the draws."},
+       .caption =
+           fmt::format("One point a method and condition, medians over {}.", draws_text(grid))},
       objective_panels(grid, {.label = "time, median", .unit = "s", .logarithmic = true},
                        {.label = "relative rms error of f_n", .logarithmic = true}, add));
 }

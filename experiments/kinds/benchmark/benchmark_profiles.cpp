@@ -11,6 +11,9 @@ using report::SeriesStyle;
 constexpr std::size_t kMostShown = 100;
 constexpr std::size_t kMostHidden = 24;
 
+// Room above 1, where the best curves run.
+constexpr std::array<double, 2> kShares = {0.0, 1.05};
+
 bool belongs(const BenchmarkTask& task, std::size_t method, std::size_t condition) {
   return task.method == method && (condition == kAllConditions || task.condition == condition);
 }
@@ -86,9 +89,11 @@ report::Figure data_profile(const BenchmarkGrid& grid) {
       grid,
       {.id = "data_profile",
        .title = "Tasks solved against evaluations",
-       .caption = "Data profile. Solved: right by the truth, when the search ended."},
+       .caption = fmt::format("Data profile over {} a method and condition. Solved: right by the "
+                              "truth, when the search ended.",
+                              draws_text(grid))},
       {.label = "evaluations", .logarithmic = true},
-      {.label = "share of tasks solved", .range = {{0.0, 1.0}}},
+      {.label = "share of tasks solved", .range = kShares},
       [](const BenchmarkTask& task) -> std::optional<double> {
         if (!task.outcome.success) return std::nullopt;
         return static_cast<double>(task.outcome.evaluations);
@@ -102,10 +107,12 @@ report::Figure performance_profile(const BenchmarkGrid& grid) {
       grid,
       {.id = "performance_profile",
        .title = "Problems solved against the fastest method",
-       .caption = "Performance profile: the method with the fewest evaluations among "
-                  "all objectives and optimizers that solve the problem stands at 1."},
+       .caption = fmt::format(
+           "Performance profile over {} a method and condition: the method with the fewest "
+           "evaluations among all objectives and optimizers that solve the problem stands at 1.",
+           draws_text(grid))},
       {.label = "evaluations / those of the fastest method", .logarithmic = true},
-      {.label = "share of problems solved", .range = {{0.0, 1.0}}},
+      {.label = "share of problems solved", .range = kShares},
       [&fewest](const BenchmarkTask& task) -> std::optional<double> {
         if (!task.outcome.success) return std::nullopt;
         return static_cast<double>(task.outcome.evaluations) /
@@ -119,9 +126,11 @@ report::Figure waterfall_figure(const BenchmarkGrid& grid) {
       grid,
       {.id = "waterfall",
        .title = "Errors of all starts, in rising order",
-       .caption = "Waterfall: every seed is another wrong start and another noise. A step: so "
-                  "many starts end in one minimum."},
-      {.label = "share of starts", .range = {{0.0, 1.0}}},
+       .caption = fmt::format(
+           "Waterfall of {} a method and condition: every seed is another wrong start and another "
+           "noise. A step: so many starts end in one minimum.",
+           draws_text(grid))},
+      {.label = "share of starts", .range = kShares},
       {.label = "relative frequency error", .logarithmic = true},
       [](const BenchmarkTask& task) -> std::optional<double> {
         if (!(task.outcome.frequency_error > 0.0)) return std::nullopt;

@@ -85,7 +85,7 @@ report::Report report_of(const BenchmarkGrid& grid) {
   report.replay = "modcal replay out/made-up";
   report::Section section{.title = "Results"};
   std::string text;
-  for (const std::string& sentence : conclusion(grid, cells)) text += sentence + "\n\n";
+  for (const std::string& sentence : recommendations(grid, cells)) text += sentence + "\n\n";
   section.blocks.emplace_back(report::Text{text});
   section.blocks.emplace_back(success_map(grid, cells));
   section.blocks.emplace_back(bound_map(grid, cells));
