@@ -56,6 +56,17 @@ nlohmann::ordered_json libraries() {
   return result;
 }
 
+// As people write it: text without quotes, an object as "CLI11 2.1.2, fmt 9.1.0".
+std::string plain_text(const nlohmann::ordered_json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  if (!value.is_object()) return value.dump();
+  std::string list;
+  for (const auto& [name, member] : value.items()) {
+    list += (list.empty() ? "" : ", ") + name + ' ' + plain_text(member);
+  }
+  return list;
+}
+
 void collect_seeds(const nlohmann::ordered_json& options, const std::string& prefix,
                    nlohmann::ordered_json& seeds) {
   for (const auto& option : options) {
@@ -155,7 +166,7 @@ std::vector<report::ProvenanceLine> provenance_lines(const std::string& command)
   const nlohmann::ordered_json provenance = provenance_json(command);
   for (const auto& [name, value] : provenance.items()) {
     if (name == "command") continue;
-    lines.push_back({name, value.is_string() ? value.get<std::string>() : value.dump()});
+    lines.push_back({name, plain_text(value)});
   }
   return lines;
 }
