@@ -57,8 +57,10 @@ cat >>"$probe" <<'JS'
   window.dispatchEvent(new Event('beforeprint'));
   seen.fits = Array.prototype.filter.call(document.querySelectorAll('.chart'), function (chart) {
     var columns = Number(getComputedStyle(chart.closest('figure')).getPropertyValue('--columns'));
-    var paper = parseFloat(chart.style.getPropertyValue('--drawn')) * chart.style.getPropertyValue('--fit');
-    return Math.abs(paper - (columns > 1 ? 342 : 700)) < 1;
+    var paper = chart.querySelector('svg.paper');
+    return paper && Number(paper.getAttribute('width')) === (columns > 1 ? 342 : 700) &&
+        chart.clientWidth === Number(paper.getAttribute('width')) &&
+        paper.querySelectorAll('path[stroke], path[fill]').length > 3;
   }).length;
   window.dispatchEvent(new Event('afterprint'));
   seen.printed = picture(panels[0]) === start[0];
@@ -76,6 +78,6 @@ expect "zoom (own, linked, other figure, reset button hidden)" "$(seen zoomed)" 
 expect "reset (own, linked, button hidden, values)" "$(seen reset)" "true,true,true,"
 expect "cell of the map" "$(seen cell)" "■ one slip"
 expect "printing restores the picture" "$(seen printed)" true
-expect "charts that fit their column of the paper" "$(seen fits)" "$charts"
+expect "charts drawn as vectors that fit their column of the paper" "$(seen fits)" "$charts"
 give_verdict
 echo "$charts charts drawn, linked and reset without an error"
