@@ -22,8 +22,9 @@ std::string dense_tics(char name, const std::array<double, 2>& window) {
       }
     }
   }
-  return fmt::format("set logscale {0}; set format {0} '%g'; set {0}tics ({1})\n", name,
-                     fmt::join(tics, ","));
+  const bool is_plain = window[0] >= 1e-3 && window[1] < 1e5;
+  return fmt::format("set logscale {0}; set format {0} '{1}'; set {0}tics ({2})\n", name,
+                     is_plain ? "%g" : "%.0l×10^{%L}", fmt::join(tics, ","));
 }
 
 // f_c and f0 as symbols with subscripts, as the page has them; nothing else in the text is special.
@@ -245,7 +246,7 @@ std::string gnuplot_script(const DrawnFigure& figure) {
       "set style line 100 linecolor rgb '#d9d9d9' linewidth 0.5\n",
       id);
   const std::pair<std::string_view, std::string> terminals[] = {
-      {"svg", fmt::format("svg size {:.0f},{:.0f} dynamic enhanced font 'DejaVu Sans,10' "
+      {"svg", fmt::format("svg size {:.0f},{:.0f} dynamic enhanced font 'DejaVu Sans,13' "
                           "background rgb 'white'",
                           96 * sheet.width(), 96 * sheet.height())},
       {"pdf", fmt::format("pdfcairo size {:.2f}in,{:.2f}in enhanced fontscale 1 "

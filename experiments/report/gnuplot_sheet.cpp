@@ -9,22 +9,29 @@ namespace modcal::report {
 namespace {
 
 // Lengths in inches of a sheet that a journal prints as it is.
-constexpr double kEm = 7.5 / 72.0;  // of the font
-constexpr double kLine = 0.155;     // from one line of text to the next
+constexpr double kEm =
+    10.0 / 72.0;  // of the font, for which pdfcairo wants three quarters of its points
+constexpr double kLine = 0.18;  // from one line of text to the next
 constexpr double kLeft = 1.0, kRight = 0.2, kTop = 0.1, kBottom = 0.55, kEdge = 0.12;
 constexpr double kBetween = 0.2;       // entries of a legend
 constexpr double kWidestLabel = 0.35;  // of a marker, as a share of its panel
 
-// Width of a letter of DejaVu Sans in ems; what is not ASCII is taken for a wide letter.
+// Width of a letter of DejaVu Sans in ems; what is not ASCII is taken for a letter of middle width.
 double letter_width(char32_t letter) {
+  struct Group {
+    std::string_view letters;
+    double width;
+  };
+  static constexpr Group kGroups[] = {{"ijl|!.,:;'/-IJ\\ ", 0.34},
+                                      {"()[]ftr\"", 0.42},
+                                      {"CDGHNOQU&", 0.79},
+                                      {"w#+<=>~^", 0.84},
+                                      {"mMW@%", 1.0}};
   if (letter >= 128) return 0.7;
-  static constexpr std::string_view kThin = "ijl|!.,:;'`", kSmall = " ftr()[]/\\-I\"";
-  static constexpr std::string_view kWide = "mwMWOQ%@GDHNU<>=+~";
-  const char c = static_cast<char>(letter);
-  if (kThin.find(c) != std::string_view::npos) return 0.33;
-  if (kSmall.find(c) != std::string_view::npos) return 0.42;
-  if (kWide.find(c) != std::string_view::npos) return 0.88;
-  return c >= 'A' && c <= 'Z' ? 0.7 : 0.64;
+  for (const auto& [letters, width] : kGroups) {
+    if (letters.find(static_cast<char>(letter)) != std::string_view::npos) return width;
+  }
+  return letter >= U'A' && letter <= U'Z' ? 0.7 : 0.64;
 }
 
 // The text in lines not wider than `width`, broken between words.
@@ -119,18 +126,22 @@ std::vector<LegendEntry> printed_legend(const DrawnPanel& panel) {
 }
 
 PrintSheet::PrintSheet(const DrawnFigure& figure)
-    : figure_(figure), columns_(std::min(figure.source->columns, figure.panels.size())) {
+    : figure_(figure),
+      columns_(std::min(figure.source->columns, figure.panels.size())),
+      shared_(figure.shared_legend && figure.panels.size() > 1) {
   rows_ = (figure.panels.size() + columns_ - 1) / columns_;
   panel_width_ = columns_ == 1 ? 6.4 : columns_ == 2 ? 4.4 : 3.3;
   plot_height_ = columns_ == 1 ? 2.55 : 1.4;
   width_ = panel_width_ * static_cast<double>(columns_);
   for (const DrawnPanel& panel : figure.panels) {
     right_margin_ = std::max(right_margin_, widest_level_label(panel));
+    // A long label along the axis may reach beyond its lower end, not over the sheet's.
+    plot_height_ = std::max(plot_height_, printed_width(panel.source->y.text()) - 0.6 * kBottom);
   }
   right_margin_ = kRight + std::min(right_margin_, kWidestLabel * panel_width_);
   for (std::size_t i = 0; i < figure.panels.size(); ++i) {
     title_lines_ = std::max(title_lines_, title_of(i).size());
-    if (!figure.shared_legend) legend_lines_ = std::max(legend_lines_, lines_in(own_legend(i)));
+    if (!shared_) legend_lines_ = std::max(legend_lines_, lines_in(own_legend(i)));
     const auto labels = upright_labels(i);
     for (const PlacedText& label : labels) {
       if (label.text.empty()) continue;
@@ -138,7 +149,7 @@ PrintSheet::PrintSheet(const DrawnFigure& figure)
       label_lines_ = std::max(label_lines_, static_cast<std::size_t>(std::ceil(above / kLine)));
     }
   }
-  if (figure.shared_legend) {
+  if (shared_) {
     const auto entries = flow(printed_legend(figure.panels.front()), kLeft, width_ - kEdge, 0.0);
     shared_legend_ =
         kLine * static_cast<double>(lines_in(entries)) + (entries.empty() ? 0.0 : kTop);
@@ -205,7 +216,7 @@ std::vector<PlacedEntry> PrintSheet::own_legend(std::size_t panel) const {
 }
 
 std::vector<PlacedEntry> PrintSheet::legend_of(std::size_t panel) const {
-  if (!figure_.shared_legend) return own_legend(panel);
+  if (!shared_) return own_legend(panel);
   if (panel > 0) return {};
   return flow(printed_legend(figure_.panels.front()), kLeft, width_ - kEdge, height_ - kTop);
 }

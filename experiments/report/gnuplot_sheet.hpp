@@ -62,6 +62,7 @@ class PrintSheet {
 
   const DrawnFigure& figure_;
   std::size_t columns_ = 1, rows_ = 1;
+  bool shared_ = false;  ///< one legend above all panels
   double panel_width_ = 0.0, panel_height_ = 0.0, plot_height_ = 0.0;
   double right_margin_ = 0.0;
   std::size_t title_lines_ = 0, legend_lines_ = 0, label_lines_ = 0;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "experiments/kinds/calibrate/calibrate.hpp"
+#include "experiments/report/result.hpp"
 
 namespace modcal {
 namespace {

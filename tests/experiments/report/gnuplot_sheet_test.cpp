@@ -64,6 +64,14 @@ TEST(PrintSheet, BreaksLongTitles) {
   EXPECT_LT(sheet.legend_of(0).front().y, sheet.title_of(0).back().y);
 }
 
+TEST(PrintSheet, IsAsHighAsItsLabels) {
+  Figure figure = crowded_figure(1);
+  figure.panels[0].y.label = "a label so long that its panel has to be higher than others are";
+  const DrawnFigure drawn = draw_figure(figure, 100);
+  const PrintSheet sheet(drawn);
+  EXPECT_GT(sheet.height(), printed_width(figure.panels[0].y.text()));
+}
+
 TEST(PrintSheet, PutsLabelsOfMarkersOutsideTheAxes) {
   using Direction = Marker::Direction;
   Figure figure = crowded_figure(1);
