@@ -29,7 +29,7 @@ std::string typeset_powers(std::string_view text) {
   for (std::sregex_iterator at(plain.begin(), plain.end(), power), end; at != end; ++at) {
     const std::smatch& found = *at;
     result.append(rest, found[0].first);
-    result += found[1].str();
+    result += found[1].str() == "-" ? "−" : found[1].str();
     // "1.00e-03" states its digits, "1e-3" is the power alone.
     if (found[2].str() != "1") result += found[2].str() + "×";
     result += "10";
@@ -43,8 +43,14 @@ std::string typeset_powers(std::string_view text) {
 std::string typeset_html(std::string_view text) {
   static const std::regex symbol(
       R"((^|[^A-Za-z0-9/.])([A-Za-z]|φ|ζ|σ|ε|ω)_([A-Za-z0-9]{1,2})(?![A-Za-z0-9_]))");
-  static const std::regex numbered(R"((^|[^A-Za-z0-9/._])(f(?=0)|[RH](?=[12]))([012])(?![A-Za-z0-9_]))");
+  static const std::regex numbered(
+      R"((^|[^A-Za-z0-9/._])(f(?=0)|[RH](?=[12]))([012])(?![A-Za-z0-9_]))");
   std::string plain = html_escaped(typeset_powers(text));
+  static const std::array<std::pair<std::regex, const char*>, 3> words = {
+      {{std::regex(R"((^|[^A-Za-z0-9_/.])zeta_(?=[0-9n]))"), "$1ζ_"},
+       {std::regex(R"((^|[^A-Za-z0-9_/.])chi2(?![A-Za-z0-9_]))"), "$1χ²"},
+       {std::regex(R"( \+- )"), " ± "}}};
+  for (const auto& [word, sign] : words) plain = std::regex_replace(plain, word, sign);
   if (plain.find_first_of("012") != std::string::npos) {
     plain = std::regex_replace(plain, numbered, "$1$2<sub>$3</sub>");
   }

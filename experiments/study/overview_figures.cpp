@@ -112,11 +112,13 @@ Panel signal_panel(const Drawing& drawing, const SideIdentification& side, const
   panel.series.push_back(std::move(identified));
   const std::vector<double> truth = truth_of(drawing.observation, quantity);
   if (truth.empty()) return panel;
+  // Along a record it is an area that would cover all else.
+  const bool along = part.stretch > 1;
   Series reference{.label = drawing.observation.truth ? "true" : "measured",
-                   .style = SeriesStyle::kDotted,
-                   .color = ColorRole::kReference};
+                   .style = along ? SeriesStyle::kLine : SeriesStyle::kDotted,
+                   .color = along ? ColorRole::kMuted : ColorRole::kReference};
   for (const std::size_t j : drawn_of(part, truth)) reference.add(time(j), shown.scale * truth[j]);
-  panel.series.push_back(std::move(reference));
+  panel.series.insert(along ? panel.series.begin() : panel.series.end(), std::move(reference));
   return panel;
 }
 

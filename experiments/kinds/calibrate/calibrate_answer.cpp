@@ -9,17 +9,6 @@
 namespace modcal {
 namespace {
 
-// "30.00021 ± 0.00058 mm".
-std::string answer_of(const CalibratedParameter& parameter, bool is_length) {
-  constexpr double kBand = 1.96;
-  const double scale = is_length ? 1e3 : 1.0;
-  const std::string unit = is_length ? " mm" : parameter.unit == "1" ? "" : " " + parameter.unit;
-  const double value = scale * parameter.final;
-  const double width = scale * kBand * parameter.deviation;
-  const std::string text = fmt::format("{} = {}", parameter.name, rounded(value, width));
-  return std::isnan(width) ? text + unit : fmt::format("{} ± {:.2g}{}", text, width, unit);
-}
-
 // With the last digit that the deviation leaves two of; plain where the deviation is not known.
 std::string to_deviation(double value, double deviation) {
   constexpr double kLeastPlain = 1e-3, kMostPlain = 1e6;
@@ -31,6 +20,17 @@ std::string to_deviation(double value, double deviation) {
     return fmt::format("{:.{}f}", value, std::clamp(-last, 0, 17));
   }
   return fmt::format("{:.{}e}", value, std::clamp(place(value) - last, 0, 17));
+}
+
+// "30.00021 ± 0.00058 mm".
+std::string answer_of(const CalibratedParameter& parameter, bool is_length) {
+  constexpr double kBand = 1.96;
+  const double scale = is_length ? 1e3 : 1.0;
+  const std::string unit = is_length ? " mm" : parameter.unit == "1" ? "" : " " + parameter.unit;
+  const double value = scale * parameter.final;
+  const double width = scale * kBand * parameter.deviation;
+  const std::string text = fmt::format("{} = {}", parameter.name, to_deviation(value, width));
+  return std::isnan(width) ? text + unit : fmt::format("{} ± {:.2g}{}", text, width, unit);
 }
 
 constexpr std::string_view kMeter = "m";

@@ -87,7 +87,7 @@ report::Figure ratio_figure(const CalibrationOutcome& outcome, const Observation
   report::Figure figure{.id = "reaction_ratio",
                         .title = "Ratio of the reactions, measured and of the model",
                         .caption =
-                            "The force cancels in R_1/R_2 = H_1/H_2. Averaged over a tenth of "
+                            "The force cancels in R_1 / R_2 = H_1 / H_2. Averaged over a tenth of "
                             "f_0; noise fills the zeros of the measured one."};
   const auto& left = observation.reaction(End::kLeft);
   const auto& right = observation.reaction(End::kRight);

@@ -8,7 +8,7 @@ namespace {
 TEST(Typeset, WritesPowersOfTen) {
   EXPECT_EQ(typeset_powers("B = 2.988e-09."), "B = 2.988×10⁻⁹.");
   EXPECT_EQ(typeset_powers("1e-3 of 1.50e+12"), "10⁻³ of 1.50×10¹²");
-  EXPECT_EQ(typeset_powers("-2e-5 (sd 5.8e-09)"), "-2×10⁻⁵ (sd 5.8×10⁻⁹)");
+  EXPECT_EQ(typeset_powers("-2e-5 (sd 5.8e-09)"), "−2×10⁻⁵ (sd 5.8×10⁻⁹)");
 }
 
 TEST(Typeset, LeavesNamesAlone) {
@@ -26,6 +26,11 @@ TEST(Typeset, WritesSubscripts) {
   EXPECT_EQ(typeset_html("|φ_n(x_c)|, f_12"), "|φ<sub>n</sub>(x<sub>c</sub>)|, f<sub>12</sub>");
   EXPECT_EQ(typeset_html("f0 from R1 and R2/H2"),
             "f<sub>0</sub> from R<sub>1</sub> and R<sub>2</sub>/H2");
+}
+
+TEST(Typeset, KnowsTheWordsOfTheProgram) {
+  EXPECT_EQ(typeset_html("reduced chi2 1.01, zeta_12: 1 +- 0.3"),
+            "reduced χ² 1.01, ζ<sub>12</sub>: 1 ± 0.3");
 }
 
 TEST(Typeset, EscapesWhatHtmlWouldTake) {
