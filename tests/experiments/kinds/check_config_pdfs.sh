@@ -31,8 +31,9 @@ window.addEventListener('beforeprint', function () {
   }
   document.querySelectorAll('figure').forEach(function (figure, f) {
     var columns = Number(getComputedStyle(figure).getPropertyValue('--columns')) > 1 ? 2 : 1;
+    var shared = figure.closest('.row') && figure.parentNode.children.length > 1;
     figure.querySelectorAll('.chart').forEach(function (chart, c) {
-      var name = [f, c, columns].join('x');
+      var name = [f, c, columns, columns > 1 || shared ? 2 : 1].join('x');
       mark(chart, 'qqtop' + name, 'left: 0; top: 0');
       mark(chart, 'qqend' + name, 'right: 0; bottom: 0');
     });

@@ -73,7 +73,7 @@ def findings_of_marks(pages, charts, tables):
     if seen_tables != tables:
         yield f"{seen_tables} of {tables} tables show their last column"
     for name in tops:
-        figure, chart, columns = name.split("x")
+        figure, chart, columns, share = name.split("x")
         page, top = marks["top", name]
         if ("end", name) not in marks:
             yield f"page {page}: chart {name} is cut"
@@ -81,9 +81,9 @@ def findings_of_marks(pages, charts, tables):
         end_page, end = marks["end", name]
         if end_page != page or end.bottom < top.top:
             yield f"chart {name} stands on pages {page} and {end_page}"
-        if abs(end.right - top.left - WIDTHS[columns]) > 6:
+        if abs(end.right - top.left - WIDTHS[share]) > 6:
             yield f"page {page}: chart {name} is {end.right - top.left:.0f} points wide"
-        before = marks.get(("top", f"{figure}x{int(chart) - 1}x{columns}"))
+        before = marks.get(("top", f"{figure}x{int(chart) - 1}x{columns}x{share}"))
         if columns == "2" and int(chart) % 2 == 1 and before:
             if before[0] != page or abs(before[1].top - top.top) > 40 or before[1].left >= top.left:
                 yield f"page {page}: chart {name} is not beside the one before it"
