@@ -155,7 +155,9 @@ std::vector<std::string> elements_of(const Figure& figure, const DrawnSeries& dr
   }
   std::string style = fmt::format("linecolor rgb '{}'", ink.light);
   if (look.points) style += fmt::format(" pointtype {} pointsize 0.5", ink.gnuplot_point);
-  if (look.line) style += fmt::format(" linewidth {}", line_width(look));
+  // Thinner within a band, which is often hardly wider.
+  const bool banded = look.line && !drawn.low.empty();
+  if (look.line) style += fmt::format(" linewidth {}", banded ? 0.9 : line_width(look));
   if (look.dotted) style += " dashtype 3";
   elements.push_back(fmt::format("{} using 1:2 with {}{} {} notitle", data,
                                  look.line ? "lines" : "", look.points ? "points" : "", style));

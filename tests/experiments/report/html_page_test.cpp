@@ -54,9 +54,11 @@ TEST(HtmlPage, HoldsEveryFigurePanelTableAndCommand) {
 TEST(HtmlPage, AsksTheNetworkForNothing) {
   const std::string page = page_of(sample_report());
   EXPECT_THAT(page, HasSubstr("content=\"default-src 'none';"));
-  for (const char* request : {" src=", "<link", "@import", "url(", "sourceMappingURL"}) {
+  for (const char* request : {" src=", "<link", "@import", "sourceMappingURL"}) {
     EXPECT_THAT(page, Not(HasSubstr(request))) << request;
   }
+  // A chart on paper is clipped by a path of its own.
+  EXPECT_THAT(page, Not(testing::ContainsRegex("url\\([^#]")));
 }
 
 TEST(HtmlPage, EscapesEveryTextItIsGiven) {
