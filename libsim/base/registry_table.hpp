@@ -20,12 +20,12 @@ class RegistryTable {
  public:
   RegistryTable(std::initializer_list<RegistryEntry<Product>> rows) : rows_(rows) {
     count_ = rows_.size();
-    rows_.resize(rows_.size() + most());
+    rows_.resize(rows_.size() + kMost);
   }
   Registry<Product> rows() const { return {rows_.data(), count_.load(std::memory_order_acquire)}; }
 
   /// A plug-in without options. Throws InvalidInput for an empty name, one that is taken, and for
-  /// more than most().
+  /// more than kMost.
   void add(std::string name, std::string summary, std::shared_ptr<const Product> product) {
     const std::lock_guard lock(mutex_);
     MODCAL_REQUIRE(!name.empty(), "a {} needs a name", Product::kKind);
@@ -33,23 +33,23 @@ class RegistryTable {
       MODCAL_REQUIRE(row.name != name, "the {} \"{}\" is there already: take another name",
                      Product::kKind, name);
     }
-    MODCAL_REQUIRE(added_ < most(), "more than {} {}s of one's own", most(), Product::kKind);
+    MODCAL_REQUIRE(added_ < kMost, "more than {} {}s of one's own", kMost, Product::kKind);
     Own& own = owns()[added_];
     own = {std::move(name), std::move(summary), std::move(product)};
     const std::size_t count = count_.load();
-    rows_[count] = {own.name, own.summary, makers(std::make_index_sequence<most()>())[added_++]};
+    rows_[count] = {own.name, own.summary, makers(std::make_index_sequence<kMost>())[added_++]};
     count_.store(count + 1, std::memory_order_release);
   }
 
  private:
-  static constexpr std::size_t most() { return 16; }
+  enum : std::size_t { kMost = 16 };
   struct Own {
     std::string name, summary;
     std::shared_ptr<const Product> product;
   };
   // Never destroyed: what it holds may need an interpreter that has ended by then.
-  static std::array<Own, most()>& owns() {
-    static auto* const all = new std::array<Own, most()>();
+  static std::array<Own, kMost>& owns() {
+    static auto* const all = new std::array<Own, kMost>();
     return *all;
   }
   class OwnRecipe final : public Recipe<Product> {
