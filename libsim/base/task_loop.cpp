@@ -73,6 +73,10 @@ void spread(std::size_t count, const Task& task) {
 
 }  // namespace
 
+void StopToken::tell_share(std::size_t done, std::size_t all) const {
+  (*told_)(static_cast<double>(done) / static_cast<double>(all));
+}
+
 void for_each_task(std::size_t count, const std::function<void(std::size_t)>& task,
                    const StopToken& stop) {
   FirstFailure failure(count);

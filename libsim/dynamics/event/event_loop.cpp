@@ -30,6 +30,7 @@ class Run {
     store(0);
     for (std::size_t sample = 1; sample < loop_.samples && !counts_.failure; ++sample) {
       if (loop_.stop.requested()) break;
+      loop_.stop.tell(sample, loop_.samples);
       if (const std::size_t held = hold_block(sample); held > 0) {
         sample += held - 1;
         continue;

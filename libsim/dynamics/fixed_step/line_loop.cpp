@@ -36,6 +36,7 @@ class Run {
       }
       store(sample);
       if (run_.stop.requested()) break;
+      run_.stop.tell(sample, run_.samples);
       if (!counts.settled || !is_finite()) {
         counts.first_bad_sample = sample;
         break;

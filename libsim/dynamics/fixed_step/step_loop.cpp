@@ -161,6 +161,7 @@ LoopCounts Loop(const FixedStepRun& run, ContactRule<Law>& rule, StepCoefficient
   std::uint64_t step = 0;
   LoopCounts counts;
   for (std::size_t sample = 1; sample < run.samples && !run.stop.requested(); ++sample) {
+    run.stop.tell(sample, run.samples);
     MotionSample observed;
     for (std::size_t left = run.steps_per_sample; left > 0;) {
       if (left == 1) observed = Observe<kTiming>(run.targets, c, string, forces);
