@@ -1,4 +1,4 @@
-// What a command says: texts and messages, or one JSON object, and how far it is.
+// What a command says: texts and messages, or one JSON object.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -14,12 +14,6 @@
 
 namespace modcal {
 namespace {
-
-// A terminal that understands codes: it can clear a line and color a text.
-bool can_rewrite() {
-  const char* terminal = std::getenv("TERM");
-  return isatty(STDERR_FILENO) != 0 && terminal != nullptr && std::string_view(terminal) != "dumb";
-}
 
 // Why standard output has not taken a text; 0: it has taken all.
 int output_error = 0;
@@ -215,6 +209,13 @@ void add_to_json(const std::string& key, const nlohmann::ordered_json& value) {
   if (answer_style().json && !json_answer().data.is_array()) json_answer().data[key] = value;
 }
 
+void note_warning(const std::string& text) { json_answer().warnings.push_back(text); }
+
+bool can_rewrite() {
+  const char* terminal = std::getenv("TERM");
+  return isatty(STDERR_FILENO) != 0 && terminal != nullptr && std::string_view(terminal) != "dumb";
+}
+
 std::string colored(const std::string& text) {
   const char* refused = std::getenv("NO_COLOR");
   if (!can_rewrite() || (refused != nullptr && *refused != '\0')) return text;
@@ -229,27 +230,6 @@ std::string colored(const std::string& text) {
     at += alone ? 9 : 1;
   }
   return marked;
-}
-
-Progress::Progress(std::string what)
-    : what_(printable(what)), terminal_(can_rewrite()), start_(Clock::now()), last_(start_) {}
-
-Progress::~Progress() {
-  if (shown_ && terminal_) std::fputs("\r\033[K", stderr);
-}
-
-void Progress::report(double share) {
-  if (caller_ != nullptr) return caller_->progress(share);
-  const std::lock_guard lock(mutex_);
-  const Clock::time_point now = Clock::now();
-  const auto pause = terminal_ ? std::chrono::milliseconds(100) : std::chrono::milliseconds(5000);
-  if (answer_style().quiet || now - last_ < pause || share <= 0.0) return;
-  last_ = now;
-  const double elapsed = std::chrono::duration<double>(now - start_).count();
-  const std::string line = fmt::format("{}: {:.0f} %, {:.0f} s left", what_, 100.0 * share,
-                                       elapsed * (1.0 - share) / share);
-  std::fputs((terminal_ ? "\r\033[K" + line : line + "\n").c_str(), stderr);
-  shown_ = true;
 }
 
 }  // namespace modcal

@@ -6,8 +6,11 @@
 #include <CLI/Formatter.hpp>
 #include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <mutex>
 #include <nlohmann/json_fwd.hpp>
+#include <stop_token>
+#include <thread>
 
 #include "experiments/loader.hpp"
 #include "libsim/base/task_loop.hpp"
@@ -194,18 +197,27 @@ void remark(fmt::format_string<Args...> text, Args&&... args) {
 /// message, where the words of the command are no UTF-8 text.
 bool prepare_streams(int argc, char** argv);
 
+/// Among the warnings that --json answers; without --json nothing.
+void note_warning(const std::string& text);
+
 // Colours of messages on a terminal.
+
+/// Whether standard error is a terminal that understands codes: it can clear a line and color a
+/// text.
+bool can_rewrite();
 
 /// The text with "error:", "warning:" and carets marked, where messages on standard error may be
 /// coloured: it is a terminal that is not "dumb", and NO_COLOR is not set (no-color.org: set to
 /// anything but the empty text).
 std::string colored(const std::string& text);
 
-// Progress on stderr: one line that is rewritten on a terminal, a line every few seconds elsewhere.
+// Progress on stderr: on a terminal one line that is rewritten, how long the work takes already and
+// what of it is done where it says so; elsewhere a line every few seconds of a list of tasks alone.
 
 class Progress {
  public:
-  explicit Progress(std::string what);
+  enum class Of { kList, kOne };
+  Progress(std::string what, Of work);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -215,13 +227,21 @@ class Progress {
 
  private:
   using Clock = std::chrono::steady_clock;
+  // While nobody reports: until it is told to stop.
+  void beat(const std::stop_token& stop);
+  void draw(Clock::time_point now);
+
   std::mutex mutex_;
+  std::condition_variable_any ended_;
   std::string what_;
+  Of work_;
   Caller* caller_ = Caller::here();
   bool terminal_;
   bool shown_ = false;
+  double share_ = 0.0;
   Clock::time_point start_;
   Clock::time_point last_;
+  std::jthread beat_;  // last: it ends before the rest does
 };
 
 // Ctrl-C and termination, as a wish that the work polls.

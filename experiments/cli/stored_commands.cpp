@@ -147,7 +147,11 @@ ExitCode replay_task(const FolderArguments& arguments) {
   add_to_json("axes", cell);
   SharedWork work(interrupt_token());
   const std::string command = fmt::format("modcal replay {} {}", out, task);
-  const StudyResult result = run.list().replay(task, context_of(run, work, command));
+  StudyContext context = context_of(run, work, command);
+  std::optional<Progress> progress(std::in_place, fmt::format("task {}", task), Progress::Of::kOne);
+  context.progress = [&progress](double share) { progress->report(share); };
+  const StudyResult result = run.list().replay(task, context);
+  progress.reset();
   const std::filesystem::path folder =
       std::filesystem::path(out) / "replay" / fmt::format("task-{}", task);
   RunSettings settings = settings_of(run, folder.string());
@@ -235,8 +239,19 @@ std::string complaint_about_task(const std::string& text) {
   return fmt::format("\"{}\" is no task: they are numbered 0, 1, 2, ...", text);
 }
 
+// Its number first is the mistake of who thinks of the task first.
+std::string complaint_about_folder(const std::string& text) {
+  if (!complaint_about_task(text).empty() || std::filesystem::exists(text)) return {};
+  return fmt::format(
+      "\"{0}\" is no folder but a number: the two are exchanged, the task comes last, as in modcal "
+      "replay out/mine {0}",
+      text);
+}
+
 void declare_replay(CLI::App& command, FolderArguments& arguments) {
-  declare_folder(command, arguments);
+  command.add_option("folder", arguments.folder, "folder of the results")
+      ->required()
+      ->check(complaint_about_folder);
   command.add_option("task", arguments.task, "number of the task, from 0; see tasks.csv")
       ->required()
       ->check(complaint_about_task);

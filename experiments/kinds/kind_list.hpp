@@ -14,7 +14,7 @@ class StudyExperiment final : public Experiment {
   std::vector<Finding> lint_records(const std::filesystem::path& folder) const override {
     return record_findings(options_, folder);
   }
-  std::vector<std::string> plan() const override { return options_.plan(); }
+  std::vector<PlanLine> plan() const override { return options_.plan(); }
   std::optional<PlannedSimulations> planned_simulations() const override {
     return options_.planned_simulations();
   }
@@ -64,8 +64,7 @@ class KindList final : public AxisExperiment<Options, KindListSettings> {
  public:
   using AxisExperiment<Options, KindListSettings>::AxisExperiment;
   std::string run_task(std::size_t task, const StudyContext& context) const override {
-    StudyContext quiet = context;  // the list reports the progress
-    quiet.progress = [](double) {};
+    StudyContext quiet = context;
     quiet.numbers_alone = true;
     return report::json_line(
         attempted([&] { return run_outcome(this->options_.cells[task].run(quiet)); }));

@@ -68,10 +68,12 @@ TaskOutcomes run_tasks(const TaskExperiment& experiment, const StudyContext& con
   }
   const auto all = static_cast<double>(shard.size(outcomes.size()));
   std::atomic<std::size_t> left{pending.size()};
+  StudyContext quiet = context;  // of a task: the list reports the progress
+  quiet.progress = [](double) {};
   const auto run = [&](std::size_t i) {
     const std::size_t task = pending[i];
     const Stopwatch clock;
-    std::string outcome = experiment.run_task(task, context);
+    std::string outcome = experiment.run_task(task, quiet);
     const double seconds = clock.seconds();
     if (store == nullptr) {
       outcomes.put(task, FinishedTask{std::move(outcome), seconds});

@@ -37,9 +37,7 @@ std::vector<Finding> SimulateOptions::lint() const {
   return findings;
 }
 
-std::vector<std::string> SimulateOptions::plan() const {
-  return {plan_line(*planned_simulations())};
-}
+std::vector<PlanLine> SimulateOptions::plan() const { return {plan_line(*planned_simulations())}; }
 
 std::optional<PlannedSimulations> SimulateOptions::planned_simulations() const {
   return PlannedSimulations{.truth = truth,
@@ -94,8 +92,8 @@ report::Table level_table(const std::vector<Signal>& signals) {
 }  // namespace
 
 StudyResult SimulateOptions::run(const StudyContext& context) const {
-  const auto truth_found =
-      context.work.truths.get(truth, measurement.sample_rate, request_of(outputs));
+  const auto truth_found = context.work.truths.get(truth, measurement.sample_rate,
+                                                   request_of(outputs), context.progress);
   Simulation simulation = truth_found->simulation;
   const std::vector<Signal> signals = measured(simulation, *this);
   for (const Signal& signal : signals) {
