@@ -1,6 +1,8 @@
 // One kind of experiment: what `kind:` names at the top of a file.
 #pragma once
 
+#include <nlohmann/json.hpp>
+
 #include "experiments/study/study.hpp"
 
 namespace modcal {
@@ -25,6 +27,19 @@ struct PlannedSimulations {
   std::vector<PlannedSimulations> others = {};
 };
 
+/// A line of what a run would do, and the same as data for programs.
+struct PlanLine {
+  std::string text;
+  nlohmann::ordered_json facts = nlohmann::ordered_json::object();
+
+  PlanLine(std::string line) : text(std::move(line)) {}
+  PlanLine(std::string line, nlohmann::ordered_json data)
+      : text(std::move(line)), facts(std::move(data)) {}
+};
+
+/// Of all lines together: lists of one name are one list.
+nlohmann::ordered_json facts_of(const std::vector<PlanLine>& lines);
+
 struct LimitQuestion;
 struct SearchTask;
 
@@ -42,7 +57,7 @@ class Experiment {
     return {};
   }
   /// What a run would do, one line each.
-  virtual std::vector<std::string> plan() const = 0;
+  virtual std::vector<PlanLine> plan() const = 0;
   /// What it would simulate; nothing where it simulates nothing.
   virtual std::optional<PlannedSimulations> planned_simulations() const { return std::nullopt; }
   /// Recorded files whose content a run depends on, from the folder of the experiment's file.

@@ -94,7 +94,7 @@ SimulationPlan plan_of(const PlannedSimulations& planned) {
 }
 
 struct Plan {
-  std::vector<std::string> lines;
+  std::vector<PlanLine> lines;
   std::optional<SimulationPlan> simulation;
   double duration = 0.0;
   std::optional<Price> price;
@@ -141,7 +141,7 @@ Saving saving_of(const Skip& skip, const Plan& plan) {
 }
 
 void print_text(const Plan& plan, std::size_t threads) {
-  for (const std::string& line : plan.lines) say("{}\n", line);
+  for (const PlanLine& line : plan.lines) say("{}\n", line.text);
   if (plan.simulation) {
     const SimulationPlan& one = *plan.simulation;
     say("modes: {} of {} move\n", one.modes_moved, one.modes);
@@ -164,7 +164,7 @@ void print_text(const Plan& plan, std::size_t threads) {
 
 void print_plan_json(const LoadedExperiment& loaded, const Plan& plan, std::size_t threads) {
   nlohmann::ordered_json object = {
-      {"kind", loaded.kind}, {"title", loaded.title}, {"lines", plan.lines}};
+      {"kind", loaded.kind}, {"title", loaded.title}, {"work", facts_of(plan.lines)}};
   if (plan.simulation) {
     const SimulationPlan& one = *plan.simulation;
     auto skips = nlohmann::ordered_json::array();
@@ -203,7 +203,10 @@ ExitCode plan(const PlanArguments& arguments) {
   const auto loaded =
       load_and_print_mistakes(arguments.file, arguments.assignments, arguments.means());
   if (!loaded) return ExitCode::kInvalidInput;
-  const Plan made = make_plan(*loaded);
+  const Plan made = [&loaded] {
+    const Progress progress("plan", Progress::Of::kOne);
+    return make_plan(*loaded);
+  }();
   // A run that is no list of tasks simulates on one thread.
   const auto* list = dynamic_cast<const TaskExperiment*>(loaded->experiment.get());
   const std::size_t tasks = list != nullptr ? list->task_count() : 1;

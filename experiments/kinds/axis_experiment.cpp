@@ -44,23 +44,31 @@ std::size_t ProductExperiment::place(std::size_t task, std::size_t axis) const {
   return task % axes_[axis].values.size();
 }
 
-std::vector<std::string> axis_plan(const SweepPlan& plan, std::size_t tasks,
-                                   const std::optional<PlannedSimulations>& planned) {
-  std::vector<std::string> lines;
+std::vector<PlanLine> axis_plan(const SweepPlan& plan, std::size_t tasks,
+                                const std::optional<PlannedSimulations>& planned) {
+  std::vector<PlanLine> lines;
+  const auto add = [&lines](std::string text, const std::vector<std::string>& paths,
+                            std::size_t values) {
+    lines.push_back(
+        {std::move(text),
+         {{"axes", nlohmann::ordered_json::array({{{"paths", paths}, {"values", values}}})}}});
+  };
   for (const SweepAxis& axis : plan.product) {
-    lines.push_back(fmt::format("axis {}: {} values", axis.path, axis.values.size()));
+    add(fmt::format("axis {}: {} values", axis.path, axis.values.size()), {axis.path},
+        axis.values.size());
   }
   for (const std::vector<SweepAxis>& group : plan.zip) {
     std::vector<std::string> paths;
     for (const SweepAxis& axis : group) paths.push_back(axis.path);
-    lines.push_back(fmt::format("axes {} together: {} values", fmt::join(paths, ", "),
-                                group.front().values.size()));
+    const std::size_t values = group.front().values.size();
+    add(fmt::format("axes {} together: {} values", fmt::join(paths, ", "), values), paths, values);
   }
-  lines.push_back(fmt::format("tasks: {}", tasks));
+  lines.push_back({fmt::format("tasks: {}", tasks), {{"tasks", tasks}}});
   if (planned) {
     lines.push_back(plan_line(*planned));
-    lines.push_back(fmt::format("skipped: {} simulations whose scene another task has",
-                                tasks - std::min(tasks, planned->count)));
+    const std::size_t shared = tasks - std::min(tasks, planned->count);
+    lines.push_back({fmt::format("skipped: {} simulations whose scene another task has", shared),
+                     {{"shared_simulations", shared}}});
   }
   return lines;
 }

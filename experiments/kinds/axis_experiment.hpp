@@ -99,8 +99,8 @@ inline bool is_seed_axis(const std::string& path) { return ("." + path).ends_wit
 std::vector<Finding> distinct_findings(std::vector<Finding> findings);
 
 /// One line an axis, the number of tasks, the simulations and those that tasks share.
-std::vector<std::string> axis_plan(const SweepPlan& plan, std::size_t tasks,
-                                   const std::optional<PlannedSimulations>& planned);
+std::vector<PlanLine> axis_plan(const SweepPlan& plan, std::size_t tasks,
+                                const std::optional<PlannedSimulations>& planned);
 
 /// `base` with the number of distinct simulations of `cells` settings.
 std::optional<PlannedSimulations> planned_together(
@@ -181,7 +181,7 @@ class AxisExperiment : public TaskExperiment {
     }
     return distinct_findings(std::move(findings));
   }
-  std::vector<std::string> plan() const override {
+  std::vector<PlanLine> plan() const override {
     return axis_plan(options_.cells.plan(), task_count(), planned_simulations());
   }
   std::optional<PlannedSimulations> planned_simulations() const override {

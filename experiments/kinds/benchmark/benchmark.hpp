@@ -232,7 +232,7 @@ class BenchmarkExperiment final : public AxisExperiment<CalibrateOptions, Succes
  public:
   using AxisExperiment::AxisExperiment;
   std::vector<Finding> lint() const override;
-  std::vector<std::string> plan() const override;
+  std::vector<PlanLine> plan() const override;
 
   std::string run_task(std::size_t task, const StudyContext& context) const override;
   std::string loss_name() const override { return "median relative frequency error"; }

@@ -90,18 +90,24 @@ std::vector<Finding> BenchmarkExperiment::lint() const {
   return findings;
 }
 
-std::vector<std::string> BenchmarkExperiment::plan() const {
+std::vector<PlanLine> BenchmarkExperiment::plan() const {
   std::set<std::string> methods, conditions;
   for (std::size_t task = 0; task < task_count(); ++task) {
     const BenchmarkLabels labels = labels_of(task);
     methods.insert(labels.method());
     conditions.insert(labels.condition);
   }
-  std::vector<std::string> lines;
-  for (const std::string& method : methods) lines.push_back("method: " + method);
-  for (const std::string& condition : conditions) lines.push_back("condition: " + condition);
-  lines.push_back(fmt::format("tasks: {} = {} methods, {} conditions", task_count(), methods.size(),
-                              conditions.size()));
+  std::vector<PlanLine> lines;
+  using List = nlohmann::ordered_json;
+  for (const std::string& method : methods) {
+    lines.push_back({"method: " + method, {{"methods", List::array({method})}}});
+  }
+  for (const std::string& condition : conditions) {
+    lines.push_back({"condition: " + condition, {{"conditions", List::array({condition})}}});
+  }
+  lines.push_back({fmt::format("tasks: {} = {} methods, {} conditions", task_count(),
+                               methods.size(), conditions.size()),
+                   {{"tasks", task_count()}}});
   if (const auto planned = planned_simulations()) lines.push_back(plan_line(*planned));
   return lines;
 }

@@ -108,11 +108,16 @@ std::vector<Finding> IdentifyOptions::lint() const {
   return findings;
 }
 
-std::vector<std::string> IdentifyOptions::plan() const {
-  return {fmt::format("identify modes up to {:g} Hz by {}, orders {} to {}",
-                      identification.highest_frequency, identification.method,
-                      identification.stabilization.lowest_order,
-                      identification.stabilization.highest_order)};
+std::vector<PlanLine> IdentifyOptions::plan() const {
+  const auto& orders = identification.stabilization;
+  return {{fmt::format("identify modes up to {:g} Hz by {}, orders {} to {}",
+                       identification.highest_frequency, identification.method, orders.lowest_order,
+                       orders.highest_order),
+           {{"identification",
+             {{"highest_frequency", identification.highest_frequency},
+              {"method", identification.method},
+              {"lowest_order", orders.lowest_order},
+              {"highest_order", orders.highest_order}}}}}};
 }
 
 std::optional<PlannedSimulations> IdentifyOptions::planned_simulations() const {

@@ -15,7 +15,7 @@ struct IdentifyOptions {
   void visit(OptionVisitor& visitor);
 
   std::vector<Finding> lint() const;
-  std::vector<std::string> plan() const;
+  std::vector<PlanLine> plan() const;
   std::optional<PlannedSimulations> planned_simulations() const;
   StudyResult run(const StudyContext& context) const;
 };

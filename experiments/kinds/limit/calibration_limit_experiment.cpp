@@ -156,11 +156,14 @@ std::vector<Finding> CalibrationLimitExperiment::lint() const {
   return findings;
 }
 
-std::vector<std::string> CalibrationLimitExperiment::plan() const {
-  std::vector<std::string> lines;
+std::vector<PlanLine> CalibrationLimitExperiment::plan() const {
+  std::vector<PlanLine> lines;
   if (const auto planned = planned_simulations()) lines.push_back(plan_line(*planned));
-  lines.push_back(fmt::format("tasks: {} calibrations ({} noise levels, {} seeds)", task_count(),
-                              options_.noise_levels.size(), options_.seeds));
+  lines.push_back({fmt::format("tasks: {} calibrations ({} noise levels, {} seeds)", task_count(),
+                               options_.noise_levels.size(), options_.seeds),
+                   {{"tasks", task_count()},
+                    {"noise_levels", options_.noise_levels.size()},
+                    {"seeds", options_.seeds}}});
   return lines;
 }
 

@@ -72,7 +72,7 @@ class CalibrationLimitExperiment final : public ProductExperiment {
   using Options = CalibrationLimitOptions;
   explicit CalibrationLimitExperiment(Options options);
   std::vector<Finding> lint() const override;
-  std::vector<std::string> plan() const override;
+  std::vector<PlanLine> plan() const override;
   std::optional<PlannedSimulations> planned_simulations() const override;
   std::shared_ptr<const LimitQuestion> limit_question() const override;
 

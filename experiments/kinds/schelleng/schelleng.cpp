@@ -141,9 +141,12 @@ std::vector<Finding> SchellengExperiment::lint() const {
   return findings;
 }
 
-std::vector<std::string> SchellengExperiment::plan() const {
-  return {fmt::format("tasks: {} ({} bow positions x {} forces)", options_.cells(),
-                      options_.positions.count, options_.forces.count),
+std::vector<PlanLine> SchellengExperiment::plan() const {
+  return {{fmt::format("tasks: {} ({} bow positions x {} forces)", options_.cells(),
+                       options_.positions.count, options_.forces.count),
+           {{"tasks", options_.cells()},
+            {"positions", options_.positions.count},
+            {"forces", options_.forces.count}}},
           plan_line(*planned_simulations())};
 }
 

@@ -78,7 +78,7 @@ class SchellengExperiment final : public ProductExperiment {
   using Options = SchellengOptions;
   explicit SchellengExperiment(Options options);
   std::vector<Finding> lint() const override;
-  std::vector<std::string> plan() const override;
+  std::vector<PlanLine> plan() const override;
   std::optional<PlannedSimulations> planned_simulations() const override;
 
   std::string fingerprint(std::size_t task, const std::filesystem::path& folder) const override;

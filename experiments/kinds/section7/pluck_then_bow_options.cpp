@@ -94,12 +94,13 @@ std::vector<Finding> PluckThenBowOptions::lint() const {
   return findings;
 }
 
-std::vector<std::string> PluckThenBowOptions::plan() const {
-  std::vector<std::string> lines = {fmt::format("pluck test of {:g} s, modes up to {:g} Hz",
-                                                pluck.duration,
-                                                pluck.identification.highest_frequency)};
+std::vector<PlanLine> PluckThenBowOptions::plan() const {
+  const double highest = pluck.identification.highest_frequency;
+  std::vector<PlanLine> lines = {
+      {fmt::format("pluck test of {:g} s, modes up to {:g} Hz", pluck.duration, highest),
+       {{"pluck", {{"duration", pluck.duration}, {"highest_frequency", highest}}}}}};
   lines.push_back(plan_line(*planned_simulations()));
-  lines.push_back(fmt::format(
+  lines.emplace_back(fmt::format(
       "modes 1 to {} refined by objective {}, optimizer {}; law through modes 1 to {}; "
       "all {} modes "
       "refined; law again; contact by {}",

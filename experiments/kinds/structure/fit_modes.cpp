@@ -162,9 +162,13 @@ std::vector<Finding> FitModesOptions::lint_records(const std::filesystem::path& 
   return findings;
 }
 
-std::vector<std::string> FitModesOptions::plan() const {
-  return {fmt::format("fit modes between {:g} and {:g} Hz to {} responses of {}", low, high,
-                      record.responses.size(), record.file)};
+std::vector<PlanLine> FitModesOptions::plan() const {
+  return {{fmt::format("fit modes between {:g} and {:g} Hz to {} responses of {}", low, high,
+                       record.responses.size(), record.file),
+           {{"low", low},
+            {"high", high},
+            {"responses", record.responses.size()},
+            {"record", record.file}}}};
 }
 
 StudyResult FitModesOptions::run(const StudyContext& context) const {

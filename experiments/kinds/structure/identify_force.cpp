@@ -239,9 +239,10 @@ std::vector<Finding> IdentifyForceOptions::lint_records(const std::filesystem::p
   return findings;
 }
 
-std::vector<std::string> IdentifyForceOptions::plan() const {
-  return {fmt::format("identify the force from {} responses of {} by the modes of {}",
-                      record.responses.size(), record.file, table)};
+std::vector<PlanLine> IdentifyForceOptions::plan() const {
+  return {{fmt::format("identify the force from {} responses of {} by the modes of {}",
+                       record.responses.size(), record.file, table),
+           {{"responses", record.responses.size()}, {"record", record.file}, {"table", table}}}};
 }
 
 StudyResult IdentifyForceOptions::run(const StudyContext& context) const {

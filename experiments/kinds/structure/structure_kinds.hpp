@@ -19,7 +19,7 @@ struct FitModesOptions {
 
   std::vector<Finding> lint() const;
   std::vector<Finding> lint_records(const std::filesystem::path& folder) const;
-  std::vector<std::string> plan() const;
+  std::vector<PlanLine> plan() const;
   std::optional<PlannedSimulations> planned_simulations() const { return std::nullopt; }
   std::vector<std::string> files_read() const { return {record.file}; }
   StudyResult run(const StudyContext& context) const;
@@ -46,7 +46,7 @@ struct IdentifyForceOptions {
 
   std::vector<Finding> lint() const;
   std::vector<Finding> lint_records(const std::filesystem::path& folder) const;
-  std::vector<std::string> plan() const;
+  std::vector<PlanLine> plan() const;
   std::optional<PlannedSimulations> planned_simulations() const { return std::nullopt; }
   std::vector<std::string> files_read() const { return {table, record.file}; }
   StudyResult run(const StudyContext& context) const;
