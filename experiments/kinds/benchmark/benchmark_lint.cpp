@@ -10,6 +10,7 @@ namespace {
 // What differs between the tasks of one method, as texts.
 struct MethodFacts {
   std::set<std::string> problems, replicates, budgets, ranges, starts, noise;
+  std::size_t tasks = 0;
   CalibrateOptions first;
 };
 
@@ -28,6 +29,7 @@ Methods facts_of(const std::vector<BenchmarkLabels>& tasks, const CellOptions& o
     const auto [place, is_new] = facts.try_emplace(labels.method());
     MethodFacts& ours = place->second;
     if (is_new) ours.first = options;
+    ++ours.tasks;
     ours.problems.insert(labels.condition + " / " + labels.replicate);
     ours.replicates.insert(labels.replicate);
     ours.budgets.insert(text_of(options.calibration.budget));
@@ -112,9 +114,13 @@ class Bowl final : public ObjectiveFunction {
   std::size_t dimension_;
 };
 
+constexpr std::int64_t kMostEvaluations = 20000;  // of a bowl: a glance, not a study
+
 enum class Ending { kFinished, kCut, kRefused };
 
-Ending ending_of(const Optimizer& optimizer, std::size_t dimension, Budget budget) {
+// refusal: why it does not even begin, where it does not.
+Ending ending_of(const Optimizer& optimizer, std::size_t dimension, Budget budget,
+                 std::string* refusal = nullptr) {
   const std::vector<Variable> variables(
       dimension, {.name = "x", .initial = 0.7, .lower = 0.5, .upper = 1.7, .scale = 0.1});
   budget.target = std::numeric_limits<double>::quiet_NaN();
@@ -124,24 +130,57 @@ Ending ending_of(const Optimizer& optimizer, std::size_t dimension, Budget budge
     // With half of the way behind it the search did begin, whatever it still has to polish.
     const bool near = result.value <= 0.25 * result.initial_value;
     return result.stop == StopReason::kEvaluationBudget && !near ? Ending::kCut : Ending::kFinished;
-  } catch (const InvalidInput&) {
+  } catch (const InvalidInput& error) {
+    if (refusal != nullptr) *refusal = error.what();
     return Ending::kRefused;
+  }
+}
+
+std::size_t dimension_of(const CalibrateOptions& options) {
+  const StringModel string = options.inversion.observation.string_model().before_reading();
+  return options.calibration.parameters.names(static_cast<std::size_t>(string.modes)).size();
+}
+
+// Why no task of the method can have a result, whatever its data; empty: some may.
+std::string impossible(const CalibrateOptions& options) {
+  const CalibrationOptions& calibration = options.calibration;
+  std::string refusal;
+  try {
+    const auto optimizer = calibration.optimizer.make();
+    const auto objective = calibration.objective.make();
+    refusal =
+        optimizer->explain_unsatisfied(calibration.objective.selected(), objective->capabilities());
+    // What needs more than a bowl has is not tried on one.
+    const Bowl bowl(1);
+    if (!refusal.empty() || !optimizer->explain_unsatisfied(bowl).empty()) return refusal;
+    if (calibration.budget.evaluations > kMostEvaluations) return {};
+    ending_of(*optimizer, dimension_of(options), calibration.budget, &refusal);
+  } catch (const InvalidInput&) {
+    return {};  // another finding says so
+  }
+  return refusal;
+}
+
+void lint_pairs(const Methods& methods, Warnings& warnings) {
+  for (const auto& [name, facts] : methods) {
+    const std::string reason = impossible(facts.first);
+    if (reason.empty()) continue;
+    warn(warnings, "sweep",
+         fmt::format("{}: its {} tasks will all fail: {}; leave the pair out (sweep.exclude)", name,
+                     facts.tasks, reason));
   }
 }
 
 // A search that gets to the bottom of a bowl, but nowhere near it within the budget.
 bool is_cut_everywhere(const CalibrateOptions& options) {
   constexpr std::int64_t kMore = 20;
-  constexpr std::int64_t kMostEvaluations = 20000;  // a glance, not a study
   if (options.calibration.by_schedule()) return false;
   Budget budget = options.calibration.budget;
   if (budget.evaluations > kMostEvaluations) return false;
   try {
-    const auto modes = static_cast<std::size_t>(
-        options.inversion.observation.string_model().before_reading().modes);
-    const std::size_t dimension = options.calibration.parameters.names(modes).size();
+    const std::size_t dimension = dimension_of(options);
     const auto optimizer = options.calibration.optimizer.make();
-    if (ending_of(*optimizer, dimension, budget) == Ending::kFinished) return false;
+    if (ending_of(*optimizer, dimension, budget) != Ending::kCut) return false;
     budget.evaluations = std::min(kMore * budget.evaluations, kMostEvaluations);
     return ending_of(*optimizer, dimension, budget) == Ending::kFinished;
   } catch (const InvalidInput&) {
@@ -156,6 +195,7 @@ std::vector<Finding> lint_fairness(const std::vector<BenchmarkLabels>& tasks,
   const Methods methods = facts_of(tasks, options_of);
   Warnings warnings;
   if (methods.empty()) return {};
+  lint_pairs(methods, warnings);
   lint_problems(methods, warnings);
   lint_draws(methods, warnings);
   std::map<std::string, bool> probed;  // what the answer depends on
