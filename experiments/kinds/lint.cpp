@@ -92,12 +92,6 @@ void lint_decay(const Scene& scene, std::vector<Finding>& findings) {
        false});
 }
 
-std::string counted(const PlannedSimulations& planned) {
-  return fmt::format(
-      "{} of {:g} s, {} samples at {:g} Hz each", planned.count, planned.truth.scene.duration,
-      sample_count(planned.truth.scene.duration, planned.sample_rate), planned.sample_rate);
-}
-
 }  // namespace
 
 void append(std::vector<Finding>& all, std::vector<Finding> more) {
@@ -125,6 +119,30 @@ std::vector<Finding> lint_scene(const Scene& scene, const Choice<Simulator>& sim
   return findings;
 }
 
+namespace {
+
+// What a record does not read, where it is not as it stands in every file that a run writes out.
+void lint_unread(const ObservationOptions& options, std::vector<Finding>& findings) {
+  const Measurement usual;
+  const auto simulator_of = [](const TruthOptions& truth) {
+    return fingerprint([simulator = truth.simulator](OptionVisitor& visitor) mutable {
+      visitor("", "", simulator);
+    });
+  };
+  const auto refuse = [&findings](bool stated, const char* key) {
+    if (!stated) return;
+    add_finding(findings, key,
+                "a record is not simulated and does not read {}: leave it out, or state a scene in "
+                "the place of the record",
+                key);
+  };
+  refuse(options.measurement.sample_rate != usual.sample_rate, "measurement.sample_rate");
+  refuse(options.measurement.noise_level != usual.noise_level, "measurement.noise_level");
+  refuse(simulator_of(options.truth) != simulator_of(TruthOptions()), "simulator");
+}
+
+}  // namespace
+
 std::vector<Finding> lint_observation(const ObservationOptions& options) {
   std::vector<Finding> findings;
   lint_making(findings, options.has_record ? "record" : "scene",
@@ -135,6 +153,7 @@ std::vector<Finding> lint_observation(const ObservationOptions& options) {
     lint_decay(options.truth.scene, findings);
     return findings;
   }
+  lint_unread(options, findings);
   lint_string("string", options.string.before_reading(), options.contact.position, "bow", findings);
   lint_speed("string", options.string, findings);
   return findings;
@@ -156,15 +175,28 @@ std::optional<Observation> lint_record(const std::string& path, const Observatio
       if (path.ends_with(kFile)) {
         place.replace(path.size() - kFile.size() + 1, std::string::npos, error.key());
       }
-      throw;
+      throw WrongKey(place, error.what());
     }
   });
-  if (!observation) findings.back().path = place;
   return observation;
+}
+
+void lint_modes(const Observation& observation, std::vector<Finding>& findings) {
+  if (observation.modes_missing.empty()) return;
+  findings.push_back({"string.modes", observation.modes_missing, false});
 }
 
 std::vector<Finding> lint_scores(const ScoreOptions& score, const ObservationOptions& options) {
   std::vector<Finding> findings;
+  const RecordOptions& record = options.record;
+  const bool has_reference =
+      record.has_reference || record.has_reference_velocity || record.has_reference_displacement;
+  if (!options.has_scene && options.has_record && !has_reference &&
+      !(score.windows.empty() && score.whole.empty())) {
+    add_finding(findings, "score",
+                "nothing is scored: the record has no measured force; name its channel "
+                "(record.reference), or leave score out");
+  }
   if (!options.has_scene || !is_known(options.truth.scene.string)) return findings;
   const double duration = options.truth.scene.duration;
   const double length = score.periods / options.truth.scene.string.fundamental;
@@ -267,33 +299,6 @@ std::vector<Finding> lint_figures(const std::vector<FigureOptions>& figures,
     }
   }
   return findings;
-}
-
-std::string key_of(const PlannedSimulations& planned) {
-  return truth_key(planned.truth, planned.sample_rate, planned.outputs);
-}
-
-std::string plan_line(const PlannedSimulations& planned) {
-  std::string text = "simulations: " + counted(planned);
-  for (const PlannedSimulations& other : planned.others) text += "; " + counted(other);
-  return text;
-}
-
-void add_planned(const ObservationOptions& observation, PlannedSimulations& planned) {
-  const auto other = planned_truths(observation, {});
-  if (!other) return;
-  const bool known =
-      std::any_of(planned.others.begin(), planned.others.end(),
-                  [&](const PlannedSimulations& one) { return key_of(one) == key_of(*other); });
-  if (!known) planned.others.push_back(*other);
-}
-
-std::optional<PlannedSimulations> planned_truths(const ObservationOptions& observation,
-                                                 OutputRequest outputs, std::size_t count) {
-  if (!observation.has_scene) return std::nullopt;
-  outputs.left_reaction = true;
-  outputs.right_reaction = true;
-  return PlannedSimulations{observation.truth, observation.measurement.sample_rate, outputs, count};
 }
 
 }  // namespace modcal

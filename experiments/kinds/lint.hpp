@@ -16,12 +16,14 @@ std::vector<Finding> lint_scene(const Scene& scene, const Choice<Simulator>& sim
 /// The same for what an experiment inverts; record length against the decay; that exactly one
 /// source is stated.
 std::vector<Finding> lint_observation(const ObservationOptions& options);
-/// Score windows inside the record.
 /// A finding at `path` where a recorded observation cannot be made of its file; what it is, else.
 /// Nothing of a scene.
 std::optional<Observation> lint_record(const std::string& path, const ObservationOptions& options,
                                        const std::filesystem::path& folder,
                                        std::vector<Finding>& findings);
+/// A warning where fewer modes are stated than the record tells.
+void lint_modes(const Observation& observation, std::vector<Finding>& findings);
+/// Score windows inside the record.
 std::vector<Finding> lint_scores(const ScoreOptions& score, const ObservationOptions& options);
 /// Of the record of a scene; NaN where it is not known before the record is read.
 inline double stated_duration(const ObservationOptions& options) {
@@ -45,11 +47,13 @@ void add_finding(std::vector<Finding>& findings, std::string path, fmt::format_s
                  Args&&... args) {
   findings.push_back({std::move(path), fmt::format(text, std::forward<Args>(args)...)});
 }
-/// A finding at `path` where `make` throws InvalidInput.
+/// A finding at `path` where `make` throws InvalidInput; at its own where that names a key.
 template <typename Make>
 void lint_making(std::vector<Finding>& findings, const std::string& path, Make make) {
   try {
     make();
+  } catch (const WrongKey& error) {
+    findings.push_back({error.path(), error.what()});
   } catch (const InvalidInput& error) {
     findings.push_back({path, error.what()});
   }
@@ -59,7 +63,10 @@ void append(std::vector<Finding>& all, std::vector<Finding> more);
 /// Text that is equal for simulations with equal signals.
 std::string key_of(const PlannedSimulations& planned);
 /// How many simulations of how many samples, others of the run behind them.
-std::string plan_line(const PlannedSimulations& planned);
+PlanLine plan_line(const PlannedSimulations& planned);
+/// What a record that is read, or a simulation, has to say of itself.
+PlanLine source_line(const std::optional<PlannedSimulations>& planned,
+                     const ObservationOptions& observation);
 
 /// The truth that a run simulates for inversions; nothing for a record.
 std::optional<PlannedSimulations> planned_truths(const ObservationOptions& observation,

@@ -110,12 +110,13 @@ void require_told_fundamental(const ObservationOptions& options, const Observati
   const std::optional<ToldString> alone = told_string(observation);
   const double contact = options.contact.position / options.string.length;
   if (alone && std::abs(alone->fundamental / options.string.fundamental - 1.0) < 3e-3) {
-    throw_invalid_input(
-        "{}: the reactions are those of a string with the f0 stated, but with the contact at "
-        "{:.4g} "
-        "of its length, {:.4g} mm, and not at {:.4g}: state bow.position, or calibrate the string "
-        "first (kind: calibrate)",
-        options.record.file, alone->contact, 1e3 * alone->contact * options.string.length, contact);
+    throw WrongKey(
+        "bow.position",
+        fmt::format("{}: the reactions are those of a string with the f0 stated, but with the "
+                    "contact at {:.4g} of its length, {:.4g} mm, and not at {:.4g}: state "
+                    "bow.position, or calibrate the string first (kind: calibrate)",
+                    options.record.file, alone->contact,
+                    1e3 * alone->contact * options.string.length, contact));
   }
   // Told to 0.23 % where B is stated 20 % wrong.
   MODCAL_REQUIRE(std::abs(difference) < 3e-3,

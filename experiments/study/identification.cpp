@@ -169,7 +169,8 @@ ForceScores score_force(const ScoredForce& identified, const ScoreReference& ref
     found.scores.push_back(score(start, length));
   }
   if (options.whole.empty()) return found;
-  MODCAL_REQUIRE(options.whole.size() == 2, "the long window has {} ends: start and stop are two",
+  MODCAL_REQUIRE(options.whole.size() == 2,
+                 "the long window has {} ends: start and stop are two, whole: [start, stop]",
                  options.whole.size());
   const std::size_t first = place(options.whole[0]), last = place(options.whole[1]);
   MODCAL_REQUIRE(first + 2 <= last && last <= truth.size(),

@@ -41,6 +41,21 @@ Observation observe_scene(const ObservationOptions& options, OutputRequest outpu
   return observation;
 }
 
+// Modes above those stated ring in the record all the same, and what rings is taken for the force.
+std::string modes_missing(const StringModel& string, const RecordedSignals& record) {
+  std::int64_t told = 0;
+  try {
+    told = told_modes(string, record).count;
+  } catch (const InvalidInput&) {
+    return {};  // it tells no number
+  }
+  if (string.modes >= told) return {};
+  return fmt::format(
+      "{} modes are stated, but the record tells {}: what the others ring is taken for the force; "
+      "state modes: auto, which takes {}",
+      string.modes, told, told);
+}
+
 Observation observe_record(const ObservationOptions& options, const std::filesystem::path& folder) {
   RecordedSignals record = load_record(options.record, folder);
   if (record.left && record.right) require_one_string(options, record);
@@ -51,6 +66,8 @@ Observation observe_record(const ObservationOptions& options, const std::filesys
     const ToldModes told = told_modes(string, record);
     string.modes = told.count;
     observation.modes_taken = told.text();
+  } else {
+    observation.modes_missing = modes_missing(string, record);
   }
   observation.basis = make_modal_basis(string);
   observation.contact = options.contact.position;
@@ -96,9 +113,11 @@ std::string truth_key(TruthOptions options, double sample_rate, const OutputRequ
 }
 
 std::shared_ptr<const Truth> TruthCache::get(const TruthOptions& options, double sample_rate,
-                                             const OutputRequest& outputs) {
-  return truths_.get(truth_key(options, sample_rate, outputs),
-                     [&] { return simulate_truth(options, sample_rate, outputs, stop_); });
+                                             const OutputRequest& outputs,
+                                             const StopToken::Told& told) {
+  return truths_.get(truth_key(options, sample_rate, outputs), [&] {
+    return simulate_truth(options, sample_rate, outputs, told ? stop_.telling(told) : stop_);
+  });
 }
 
 void ModelErrorOptions::visit(OptionVisitor& visitor) {
@@ -174,11 +193,13 @@ Observation observe(const ObservationOptions& options, const OutputRequest& trut
                                               : observe_record(options, folder);
   observation.fundamental = options.string_model().fundamental;
   const double top = observation.basis.frequency(observation.basis.size() - 1);
-  MODCAL_REQUIRE(
-      top < 0.5 * observation.sample_rate,
-      "the highest mode ({:g} Hz) is not below half the sample rate ({:g} Hz): use fewer "
-      "modes or a higher rate",
-      top, observation.sample_rate);
+  if (!(top < 0.5 * observation.sample_rate)) {
+    throw WrongKey(
+        options.has_scene ? "scene.string.modes" : "string.modes",
+        fmt::format("the highest mode ({:g} Hz) is not below half the sample rate ({:g} Hz): use "
+                    "fewer modes or a higher rate",
+                    top, observation.sample_rate));
+  }
   if (oversampling > 1 && options.has_scene && observation.reference) {
     add_anti_aliased(options, cache, oversampling, observation);
   }

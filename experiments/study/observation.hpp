@@ -33,9 +33,9 @@ class TruthCache {
   TruthCache() = default;
   explicit TruthCache(const StopToken& stop) : stop_(stop) {}
   /// Throws InvalidInput where the scene cannot be simulated or the simulation diverges,
-  /// Interrupted where the stop was requested.
+  /// Interrupted where the stop was requested. `told`: gets the share of a new simulation done.
   std::shared_ptr<const Truth> get(const TruthOptions& options, double sample_rate,
-                                   const OutputRequest& outputs);
+                                   const OutputRequest& outputs, const StopToken::Told& told = {});
   /// Simulations done so far.
   std::size_t simulated() const { return truths_.size(); }
 
@@ -85,6 +85,17 @@ struct ObservationOptions {
   void require_one_source() const;
 };
 
+/// What one key of an experiment states, against the record or the rest.
+class WrongKey : public InvalidInput {
+ public:
+  WrongKey(std::string path, const std::string& text)
+      : InvalidInput(text), path_(std::move(path)) {}
+  const std::string& path() const { return path_; }  ///< "bow.position"
+
+ private:
+  std::string path_;
+};
+
 /// Reactions as measured, and the truth as far as it is known.
 struct Observation {
   double sample_rate = 0.0;
@@ -100,7 +111,8 @@ struct Observation {
   std::optional<Signal> anti_aliased;
   double anti_alias_cut = 0.0;  ///< [Hz]
   std::vector<std::string> warnings;
-  std::string modes_taken;  ///< how many modes and why, where the record told; else empty
+  std::string modes_taken;    ///< how many modes and why, where the record told; else empty
+  std::string modes_missing;  ///< of a number of modes stated: that the record tells more
 
   const std::optional<Signal>& reaction(End end) const { return reactions[static_cast<int>(end)]; }
   std::size_t samples() const;

@@ -42,8 +42,26 @@ struct FailedTasks {
   std::vector<std::size_t> first;  ///< a few of them
 };
 
+/// A number that was found, for programs; NaN: not known.
+struct FoundParameter {
+  std::string name;
+  double value = 0.0;
+  double deviation = 0.0;
+  std::string unit;
+  double initial = 0.0;
+};
+
+/// How close an identified force comes to the true one, for programs.
+struct FoundScore {
+  std::string side;
+  WindowScore score;
+};
+
 struct StudyResult {
   std::string answer;                 ///< in a sentence, for the head of the report
+  std::vector<std::string> warnings;  ///< in the summary, too
+  std::vector<FoundParameter> parameters;
+  std::vector<FoundScore> scores;
   std::vector<report::Block> blocks;  ///< of the report
   std::size_t first_screen = 0;       ///< blocks that answer the question; 0: all
   std::vector<std::pair<std::string, std::string>> files;  ///< name and content
@@ -72,6 +90,7 @@ struct StudyResult {
   }
   /// A line of the summary and a box of the report.
   void warn(const std::string& text) {
+    warnings.push_back(text);
     summary += "warning: " + text + "\n";
     blocks.emplace_back(report::Text{text, report::Text::Kind::kWarning});
   }

@@ -49,7 +49,7 @@ NoiseBand NoiseBand::above(double top, double sample_rate, std::size_t samples) 
   MODCAL_REQUIRE(bins_of(band, samples).count() >= kFewestBins,
                  "the noise cannot be read from {} samples at {:g} Hz with modes up to {:g} Hz: it "
                  "takes {} bins between {:g} Hz (1.1 times the highest mode) and {:g} Hz. State "
-                 "noise_rms_1 and noise_rms_2, or sample faster",
+                 "noise_rms_1 and noise_rms_2, use fewer modes, or sample faster",
                  samples, sample_rate, top, kFewestBins, band.low * sample_rate,
                  band.high * sample_rate);
   return band;

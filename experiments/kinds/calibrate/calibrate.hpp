@@ -96,13 +96,16 @@ struct CalibrateOptions {
   std::int64_t& seed_slot() { return inversion.seed; }
   std::vector<Finding> lint() const;
   std::vector<Finding> lint_records(const std::filesystem::path& folder) const;
-  std::vector<std::string> plan() const;
+  std::vector<PlanLine> plan() const;
   std::optional<PlannedSimulations> planned_simulations() const;
   std::vector<std::string> files_read() const;
   LimitQuestion limit_question() const;
   std::unique_ptr<const SearchTask> search_task(const StudyContext& context) const;
   StudyResult run(const StudyContext& context) const;
 };
+
+/// Whether the model of a record starts from what its ends tell: nothing is stated to be known.
+bool starts_from_record(const CalibrationOptions& calibration);
 
 /// Every record of a calibration, the stroke that is identified first.
 struct ObservedRecords {

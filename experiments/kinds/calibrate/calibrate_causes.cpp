@@ -181,4 +181,36 @@ report::Figure misfit_figure(const ContinuationResult& found) {
   return figure;
 }
 
+namespace {
+
+// A sensor that differs far more than sensors do is one whose calibration is wrong.
+std::string_view remedy_of_prior(std::string_view farthest) {
+  for (std::size_t i = 0; i < Sensor::kCount; ++i) {
+    if (!farthest.starts_with(sensor_type(i).name)) continue;
+    return ": check the gains of both sensors (record.left.calibration, "
+           "record.right.calibration), or state what is known of them "
+           "(calibration.parameters.priors)";
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string contradiction(const ContinuationResult& found) {
+  std::vector<std::string> reasons;
+  if (!found.fits) {
+    reasons.push_back(
+        fmt::format("the fit is wrong: reduced chi2 {:.4f}, where {:.4f} would scatter from 1",
+                    found.chi2, found.chi2_deviation));
+  }
+  if (found.priors.contradicted()) {
+    reasons.push_back(fmt::format(
+        "the data contradict the priors stated, that of {} most ({:.3g} deviations){}",
+        found.priors.farthest, found.priors.deviations, remedy_of_prior(found.priors.farthest)));
+  }
+  const std::string cause = cause_contradiction(found);
+  if (!cause.empty()) reasons.push_back(cause);
+  return fmt::format("{}", fmt::join(reasons, "; "));
+}
+
 }  // namespace modcal

@@ -44,8 +44,7 @@ void follow_tension(const Observation& observation, CalibrationOutcome& outcome)
 // ends there.
 void start_from_record(const Observation& observation, const CalibrationOptions& calibration,
                        CalibrationOutcome& outcome) {
-  const UnknownsOptions& unknowns = calibration.parameters.unknowns;
-  if (!calibration.by_schedule() || !unknowns.fixed.empty() || !unknowns.priors.empty()) return;
+  if (!starts_from_record(calibration)) return;
   const auto told = told_string(observation);
   if (!told) return;
   ModalBasis& basis = outcome.initial.basis;
@@ -125,6 +124,11 @@ ObservedRecords observe_records(const CalibrateOptions& options, const OutputReq
   require_plucks(options.plucks, inversion.observation, options.calibration);
   observed.plucks = observe_plucks(options.plucks, inversion.observation, inversion.key(), context);
   return observed;
+}
+
+bool starts_from_record(const CalibrationOptions& calibration) {
+  const UnknownsOptions& unknowns = calibration.parameters.unknowns;
+  return calibration.by_schedule() && unknowns.fixed.empty() && unknowns.priors.empty();
 }
 
 std::vector<double> frequencies_of(const ModalBasis& basis) {

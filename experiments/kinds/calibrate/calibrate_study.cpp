@@ -91,8 +91,8 @@ void add_account(const CalibrateOptions& options, const InvertOptions& shown, co
     if (!text.empty()) result.summary += text + "\n";
     note(result, text);
   }
-  add_warnings(found.observation, found.sides, result);
-  result.summary += score_lines(found.sides);
+  add_warnings(found.observation, found.sides, true, result);
+  add_scores(found.sides, result);
   if (estimate) result.summary += covariance_text(*estimate);
   result.add(report::tables_of(found.outcome));
   add_identification_tables(found.sides, result);

@@ -108,23 +108,6 @@ std::string chi2_text(const ContinuationResult& found) {
   return text;
 }
 
-std::string contradiction(const ContinuationResult& found) {
-  std::vector<std::string> reasons;
-  if (!found.fits) {
-    reasons.push_back(
-        fmt::format("the fit is wrong: reduced chi2 {:.4f}, where {:.4f} would scatter from 1",
-                    found.chi2, found.chi2_deviation));
-  }
-  if (found.priors.contradicted()) {
-    reasons.push_back(
-        fmt::format("the data contradict the priors stated, that of {} most ({:.3g} deviations)",
-                    found.priors.farthest, found.priors.deviations));
-  }
-  const std::string cause = cause_contradiction(found);
-  if (!cause.empty()) reasons.push_back(cause);
-  return fmt::format("{}", fmt::join(reasons, "; "));
-}
-
 std::vector<bool> told_by_data(const ContinuationResult& found) {
   std::vector<bool> told(found.covariance.size(), true);
   for (std::size_t n = 0; found.frequencies_free && n < found.modes.size(); ++n) {
@@ -184,6 +167,8 @@ void add_calibration_summary(const CalibrationOutcome& outcome, StudyResult& res
                                   median_relative_error(outcome));
   }
   for (const CalibratedParameter& parameter : outcome.result.parameters) {
+    result.parameters.push_back(
+        {parameter.name, parameter.final, parameter.deviation, parameter.unit, parameter.initial});
     // Of every mode: those stand in the tables.
     if (parameter.name.starts_with("f_") || parameter.name.starts_with("zeta_")) continue;
     result.summary += fmt::format(

@@ -63,19 +63,18 @@ void add_identification_tables(const std::vector<SideIdentification>& sides, Stu
   if (!table.rows.empty()) result.add({std::move(table)});
 }
 
-std::string score_lines(const std::vector<SideIdentification>& sides) {
-  std::string lines;
+void add_scores(const std::vector<SideIdentification>& sides, StudyResult& result) {
   for (const SideIdentification& side : sides) {
     for (const WindowScore& window : side.scores) {
-      lines += fmt::format("side {}  parameter {:.4g} N/N  {}\n", side.estimate.side,
-                           side.estimate.result.choice.parameter(), window.text());
+      result.summary += fmt::format("side {}  parameter {:.4g} N/N  {}\n", side.estimate.side,
+                                    side.estimate.result.choice.parameter(), window.text());
+      result.scores.push_back({side.estimate.side, window});
     }
     for (const auto& [quantity, window] : side.motion) {
-      lines += fmt::format("side {}  {} at the contact  {}\n", side.estimate.side, quantity,
-                           window.text());
+      result.summary += fmt::format("side {}  {} at the contact  {}\n", side.estimate.side,
+                                    quantity, window.text());
     }
   }
-  return lines;
 }
 
 }  // namespace modcal

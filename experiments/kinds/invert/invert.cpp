@@ -46,20 +46,23 @@ std::vector<Finding> InvertOptions::lint_records(const std::filesystem::path& fo
   std::vector<Finding> findings;
   const auto observed = lint_record("record.file", observation, folder, findings);
   if (!observed) return findings;
+  lint_modes(*observed, findings);
   lint_making(findings, "string.fundamental",
               [&] { require_told_fundamental(observation, *observed); });
   lint_windows(*this, *observed, findings);
   return findings;
 }
 
-std::vector<std::string> InvertOptions::plan() const {
-  std::vector<std::string> lines;
-  const auto planned = planned_simulations();
-  lines.push_back(planned ? plan_line(*planned) : "record: " + observation.record.file);
+std::vector<PlanLine> InvertOptions::plan() const {
+  std::vector<PlanLine> lines = {source_line(planned_simulations(), observation)};
   const InversionOutputs outputs = inversion_outputs(figures, wants_all());
-  if (!outputs.displacement)
-    lines.emplace_back("skipped: identified displacement, which nobody reads");
-  if (!outputs.velocity) lines.emplace_back("skipped: identified velocity, which nobody reads");
+  const auto skip = [&lines](bool wanted, const char* what) {
+    if (wanted) return;
+    lines.push_back({fmt::format("skipped: identified {}, which nobody reads", what),
+                     {{"skipped", nlohmann::ordered_json::array({what})}}});
+  };
+  skip(outputs.displacement, "displacement");
+  skip(outputs.velocity, "velocity");
   return lines;
 }
 
@@ -139,13 +142,16 @@ SignalFile identified_signals(const Observation& observation,
 }
 
 // What to try against what an estimate warns of.
-std::vector<std::string> remedies_of(const SideIdentification& side, bool is_recorded) {
+std::vector<std::string> remedies_of(const SideIdentification& side, bool is_recorded,
+                                     bool is_calibrated) {
   std::vector<std::string> remedies;
   if (side.estimate.warnings.empty()) return remedies;
   const std::vector<double>& misfit = side.estimate.side_misfit;
   const bool contradicted = !misfit.empty() && mean(misfit) > 1.0;
   if (contradicted && is_recorded) {
-    remedies.emplace_back("calibrate the string first (kind: calibrate)");
+    if (!is_calibrated) remedies.emplace_back("calibrate the string first (kind: calibrate)");
+    remedies.emplace_back(
+        "check the gains of both sensors (record.left.calibration, record.right.calibration)");
     remedies.emplace_back("use another part of the record (record.start, record.stop)");
   } else if (contradicted) {
     remedies.emplace_back("a longer scene.duration, or a smaller model_error");
@@ -166,8 +172,9 @@ std::vector<std::string> remedies_of(const SideIdentification& side, bool is_rec
 }
 
 void add_warnings(const Observation& observation, const std::vector<SideIdentification>& sides,
-                  StudyResult& result) {
+                  bool is_calibrated, StudyResult& result) {
   for (const std::string& warning : observation.warnings) result.warn(warning);
+  if (!observation.modes_missing.empty()) result.warn(observation.modes_missing);
   for (const SideIdentification& side : sides) {
     for (const std::string& note : side.estimate.notes) {
       result.summary += fmt::format("side {}  {}\n", side.estimate.side, note);
@@ -176,7 +183,7 @@ void add_warnings(const Observation& observation, const std::vector<SideIdentifi
     for (const std::string& warning : side.estimate.warnings) {
       result.warn(fmt::format("Estimate {}: {}", side.estimate.label, warning));
     }
-    for (const std::string& remedy : remedies_of(side, !observation.truth)) {
+    for (const std::string& remedy : remedies_of(side, !observation.truth, is_calibrated)) {
       const std::string text = fmt::format("to try: {}", remedy);
       if (result.summary.find(text) != std::string::npos) continue;
       result.summary += text + "\n";
@@ -231,7 +238,7 @@ StudyResult InvertOptions::run(const StudyContext& context) const {
     result.summary += observed.modes_taken + "\n";
     result.blocks.emplace_back(report::Text{observed.modes_taken, report::Text::Kind::kNote});
   }
-  add_warnings(observed, sides, result);
+  add_warnings(observed, sides, false, result);
   std::move(first, drawn.end(), std::back_inserter(result.blocks));
   add_identification_figures(shown.figures, observed, sides, result);
   if (shown.write_signals) result.signal_files.push_back(identified_signals(observed, sides));
@@ -243,7 +250,7 @@ StudyResult InvertOptions::run(const StudyContext& context) const {
     if (shown.write_signals)
       add_model_signals(observed, by_model.result, result.signal_files.back());
   }
-  result.summary += score_lines(sides);
+  add_scores(sides, result);
   return result;
 }
 

@@ -35,7 +35,7 @@ struct InvertOptions {
 
   std::vector<Finding> lint() const;
   std::vector<Finding> lint_records(const std::filesystem::path& folder) const;
-  std::vector<std::string> plan() const;
+  std::vector<PlanLine> plan() const;
   std::optional<PlannedSimulations> planned_simulations() const;
   StudyResult run(const StudyContext& context) const;
 };
@@ -63,11 +63,12 @@ report::Cell side_cell(const std::string& side);
 /// identified.csv: every identified signal.
 SignalFile identified_signals(const Observation& observation,
                               const std::vector<SideIdentification>& sides);
-/// One line a side and window of the scores.
-std::string score_lines(const std::vector<SideIdentification>& sides);
+/// One line a side and window of the scores, and the scores for programs.
+void add_scores(const std::vector<SideIdentification>& sides, StudyResult& result);
 /// Warnings of the observation and of parameter choices that had to settle for a stand-in.
+/// is_calibrated: the model has been found from this record already.
 void add_warnings(const Observation& observation, const std::vector<SideIdentification>& sides,
-                  StudyResult& result);
+                  bool is_calibrated, StudyResult& result);
 
 // Estimates beside the linear ones, by a friction law and by waves: scored where the truth is
 // known, drawn, and added to the result of an inversion.

@@ -329,7 +329,7 @@ TEST(PlanPlucks, CountsTheirSimulationsOnce) {
   EXPECT_EQ(two->others[1].truth.scene.duration, 1.0);
   EXPECT_EQ(planned_of(plucks(one, one))->others.size(), 1u);
   const LoadedExperiment loaded = load_experiment(parse_yaml(plucks(one, other), "scene.yaml"));
-  EXPECT_THAT(loaded.experiment->plan().front(), testing::HasSubstr("1 of 0.5 s"));
+  EXPECT_THAT(loaded.experiment->plan().front().text, testing::HasSubstr("1 of 0.5 s"));
 }
 
 std::string sampled(const std::string& rate, const std::string& calibration,
@@ -348,7 +348,7 @@ TEST(LintNoise, RefusesARecordThatDoesNotShowTheNoiseToEstimate) {
   const auto refused = [](const std::string& line) {
     return testing::AllOf(
         testing::HasSubstr("scene.yaml:" + line + ":"), testing::HasSubstr("22050 Hz"),
-        testing::HasSubstr("State noise_rms_1 and noise_rms_2, or sample faster"));
+        testing::HasSubstr("State noise_rms_1 and noise_rms_2, use fewer modes, or sample faster"));
   };
   EXPECT_THAT(messages_of(sampled("22.05 kHz", "objective: joint_likelihood, optimizer: staged")),
               refused("7"));
