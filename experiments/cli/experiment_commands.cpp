@@ -34,10 +34,21 @@ void declare_run(CLI::App& command, FileArguments& arguments) {
   declare_threads(command, arguments.threads, "number of threads; default all");
 }
 
+// The same message at the same place as validate has; what is no error the run says itself.
+bool records_are_right(const LoadedExperiment& loaded) {
+  LoadedExperiment checked = loaded;
+  checked.mistakes.clear();
+  check_records(checked);
+  if (!checked.has_errors()) return true;
+  complain(complaints_of(checked.document, checked.mistakes));
+  add_to_json("mistakes", mistakes_json(checked));
+  return false;
+}
+
 ExitCode run(const FileArguments& arguments) {
   const auto loaded =
       load_and_print_mistakes(arguments.file, arguments.assignments, arguments.means());
-  if (!loaded) return ExitCode::kInvalidInput;
+  if (!loaded || !records_are_right(*loaded)) return ExitCode::kInvalidInput;
   return run_one(*loaded, {.out = arguments.folder(),
                            .threads = arguments.threads,
                            .command = arguments.command(),
@@ -47,9 +58,12 @@ ExitCode run(const FileArguments& arguments) {
 void declare_file(CLI::App& command, FileArguments& arguments) { arguments.declare_file(command); }
 
 ExitCode validate(const FileArguments& arguments) {
-  LoadedExperiment loaded =
-      load_experiment(arguments.file, arguments.assignments, arguments.means());
-  check_records(loaded);
+  LoadedExperiment loaded;
+  {
+    const Progress progress(arguments.file, Progress::Of::kOne);
+    loaded = load_experiment(arguments.file, arguments.assignments, arguments.means());
+    check_records(loaded);
+  }
   const bool valid = !loaded.has_errors();
   complain(complaints_of(loaded.document, loaded.mistakes));
   if (answer_style().json) {
@@ -72,10 +86,20 @@ ExitCode limit(const FileArguments& arguments) {
                  "{} is no calibration: limits exist for the kinds calibrate and calibration_limit",
                  arguments.file);
   TruthCache truths;
+  nlohmann::ordered_json numbers;
+  std::string text;
+  {
+    const Progress progress(arguments.file, Progress::Of::kOne);
+    if (answer_style().json) {
+      numbers = limit_json(*question, truths);
+    } else {
+      text = limit_text(*question, truths);
+    }
+  }
   if (answer_style().json) {
-    print_json(limit_json(*question, truths));
+    print_json(numbers);
   } else {
-    say_text(limit_text(*question, truths));
+    say_text(text);
   }
   return ExitCode::kOk;
 }

@@ -1,5 +1,6 @@
 // list, describe and schema: what can stand in an experiment file.
 
+#include "experiments/cli/answer_schema.hpp"
 #include "experiments/cli/command.hpp"
 #include "experiments/config/help.hpp"
 #include "experiments/config/reader.hpp"
@@ -56,6 +57,7 @@ const PluginKind& find_plugin_kind(std::string_view name) {
 struct PluginArguments {
   std::string kind;
   std::string name;
+  bool answers = false;
 };
 
 void declare_list(CLI::App& command, PluginArguments& arguments) {
@@ -110,8 +112,16 @@ ExitCode describe(const PluginArguments& arguments) {
   return ExitCode::kOk;
 }
 
+void declare_schema(CLI::App& command, PluginArguments& arguments) {
+  command.add_flag("--answers", arguments.answers, "that of what --json answers");
+}
+
 // A kind that does not exist is one mistake of "kind", and each kind is judged by its own part.
-ExitCode print_schema(const PluginArguments& /*arguments*/) {
+ExitCode print_schema(const PluginArguments& arguments) {
+  if (arguments.answers) {
+    print_json(answer_schema());
+    return ExitCode::kOk;
+  }
   auto cases = nlohmann::ordered_json::array();
   Choice<Experiment> choice;
   for (const std::string_view name : choice.names()) {
@@ -140,9 +150,9 @@ ExitCode print_schema(const PluginArguments& /*arguments*/) {
 void add_plugin_commands(CLI::App& app, const Chosen& chosen) {
   add_command(app, chosen, "list", "List the plug-ins of a kind, or the kinds", declare_list, list);
   add_command(app, chosen, "describe", "Show a plug-in's options", declare_describe, describe);
-  add_command<PluginArguments>(
-      app, chosen, "schema", "Print the JSON schema of experiment files",
-      [](CLI::App&, PluginArguments&) {}, print_schema);
+  add_command<PluginArguments>(app, chosen, "schema",
+                               "Print the JSON schema of experiment files, or of answers",
+                               declare_schema, print_schema);
 }
 
 }  // namespace modcal

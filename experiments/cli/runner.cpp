@@ -21,7 +21,8 @@ std::optional<tbb::global_control> limit_threads(int threads) {
 template <typename Work>
 auto with_context(const LoadedExperiment& loaded, const std::filesystem::path& folder,
                   const std::string& command, SharedWork& shared, const Work& work) {
-  Progress progress(title_of(loaded));
+  const bool is_list = dynamic_cast<const TaskExperiment*>(loaded.experiment.get()) != nullptr;
+  Progress progress(title_of(loaded), is_list ? Progress::Of::kList : Progress::Of::kOne);
   return work(StudyContext{.work = shared,
                            .folder = folder,
                            .command = command,
@@ -79,6 +80,26 @@ OutputDirectory begin_together(const std::vector<std::string>& names, const RunS
   if (!out.has_provenance()) out.write_provenance(provenance_json(settings.command));
   out.announce_folders(names);
   return out;
+}
+
+// Ids are unique in one report: each table carries the name of its experiment.
+void add_section(const std::string& name, const std::string& title,
+                 std::vector<report::Block> blocks, report::Report& report) {
+  for (report::Block& block : blocks) {
+    if (auto* table = std::get_if<report::Table>(&block)) {
+      if (table->id != name) table->id = name + "_" + table->id;
+    }
+  }
+  report.sections.push_back({fmt::format("{}: {}", name, title), std::move(blocks)});
+}
+
+// Of one experiment among several, for --json.
+nlohmann::ordered_json answer_of_one(const std::string& name, const OutputDirectory& folder,
+                                     const StudyResult& result) {
+  nlohmann::ordered_json answer = {{"name", name}, {"out", folder.path().string()}};
+  answer.update(findings_json(result));
+  for (const std::string& text : result.warnings) note_warning(name + ": " + text);
+  return answer;
 }
 
 PilotRun run_some_tasks(const TaskExperiment& list, const StudyContext& context, RunStore& store) {
@@ -191,6 +212,7 @@ ExitCode run_together(const std::vector<LoadedExperiment>& experiments,
   report.title = settings.title;
   ExitCode worst = ExitCode::kOk;
   bool missed = false, apart = false;
+  auto found = nlohmann::ordered_json::array();
   for (const LoadedExperiment& loaded : experiments) {
     if (interrupted()) say_interrupted(settings, false);
     const std::string name = stem_of(loaded.document.file);
@@ -211,14 +233,8 @@ ExitCode run_together(const std::vector<LoadedExperiment>& experiments,
     write_files(folder, result);
     folder.remove_earlier();
     say("== {}: {}\n{}", name, loaded.title, result.summary);
-    for (report::Block& block : result.blocks) {
-      // Ids are unique in one report: each table carries the name of its experiment.
-      if (auto* table = std::get_if<report::Table>(&block)) {
-        if (table->id != name) table->id = name + "_" + table->id;
-      }
-    }
-    report.sections.push_back(
-        {fmt::format("{}: {}", name, loaded.title), std::move(result.blocks)});
+    found.push_back(answer_of_one(name, folder, result));
+    add_section(name, loaded.title, std::move(result.blocks), report);
     if (result.status != report::Status::kOk) report.status = report::Status::kSomeFailed;
     worst = std::max(worst, exit_code_of(result));
     missed = missed || !result.missed.empty();
@@ -232,6 +248,8 @@ ExitCode run_together(const std::vector<LoadedExperiment>& experiments,
   out.remove_earlier();
   out.require_in_place();
   before.require_in_place();
+  add_to_json("out", out.path().string());
+  add_to_json("experiments", found);
   remark("{:.2f} s\n", clock.seconds());
   if (apart) return ExitCode::kInvalidInput;
   return worst == ExitCode::kOk && missed ? ExitCode::kAcceptanceMissed : worst;

@@ -22,6 +22,7 @@ constexpr Example kExamples[] = {
     {"list", "modcal list optimizer", "all optimizers"},
     {"describe", "modcal describe experiment calibrate", "every key of a file"},
     {"schema", "modcal schema > modcal.schema.json", "for an editor"},
+    {"schema", "modcal schema --answers", "what --json answers, for programs"},
     {"inspect", "modcal inspect record.csv", "channels, rate, levels, noise"},
     {"convert", "modcal convert record.uff record.csv", "the same channels in another format"},
     {"new", "modcal new calibrate record.csv --length '0.33 m' --out mine.yaml",

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "experiments/report/result.hpp"
 #include "libsim/base/utf8.hpp"
 #include "libsim/records/record_file.hpp"
 
@@ -66,7 +67,11 @@ nlohmann::ordered_json failures_json(const StudyResult& result) {
 void print_summary(const StudyResult& result, const RunSettings& settings, double seconds) {
   if (!answer_style().json) return say_text(result.summary);
   add_to_json("out", settings.out.string());
+  add_to_json("files", names_of(result));
   add_to_json("seconds", seconds);
+  const nlohmann::ordered_json found = findings_json(result);
+  for (const auto& [name, value] : found.items()) add_to_json(name, value);
+  for (const std::string& text : result.warnings) note_warning(text);
   add_to_json("failed_tasks", result.failed_tasks);
   if (!result.failures.empty()) add_to_json("failures", failures_json(result));
   add_to_json("missed", result.missed);
@@ -104,6 +109,27 @@ std::filesystem::path folder_of(const LoadedExperiment& loaded, const RunSetting
   const std::filesystem::path folder =
       settings.folder.empty() ? loaded.document.folder() : settings.folder;
   return folder.empty() ? "." : folder;
+}
+
+nlohmann::ordered_json findings_json(const StudyResult& result) {
+  auto parameters = nlohmann::ordered_json::array(), scores = nlohmann::ordered_json::array();
+  for (const FoundParameter& parameter : result.parameters) {
+    parameters.push_back({{"name", parameter.name},
+                          {"value", report::number_json(parameter.value)},
+                          {"deviation", report::number_json(parameter.deviation)},
+                          {"unit", parameter.unit},
+                          {"initial", report::number_json(parameter.initial)}});
+  }
+  for (const auto& [side, score] : result.scores) {
+    scores.push_back({{"side", side},
+                      {"window", {score.start, score.stop}},
+                      {"correlation", report::number_json(score.correlation)},
+                      {"relative_rms_error", report::number_json(score.relative_rms_error)},
+                      {"coverage", report::number_json(score.coverage)}});
+  }
+  return {{"verdict", result.answer},
+          {"parameters", std::move(parameters)},
+          {"scores", std::move(scores)}};
 }
 
 void record_run(const LoadedExperiment& loaded, const RunSettings& settings, OutputDirectory& out) {

@@ -11,6 +11,9 @@ std::string title_of(const LoadedExperiment& loaded);
 std::filesystem::path folder_of(const LoadedExperiment& loaded, const RunSettings& settings);
 ExitCode exit_code_of(const StudyResult& result);
 
+/// What it found, for programs: verdict, parameters, scores.
+nlohmann::ordered_json findings_json(const StudyResult& result);
+
 /// provenance.json first, then resolved.yaml: a run that is killed between has left no file
 /// unnamed.
 void record_run(const LoadedExperiment& loaded, const RunSettings& settings, OutputDirectory& out);

@@ -102,6 +102,21 @@ TEST_F(Answers, AreQuietWhereThatIsAskedFor) {
   EXPECT_THAT(modcal("run small.yaml --quiet --set seed=x").err, HasSubstr("error: "));
 }
 
+TEST_F(Answers, ATerminalShowsThatLongWorkGoesOn) {
+  const auto seen = [this](const std::string& words) {
+    return shell("TERM=xterm script -qec \"'" MODCAL_PROGRAM "' " + words + "\" /dev/null").out;
+  };
+  const std::string slow = "--set scene.duration='60 s' --set simulator.time_step='1 us' ";
+  EXPECT_THAT(seen("run small.yaml --out a " + slow),
+              ContainsRegex("small: [0-9]+ %, [0-9]+ s left"));
+  EXPECT_THAT(seen("new calibrate record.csv --length 0.33 --out mine.yaml; '" MODCAL_PROGRAM
+                   "' run mine.yaml"),
+              ContainsRegex("record.csv: [0-9]+ s"));
+  EXPECT_THAT(seen("run small.yaml --quiet --out b " + slow), Not(HasSubstr("small: ")));
+  // Nor where nobody sees it.
+  EXPECT_THAT(modcal("run small.yaml --out c " + slow).err, Not(HasSubstr("small: ")));
+}
+
 TEST_F(Answers, HelpHasExamplesAndExitCodes) {
   const Outcome bare = modcal("");
   EXPECT_EQ(bare.code, 2);
