@@ -70,6 +70,12 @@ Complaint mistake_of(const CLI::App& app, const CLI::ParseError& error) {
     const std::string missing = upper_case(text.substr(0, text.find(' ')));
     return {.text = fmt::format("{} is missing: {}", missing, usage)};
   }
+  if (is<CLI::RequiresError>(error)) {
+    const std::size_t end = text.find(' ');
+    return {.place = {.option = text.substr(0, end)},
+            .text = fmt::format("is read with a {} alone: name it, or leave the option out: {}",
+                                upper_case(text.substr(text.rfind(' ') + 1)), usage)};
+  }
   if (is<CLI::ExtrasError>(error)) {
     return {.text = fmt::format("{} does not take \"{}\": {}", name,
                                 fmt::join(app.remaining(true), " "), usage)};

@@ -71,7 +71,11 @@ std::string example_of(const std::string& kind, const std::string& out) {
       if (at == std::string::npos) continue;
       text.replace(at + 2, read.size(), yaml_string(seen_from(out, file.parent_path() / read)));
     }
-    return text;
+    Choice<Experiment> experiment;
+    experiment.select(kind);
+    return commented(text, describe_options([&experiment](OptionVisitor& visitor) {
+                       experiment.visit_options(visitor);
+                     }));
   }
   throw_invalid_input("unknown kind \"{}\"{}", kind, suggestion(kind, kinds));
 }
@@ -196,10 +200,13 @@ ExitCode write_new(const NewArguments& arguments) {
 void declare(CLI::App& command, NewArguments& arguments) {
   command.add_option("kind", arguments.kind, "kind of experiment, see modcal list experiment")
       ->required();
-  command.add_option("record", arguments.record,
-                     "recorded file, of which the string and the contact point are read");
-  command.add_option("--length", arguments.length, "vibrating length, \"0.33 m\"");
-  command.add_option("--linear-density", arguments.linear_density, "mass per length, \"1 g/m\"");
+  CLI::Option* record =
+      command.add_option("record", arguments.record,
+                         "recorded file, of which the string and the contact point are read");
+  // An example has a string of its own.
+  command.add_option("--length", arguments.length, "vibrating length, \"0.33 m\"")->needs(record);
+  command.add_option("--linear-density", arguments.linear_density, "mass per length, \"1 g/m\"")
+      ->needs(record);
   command.add_option("--out", arguments.out, "file to write; default: standard output")
       ->check(complaint_about_name);
 }

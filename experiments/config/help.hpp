@@ -15,6 +15,10 @@ nlohmann::ordered_json describe_options(const std::function<void(OptionVisitor&)
 /// The same as lines of text, indented by level.
 std::string help_text(const nlohmann::ordered_json& options);
 
+/// YAML with what its keys mean beside or above them, as `options` of describe_options() say it;
+/// what has a comment keeps it.
+std::string commented(const std::string& yaml, const nlohmann::ordered_json& options);
+
 /// JSON schema (2020-12) of a map with these options; numbers may be texts with a unit.
 nlohmann::ordered_json options_schema(const std::function<void(OptionVisitor&)>& visit);
 

@@ -36,6 +36,17 @@ double shifted(std::string_view number, int shift) {
   return read.ec == std::errc() ? value : std::numeric_limits<double>::quiet_NaN();
 }
 
+// What a list of numbers is for, where people write a word or a flag in its place.
+struct ListHint {
+  std::string_view key, hint;
+};
+constexpr ListHint kListHints[] = {
+    {"whole", "; write the long window as [start, stop], such as whole: [0.1 s, 0.4 s]"},
+    {"windows",
+     "; windows lists the starts of short windows: a long one is whole: [start, stop], and without "
+     "windows all of the record but its ends is scored"},
+};
+
 std::string unit_mistake(std::string_view text, std::string_view unit, std::string_view si_unit,
                          const std::string& expected) {
   if (is_unit(unit)) {
@@ -154,7 +165,12 @@ bool YamlReader::read(const OptionInfo& info, const YamlNode& node, std::vector<
   values.clear();
   const auto add = [&](const YamlNode& item) {
     Value value{};
-    if (read(info, item, value)) values.push_back(std::move(value));
+    if (read(info, item, value)) return values.push_back(std::move(value));
+    const auto known = std::ranges::find(kListHints, info.key, &ListHint::key);
+    const bool is_word = item.text.find_first_of("0123456789") == std::string::npos;
+    if (known != std::end(kListHints) && is_word && !item.refused) {
+      mistakes_.back().text += known->hint;
+    }
   };
   if (node.kind == YamlNode::Kind::kScalar && !(node.text.empty() && !node.quoted)) {
     add(node);  // a single value is a list of one

@@ -132,6 +132,24 @@ void ask_for_calibrations(InspectionReport& report) {
   ask(report.record.has_reference, "reference", report.record.reference);
 }
 
+// Two ends that read the same, sample for sample, are one sensor twice.
+void list_copies(const Recording& recording, InspectionReport& report) {
+  const RecordOptions& record = report.record;
+  if (!report.measured || !record.has_left || !record.has_right) return;
+  const auto samples_of = [&recording](const std::string& name) -> const std::vector<double>* {
+    const auto found = std::ranges::find(recording.channels, name, &RecordedChannel::name);
+    return found == recording.channels.end() ? nullptr : &found->samples;
+  };
+  const std::vector<double>* left = samples_of(record.left.channel);
+  const std::vector<double>* right = samples_of(record.right.channel);
+  if (left == nullptr || right == nullptr || left->empty() || *left != *right) return;
+  report.problems.push_back(
+      fmt::format("{}: channels {} and {} are one signal, sample for sample: give each end a "
+                  "sensor and a channel of its own, or leave one of them out",
+                  report.file, record.left.channel, record.right.channel));
+  ++report.problem_count;
+}
+
 void list_faults(InspectionReport& report) {
   for (const ChannelInspection& channel : report.channels) {
     const RecordOptions& record = report.record;
@@ -169,11 +187,11 @@ InspectionReport inspect(const std::filesystem::path& path, const InspectionOpti
                           .record = {}};
   for (RecordedChannel& channel : recording.channels) {
     report.channels.push_back(inspect_channel(channel));
-    channel = {};
   }
   report.record = propose(path, options, report.channels);
   ask_for_calibrations(report);
   list_faults(report);
+  if (report.problem_count == 0) list_copies(recording, report);
   return report;
 }
 
