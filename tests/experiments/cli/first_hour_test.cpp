@@ -36,6 +36,9 @@ class FirstHour : public testing::ProgramTest {
 };
 
 TEST_F(FirstHour, GoesFromARecordToTheForceWithItsBand) {
+  const Outcome paper = modcal("reproduce table1");
+  ASSERT_EQ(paper.code, 0) << paper.err;
+  EXPECT_THAT(content_of(folder() / "out/table1/report.html"), HasSubstr("Table 1"));
   ASSERT_EQ(modcal("new calibrate record.csv --length '0.33 m' --out mine.yaml").code, 0);
   const Outcome valid = modcal("validate mine.yaml");
   ASSERT_EQ(valid.code, 0) << valid.err;

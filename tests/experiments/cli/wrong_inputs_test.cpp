@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
@@ -70,11 +71,21 @@ bool says(const std::string& text, const std::string& expected) {
   return true;
 }
 
+// The headings behind the comments that follow them.
+std::string comments_first(const std::string& record) {
+  const std::size_t headings = record.find('\n') + 1;
+  std::size_t rows = headings;
+  while (record[rows] == '#') rows = record.find('\n', rows) + 1;
+  return record.substr(headings, rows - headings) + record.substr(0, headings) +
+         record.substr(rows);
+}
+
 class WrongInputs : public testing::ProgramTest {
  protected:
   WrongInputs() {
-    std::filesystem::copy_file(std::string(MODCAL_EXAMPLES) + "/bowed_violin_d.csv",
-                               path("good.csv"));
+    // Comments first, as many programs write them: the other order is read as well.
+    std::ofstream(path("good.csv"))
+        << comments_first(content_of(std::string(MODCAL_EXAMPLES) + "/bowed_violin_d.csv"));
     std::filesystem::copy_file(path("good.csv"), path("record.csv"));
     for (const Row& row : rows_of("bases.txt")) bases_[row.name] = row.text('|');
   }
