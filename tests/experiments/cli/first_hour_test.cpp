@@ -113,6 +113,27 @@ TEST_F(FirstHour, NeedNotKnowHowASensorWasMounted) {
   EXPECT_THAT(without.err, HasSubstr("state turned: true"));
 }
 
+TEST_F(FirstHour, IsToldOfOneSignalAtBothEndsAndOfAWrongGain) {
+  ASSERT_EQ(shell("sed 's/,f_c .N.//' record.csv > two.csv; awk -F, '/^-?[0-9]/ {print $1 \",\" "
+                  "$1; next} {print}' two.csv > copied.csv")
+                .code,
+            0);
+  for (const char* words : {"new calibrate copied.csv", "inspect copied.csv"}) {
+    const Outcome refused = modcal(words);
+    EXPECT_EQ(refused.code, 3) << words;
+    EXPECT_THAT(refused.out + refused.err, HasSubstr("R1 and R2 are one signal")) << words;
+  }
+  ASSERT_EQ(
+      shell("awk -F, '/^-?[0-9]/ {print $1 \",\" 1.3*$2; next} {print}' two.csv > gain.csv").code,
+      0);
+  ASSERT_EQ(modcal("new invert gain.csv --out gain.yaml").code, 0);
+  EXPECT_THAT(modcal("run gain.yaml").out, HasSubstr("\nto try: check the gains of both sensors"));
+  const Outcome calibrated =
+      modcal("run gain.yaml --set kind=calibrate --set string.modes=20 --out calibrated");
+  EXPECT_THAT(calibrated.out, HasSubstr("check the gains of both sensors"));
+  EXPECT_THAT(calibrated.out, Not(HasSubstr("(kind: calibrate)")));
+}
+
 TEST_F(FirstHour, MayHaveNamesThatYamlWouldMisread) {
   ASSERT_EQ(shell("sed 's/^R1 \\[N\\],R2/\"a: \"\"1\"\" #2\\\\ [N]\",- b/' record.csv > 'it: "
                   "\"mine\" #1.csv'")
@@ -155,6 +176,8 @@ TEST_F(FirstHour, HasAnExampleOfEveryKind) {
     ++count;
     const Outcome written = modcal("new " + kind + " --out " + kind + ".yaml");
     EXPECT_EQ(written.code, 0) << kind << written.err;
+    // What its sections are for stands beside them.
+    EXPECT_THAT(content_of(folder() / (kind + ".yaml")), HasSubstr("  # ")) << kind;
     EXPECT_EQ(modcal("validate " + kind + ".yaml").code, 0) << kind;
   }
   EXPECT_GE(count, 9u);

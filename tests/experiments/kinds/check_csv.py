@@ -1,7 +1,6 @@
 """check_csv.py WRITE_CONFIG_REPORTS CONFIGS MODCAL: reads every CSV file of the reports of the experiment files, run at
-a small size, of a calibration's records and of a list, by pandas.read_csv(comment="#") and numpy.genfromtxt(names=True)
-as they are. A copy of
-the example record is what the calibration reads. Exit code 77: there is no pandas or no NumPy.
+a small size, of a calibration's records, of the example record and of a list, by pandas.read_csv(comment="#") and numpy.genfromtxt(names=True)
+as they are. Exit code 77: there is no pandas or no NumPy.
 """
 import csv
 import pathlib
@@ -81,7 +80,6 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         write_files(*sys.argv[1:4], folder)
-        (folder / "record.csv").unlink()
         files = sorted(folder.rglob("*.csv"))
         found = [f"{file.relative_to(folder)}: {finding}" for file in files for finding in findings_of(file)]
     print("\n".join(found) if found else f"{len(files)} files read")
