@@ -169,7 +169,8 @@ report::Table benchmark_table(const BenchmarkGrid& grid, const std::vector<Bench
 report::Table success_map(const BenchmarkGrid& grid, const std::vector<BenchmarkCell>& cells);
 /// Heat map of the frequency RMSE over the Cramér–Rao bound; no rows where there is no bound.
 report::Table bound_map(const BenchmarkGrid& grid, const std::vector<BenchmarkCell>& cells);
-/// Which methods to use: a sentence for neighbouring conditions with the same best method.
+/// Which methods to use: a sentence for as many neighbouring conditions as one of the best methods
+/// serves.
 std::vector<std::string> recommendations(const BenchmarkGrid& grid,
                                          const std::vector<BenchmarkCell>& cells);
 /// Which methods fail, where and why.

@@ -58,9 +58,6 @@ struct Advice {
   Span error = {}, bound_ratio = {}, evaluations = {};
   std::size_t successes = 0, reasons = 0, n = 0;
 
-  bool says_the_same(const Advice& other) const {
-    return is_right == other.is_right && method == other.method && reason == other.reason;
-  }
   void add(const BenchmarkGrid& grid, const BenchmarkCell& cell) {
     conditions.push_back(grid.conditions[cell.condition]);
     error.add(cell.error.median);
@@ -93,45 +90,78 @@ std::string Advice::sentence(const BenchmarkGrid& grid) const {
   return text + ".";
 }
 
-// The methods that nothing is better than, and the cheapest of them.
-Advice advice_on(const BenchmarkGrid& grid, const std::vector<const BenchmarkCell*>& order) {
-  std::vector<const BenchmarkCell*> best;
+using Cells = std::vector<const BenchmarkCell*>;
+
+// Neighbouring conditions under which the same methods are the best, or none is right.
+struct Stretch {
+  std::vector<Cells> cells = {};          // of each condition, best first
+  std::vector<std::size_t> methods = {};  // best under all of them; empty: none is right
+};
+
+std::vector<std::size_t> best_methods(const Cells& order) {
+  std::vector<std::size_t> best;
   for (const BenchmarkCell* cell : order) {
-    if (cell->rank == 1 && cell->successes > 0) best.push_back(cell);
+    if (cell->rank == 1 && cell->successes > 0) best.push_back(cell->method);
   }
-  Advice advice{.is_right = !best.empty()};
-  const BenchmarkCell* named = nullptr;
-  if (best.empty()) {
-    named = *std::max_element(order.begin(), order.end(), [](const auto* a, const auto* b) {
-      return a->reason_count < b->reason_count;
-    });
-    advice.reason = named->reason;
-  } else {
-    named = *std::min_element(best.begin(), best.end(), [](const auto* a, const auto* b) {
-      return a->evaluations < b->evaluations;
-    });
-  }
-  advice.method = named->method;
-  for (const BenchmarkCell* cell : best) {
-    if (cell != named) advice.others.push_back(cell->method);
-  }
-  advice.add(grid, *named);
-  return advice;
+  return best;
 }
 
-// What holds under neighbouring conditions is said once.
-void join(std::vector<Advice>& all, const BenchmarkGrid& grid, Advice next,
-          const BenchmarkCell& cell) {
-  if (all.empty() || !all.back().says_the_same(next)) {
-    all.push_back(std::move(next));
-    return;
+const BenchmarkCell* cell_of(const Cells& cells, std::size_t method) {
+  const auto found =
+      std::ranges::find(cells, method, [](const BenchmarkCell* cell) { return cell->method; });
+  return found == cells.end() ? nullptr : *found;
+}
+
+const BenchmarkCell& clearest_failure(const Cells& order) {
+  return **std::ranges::max_element(order, {},
+                                    [](const BenchmarkCell* cell) { return cell->reason_count; });
+}
+
+// What holds under neighbouring conditions is said once: as many of them as one method can serve.
+std::vector<Stretch> stretches_of(const BenchmarkGrid& grid,
+                                  const std::vector<BenchmarkCell>& cells) {
+  std::vector<Stretch> stretches;
+  for (std::size_t condition = 0; condition < grid.conditions.size(); ++condition) {
+    const Cells order = ranked_cells(cells, condition);
+    if (order.empty()) continue;
+    const std::vector<std::size_t> best = best_methods(order);
+    std::vector<std::size_t> both = stretches.empty() ? best : stretches.back().methods;
+    std::erase_if(both, [&best](std::size_t method) { return !std::ranges::count(best, method); });
+    const auto same_failure = [&] {
+      const BenchmarkCell& before = clearest_failure(stretches.back().cells.back());
+      const BenchmarkCell& now = clearest_failure(order);
+      return stretches.back().methods.empty() && best.empty() && before.method == now.method &&
+             before.reason == now.reason;
+    };
+    if (stretches.empty() || (both.empty() && !same_failure())) {
+      stretches.push_back({.methods = best});
+    } else {
+      stretches.back().methods = both;
+    }
+    stretches.back().cells.push_back(order);
   }
-  Advice& last = all.back();
-  last.add(grid, cell);
-  // Under all of the conditions.
-  std::erase_if(last.others, [&next](std::size_t method) {
-    return std::find(next.others.begin(), next.others.end(), method) == next.others.end();
-  });
+  return stretches;
+}
+
+// The cheapest of the best methods, or the failure that is seen most often.
+Advice advice_on(const BenchmarkGrid& grid, const Stretch& stretch) {
+  Advice advice{.is_right = !stretch.methods.empty()};
+  if (advice.is_right) {
+    advice.method = *std::ranges::min_element(stretch.methods, {}, [&](std::size_t method) {
+      double evaluations = 0.0;
+      for (const Cells& cells : stretch.cells) evaluations += cell_of(cells, method)->evaluations;
+      return evaluations;
+    });
+  } else {
+    const BenchmarkCell& failure = clearest_failure(stretch.cells.front());
+    advice.method = failure.method;
+    advice.reason = failure.reason;
+  }
+  for (const std::size_t method : stretch.methods) {
+    if (method != advice.method) advice.others.push_back(method);
+  }
+  for (const Cells& cells : stretch.cells) advice.add(grid, *cell_of(cells, advice.method));
+  return advice;
 }
 
 // Cells of some methods whose draws are mostly wrong, told together.
@@ -194,18 +224,10 @@ std::vector<const BenchmarkCell*> ranked_cells(const std::vector<BenchmarkCell>&
 
 std::vector<std::string> recommendations(const BenchmarkGrid& grid,
                                          const std::vector<BenchmarkCell>& cells) {
-  std::vector<Advice> all;
-  for (std::size_t condition = 0; condition < grid.conditions.size(); ++condition) {
-    const auto order = ranked_cells(cells, condition);
-    if (order.empty()) continue;
-    Advice next = advice_on(grid, order);
-    const auto named = std::find_if(order.begin(), order.end(), [&next](const auto* cell) {
-      return cell->method == next.method;
-    });
-    join(all, grid, std::move(next), **named);
-  }
   std::vector<std::string> sentences;
-  for (const Advice& advice : all) sentences.push_back(advice.sentence(grid));
+  for (const Stretch& stretch : stretches_of(grid, cells)) {
+    sentences.push_back(advice_on(grid, stretch).sentence(grid));
+  }
   return sentences;
 }
 

@@ -95,7 +95,7 @@ TEST(BenchmarkSummary, ConcludesInWords) {
                                    "minimum above the value at the truth."));
 }
 
-// The same methods win at 1 % and 2 %, nothing is right at 5 %: two sentences, not three.
+// The same methods are the best at 1 % and 2 %, nothing is right at 5 %: two sentences, not three.
 TEST(BenchmarkSummary, SaysOnceWhatHoldsForNeighbouringConditions) {
   BenchmarkGrid grid = grid_of(20, 1.0);
   grid.conditions = {"noise 1 %", "noise 2 %", "noise 5 %"};
