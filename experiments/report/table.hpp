@@ -57,7 +57,8 @@ struct Table {
 /// key is empty or used twice, a format cannot print a number or the id cannot be a file name.
 void check_table(const Table& table);
 
-/// What the page shows: the cell's own text or, without one, numbers by the column's format, "NaN" for a NaN, "–" for no value.
+/// What the page shows: the cell's own text or, without one, numbers by the column's format, "NaN"
+/// for a NaN, "–" for no value.
 std::string cell_text(const Cell& cell, const Column& column);
 
 /// Heading line of "key [unit]", then one line a row; numbers with all their digits, "nan" for a
