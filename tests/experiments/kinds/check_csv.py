@@ -1,6 +1,6 @@
 """check_csv.py WRITE_CONFIG_REPORTS CONFIGS MODCAL: reads every CSV file of the reports of the experiment files, run at
-a small size, of a calibration's records, of the example record and of a list, by pandas.read_csv(comment="#") and numpy.genfromtxt(names=True)
-as they are. Exit code 77: there is no pandas or no NumPy.
+a small size, of a calibration, of the example record and of a list, by pandas.read_csv(comment="#") and
+numpy.genfromtxt(names=True) as they are. Exit code 77: there is no pandas or no NumPy.
 """
 import csv
 import pathlib
