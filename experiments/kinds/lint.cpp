@@ -1,5 +1,6 @@
 #include "experiments/kinds/lint.hpp"
 
+#include <algorithm>
 #include <set>
 
 namespace modcal {
@@ -41,19 +42,17 @@ void lint_string(const std::string& path, const StringModel& string, double posi
 
 void lint_rate(const StringModel& string, double sample_rate, const std::string& string_path,
                std::vector<Finding>& findings) {
-  if (!std::isfinite(string.fundamental)) return;
-  const auto top_mode = static_cast<std::size_t>(string.modes);
-  const double top = stiff_string_frequency(string.fundamental, string.inharmonicity, top_mode);
-  if (top < 0.5 * sample_rate) return;
-  std::size_t most = top_mode;
-  while (most > 0 && !(stiff_string_frequency(string.fundamental, string.inharmonicity, most) <
-                       0.5 * sample_rate)) {
-    --most;
-  }
+  const auto frequency = [&string](std::size_t n) {
+    return stiff_string_frequency(string.fundamental, string.inharmonicity, n);
+  };
+  auto most = static_cast<std::size_t>(string.modes);
+  const double top = frequency(most), half = 0.5 * sample_rate;
+  if (!std::isfinite(top) || top < half) return;
+  while (most > 0 && !(frequency(most) < half)) --most;
   add_finding(findings, string_path + ".modes",
               "mode {} at {:.6g} Hz is not below half the sample rate, {:.6g} Hz: use at most "
               "{} modes or a higher measurement.sample_rate",
-              string.modes, top, 0.5 * sample_rate, most);
+              string.modes, top, half, most);
 }
 
 // What the simulator refuses for its kind alone.
@@ -271,9 +270,7 @@ std::vector<Finding> lint_figures(const std::vector<FigureOptions>& figures,
     const std::string place = fmt::format("figures.{}", i);
     if (!report::is_file_stem(figure.id)) {
       add_finding(findings, place,
-                  "\"{}\" cannot name a figure's files: use letters, "
-                  "digits, - and _",
-                  figure.id);
+                  "\"{}\" cannot name a figure's files: use letters, digits, - and _", figure.id);
     }
     if (!ids.insert(figure.id).second) {
       add_finding(findings, place + ".id", "two figures have the id \"{}\": give each its own",
@@ -283,8 +280,7 @@ std::vector<Finding> lint_figures(const std::vector<FigureOptions>& figures,
       add_finding(findings, place, "figure {} has no quantities: name one, or leave the key out",
                   figure.id);
     }
-    const bool identified =
-        std::find(contents.begin(), contents.end(), "spectra") != contents.end();
+    const bool identified = std::ranges::count(contents, "spectra") > 0;
     for (const std::string& name : figure.quantities) {
       if (!identified || (name != "R1" && name != "R2")) continue;
       add_finding(findings, place,
@@ -292,7 +288,7 @@ std::vector<Finding> lint_figures(const std::vector<FigureOptions>& figures,
                   "identified: use y, v or f_c",
                   figure.id, name);
     }
-    if (std::find(contents.begin(), contents.end(), figure.content) == contents.end()) {
+    if (std::ranges::count(contents, figure.content) == 0) {
       add_finding(findings, place + ".content",
                   "figure {}: this kind of experiment has no {}; it has {}", figure.id,
                   figure.content, fmt::join(contents, ", "));
