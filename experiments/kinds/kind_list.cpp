@@ -2,7 +2,9 @@
 
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <charconv>
+#include <limits>
 #include <set>
 
 #include "experiments/study/sample.hpp"
@@ -105,6 +107,19 @@ class RunSummary {
     return report::table_csv(table);
   }
 
+  /// Of two axes the medians of the first numbers that differ, a map each.
+  std::vector<report::Table> maps() const {
+    constexpr std::size_t kMostMaps = 6;
+    std::vector<report::Table> maps;
+    if (setting_axes_.size() != 2) return maps;
+    for (const std::string& name : names_) {
+      report::Table map = this->map(name, maps.size() + 1);
+      if (!map.rows.empty()) maps.push_back(std::move(map));
+      if (maps.size() == kMostMaps) break;
+    }
+    return maps;
+  }
+
   /// The first numbers that differ, a panel each, against the first axis of numbers of one unit;
   /// no panels where there is none.
   report::Figure figure() const {
@@ -130,6 +145,43 @@ class RunSummary {
   }
 
  private:
+  // Rows and columns in the order of their first use, dark where the number is largest; without
+  // rows where it is one number everywhere.
+  report::Table map(const std::string& name, std::size_t number) const {
+    std::vector<std::string> rows, columns;
+    std::map<std::pair<std::string, std::string>, double> medians;
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    const auto note = [](std::vector<std::string>& list, const std::string& value) {
+      if (std::ranges::count(list, value) == 0) list.push_back(value);
+    };
+    for (const Setting& setting : settings_) {
+      const Sample& sample = sample_of(setting, name);
+      note(rows, setting.values[0]);
+      note(columns, setting.values[1]);
+      if (sample.values.empty()) continue;
+      const double median = medians[{setting.values[0], setting.values[1]}] = sample.median();
+      low = std::min(low, median);
+      high = std::max(high, median);
+    }
+    report::Table table{.id = fmt::format("map_{}", number),
+                        .title = name,
+                        .caption = fmt::format("Medians; rows: {}, columns: {}.",
+                                               axes_[setting_axes_[0]], axes_[setting_axes_[1]])};
+    if (!(low < high)) return table;
+    for (const std::string& row : rows) {
+      report::add_row(table, [&](report::RowWriter& writer) {
+        writer({.key = axes_[setting_axes_[0]]}, row);
+        for (const std::string& column : columns) {
+          const auto found = medians.find({row, column});
+          report::Cell cell = found == medians.end() ? report::Cell() : found->second;
+          if (found != medians.end()) cell.heat = (found->second - low) / (high - low);
+          writer.cell({.key = column}, std::move(cell));
+        }
+      });
+    }
+    return table;
+  }
+
   static const Sample& sample_of(const Setting& setting, const std::string& name) {
     static const Sample kNone;
     const auto found = setting.samples.find(name);
@@ -214,7 +266,12 @@ StudyResult sum_up_runs(const TaskExperiment& list, const TaskOutcomes& outcomes
                                  summary.add(task, std::move(outcome));
                                });
   report::Figure figure = summary.figure();
-  if (!figure.panels.empty()) result.blocks.emplace_back(std::move(figure));
+  if (!figure.panels.empty()) {
+    result.blocks.emplace_back(std::move(figure));
+  } else {
+    result.add(summary.maps());
+  }
+  result.end_first_screen();
   report::Table settings = summary.settings();
   result.summary = fmt::format("{} of {} tasks done, {} failed; {} settings, see tasks.csv\n",
                                outcomes.size() - result.pending_tasks, outcomes.size(),

@@ -82,6 +82,44 @@ TEST(KindList, IdentifiesOverAnAxis) {
   EXPECT_EQ(figure.panels[0].x.unit, "%");
 }
 
+// Words have no place on an axis: their medians are maps, the largest number dark.
+TEST(KindList, TwoAxesOfWordsMakeMaps) {
+  const LoadedExperiment loaded = loaded_from(R"(kind: invert
+scene:
+  string: {length: 0.33 m, linear_density: 3.1e-3 kg/m, fundamental: 196 Hz, modes: 10, damping: {type: constant, ratio: 2e-3}}
+  bow: {position: 30 mm, velocity: 0.1 m/s, normal_force: 1 N}
+  duration: 0.2 s
+measurement: {sample_rate: 12.5 kHz, noise_level: 1 %}
+inversion: {estimator: one_sided}
+sweep:
+  product:
+    inversion.regularizer: [tikhonov, wiener, water_level]
+    inversion.parameter_choice: [gcv, evidence]
+)");
+  const TaskExperiment& list = list_of(loaded);
+  SharedWork work;
+  const StudyResult result = list.run({.work = work, .folder = ".", .command = {}, .stop = {}});
+  ASSERT_GT(result.first_screen, 0u);
+  ASSERT_LT(result.first_screen, result.blocks.size());
+  for (std::size_t i = 0; i < result.first_screen; ++i) {
+    const auto* map = std::get_if<report::Table>(&result.blocks[i]);
+    ASSERT_NE(map, nullptr);
+    ASSERT_EQ(map->rows.size(), 3u);
+    ASSERT_EQ(map->columns.size(), 3u);
+    EXPECT_EQ(map->columns[2].key, "evidence");
+    double lightest = 1.0, darkest = 0.0;
+    for (const auto& row : map->rows) {
+      for (std::size_t j = 1; j < row.size(); ++j) {
+        if (row[j].heat < 0.0) continue;  // no number
+        lightest = std::min(lightest, row[j].heat);
+        darkest = std::max(darkest, row[j].heat);
+      }
+    }
+    EXPECT_EQ(lightest, 0.0) << map->title;
+    EXPECT_EQ(darkest, 1.0) << map->title;
+  }
+}
+
 TEST(KindList, ReplaysATaskAsTheExperimentThatItIs) {
   const LoadedExperiment loaded = loaded_from(kSimulate);
   SharedWork work;
