@@ -168,13 +168,18 @@ class RunSummary {
                         .caption = fmt::format("Medians; rows: {}, columns: {}.",
                                                axes_[setting_axes_[0]], axes_[setting_axes_[1]])};
     if (!(low < high)) return table;
+    // Decades would leave one cell dark.
+    const bool by_decades = low > 0.0 && high > 100.0 * low;
+    const auto place = [by_decades](double x) { return by_decades ? std::log(x) : x; };
     for (const std::string& row : rows) {
       report::add_row(table, [&](report::RowWriter& writer) {
         writer({.key = axes_[setting_axes_[0]]}, row);
         for (const std::string& column : columns) {
           const auto found = medians.find({row, column});
           report::Cell cell = found == medians.end() ? report::Cell() : found->second;
-          if (found != medians.end()) cell.heat = (found->second - low) / (high - low);
+          if (found != medians.end()) {
+            cell.heat = (place(found->second) - place(low)) / (place(high) - place(low));
+          }
           writer.cell({.key = column}, std::move(cell));
         }
       });

@@ -214,11 +214,11 @@ void CalibrationOutcome::visit(ResultVisitor& visitor) const {
         found->stages, visit_stage);
   }
   visitor.rows({.key = "parameters", .shown = kInJson}, result.parameters, visit_parameter);
-  if (found) visit_pairs(visitor, *found);
-  if (found) visit_causes(visitor, *found);
   visitor.rows(
       {.key = "modes", .table = "modes", .name = "Modal frequencies"}, result.modes,
       [this](ResultVisitor& row, const CalibratedMode& mode) { visit_mode(row, *this, mode); });
+  if (found) visit_causes(visitor, *found);
+  if (found) visit_pairs(visitor, *found);
   visitor.rows({.key = "trace"}, search.trace, [](ResultVisitor& item, const TracePoint& point) {
     item({}, std::pair(point.evaluations, point.value));
   });

@@ -22,12 +22,12 @@ report::Table identification_table(const std::vector<SideIdentification>& sides)
     const auto parameter = free ? std::nullopt : std::optional(choice.parameter());
     report::add_row(table, [&](report::RowWriter& row) {
       row.cell({.key = "side"}, side_cell(side.estimate.side));
+      row({}, score);
       row({.key = "parameter", .unit = "N/N"}, parameter);
       row({.key = "relative_parameter", .name = "parameter / max|H|"},
           free ? parameter : *parameter / side.estimate.largest_transfer);
       row({.key = "kept_share", .name = "share of bins kept"}, choice.kept_share);
       row({.key = "choice", .name = "parameter choice"}, name_of(choice.status));
-      row({}, score);
       row({.key = "force_deviation",
            .name = "standard deviation of the force, posterior",
            .unit = "N"},
