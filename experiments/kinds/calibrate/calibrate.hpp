@@ -232,11 +232,11 @@ inline constexpr std::string_view kInitialKey = "initial", kFinalKey = "final",
 /// of their deviation; the files keep SI units and all digits.
 std::vector<report::Table> parameter_tables(const CalibrationOutcome& outcome);
 
-/// A value to two digits of its width; to eight where that is not known.
-std::string rounded(double value, double width);
+/// A value to two digits of its deviation; to six of its own where that is not known.
+std::string to_deviation(double value, double deviation);
 
-/// The law and the contact with 95 % and the verdict, in a sentence; of a search without an
-/// estimate the values alone, of a fit that is not right what contradicts it.
+/// The law and the contact with 95 %, the modes identified and the verdict, in a sentence, of a
+/// calibration that is not refused; of a search without an estimate the values alone.
 std::string calibration_answer(const CalibrationOutcome& outcome);
 
 /// Adds the search, its parameters with standard deviations, and the verdicts of the fit.
@@ -248,6 +248,9 @@ void add_calibration_warnings(const CalibrationOutcome& outcome, StudyResult& re
 
 /// What χ² says of a continuation's fit, in words.
 std::string chi2_text(const ContinuationResult& found);
+
+/// What of the law, the contact and everything free has no deviation, by name; empty: nothing.
+std::string unknown_values(const ContinuationResult& found);
 
 /// What contradicts a result that is not right: χ², the priors stated, a cause of misfit, or
 /// several of them; else empty.

@@ -7,12 +7,11 @@
 #include "experiments/report/result.hpp"
 
 namespace modcal {
-namespace {
 
-// With the last digit that the deviation leaves two of; plain where the deviation is not known.
 std::string to_deviation(double value, double deviation) {
   constexpr double kLeastPlain = 1e-3, kMostPlain = 1e6;
-  if (!(deviation > 0.0) || value == 0.0) return fmt::format("{:.6g}", value);
+  if (value == 0.0) return "0";
+  if (!(deviation > 0.0)) return fmt::format("{:.6g}", value);
   const auto place = [](double x) { return static_cast<int>(std::floor(std::log10(std::abs(x)))); };
   const int last = place(deviation) - 1;
   const double size = std::abs(value);
@@ -21,6 +20,8 @@ std::string to_deviation(double value, double deviation) {
   }
   return fmt::format("{:.{}e}", value, std::clamp(place(value) - last, 0, 17));
 }
+
+namespace {
 
 // "30.00021 ± 0.00058 mm".
 std::string answer_of(const CalibratedParameter& parameter, bool is_length) {
@@ -63,17 +64,8 @@ std::vector<report::Table> parameter_tables(const CalibrationOutcome& outcome) {
   return tables;
 }
 
-std::string rounded(double value, double width) {
-  constexpr int kDigits = 8;
-  if (!(width > 0.0)) return fmt::format("{:.{}g}", value, kDigits);
-  if (value == 0.0) return "0";
-  const auto place = [](double x) { return static_cast<int>(std::floor(std::log10(std::abs(x)))); };
-  return fmt::format("{:.{}g}", value, std::clamp(place(value) - place(width) + 2, 1, 17));
-}
-
 std::string calibration_answer(const CalibrationOutcome& outcome) {
   const ContinuationResult* found = outcome.result.continuation.get();
-  if (found && !found->right) return contradiction(*found);
   std::vector<std::string> values;
   for (const CalibratedParameter& parameter : outcome.result.parameters) {
     const auto name = parse_parameter(parameter.name);

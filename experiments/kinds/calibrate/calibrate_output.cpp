@@ -148,7 +148,7 @@ void visit_estimate(ResultVisitor& visitor, const ContinuationResult& found) {
   const auto group = [&visitor](std::string_view key, auto visit, const auto& value) {
     visitor.group({.key = key}, [&](ResultVisitor& members) { visit(members, value); });
   };
-  visitor({.key = "right"}, found.right);
+  visitor({.key = "right"}, found.right && unknown_values(found).empty());
   visitor({.key = "fits"}, found.fits);
   visitor({.key = "chi2"}, found.chi2);
   visitor({.key = "chi2_sd"}, found.chi2_deviation);

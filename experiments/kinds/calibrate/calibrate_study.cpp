@@ -47,7 +47,7 @@ void add_answer(const CalibrateOptions& options, const InvertOptions& shown, con
     note(result, chi2_text(*estimate),
          estimate->fits ? report::Text::Kind::kNote : report::Text::Kind::kFailure);
   }
-  result.answer = calibration_answer(found.outcome);
+  if (result.answer.empty()) result.answer = calibration_answer(found.outcome);
   std::vector<report::Figure> overview;
   std::vector<report::Figure> force;
   if (shown.overview) {

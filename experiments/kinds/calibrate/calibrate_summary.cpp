@@ -176,7 +176,7 @@ void add_calibration_summary(const CalibrationOutcome& outcome, StudyResult& res
     result.summary += fmt::format(
         "{}: {} -> {}{}", parameter.name, value_text(parameter.unit, parameter.initial),
         std::isnan(parameter.deviation) ? value_text(parameter.unit, parameter.final)
-                                        : rounded(parameter.final, 0.1 * parameter.deviation),
+                                        : to_deviation(parameter.final, 0.1 * parameter.deviation),
         parameter.unit == "1" ? "" : " " + parameter.unit);
     result.summary +=
         std::isnan(parameter.deviation) ? "\n" : fmt::format(", sd {:.3g}\n", parameter.deviation);
@@ -192,7 +192,6 @@ void add_calibration_summary(const CalibrationOutcome& outcome, StudyResult& res
   }
 }
 
-// What of the law, the contact and everything free has no deviation; empty: nothing.
 std::string unknown_values(const ContinuationResult& found) {
   constexpr std::size_t kNamed = 3;
   std::vector<std::string> names = found.covariance.unknown();
@@ -224,6 +223,7 @@ void add_calibration_warnings(const CalibrationOutcome& outcome, StudyResult& re
         outcome.law ? "come from the stiff-string law" : "keep their initial values"));
   }
   const auto fail = [&result](const std::string& text) {
+    if (result.answer.empty()) result.answer = text;
     result.warn(text);
     result.failed_tasks = 1;
     result.status = report::Status::kFailed;

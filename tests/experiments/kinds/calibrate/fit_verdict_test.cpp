@@ -46,6 +46,9 @@ TEST(CalibrationWarnings, RefuseWhatHasNoDeviation) {
   StudyResult refused;
   add_calibration_warnings(outcome, refused);
   EXPECT_EQ(refused.status, report::Status::kFailed);
+  // What refuses it stands in the head of the report, in the place of the values.
+  EXPECT_THAT(refused.answer, HasSubstr("tells of f1, f2, 2 more is not known"));
+  EXPECT_EQ(right.answer, "");
   EXPECT_THAT(refused.summary, HasSubstr("tells of f1, f2, 2 more is not known"));
 }
 
