@@ -15,6 +15,8 @@ mkdir -p "$out"/source/{api,benchmarks}
 ln -s "$root"/{README.md,CHANGELOG.md,docs} "$out/source"
 ln -s "$root/benchmarks/README.md" "$out/source/benchmarks"
 ln -sfn "$root"/cmake/site/{mkdocs.yml,theme} "$out"
+ln -sfn "$root/python" "$out/package"
+ln -s "$root/cmake/site/python_reference.md" "$out/source"
 
 cmake -D MODCAL_SOURCE_DIR="$root" -D CMAKE_INSTALL_PREFIX="$out" -D MODCAL_INCLUDE_DIR=include \
   -P "$root/cmake/install_headers.cmake" >/dev/null

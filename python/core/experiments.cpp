@@ -6,6 +6,7 @@
 
 #include "experiments/cli/command.hpp"
 #include "experiments/cli/runner.hpp"
+#include "experiments/kinds/structure/structure_files.hpp"
 #include "experiments/loader.hpp"
 #include "experiments/runs/task_experiment.hpp"
 #include "libsim/records/record_file.hpp"
@@ -116,15 +117,20 @@ std::string finished_tasks(const std::string& folder) {
   return rows.dump();
 }
 
-std::unique_ptr<GivenRecording> give(const std::string& name, double sample_rate,
-                                     const std::vector<std::pair<std::string, Numbers>>& channels) {
+std::unique_ptr<GivenRecording> give(
+    const std::string& name, double sample_rate,
+    const std::vector<std::tuple<std::string, std::string, Numbers>>& channels) {
   Recording recording;
   recording.format = "array";
   recording.sample_rate = sample_rate;
   recording.rate_source = "as stated by the user";
-  for (const auto& [channel, samples] : channels) {
+  for (const auto& [channel, kind, samples] : channels) {
     const auto held = span_of(samples);
-    recording.channels.push_back({channel, "N", 1.0, {held.begin(), held.end()}});
+    MODCAL_REQUIRE(std::ranges::count(sensor_kind_names(), kind) > 0,
+                   "channel {} cannot read \"{}\": {}", channel, kind,
+                   fmt::join(sensor_kind_names(), ", "));
+    recording.channels.push_back(
+        {channel, std::string(unit_of(sensor_kind_of(kind))), 1.0, {held.begin(), held.end()}});
   }
   return std::make_unique<GivenRecording>(name, std::move(recording));
 }

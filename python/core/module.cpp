@@ -9,6 +9,8 @@ PYBIND11_MODULE(_core, module) {
   modcal::python::add_results(module);
   modcal::python::add_experiments(module);
   modcal::python::add_searches(module);
+  modcal::python::add_models(module);
   modcal::python::add_inversions(module);
+  modcal::python::add_own_objectives(module);
   modcal::python::add_own_searches(module);
 }

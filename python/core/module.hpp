@@ -10,7 +10,9 @@ namespace py = pybind11;
 void add_experiments(py::module_& module);
 void add_results(py::module_& module);
 void add_searches(py::module_& module);
+void add_models(py::module_& module);
 void add_inversions(py::module_& module);
+void add_own_objectives(py::module_& module);
 void add_own_searches(py::module_& module);
 
 }  // namespace modcal::python

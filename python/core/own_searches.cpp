@@ -1,92 +1,12 @@
-// Objectives and optimizers written in Python.
-#include <pybind11/complex.h>
+// Optimizers written in Python, and functions of Python for those of modcal.
 #include <pybind11/stl.h>
 
 #include "python/core/module.hpp"
-#include "python/core/searches.hpp"
+#include "python/core/own_functions.hpp"
 #include "python/core/watched.hpp"
 
 namespace modcal::python {
 namespace {
-
-/// Callables of x; None where there is none.
-struct Callables {
-  py::object value, gradient, residuals, jacobian;
-};
-
-// Of what is registered the program says whose exception it is; elsewhere that goes to its caller.
-template <typename Call>
-auto told_by(const std::string& name, const Call& call) {
-  try {
-    return call();
-  } catch (const py::error_already_set& error) {
-    if (name.empty() || error.matches(py::module_::import("modcal.errors").attr("SearchOver"))) {
-      throw;
-    }
-    if (error.matches(PyExc_KeyboardInterrupt)) throw Interrupted();
-    throw_invalid_input("\"{}\", written in Python, has failed: {}", name, error.what());
-  }
-}
-
-/// What of a calibration's search is that of Python's function. told: its name where it is
-/// registered.
-class OwnFunction final : public ObjectiveFunction {
- public:
-  OwnFunction(Callables callables, std::size_t dimension, std::size_t residuals,
-              std::string told = {})
-      : callables_(std::move(callables)),
-        dimension_(dimension),
-        residual_count_(residuals),
-        told_(std::move(told)) {}
-  ~OwnFunction() override {
-    const py::gil_scoped_acquire locked;
-    callables_ = {};
-  }
-  OwnFunction(const OwnFunction&) = delete;
-  OwnFunction& operator=(const OwnFunction&) = delete;
-  std::string_view name() const override { return told_.empty() ? "own" : told_; }
-  std::size_t dimension() const override { return dimension_; }
-  std::size_t residual_count() const override { return residual_count_; }
-  Capabilities capabilities() const override {
-    return {.gradient = !callables_.gradient.is_none(),
-            .least_squares = !callables_.jacobian.is_none(),
-            .residuals = !callables_.residuals.is_none()};
-  }
-
- private:
-  void do_evaluate(std::span<const double> x, const ObjectiveOutputs& outputs) const override {
-    const py::gil_scoped_acquire locked;
-    const py::array at = array_of({x.begin(), x.end()});
-    told_by(told_, [&] {
-      if (outputs.value != nullptr) *outputs.value = value_at(at);
-      fill(callables_.gradient, at, dimension_, "the gradient", outputs.gradient);
-      fill(callables_.residuals, at, residual_count_, "the residuals", outputs.residuals);
-      fill(callables_.jacobian, at, residual_count_ * dimension_, "the Jacobian", outputs.jacobian);
-    });
-  }
-  // Of residuals alone it is half their sum of squares.
-  double value_at(const py::array& at) const {
-    if (!callables_.value.is_none()) return callables_.value(at).cast<double>();
-    std::vector<double> residuals(residual_count_);
-    fill(callables_.residuals, at, residual_count_, "the residuals", residuals.data());
-    double sum = 0.0;
-    for (const double residual : residuals) sum += residual * residual;
-    return 0.5 * sum;
-  }
-  static void fill(const py::object& callable, const py::array& at, std::size_t size,
-                   const char* what, double* target) {
-    if (target == nullptr) return;
-    const Numbers numbers = callable(at).cast<Numbers>();
-    MODCAL_REQUIRE(static_cast<std::size_t>(numbers.size()) == size,
-                   "{} of the objective has {} values in the place of {}", what, numbers.size(),
-                   size);
-    std::copy_n(numbers.data(), size, target);
-  }
-
-  Callables callables_;
-  std::size_t dimension_, residual_count_;
-  std::string told_;
-};
 
 /// The evaluator of a search, for as long as that lasts.
 struct OwnEvaluator {
@@ -159,57 +79,8 @@ class OwnOptimizer final : public Optimizer {
   std::string told_;
 };
 
-py::array spectrum_of(const std::vector<Complex>& spectrum) {
-  return py::array_t<Complex>(static_cast<py::ssize_t>(spectrum.size()), spectrum.data());
-}
-
-// What an objective of Python's is bound to.
-py::object record_of(const CalibrationData& data, const ParameterSet& parameters) {
-  std::vector<std::string> names;
-  for (const Variable& variable : parameters.variables()) names.push_back(variable.name);
-  const auto model = [parameters](const Numbers& x) {
-    MODCAL_REQUIRE(static_cast<std::size_t>(x.size()) == parameters.size(),
-                   "x has {} values: the problem has {} variables, give one for each", x.size(),
-                   parameters.size());
-    const ModelPoint point = parameters.model(span_of(x));
-    py::dict told;
-    told["frequencies"] = array_of(frequencies_of(point.basis));
-    told["damping_ratios"] = array_of({point.basis.zeta.begin(), point.basis.zeta.end()});
-    told["contact"] = point.contact;
-    return told;
-  };
-  return py::module_::import("types").attr("SimpleNamespace")(
-      py::arg("rate") = data.sample_rate, py::arg("samples") = data.samples,
-      py::arg("left") = spectrum_of(data.reaction(End::kLeft)),
-      py::arg("right") = spectrum_of(data.reaction(End::kRight)), py::arg("names") = names,
-      py::arg("x0") = array_of(parameters.start()), py::arg("model") = py::cpp_function(model));
-}
-
-/// An objective by bind(record) -> function of x.
-class OwnObjective final : public Objective {
- public:
-  OwnObjective(py::object bind, std::string told)
-      : bind_(std::move(bind)), told_(std::move(told)) {}
-  Capabilities capabilities() const override { return {}; }
-
- private:
-  std::unique_ptr<const ObjectiveFunction> do_bind(const CalibrationData& data,
-                                                   const ParameterSet& parameters) const override {
-    const py::gil_scoped_acquire locked;
-    const py::object value = told_by(told_, [&] { return bind_(record_of(data, parameters)); });
-    return std::make_unique<OwnFunction>(Callables{value, py::none(), py::none(), py::none()},
-                                         parameters.size(), 0, told_);
-  }
-  py::object bind_;
-  std::string told_;
-};
-
 void add_optimizer(const std::string& name, const py::object& search, const std::string& summary) {
   Optimizer::add(name, summary, std::make_shared<OwnOptimizer>(search, name));
-}
-
-void add_objective(const std::string& name, const py::object& bind, const std::string& summary) {
-  Objective::add(name, summary, std::make_shared<OwnObjective>(bind, name));
 }
 
 std::vector<Variable> variables_of(const py::list& list) {
@@ -277,7 +148,6 @@ void add_own_searches(py::module_& module) {
              py::arg("variables"), py::arg("options"), py::arg("progress"));
   module.def("add_optimizer", &add_optimizer, py::arg("name"), py::arg("search"),
              py::arg("summary"));
-  module.def("add_objective", &add_objective, py::arg("name"), py::arg("bind"), py::arg("summary"));
   module.def("search", &search, py::arg("problem"), py::arg("search"), py::arg("options"));
 }
 

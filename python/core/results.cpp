@@ -144,6 +144,7 @@ std::string_view status_of(const Outcome& outcome) {
 void add_results(py::module_& module) {
   py::class_<Outcome, std::shared_ptr<Outcome>>(module, "Outcome")
       .def_property_readonly("summary", [](const Outcome& self) { return self.result.summary; })
+      .def_property_readonly("answer", [](const Outcome& self) { return self.result.answer; })
       .def_property_readonly("status", &status_of)
       .def_property_readonly("seconds", [](const Outcome& self) { return self.seconds; })
       .def_property_readonly("missed", [](const Outcome& self) { return self.result.missed; })

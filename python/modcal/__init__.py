@@ -5,15 +5,16 @@
     found.parameters, found.f_c_joint, found.plot()
 """
 from modcal.errors import InvalidInput, Mistake, SearchOver
-from modcal.experiments import (ask, calibrate, describe, invert, limit, load, new, plugins, run, schema, simulate,
-                                validate)
+from modcal.experiments import (ask, calibrate, describe, fit_modes, identify, invert, limit, load, new, plugins, run,
+                                schema, simulate, validate)
 from modcal.inverter import Estimate, Inverter
+from modcal.models import Model
 from modcal.problem import Problem, Search, Variable, add_objective, add_optimizer, minimize
 from modcal.records import Record
 from modcal.results import Result, Table
 
 __all__ = [
-    "Estimate", "InvalidInput", "Inverter", "Mistake", "Problem", "Record", "Result", "Search", "SearchOver",
-    "Table", "Variable", "add_objective", "add_optimizer", "ask", "calibrate", "describe", "invert", "limit", "load", "minimize", "new", "plugins",
-    "run", "schema", "simulate", "validate",
+    "Estimate", "InvalidInput", "Inverter", "Mistake", "Model", "Problem", "Record", "Result", "Search",
+    "SearchOver", "Table", "Variable", "add_objective", "add_optimizer", "ask", "calibrate", "describe",
+    "fit_modes", "identify", "invert", "limit", "load", "minimize", "new", "plugins", "run", "schema", "simulate", "validate",
 ]

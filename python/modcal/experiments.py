@@ -10,6 +10,7 @@ from typing import Any, Callable, Mapping, Union
 
 from modcal import _core, results, yaml
 from modcal.errors import InvalidInput, Mistake
+from modcal.models import Model, stated
 from modcal.records import Record
 from modcal.results import Result, Table
 
@@ -106,6 +107,7 @@ def _run_into(out: Path, source: Source, overrides: Mapping[str, Any] | None, th
         words += ["--threads", str(threads)]
     answer = ask(*words, progress=progress)
     result = load(out)
+    result.answer = answer.get("answer", "")
     result.summary = answer.get("summary", "")
     result.missed = answer.get("missed", [])
     result.status = {0: "ok", 5: "ok", 4: "some_failed"}.get(answer.get("error", {}).get("exit_code", 0), "failed")
@@ -183,23 +185,41 @@ def simulate(**keys: Any) -> Result:
     return run({"kind": "simulate", "files": ["csv"], **keys})  # without, no signals are kept
 
 
-def _on(record: Record, kind: str, string: Mapping[str, Any], position: float | str,
+def _on(record: Record, kind: str, string: Model | Mapping[str, Any], position: float | str | None,
         keys: Mapping[str, Any]) -> Result:
-    return run({"kind": kind, "record": record.section(), "string": string, "bow": {"position": position}, **keys})
+    return run({"kind": kind, "record": record.section(), **stated(string, position), **keys})
 
 
-def invert(record: Record, string: Mapping[str, Any], position: float | str, **keys: Any) -> Result:
+def invert(record: Record, string: Model | Mapping[str, Any], position: float | str | None = None,
+           **keys: Any) -> Result:
     """Force and motion at the contact from the reactions.
 
-    string: {"length": 0.33, "linear_density": 1e-3, "fundamental": 294, ...}. position: x_c [m].
-    keys: the others of kind: invert, as inversion={"estimator": "left"}.
+    string: Model.string(), or {"length": 0.33, "linear_density": 1e-3, "fundamental": 294, ...} with
+    position: x_c [m]. keys: the others of kind: invert, as inversion={"estimator": "left"}.
     """
     return _on(record, "invert", string, position, keys)
 
 
-def calibrate(record: Record, string: Mapping[str, Any], position: float | str, **keys: Any) -> Result:
+def calibrate(record: Record, string: Model | Mapping[str, Any], position: float | str | None = None,
+              **keys: Any) -> Result:
     """The modal model with error bars from the reactions, and the force with it.
 
     string and position are a start. keys: the others of kind: calibrate.
     """
     return _on(record, "calibrate", string, position, keys)
+
+
+def fit_modes(record: Record, low: float | str, high: float | str, **keys: Any) -> Result:
+    """The modes of any structure from a strike whose force was measured; Model.table() takes the result.
+
+    low, high: the band [Hz]. keys: the others of kind: fit_modes.
+    """
+    return run({"kind": "fit_modes", "record": record.section(), "low": low, "high": high, **keys})
+
+
+def identify(record: Record, model: Model, **keys: Any) -> Result:
+    """The force at the contact of any structure from its responses, with its band.
+
+    model: Model.table(). keys: the others of kind: identify_force, as window="80 ms".
+    """
+    return run({"kind": "identify_force", **model.section("table"), "record": record.section(), **keys})

@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from modcal import _core, yaml
 from modcal.errors import InvalidInput
+from modcal.models import Model, stated
 from modcal.records import as_samples
 
 Array = NDArray[np.float64]
@@ -35,9 +36,9 @@ class Inverter:
     string, position, inversion: as `invert` takes them. recorded: a real string has modes above those stated.
     """
 
-    def __init__(self, string: Mapping[str, Any], position: float | str, *, samples: int, rate: float,
+    def __init__(self, string: Model | Mapping[str, Any], position: float | str | None = None, *, samples: int, rate: float,
                  inversion: Mapping[str, Any] | None = None, recorded: bool = True) -> None:
-        options = {"string": string, "bow": {"position": position}, "inversion": inversion or {}}
+        options = {**stated(string, position), "inversion": inversion or {}}
         self.samples = samples
         self._core = _core.Inverter(yaml.flow(options), samples, rate, recorded)
 

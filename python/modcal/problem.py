@@ -136,14 +136,17 @@ def add_optimizer(name: str, search: Callable[[_core.Evaluator], str | None], su
     _core.add_optimizer(name, search, summary)
 
 
-def add_objective(name: str, bind: Callable[[Any], Callable[[Array], float]], summary: str = "in Python") -> None:
+def add_objective(name: str, bind: Callable[[Any], Any], summary: str = "in Python", *,
+                  provides: Sequence[str] = ()) -> None:
     """Makes an objective of your own one that experiments choose by its name, until Python ends.
 
     bind(record) returns the objective as a function of x. record has the spectra of the reactions, left and
     right, their rate and number of samples, the names of x, x0, and model(x): frequencies [Hz],
     damping_ratios and contact [m] there.
+    provides: some of "gradient", "residuals" and "jacobian". What bind returns then has these functions of x as
+    attributes, and value(x); of residuals alone the value is half their sum of squares.
     """
-    _core.add_objective(name, bind, summary)
+    _core.add_objective(name, bind, summary, list(provides))
 
 
 def minimize(objective: Callable[[Array], float] | None, variables: Sequence[Variable], *,

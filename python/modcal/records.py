@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import itertools
-from typing import Any, Iterator
+from typing import Any, Mapping
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -38,36 +38,47 @@ def _rate(time: ArrayLike) -> float:
 
 
 class Record:
-    """Reactions at the ends of a string, of one length [N].
+    """What sensors read, rows of one length.
 
     rate: samples a second [Hz]; or time: the instant of every sample [s].
-    left: at x = 0. right: at x = L. One is enough to invert, a calibration takes both.
-    force: at the contact where it was measured, for scores alone.
+    Of a string: left, the reaction at x = 0 [N], and right, at x = L. One is enough to invert, a calibration
+    takes both. Of any structure: responses by the names of their sensors, in the order of its table; kinds:
+    what they read, "acceleration" [m/s²], "velocity" [m/s], "displacement" [m], "force" [N] or "strain", one
+    for all or by name.
+    force: at the contact where it was measured [N]; identified forces are only compared with it.
     """
 
     def __init__(self, *, rate: float | None = None, time: ArrayLike | None = None,
                  left: ArrayLike | None = None, right: ArrayLike | None = None,
-                 force: ArrayLike | None = None) -> None:
+                 force: ArrayLike | None = None, responses: Mapping[str, ArrayLike] | None = None,
+                 kinds: str | Mapping[str, str] = "acceleration") -> None:
         if (rate is None) == (time is None):
             raise InvalidInput("a record needs either rate= or time=; state one of them")
         self.rate = float(rate) if rate is not None else _rate(time)  # type: ignore[arg-type]
         if not (self.rate > 0.0 and np.isfinite(self.rate)):
             raise InvalidInput(f"rate = {self.rate} Hz cannot be a sample rate; it is > 0")
-        given = {"left": left, "right": right, "reference": force}
-        names = {"left": "R1", "right": "R2", "reference": "f_c"}
-        self._channels = {role: as_samples(role, held) for role, held in given.items() if held is not None}
-        if not {"left", "right"} & set(self._channels):
-            raise InvalidInput("a record needs a reaction; give left= or right=")
-        sizes = {role: held.size for role, held in self._channels.items()}
+        ends = {"R1": left, "R2": right}
+        if responses is not None and any(held is not None for held in ends.values()):
+            raise InvalidInput("a record is of a string's reactions or of a structure's responses; give one of them")
+        given = dict(responses) if responses is not None else ends
+        self._kinds = {name: "force" if responses is None else kinds if isinstance(kinds, str) else
+                       kinds.get(name, "acceleration") for name in given}
+        words = {"R1": "left", "R2": "right", "f_c": "force"} if responses is None else {}
+        self._channels = {name: as_samples(words.get(name, name), held)
+                          for name, held in {**given, "f_c": force}.items() if held is not None}
+        if not set(given) & set(self._channels):
+            raise InvalidInput("a record needs a reaction; give left= or right=, or responses=")
+        sizes = {words.get(name, name): held.size for name, held in self._channels.items()}
         if time is not None:
             sizes["time"] = np.asarray(time).size
         if len(set(sizes.values())) > 1:
-            told = ", ".join(f"{role} {size}" for role, size in sizes.items())
+            told = ", ".join(f"{name} {size}" for name, size in sizes.items())
             raise InvalidInput(f"the channels of a record differ in length ({told}); cut them to one")
         self.name = f"<array {next(_numbers)}>"
         self._given = _core.GivenRecording(
-            self.name, self.rate, [(names[role], held) for role, held in self._channels.items()])
-        self._names = names
+            self.name, self.rate,
+            [(name, self._kinds.get(name, "force"), held) for name, held in self._channels.items()])
+        self._of_string = responses is None
 
     def __len__(self) -> int:
         return int(next(iter(self._channels.values())).size)
@@ -77,5 +88,10 @@ class Record:
 
     def section(self) -> dict[str, Any]:
         """The section `record` of an experiment. The record has to live while that runs."""
-        roles: Iterator[str] = iter(self._channels)
-        return {"file": self.name, **{role: {"channel": self._names[role]} for role in roles}}
+        channels = {name: {"channel": name} for name in self._channels}
+        if self._of_string:
+            roles = {"R1": "left", "R2": "right", "f_c": "reference"}
+            return {"file": self.name, **{roles[name]: channel for name, channel in channels.items()}}
+        force = {"force": channels.pop("f_c")} if "f_c" in channels else {}
+        responses = [{**channel, "kind": self._kinds[name]} for name, channel in channels.items()]
+        return {"file": self.name, "responses": responses, **force}

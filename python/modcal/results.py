@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import csv
 import html
+import io
 import json
 from pathlib import Path
 from typing import Any, Iterator
@@ -67,9 +68,9 @@ class Result:
     """What an experiment found.
 
     documents: what the program writes as JSON, by name ("calibration").
-    tables: by name. signals: arrays by name; `time` belongs to them [s].
+    tables: by name. texts: other files by name ("table.yaml"). signals: arrays by name; `time` belongs to them [s].
     figures: as the report draws them, for plot().
-    summary: what the program prints. warnings: sentences.
+    answer: in a sentence. summary: what the program prints. warnings: sentences.
     status: "ok", "some_failed" or "failed".
 
     The members of the documents, the tables and the signals are attributes, too:
@@ -81,11 +82,13 @@ class Result:
         self.title = title
         self.status = "ok"
         self.seconds = float("nan")  #: that a run in memory took
+        self.answer = ""
         self.summary = ""
         self.warnings: list[str] = []
         self.missed: list[str] = []
         self.documents: dict[str, Any] = {}
         self.tables: dict[str, Table] = {}
+        self.texts: dict[str, str] = {}
         self.signals: dict[str, NDArray[np.float64]] = {}
         self.units: dict[str, str] = {}
         self.rate = float("nan")  #: of the signals [Hz]
@@ -146,11 +149,25 @@ class Result:
         return f"<modcal.Result of kind {self.kind}, {self.status}: {self.title}>\n{self.summary}".rstrip()
 
     def _repr_html_(self) -> str:
+        """The first screen of the report: the answer, a figure, a table."""
         head = f"<h3>{html.escape(self.title or self.kind)}</h3>"
+        if self.answer:
+            head += f"<p><b>{html.escape(self.answer)}</b></p>"
         told = "".join(f"<p>⚠ {html.escape(text)}</p>" for text in self.warnings)
         first = next(iter(self.tables.values()), None)
         return (f"{head}<p>{html.escape(self.kind)}, {html.escape(self.status)}</p>{told}"
-                f"<pre>{html.escape(self.summary)}</pre>{first._repr_html_() if first else ''}")
+                f"{self._drawing()}{first._repr_html_() if first else ''}"
+                f"<details><summary>what the program says</summary><pre>{html.escape(self.summary)}</pre></details>")
+
+    def _drawing(self) -> str:
+        """The default plot as SVG; nothing without matplotlib or signals."""
+        try:
+            drawn = self.plot()
+        except (ImportError, InvalidInput):
+            return ""
+        file = io.StringIO()
+        drawn.savefig(file, format="svg")
+        return file.getvalue()[file.getvalue().index("<svg"):]
 
 
 def of_outcome(kind: str, title: str, outcome: Any) -> Result:
@@ -158,6 +175,7 @@ def of_outcome(kind: str, title: str, outcome: Any) -> Result:
     result = Result(kind, title)
     result.status = outcome.status
     result.seconds = outcome.seconds
+    result.answer = outcome.answer
     result.summary = outcome.summary
     result.warnings = [text for text, _ in outcome.warnings()]
     result.missed = outcome.missed
@@ -167,6 +185,8 @@ def of_outcome(kind: str, title: str, outcome: Any) -> Result:
             result.documents[stem] = json.loads(content)
         elif kind_of_file == "csv":
             result.tables[stem] = _Csv(content).table(stem)
+        else:
+            result.texts[name] = content
     for name, told in outcome.tables().items():
         result.tables[name] = Table(name, told["columns"], told["units"], told["title"], told["caption"])
     for _, quantity, unit, rate, samples in outcome.signals():
@@ -244,6 +264,8 @@ def _read_file(result: Result, file: Path) -> None:
         _read_csv(result, file)
     elif file.suffix == ".json" and not file.with_suffix(".csv").exists():
         result.documents[file.stem] = json.loads(file.read_text(encoding="utf-8"))
+    elif file.suffix == ".yaml":
+        result.texts[file.name] = file.read_text(encoding="utf-8")
 
 
 def of_folder(folder: Path) -> Result:

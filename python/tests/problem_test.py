@@ -177,6 +177,48 @@ class Registered(Folder):
         self.assertEqual(record.left.shape, (record.samples // 2 + 1,))
         self.assertEqual(record.model([0.03])["frequencies"].shape, (12,))
 
+    def test_slopes_of_ones_own(self):
+        asked = []
+
+        class Distance:
+            def __init__(self, record):
+                self.true = record.model(record.x0)["contact"] - 0.4e-3
+
+            def residuals(self, x):
+                asked.append("residuals")
+                return [1e3 * (x[0] - self.true)]
+
+            def jacobian(self, x):
+                asked.append("jacobian")
+                return [[1e3]]
+
+        modcal.add_objective("with_jacobian", Distance, provides=["residuals", "jacobian"])
+        own = {"calibration.objective": "with_jacobian", "calibration.parameters.law": False}
+        found = modcal.run(CALIBRATE, own)  # GSL's dogleg takes nothing less
+        # One step of Gauss and Newton is exact for a residual that is linear; x has 16 digits.
+        self.assertAlmostEqual(found.parameters[0]["final"], 0.03, delta=1e-12)
+        self.assertEqual(set(asked), {"residuals", "jacobian"})
+
+        class Parabola(Distance):
+            def value(self, x):
+                return 0.5 * (1e3 * (x[0] - self.true)) ** 2
+
+            def gradient(self, x):
+                return [1e6 * (x[0] - self.true)]
+
+        modcal.add_objective("with_gradient", Parabola, provides=["gradient"])
+        by_gradient = {**own, "calibration.objective": "with_gradient",
+                       "calibration.optimizer": {"type": "nlopt", "algorithm": "LD_LBFGS"}}
+        found = modcal.run(CALIBRATE, by_gradient)
+        self.assertAlmostEqual(found.parameters[0]["final"], 0.03, delta=1e-8)
+        for provides, words in ((["slope"], "provides some of"), (["jacobian"], "that of residuals"),
+                                (["gradient", "gradient"], "each once")):
+            with self.assertRaisesRegex(modcal.InvalidInput, words):
+                modcal.add_objective("wrong", Parabola, provides=provides)
+        modcal.add_objective("without", lambda record: object(), provides=["residuals"])
+        with self.assertRaisesRegex(modcal.InvalidInput, "no attribute 'residuals'"):
+            modcal.run(CALIBRATE, {**own, "calibration.objective": "without", "calibration.optimizer": "nlopt"})
+
 
 class OwnObjective(Folder):
     VARIABLES = [Variable("a", "", -1.0, -5.0, 5.0), Variable("b", "m", 1.0, -5.0, 5.0)]

@@ -222,6 +222,9 @@ std::vector<report::Figure> calibration_overview(const CalibrationOutcome& outco
                                                  const Observation& observation,
                                                  const StringSupport& support);
 
+/// r_ij of every two parameters, shaded by |r_ij|.
+report::Table correlation_map(const NamedCovariance& covariance);
+
 // What a calibration says in a few lines.
 
 // Columns of the table of parameters that the page shows in its own units.

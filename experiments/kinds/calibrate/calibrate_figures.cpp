@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "experiments/kinds/calibrate/calibrate.hpp"
+#include "experiments/report/result.hpp"
 #include "libinverse/joint/string_transfer.hpp"
 
 namespace modcal {
@@ -130,6 +131,27 @@ std::vector<report::Figure> calibration_overview(const CalibrationOutcome& outco
                                          ratio_figure(outcome, observation, support)};
   std::erase_if(figures, [](const report::Figure& figure) { return figure.panels.empty(); });
   return figures;
+}
+
+report::Table correlation_map(const NamedCovariance& covariance) {
+  report::Table map{.id = "correlation_map",
+                    .title = "Correlations of the parameters",
+                    .caption =
+                        "Of the fit in which the frequencies obey the law. The darker, the "
+                        "less the data tell the two apart."};
+  const Eigen::MatrixXd correlations = covariance.correlations();
+  for (std::size_t i = 0; i < covariance.size(); ++i) {
+    report::add_row(map, [&](report::RowWriter& row) {
+      row({.key = "parameter"}, covariance.names[i]);
+      for (std::size_t j = 0; j < covariance.size(); ++j) {
+        const double r = correlations(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+        report::Cell cell = i == j ? report::Cell() : report::Cell(r);
+        if (i != j) cell.heat = std::abs(r);
+        row.cell({.key = covariance.names[j], .format = "{:+.2f}"}, std::move(cell));
+      }
+    });
+  }
+  return map;
 }
 
 report::Figure objective_figure(const FigureOptions& options, const CalibrationOutcome& outcome) {

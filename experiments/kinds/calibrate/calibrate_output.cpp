@@ -102,29 +102,19 @@ void visit_covariance(ResultVisitor& visitor, const NamedCovariance& covariance)
   visitor({.key = "condition"}, covariance.condition());
 }
 
-// The strongest correlations of the law, unless the data contradict it, and of all that is free.
+// The strongest correlations where every frequency is free: too many for a map.
 void visit_pairs(ResultVisitor& visitor, const ContinuationResult& found) {
-  const NamedCovariance& law = found.law.covariance;
-  std::vector<CorrelatedPair> pairs;
-  if (found.tells_of_law()) {
-    pairs = strongest_correlations(law, std::vector<bool>(law.size(), true), kPairsShown);
-  }
-  const std::size_t of_law = pairs.size();
-  if (found.frequencies_free) {
-    const auto more = strongest_correlations(found.covariance, told_by_data(found), kPairsShown);
-    pairs.insert(pairs.end(), more.begin(), more.end());
-  }
-  visitor.list({.table = "correlations",
-                .name = "Strongest correlations",
-                .meaning = "Of the law fitted by itself and, where every frequency is free, of all "
-                           "that the data identify; calibration.json has them all.",
+  if (!found.frequencies_free) return;
+  const auto& names = found.covariance.names;
+  visitor.rows({.table = "correlations",
+                .name = "Strongest correlations, every frequency free",
+                .meaning = "Of all that the data identify; calibration.json has them all.",
                 .shown = kInTables},
-               pairs.size(), {}, [&](ResultVisitor& row, std::size_t i) {
-                 const auto& names = (i < of_law ? law : found.covariance).names;
-                 row({.key = "fit"}, i < of_law ? "law" : "every frequency");
-                 row({.key = "parameter"}, names[pairs[i].first]);
-                 row({.key = "with"}, names[pairs[i].second]);
-                 row({.key = "correlation", .format = "{:+.3f}"}, pairs[i].correlation);
+               strongest_correlations(found.covariance, told_by_data(found), kPairsShown),
+               [&](ResultVisitor& row, const CorrelatedPair& pair) {
+                 row({.key = "parameter"}, names[pair.first]);
+                 row({.key = "with"}, names[pair.second]);
+                 row({.key = "correlation", .format = "{:+.3f}"}, pair.correlation);
                });
 }
 

@@ -63,8 +63,9 @@ TEST_F(FirstHour, GoesFromARecordToTheForceWithItsBand) {
             "t [s],y_joint [m],y_joint_deviation [m],v_joint [m/s],v_joint_deviation [m/s],"
             "f_c_joint [N],f_c_joint_deviation [N]");
   const std::string page = content_of(folder() / "out/mine/report.html");
-  for (const char* figure : {"identified_force", "identified_motion", "frequencies_against_law",
-                             "reaction_spectra", "reaction_ratio"}) {
+  for (const char* figure :
+       {"identified_force", "identified_motion", "frequencies_against_law", "reaction_spectra",
+        "reaction_ratio", "Correlations of the parameters"}) {
     EXPECT_THAT(page, HasSubstr(figure));
   }
 }

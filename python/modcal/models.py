@@ -1,0 +1,103 @@
+"""Modal models: a string by its keys, any structure by its table."""
+from __future__ import annotations
+
+import os
+import shutil
+import tempfile
+import weakref
+from pathlib import Path
+from typing import Any, Mapping
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from modcal import _core, yaml
+from modcal.errors import InvalidInput
+from modcal.results import Result
+
+Array = NDArray[np.float64]
+
+
+def stated(string: Model | Mapping[str, Any], position: float | str | None) -> dict[str, Any]:
+    """The keys of a string and its contact: of a model, or as given."""
+    if isinstance(string, Model):
+        if position is not None:
+            raise InvalidInput("the model has its contact already; leave position out")
+        return string.section("string", "bow")
+    if position is None:
+        raise InvalidInput("where the force acts is not said; give position, in m, or a Model.string()")
+    return {"string": string, "bow": {"position": position}}
+
+
+class Model:
+    """What a force at the contact does to the sensors:
+
+    H_k(s) = s^p [Σ_n A_kn/D_n(s) + static terms], D_n = s² + 2 ζ_n ω_n s + ω_n², p = 1 for a velocity, 2 for
+    an acceleration. Made by Model.string() or Model.table(); invert, calibrate, identify and Inverter take it.
+    """
+
+    def __init__(self, core: _core.ModalModel, keys: Mapping[str, Any]) -> None:
+        self._core = core
+        self._keys = dict(keys)
+
+    @classmethod
+    def string(cls, position: float | str, *, recorded: bool = True, **keys: Any) -> Model:
+        """A string bowed at x_c [m]. Its sensors: the reactions R1, R2 [N] and the displacement y [m] at x_c.
+
+        keys: length, linear_density, fundamental, ..., as the section `string` of an experiment.
+        recorded: a real string has modes above those stated.
+        """
+        section = {"string": keys, "bow": {"position": position}}
+        return cls(_core.ModalModel.of_string(yaml.flow(section), recorded), section)
+
+    @classmethod
+    def table(cls, source: str | os.PathLike[str] | Result) -> Model:
+        """Modes as fit_modes leaves them: their file, or what fit_modes() returned."""
+        if not isinstance(source, Result):
+            path = os.path.abspath(source)
+            return cls(_core.ModalModel.of_table(path), {"table": path})
+        if "table.yaml" not in source.texts:
+            raise InvalidInput("this result has no table of modes; give that of fit_modes()")
+        folder = tempfile.mkdtemp(prefix="modcal-")
+        path = os.path.join(folder, "table.yaml")
+        Path(path).write_text(source.texts["table.yaml"], encoding="utf-8")
+        model = cls(_core.ModalModel.of_table(path), {"table": path})
+        weakref.finalize(model, shutil.rmtree, folder, True)
+        return model
+
+    @property
+    def frequencies(self) -> Array:
+        """f_n [Hz]."""
+        return self._core.frequencies
+
+    @property
+    def damping_ratios(self) -> Array:
+        """ζ_n [1]."""
+        return self._core.damping_ratios
+
+    @property
+    def sensors(self) -> dict[str, str]:
+        """What every sensor reads, by its name."""
+        return dict(zip(self._core.sensors, self._core.kinds))
+
+    @property
+    def constants(self) -> NDArray[np.complex128]:
+        """A_kn, a row for each sensor [sensor's unit/(N s²)]."""
+        return self._core.constants
+
+    def transfer(self, frequencies: ArrayLike) -> NDArray[np.complex128]:
+        """H_k at frequencies [Hz], a row for each sensor [sensor's unit/N]."""
+        return self._core.transfer(frequencies)
+
+    def section(self, *names: str) -> dict[str, Any]:
+        """The keys of an experiment that state it. A table's are those of a structure, not of a string."""
+        missing = [name for name in names if name not in self._keys]
+        if missing:
+            kind = "a table of modes" if "table" in self._keys else "a string"
+            raise InvalidInput(f"the model is {kind}: it has no {missing[0]}; make it by "
+                               f"Model.{'table' if missing[0] == 'table' else 'string'}()")
+        return {name: self._keys[name] for name in names}
+
+    def __repr__(self) -> str:
+        low, high = self.frequencies[0], self.frequencies[-1]
+        return f"<modcal.Model of {len(self.frequencies)} modes, {low:.4g} to {high:.4g} Hz: {', '.join(self.sensors)}>"

@@ -1,0 +1,106 @@
+"""Models of strings and structures, and what is found with them."""
+import numpy as np
+from cases import ROOT, Folder, main
+
+import modcal
+
+PLATE = ROOT / "configs/structures"
+SENSORS = ["a1", "a2", "a3", "a4"]
+LENGTH, DENSITY, FUNDAMENTAL, STIFFNESS, CONTACT = 0.33, 3.1e-3, 196.0, 1e-4, 0.03
+
+
+def strike(name):
+    """A strike on the plate as arrays."""
+    with open(PLATE / name, encoding="utf-8") as file:
+        titles = file.readline().strip().split(",")
+    columns = np.loadtxt(PLATE / name, delimiter=",", comments="#", skiprows=1).T
+    named = {title.split(" [")[0]: column for title, column in zip(titles, columns)}
+    return modcal.Record(time=named["t"], responses={name: named[name] for name in SENSORS}, force=named["force"])
+
+
+class OfAString(Folder):
+    def model(self, **keys):
+        return modcal.Model.string(CONTACT, length=LENGTH, linear_density=DENSITY, fundamental=FUNDAMENTAL,
+                                   inharmonicity=STIFFNESS, modes=12, damping={"type": "constant", "ratio": 3e-3},
+                                   **keys)
+
+    def test_transfer_is_the_sum_over_its_modes(self):
+        model = self.model(recorded=False)
+        n = np.arange(1, 13)
+        omega = 2 * np.pi * n * FUNDAMENTAL * np.sqrt(1 + STIFFNESS * n**2)
+        np.testing.assert_allclose(model.frequencies, omega / (2 * np.pi), rtol=1e-14)
+        np.testing.assert_array_equal(model.damping_ratios, np.full(12, 3e-3))
+        tension = DENSITY * (2 * LENGTH * FUNDAMENTAL) ** 2
+        shape = np.sin(n * np.pi * CONTACT / LENGTH)
+        mass = DENSITY * LENGTH / 2
+        gains = [-tension * n * np.pi / LENGTH, (-1.0) ** n * tension * n * np.pi / LENGTH, shape]
+        at = np.array([30.0, 195.9, 777.7, 2500.0])
+        s = 2j * np.pi * at[:, None]
+        expected = [np.sum(gain * shape / mass / (s**2 + 2 * 3e-3 * omega * s + omega**2), axis=1) for gain in gains]
+        # Twelve terms of one size, each to some units of 2e-16; they cancel to a tenth at most.
+        np.testing.assert_allclose(model.transfer(at), expected, rtol=1e-12)
+        self.assertEqual(model.sensors, {"R1": "force", "R2": "force", "y": "displacement"})
+
+    def test_it_stands_for_string_and_position(self):
+        left, right = np.loadtxt(ROOT / "examples/bowed_violin_d.csv", delimiter=",", comments="#", skiprows=4).T[:2]
+        keys = {"length": LENGTH, "linear_density": 1e-3, "fundamental": 294, "inharmonicity": 1.1e-4, "modes": 40}
+        model = modcal.Model.string("41 mm", **keys)
+        by_model = modcal.Inverter(model, samples=left.size, rate=44100)(left, right)[0].force
+        by_keys = modcal.Inverter(keys, "41 mm", samples=left.size, rate=44100)(left, right)[0].force
+        np.testing.assert_array_equal(by_model, by_keys)
+        record = modcal.Record(rate=44100, left=left, right=right)
+        np.testing.assert_array_equal(modcal.invert(record, model).f_c_joint,
+                                      modcal.invert(record, keys, "41 mm").f_c_joint)
+        with self.assertRaisesRegex(modcal.InvalidInput, "has its contact already"):
+            modcal.invert(record, model, 0.03)
+        with self.assertRaisesRegex(modcal.InvalidInput, "give position"):
+            modcal.invert(record, keys)
+        with self.assertRaisesRegex(modcal.InvalidInput, "Model.table"):
+            modcal.identify(record, model)
+
+    def test_mistakes(self):
+        with self.assertRaisesRegex(modcal.InvalidInput, "lenght"):
+            modcal.Model.string(CONTACT, lenght=LENGTH, linear_density=DENSITY, fundamental=FUNDAMENTAL)
+        for wrong in ([-1.0], [float("nan")], [100.0, float("inf")]):
+            with self.assertRaisesRegex(modcal.InvalidInput, "give frequencies from 0 on"):
+                self.model().transfer(wrong)
+
+
+class OfAStructure(Folder):
+    @classmethod
+    def setUpClass(cls):
+        cls.fitted = modcal.fit_modes(strike("plate_strike.csv"), 10, "600 Hz")
+
+    def test_modes_are_those_of_the_file(self):
+        stored = modcal.run(PLATE / "fit_plate.yaml")
+        self.assertEqual(self.fitted.texts["table.yaml"], stored.texts["table.yaml"])
+        model = modcal.Model.table(self.fitted)
+        self.assertEqual(model.sensors, {name: "acceleration" for name in SENSORS})
+        self.assertEqual(model.constants.shape, (4, len(model.frequencies)))
+        f, zeta = model.frequencies[0], model.damping_ratios[0]
+        # At the resonance a lightly damped mode answers with s² A/(2 i ζ ω²) = i A/(2 ζ), all others stay small.
+        at_peak = model.transfer([f])[3, 0]
+        self.assertAlmostEqual(abs(at_peak) / abs(model.constants[3, 0] / (2 * zeta)), 1.0, delta=0.1)
+
+    def test_force_is_that_of_the_files(self):
+        found = modcal.identify(strike("plate_other_strike.csv"), modcal.Model.table(PLATE / "plate_modes.json"),
+                                window="80 ms")
+        stored = modcal.run(PLATE / "force_on_plate.yaml")
+        self.assertEqual(found.summary.splitlines()[0], stored.summary.splitlines()[0])
+        for name, signal in stored.signals.items():
+            np.testing.assert_array_equal(found.signals[name], signal)
+
+    def test_mistakes(self):
+        with self.assertRaisesRegex(modcal.InvalidInput, 'channel a cannot read "speed": acceleration, '):
+            modcal.Record(rate=1e3, responses={"a": np.zeros(9)}, kinds="speed")
+        with self.assertRaisesRegex(modcal.InvalidInput, "give one of them"):
+            modcal.Record(rate=1e3, responses={"a": np.zeros(9)}, left=np.zeros(9))
+        with self.assertRaisesRegex(modcal.InvalidInput, "give that of fit_modes"):
+            modcal.Model.table(modcal.Result("invert", ""))
+        with self.assertRaisesRegex(modcal.InvalidInput, "a table of modes: it has no string"):
+            modcal.invert(modcal.Record(rate=1e3, left=np.zeros(9)), modcal.Model.table(self.fitted))
+        with self.assertRaisesRegex(modcal.InvalidInput, "missing.yaml"):
+            modcal.Model.table("missing.yaml")
+
+
+main()
