@@ -130,7 +130,8 @@ class SchemaWriter final : public OptionVisitor {
           if (std::is_same_v<Item, std::int64_t>) item = integer_schema(info);
           if (std::is_same_v<Item, std::string>) item = text_schema(info);
           if (!std::is_same_v<Item, Value>) {
-            item = {{"anyOf", {item, {{"type", "array"}, {"items", item}}}}};
+            Json list = {{"type", "array"}, {"items", item}};
+            item = any_of(std::move(item), std::move(list));
           }
           add(info, std::move(item));
         },
@@ -187,6 +188,14 @@ class SchemaWriter final : public OptionVisitor {
   }
 
  private:
+  // In braces within braces clang 14 would lose what a call returns.
+  static Json any_of(Json first, Json second) {
+    Json schema = Json::object();
+    Json& either = schema["anyOf"];
+    either.push_back(std::move(first));
+    either.push_back(std::move(second));
+    return schema;
+  }
   static Json bounded(Json schema, const Range& range) {
     if (std::isfinite(range.lowest)) {
       schema[range.lowest_allowed ? "minimum" : "exclusiveMinimum"] = range.lowest;
@@ -199,12 +208,12 @@ class SchemaWriter final : public OptionVisitor {
   static Json integer_schema(const OptionInfo& info) {
     Json schema = bounded({{"type", "integer"}}, info.range);
     if (info.word.empty()) return schema;
-    return {{"anyOf", {std::move(schema), {{"const", info.word}}}}};
+    return any_of(std::move(schema), {{"const", info.word}});
   }
   static Json number_schema(const OptionInfo& info) {
-    const Json with_unit = {{"type", "string"},
-                            {"pattern", "^[-+]?[0-9.]+([eE][-+]?[0-9]+)? *\\S*"}};
-    Json schema = {{"anyOf", {bounded({{"type", "number"}}, info.range), with_unit}}};
+    Json schema =
+        any_of(bounded({{"type", "number"}}, info.range),
+               {{"type", "string"}, {"pattern", "^[-+]?[0-9.]+([eE][-+]?[0-9]+)? *\\S*"}});
     if (!info.word.empty()) schema["anyOf"].push_back({{"const", info.word}});
     return schema;
   }

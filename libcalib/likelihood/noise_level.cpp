@@ -34,7 +34,8 @@ double total_power(std::span<const Complex> spectrum, bool clear) {
   std::vector<double> powers;
   for (const Complex number : spectrum) powers.push_back(std::norm(number));
   if (clear) return std::accumulate(powers.begin(), powers.end(), 0.0);
-  return static_cast<double>(powers.size()) * quantile(std::move(powers), 0.5) / std::numbers::ln2;
+  const auto count = static_cast<double>(powers.size());
+  return count * quantile(std::move(powers), 0.5) / std::numbers::ln2;
 }
 
 }  // namespace

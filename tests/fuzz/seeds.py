@@ -2,13 +2,14 @@
 """What the fuzzers begin with, besides tests/fuzz/corpus: seeds.py ROOT CORPUS TARGET... fills CORPUS/TARGET.
 
 Experiments are those of configs/ and the tests' wrong ones; records are a short one, the tests' wrong
-ones made of it, and one of every kind of sound file. The dictionary holds the words of all experiments.
+ones made of it, and one of every kind of sound, universal and MAT file. The dictionary holds the words of all experiments.
 """
 import re
 import struct
 import subprocess
 import sys
 import tempfile
+import zlib
 from pathlib import Path
 
 ROWS = 60  # of the record: enough for every test, short enough to be changed everywhere
@@ -104,6 +105,65 @@ def sounds():
     yield "aiff", b"FORM" + struct.pack(">I", len(aiff)) + aiff
 
 
+def universal(values, kind, order=4, spaced=True, binary=False, function=1):
+    """One data set 58 of a file of others."""
+    reals = [part for value in values for part in (value.real, value.imag)] if order in (5, 6) else values
+    if not spaced:
+        reals = [part for i, value in enumerate(values) for part in (0.01 * i, value)]
+    body = struct.pack(f"<{len(reals)}d", *reals) if binary else "".join(
+        "".join(f"{real:20.11E}" for real in reals[i:i + 4]) + "\n" for i in range(0, len(reals), 4)).encode()
+    head = "    -1\n" + (f"    58b{1:6}{2:6}{11:12}{len(body):12}{0:6}{0:6}{0:12}{0:12}\n" if binary else "    58\n")
+    head += f"{kind}\nmade by seeds.py\n01-Jan-20 00:00:00\nNONE\nNONE\n"
+    head += f"{function:5}{0:10}{0:5}{0:10} {'NONE':10}{1:10}{3:4} {'NONE':10}{1:10}{3:4}\n"
+    head += f"{order:10}{len(values):10}{int(spaced):10}{0.0:13.5E}{0.01:13.5E}{0.0:13.5E}\n"
+    for code, label, unit in ((17, "Time", "s"), (12, "Acceleration", kind), (0, "NONE", "NONE"), (0, "NONE", "NONE")):
+        head += f"{code:10}{0:5}{0:5}{0:5} {label:20} {unit:20}\n"
+    return head.encode() + body + (b"\n" if binary else b"") + b"    -1\n"
+
+
+def universals():
+    real = [0.5 * ((7 * i) % 13 - 6) / 6 for i in range(30)]
+    both = [complex(x, -x) for x in real]
+    units = (b"    -1\n   164\n         1  SI: m newton             2\n" + 3 * b"  1.00000000000000000D+00" +
+             b"\n  2.73150000000000000D+02\n    -1\n")
+    yield "text", units + universal(real, "m/s2") + universal(real, "N")
+    yield "single", universal(real, "g", order=2)
+    yield "uneven", universal(real, "m/s2", spaced=False)
+    yield "binary", universal(real, "m/s2", binary=True) + universal(real, "N", binary=True)
+    yield "response", universal(both, "m/s2/N", order=6, function=4)
+    yield "cut", universal(real, "m/s2")[:-200]
+
+
+def element(kind, content):
+    """A part of a MAT 5 file."""
+    return struct.pack("<II", kind, len(content)) + content + b"\0" * (-len(content) % 8)
+
+
+def matrix(name, values, is_text=False):
+    data = element(4, struct.pack(f"<{len(values)}H", *map(ord, values))) if is_text else element(
+        9, struct.pack(f"<{len(values)}d", *values))
+    flags = element(6, struct.pack("<II", 4 if is_text else 6, 0))
+    size = element(5, struct.pack("<ii", 1, len(values)))
+    return element(14, flags + size + element(1, name.encode()) + data)
+
+
+def matlab_files():
+    values = {"t": [0.01 * i for i in range(30)], "R1": [((7 * i) % 13) / 6.0 for i in range(30)],
+              "R2": [((5 * i) % 11) / 6.0 for i in range(30)], "fs": [100.0]}
+    head = b"MATLAB 5.0 MAT-file".ljust(124) + struct.pack("<H", 0x0100) + b"IM"
+    parts = [matrix(name, held) for name, held in values.items()] + [matrix("note", "a text", is_text=True)]
+    yield "5", head + b"".join(parts)
+    yield "5z", head + b"".join(struct.pack("<II", 15, len(z)) + z for z in map(zlib.compress, parts))
+    yield "4", b"".join(struct.pack("<5i", 0, 1, len(held), 0, len(name) + 1) + name.encode() + b"\0" +
+                        struct.pack(f"<{len(held)}d", *held) for name, held in values.items())
+
+
+def mode_tables(root):
+    yield "plate", (root / "configs/structures/plate_modes.json").read_bytes()
+    yield "one", (b"low: 10 Hz\nhigh: 100\nsensors: [{name: a, kind: velocity}]\n"
+                  b"modes: [{frequency: 20, damping_ratio: 0.01, constants: [1]}]\n")
+
+
 def words(root):
     text = "\n".join(t for _, t in experiments(root))
     found = set(re.findall(r"[A-Za-z_][A-Za-z_0-9]{2,}", text))
@@ -114,7 +174,8 @@ def words(root):
 def main():
     root, corpus = Path(sys.argv[1]), Path(sys.argv[2])
     for target, seeds in (("experiment", lambda: ((n, t.encode()) for n, t in experiments(root))),
-                          ("csv", lambda: csv_records(root)), ("wav", sounds)):
+                          ("csv", lambda: csv_records(root)), ("wav", sounds),
+                          ("uff", universals), ("mat", matlab_files), ("table", lambda: mode_tables(root))):
         if target not in sys.argv[3:]:
             continue
         folder = corpus / target

@@ -222,8 +222,9 @@ std::vector<report::Figure> calibration_overview(const CalibrationOutcome& outco
                                                  const Observation& observation,
                                                  const StringSupport& support);
 
-/// r_ij of every two parameters, shaded by |r_ij|.
-report::Table correlation_map(const NamedCovariance& covariance);
+/// r_ij of every two parameters of the law; where that does not hold, of what is of no mode and of
+/// the modes that are bound most tightly; shaded by |r_ij|. Without rows for one parameter.
+report::Table correlation_map(const ContinuationResult& found);
 
 // What a calibration says in a few lines.
 
@@ -269,9 +270,9 @@ void visit_causes(ResultVisitor& visitor, const ContinuationResult& found);
 /// What the fit leaves over the band, the modes marked; without panels where it was not looked at.
 report::Figure misfit_figure(const ContinuationResult& found);
 
-/// Which parameters the data identify. A frequency that the law or a prior holds moves with the
-/// others by that alone.
-std::vector<bool> told_by_data(const ContinuationResult& found);
+/// The strongest correlations among the parameters that the data identify. A frequency that the law
+/// or a prior holds moves with the others by that alone.
+std::vector<CorrelatedPair> tightest_pairs(const ContinuationResult& found);
 
 /// The law's parameters with correlations and condition number, as `modcal limit` has them; where
 /// every frequency is free the strongest correlations of what the data identify, too.

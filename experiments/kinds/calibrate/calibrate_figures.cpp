@@ -1,5 +1,7 @@
 // Figures of a calibration: those asked for, and what every one with standard deviations shows.
 #include <cmath>
+#include <numeric>
+#include <set>
 
 #include "experiments/kinds/calibrate/calibrate.hpp"
 #include "experiments/report/result.hpp"
@@ -121,6 +123,26 @@ report::Figure ratio_figure(const CalibrationOutcome& outcome, const Observation
   return figure;
 }
 
+std::vector<std::size_t> all_of(const NamedCovariance& covariance) {
+  std::vector<std::size_t> all(covariance.size());
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+// Of a fit with every frequency free: what is of no mode, and both of the strongest pairs.
+std::vector<std::size_t> tightly_bound(const ContinuationResult& found) {
+  const std::vector<std::string>& names = found.covariance.names;
+  std::set<std::size_t> bound;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto name = parse_parameter(names[i]);
+    if (name && !type_of(*name).of_mode) bound.insert(i);
+  }
+  for (const CorrelatedPair& pair : tightest_pairs(found)) {
+    bound.insert({pair.first, pair.second});
+  }
+  return {bound.begin(), bound.end()};
+}
+
 }  // namespace
 
 std::vector<report::Figure> calibration_overview(const CalibrationOutcome& outcome,
@@ -133,17 +155,20 @@ std::vector<report::Figure> calibration_overview(const CalibrationOutcome& outco
   return figures;
 }
 
-report::Table correlation_map(const NamedCovariance& covariance) {
+report::Table correlation_map(const ContinuationResult& found) {
+  const bool of_law = found.tells_of_law();
+  const NamedCovariance& covariance = of_law ? found.law.covariance : found.covariance;
+  const std::vector<std::size_t> shown = of_law ? all_of(covariance) : tightly_bound(found);
   report::Table map{.id = "correlation_map",
                     .title = "Correlations of the parameters",
-                    .caption =
-                        "Of the fit in which the frequencies obey the law. The darker, the "
-                        "less the data tell the two apart."};
+                    .caption = of_law ? "Of the fit in which the frequencies obey the law."
+                                      : "Of the modes those that are bound most tightly."};
+  map.caption += " The darker, the less the data tell the two apart.";
   const Eigen::MatrixXd correlations = covariance.correlations();
-  for (std::size_t i = 0; i < covariance.size(); ++i) {
+  for (const std::size_t i : shown) {
     report::add_row(map, [&](report::RowWriter& row) {
       row({.key = "parameter"}, covariance.names[i]);
-      for (std::size_t j = 0; j < covariance.size(); ++j) {
+      for (const std::size_t j : shown) {
         const double r = correlations(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
         report::Cell cell = i == j ? report::Cell() : report::Cell(r);
         if (i != j) cell.heat = std::abs(r);

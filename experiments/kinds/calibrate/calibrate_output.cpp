@@ -10,7 +10,6 @@ namespace {
 
 constexpr auto kInJson = ResultVisitor::kInJson;
 constexpr auto kInTables = ResultVisitor::kInTables;
-constexpr std::size_t kPairsShown = 20;
 
 void visit_parameter(ResultVisitor& row, const CalibratedParameter& parameter) {
   row({.key = "name"}, parameter.name);
@@ -100,22 +99,6 @@ void visit_covariance(ResultVisitor& visitor, const NamedCovariance& covariance)
   visitor({.key = "correlations"}, correlations);
   visitor({.key = "singular_values"}, covariance.singular_values());
   visitor({.key = "condition"}, covariance.condition());
-}
-
-// The strongest correlations where every frequency is free: too many for a map.
-void visit_pairs(ResultVisitor& visitor, const ContinuationResult& found) {
-  if (!found.frequencies_free) return;
-  const auto& names = found.covariance.names;
-  visitor.rows({.table = "correlations",
-                .name = "Strongest correlations, every frequency free",
-                .meaning = "Of all that the data identify; calibration.json has them all.",
-                .shown = kInTables},
-               strongest_correlations(found.covariance, told_by_data(found), kPairsShown),
-               [&](ResultVisitor& row, const CorrelatedPair& pair) {
-                 row({.key = "parameter"}, names[pair.first]);
-                 row({.key = "with"}, names[pair.second]);
-                 row({.key = "correlation", .format = "{:+.3f}"}, pair.correlation);
-               });
 }
 
 // Knots of the smooth response of the sensor at x = L.
@@ -208,7 +191,6 @@ void CalibrationOutcome::visit(ResultVisitor& visitor) const {
       {.key = "modes", .table = "modes", .name = "Modal frequencies"}, result.modes,
       [this](ResultVisitor& row, const CalibratedMode& mode) { visit_mode(row, *this, mode); });
   if (found) visit_causes(visitor, *found);
-  if (found) visit_pairs(visitor, *found);
   visitor.rows({.key = "trace"}, search.trace, [](ResultVisitor& item, const TracePoint& point) {
     item({}, std::pair(point.evaluations, point.value));
   });

@@ -94,8 +94,9 @@ void add_account(const CalibrateOptions& options, const InvertOptions& shown, co
   add_warnings(found.observation, found.sides, true, result);
   add_scores(found.sides, result);
   if (estimate) result.summary += covariance_text(*estimate);
-  if (estimate && estimate->tells_of_law() && estimate->law.covariance.size() > 1) {
-    result.blocks.emplace_back(correlation_map(estimate->law.covariance));
+  if (estimate) {
+    report::Table map = correlation_map(*estimate);
+    if (map.rows.size() > 1) result.blocks.emplace_back(std::move(map));
   }
   result.add(report::tables_of(found.outcome));
   add_identification_tables(found.sides, result);

@@ -110,13 +110,13 @@ std::string chi2_text(const ContinuationResult& found) {
   return text;
 }
 
-std::vector<bool> told_by_data(const ContinuationResult& found) {
+std::vector<CorrelatedPair> tightest_pairs(const ContinuationResult& found) {
   std::vector<bool> told(found.covariance.size(), true);
   for (std::size_t n = 0; found.frequencies_free && n < found.modes.size(); ++n) {
     const auto place = found.covariance.find(fmt::format("f_{}", n + 1));
     if (place) told[*place] = found.modes[n].source == ModeSource::kIdentified;
   }
-  return told;
+  return strongest_correlations(found.covariance, told, kPairsShown);
 }
 
 std::string covariance_text(const ContinuationResult& found) {
@@ -127,8 +127,7 @@ std::string covariance_text(const ContinuationResult& found) {
   }
   if (!found.frequencies_free) return text;
   text += "every frequency free, strongest correlations:";
-  for (const CorrelatedPair& pair :
-       strongest_correlations(found.covariance, told_by_data(found), kPairsShown)) {
+  for (const CorrelatedPair& pair : tightest_pairs(found)) {
     const auto& names = found.covariance.names;
     text += fmt::format("{}{} with {}", text.back() == ':' ? " " : ", ", names[pair.second],
                         names[pair.first]);

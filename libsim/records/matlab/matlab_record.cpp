@@ -125,9 +125,9 @@ Recording read_matlab(const Path& path, const ReadOptions& options) {
   }
   MODCAL_REQUIRE(!channels.empty(), "{}: no vector of numbers stands in this MAT file",
                  path.string());
-  return assemble(
-      fmt::format("MAT file, {} channel{}", channels.size(), channels.size() == 1 ? "" : "s"),
-      std::move(channels), options, path.string());
+  const std::size_t count = channels.size();
+  return assemble(fmt::format("MAT file, {} channel{}", count, count == 1 ? "" : "s"),
+                  std::move(channels), options, path.string());
 }
 
 }  // namespace modcal

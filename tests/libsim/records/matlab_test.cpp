@@ -65,6 +65,7 @@ TEST_F(Matlab, KeepsEveryBitNameAndUnitOfWhatIsWritten) {
   record_format(file(), "mat").write(file(), signals, "a test");
   const Recording found = read();
   EXPECT_EQ(found.sample_rate, 51200.0);
+  EXPECT_EQ(found.format, "MAT file, 2 channels");
   ASSERT_EQ(found.channels.size(), 2u);
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_EQ(found.channels[i].name, signals[i].quantity);
