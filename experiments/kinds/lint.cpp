@@ -68,9 +68,12 @@ void lint_step(const Scene& scene, const Choice<Simulator>& simulator, double sa
                std::vector<Finding>& findings) {
   const auto made = simulator.make();
   if (!is_known(scene.string) || !std::isfinite(made->longest_step())) return;
+  // Two of its steps, however many there are to a sample.
+  const double steps = std::max(1.0, std::ceil(1.0 / (sample_rate * made->longest_step())));
   Scene begin = scene;
-  begin.duration = std::min(scene.duration, 2.0 / sample_rate);
-  lint_making(findings, "simulator.time_step", [&] { made->simulate(begin, sample_rate, {}); });
+  begin.duration = std::min(scene.duration, 2.0 / (sample_rate * steps));
+  lint_making(findings, "simulator.time_step",
+              [&] { made->simulate(begin, sample_rate * steps, {}); });
 }
 
 void lint_decay(const Scene& scene, std::vector<Finding>& findings) {

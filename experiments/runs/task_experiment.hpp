@@ -132,16 +132,18 @@ auto attempted(const Work& work) -> decltype(work()) {
 void add_failure(std::size_t task, const std::string& reason, StudyResult& result);
 
 /// Calls take(task, outcome, seconds) for every outcome there is, in the order of the tasks, one
-/// read at a time; counts what failed and what is not run yet and sets the status.
-template <typename Outcome, typename Take>
-void for_each_outcome(const TaskOutcomes& outcomes, StudyResult& result, const Take& take) {
+/// read at a time; counts what failed and what is not run yet and sets the status. read(text):
+/// throws InvalidInput for what cannot be the outcome of a task.
+template <typename Outcome, typename Take, typename Read = Outcome (*)(const std::string&)>
+void for_each_outcome(const TaskOutcomes& outcomes, StudyResult& result, const Take& take,
+                      const Read& read = read_outcome<Outcome>) {
   for (std::size_t task = 0; task < outcomes.size(); ++task) {
     std::optional<FinishedTask> finished = outcomes[task];
     if (!finished) {
       ++result.pending_tasks;
       continue;
     }
-    auto outcome = outcomes.read(task, finished->outcome, read_outcome<Outcome>);
+    auto outcome = outcomes.read(task, finished->outcome, read);
     if (!outcome.failure.empty()) add_failure(task, outcome.failure, result);
     take(task, std::move(outcome), finished->seconds);
   }

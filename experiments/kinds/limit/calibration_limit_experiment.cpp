@@ -224,10 +224,19 @@ StudyResult CalibrationLimitExperiment::sum_up(const TaskOutcomes& outcomes,
   std::vector<LimitLevel> levels;
   for (const double level : options_.noise_levels) levels.push_back({.noise_level = level});
   StudyResult result;
-  for_each_outcome<LimitOutcome>(outcomes, result,
-                                 [&](std::size_t task, LimitOutcome outcome, double /*seconds*/) {
-                                   levels[place(task, 0)].outcomes.push_back(std::move(outcome));
-                                 });
+  const auto modes = static_cast<std::size_t>(options_.observation.truth.scene.string.modes);
+  const auto read = [modes](const std::string& text) {
+    auto outcome = read_outcome<LimitOutcome>(text);
+    const bool whole = outcome.frequencies.size() == modes && outcome.deviations.size() == modes;
+    MODCAL_REQUIRE(whole || !outcome.failure.empty(),
+                   "the stored outcome of a task has {} frequencies and {} deviations of {} modes",
+                   outcome.frequencies.size(), outcome.deviations.size(), modes);
+    return outcome;
+  };
+  const auto take = [&](std::size_t task, LimitOutcome outcome, double /*seconds*/) {
+    levels[place(task, 0)].outcomes.push_back(std::move(outcome));
+  };
+  for_each_outcome<LimitOutcome>(outcomes, result, take, read);
   sum_up_limit(options_, levels, context, result);
   return result;
 }
