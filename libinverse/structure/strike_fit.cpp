@@ -70,10 +70,15 @@ class Fit {
       for (std::vector<double>& response : record_.responses) response.resize(count);
     }
     result_.spectra = ContourSpectra::of(record_, sigma, options.low, options.high);
-    weights_ = weights_of(result_.spectra, options.relative_error);
+  }
+  Fit(const ContourSpectra& spectra, const std::vector<SensorKind>& kinds,
+      const StrikeFitOptions& options)
+      : kinds_(kinds), options_(options) {
+    result_.spectra = spectra;
   }
 
   StrikeFit run() {
+    weights_ = weights_of(result_.spectra, options_.relative_error);
     const PoleSearch search(result_.spectra, record_.force, kinds_, weights_);
     std::vector<ModalPole> poles, best;
     double least = std::numeric_limits<double>::infinity();
@@ -115,6 +120,7 @@ class Fit {
   // |G| of the largest pulse, ten periods of the band's top to either side of its peak, fading out.
   void tell_pulse() {
     const std::vector<double>& force = record_.force;
+    if (force.empty()) return;
     const auto larger = [](double a, double b) { return std::abs(a) < std::abs(b); };
     const auto peak = std::max_element(force.begin(), force.end(), larger) - force.begin();
     const auto reach = static_cast<std::ptrdiff_t>(10.0 * record_.sample_rate / options_.high);
@@ -232,6 +238,33 @@ StrikeFit fit_strike(const StructureRecord& record, const std::vector<SensorKind
   MODCAL_REQUIRE(kinds.size() == record.responses.size(), "{} kinds of sensors for {} responses",
                  kinds.size(), record.responses.size());
   return Fit(record, kinds, options).run();
+}
+
+StrikeFit fit_response(const FrequencyGrid& grid, const std::vector<std::vector<Complex>>& response,
+                       const std::vector<SensorKind>& kinds, const StrikeFitOptions& options) {
+  constexpr double kTurn = 2.0 * std::numbers::pi;
+  MODCAL_REQUIRE(!response.empty() && kinds.size() == response.size(),
+                 "{} kinds of sensors for {} response functions", kinds.size(), response.size());
+  ContourSpectra spectra{.grid = grid,
+                         .bins = bins_between(grid, kTurn * options.low, kTurn * options.high)};
+  spectra.samples = 2 * (grid.bins - 1);
+  spectra.sample_rate = static_cast<double>(spectra.samples) * grid.spacing / kTurn;
+  MODCAL_REQUIRE(spectra.count() > 0, "no line of the response lies from {:g} Hz to {:g} Hz",
+                 options.low, options.high);
+  spectra.force.assign(spectra.count(), 1.0);
+  for (std::size_t k = 0; k < response.size(); ++k) {
+    MODCAL_REQUIRE(response[k].size() == grid.bins, "response {} has {} lines in the place of {}",
+                   k + 1, response[k].size(), grid.bins);
+    const auto first = response[k].begin() + static_cast<std::ptrdiff_t>(spectra.bins.first);
+    spectra.responses.emplace_back(first, first + static_cast<std::ptrdiff_t>(spectra.count()));
+    for (std::size_t m = 0; m < spectra.count(); ++m) {
+      const Complex h = spectra.responses.back()[m];
+      MODCAL_REQUIRE(std::isfinite(h.real()) && std::isfinite(h.imag()),
+                     "response {} is not finite at {:g} Hz: leave that line out of the band", k + 1,
+                     spectra.s(m).imag() / kTurn);
+    }
+  }
+  return Fit(spectra, kinds, options).run();
 }
 
 }  // namespace modcal

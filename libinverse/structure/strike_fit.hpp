@@ -42,4 +42,10 @@ struct StrikeFit {
 StrikeFit fit_strike(const StructureRecord& record, const std::vector<SensorKind>& kinds,
                      const StrikeFitOptions& options);
 
+/// The same for measured H_k(iω) [sensor's unit/N], a value for every bin of the grid, σ = 0: the
+/// force is 1 everywhere and nothing rings on. The table's noise is that of 1 N s. Throws
+/// InvalidInput for another number of lines, one of the band that is not finite, and as above.
+StrikeFit fit_response(const FrequencyGrid& grid, const std::vector<std::vector<Complex>>& response,
+                       const std::vector<SensorKind>& kinds, const StrikeFitOptions& options);
+
 }  // namespace modcal

@@ -12,6 +12,7 @@
 #include "libsim/records/record_file.hpp"
 #include "python/core/arrays.hpp"
 #include "python/core/errors.hpp"
+#include "python/core/models.hpp"
 #include "python/core/module.hpp"
 #include "python/core/results.hpp"
 #include "python/core/searches.hpp"
@@ -126,11 +127,10 @@ std::unique_ptr<GivenRecording> give(
   recording.rate_source = "as stated by the user";
   for (const auto& [channel, kind, samples] : channels) {
     const auto held = span_of(samples);
-    MODCAL_REQUIRE(std::ranges::count(sensor_kind_names(), kind) > 0,
-                   "channel {} cannot read \"{}\": {}", channel, kind,
-                   fmt::join(sensor_kind_names(), ", "));
-    recording.channels.push_back(
-        {channel, std::string(unit_of(sensor_kind_of(kind))), 1.0, {held.begin(), held.end()}});
+    recording.channels.push_back({channel,
+                                  std::string(unit_of(kind_of_sensor(channel, kind))),
+                                  1.0,
+                                  {held.begin(), held.end()}});
   }
   return std::make_unique<GivenRecording>(name, std::move(recording));
 }

@@ -76,6 +76,11 @@ py::array Search::jacobian(const Numbers& x) const {
       .reshape({static_cast<py::ssize_t>(rows), static_cast<py::ssize_t>(at.size())});
 }
 
+Model Search::model(const Numbers& x) const {
+  const ModelPoint point = task_->bound.parameters.model(this->point(x));
+  return Model::of_basis(point.basis, point.contact, task_->truth.empty());
+}
+
 py::list described(const std::vector<Variable>& variables) {
   py::list list;
   for (const Variable& variable : variables) {
@@ -154,6 +159,7 @@ void add_searches(py::module_& module) {
       .def("gradient", &Search::gradient, py::arg("x"))
       .def("residuals", &Search::residuals, py::arg("x"))
       .def("jacobian", &Search::jacobian, py::arg("x"))
+      .def("model", &Search::model, py::arg("x"))
       .def("minimize", &minimize, py::arg("options"), py::arg("progress"));
 }
 

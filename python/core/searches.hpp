@@ -2,7 +2,7 @@
 #pragma once
 
 #include "experiments/kinds/calibrate/calibrate.hpp"
-#include "python/core/arrays.hpp"
+#include "python/core/models.hpp"
 
 namespace modcal::python {
 
@@ -18,6 +18,7 @@ class Search {
   py::array gradient(const Numbers& x) const;
   py::array residuals(const Numbers& x) const;
   py::array jacobian(const Numbers& x) const;
+  Model model(const Numbers& x) const;
 
  private:
   std::span<const double> point(const Numbers& x) const;

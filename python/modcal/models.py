@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from modcal import _core, yaml
 from modcal.errors import InvalidInput
+from modcal.records import as_samples
 from modcal.results import Result
 
 Array = NDArray[np.float64]
@@ -33,7 +34,7 @@ class Model:
     """What a force at the contact does to the sensors:
 
     H_k(s) = s^p [Σ_n A_kn/D_n(s) + static terms], D_n = s² + 2 ζ_n ω_n s + ω_n², p = 1 for a velocity, 2 for
-    an acceleration. Made by Model.string() or Model.table(); invert, calibrate, identify and Inverter take it.
+    an acceleration. Made by Model.string(), Model.table() or Model.response(); invert, calibrate, identify and Inverter take it.
     """
 
     def __init__(self, core: _core.ModalModel, keys: Mapping[str, Any]) -> None:
@@ -58,12 +59,41 @@ class Model:
             return cls(_core.ModalModel.of_table(path), {"table": path})
         if "table.yaml" not in source.texts:
             raise InvalidInput("this result has no table of modes; give that of fit_modes()")
+        return cls._of_text(source.texts["table.yaml"])
+
+    @classmethod
+    def _of_text(cls, table: str) -> Model:
         folder = tempfile.mkdtemp(prefix="modcal-")
         path = os.path.join(folder, "table.yaml")
-        Path(path).write_text(source.texts["table.yaml"], encoding="utf-8")
+        Path(path).write_text(table, encoding="utf-8")
         model = cls(_core.ModalModel.of_table(path), {"table": path})
         weakref.finalize(model, shutil.rmtree, folder, True)
         return model
+
+    @classmethod
+    def response(cls, frequencies: ArrayLike, responses: Mapping[str, ArrayLike], *, low: float, high: float,
+                 kinds: str | Mapping[str, str] = "acceleration", most_modes: int = 60) -> Model:
+        """Modes fitted to measured frequency response functions between low and high [Hz].
+
+        frequencies: even, a multiple of their step each [Hz]. responses: H_k there by the names of the sensors
+        [sensor's unit/N]. kinds: as Record takes them. The number of modes is chosen by BIC.
+        """
+        f = as_samples("frequencies", frequencies)
+        step = (f[-1] - f[0]) / max(1, f.size - 1)
+        if f.size < 3 or not step > 0.0 or not np.all(np.abs(f - step * np.rint(f / step)) < 1e-3 * step):
+            raise InvalidInput("the frequencies are no multiples of an even step; interpolate the responses")
+        below = int(np.rint(f[0] / step))
+        rows = []
+        for name, given in responses.items():
+            spectrum = np.asarray(given)
+            if spectrum.shape != f.shape or spectrum.dtype.kind not in "fiuc":
+                raise InvalidInput(f"the response of {name} is no row of {f.size} numbers, one for each frequency")
+            rows.append(np.concatenate([np.zeros(below, complex), spectrum]))
+        if not (f[0] <= low < high <= f[-1]):
+            raise InvalidInput(f"the band of {low:g} to {high:g} Hz is not within the frequencies, {f[0]:g} to "
+                               f"{f[-1]:g} Hz")
+        told = [kinds if isinstance(kinds, str) else kinds.get(name, "acceleration") for name in responses]
+        return cls._of_text(_core.fit_response(step, np.array(rows), list(responses), told, low, high, most_modes))
 
     @property
     def frequencies(self) -> Array:
@@ -93,7 +123,8 @@ class Model:
         """The keys of an experiment that state it. A table's are those of a structure, not of a string."""
         missing = [name for name in names if name not in self._keys]
         if missing:
-            kind = "a table of modes" if "table" in self._keys else "a string"
+            kind = ("a table of modes" if "table" in self._keys else "a string" if self._keys else
+                    "a point of a calibration")
             raise InvalidInput(f"the model is {kind}: it has no {missing[0]}; make it by "
                                f"Model.{'table' if missing[0] == 'table' else 'string'}()")
         return {name: self._keys[name] for name in names}

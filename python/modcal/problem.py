@@ -1,13 +1,14 @@
 """Calibrations as functions to be minimized."""
 from __future__ import annotations
 
-from typing import Any, Callable, Mapping, NamedTuple, Sequence
+from typing import Any, Callable, Mapping, NamedTuple, Sequence, Tuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from modcal import _core, yaml
 from modcal.errors import InvalidInput
+from modcal.models import Model
 from modcal.experiments import Progress, Source, _told, open_experiment
 
 Array = NDArray[np.float64]
@@ -22,6 +23,28 @@ class Variable(NamedTuple):
     lower: float
     upper: float
     scale: float = 1.0  #: searches see (x - initial)/scale
+
+
+class Parameters(Tuple[Variable, ...]):
+    """The free parameters of a search, in the order of x."""
+
+    @property
+    def names(self) -> list[str]:
+        return [one.name for one in self]
+
+    @property
+    def start(self) -> Array:
+        return np.array([one.initial for one in self])
+
+    @property
+    def scales(self) -> Array:
+        """Of which searches take steps."""
+        return np.array([one.scale for one in self])
+
+    @property
+    def bounds(self) -> list[tuple[float, float]]:
+        """As scipy.optimize takes them."""
+        return [(one.lower, one.upper) for one in self]
 
 
 class Search(NamedTuple):
@@ -53,28 +76,19 @@ def _options(optimizer: str | Mapping[str, Any] | None, budget: Mapping[str, Any
 class Problem:
     """What an experiment of kind: calibrate minimizes, with its records made or read.
 
-    x holds the free parameters in the units of `variables`. The functions may be called from several
+    x holds the free parameters in the units of `parameters`. The functions may be called from several
     threads.
     """
 
     def __init__(self, source: Source, overrides: Mapping[str, Any] | None = None, *,
                  progress: Progress = None) -> None:
         self._core = open_experiment(source, overrides).search(_told(progress))
-        self.variables = [Variable(**one) for one in self._core.variables]
-
-    @property
-    def names(self) -> list[str]:
-        return [one.name for one in self.variables]
+        self.parameters = Parameters(Variable(**one) for one in self._core.variables)
 
     @property
     def x0(self) -> Array:
         """The start."""
-        return np.array([one.initial for one in self.variables])
-
-    @property
-    def bounds(self) -> list[tuple[float, float]]:
-        """As scipy.optimize takes them."""
-        return [(one.lower, one.upper) for one in self.variables]
+        return self.parameters.start
 
     @property
     def truth(self) -> Array | None:
@@ -112,6 +126,10 @@ class Problem:
         """dr_j/dx_i, a row for each residual."""
         return self._core.jacobian(x)
 
+    def model(self, x: ArrayLike) -> Model:
+        """The string with these parameters: its modes and its transfer functions."""
+        return Model(self._core.model(x), {})
+
     def minimize(self, optimizer: str | Mapping[str, Any] | Callable[[_core.Evaluator], str | None] = "nlopt", *,
                  budget: Mapping[str, Any] | None = None, progress: Progress = None) -> Search:
         """Searches by one of modcal's optimizers, {"type": "nlopt", ...}, or by one of your own.
@@ -125,7 +143,7 @@ class Problem:
         return _search(self._core.minimize(_options(optimizer, budget), _told(progress)))
 
     def __repr__(self) -> str:
-        return f"<modcal.Problem {self._core.objective} of {', '.join(self.names)}>"
+        return f"<modcal.Problem {self._core.objective} of {', '.join(self.parameters.names)}>"
 
 
 def add_optimizer(name: str, search: Callable[[_core.Evaluator], str | None], summary: str = "in Python") -> None:

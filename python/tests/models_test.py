@@ -82,6 +82,30 @@ class OfAStructure(Folder):
         at_peak = model.transfer([f])[3, 0]
         self.assertAlmostEqual(abs(at_peak) / abs(model.constants[3, 0] / (2 * zeta)), 1.0, delta=0.1)
 
+    def test_modes_of_measured_response_functions(self):
+        truth = modcal.Model.table(self.fitted)
+        f = np.arange(0.0, 301.0, 0.25)
+        clean = truth.transfer(f)
+        few = {"low": 10, "high": 300, "most_modes": 14}
+        exact = modcal.Model.response(f, dict(zip(SENSORS, clean)), **few)
+        band = (f > 12) & (f < 290)
+
+        def error(model):
+            return np.linalg.norm((model.transfer(f) - clean)[:, band]) / np.linalg.norm(clean[:, band])
+
+        # The truth is of the family that is fitted, but for its modes above the band, which the
+        # modes that are left over take: a hundredth of the static term in a hundredth of the response.
+        self.assertEqual(exact.sensors, truth.sensors)
+        self.assertLess(error(exact), 1e-4)
+        rng = np.random.default_rng(7)
+        noise = rng.normal(size=(2, *clean.shape)) * np.abs(clean).max(axis=1, keepdims=True) * 1e-3
+        noisy = clean + noise[0] + 1j * noise[1]
+        found = modcal.Model.response(f, dict(zip(SENSORS, noisy)), **few)
+        # 140 numbers of 8900 take the share √(140/8900) = 0.13 of the noise; weights that suit an error of the model
+        # and not white noise take twice as much.
+        left = np.linalg.norm((noisy - clean)[:, band]) / np.linalg.norm(clean[:, band])
+        self.assertLess(error(found), 0.35 * left)
+
     def test_force_is_that_of_the_files(self):
         found = modcal.identify(strike("plate_other_strike.csv"), modcal.Model.table(PLATE / "plate_modes.json"),
                                 window="80 ms")
@@ -99,6 +123,13 @@ class OfAStructure(Folder):
             modcal.Model.table(modcal.Result("invert", ""))
         with self.assertRaisesRegex(modcal.InvalidInput, "a table of modes: it has no string"):
             modcal.invert(modcal.Record(rate=1e3, left=np.zeros(9)), modcal.Model.table(self.fitted))
+        f = np.arange(0.0, 100.0)
+        nan = np.where(f == 20, np.nan, f)
+        for at, response, words in ((f + 0.5, f, "no multiples of an even step"),
+                                    (f, f[:-1], "no row of 100 numbers"), (f, nan, "not finite at 20 Hz"),
+                                    (f[30:], f[30:], "not within the frequencies, 30 to 99 Hz")):
+            with self.assertRaisesRegex(modcal.InvalidInput, words):
+                modcal.Model.response(at, {"a": response}, low=10, high=50)
         with self.assertRaisesRegex(modcal.InvalidInput, "missing.yaml"):
             modcal.Model.table("missing.yaml")
 

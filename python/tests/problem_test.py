@@ -16,11 +16,11 @@ class Functions(Folder):
 
     def test_variables(self):
         problem = self.problem
-        self.assertEqual(problem.names, ["f0", "B", "x_c"])
-        self.assertEqual([one.unit for one in problem.variables], ["Hz", "1", "m"])
+        self.assertEqual(problem.parameters.names, ["f0", "B", "x_c"])
+        self.assertEqual([one.unit for one in problem.parameters], ["Hz", "1", "m"])
         np.testing.assert_allclose(problem.truth, [196, 1e-4, 0.03], rtol=1e-9)
         self.assertAlmostEqual(problem.x0[2], 0.0304)
-        for (low, high), start in zip(problem.bounds, problem.x0):
+        for (low, high), start in zip(problem.parameters.bounds, problem.x0):
             self.assertTrue(low < start < high)
 
     def test_bound_is_that_of_the_truth(self):
@@ -31,13 +31,20 @@ class Functions(Folder):
         np.testing.assert_allclose(problem.bound, deviations, rtol=1e-6)
         self.assertIsNone(modcal.Problem(CALIBRATE, {"calibration.objective": "contact_location_squares"}).bound)
 
+    def test_model_at_a_point(self):
+        problem = modcal.Problem(CALIBRATE)
+        model = problem.model(problem.truth)
+        n = np.arange(1, 13)
+        np.testing.assert_allclose(model.frequencies, 196 * n * np.sqrt(1 + 1e-4 * n**2), rtol=1e-12)
+        self.assertEqual(list(model.sensors), ["R1", "R2", "y"])
+
     def test_slopes_are_those_of_the_value(self):
         problem, x = self.problem, self.problem.x0
         residuals, jacobian = problem.residuals(x), problem.jacobian(x)
         self.assertEqual(jacobian.shape, (residuals.size, 3))
         self.assertAlmostEqual(0.5 * residuals @ residuals, problem.objective(x), delta=1e-9 * problem.objective(x))
         np.testing.assert_allclose(problem.gradient(x), jacobian.T @ residuals, rtol=1e-9)
-        for i, variable in enumerate(problem.variables):
+        for i, variable in enumerate(problem.parameters):
             step = np.zeros(3)
             step[i] = 1e-4 * variable.scale
             slope = (problem.objective(x + step) - problem.objective(x - step)) / (2 * step[i])
@@ -48,7 +55,7 @@ class Functions(Folder):
                                              "calibration.parameters.law": False,
                                              "calibration.optimizer": "nlopt"})
         self.assertFalse(problem.capabilities["gradient"])
-        x, step = problem.x0, 6e-6 * problem.variables[0].scale
+        x, step = problem.x0, 6e-6 * problem.parameters[0].scale
         slope = (problem.objective(x + step) - problem.objective(x - step)) / (2 * step)
         self.assertAlmostEqual(problem.gradient(x)[0] / slope, 1.0, delta=0.2)
 
@@ -56,17 +63,17 @@ class Functions(Folder):
         from scipy.optimize import least_squares
 
         problem = self.problem
-        scale = np.array([one.scale for one in problem.variables])
-        low, high = np.transpose(problem.bounds)
+        scale = problem.parameters.scales
+        low, high = np.transpose(problem.parameters.bounds)
         theirs = least_squares(problem.residuals, problem.x0, problem.jacobian, bounds=(low, high), x_scale=scale,
                                xtol=1e-12, ftol=1e-12, gtol=1e-12)
         ours = {one["name"]: one["final"] for one in modcal.run(CALIBRATE).parameters}
-        np.testing.assert_allclose(theirs.x, [ours[name] for name in problem.names], rtol=1e-3)
+        np.testing.assert_allclose(theirs.x, [ours[name] for name in problem.parameters.names], rtol=1e-3)
 
     def test_optimizers_of_modcal(self):
         found = self.problem.minimize({"type": "gsl", "algorithm": "dogleg"})
         ours = {one["name"]: one["final"] for one in modcal.run(CALIBRATE).parameters}
-        np.testing.assert_array_equal(found.x, [ours[name] for name in self.problem.names])
+        np.testing.assert_array_equal(found.x, [ours[name] for name in self.problem.parameters.names])
         self.assertLess(found.value, found.initial_value)
         self.assertTrue(np.all(np.diff(found.trace["value"]) < 0))
         few = self.problem.minimize("nlopt", budget={"evaluations": 5})

@@ -2,10 +2,13 @@
 
 #include <hdf5.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <mutex>
 
 #include "libsim/base/error.hpp"
@@ -26,26 +29,54 @@ std::mutex& library() {
 
 Variable owned(matvar_t* variable) { return {variable, &Mat_VarFree}; }
 
-// libmatio takes the end of a file that was cut off for the end of its variables. Version 5: a
-// header of 128 bytes, then variables, each with its size before it.
+// Numbers of 32 bits at a place of a file, in its order of bytes; zeros past its end.
+template <std::size_t kCount>
+std::array<std::uint32_t, kCount> words_at(std::ifstream& file, std::streamoff at,
+                                           bool is_swapped) {
+  std::array<std::uint32_t, kCount> words{};
+  file.seekg(at);
+  file.read(reinterpret_cast<char*>(words.data()), sizeof words);
+  for (std::uint32_t& word : words) word = is_swapped ? __builtin_bswap32(word) : word;
+  return words;
+}
+
+// Bytes of a variable of version 4 with its header: a type of the digits MOPT, rows, columns,
+// whether there are imaginary parts, letters of the name. Infinite where there is no such type.
+double bytes_of_version_4(const std::array<std::uint32_t, 5>& header) {
+  constexpr std::array kBytes = {8.0, 4.0, 4.0, 2.0, 2.0, 1.0};
+  const std::size_t precision = header[0] / 10 % 10;
+  if (header[0] >= 5000 || precision >= kBytes.size()) {
+    return std::numeric_limits<double>::infinity();
+  }
+  const double parts = header[3] != 0 && header[0] % 10 != 2 ? 2.0 : 1.0;  // 2: sparse
+  return 20.0 + header[4] + parts * kBytes[precision] * header[1] * header[2];
+}
+
+// libmatio takes the end of a file that was cut off for the end of its variables, and asks for
+// what a header states. Version 5: a header of 128 bytes, then variables, each with its size before
+// it; version 4: variables alone; the others are those of HDF5.
 void require_whole(const Path& path) {
   constexpr std::streamoff kHeader = 128, kOrder = 126, kTag = 8;
   std::ifstream file(path, std::ios::binary);
   std::array<char, kHeader> header{};
   const auto size = static_cast<std::streamoff>(std::filesystem::file_size(path));
   file.read(header.data(), kHeader);
-  if (!file || std::strncmp(header.data(), "MATLAB 5.0", 10) != 0) return;
-  const bool is_swapped = (header[kOrder] == 'I') != (std::endian::native == std::endian::little);
-  for (std::streamoff at = kHeader; at < size;) {
-    std::array<std::uint32_t, 2> tag{};
-    file.seekg(at);
-    file.read(reinterpret_cast<char*>(tag.data()), kTag);
-    const std::uint32_t bytes = is_swapped ? __builtin_bswap32(tag[1]) : tag[1];
-    MODCAL_REQUIRE(file && at + kTag + static_cast<std::streamoff>(bytes) <= size,
+  file.clear();
+  const std::string_view begin(header.data(), 10);
+  const bool is_five = begin == "MATLAB 5.0" && size >= kHeader;
+  if (!is_five && (begin.starts_with("MATLAB") || begin.starts_with("\x89HDF"))) return;
+  const bool is_swapped =
+      is_five ? (header[kOrder] == 'I') != (std::endian::native == std::endian::little)
+              : words_at<1>(file, 0, false)[0] >= 5000;
+  for (std::streamoff at = is_five ? kHeader : 0; at < size;) {
+    const double bytes = is_five ? static_cast<double>(kTag + words_at<2>(file, at, is_swapped)[1])
+                                 : bytes_of_version_4(words_at<5>(file, at, is_swapped));
+    if (at == 0 && std::isinf(bytes)) return;  // another file
+    MODCAL_REQUIRE(file && bytes <= static_cast<double>(size - at),
                    "{}: the file is cut off: the variable at byte {} is not whole; copy or save "
                    "it again",
                    path.string(), at);
-    at += kTag + static_cast<std::streamoff>(bytes);
+    at += static_cast<std::streamoff>(bytes);
   }
 }
 
