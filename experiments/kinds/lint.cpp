@@ -63,17 +63,17 @@ void lint_fit(const Scene& scene, const Choice<Simulator>& simulator,
   }
 }
 
-// What a simulator of fixed steps refuses once it knows the scene's response to one of them.
+// What a simulator of fixed steps refuses once it knows the scene's response to
+// two of them, however many there are to a sample.
 void lint_step(const Scene& scene, const Choice<Simulator>& simulator, double sample_rate,
                std::vector<Finding>& findings) {
   const auto made = simulator.make();
-  if (!is_known(scene.string) || !std::isfinite(made->longest_step())) return;
-  // Two of its steps, however many there are to a sample.
-  const double steps = std::max(1.0, std::ceil(1.0 / (sample_rate * made->longest_step())));
+  const double step = made->longest_step();
+  if (!is_known(scene.string) || !std::isfinite(step)) return;
+  const double rate = sample_rate * std::max(1.0, std::ceil(1.0 / (sample_rate * step)));
   Scene begin = scene;
-  begin.duration = std::min(scene.duration, 2.0 / (sample_rate * steps));
-  lint_making(findings, "simulator.time_step",
-              [&] { made->simulate(begin, sample_rate * steps, {}); });
+  begin.duration = std::min(scene.duration, 2.0 / rate);
+  lint_making(findings, "simulator.time_step", [&] { made->simulate(begin, rate, {}); });
 }
 
 void lint_decay(const Scene& scene, std::vector<Finding>& findings) {
