@@ -63,8 +63,7 @@ void lint_fit(const Scene& scene, const Choice<Simulator>& simulator,
   }
 }
 
-// What a simulator of fixed steps refuses once it knows the scene's response to
-// two of them, however many there are to a sample.
+// What a simulator refuses once it has made two of its steps, however many a sample takes.
 void lint_step(const Scene& scene, const Choice<Simulator>& simulator, double sample_rate,
                std::vector<Finding>& findings) {
   const auto made = simulator.make();
@@ -239,12 +238,11 @@ std::vector<Finding> lint_priors(const std::string& path, const UnknownsOptions&
     wrong.insert(unknowns.priors[i].parameter);
     sound.priors.pop_back();
   }
+  const auto is_wrong = [&](const std::string& name) { return wrong.contains(name); };
   for (std::size_t i = 0; i < unknowns.correlations.size(); ++i) {
     const PriorCorrelation& correlation = unknowns.correlations[i];
     // What is wrong with a prior is said there.
-    const bool follows = std::any_of(correlation.between.begin(), correlation.between.end(),
-                                     [&](const std::string& name) { return wrong.contains(name); });
-    if (follows) continue;
+    if (std::ranges::any_of(correlation.between, is_wrong)) continue;
     sound.correlations.push_back(correlation);
     if (!passes(fmt::format(".correlations.{}", i))) sound.correlations.pop_back();
   }
@@ -287,8 +285,7 @@ std::vector<Finding> lint_figures(const std::vector<FigureOptions>& figures,
     for (const std::string& name : figure.quantities) {
       if (!identified || (name != "R1" && name != "R2")) continue;
       add_finding(findings, place,
-                  "figure {} draws {}, which is measured, not "
-                  "identified: use y, v or f_c",
+                  "figure {} draws {}, which is measured, not identified: use y, v or f_c",
                   figure.id, name);
     }
     if (std::ranges::count(contents, figure.content) == 0) {
