@@ -13,6 +13,7 @@
 
 #include "libsim/base/error.hpp"
 #include "libsim/base/files.hpp"
+#include "libsim/base/utf8.hpp"
 
 namespace modcal {
 namespace {
@@ -142,6 +143,10 @@ void add_leaves(matvar_t* variable, MatlabLeaf at, std::vector<MatlabLeaf>& leav
 
 }  // namespace
 
+std::string MatlabLeaf::text() const {
+  return utf8_or_latin1(fmt::format("{}", fmt::join(path, ".")));
+}
+
 bool MatlabLeaf::has_numbers() const { return number_of_class(type) != nullptr; }
 
 MatlabContent::MatlabContent(Path path) : path_(std::move(path)) {
@@ -176,7 +181,8 @@ std::string MatlabContent::text(const MatlabLeaf& leaf) {
   const auto* const letters = static_cast<const char*>(field.data);
   const bool is_bytes = field.data_type == MAT_T_UINT8 || field.data_type == MAT_T_INT8 ||
                         field.data_type == MAT_T_UTF8;
-  return is_bytes ? std::string(letters, std::min(size_of(field), field.nbytes)) : std::string();
+  if (!is_bytes) return {};
+  return utf8_or_latin1({letters, std::min(size_of(field), field.nbytes)});
 }
 
 const matvar_t& MatlabContent::field(const MatlabLeaf& leaf) {

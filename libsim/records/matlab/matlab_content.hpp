@@ -32,7 +32,7 @@ struct MatlabLeaf {
   bool is_table() const { return dims.size() == 2 && size() > 1; }
   std::size_t rows() const { return std::max(dims[0], dims[1]); }
   std::size_t columns() const { return std::min(dims[0], dims[1]); }
-  std::string text() const { return fmt::format("{}", fmt::join(path, ".")); }
+  std::string text() const;
 };
 
 /// Read once each and kept as long as a channel may be asked for; from any thread.

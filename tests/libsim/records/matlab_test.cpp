@@ -186,6 +186,30 @@ TEST_F(Matlab, AFileOfVersion73CutOffIsRefused) {
   }
 }
 
+TEST_F(Matlab, NamesOfOlderProgramsAreText) {
+  {
+    MatWriter out(file(), MAT_FT_MAT5);
+    out.write(
+        MatWriter::doubles("Kr\xe4"
+                           "fte",
+                           1, {1.0, 2.0, 3.0}));
+    out.write(MatWriter::doubles("fs", 1, {100.0}));
+  }
+  EXPECT_EQ(read().channels.at(0).name, "Kr\u00e4fte");
+}
+
+TEST_F(Matlab, HeadersThatStateMoreThanThereIsAreRefused) {
+  // Version 4: 30 rows and a name of 2 GB; 2^31 columns.
+  for (const std::array<std::uint32_t, 5>& header :
+       {std::array<std::uint32_t, 5>{0, 30, 1, 0, 0x7fffffff}, {0, 30, 0x80000000, 0, 2}}) {
+    std::ofstream out(file(), std::ios::binary);
+    out.write(reinterpret_cast<const char*>(header.data()), sizeof header);
+    out << std::string(300, 'a');
+    out.close();
+    EXPECT_THAT(refusal(), HasSubstr("the variable at byte 0 is not whole"));
+  }
+}
+
 TEST_F(Matlab, OtherFilesAreRefused) {
   std::ofstream(file()) << "t,f\n1,2\n";
   EXPECT_THAT(refusal(), HasSubstr("cannot be read as a MAT file"));
