@@ -30,6 +30,7 @@ void on_signal(int number) {
   if (!is_polled.load(std::memory_order_relaxed)) {
     constexpr std::string_view kSaid = "\ninterrupted\n";
     static_cast<void>(write(STDERR_FILENO, kSaid.data(), kSaid.size()) < 0);
+    remove_parts();
     _exit(static_cast<int>(ExitCode::kInterrupted));
   }
   flag.store(true, std::memory_order_relaxed);

@@ -20,6 +20,10 @@ namespace {
 namespace fs = std::filesystem;
 constexpr std::string_view kPart = ".part";
 
+// Of the files that are being written, some of them at least: the handler of a signal may neither
+// lock nor allocate.
+std::array<std::atomic<const char*>, 64> part_names;
+
 const char* name_of(mode_t mode) {
   if (S_ISDIR(mode)) return "a folder";
   if (S_ISLNK(mode)) return "a link";
@@ -179,6 +183,12 @@ void OpenFile::require_in_place(std::string_view what) const {
       path_.string(), what));
 }
 
+void remove_parts() noexcept {
+  for (const std::atomic<const char*>& name : part_names) {
+    if (const char* const part = name.load()) unlink(part);
+  }
+}
+
 PartFile::PartFile(fs::path target)
     : target_(std::move(target)), part_(with_random_end(target_, kPart)) {
   descriptor_ = make_new_file(part_);
@@ -188,10 +198,17 @@ PartFile::PartFile(fs::path target)
   struct flock lock = first_byte(F_WRLCK);
   // Where a file system knows no locks, nothing is taken for abandoned either.
   static_cast<void>(fcntl(descriptor_, F_OFD_SETLK, &lock));
+  for (std::atomic<const char*>& name : part_names) {
+    const char* none = nullptr;
+    if (!name.compare_exchange_strong(none, part_.c_str())) continue;
+    name_ = &name;
+    break;
+  }
 }
 
 PartFile::~PartFile() {
   if (!part_.empty()) unlink(part_.c_str());
+  if (name_ != nullptr) name_->store(nullptr);
   close(descriptor_);
 }
 
@@ -199,6 +216,7 @@ void PartFile::put_in_place() {
   std::error_code error;
   fs::rename(part_, target_, error);
   MODCAL_REQUIRE(!error, "{}: cannot be written: {}", target_.string(), error.message());
+  if (name_ != nullptr) std::exchange(name_, nullptr)->store(nullptr);
   part_.clear();
 }
 

@@ -1,6 +1,7 @@
 // Files in folders that others may write to, and files that may vanish while they are in use.
 #pragma once
 
+#include <atomic>
 #include <filesystem>
 #include <functional>
 #include <stdexcept>
@@ -67,7 +68,11 @@ class PartFile {
  private:
   std::filesystem::path target_, part_;
   int descriptor_ = -1;
+  std::atomic<const char*>* name_ = nullptr;
 };
+
+/// Removes every part file of this process, which has to end then. For the handler of a signal.
+void remove_parts() noexcept;
 
 /// Makes a folder of ours, and those above it. Throws InvalidInput where that fails, and where a
 /// link stands in its place: what is written below would go where somebody else wants it.

@@ -130,12 +130,14 @@ std::vector<std::size_t> chosen_channels(const std::vector<RecordedChannel>& cha
 void read_samples(SndfileHandle& file, const std::vector<std::size_t>& chosen, Recording& recording,
                   const std::string& name) {
   const auto width = static_cast<std::size_t>(file.channels());
-  std::vector<double> block(width * kBlockFrames);
+  const std::size_t block_frames = std::max<std::size_t>(1, 2 * kBlockFrames / width);
+  std::vector<double> block(width * block_frames);
   for (RecordedChannel& channel : recording.channels) {
     channel.samples.reserve(static_cast<std::size_t>(file.frames()));
   }
   for (;;) {
-    const auto frames = static_cast<std::size_t>(file.readf(block.data(), kBlockFrames));
+    const auto frames =
+        static_cast<std::size_t>(file.readf(block.data(), static_cast<sf_count_t>(block_frames)));
     if (frames == 0) break;
     for (std::size_t c = 0; c < chosen.size(); ++c) {
       std::vector<double>& samples = recording.channels[c].samples;

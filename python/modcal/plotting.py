@@ -1,6 +1,7 @@
 """Figures with matplotlib, in the style of the report's."""
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import numpy as np
@@ -8,6 +9,10 @@ import numpy as np
 from modcal.errors import InvalidInput
 
 _BAND = 1.96  # deviations of a 95 % band
+_SHOWN = "identified_force"  # some periods of it, beside the measured one
+_INK = "#0072b2"  # the first of the report's
+_GRID = "#dcdcdc"
+_SYMBOL = re.compile(r"(?<![A-Za-z])([A-Za-zζωφε])_([A-Za-z0-9]+)")
 
 
 def _pyplot() -> Any:
@@ -16,9 +21,29 @@ def _pyplot() -> Any:
     return Figure
 
 
+def _text(words: str) -> str:
+    """With indices as indices."""
+    return _SYMBOL.sub(r"$\1_{\2}$", words)
+
+
+def _bare(axes: Any) -> None:
+    """Two axes on a light grid."""
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.grid(True, color=_GRID, linewidth=0.6)
+    axes.set_axisbelow(True)
+
+
+def _legend(axes: Any) -> None:
+    """Above the axes, where it stands over no curve."""
+    labels = axes.get_legend_handles_labels()[1]
+    if labels:
+        axes.legend(frameon=False, fontsize="small", loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=len(labels),
+                    borderaxespad=0.1)
+
+
 def plot(result: Any, name: str | None) -> Any:
     if name is None:
-        return _force(result)
+        return _drawn(result.figures[_SHOWN]) if _SHOWN in result.figures else _force(result)
     if name not in result.figures:
         raise InvalidInput(f"there is no figure {name}; there are {', '.join(result.figures) or 'none'}")
     return _drawn(result.figures[name])
@@ -29,12 +54,13 @@ def _drawn(described: dict[str, Any]) -> Any:
     columns = described["columns"]
     rows = -(-len(panels) // columns)
     figure = _pyplot()(figsize=(6.4 * columns, 3.2 * rows), layout="constrained")
-    figure.suptitle(described["title"])
+    figure.suptitle(_text(described["title"]), x=0.01, ha="left", fontsize="medium", fontweight="bold")
     for place, panel in enumerate(panels):
         axes = figure.add_subplot(rows, columns, place + 1)
-        axes.set_title(panel["title"])
+        _bare(axes)
+        axes.set_title(_text(panel["title"]), loc="left", fontsize="small")
         for axis, told in (("x", panel["x"]), ("y", panel["y"])):
-            axes.set(**{f"{axis}label": told["text"]})
+            axes.set(**{f"{axis}label": _text(told["text"])})
             if told["logarithmic"]:
                 axes.set(**{f"{axis}scale": "log"})
             if told["range"] is not None:
@@ -44,8 +70,7 @@ def _drawn(described: dict[str, Any]) -> Any:
         for marker in panel["markers"]:
             line = axes.axvline if marker["vertical"] else axes.axhline
             line(marker["value"], color=marker["color"], linestyle=":", linewidth=1)
-        if any(series["label"] for series in panel["series"]):
-            axes.legend(frameon=False, fontsize="small")
+        _legend(axes)
     return figure
 
 
@@ -59,7 +84,7 @@ def _series(axes: Any, series: dict[str, Any]) -> None:
     elif banded:
         axes.vlines(series["x"], series["y_low"], series["y_high"], color=color, linewidth=0.8)
     axes.plot(series["x"], series["y"], linestyle=style, marker=points, markersize=3, linewidth=1, color=color,
-              label=series["label"] or None)
+              label=_text(series["label"]) or None)
 
 
 def _force(result: Any) -> Any:
@@ -71,15 +96,18 @@ def _force(result: Any) -> Any:
                            f"{', '.join(result.figures) or 'there is none'}")
     figure = _pyplot()(figsize=(8, 3), layout="constrained")
     axes = figure.add_subplot()
+    _bare(axes)
     time = result.time
     for name in names:
         signal = result.signals[name]
-        line, = axes.plot(time, signal, linewidth=1, label=name)
+        color = _INK if len(names) == 1 else None
+        line, = axes.plot(time, signal, linewidth=1, color=color, label=_text(name))
         deviation = result.signals.get(f"{name}_deviation")
         if deviation is not None:
             band = _BAND * np.asarray(deviation)
             axes.fill_between(time, signal - band, signal + band, color=line.get_color(), alpha=0.25, linewidth=0)
-    axes.set(title=result.title, xlabel="t [s]", ylabel=f"force [{result.units.get(names[0], '')}]"
+    axes.set_title(result.title, loc="left", fontsize="small", fontweight="bold")
+    axes.set(xlabel="$t$ [s]", ylabel=f"force [{result.units.get(names[0], '')}]"
              if names[0].startswith("f_c") else "")
-    axes.legend(frameon=False)
+    _legend(axes)
     return figure

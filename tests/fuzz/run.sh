@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Runs the fuzzers: run.sh BUILD SECONDS [TARGET...]. With 0 seconds, every file of the corpora once.
 # What they learn stays in BUILD/corpus, what they find in BUILD/findings; a finding, once mended,
-# becomes a file of tests/fuzz/corpus. An input may take 1 s and 1 GB.
+# becomes a file of tests/fuzz/corpus. An input may take 1 s, five times that with the sanitizers, and 1 GB.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 build=$(realpath "$1")
@@ -13,7 +13,7 @@ mkdir -p "$build/findings"
 "$here/seeds.py" "$here/../.." "$build/corpus" "${targets[@]}"
 
 fuzz() { # TARGET
-  local log=$build/findings/$1.log limits=(-timeout=1 -rss_limit_mb=1024)
+  local log=$build/findings/$1.log limits=(-timeout=5 -rss_limit_mb=1024)
   # libmatio asks for what a file states and touches what it holds.
   [ "$1" = mat ] && limits+=(-malloc_limit_mb=65536)
   local length=$([ "$1" = wav ] && echo 4096 || echo 16384)

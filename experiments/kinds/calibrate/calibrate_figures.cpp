@@ -218,7 +218,7 @@ report::Figure objective_figure(const FigureOptions& options, const CalibrationO
 report::Figure frequency_error_figure(const FigureOptions& options,
                                       const CalibrationOutcome& outcome) {
   report::Figure figure{.id = options.id, .title = options.title, .columns = 1};
-  figure.caption = "Open points: modes that the contact does not excite.";
+  figure.caption = "Blind: modes with a node at the contact, which does not excite them.";
   report::Series absolute[2], relative[2], shape[2];
   for (const CalibratedMode& mode : outcome.result.modes) {
     const std::size_t group = mode.excited ? 0 : 1;

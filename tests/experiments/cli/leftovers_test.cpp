@@ -195,5 +195,17 @@ TEST_F(Leftovers, AFileOfDotsGetsAFolderOfItsOwn) {
   EXPECT_FALSE(std::filesystem::exists(folder() / "out/report.html"));
 }
 
+TEST_F(Leftovers, NothingIsLeftOfAnInterruptedConversion) {
+  shell(
+      "awk 'BEGIN {print \"# sample_rate: 1000 Hz\\nR1 [N],R2 [N]\"; for (i = 0; i < 1000000; ++i) "
+      "print i % 7 \",\" i % 11}' > large.csv");
+  const Outcome ended = shell("'" MODCAL_PROGRAM
+                              "' convert large.csv other.csv & until ls | grep -q part; do kill -0 "
+                              "$! || exit 99; done; kill -TERM $!; wait $!");
+  EXPECT_EQ(ended.code, 130) << ended.out << ended.err;
+  EXPECT_FALSE(has_parts());
+  EXPECT_FALSE(std::filesystem::exists(folder() / "other.csv"));
+}
+
 }  // namespace
 }  // namespace modcal
