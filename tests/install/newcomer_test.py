@@ -68,6 +68,9 @@ def main():
         print("skipped: MODCAL_FRESH_CLONE is not set; this builds the program once more")
         return 77
     project = sys.argv[1]
+    if subprocess.run(["git", "-C", project, "rev-parse", "HEAD"], capture_output=True).returncode:
+        print("skipped: the project is no repository of this user")
+        return 77
     with tempfile.TemporaryDirectory() as parent:
         run(f"git clone --quiet {project} modcal", parent)
         folder = f"{parent}/modcal"
