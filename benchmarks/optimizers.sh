@@ -17,7 +17,7 @@ cat "$profile/conclusion"
 
 chromium --headless --no-sandbox --disable-gpu --no-first-run --disable-background-networking \
   --hide-scrollbars --user-data-dir="$profile/chromium" --virtual-time-budget=20000 \
-  --force-device-scale-factor=0.65 --window-size=1290,"${HEIGHT:-2750}" --screenshot=docs/benchmark.png \
+  --force-device-scale-factor=0.65 --window-size=1290,"${HEIGHT:-1500}" --screenshot=docs/benchmark.png \
   "file://$(realpath "$out")/report.html" 2>/dev/null
 stat -c '%n: %s bytes' docs/benchmark.png
 

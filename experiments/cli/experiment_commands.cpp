@@ -1,4 +1,6 @@
 // run, validate and limit: what is done with an experiment file as a whole.
+#include <dlfcn.h>
+
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -165,12 +167,26 @@ void declare(CLI::App& command, ReproduceArguments& arguments) {
 
 }  // namespace
 
+// Where the program stands, or would stand beside the module that another program has loaded: of a
+// build, or installed in PREFIX/lib/python3/dist-packages/modcal.
+std::vector<std::filesystem::path> own_folders() {
+  Dl_info module{};
+  const bool is_known = dladdr(reinterpret_cast<const void*>(&shipped_configs), &module) != 0;
+  const std::filesystem::path file = is_known ? module.dli_fname : "";
+  if (file.extension() != ".so") {
+    return {std::filesystem::read_symlink("/proc/self/exe").parent_path()};
+  }
+  const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
+  return {folder / "../..", folder / "../../../../bin"};
+}
+
 std::string shipped_configs() {
-  const auto program = std::filesystem::read_symlink("/proc/self/exe").parent_path();
   std::filesystem::path configs;
-  for (const char* folder : kBuildConfigs) {
-    configs = (program / folder).lexically_normal();
-    if (std::filesystem::is_directory(configs)) break;
+  for (const std::filesystem::path& own : own_folders()) {
+    for (const char* folder : kBuildConfigs) {
+      configs = (own / folder).lexically_normal();
+      if (std::filesystem::is_directory(configs)) return configs.string();
+    }
   }
   return configs.string();
 }

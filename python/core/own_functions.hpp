@@ -40,7 +40,7 @@ class OwnFunction final : public ObjectiveFunction {
   }
   OwnFunction(const OwnFunction&) = delete;
   OwnFunction& operator=(const OwnFunction&) = delete;
-  std::string_view name() const override { return told_.empty() ? "own" : told_; }
+  std::string_view name() const override { return told_.empty() ? std::string_view("own") : told_; }
   std::size_t dimension() const override { return dimension_; }
   std::size_t residual_count() const override { return residual_count_; }
   Capabilities capabilities() const override {

@@ -54,7 +54,7 @@ class OwnOptimizer final : public Optimizer {
  public:
   explicit OwnOptimizer(py::object search, std::string told = {})
       : search_(std::move(search)), told_(std::move(told)) {}
-  std::string_view name() const override { return told_.empty() ? "own" : told_; }
+  std::string_view name() const override { return told_.empty() ? std::string_view("own") : told_; }
 
  private:
   StopReason search(Evaluator& evaluator) const override {
@@ -110,9 +110,14 @@ py::dict minimize(const py::dict& callables, std::size_t residuals, const py::li
 }
 
 // Our function by Python's optimizer.
-py::dict search(const Search& problem, const py::object& search, const std::string& options) {
-  return described(OwnOptimizer(search).minimize(problem.function(), problem.variables(),
-                                                 SearchOptions::read(options).budget));
+py::dict search(const Search& problem, const py::object& search, const std::string& options,
+                const py::object& progress) {
+  const SearchOptions how = SearchOptions::read(options);
+  const OwnOptimizer optimizer(search);
+  return described(watched(progress, [&](const Watch& watch) {
+    return optimizer.minimize(problem.function(), problem.variables(), how.budget,
+                              polling_clock(watch.stop));
+  }));
 }
 
 }  // namespace
@@ -148,7 +153,8 @@ void add_own_searches(py::module_& module) {
              py::arg("variables"), py::arg("options"), py::arg("progress"));
   module.def("add_optimizer", &add_optimizer, py::arg("name"), py::arg("search"),
              py::arg("summary"));
-  module.def("search", &search, py::arg("problem"), py::arg("search"), py::arg("options"));
+  module.def("search", &search, py::arg("problem"), py::arg("search"), py::arg("options"),
+             py::arg("progress"));
 }
 
 }  // namespace modcal::python

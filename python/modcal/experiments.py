@@ -107,7 +107,7 @@ def _run_into(out: Path, source: Source, overrides: Mapping[str, Any] | None, th
         words += ["--threads", str(threads)]
     answer = ask(*words, progress=progress)
     result = load(out)
-    result.answer = answer.get("answer", "")
+    result.answer = answer.get("verdict", "")
     result.summary = answer.get("summary", "")
     result.missed = answer.get("missed", [])
     result.status = {0: "ok", 5: "ok", 4: "some_failed"}.get(answer.get("error", {}).get("exit_code", 0), "failed")

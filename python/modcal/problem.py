@@ -139,7 +139,7 @@ class Problem:
         why it ended, such as "converged".
         """
         if callable(optimizer):
-            return _search(_core.search(self._core, optimizer, _options(None, budget)))
+            return _search(_core.search(self._core, optimizer, _options(None, budget), _told(progress)))
         return _search(self._core.minimize(_options(optimizer, budget), _told(progress)))
 
     def __repr__(self) -> str:

@@ -15,7 +15,12 @@ _numbers = itertools.count(1)
 
 def as_samples(what: str, given: ArrayLike) -> NDArray[np.float64]:
     """A row of double precision; a view where it is one already."""
-    array = np.asarray(given)
+    if np.any(getattr(given, "mask", False)):
+        raise InvalidInput(f"{what} has masked samples; fill them, or cut the record")
+    try:
+        array = np.asarray(given)
+    except ValueError as error:
+        raise InvalidInput(f"{what} is no array: {error}; give one row of samples") from None
     if array.dtype.kind not in "fiub":
         raise InvalidInput(f"{what} is an array of {array.dtype}, not of real numbers; convert it with "
                            "astype(float)")
@@ -54,13 +59,16 @@ class Record:
                  kinds: str | Mapping[str, str] = "acceleration") -> None:
         if (rate is None) == (time is None):
             raise InvalidInput("a record needs either rate= or time=; state one of them")
+        if isinstance(rate, str):
+            raise InvalidInput(f"rate = \"{rate}\" is a text; give samples a second as a number")
         self.rate = float(rate) if rate is not None else _rate(time)  # type: ignore[arg-type]
         if not (self.rate > 0.0 and np.isfinite(self.rate)):
             raise InvalidInput(f"rate = {self.rate} Hz cannot be a sample rate; it is > 0")
         ends = {"R1": left, "R2": right}
         if responses is not None and any(held is not None for held in ends.values()):
             raise InvalidInput("a record is of a string's reactions or of a structure's responses; give one of them")
-        given = dict(responses) if responses is not None else ends
+        given: dict[str, ArrayLike | None] = dict(ends) if responses is None else {}
+        given.update(responses or {})
         self._kinds = {name: "force" if responses is None else kinds if isinstance(kinds, str) else
                        kinds.get(name, "acceleration") for name in given}
         words = {"R1": "left", "R2": "right", "f_c": "force"} if responses is None else {}

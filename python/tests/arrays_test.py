@@ -71,6 +71,8 @@ class FromArrays(Folder):
             ({"left": nan}, "sample 17 of channel R1 is nan; repair the record or crop it away"),
             ({"left": self.left.reshape(2, -1)}, "shape"),
             ({"left": []}, "is empty"),
+            ({"left": np.ma.masked_less(self.left, 0.0)}, "masked samples"),
+            ({"left": [[1.0], [2.0, 3.0]]}, "is no array"),
             ({"left": np.array(["a"])}, "not of real numbers"),
             ({"left": np.array([None, 1], dtype=object)}, "not of real numbers"),
             ({"left": self.left * 1j}, "not of real numbers"),

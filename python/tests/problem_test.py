@@ -222,12 +222,20 @@ class Registered(Folder):
                                 (["gradient", "gradient"], "each once")):
             with self.assertRaisesRegex(modcal.InvalidInput, words):
                 modcal.add_objective("wrong", Parabola, provides=provides)
+        # A name that no short string holds.
+        modcal.add_objective("with_residuals_and_jacobian", Distance, provides=["residuals", "jacobian"])
+        named = modcal.Problem(CALIBRATE, {**own, "calibration.objective": "with_residuals_and_jacobian"})
+        self.assertIn("with_residuals_and_jacobian", repr(named))
         modcal.add_objective("without", lambda record: object(), provides=["residuals"])
         with self.assertRaisesRegex(modcal.InvalidInput, "no attribute 'residuals'"):
             modcal.run(CALIBRATE, {**own, "calibration.objective": "without", "calibration.optimizer": "nlopt"})
 
 
 class OwnObjective(Folder):
+    def test_its_name_in_a_refusal(self):
+        with self.assertRaisesRegex(modcal.InvalidInput, "own"):
+            modcal.minimize(lambda x: 0.0, self.VARIABLES, optimizer={"type": "ceres"})
+
     VARIABLES = [Variable("a", "", -1.0, -5.0, 5.0), Variable("b", "m", 1.0, -5.0, 5.0)]
 
     def test_value(self):

@@ -64,6 +64,10 @@ class SameBits(Folder):
         self.assertIn("f0", found.summary)
         self.assertEqual(found.status, "ok")
 
+    def test_new_finds_its_examples(self):
+        text = modcal.new("simulate")
+        self.assertEqual(modcal.validate(text), [])
+
     def test_threads_of_python(self):
         alone = [modcal.run(INVERT, {"seed": seed}).f_c_joint for seed in range(4)]
         together = [None] * 4

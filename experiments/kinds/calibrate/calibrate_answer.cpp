@@ -28,7 +28,8 @@ std::string answer_of(const CalibratedParameter& parameter, bool is_length) {
   constexpr double kBand = 1.96;
   const double scale = is_length ? 1e3 : 1.0;
   const std::string unit = is_length ? " mm" : parameter.unit == "1" ? "" : " " + parameter.unit;
-  const double value = scale * parameter.final;
+  const double value =
+      parameter.unit == "1" ? without_rounding(parameter.final) : scale * parameter.final;
   const double width = scale * kBand * parameter.deviation;
   const std::string text = fmt::format("{} = {}", parameter.name, to_deviation(value, width));
   return std::isnan(width) ? text + unit : fmt::format("{} ± {:.2g}{}", text, width, unit);

@@ -237,6 +237,18 @@ void add_calibration_warnings(const CalibrationOutcome& outcome, StudyResult& re
     return;
   }
   const StopReason stop = outcome.result.search.stop;
+  if (stop == StopReason::kEvaluationBudget || stop == StopReason::kTimeBudget) {
+    constexpr std::string_view kRemedy = "raise calibration.budget";
+    if (!std::isfinite(outcome.result.search.value)) {
+      return fail(
+          fmt::format("the search was cut by its budget before it found anything: {}", kRemedy));
+    }
+    result.warn(
+        fmt::format("the search was cut by its budget: a better point may lie beyond; {}, or take "
+                    "another optimizer",
+                    kRemedy));
+    result.answer = "Cut by its budget: " + calibration_answer(outcome);
+  }
   if (stop == StopReason::kNotFinite || stop == StopReason::kNoProgress ||
       stop == StopReason::kNotRun) {
     fail("the search failed: " + std::string(explain(stop)));

@@ -98,6 +98,19 @@ TEST_F(FirstHour, NeedsNoObjectiveNorEstimator) {
   EXPECT_THAT(first_line("out/one/identified.csv"), HasSubstr("f_c_joint_deviation [N]"));
 }
 
+TEST_F(FirstHour, IsToldOfASearchThatWasCut) {
+  ASSERT_EQ(modcal("new calibrate record.csv --length '0.33 m' --out mine.yaml").code, 0);
+  const Outcome cut = modcal("run mine.yaml --set calibration.budget.evaluations=5");
+  EXPECT_NE(cut.code, 0);
+  EXPECT_THAT(cut.out, HasSubstr("before it found anything: raise calibration.budget"));
+  EXPECT_THAT(content_of(folder() / "out/mine/report.html"), Not(HasSubstr("All done")));
+  const Outcome short_of = modcal(
+      "run mine.yaml --out short --set calibration='{objective: spectral_peak, optimizer: nlopt, "
+      "parameters: {frequencies: none, law: true}, budget: {evaluations: 5}}'");
+  EXPECT_THAT(short_of.out, HasSubstr("a better point may lie beyond; raise calibration.budget"));
+  EXPECT_THAT(content_of(folder() / "short/report.html"), HasSubstr("Cut by its budget: "));
+}
+
 TEST_F(FirstHour, NeedNotKnowHowASensorWasMounted) {
   // The reaction at x = L with the other sign.
   ASSERT_EQ(

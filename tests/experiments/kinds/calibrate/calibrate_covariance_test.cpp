@@ -11,6 +11,7 @@
 namespace modcal {
 namespace {
 
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -93,31 +94,30 @@ TEST(CalibrateCovariance, WhatIsNotFiniteIsNull) {
   EXPECT_TRUE(covariance_json(tied).at("condition").is_null());
 }
 
-TEST(CalibrateCovariance, IsATableOfBothFits) {
-  const auto is_of_pairs = [](const report::Table& one) { return one.id == "correlations"; };
-  const std::vector<report::Table> without = report::tables_of(CalibrationOutcome());
-  EXPECT_TRUE(std::none_of(without.begin(), without.end(), is_of_pairs));
-  const std::vector<report::Table> tables = report::tables_of(outcome_of(found()));
-  const auto place = std::find_if(tables.begin(), tables.end(), is_of_pairs);
-  ASSERT_NE(place, tables.end());
-  const report::Table& table = *place;
-  check_table(table);
-  ASSERT_EQ(table.rows.size(), 4u);  // three pairs of the law, one of what is identified
-  EXPECT_EQ(std::get<std::string>(table.rows[0][0].value), "law");
-  EXPECT_NEAR(std::get<double>(table.rows[0][3].value), 0.9, 1e-12);
-  EXPECT_EQ(std::get<std::string>(table.rows[3][0].value), "every frequency");
-  EXPECT_EQ(std::get<std::string>(table.rows[3][2].value), "x_c");
+std::vector<std::string> names_in(const report::Table& map) {
+  std::vector<std::string> names;
+  for (const auto& row : map.rows) names.push_back(std::get<std::string>(row[0].value));
+  return names;
 }
 
-TEST(CalibrateCovariance, TablesNothingOfALawThatTheDataReject) {
+TEST(CalibrateCovariance, IsAMapOfTheLaw) {
+  const report::Table map = correlation_map(found());
+  check_table(map);
+  EXPECT_THAT(names_in(map), ElementsAre("f0", "x_c", "damping"));
+  ASSERT_EQ(map.columns.size(), 4u);
+  EXPECT_EQ(map.columns[2].key, "x_c");
+  EXPECT_NEAR(std::get<double>(map.rows[0][2].value), 0.9, 1e-12);
+  EXPECT_NEAR(map.rows[1][1].heat, 0.9, 1e-12);
+  EXPECT_EQ(report::cell_text(map.rows[1][2], map.columns[2]), "–");
+}
+
+TEST(CalibrateCovariance, IsAMapOfWhatIsBoundMostWhereTheDataRejectTheLaw) {
   ContinuationResult rejected = found();
   rejected.law.accepted = false;
-  const std::vector<report::Table> tables = report::tables_of(outcome_of(std::move(rejected)));
-  const auto place = std::find_if(tables.begin(), tables.end(),
-                                  [](const auto& one) { return one.id == "correlations"; });
-  ASSERT_NE(place, tables.end());
-  ASSERT_EQ(place->rows.size(), 1u);
-  EXPECT_EQ(std::get<std::string>(place->rows[0][0].value), "every frequency");
+  const report::Table map = correlation_map(rejected);
+  EXPECT_THAT(names_in(map), ElementsAre("f_1", "x_c"));  // the law holds f_2
+  EXPECT_NEAR(std::get<double>(map.rows[0][2].value), -0.5, 1e-12);
+  EXPECT_NEAR(map.rows[0][2].heat, 0.5, 1e-12);
 }
 
 TEST(CalibrateCovariance, TellsNothingOfALawThatThePriorsContradict) {
