@@ -133,7 +133,7 @@ void add_leaves(matvar_t* variable, MatlabLeaf at, std::vector<MatlabLeaf>& leav
   char* const* const names = Mat_VarGetStructFieldnames(variable);
   for (std::size_t i = 0; i < Mat_VarGetNumberOfFields(variable); ++i) {
     matvar_t* const field = Mat_VarGetStructFieldByIndex(variable, i, 0);
-    if (field == nullptr) continue;
+    if (field == nullptr || names[i] == nullptr) continue;
     MatlabLeaf below = at;
     below.path.emplace_back(names[i]);
     below.fields.push_back(i);
@@ -155,6 +155,7 @@ MatlabContent::MatlabContent(Path path) : path_(std::move(path)) {
   for (;;) {
     const Variable variable = owned(Mat_VarReadNextInfo(file.get()));
     if (variable == nullptr) break;
+    if (variable->name == nullptr) continue;  // nothing could ask for it
     add_leaves(variable.get(), {.path = {variable->name}}, leaves_);
   }
 }

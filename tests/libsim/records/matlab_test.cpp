@@ -198,6 +198,26 @@ TEST_F(Matlab, NamesOfOlderProgramsAreText) {
   EXPECT_EQ(read().channels.at(0).name, "Kr\u00e4fte");
 }
 
+TEST_F(Matlab, VariablesWithoutANameAreNoChannels) {
+  std::ofstream out(file(), std::ios::binary);
+  // Version 4: letters of a name with the zero after them.
+  const auto write = [&out](const std::string& name, const std::vector<double>& numbers) {
+    const auto count = static_cast<std::uint32_t>(numbers.size());
+    const auto letters = static_cast<std::uint32_t>(name.size());
+    const std::array<std::uint32_t, 5> header = {0, count, 1, 0, letters};
+    out.write(reinterpret_cast<const char*>(header.data()), sizeof header);
+    out << name;
+    out.write(reinterpret_cast<const char*>(numbers.data()), 8 * count);
+  };
+  write(std::string("a\0", 2), {1.0, 2.0, 3.0});
+  write(std::string("fs\0", 3), {100.0});
+  write("", {4.0, 5.0, 6.0});
+  out.close();
+  const Recording found = read();
+  ASSERT_EQ(found.channels.size(), 1u);
+  EXPECT_THAT(found.channels[0].samples, ElementsAre(1.0, 2.0, 3.0));
+}
+
 TEST_F(Matlab, HeadersThatStateMoreThanThereIsAreRefused) {
   // Version 4: 30 rows and a name of 2 GB; 2^31 columns.
   for (const std::array<std::uint32_t, 5>& header :
