@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "libinverse/structure/pole_search.hpp"
 #include "libsim/base/error.hpp"
@@ -191,7 +192,13 @@ class Fit {
     }
     result_.residuals.push_back(
         std::sqrt(rest / static_cast<double>(left.size()) / mean_power(spectra.responses[k])));
-    result_.table.scatters.push_back(scatter_of(left, modal, spectra.noise_power()));
+    // A response function tells nothing of the noise of other records.
+    if (record_.force.empty()) {
+      const double share = rest / std::accumulate(modal.begin(), modal.end(), 0.0);
+      result_.table.scatters.push_back({.modal = std::sqrt(share)});
+    } else {
+      result_.table.scatters.push_back(scatter_of(left, modal, spectra.noise_power()));
+    }
   }
 
   StructureRecord record_;
@@ -227,6 +234,15 @@ double modal_power(const ModalModel& model, std::size_t pair, Complex s) {
     sum += std::norm(numerator_of(kind, pole, constant, s) / pole.denominator(s));
   }
   return sum;
+}
+
+std::string StrikeFit::rejection() const {
+  const double most = std::ranges::max(residuals);
+  if (most <= 0.5) return {};
+  return fmt::format(
+      "rejected: the modes leave {:.0f} % of a response: compare the channels and their units, and "
+      "whether the structure rests when the record begins; a smaller contour tells more modes",
+      100.0 * most);
 }
 
 StrikeFit fit_strike(const StructureRecord& record, const std::vector<SensorKind>& kinds,

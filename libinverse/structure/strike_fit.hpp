@@ -31,6 +31,9 @@ struct StrikeFit {
   double misfit = 0.0;            ///< χ² over its degrees of freedom
   ContourSpectra spectra;
   std::vector<std::vector<Complex>> modeled;  ///< responses of the model at its bins, K
+
+  /// Why these are no modes of the structure: they leave more than half of a response; else empty.
+  std::string rejection() const;
 };
 
 /// Poles common to all sensors, complex modal constants and static terms (ModalModel), by weighted
@@ -43,8 +46,9 @@ StrikeFit fit_strike(const StructureRecord& record, const std::vector<SensorKind
                      const StrikeFitOptions& options);
 
 /// The same for measured H_k(iω) [sensor's unit/N], a value for every bin of the grid, σ = 0: the
-/// force is 1 everywhere and nothing rings on. The table's noise is that of 1 N s. Throws
-/// InvalidInput for another number of lines, one of the band that is not finite, and as above.
+/// force is 1 everywhere and nothing rings on. What is left grows with the force: the table's
+/// scatter is modal, its noise 0, and it has no pulse. Throws InvalidInput for another number of
+/// lines, one of the band that is not finite, and as above.
 StrikeFit fit_response(const FrequencyGrid& grid, const std::vector<std::vector<Complex>>& response,
                        const std::vector<SensorKind>& kinds, const StrikeFitOptions& options);
 

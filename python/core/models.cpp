@@ -35,6 +35,7 @@ std::string fit_response(double step, const py::array_t<Complex, py::array::c_st
   const py::gil_scoped_release unlocked;
   StrikeFit fit = modcal::fit_response({.spacing = kTurn * step, .bins = lines}, rows, sensors,
                                        {.low = low, .high = high, .most_modes = most_modes});
+  if (const std::string why = fit.rejection(); !why.empty()) throw_invalid_input("{}", why);
   fit.table.names = names;
   return table_text(fit.table);
 }

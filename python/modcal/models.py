@@ -59,6 +59,8 @@ class Model:
             return cls(_core.ModalModel.of_table(path), {"table": path})
         if "table.yaml" not in source.texts:
             raise InvalidInput("this result has no table of modes; give that of fit_modes()")
+        if source.status != "ok":
+            raise InvalidInput("; ".join(source.warnings) or "this fit was not accepted; fit again")
         return cls._of_text(source.texts["table.yaml"])
 
     @classmethod
@@ -76,7 +78,9 @@ class Model:
         """Modes fitted to measured frequency response functions between low and high [Hz].
 
         frequencies: even, a multiple of their step each [Hz]. responses: H_k there by the names of the sensors
-        [sensor's unit/N]. kinds: as Record takes them. The number of modes is chosen by BIC.
+        [sensor's unit/N]. kinds: as Record takes them. The number of modes is chosen by BIC; modes that leave
+        more than half of a response are refused. Such a model knows no pulse of a hammer: what identify() finds
+        with it is told within the band, and its error bar is wide beyond.
         """
         f = as_samples("frequencies", frequencies)
         step = (f[-1] - f[0]) / max(1, f.size - 1)
@@ -84,6 +88,8 @@ class Model:
             raise InvalidInput("the frequencies are no multiples of an even step; interpolate the responses")
         below = int(np.rint(f[0] / step))
         rows = []
+        if not responses:
+            raise InvalidInput("there is no response to fit; give one or more by the names of the sensors")
         for name, given in responses.items():
             spectrum = np.asarray(given)
             if spectrum.shape != f.shape or spectrum.dtype.kind not in "fiuc":

@@ -8,8 +8,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from modcal import _core, yaml
 from modcal.errors import InvalidInput
-from modcal.models import Model
 from modcal.experiments import Progress, Source, _told, open_experiment
+from modcal.models import Model
 
 Array = NDArray[np.float64]
 

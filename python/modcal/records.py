@@ -67,6 +67,10 @@ class Record:
         ends = {"R1": left, "R2": right}
         if responses is not None and any(held is not None for held in ends.values()):
             raise InvalidInput("a record is of a string's reactions or of a structure's responses; give one of them")
+        if responses is not None and "f_c" in responses:
+            raise InvalidInput("a response cannot be named f_c, as the force at the contact is; give it as force=")
+        if not isinstance(kinds, str) and set(kinds) - set(responses or {}):
+            raise InvalidInput(f"kinds names {', '.join(sorted(set(kinds) - set(responses or {})))}, which is no response")
         given: dict[str, ArrayLike | None] = dict(ends) if responses is None else {}
         given.update(responses or {})
         self._kinds = {name: "force" if responses is None else kinds if isinstance(kinds, str) else

@@ -124,6 +124,17 @@ class OfAStructure(Folder):
         with self.assertRaisesRegex(modcal.InvalidInput, "a table of modes: it has no string"):
             modcal.invert(modcal.Record(rate=1e3, left=np.zeros(9)), modcal.Model.table(self.fitted))
         f = np.arange(0.0, 100.0)
+        zero = np.zeros(9)
+        for keys, words in (({"responses": {"f_c": zero}}, "cannot be named f_c"),
+                            ({"responses": {"a": zero}, "kinds": {"b": "velocity"}}, "kinds names b")):
+            with self.assertRaisesRegex(modcal.InvalidInput, words):
+                modcal.Record(rate=1e3, **keys)
+        noise = np.random.default_rng(1).normal(size=(2, 2000))
+        with self.assertRaisesRegex(modcal.InvalidInput, "rejected: the modes leave"):
+            modcal.Model.response(0.25 * np.arange(2000), {"a": noise[0] + 1j * noise[1]}, low=10, high=300,
+                                  most_modes=6)
+        with self.assertRaisesRegex(modcal.InvalidInput, "no response to fit"):
+            modcal.Model.response(f, {}, low=10, high=50)
         nan = np.where(f == 20, np.nan, f)
         for at, response, words in ((f + 0.5, f, "no multiples of an even step"),
                                     (f, f[:-1], "no row of 100 numbers"), (f, nan, "not finite at 20 Hz"),

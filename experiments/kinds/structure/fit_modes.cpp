@@ -183,13 +183,9 @@ StudyResult FitModesOptions::run(const StudyContext& context) const {
   StudyResult result;
   result.summary = sentence_of(fit, *this);
   for (const std::string& text : loaded.warnings) result.warn(text);
-  if (const double most = std::ranges::max(fit.residuals); most > 0.5) {
+  if (const std::string why = fit.rejection(); !why.empty()) {
     result.status = report::Status::kFailed;
-    result.warn(fmt::format(
-        "rejected: the modes leave {:.0f} % of a response: compare the channels and their units, "
-        "and "
-        "whether the structure rests when the record begins; a smaller contour tells more modes",
-        100.0 * most));
+    result.warn(why);
   }
   if (!context.numbers_alone) {
     result.blocks.emplace_back(responses_figure(loaded, fit));
