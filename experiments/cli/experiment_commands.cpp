@@ -165,8 +165,6 @@ void declare(CLI::App& command, ReproduceArguments& arguments) {
   declare_threads(command, arguments.threads, "number of threads; default all");
 }
 
-}  // namespace
-
 // Where the program stands, or would stand beside the module that another program has loaded: of a
 // build, or installed in PREFIX/lib/python3/dist-packages/modcal.
 std::vector<std::filesystem::path> own_folders() {
@@ -179,6 +177,8 @@ std::vector<std::filesystem::path> own_folders() {
   const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
   return {folder / "../..", folder / "../../../../bin"};
 }
+
+}  // namespace
 
 std::string shipped_configs() {
   std::filesystem::path configs;

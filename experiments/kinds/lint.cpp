@@ -69,7 +69,7 @@ void lint_step(const Scene& scene, const Choice<Simulator>& simulator, double sa
   const auto made = simulator.make();
   const double step = made->longest_step();
   if (!is_known(scene.string) || !std::isfinite(step)) return;
-  const double rate = sample_rate * std::max(1.0, std::ceil(1.0 / (sample_rate * step)));
+  const double rate = 1.0 / plan_steps(step, sample_rate).time_step;
   Scene begin = scene;
   begin.duration = std::min(scene.duration, 2.0 / rate);
   lint_making(findings, "simulator.time_step", [&] { made->simulate(begin, rate, {}); });

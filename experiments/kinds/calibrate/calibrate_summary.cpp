@@ -239,7 +239,9 @@ void add_calibration_warnings(const CalibrationOutcome& outcome, StudyResult& re
   const StopReason stop = outcome.result.search.stop;
   if (stop == StopReason::kEvaluationBudget || stop == StopReason::kTimeBudget) {
     constexpr std::string_view kRemedy = "raise calibration.budget";
-    if (!std::isfinite(outcome.result.search.value)) {
+    const OptimizationResult& search = outcome.result.search;
+    // Stages have records of their own: before the last one a value tells nothing of the whole.
+    if (std::isnan(search.initial_value) || !std::isfinite(search.value)) {
       return fail(
           fmt::format("the search was cut by its budget before it found anything: {}", kRemedy));
     }

@@ -104,6 +104,8 @@ TEST_F(FirstHour, IsToldOfASearchThatWasCut) {
   EXPECT_NE(cut.code, 0);
   EXPECT_THAT(cut.out, HasSubstr("before it found anything: raise calibration.budget"));
   EXPECT_THAT(content_of(folder() / "out/mine/report.html"), Not(HasSubstr("All done")));
+  // Between two of its stages, too: there is a value, of another record than the whole.
+  EXPECT_NE(modcal("run mine.yaml --out later --set calibration.budget.evaluations=60").code, 0);
   const Outcome short_of = modcal(
       "run mine.yaml --out short --set calibration='{objective: spectral_peak, optimizer: nlopt, "
       "parameters: {frequencies: none, law: true}, budget: {evaluations: 5}}'");
