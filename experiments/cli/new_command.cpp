@@ -141,7 +141,7 @@ std::string file_for_record(const NewArguments& arguments) {
   RecordOptions other = record;
   other.right.turned = true;
   const ToldString turned = told_by(other);
-  if (turned.misfit < told.misfit) {
+  if (turned.misfit < told.misfit && (turned.explained || !told.explained)) {
     told = turned;
     record = other;
   }

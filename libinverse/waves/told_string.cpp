@@ -71,32 +71,63 @@ StringGrid grid_of(double top, int steps_of_inharmonicity) {
           .inharmonicity = {0.2 / (top * top * top), steps_of_inharmonicity}};
 }
 
-// The best of all contacts and of all f₀ between two.
-StatedString scanned(const EndSpectra& spectra, double lowest, double highest) {
-  StatedString best{.length = 1.0};
-  double least = std::numeric_limits<double>::infinity();
-  const double step = 0.1 / kScanBand;
+struct Candidate {
+  StatedString string;
+  double misfit = std::numeric_limits<double>::infinity();
+};
+
+// Keeps the strings of least misfit, that first.
+void keep_best(std::size_t count, std::vector<Candidate>& candidates) {
+  std::ranges::sort(candidates, {}, &Candidate::misfit);
+  if (candidates.size() > count) candidates.resize(count);
+}
+
+// By the modes up to `top` f₀, the best string between two f₀ of every contact at which it is
+// better than beside it.
+std::vector<Candidate> scanned(const EndSpectra& spectra, double top, double lowest,
+                               double highest) {
+  const double step = 0.1 / top;
+  std::vector<Candidate> of_contact(static_cast<std::size_t>(std::ceil(1.0 / step)));
   for (double f = lowest; f <= highest; f *= 1.0 + step) {
-    const EndBins bins = bins_of(spectra, f, kScanBand);
+    const EndBins bins = bins_of(spectra, f, top);
     if (bins.size() < kLeastBins) continue;
-    for (double contact = 0.5 * step; contact < 1.0; contact += step) {
+    for (std::size_t i = 0; i < of_contact.size(); ++i) {
+      const double contact = (static_cast<double>(i) + 0.5) * step;
       StatedString string{.length = 1.0, .fundamental = f, .contact = contact};
       const double misfit = least_misfits(bins, {}, string)[0];
-      if (!(misfit < least)) continue;
-      least = misfit;
-      best = string;
+      if (misfit < of_contact[i].misfit) of_contact[i] = {string, misfit};
     }
+  }
+  std::vector<Candidate> best;
+  for (std::size_t i = 0; i < of_contact.size(); ++i) {
+    const double own = of_contact[i].misfit;
+    const bool below = i == 0 || own < of_contact[i - 1].misfit;
+    const bool above = i + 1 == of_contact.size() || own <= of_contact[i + 1].misfit;
+    if (below && above && std::isfinite(own)) best.push_back(of_contact[i]);
   }
   return best;
 }
 
-ToldString told_by(const EndRecord& record, const EndSpectra& spectra, StatedString string) {
-  if (!(string.fundamental > 0.0)) return {};
-  for (const double top : {kScanBand, 2.0 * kScanBand}) {
-    refine(spectra, top, grid_of(top, 0), string);
+// Near its modes a string moves both ends alike, wherever the contact is: few modes tell f₀, and
+// more of them which contact of several.
+ToldString told_by(const EndRecord& record, const EndSpectra& spectra, double lowest,
+                   double highest) {
+  std::vector<Candidate> candidates = scanned(spectra, kScanBand, lowest, highest);
+  if (candidates.empty()) return {};
+  keep_best(1, candidates);
+  refine(spectra, kScanBand, grid_of(kScanBand, 0), candidates.front().string);
+  const double fundamental = candidates.front().string.fundamental;
+  candidates = scanned(spectra, 2.0 * kScanBand, 0.99 * fundamental, 1.01 * fundamental);
+  if (candidates.empty()) return {};
+  for (const double top : {2.0 * kScanBand, kStiffBand, 2.0 * kStiffBand}) {
+    const int steps = top < kStiffBand ? 0 : top > kStiffBand ? 4 : kStiffSteps;
+    for (auto& [string, misfit] : candidates) {
+      misfit = refine(spectra, top, grid_of(top, steps), string);
+    }
+    keep_best(kCandidates, candidates);
   }
-  refine(spectra, kStiffBand, grid_of(kStiffBand, kStiffSteps), string);
-  const double misfit = refine(spectra, 2.0 * kStiffBand, grid_of(2.0 * kStiffBand, 4), string);
+  const auto& [string, misfit] = candidates.front();
+  if (!std::isfinite(misfit)) return {};
   const EndRelationFit fit = fit_end_relations(record, string);
   return {
       .fundamental = string.fundamental,
@@ -115,10 +146,11 @@ ToldString find_string(const EndRecord& record) {
                  record.left.size(), record.right.size());
   const EndSpectra spectra(record);
   const double pitch = 1.0 / period_of(record);
-  ToldString told = told_by(record, spectra, scanned(spectra, 0.96 * pitch, 1.04 * pitch));
+  ToldString told = told_by(record, spectra, 0.96 * pitch, 1.04 * pitch);
   if (told.explained) return told;
   // A string that slips out of step repeats itself after some periods, or nearly.
-  return told_by(record, spectra, scanned(spectra, 0.7 * pitch, 8.0 * pitch));
+  const ToldString other = told_by(record, spectra, 0.7 * pitch, 8.0 * pitch);
+  return other.explained || !std::isfinite(told.misfit) ? other : told;
 }
 
 }  // namespace modcal

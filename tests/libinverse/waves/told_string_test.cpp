@@ -82,6 +82,24 @@ TEST(ToldString, IsTheOneThatWasPlayed) {
   }
 }
 
+// Noise that leaves little but the lines: near its modes a string moves both ends alike, so that
+// few modes do not tell which contact it is. Within a step of twenty modes, 0.1/20 of L, twice.
+TEST(ToldString, IsToldByItsLinesAlone) {
+  const Truth& truth = kStrings[0];
+  for (std::uint64_t seed = 11; seed <= 18; ++seed) {
+    SCOPED_TRACE(seed);
+    const Ends clean = played(truth, truth.fundamental, 0.0, seed);
+    double power = 0.0;
+    for (const double r : clean.left) power += r * r;
+    const double noise = 0.1 * std::sqrt(power / static_cast<double>(kSamples));
+    const ToldString told =
+        find_string(played(truth, truth.fundamental, noise, seed).record(noise));
+    EXPECT_TRUE(told.explained);
+    EXPECT_NEAR(told.fundamental / truth.fundamental, 1.0, 5e-3);
+    EXPECT_NEAR(told.contact, truth.contact, 1e-2);
+  }
+}
+
 // A stroke that repeats itself after every second or third period only.
 TEST(ToldString, IsNotTheOneOfAPitchBelow) {
   for (const double share : {2.0, 3.0}) {
