@@ -43,6 +43,9 @@ MISMATCHES = {
     **{f"polarization_alike_{p:g}": (["--polarization-1", p, "--polarization-2", p], {}) for p in (0.03, 0.1)},
     **{f"polarization_unlike_{p:g}": (["--polarization-1", p, "--polarization-2", 0.3 * p], {}) for p in (0.03, 0.1)},
     "drift_1e-4": (["--drift", 1e-4], {}),
+    # The bow wanders along the string: slowly by 1 and 2.5 mm from the middle, to and fro by 1.5 mm.
+    **{f"wander_{mm:g}mm": (["--wander", 1e-3 * mm], {}) for mm in (1, 2.5)},
+    "wander_1.5mm_7hz": (["--wander", 1.5e-3, "--wander-frequency", 7], {}),
     # A mode of the body between the string's first and second, heavy and light.
     **{f"bridge_{kg:g}kg": (["--bridge-mass", kg, "--body-frequency", 430], {}) for kg in (0.2, 0.05)},
     "mid_stroke": (["--start", 0.3], {}),

@@ -137,6 +137,7 @@ class Session {
   void wait();  ///< at rest, before the gesture
   void step(std::size_t index);
   void drift(double time);
+  void wander(double time);
   void check(const ContactState& state, double time);
 
   TruthGesture gesture_;
@@ -205,6 +206,7 @@ void Session::step(std::size_t index) {
   read_ends();
   decimators_[3].push(line_displacement());
   if (options_.mismatch.drift != 0.0) drift(time);
+  if (options_.mismatch.wander != 0.0) wander(time);
   const double moved = bridge_ ? bridge_->acceleration(reaction(support_, wave_, true)) : 0.0;
   wave_.advance();
   if (bridge_) {
@@ -233,6 +235,20 @@ void Session::drift(double time) {
   const double relative = 2.0 * options_.mismatch.drift * part;  // T ∝ f₀²
   wave_.retune(relative);
   tension_ = 1.0 + relative;
+}
+
+void Session::wander(double time) {
+  const TruthMismatch& m = options_.mismatch;
+  const double since = time - options_.start;
+  const double turn = m.wander_frequency > 0.0
+                          ? std::sin(2.0 * std::numbers::pi * m.wander_frequency * since)
+                          : 2.0 * since / options_.duration - 1.0;
+  const double position = gesture_.position + m.wander * turn;
+  contact_at_ = interpolation_at(position / wave_.spacing(), kInterpolationPoints);
+  const double before = line_mobility_;
+  line_mobility_ = wave_.mobility(contact_at_);
+  mobility_ += line_mobility_ - before;
+  if (bridge_) chord_ = position / (wave_.spacing() * static_cast<double>(grid_.intervals));
 }
 
 void Session::check(const ContactState& state, double time) {
@@ -295,7 +311,8 @@ TruthRecord simulate(const TruthString& string, const TruthGesture& gesture,
           "f0, L and the linear density must be > 0");
   require(string.inharmonicity >= 0.0 && string.loss >= 0.0 && string.diffusion >= 0.0,
           "B and the losses must be >= 0");
-  require((options.mismatch.drift == 0.0 && options.mismatch.bridge_mass == 0.0) || !options.audit,
+  const bool still = options.mismatch.drift == 0.0 && options.mismatch.wander == 0.0;
+  require((still && options.mismatch.bridge_mass == 0.0) || !options.audit,
           "the audit is of a string between ends at rest that keeps its tension");
   require(options.mismatch.bridge_mass >= 0.0, "the mass of the bridge must be >= 0");
   require(options.duration > 0.0, "duration must be > 0");

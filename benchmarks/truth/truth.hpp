@@ -76,7 +76,7 @@ enum class Reactions { kTension, kSupport };
 
 /// What a real rig has and a model of a string may not: R2 = (gain exp(−sτ) s/(s + ω_c) (1 + b(s)))
 /// R2, b(s) = peak · 2ζω_r s/(s² + 2ζω_r s + ω_r²), bilinear at the rate of the scheme; a second
-/// polarization; a string that goes out of tune; a bridge that moves.
+/// polarization; a string that goes out of tune; a bow that wanders; a bridge that moves.
 struct TruthMismatch {
   double gain = 1.0;              ///< of the sensor at x = L over that at x = 0 [1]
   double delay = 0.0;             ///< of the same, τ [s]
@@ -90,6 +90,9 @@ struct TruthMismatch {
   double detuning = 1.3e-3;
   /// Relative change of f0 from the record's beginning to its end, zero at its middle.
   double drift = 0.0;
+  /// The force acts at x_c + wander · w(t), w the sine of wander_frequency that begins at 0 with the
+  /// record; of 0 Hz a slope from −1 at its beginning to 1 at its end [m], [Hz].
+  double wander = 0.0, wander_frequency = 0.0;
   /// The end at x = L is a mode of the body: m (ü + 2ζω_r u̇ + ω_r² u) = −T y'(L) + EI y'''(L), with
   /// ω_r and ζ as above; m = 0: it does not move. The string's losses are those of y − u x/L.
   double bridge_mass = 0.0;  ///< m [kg]

@@ -100,6 +100,8 @@ ordered_json json_of(const TruthMismatch& m) {
           {"polarization", {m.polarization[0], m.polarization[1]}},
           {"detuning", m.detuning},
           {"drift", m.drift},
+          {"wander", m.wander},
+          {"wander_frequency", m.wander_frequency},
           {"bridge_mass", m.bridge_mass}};
 }
 

@@ -110,6 +110,8 @@ void add_mismatch_options(CLI::App& app, TruthMismatch& m) {
   app.add_option("--polarization-2", m.polarization[1], "share of the second polarization in R2");
   app.add_option("--detuning", m.detuning, "of the second polarization");
   app.add_option("--drift", m.drift, "relative change of f0 over the record");
+  app.add_option("--wander", m.wander, "of the contact along the string [m]");
+  app.add_option("--wander-frequency", m.wander_frequency, "0: a slope over the record [Hz]");
   app.add_option(
       "--bridge-mass", m.bridge_mass,
       "of a mode of the body, of the body's frequency and damping, that x = L is on [kg]");

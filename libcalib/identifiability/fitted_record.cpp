@@ -16,6 +16,13 @@ namespace modcal {
 
 using std::numbers::pi;
 
+namespace {
+
+// 0 below 0, 1 above 1, smooth between.
+double raised_cosine(double x) { return 0.5 - 0.5 * std::cos(pi * std::clamp(x, 0.0, 1.0)); }
+
+}  // namespace
+
 FittedRecord::FittedRecord(const ProjectedLikelihood& likelihood, const ModelPoint& point)
     : record_(likelihood.record()),
       sensor_(point.sensors),
@@ -82,29 +89,76 @@ MisfitCause FittedRecord::polarization(double detuning) const {
           .widths = Eigen::Vector2d::Constant(kPolarizationWidth)};
 }
 
+template <typename Function>
+std::vector<Complex> FittedRecord::modulated(std::span<const Complex> numbers,
+                                             Function factor) const {
+  std::vector<Complex> spectrum(fft_.bins());
+  std::vector<double> samples(fft_.length());
+  std::ranges::copy(numbers, spectrum.begin() + 1);
+  fft_.inverse(spectrum, samples);
+  for (std::size_t j = 0; j < samples.size(); ++j) {
+    samples[j] *= factor(static_cast<double>(j) / static_cast<double>(samples.size()));
+  }
+  fft_.forward(samples, spectrum);
+  return {spectrum.begin() + 1, spectrum.begin() + 1 + std::ssize(numbers)};
+}
+
 MisfitCause FittedRecord::drift() const {
   SignalColumn column{numbers(), numbers()};
-  std::vector<Complex> spectrum(fft_.bins());
-  std::vector<double> motion(fft_.length());
   for (std::size_t n = 0; n < own_; ++n) {
     const LikelihoodMode& mode = modes_[n];
-    std::fill(spectrum.begin(), spectrum.end(), 0.0);
-    for (std::size_t k = 0; k < record_.bins; ++k) spectrum[k + 1] = motions_[n][k];
-    fft_.inverse(spectrum, motion);
-    for (std::size_t j = 0; j < motion.size(); ++j) {
-      motion[j] *= static_cast<double>(j) / static_cast<double>(motion.size()) - 0.5;
-    }
-    fft_.forward(motion, spectrum);
+    const std::vector<Complex> driving =
+        modulated(motions_[n], [](double share) { return share - 0.5; });
     for (std::size_t k = 0; k < record_.bins; ++k) {
       const Complex s(0.0, record_.omega[k]);
-      const Complex change =
-          -2.0 * mode.omega_squared * spectrum[k + 1] * inverse_denominator(mode, s);
+      const Complex change = -2.0 * mode.omega_squared * driving[k] * inverse_denominator(mode, s);
       const auto [left, right] = ends(change, mode.even, s);
       column.left.set(k, column.left.at(k) + left);
       column.right.set(k, column.right.at(k) + right);
     }
   }
   return {.name = std::string(kDrift), .columns = {std::move(column)}};
+}
+
+MisfitCause FittedRecord::moving_contact() const {
+  std::vector<Complex> left(record_.bins), right(record_.bins);  // ∂H_r/∂x_c
+  for (const LikelihoodMode& mode : modes_) {
+    for (std::size_t k = 0; k < record_.bins; ++k) {
+      const Complex s(0.0, record_.omega[k]);
+      const Ends both = ends(mode.residue_slope * inverse_denominator(mode, s), mode.even, s);
+      left[k] += both.left;
+      right[k] += both.right;
+    }
+  }
+  MisfitCause cause{.name = std::string(kContact)};
+  // What force and decays of the fit are apart stands at the ends of the record, but for what the
+  // edges of the band smear over it: where edges and ends are smooth nothing of it is left.
+  const double rise = kEdgeWidth * std::sqrt(modes_[0].omega_squared);  // [rad/s]
+  const double low = record_.omega[0], high = record_.omega[record_.bins - 1];
+  const double duration = 2.0 * pi / record_.spacing;
+  std::vector<Complex> inner(record_.bins);
+  for (std::size_t k = 0; k < record_.bins; ++k) {
+    const double omega = record_.omega[k];
+    inner[k] =
+        force_[k] * raised_cosine((omega - low) / rise) * raised_cosine((high - omega) / rise);
+  }
+  const double quiet = kQuietEnds * 2.0 * pi / (rise * duration);
+  const auto add = [&](auto factor) {
+    const std::vector<Complex> force = modulated(inner, [&](double share) {
+      return factor(share) * raised_cosine(std::min(share, 1.0 - share) / quiet - 1.0);
+    });
+    SignalColumn column{numbers(), numbers()};
+    for (std::size_t k = 0; k < record_.bins; ++k) {
+      column.left.set(k, left[k] * force[k]);
+      column.right.set(k, right[k] * force[k]);
+    }
+    cause.columns.push_back(std::move(column));
+  };
+  const double most = std::clamp(std::round(2.0 * kFastestContact * duration), 2.0, kMostCosines);
+  for (int half_periods = 1; half_periods <= static_cast<int>(most); ++half_periods) {
+    add([=](double share) { return std::cos(pi * half_periods * share); });
+  }
+  return cause;
 }
 
 MisfitCause FittedRecord::bridge(double frequency, double zeta) const {

@@ -1,6 +1,7 @@
 // What a fit makes of a record, and what causes of misfit would add to it.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "libcalib/identifiability/misfit_causes.hpp"
@@ -38,6 +39,10 @@ class FittedRecord {
 
   MisfitCause modes_above() const;
 
+  // The force acts at x_c + Σ_j p_j φ_j(t) with |φ_j| ≤ 1: by p_j [m] the reactions have ∂H_r/∂x_c
+  // of the force φ_j(t) f(t) more. What rings from before does not depend on where the force acts.
+  MisfitCause moving_contact() const;
+
  private:
   std::size_t samples() const;
   PlanarVector numbers() const { return PlanarVector(record_.root_weight.size()); }
@@ -47,6 +52,9 @@ class FittedRecord {
   // that of its rate: c with 2 Re c and 2 Re c r the state, r the rate of the pole.
   void decay(const LikelihoodMode& mode, double detuning, Complex sum, Complex rate_sum,
              std::vector<Complex>& motion) const;
+  // Multiplies what is known by its numbers in the bins by a function of t/T in the time domain.
+  template <typename Function>
+  std::vector<Complex> modulated(std::span<const Complex> numbers, Function factor) const;
   // What a modal contribution is in the whitened records.
   struct Ends {
     Complex left, right;

@@ -32,6 +32,7 @@ std::vector<MisfitCause> misfit_causes(const ProjectedLikelihood& likelihood,
   causes.push_back(fitted.drift());
   causes.push_back(fitted.nonlinear_sensors());
   causes.push_back(fitted.modes_above());
+  causes.push_back(fitted.moving_contact());
   const double fundamental = point.basis.omega[0] / (2.0 * std::numbers::pi);
   for (double place = 0.5; place < kHighestBody; place *= kBodyStep) {
     causes.push_back(fitted.bridge(place * fundamental, kBodyDamping));

@@ -18,6 +18,7 @@ inline constexpr std::string_view kPolarization = "second polarization";
 inline constexpr std::string_view kDrift = "drift of the tuning";
 inline constexpr std::string_view kNonlinear = "nonlinear sensor";
 inline constexpr std::string_view kModesAbove = "modes above";
+inline constexpr std::string_view kContact = "contact that moves";
 inline constexpr std::string_view kBridge = "bridge that moves";
 inline constexpr std::string_view kResonance = "resonance of a sensor";
 
@@ -100,6 +101,8 @@ const ScoreTest* first_cause(const std::vector<ScoreTest>& tests);
 /// - "drift of the tuning": ω_n(t) = ω_n (1 + p (t/T − 1/2)), p the drift over the record;
 /// - "nonlinear sensor": p y³/⟨y²⟩ in each record, y what the fit leaves of it without noise;
 /// - "modes above": p_0 and p_1 s² times the force at either end;
+/// - "contact that moves": x_c(t) = x_c + Σ_j p_j φ_j(t), φ a slope over the record and sines and
+///   cosines of some whole periods of it;
 /// - "bridge that moves": x = L is on a mode of a body, of 1/m, at frequencies from f_1/2 to 20
 /// f_1.
 ///

@@ -19,7 +19,9 @@ double ScoreTest::suspicion() const {
 bool ScoreTest::moves_modes_off_law() const { return cause == kBridge; }
 
 bool ScoreTest::refuses() const {
-  return named() && (contradiction > 2.0 || coupling > kMostCoupling);
+  // Where the contact moves, what is of second order in how far adds to what the test foretells.
+  const double most = cause == kContact ? 1.0 : 2.0;
+  return named() && (contradiction > most || coupling > kMostCoupling);
 }
 
 bool ScoreTest::frees() const {
@@ -36,6 +38,9 @@ std::string_view ScoreTest::remedy() const {
       {kNonlinear, "play softer, or use sensors of a wider range"},
       {kResonance,
        "fix the sensor more stiffly, or end the band below its resonance (highest_frequency)"},
+      {kContact,
+       "the bow wanders along the string: guide it, or calibrate a part of the record in which it "
+       "stays in place (record.start, record.stop)"},
       {kBridge, "clamp the bridge or load it, or mount the string on heavier supports"},
       {kModesAbove,
        "the record has not the modes above those stated that the law has: state more modes, or "

@@ -13,6 +13,25 @@ namespace modcal {
 /// Halved: 2.9e-5 in N, 5.5 in A.
 constexpr double kPolarizationWidth = 0.03;
 
+/// Highest frequency of a contact that wanders [Hz], and how many half periods of the record at
+/// most. Records of 0.5 s of sums of 250 modes at 1 % of noise: a still contact (S), one that moves
+/// by 5 mm, one to and fro by 2 mm at 7 Hz (W) and one by 2 mm at 2.3 Hz.
+/// Source: a player's arm; bow changes come twice a second.
+/// Range tried: 4 to 16; 8 to 32.
+/// Doubled: S of 16 degrees 8.5, of W 102 of 16; as now.
+/// Halved: S 4.2 of 4, of W 30 of 4 (89 of 8); as now.
+constexpr double kFastestContact = 8.0;
+constexpr double kMostCosines = 16.0;
+
+/// Over how much of f_1 the edges of the band rise, and how many of its periods the ends of the
+/// record stay silent, where the force of a fit is looked at in time. By the same records.
+/// Source: what force and decays are apart falls as 1/t from the ends where edges are sharp.
+/// Range tried: 0.25 to 1; 0.5 to 2.
+/// Doubled: W 90 as now; 87.
+/// Halved: 84; 79.
+constexpr double kEdgeWidth = 0.5;
+constexpr double kQuietEnds = 1.0;
+
 /// From one place where a mode of the body is tried to the next.
 /// Source: a mode of 3 % of the critical damping is 6 % wide.
 /// Range tried: 1.035 to 1.14, by 72 records of six strings with a bridge of 0.2 kg at 430 Hz, 1

@@ -262,6 +262,24 @@ TEST(ForeignRecord, ItsTuningMayDrift) {
   EXPECT_GT(freed.shift, 1.0);
 }
 
+// A bow that wanders along the string by a millimeter is what the fit names first, and refuses: x_c
+// is not one number.
+TEST(ForeignRecord, ItsContactMayMove) {
+  const CalibrationResult result =
+      calibrated(stroke({.wander = 1e-3}, truth::Reactions::kTension), {});
+  EXPECT_FALSE(result.continuation->right);
+  const ScoreTest* cause = first_cause(result.continuation->tests);
+  ASSERT_NE(cause, nullptr);
+  EXPECT_EQ(cause->cause, "contact that moves");
+  EXPECT_TRUE(cause->refuses());
+  EXPECT_FALSE(cause->remedy().empty());
+}
+
+TEST(ForeignRecord, AStillContactIsNotSaidToMove) {
+  const CalibrationResult result = calibrated(equal_sensors(), {});
+  EXPECT_FALSE(test_of(result, "contact that moves").named());
+}
+
 // What a second polarization does to both ends alike cannot be told: the fit is refused by what it
 // does to one of them.
 TEST(ForeignRecord, ASecondPolarizationIsNamed) {
