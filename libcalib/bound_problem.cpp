@@ -3,7 +3,7 @@
 #include <numbers>
 
 #include "libcalib/calibration.hpp"
-#include "libcalib/likelihood/likelihood_band.hpp"
+#include "libcalib/likelihood/records/likelihood_band.hpp"
 #include "libcalib/parameters/stiff_string_fit.hpp"
 #include "libsim/base/error.hpp"
 

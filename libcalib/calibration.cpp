@@ -5,7 +5,7 @@
 #include <numbers>
 #include <optional>
 
-#include "libcalib/likelihood/likelihood_band.hpp"
+#include "libcalib/likelihood/records/likelihood_band.hpp"
 #include "libcalib/optimizers/staged/continuation.hpp"
 #include "libcalib/parameters/stiff_string_fit.hpp"
 #include "libcalib/problem/covariance.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "libcalib/likelihood/whitened_record.hpp"
+#include "libcalib/likelihood/records/whitened_record.hpp"
 #include "libcalib/optimizers/staged/continuation.hpp"
 
 namespace modcal {

@@ -1,7 +1,7 @@
 #include "libcalib/identifiability/limit_information.hpp"
 
 #include "libcalib/likelihood/bin_weights.hpp"
-#include "libcalib/likelihood/pluck_likelihood.hpp"
+#include "libcalib/likelihood/pluck/pluck_likelihood.hpp"
 #include "libcalib/optimizers/staged/newton_fit.hpp"
 #include "libsim/base/error.hpp"
 

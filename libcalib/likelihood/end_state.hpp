@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "libcalib/likelihood/decay_kernel.hpp"
+#include "libcalib/likelihood/kernels/decay_kernel.hpp"
 #include "libcalib/parameters/parameter_table.hpp"
 
 namespace modcal {

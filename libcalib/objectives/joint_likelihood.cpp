@@ -5,9 +5,9 @@
 #include <numbers>
 #include <optional>
 
-#include "libcalib/likelihood/noise_level.hpp"
+#include "libcalib/likelihood/records/noise_level.hpp"
 #include "libcalib/likelihood/projected_likelihood.hpp"
-#include "libcalib/likelihood/record_options.hpp"
+#include "libcalib/likelihood/records/record_options.hpp"
 #include "libcalib/optimizers/staged/continuation.hpp"
 #include "libcalib/parameters/stiff_string_fit.hpp"
 #include "libcalib/problem.hpp"

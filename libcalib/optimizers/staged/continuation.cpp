@@ -8,7 +8,7 @@
 
 #include "libcalib/identifiability/moving_bridge.hpp"
 #include "libcalib/likelihood/mains_lines.hpp"
-#include "libcalib/likelihood/noise_level.hpp"
+#include "libcalib/likelihood/records/noise_level.hpp"
 #include "libcalib/optimizers/staged/continuation_attempt.hpp"
 #include "libcalib/optimizers/staged/joint_fit.hpp"
 #include "libinverse/joint/sensor_noise.hpp"

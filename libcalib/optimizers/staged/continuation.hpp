@@ -14,7 +14,7 @@
 #include "libcalib/identifiability/law_followers.hpp"
 #include "libcalib/identifiability/local_misfit.hpp"
 #include "libcalib/identifiability/misfit_causes.hpp"
-#include "libcalib/likelihood/likelihood_band.hpp"
+#include "libcalib/likelihood/records/likelihood_band.hpp"
 #include "libcalib/parameters/named_covariance.hpp"
 #include "libcalib/parameters/parameters.hpp"
 #include "libcalib/parameters/string_unknowns.hpp"

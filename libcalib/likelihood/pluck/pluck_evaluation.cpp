@@ -1,8 +1,8 @@
-#include "libcalib/likelihood/pluck_evaluation.hpp"
+#include "libcalib/likelihood/pluck/pluck_evaluation.hpp"
 
 #include <algorithm>
 
-#include "libcalib/likelihood/column_products.hpp"
+#include "libcalib/likelihood/kernels/column_products.hpp"
 #include "libcalib/likelihood/projected_likelihood.hpp"
 
 namespace modcal {
