@@ -6,7 +6,6 @@
 
 #include "libcalib/identifiability/limit_information.hpp"
 #include "libcalib/identifiability/mode_verdict.hpp"
-#include "libcalib/identifiability/stated_verdict.hpp"
 #include "libcalib/parameters/stiff_string_fit.hpp"
 #include "libsim/base/error.hpp"
 

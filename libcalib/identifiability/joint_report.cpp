@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "libcalib/identifiability/mode_verdict.hpp"
-#include "libcalib/identifiability/stated_verdict.hpp"
 #include "libcalib/likelihood/parameter_forms.hpp"
 
 namespace modcal {

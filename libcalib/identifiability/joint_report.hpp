@@ -1,9 +1,9 @@
 // What a fit of several records says of the string, of each record and of every mode.
 #pragma once
 
+#include "libcalib/identifiability/continuation_result.hpp"
 #include "libcalib/identifiability/law_followers.hpp"
 #include "libcalib/likelihood/all_records.hpp"
-#include "libcalib/optimizers/staged/continuation.hpp"
 
 namespace modcal {
 

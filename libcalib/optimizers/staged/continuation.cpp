@@ -237,15 +237,6 @@ void complete_by_single(ContinuationResult& fit) {
 
 }  // namespace
 
-FoundLaw FoundLaw::of(const LawPosterior& posterior, const StatedPriors& priors) {
-  const double fundamental =
-      priors.fixed({ParameterKind::kFundamental}).value_or(std::exp(posterior.mean[0]));
-  return {
-      fundamental,
-      priors.fixed({ParameterKind::kInharmonicity}).value_or(posterior.mean[1]),
-      {fundamental * std::sqrt(posterior.covariance(0, 0)), std::sqrt(posterior.covariance(1, 1))}};
-}
-
 void append_stages(const std::vector<FitStage>& further, const std::string& prefix,
                    std::size_t evaluations, std::vector<FitStage>& stages) {
   for (FitStage stage : further) {

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "libcalib/identifiability/mode_verdict.hpp"
-#include "libcalib/identifiability/stated_verdict.hpp"
 #include "libcalib/likelihood/parameter_forms.hpp"
 #include "libcalib/noise/noise_fit.hpp"
 #include "libcalib/optimizers/staged/free_stage.hpp"

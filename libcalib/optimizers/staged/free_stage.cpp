@@ -8,7 +8,6 @@
 
 #include "libcalib/identifiability/mode_verdict.hpp"
 #include "libcalib/identifiability/neighbor_test.hpp"
-#include "libcalib/identifiability/stated_verdict.hpp"
 #include "libcalib/likelihood/parameter_forms.hpp"
 #include "libcalib/optimizers/staged/score_tests.hpp"
 

@@ -5,7 +5,6 @@
 
 #include "libcalib/identifiability/joint_report.hpp"
 #include "libcalib/identifiability/mode_verdict.hpp"
-#include "libcalib/identifiability/stated_verdict.hpp"
 #include "libcalib/likelihood/all_records.hpp"
 #include "libcalib/likelihood/bin_weights.hpp"
 #include "libcalib/likelihood/mains_lines.hpp"

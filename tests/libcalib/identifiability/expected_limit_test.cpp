@@ -8,6 +8,7 @@
 
 #include "libcalib/identifiability/mode_verdict.hpp"
 #include "libcalib/likelihood/pluck/pluck_likelihood.hpp"
+#include "libcalib/optimizers/staged/continuation.hpp"
 #include "libcalib/parameters/string_unknowns.hpp"
 #include "libsim/base/error.hpp"
 #include "tests/libcalib/likelihood/bowed_case.hpp"
