@@ -1,7 +1,8 @@
 #include "libcalib/likelihood/newton_step.hpp"
 
-#include <Eigen/Cholesky>
 #include <utility>
+
+#include "libsim/base/dense_solvers.hpp"
 
 namespace modcal {
 namespace {
@@ -17,7 +18,7 @@ bool positive_definite(const Eigen::MatrixXd& matrix) {
   const Eigen::VectorXd scale = matrix.diagonal().cwiseSqrt().cwiseInverse();
   Eigen::MatrixXd scaled = scale.asDiagonal() * matrix * scale.asDiagonal();
   scaled.diagonal().array() -= 1e-10;
-  return scaled.llt().info() == Eigen::Success;
+  return PositiveSolver(scaled).factor().info() == Eigen::Success;
 }
 
 // The factor of a matrix scaled to a unit diagonal: units differ by many powers of ten.
@@ -32,7 +33,7 @@ struct UnitDiagonal {
     return scale.asDiagonal() * factor.solve(scale.asDiagonal() * right);
   }
   Eigen::VectorXd scale;
-  Eigen::LDLT<Eigen::MatrixXd> factor;
+  SemidefiniteSolver factor;
 };
 
 Eigen::MatrixXd hessian_of(const LikelihoodPoint& point, const NewtonOptions& options) {

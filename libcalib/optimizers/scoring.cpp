@@ -1,10 +1,10 @@
 #include "libcalib/optimizers/scoring.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
 #include "libcalib/likelihood/newton_step.hpp"
+#include "libsim/base/dense_solvers.hpp"
 
 namespace modcal {
 namespace {
@@ -96,7 +96,7 @@ class Search {
     const Eigen::VectorXd scale = h.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
     h = scale.asDiagonal() * h * scale.asDiagonal();
     h.diagonal().array() += damping + 1e-12;
-    Step step{-(scale.asDiagonal() * h.ldlt().solve(scale.asDiagonal() * gradient))};
+    Step step{-(scale.asDiagonal() * SemidefiniteSolver(h).solve(scale.asDiagonal() * gradient))};
     step.decrease = -step.move.dot(gradient);
     return step;
   }
@@ -135,7 +135,7 @@ class Search {
     const Eigen::VectorXd scale = h.diagonal().cwiseSqrt().cwiseInverse();
     const Eigen::MatrixXd scaled = scale.asDiagonal() * h * scale.asDiagonal();
     const Eigen::MatrixXd inverse =
-        scaled.ldlt().solve(Eigen::MatrixXd::Identity(h.rows(), h.cols()));
+        SemidefiniteSolver(scaled).solve(Eigen::MatrixXd::Identity(h.rows(), h.cols()));
     const Eigen::VectorXd least = kMoved * scale.cwiseProduct(inverse.diagonal().cwiseSqrt());
     std::vector<std::size_t> result;
     for (Index i = 0; i < moves.size(); ++i) {
