@@ -30,12 +30,6 @@ Names split_names(const ParameterOptions& parameters, const std::vector<bool>& e
   return names;
 }
 
-std::vector<double> frequencies_of(const ModalBasis& basis) {
-  std::vector<double> frequencies;
-  for (std::size_t n = 0; n < basis.size(); ++n) frequencies.push_back(basis.frequency(n));
-  return frequencies;
-}
-
 bool any_recorded(const Problem& problem) {
   return std::ranges::any_of(problem.records, &CalibrationRecord::recorded);
 }
