@@ -25,11 +25,6 @@ namespace modcal {
 ContinuationResult calibrate_by_continuation(const ModelPoint& initial, const CalibrationData& data,
                                              const ContinuationOptions& options,
                                              Evaluator* within = nullptr);
-/// The same with these priors in the place of those among the options.
-ContinuationResult calibrate_by_continuation(const ModelPoint& initial, const CalibrationData& data,
-                                             const ContinuationOptions& options,
-                                             const StatedPriors& priors,
-                                             Evaluator* within = nullptr);
 
 /// Both reactions of the string left to itself after a pluck.
 struct PluckRecord {
