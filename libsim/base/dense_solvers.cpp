@@ -45,6 +45,8 @@ Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& matrix) {
 }
 
 GeneralizedEigen generalized_eigen(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  // Eigen's own solver takes any B.
+  if (PositiveSolver(b).factor().info() != Eigen::Success) return {};
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(a, b);
   if (solver.info() != Eigen::Success) return {};
   return {.found = true, .values = solver.eigenvalues(), .vectors = solver.eigenvectors()};

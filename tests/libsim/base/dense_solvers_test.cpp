@@ -37,8 +37,9 @@ TEST(DenseSolvers, ReadTheLowerTriangleAlone) {
 
 TEST(DenseSolvers, WhitenByTheCholeskyFactor) {
   const Eigen::MatrixXd a = symmetric();
-  const Eigen::MatrixXd root = whiten(PositiveSolver(a), Eigen::MatrixXd::Identity(3, 3));
-  EXPECT_LT((root * a * root.transpose() - Eigen::MatrixXd::Identity(3, 3)).norm(), kRounding);
+  const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(3, 3);
+  const Eigen::MatrixXd root = whiten(PositiveSolver(a), one);
+  EXPECT_LT((root * a * root.transpose() - one).norm(), kRounding);
   const Eigen::VectorXd right = Eigen::Vector3d(1.0, 2.0, 3.0);
   EXPECT_LT((whiten(PositiveSolver(a), right) - root * right).norm(), kRounding);
 }
