@@ -11,7 +11,7 @@
 #include <ctime>
 
 #include "benchmarks/noisy_stroke.hpp"
-#include "libcalib/likelihood/column_products.hpp"
+#include "libcalib/likelihood/kernels/column_products.hpp"
 #include "libcalib/likelihood/likelihood_evaluation.hpp"
 #include "libcalib/likelihood/projected_likelihood.hpp"
 #include "libcalib/parameters/string_unknowns.hpp"

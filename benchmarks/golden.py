@@ -25,7 +25,8 @@ LEFT_OUT = re.compile(r"seconds|wall|version|commit|command|program|host|^file$|
 def small_size(path, experiment):
     """Assignments that make one experiment small."""
     kind, assignments = experiment.get("kind"), []
-    if (experiment.get("simulator") or {}).get("type") != "modal_event":
+    simulates = kind not in ("fit_modes", "identify_force")
+    if simulates and (experiment.get("simulator") or {}).get("type") != "modal_event":
         assignments.append("simulator.time_step=4 us")
     if kind == "schelleng":
         assignments += ["positions.count=4", "forces.count=4"]

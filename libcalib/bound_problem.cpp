@@ -3,7 +3,7 @@
 #include <numbers>
 
 #include "libcalib/calibration.hpp"
-#include "libcalib/likelihood/likelihood_band.hpp"
+#include "libcalib/likelihood/records/likelihood_band.hpp"
 #include "libcalib/parameters/stiff_string_fit.hpp"
 #include "libsim/base/error.hpp"
 
@@ -28,12 +28,6 @@ Names split_names(const ParameterOptions& parameters, const std::vector<bool>& e
                  "({}): nothing can be calibrated",
                  fmt::join(names.blind, ", "));
   return names;
-}
-
-std::vector<double> frequencies_of(const ModalBasis& basis) {
-  std::vector<double> frequencies;
-  for (std::size_t n = 0; n < basis.size(); ++n) frequencies.push_back(basis.frequency(n));
-  return frequencies;
 }
 
 bool any_recorded(const Problem& problem) {

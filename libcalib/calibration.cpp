@@ -1,12 +1,10 @@
 #include "libcalib/calibration.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <optional>
 
-#include "libcalib/likelihood/likelihood_band.hpp"
+#include "libcalib/likelihood/records/likelihood_band.hpp"
 #include "libcalib/optimizers/staged/continuation.hpp"
+#include "libcalib/parameters/damping_choice.hpp"
 #include "libcalib/parameters/stiff_string_fit.hpp"
 #include "libcalib/problem/covariance.hpp"
 #include "libsim/base/error.hpp"
@@ -63,12 +61,6 @@ std::vector<CalibratedMode> report_modes(const ParameterSet& parameters, const M
   return modes;
 }
 
-std::vector<double> frequencies_of(const ModalBasis& basis) {
-  std::vector<double> frequencies;
-  for (std::size_t n = 0; n < basis.size(); ++n) frequencies.push_back(basis.frequency(n));
-  return frequencies;
-}
-
 // Sensors and damping of one record, `number` behind their names; damping: whether it is wanted.
 void add_values(const RecordValues& values, const UnknownsOptions& unknowns,
                 const std::string& number, bool all, std::vector<CalibratedParameter>& parameters) {
@@ -81,8 +73,8 @@ void add_values(const RecordValues& values, const UnknownsOptions& unknowns,
                           .final = found,
                           .deviation = deviation});
   };
-  add({ParameterKind::kDampingFactor}, unknowns.damping != "fixed", 1.0, values.damping,
-      values.damping_deviation);
+  add({ParameterKind::kDampingFactor}, damping_choice(unknowns.damping) != DampingChoice::kFixed,
+      1.0, values.damping, values.damping_deviation);
   for (std::size_t i = 0; i < Sensor::kCount; ++i) {
     const ParameterName name{ParameterKind::kSensor, i};
     add(name, unknowns.sensor[i].free, unknowns.sensor[i].value, sensor_value(i, values.sensors),
@@ -131,7 +123,8 @@ std::vector<CalibratedParameter> found_parameters(const ModelPoint& initial,
       parameter("x_c", "m", initial.contact, found.model.contact, found.contact_deviation)};
   add_values(found.values.front(), unknowns, "", true, parameters);
   if (!found.ratio_deviations.empty()) {
-    std::erase_if(parameters, [](const CalibratedParameter& p) { return p.name == "damping"; });
+    const std::string factor = text_of({ParameterKind::kDampingFactor});
+    std::erase_if(parameters, [&](const CalibratedParameter& p) { return p.name == factor; });
   }
   add_damping(initial, found, parameters);
   for (std::size_t r = 1; r < found.values.size(); ++r) {

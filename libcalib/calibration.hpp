@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "libcalib/identifiability/continuation_result.hpp"
 #include "libcalib/optimizer.hpp"
-#include "libcalib/optimizers/staged/continuation.hpp"
 #include "libcalib/problem.hpp"
 #include "libcalib/problem/budget.hpp"
 #include "libcalib/problem/calibration_data.hpp"

@@ -10,7 +10,7 @@
 
 #include "benchmarks/noisy_stroke.hpp"
 #include "libcalib/likelihood/all_records.hpp"
-#include "libcalib/likelihood/pluck_likelihood.hpp"
+#include "libcalib/likelihood/pluck/pluck_likelihood.hpp"
 #include "libcalib/optimizers/staged/continuation.hpp"
 #include "libsim/dynamics/scene/scene.hpp"
 

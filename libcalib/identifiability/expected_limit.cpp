@@ -1,13 +1,12 @@
 #include "libcalib/identifiability/expected_limit.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
 #include "libcalib/identifiability/limit_information.hpp"
 #include "libcalib/identifiability/mode_verdict.hpp"
-#include "libcalib/identifiability/stated_verdict.hpp"
 #include "libcalib/parameters/stiff_string_fit.hpp"
+#include "libsim/base/dense_solvers.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -62,7 +61,7 @@ void add_frequencies(const LimitInformation& records, const StringUnknowns& unkn
   const Eigen::MatrixXd information = records.information(unknowns);
   const auto n = static_cast<Eigen::Index>(unknowns.modes());
   const Eigen::MatrixXd of_frequencies = 2.0 * information.topLeftCorner(n, n);
-  const Eigen::VectorXd eigenvalues = of_frequencies.selfadjointView<Eigen::Lower>().eigenvalues();
+  const Eigen::VectorXd eigenvalues = symmetric_eigenvalues(of_frequencies);
   for (Eigen::Index i = n - 1; i >= 0; --i) {
     limit.singular_values.push_back(std::sqrt(std::max(eigenvalues[i], 0.0)));
   }
@@ -105,11 +104,7 @@ ExpectedLimit expected_limit(const LimitCase& question) {
   MODCAL_REQUIRE(question.law_width > 0.0, "law width {:g} must be > 0", question.law_width);
   const LimitInformation records(question);
   const ModelPoint& truth = question.truth;
-  std::vector<double> frequencies;
-  for (std::size_t n = 0; n < truth.basis.size(); ++n) {
-    frequencies.push_back(truth.basis.frequency(n));
-  }
-  const StiffStringFit fit = fit_stiff_string(frequencies);
+  const StiffStringFit fit = fit_stiff_string(frequencies_of(truth.basis));
   ExpectedLimit limit;
   add_law(records,
           StringUnknowns::law(truth, fit.fundamental, fit.inharmonicity, question.unknowns,

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "libcalib/likelihood/whitened_record.hpp"
-#include "libcalib/optimizers/staged/continuation.hpp"
+#include "libcalib/identifiability/continuation_result.hpp"
+#include "libcalib/likelihood/records/whitened_record.hpp"
 
 namespace modcal {
 

@@ -1,6 +1,5 @@
 #include "libcalib/identifiability/joint_report.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <map>
 #include <string>
@@ -8,8 +7,8 @@
 #include <vector>
 
 #include "libcalib/identifiability/mode_verdict.hpp"
-#include "libcalib/identifiability/stated_verdict.hpp"
 #include "libcalib/likelihood/parameter_forms.hpp"
+#include "libcalib/parameters/damping_choice.hpp"
 
 namespace modcal {
 namespace {
@@ -23,10 +22,6 @@ class JointReport {
   void report(const Eigen::MatrixXd& covariance) {
     const Eigen::VectorXd deviation = covariance.diagonal().cwiseSqrt();
     fit_.model = at_.all.model(at_.theta, 0);
-    for (std::size_t r = 0; r < fit_.single.size(); ++r) {
-      fit_.contacts.push_back(at_.all.model(at_.theta, r).contact);
-      fit_.contact_deviations.push_back(deviation[at_.all.place(unknowns().contact(), r)]);
-    }
     if (unknowns().is_law()) {
       fit_.modes = law_verdicts(fit_.model, at_.theta[1], covariance.topLeftCorner(2, 2));
       trust_stated_frequencies(at_.priors, {}, fit_.modes);
@@ -36,13 +31,16 @@ class JointReport {
       fit_.modes = free_verdicts(fit_.model, frequencies, at_.seen, at_.followers);
       trust_stated_frequencies(at_.priors, deviation, fit_.modes);
     }
-    for (std::size_t r = 0; r < at_.all.records(); ++r) report_values(covariance, r);
-    // Shared by all: the first record's unknowns stand first.
+    for (std::size_t r = 0; r < at_.all.records(); ++r) {
+      const ModelPoint model = at_.all.model(at_.theta, r);
+      report_record(unknowns(), model, damping_line(model).first, own(covariance, r), r,
+                    r < fit_.single.size(), fit_);
+    }
     fit_.damping_power = damping_line(fit_.model).second;
-    fit_.damping_power_deviation = unknowns().damping_power_deviation(covariance);
-    fit_.ratio_deviations = unknowns().ratio_deviations(covariance);
     report_covariance(covariance);
-    if (unknowns().is_law()) report_law(deviation);
+    if (!unknowns().is_law()) return;
+    fit_.law = law_estimate(unknowns(), at_.theta, fit_.model, fit_.damping, own(covariance, 0));
+    fit_.law.covariance = fit_.covariance;
   }
 
  private:
@@ -56,7 +54,8 @@ class JointReport {
       changes.emplace_back(std::log(static_cast<double>(n + 1)),
                            std::log(point.basis.zeta[n] / at_.initial.basis.zeta[n]));
     }
-    if (at_.options.unknowns.damping != "power" || changes.size() < 2) {
+    const DampingChoice free = damping_choice(at_.options.unknowns.damping);
+    if (free != DampingChoice::kPower || changes.size() < 2) {
       return {std::exp(unknowns().mean_damping_change(at_.initial, point)), 0.0};
     }
     // All lie on one line.
@@ -77,30 +76,11 @@ class JointReport {
     raise_to_verdicts(fit_.modes, fit_.covariance);
   }
 
-  void report_law(const Eigen::VectorXd& deviation) {
-    const RecordValues& first = fit_.values.front();
-    fit_.law = {.fundamental = unknowns().fundamental(at_.theta),
-                .inharmonicity = at_.theta[1],
-                .contact = fit_.model.contact,
-                .damping = first.damping};
-    fit_.law.deviation = {fit_.law.fundamental * deviation[0], deviation[1],
-                          fit_.contact_deviations.front(), first.damping_deviation};
-    fit_.law.covariance = fit_.covariance;
-  }
-
-  void report_values(const Eigen::MatrixXd& covariance, std::size_t record) {
-    Eigen::MatrixXd own(unknowns().size(), unknowns().size());
-    for (Index i = 0; i < own.rows(); ++i) {
-      for (Index j = 0; j < own.cols(); ++j) {
-        own(i, j) = covariance(at_.all.place(i, record), at_.all.place(j, record));
-      }
-    }
-    const ModelPoint model = at_.all.model(at_.theta, record);
-    RecordValues values{.sensors = model.sensors, .damping = damping_line(model).first};
-    values.damping_deviation = values.damping * unknowns().damping_deviation(own);
-    values.sensor_deviation = unknowns().sensor_deviation(model, own);
-    if (record == 0) fit_.response_deviations = unknowns().response_deviations(own);
-    fit_.values.push_back(values);
+  // Of the unknowns of one record.
+  Eigen::MatrixXd own(const Eigen::MatrixXd& covariance, std::size_t record) const {
+    std::vector<Index> places;
+    for (Index i = 0; i < unknowns().size(); ++i) places.push_back(at_.all.place(i, record));
+    return covariance(places, places);
   }
 
   const JointEstimate& at_;
@@ -114,7 +94,48 @@ void report_joint_fit(const JointEstimate& estimate, const Eigen::MatrixXd& cova
   JointReport(estimate, fit).report(covariance);
 }
 
-Eigen::MatrixXd covariance_of_causes(const std::vector<ContinuationResult>& single,
+void report_record(const StringUnknowns& unknowns, const ModelPoint& model, double damping,
+                   const Eigen::MatrixXd& covariance, std::size_t r, bool stroke,
+                   ContinuationResult& fit) {
+  if (stroke) {
+    const Index contact = unknowns.contact();
+    fit.contacts.resize(r + 1);
+    fit.contacts[r] = model.contact;
+    fit.contact_deviations.resize(r + 1);
+    fit.contact_deviations[r] = std::sqrt(covariance(contact, contact));
+  }
+  fit.values.resize(r + 1);
+  fit.values[r] = {.sensors = model.sensors,
+                   .sensor_deviation = unknowns.sensor_deviation(model, covariance),
+                   .damping = damping,
+                   .damping_deviation = unknowns.damping_deviation(covariance) * damping};
+  if (r > 0) return;
+  fit.contact_deviation = fit.contact_deviations.front();
+  fit.sensor_deviation = fit.values.front().sensor_deviation;
+  fit.damping = damping;
+  fit.damping_deviation = fit.values.front().damping_deviation;
+  fit.damping_power_deviation = unknowns.damping_power_deviation(covariance);
+  fit.ratio_deviations = unknowns.ratio_deviations(covariance);
+  fit.response_deviations = unknowns.response_deviations(covariance);
+}
+
+LawEstimate law_estimate(const StringUnknowns& unknowns, const Eigen::VectorXd& theta,
+                         const ModelPoint& model, double damping,
+                         const Eigen::MatrixXd& covariance) {
+  LawEstimate law{.fundamental = unknowns.fundamental(theta),
+                  .inharmonicity = theta[1],
+                  .contact = model.contact,
+                  .damping = damping};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto j = static_cast<Index>(i);
+    law.deviation[i] = std::sqrt(covariance(j, j));
+  }
+  law.deviation[0] *= law.fundamental;
+  law.deviation[3] = unknowns.damping_deviation(covariance) * damping;
+  return law;
+}
+
+Eigen::MatrixXd covariance_of_causes(std::span<const ContinuationResult> single,
                                      const AllRecords& all) {
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(all.size(), all.size());
   const Eigen::Index unknowns = all.unknowns().size();

@@ -1,9 +1,11 @@
-// What a fit of several records says of the string, of each record and of every mode.
+// What a fit of one record or several says of the string, of each record and of every mode.
 #pragma once
 
+#include <span>
+
+#include "libcalib/identifiability/continuation_result.hpp"
 #include "libcalib/identifiability/law_followers.hpp"
 #include "libcalib/likelihood/all_records.hpp"
-#include "libcalib/optimizers/staged/continuation.hpp"
 
 namespace modcal {
 
@@ -23,9 +25,24 @@ struct JointEstimate {
 void report_joint_fit(const JointEstimate& estimate, const Eigen::MatrixXd& covariance,
                       ContinuationResult& fit);
 
-/// What the causes that single strokes are suspected of may change in the fit of all: of what
-/// records share the mean of their changes.
-Eigen::MatrixXd covariance_of_causes(const std::vector<ContinuationResult>& single,
+/// Fills what record r, the strokes first, has of its own: contact, sensors and damping; of the
+/// first also what all share of these. damping: factor of the ratios at `model`; covariance: of the
+/// record's own unknowns.
+void report_record(const StringUnknowns& unknowns, const ModelPoint& model, double damping,
+                   const Eigen::MatrixXd& covariance, std::size_t r, bool stroke,
+                   ContinuationResult& fit);
+
+/// The law at θ of the first record, to which `model`, `damping` and `covariance` belong; without
+/// χ² and what is stated.
+LawEstimate law_estimate(const StringUnknowns& unknowns, const Eigen::VectorXd& theta,
+                         const ModelPoint& model, double damping,
+                         const Eigen::MatrixXd& covariance);
+
+/// What unknown amplitudes of causes may change, Σ suspicion · (change)(change)ᵀ: a cause that
+/// moves an unknown by several deviations before it is named is not told apart from them, and the
+/// covariance of the unknowns holds it. What the causes that single strokes are suspected of may
+/// change in the fit of all: of what records share the mean of their changes.
+Eigen::MatrixXd covariance_of_causes(std::span<const ContinuationResult> single,
                                      const AllRecords& all);
 
 }  // namespace modcal

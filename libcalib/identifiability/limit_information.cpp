@@ -1,8 +1,8 @@
 #include "libcalib/identifiability/limit_information.hpp"
 
 #include "libcalib/likelihood/bin_weights.hpp"
-#include "libcalib/likelihood/pluck_likelihood.hpp"
-#include "libcalib/optimizers/staged/newton_fit.hpp"
+#include "libcalib/likelihood/newton_step.hpp"
+#include "libcalib/likelihood/pluck/pluck_likelihood.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {

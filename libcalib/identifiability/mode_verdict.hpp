@@ -3,9 +3,9 @@
 
 #include <Eigen/Core>
 
+#include "libcalib/identifiability/continuation_result.hpp"
 #include "libcalib/identifiability/law_followers.hpp"
 #include "libcalib/identifiability/neighbor_test.hpp"
-#include "libcalib/optimizers/staged/continuation.hpp"
 
 namespace modcal {
 
@@ -65,5 +65,13 @@ void report_departures(std::span<const ScoreTest> tests, ContinuationResult& res
 /// Node where |φ_n(x_c)| < 0.1, antinode where |cos(nπx_c/L)| < 0.2 (both ends then react alike,
 /// whatever ω_n is), else noise.
 WeakReason weak_reason(const ModelPoint& model, std::size_t index);
+
+/// What is stated of a mode's frequency speaks for it where the data do not, or where it is held.
+/// deviation: of δ_n, the first numbers; empty where frequencies follow the law.
+void trust_stated_frequencies(const StatedPriors& priors, const Eigen::VectorXd& deviation,
+                              std::vector<ModeVerdict>& modes);
+
+/// A frequency that is held or has a prior scatters about the law as those do that the data see.
+void widen_stated(const StatedPriors& priors, double width, Eigen::VectorXd& widths);
 
 }  // namespace modcal

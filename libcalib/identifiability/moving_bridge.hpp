@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "libcalib/identifiability/misfit_causes.hpp"
-#include "libcalib/likelihood/whitened_record.hpp"
+#include "libcalib/likelihood/records/whitened_record.hpp"
 #include "libsim/model/modal_basis.hpp"
 
 namespace modcal {

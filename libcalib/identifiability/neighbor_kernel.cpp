@@ -5,7 +5,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "libcalib/likelihood/planar_complex-inl.hpp"
+#include "libcalib/likelihood/kernels/planar_complex-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace modcal::HWY_NAMESPACE {

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 
-#include "libcalib/likelihood/likelihood_kernel.hpp"
+#include "libcalib/likelihood/kernels/likelihood_kernel.hpp"
 
 namespace modcal {
 

@@ -1,9 +1,8 @@
 #include "libcalib/likelihood/bin_weights.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
-#include <cmath>
 
+#include "libsim/base/dense_solvers.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -46,11 +45,11 @@ class Shares {
     Eigen::MatrixXd scaled = scale_.asDiagonal() * information * scale_.asDiagonal();
     // A mode that nothing excites has no row of its own.
     scaled.diagonal().array() += 1e-9;
-    factor_.compute(scaled);
+    factor_ = PositiveSolver(scaled);
   }
   std::vector<double> of(const Eigen::MatrixXd& jacobian) const {
-    const Eigen::MatrixXd rows =
-        factor_.matrixL().solve(scale_.asDiagonal() * jacobian.transpose());
+    const Eigen::MatrixXd scaled = scale_.asDiagonal() * jacobian.transpose();
+    const Eigen::MatrixXd rows = whiten(factor_, scaled);
     std::vector<double> shares(static_cast<std::size_t>(rows.cols() / 2));
     for (std::size_t k = 0; k < shares.size(); ++k) {
       const auto i = static_cast<Eigen::Index>(2 * k);
@@ -61,7 +60,7 @@ class Shares {
 
  private:
   Eigen::VectorXd scale_;
-  Eigen::LLT<Eigen::MatrixXd> factor_;
+  PositiveSolver factor_;
 };
 
 // S/|h|² of every bin.

@@ -250,7 +250,7 @@ void EndState::solve(std::span<const Sums> parts) {
   for (double& norm : inverse_norms_) norm = norm > 0.0 ? 1.0 / std::sqrt(norm) : 1.0;
   Eigen::MatrixXd scaled = inverse_norms_.asDiagonal() * gram * inverse_norms_.asDiagonal();
   scaled.diagonal().array() += kRidge;
-  normal_.compute(scaled);
+  normal_ = PositiveSolver(scaled);
   find(products.col(0));
 }
 

@@ -1,14 +1,14 @@
 // The linear unknowns of the joint likelihood: what the record leaves ringing, or its offsets.
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <array>
 #include <span>
 #include <vector>
 
-#include "libcalib/likelihood/decay_kernel.hpp"
+#include "libcalib/likelihood/kernels/decay_kernel.hpp"
 #include "libcalib/parameters/parameter_table.hpp"
+#include "libsim/base/dense_solvers.hpp"
 
 namespace modcal {
 
@@ -72,7 +72,7 @@ class EndState {
   std::span<const LikelihoodMode> modes_;
   std::size_t decays_, plain_;
   Eigen::VectorXd inverse_norms_;
-  Eigen::LLT<Eigen::MatrixXd> normal_;
+  PositiveSolver normal_;
   std::vector<Complex> amplitudes_;
   std::vector<double> plain_amplitudes_;
 };

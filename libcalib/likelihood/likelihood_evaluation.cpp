@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
-#include "libcalib/likelihood/column_products.hpp"
+#include "libcalib/likelihood/kernels/column_products.hpp"
 #include "libcalib/likelihood/projected_likelihood.hpp"
 #include "libsim/base/task_loop.hpp"
 

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "libcalib/likelihood/end_state.hpp"
-#include "libcalib/likelihood/likelihood_kernel.hpp"
+#include "libcalib/likelihood/kernels/likelihood_kernel.hpp"
 #include "libcalib/likelihood/likelihood_outputs.hpp"
-#include "libcalib/likelihood/mode_columns.hpp"
+#include "libcalib/likelihood/kernels/mode_columns.hpp"
 
 namespace modcal {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cassert>
 
-#include "libcalib/likelihood/column_products.hpp"
-#include "libcalib/likelihood/far_products.hpp"
+#include "libcalib/likelihood/kernels/column_products.hpp"
+#include "libcalib/likelihood/kernels/far_products.hpp"
 #include "libcalib/likelihood/likelihood_evaluation.hpp"
 #include "libcalib/likelihood/likelihood_work.hpp"
 

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "libcalib/likelihood/likelihood_kernel.hpp"
+#include "libcalib/likelihood/kernels/likelihood_kernel.hpp"
 
 namespace modcal {
 

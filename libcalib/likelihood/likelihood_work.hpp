@@ -1,7 +1,7 @@
 // What the passes of an evaluation with columns have in hand.
 #pragma once
 
-#include "libcalib/likelihood/column_products.hpp"
+#include "libcalib/likelihood/kernels/column_products.hpp"
 #include "libcalib/likelihood/likelihood_evaluation.hpp"
 
 namespace modcal {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "libcalib/likelihood/whitened_record.hpp"
+#include "libcalib/likelihood/records/whitened_record.hpp"
 #include "libcalib/parameters/parameter_table.hpp"
 
 namespace modcal {

@@ -6,6 +6,7 @@
 
 #include "libcalib/objectives/model_slopes.hpp"
 #include "libsim/base/error.hpp"
+#include "libsim/base/words.hpp"
 
 namespace modcal {
 namespace {
@@ -37,6 +38,10 @@ ForceKernel kernel_of(const CalibrationData& data, const ParameterSet& parameter
                  "regularization parameter {:g} must be finite and >= 0", options.parameter);
   return ForceKernel(std::move(record), {regularizer, options.parameter, options.common_filter});
 }
+
+enum class Weights { kUniform, kTransfer };
+constexpr std::array<std::string_view, 2> kWeights = {"uniform", "transfer"};
+Weights weights_of(std::string_view word) { return enum_of<Weights>(kWeights, "weights", word); }
 
 std::vector<double> transfer_weights(const ForceKernel::State& state) {
   std::vector<double> weights(state.transfer[0].size());
@@ -183,12 +188,11 @@ void TwoSidedForceOptions::visit(OptionVisitor& visitor) {
 void ForceMismatch::Options::visit(OptionVisitor& visitor) {
   inversion.visit(visitor);
   visitor("weights", "weights of the bins: uniform, or transfer for equal noise in all",
-          {.choices = {"uniform", "transfer"}}, weights);
+          {.choices = choices_of(kWeights)}, weights);
 }
 
 ForceMismatch::ForceMismatch(const Options& options) : options_(options) {
-  MODCAL_REQUIRE(options.weights == "uniform" || options.weights == "transfer",
-                 "unknown weights \"{}\": uniform and transfer are available", options.weights);
+  weights_of(options.weights);
 }
 
 std::unique_ptr<const ObjectiveFunction> ForceMismatch::do_bind(
@@ -196,7 +200,7 @@ std::unique_ptr<const ObjectiveFunction> ForceMismatch::do_bind(
   auto function = std::make_unique<ForceDifference>(
       "force_mismatch", kernel_of(data, parameters, options_.inversion), parameters,
       ForceDifference::Power::kOfStart, ForceDifference::Value::kHalfSquare);
-  function->weigh_and_scale_at_start(options_.weights == "transfer");
+  function->weigh_and_scale_at_start(weights_of(options_.weights) == Weights::kTransfer);
   return function;
 }
 

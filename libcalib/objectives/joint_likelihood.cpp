@@ -5,9 +5,9 @@
 #include <numbers>
 #include <optional>
 
-#include "libcalib/likelihood/noise_level.hpp"
 #include "libcalib/likelihood/projected_likelihood.hpp"
-#include "libcalib/likelihood/record_options.hpp"
+#include "libcalib/likelihood/records/noise_level.hpp"
+#include "libcalib/likelihood/records/record_options.hpp"
 #include "libcalib/optimizers/staged/continuation.hpp"
 #include "libcalib/parameters/stiff_string_fit.hpp"
 #include "libcalib/problem.hpp"
@@ -29,17 +29,13 @@ std::vector<double> column_units(const ParameterSet& parameters, std::span<const
 // What a stage tells of the parameters, before there is an estimate.
 ContinuationResult told_by(const ModelPoint& model, const ModelPoint& initial) {
   ContinuationResult found{.model = model};
-  std::vector<double> frequencies;
-  for (std::size_t n = 0; n < model.basis.size(); ++n) {
-    frequencies.push_back(model.basis.frequency(n));
-  }
-  const StiffStringFit law = fit_stiff_string(frequencies);
+  const std::size_t modes = model.basis.size();
+  const StiffStringFit law = fit_stiff_string(frequencies_of(model.basis));
   found.found_law = {law.fundamental, law.inharmonicity, {}};
   found.damping = model.basis.zeta.front() / initial.basis.zeta.front();
   const double top = model.basis.zeta.back() / initial.basis.zeta.back();
-  if (frequencies.size() > 1) {
-    found.damping_power =
-        std::log(top / found.damping) / std::log(static_cast<double>(frequencies.size()));
+  if (modes > 1) {
+    found.damping_power = std::log(top / found.damping) / std::log(static_cast<double>(modes));
   }
   return found;
 }

@@ -9,6 +9,7 @@
 #include <limits>
 #include <memory>
 #include <new>
+#include <numbers>
 #include <utility>
 
 #include "libcalib/optimizers/tolerances.hpp"
@@ -137,9 +138,8 @@ Bracket bracket_from(Values& values, double step) {
     std::swap(found.a, found.b);
     std::swap(found.fa, found.fb);
   }
-  constexpr double kGolden = 1.618033988749895;
   for (int tries = 0; tries < 100 && !values.search.stopped(); ++tries) {
-    found.c = found.b + kGolden * (found.b - found.a);
+    found.c = found.b + std::numbers::phi * (found.b - found.a);
     found.fc = value(found.c);
     if (found.fc > found.fb) break;
     found.a = std::exchange(found.b, found.c);

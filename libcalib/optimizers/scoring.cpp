@@ -1,18 +1,15 @@
 #include "libcalib/optimizers/scoring.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+
+#include "libcalib/likelihood/newton_step.hpp"
+#include "libsim/base/dense_solvers.hpp"
 
 namespace modcal {
 namespace {
 
 using Index = Eigen::Index;
-
-// The information itself is positive: what is left in any direction is no less than the prior
-// there, save for the scatter of what noise adds. A direction with less than this of it would be
-// said to be worse known than before the record.
-constexpr double kPriorShare = 0.1;
 
 // A long step is likely to be taken and the information needed where it ends.
 constexpr double kLong = 1.0;
@@ -21,15 +18,6 @@ constexpr double kLong = 1.0;
 // where a column is another one after a standard deviation, a step is then off by a twenty-fifth of
 // one, and the slope, which is exact, has the next step make up for it.
 constexpr double kMoved = 0.2;
-
-bool positive_definite(const Eigen::MatrixXd& matrix) {
-  // Scaled to a unit diagonal, so that units do not decide.
-  if ((matrix.diagonal().array() <= 0.0).any()) return false;
-  const Eigen::VectorXd scale = matrix.diagonal().cwiseSqrt().cwiseInverse();
-  Eigen::MatrixXd scaled = scale.asDiagonal() * matrix * scale.asDiagonal();
-  scaled.diagonal().array() -= 1e-10;
-  return scaled.llt().info() == Eigen::Success;
-}
 
 // Newton steps through an evaluator.
 class Search {
@@ -108,7 +96,7 @@ class Search {
     const Eigen::VectorXd scale = h.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
     h = scale.asDiagonal() * h * scale.asDiagonal();
     h.diagonal().array() += damping + 1e-12;
-    Step step{-(scale.asDiagonal() * h.ldlt().solve(scale.asDiagonal() * gradient))};
+    Step step{-(scale.asDiagonal() * SemidefiniteSolver(h).solve(scale.asDiagonal() * gradient))};
     step.decrease = -step.move.dot(gradient);
     return step;
   }
@@ -147,7 +135,7 @@ class Search {
     const Eigen::VectorXd scale = h.diagonal().cwiseSqrt().cwiseInverse();
     const Eigen::MatrixXd scaled = scale.asDiagonal() * h * scale.asDiagonal();
     const Eigen::MatrixXd inverse =
-        scaled.ldlt().solve(Eigen::MatrixXd::Identity(h.rows(), h.cols()));
+        SemidefiniteSolver(scaled).solve(Eigen::MatrixXd::Identity(h.rows(), h.cols()));
     const Eigen::VectorXd least = kMoved * scale.cwiseProduct(inverse.diagonal().cwiseSqrt());
     std::vector<std::size_t> result;
     for (Index i = 0; i < moves.size(); ++i) {
@@ -200,20 +188,6 @@ class Search {
 };
 
 }  // namespace
-
-Eigen::MatrixXd debiased_hessian(const Eigen::MatrixXd& information, const Eigen::MatrixXd& noise,
-                                 const Eigen::MatrixXd& prior) {
-  Eigen::MatrixXd padded = Eigen::MatrixXd::Zero(information.rows(), information.rows());
-  padded.topLeftCorner(prior.rows(), prior.cols()) = prior;
-  const Eigen::MatrixXd full = information + padded;
-  if (noise.size() == 0 || noise.isZero(0.0)) return full;
-  double share = 1.0;
-  for (int i = 0; i < 60; ++i, share *= 0.9) {
-    const Eigen::MatrixXd hessian = full - share * noise;
-    if (positive_definite(hessian - kPriorShare * padded)) return hessian;
-  }
-  return full;
-}
 
 void Scoring::Options::visit(OptionVisitor& visitor) {
   visitor("steps", "most Newton steps", {.range = Range::at_least(1)}, steps);

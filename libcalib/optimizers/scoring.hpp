@@ -9,12 +9,6 @@
 
 namespace modcal {
 
-/// Hessian of a likelihood's value by its information I, freed of its noise: I − N̄ + Q, N̄ shrunk by
-/// 0.9 as often as it takes to leave I − N̄ + 0.9 Q positive definite: no direction comes out much
-/// worse known than the prior Q has it. Empty N̄ or Q: none; a Q of fewer rows is one of the first.
-Eigen::MatrixXd debiased_hessian(const Eigen::MatrixXd& information, const Eigen::MatrixXd& noise,
-                                 const Eigen::MatrixXd& prior);
-
 /// Where a search by scoring ended, in scaled variables.
 struct ScoringFit {
   Eigen::VectorXd z;

@@ -1,8 +1,9 @@
 #include "libcalib/parameters/named_covariance.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+
+#include "libsim/base/dense_solvers.hpp"
 
 namespace modcal {
 namespace {
@@ -49,7 +50,7 @@ std::vector<double> NamedCovariance::singular_values() const {
   std::vector<double> values;
   if (scaled.size() == 0) return values;
   // Ascending: the best-known combination first. What rounding leaves below 0 is 0.
-  const Eigen::VectorXd variances = scaled.selfadjointView<Eigen::Lower>().eigenvalues();
+  const Eigen::VectorXd variances = symmetric_eigenvalues(scaled);
   for (const double variance : variances) {
     values.push_back(variance > 0.0 ? 1.0 / std::sqrt(variance)
                                     : std::numeric_limits<double>::infinity());

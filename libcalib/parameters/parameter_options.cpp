@@ -9,6 +9,16 @@
 #include "libsim/base/error.hpp"
 
 namespace modcal {
+namespace {
+
+enum class FrequencyChoice { kNone, kAll, kListed };
+constexpr std::array<std::string_view, 3> kFrequencyChoices = {"none", "all", "listed"};
+FrequencyChoice frequency_choice(std::string_view word) {
+  return enum_of<FrequencyChoice>(kFrequencyChoices, "choice of the frequencies", word);
+}
+
+}  // namespace
+
 void ParameterRanges::visit(OptionVisitor& visitor) {
   for (const ParameterType& type : parameter_table()) {
     if (!type.range_option.key.empty()) visitor.value(type.range_option, &type.range(*this));
@@ -167,7 +177,7 @@ ModelPoint with_fixed(ModelPoint initial, const UnknownsOptions& options) {
 
 void ParameterOptions::visit(OptionVisitor& visitor) {
   visitor("frequencies", "free modal frequencies: none, all, or those of the listed modes",
-          {.choices = {"none", "all", "listed"}}, frequencies);
+          {.choices = choices_of(kFrequencyChoices)}, frequencies);
   visitor("modes", "mode numbers, with frequencies: listed", {.range = Range::at_least(1)}, modes);
   visitor("law", "free f0 and B of the stiff-string law", law);
   visitor("contact", "free contact location x_c", contact);
@@ -177,14 +187,12 @@ void ParameterOptions::visit(OptionVisitor& visitor) {
   ranges.visit(visitor);
 }
 
-bool ParameterOptions::every_frequency() const { return frequencies == "all"; }
-
-bool ParameterOptions::frees_any() const {
-  return every_frequency() || frequencies == "listed" || law || contact;
+bool ParameterOptions::every_frequency() const {
+  return frequency_choice(frequencies) == FrequencyChoice::kAll;
 }
 
 std::vector<std::string> ParameterOptions::names(std::size_t modes_of_model) const {
-  const bool listed = frequencies == "listed";
+  const bool listed = frequency_choice(frequencies) == FrequencyChoice::kListed;
   MODCAL_REQUIRE(listed == !modes.empty(),
                  "modes are listed if and only if frequencies is \"listed\"; it is \"{}\" with {} "
                  "modes",
@@ -196,10 +204,11 @@ std::vector<std::string> ParameterOptions::names(std::size_t modes_of_model) con
   for (const std::int64_t n : modes) names.push_back(fmt::format("f_{}", n));
   if (law) names.insert(names.end(), {"f0", "B"});
   if (contact) names.emplace_back("x_c");
-  const std::string& damping = unknowns.damping;
-  if (damping == "factor" || damping == "power") names.emplace_back("damping");
-  if (damping == "power") names.emplace_back("damping_power");
-  for (std::size_t n = 1; damping == "each" && n <= modes_of_model; ++n) {
+  const DampingChoice damping = damping_choice(unknowns.damping);
+  const bool power = damping == DampingChoice::kPower;
+  if (damping == DampingChoice::kFactor || power) names.emplace_back("damping");
+  if (power) names.emplace_back("damping_power");
+  for (std::size_t n = 1; damping == DampingChoice::kEach && n <= modes_of_model; ++n) {
     names.push_back(fmt::format("zeta_{}", n));
   }
   const std::vector<std::string> sensors = unknowns.free_sensors();

@@ -112,8 +112,6 @@ struct ParameterOptions {
   ParameterRanges ranges;
   void visit(OptionVisitor& visitor);
   bool every_frequency() const;
-  /// Whether frequencies, the law or the contact are free.
-  bool frees_any() const;
   /// Names for a model of N modes. Throws InvalidInput where modes are listed but not asked for, or
   /// nothing is free.
   std::vector<std::string> names(std::size_t modes_of_model) const;

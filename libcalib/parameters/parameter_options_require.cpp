@@ -1,11 +1,11 @@
 // What may be fixed or have a prior: values that no string has, correlations of no Gaussian.
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "libcalib/parameters/damping_choice.hpp"
 #include "libcalib/parameters/parameter_options.hpp"
+#include "libsim/base/dense_solvers.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -76,7 +76,8 @@ void require_sharing(const UnknownsOptions& options) {
     MODCAL_REQUIRE(parsed->kind != Kind::kSensor || options.sensor[parsed->index].free,
                    "per_record names {}, which is fixed: name it among the sensors", name);
     MODCAL_REQUIRE(
-        parsed->kind != Kind::kDampingFactor || options.damping == "factor",
+        parsed->kind != Kind::kDampingFactor ||
+            damping_choice(options.damping) == DampingChoice::kFactor,
         "per_record names damping, which is {}: a factor alone can be each record's own, "
         "state damping: factor",
         options.damping);
@@ -89,13 +90,15 @@ void require_free(const UnknownsOptions& options, const std::string& parameter,
   MODCAL_REQUIRE(kind != Kind::kSensor || options.sensor[name.index].free,
                  "{} has a prior and is not free: name it among the sensors", parameter);
   const std::string& damping = options.damping;
-  MODCAL_REQUIRE(kind != Kind::kDampingRatio || frees_damping(damping),
+  const DampingChoice free = damping_choice(damping);
+  MODCAL_REQUIRE(kind != Kind::kDampingRatio || free > DampingChoice::kFixed,
                  "{} has a prior and is not free: state damping: each, factor or power", parameter);
   MODCAL_REQUIRE(
-      kind != Kind::kDampingFactor || damping == "factor" || damping == "power",
+      kind != Kind::kDampingFactor || free == DampingChoice::kFactor ||
+          free == DampingChoice::kPower,
       "{} is the factor of all damping ratios, and damping is {}: state damping: factor or power",
       parameter, damping);
-  MODCAL_REQUIRE(kind != Kind::kDampingPower || damping == "power",
+  MODCAL_REQUIRE(kind != Kind::kDampingPower || free == DampingChoice::kPower,
                  "{} is the exponent of the mode number, and damping is {}: state damping: power",
                  parameter, damping);
 }
@@ -212,8 +215,7 @@ void require_priors(const UnknownsOptions& options, std::size_t modes, std::size
                    fmt::join(options.correlations.front().between, " and "));
     return;
   }
-  const double least =
-      prior_correlation(options).selfadjointView<Eigen::Lower>().eigenvalues().minCoeff();
+  const double least = symmetric_eigenvalues(prior_correlation(options)).minCoeff();
   MODCAL_REQUIRE(least > 1e-10,
                  "the correlations of the priors belong to no Gaussian: the smallest eigenvalue of "
                  "their matrix is {:.3g} and must be > 0; bring them closer to 0",

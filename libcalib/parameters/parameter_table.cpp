@@ -17,11 +17,7 @@ using std::numbers::pi;
 double whole(double /*inharmonicity*/, double /*n*/) { return 1.0; }
 
 double law_of(const ModelPoint& model, double StiffStringFit::*number) {
-  std::vector<double> frequencies;
-  for (std::size_t n = 0; n < model.basis.size(); ++n) {
-    frequencies.push_back(model.basis.frequency(n));
-  }
-  return fit_stiff_string(frequencies).*number;
+  return fit_stiff_string(frequencies_of(model.basis)).*number;
 }
 
 OptionInfo option(std::string_view key, std::string_view meaning, std::string_view unit,

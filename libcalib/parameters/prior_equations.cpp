@@ -1,8 +1,8 @@
 #include "libcalib/parameters/prior_equations.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <cmath>
+
+#include "libsim/base/dense_solvers.hpp"
 
 namespace modcal {
 
@@ -28,9 +28,9 @@ void PriorEquations::add(const std::vector<LinearForm>& forms, const Eigen::Vect
     slopes.row(i).tail(2) = scale[i] * form.slope.tail(2).transpose();
     targets[i] = scale[i] * (means[i] - form.offset);
   }
-  const Eigen::LLT<Eigen::MatrixXd> factor(scale.asDiagonal() * covariance * scale.asDiagonal());
-  factor.matrixL().solveInPlace(slopes);
-  factor.matrixL().solveInPlace(targets);
+  const PositiveSolver factor(scale.asDiagonal() * covariance * scale.asDiagonal());
+  slopes = whiten(factor, slopes);
+  targets = whiten(factor, targets);
   normal_ += slopes.transpose() * slopes;
   right_ += slopes.transpose() * targets;
 }
@@ -76,10 +76,9 @@ Eigen::Matrix2d PriorEquations::law_covariance() const {
   const Eigen::Matrix2d normal = normal_.bottomRightCorner<2, 2>();
   const Eigen::Vector2d scale = normal.diagonal().unaryExpr(
       [](double entry) { return entry > 0.0 ? 1.0 / std::sqrt(entry) : 0.0; });
-  Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix2d> solver;
-  solver.setThreshold(1e-11);
-  solver.compute(scale.asDiagonal() * normal * scale.asDiagonal());
-  return scale.asDiagonal() * solver.pseudoInverse() * scale.asDiagonal();
+  return scale.asDiagonal() *
+         pseudo_inverse(scale.asDiagonal() * normal * scale.asDiagonal(), 1e-11) *
+         scale.asDiagonal();
 }
 
 LawPosterior PriorEquations::law(const Eigen::VectorXd& theta,
@@ -102,10 +101,9 @@ QuadraticPrior PriorEquations::solve() const {
   QuadraticPrior prior{.precision = normal.topLeftCorner(unknowns_, unknowns_)};
   const Eigen::VectorXd scale = prior.precision.diagonal().unaryExpr(
       [](double entry) { return entry > 0.0 ? 1.0 / std::sqrt(entry) : 0.0; });
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
-  solver.setThreshold(1e-11);
-  solver.compute(scale.asDiagonal() * prior.precision * scale.asDiagonal());
-  prior.mean = scale.asDiagonal() * solver.solve(scale.asDiagonal() * right.head(unknowns_));
+  prior.mean = scale.asDiagonal() *
+               least_norm_solution(scale.asDiagonal() * prior.precision * scale.asDiagonal(),
+                                   scale.asDiagonal() * right.head(unknowns_), 1e-11);
   return prior;
 }
 

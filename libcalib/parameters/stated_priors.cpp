@@ -2,11 +2,11 @@
 
 #include <gsl/gsl_cdf.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "libsim/base/dense_solvers.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -108,7 +108,7 @@ PriorMisfit StatedPriors::misfit(const Coordinate& coordinate, const Eigen::Vect
   }
   const Eigen::VectorXd scale = stated.covariance.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd correlation = scale.asDiagonal() * stated.covariance * scale.asDiagonal();
-  misfit.chi2 = residual.dot(correlation.llt().solve(residual));
+  misfit.chi2 = residual.dot(PositiveSolver(correlation).solve(residual));
   return misfit;
 }
 

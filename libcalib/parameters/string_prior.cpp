@@ -174,10 +174,4 @@ Eigen::VectorXd StringUnknowns::log_frequencies() const {
   return result;
 }
 
-Eigen::MatrixXd law_prior(const Eigen::VectorXd& widths, double inharmonicity) {
-  PriorEquations equations(widths.size());
-  equations.add_scatter({widths, inharmonicity}, Eigen::VectorXd::Zero(widths.size()));
-  return equations.solve().precision;
-}
-
 }  // namespace modcal

@@ -75,13 +75,14 @@ void StringUnknowns::list() {
     add_modes(Kind::kFrequency);
   }
   free_.add({Kind::kContact});
-  const bool each = options_.damping == "each" && !law_;
+  const DampingChoice choice = damping_choice(options_.damping);
+  const bool each = choice == DampingChoice::kEach && !law_;
   if (each) {
     add_modes(Kind::kDampingRatio);
-  } else if (frees_damping(options_.damping)) {
+  } else if (choice > DampingChoice::kFixed) {
     free_.add({Kind::kDampingFactor});
   }
-  if (options_.damping == "power") free_.add({Kind::kDampingPower});
+  if (choice == DampingChoice::kPower) free_.add({Kind::kDampingPower});
   damping_count_ = size() - damping();
   for (std::size_t i = 0; i < Sensor::kCount; ++i) {
     if (options_.sensor[i].free) free_.add({Kind::kSensor, i});

@@ -119,7 +119,4 @@ class StringUnknowns {
   Eigen::Index damping_count_ = 0;
 };
 
-/// Precision of δ under δ_n = law's change + N(0, τ_n²), the law's change (ln f_0, B) unknown.
-Eigen::MatrixXd law_prior(const Eigen::VectorXd& widths, double inharmonicity);
-
 }  // namespace modcal

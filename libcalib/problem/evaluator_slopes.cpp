@@ -1,7 +1,6 @@
 // Slopes that an objective does not give.
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cmath>
 #include <limits>
 

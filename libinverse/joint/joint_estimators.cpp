@@ -8,7 +8,6 @@
 #include <memory>
 #include <mutex>
 #include <numbers>
-#include <string>
 #include <utility>
 
 #include "libinverse/joint/force_prior.hpp"

@@ -1,7 +1,6 @@
 #include "libinverse/joint/joint_kernels.hpp"
 
 #include <cassert>
-#include <cstdint>
 #include <type_traits>
 
 #undef HWY_TARGET_INCLUDE

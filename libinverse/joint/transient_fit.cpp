@@ -1,11 +1,10 @@
 #include "libinverse/joint/transient_fit.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
 #include "libinverse/joint/tuning.hpp"
+#include "libsim/base/dense_solvers.hpp"
 
 namespace modcal {
 namespace {
@@ -162,7 +161,7 @@ void TransientFit::subtract(const Setting& setting, Spectra spectra, Workspace& 
   });
   // A mode that the record does not show keeps no decay.
   workspace.normal.diagonal().array() += 1e-13 * workspace.normal.diagonal().maxCoeff() + 1e-300;
-  workspace.decays = workspace.normal.selfadjointView<Eigen::Lower>().ldlt().solve(workspace.right);
+  workspace.decays = SemidefiniteSolver(workspace.normal).solve(workspace.right);
   for (std::size_t k = setting.level_known ? 0 : 1; k < grid_.bins; ++k) {
     const Complex shift = shift_of(k);
     std::array<Complex, 2> sum;
@@ -213,11 +212,10 @@ Eigen::MatrixXd TransientFit::moves_without_clusters(const Setting& setting, con
       rest.selfadjointView<Eigen::Lower>().rankUpdate(workspace.rows.transpose(), -1.0);
       slope.noalias() += workspace.rows.transpose() * workspace.data;
     });
-    moves.row(cluster++) = rest.selfadjointView<Eigen::Lower>().ldlt().solve(slope);
+    moves.row(cluster++) = SemidefiniteSolver(rest).solve(slope);
   });
   if (clusters <= columns) return moves;
-  const Eigen::HouseholderQR<Eigen::MatrixXd> factor(moves);
-  return factor.matrixQR().topRows(columns).triangularView<Eigen::Upper>();
+  return ThinQr(moves).r();
 }
 
 // What the errors of the decays do to the motion: with the force's error, and by themselves.

@@ -1,12 +1,11 @@
 #include "libinverse/modes/damped_sinusoid_fit.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
 
+#include "libsim/base/dense_solvers.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -51,8 +50,8 @@ class Problem {
     State state{.poles = poles, .basis = MatrixXd(samples(), 2 * poles_ + 1)};
     for (Index k = 0; k < poles_; ++k) fill_exponential(state, k);
     state.basis.col(2 * poles_).setOnes();
-    const Eigen::HouseholderQR<MatrixXd> qr(state.basis);
-    state.thin_q = qr.householderQ() * MatrixXd::Identity(samples(), state.basis.cols());
+    const ThinQr qr(state.basis);
+    state.thin_q = qr.q();
     state.coefficients = qr.solve(data_);
     state.residual = data_ - state.basis * state.coefficients;
     return state;
@@ -110,13 +109,8 @@ double cost_of(const Problem::State& state, const VectorXd& variances) {
 }
 
 /// Gauss–Newton step with its covariance for noise of the given variances.
-struct Step {
-  VectorXd step;
-  MatrixXd covariance;
-};
-
-std::optional<Step> step_at(const Problem& problem, const Problem::State& state,
-                            const VectorXd& variances) {
+std::optional<LeastSquares> step_at(const Problem& problem, const Problem::State& state,
+                                    const VectorXd& variances) {
   const Index unknowns = 2 * problem.poles();
   MatrixXd slopes(problem.samples() * problem.channels(), unknowns);
   VectorXd residual(slopes.rows());
@@ -126,13 +120,7 @@ std::optional<Step> step_at(const Problem& problem, const Problem::State& state,
     slopes.middleRows(first, problem.samples()) = weight * problem.jacobian(state, c);
     residual.segment(first, problem.samples()) = weight * state.residual.col(c);
   }
-  const Eigen::ColPivHouseholderQR<MatrixXd> qr(slopes);
-  if (qr.rank() < unknowns) return std::nullopt;
-  const MatrixXd r = qr.matrixR().topRows(unknowns).triangularView<Eigen::Upper>();
-  const MatrixXd inverse =
-      r.triangularView<Eigen::Upper>().solve(MatrixXd::Identity(unknowns, unknowns));
-  const MatrixXd root = qr.colsPermutation() * inverse;
-  return Step{-qr.solve(residual), root * root.transpose()};
+  return least_squares(slopes, -residual);
 }
 
 // f = |λ|/2π and ζ = d/|λ| from (d, ν).
@@ -145,7 +133,7 @@ DecayPole deviation_of(double d, double nu, const Eigen::Matrix2d& covariance) {
 }
 
 std::vector<DecayMode> modes_of(const Problem& problem, const Problem::State& state,
-                                const std::optional<Step>& step, double in_band_variance) {
+                                const std::optional<LeastSquares>& step, double in_band_variance) {
   std::vector<DecayMode> modes;
   for (Index k = 0; k < problem.poles(); ++k) {
     const double d = state.poles[2 * k];
@@ -191,16 +179,16 @@ DampedSinusoidFit fit_damped_sinusoids(const DecayRecord& record, std::span<cons
   DampedSinusoidFit fit;
   Problem::State state = problem.at(start_values(start, record.sample_rate));
   VectorXd variances = variances_of(problem, state);
-  std::optional<Step> step = step_at(problem, state, variances);
+  std::optional<LeastSquares> step = step_at(problem, state, variances);
   while (step && !fit.converged && fit.iterations < options.iterations) {
     ++fit.iterations;
     const VectorXd deviations = step->covariance.diagonal().cwiseSqrt();
-    const double size = step->step.cwiseQuotient(deviations).lpNorm<Eigen::Infinity>();
+    const double size = step->solution.cwiseQuotient(deviations).lpNorm<Eigen::Infinity>();
     const double cost = cost_of(state, variances);
     double share = 1.0;
     constexpr double kSmallest = 1e-6;
     while (share > kSmallest) {
-      Problem::State next = problem.at(state.poles + share * step->step);
+      Problem::State next = problem.at(state.poles + share * step->solution);
       if (next.poles.allFinite() && cost_of(next, variances) <= cost) {
         state = std::move(next);
         break;
@@ -209,8 +197,8 @@ DampedSinusoidFit fit_damped_sinusoids(const DecayRecord& record, std::span<cons
     }
     // Without noise deviations are rounding, and so are the last steps.
     constexpr double kRounding = 1e-12;
-    const bool rounding =
-        step->step.lpNorm<Eigen::Infinity>() <= kRounding * state.poles.lpNorm<Eigen::Infinity>();
+    const bool rounding = step->solution.lpNorm<Eigen::Infinity>() <=
+                          kRounding * state.poles.lpNorm<Eigen::Infinity>();
     fit.converged = size <= options.tolerance || rounding || share <= kSmallest;
     variances = variances_of(problem, state);
     step = step_at(problem, state, variances);

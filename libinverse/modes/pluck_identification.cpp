@@ -7,6 +7,7 @@
 
 #include "libinverse/modes/decay_record.hpp"
 #include "libsim/base/error.hpp"
+#include "libsim/base/words.hpp"
 
 namespace modcal {
 namespace {
@@ -24,6 +25,12 @@ DecayRecord after(const DecayRecord& record, double skip) {
   return rest;
 }
 
+enum class Method { kRealization, kMaximumLikelihood };
+constexpr std::array<std::string_view, 2> kMethods = {"era", "maximum_likelihood"};
+Method method_of(const PluckOptions& options) {
+  return enum_of<Method>(kMethods, "method", options.method);
+}
+
 double size_of(const DecayMode& mode) {
   double size = 0.0;
   for (const auto& amplitude : mode.amplitude) size += std::norm(amplitude);
@@ -35,7 +42,7 @@ std::vector<DecayMode> modes_of(const DecimatedDecay& decay, const std::vector<S
                                 const PluckOptions& options, PluckIdentification& result) {
   std::vector<DecayPole> start;
   for (const StablePole& pole : stable) start.push_back(pole.pole);
-  const bool likelihood = options.method == "maximum_likelihood";
+  const bool likelihood = method_of(options) == Method::kMaximumLikelihood;
   const DampedSinusoidFit fit =
       fit_damped_sinusoids(decay.record, start,
                            {.iterations = likelihood ? std::size_t{50} : std::size_t{0},
@@ -95,7 +102,7 @@ void PluckOptions::visit(OptionVisitor& visitor) {
   visitor("highest_frequency", "upper end of the band in which modes are looked for",
           {.unit = "Hz", .range = Range::positive()}, highest_frequency);
   visitor("method", "realization alone, or followed by a fit of all damped sinusoids",
-          {.choices = {"era", "maximum_likelihood"}}, method);
+          {.choices = choices_of(kMethods)}, method);
   visitor("skip", "time left out after the pluck", {.unit = "s", .range = Range::non_negative()},
           skip);
   visitor("block_rows", "samples in a column of the Hankel matrix",
@@ -110,8 +117,7 @@ PluckIdentification identify_pluck(const DecayRecord& record, double fundamental
   record.require_valid();
   MODCAL_REQUIRE(fundamental > 0.0 && std::isfinite(fundamental),
                  "fundamental {:g} Hz must be > 0: it numbers the modes", fundamental);
-  MODCAL_REQUIRE(options.method == "era" || options.method == "maximum_likelihood",
-                 "unknown method \"{}\": era and maximum_likelihood are available", options.method);
+  method_of(options);
   const DecimatedDecay decay = decimate(after(record, options.skip), options.highest_frequency);
   const EigensystemRealization realization(decay.record,
                                            static_cast<std::size_t>(options.block_rows),

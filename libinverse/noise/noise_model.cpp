@@ -1,10 +1,10 @@
 #include "libinverse/noise/noise_model.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
 #include "libinverse/noise/tuning.hpp"
+#include "libsim/base/dense_solvers.hpp"
 
 namespace modcal {
 namespace {
@@ -33,8 +33,8 @@ double NoiseModel::fit(const NoiseForm& form, Eigen::VectorXd& factors) const {
     const Eigen::MatrixXd by = slopes(factors);
     Eigen::MatrixXd own = tied.transpose() * (by.transpose() * sum.information * by + bond) * tied;
     own.diagonal() *= 1.0 + damping;
-    const Eigen::VectorXd change =
-        own.ldlt().solve(tied.transpose() * (by.transpose() * sum.excess - bond * factors));
+    const Eigen::VectorXd change = SemidefiniteSolver(own).solve(
+        tied.transpose() * (by.transpose() * sum.excess - bond * factors));
     const Eigen::VectorXd there = factors + tied * change.cwiseMax(-1.0).cwiseMin(1.0);
     const double won = least - objective(there);
     damping *= won > 0.0 ? 0.1 : 10.0;
@@ -57,7 +57,7 @@ NoiseModel::Excess NoiseModel::excess(const NoiseForm& form, const Eigen::Vector
   Eigen::MatrixXd information = signal.transpose() * sum.information * signal;
   const Eigen::MatrixXd own = tied.transpose() * sum.information * tied;
   const Eigen::MatrixXd cross = tied.transpose() * sum.information * signal;
-  information -= cross.transpose() * own.ldlt().solve(cross);
+  information -= cross.transpose() * SemidefiniteSolver(own).solve(cross);
   Excess result;
   // Knots by themselves: they hardly overlap. Of less information than one bin has nothing is told.
   for (Index j = 0; j < excess.size(); ++j) {

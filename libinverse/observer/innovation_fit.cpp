@@ -1,12 +1,12 @@
 #include "libinverse/observer/innovation_fit.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
+#include "libsim/base/dense_solvers.hpp"
 #include "libsim/base/task_loop.hpp"
 #include "libsim/signal/statistics.hpp"
 
@@ -150,7 +150,7 @@ class Fit {
     const double floor = 1e-9 * matrix.diagonal().maxCoeff();
     matrix.diagonal() =
         matrix.diagonal() * (1.0 + damping) + VectorXd::Constant(matrix.rows(), floor);
-    const VectorXd step = -matrix.ldlt().solve(e.gradient);
+    const VectorXd step = -SemidefiniteSolver(matrix).solve(e.gradient);
     const double longest = step.cwiseAbs().maxCoeff();
     const double scale = longest > kLongestStep ? kLongestStep / longest : 1.0;
     std::vector<double> x = outcome_.x;

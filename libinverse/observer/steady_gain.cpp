@@ -1,8 +1,9 @@
 #include "libinverse/observer/steady_gain.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Cholesky>
 #include <complex>
 
+#include "libsim/base/dense_solvers.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/dynamics/scene/contact_modes.hpp"
 
@@ -51,7 +52,7 @@ RiccatiSolution solve_by_doubling(const MatrixXd& transition, MatrixXd g, Matrix
     MatrixXd w = g * q;
     w.diagonal().array() += 1.0;
     v << a, g;
-    v = w.partialPivLu().solve(v);
+    v = solve_general(w, v);
     const MatrixXd turned = q * v.leftCols(n);
     MatrixXd growth = a.transpose() * turned;
     growth = 0.5 * (growth + growth.transpose().eval());

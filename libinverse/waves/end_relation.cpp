@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <vector>
 
 #include "libinverse/waves/end_residual.hpp"
 #include "libinverse/waves/end_search.hpp"

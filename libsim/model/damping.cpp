@@ -1,11 +1,12 @@
 #include "libsim/model/damping.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 #include <set>
+
+#include "libsim/base/dense_solvers.hpp"
 
 namespace modcal {
 namespace {
@@ -60,7 +61,7 @@ DampingFit fit_damping(std::span<const std::size_t> mode_numbers, std::span<cons
     matrix(i, 0) = 1.0;
     for (Eigen::Index j = 1; j < columns; ++j) matrix(i, j) = matrix(i, j - 1) * abscissa;
   }
-  const Eigen::VectorXd solution = matrix.householderQr().solve(right);
+  const Eigen::VectorXd solution = ThinQr(matrix).solve(right);
   DampingFit fit;
   double power = 1.0;
   for (const double value : solution) {

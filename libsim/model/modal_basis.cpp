@@ -17,6 +17,12 @@ double ModalBasis::frequency(std::size_t index) const {
   return omega[index] / (2.0 * std::numbers::pi);
 }
 
+std::vector<double> frequencies_of(const ModalBasis& basis) {
+  std::vector<double> frequencies(basis.size());
+  for (std::size_t n = 0; n < basis.size(); ++n) frequencies[n] = basis.frequency(n);
+  return frequencies;
+}
+
 std::vector<double> ModalBasis::shape_at(double x) const {
   MODCAL_REQUIRE(x >= 0.0 && x <= length,
                  "position {:g} m is outside the string: it must lie in [0, {:g}] m", x, length);

@@ -21,6 +21,9 @@ struct ModalBasis {
   std::vector<double> shape_at(double x) const;
 };
 
+/// f_n of all modes [Hz].
+std::vector<double> frequencies_of(const ModalBasis& basis);
+
 /// sin(nπξ), exact zeros at nodes: the argument is reduced to a fraction of a turn first, ξ = x/L.
 double sine_shape(std::size_t n, double relative_position);
 

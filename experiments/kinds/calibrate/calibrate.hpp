@@ -160,9 +160,6 @@ CalibrationOutcome calibrate_strokes(const CalibrateOptions& options,
                                      SecondsClock clock = steady_seconds(),
                                      std::span<const CalibrationRecord> plucks = {});
 
-/// f_n of all modes [Hz].
-std::vector<double> frequencies_of(const ModalBasis& basis);
-
 /// Spectra of the reactions that were observed.
 CalibrationData calibration_data(const Observation& observation);
 

@@ -1,6 +1,6 @@
 // Further strokes and plucks that a calibration fits together with the first stroke.
 #include "experiments/kinds/calibrate/calibrate.hpp"
-#include "libcalib/likelihood/record_options.hpp"
+#include "libcalib/likelihood/records/record_options.hpp"
 
 namespace modcal {
 

@@ -131,12 +131,6 @@ bool starts_from_record(const CalibrationOptions& calibration) {
   return calibration.by_schedule() && unknowns.fixed.empty() && unknowns.priors.empty();
 }
 
-std::vector<double> frequencies_of(const ModalBasis& basis) {
-  std::vector<double> frequencies(basis.size());
-  for (std::size_t n = 0; n < basis.size(); ++n) frequencies[n] = basis.frequency(n);
-  return frequencies;
-}
-
 CalibrationData calibration_data(const Observation& observation) {
   const auto samples = [&observation](End end) -> std::span<const double> {
     const auto& reaction = observation.reaction(end);

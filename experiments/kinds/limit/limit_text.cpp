@@ -1,7 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/kinds/limit/limit.hpp"
-#include "libcalib/likelihood/noise_level.hpp"
+#include "libcalib/likelihood/records/noise_level.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {

@@ -8,7 +8,7 @@
 
 #include "libcalib/identifiability/moving_bridge.hpp"
 #include "libcalib/likelihood/mains_lines.hpp"
-#include "libcalib/likelihood/noise_level.hpp"
+#include "libcalib/likelihood/records/noise_level.hpp"
 #include "libcalib/optimizers/staged/continuation_attempt.hpp"
 #include "libcalib/optimizers/staged/joint_fit.hpp"
 #include "libinverse/joint/sensor_noise.hpp"
@@ -199,10 +199,14 @@ ContinuationResult calibrate_stroke(const ModelPoint& initial, const Calibration
   best.stages = std::move(stages);
   if (!best.fits && options.frequencies) best = with_misfit_for_noise(input, std::move(best));
   best.lines = records.lines;
-  best.contacts = {best.model.contact};
-  best.contact_deviations = {best.contact_deviation};
-  best.values = {{best.model.sensors, best.sensor_deviation, best.damping, best.damping_deviation}};
   return best;
+}
+
+StatedPriors priors_of(const ModelPoint& initial, const ContinuationOptions& options,
+                       std::size_t records) {
+  ModelPoint stated = initial;
+  stated.sensors = options.unknowns.sensors();
+  return StatedPriors(options.unknowns, stated, records);
 }
 
 // What is the first record's, and the stages of all fits in order.
@@ -219,11 +223,6 @@ void complete_by_single(ContinuationResult& fit) {
   }
   fit.restarts = one.restarts;
   fit.moved_modes = one.moved_modes;
-  fit.contact_deviation = fit.contact_deviations.front();
-  const RecordValues& first = fit.values.front();
-  fit.damping = first.damping;
-  fit.damping_deviation = first.damping_deviation;
-  fit.sensor_deviation = first.sensor_deviation;
   std::vector<FitStage> stages;
   std::size_t evaluations = 0;
   for (std::size_t r = 0; r < fit.single.size(); ++r) {
@@ -237,15 +236,6 @@ void complete_by_single(ContinuationResult& fit) {
 
 }  // namespace
 
-FoundLaw FoundLaw::of(const LawPosterior& posterior, const StatedPriors& priors) {
-  const double fundamental =
-      priors.fixed({ParameterKind::kFundamental}).value_or(std::exp(posterior.mean[0]));
-  return {
-      fundamental,
-      priors.fixed({ParameterKind::kInharmonicity}).value_or(posterior.mean[1]),
-      {fundamental * std::sqrt(posterior.covariance(0, 0)), std::sqrt(posterior.covariance(1, 1))}};
-}
-
 void append_stages(const std::vector<FitStage>& further, const std::string& prefix,
                    std::size_t evaluations, std::vector<FitStage>& stages) {
   for (FitStage stage : further) {
@@ -258,16 +248,7 @@ void append_stages(const std::vector<FitStage>& further, const std::string& pref
 ContinuationResult calibrate_by_continuation(const ModelPoint& initial, const CalibrationData& data,
                                              const ContinuationOptions& options,
                                              Evaluator* within) {
-  ModelPoint stated = initial;
-  stated.sensors = options.unknowns.sensors();
-  return calibrate_by_continuation(initial, data, options, StatedPriors(options.unknowns, stated),
-                                   within);
-}
-
-ContinuationResult calibrate_by_continuation(const ModelPoint& initial, const CalibrationData& data,
-                                             const ContinuationOptions& options,
-                                             const StatedPriors& priors, Evaluator* within) {
-  return calibrate_stroke(initial, data, options, priors, true, within);
+  return calibrate_stroke(initial, data, options, priors_of(initial, options, 1), true, within);
 }
 
 ContinuationResult calibrate_records(const ModelPoint& initial,
@@ -276,9 +257,7 @@ ContinuationResult calibrate_records(const ModelPoint& initial,
                                      std::span<const PluckRecord> plucks, Evaluator* within) {
   MODCAL_REQUIRE(!strokes.empty(), "a fit of several records needs at least {} stroke", 1);
   options.unknowns.require_contacts(strokes.size());
-  ModelPoint stated = initial;
-  stated.sensors = options.unknowns.sensors();
-  const StatedPriors priors(options.unknowns, stated, strokes.size() + plucks.size());
+  const StatedPriors priors = priors_of(initial, options, strokes.size() + plucks.size());
   ContinuationResult fit;
   const bool alone = strokes.size() + plucks.size() == 1;
   for (std::size_t r = 0; r < strokes.size(); ++r) {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "libcalib/identifiability/joint_report.hpp"
 #include "libcalib/identifiability/mode_verdict.hpp"
-#include "libcalib/identifiability/stated_verdict.hpp"
 #include "libcalib/likelihood/parameter_forms.hpp"
 #include "libcalib/noise/noise_fit.hpp"
 #include "libcalib/optimizers/staged/free_stage.hpp"
@@ -27,10 +27,8 @@ class Attempt {
  public:
   Attempt(const AttemptInput& input, std::size_t evaluations)
       : input_(input), priors_(input.priors), stroke_(input, evaluations) {
-    std::vector<double> frequencies;
     reference_ = with_fixed(input.initial, options().unknowns);
-    for (std::size_t n = 0; n < modes(); ++n) frequencies.push_back(reference_.basis.frequency(n));
-    start_ = fit_stiff_string(frequencies);
+    start_ = fit_stiff_string(frequencies_of(reference_.basis));
     const auto take_fixed = [this](const ParameterName& name, double& value) {
       value = priors_.fixed(name).value_or(value);
     };
@@ -77,7 +75,6 @@ class Attempt {
 
  private:
   const ContinuationOptions& options() const { return input_.options; }
-  std::size_t modes() const { return input_.initial.basis.size(); }
 
   // About θ, where the fit starts.
   static NewtonOptions with_priors(const StringUnknowns& unknowns, const Eigen::VectorXd& theta,
@@ -167,16 +164,7 @@ class Attempt {
     law_.clear_held(covariance);
     const ModelPoint model = law_.model(law_theta_);
     LawEstimate& law = result.law;
-    law.fundamental = law_.fundamental(law_theta_);
-    law.inharmonicity = law_theta_[1];
-    law.contact = model.contact;
-    law.damping = law_.damping_factor(law_theta_);
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto j = static_cast<Eigen::Index>(i);
-      law.deviation[i] = std::sqrt(covariance(j, j));
-    }
-    law.deviation[0] *= law.fundamental;
-    law.deviation[3] = law_.damping_deviation(covariance) * law.damping;
+    law = law_estimate(law_, law_theta_, model, law_.damping_factor(law_theta_), covariance);
     law.covariance = named_covariance(law_, law_theta_, law.damping, covariance);
     law.chi2 = stroke_.reduced_chi2(law_, law_theta_, at, options);
     stroke_.end_stage(name + ", weighted bins", last.objective, law.chi2);
@@ -192,13 +180,8 @@ class Attempt {
     result.covariance = law.covariance;
     result.chi2 = law.chi2;
     result.priors = law.priors;
-    result.contact_deviation = law.deviation[2];
-    result.damping = law.damping;
-    result.damping_deviation = law.deviation[3];
+    report_record(law_, result.model, law.damping, covariance, 0, true, result);
     result.damping_power = law_.damping_power(law_theta_);
-    result.damping_power_deviation = law_.damping_power_deviation(covariance);
-    result.sensor_deviation = law_.sensor_deviation(result.model, covariance);
-    result.response_deviations = law_.response_deviations(covariance);
     result.modes = law_verdicts(result.model, law.inharmonicity, covariance.topLeftCorner(2, 2));
     trust_stated_frequencies(priors_, {}, result.modes);
   }

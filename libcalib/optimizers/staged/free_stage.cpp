@@ -6,9 +6,9 @@
 #include <limits>
 #include <utility>
 
+#include "libcalib/identifiability/joint_report.hpp"
 #include "libcalib/identifiability/mode_verdict.hpp"
 #include "libcalib/identifiability/neighbor_test.hpp"
-#include "libcalib/identifiability/stated_verdict.hpp"
 #include "libcalib/likelihood/parameter_forms.hpp"
 #include "libcalib/optimizers/staged/score_tests.hpp"
 
@@ -50,7 +50,9 @@ class FreeStage {
     stroke_.end_stage("free, prior as wide as the law's followers", objective_, result_.chi2);
     result_.priors = unknowns_.prior_misfit(theta_, {widths_, inharmonicity_});
     if (options_.unknowns.tests) test(covariance.diagonal().cwiseSqrt());
-    Eigen::MatrixXd of_causes = covariance_of_causes(result_.tests, covariance.rows());
+    AllRecords one(unknowns_);
+    one.add(nullptr, theta_, {});
+    Eigen::MatrixXd of_causes = covariance_of_causes({&result_, 1}, one);
     unknowns_.clear_held(of_causes);
     report(covariance + of_causes, of_causes);
   }
@@ -180,16 +182,11 @@ class FreeStage {
     result_.frequencies_free = true;
     result_.model = unknowns_.model(theta_);
     const Eigen::VectorXd deviation = covariance.diagonal().cwiseSqrt();
-    result_.contact_deviation = deviation[unknowns_.contact()];
     // The law's damping made the reference of the free frequencies.
     const StringUnknowns& law = start_.law;
-    result_.damping = unknowns_.damping_factor(theta_) * law.damping_factor(start_.theta);
+    const double damping = unknowns_.damping_factor(theta_) * law.damping_factor(start_.theta);
+    report_record(unknowns_, result_.model, damping, covariance, 0, true, result_);
     result_.damping_power = unknowns_.damping_power(theta_) + law.damping_power(start_.theta);
-    result_.damping_power_deviation = unknowns_.damping_power_deviation(covariance);
-    result_.ratio_deviations = unknowns_.ratio_deviations(covariance);
-    result_.damping_deviation = unknowns_.damping_deviation(covariance) * result_.damping;
-    result_.sensor_deviation = unknowns_.sensor_deviation(result_.model, covariance);
-    result_.response_deviations = unknowns_.response_deviations(covariance);
     result_.modes = free_verdicts(result_.model, deviation.head(modes()), sight_.seen, followers_);
     trust_stated_frequencies(priors_, deviation, result_.modes);
     const LawScatter scatter{followers_.scatters(), inharmonicity_};

@@ -5,11 +5,10 @@
 
 #include "libcalib/identifiability/joint_report.hpp"
 #include "libcalib/identifiability/mode_verdict.hpp"
-#include "libcalib/identifiability/stated_verdict.hpp"
 #include "libcalib/likelihood/all_records.hpp"
 #include "libcalib/likelihood/bin_weights.hpp"
 #include "libcalib/likelihood/mains_lines.hpp"
-#include "libcalib/likelihood/noise_level.hpp"
+#include "libcalib/likelihood/records/noise_level.hpp"
 #include "libcalib/likelihood/unknown_bounds.hpp"
 #include "libcalib/optimizers/staged/newton_fit.hpp"
 #include "libcalib/optimizers/staged/pluck_search.hpp"

@@ -1,6 +1,5 @@
 #include "libcalib/optimizers/staged/newton_fit.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -10,33 +9,11 @@
 namespace modcal {
 namespace {
 
-// Q padded with zeros for the unknowns that have no prior.
-Eigen::MatrixXd padded(const Eigen::MatrixXd& prior, Eigen::Index size) {
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(size, size);
-  result.topLeftCorner(prior.rows(), prior.cols()) = prior;
-  return result;
-}
-
-// The factor of a matrix scaled to a unit diagonal: units differ by many powers of ten.
-struct UnitDiagonal {
-  explicit UnitDiagonal(const Eigen::MatrixXd& matrix)
-      : scale(matrix.diagonal().cwiseSqrt().cwiseInverse()), factor(scaled(matrix)) {}
-  Eigen::MatrixXd scaled(const Eigen::MatrixXd& matrix) const {
-    return scale.asDiagonal() * matrix * scale.asDiagonal();
-  }
-  Eigen::VectorXd scale;
-  Eigen::LDLT<Eigen::MatrixXd> factor;
-};
-
-Eigen::MatrixXd hessian_of(const LikelihoodPoint& point, const NewtonOptions& options) {
-  return debiased_hessian(2.0 * point.information, 2.0 * options.noise, options.prior);
-}
-
 // Cost and prior as an objective.
 class FitFunction final : public ObjectiveFunction {
  public:
   FitFunction(const FitTarget& target, Eigen::Index size, const NewtonOptions& options)
-      : target_(target), options_(options), prior_(padded(options.prior, size)) {}
+      : target_(target), options_(options), prior_(padded_prior(options.prior, size)) {}
   std::string_view name() const override { return "joint_likelihood"; }
   std::size_t dimension() const override { return static_cast<std::size_t>(prior_.rows()); }
   Capabilities capabilities() const override { return {.gradient = true, .information = true}; }
@@ -141,41 +118,6 @@ NewtonFit fit_by(Evaluator& evaluator, const FitFunction& function, const FitTar
 }
 
 }  // namespace
-
-double taken_by_fit(const LikelihoodPoint& point, const NewtonOptions& options,
-                    const Eigen::MatrixXd& whole) {
-  const UnitDiagonal hessian(hessian_of(point, options));
-  const double followed = hessian.factor.solve(hessian.scaled(point.information)).trace();
-  return 4.0 * followed - 2.0 * whole.cwiseProduct(fit_covariance(point, options)).sum();
-}
-
-Eigen::MatrixXd fit_response(const LikelihoodPoint& point, const NewtonOptions& options,
-                             const Eigen::MatrixXd& change) {
-  const UnitDiagonal hessian(hessian_of(point, options));
-  return hessian.scale.asDiagonal() * hessian.factor.solve(hessian.scale.asDiagonal() * change);
-}
-
-Eigen::MatrixXd fit_covariance(const LikelihoodPoint& point, const NewtonOptions& options) {
-  const UnitDiagonal hessian(hessian_of(point, options));
-  const Eigen::Index size = hessian.scale.size();
-  const Eigen::MatrixXd inverse =
-      hessian.scaled(hessian.factor.solve(Eigen::MatrixXd::Identity(size, size)));
-  const Eigen::MatrixXd score = 2.0 * point.twice_weighted + padded(options.prior, size);
-  return inverse * score * inverse;
-}
-
-LawPosterior law_of_step(const PriorEquations& statements, const LikelihoodPoint& at,
-                         const Eigen::VectorXd& theta, NewtonOptions options,
-                         const Eigen::MatrixXd& more) {
-  QuadraticPrior prior = statements.solve();
-  const Eigen::VectorXd pull = prior.precision * (theta - prior.mean);
-  options.prior = std::move(prior.precision);
-  const UnitDiagonal hessian(hessian_of(at, options));
-  const Eigen::VectorXd gradient = 2.0 * at.slope + pull;
-  const Eigen::VectorXd step =
-      hessian.scale.asDiagonal() * hessian.factor.solve(hessian.scale.asDiagonal() * gradient);
-  return statements.law(theta - step, fit_covariance(at, options) + more);
-}
 
 NewtonFit newton_fit(const FitTarget& target, const Eigen::VectorXd& start,
                      const NewtonOptions& options, Evaluator* within) {

@@ -6,23 +6,12 @@
 #include <limits>
 #include <span>
 
+#include "libcalib/likelihood/newton_step.hpp"
 #include "libcalib/likelihood/projected_likelihood.hpp"
 #include "libcalib/parameters/string_unknowns.hpp"
 #include "libcalib/problem/evaluator.hpp"
 
 namespace modcal {
-
-struct NewtonOptions {
-  std::size_t steps = 15;
-  /// Ends when gᵀH⁻¹g is below this: the step is then below its root in standard deviations.
-  double tolerance = 1e-4;
-  double frequency_cap = std::numeric_limits<double>::infinity();  ///< of one δ_n in one step
-  Eigen::MatrixXd noise;       ///< N̄; empty: none is subtracted
-  Eigen::MatrixXd prior;       ///< precision Q; empty: none
-  Eigen::VectorXd prior_mean;  ///< θ_0; empty: 0
-  /// What the target gives at the start, where that is known; null: it is evaluated.
-  const LikelihoodPoint* at_start = nullptr;
-};
 
 /// What a fit evaluates.
 struct FitTarget {
@@ -56,25 +45,5 @@ NewtonFit newton_fit(const FitTarget& target, const Eigen::VectorXd& start,
 NewtonFit newton_fit(const ProjectedLikelihood& likelihood, const StringUnknowns& unknowns,
                      const Eigen::VectorXd& start, const NewtonOptions& options);
 FitTarget fit_target(const ProjectedLikelihood& likelihood, const StringUnknowns& unknowns);
-
-/// The law under these statements, which take the place of the prior among the options, by one step
-/// from a point with `twice_weighted` at θ, whose covariance is so much larger than the fit's.
-LawPosterior law_of_step(const PriorEquations& statements, const LikelihoodPoint& at,
-                         const Eigen::VectorXd& theta, NewtonOptions options,
-                         const Eigen::MatrixXd& more);
-
-/// How much less than at the truth Σ|e|² without weights is expected where a fit with weights ends,
-/// in residuals: 4 tr H⁻¹JᵀWJ − 2 tr (JᵀJ) Cov, of a fit without weights and priors the number of
-/// its unknowns. An unknown that its prior holds takes none; one that the weights leave to its
-/// prior, while noise alone curves the cost, gives some back. whole: JᵀJ without weights.
-double taken_by_fit(const LikelihoodPoint& point, const NewtonOptions& options,
-                    const Eigen::MatrixXd& whole);
-
-/// H⁻¹B for a matrix B of as many rows.
-Eigen::MatrixXd fit_response(const LikelihoodPoint& point, const NewtonOptions& options,
-                             const Eigen::MatrixXd& change);
-
-/// H⁻¹(2 JᵀW²J + Q)H⁻¹ of the fit's last point, which must hold `twice_weighted`.
-Eigen::MatrixXd fit_covariance(const LikelihoodPoint& point, const NewtonOptions& options);
 
 }  // namespace modcal

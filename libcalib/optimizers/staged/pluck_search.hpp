@@ -4,7 +4,7 @@
 #include <memory>
 #include <span>
 
-#include "libcalib/likelihood/pluck_likelihood.hpp"
+#include "libcalib/likelihood/pluck/pluck_likelihood.hpp"
 
 namespace modcal {
 

@@ -4,8 +4,6 @@
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_sf_gamma.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -16,6 +14,7 @@
 
 #include "libcalib/identifiability/tuning.hpp"
 #include "libcalib/optimizers/staged/best_tests.hpp"
+#include "libsim/base/dense_solvers.hpp"
 
 namespace modcal {
 namespace {
@@ -61,14 +60,15 @@ double log_evidence(const MisfitCause& cause, const Eigen::MatrixXd& information
     if (cause.widths[i] < kUnknown) known.push_back(i);
   }
   const Eigen::MatrixXd inverse =
-      information.ldlt().solve(Eigen::MatrixXd::Identity(information.rows(), information.cols()));
+      SemidefiniteSolver(information)
+          .solve(Eigen::MatrixXd::Identity(information.rows(), information.cols()));
   const Eigen::MatrixXd own = inverse(known, known);
   Eigen::MatrixXd wide = own;
   wide.diagonal() += cause.widths(known).cwiseAbs2();
   const Eigen::VectorXd a = amplitudes(known);
-  const Eigen::LDLT<Eigen::MatrixXd> narrow_solver(own), wide_solver(wide);
-  const auto log_determinant = [](const Eigen::LDLT<Eigen::MatrixXd>& solver) {
-    return solver.vectorD().array().max(std::numeric_limits<double>::min()).log().sum();
+  const SemidefiniteSolver narrow_solver(own), wide_solver(wide);
+  const auto log_determinant = [](const SemidefiniteSolver& solver) {
+    return solver.factor().vectorD().array().max(std::numeric_limits<double>::min()).log().sum();
   };
   double result = 0.5 * (a.dot(narrow_solver.solve(a)) - a.dot(wide_solver.solve(a)) +
                          log_determinant(narrow_solver) - log_determinant(wide_solver));
@@ -85,11 +85,11 @@ double log_evidence(const MisfitCause& cause, const Eigen::MatrixXd& information
 // What the noise adds to the information of the unknowns is taken out there and not of the
 // amplitudes, of which it may leave less than nothing: of the variance of their scores, J, a share.
 Eigen::MatrixXd at_least_a_share(const Eigen::MatrixXd& information, const Eigen::MatrixXd& j) {
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(information, j);
-  if (solver.info() != Eigen::Success) return kLeastShare * j;  // nothing is seen of one of them
-  if (solver.eigenvalues().minCoeff() >= kLeastShare) return information;
-  const Eigen::MatrixXd roots = j * solver.eigenvectors() *
-                                solver.eigenvalues().cwiseMax(kLeastShare).cwiseSqrt().asDiagonal();
+  const GeneralizedEigen eigen = generalized_eigen(information, j);
+  if (!eigen.found) return kLeastShare * j;  // nothing is seen of one of them
+  if (eigen.values.minCoeff() >= kLeastShare) return information;
+  const Eigen::MatrixXd roots =
+      j * eigen.vectors * eigen.values.cwiseMax(kLeastShare).cwiseSqrt().asDiagonal();
   return roots * roots.transpose();
 }
 
@@ -141,14 +141,14 @@ class Scores {
     const Eigen::MatrixXd information =
         at_least_a_share(information_.block(first, first, count, count), variance);
     const Eigen::VectorXd score = score_.segment(first, count);
-    const auto solver = information.ldlt();
+    const SemidefiniteSolver solver(information);
     const Eigen::VectorXd amplitude = -solver.solve(score);
     const auto taken = taken_.middleCols(first, count);
     ScoreTest test{
         .cause = cause.name,
         .detail = cause.detail,
         .place = cause.place,
-        .statistic = score.dot(variance.ldlt().solve(score)) / std::max(1.0, misfit),
+        .statistic = score.dot(SemidefiniteSolver(variance).solve(score)) / std::max(1.0, misfit),
         .degrees = static_cast<std::size_t>(count),
         .amplitude = count == 1 || cause.name == kBridge ? amplitude[0] : amplitude.norm(),
         .amplitudes = amplitude,
@@ -173,7 +173,7 @@ class Scores {
     if (cause.widths.size() > 0) {
       Eigen::MatrixXd told = information / std::max(1.0, misfit);
       told.diagonal() += cause.widths.cwiseAbs2().cwiseInverse();
-      test.untold = taken * told.ldlt().solve(taken.transpose());
+      test.untold = taken * SemidefiniteSolver(told).solve(taken.transpose());
       test.log_evidence = log_evidence(cause, information / std::max(1.0, misfit), amplitude);
     }
     return {test, most};
@@ -219,16 +219,6 @@ std::vector<ScoreTest> score_tests(const ProjectedLikelihood& likelihood,
     test_all(resonances_about(likelihood, point, *place));
   }
   return tests.take();
-}
-
-Eigen::MatrixXd covariance_of_causes(const std::vector<ScoreTest>& tests, Index unknowns) {
-  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(unknowns, unknowns);
-  for (const ScoreTest& test : tests) {
-    const Eigen::VectorXd suspected = test.suspected();
-    covariance += suspected * suspected.transpose();
-    if (test.untold.size() > 0) covariance += test.untold;
-  }
-  return covariance;
 }
 
 }  // namespace modcal

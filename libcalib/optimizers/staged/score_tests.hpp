@@ -20,9 +20,4 @@ std::vector<ScoreTest> score_tests(const ProjectedLikelihood& likelihood,
                                    const NewtonOptions& options, const Eigen::VectorXd& deviation,
                                    double misfit);
 
-/// What unknown amplitudes of causes may change, Σ suspicion · (change)(change)ᵀ: a cause that
-/// moves an unknown by several deviations before it is named is not told apart from them, and the
-/// covariance of the unknowns holds it.
-Eigen::MatrixXd covariance_of_causes(const std::vector<ScoreTest>& tests, Eigen::Index unknowns);
-
 }  // namespace modcal

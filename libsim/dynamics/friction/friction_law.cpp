@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "libsim/base/words.hpp"
+
 namespace modcal {
 namespace {
 
@@ -26,18 +28,20 @@ double fall_of(const Options& options) {
   return options.static_coefficient - options.dynamic_coefficient;
 }
 
+enum class BristleModel { kElastoPlastic, kLuGre };
+constexpr std::array<std::string_view, 2> kBristleModels = {"elasto_plastic", "lugre"};
+
 BristleFriction bristles_of(const ElastoPlastic::Options& options) {
   MODCAL_REQUIRE(options.dynamic_coefficient > 0.0 &&
                      options.dynamic_coefficient <= options.static_coefficient,
                  "dynamic friction coefficient {:g} must be > 0 and at most the static one, {:g}",
                  options.dynamic_coefficient, options.static_coefficient);
-  MODCAL_REQUIRE(options.model == "elasto_plastic" || options.model == "lugre",
-                 "unknown bristle model \"{}\": elasto_plastic or lugre", options.model);
+  const auto model = enum_of<BristleModel>(kBristleModels, "bristle model", options.model);
   return {.dynamic_coefficient = options.dynamic_coefficient,
           .drop = options.static_coefficient - options.dynamic_coefficient,
           .stribeck_speed = options.stribeck_speed,
           .stiffness = options.bristle.stiffness,
-          .breakaway = options.model == "lugre" ? -1.0 : options.breakaway};
+          .breakaway = model == BristleModel::kLuGre ? -1.0 : options.breakaway};
 }
 
 ThermalSliding rosin_of(const Thermal::Options& options) {
@@ -118,7 +122,7 @@ void ElastoPlastic::Options::visit(OptionVisitor& visitor) {
   visitor("stribeck_speed", "sliding speed v_s over which the coefficient falls",
           {.unit = "m/s", .range = Range::positive()}, stribeck_speed);
   visitor("model", "elasto_plastic: no creep below breakaway; lugre: creep at any load",
-          {.choices = {"elasto_plastic", "lugre"}}, model);
+          {.choices = choices_of(kBristleModels)}, model);
   visitor("breakaway",
           "largest elastic deflection over that of dynamic friction "
           "(elasto_plastic)",

@@ -1,5 +1,4 @@
 #include <cctype>
-#include <cmath>
 #include <optional>
 
 #include "libsim/base/error.hpp"

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 
 #include "libsim/base/error.hpp"
 #include "libsim/base/utf8.hpp"

@@ -7,7 +7,8 @@
 #include <numbers>
 
 #include "libcalib/identifiability/mode_verdict.hpp"
-#include "libcalib/likelihood/pluck_likelihood.hpp"
+#include "libcalib/likelihood/pluck/pluck_likelihood.hpp"
+#include "libcalib/optimizers/staged/continuation.hpp"
 #include "libcalib/parameters/string_unknowns.hpp"
 #include "libsim/base/error.hpp"
 #include "tests/libcalib/likelihood/bowed_case.hpp"

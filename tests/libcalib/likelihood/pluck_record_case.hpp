@@ -1,7 +1,7 @@
 // Plucked strings with converged truth for tests of the joint likelihood.
 #pragma once
 
-#include "libcalib/likelihood/whitened_record.hpp"
+#include "libcalib/likelihood/records/whitened_record.hpp"
 #include "libsim/base/random.hpp"
 #include "libsim/dynamics/event/modal_event.hpp"
 #include "libsim/dynamics/scene/scene.hpp"

@@ -9,8 +9,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "libcalib/likelihood/decay_kernel.hpp"
-#include "libcalib/likelihood/mode_columns.hpp"
+#include "libcalib/likelihood/kernels/decay_kernel.hpp"
+#include "libcalib/likelihood/kernels/mode_columns.hpp"
 #include "tests/libcalib/likelihood/bowed_case.hpp"
 
 namespace modcal {

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "libcalib/likelihood/likelihood_evaluation.hpp"
-#include "libcalib/likelihood/pluck_likelihood.hpp"
+#include "libcalib/likelihood/pluck/pluck_likelihood.hpp"
 #include "libcalib/parameters/string_unknowns.hpp"
 #include "tests/libcalib/likelihood/bowed_case.hpp"
 #include "tests/libcalib/likelihood/pluck_record_case.hpp"

@@ -1,7 +1,6 @@
 #include "libsim/dynamics/event/modes/first_crossing.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
 

@@ -1,7 +1,6 @@
 #include "libsim/dynamics/event/modes/modal_kernels.hpp"
 
 #include <cassert>
-#include <cmath>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "libsim/dynamics/event/modes/modal_kernels.cpp"

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "libcalib/identifiability/mode_verdict.hpp"
-#include "libcalib/optimizers/scoring.hpp"
 #include "libcalib/optimizers/staged/newton_fit.hpp"
 #include "tests/libcalib/likelihood/bowed_case.hpp"
 

@@ -1,10 +1,10 @@
-#include "libcalib/likelihood/whitened_record.hpp"
+#include "libcalib/likelihood/records/whitened_record.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "libcalib/likelihood/noise_level.hpp"
+#include "libcalib/likelihood/records/noise_level.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/base/random.hpp"
 #include "libsim/signal/statistics.hpp"

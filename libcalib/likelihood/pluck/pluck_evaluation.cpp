@@ -1,8 +1,8 @@
-#include "libcalib/likelihood/pluck_evaluation.hpp"
+#include "libcalib/likelihood/pluck/pluck_evaluation.hpp"
 
 #include <algorithm>
 
-#include "libcalib/likelihood/column_products.hpp"
+#include "libcalib/likelihood/kernels/column_products.hpp"
 #include "libcalib/likelihood/projected_likelihood.hpp"
 
 namespace modcal {
@@ -130,7 +130,7 @@ void PluckEvaluation::solve(const RowMatrix& products) {
   scale_ = gram.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   Eigen::MatrixXd scaled = scale_.asDiagonal() * gram * scale_.asDiagonal();
   scaled.diagonal().array() += kRidge;
-  normal_.compute(scaled);
+  normal_ = PositiveSolver(scaled);
   linear_ = scale_.asDiagonal() * normal_.solve(scale_.asDiagonal() * with_data);
   cost_ = products(count, count) - 2.0 * linear_.dot(with_data) + linear_.dot(gram * linear_);
   for (std::size_t n = 0; n < modes_.size(); ++n) {

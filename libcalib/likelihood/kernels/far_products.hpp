@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "libcalib/likelihood/mode_columns.hpp"
+#include "libcalib/likelihood/kernels/mode_columns.hpp"
 
 namespace modcal {
 

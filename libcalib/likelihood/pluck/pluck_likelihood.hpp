@@ -2,7 +2,7 @@
 #pragma once
 
 #include "libcalib/likelihood/record_likelihood.hpp"
-#include "libcalib/likelihood/whitened_record.hpp"
+#include "libcalib/likelihood/records/whitened_record.hpp"
 
 namespace modcal {
 

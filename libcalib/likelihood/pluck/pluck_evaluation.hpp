@@ -1,11 +1,11 @@
 // One evaluation of the likelihood of a pluck: passes over the blocks of bins.
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <vector>
 
 #include "libcalib/likelihood/end_state.hpp"
 #include "libcalib/likelihood/likelihood_outputs.hpp"
+#include "libsim/base/dense_solvers.hpp"
 
 namespace modcal {
 
@@ -57,7 +57,7 @@ class PluckEvaluation {
   std::vector<Mode> modes_;
   std::vector<PlainTransient> plain_;
   Eigen::VectorXd scale_;  // 1 over the norms of the linear columns
-  Eigen::LLT<Eigen::MatrixXd> normal_;
+  PositiveSolver normal_;
   Eigen::VectorXd linear_;  // their factors
   std::vector<Complex> amplitudes_;
   double cost_ = 0.0;

@@ -11,8 +11,8 @@
 
 #include <complex>
 
-#include "libcalib/likelihood/likelihood_kernel.hpp"
-#include "libcalib/likelihood/mode_split.hpp"
+#include "libcalib/likelihood/kernels/likelihood_kernel.hpp"
+#include "libcalib/likelihood/kernels/mode_split.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace modcal::HWY_NAMESPACE {

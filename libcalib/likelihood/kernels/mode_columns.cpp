@@ -1,12 +1,12 @@
-#include "libcalib/likelihood/mode_columns.hpp"
+#include "libcalib/likelihood/kernels/mode_columns.hpp"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "libcalib/likelihood/mode_columns.cpp"
+#define HWY_TARGET_INCLUDE "libcalib/likelihood/kernels/mode_columns.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "libcalib/likelihood/decay_kernel.hpp"
-#include "libcalib/likelihood/mode_terms-inl.hpp"
+#include "libcalib/likelihood/kernels/decay_kernel.hpp"
+#include "libcalib/likelihood/kernels/mode_terms-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace modcal::HWY_NAMESPACE {

@@ -1,11 +1,11 @@
-#include "libcalib/likelihood/far_products.hpp"
+#include "libcalib/likelihood/kernels/far_products.hpp"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "libcalib/likelihood/far_products.cpp"
+#define HWY_TARGET_INCLUDE "libcalib/likelihood/kernels/far_products.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "libcalib/likelihood/mode_terms-inl.hpp"
+#include "libcalib/likelihood/kernels/mode_terms-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace modcal::HWY_NAMESPACE {

@@ -1,4 +1,4 @@
-#include "libcalib/likelihood/likelihood_band.hpp"
+#include "libcalib/likelihood/records/likelihood_band.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
-#include "libcalib/likelihood/pluck_likelihood.hpp"
+#include "libcalib/likelihood/pluck/pluck_likelihood.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "libcalib/likelihood/pluck_evaluation.hpp"
+#include "libcalib/likelihood/pluck/pluck_evaluation.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {

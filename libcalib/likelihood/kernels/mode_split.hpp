@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "libcalib/likelihood/whitened_record.hpp"
+#include "libcalib/likelihood/records/whitened_record.hpp"
 
 namespace modcal {
 

@@ -1,11 +1,11 @@
-#include "libcalib/likelihood/column_products.hpp"
+#include "libcalib/likelihood/kernels/column_products.hpp"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "libcalib/likelihood/column_products.cpp"
+#define HWY_TARGET_INCLUDE "libcalib/likelihood/kernels/column_products.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "libcalib/likelihood/planar_complex-inl.hpp"
+#include "libcalib/likelihood/kernels/planar_complex-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace modcal::HWY_NAMESPACE {

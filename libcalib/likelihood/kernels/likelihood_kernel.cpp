@@ -1,11 +1,11 @@
-#include "libcalib/likelihood/likelihood_kernel.hpp"
+#include "libcalib/likelihood/kernels/likelihood_kernel.hpp"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "libcalib/likelihood/likelihood_kernel.cpp"
+#define HWY_TARGET_INCLUDE "libcalib/likelihood/kernels/likelihood_kernel.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "libcalib/likelihood/planar_complex-inl.hpp"
+#include "libcalib/likelihood/kernels/planar_complex-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace modcal::HWY_NAMESPACE {

@@ -7,8 +7,8 @@
 #include <cstddef>
 #include <span>
 
-#include "libcalib/likelihood/mode_split.hpp"
-#include "libcalib/likelihood/whitened_record.hpp"
+#include "libcalib/likelihood/kernels/mode_split.hpp"
+#include "libcalib/likelihood/records/whitened_record.hpp"
 #include "libcalib/parameters/free_parameters.hpp"
 
 namespace modcal {

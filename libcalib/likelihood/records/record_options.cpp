@@ -1,4 +1,4 @@
-#include "libcalib/likelihood/record_options.hpp"
+#include "libcalib/likelihood/records/record_options.hpp"
 
 namespace modcal {
 

@@ -1,4 +1,4 @@
-#include "libcalib/likelihood/noise_level.hpp"
+#include "libcalib/likelihood/records/noise_level.hpp"
 
 #include <algorithm>
 #include <cmath>

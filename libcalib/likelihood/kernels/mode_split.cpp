@@ -1,10 +1,10 @@
-#include "libcalib/likelihood/mode_split.hpp"
+#include "libcalib/likelihood/kernels/mode_split.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "libcalib/likelihood/likelihood_kernel.hpp"
+#include "libcalib/likelihood/kernels/likelihood_kernel.hpp"
 
 namespace modcal {
 namespace {

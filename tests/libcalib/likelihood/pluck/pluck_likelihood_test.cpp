@@ -1,4 +1,4 @@
-#include "libcalib/likelihood/pluck_likelihood.hpp"
+#include "libcalib/likelihood/pluck/pluck_likelihood.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,8 +7,8 @@
 #define MODCAL_MODE_TERMS_INL
 #endif
 
-#include "libcalib/likelihood/mode_columns.hpp"
-#include "libcalib/likelihood/planar_complex-inl.hpp"
+#include "libcalib/likelihood/kernels/mode_columns.hpp"
+#include "libcalib/likelihood/kernels/planar_complex-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace modcal::HWY_NAMESPACE {

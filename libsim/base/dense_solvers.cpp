@@ -1,0 +1,90 @@
+#include "libsim/base/dense_solvers.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+namespace modcal {
+namespace {
+
+struct Orthogonal {
+  Orthogonal(const Eigen::MatrixXd& matrix, double threshold) {
+    solver.setThreshold(threshold);
+    solver.compute(matrix);
+  }
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
+};
+
+}  // namespace
+
+template <typename Factor>
+SymmetricSolver<Factor>::SymmetricSolver(const Eigen::MatrixXd& matrix) : factor_(matrix) {}
+
+template <typename Factor>
+Eigen::VectorXd SymmetricSolver<Factor>::vector(const Eigen::VectorXd& right) const {
+  return factor_.solve(right);
+}
+
+template <typename Factor>
+Eigen::MatrixXd SymmetricSolver<Factor>::columns(const Eigen::MatrixXd& right) const {
+  return factor_.solve(right);
+}
+
+template class SymmetricSolver<Eigen::LDLT<Eigen::MatrixXd>>;
+template class SymmetricSolver<Eigen::LLT<Eigen::MatrixXd>>;
+
+Eigen::MatrixXd whiten(const PositiveSolver& solver, const Eigen::MatrixXd& right) {
+  return solver.factor().matrixL().solve(right);
+}
+
+Eigen::VectorXd whiten(const PositiveSolver& solver, const Eigen::VectorXd& right) {
+  return solver.factor().matrixL().solve(right);
+}
+
+Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& matrix) {
+  return matrix.selfadjointView<Eigen::Lower>().eigenvalues();
+}
+
+GeneralizedEigen generalized_eigen(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  // Eigen's own solver takes any B.
+  if (PositiveSolver(b).factor().info() != Eigen::Success) return {};
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(a, b);
+  if (solver.info() != Eigen::Success) return {};
+  return {.found = true, .values = solver.eigenvalues(), .vectors = solver.eigenvectors()};
+}
+
+Eigen::VectorXd least_norm_solution(const Eigen::MatrixXd& a, const Eigen::VectorXd& b,
+                                    double threshold) {
+  return Orthogonal(a, threshold).solver.solve(b);
+}
+
+Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& a, double threshold) {
+  return Orthogonal(a, threshold).solver.pseudoInverse();
+}
+
+Eigen::MatrixXd solve_general(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  return a.partialPivLu().solve(b);
+}
+
+Eigen::MatrixXd ThinQr::q() const {
+  return factor.householderQ() * Eigen::MatrixXd::Identity(factor.rows(), factor.cols());
+}
+
+Eigen::MatrixXd ThinQr::r() const {
+  return factor.matrixQR().topRows(factor.cols()).triangularView<Eigen::Upper>();
+}
+
+Eigen::VectorXd ThinQr::solve(const Eigen::VectorXd& right) const { return factor.solve(right); }
+Eigen::MatrixXd ThinQr::solve(const Eigen::MatrixXd& right) const { return factor.solve(right); }
+
+std::optional<LeastSquares> least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(a);
+  const Eigen::Index n = a.cols();
+  if (qr.rank() < n) return std::nullopt;
+  const Eigen::MatrixXd r = qr.matrixR().topRows(n).triangularView<Eigen::Upper>();
+  const Eigen::MatrixXd inverse =
+      r.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(n, n));
+  const Eigen::MatrixXd root = qr.colsPermutation() * inverse;
+  return LeastSquares{qr.solve(b), root * root.transpose()};
+}
+
+}  // namespace modcal
