@@ -34,6 +34,7 @@ FittedRecord::FittedRecord(const ProjectedLikelihood& likelihood, const ModelPoi
     const double root = record_.root_weight[k];
     const Complex e(residuals[2 * k], residuals[2 * k + 1]);
     residual_.push_back(root > 0.0 ? e / root : 0.0);
+    read_.push_back(sensor_.response({0.0, record_.omega[k]}));
   }
   chord_right_.assign(record_.bins, per_length_);
   chord_left_.assign(record_.bins, -per_length_);
@@ -50,13 +51,8 @@ FittedRecord::FittedRecord(const ProjectedLikelihood& likelihood, const ModelPoi
 }
 
 MisfitCause FittedRecord::polarization(double detuning) const {
-  SignalColumn columns[2] = {{numbers(), {}}, {{}, numbers()}};
-  for (std::size_t k = 0; k < record_.bins; ++k) {
-    const NoisePair ends = fitted(k);
-    columns[0].left.set(k, ends.left);
-    columns[1].right.set(k, ends.right);
-  }
   std::vector<Complex> change(record_.bins);
+  Motions moved(record_.bins);
   const double more = detuning * (2.0 + detuning);
   for (std::size_t n = 0; n < own_; ++n) {
     const LikelihoodMode& mode = modes_[n];
@@ -70,11 +66,13 @@ MisfitCause FittedRecord::polarization(double detuning) const {
       rate_sum += s * change[k];
     }
     decay(mode, detuning, sum, rate_sum, change);
-    for (std::size_t k = 0; k < record_.bins; ++k) {
-      const auto [left, right] = ends(change[k], mode.even, {0.0, record_.omega[k]});
-      columns[0].left.set(k, columns[0].left.at(k) + left);
-      columns[1].right.set(k, columns[1].right.at(k) + right);
-    }
+    moved.add(change, mode.even);
+  }
+  SignalColumn columns[2] = {{numbers(), {}}, {{}, numbers()}};
+  for (std::size_t k = 0; k < record_.bins; ++k) {
+    const NoisePair own = fitted(k), more_of_it = ends(moved, k);
+    columns[0].left.set(k, own.left + more_of_it.left);
+    columns[1].right.set(k, own.right + more_of_it.right);
   }
   return {.name = std::string(kPolarization),
           .detail = fmt::format("detuned by {:+.2g} %", 100.0 * detuning),
@@ -83,8 +81,8 @@ MisfitCause FittedRecord::polarization(double detuning) const {
 }
 
 MisfitCause FittedRecord::drift() const {
-  SignalColumn column{numbers(), numbers()};
-  std::vector<Complex> spectrum(fft_.bins());
+  Motions moved(record_.bins);
+  std::vector<Complex> spectrum(fft_.bins()), change(record_.bins);
   std::vector<double> motion(fft_.length());
   for (std::size_t n = 0; n < own_; ++n) {
     const LikelihoodMode& mode = modes_[n];
@@ -97,12 +95,15 @@ MisfitCause FittedRecord::drift() const {
     fft_.forward(motion, spectrum);
     for (std::size_t k = 0; k < record_.bins; ++k) {
       const Complex s(0.0, record_.omega[k]);
-      const Complex change =
-          -2.0 * mode.omega_squared * spectrum[k + 1] * inverse_denominator(mode, s);
-      const auto [left, right] = ends(change, mode.even, s);
-      column.left.set(k, column.left.at(k) + left);
-      column.right.set(k, column.right.at(k) + right);
+      change[k] = -2.0 * mode.omega_squared * spectrum[k + 1] * inverse_denominator(mode, s);
     }
+    moved.add(change, mode.even);
+  }
+  SignalColumn column{numbers(), numbers()};
+  for (std::size_t k = 0; k < record_.bins; ++k) {
+    const NoisePair both = ends(moved, k);
+    column.left.set(k, both.left);
+    column.right.set(k, both.right);
   }
   return {.name = std::string(kDrift), .columns = {std::move(column)}};
 }
@@ -127,7 +128,7 @@ MisfitCause FittedRecord::bridge(double frequency, double zeta) const {
   cause.columns.assign(3, {numbers(), numbers()});
   for (std::size_t k = 0; k < record_.bins; ++k) {
     const Complex s(0.0, record_.omega[k]), delay = record_.delay.at(k);
-    const Complex sensor = sensor_.response(s);
+    const Complex sensor = read_[k];
     const bool taken_out = record_.on_bridge.size() > 0;
     const Complex right = taken_out ? record_.on_bridge.at(k) : fitted(k).right;
     const Complex reaction = right * record_.deviation[1] / sensor;
@@ -206,9 +207,14 @@ void FittedRecord::decay(const LikelihoodMode& mode, double detuning, Complex su
   }
 }
 
-FittedRecord::Ends FittedRecord::ends(Complex motion, bool even, Complex s) const {
-  const Complex right = motion * sensor_.response(s) / record_.deviation[1];
-  return {-motion / record_.deviation[0], even ? right : -right};
+void FittedRecord::Motions::add(const std::vector<Complex>& motion, bool is_even) {
+  std::vector<Complex>& sum = is_even ? even : odd;
+  for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += motion[k];
+}
+
+NoisePair FittedRecord::ends(const Motions& motions, std::size_t k) const {
+  const Complex odd = motions.odd[k], even = motions.even[k];
+  return {-(odd + even) / record_.deviation[0], (even - odd) * read_[k] / record_.deviation[1]};
 }
 
 Complex FittedRecord::motion_of(std::size_t n, std::size_t k, Complex receptance) const {
