@@ -164,17 +164,29 @@ Eigen::MatrixXd fit_covariance(const LikelihoodPoint& point, const NewtonOptions
   return inverse * score * inverse;
 }
 
-LawPosterior law_of_step(const PriorEquations& statements, const LikelihoodPoint& at,
+LawPosterior law_of_step(const LawStatements& statements, const LikelihoodPoint& at,
                          const Eigen::VectorXd& theta, NewtonOptions options,
                          const Eigen::MatrixXd& more) {
-  QuadraticPrior prior = statements.solve();
-  const Eigen::VectorXd pull = prior.precision * (theta - prior.mean);
-  options.prior = std::move(prior.precision);
-  const UnitDiagonal hessian(hessian_of(at, options));
-  const Eigen::VectorXd gradient = 2.0 * at.slope + pull;
-  const Eigen::VectorXd step =
-      hessian.scale.asDiagonal() * hessian.factor.solve(hessian.scale.asDiagonal() * gradient);
-  return statements.law(theta - step, fit_covariance(at, options) + more);
+  const Eigen::MatrixXd there = hessian_of(at, options);
+  const QuadraticPrior law = statements.law.solve(), wide = statements.wide.solve();
+  options.prior = wide.precision;
+  const Eigen::MatrixXd alone = hessian_of(at, options);
+  const Eigen::MatrixXd error = there * more * there;  // C
+  const UnitDiagonal both(alone + error);
+  // P = A (A + C)⁻¹, by its transpose.
+  const Eigen::MatrixXd weight =
+      (both.scale.asDiagonal() * both.factor.solve(both.scale.asDiagonal() * alone)).transpose();
+  const Eigen::MatrixXd tie = law.precision - wide.precision;
+  const UnitDiagonal hessian(weight * alone + tie);
+  const auto solve = [&](const Eigen::MatrixXd& right) -> Eigen::MatrixXd {
+    return hessian.scale.asDiagonal() * hessian.factor.solve(hessian.scale.asDiagonal() * right);
+  };
+  const Eigen::VectorXd pull = wide.precision * (theta - wide.mean);
+  const Eigen::VectorXd further = law.precision * (theta - law.mean) - pull;
+  const Eigen::VectorXd step = solve(weight * (2.0 * at.slope + pull) + further);
+  const Eigen::MatrixXd score = 2.0 * at.twice_weighted + wide.precision + error;
+  const Eigen::MatrixXd half = solve(weight * score * weight.transpose() + tie);
+  return statements.law.law(theta - step, solve(half.transpose()));
 }
 
 NewtonFit newton_fit(const FitTarget& target, const Eigen::VectorXd& start,
