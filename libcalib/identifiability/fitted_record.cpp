@@ -48,6 +48,13 @@ FittedRecord::FittedRecord(const ProjectedLikelihood& likelihood, const ModelPoi
       chord_left_[k] += modes_[n].even ? -chord : chord;
     }
   }
+  const bool taken_out = record_.on_bridge.size() > 0;
+  for (std::size_t k = 0; k < record_.bins; ++k) {
+    const Complex right = taken_out ? record_.on_bridge.at(k) : fitted(k).right;
+    reaction_.push_back(right * record_.deviation[1] / read_[k]);
+    chord_left_[k] /= record_.deviation[0];
+    chord_right_[k] *= read_[k] / record_.deviation[1];
+  }
 }
 
 MisfitCause FittedRecord::polarization(double detuning) const {
@@ -128,17 +135,13 @@ MisfitCause FittedRecord::bridge(double frequency, double zeta) const {
   cause.columns.assign(3, {numbers(), numbers()});
   for (std::size_t k = 0; k < record_.bins; ++k) {
     const Complex s(0.0, record_.omega[k]), delay = record_.delay.at(k);
-    const Complex sensor = read_[k];
-    const bool taken_out = record_.on_bridge.size() > 0;
-    const Complex right = taken_out ? record_.on_bridge.at(k) : fitted(k).right;
-    const Complex reaction = right * record_.deviation[1] / sensor;
     const Complex decay = 1.0 / (1.0 - pole * delay);
     const Complex other = 1.0 / (1.0 - std::conj(pole) * delay);
-    const Complex moved[] = {-reaction / (s * s + 2.0 * zeta * omega * s + omega * omega),
+    const Complex moved[] = {-reaction_[k] / (s * s + 2.0 * zeta * omega * s + omega * omega),
                              decay + other, Complex(0.0, 1.0) * (decay - other)};
     for (std::size_t i = 0; i < cause.columns.size(); ++i) {
-      cause.columns[i].left.set(k, chord_left_[k] * moved[i] / record_.deviation[0]);
-      cause.columns[i].right.set(k, chord_right_[k] * moved[i] * sensor / record_.deviation[1]);
+      cause.columns[i].left.set(k, chord_left_[k] * moved[i]);
+      cause.columns[i].right.set(k, chord_right_[k] * moved[i]);
     }
   }
   return cause;

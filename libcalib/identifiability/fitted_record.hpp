@@ -69,8 +69,10 @@ class FittedRecord {
   double per_length_;  // T/L [N/m]
   RealFft fft_;
   std::vector<Complex> force_, amplitudes_, left_, right_, residual_;
-  std::vector<Complex> read_;                      // S of the sensor at x = L in every bin
-  std::vector<Complex> chord_left_, chord_right_;  // reactions to a displacement of x = L [N/m]
+  std::vector<Complex> read_;      // S of the sensor at x = L in every bin
+  std::vector<Complex> reaction_;  // R_2, as recorded where a bridge was taken out of it [N]
+  // What the ends read of a displacement of x = L, whitened [1/m].
+  std::vector<Complex> chord_left_, chord_right_;
   std::vector<std::vector<Complex>> motions_;  // of every stated mode, what rings of it included
 };
 

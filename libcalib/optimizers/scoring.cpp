@@ -31,6 +31,18 @@ bool positive_definite(const Eigen::MatrixXd& matrix) {
   return scaled.llt().info() == Eigen::Success;
 }
 
+// Roots of the diagonal of H⁻¹ = L⁻ᵀL⁻¹: the norms of the columns of L⁻¹.
+Eigen::VectorXd root_diagonal_of_inverse(const Eigen::MatrixXd& h) {
+  const Eigen::LLT<Eigen::MatrixXd> factor(h);
+  if (factor.info() == Eigen::Success) {
+    Eigen::MatrixXd inverse = Eigen::MatrixXd::Identity(h.rows(), h.cols());
+    factor.matrixL().solveInPlace(inverse);
+    return inverse.colwise().norm().transpose();
+  }
+  const Eigen::MatrixXd inverse = h.ldlt().solve(Eigen::MatrixXd::Identity(h.rows(), h.cols()));
+  return inverse.diagonal().cwiseSqrt();
+}
+
 // Newton steps through an evaluator.
 class Search {
  public:
@@ -108,7 +120,13 @@ class Search {
     const Eigen::VectorXd scale = h.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
     h = scale.asDiagonal() * h * scale.asDiagonal();
     h.diagonal().array() += damping + 1e-12;
-    Step step{-(scale.asDiagonal() * h.ldlt().solve(scale.asDiagonal() * gradient))};
+    const Eigen::VectorXd scaled = scale.asDiagonal() * gradient;
+    // Blocked, a third of the time of a factor that pivots.
+    const Eigen::LLT<Eigen::MatrixXd> factor(h);
+    const bool positive = factor.info() == Eigen::Success;
+    const Eigen::VectorXd solved =
+        positive ? Eigen::VectorXd(factor.solve(scaled)) : Eigen::VectorXd(h.ldlt().solve(scaled));
+    Step step{-(scale.asDiagonal() * solved)};
     step.decrease = -step.move.dot(gradient);
     return step;
   }
@@ -145,10 +163,9 @@ class Search {
   std::vector<std::size_t> moved(const Eigen::VectorXd& moves) const {
     const Eigen::MatrixXd h = hessian();
     const Eigen::VectorXd scale = h.diagonal().cwiseSqrt().cwiseInverse();
-    const Eigen::MatrixXd scaled = scale.asDiagonal() * h * scale.asDiagonal();
-    const Eigen::MatrixXd inverse =
-        scaled.ldlt().solve(Eigen::MatrixXd::Identity(h.rows(), h.cols()));
-    const Eigen::VectorXd least = kMoved * scale.cwiseProduct(inverse.diagonal().cwiseSqrt());
+    const Eigen::VectorXd least =
+        kMoved *
+        scale.cwiseProduct(root_diagonal_of_inverse(scale.asDiagonal() * h * scale.asDiagonal()));
     std::vector<std::size_t> result;
     for (Index i = 0; i < moves.size(); ++i) {
       if (std::abs(moves[i]) > least[i]) result.push_back(static_cast<std::size_t>(i));
