@@ -235,7 +235,7 @@ def columns_of(path):
     return [line.split(",")[:4] for line in Path(f"{path}.csv").read_text().splitlines()[1:]]
 
 
-def with_noise(path, other, noise, draw, how, folder):
+def with_noise(path, noise, draw, how, folder, other=None):
     """Writes folder/record.csv: R1 and R2 with noise of this share of their standard deviations, hum of 50 Hz and its
     harmonics (1/h) likewise, rounded to so many bits of the peak."""
     rows = columns_of(path)
@@ -328,7 +328,7 @@ def calibrated(task, a):
     truth = json.loads(Path(f"{path}.json").read_text())
     folder = a.out / "runs" / key
     folder.mkdir(parents=True, exist_ok=True)
-    with_noise(path, other, noise, draw, MISMATCHES[mismatch][1], folder)
+    with_noise(path, noise, draw, MISMATCHES[mismatch][1], folder, other)
     if "drawn" in MISMATCHES[mismatch][1]:
         truth["modes"]["f"] = scattered_modes(truth, noise, draw, path)
     (folder / "calibrate.yaml").write_text(text)
