@@ -54,9 +54,14 @@ MISMATCHES = {
     **{f"pink_{p:g}": ([], {"pink": p}) for p in (0.1, 0.5)},
     **{f"correlated_{c:g}": ([], {"correlated": c}) for c in (0.3, 0.9)},
     "8_bit": ([], {"bits": 8}),
-    # Sensors and damping as far from those stated as the priors say: the error bars should hold what they promise.
+    # Sensors and damping as far from those stated, and modes as far from their law, as the priors say: the error bars
+    # should hold what they promise.
     "as_stated": ([], {"drawn": True}),
+    # With a second polarization as far off, too: the sum of the record and a share of what another string makes of its force.
+    "as_stated_polarized": ([], {"drawn": True, "polarized": True}),
 }
+MISMATCHES_OF_RECORDS = [name for name in MISMATCHES if name != "as_stated_polarized"]
+SCATTER = 1e-5  # of f_n about their law: the least that modcal takes for possible
 CALIBRATION = """  parameters: {frequencies: all, law: true, contact: true}
   objective: joint_likelihood
   optimizer: staged
@@ -74,21 +79,24 @@ def arguments():
     p.add_argument("--noise", nargs="+", type=float, default=[0.001, 0.01, 0.05])
     p.add_argument("--draws", type=int, default=6, help="noise and start, of each record and noise")
     p.add_argument("--mismatch", nargs="+", choices=("all", *MISMATCHES), default=["none"], metavar="NAME",
-                   help=f"what the records have and the model has not: all, {', '.join(MISMATCHES)}")
+                   help=f"what the records have and the model has not: all (but the last), {', '.join(MISMATCHES)}")
+    p.add_argument("--drawn-mismatch", action="store_true",
+                   help="sensors, damping, scatter of the modes and a second polarization, drawn from the priors of modcal's defaults")
     p.add_argument("--rate", type=float, default=51200.0)
     p.add_argument("--duration", type=float, default=1.0)
     p.add_argument("--reactions", choices=("tension", "support"), default="tension")
     p.add_argument("--damping", choices=("table", "constant"), default="table",
                    help="stated: the true zeta_n, or 1e-3 for all")
     p.add_argument("--modes", type=int, help="stated number of modes; left out: as many as the record tells")
-    p.add_argument("--string-keys", default="", help="further keys of string:, such as \"remainder: none\"")
+    p.add_argument("--string-keys", default="", help="further keys of string:")
     p.add_argument("--record-keys", default="", help="further keys of record:")
     p.add_argument("--calibration", type=Path, help="file with the lines below calibration:")
     p.add_argument("--timeout", type=float, default=600.0, help="of one calibration [s]")
     a = p.parse_args()
     a.build, a.out = a.build.resolve(), a.out.resolve()
     a.pairs = [(s, k) for s in a.strings for k in a.actions]
-    a.mismatch = list(MISMATCHES) if "all" in a.mismatch else a.mismatch
+    a.mismatch = MISMATCHES_OF_RECORDS if "all" in a.mismatch else a.mismatch
+    a.mismatch = ["as_stated", "as_stated_polarized"] if a.drawn_mismatch else a.mismatch
     if a.quick:
         a.pairs = [("violin_d", "exponential"), ("violin_g", "thermal"), ("cello_d", "torsion")]
         a.draws = 1
@@ -124,9 +132,16 @@ def truth_command(name, action, mismatch, a):
     return list(map(str, command + MISMATCHES[mismatch][0]))
 
 
-def simulated(name, action, mismatch, a, truth_digest):
+def second_polarization(name, action):
+    """Options of a record that has all of a second polarization, of a detuning drawn up and down between 0.1 and 1 %."""
+    draw = random.Random(f"detuning {name} {action}").uniform
+    detuning = math.copysign(10.0 ** draw(-3.0, -2.0), draw(-1.0, 1.0))
+    return ["--polarization-1", "1", "--polarization-2", "1", "--detuning", f"{detuning:.6g}"]
+
+
+def simulated(name, action, mismatch, a, truth_digest, further=()):
     """Path of the record's files without their endings."""
-    command = truth_command(name, action, mismatch, a)
+    command = [*truth_command(name, action, mismatch, a), *further]
     path = a.out / "records" / f"{name}-{action}-{digest(truth_digest, *command)}"
     if not path.with_suffix(".json").exists():
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -188,17 +203,62 @@ def read_by(sensor, x):
     return result
 
 
-def with_noise(path, noise, draw, how, folder):
+def scattered_modes(truth, noise, draw, path):
+    """f_n of a string whose modes scatter about their law."""
+    normal = random.Random(f"scatter {path.name} {noise} {draw}").gauss
+    return [f * (1.0 + normal(0.0, SCATTER)) for f in truth["modes"]["f"]]
+
+
+def added_by(modes, truth, force):
+    """What both reactions have more where the modes are elsewhere: each moved by the same force, less itself before. By
+    impulse invariance, whose error is a small part of the difference."""
+    string, rate = truth["string"], truth["record"]["rate"]
+    length, mass = string["L"], 0.5 * string["rho_L"] * string["L"]
+    tension = 4.0 * length ** 2 * string["f0"] ** 2 * string["rho_L"]
+    odd, even = [0.0] * len(force), [0.0] * len(force)
+    for n, (other, own, zeta) in enumerate(zip(modes, truth["modes"]["f"], truth["modes"]["zeta"]), 1):
+        if own > 0.45 * rate:
+            break
+        wave = n * math.pi / length
+        total = even if n % 2 == 0 else odd
+        for f, sign in ((other, 1.0), (own, -1.0)):
+            omega = 2.0 * math.pi * f
+            damped, r = omega * math.sqrt(1.0 - zeta * zeta), math.exp(-zeta * omega / rate)
+            a, b = 2.0 * r * math.cos(damped / rate), r * r
+            drive = (sign * tension * wave * math.sin(wave * truth["x_c"]) / (mass * damped * rate)
+                     * r * math.sin(damped / rate))
+            last = before = 0.0
+            for i, x in enumerate(force):
+                total[i] += last
+                last, before = a * last - b * before + drive * x, last
+    return [-(o + e) for o, e in zip(odd, even)], [e - o for o, e in zip(odd, even)]
+
+
+def columns_of(path):
+    return [line.split(",")[:4] for line in Path(f"{path}.csv").read_text().splitlines()[1:]]
+
+
+def with_noise(path, noise, draw, how, folder, other=None):
     """Writes folder/record.csv: R1 and R2 with noise of this share of their standard deviations, hum of 50 Hz and its
     harmonics (1/h) likewise, rounded to so many bits of the peak."""
-    rows = [line.split(",")[:3] for line in Path(f"{path}.csv").read_text().splitlines()[1:]]
+    rows = columns_of(path)
+    with_other = columns_of(other) if other else None
     normal = random.Random(f"{path.name} {noise} {draw}").gauss
     rate = (len(rows) - 1) / float(rows[-1][0])
+    truth = json.loads(Path(f"{path}.json").read_text())
+    more = None
+    if "drawn" in how:
+        more = added_by(scattered_modes(truth, noise, draw, path), truth, [float(row[3]) for row in rows])
     noisy = []
     for column, draws in zip((1, 2), noise_of(normal, len(rows), how)):
         x = [float(row[column]) for row in rows]
+        if other:
+            # The same force moves both strings: their reactions add.
+            share = random.Random(f"polarization {column} {path.name} {noise} {draw}").gauss(0.0, 0.03)
+            x = [v + share * (float(row[column]) - v) for v, row in zip(x, with_other)]
+        if more:
+            x = [v + change for v, change in zip(x, more[column - 1])]
         if "drawn" in how and column == 2:
-            truth = json.loads(Path(f"{path}.json").read_text())
             drawn = random.Random(f"sensor {path.name} {noise} {draw}").gauss
             x = read_by(relative_sensor(drawn, rate, min(300.0, truth["string"]["f0"])), x)
         mean = sum(x) / len(x)
@@ -267,11 +327,13 @@ def scored(calibration, truth):
 
 def calibrated(task, a):
     """Runs one calibration: a line of the results."""
-    name, action, mismatch, noise, draw, path, text, key = task
+    name, action, mismatch, noise, draw, path, other, text, key = task
     truth = json.loads(Path(f"{path}.json").read_text())
     folder = a.out / "runs" / key
     folder.mkdir(parents=True, exist_ok=True)
-    with_noise(path, noise, draw, MISMATCHES[mismatch][1], folder)
+    with_noise(path, noise, draw, MISMATCHES[mismatch][1], folder, other)
+    if "drawn" in MISMATCHES[mismatch][1]:
+        truth["modes"]["f"] = scattered_modes(truth, noise, draw, path)
     (folder / "calibrate.yaml").write_text(text)
     line = {"key": key, "string": name, "action": action, "mismatch": mismatch, "noise": noise, "draw": draw}
     begin = time.monotonic()
@@ -309,6 +371,9 @@ def tasks_of(a):
         first.setdefault((cell[:2], command), cell)
     with concurrent.futures.ThreadPoolExecutor(a.jobs) as pool:
         made = dict(zip(first, pool.map(lambda cell: simulated(*cell, a, truth_digest), first.values())))
+        polarized = [cell for cell in a.cells if "polarized" in MISMATCHES[cell[2]][1]]
+        others = dict(zip(polarized, pool.map(
+            lambda cell: simulated(*cell, a, truth_digest, second_polarization(*cell[:2])), polarized)))
     paths = [made[cell[:2], commands[cell]] for cell in a.cells]
     tasks = []
     for (name, action, mismatch), path in zip(a.cells, paths):
@@ -317,7 +382,7 @@ def tasks_of(a):
             for draw in range(a.draws):
                 text = configuration(truth, name, mismatch, noise, draw, a)
                 key = f"{name}-{action}-{mismatch}-{noise:g}-{draw}-{digest(program, path.name, text)}"
-                tasks.append((name, action, mismatch, noise, draw, path, text, key))
+                tasks.append((name, action, mismatch, noise, draw, path, others.get((name, action, mismatch)), text, key))
     return tasks
 
 
@@ -328,7 +393,7 @@ def row(label, z, sds):
     share = [100.0 * sum(v <= k for v in z) / len(z) for k in (1, 2)]
     sd = sorted(sds)[len(sds) // 2] if sds else math.nan
     return (f"  {label:5} n {len(z):5}  within 1 sd {share[0]:5.1f} %, 2 sd {share[1]:5.1f} %  largest |z| {max(z):8.1f}  "
-            f"median |z| {sorted(z)[len(z) // 2]:6.2f}  median sd {sd:.2g}")
+            f"median |z| {sorted(z)[len(z) // 2]:6.2f}  mean z^2 {sum(v * v for v in z) / len(z):6.2f}  median sd {sd:.2g}")
 
 
 def wrong(line):

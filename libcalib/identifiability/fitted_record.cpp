@@ -40,6 +40,7 @@ FittedRecord::FittedRecord(const ProjectedLikelihood& likelihood, const ModelPoi
     const double root = record_.root_weight[k];
     const Complex e(residuals[2 * k], residuals[2 * k + 1]);
     residual_.push_back(root > 0.0 ? e / root : 0.0);
+    read_.push_back(sensor_.response({0.0, record_.omega[k]}));
   }
   chord_right_.assign(record_.bins, per_length_);
   chord_left_.assign(record_.bins, -per_length_);
@@ -53,16 +54,18 @@ FittedRecord::FittedRecord(const ProjectedLikelihood& likelihood, const ModelPoi
       chord_left_[k] += modes_[n].even ? -chord : chord;
     }
   }
+  const bool taken_out = record_.on_bridge.size() > 0;
+  for (std::size_t k = 0; k < record_.bins; ++k) {
+    const Complex right = taken_out ? record_.on_bridge.at(k) : fitted(k).right;
+    reaction_.push_back(right * record_.deviation[1] / read_[k]);
+    chord_left_[k] /= record_.deviation[0];
+    chord_right_[k] *= read_[k] / record_.deviation[1];
+  }
 }
 
 MisfitCause FittedRecord::polarization(double detuning) const {
-  SignalColumn columns[2] = {{numbers(), {}}, {{}, numbers()}};
-  for (std::size_t k = 0; k < record_.bins; ++k) {
-    const NoisePair ends = fitted(k);
-    columns[0].left.set(k, ends.left);
-    columns[1].right.set(k, ends.right);
-  }
   std::vector<Complex> change(record_.bins);
+  Motions moved(record_.bins);
   const double more = detuning * (2.0 + detuning);
   for (std::size_t n = 0; n < own_; ++n) {
     const LikelihoodMode& mode = modes_[n];
@@ -76,11 +79,13 @@ MisfitCause FittedRecord::polarization(double detuning) const {
       rate_sum += s * change[k];
     }
     decay(mode, detuning, sum, rate_sum, change);
-    for (std::size_t k = 0; k < record_.bins; ++k) {
-      const auto [left, right] = ends(change[k], mode.even, {0.0, record_.omega[k]});
-      columns[0].left.set(k, columns[0].left.at(k) + left);
-      columns[1].right.set(k, columns[1].right.at(k) + right);
-    }
+    moved.add(change, mode.even);
+  }
+  SignalColumn columns[2] = {{numbers(), {}}, {{}, numbers()}};
+  for (std::size_t k = 0; k < record_.bins; ++k) {
+    const NoisePair own = fitted(k), more_of_it = ends(moved, k);
+    columns[0].left.set(k, own.left + more_of_it.left);
+    columns[1].right.set(k, own.right + more_of_it.right);
   }
   return {.name = std::string(kPolarization),
           .detail = fmt::format("detuned by {:+.2g} %", 100.0 * detuning),
@@ -103,31 +108,35 @@ std::vector<Complex> FittedRecord::modulated(std::span<const Complex> numbers,
 }
 
 MisfitCause FittedRecord::drift() const {
-  SignalColumn column{numbers(), numbers()};
+  Motions moved(record_.bins);
+  std::vector<Complex> change(record_.bins);
   for (std::size_t n = 0; n < own_; ++n) {
     const LikelihoodMode& mode = modes_[n];
     const std::vector<Complex> driving =
         modulated(motions_[n], [](double share) { return share - 0.5; });
     for (std::size_t k = 0; k < record_.bins; ++k) {
       const Complex s(0.0, record_.omega[k]);
-      const Complex change = -2.0 * mode.omega_squared * driving[k] * inverse_denominator(mode, s);
-      const auto [left, right] = ends(change, mode.even, s);
-      column.left.set(k, column.left.at(k) + left);
-      column.right.set(k, column.right.at(k) + right);
+      change[k] = -2.0 * mode.omega_squared * driving[k] * inverse_denominator(mode, s);
     }
+    moved.add(change, mode.even);
+  }
+  SignalColumn column{numbers(), numbers()};
+  for (std::size_t k = 0; k < record_.bins; ++k) {
+    const NoisePair both = ends(moved, k);
+    column.left.set(k, both.left);
+    column.right.set(k, both.right);
   }
   return {.name = std::string(kDrift), .columns = {std::move(column)}};
 }
 
 MisfitCause FittedRecord::moving_contact() const {
-  std::vector<Complex> left(record_.bins), right(record_.bins);  // ∂H_r/∂x_c
+  Motions slope(record_.bins);  // ∂H_r/∂x_c
+  std::vector<Complex> receptance(record_.bins);
   for (const LikelihoodMode& mode : modes_) {
     for (std::size_t k = 0; k < record_.bins; ++k) {
-      const Complex s(0.0, record_.omega[k]);
-      const Ends both = ends(mode.residue_slope * inverse_denominator(mode, s), mode.even, s);
-      left[k] += both.left;
-      right[k] += both.right;
+      receptance[k] = mode.residue_slope * inverse_denominator(mode, {0.0, record_.omega[k]});
     }
+    slope.add(receptance, mode.even);
   }
   MisfitCause cause{.name = std::string(kContact)};
   // What force and decays of the fit are apart stands at the ends of the record, but for what the
@@ -148,8 +157,9 @@ MisfitCause FittedRecord::moving_contact() const {
     });
     SignalColumn column{numbers(), numbers()};
     for (std::size_t k = 0; k < record_.bins; ++k) {
-      column.left.set(k, left[k] * force[k]);
-      column.right.set(k, right[k] * force[k]);
+      const NoisePair both = ends(slope, k);
+      column.left.set(k, both.left * force[k]);
+      column.right.set(k, both.right * force[k]);
     }
     cause.columns.push_back(std::move(column));
   };
@@ -180,17 +190,13 @@ MisfitCause FittedRecord::bridge(double frequency, double zeta) const {
   cause.columns.assign(3, {numbers(), numbers()});
   for (std::size_t k = 0; k < record_.bins; ++k) {
     const Complex s(0.0, record_.omega[k]), delay = record_.delay.at(k);
-    const Complex sensor = sensor_.response(s);
-    const bool taken_out = record_.on_bridge.size() > 0;
-    const Complex right = taken_out ? record_.on_bridge.at(k) : fitted(k).right;
-    const Complex reaction = right * record_.deviation[1] / sensor;
     const Complex decay = 1.0 / (1.0 - pole * delay);
     const Complex other = 1.0 / (1.0 - std::conj(pole) * delay);
-    const Complex moved[] = {-reaction / (s * s + 2.0 * zeta * omega * s + omega * omega),
+    const Complex moved[] = {-reaction_[k] / (s * s + 2.0 * zeta * omega * s + omega * omega),
                              decay + other, Complex(0.0, 1.0) * (decay - other)};
     for (std::size_t i = 0; i < cause.columns.size(); ++i) {
-      cause.columns[i].left.set(k, chord_left_[k] * moved[i] / record_.deviation[0]);
-      cause.columns[i].right.set(k, chord_right_[k] * moved[i] * sensor / record_.deviation[1]);
+      cause.columns[i].left.set(k, chord_left_[k] * moved[i]);
+      cause.columns[i].right.set(k, chord_right_[k] * moved[i]);
     }
   }
   return cause;
@@ -259,9 +265,14 @@ void FittedRecord::decay(const LikelihoodMode& mode, double detuning, Complex su
   }
 }
 
-FittedRecord::Ends FittedRecord::ends(Complex motion, bool even, Complex s) const {
-  const Complex right = motion * sensor_.response(s) / record_.deviation[1];
-  return {-motion / record_.deviation[0], even ? right : -right};
+void FittedRecord::Motions::add(const std::vector<Complex>& motion, bool is_even) {
+  std::vector<Complex>& sum = is_even ? even : odd;
+  for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += motion[k];
+}
+
+NoisePair FittedRecord::ends(const Motions& motions, std::size_t k) const {
+  const Complex odd = motions.odd[k], even = motions.even[k];
+  return {-(odd + even) / record_.deviation[0], (even - odd) * read_[k] / record_.deviation[1]};
 }
 
 Complex FittedRecord::motion_of(std::size_t n, std::size_t k, Complex receptance) const {

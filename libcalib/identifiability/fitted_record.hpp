@@ -55,11 +55,14 @@ class FittedRecord {
   // Multiplies what is known by its numbers in the bins by a function of t/T in the time domain.
   template <typename Function>
   std::vector<Complex> modulated(std::span<const Complex> numbers, Function factor) const;
-  // What a modal contribution is in the whitened records.
-  struct Ends {
-    Complex left, right;
+  // Sums of modal contributions: what the ends read of odd modes differs in its sign.
+  struct Motions {
+    explicit Motions(std::size_t bins) : odd(bins), even(bins) {}
+    void add(const std::vector<Complex>& motion, bool is_even);
+    std::vector<Complex> odd, even;
   };
-  Ends ends(Complex motion, bool even, Complex s) const;
+  // What they are in bin k of the whitened records.
+  NoisePair ends(const Motions& motions, std::size_t k) const;
   // Mode n with what rings of it, in bin k.
   Complex motion_of(std::size_t n, std::size_t k, Complex receptance) const;
   // The records less their noise, e's share of them.
@@ -74,7 +77,10 @@ class FittedRecord {
   double per_length_;  // T/L [N/m]
   RealFft fft_;
   std::vector<Complex> force_, amplitudes_, left_, right_, residual_;
-  std::vector<Complex> chord_left_, chord_right_;  // reactions to a displacement of x = L [N/m]
+  std::vector<Complex> read_;      // S of the sensor at x = L in every bin
+  std::vector<Complex> reaction_;  // R_2, as recorded where a bridge was taken out of it [N]
+  // What the ends read of a displacement of x = L, whitened [1/m].
+  std::vector<Complex> chord_left_, chord_right_;
   std::vector<std::vector<Complex>> motions_;  // of every stated mode, what rings of it included
 };
 

@@ -44,7 +44,7 @@ std::string_view ScoreTest::remedy() const {
       {kBridge, "clamp the bridge or load it, or mount the string on heavier supports"},
       {kModesAbove,
        "the record has not the modes above those stated that the law has: state more modes, or "
-       "remainder: none for a simulated record of exactly so many"}};
+       "calibration: {remainder: none} for a simulated record of exactly so many"}};
   for (const auto& [name, text] : kRemedies) {
     if (cause == name) return text;
   }

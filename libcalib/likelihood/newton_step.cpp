@@ -1,7 +1,5 @@
 #include "libcalib/likelihood/newton_step.hpp"
 
-#include <utility>
-
 #include "libsim/base/dense_solvers.hpp"
 
 namespace modcal {
@@ -82,15 +80,27 @@ Eigen::MatrixXd fit_covariance(const LikelihoodPoint& point, const NewtonOptions
   return inverse * score * inverse;
 }
 
-LawPosterior law_of_step(const PriorEquations& statements, const LikelihoodPoint& at,
+LawPosterior law_of_step(const LawStatements& statements, const LikelihoodPoint& at,
                          const Eigen::VectorXd& theta, NewtonOptions options,
                          const Eigen::MatrixXd& more) {
-  QuadraticPrior prior = statements.solve();
-  const Eigen::VectorXd pull = prior.precision * (theta - prior.mean);
-  options.prior = std::move(prior.precision);
-  const Eigen::VectorXd gradient = 2.0 * at.slope + pull;
-  const Eigen::VectorXd step = UnitDiagonal(hessian_of(at, options)).solve(gradient);
-  return statements.law(theta - step, fit_covariance(at, options) + more);
+  const Eigen::MatrixXd there = hessian_of(at, options);
+  const QuadraticPrior law = statements.law.solve(), wide = statements.wide.solve();
+  options.prior = wide.precision;
+  const Eigen::MatrixXd alone = hessian_of(at, options);
+  const Eigen::MatrixXd error = there * more * there;  // C
+  const UnitDiagonal both(alone + error);
+  // P = A (A + C)⁻¹, by its transpose.
+  const Eigen::MatrixXd weight = both.solve(alone).transpose();
+  const Eigen::MatrixXd tie = law.precision - wide.precision;
+  const UnitDiagonal hessian(weight * alone + tie);
+  const Eigen::VectorXd pull = wide.precision * (theta - wide.mean);
+  const Eigen::VectorXd further = law.precision * (theta - law.mean) - pull;
+  const Eigen::VectorXd step =
+      hessian.solve(Eigen::VectorXd(weight * (2.0 * at.slope + pull) + further));
+  const Eigen::MatrixXd score = 2.0 * at.twice_weighted + wide.precision + error;
+  const Eigen::MatrixXd half =
+      hessian.solve(Eigen::MatrixXd(weight * score * weight.transpose() + tie));
+  return statements.law.law(theta - step, hessian.solve(Eigen::MatrixXd(half.transpose())));
 }
 
 }  // namespace modcal

@@ -32,9 +32,20 @@ Eigen::MatrixXd padded_prior(const Eigen::MatrixXd& prior, Eigen::Index size);
 Eigen::MatrixXd debiased_hessian(const Eigen::MatrixXd& information, const Eigen::MatrixXd& noise,
                                  const Eigen::MatrixXd& prior);
 
-/// The law under these statements, which take the place of the prior among the options, by one step
-/// from a point with `twice_weighted` at θ, whose covariance is so much larger than the fit's.
-LawPosterior law_of_step(const PriorEquations& statements, const LikelihoodPoint& at,
+/// What is stated of the unknowns with the law's scatter, and the same with a scatter so wide that
+/// the data alone say where a mode is.
+struct LawStatements {
+  PriorEquations law, wide;
+};
+/// The law by one step from a point with `twice_weighted` at θ. more: covariance M of further
+/// errors of a fit with the priors among the options, of Hessian H, whose scores have so C = H M H.
+/// With the Hessian A under the wide statements and Q beyond them,
+///
+///     (P A + Q) Δθ = −(P ∇_wide + ∇_law − ∇_wide),   P = A (A + C)⁻¹:
+///
+/// a mode that such an error moves tells less of the law. C = 0: the step under the law's
+/// statements.
+LawPosterior law_of_step(const LawStatements& statements, const LikelihoodPoint& at,
                          const Eigen::VectorXd& theta, NewtonOptions options,
                          const Eigen::MatrixXd& more);
 

@@ -19,6 +19,17 @@ constexpr double kLong = 1.0;
 // one, and the slope, which is exact, has the next step make up for it.
 constexpr double kMoved = 0.2;
 
+// Roots of the diagonal of H⁻¹ = L⁻ᵀL⁻¹: the norms of the columns of L⁻¹.
+Eigen::VectorXd root_diagonal_of_inverse(const Eigen::MatrixXd& h) {
+  const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(h.rows(), h.cols());
+  const PositiveSolver solver(h);
+  if (solver.factor().info() == Eigen::Success) {
+    return whiten(solver, one).colwise().norm().transpose();
+  }
+  const Eigen::MatrixXd inverse = SemidefiniteSolver(h).solve(one);
+  return inverse.diagonal().cwiseSqrt();
+}
+
 // Newton steps through an evaluator.
 class Search {
  public:
@@ -96,7 +107,13 @@ class Search {
     const Eigen::VectorXd scale = h.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
     h = scale.asDiagonal() * h * scale.asDiagonal();
     h.diagonal().array() += damping + 1e-12;
-    Step step{-(scale.asDiagonal() * SemidefiniteSolver(h).solve(scale.asDiagonal() * gradient))};
+    const Eigen::VectorXd scaled = scale.asDiagonal() * gradient;
+    // Blocked, a third of the time of a factor that pivots.
+    const PositiveSolver solver(h);
+    const bool positive = solver.factor().info() == Eigen::Success;
+    const Eigen::VectorXd solved =
+        positive ? solver.solve(scaled) : SemidefiniteSolver(h).solve(scaled);
+    Step step{-(scale.asDiagonal() * solved)};
     step.decrease = -step.move.dot(gradient);
     return step;
   }
@@ -133,10 +150,9 @@ class Search {
   std::vector<std::size_t> moved(const Eigen::VectorXd& moves) const {
     const Eigen::MatrixXd h = hessian();
     const Eigen::VectorXd scale = h.diagonal().cwiseSqrt().cwiseInverse();
-    const Eigen::MatrixXd scaled = scale.asDiagonal() * h * scale.asDiagonal();
-    const Eigen::MatrixXd inverse =
-        SemidefiniteSolver(scaled).solve(Eigen::MatrixXd::Identity(h.rows(), h.cols()));
-    const Eigen::VectorXd least = kMoved * scale.cwiseProduct(inverse.diagonal().cwiseSqrt());
+    const Eigen::VectorXd least =
+        kMoved *
+        scale.cwiseProduct(root_diagonal_of_inverse(scale.asDiagonal() * h * scale.asDiagonal()));
     std::vector<std::size_t> result;
     for (Index i = 0; i < moves.size(); ++i) {
       if (std::abs(moves[i]) > least[i]) result.push_back(static_cast<std::size_t>(i));

@@ -189,12 +189,18 @@ class FreeStage {
     result_.damping_power = unknowns_.damping_power(theta_) + law.damping_power(start_.theta);
     result_.modes = free_verdicts(result_.model, deviation.head(modes()), sight_.seen, followers_);
     trust_stated_frequencies(priors_, deviation, result_.modes);
-    const LawScatter scatter{followers_.scatters(), inharmonicity_};
-    const PriorEquations statements = unknowns_.stated(seen_at_, scatter);
-    result_.found_law =
-        FoundLaw::of(law_of_step(statements, at_, seen_at_, newton_, of_causes), priors_);
+    result_.found_law = FoundLaw::of(found_law(of_causes), priors_);
     result_.covariance = named_covariance(unknowns_, theta_, result_.damping, covariance);
     raise_to_verdicts(result_.modes, result_.covariance);
+  }
+
+  LawPosterior found_law(const Eigen::MatrixXd& of_causes) const {
+    const Eigen::VectorXd scatters = followers_.scatters();
+    const auto stated = [&](const Eigen::VectorXd& widths) {
+      return unknowns_.stated(seen_at_, {widths, inharmonicity_});
+    };
+    return law_of_step({stated(scatters), stated(scatters.cwiseMax(kWidePrior))}, at_, seen_at_,
+                       newton_, of_causes);
   }
 
   const StatedPriors& priors_;

@@ -221,9 +221,10 @@ class JointFit {
     leave_out_of_band(model, highest_, sight);
     followers_ = find_followers(sight, inharmonicity(), options_.law_width);
     deny_surprises(followers_, sight);
-    const Eigen::VectorXd scatters = followers_.scatters();
-    const LawPosterior law = law_of_step(equations(priors_, &scatters), at, theta_, newton,
-                                         covariance_of_causes(fit_.single, all_));
+    const Eigen::VectorXd scatters = followers_.scatters(), alone = scatters.cwiseMax(wide);
+    const LawPosterior law =
+        law_of_step({equations(priors_, &scatters), equations(priors_, &alone)}, at, theta_, newton,
+                    covariance_of_causes(fit_.single, all_));
     fit_.found_law = FoundLaw::of(law, priors_);
     fit_.law_width = followers_.prior_width;
     Eigen::VectorXd widths = prior_widths(sight.seen, fit_.law_width, followers_.width);
