@@ -214,7 +214,9 @@ void IdentifyForceOptions::visit(OptionVisitor& visitor) {
   visitor("seed", "key of the draws", {.range = Range::non_negative()}, seed);
 }
 
-std::vector<Finding> IdentifyForceOptions::lint() const { return lint_structure_record(record); }
+std::vector<Finding> IdentifyForceOptions::lint() const {
+  return lint_responses("record.responses", record.responses);
+}
 
 std::vector<Finding> IdentifyForceOptions::lint_records(const std::filesystem::path& folder) const {
   std::vector<Finding> findings;

@@ -8,9 +8,13 @@
 
 namespace modcal {
 
-/// Kind "fit_modes": a table of modes from a strike whose force was measured.
+/// Kind "fit_modes": a table of modes from a strike whose force was measured, or from response
+/// functions.
 struct FitModesOptions {
+  bool has_record = false;
   StructureRecordOptions record;
+  bool has_functions = false;
+  ResponseFunctionOptions functions;
   double low = 0.0, high = 0.0;
   double contour = std::numeric_limits<double>::quiet_NaN();
   std::int64_t most_modes = 60;
@@ -21,7 +25,9 @@ struct FitModesOptions {
   std::vector<Finding> lint_records(const std::filesystem::path& folder) const;
   std::vector<PlanLine> plan() const;
   std::optional<PlannedSimulations> planned_simulations() const { return std::nullopt; }
-  std::vector<std::string> files_read() const { return {record.file}; }
+  std::vector<std::string> files_read() const {
+    return {has_functions ? functions.file : record.file};
+  }
   StudyResult run(const StudyContext& context) const;
 };
 
@@ -52,7 +58,8 @@ struct IdentifyForceOptions {
   StudyResult run(const StudyContext& context) const;
 };
 
-/// What a record of a structure states wrongly.
-std::vector<Finding> lint_structure_record(const StructureRecordOptions& record);
+/// What the channels of a structure's sensors state wrongly; path: of the list.
+std::vector<Finding> lint_responses(const std::string& path,
+                                    const std::vector<StructureChannelOptions>& responses);
 
 }  // namespace modcal
