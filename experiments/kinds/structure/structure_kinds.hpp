@@ -3,6 +3,7 @@
 
 #include "experiments/experiment.hpp"
 #include "experiments/kinds/structure/structure_files.hpp"
+#include "libinverse/structure/contact_place.hpp"
 #include "libinverse/structure/strike_fit.hpp"
 #include "libinverse/structure/structure_force.hpp"
 
@@ -39,6 +40,7 @@ struct StructureChangeOptions : StructureChange {
 /// Kind "identify_force": the force at a structure's contact from K responses and a table.
 struct IdentifyForceOptions {
   std::string table;
+  std::vector<std::string> other_places;  ///< tables of the same structure driven elsewhere
   StructureRecordOptions record;
   std::string shape = "auto";
   bool non_negative = false;
@@ -54,8 +56,12 @@ struct IdentifyForceOptions {
   std::vector<Finding> lint_records(const std::filesystem::path& folder) const;
   std::vector<PlanLine> plan() const;
   std::optional<PlannedSimulations> planned_simulations() const { return std::nullopt; }
-  std::vector<std::string> files_read() const { return {table, record.file}; }
+  std::vector<std::string> files_read() const;
   StudyResult run(const StudyContext& context) const;
+
+ private:
+  /// The table first, then those of the other places.
+  std::vector<std::string> tables() const;
 };
 
 /// What the channels of a structure's sensors state wrongly; path: of the list.
