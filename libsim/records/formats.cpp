@@ -1,7 +1,6 @@
 #include "libsim/records/formats.hpp"
 
 #include <algorithm>
-#include <cctype>
 
 #include "libsim/base/error.hpp"
 #include "libsim/base/words.hpp"
@@ -24,9 +23,7 @@ const std::vector<RecordFormat>& table() {
        read_csv,
        [](const Path& path, std::span<const Signal> signals, const std::string& provenance) {
          write_csv(path, signals, {.provenance = {provenance}});
-       },
-       nullptr,
-       false},
+       }},
       {"wav",
        "WAV and other sound files",
        {".wav", ".wave", ".rf64", ".bwf", ".w64"},
@@ -60,10 +57,7 @@ std::vector<std::string_view> record_format_choices() {
 }
 
 const RecordFormat& record_format(const Path& path, const std::string& name) {
-  std::string extension = path.extension().string();
-  for (char& letter : extension) {
-    letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-  }
+  const std::string extension = lower_case(path.extension().string());
   const bool told = name == "auto";
   const auto found = std::find_if(table().begin(), table().end(), [&](const RecordFormat& format) {
     const auto& known = format.extensions;

@@ -19,7 +19,6 @@ struct RecordFormat {
   /// Null: the format keeps no response functions.
   ResponseFunctions (*read_responses)(const std::filesystem::path& path,
                                       const std::vector<std::string>& channels) = nullptr;
-  bool has_headers = true;  ///< channels and rate are told without reading the samples
 };
 
 /// Those this program was built with.

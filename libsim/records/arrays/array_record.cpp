@@ -1,11 +1,11 @@
 #include <fmt/ranges.h>
 
-#include <cctype>
 #include <cmath>
 #include <optional>
 
 #include "libsim/base/error.hpp"
 #include "libsim/base/utf8.hpp"
+#include "libsim/base/words.hpp"
 #include "libsim/records/arrays/array_file.hpp"
 #include "libsim/records/stored_channels.hpp"
 
@@ -14,13 +14,7 @@ namespace {
 
 using Content = std::shared_ptr<ArrayFile>;
 
-std::string last_of(const NamedArray& array) {
-  std::string name = array.path.back();
-  for (char& letter : name) {
-    letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-  }
-  return name;
-}
+std::string last_of(const NamedArray& array) { return lower_case(array.path.back()); }
 
 bool is_one_of(const std::string& name, std::initializer_list<std::string_view> names) {
   return std::find(names.begin(), names.end(), name) != names.end();

@@ -114,8 +114,7 @@ Recording read_lvm(const std::filesystem::path& path, const ReadOptions& options
       assemble(fmt::format("LabVIEW measurement file, {} channel{}", count, count == 1 ? "" : "s"),
                std::move(channels), options, path.string());
   if (is_estimated) {
-    recording.warnings.push_back(fmt::format(
-        "{}: the number of samples is estimated by the size of the file", path.string()));
+    recording.warnings.push_back(path.string() + std::string(kEstimatedLength));
   }
   return recording;
 }

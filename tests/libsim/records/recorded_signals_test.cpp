@@ -161,7 +161,8 @@ TEST_F(LoadRecord, TellsTheFormatByTheExtension) {
   EXPECT_THAT(refusal_of([] { read_record("a/b.dat", "csv"); }), HasSubstr(csv_missing));
   EXPECT_EQ(
       refusal_of([] { read_record("b.dat", "auto"); }),
-      "b.dat: the extension \".dat\" does not tell the format; state format: csv, wav, uff, mat");
+      "b.dat: the extension \".dat\" does not tell the format; state format: csv, wav, uff, mat, "
+      "npy, npz, hdf5, lvm");
   EXPECT_THAT(refusal_of([] { read_record("b.csv", "tdms"); }),
               HasSubstr("unknown format \"tdms\""));
 }
