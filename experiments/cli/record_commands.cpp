@@ -29,7 +29,7 @@ void declare(CLI::App& command, InspectArguments& arguments) {
   command.add_option("file", arguments.file, "recorded file")->required();
   command.add_option("--format", arguments.options.format, format_words());
   command.add_flag("--headers", arguments.options.headers_only,
-                   "read headers alone where the format has them");
+                   "read headers alone, or the first rows of what has none");
   command.add_option("--sample-rate", arguments.options.sample_rate,
                      "[Hz], where the file has none");
 }

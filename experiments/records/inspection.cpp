@@ -8,7 +8,6 @@
 #include "experiments/config/help.hpp"
 #include "libsim/base/units.hpp"
 #include "libsim/model/string_model.hpp"
-#include "libsim/records/formats.hpp"
 #include "libsim/records/record_file.hpp"
 
 namespace modcal {
@@ -168,8 +167,7 @@ InspectionReport inspect(const std::filesystem::path& path, const InspectionOpti
   // A recording in memory is no file.
   std::error_code unreadable;
   const bool large = std::filesystem::file_size(path, unreadable) > kMeasuredBytes && !unreadable;
-  const bool headers_only = !unreadable && record_format(path, options.format).has_headers &&
-                            (large || options.headers_only);
+  const bool headers_only = !unreadable && (large || options.headers_only);
   Recording recording = read_record(
       path, options.format,
       {.sample_rate = options.sample_rate, .survey = true, .headers_only = headers_only});

@@ -130,4 +130,28 @@ BinVariances variances_of(const StructureTable& table, const ContourSpectra& spe
   return result;
 }
 
+std::vector<SensorPrediction> predictions_of(const ContourSpectra& spectra,
+                                             const Transfers& transfers,
+                                             const BinVariances& variances) {
+  std::vector<SensorPrediction> result;
+  if (transfers.size() < 2) return result;
+  for (std::size_t k = 0; k < transfers.size(); ++k) {
+    const BinEvidence others = evidence_of(spectra, transfers, variances, k);
+    double power = 0.0, inside = 0.0, off = 0.0;
+    for (std::size_t m = 0; m < spectra.count(); ++m) {
+      const Complex h = transfers[k][m], y = spectra.responses[k][m];
+      const Complex left = y - h * others.score[m] / others.told[m];
+      const double sd = std::sqrt(0.5 * (std::norm(h) / others.told[m] + variances.of[k][m]));
+      for (const double part : {left.real(), left.imag()}) {
+        inside += std::abs(part) <= 1.959964 * sd ? 1.0 : 0.0;
+      }
+      off += std::norm(left);
+      power += std::norm(y);
+    }
+    result.push_back({.error = std::sqrt(off / power),
+                      .coverage = inside / (2.0 * static_cast<double>(spectra.count()))});
+  }
+  return result;
+}
+
 }  // namespace modcal

@@ -34,6 +34,18 @@ BinVariances variances_of(const StructureTable& table, const ContourSpectra& spe
 BinEvidence evidence_of(const ContourSpectra& spectra, const Transfers& transfers,
                         const BinVariances& variances, std::size_t left_out);
 
+/// One response predicted from the others.
+struct SensorPrediction {
+  double error = 0.0;     ///< rms of what is off over that of the response, over the bins [1]
+  double coverage = 0.0;  ///< of real and imaginary parts within 95 % of what is expected
+};
+
+/// H_k F of the force that the other sensors tell, with the variance |H_k|²/told + V_k, for every
+/// sensor in turn; empty: K = 1.
+std::vector<SensorPrediction> predictions_of(const ContourSpectra& spectra,
+                                             const Transfers& transfers,
+                                             const BinVariances& variances);
+
 inline constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
 }  // namespace modcal

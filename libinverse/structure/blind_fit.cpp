@@ -112,6 +112,25 @@ BlindFit fit_blindly(const ModalModel& table, const ContourSpectra& spectra,
   return fit;
 }
 
+BlindFit fit_ringing(const ModalModel& table, const StructureRecord& record,
+                     std::span<const double> noise, double low, double high,
+                     const StructureChange& change) {
+  MODCAL_REQUIRE(
+      noise.size() == table.sensors.size() && record.responses.size() == table.sensors.size(),
+      "{} deviations and {} responses for {} sensors", noise.size(), record.responses.size(),
+      table.sensors.size());
+  BlindFit fit;
+  for (const double sigma : {40.0, 20.0, 10.0, 5.0, 0.0}) {
+    const auto spectra = ContourSpectra::of(record, sigma, low, high);
+    BinVariances variances;
+    for (const double sd : noise) {
+      variances.of.emplace_back(spectra.count(), sd * sd * spectra.noise_power());
+    }
+    fit = fit_blindly(table, spectra, variances, change, false, fit.change);
+  }
+  return fit;
+}
+
 BlindFit refined_table(const StructureTable& table, const StructureRecord& record, double sigma,
                        const StructureChange& change) {
   // What rings on behind the part that is taken has e^−8 of its amplitude.

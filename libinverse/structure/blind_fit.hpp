@@ -41,6 +41,13 @@ BlindFit fit_blindly(const ModalModel& table, const ContourSpectra& spectra,
                      const BinVariances& variances, const StructureChange& change, bool at_rest,
                      const Eigen::VectorXd& start_at = {});
 
+/// The fit of a record that rings when it begins, with white noise of these deviations a sensor: on
+/// the contours 40, 20, 10, 5 and 0 [1/s], each from what the one before has found, the state at
+/// the record's ends unknown. low, high: band [Hz].
+BlindFit fit_ringing(const ModalModel& table, const StructureRecord& record,
+                     std::span<const double> noise, double low, double high,
+                     const StructureChange& change);
+
 /// The fit of a record that begins at rest: on the contours σ, σ/2 and σ/4, the lower ones as far
 /// as the record is long enough for nothing to be left of its end, each from what the one before
 /// has found, with variances_of() the model so far. The covariance is χ² times as large where it is

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "libsim/base/error.hpp"
 #include "libsim/base/task_loop.hpp"
 
 namespace modcal {
@@ -36,27 +37,56 @@ BlindLikelihood::BlindLikelihood(const ContourSpectra& spectra,
   }
 }
 
-BlindPoint BlindLikelihood::at(const ModalModel& model) const {
-  BlindPoint point{.weighted = transfers_of(model, spectra_), .told = std::vector<double>(bins())};
-  Transfers data = spectra_.responses;
+Transfers BlindLikelihood::whitened(const Transfers& values) const {
+  Transfers result = values;
   for (std::size_t k = 0; k < sensors(); ++k) {
-    for (std::size_t m = 0; m < bins(); ++m) {
-      point.weighted[k][m] *= roots_[k][m];
-      data[k][m] *= roots_[k][m];
-      point.told[m] += std::norm(point.weighted[k][m]);
-    }
+    for (std::size_t m = 0; m < bins(); ++m) result[k][m] *= roots_[k][m];
+  }
+  return result;
+}
+
+BlindPoint BlindLikelihood::at(const ModalModel& model) const {
+  BlindPoint point{.weighted = whitened(transfers_of(model, spectra_)),
+                   .told = std::vector<double>(bins())};
+  Transfers data = whitened(spectra_.responses);
+  for (std::size_t k = 0; k < sensors(); ++k) {
+    for (std::size_t m = 0; m < bins(); ++m) point.told[m] += std::norm(point.weighted[k][m]);
   }
   point.residual = projected(point, data);
   if (free_ends_) fit_ends(model, point, data);
-  for (std::size_t m = 0; m < bins(); ++m) {
-    Complex score;
-    for (std::size_t k = 0; k < sensors(); ++k) {
-      score += std::conj(point.weighted[k][m]) * data[k][m];
-    }
-    point.force.push_back(score / point.told[m]);
-  }
+  point.force = force_of(point, data);
   point.cost = 2.0 * point.residual.squaredNorm() / spectra_.correlated();
   return point;
+}
+
+std::vector<Complex> BlindLikelihood::force_of(const BlindPoint& point,
+                                               const Transfers& data) const {
+  std::vector<Complex> force(bins());
+  for (std::size_t m = 0; m < bins(); ++m) {
+    for (std::size_t k = 0; k < sensors(); ++k) {
+      force[m] += std::conj(point.weighted[k][m]) * data[k][m] / point.told[m];
+    }
+  }
+  return force;
+}
+
+std::vector<Complex> BlindLikelihood::force_drawn(const ModalModel& model,
+                                                  std::span<const double> normal) const {
+  const BlindPoint point = at(model);
+  MODCAL_REQUIRE(normal.size() == static_cast<std::size_t>(point.ends.size()) + 2 * bins(),
+                 "{} normal numbers for {} bins and {} parts of the ends", normal.size(), bins(),
+                 point.ends.size());
+  Transfers data = whitened(spectra_.responses);
+  if (free_ends_) {
+    const Eigen::Map<const Eigen::VectorXd> drawn(normal.data(), point.ends.size());
+    take_ends(model, point.ends + point.ends_root * drawn, data);
+    normal = normal.subspan(static_cast<std::size_t>(point.ends.size()));
+  }
+  std::vector<Complex> force = force_of(point, data);
+  for (std::size_t m = 0; m < bins(); ++m) {
+    force[m] += std::sqrt(0.5 / point.told[m]) * Complex(normal[2 * m], normal[2 * m + 1]);
+  }
+  return force;
 }
 
 Eigen::MatrixXd BlindLikelihood::jacobian(const ModalModel& start, const ModalModel& model,
@@ -152,32 +182,44 @@ std::vector<Complex> BlindLikelihood::end_column(std::size_t k, const ModalPole&
   return result;
 }
 
-void BlindLikelihood::fit_ends(const ModalModel& model, BlindPoint& point, Transfers& data) const {
-  const std::size_t modes = model.poles.size();
-  std::vector<Transfers> columns(2 * modes);
-  Eigen::MatrixXd matrix(point.residual.size(), static_cast<Index>(2 * modes));
-  Eigen::VectorXd norms(matrix.cols());
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    const Complex state = i % 2 == 0 ? Complex(1.0) : Complex(0.0, 1.0);
+// y − X c, whitened.
+void BlindLikelihood::take_ends(const ModalModel& model, const Eigen::VectorXd& ends,
+                                Transfers& data) const {
+  for (std::size_t n = 0; n < model.poles.size(); ++n) {
+    const auto i = static_cast<Index>(2 * n);
     for (std::size_t k = 0; k < sensors(); ++k) {
-      columns[i].push_back(end_column(k, model.poles[i / 2], constant_of(model, k, i / 2), state));
+      const std::vector<Complex> column =
+          end_column(k, model.poles[n], constant_of(model, k, n), {ends[i], ends[i + 1]});
+      for (std::size_t m = 0; m < bins(); ++m) data[k][m] -= column[m];
     }
-    const auto at = static_cast<Index>(i);
-    matrix.col(at) = projected(point, columns[i]);
-    norms[at] = std::max(matrix.col(at).norm(), std::numeric_limits<double>::min());
-    matrix.col(at) /= norms[at];
+  }
+}
+
+void BlindLikelihood::fit_ends(const ModalModel& model, BlindPoint& point, Transfers& data) const {
+  const auto count = static_cast<Index>(2 * model.poles.size());
+  Eigen::MatrixXd matrix(point.residual.size(), count);
+  Eigen::VectorXd norms(count);
+  for (Index i = 0; i < count; ++i) {
+    const auto n = static_cast<std::size_t>(i / 2);
+    const Complex state = i % 2 == 0 ? Complex(1.0) : Complex(0.0, 1.0);
+    Transfers column;
+    for (std::size_t k = 0; k < sensors(); ++k) {
+      column.push_back(end_column(k, model.poles[n], constant_of(model, k, n), state));
+    }
+    matrix.col(i) = projected(point, column);
+    norms[i] = std::max(matrix.col(i).norm(), std::numeric_limits<double>::min());
+    matrix.col(i) /= norms[i];
   }
   const Eigen::HouseholderQR<Eigen::MatrixXd> solver(matrix);
-  point.basis = solver.householderQ() * Eigen::MatrixXd::Identity(matrix.rows(), matrix.cols());
+  point.basis = solver.householderQ() * Eigen::MatrixXd::Identity(matrix.rows(), count);
   point.ends = solver.solve(point.residual).cwiseQuotient(norms);
+  const Eigen::MatrixXd inverse =
+      solver.matrixQR().topRows(count).triangularView<Eigen::Upper>().solve(
+          Eigen::MatrixXd::Identity(count, count));
+  point.ends_root =
+      std::sqrt(0.5 * spectra_.correlated()) * norms.cwiseInverse().asDiagonal() * inverse;
   point.residual -= point.basis * (point.basis.transpose() * point.residual);
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    for (std::size_t k = 0; k < sensors(); ++k) {
-      for (std::size_t m = 0; m < bins(); ++m) {
-        data[k][m] -= point.ends[static_cast<Index>(i)] * columns[i][k][m];
-      }
-    }
-  }
+  take_ends(model, point.ends, data);
 }
 
 }  // namespace modcal

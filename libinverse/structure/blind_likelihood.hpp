@@ -9,10 +9,11 @@ namespace modcal {
 
 /// A model with the force and the end state that explain most, and what they leave.
 struct BlindPoint {
-  Transfers weighted;        ///< h = H/√V, K
-  std::vector<double> told;  ///< |h|²
-  Eigen::MatrixXd basis;     ///< orthonormal columns of PX; none: at rest
-  Eigen::VectorXd ends;      ///< c: real and imaginary part of every mode
+  Transfers weighted;         ///< h = H/√V, K
+  std::vector<double> told;   ///< |h|²
+  Eigen::MatrixXd basis;      ///< orthonormal columns of PX; none: at rest
+  Eigen::VectorXd ends;       ///< c: real and imaginary part of every mode
+  Eigen::MatrixXd ends_root;  ///< c has the covariance of this times standard normal numbers
   Eigen::VectorXd residual;  ///< e = P (y − X c), real over imaginary parts, of all sensors in turn
   std::vector<Complex> force;  ///< F of every bin
   double cost = 0.0;           ///< 2|e|²/κ
@@ -33,6 +34,10 @@ class BlindLikelihood {
   /// half of dP y lies along h, orthogonal to e.
   Eigen::MatrixXd jacobian(const ModalModel& start, const ModalModel& model,
                            const BlindPoint& point, bool factors) const;
+  /// The force of every bin as the data allow it, where the model is right: c moved by its
+  /// deviation times standard normal numbers, two a mode, F by that of its noise, CN(0, 1/|h|²),
+  /// two a bin behind them. On the frequency axis: bins of a contour are not independent.
+  std::vector<Complex> force_drawn(const ModalModel& model, std::span<const double> normal) const;
   double correlated() const { return spectra_.correlated(); }
   /// Numbers that the data have when force and ends are eliminated.
   double numbers(std::size_t modes) const;
@@ -45,7 +50,10 @@ class BlindLikelihood {
                                const ModalPole& pole, Complex constant) const;
   std::vector<Complex> end_column(std::size_t k, const ModalPole& pole, Complex constant,
                                   Complex state) const;
+  Transfers whitened(const Transfers& values) const;
+  void take_ends(const ModalModel& model, const Eigen::VectorXd& ends, Transfers& data) const;
   void fit_ends(const ModalModel& model, BlindPoint& point, Transfers& data) const;
+  std::vector<Complex> force_of(const BlindPoint& point, const Transfers& data) const;
 
   const ContourSpectra& spectra_;
   const std::vector<SensorKind>& kinds_;

@@ -43,7 +43,6 @@ PoleSearch::PoleSearch(const ContourSpectra& spectra, std::span<const double> fo
     }
     static_.push_back(std::move(columns));
   }
-  lay_grid();
 }
 
 Eigen::VectorXd PoleSearch::weighted(std::size_t k, const std::vector<Complex>& spectrum) const {
@@ -118,11 +117,12 @@ double PoleSearch::cost(const std::vector<ModalPole>& poles) const {
   return sum;
 }
 
-PoleSearch::Equations PoleSearch::equations(const std::vector<ModalPole>& poles) const {
+// Slopes of every sensor's residual by ln f and ln ζ of the modes.
+std::vector<Eigen::MatrixXd> PoleSearch::jacobians(const std::vector<ModalPole>& poles,
+                                                   const std::vector<SensorFit>& fits) const {
   // Where the errors of central differences by rounding and by curvature are alike; damping changes
   // a column by a hundredth of what a frequency does.
   const double near = std::cbrt(std::numeric_limits<double>::epsilon()), far = 100.0 * near;
-  const std::vector<SensorFit> fits = at(poles);
   const Index unknowns = 2 * std::ssize(poles);
   std::vector<std::array<Columns, 4>> beside(poles.size());
   for_each_task(poles.size(), [&](std::size_t n) {
@@ -131,7 +131,7 @@ PoleSearch::Equations PoleSearch::equations(const std::vector<ModalPole>& poles)
                  strike_.of(moved(poles[n], 0.0, far), powers_),
                  strike_.of(moved(poles[n], 0.0, -far), powers_)};
   });
-  std::vector<Equations> parts(sensors());
+  std::vector<Eigen::MatrixXd> result(sensors());
   for_each_task(sensors(), [&](std::size_t k) {
     Eigen::MatrixXd slopes(data_[k].size(), unknowns);
     for (Index i = 0; i < unknowns; ++i) {
@@ -147,8 +147,18 @@ PoleSearch::Equations PoleSearch::equations(const std::vector<ModalPole>& poles)
             (weighted(k, beside[n][up][p][turned]) - weighted(k, beside[n][up + 1][p][turned]));
       }
     }
-    const Eigen::MatrixXd jacobian = -fits[k].project(slopes);
-    parts[k] = {jacobian.transpose() * jacobian, jacobian.transpose() * fits[k].residual};
+    result[k] = -fits[k].project(slopes);
+  });
+  return result;
+}
+
+PoleSearch::Equations PoleSearch::equations(const std::vector<ModalPole>& poles) const {
+  const std::vector<SensorFit> fits = at(poles);
+  const std::vector<Eigen::MatrixXd> slopes = jacobians(poles, fits);
+  const Index unknowns = 2 * std::ssize(poles);
+  std::vector<Equations> parts(sensors());
+  for_each_task(sensors(), [&](std::size_t k) {
+    parts[k] = {slopes[k].transpose() * slopes[k], slopes[k].transpose() * fits[k].residual};
   });
   Equations sum{Eigen::MatrixXd::Zero(unknowns, unknowns), Eigen::VectorXd::Zero(unknowns)};
   for (const Equations& part : parts) {
@@ -158,8 +168,48 @@ PoleSearch::Equations PoleSearch::equations(const std::vector<ModalPole>& poles)
   return sum;
 }
 
-Eigen::MatrixXd PoleSearch::information(const std::vector<ModalPole>& poles) const {
-  return equations(poles).matrix;
+// Jᵀ r for noise of a deviation of 1 in every sample of a sensor, as columns over the samples. On a
+// contour the noise dies away with exp(−σt), and J, the slope of what rings, is large later: to
+// take a share κ of the bins for independent would double the variance.
+Eigen::MatrixXd PoleSearch::noise_seen_by(std::size_t k, const Eigen::MatrixXd& slopes) const {
+  const RealFft fft(spectra_.samples);
+  const auto count = static_cast<Index>(spectra_.count());
+  Eigen::MatrixXd result(static_cast<Index>(spectra_.samples), slopes.cols());
+  for_each_task(static_cast<std::size_t>(slopes.cols()), [&](std::size_t i) {
+    const auto at = static_cast<Index>(i);
+    std::vector<Complex> spectrum(fft.bins());
+    for (Index m = 0; m < count; ++m) {
+      const auto bin = static_cast<std::size_t>(m);
+      spectrum[spectra_.bins.first + bin] =
+          weights_[k][bin] * Complex(slopes(m, at), slopes(m + count, at));
+    }
+    // Re Σ_m c_m exp(iω_m t): half of what a real signal of these bins has.
+    fft.inverse(spectrum, {result.col(at).data(), spectra_.samples});
+    result.col(at) *= 0.5 * static_cast<double>(spectra_.samples);
+  });
+  const double decay = std::exp(-spectra_.grid.sigma / spectra_.sample_rate);
+  double left = 1.0;
+  for (Index j = 0; j < result.rows(); ++j, left *= decay) result.row(j) *= left;
+  return result;
+}
+
+Eigen::MatrixXd PoleSearch::covariance(const std::vector<ModalPole>& poles,
+                                       const std::vector<Eigen::VectorXd>& variances,
+                                       std::span<const double> noise) const {
+  const std::vector<Eigen::MatrixXd> slopes = jacobians(poles, at(poles));
+  const Index unknowns = 2 * std::ssize(poles);
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(unknowns, unknowns), spread = information;
+  for (std::size_t k = 0; k < sensors(); ++k) {
+    information += slopes[k].transpose() * slopes[k];
+    // Real over imaginary parts.
+    spread += slopes[k].transpose() * variances[k].replicate(2, 1).asDiagonal() * slopes[k];
+    if (noise[k] == 0.0) continue;
+    const Eigen::MatrixXd seen = noise_seen_by(k, slopes[k]);
+    spread += noise[k] * noise[k] * (seen.transpose() * seen);
+  }
+  const Eigen::LDLT<Eigen::MatrixXd> solver(information);
+  const Eigen::MatrixXd half = solver.solve(spread);
+  return solver.solve(half.transpose());
 }
 
 double PoleSearch::fit(std::vector<ModalPole>& poles, int steps) const {
@@ -192,7 +242,8 @@ double PoleSearch::fit(std::vector<ModalPole>& poles, int steps) const {
   return here;
 }
 
-ModalPole PoleSearch::best_addition(const std::vector<ModalPole>& poles) const {
+ModalPole PoleSearch::best_addition(const std::vector<ModalPole>& poles) {
+  if (grid_.empty()) lay_grid();
   const std::vector<SensorFit> fits = at(poles);
   std::vector<Eigen::VectorXd> gains(sensors());
   for_each_task(sensors(), [&](std::size_t k) {

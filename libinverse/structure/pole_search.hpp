@@ -34,9 +34,14 @@ class PoleSearch {
   /// Fits the poles by at most `steps` of Levenberg and Marquardt; returns the cost.
   double fit(std::vector<ModalPole>& poles, int steps) const;
   /// Of the pairs of poles on a grid over the band the one that takes most from the cost.
-  ModalPole best_addition(const std::vector<ModalPole>& poles) const;
-  /// JᵀJ of ln f and ln ζ of every mode in turn, the linear unknowns eliminated.
-  Eigen::MatrixXd information(const std::vector<ModalPole>& poles) const;
+  ModalPole best_addition(const std::vector<ModalPole>& poles);
+  /// Covariance A⁻¹ (Σ_k Jᵀ V J + S_k) A⁻¹ of ln f and ln ζ of every mode in turn, the linear
+  /// unknowns eliminated, A = Σ JᵀJ (White, 1980), where the weighted residuals of sensor k have
+  /// these variances, one a bin, of independent bins, and a sample has white noise of this
+  /// deviation: what J takes from exp(−σt) noise. Weights that are off cost sharpness, not honesty.
+  Eigen::MatrixXd covariance(const std::vector<ModalPole>& poles,
+                             const std::vector<Eigen::VectorXd>& variances,
+                             std::span<const double> noise) const;
   /// Static terms of a sensor: powers of s besides its own, −2 and 0 (an acceleration, a velocity)
   /// or −2 and 0 (a displacement).
   static constexpr Eigen::Index kStatics = 2;
@@ -48,6 +53,9 @@ class PoleSearch {
     Eigen::MatrixXd matrix;  // JᵀJ
     Eigen::VectorXd slope;   // Jᵀr
   };
+  std::vector<Eigen::MatrixXd> jacobians(const std::vector<ModalPole>& poles,
+                                         const std::vector<SensorFit>& fits) const;
+  Eigen::MatrixXd noise_seen_by(std::size_t k, const Eigen::MatrixXd& slopes) const;
   Equations equations(const std::vector<ModalPole>& poles) const;
   SensorFit sensor_at(std::size_t k, const std::vector<Columns>& columns,
                       const std::vector<ModalPole>& poles) const;

@@ -6,55 +6,13 @@
 #include <numeric>
 
 #include "libinverse/structure/pole_search.hpp"
+#include "libinverse/structure/strike_weights.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
 namespace {
 
 using Index = Eigen::Index;
-
-double mean_power(const std::vector<Complex>& spectrum) {
-  double sum = 0.0;
-  for (const Complex& x : spectrum) sum += std::norm(x);
-  return sum / static_cast<double>(spectrum.size());
-}
-
-// 1/σ of every bin: a share of the response about it, and a tenth of that share of its rms.
-std::vector<std::vector<double>> weights_of(const ContourSpectra& spectra, double share) {
-  std::vector<std::vector<double>> result;
-  const double spacing = spectra.grid.spacing / (2.0 * std::numbers::pi);
-  for (const std::vector<Complex>& response : spectra.responses) {
-    std::vector<double> power;
-    for (const Complex& y : response) power.push_back(std::norm(y));
-    std::vector<double>& weights = result.emplace_back();
-    const double floor = 0.01 * mean_power(response);
-    for (const double p : smoothed(power, spacing, 3.0)) {
-      weights.push_back(1.0 / (share * std::sqrt(p + floor)));
-    }
-  }
-  return result;
-}
-
-// Least squares of |residual|² = ε² |F|² Σ_n |H_n|² + noise with neither negative.
-SensorScatter scatter_of(const std::vector<double>& left, const std::vector<double>& modal,
-                         double noise_power) {
-  double mm = 0.0, m1 = 0.0, lm = 0.0, l1 = 0.0;
-  const auto n = static_cast<double>(left.size());
-  const double unit = std::max(1e-300, *std::max_element(modal.begin(), modal.end()));
-  for (std::size_t i = 0; i < left.size(); ++i) {
-    const double x = modal[i] / unit;
-    mm += x * x;
-    m1 += x;
-    lm += left[i] * x;
-    l1 += left[i];
-  }
-  const double determinant = mm * n - m1 * m1;
-  double slope = determinant > 0.0 ? (lm * n - l1 * m1) / determinant : 0.0;
-  double level = determinant > 0.0 ? (mm * l1 - m1 * lm) / determinant : l1 / n;
-  if (slope < 0.0) slope = 0.0, level = l1 / n;
-  if (level < 0.0) level = 0.0, slope = lm / mm;
-  return {.modal = std::sqrt(slope / unit), .noise = std::sqrt(level / noise_power)};
-}
 
 class Fit {
  public:
@@ -80,7 +38,7 @@ class Fit {
 
   StrikeFit run() {
     weights_ = weights_of(result_.spectra, options_.relative_error);
-    const PoleSearch search(result_.spectra, record_.force, kinds_, weights_);
+    PoleSearch search(result_.spectra, record_.force, kinds_, weights_);
     std::vector<ModalPole> poles, best;
     double least = std::numeric_limits<double>::infinity();
     while (poles.size() < options_.most_modes && parameters(poles.size() + 1) < 0.75 * numbers()) {
@@ -101,8 +59,17 @@ class Fit {
                    numbers(), parameters(1));
     const double cost = search.fit(best, 30);
     result_.misfit = cost / counted_twice() / (numbers() - parameters(best.size()));
-    std::ranges::sort(best, {}, &ModalPole::omega);
     tell(search, best);
+    // Now the residuals say how right a bin is: twice, as they depend on it.
+    for (int round = 0; round < 2; ++round) {
+      weights_ = weights_of(result_.spectra, result_.table);
+      const PoleSearch again(result_.spectra, record_.force, kinds_, weights_);
+      again.fit(best, 30);
+      std::ranges::sort(best, {}, &ModalPole::omega);
+      tell(again, best);
+      if (round == 1) tell_deviations(again, best);
+    }
+    tell_pulse();
     return std::move(result_);
   }
 
@@ -144,11 +111,12 @@ class Fit {
 
   void tell(const PoleSearch& search, const std::vector<ModalPole>& poles) {
     StructureTable& table = result_.table;
-    tell_pulse();
     const std::size_t modes = poles.size();
+    result_.residuals.clear();
+    result_.modeled.clear();
+    table.scatters.clear();
     table.low = options_.low, table.high = options_.high;
     table.model = {.poles = poles, .sensors = kinds_};
-    tell_deviations(search, poles);
     const std::vector<SensorFit> fits = search.at(poles);
     for (std::size_t k = 0; k < kinds_.size(); ++k) {
       const Eigen::VectorXd x = fits[k].amplitudes.cwiseQuotient(fits[k].norms);
@@ -163,23 +131,41 @@ class Fit {
     }
   }
 
+  // By what scatter and noise expect of the residuals: a share of the response everywhere, as the
+  // weights have it, would make a sharp resonance as uncertain as its flanks.
   void tell_deviations(const PoleSearch& search, const std::vector<ModalPole>& poles) {
-    const Eigen::MatrixXd information = search.information(poles);
-    const Eigen::MatrixXd covariance = information.ldlt().solve(Eigen::MatrixXd::Identity(
-                                           information.rows(), information.cols())) *
-                                       counted_twice() * result_.misfit;
+    const ContourSpectra& spectra = result_.spectra;
+    StructureTable& table = result_.table;
+    // Unknowns took their share of the residuals.
+    const double share = numbers() / (numbers() - parameters(poles.size()));
+    std::vector<Eigen::VectorXd> variances;
+    std::vector<double> noise;
+    for (std::size_t k = 0; k < kinds_.size(); ++k) {
+      noise.push_back(table.scatters[k].noise * std::sqrt(share));
+      Eigen::VectorXd& own = variances.emplace_back(static_cast<Index>(spectra.count()));
+      const std::vector<double> made = made_by_modes(spectra, table.model, k);
+      for (std::size_t m = 0; m < spectra.count(); ++m) {
+        const double off = table.scatters[k].modal * weights_[k][m];
+        own[static_cast<Index>(m)] = 0.5 * share * counted_twice() * off * off * made[m];
+      }
+    }
+    const Eigen::MatrixXd covariance = search.covariance(poles, variances, noise);
     for (std::size_t n = 0; n < poles.size(); ++n) {
       const auto i = static_cast<Index>(2 * n);
-      result_.table.frequency_deviations.push_back(std::sqrt(std::max(0.0, covariance(i, i))));
-      result_.table.damping_deviations.push_back(
-          std::sqrt(std::max(0.0, covariance(i + 1, i + 1))));
+      MODCAL_REQUIRE(covariance(i, i) >= 0.0 && covariance(i + 1, i + 1) >= 0.0,
+                     "nothing tells the mode at {:g} Hz from the others: state a narrower band or "
+                     "fewer modes",
+                     table.frequency(n));
+      table.frequency_deviations.push_back(std::sqrt(covariance(i, i)));
+      table.damping_deviations.push_back(std::sqrt(covariance(i + 1, i + 1)));
     }
   }
 
   void tell_rest(std::size_t k, const SensorFit& fit) {
     const ContourSpectra& spectra = result_.spectra;
     const ModalModel& model = result_.table.model;
-    std::vector<double> left, modal;
+    std::vector<double> left;
+    const std::vector<double> modal = made_by_modes(spectra, model, k);
     std::vector<Complex>& modeled = result_.modeled.emplace_back();
     double rest = 0.0;
     for (std::size_t m = 0; m < spectra.count(); ++m) {
@@ -188,7 +174,6 @@ class Fit {
       modeled.push_back(spectra.responses[k][m] - residual);
       left.push_back(std::norm(residual));
       rest += std::norm(residual);
-      modal.push_back(std::norm(spectra.force[m]) * modal_power(model, k, spectra.s(m)));
     }
     result_.residuals.push_back(
         std::sqrt(rest / static_cast<double>(left.size()) / mean_power(spectra.responses[k])));
@@ -197,14 +182,15 @@ class Fit {
       const double share = rest / std::accumulate(modal.begin(), modal.end(), 0.0);
       result_.table.scatters.push_back({.modal = std::sqrt(share)});
     } else {
-      result_.table.scatters.push_back(scatter_of(left, modal, spectra.noise_power()));
+      result_.table.scatters.push_back(
+          scatter_of(left, modal, spectra.noise_power(), counted_twice()));
     }
   }
 
   StructureRecord record_;
   const std::vector<SensorKind>& kinds_;
   const StrikeFitOptions& options_;
-  std::vector<std::vector<double>> weights_;
+  BinWeights weights_;
   StrikeFit result_;
 };
 
@@ -248,9 +234,7 @@ std::string StrikeFit::rejection() const {
 StrikeFit fit_strike(const StructureRecord& record, const std::vector<SensorKind>& kinds,
                      const StrikeFitOptions& options) {
   MODCAL_REQUIRE(!record.force.empty(),
-                 "modes from a strike need the force of {} record: name its "
-                 "channel",
-                 1);
+                 "modes from a strike need the force of {} record: name its channel", 1);
   MODCAL_REQUIRE(kinds.size() == record.responses.size(), "{} kinds of sensors for {} responses",
                  kinds.size(), record.responses.size());
   return Fit(record, kinds, options).run();

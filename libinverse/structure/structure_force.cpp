@@ -55,6 +55,7 @@ class ForceSearch {
     result_.misfit = variances_.misfit;
     result_.sensor_misfit = variances_.by_sensor;
     result_.sensor_left = variances_.left;
+    result_.predicted = predictions_of(spectra_, transfers_, variances_);
     const BinEvidence evidence = evidence_of(spectra_, transfers_, variances_, kNone);
     find_power(evidence);
     if (options_.shape != ForceShape::kSmooth) find_pulses(evidence);

@@ -40,9 +40,10 @@ struct StructureForce {
   double evidence_smooth = 0.0;
   double misfit =
       0.0;  ///< (K − 1) sensors against the last, over what the scatter expects; NaN: K = 1
-  std::vector<double> sensor_misfit;  ///< rms of what each leaves over what is expected, K
-  std::vector<double> sensor_left;    ///< the same over its response, K; both empty: K = 1
-  std::optional<BlindFit> refined;    ///< where a change was allowed for
+  std::vector<double> sensor_misfit;        ///< rms of what each leaves over what is expected, K
+  std::vector<double> sensor_left;          ///< the same over its response, K; both empty: K = 1
+  std::vector<SensorPrediction> predicted;  ///< of each from the others, K; empty: K = 1
+  std::optional<BlindFit> refined;          ///< where a change was allowed for
 };
 
 /// F = Σ_k conj(H_k) Y_k/V_k ÷ (Σ_k |H_k|²/V_k + 1/P) in every bin of a contour, or, for impacts,

@@ -33,6 +33,13 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 }  // namespace
 
+std::string lower_case(std::string text) {
+  for (char& letter : text) {
+    letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  }
+  return text;
+}
+
 std::string nearest_name(std::string_view text, const std::vector<std::string>& names) {
   std::string best;
   std::size_t smallest = std::max<std::size_t>(1, text.size() / 3) + 1;

@@ -29,6 +29,9 @@ std::vector<std::string_view> choices_of(const std::array<std::string_view, kNam
   return {names.begin(), names.end()};
 }
 
+/// The text with its ASCII capitals as small letters.
+std::string lower_case(std::string text);
+
 // "Did you mean …?"
 
 /// The name with the smallest edit distance (Damerau, 1964: a swap of neighbors counts once;

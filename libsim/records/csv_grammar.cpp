@@ -136,15 +136,16 @@ bool CsvFile::next_line() {
     return false;
   }
   ++line_;
+  taken_ += text_.size() + 1;
   if (!text_.empty() && text_.back() == '\r') text_.pop_back();
   text_.push_back('\n');
   return true;
 }
 
-void CsvFile::parse(CsvHandler& handler) {
+void CsvFile::parse(CsvHandler& handler, std::uint64_t most) {
   Parser parser(handler);
   std::size_t open_quote_line = 0;
-  while (next_line()) {
+  while (taken_ < most && next_line()) {
     const std::size_t first = text_.find_first_not_of(" \t\n");
     if (open_quote_line == 0) {
       if (first == std::string::npos) continue;
@@ -164,7 +165,7 @@ void CsvFile::parse(CsvHandler& handler) {
       open_quote_line = line_;
     }
   }
-  MODCAL_REQUIRE(open_quote_line == 0,
+  MODCAL_REQUIRE(open_quote_line == 0 || taken_ >= most,
                  "{}:{}: the quote opened on this line is never closed; add the missing \"", name_,
                  open_quote_line);
 }

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -30,8 +32,11 @@ class CsvFile {
   /// Throws InvalidInput where the file cannot be read, is empty or is not 8-bit text.
   explicit CsvFile(const std::filesystem::path& path);
 
-  /// Reads the file to its end. Throws InvalidInput where a quote is misplaced or never closed.
-  void parse(CsvHandler& handler);
+  /// Reads the file to its end, or the lines that begin in its first `most` bytes. Throws
+  /// InvalidInput where a quote is misplaced or never closed.
+  void parse(CsvHandler& handler, std::uint64_t most = std::numeric_limits<std::uint64_t>::max());
+  /// Bytes that were read.
+  std::uint64_t taken() const { return taken_; }
 
   const std::string& name() const { return name_; }
   /// The separator found; 0 before the header is read.
@@ -51,6 +56,7 @@ class CsvFile {
   char separator_ = 0;
   std::string text_;
   std::size_t line_ = 0;
+  std::uint64_t taken_ = 0;
 };
 
 // Numbers and column headings of a CSV record.

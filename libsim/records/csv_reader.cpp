@@ -1,10 +1,10 @@
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include "libsim/base/error.hpp"
 #include "libsim/base/units.hpp"
 #include "libsim/base/utf8.hpp"
+#include "libsim/base/words.hpp"
 #include "libsim/records/csv_grammar.hpp"
 #include "libsim/records/record_file.hpp"
 #include "libsim/records/tuning.hpp"
@@ -13,13 +13,6 @@ namespace modcal {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
-std::string lower_case(std::string text) {
-  for (char& letter : text) {
-    letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-  }
-  return text;
-}
 
 // The time may have its unit behind any mark, "time/ms", "t_s", a force behind a stroke: "F_l/mN".
 ColumnHeading heading_of(std::string_view text) {
@@ -49,7 +42,9 @@ class CsvReader final : public CsvHandler {
       : file_(path), options_(options) {}
 
   Recording read() {
-    file_.parse(*this);
+    constexpr std::uint64_t kFirstBytes = 1 << 20;
+    file_.parse(*this,
+                options_.headers_only ? kFirstBytes : std::numeric_limits<std::uint64_t>::max());
     MODCAL_REQUIRE(!columns_.empty(),
                    "{}: no header; the first row must name the columns, such as t [s],R1 [N]",
                    file_.name());
@@ -61,6 +56,7 @@ class CsvReader final : public CsvHandler {
     for (const std::size_t index : kept_) {
       record_.channels.push_back(std::move(columns_[index].channel));
     }
+    if (options_.headers_only) forget_samples();
     if (!options_.survey) record_.refuse_problems();
     return std::move(record_);
   }
@@ -75,6 +71,7 @@ class CsvReader final : public CsvHandler {
     bool read = false;
   };
 
+  void forget_samples();
   void settle_columns();
   void choose_columns();
   void settle_sample_rate();
@@ -95,6 +92,16 @@ class CsvReader final : public CsvHandler {
   double commented_rate_ = kNaN;
   std::size_t commented_rate_line_ = 0;
 };
+
+// Their number follows from the size of the file where it was not read to its end.
+void CsvReader::forget_samples() {
+  const auto size = static_cast<double>(std::filesystem::file_size(file_.name()));
+  const auto taken = static_cast<double>(file_.taken());
+  record_.stated_frames =
+      static_cast<std::size_t>(static_cast<double>(rows_) * std::max(1.0, size / taken));
+  if (taken < size) record_.warnings.push_back(file_.name() + std::string(kEstimatedLength));
+  for (RecordedChannel& channel : record_.channels) channel.samples.clear();
+}
 
 // A spreadsheet's #DIV/0! begins a row as "#" begins a comment: its sample would be lost.
 void CsvReader::refuse_hidden_row(std::string_view text) {

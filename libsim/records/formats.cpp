@@ -1,11 +1,13 @@
 #include "libsim/records/formats.hpp"
 
 #include <algorithm>
-#include <cctype>
 
 #include "libsim/base/error.hpp"
 #include "libsim/base/words.hpp"
+#include "libsim/records/hdf5/hdf5_file.hpp"
+#include "libsim/records/labview/lvm_file.hpp"
 #include "libsim/records/matlab/matlab_file.hpp"
+#include "libsim/records/numpy/numpy_file.hpp"
 #include "libsim/records/universal/universal_file.hpp"
 
 namespace modcal {
@@ -21,8 +23,7 @@ const std::vector<RecordFormat>& table() {
        read_csv,
        [](const Path& path, std::span<const Signal> signals, const std::string& provenance) {
          write_csv(path, signals, {.provenance = {provenance}});
-       },
-       false},
+       }},
       {"wav",
        "WAV and other sound files",
        {".wav", ".wave", ".rf64", ".bwf", ".w64"},
@@ -34,8 +35,13 @@ const std::vector<RecordFormat>& table() {
        "universal files, datasets 58 and 58b",
        {".uff", ".unv", ".uf58"},
        read_universal,
-       write_universal},
+       write_universal,
+       read_universal_responses},
       {"mat", "MAT files of MATLAB and Octave", {".mat"}, read_matlab, write_matlab},
+      {"npy", "an array of NumPy", {".npy"}, read_npy, write_npy},
+      {"npz", "archives of NumPy", {".npz"}, read_npz, write_npz},
+      {"hdf5", "HDF5 files", {".h5", ".hdf5", ".hdf"}, read_hdf5, write_hdf5},
+      {"lvm", "LabVIEW measurement files", {".lvm"}, read_lvm, write_lvm},
   };
   return formats;
 }
@@ -51,10 +57,7 @@ std::vector<std::string_view> record_format_choices() {
 }
 
 const RecordFormat& record_format(const Path& path, const std::string& name) {
-  std::string extension = path.extension().string();
-  for (char& letter : extension) {
-    letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-  }
+  const std::string extension = lower_case(path.extension().string());
   const bool told = name == "auto";
   const auto found = std::find_if(table().begin(), table().end(), [&](const RecordFormat& format) {
     const auto& known = format.extensions;
@@ -66,6 +69,15 @@ const RecordFormat& record_format(const Path& path, const std::string& name) {
   MODCAL_REQUIRE(told, "unknown format \"{}\" of a record: {}", name, fmt::join(names, ", "));
   throw_invalid_input("{}: the extension \"{}\" does not tell the format; state format: {}",
                       path.string(), extension, fmt::join(std::span(names).subspan(1), ", "));
+}
+
+ResponseFunctions read_response_functions(const Path& path, const std::string& format,
+                                          const std::vector<std::string>& channels) {
+  const RecordFormat& known = record_format(path, format);
+  MODCAL_REQUIRE(known.read_responses != nullptr,
+                 "{}: {} keep no response functions: state a universal file (UFF 58)",
+                 path.string(), known.meaning);
+  return known.read_responses(path, channels);
 }
 
 }  // namespace modcal

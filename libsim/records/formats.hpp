@@ -4,6 +4,7 @@
 #include <span>
 
 #include "libsim/records/record_file.hpp"
+#include "libsim/records/response_functions.hpp"
 
 namespace modcal {
 
@@ -15,7 +16,9 @@ struct RecordFormat {
   /// Keeps every bit of the samples; nothing: the format is only read.
   void (*write)(const std::filesystem::path& path, std::span<const Signal> signals,
                 const std::string& provenance) = nullptr;
-  bool has_headers = true;  ///< channels and rate are told without reading the samples
+  /// Null: the format keeps no response functions.
+  ResponseFunctions (*read_responses)(const std::filesystem::path& path,
+                                      const std::vector<std::string>& channels) = nullptr;
 };
 
 /// Those this program was built with.

@@ -16,7 +16,8 @@ struct ReadOptions {
   /// Keep going over errors in the samples: they are listed in Recording::problems, and what is no
   /// number is NaN. Otherwise they throw.
   bool survey = false;
-  /// Read no samples: Recording::stated_frames counts them. Formats without a header read all.
+  /// Keep no samples: Recording::stated_frames counts them. Of formats without a header the first
+  /// rows are read, which tell about how many there are.
   bool headers_only = false;
 };
 

@@ -68,6 +68,10 @@ struct Recording {
   void refuse_problems() const;
 };
 
+/// Behind the name of a file without a header of which the first rows alone were read.
+inline constexpr std::string_view kEstimatedLength =
+    ": the number of samples is estimated by the size of the file";
+
 /// A channel that cannot be had.
 class WrongChannel : public InvalidInput {
  public:

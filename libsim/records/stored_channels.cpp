@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "libsim/base/error.hpp"
 #include "libsim/records/csv_grammar.hpp"
@@ -143,6 +144,45 @@ Recording assemble(std::string format, std::vector<StoredChannel> stored,
   }
   if (!options.survey) recording.refuse_problems();
   return recording;
+}
+
+ResponseFunctions assemble_responses(const std::vector<StoredChannel>& stored,
+                                     const std::vector<std::string>& channels,
+                                     const std::string& file) {
+  const std::vector<std::string> names = different_names(stored);
+  const std::vector<std::size_t> chosen = find_channels(names, channels, file);
+  ResponseFunctions result;
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    const StoredChannel& channel = stored[chosen[i]];
+    if (!channel.read_response) {
+      throw WrongChannel(i,
+                         fmt::format("{}: channel \"{}\" is no response function over even lines "
+                                     "but has {}",
+                                     file, names[chosen[i]], grid_text(channel)));
+    }
+    const StoredChannel& one = stored[chosen[0]];
+    if (channel.size != one.size || channel.first_line != one.first_line ||
+        channel.line_step != one.line_step) {
+      throw WrongChannel(
+          i,
+          fmt::format("{}: channel \"{}\" has {} lines from {:g} Hz, {:g} Hz apart, \"{}\" has {} "
+                      "from {:g} Hz, {:g} Hz apart: one model needs one grid",
+                      file, names[chosen[i]], channel.size, channel.first_line, channel.line_step,
+                      names[chosen[0]], one.size, one.first_line, one.line_step));
+    }
+    const auto before = static_cast<std::size_t>(std::llround(one.first_line / one.line_step));
+    std::vector<Complex> values(before, std::numeric_limits<double>::quiet_NaN());
+    const std::vector<Complex> read = channel.read_response();
+    values.insert(values.end(), read.begin(), read.end());
+    result.grid = {.spacing = 2.0 * std::numbers::pi * one.line_step, .bins = values.size()};
+    result.functions.push_back({.name = names[chosen[i]],
+                                .kind = channel.head.kind,
+                                .unit = channel.head.unit,
+                                .per_unit = channel.per_unit,
+                                .full_scale = channel.head.full_scale,
+                                .values = std::move(values)});
+  }
+  return result;
 }
 
 }  // namespace modcal

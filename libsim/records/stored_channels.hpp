@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "libsim/records/record_file.hpp"
+#include "libsim/records/response_functions.hpp"
 
 namespace modcal {
 
@@ -22,6 +23,11 @@ struct StoredChannel {
   /// sample rate.
   std::function<std::vector<double>()> read_times = {};
   double time_resolution = 0.0;  ///< of the largest instant as it was stored, relative
+  /// Of a response function: its lines [Hz], the first one a whole number of steps from 0, the unit
+  /// of its force, and its values; null for anything else.
+  double first_line = 0.0, line_step = 0.0;
+  std::string per_unit = {};
+  std::function<std::vector<Complex>()> read_response = {};
 };
 
 /// The wanted channels as one record. Unasked those in time that have the first one's rate and
@@ -30,6 +36,11 @@ struct StoredChannel {
 /// samples that are not finite and a rate that is not known (listed by a survey).
 Recording assemble(std::string format, std::vector<StoredChannel> stored,
                    const ReadOptions& options, const std::string& file);
+
+/// The wanted response functions, as read_response_functions() says.
+ResponseFunctions assemble_responses(const std::vector<StoredChannel>& stored,
+                                     const std::vector<std::string>& channels,
+                                     const std::string& file);
 
 /// A rate whose period was printed to a relative `resolution`: the whole number of hertz within it,
 /// where there is one.

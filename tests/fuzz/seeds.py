@@ -1,9 +1,10 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """What the fuzzers begin with, besides tests/fuzz/corpus: seeds.py ROOT CORPUS TARGET... fills CORPUS/TARGET.
 
 Experiments are those of configs/ and the tests' wrong ones; records are a short one, the tests' wrong
 ones made of it, and one of every kind of sound, universal and MAT file. The dictionary holds the words of all experiments.
 """
+import io
 import re
 import struct
 import subprocess
@@ -11,6 +12,9 @@ import sys
 import tempfile
 import zlib
 from pathlib import Path
+
+import h5py
+import numpy as np
 
 ROWS = 60  # of the record: enough for every test, short enough to be changed everywhere
 
@@ -158,6 +162,46 @@ def matlab_files():
                         struct.pack(f"<{len(held)}d", *held) for name, held in values.items())
 
 
+def numpy_arrays():
+    columns = np.array([[0.01 * i, ((7 * i) % 13) / 6, ((5 * i) % 11) / 6] for i in range(30)])
+    fields = np.rec.fromarrays(columns.T, names="t [s],R1 [N],R2 [N]", formats="f8,>f4,i2")
+    for name, array in (("plain", columns), ("fortran", np.asfortranarray(columns)), ("fields", fields),
+                        ("complex", columns[:, 1] + 1j), ("objects", np.array([None], dtype=object))):
+        with io.BytesIO() as file:
+            np.save(file, array)
+            yield name, file.getvalue()
+
+
+def numpy_archives():
+    values = {"R1": [((7 * i) % 13) / 6 for i in range(30)], "R2": [((5 * i) % 11) / 6 for i in range(30)]}
+    for name, save in (("stored", np.savez), ("deflated", np.savez_compressed)):
+        with io.BytesIO() as file:
+            save(file, sample_rate=100.0, **{"R1.unit": "N"}, **values)
+            yield name, file.getvalue()
+
+
+def hdf5_files():
+    with h5py.File("seed", "w", driver="core", backing_store=False) as file:
+        file.attrs["sample_rate"] = 100.0
+        for name in ("R1", "run/R2"):
+            data = file.create_dataset(name, data=[((7 * i) % 13) / 6 for i in range(30)], chunks=(8,), compression=1)
+            data.attrs["unit"] = "N"
+        file.flush()
+        yield "two", file.id.get_file_image()
+
+
+def labview_files():
+    rows = "".join(f"{0.01 * i:.6f}\t{((7 * i) % 13) / 6:.6f}\t{((5 * i) % 11) / 6:.6f}\n" for i in range(30))
+    for name, decimal, columns in (("one", ".", "One"), ("comma", ",", "One")):
+        head = (f"LabVIEW Measurement\t\nSeparator\tTab\nDecimal_Separator\t{decimal}\nX_Columns\t{columns}\n"
+                "***End_of_Header***\t\n\t\n")
+        part = ("Channels\t2\t\t\nSamples\t30\t30\t\nDate\t2016/08/23\t2016/08/23\t\nTime\t10:45:{0}\t10:45:{0}\t\n"
+                "Y_Unit_Label\tN\tN\t\nX_Dimension\tTime\tTime\t\nX0\t0\t0\t\nDelta_X\t0.010000\t0.010000\t\n"
+                "***End_of_Header***\t\t\t\nX_Value\tR1\tR2\tComment\n" + rows + "\n")
+        parts = part.format("10.0") + part.format("10.3")
+        yield name, (head + (parts.replace(".", ",") if decimal == "," else parts)).encode()
+
+
 def mode_tables(root):
     yield "plate", (root / "configs/structures/plate_modes.json").read_bytes()
     yield "one", (b"low: 10 Hz\nhigh: 100\nsensors: [{name: a, kind: velocity}]\n"
@@ -175,7 +219,8 @@ def main():
     root, corpus = Path(sys.argv[1]), Path(sys.argv[2])
     for target, seeds in (("experiment", lambda: ((n, t.encode()) for n, t in experiments(root))),
                           ("csv", lambda: csv_records(root)), ("wav", sounds),
-                          ("uff", universals), ("mat", matlab_files), ("table", lambda: mode_tables(root))):
+                          ("uff", universals), ("mat", matlab_files), ("npy", numpy_arrays),
+                          ("npz", numpy_archives), ("hdf5", hdf5_files), ("lvm", labview_files), ("table", lambda: mode_tables(root))):
         if target not in sys.argv[3:]:
             continue
         folder = corpus / target

@@ -120,7 +120,7 @@ DOORS = [
     (r"(ceres/|nlopt|gsl/)", r"libcalib/"),
     (r"(yaml-cpp/|CLI/)", r"experiments/"),
     (r"nlohmann/", r"experiments/|python/|libsim/records/"),
-    (r"(sndfile|csv\.h$)", r"libsim/records/"),
+    (r"(sndfile|csv\.h$|matio|hdf5|zip\.h$)", r"libsim/records/"),
     (r"(udunits2|converter\.h$)", r"libsim/base/"),
     (r"(sqlite3|xxhash)", r"experiments/runs/"),
 ]

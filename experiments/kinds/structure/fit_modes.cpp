@@ -12,12 +12,12 @@ namespace {
 using report::Series;
 
 struct ModesOutcome {
-  const LoadedStructureRecord& loaded;
   const StrikeFit& fit;
+  double rest;  // of which the mean was taken [s]; NaN: response functions
 
   void visit(ResultVisitor& visitor) const {
     const StructureTable& table = fit.table;
-    std::vector<std::size_t> modes(table.model.poles.size()), sensors(loaded.kinds.size());
+    std::vector<std::size_t> modes(table.model.poles.size()), sensors(table.names.size());
     for (std::size_t n = 0; n < modes.size(); ++n) modes[n] = n;
     for (std::size_t k = 0; k < sensors.size(); ++k) sensors[k] = k;
     visitor.rows(
@@ -42,8 +42,8 @@ struct ModesOutcome {
                   .meaning = "What the model leaves of each response, and what that says of the "
                              "model's scatter about a mode and of the noise."},
                  sensors, [&](ResultVisitor& row, std::size_t k) {
-                   row({.key = "channel"}, loaded.names[k]);
-                   row({.key = "kind"}, name_of(loaded.kinds[k]));
+                   row({.key = "channel"}, table.names[k]);
+                   row({.key = "kind"}, name_of(table.model.sensors[k]));
                    row({.key = "left", .name = "left of the response", .format = "{:.3g}"},
                        fit.residuals[k]);
                    row({.key = "scatter", .format = "{:.3g}"}, table.scatters[k].modal);
@@ -57,7 +57,7 @@ struct ModesOutcome {
                    row({.key = "criterion"}, step.criterion);
                  });
     visitor({.key = "contour_per_s"}, fit.spectra.grid.sigma);
-    visitor({.key = "rest_s"}, loaded.rest);
+    visitor({.key = "rest_s"}, known(rest));
     visitor({.key = "misfit"}, fit.misfit);
   }
 };
@@ -77,15 +77,16 @@ report::Figure criterion_figure(const StrikeFit& fit) {
                       .markers = {{.value = chosen, .label = "taken"}}}}};
 }
 
-report::Figure responses_figure(const LoadedStructureRecord& loaded, const StrikeFit& fit) {
+report::Figure responses_figure(const StrikeFit& fit) {
+  const StructureTable& table = fit.table;
   report::Figure figure{
       .id = "responses",
       .title = "Responses to the strike and the model's",
       .caption =
           "Magnitude of response over force on the contour of the fit, and of what the model "
           "leaves of it.",
-      .columns = loaded.kinds.size() > 1 ? 2u : 1u};
-  for (std::size_t k = 0; k < loaded.kinds.size(); ++k) {
+      .columns = table.names.size() > 1 ? 2u : 1u};
+  for (std::size_t k = 0; k < table.names.size(); ++k) {
     Series measured{.label = "measured", .color = report::ColorRole::kReference};
     Series modeled{.label = "model"};
     Series left{.label = "left", .color = report::ColorRole::kMuted};
@@ -96,12 +97,13 @@ report::Figure responses_figure(const LoadedStructureRecord& loaded, const Strik
       modeled.add(at, std::abs(fit.modeled[k][m] / f));
       left.add(at, std::abs((y - fit.modeled[k][m]) / f));
     }
-    figure.panels.push_back({.title = loaded.names[k],
-                             .x = {.label = "frequency", .unit = "Hz"},
-                             .y = {.label = fmt::format("{} over force", name_of(loaded.kinds[k])),
-                                   .unit = fmt::format("{}/N", unit_of(loaded.kinds[k])),
-                                   .logarithmic = true},
-                             .series = {std::move(left), std::move(measured), std::move(modeled)}});
+    figure.panels.push_back(
+        {.title = table.names[k],
+         .x = {.label = "frequency", .unit = "Hz"},
+         .y = {.label = fmt::format("{} over force", name_of(table.model.sensors[k])),
+               .unit = fmt::format("{}/N", unit_of(table.model.sensors[k])),
+               .logarithmic = true},
+         .series = {std::move(left), std::move(measured), std::move(modeled)}});
   }
   return figure;
 }
@@ -115,18 +117,20 @@ std::string sentence_of(const StrikeFit& fit, const FitModesOptions& options) {
 
 }  // namespace
 
-std::vector<Finding> lint_structure_record(const StructureRecordOptions& record) {
+std::vector<Finding> lint_responses(const std::string& path,
+                                    const std::vector<StructureChannelOptions>& responses) {
   std::vector<Finding> findings;
-  const std::size_t sensors = record.responses.size();
+  const std::size_t sensors = responses.size();
   if (sensors < 1 || sensors > 16) {
-    add_finding(findings, "record.responses", "{} responses: state the channels of 1 to 16 sensors",
-                sensors);
+    add_finding(findings, path, "{} responses: state the channels of 1 to 16 sensors", sensors);
   }
   return findings;
 }
 
 void FitModesOptions::visit(OptionVisitor& visitor) {
-  visitor("record", "a strike from rest, force and responses", {.required = true}, record);
+  visitor("record", "a strike from rest, force and responses", has_record, record);
+  visitor("functions", "measured response functions in the place of a record", has_functions,
+          functions);
   visitor("low", "least frequency of the band that is fitted",
           {.unit = "Hz", .range = Range::positive(), .required = true}, low);
   visitor("high", "largest frequency of the band that is fitted",
@@ -139,11 +143,22 @@ void FitModesOptions::visit(OptionVisitor& visitor) {
 }
 
 std::vector<Finding> FitModesOptions::lint() const {
-  std::vector<Finding> findings = lint_structure_record(record);
-  if (!record.has_force) {
+  std::vector<Finding> findings = has_functions
+                                      ? lint_responses("functions.responses", functions.responses)
+                                      : lint_responses("record.responses", record.responses);
+  if (has_record == has_functions) {
+    findings.clear();
+    add_finding(
+        findings, has_record ? "functions" : "",
+        "modes are fitted to one of both: state record: (a strike whose force was measured) or "
+        "functions: (response functions)");
+  } else if (has_record && !record.has_force) {
     add_finding(findings, "record",
                 "modes are fitted to responses and the force that made them: name its channel "
                 "(force: {{channel: ...}})");
+  } else if (has_functions && !std::isnan(contour)) {
+    add_finding(findings, "contour",
+                "response functions are known on the frequency axis alone: leave contour out");
   }
   if (!(low < high)) {
     add_finding(findings, "high", "{:g} Hz is not above low, {:g} Hz", high, low);
@@ -153,44 +168,79 @@ std::vector<Finding> FitModesOptions::lint() const {
 
 std::vector<Finding> FitModesOptions::lint_records(const std::filesystem::path& folder) const {
   std::vector<Finding> findings;
+  const auto require_band = [this](double most, std::string_view what) {
+    MODCAL_REQUIRE(high < most, "high = {:g} Hz is not below {} {:g} Hz: state less", high, what,
+                   most);
+  };
+  if (has_functions) {
+    lint_making(findings, "functions", [&] {
+      const FrequencyGrid grid = load_response_functions(functions, folder).grid;
+      require_band(grid.omega(grid.bins) / (2.0 * std::numbers::pi), "the last line,");
+    });
+    return findings;
+  }
   lint_making(findings, "record", [&] {
-    const LoadedStructureRecord loaded = load_structure_record(record, folder);
-    MODCAL_REQUIRE(high < 0.5 * loaded.record.sample_rate,
-                   "high = {:g} Hz is not below half the sample rate {:g} Hz: state less", high,
-                   loaded.record.sample_rate);
+    require_band(0.5 * load_structure_record(record, folder).record.sample_rate,
+                 "half the sample rate");
   });
   return findings;
 }
 
 std::vector<PlanLine> FitModesOptions::plan() const {
-  return {{fmt::format("fit modes between {:g} and {:g} Hz to {} responses of {}", low, high,
-                       record.responses.size(), record.file),
-           {{"low", low},
-            {"high", high},
-            {"responses", record.responses.size()},
-            {"record", record.file}}}};
+  const std::size_t count = has_functions ? functions.responses.size() : record.responses.size();
+  const std::string file = files_read().front();
+  return {{fmt::format("fit modes between {:g} and {:g} Hz to {} {} of {}", low, high, count,
+                       has_functions ? "response functions" : "responses", file),
+           {{"low", low}, {"high", high}, {"responses", count}, {"record", file}}}};
 }
 
-StudyResult FitModesOptions::run(const StudyContext& context) const {
-  const LoadedStructureRecord loaded = load_structure_record(record, context.folder);
+namespace {
+
+struct Fitted {
+  StrikeFit fit;
+  double rest = std::numeric_limits<double>::quiet_NaN();
+  std::vector<std::string> warnings;
+};
+
+Fitted fit_of(const FitModesOptions& options, const StudyContext& context) {
+  const StrikeFitOptions how{.low = options.low,
+                             .high = options.high,
+                             .sigma = options.contour,
+                             .most_modes = static_cast<std::size_t>(options.most_modes)};
+  Fitted fitted;
+  if (options.has_functions) {
+    LoadedResponseFunctions loaded = load_response_functions(options.functions, context.folder);
+    context.throw_if_interrupted();
+    fitted.fit = fit_response(loaded.grid, loaded.values, loaded.kinds, how);
+    fitted.fit.table.names = std::move(loaded.names);
+    fitted.warnings = std::move(loaded.warnings);
+    return fitted;
+  }
+  LoadedStructureRecord loaded = load_structure_record(options.record, context.folder);
   context.throw_if_interrupted();
-  StrikeFit fit = fit_strike(loaded.record, loaded.kinds,
-                             {.low = low,
-                              .high = high,
-                              .sigma = contour,
-                              .most_modes = static_cast<std::size_t>(most_modes)});
-  fit.table.names = loaded.names;
+  fitted.fit = fit_strike(loaded.record, loaded.kinds, how);
+  fitted.fit.table.names = std::move(loaded.names);
+  fitted.rest = loaded.rest;
+  fitted.warnings = std::move(loaded.warnings);
+  return fitted;
+}
+
+}  // namespace
+
+StudyResult FitModesOptions::run(const StudyContext& context) const {
+  const Fitted fitted = fit_of(*this, context);
+  const StrikeFit& fit = fitted.fit;
   StudyResult result;
   result.summary = sentence_of(fit, *this);
-  for (const std::string& text : loaded.warnings) result.warn(text);
+  for (const std::string& text : fitted.warnings) result.warn(text);
   if (const std::string why = fit.rejection(); !why.empty()) {
     result.status = report::Status::kFailed;
     result.warn(why);
   }
   if (!context.numbers_alone) {
-    result.blocks.emplace_back(responses_figure(loaded, fit));
+    result.blocks.emplace_back(responses_figure(fit));
   }
-  const ModesOutcome outcome{loaded, fit};
+  const ModesOutcome outcome{fit, fitted.rest};
   result.add(report::tables_of(outcome));
   if (!context.numbers_alone) result.blocks.emplace_back(criterion_figure(fit));
   result.files.emplace_back("table.yaml", table_text(fit.table));

@@ -1,138 +1,14 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "experiments/kinds/lint.hpp"
+#include "experiments/kinds/structure/force_outcome.hpp"
 #include "experiments/kinds/structure/structure_kinds.hpp"
 #include "experiments/report/result.hpp"
-#include "libsim/signal/fft.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {
 namespace {
-
-using report::Series;
-
-struct Shape {
-  ForceShape shape;
-  std::string_view name;
-};
-constexpr std::array kShapes = {Shape{ForceShape::kAuto, "auto"},
-                                Shape{ForceShape::kImpacts, "impacts"},
-                                Shape{ForceShape::kSmooth, "smooth"}};
-
-std::string_view name_of(ForceShape shape) {
-  return std::ranges::find(kShapes, shape, &Shape::shape)->name;
-}
-
-// Against the force that was measured, in the window.
-struct ForceScore {
-  double correlation = 0.0;
-  double relative_error = 0.0;
-  double in_band = 0.0;   // the same between the table's limits
-  double coverage = 0.0;  // of the 95 % band
-};
-
-ForceScore score_of(const StructureForce& found, const std::vector<double>& measured, double rate,
-                    const StructureTable& table) {
-  const std::size_t count = found.force.size();
-  std::vector<double> error(count),
-      reference(measured.begin(), measured.begin() + static_cast<std::ptrdiff_t>(count));
-  double ff = 0.0, rr = 0.0, fr = 0.0, ee = 0.0, inside = 0.0;
-  for (std::size_t j = 0; j < count; ++j) {
-    error[j] = found.force[j] - reference[j];
-    ff += found.force[j] * found.force[j];
-    rr += reference[j] * reference[j];
-    fr += found.force[j] * reference[j];
-    ee += error[j] * error[j];
-    inside += std::abs(error[j]) <= 1.959964 * found.deviation[j] ? 1.0 : 0.0;
-  }
-  const RealFft fft(count);
-  const std::vector<Complex> error_bins = fft.forward(error), bins = fft.forward(reference);
-  double error_power = 0.0, power = 0.0;
-  for (std::size_t k = 0; k < bins.size(); ++k) {
-    const double at = static_cast<double>(k) * rate / static_cast<double>(count);
-    if (at < table.low || at > table.high) continue;
-    error_power += std::norm(error_bins[k]);
-    power += std::norm(bins[k]);
-  }
-  return {.correlation = fr / std::sqrt(ff * rr),
-          .relative_error = std::sqrt(ee / rr),
-          .in_band = std::sqrt(error_power / power),
-          .coverage = inside / static_cast<double>(count)};
-}
-
-struct ForceOutcome {
-  const LoadedStructureRecord& loaded;
-  const StructureForce& found;
-  const std::optional<ForceScore>& score;
-
-  void visit(ResultVisitor& visitor) const {
-    const double rate = loaded.record.sample_rate;
-    visitor.list(
-        {.key = "force", .table = "identified_force", .name = "Identified force"}, 1, {},
-        [&](ResultVisitor& row, std::size_t) {
-          double impulse = 0.0, peak = 0.0, squares = 0.0;
-          for (std::size_t j = 0; j < found.force.size(); ++j) {
-            impulse += found.force[j] / rate;
-            if (std::abs(found.force[j]) > std::abs(peak)) peak = found.force[j];
-            squares += found.deviation[j] * found.deviation[j];
-          }
-          row({.key = "shape"}, name_of(found.shape));
-          row({.key = "peak_n", .name = "peak", .unit = "N"}, peak);
-          row({.key = "impulse_ns", .name = "impulse", .unit = "N s"}, impulse);
-          row({.key = "deviation_n", .name = "rms deviation", .unit = "N", .format = "{:.2g}"},
-              std::sqrt(squares / static_cast<double>(found.force.size())));
-          row({.key = "correlation", .name = "R", .format = "{:.4f}"},
-              score ? std::optional(score->correlation) : std::nullopt);
-          row({.key = "relative_error", .name = "relative rms error", .format = "{:.3f}"},
-              score ? std::optional(score->relative_error) : std::nullopt);
-          row({.key = "relative_error_in_band", .name = "in the band", .format = "{:.3f}"},
-              score ? std::optional(score->in_band) : std::nullopt);
-          row({.key = "coverage", .name = "in the 95 % band", .format = "{:.3f}"},
-              score ? std::optional(score->coverage) : std::nullopt);
-        });
-    visitor.rows({.key = "sensors",
-                  .table = "sensors",
-                  .name = "Sensors",
-                  .meaning = "rms of what the common force leaves of each response, over what the "
-                             "table's scatter and noise expect, and over the response itself."},
-                 found.sensor_misfit, [&](ResultVisitor& row, const double& misfit) {
-                   const auto k = static_cast<std::size_t>(&misfit - found.sensor_misfit.data());
-                   row({.key = "channel"}, loaded.names[k]);
-                   row({.key = "misfit", .name = "left, as expected: 1", .format = "{:.2f}"},
-                       misfit);
-                   row({.key = "left", .name = "left of the response", .format = "{:.2g}"},
-                       found.sensor_left[k]);
-                 });
-    visitor({.key = "contour_per_s"}, found.sigma);
-    visitor({.key = "window_s"}, found.window);
-    visitor({.key = "background"}, found.background);
-    visitor({.key = "evidence_impacts"}, known(found.evidence_impacts));
-    visitor({.key = "evidence_smooth"}, known(found.evidence_smooth));
-    visitor({.key = "misfit"}, known(found.misfit));
-  }
-};
-
-report::Figure force_figure(const LoadedStructureRecord& loaded, const StructureForce& found) {
-  const double rate = loaded.record.sample_rate;
-  Series identified{.label = "identified"};
-  Series measured{.label = "measured", .color = report::ColorRole::kReference};
-  for (std::size_t j = 0; j < found.force.size(); ++j) {
-    const double at = static_cast<double>(j) / rate, half = 1.959964 * found.deviation[j];
-    identified.add(at, found.force[j], found.force[j] - half, found.force[j] + half);
-    if (!loaded.record.force.empty()) measured.add(at, loaded.record.force[j]);
-  }
-  report::Figure figure{.id = "force",
-                        .title = "Force at the contact",
-                        .caption = "Identified from the responses, with its 95 % band.",
-                        .panels = {{.x = {.label = "time", .unit = "s"},
-                                    .y = {.label = "force", .unit = "N"},
-                                    .series = {std::move(identified)}}}};
-  if (!measured.x.empty())
-    figure.panels[0].series.insert(figure.panels[0].series.begin(), measured);
-  return figure;
-}
 
 StructureTable refined_by(const BlindFit& fit, StructureTable table) {
   table.model = fit.model;
@@ -192,6 +68,10 @@ void StructureChangeOptions::visit(OptionVisitor& visitor) {
 void IdentifyForceOptions::visit(OptionVisitor& visitor) {
   visitor("table", "file of the modes, as fit_modes writes it; relative to the experiment's folder",
           {.required = true}, table);
+  visitor("other_places",
+          "tables of the same structure and sensors with the contact elsewhere: the responses tell "
+          "where the force acts; needs two sensors and more",
+          other_places);
   visitor("record",
           "responses from rest, in the order of the table's sensors; a force is only "
           "compared with",
@@ -214,13 +94,41 @@ void IdentifyForceOptions::visit(OptionVisitor& visitor) {
   visitor("seed", "key of the draws", {.range = Range::non_negative()}, seed);
 }
 
-std::vector<Finding> IdentifyForceOptions::lint() const { return lint_structure_record(record); }
+std::vector<std::string> IdentifyForceOptions::tables() const {
+  std::vector<std::string> all = {table};
+  all.insert(all.end(), other_places.begin(), other_places.end());
+  return all;
+}
+
+std::vector<std::string> IdentifyForceOptions::files_read() const {
+  std::vector<std::string> files = tables();
+  files.push_back(record.file);
+  return files;
+}
+
+std::vector<Finding> IdentifyForceOptions::lint() const {
+  std::vector<Finding> findings = lint_responses("record.responses", record.responses);
+  if (!other_places.empty() && record.responses.size() == 1) {
+    add_finding(findings, "other_places",
+                "one response is explained by a force at any place: name a second sensor, or leave "
+                "the other places out");
+  }
+  return findings;
+}
 
 std::vector<Finding> IdentifyForceOptions::lint_records(const std::filesystem::path& folder) const {
   std::vector<Finding> findings;
   std::size_t sensors = 0;
   std::vector<SensorKind> kinds;
   lint_making(findings, "table", [&] { kinds = read_table(folder / table).model.sensors; });
+  for (std::size_t i = 0; i < other_places.size(); ++i) {
+    lint_making(findings, fmt::format("other_places.{}", i), [&] {
+      const StructureTable other = read_table(folder / other_places[i]);
+      MODCAL_REQUIRE(kinds.empty() || other.model.sensors == kinds,
+                     "{} has other sensors than {}: fit both to the same channels", other_places[i],
+                     table);
+    });
+  }
   lint_making(findings, "record", [&] {
     const LoadedStructureRecord loaded = load_structure_record(record, folder);
     sensors = loaded.kinds.size();
@@ -246,12 +154,19 @@ std::vector<PlanLine> IdentifyForceOptions::plan() const {
 }
 
 StudyResult IdentifyForceOptions::run(const StudyContext& context) const {
-  const StructureTable modes = read_table(context.folder / table);
   const LoadedStructureRecord loaded = load_structure_record(record, context.folder);
+  std::vector<StructureTable> places;
+  for (const std::string& file : tables()) places.push_back(read_table(context.folder / file));
+  std::optional<ContactPlaces> where;
+  if (places.size() > 1) {
+    const double acts = std::isnan(window) ? loaded.record.duration() : window;
+    where = weigh_places(places, loaded.record, std::isnan(contour) ? 2.0 / acts : contour);
+  }
+  const StructureTable& modes = places[where ? where->best : 0];
   context.throw_if_interrupted();
   const StructureForce found =
       structure_force(modes, loaded.record,
-                      {.shape = std::ranges::find(kShapes, shape, &Shape::name)->shape,
+                      {.shape = force_shape_of(shape),
                        .non_negative = non_negative,
                        .window = window,
                        .sigma = contour,
@@ -279,6 +194,11 @@ StudyResult IdentifyForceOptions::run(const StudyContext& context) const {
     result.files.emplace_back("table.yaml", table_text(refined_by(*found.refined, modes)));
   }
   for (const std::string& text : loaded.warnings) result.warn(text);
+  if (where) {
+    const PlacesOutcome told{tables(), *where};
+    result.summary += told.sentence();
+    result.add(report::tables_of(told));
+  }
   doubt(found, loaded, result);
   if (!context.numbers_alone) result.blocks.emplace_back(force_figure(loaded, found));
   result.add(report::tables_of(outcome));

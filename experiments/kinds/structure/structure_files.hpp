@@ -37,6 +37,28 @@ struct StructureRecordOptions {
   void visit(OptionVisitor& visitor);
 };
 
+/// The `functions:` section: measured response functions in the place of a record.
+struct ResponseFunctionOptions {
+  std::string file;
+  std::string format = "auto";
+  std::vector<StructureChannelOptions> responses;
+  void visit(OptionVisitor& visitor);
+};
+
+/// In SI units per newton.
+struct LoadedResponseFunctions {
+  FrequencyGrid grid;
+  std::vector<std::vector<Complex>> values;
+  std::vector<SensorKind> kinds;
+  std::vector<std::string> names;
+  std::vector<std::string> warnings;
+};
+
+/// Throws InvalidInput where the file or a function cannot be had, or has another unit than its
+/// kind.
+LoadedResponseFunctions load_response_functions(const ResponseFunctionOptions& options,
+                                                const std::filesystem::path& folder);
+
 /// A record in SI units, the mean of its quiet beginning taken out.
 struct LoadedStructureRecord {
   StructureRecord record;

@@ -3,14 +3,19 @@
 
 #include "experiments/experiment.hpp"
 #include "experiments/kinds/structure/structure_files.hpp"
+#include "libinverse/structure/contact_place.hpp"
 #include "libinverse/structure/strike_fit.hpp"
 #include "libinverse/structure/structure_force.hpp"
 
 namespace modcal {
 
-/// Kind "fit_modes": a table of modes from a strike whose force was measured.
+/// Kind "fit_modes": a table of modes from a strike whose force was measured, or from response
+/// functions.
 struct FitModesOptions {
+  bool has_record = false;
   StructureRecordOptions record;
+  bool has_functions = false;
+  ResponseFunctionOptions functions;
   double low = 0.0, high = 0.0;
   double contour = std::numeric_limits<double>::quiet_NaN();
   std::int64_t most_modes = 60;
@@ -21,7 +26,9 @@ struct FitModesOptions {
   std::vector<Finding> lint_records(const std::filesystem::path& folder) const;
   std::vector<PlanLine> plan() const;
   std::optional<PlannedSimulations> planned_simulations() const { return std::nullopt; }
-  std::vector<std::string> files_read() const { return {record.file}; }
+  std::vector<std::string> files_read() const {
+    return {has_functions ? functions.file : record.file};
+  }
   StudyResult run(const StudyContext& context) const;
 };
 
@@ -33,6 +40,7 @@ struct StructureChangeOptions : StructureChange {
 /// Kind "identify_force": the force at a structure's contact from K responses and a table.
 struct IdentifyForceOptions {
   std::string table;
+  std::vector<std::string> other_places;  ///< tables of the same structure driven elsewhere
   StructureRecordOptions record;
   std::string shape = "auto";
   bool non_negative = false;
@@ -48,11 +56,16 @@ struct IdentifyForceOptions {
   std::vector<Finding> lint_records(const std::filesystem::path& folder) const;
   std::vector<PlanLine> plan() const;
   std::optional<PlannedSimulations> planned_simulations() const { return std::nullopt; }
-  std::vector<std::string> files_read() const { return {table, record.file}; }
+  std::vector<std::string> files_read() const;
   StudyResult run(const StudyContext& context) const;
+
+ private:
+  /// The table first, then those of the other places.
+  std::vector<std::string> tables() const;
 };
 
-/// What a record of a structure states wrongly.
-std::vector<Finding> lint_structure_record(const StructureRecordOptions& record);
+/// What the channels of a structure's sensors state wrongly; path: of the list.
+std::vector<Finding> lint_responses(const std::string& path,
+                                    const std::vector<StructureChannelOptions>& responses);
 
 }  // namespace modcal

@@ -9,11 +9,12 @@
 #include <cstring>
 #include <fstream>
 #include <limits>
-#include <mutex>
 
 #include "libsim/base/error.hpp"
 #include "libsim/base/files.hpp"
 #include "libsim/base/utf8.hpp"
+#include "libsim/records/hdf5/hdf5_file.hpp"
+#include "libsim/records/matlab/matlab_file.hpp"
 
 namespace modcal {
 namespace {
@@ -21,12 +22,6 @@ namespace {
 using Path = std::filesystem::path;
 using Variable = std::unique_ptr<matvar_t, decltype(&Mat_VarFree)>;
 using File = std::unique_ptr<mat_t, decltype(&Mat_Close)>;
-
-// HDF5, which holds version 7.3, is not made for threads.
-std::mutex& library() {
-  static std::mutex mutex;
-  return mutex;
-}
 
 Variable owned(matvar_t* variable) { return {variable, &Mat_VarFree}; }
 
@@ -121,12 +116,22 @@ NumberAt number_of_class(matio_classes type) {
   return found == kClasses.end() ? nullptr : found->second;
 }
 
-void add_leaves(matvar_t* variable, MatlabLeaf at, std::vector<MatlabLeaf>& leaves) {
+}  // namespace
+
+void MatlabContent::add_arrays(matvar_t* variable, std::vector<std::string> path, Leaf at) {
+  using Holds = NamedArray::Holds;
   if (variable->class_type != MAT_C_STRUCT) {
     at.type = variable->class_type;
-    at.is_complex = variable->isComplex != 0;
-    at.dims.assign(variable->dims, variable->dims + variable->rank);
-    leaves.push_back(std::move(at));
+    const bool has_numbers = number_of_class(at.type) != nullptr;
+    arrays_.push_back({.path = std::move(path),
+                       .dims = {variable->dims, variable->dims + variable->rank},
+                       .holds = has_numbers
+                                    ? variable->isComplex != 0 ? Holds::kComplex : Holds::kReal
+                                : at.type == MAT_C_CHAR ? Holds::kText
+                                                        : Holds::kOther,
+                       .is_single = at.type == MAT_C_SINGLE,
+                       .place = leaves_.size()});
+    leaves_.push_back(std::move(at));
     return;
   }
   if (size_of(*variable) != 1) return;
@@ -134,51 +139,54 @@ void add_leaves(matvar_t* variable, MatlabLeaf at, std::vector<MatlabLeaf>& leav
   for (std::size_t i = 0; i < Mat_VarGetNumberOfFields(variable); ++i) {
     matvar_t* const field = Mat_VarGetStructFieldByIndex(variable, i, 0);
     if (field == nullptr || names[i] == nullptr) continue;
-    MatlabLeaf below = at;
-    below.path.emplace_back(names[i]);
-    below.fields.push_back(i);
-    add_leaves(field, std::move(below), leaves);
+    std::vector<std::string> below = path;
+    below.emplace_back(names[i]);
+    Leaf leaf = at;
+    leaf.fields.push_back(i);
+    add_arrays(field, std::move(below), std::move(leaf));
   }
 }
-
-}  // namespace
-
-std::string MatlabLeaf::text() const {
-  return utf8_or_latin1(fmt::format("{}", fmt::join(path, ".")));
-}
-
-bool MatlabLeaf::has_numbers() const { return number_of_class(type) != nullptr; }
 
 MatlabContent::MatlabContent(Path path) : path_(std::move(path)) {
-  const std::lock_guard lock(library());
-  const File file = opened(path_);
-  for (;;) {
-    const Variable variable = owned(Mat_VarReadNextInfo(file.get()));
-    if (variable == nullptr) break;
-    if (variable->name == nullptr) continue;  // nothing could ask for it
-    add_leaves(variable.get(), {.path = {variable->name}}, leaves_);
+  {
+    const std::lock_guard lock(hdf5_lock());
+    const File file = opened(path_);
+    for (;;) {
+      const Variable variable = owned(Mat_VarReadNextInfo(file.get()));
+      if (variable == nullptr) break;
+      if (variable->name == nullptr) continue;  // nothing could ask for it
+      add_arrays(variable.get(), {variable->name}, {});
+    }
+  }
+  read_heads();
+}
+
+// Names and units as write_matlab() left them.
+void MatlabContent::read_heads() {
+  for (const NamedArray& head : arrays_) {
+    if (head.path.size() != 3 || head.path[0] != kMatlabHeads ||
+        head.holds != NamedArray::Holds::kText) {
+      continue;
+    }
+    const auto found = std::ranges::find(arrays_, std::vector{head.path[1]}, &NamedArray::path);
+    if (found == arrays_.end()) continue;
+    (head.path[2] == "unit" ? found->unit : found->title) = text(head);
   }
 }
 
-std::vector<double> MatlabContent::column(const MatlabLeaf& leaf, std::size_t j) {
-  const matvar_t& field = this->field(leaf);
+std::vector<double> MatlabContent::column(const NamedArray& array, std::size_t j) {
+  const matvar_t& field = this->field(array);
   const NumberAt read = number_of_class(field.class_type);
-  std::vector<double> samples(leaf.rows());
-  // Numbers stand column by column; a channel may be a row.
-  const bool is_row = leaf.dims[0] < leaf.dims[1];
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    samples[i] = read(field, is_row ? j + i * leaf.dims[0] : i + j * leaf.dims[0]);
-  }
+  // Numbers stand column by column.
+  const std::size_t step = array.is_across() ? array.dims[0] : 1;
+  const std::size_t first = array.is_across() ? j : j * array.dims[0];
+  std::vector<double> samples(array.rows());
+  for (std::size_t i = 0; i < samples.size(); ++i) samples[i] = read(field, first + i * step);
   return samples;
 }
 
-double MatlabContent::number(const MatlabLeaf& leaf) {
-  const matvar_t& field = this->field(leaf);
-  return number_of_class(field.class_type)(field, 0);
-}
-
-std::string MatlabContent::text(const MatlabLeaf& leaf) {
-  const matvar_t& field = this->field(leaf);
+std::string MatlabContent::text(const NamedArray& array) {
+  const matvar_t& field = this->field(array);
   const auto* const letters = static_cast<const char*>(field.data);
   const bool is_bytes = field.data_type == MAT_T_UINT8 || field.data_type == MAT_T_INT8 ||
                         field.data_type == MAT_T_UTF8;
@@ -186,21 +194,22 @@ std::string MatlabContent::text(const MatlabLeaf& leaf) {
   return utf8_or_latin1({letters, std::min(size_of(field), field.nbytes)});
 }
 
-const matvar_t& MatlabContent::field(const MatlabLeaf& leaf) {
-  const std::lock_guard lock(library());
-  Variable& variable = read_.try_emplace(leaf.path[0], owned(nullptr)).first->second;
+const matvar_t& MatlabContent::field(const NamedArray& array) {
+  const std::lock_guard lock(hdf5_lock());
+  const Leaf& leaf = leaves_[array.place];
+  Variable& variable = read_.try_emplace(array.path[0], owned(nullptr)).first->second;
   if (variable == nullptr) {
     const File file = opened(path_);
-    variable = owned(Mat_VarRead(file.get(), leaf.path[0].c_str()));
+    variable = owned(Mat_VarRead(file.get(), array.path[0].c_str()));
   }
   matvar_t* found = variable.get();
   for (const std::size_t place : leaf.fields) {
     if (found != nullptr) found = Mat_VarGetStructFieldByIndex(found, place, 0);
   }
-  MODCAL_REQUIRE(found != nullptr && found->data != nullptr && size_of(*found) == leaf.size() &&
+  MODCAL_REQUIRE(found != nullptr && found->data != nullptr && size_of(*found) == array.size() &&
                      found->class_type == leaf.type,
                  "{}: the variable {} cannot be read: the file is damaged; save it again",
-                 path_.string(), leaf.text());
+                 path_.string(), array.text());
   return *found;
 }
 

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "libsim/records/record_file.hpp"
+#include "libsim/records/response_functions.hpp"
 #include "libsim/records/universal/line_file.hpp"
 
 namespace modcal {
@@ -59,6 +60,10 @@ UniversalValues read_universal_values(const std::filesystem::path& path,
 
 /// The functions of time as channels.
 Recording read_universal(const std::filesystem::path& path, const ReadOptions& options = {});
+
+/// Its frequency response functions, as read_response_functions() says.
+ResponseFunctions read_universal_responses(const std::filesystem::path& path,
+                                           const std::vector<std::string>& channels);
 
 /// One dataset 58b in doubles for each signal.
 void write_universal(const std::filesystem::path& path, std::span<const Signal> signals,

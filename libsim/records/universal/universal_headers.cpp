@@ -99,6 +99,7 @@ class HeaderReader {
   void read_function(const Columns& heading);
   void skip_to_end();
   void skip_values(const UniversalFunction& function);
+  void leap_lines(const UniversalFunction& function);
   void find_width(UniversalFunction& function) const;
 
   LineFile file_;
@@ -220,6 +221,44 @@ void HeaderReader::find_width(UniversalFunction& function) const {
                  function.byte_count, function.size, per_value);
 }
 
+std::uint64_t numbers_in(std::string_view line) {
+  std::uint64_t count = 0;
+  double value = 0.0;
+  const char* at = line.data();
+  const char* const end = at + line.size();
+  for (;;) {
+    while (at < end && (*at == ' ' || *at == '\t' || *at == '+')) ++at;
+    const auto [stop, error] = std::from_chars(at, end, value);
+    if (error != std::errc()) return at == end ? count : 0;
+    ++count;
+    at = stop;
+  }
+}
+
+// Over lines of text that are all as long as the first one, if the end of the values stands where
+// it is then: a file of a gigabyte is not read for its headers. Stays where it does not; the values
+// themselves are checked when they are read.
+void HeaderReader::leap_lines(const UniversalFunction& function) {
+  const FilePlace begin = file_.place();
+  const std::uint64_t numbers =
+      function.size * ((function.is_complex ? 2u : 1u) + (function.is_even ? 0u : 1u));
+  std::string line;
+  const std::uint64_t own = file_.next(line) ? numbers_in(line) : 0;
+  const std::uint64_t bytes = file_.place().byte - begin.byte;
+  const std::uint64_t lines = own == 0 ? 0 : numbers / own;
+  bool right = lines > 1 && lines * bytes <= file_.size() - begin.byte;
+  if (right) {
+    // The end of the line before, the rest of the values, the end of the dataset.
+    file_.go_to({begin.byte + lines * bytes - 1, begin.line + lines - 1});
+    right = file_.next(line) && line.empty();
+    const FilePlace there = file_.place();
+    if (numbers % own > 0) right = right && file_.next(line) && numbers_in(line) == numbers % own;
+    right = right && file_.next(line) && is_delimiter(line);
+    if (right) return file_.go_to(there);
+  }
+  file_.go_to(begin);
+}
+
 void HeaderReader::skip_values(const UniversalFunction& function) {
   if (function.binary) {
     file_.skip(function.byte_count);
@@ -228,6 +267,7 @@ void HeaderReader::skip_values(const UniversalFunction& function) {
     MODCAL_REQUIRE(function.size <= file_.left(),
                    "{}: {} values are announced, {} bytes are left; it was cut off", where(),
                    function.size, file_.left());
+    leap_lines(function);
   }
   std::string text;
   const std::string begin = where();

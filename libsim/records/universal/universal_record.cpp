@@ -11,7 +11,8 @@
 namespace modcal {
 namespace {
 
-enum SpecificData : int { kTime = 17 };
+enum SpecificData : int { kTime = 17, kFrequency = 18 };
+enum FunctionType : int { kTimeResponse = 1, kFrequencyResponse = 4 };
 constexpr std::string_view kRateLine = "sample_rate: ";
 
 std::string_view type_name(int type) {
@@ -71,6 +72,32 @@ double resolution_of(const UniversalFunction& function) {
                    : std::numeric_limits<double>::epsilon();
 }
 
+// SI factor of a force that is told by the factors of dataset 164 alone.
+double force_factor(const UniversalAxis& axis, const std::optional<UniversalUnits>& units) {
+  RecordedChannel force;
+  UniversalAxis of_force = axis;
+  if (axis.code == 0) of_force.code = quantity_of_unit("N")->code;
+  set_unit(of_force, units, force);
+  return axis.unit.empty() ? force.full_scale : 1.0;
+}
+
+// A function of even lines over frequency that begin at a whole number of steps.
+void set_response(const std::filesystem::path& path, const UniversalFunction& function,
+                  const std::optional<UniversalUnits>& units, StoredChannel& channel) {
+  const double step = function.step, lines = function.first / step;
+  const bool is_even = function.is_even && step > 0.0 && lines >= 0.0 && lines < 1e9 &&
+                       std::abs(lines - std::round(lines)) < 1e-3;
+  if (function.type != kFrequencyResponse || !function.is_complex || !is_even ||
+      (function.abscissa.code != kFrequency && function.abscissa.code > 1)) {
+    return;
+  }
+  channel.first_line = function.first;
+  channel.line_step = step;
+  channel.per_unit = function.denominator.unit;
+  channel.head.full_scale /= force_factor(function.denominator, units);
+  channel.read_response = [path, function] { return read_universal_values(path, function).values; };
+}
+
 StoredChannel stored(const std::filesystem::path& path, const UniversalFunction& function,
                      const std::optional<UniversalUnits>& units) {
   StoredChannel channel;
@@ -79,13 +106,14 @@ StoredChannel stored(const std::filesystem::path& path, const UniversalFunction&
   channel.size = function.size;
   channel.place = fmt::format("{}: dataset 58{} at line {}", path.string(),
                               function.binary ? "b" : "", function.header.line);
-  const bool in_time =
-      function.abscissa.code == kTime || (function.type == 1 && function.abscissa.code <= 1);
+  const bool in_time = function.abscissa.code == kTime ||
+                       (function.type == kTimeResponse && function.abscissa.code <= 1);
   if (!in_time || function.is_complex || function.size == 0) {
     channel.other_than_time = fmt::format(
         "{}{} with {} values over {}", function.is_complex ? "complex " : "",
         type_name(function.type), function.size,
         function.abscissa.label.empty() ? "another axis than time" : function.abscissa.label);
+    set_response(path, function, units, channel);
     return channel;
   }
   set_rate(function, channel);
@@ -109,9 +137,7 @@ StoredChannel stored(const std::filesystem::path& path, const UniversalFunction&
   return channel;
 }
 
-}  // namespace
-
-Recording read_universal(const std::filesystem::path& path, const ReadOptions& options) {
+std::vector<StoredChannel> channels_of(const std::filesystem::path& path) {
   const UniversalFile file = read_universal_headers(path);
   MODCAL_REQUIRE(!file.functions.empty(), "{}: no function (dataset 58) stands in it{}{}",
                  path.string(), file.other_datasets.empty() ? "" : ", only datasets ",
@@ -120,9 +146,21 @@ Recording read_universal(const std::filesystem::path& path, const ReadOptions& o
   for (const UniversalFunction& function : file.functions) {
     channels.push_back(stored(path, function, file.units));
   }
+  return channels;
+}
+
+}  // namespace
+
+Recording read_universal(const std::filesystem::path& path, const ReadOptions& options) {
+  std::vector<StoredChannel> channels = channels_of(path);
   std::string format = fmt::format("universal file, {} function{}", channels.size(),
                                    channels.size() == 1 ? "" : "s");
   return assemble(std::move(format), std::move(channels), options, path.string());
+}
+
+ResponseFunctions read_universal_responses(const std::filesystem::path& path,
+                                           const std::vector<std::string>& channels) {
+  return assemble_responses(channels_of(path), channels, path.string());
 }
 
 }  // namespace modcal

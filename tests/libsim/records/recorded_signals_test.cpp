@@ -159,9 +159,12 @@ TEST_F(LoadRecord, TellsTheFormatByTheExtension) {
   EXPECT_THAT(refusal_of([] { read_record("a/b.TSV", "auto"); }), HasSubstr(csv_missing));
   EXPECT_THAT(refusal_of([] { read_record("a/b.rf64", "auto"); }), HasSubstr(wav_missing));
   EXPECT_THAT(refusal_of([] { read_record("a/b.dat", "csv"); }), HasSubstr(csv_missing));
-  EXPECT_EQ(refusal_of([] { read_record("b.dat", "auto"); }),
-            "b.dat: the extension \".dat\" does not tell the format; state format: csv, wav, uff, mat");
-  EXPECT_THAT(refusal_of([] { read_record("b.csv", "tdms"); }), HasSubstr("unknown format \"tdms\""));
+  EXPECT_EQ(
+      refusal_of([] { read_record("b.dat", "auto"); }),
+      "b.dat: the extension \".dat\" does not tell the format; state format: csv, wav, uff, mat, "
+      "npy, npz, hdf5, lvm");
+  EXPECT_THAT(refusal_of([] { read_record("b.csv", "tdms"); }),
+              HasSubstr("unknown format \"tdms\""));
 }
 
 TEST_F(LoadRecord, ReadsWavWithAndWithoutItsOwnScale) {

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <cmath>
 #include <cstring>
+#include <numbers>
 #include <random>
 
 #include "libsim/base/random.hpp"
@@ -156,6 +158,30 @@ TEST_F(Universal, FunctionsOfTimeAreChannels) {
   const Recording headers = read_record(file, "auto", {.headers_only = true});
   EXPECT_TRUE(headers.channels[0].samples.empty());
   EXPECT_EQ(headers.frames(), 23u);
+}
+
+TEST_F(Universal, ReadsResponseFunctionsWithTheirUnits) {
+  std::string text = file_of({6, true, false, false}, numbers(9, true), "C");
+  // Over frequency from 2 Hz in steps of 1 Hz, g per lbf.
+  text.replace(text.find("    1         0    0"), 5, "    4");
+  text.replace(text.find("  0.00000E+00  1.00000E-03"), 26, "  2.00000E+00  1.00000E+00");
+  text.replace(text.find("        17    0"), 10, "        18");
+  text.replace(text.find("         0    0    0    0 NONE                 NONE"), 53,
+               "        13    0    0    0 Force                lbf ");
+  const auto file = write("a.uff", text + file_of({2, true, false, false}, numbers(5, true), "A"));
+  const ResponseFunctions read = read_response_functions(file, "auto", {"C"});
+  ASSERT_EQ(read.functions.size(), 1u);
+  EXPECT_EQ(read.functions[0].unit, "g");
+  EXPECT_EQ(read.functions[0].per_unit, "lbf");
+  EXPECT_EQ(read.functions[0].kind, "acceleration");
+  EXPECT_EQ(read.grid.bins, 11u);
+  EXPECT_DOUBLE_EQ(read.grid.omega(2), 2.0 * 2.0 * std::numbers::pi);
+  EXPECT_TRUE(std::isnan(read.functions[0].values[1].real()));
+  EXPECT_EQ(read.functions[0].values[4], numbers(9, true).values[2]);
+  EXPECT_THAT(refusal_of([&] { read_response_functions(file, "auto", {"A"}); }),
+              HasSubstr("\"A\" is no response function over even lines but has 5 samples"));
+  EXPECT_THAT(refusal_of([&] { read_response_functions(write("a.csv", "t\n1\n"), "auto", {"A"}); }),
+              HasSubstr("columns of text keep no response functions"));
 }
 
 TEST_F(Universal, UnitsOfDataset164ScaleWhatHasNoLabel) {

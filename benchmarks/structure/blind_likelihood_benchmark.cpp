@@ -1,0 +1,63 @@
+// Time of the joint likelihood with its Jacobian: K = 4 sensors, 30 modes, 2000 bins.
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "libinverse/structure/blind_likelihood.hpp"
+
+namespace {
+
+using namespace modcal;
+
+struct Problem {
+  ModalModel model;
+  ContourSpectra spectra;
+  BinVariances variances;
+};
+
+Problem problem() {
+  constexpr double kTurn = 2.0 * std::numbers::pi;
+  Problem p;
+  p.model.sensors.assign(4, SensorKind::kAcceleration);
+  for (std::size_t n = 0; n < 30; ++n) {
+    p.model.poles.push_back({kTurn * (12.0 + 15.0 * static_cast<double>(n)), 0.01});
+  }
+  for (std::size_t i = 0; i < 120; ++i) {
+    p.model.constants.push_back(std::cos(0.7 * static_cast<double>(i)));
+    p.model.quadrature.push_back(0.1 * std::sin(1.3 * static_cast<double>(i)));
+  }
+  p.spectra.sample_rate = 2000.0;
+  p.spectra.samples = 8000;
+  p.spectra.grid = FrequencyGrid::of_record(8000, 2000.0);
+  p.spectra.bins = {20, 2020};
+  p.spectra.force.assign(2000, 1.0);
+  p.spectra.responses = transfers_of(p.model, p.spectra);
+  for (std::size_t k = 0; k < 4; ++k) {
+    p.variances.of.emplace_back(2000, 1e-4);
+    for (std::size_t m = 0; m < 2000; ++m) {
+      p.spectra.responses[k][m] += 0.01 * std::exp(Complex(0.0, 0.1 * static_cast<double>(m * k)));
+    }
+  }
+  return p;
+}
+
+void likelihood_with_jacobian(benchmark::State& state) {
+  const Problem p = problem();
+  const BlindLikelihood likelihood(p.spectra, p.model.sensors, p.variances, state.range(0) != 0);
+  for (auto _ : state) {
+    const BlindPoint point = likelihood.at(p.model);
+    benchmark::DoNotOptimize(likelihood.jacobian(p.model, p.model, point, false).data());
+  }
+}
+BENCHMARK(likelihood_with_jacobian)
+    ->ArgName("at_rest")
+    ->Arg(1)
+    ->Arg(0)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
+
+}  // namespace
+
+BENCHMARK_MAIN();

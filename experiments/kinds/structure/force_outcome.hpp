@@ -1,0 +1,47 @@
+// What an identified force has to say of itself.
+#pragma once
+
+#include <optional>
+
+#include "experiments/kinds/structure/structure_files.hpp"
+#include "experiments/report/report.hpp"
+#include "libinverse/structure/contact_place.hpp"
+#include "libinverse/structure/structure_force.hpp"
+#include "libsim/base/result_visitor.hpp"
+
+namespace modcal {
+
+/// "impacts", and back.
+std::string_view name_of(ForceShape shape);
+ForceShape force_shape_of(std::string_view name);
+
+/// Against the force that was measured, in the window.
+struct ForceScore {
+  double correlation = 0.0;
+  double relative_error = 0.0;
+  double in_band = 0.0;   // the same between the table's limits
+  double coverage = 0.0;  // of the 95 % band
+};
+
+/// In the window of the force, between the limits of the table's band for `in_band`.
+ForceScore score_of(const StructureForce& found, const std::vector<double>& measured, double rate,
+                    const StructureTable& table);
+
+struct ForceOutcome {
+  const LoadedStructureRecord& loaded;
+  const StructureForce& found;
+  const std::optional<ForceScore>& score;
+  void visit(ResultVisitor& visitor) const;
+};
+
+/// Where the force acts.
+struct PlacesOutcome {
+  std::vector<std::string> tables;
+  const ContactPlaces& where;
+  void visit(ResultVisitor& visitor) const;
+  std::string sentence() const;
+};
+
+report::Figure force_figure(const LoadedStructureRecord& loaded, const StructureForce& found);
+
+}  // namespace modcal

@@ -1,0 +1,69 @@
+// Files that hold arrays by names, in structures or groups: MAT, NumPy and HDF5 files.
+#pragma once
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "libsim/records/record_file.hpp"
+
+namespace modcal {
+
+/// An array with the names that lead to it; a number is one of one value.
+struct NamedArray {
+  enum class Holds { kReal, kComplex, kText, kOther };
+
+  std::vector<std::string> path;
+  std::vector<std::size_t> dims;
+  Holds holds = Holds::kOther;
+  bool is_single = false;  ///< floats of 32 bits
+  std::string title = {};  ///< in the place of the names, where the file has one
+  std::string unit = {};   ///< where the file states one with it
+  std::size_t place = 0;   ///< for the file alone
+
+  bool has_numbers() const { return holds == Holds::kReal || holds == Holds::kComplex; }
+  bool is_real() const { return holds == Holds::kReal; }
+  std::size_t size() const {
+    std::size_t product = 1;
+    for (const std::size_t dim : dims) product *= dim;
+    return product;
+  }
+  /// Vectors have two dimensions, one of them 1.
+  bool is_table() const { return dims.size() == 2 && size() > 1; }
+  /// Channels are long: the samples are along the larger dimension.
+  std::size_t rows() const { return std::max(dims[0], dims[1]); }
+  std::size_t columns() const { return std::min(dims[0], dims[1]); }
+  bool is_across() const { return dims[0] < dims[1]; }
+  /// The title, else the names with dots between them.
+  std::string text() const;
+};
+
+/// What reads one; a channel may be asked for from any thread.
+class ArrayFile {
+ public:
+  virtual ~ArrayFile() = default;
+  const std::vector<NamedArray>& arrays() const { return arrays_; }
+
+  // Throw InvalidInput where the array is not what its header says.
+  /// The j-th channel of a real table.
+  virtual std::vector<double> column(const NamedArray& array, std::size_t j) = 0;
+  /// Of an array of texts the first one.
+  virtual std::string text(const NamedArray& array) = 0;
+  /// Its one real value.
+  double number(const NamedArray& array) { return column(array, 0)[0]; }
+
+ protected:
+  std::vector<NamedArray> arrays_;
+};
+
+/// The vectors and the columns of tables as channels. The sample rate [Hz] is a number called
+/// sample_rate, fs or the like, or one over a number called dt or increment [s], in the same
+/// structure or around it; else a vector called t or time [s] tells it. A text `unit` below the
+/// name of an array is its unit. `kind` of file: "MAT file". Throws InvalidInput for a file without
+/// vectors, and as assemble() does.
+Recording recording_of(const std::shared_ptr<ArrayFile>& content, std::string_view kind,
+                       const std::filesystem::path& path, const ReadOptions& options);
+
+}  // namespace modcal

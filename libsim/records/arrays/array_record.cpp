@@ -1,0 +1,138 @@
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <optional>
+
+#include "libsim/base/error.hpp"
+#include "libsim/base/utf8.hpp"
+#include "libsim/base/words.hpp"
+#include "libsim/records/arrays/array_file.hpp"
+#include "libsim/records/stored_channels.hpp"
+
+namespace modcal {
+namespace {
+
+using Content = std::shared_ptr<ArrayFile>;
+
+std::string last_of(const NamedArray& array) { return lower_case(array.path.back()); }
+
+bool is_one_of(const std::string& name, std::initializer_list<std::string_view> names) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+// How many names lead to the structure that `of` stands in, where the other is all of it or stands
+// in it, too; the axis of a signal often stands in a structure x_values beside it.
+std::optional<std::size_t> scope(const NamedArray& array, const NamedArray& of) {
+  std::size_t depth = of.path.size() - 1;
+  if (depth > 0 && of.path[depth - 1] == "x_values") --depth;
+  const bool inside =
+      array.path.size() >= depth &&
+      std::equal(of.path.begin(), of.path.begin() + static_cast<long>(depth), array.path.begin());
+  return inside ? std::optional(depth) : std::nullopt;
+}
+
+// The one that tells of an array, from the nearest structure; null: none.
+template <typename Tells>
+const NamedArray* nearest(const std::vector<NamedArray>& arrays, const NamedArray& array,
+                          Tells tells) {
+  const NamedArray* best = nullptr;
+  for (const NamedArray& other : arrays) {
+    if (!tells(other) || !scope(array, other)) continue;
+    if (best == nullptr || *scope(array, other) > *scope(array, *best)) best = &other;
+  }
+  return best;
+}
+
+bool is_time(const NamedArray& array) { return is_one_of(last_of(array), {"t", "time"}); }
+bool is_rate(const NamedArray& array) {
+  return array.size() == 1 && array.is_real() &&
+         is_one_of(last_of(array), {"sample_rate", "samplerate", "sampling_rate", "samplingrate",
+                                    "sample_frequency", "sampling_frequency", "fs"});
+}
+bool is_period(const NamedArray& array) {
+  return array.size() == 1 && array.is_real() &&
+         is_one_of(last_of(array),
+                   {"dt", "ts", "increment", "wf_increment", "sample_period", "delta_t"});
+}
+
+void set_rate(const Content& content, const NamedArray& array, StoredChannel& channel) {
+  const std::vector<NamedArray>& arrays = content->arrays();
+  const auto tells = [](const NamedArray& other) { return is_rate(other) || is_period(other); };
+  if (const NamedArray* const told = nearest(arrays, array, tells)) {
+    const double value = content->number(*told);
+    channel.sample_rate =
+        is_rate(*told) ? value : rate_of_period(value, std::numeric_limits<double>::epsilon());
+    channel.rate_source = fmt::format("{} = {:.9g}", told->text(), value);
+    return;
+  }
+  const NamedArray* const time = nearest(arrays, array, [&array](const NamedArray& other) {
+    return is_time(other) && other.is_real() && other.is_table() && other.columns() == 1 &&
+           other.rows() == array.rows();
+  });
+  if (time == nullptr) return;
+  channel.read_times = [content, time = *time] { return content->column(time, 0); };
+  channel.time_resolution = time->is_single
+                                ? static_cast<double>(std::numeric_limits<float>::epsilon())
+                                : std::numeric_limits<double>::epsilon();
+}
+
+// A text `unit` right below the array.
+std::string unit_of(const Content& content, const NamedArray& array) {
+  if (!array.unit.empty()) return array.unit;
+  const std::size_t depth = array.path.size();
+  for (const NamedArray& other : content->arrays()) {
+    if (other.holds == NamedArray::Holds::kText && other.path.size() == depth + 1 &&
+        std::equal(array.path.begin(), array.path.end(), other.path.begin()) &&
+        is_one_of(last_of(other), {"unit", "units", "unit_string", "ni_unitdescription"})) {
+      return content->text(other);
+    }
+  }
+  return {};
+}
+
+void add_channels(const Content& content, const std::filesystem::path& path,
+                  const NamedArray& array, std::vector<StoredChannel>& channels) {
+  const bool is_plain = array.is_real() && array.is_table();
+  const std::size_t count = is_plain ? array.columns() : 1;
+  // Every channel has its entry before a sample is read.
+  constexpr std::size_t kMostChannels = 1 << 12;
+  const bool is_many = count > kMostChannels;
+  for (std::size_t j = 0; j < (is_many ? 1 : count); ++j) {
+    StoredChannel channel;
+    channel.head.name = array.text();
+    if (count > 1 && !is_many) channel.head.name += fmt::format("_{}", j + 1);
+    channel.head.unit = unit_of(content, array);
+    channel.place = fmt::format("{}: {}", path.string(), channel.head.name);
+    channel.size = is_plain && !is_many ? array.rows() : array.size();
+    if (!is_plain || is_many) {
+      channel.other_than_time = fmt::format(
+          "{}array of {} values", array.is_real() ? "" : "complex ", fmt::join(array.dims, " × "));
+    } else {
+      set_rate(content, array, channel);
+      channel.read = [content, array, j] { return content->column(array, j); };
+    }
+    channels.push_back(std::move(channel));
+  }
+}
+
+}  // namespace
+
+std::string NamedArray::text() const {
+  return title.empty() ? utf8_or_latin1(fmt::format("{}", fmt::join(path, "."))) : title;
+}
+
+Recording recording_of(const Content& content, std::string_view kind,
+                       const std::filesystem::path& path, const ReadOptions& options) {
+  std::vector<StoredChannel> channels;
+  for (const NamedArray& array : content->arrays()) {
+    const bool may_be_channel = array.has_numbers() && array.size() > 1;
+    if (may_be_channel && !is_time(array)) add_channels(content, path, array, channels);
+  }
+  MODCAL_REQUIRE(!channels.empty(), "{}: no vector of numbers stands in this {}", path.string(),
+                 kind);
+  const std::size_t count = channels.size();
+  return assemble(fmt::format("{}, {} channel{}", kind, count, count == 1 ? "" : "s"),
+                  std::move(channels), options, path.string());
+}
+
+}  // namespace modcal

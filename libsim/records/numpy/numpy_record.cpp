@@ -1,0 +1,125 @@
+#include <zip.h>
+
+#include <fstream>
+
+#include "libsim/base/error.hpp"
+#include "libsim/base/files.hpp"
+#include "libsim/base/utf8.hpp"
+#include "libsim/records/numpy/npy_arrays.hpp"
+#include "libsim/records/numpy/numpy_file.hpp"
+
+namespace modcal {
+namespace {
+
+using Path = std::filesystem::path;
+
+std::uint64_t size_of(const Path& path) {
+  require_regular_file(path);
+  MODCAL_REQUIRE(std::filesystem::exists(path), "{}: there is no such file; check the path",
+                 path.string());
+  const std::uint64_t size = std::filesystem::file_size(path);
+  MODCAL_REQUIRE(size > 0, "{}: the file is empty", path.string());
+  return size;
+}
+
+NpyBytes bytes_of_file(const Path& path) {
+  const auto file = std::make_shared<std::ifstream>(path, std::ios::binary);
+  MODCAL_REQUIRE(file->is_open(), "{}: cannot be opened; check the path and its permissions",
+                 path.string());
+  return
+      [file, place = path.string(), at = std::uint64_t{0}](char* bytes, std::size_t size) mutable {
+        file->read(bytes, static_cast<std::streamsize>(size));
+        at += static_cast<std::uint64_t>(file->gcount());
+        MODCAL_REQUIRE(file->gcount() == static_cast<std::streamsize>(size),
+                       "{}: byte {}: the file ends within the array; it was cut off", place, at);
+      };
+}
+
+// An archive that is open as long as one of its members is read.
+class Archive {
+ public:
+  explicit Archive(const Path& path) {
+    int code = 0;
+    zip_ = zip_open(path.c_str(), ZIP_RDONLY, &code);
+    if (zip_ != nullptr) return;
+    zip_error_t error;
+    zip_error_init_with_code(&error, code);
+    const std::string why = zip_error_strerror(&error);
+    zip_error_fini(&error);
+    throw_invalid_input(
+        "{}: byte {}: no directory of a ZIP archive stands before the file's end ({}); it was cut "
+        "off, or it is no NPZ file",
+        path.string(), std::filesystem::file_size(path), why);
+  }
+  ~Archive() { zip_discard(zip_); }
+  Archive(const Archive&) = delete;
+  Archive& operator=(const Archive&) = delete;
+  zip_t* zip() const { return zip_; }
+
+ private:
+  zip_t* zip_ = nullptr;
+};
+
+using Member = std::unique_ptr<zip_file_t, decltype(&zip_fclose)>;
+
+NpyBytes bytes_of_member(const Path& path, std::uint64_t index, const std::string& place) {
+  const auto archive = std::make_shared<Archive>(path);
+  zip_file_t* const opened = zip_fopen_index(archive->zip(), index, 0);
+  MODCAL_REQUIRE(opened != nullptr, "{}: cannot be read: {}", place, zip_strerror(archive->zip()));
+  return [archive, member = std::make_shared<Member>(opened, &zip_fclose), place,
+          at = std::uint64_t{0}](char* bytes, std::size_t size) mutable {
+    zip_file_t* const file = member->get();
+    const zip_int64_t read = zip_fread(file, bytes, size);
+    if (read > 0) at += static_cast<std::uint64_t>(read);
+    MODCAL_REQUIRE(read >= 0, "{}: byte {}: {}: the file is damaged", place, at,
+                   zip_file_strerror(file));
+    MODCAL_REQUIRE(static_cast<std::uint64_t>(read) == size,
+                   "{}: byte {}: it ends within the array", place, at);
+    // Behind the last byte the checksum is compared.
+    char none = 0;
+    if (size > 0 && zip_fread(file, &none, 0) < 0) {
+      throw_invalid_input("{}: {}: the file is damaged", place, zip_file_strerror(file));
+    }
+  };
+}
+
+// "R1.unit" is the unit of R1; other names keep their dots.
+std::vector<std::string> names_of(std::string member) {
+  constexpr std::string_view kEnding = ".npy", kUnit = ".unit";
+  member.resize(member.size() - kEnding.size());
+  member = utf8_or_latin1(member);
+  if (member.size() <= kUnit.size() || !member.ends_with(kUnit)) return {member};
+  member.resize(member.size() - kUnit.size());
+  return {member, std::string(kUnit.substr(1))};
+}
+
+}  // namespace
+
+Recording read_npy(const Path& path, const ReadOptions& options) {
+  const std::uint64_t size = size_of(path);
+  const auto arrays = std::make_shared<NpyArrays>();
+  arrays->add({utf8_or_latin1(path.stem().string())}, path.string(), size,
+              [path] { return bytes_of_file(path); });
+  return recording_of(arrays, "NumPy array", path, options);
+}
+
+Recording read_npz(const Path& path, const ReadOptions& options) {
+  size_of(path);
+  const auto arrays = std::make_shared<NpyArrays>();
+  const Archive archive(path);
+  const zip_int64_t count = zip_get_num_entries(archive.zip(), 0);
+  for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(std::max<zip_int64_t>(0, count)); ++i) {
+    zip_stat_t stat;
+    const bool known = zip_stat_index(archive.zip(), i, 0, &stat) == 0 &&
+                       (stat.valid & ZIP_STAT_NAME) != 0 && (stat.valid & ZIP_STAT_SIZE) != 0;
+    if (!known || !std::string_view(stat.name).ends_with(".npy")) continue;
+    const std::string place = fmt::format("{}: {}", path.string(), utf8_or_latin1(stat.name));
+    arrays->add(names_of(stat.name), place, stat.size,
+                [path, i, place] { return bytes_of_member(path, i, place); });
+  }
+  MODCAL_REQUIRE(!arrays->arrays().empty(), "{}: no array of NumPy stands in this archive",
+                 path.string());
+  return recording_of(arrays, "NumPy archive", path, options);
+}
+
+}  // namespace modcal

@@ -1,0 +1,30 @@
+// Measured response functions of frequency, as files keep them.
+#pragma once
+
+#include "libsim/model/modal_model.hpp"
+#include "libsim/records/recording.hpp"
+
+namespace modcal {
+
+/// H at the lines of a grid from 0 on; NaN below the first line that the file has.
+struct ResponseFunction {
+  std::string name;
+  std::string kind;            ///< what the sensor reads ("acceleration"); empty: not told
+  std::string unit, per_unit;  ///< of the response and of the force; empty: not told
+  double full_scale = 1.0;     ///< of values whose units are told, else SI per value
+  std::vector<Complex> values;
+};
+
+struct ResponseFunctions {
+  FrequencyGrid grid;
+  std::vector<ResponseFunction> functions;
+};
+
+/// The functions named, by name or by number from 1 among all that the file holds, of one grid.
+/// Throws WrongChannel for one that is not there, is no response function or has another grid, and
+/// InvalidInput for a format that keeps none.
+ResponseFunctions read_response_functions(const std::filesystem::path& path,
+                                          const std::string& format,
+                                          const std::vector<std::string>& channels);
+
+}  // namespace modcal

@@ -1,0 +1,130 @@
+#!/usr/bin/python3
+"""Records that NumPy, SciPy and h5py write are read to the last bit, and what modcal writes they read likewise: peers.py MODCAL"""
+import json
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import h5py
+import numpy as np
+import scipy.io
+
+PROGRAM = sys.argv[1]
+RATE = 8192.0
+DRAW = np.random.default_rng(5)
+FORCE, MOTION = DRAW.normal(size=50), DRAW.normal(size=50) * 1e-9
+
+
+def modcal(*arguments):
+    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True)
+
+
+def read_back(file, *options):
+    """{name: (unit, samples)} and the rate, as a table of modcal's own has them."""
+    table = file.with_suffix(".back.csv")
+    done = modcal("convert", file, table, *options)
+    assert done.returncode == 0, (file, done.stderr)
+    lines = table.read_text().split("\n")
+    rate = next(float(line.split(":")[1].split()[0]) for line in lines if line.startswith("# sample_rate"))
+    rows = [line for line in lines if line and not line.startswith("#")]
+    heads = rows[0].split(",")
+    values = np.array([[float(x) for x in row.split(",")] for row in rows[1:]])
+    table.unlink()
+    result = {}
+    for i, head in enumerate(heads[1:], 1):
+        name, _, unit = head.strip('"').partition(" [")
+        result[name] = (unit.rstrip("]"), values[:, i])
+    return result, rate
+
+
+def same(found, expected):
+    assert np.array_equal(found, np.asarray(expected, dtype=float)), (found, expected)
+
+
+def theirs(folder):
+    two = np.stack([FORCE, MOTION], axis=1)
+    for name, array in (("c.npy", two), ("fortran.npy", np.asfortranarray(two)), ("across.npy", two.T.copy()),
+                        ("big.npy", two.astype(">f8")), ("single.npy", two.astype("f4"))):
+        np.save(folder / name, array)
+        found, rate = read_back(folder / name, "--sample-rate", RATE)
+        assert rate == RATE
+        stem = Path(name).stem
+        long = array if array.shape[0] == 50 else array.T
+        same(found[f"{stem}_1"][1], long[:, 0])
+        same(found[f"{stem}_2"][1], long[:, 1])
+    for kind in ("i1", "u1", "i2", ">i4", "u8", "f2", "?"):
+        counts = np.abs(100 * FORCE).astype(kind)
+        np.save(folder / "counts.npy", counts)
+        same(read_back(folder / "counts.npy", "--sample-rate", "100")[0]["counts"][1], counts)
+    fields = np.zeros(50, dtype=[("t [s]", "f8"), ("F [lbf]", "f4"), ("more", [("acc [g]", ">f8", (2,))])])
+    fields["t [s]"] = np.arange(50) / RATE
+    fields["F [lbf]"] = FORCE
+    fields["more"]["acc [g]"][:, 1] = MOTION
+    np.save(folder / "fields.npy", fields)
+    found, rate = read_back(folder / "fields.npy")
+    assert rate == RATE and found["F"][0] == "lbf", (found, rate)
+    same(found["F"][1], FORCE.astype("f4"))
+    for save in (np.savez, np.savez_compressed):
+        save(folder / "a.npz", Kraft=FORCE, weg=MOTION, **{"Kraft.unit": "mN", "fs": RATE, "note": "Größe"})
+        found, rate = read_back(folder / "a.npz")
+        assert rate == RATE and found["Kraft"][0] == "mN"
+        same(found["Kraft"][1], FORCE)
+        same(found["weg"][1], MOTION)
+    # Objects are never unpickled.
+    np.save(folder / "objects.npy", np.array([{"a": 1}, None], dtype=object), allow_pickle=True)
+    assert modcal("inspect", folder / "objects.npy").returncode == 3
+    with h5py.File(folder / "a.h5", "w") as file:
+        group = file.create_group("run 1")
+        group.attrs["dt"] = 1 / RATE
+        group.create_dataset("hammer", data=FORCE, compression="gzip", chunks=(7,)).attrs["unit"] = "lbf"
+        group.create_dataset("plate", data=np.stack([MOTION, FORCE]).astype(">f4")).attrs["units"] = np.bytes_("g")
+        group.create_dataset("spectrum", data=FORCE + 1j)
+        file.create_dataset("text", data="a word")
+    found, rate = read_back(folder / "a.h5")
+    assert rate == RATE and found["run 1.hammer"][0] == "lbf" and found["run 1.plate_1"][0] == "g", found
+    same(found["run 1.hammer"][1], FORCE)
+    same(found["run 1.plate_1"][1], MOTION.astype("f4"))
+    with h5py.File(folder / "outside.h5", "w") as file:
+        file.create_dataset("secret", shape=(50,), dtype="u1", external=[("/etc/passwd", 0, 50)])
+    assert "no vector of numbers" in modcal("inspect", folder / "outside.h5").stderr
+
+
+def ours(folder):
+    rows = "\n".join(f"{i / RATE!r},{float(f)!r},{float(m)!r}" for i, (f, m) in enumerate(zip(FORCE, MOTION)))
+    (folder / "own.csv").write_text(f"# sample_rate: {RATE} Hz\nt [s],F [lbf],größe/2 [m/s2]\n{rows}\n")
+    for name in ("own.npy", "own.npz", "own.h5", "own.mat", "own.lvm", "own.uff"):
+        done = modcal("convert", folder / "own.csv", folder / name)
+        assert done.returncode == 0, done.stderr
+        found, rate = read_back(folder / name)
+        assert rate == RATE and found["F"][0] == "lbf", (name, rate)
+        same(found["F"][1], FORCE)
+        same(found["größe/2"][1], MOTION)
+    fields = np.load(folder / "own.npy")
+    assert fields.dtype.names == ("t [s]", "F [lbf]", "größe/2 [m/s2]")
+    same(fields["F [lbf]"], FORCE)
+    archive = np.load(folder / "own.npz")
+    assert archive["sample_rate"] == RATE and archive["größe/2.unit"] == "m/s2"
+    same(archive["größe/2"], MOTION)
+    with h5py.File(folder / "own.h5") as file:
+        assert file.attrs["sample_rate"] == RATE and file["größe_2"].attrs["name"] == "größe/2"
+        assert file["F"].attrs["unit"] == "lbf"
+        same(file["F"][:], FORCE)
+    same(scipy.io.loadmat(folder / "own.mat")["F"][:, 0], FORCE)
+
+
+def units(folder):
+    """g and lbf of any of the formats arrive in SI."""
+    report = json.loads(modcal("inspect", folder / "own.h5", "--json").stdout)
+    assert [channel["unit"] for channel in report["channels"]] == ["lbf", "m/s2"], report["channels"]
+
+
+def main():
+    with tempfile.TemporaryDirectory() as name:
+        theirs(Path(name))
+        ours(Path(name))
+        units(Path(name))
+
+
+if __name__ == "__main__":
+    main()
