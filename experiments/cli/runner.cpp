@@ -229,6 +229,7 @@ ExitCode run_together(const std::vector<LoadedExperiment>& experiments,
     } catch (const Interrupted&) {
       say_interrupted(settings, false);
     }
+    add_answer(loaded, result);
     OutputDirectory folder = free_folder(settings.out / name, names_of(result));
     apart = apart || folder.path() != settings.out / name;
     record_run(loaded, {.command = command, .folder = settings.folder}, folder);
