@@ -29,8 +29,9 @@ packages-develop:
 reproduce: build
 	@build/$(PRESET)/modcal reproduce table1
 
-test: packages-test
-	@cmake --preset $(PRESET) -DMODCAL_WERROR=ON >/dev/null
+test:
+	@cmake/install_packages.sh test python
+	@cmake --preset $(PRESET) -DMODCAL_WERROR=ON -DMODCAL_PYTHON=ON >/dev/null
 	@cmake --build --preset $(PRESET)
 	@ctest --preset $(PRESET) --parallel $$(nproc)
 

@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # Installs the Debian packages of packages.txt that are missing: those without a mark, and those
-# marked with the purpose given: install_packages.sh [test|develop].
+# marked with one of the purposes given: install_packages.sh [test|python|develop …].
 set -euo pipefail
-purpose=${1:-}
+purposes=" $* "
 list="$(dirname "$0")/../packages.txt"
 missing=()
 while read -r name use _; do
   case "$name" in ''|'#'*) continue ;; esac
-  [ -n "${use:-}" ] && [ "$use" != "$purpose" ] && continue
+  [ -n "${use:-}" ] && [[ "$purposes" != *" $use "* ]] && continue
   [ "$(dpkg-query -W -f='${db:Status-Status}' "$name" 2>/dev/null)" = installed ] || missing+=("$name")
 done <"$list"
 [ ${#missing[@]} -eq 0 ] && exit 0

@@ -4,8 +4,10 @@
 """
 import ctypes
 import sys
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import minimize
 
 library = ctypes.CDLL(sys.argv[1])
@@ -17,20 +19,21 @@ library.modcal_problem_message.restype = ctypes.c_char_p
 library.modcal_problem_name.restype = ctypes.c_char_p
 library.modcal_problem_name.argtypes = [handle, count]
 library.modcal_problem_dimension.restype = count
-for name, arguments in {"dimension": [], "start": [numbers], "scale": [numbers], "truth": [numbers],
-                        "bound": [numbers], "bounds": [numbers, numbers], "value": [numbers, numbers],
-                        "gradient": [numbers, numbers], "close": []}.items():
+functions: dict[str, list[Any]] = {
+    "dimension": [], "start": [numbers], "scale": [numbers], "truth": [numbers], "bound": [numbers],
+    "bounds": [numbers, numbers], "value": [numbers, numbers], "gradient": [numbers, numbers], "close": []}
+for name, arguments in functions.items():
     getattr(library, f"modcal_problem_{name}").argtypes = [handle, *arguments]
 
 
-def checked(failed):
+def checked(failed: bool) -> None:
     if failed:
         raise ValueError(library.modcal_problem_message().decode())
 
 
 assignments = [word.encode() for word in sys.argv[3:]]
-problem = library.modcal_problem_open(sys.argv[2].encode(), (ctypes.c_char_p * len(assignments))(*assignments),
-                                      len(assignments))
+texts = (ctypes.c_char_p * len(assignments))(*assignments)
+problem = library.modcal_problem_open(sys.argv[2].encode(), texts, len(assignments))
 checked(problem is None)
 d = library.modcal_problem_dimension(problem)
 start, scale, truth, bound, lower, upper = np.empty((6, d))
@@ -41,7 +44,7 @@ checked(library.modcal_problem_truth(problem, truth))
 checked(library.modcal_problem_bound(problem, bound))
 
 
-def value_and_gradient(z):
+def value_and_gradient(z: NDArray[np.float64]) -> tuple[float, NDArray[np.float64]]:
     x, value, gradient = np.ascontiguousarray(start + scale * z), np.empty(1), np.empty(d)
     checked(library.modcal_problem_value(problem, x, value) or library.modcal_problem_gradient(problem, x, gradient))
     return value[0], gradient * scale

@@ -4,21 +4,53 @@
 
 #include "libcalib/calibration.hpp"
 #include "libcalib/likelihood/records/likelihood_band.hpp"
+#include "libcalib/parameters/stated_priors.hpp"
 #include "libcalib/parameters/stiff_string_fit.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
 namespace {
 
+// What a search is free to change of all records, and what of it is held or not seen.
 struct Names {
   std::vector<std::string> free;
   std::vector<std::string> blind;
+  std::vector<HeldParameter> held;
 };
 
-Names split_names(const ParameterOptions& parameters, const std::vector<bool>& excited) {
-  Names names;
-  names.free = parameters.names(excited.size());
-  for (std::size_t i = 0; i < excited.size(); ++i) {
+// What is held of what was asked for. Of these the stages of a schedule alone know.
+std::vector<HeldParameter> held_of(const Problem& problem, const ModelPoint& initial) {
+  const UnknownsOptions& unknowns = problem.parameters.unknowns;
+  if (unknowns.fixed.empty()) return {};
+  const StatedPriors stated(unknowns, initial, problem.records.size());
+  std::vector<HeldParameter> held;
+  for (const FixedParameter& fixed : unknowns.fixed) {
+    const ParameterName name = require_parameter(fixed.parameter, initial.basis.size());
+    held.push_back({name, *stated.fixed(name)});
+  }
+  return held;
+}
+
+// Names of what further records have for themselves.
+void add_own(const Problem& problem, const std::vector<std::string>& first,
+             std::vector<std::string>& names) {
+  for (std::size_t r = 1; r < problem.records.size(); ++r) {
+    for (const std::string& text : first) {
+      ParameterName name = *parse_parameter(text);
+      const bool contact = name.kind == ParameterKind::kContact;
+      if (!problem.parameters.unknowns.own(name)) continue;
+      if (contact && problem.records[r].pluck) continue;
+      name.record = r;
+      names.push_back(text_of(name));
+    }
+  }
+}
+
+Names names_of(const Problem& problem, const ModelPoint& initial) {
+  Names names{problem.parameters.names(initial.basis.size()), {}, held_of(problem, initial)};
+  const std::vector<bool> excited = excited_modes(initial, problem.excitation_threshold);
+  // What one record is blind to another may tell.
+  for (std::size_t i = 0; problem.records.size() == 1 && i < excited.size(); ++i) {
     if (excited[i]) continue;
     const std::string name = fmt::format("f_{}", i + 1);
     if (std::erase(names.free, name) > 0) names.blind.push_back(name);
@@ -27,6 +59,15 @@ Names split_names(const ParameterOptions& parameters, const std::vector<bool>& e
                  "every parameter asked for is the frequency of a mode the contact does not excite "
                  "({}): nothing can be calibrated",
                  fmt::join(names.blind, ", "));
+  add_own(problem, std::vector(names.free), names.free);
+  for (const HeldParameter& held : names.held) {
+    std::erase(names.free, text_of(held));
+    std::erase(names.blind, text_of(held));
+  }
+  MODCAL_REQUIRE(!names.free.empty(),
+                 "every parameter asked for is fixed: nothing can be calibrated; leave one of {} "
+                 "fixed parameters free",
+                 names.held.size());
   return names;
 }
 
@@ -86,11 +127,13 @@ BoundProblem bind(const Problem& stated, const Optimizer& optimizer) {
   const Sensor sensors = problem.parameters.unknowns.sensors();
   if (!sensors.alike()) initial.sensors = sensors;
   add_higher_modes(problem, initial);
-  Names names =
-      split_names(problem.parameters, excited_modes(initial, problem.excitation_threshold));
-  ParameterSet parameters(std::move(initial), names.free, problem.parameters.ranges);
+  Names names = names_of(problem, initial);
+  problem.model = initial;
+  ParameterSet parameters(std::move(initial), names.free, problem.parameters.ranges,
+                          problem.records.size(), names.held);
   auto function = problem.objective->bind(problem, parameters);
-  return {std::move(problem), std::move(parameters), std::move(function), std::move(names.blind)};
+  return {std::move(problem), std::move(parameters), std::move(function), std::move(names.blind),
+          std::move(names.held)};
 }
 
 }  // namespace modcal

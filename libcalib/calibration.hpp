@@ -86,7 +86,8 @@ struct BoundProblem {
   Problem problem;  ///< with what is meant where nothing is stated
   ParameterSet parameters;
   std::unique_ptr<const ObjectiveFunction> function;
-  std::vector<std::string> blind;  ///< asked for and left out, see CalibrationResult
+  std::vector<std::string> blind;   ///< asked for and left out, see CalibrationResult
+  std::vector<HeldParameter> held;  ///< asked for and fixed
 };
 
 /// Throws InvalidInput where objective, optimizer, records and parameters do not fit together.

@@ -6,6 +6,7 @@
 
 #include "experiments/cli/command.hpp"
 #include "experiments/cli/write_results.hpp"
+#include "libsim/base/stop_scope.hpp"
 
 namespace modcal {
 namespace {
@@ -23,11 +24,13 @@ auto with_context(const LoadedExperiment& loaded, const std::filesystem::path& f
                   const std::string& command, SharedWork& shared, const Work& work) {
   const bool is_list = dynamic_cast<const TaskExperiment*>(loaded.experiment.get()) != nullptr;
   Progress progress(title_of(loaded), is_list ? Progress::Of::kList : Progress::Of::kOne);
+  const StopToken stop = interrupt_token();
+  const StopScope listening(stop);
   return work(StudyContext{.work = shared,
                            .folder = folder,
                            .command = command,
                            .progress = [&progress](double share) { progress.report(share); },
-                           .stop = interrupt_token()});
+                           .stop = stop});
 }
 
 [[noreturn]] void say_interrupted(const RunSettings& settings, bool has_store) {
@@ -226,6 +229,7 @@ ExitCode run_together(const std::vector<LoadedExperiment>& experiments,
     } catch (const Interrupted&) {
       say_interrupted(settings, false);
     }
+    add_answer(loaded, result);
     OutputDirectory folder = free_folder(settings.out / name, names_of(result));
     apart = apart || folder.path() != settings.out / name;
     record_run(loaded, {.command = command, .folder = settings.folder}, folder);

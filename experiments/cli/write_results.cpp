@@ -132,6 +132,24 @@ nlohmann::ordered_json findings_json(const StudyResult& result) {
           {"scores", std::move(scores)}};
 }
 
+void add_answer(const LoadedExperiment& loaded, StudyResult& result) {
+  const bool failed = result.status == report::Status::kFailed;
+  nlohmann::ordered_json answer = {{"status", failed                    ? "failed"
+                                              : result.failed_tasks > 0 ? "some_failed"
+                                                                        : "ok"}};
+  answer.update(findings_json(result));
+  answer["warnings"] = nlohmann::ordered_json::array();
+  for (const Complaint& complaint : complaints_of(loaded.document, loaded.mistakes)) {
+    answer["warnings"].push_back(message_of(complaint));
+  }
+  for (const std::string& text : result.warnings) answer["warnings"].push_back(text);
+  answer["missed"] = result.missed;
+  answer["failed_tasks"] = result.failed_tasks;
+  answer["pending_tasks"] = result.pending_tasks;
+  answer["summary"] = result.summary;
+  result.files.emplace_back("answer.json", report::json_file(answer));
+}
+
 void record_run(const LoadedExperiment& loaded, const RunSettings& settings, OutputDirectory& out) {
   const std::filesystem::path folder = folder_of(loaded, settings);
   nlohmann::ordered_json provenance = provenance_json(settings.command);
@@ -190,6 +208,7 @@ void print_failures(const LoadedExperiment& loaded, const StudyResult& result,
 ExitCode write_results(const LoadedExperiment& loaded, StudyResult result, RunSettings settings,
                        double seconds, const Beside& beside) {
   result.state_command(settings.command);
+  add_answer(loaded, result);
   report::Report report = report_of(loaded, result, settings);
   std::vector<std::string> names = report::file_names(report);
   for (std::string& name : names_of(result)) names.push_back(std::move(name));

@@ -14,6 +14,10 @@ ExitCode exit_code_of(const StudyResult& result);
 /// What it found, for programs: verdict, parameters, scores.
 nlohmann::ordered_json findings_json(const StudyResult& result);
 
+/// The findings with status, warnings and summary as a file of the result, answer.json: who opens
+/// the folder later learns what its run has said.
+void add_answer(const LoadedExperiment& loaded, StudyResult& result);
+
 /// provenance.json first, then resolved.yaml: a run that is killed between has left no file
 /// unnamed.
 void record_run(const LoadedExperiment& loaded, const RunSettings& settings, OutputDirectory& out);

@@ -45,9 +45,10 @@ MODCAL_PROBLEMS_API void modcal_problem_scale(const modcal_problem* problem, dou
 
 /* 0, or 1 where it is not known: of a record. */
 MODCAL_PROBLEMS_API int modcal_problem_truth(const modcal_problem* problem, double* truth);
-/* Standard deviations that no unbiased estimate from these records goes below, by the residuals'
- * Jacobian at the truth; 1 where there is none: of a record, of an objective whose residuals are
- * not white. */
+/* Standard deviations that no unbiased estimate from these records goes below, which knows nothing of
+ * the force and, of a schedule of stages, the priors of the file: the Cramer-Rao bound at the truth,
+ * whatever the objective. 0 where the records have no noise, infinity of what they do not tell;
+ * 1 where there is none: of a record. */
 MODCAL_PROBLEMS_API int modcal_problem_bound(const modcal_problem* problem, double* deviations);
 
 /* f(x), and its slopes, by differences where the objective gives none. 0, or 1 where x is refused. */

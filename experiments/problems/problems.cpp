@@ -110,7 +110,7 @@ int modcal_problem_truth(const modcal_problem* problem, double* truth) {
 int modcal_problem_bound(const modcal_problem* problem, double* deviations) {
   std::vector<double> bound;
   if (modcal::guarded([&] { bound = problem->task->bound_deviations(); }) != 0) return 1;
-  return modcal::copied(bound, "there is no bound: no truth, or residuals that are not white",
+  return modcal::copied(bound, "there is no bound: the truth of a record is not known",
                         deviations);
 }
 

@@ -109,7 +109,7 @@ LikelihoodPoint LimitInformation::sum(const StringUnknowns& unknowns,
 Eigen::MatrixXd LimitInformation::information(const StringUnknowns& unknowns) const {
   const auto evaluate = [this](std::size_t r, const ModelPoint& point,
                                const LikelihoodColumns& columns) {
-    LikelihoodPoint part = records_[r]->evaluate(point, columns, false);
+    LikelihoodPoint part = records_[r]->evaluate(point, columns, {});
     part.twice_weighted = part.information;
     return part;
   };
@@ -121,7 +121,7 @@ Eigen::MatrixXd LimitInformation::attainable(const StringUnknowns& unknowns,
   const auto evaluate = [this](std::size_t r, const ModelPoint& point,
                                const LikelihoodColumns& columns) {
     if (r < strokes_.size()) return under_best_weights(strokes_[r], point, columns);
-    LikelihoodPoint part = records_[r]->evaluate(point, columns, true);
+    LikelihoodPoint part = records_[r]->evaluate(point, columns, {.twice_weighted = true});
     part.twice_weighted += records_[r]->noise_information(point, columns);
     return part;
   };

@@ -9,12 +9,6 @@ namespace {
 constexpr std::size_t kNoiseRepeats = 3;
 }
 
-LikelihoodPoint StrokeLikelihood::evaluate(const ModelPoint& point,
-                                           const LikelihoodColumns& columns,
-                                           bool twice_weighted) const {
-  return weighted_.evaluate(point, columns, {.twice_weighted = twice_weighted});
-}
-
 Eigen::MatrixXd StrokeLikelihood::noise_information(const ModelPoint& point,
                                                     const LikelihoodColumns& columns) const {
   return weighted_.noise_information(point, columns, kNoiseRepeats);
@@ -122,7 +116,7 @@ LikelihoodPoint AllRecords::sum_of(const Eigen::VectorXd& theta,
 LikelihoodPoint AllRecords::evaluate(const Eigen::VectorXd& theta, bool twice_weighted) const {
   return sum_of(theta, [&](const RecordLikelihood& record, const ModelPoint& point,
                            const LikelihoodColumns& columns) {
-    return record.evaluate(point, columns, twice_weighted);
+    return record.evaluate(point, columns, {.twice_weighted = twice_weighted});
   });
 }
 

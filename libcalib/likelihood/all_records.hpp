@@ -18,7 +18,13 @@ class StrokeLikelihood final : public RecordLikelihood {
   StrokeLikelihood(ProjectedLikelihood whole, ProjectedLikelihood weighted)
       : whole_(std::move(whole)), weighted_(std::move(weighted)) {}
   LikelihoodPoint evaluate(const ModelPoint& point, const LikelihoodColumns& columns,
-                           bool twice_weighted) const override;
+                           const LikelihoodOutputs& outputs) const override {
+    return weighted_.evaluate(point, columns, outputs);
+  }
+  LikelihoodPoint slope(const ModelPoint& point, const LikelihoodColumns& columns) const override {
+    return weighted_.slope(point, columns);
+  }
+  std::size_t residual_count() const override { return 2 * weighted_.record().bins; }
   Eigen::MatrixXd noise_information(const ModelPoint& point,
                                     const LikelihoodColumns& columns) const override;
   LikelihoodPoint unweighted(const ModelPoint& point,

@@ -10,9 +10,16 @@ namespace modcal {
 class RecordLikelihood {
  public:
   virtual ~RecordLikelihood() = default;
-  /// Columns of what the record does not know are zero.
+  /// Columns of what the record does not know are zero. A pluck gives of the outputs residuals,
+  /// Jacobian and the information twice weighted.
   virtual LikelihoodPoint evaluate(const ModelPoint& point, const LikelihoodColumns& columns,
-                                   bool twice_weighted) const = 0;
+                                   const LikelihoodOutputs& outputs) const = 0;
+  /// Cost and slope; the information where that costs no more.
+  virtual LikelihoodPoint slope(const ModelPoint& point, const LikelihoodColumns& columns) const {
+    return evaluate(point, columns, {});
+  }
+  /// Numbers of its residuals.
+  virtual std::size_t residual_count() const = 0;
   /// N̄: what noise adds to the information.
   virtual Eigen::MatrixXd noise_information(const ModelPoint& point,
                                             const LikelihoodColumns& columns) const = 0;

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <optional>
 
+#include "libcalib/likelihood/all_records.hpp"
+#include "libcalib/likelihood/pluck/pluck_likelihood.hpp"
 #include "libcalib/likelihood/projected_likelihood.hpp"
 #include "libcalib/likelihood/records/noise_level.hpp"
 #include "libcalib/likelihood/records/record_options.hpp"
@@ -17,11 +19,12 @@
 namespace modcal {
 namespace {
 
-// Factors that turn the columns, by the coordinates, into those of the parameters.
-std::vector<double> column_units(const ParameterSet& parameters, std::span<const double> x) {
-  std::vector<double> units(parameters.size());
-  for (std::size_t i = 0; i < units.size(); ++i) {
-    units[i] = std::numbers::sqrt2 / type_of(parameters[i]).slope(x[i]);
+// Factors that turn the columns of a record, by the coordinates, into those of its parameters.
+std::vector<double> column_units(const ParameterSet& parameters, std::span<const double> x,
+                                 std::span<const std::size_t> places) {
+  std::vector<double> units;
+  for (const std::size_t i : places) {
+    units.push_back(std::numbers::sqrt2 / type_of(parameters[i]).slope(x[i]));
   }
   return units;
 }
@@ -42,6 +45,13 @@ ContinuationResult told_by(const ModelPoint& model, const ModelPoint& initial) {
 
 // A parameter of the estimate in its unit; those of the laws stand beside the model.
 double value_in(const ContinuationResult& found, const ParameterName& name) {
+  const bool told = name.record < found.values.size();
+  if (name.record > 0 && told) {
+    const RecordValues& own = found.values[name.record];
+    if (name.kind == ParameterKind::kContact) return found.contacts[name.record];
+    if (name.kind == ParameterKind::kDampingFactor) return own.damping;
+    if (name.kind == ParameterKind::kSensor) return sensor_value(name.index, own.sensors);
+  }
   if (name.kind == ParameterKind::kFundamental) return found.found_law.fundamental;
   if (name.kind == ParameterKind::kInharmonicity) return found.found_law.inharmonicity;
   if (name.kind == ParameterKind::kDampingFactor) return found.damping;
@@ -55,23 +65,42 @@ std::vector<double> values_of(const ContinuationResult& found, const ParameterSe
   return x;
 }
 
-// Noise stated with the record, else with the objective.
+// Noise stated with the record, else of a stroke with the objective.
 std::array<double, 2> noise_of(const CalibrationRecord& record,
                                const JointLikelihood::Options& options) {
+  if (record.pluck) return record.noise;
   return {std::isnan(record.noise[0]) ? options.left_noise : record.noise[0],
           std::isnan(record.noise[1]) ? options.right_noise : record.noise[1]};
 }
 
+using Likelihood = std::unique_ptr<const RecordLikelihood>;
+
+Likelihood likelihood_of(const CalibrationRecord& record, const ModelPoint& initial,
+                         const JointLikelihood::Options& options) {
+  const NoisyRecords noisy =
+      NoisyRecords::of_data(record.data, initial.basis, noise_of(record, options));
+  const double highest =
+      likelihood_band(initial, options.highest_frequency, record.data.sample_rate);
+  WhitenedRecord whitened = WhitenedRecord::of(noisy, options.damping, highest);
+  if (record.pluck) return std::make_unique<PluckLikelihood>(std::move(whitened));
+  const ProjectedLikelihood whole(std::move(whitened));
+  return std::make_unique<StrokeLikelihood>(whole, whole);
+}
+
+// Records are independent: their values, slopes and informations add, their residuals stand one
+// after the other.
 class JointLikelihoodFunction final : public ObjectiveFunction {
  public:
   JointLikelihoodFunction(Problem problem, ParameterSet parameters,
                           const JointLikelihood::Options& options)
-      : problem_(std::move(problem)), parameters_(std::move(parameters)), options_(options) {
-    problem_.model = parameters_.initial();
-  }
+      : problem_(std::move(problem)), parameters_(std::move(parameters)), options_(options) {}
   std::string_view name() const override { return "joint_likelihood"; }
   std::size_t dimension() const override { return parameters_.size(); }
-  std::size_t residual_count() const override { return 2 * likelihood().record().bins; }
+  std::size_t residual_count() const override {
+    std::size_t count = 0;
+    for (const Likelihood& record : likelihoods()) count += record->residual_count();
+    return count;
+  }
   Capabilities capabilities() const override {
     return {.gradient = true,
             .least_squares = true,
@@ -85,49 +114,66 @@ class JointLikelihoodFunction final : public ObjectiveFunction {
     return std::make_unique<JointLikelihoodFunction>(problem_, parameters_, options);
   }
   StopReason follow_schedule(Evaluator& evaluator, const ScheduleOptions& options) const override;
-  // Made when it is first asked for: a schedule of stages has likelihoods of its own.
-  const ProjectedLikelihood& likelihood() const {
+  // Made when they are first asked for: a schedule of stages has likelihoods of its own.
+  std::span<const Likelihood> likelihoods() const {
     std::call_once(made_, [this] {
-      MODCAL_REQUIRE(problem_.records.size() == 1,
-                     "{} records are fitted together by their stages: state optimizer: staged",
-                     problem_.records.size());
-      const CalibrationData& data = problem_.records.front().data;
-      const NoisyRecords records = NoisyRecords::of_data(
-          data, parameters_.initial().basis, noise_of(problem_.records.front(), options_));
-      const double highest =
-          likelihood_band(parameters_.initial(), options_.highest_frequency, data.sample_rate);
-      likelihood_.emplace(WhitenedRecord::of(records, options_.damping, highest));
+      std::vector<Likelihood> made;
+      for (const CalibrationRecord& record : problem_.records) {
+        made.push_back(likelihood_of(record, parameters_.initial(), options_));
+      }
+      likelihoods_ = std::move(made);
     });
-    return *likelihood_;
+    return likelihoods_;
   }
 
  private:
   void do_evaluate(std::span<const double> x, const ObjectiveOutputs& outputs) const override {
-    const ModelPoint point = parameters_.model(x);
+    const auto n = static_cast<Eigen::Index>(dimension());
+    if (outputs.value) *outputs.value = 0.0;
+    if (outputs.gradient) std::fill_n(outputs.gradient, dimension(), 0.0);
+    for (Eigen::MatrixXd* matrix : {outputs.information, outputs.noise}) {
+      if (matrix) matrix->setZero(n, n);
+    }
+    std::size_t row = 0;
+    for (std::size_t r = 0; r < likelihoods().size(); ++r) {
+      add_record(x, r, row, outputs);
+      row += likelihoods()[r]->residual_count();
+    }
+  }
+
+  // Its residuals begin at `row`.
+  void add_record(std::span<const double> x, std::size_t record, std::size_t row,
+                  const ObjectiveOutputs& outputs) const {
+    const RecordLikelihood& likelihood = *likelihoods()[record];
+    const ModelPoint point = parameters_.model(x, record);
     const bool slopes = outputs.gradient || outputs.jacobian || outputs.information;
-    const LikelihoodColumns columns = slopes ? parameters_.columns(x) : LikelihoodColumns{};
-    std::vector<double> residuals(outputs.residuals ? residual_count() : 0);
+    const LikelihoodColumns columns = slopes ? parameters_.columns(x, record) : LikelihoodColumns{};
+    std::vector<double> residuals(outputs.residuals ? likelihood.residual_count() : 0);
     Eigen::MatrixXd jacobian;
     const bool slope_alone =
         outputs.gradient && !outputs.information && !outputs.residuals && !outputs.jacobian;
     const LikelihoodPoint at =
-        slope_alone ? likelihood().slope(point, columns)
-                    : likelihood().evaluate(point, columns,
-                                            {.residuals = outputs.residuals ? &residuals : nullptr,
-                                             .jacobian = outputs.jacobian ? &jacobian : nullptr});
-    if (outputs.value) *outputs.value = at.cost;
-    const std::vector<double> units = column_units(parameters_, x);
-    for (std::size_t i = 0; outputs.gradient && i < dimension(); ++i) {
-      outputs.gradient[i] = std::numbers::sqrt2 * units[i] * at.slope[static_cast<Eigen::Index>(i)];
+        slope_alone ? likelihood.slope(point, columns)
+                    : likelihood.evaluate(point, columns,
+                                          {.residuals = outputs.residuals ? &residuals : nullptr,
+                                           .jacobian = outputs.jacobian ? &jacobian : nullptr});
+    if (outputs.value) *outputs.value += at.cost;
+    const std::span<const std::size_t> places = parameters_.places(record);
+    const std::vector<double> units = column_units(parameters_, x, places);
+    for (std::size_t i = 0; outputs.gradient && i < places.size(); ++i) {
+      outputs.gradient[places[i]] +=
+          std::numbers::sqrt2 * units[i] * at.slope[static_cast<Eigen::Index>(i)];
     }
-    add_information(point, columns, at, units, outputs);
+    add_information(point, columns, at, units, record, outputs);
     for (std::size_t j = 0; j < residuals.size(); ++j) {
-      outputs.residuals[j] = std::numbers::sqrt2 * residuals[j];
+      outputs.residuals[row + j] = std::numbers::sqrt2 * residuals[j];
     }
+    const std::size_t width = dimension();
     for (Eigen::Index j = 0; j < jacobian.rows(); ++j) {
-      for (Eigen::Index i = 0; i < jacobian.cols(); ++i) {
-        *(outputs.jacobian + j * jacobian.cols() + i) =
-            units[static_cast<std::size_t>(i)] * jacobian(j, i);
+      double* target = outputs.jacobian + (row + static_cast<std::size_t>(j)) * width;
+      std::fill_n(target, width, 0.0);
+      for (std::size_t i = 0; i < places.size(); ++i) {
+        target[places[i]] = units[i] * jacobian(j, static_cast<Eigen::Index>(i));
       }
     }
   }
@@ -135,16 +181,20 @@ class JointLikelihoodFunction final : public ObjectiveFunction {
   // In the units of the parameters, which hold √2 of each residual.
   void add_information(const ModelPoint& point, const LikelihoodColumns& columns,
                        const LikelihoodPoint& at, const std::vector<double>& units,
-                       const ObjectiveOutputs& outputs) const {
-    const std::size_t repeats = 3;  // as the stages of the schedule do
-    const Eigen::Map<const Eigen::VectorXd> unit(units.data(),
-                                                 static_cast<Eigen::Index>(units.size()));
-    if (outputs.information) {
-      *outputs.information = unit.asDiagonal() * at.information * unit.asDiagonal();
-    }
+                       std::size_t record, const ObjectiveOutputs& outputs) const {
+    const std::span<const std::size_t> places = parameters_.places(record);
+    const auto add = [&](const Eigen::MatrixXd& part, Eigen::MatrixXd& sum) {
+      for (std::size_t i = 0; i < places.size(); ++i) {
+        for (std::size_t j = 0; j < places.size(); ++j) {
+          const auto a = static_cast<Eigen::Index>(i), b = static_cast<Eigen::Index>(j);
+          sum(static_cast<Eigen::Index>(places[i]), static_cast<Eigen::Index>(places[j])) +=
+              units[i] * part(a, b) * units[j];
+        }
+      }
+    };
+    if (outputs.information) add(at.information, *outputs.information);
     if (outputs.noise) {
-      *outputs.noise = unit.asDiagonal() * likelihood().noise_information(point, columns, repeats) *
-                       unit.asDiagonal();
+      add(likelihoods()[record]->noise_information(point, columns), *outputs.noise);
     }
   }
 
@@ -152,7 +202,7 @@ class JointLikelihoodFunction final : public ObjectiveFunction {
   ParameterSet parameters_;
   JointLikelihood::Options options_;
   mutable std::once_flag made_;
-  mutable std::optional<ProjectedLikelihood> likelihood_;
+  mutable std::vector<Likelihood> likelihoods_;
 };
 
 StopReason JointLikelihoodFunction::follow_schedule(Evaluator& evaluator,
@@ -220,7 +270,7 @@ std::unique_ptr<const ObjectiveFunction> JointLikelihood::do_bind(
   auto function = std::make_unique<JointLikelihoodFunction>(
       Problem{.model = parameters.initial(), .records = {{.data = data}}}, parameters, options_);
   // An undamped mode and the like, before any search.
-  function->likelihood().cost(parameters.initial());
+  function->likelihoods().front()->slope(parameters.initial(), LikelihoodColumns{});
   return function;
 }
 

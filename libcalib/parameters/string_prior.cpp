@@ -61,6 +61,26 @@ StatedPriors::Coordinate StringUnknowns::coordinates(const Eigen::VectorXd& thet
   return [this, &theta](const ParameterName& name) { return coordinate(name, theta); };
 }
 
+// ln ζ_n scatters about a curve that is itself known to so much; without a scatter of its own each
+// is as far from the stated one as the others.
+Eigen::MatrixXd ratio_covariance(const UnknownsOptions& options,
+                                 std::span<const std::size_t> modes) {
+  const auto count = static_cast<Index>(modes.size());
+  const double whole = options.damping_width * options.damping_width;
+  const double own = std::isnan(options.damping_scatter)
+                         ? whole
+                         : options.damping_scatter * options.damping_scatter;
+  Eigen::MatrixXd covariance = whole * Eigen::MatrixXd::Identity(count, count);
+  for (Index i = 0; i < count && own < whole; ++i) {
+    for (Index j = 0; j < i; ++j) {
+      const double apart = std::log(static_cast<double>(modes[static_cast<std::size_t>(i)] + 1) /
+                                    static_cast<double>(modes[static_cast<std::size_t>(j)] + 1));
+      covariance(i, j) = covariance(j, i) = (whole - own) * std::exp(-0.5 * apart * apart);
+    }
+  }
+  return covariance;
+}
+
 void StringUnknowns::state_widths(const std::vector<double>& mean,
                                   PriorEquations& equations) const {
   for (std::size_t k = 0; k < knots_; ++k) {
@@ -74,29 +94,17 @@ void StringUnknowns::state_widths(const std::vector<double>& mean,
   }
   if (!free_.has(Kind::kDampingRatio)) return;
   std::vector<LinearForm> ratios;
-  std::vector<double> logarithms, places;
+  std::vector<double> logarithms;
+  std::vector<std::size_t> places;
   for (std::size_t n = 0; n < modes(); ++n) {
     const ParameterName ratio{Kind::kDampingRatio, n};
     if (priors_.has(ratio) || priors_.fixed(ratio)) continue;
     ratios.push_back(*coordinate(ratio, {}));
     logarithms.push_back(std::log(mean[n]));
-    places.push_back(std::log(static_cast<double>(n + 1)));
+    places.push_back(n);
   }
-  // ln ζ_n scatters about a curve that is itself known to so much; without a scatter of its own
-  // each is as far from the stated one as the others.
   const auto count = static_cast<Index>(ratios.size());
-  const double whole = options_.damping_width * options_.damping_width;
-  const double own = std::isnan(options_.damping_scatter)
-                         ? whole
-                         : options_.damping_scatter * options_.damping_scatter;
-  Eigen::MatrixXd covariance = whole * Eigen::MatrixXd::Identity(count, count);
-  for (Index i = 0; i < count && own < whole; ++i) {
-    for (Index j = 0; j < i; ++j) {
-      const double apart =
-          places[static_cast<std::size_t>(i)] - places[static_cast<std::size_t>(j)];
-      covariance(i, j) = covariance(j, i) = (whole - own) * std::exp(-0.5 * apart * apart);
-    }
-  }
+  const Eigen::MatrixXd covariance = ratio_covariance(options_, places);
   equations.add(ratios, Eigen::Map<const Eigen::VectorXd>(logarithms.data(), count), covariance);
 }
 

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "libcalib/parameters/free_parameters.hpp"
@@ -118,5 +119,10 @@ class StringUnknowns {
   std::size_t knots_ = 0;
   Eigen::Index damping_count_ = 0;
 };
+
+/// Covariance of ln ζ_n of these modes about the stated ones, where each is free and nothing else
+/// is stated of it.
+Eigen::MatrixXd ratio_covariance(const UnknownsOptions& options,
+                                 std::span<const std::size_t> modes);
 
 }  // namespace modcal

@@ -2,6 +2,7 @@
 
 #include <ceres/ceres.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -84,6 +85,36 @@ Covariance covariance_at(const ObjectiveFunction& function, std::span<const Vari
   }
   result.full_rank = true;
   return result;
+}
+
+std::vector<double> deviations_by_information(const ObjectiveFunction& function,
+                                              std::span<const double> x) {
+  MODCAL_REQUIRE(function.capabilities().information,
+                 "objective \"{}\" is no likelihood: it has no information", function.name());
+  Eigen::MatrixXd information, prior;
+  function.evaluate(x, {.information = &information, .prior = &prior});
+  information += prior;
+  constexpr double kUnknown = std::numeric_limits<double>::infinity();
+  std::vector<double> deviations(x.size(), kUnknown);
+  const Eigen::VectorXd unit =
+      information.diagonal().unaryExpr([](double d) { return d > 0.0 ? 1.0 / std::sqrt(d) : 0.0; });
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(unit.asDiagonal() * information *
+                                                              unit.asDiagonal());
+  const Eigen::VectorXd& values = solver.eigenvalues();
+  const double least = 1e-14 * values.maxCoeff();
+  for (Eigen::Index i = 0; i < unit.size(); ++i) {
+    double variance = 0.0, untold = unit[i] > 0.0 ? 0.0 : 1.0;
+    for (Eigen::Index j = 0; j < unit.size(); ++j) {
+      const double share = solver.eigenvectors()(i, j) * solver.eigenvectors()(i, j);
+      if (values[j] > least) {
+        variance += share / values[j];
+      } else {
+        untold += share;
+      }
+    }
+    if (untold < 1e-6) deviations[static_cast<std::size_t>(i)] = unit[i] * std::sqrt(variance);
+  }
+  return deviations;
 }
 
 }  // namespace modcal

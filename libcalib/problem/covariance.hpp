@@ -27,4 +27,11 @@ struct Covariance {
 Covariance covariance_at(const ObjectiveFunction& function, std::span<const Variable> variables,
                          std::span<const double> x);
 
+/// Roots of the diagonal of (information + prior)⁻¹ at x (ObjectiveOutputs), in user units; ∞ where
+/// a direction of which both tell nothing (eigenvalues below 1e-14 of the largest, each parameter
+/// in units of its own information) holds more than 1e-6 of a parameter. Throws InvalidInput where
+/// the objective has no information.
+std::vector<double> deviations_by_information(const ObjectiveFunction& function,
+                                              std::span<const double> x);
+
 }  // namespace modcal

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "libsim/base/error.hpp"
+#include "libsim/base/stop_scope.hpp"
 
 namespace modcal {
 namespace {
@@ -73,6 +74,7 @@ void Evaluator::stop(StopReason reason) {
 }
 
 void Evaluator::require_budget(std::int64_t evaluations) {
+  throw_if_stopped();
   if (stopped()) throw Stopped{};
   if (parent_) return parent_->require_budget(evaluations);
   if (evaluations > evaluations_left()) stop(StopReason::kEvaluationBudget);

@@ -5,6 +5,7 @@
 #include <memory>
 #include <numbers>
 
+#include "libsim/base/stop_scope.hpp"
 #include "libsim/base/task_loop.hpp"
 #include "libsim/signal/fft.hpp"
 #include "libsim/signal/statistics.hpp"
@@ -191,8 +192,9 @@ Innovations ObserverRuns::run_schedule(const PreparedObserver& observer,
     outputs.mean_force = motion->mean_force.data();
   }
   ObserverState state = observer.initial_state();
-  const std::size_t block = schedule.size() == 1 ? samples : kBlock;
+  const std::size_t block = schedule.size() == 1 ? 16 * kBlock : kBlock;
   for (std::size_t first = 0, i = 0; first < samples; first += block, ++i) {
+    throw_if_stopped();
     observer.run(schedule[std::min(i, schedule.size() - 1)], first,
                  std::min(samples, first + block), state, outputs);
   }

@@ -13,8 +13,12 @@
 #include <thread>
 #include <vector>
 
+#include "libsim/base/stop_scope.hpp"
+
 namespace modcal {
 namespace {
+
+thread_local const StopScope* innermost = nullptr;
 
 // The exception of the first task in the list that failed.
 class FirstFailure {
@@ -77,11 +81,30 @@ void StopToken::tell_share(std::size_t done, std::size_t all) const {
   (*told_)(static_cast<double>(done) / static_cast<double>(all));
 }
 
+StopScope::StopScope(const StopToken* stop, const StopScope* outer)
+    : stop_(stop), outer_(outer), before_(innermost) {
+  innermost = this;
+}
+
+StopScope::~StopScope() { innermost = before_; }
+
+const StopScope* StopScope::here() { return innermost; }
+
+bool StopScope::requested() const {
+  return (stop_ != nullptr && stop_->requested()) || (outer_ != nullptr && outer_->requested());
+}
+
+void throw_if_stopped() {
+  if (innermost != nullptr && innermost->requested()) throw Interrupted();
+}
+
 void for_each_task(std::size_t count, const std::function<void(std::size_t)>& task,
                    const StopToken& stop) {
   FirstFailure failure(count);
+  const StopScope wish(stop);
   const auto guarded = [&](std::size_t index) {
-    if (stop.requested() || failure.is_before(index)) return;
+    if (wish.requested() || failure.is_before(index)) return;
+    const StopScope handed_on(&wish);
     try {
       task(index);
     } catch (...) {
@@ -89,7 +112,7 @@ void for_each_task(std::size_t count, const std::function<void(std::size_t)>& ta
     }
   };
   spread(count, guarded);
-  stop.throw_if_requested();
+  throw_if_stopped();
   failure.rethrow();
 }
 

@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "libsim/base/error.hpp"
+#include "libsim/base/stop_scope.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {
@@ -64,6 +65,7 @@ const FftPlans* plans_for(std::size_t length, Memory memory) {
 RealFft::RealFft(std::size_t length) : length_(length), plans_(plans_for(length, Memory::kApart)) {}
 
 void RealFft::forward(std::span<const double> samples, std::span<Complex> spectrum) const {
+  throw_if_stopped();
   assert(samples.size() == length_ && spectrum.size() == bins());
   // The plan preserves its input; FFTW's interface is merely not const.
   fftw_execute_dft_r2c(plans_->forward, const_cast<double*>(samples.data()),
@@ -71,6 +73,7 @@ void RealFft::forward(std::span<const double> samples, std::span<Complex> spectr
 }
 
 void RealFft::inverse(std::span<Complex> spectrum, std::span<double> samples) const {
+  throw_if_stopped();
   assert(samples.size() == length_ && spectrum.size() == bins());
   fftw_execute_dft_c2r(plans_->inverse, as_fftw(spectrum.data()), samples.data());
   const double scale = 1.0 / static_cast<double>(length_);
@@ -96,6 +99,7 @@ InPlaceFft::InPlaceFft(std::size_t length)
       unaligned_(plans_for(length, Memory::kInPlaceUnaligned)) {}
 
 void InPlaceFft::forward(std::span<Complex> memory) const {
+  throw_if_stopped();
   assert(memory.size() == bins());
   double* samples = modcal::samples_in(memory.data());
   const FftPlans* plans = fftw_alignment_of(samples) == 0 ? aligned_ : unaligned_;
@@ -103,6 +107,7 @@ void InPlaceFft::forward(std::span<Complex> memory) const {
 }
 
 void InPlaceFft::inverse(std::span<Complex> memory) const {
+  throw_if_stopped();
   assert(memory.size() == bins());
   double* samples = modcal::samples_in(memory.data());
   const FftPlans* plans = fftw_alignment_of(samples) == 0 ? aligned_ : unaligned_;

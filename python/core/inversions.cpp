@@ -6,6 +6,7 @@
 #include "python/core/arrays.hpp"
 #include "python/core/errors.hpp"
 #include "python/core/module.hpp"
+#include "python/core/watched.hpp"
 
 namespace modcal::python {
 namespace {
@@ -53,12 +54,13 @@ class Inverter {
       : options_(InverterOptions::read(yaml)),
         recipe_(options_.inversion),
         basis_(make_modal_basis(options_.string)) {
-    const py::gil_scoped_release unlocked;
-    prepared_ = recipe_.estimator().prepare({.basis = basis_,
-                                             .contact = options_.contact.position,
-                                             .samples = samples,
-                                             .sample_rate = sample_rate,
-                                             .recorded = recorded});
+    do_watched(py::none(), [&](const Watch&) {
+      prepared_ = recipe_.estimator().prepare({.basis = basis_,
+                                               .contact = options_.contact.position,
+                                               .samples = samples,
+                                               .sample_rate = sample_rate,
+                                               .recorded = recorded});
+    });
   }
 
   py::list estimate(const std::optional<Numbers>& left, const std::optional<Numbers>& right,
@@ -67,10 +69,16 @@ class Inverter {
     if (left) record.reactions[0] = span_of(*left);
     if (right) record.reactions[1] = span_of(*right);
     std::vector<Estimate> found;
-    {
-      const py::gil_scoped_release unlocked;
+    const auto invert = [&] {
       found = prepared_->estimate(
           record, recipe_.method({.force = true, .displacement = motion, .velocity = motion}));
+    };
+    constexpr std::size_t kShort = 500'000;  // samples: 30 ms, against 0.1 ms for a thread
+    if (std::max(record.reactions[0].size(), record.reactions[1].size()) > kShort) {
+      do_watched(py::none(), [&](const Watch&) { invert(); });
+    } else {
+      const py::gil_scoped_release unlocked;
+      invert();
     }
     py::list told;
     for (Estimate& one : found) told.append(described(std::move(one)));

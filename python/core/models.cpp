@@ -13,6 +13,7 @@
 #include "libsim/records/recording.hpp"
 #include "python/core/errors.hpp"
 #include "python/core/module.hpp"
+#include "python/core/watched.hpp"
 
 namespace modcal::python {
 namespace {
@@ -32,12 +33,13 @@ std::string fit_response(double step, const py::array_t<Complex, py::array::c_st
     rows.emplace_back(row, row + lines);
     sensors.push_back(kind_of_sensor(names[k], kinds[k]));
   }
-  const py::gil_scoped_release unlocked;
-  StrikeFit fit = modcal::fit_response({.spacing = kTurn * step, .bins = lines}, rows, sensors,
-                                       {.low = low, .high = high, .most_modes = most_modes});
-  if (const std::string why = fit.rejection(); !why.empty()) throw_invalid_input("{}", why);
-  fit.table.names = names;
-  return table_text(fit.table);
+  return watched(py::none(), [&](const Watch&) {
+    StrikeFit fit = modcal::fit_response({.spacing = kTurn * step, .bins = lines}, rows, sensors,
+                                         {.low = low, .high = high, .most_modes = most_modes});
+    if (const std::string why = fit.rejection(); !why.empty()) throw_invalid_input("{}", why);
+    fit.table.names = names;
+    return table_text(fit.table);
+  });
 }
 
 }  // namespace

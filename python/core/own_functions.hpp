@@ -62,17 +62,31 @@ class OwnFunction final : public ObjectiveFunction {
   }
   // Of residuals alone it is half their sum of squares.
   double value_at(const py::array& at) const {
-    if (!callables_.value.is_none()) return callables_.value(at).cast<double>();
+    if (!callables_.value.is_none()) {
+      const py::object returned = callables_.value(at);
+      const double value = PyFloat_AsDouble(returned.ptr());
+      if (PyErr_Occurred() != nullptr) refuse("the objective", "a number", returned);
+      return value;
+    }
     std::vector<double> residuals(residual_count_);
     fill(callables_.residuals, at, residual_count_, "the residuals", residuals.data());
     double sum = 0.0;
     for (const double residual : residuals) sum += residual * residual;
     return 0.5 * sum;
   }
+  [[noreturn]] static void refuse(const char* what, const char* wanted,
+                                  const py::object& returned) {
+    PyErr_Clear();
+    throw_invalid_input("{} returned {} of type {} in the place of {}", what,
+                        py::repr(returned).cast<std::string>(), Py_TYPE(returned.ptr())->tp_name,
+                        wanted);
+  }
   static void fill(const py::object& callable, const py::array& at, std::size_t size,
                    const char* what, double* target) {
     if (target == nullptr) return;
-    const Numbers numbers = callable(at).cast<Numbers>();
+    const py::object returned = callable(at);
+    const Numbers numbers = Numbers::ensure(returned);
+    if (!numbers) refuse(what, "an array of numbers", returned);
     MODCAL_REQUIRE(static_cast<std::size_t>(numbers.size()) == size,
                    "{} of the objective has {} values in the place of {}", what, numbers.size(),
                    size);

@@ -21,11 +21,9 @@ py::array spectrum_of(const std::vector<Complex>& spectrum) {
 py::object record_of(const CalibrationData& data, const ParameterSet& parameters) {
   std::vector<std::string> names;
   for (const Variable& variable : parameters.variables()) names.push_back(variable.name);
-  const auto model = [parameters](const Numbers& x) {
-    MODCAL_REQUIRE(static_cast<std::size_t>(x.size()) == parameters.size(),
-                   "x has {} values: the problem has {} variables, give one for each", x.size(),
-                   parameters.size());
-    const ModelPoint point = parameters.model(span_of(x));
+  const auto model = [parameters](const py::object& x) {
+    const Numbers at = point_of("x", x, parameters.size());
+    const ModelPoint point = parameters.model(span_of(at));
     py::dict told;
     told["frequencies"] = array_of(frequencies_of(point.basis));
     told["damping_ratios"] = array_of({point.basis.zeta.begin(), point.basis.zeta.end()});

@@ -16,24 +16,18 @@ struct OwnEvaluator {
     MODCAL_REQUIRE(evaluator != nullptr, "{}", "the search of this evaluator is over");
     return *evaluator;
   }
-  std::span<const double> point(const Numbers& z) const {
-    MODCAL_REQUIRE(static_cast<std::size_t>(z.size()) == get().dimension(),
-                   "z has {} values: the problem has {} variables, give one for each", z.size(),
-                   get().dimension());
-    return span_of(z);
-  }
-  double value(const Numbers& z) const {
-    const auto at = point(z);
+  double value(const py::object& z) const {
+    const Numbers at = point_of("z", z, get().dimension());
     const py::gil_scoped_release unlocked;
-    return evaluator->value(at);
+    return evaluator->value(span_of(at));
   }
-  py::tuple value_and_gradient(const Numbers& z) const {
-    const auto at = point(z);
+  py::tuple value_and_gradient(const py::object& z) const {
+    const Numbers at = point_of("z", z, get().dimension());
     double value = 0.0;
-    std::vector<double> gradient(at.size());
+    std::vector<double> gradient(get().dimension());
     {
       const py::gil_scoped_release unlocked;
-      evaluator->evaluate(at, {.value = &value, .gradient = gradient.data()});
+      evaluator->evaluate(span_of(at), {.value = &value, .gradient = gradient.data()});
     }
     return py::make_tuple(value, array_of(std::move(gradient)));
   }
@@ -105,7 +99,7 @@ py::dict minimize(const py::dict& callables, std::size_t residuals, const py::li
       stated.size(), residuals);
   const SearchOptions how = SearchOptions::read(options);
   return described(watched(progress, [&](const Watch& watch) {
-    return how.optimizer.make()->minimize(function, stated, how.budget, polling_clock(watch.stop));
+    return how.optimizer.make()->minimize(function, stated, how.budget, how.telling(watch));
   }));
 }
 
@@ -116,7 +110,7 @@ py::dict search(const Search& problem, const py::object& search, const std::stri
   const OwnOptimizer optimizer(search);
   return described(watched(progress, [&](const Watch& watch) {
     return optimizer.minimize(problem.function(), problem.variables(), how.budget,
-                              polling_clock(watch.stop));
+                              how.telling(watch));
   }));
 }
 

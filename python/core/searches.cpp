@@ -2,6 +2,7 @@
 
 #include <pybind11/stl.h>
 
+#include "experiments/runs/task_experiment.hpp"
 #include "python/core/errors.hpp"
 #include "python/core/module.hpp"
 #include "python/core/watched.hpp"
@@ -22,7 +23,7 @@ py::dict minimize(const Search& search, const std::string& options, const py::ob
   const SearchOptions stated = SearchOptions::read(options);
   return described(watched(progress, [&](const Watch& watch) {
     return stated.optimizer.make()->minimize(search.function(), search.variables(), stated.budget,
-                                             polling_clock(watch.stop));
+                                             stated.telling(watch));
   }));
 }
 
@@ -31,54 +32,68 @@ py::dict minimize(const Search& search, const std::string& options, const py::ob
 Search::Search(std::shared_ptr<const SearchTask> task)
     : task_(std::move(task)), variables_(task_->bound.parameters.variables()) {}
 
-std::span<const double> Search::point(const Numbers& x) const {
-  MODCAL_REQUIRE(x.ndim() == 1 && static_cast<std::size_t>(x.size()) == variables_.size(),
-                 "x has {} values: the problem has {} variables, give one for each", x.size(),
-                 variables_.size());
-  return span_of(x);
-}
-
-double Search::value(const Numbers& x) const {
-  const auto at = point(x);
-  const py::gil_scoped_release unlocked;
-  return function().value(at);
-}
-
-py::array Search::gradient(const Numbers& x) const {
-  const auto at = point(x);
-  std::vector<double> gradient;
-  {
-    const py::gil_scoped_release unlocked;
-    gradient = gradient_at(function(), variables_, at);
+Numbers Search::point(const py::object& x) const {
+  Numbers at = point_of("x", x, variables_.size());
+  for (std::size_t i = 0; i < variables_.size(); ++i) {
+    MODCAL_REQUIRE(std::isfinite(at.data()[i]), "x[{}] ({}) is {}; give a finite number", i,
+                   variables_[i].name, at.data()[i]);
   }
+  return at;
+}
+
+void Search::evaluate(const std::function<void()>& work) const {
+  constexpr double kLong = 0.02;  // [s]; a thread of its own costs 1e-4 s
+  const Stopwatch clock;
+  if (*slow_) {
+    do_watched(py::none(), [&work](const Watch&) { work(); });
+  } else {
+    const py::gil_scoped_release unlocked;
+    work();
+  }
+  *slow_ = clock.seconds() > kLong;
+}
+
+double Search::value(const py::object& x) const {
+  const Numbers at = point(x);
+  double value = 0.0;
+  evaluate([&] { value = function().value(span_of(at)); });
+  return value;
+}
+
+py::array Search::gradient(const py::object& x) const {
+  const Numbers at = point(x);
+  std::vector<double> gradient;
+  evaluate([&] { gradient = gradient_at(function(), variables_, span_of(at)); });
   return array_of(std::move(gradient));
 }
 
-py::array Search::residuals(const Numbers& x) const {
-  const auto at = point(x);
-  std::vector<double> residuals(function().residual_count());
-  {
-    const py::gil_scoped_release unlocked;
-    function().evaluate(at, {.residuals = residuals.data()});
-  }
+py::array Search::residuals(const py::object& x) const {
+  const Numbers at = point(x);
+  std::vector<double> residuals;
+  evaluate([&] {
+    residuals.resize(function().residual_count());
+    function().evaluate(span_of(at), {.residuals = residuals.data()});
+  });
   return array_of(std::move(residuals));
 }
 
-py::array Search::jacobian(const Numbers& x) const {
-  const auto at = point(x);
-  const std::size_t rows = function().residual_count();
-  std::vector<double> jacobian(rows * at.size());
-  {
-    const py::gil_scoped_release unlocked;
-    function().evaluate(at, {.jacobian = jacobian.data()});
-  }
+py::array Search::jacobian(const py::object& x) const {
+  const Numbers at = point(x);
+  std::vector<double> jacobian;
+  const std::size_t columns = variables_.size();
+  evaluate([&] {
+    jacobian.resize(function().residual_count() * columns);
+    function().evaluate(span_of(at), {.jacobian = jacobian.data()});
+  });
+  const std::size_t rows = jacobian.size() / columns;
   return array_of(std::move(jacobian))
-      .reshape({static_cast<py::ssize_t>(rows), static_cast<py::ssize_t>(at.size())});
+      .reshape({static_cast<py::ssize_t>(rows), static_cast<py::ssize_t>(columns)});
 }
 
-Model Search::model(const Numbers& x) const {
-  const ModelPoint point = task_->bound.parameters.model(this->point(x));
-  return Model::of_basis(point.basis, point.contact, task_->truth.empty());
+Model Search::model(const py::object& x) const {
+  const Numbers at = point(x);
+  const ModelPoint model = task_->bound.parameters.model(span_of(at));
+  return Model::of_basis(model.basis, model.contact, task_->truth.empty());
 }
 
 py::list described(const std::vector<Variable>& variables) {
@@ -127,10 +142,13 @@ SearchOptions SearchOptions::read(const std::string& yaml) {
   return options;
 }
 
-SecondsClock polling_clock(const std::atomic<bool>& stop) {
-  return [token = StopToken(stop), clock = steady_seconds()] {
-    token.throw_if_requested();
-    return clock();
+SecondsClock SearchOptions::telling(const Watch& watch) const {
+  return [&watch, limit = budget, clock = steady_seconds(), begin = steady_seconds()(),
+          reads = std::int64_t{0}]() mutable {
+    const double now = clock();
+    const double spent = static_cast<double>(++reads) / static_cast<double>(limit.evaluations);
+    watch.progress(std::min(1.0, std::max(spent, (now - begin) / limit.seconds)));
+    return now;
   };
 }
 
@@ -143,12 +161,9 @@ void add_searches(py::module_& module) {
                              [](const Search& self) { return array_of(self.task().truth); })
       .def_property_readonly("bound",
                              [](const Search& self) {
-                               std::vector<double> bound;
-                               {
-                                 const py::gil_scoped_release unlocked;
-                                 bound = self.task().bound_deviations();
-                               }
-                               return array_of(std::move(bound));
+                               return array_of(watched(py::none(), [&self](const Watch&) {
+                                 return self.task().bound_deviations();
+                               }));
                              })
       .def_property_readonly("blind", [](const Search& self) { return self.task().bound.blind; })
       .def_property_readonly("residual_count",

@@ -6,6 +6,9 @@
 #include <mutex>
 #include <thread>
 
+#include "libsim/base/stop_scope.hpp"
+#include "libsim/base/task_loop.hpp"
+
 namespace modcal::python {
 namespace {
 
@@ -34,6 +37,8 @@ class Work {
  private:
   void run(const std::function<void(const Watch&)>& work) {
     try {
+      const StopToken token(stop_);
+      const StopScope listening(token);
       work({stop_, [this](double share) { share_ = share; }});
     } catch (...) {
       error_ = std::current_exception();

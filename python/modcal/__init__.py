@@ -9,12 +9,13 @@ from modcal.experiments import (ask, calibrate, describe, fit_modes, identify, i
                                 schema, simulate, validate)
 from modcal.inverter import Estimate, Inverter
 from modcal.models import Model
-from modcal.problem import Parameters, Problem, Search, Variable, add_objective, add_optimizer, minimize
+from modcal.problem import (Evaluator, Parameters, Problem, Search, Variable, add_objective, add_optimizer,
+                            minimize)
 from modcal.records import Record
 from modcal.results import Result, Table
 
 __all__ = [
-    "Estimate", "InvalidInput", "Inverter", "Mistake", "Model", "Parameters", "Problem", "Record", "Result", "Search",
-    "SearchOver", "Table", "Variable", "add_objective", "add_optimizer", "ask", "calibrate", "describe",
+    "Estimate", "Evaluator", "InvalidInput", "Inverter", "Mistake", "Model", "Parameters", "Problem", "Record", "Result",
+    "Search", "SearchOver", "Table", "Variable", "add_objective", "add_optimizer", "ask", "calibrate", "describe",
     "fit_modes", "identify", "invert", "limit", "load", "minimize", "new", "plugins", "run", "schema", "simulate", "validate",
 ]

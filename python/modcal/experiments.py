@@ -16,7 +16,7 @@ from modcal.results import Result, Table
 
 #: A file, the text of one, or its content as a dictionary.
 Source = Union[str, "os.PathLike[str]", Mapping[str, Any]]
-#: Called with the share done; True shows a line, None nothing.
+#: Called with the share done; True shows a line, in a notebook a bar; None nothing.
 Progress = Union[Callable[[float], None], bool, None]
 
 _REFUSED = (1, 2, 3, 7)  # exit codes of what has no result
@@ -32,8 +32,24 @@ def _told(progress: Progress) -> Callable[[float], None] | None:
     if progress is not True:
         return progress
 
+    if "ipykernel" in sys.modules:
+        return _bar()
+
     def show(share: float) -> None:
         print(f"\r{100 * share:3.0f} %", end="", file=sys.stderr, flush=True)
+
+    return show
+
+
+def _bar() -> Callable[[float], None]:
+    """A bar in a notebook."""
+    from IPython.display import ProgressBar  # type: ignore[import]
+
+    bar = ProgressBar(1000)
+    bar.display()
+
+    def show(share: float) -> None:
+        bar.progress = round(1000 * share)
 
     return show
 
@@ -41,6 +57,8 @@ def _told(progress: Progress) -> Callable[[float], None] | None:
 def open_experiment(source: Source, overrides: Mapping[str, Any] | None = None,
                     with_records: bool = False) -> _core.Experiment:
     """The experiment without mistakes; InvalidInput holds all that there are. with_records: in recorded files, too."""
+    if not source:
+        raise InvalidInput("the experiment is empty; give a file, the text of one, or its content as a dictionary")
     if isinstance(source, Mapping):
         source = yaml.block(source)
     opened = _core.open(os.fspath(source), _is_text(source), yaml.assignments(overrides), with_records)
@@ -106,24 +124,26 @@ def _run_into(out: Path, source: Source, overrides: Mapping[str, Any] | None, th
     if threads > 0:
         words += ["--threads", str(threads)]
     answer = ask(*words, progress=progress)
-    result = load(out)
-    result.answer = answer.get("verdict", "")
-    result.summary = answer.get("summary", "")
-    result.missed = answer.get("missed", [])
-    result.status = {0: "ok", 5: "ok", 4: "some_failed"}.get(answer.get("error", {}).get("exit_code", 0), "failed")
+    result = load(answer.get("out", out))
     result.warnings = answer.get("warnings", [])
     return result
 
 
 def load(folder: str | os.PathLike[str]) -> Result:
-    """What a run has left in its folder. Of a list of tasks that still runs: what is finished."""
+    """What a run has left in its folder: its numbers, its signals, and what it said.
+
+    Of a run that still works there, what is finished: the tasks of a list, and their numbers. status is "running"
+    then; "unfinished" where nobody works on what is left.
+    """
     place = Path(folder)
     result = results.of_folder(place)
     if (place / "journal").is_dir():
-        result.tables["tasks"] = _tasks(place)
         counts = ask("status", os.fspath(place))
-        result.summary = f"{counts['done']} of {counts['tasks']} tasks done, {counts['failed']} failed"
-        result.status = "some_failed" if counts["failed"] else "ok"
+        result.tables["tasks"] = _tasks(place)
+        if counts["pending"] or counts["running"]:
+            result.answer = ""
+            result.summary = f"{counts['done']} of {counts['tasks']} tasks done, {counts['failed']} failed"
+            result.status = "running" if counts["running"] else "unfinished"
     return result
 
 
@@ -185,9 +205,15 @@ def simulate(**keys: Any) -> Result:
     return run({"kind": "simulate", "files": ["csv"], **keys})  # without, no signals are kept
 
 
+def _section(record: Record) -> dict[str, Any]:
+    if not isinstance(record, Record):
+        raise InvalidInput(f"the record is a {type(record).__name__}; make it by modcal.Record(rate=, left=, right=)")
+    return record.section()
+
+
 def _on(record: Record, kind: str, string: Model | Mapping[str, Any], position: float | str | None,
         keys: Mapping[str, Any]) -> Result:
-    return run({"kind": kind, "record": record.section(), **stated(string, position), **keys})
+    return run({"kind": kind, "record": _section(record), **stated(string, position), **keys})
 
 
 def invert(record: Record, string: Model | Mapping[str, Any], position: float | str | None = None,
@@ -214,7 +240,7 @@ def fit_modes(record: Record, low: float | str, high: float | str, **keys: Any) 
 
     low, high: the band [Hz]. keys: the others of kind: fit_modes.
     """
-    return run({"kind": "fit_modes", "record": record.section(), "low": low, "high": high, **keys})
+    return run({"kind": "fit_modes", "record": _section(record), "low": low, "high": high, **keys})
 
 
 def identify(record: Record, model: Model, **keys: Any) -> Result:
@@ -222,4 +248,4 @@ def identify(record: Record, model: Model, **keys: Any) -> Result:
 
     model: Model.table(). keys: the others of kind: identify_force, as window="80 ms".
     """
-    return run({"kind": "identify_force", **model.section("table"), "record": record.section(), **keys})
+    return run({"kind": "identify_force", **model.section("table"), "record": _section(record), **keys})

@@ -38,9 +38,17 @@ class Inverter:
 
     def __init__(self, string: Model | Mapping[str, Any], position: float | str | None = None, *, samples: int, rate: float,
                  inversion: Mapping[str, Any] | None = None, recorded: bool = True) -> None:
+        if not isinstance(samples, (int, np.integer)) or samples < 1:
+            raise InvalidInput(f"samples = {samples!r} is no length of a record; give a whole number of samples, 1 or more")
+        if not isinstance(rate, (int, float, np.number)) or not 0.0 < rate < float("inf"):
+            raise InvalidInput(f"rate = {rate!r} cannot be a sample rate; give a number of Hz > 0")
         options = {**stated(string, position), "inversion": inversion or {}}
-        self.samples = samples
-        self._core = _core.Inverter(yaml.flow(options), samples, rate, recorded)
+        self.samples = int(samples)
+        self.rate = float(rate)
+        self._core = _core.Inverter(yaml.flow(options), self.samples, self.rate, recorded)
+
+    def __repr__(self) -> str:
+        return f"<modcal.Inverter of records of {self.samples} samples at {self.rate:g} Hz>"
 
     def __call__(self, left: ArrayLike | None = None, right: ArrayLike | None = None, *,
                  motion: bool = False) -> list[Estimate]:

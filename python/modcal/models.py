@@ -82,7 +82,7 @@ class Model:
         more than half of a response are refused. Such a model knows no pulse of a hammer: what identify() finds
         with it is told within the band, and its error bar is wide beyond.
         """
-        f = as_samples("frequencies", frequencies)
+        f = as_samples("frequencies", frequencies, "numbers")
         step = (f[-1] - f[0]) / max(1, f.size - 1)
         if f.size < 3 or not step > 0.0 or not np.all(np.abs(f - step * np.rint(f / step)) < 1e-3 * step):
             raise InvalidInput("the frequencies are no multiples of an even step; interpolate the responses")
@@ -123,7 +123,7 @@ class Model:
 
     def transfer(self, frequencies: ArrayLike) -> NDArray[np.complex128]:
         """H_k at frequencies [Hz], a row for each sensor [sensor's unit/N]."""
-        return self._core.transfer(frequencies)
+        return self._core.transfer(as_samples("frequencies", frequencies, "numbers"))
 
     def section(self, *names: str) -> dict[str, Any]:
         """The keys of an experiment that state it. A table's are those of a structure, not of a string."""

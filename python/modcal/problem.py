@@ -11,6 +11,8 @@ from modcal.errors import InvalidInput
 from modcal.experiments import Progress, Source, _told, open_experiment
 from modcal.models import Model
 
+Evaluator = _core.Evaluator
+
 Array = NDArray[np.float64]
 
 
@@ -76,6 +78,9 @@ def _options(optimizer: str | Mapping[str, Any] | None, budget: Mapping[str, Any
 class Problem:
     """What an experiment of kind: calibrate minimizes, with its records made or read.
 
+    Of several records it is the likelihood of all: what each has for itself stands in x with its number, "x_c 2". Where
+    the optimizer is staged, what the file states beforehand joins it: priors, and the scatter of f_n about the law.
+
     x holds the free parameters in the units of `parameters`. The functions may be called from several
     threads.
     """
@@ -92,16 +97,17 @@ class Problem:
 
     @property
     def truth(self) -> Array | None:
-        """Of a simulated string: x where its model is right."""
+        """Of a simulated string: x where its model is right; None of a record."""
         truth = self._core.truth
         return truth if truth.size else None
 
     @property
     def bound(self) -> Array | None:
-        """Standard deviations that no unbiased estimate from these records goes below.
+        """Standard deviations that no unbiased estimate from these records goes below, whatever its objective.
 
-        By the Jacobian of the residuals at the truth, which holds the noise of the records; of an objective with
-        white residuals (joint_likelihood).
+        The Cramér–Rao bound at the truth, the force unknown and all else known; with the priors of the file where
+        the optimizer is staged. One that knows more, such as the law of the friction, may go below. 0 where the
+        records have no noise, infinite for what they do not tell; None of a record, whose truth is not known.
         """
         bound = self._core.bound
         return bound if bound.size else None
@@ -176,6 +182,8 @@ def minimize(objective: Callable[[Array], float] | None, variables: Sequence[Var
 
     objective: of x; None where it is half the sum of squares of the residuals.
     """
+    if not variables or not all(isinstance(one, Variable) for one in variables):
+        raise InvalidInput("the variables are no list of modcal.Variable(name, unit, initial, lower, upper); give one or more")
     if objective is None and residuals is None:
         raise InvalidInput("nothing to minimize; give an objective or residuals")
     callables = {"value": objective, "gradient": gradient, "residuals": residuals, "jacobian": jacobian}

@@ -13,21 +13,21 @@ from modcal.errors import InvalidInput
 _numbers = itertools.count(1)
 
 
-def as_samples(what: str, given: ArrayLike) -> NDArray[np.float64]:
-    """A row of double precision; a view where it is one already."""
+def as_samples(what: str, given: ArrayLike, of: str = "samples") -> NDArray[np.float64]:
+    """A row of double precision; a view where it is one already. of: what it is a row of."""
     if np.any(getattr(given, "mask", False)):
-        raise InvalidInput(f"{what} has masked samples; fill them, or cut the record")
+        raise InvalidInput(f"{what} has masked {of}; fill them, or leave them out")
     try:
         array = np.asarray(given)
     except ValueError as error:
-        raise InvalidInput(f"{what} is no array: {error}; give one row of samples") from None
+        raise InvalidInput(f"{what} is no array: {error}; give one row of {of}") from None
     if array.dtype.kind not in "fiub":
         raise InvalidInput(f"{what} is an array of {array.dtype}, not of real numbers; convert it with "
                            "astype(float)")
     if array.ndim != 1:
-        raise InvalidInput(f"{what} has the shape {array.shape}; give one row of samples")
+        raise InvalidInput(f"{what} has the shape {array.shape}; give one row of {of}")
     if array.size == 0:
-        raise InvalidInput(f"{what} is empty; give at least one sample")
+        raise InvalidInput(f"{what} is empty; give one row of {of}")
     return np.ascontiguousarray(array, dtype=np.float64)
 
 
@@ -61,6 +61,8 @@ class Record:
             raise InvalidInput("a record needs either rate= or time=; state one of them")
         if isinstance(rate, str):
             raise InvalidInput(f"rate = \"{rate}\" is a text; give samples a second as a number")
+        if rate is not None and np.ndim(rate) > 0:
+            raise InvalidInput(f"rate = {rate!r} is no number; give samples a second as one number")
         self.rate = float(rate) if rate is not None else _rate(time)  # type: ignore[arg-type]
         if not (self.rate > 0.0 and np.isfinite(self.rate)):
             raise InvalidInput(f"rate = {self.rate} Hz cannot be a sample rate; it is > 0")

@@ -80,7 +80,7 @@ class Result:
     def __init__(self, kind: str, title: str) -> None:
         self.kind = kind
         self.title = title
-        self.status = "ok"
+        self.status = "ok"  #: "some_failed" of a list, "failed"; of a folder "running" or "unfinished", too
         self.seconds = float("nan")  #: that a run in memory took
         self.answer = ""
         self.summary = ""
@@ -283,8 +283,25 @@ def of_folder(folder: Path) -> Result:
     result = Result(heads["kind"], heads.get("title", ""))
     result.folder = folder
     result.provenance = provenance
+    _read_answer(result, folder / "answer.json")
     for name in sorted(provenance.get("files", [])):
         file = folder / name
-        if "/" not in name and name != "provenance.json" and file.exists():
+        if "/" not in name and name not in ("provenance.json", "answer.json") and file.exists():
             _read_file(result, file)
     return result
+
+
+def _read_answer(result: Result, file: Path) -> None:
+    """What the run has said; without it there is none yet."""
+    if not file.exists() and (file.parent / "report.html").exists():
+        return  # of a version that kept no answer
+    if not file.exists():
+        result.status = "unfinished"
+        result.summary = "the run has not ended: it still works, or was stopped; modcal.run() with out= begins it again"
+        return
+    told = json.loads(file.read_text(encoding="utf-8"))
+    result.status = told["status"]
+    result.answer = told["verdict"]
+    result.summary = told["summary"]
+    result.warnings = told["warnings"]
+    result.missed = told["missed"]

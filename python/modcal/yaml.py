@@ -5,6 +5,8 @@ import json
 import re
 from typing import Any, Mapping
 
+from modcal.errors import InvalidInput
+
 # Words and quantities such as "30 mm" and "1e-3 kg/m": a quoted text would never be a number.
 _PLAIN = re.compile(r"[A-Za-z0-9_.+-]([A-Za-z0-9_ .+*/^%²³µ-]*[A-Za-z0-9_.+*/^%²³µ-])?")
 
@@ -34,5 +36,7 @@ def block(experiment: Mapping[str, Any]) -> str:
 
 def assignments(overrides: Mapping[str, Any] | None) -> list[str]:
     """What --set takes. A text is YAML as it stands: "30 mm", "[1, 2]"."""
+    if overrides is not None and not isinstance(overrides, Mapping):
+        raise InvalidInput(f"the overrides are a {type(overrides).__name__}; give a dictionary {{\"scene.duration\": 0.2}}")
     return [f"{path}={value if isinstance(value, str) else flow(value)}"
             for path, value in (overrides or {}).items()]

@@ -1,7 +1,9 @@
 """What the tests of the package share: NAME_test.py ROOT MODCAL."""
+import re
 import subprocess
 import sys
 import tempfile
+import textwrap
 import unittest
 from pathlib import Path
 
@@ -22,6 +24,13 @@ CALIBRATE = {**INVERT, "kind": "calibrate", "model_error": {"contact": "0.4 mm"}
                              "objective": {"type": "force_mismatch", "weights": "transfer"},
                              "optimizer": {"type": "gsl", "algorithm": "dogleg"}}}
 SWEEP = {**INVERT, "title": "three seeds", "sweep": {"product": {"seed": [1, 2, 3]}}}
+
+
+def programs(page):
+    """The indented blocks of a page that are Python."""
+    text = (ROOT / page).read_text(encoding="utf-8")
+    blocks = re.findall(r"(?:^(?:    .*)?\n)*^    .*\n", text, re.M)
+    return [textwrap.dedent(block).strip() + "\n" for block in blocks if "modcal." in block and "import modcal" in block]
 
 
 class Folder(unittest.TestCase):

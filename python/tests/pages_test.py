@@ -2,19 +2,10 @@
 import contextlib
 import io
 import os
-import re
 import shutil
 import subprocess
-import textwrap
 
-from cases import ROOT, Folder, main
-
-
-def programs(page):
-    """The indented blocks of a page that are Python."""
-    text = (ROOT / page).read_text(encoding="utf-8")
-    blocks = re.findall(r"(?:^(?:    .*)?\n)*^    .*\n", text, re.M)
-    return [textwrap.dedent(block).strip() + "\n" for block in blocks if "modcal." in block and "import modcal" in block]
+from cases import ROOT, Folder, main, programs
 
 
 class Pages(Folder):

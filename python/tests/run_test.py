@@ -2,11 +2,13 @@
 import _thread
 import json
 import pickle
+import signal
+import subprocess
 import threading
 import time
 
 import numpy as np
-from cases import CALIBRATE, INVERT, SIMULATE, SWEEP, Folder, main
+from cases import CALIBRATE, INVERT, PROGRAM, SIMULATE, SWEEP, Folder, main
 
 import modcal
 from modcal import yaml
@@ -100,6 +102,56 @@ class Lists(Folder):
         self.assertEqual(whole.tables["tasks"]["identification.correlation"][0],
                          begun.tables["tasks"]["identification.correlation"][0])
         self.assertEqual(modcal.ask("status", str(out))["done"], 3)
+
+
+class Loaded(Folder):
+    def test_what_a_run_said(self):
+        file = self.file(CALIBRATE)
+        found = modcal.run(file, out=self.folder / "ours")
+        stored = modcal.load(self.folder / "ours")
+        for key in ("status", "answer", "summary", "warnings", "missed"):
+            self.assertEqual(getattr(stored, key), getattr(found, key), key)
+        told = json.loads(self.program("run", file, "--out", "theirs", "--json", "-q"))
+        self.assertEqual(stored.answer, told["verdict"])
+        self.assertEqual(stored.warnings, told.get("warnings", []))
+        self.assertIn("f0", stored.summary)
+        self.assertIn(stored.summary.splitlines()[0], stored._repr_html_().replace("&lt;", "<").replace("&gt;", ">"))
+
+    def test_warnings_and_failures(self):
+        cut = {"calibration.budget.evaluations": 2, "calibration.optimizer": "nlopt", "scene.duration": 0.05}
+        found = modcal.run(self.file(CALIBRATE), cut, out=self.folder / "out")
+        stored = modcal.load(self.folder / "out")
+        self.assertEqual((stored.status, stored.warnings), (found.status, found.warnings))
+        self.assertTrue(stored.warnings, stored.summary)
+
+    def test_a_study_that_runs(self):
+        long = {**SWEEP, "scene": {**SWEEP["scene"], "duration": 2}, "sweep": {"product": {"seed": list(range(2000))}}}
+        words = [PROGRAM, "run", str(self.file(long)), "--out", "out", "-q", "--threads", "1"]
+        with subprocess.Popen(words, cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as running:
+            out = self.folder / "out"
+            try:
+                seen = None
+                while seen is None or not len(seen.tables["tasks"]):
+                    self.assertIsNone(running.poll())
+                    time.sleep(0.1)
+                    if (out / "resolved.yaml").exists() and (out / "journal").is_dir():
+                        seen = modcal.load(out)
+            finally:
+                running.send_signal(signal.SIGINT)
+                running.wait()
+        self.assertEqual((seen.kind, seen.status), ("invert", "running"))
+        self.assertRegex(seen.summary, r"^[1-9]\d* of 2000 tasks done, 0 failed")
+        self.assertIn("identification.correlation", seen.tables["tasks"].columns)
+        self.assertEqual(modcal.load(out).status, "unfinished")
+
+    def test_a_single_run_that_was_stopped(self):
+        file = self.file(SIMULATE)
+        self.program("run", file, "--out", "out", "-q")
+        for written in (self.folder / "out").iterdir():
+            if written.is_file() and written.name not in ("provenance.json", "resolved.yaml"):
+                written.unlink()
+        begun = modcal.load(self.folder / "out")
+        self.assertEqual((begun.kind, begun.status, begun.title), ("simulate", "unfinished", "a stroke"))
 
 
 class Refusals(Folder):

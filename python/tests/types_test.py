@@ -1,10 +1,11 @@
 """The stubs say what the module has; the package and a program that uses it are typed strictly."""
+import json
 import os
 import shutil
 import subprocess
 import sys
 
-from cases import Folder, main
+from cases import ROOT, Folder, main, programs
 
 try:
     import mypy  # noqa: F401
@@ -19,6 +20,16 @@ problem = modcal.Problem("mine.yaml")
 value: float = problem.objective(problem.x0)
 search: modcal.Search = problem.minimize("nlopt", budget={"evaluations": 10})
 '''
+
+
+# Libraries that are not typed.
+SETTINGS = "[mypy]\n[mypy-scipy.*]\nignore_missing_imports = True\n"
+
+
+def cells(notebook):
+    """The code of a notebook as one program."""
+    held = json.loads(notebook.read_text(encoding="utf-8"))["cells"]
+    return "\n".join("".join(cell["source"]) for cell in held if cell["cell_type"] == "code") + "\n"
 
 
 class Types(Folder):
@@ -47,6 +58,19 @@ class Types(Folder):
         self.mypy("mypy", "--strict", str(user))
         user.write_text(USER.replace("value: float", "value: str"), encoding="utf-8")
         self.mypy("mypy", "--strict", str(user), fine=False)
+
+    def test_strict_examples(self):
+        """Programs of the pages, notebooks and examples."""
+        texts = {f"{page.lower().replace('/', '_').replace('.', '_')}_{i}": program
+                 for page in ("README.md", "docs/python.md") for i, program in enumerate(programs(page))}
+        texts.update({book.stem: cells(book) for book in (ROOT / "examples/notebooks").glob("*.ipynb")})
+        texts.update({file.stem: file.read_text(encoding="utf-8") for file in (ROOT / "examples").glob("*.py")})
+        self.assertGreaterEqual(len(texts), 15)
+        files = [str(self.file(text, f"{name}.py")) for name, text in texts.items()]
+        settings = self.file(SETTINGS, "mypy.ini")
+        self.mypy("mypy", "--strict", "--config-file", str(settings), *files)
+        self.file(USER.replace("value: float", "value: str"), "planted.py")
+        self.mypy("mypy", "--strict", "--config-file", str(settings), *files, str(self.folder / "planted.py"), fine=False)
 
 
 if __name__ == "__main__":

@@ -48,6 +48,24 @@ quietly "$there/bin/modcal" reproduce fig02
 quietly "$there/bin/modcal" new calibrate --out mine.yaml
 quietly "$there/bin/modcal" validate mine.yaml
 if [ -n "$python" ]; then
-  export PYTHONPATH=$there/lib/python3/dist-packages
-  quietly /usr/bin/python3 -c 'import modcal; assert not modcal.validate("mine.yaml"), modcal.validate("mine.yaml")'
+  mkdir -p "$work/root/var/lib/dpkg/info" "$work/root/var/lib/dpkg/updates"
+  touch "$work/root/var/lib/dpkg/status"
+  # What it depends on is that of this machine.
+  quietly dpkg --root="$work/root" --force-not-root,depends,script-chrootless --log="$work/dpkg.log" -i "$python"
+  dpkg-query --admindir="$work/root/var/lib/dpkg" -W -f='${db:Status-Status}' python3-modcal | grep -qx installed ||
+    fail "the package of Python is not installed"
+  export PYTHONPATH=$work/root/usr/lib/python3/dist-packages
+  quietly /usr/bin/python3 - "$PYTHONPATH" <<'EOF'
+import sys
+
+import modcal
+
+assert modcal.__file__.startswith(sys.argv[1]), modcal.__file__
+assert not modcal.validate("mine.yaml"), modcal.validate("mine.yaml")
+string = {"length": 0.33, "linear_density": 3.1e-3, "fundamental": 196, "modes": 12}
+stroke = modcal.simulate(scene={"string": string, "bow": {"position": 0.03}, "duration": 0.1},
+                         simulator={"type": "modal_event"}, measurement={"sample_rate": 12800})
+found = modcal.invert(modcal.Record(rate=12800, left=stroke.R1, right=stroke.R2), string, 0.03)
+assert found.f_c_joint.shape == stroke.f_c.shape
+EOF
 fi

@@ -116,15 +116,21 @@ struct ObservedRecords {
 ObservedRecords observe_records(const CalibrateOptions& options, const OutputRequest& outputs,
                                 const StudyContext& context);
 
-/// The search of a calibration, before it is begun.
+/// The search of a calibration, before it is begun. Of a schedule of stages the function holds what
+/// is known beforehand, too (with_priors()).
 struct SearchTask {
   BoundProblem bound;
   std::shared_ptr<const Optimizer> optimizer;
   Budget budget;
   /// Of a simulated string, values of the free parameters where its model is right; else empty.
   std::vector<double> truth;
-  /// Standard deviations at the truth, (JᵀJ)⁻¹ of residuals that are independent and of variance 1;
-  /// empty without such residuals or without a truth. J holds the noise of the record.
+  /// Of a simulated string, its records without noise, with the deviations of that, and its model;
+  /// no records where there is no noise.
+  std::optional<Problem> clean;
+  /// Standard deviations at the truth by the information of both reactions with the force unknown,
+  /// all else known, and by what is known beforehand: no unbiased estimate from these records that
+  /// knows no more goes below, whatever its objective. 0 where there is no noise, ∞ of what the
+  /// records do not tell; empty without a truth.
   std::vector<double> bound_deviations() const;
 };
 

@@ -2,6 +2,8 @@
 #include <algorithm>
 
 #include "experiments/kinds/calibrate/calibrate.hpp"
+#include "libcalib/objectives/joint_likelihood.hpp"
+#include "libcalib/objectives/posterior.hpp"
 #include "libcalib/problem/covariance.hpp"
 
 namespace modcal {
@@ -170,14 +172,73 @@ CalibrationOutcome calibrate_strokes(const CalibrateOptions& options,
   return outcome;
 }
 
-std::vector<double> SearchTask::bound_deviations() const {
-  const Problem& problem = bound.problem;
-  if (truth.empty() || !problem.objective->whitened()) return {};
-  const Covariance covariance = covariance_at(*bound.function, bound.parameters.variables(), truth);
-  std::vector<double> deviations;
-  for (std::size_t i = 0; i < truth.size(); ++i) {
-    deviations.push_back(covariance.standard_deviation(i));
+namespace {
+
+// Where the model of the free parameters is right. contacts: x_c of every stroke [m].
+std::vector<double> truth_of(const ParameterSet& parameters, const ModelPoint& truth,
+                             const std::vector<double>& contacts) {
+  std::vector<double> x;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const ParameterName& name = parameters[i];
+    if (name.kind == ParameterKind::kContact) {
+      x.push_back(contacts[name.record]);
+    } else if (name.kind == ParameterKind::kDampingFactor) {
+      // A model error is one factor of all ζ_n.
+      x.push_back(truth.basis.zeta[0] / parameters.initial().basis.zeta[0]);
+    } else {
+      x.push_back(value_of(name, truth));
+    }
   }
+  return x;
+}
+
+// Of a simulated string. Noise that is not there leaves no records.
+Problem clean_problem(const CalibrateOptions& options, const Problem& problem,
+                      const StudyContext& context) {
+  const LimitQuestion question = options.limit_question();
+  Problem clean{.model = {}, .records = {}, .parameters = problem.parameters, .objective = {}};
+  JointLikelihood::Options likelihood;
+  likelihood.highest_frequency = question.highest_frequency;
+  clean.objective = std::make_shared<JointLikelihood>(likelihood);
+  if (!(question.noise_level > 0.0)) return clean;
+  const LimitCase records = limit_case(question, context.work.truths);
+  clean.model = records.truth;
+  const auto add = [&clean](const NoisyRecords& record, bool pluck) {
+    clean.records.push_back({.data = CalibrationData::of_records(
+                                 record.reactions[0], record.reactions[1], record.sample_rate),
+                             .noise = record.deviation,
+                             .pluck = pluck});
+  };
+  for (const NoisyRecords& stroke : records.strokes) add(stroke, false);
+  for (const NoisyRecords& pluck : records.plucks) add(pluck, true);
+  return clean;
+}
+
+}  // namespace
+
+std::vector<double> SearchTask::bound_deviations() const {
+  if (!clean) return {};
+  if (clean->records.empty()) return std::vector<double>(truth.size(), 0.0);
+  std::vector<std::string> names;
+  std::vector<double> x = truth, units(truth.size(), 1.0);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const Parameter& parameter = bound.parameters[i];
+    names.push_back(parameter.variable.name);
+    // The factor of the true damping is 1.
+    if (parameter.kind == ParameterKind::kDampingFactor) std::swap(x[i], units[i]);
+  }
+  std::vector<HeldParameter> held = bound.held;
+  for (HeldParameter& one : held) {
+    if (one.record == 0) one.value = value_of(one, clean->model);
+  }
+  const ParameterSet parameters(clean->model, names, clean->parameters.ranges,
+                                clean->records.size(), held);
+  std::shared_ptr<const ObjectiveFunction> function = clean->objective->bind(*clean, parameters);
+  if (optimizer->needs().schedule) {
+    function = with_priors(std::move(function), *clean, parameters, LimitQuestion::kLawWidth);
+  }
+  std::vector<double> deviations = deviations_by_information(*function, x);
+  for (std::size_t i = 0; i < x.size(); ++i) deviations[i] *= units[i];
   return deviations;
 }
 
@@ -186,15 +247,20 @@ std::unique_ptr<const SearchTask> CalibrateOptions::search_task(const StudyConte
       observe_records(*this, {.left_reaction = true, .right_reaction = true}, context);
   CalibrationOutcome outcome;
   const Problem problem = begin_calibration(*this, observed.strokes, observed.plucks, outcome);
+  calibration.require_read(observed.strokes.size(), observed.plucks.size());
   auto optimizer = calibration.optimizer.make();
   auto task = std::make_unique<SearchTask>(
-      SearchTask{bind(problem, *optimizer), optimizer, calibration.budget, {}});
+      SearchTask{bind(problem, *optimizer), optimizer, calibration.budget, {}, {}});
+  BoundProblem& bound = task->bound;
+  if (optimizer->needs().schedule) {
+    bound.function = with_priors(std::move(bound.function), bound.problem, bound.parameters,
+                                 LimitQuestion::kLawWidth);
+  }
   if (const auto& truth = observed.strokes.front().truth) {
-    std::vector<std::string> names;
-    for (const Variable& variable : task->bound.parameters.variables()) {
-      names.push_back(variable.name);
-    }
-    task->truth = ParameterSet({truth->basis, truth->contact}, names).start();
+    std::vector<double> contacts;
+    for (const Observation& stroke : observed.strokes) contacts.push_back(stroke.contact);
+    task->truth = truth_of(bound.parameters, {truth->basis, truth->contact}, contacts);
+    task->clean = clean_problem(*this, bound.problem, context);
   }
   return task;
 }

@@ -144,7 +144,9 @@ void PluckEvaluation::add_mode(const LikelihoodColumns& columns, std::size_t mod
                                const Decay& decay, double* left, double* right) const {
   const Mode& own = modes_[mode];
   const Complex c = amplitudes_[mode];
-  for (std::size_t i = columns.share_begin[mode]; i < columns.share_begin[mode + 1]; ++i) {
+  const bool any = !columns.share_begin.empty();
+  const std::size_t end = any ? columns.share_begin[mode + 1] : 0;
+  for (std::size_t i = any ? columns.share_begin[mode] : 0; i < end; ++i) {
     const auto& [column, frequency, damping, residue] = columns.shares[i];
     const Complex slope = c * (frequency * own.by_frequency + damping * own.by_damping);
     const Complex level = c * (frequency * own.right_by_frequency + damping * own.right_by_damping);
@@ -201,7 +203,11 @@ void PluckEvaluation::fill_jacobian(std::size_t block, const LikelihoodColumns& 
   fill_plain(block, record_.right, -1.0, model[1]);
 }
 
-LikelihoodPoint PluckEvaluation::differentiate(const LikelihoodColumns& columns) const {
+LikelihoodPoint PluckEvaluation::differentiate(const LikelihoodColumns& columns,
+                                               const LikelihoodOutputs& outputs) const {
+  if (columns.count == 0 && !outputs.residuals) {
+    return {.cost = cost_, .slope = Eigen::VectorXd(0), .information = Eigen::MatrixXd(0, 0)};
+  }
   const std::size_t width = tiled(columns.count + 1);
   const std::size_t linear_width = tiled(linear_unknowns() + 1);
   RowMatrix own = RowMatrix::Zero(static_cast<Index>(width), static_cast<Index>(width));
@@ -226,8 +232,47 @@ LikelihoodPoint PluckEvaluation::differentiate(const LikelihoodColumns& columns)
   const Eigen::MatrixXd cross =
       mixed.topLeftCorner(n, static_cast<Index>(linear_unknowns())) * scale_.asDiagonal();
   LikelihoodPoint point{.cost = cost_, .slope = products.col(n).head(n)};
-  point.information = products.topLeftCorner(n, n) - cross * normal_.solve(cross.transpose());
+  const Eigen::MatrixXd taken = normal_.solve(cross.transpose());
+  point.information = products.topLeftCorner(n, n) - cross * taken;
+  if (outputs.residuals || outputs.jacobian) {
+    write_rows(columns, scale_.asDiagonal() * taken, outputs);
+  }
   return point;
+}
+
+void PluckEvaluation::write_rows(const LikelihoodColumns& columns, const Eigen::MatrixXd& taken,
+                                 const LikelihoodOutputs& outputs) const {
+  const auto length = static_cast<Index>(kColumnLength);
+  const auto count = static_cast<Index>(columns.count);
+  const auto unknowns = static_cast<Index>(linear_unknowns());
+  AlignedVector jacobian[2], linear[2];
+  for (std::size_t r = 0; r < 2; ++r) {
+    jacobian[r].resize(tiled(columns.count + 1) * kColumnLength);
+    linear[r].resize(tiled(linear_unknowns() + 1) * kColumnLength);
+  }
+  if (outputs.residuals) outputs.residuals->resize(4 * record_.bins);
+  if (outputs.jacobian) outputs.jacobian->resize(static_cast<Index>(4 * record_.bins), count);
+  using Columns = Eigen::Map<Eigen::MatrixXd>;
+  for (std::size_t b = 0; b < record_.blocks(); ++b) {
+    fill_jacobian(b, columns, jacobian[0].data(), jacobian[1].data());
+    if (outputs.jacobian) fill_linear(b, linear[0].data(), linear[1].data());
+    for (std::size_t r = 0; r < 2; ++r) {
+      Columns own(jacobian[r].data(), length, count + 1);
+      if (outputs.jacobian) {
+        own.leftCols(count) -= Columns(linear[r].data(), length, unknowns) * taken;
+      }
+      for (std::size_t k = 0; k < std::min(kBins, record_.bins - b * kBins); ++k) {
+        const std::size_t row = 4 * (b * kBins + k) + 2 * r;
+        for (std::size_t part = 0; part < 2; ++part) {
+          const auto at = static_cast<Index>(part * kBins + k);
+          if (outputs.residuals) (*outputs.residuals)[row + part] = own(at, count);
+          if (outputs.jacobian) {
+            outputs.jacobian->row(static_cast<Index>(row + part)) = own.row(at).head(count);
+          }
+        }
+      }
+    }
+  }
 }
 
 }  // namespace modcal

@@ -18,7 +18,8 @@ class PluckEvaluation {
 
   double cost() const { return cost_; }
   std::size_t linear_unknowns() const { return 2 * modes_.size() + plain_.size(); }
-  LikelihoodPoint differentiate(const LikelihoodColumns& columns) const;
+  LikelihoodPoint differentiate(const LikelihoodColumns& columns,
+                                const LikelihoodOutputs& outputs) const;
 
  private:
   using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -46,6 +47,10 @@ class PluckEvaluation {
   void fill_plain(std::size_t block, const PlanarVector& numbers, double factor,
                   double* column) const;
   void solve(const RowMatrix& products);
+  /// Residuals and Jacobian as far as they are asked for; taken: what the linear unknowns take of
+  /// each column.
+  void write_rows(const LikelihoodColumns& columns, const Eigen::MatrixXd& taken,
+                  const LikelihoodOutputs& outputs) const;
   void fill_jacobian(std::size_t block, const LikelihoodColumns& columns, double* left,
                      double* right) const;
   void add_knots(const LikelihoodColumns& columns, std::size_t mode, const Decay& decay,

@@ -21,9 +21,9 @@ PluckLikelihood::PluckLikelihood(WhitenedRecord record) : record_(std::move(reco
 }
 
 LikelihoodPoint PluckLikelihood::evaluate(const ModelPoint& point, const LikelihoodColumns& columns,
-                                          bool twice_weighted) const {
-  LikelihoodPoint result = PluckEvaluation(record_, point).differentiate(columns);
-  if (twice_weighted) result.twice_weighted = result.information;
+                                          const LikelihoodOutputs& outputs) const {
+  LikelihoodPoint result = PluckEvaluation(record_, point).differentiate(columns, outputs);
+  if (outputs.twice_weighted) result.twice_weighted = result.information;
   return result;
 }
 
@@ -33,14 +33,14 @@ Eigen::MatrixXd PluckLikelihood::noise_information(const ModelPoint& point,
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(n, n);
   for (std::size_t r = 0; r < kNoiseRepeats; ++r) {
     const WhitenedRecord noise = record_.noise(r);
-    sum += PluckEvaluation(noise, point).differentiate(columns).information;
+    sum += PluckEvaluation(noise, point).differentiate(columns, {}).information;
   }
   return sum / static_cast<double>(kNoiseRepeats);
 }
 
 LikelihoodPoint PluckLikelihood::unweighted(const ModelPoint& point,
                                             const LikelihoodColumns& columns) const {
-  return evaluate(point, columns, false);
+  return evaluate(point, columns, {});
 }
 
 double PluckLikelihood::cost(const ModelPoint& point) const {

@@ -21,7 +21,9 @@ class PluckLikelihood final : public RecordLikelihood {
 
   const WhitenedRecord& record() const { return record_; }
   LikelihoodPoint evaluate(const ModelPoint& point, const LikelihoodColumns& columns,
-                           bool twice_weighted = false) const override;
+                           const LikelihoodOutputs& outputs = {}) const override;
+  /// Real and imaginary part of e_1 and e_2 of a bin in turn.
+  std::size_t residual_count() const override { return 4 * record_.bins; }
   /// By three simulated records.
   Eigen::MatrixXd noise_information(const ModelPoint& point,
                                     const LikelihoodColumns& columns) const override;

@@ -25,6 +25,13 @@ model_error: {contact: 0.4 mm}
 calibration: {objective: joint_likelihood, optimizer: gsl, parameters: {frequencies: none, law: true, contact: true}}
 )";
 
+constexpr const char* kRecord = R"(kind: calibrate
+record: {file: )" MODCAL_EXAMPLES R"(/bowed_violin_d.csv, left: {channel: R1}, right: {channel: R2}}
+string: {length: 0.33 m, linear_density: 1e-3 kg/m, fundamental: 294 Hz, inharmonicity: 1.1e-4, modes: 30, damping: {type: constant, ratio: 1e-3}}
+bow: {position: 41 mm}
+calibration: {objective: joint_likelihood, optimizer: gsl, parameters: {frequencies: none, law: true, contact: true}}
+)";
+
 class Problems : public testing::ProgramTest {
  protected:
   void SetUp() override { write("calibrate.yaml", kCalibrate); }
@@ -90,12 +97,53 @@ TEST_F(Problems, SayWhatIsWrongWithItsPlace) {
   write("calibrate.yaml", "kind: simulate\n");
   EXPECT_EQ(open(), nullptr);
   EXPECT_THAT(modcal_problem_message(), HasSubstr("calibrate.yaml:"));
-  write("calibrate.yaml", kCalibrate);
-  const modcal_problem* problem = open({"calibration.objective=contact_location_squares"});
+  write("calibrate.yaml", kRecord);
+  const modcal_problem* problem = open();
   ASSERT_NE(problem, nullptr) << modcal_problem_message();
-  double bound[3];
-  EXPECT_EQ(modcal_problem_bound(problem, bound), 1);
+  double numbers[3];
+  EXPECT_EQ(modcal_problem_truth(problem, numbers), 1);
+  EXPECT_EQ(modcal_problem_bound(problem, numbers), 1);
   EXPECT_THAT(modcal_problem_message(), HasSubstr("there is no bound"));
+}
+
+// The records tell no more by another objective.
+TEST_F(Problems, HaveOneBoundWhateverTheirObjective) {
+  double bounds[3][3];
+  const char* objectives[] = {"calibration.objective=joint_likelihood",
+                              "calibration.objective=contact_location_squares",
+                              "calibration.objective=innovation_misfit"};
+  for (int i = 0; i < 3; ++i) {
+    const modcal_problem* problem = open({objectives[i], "calibration.optimizer=nlopt"});
+    ASSERT_NE(problem, nullptr) << modcal_problem_message();
+    ASSERT_EQ(modcal_problem_bound(problem, bounds[i]), 0) << modcal_problem_message();
+  }
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_DOUBLE_EQ(bounds[1][i], bounds[0][i]);
+    EXPECT_DOUBLE_EQ(bounds[2][i], bounds[0][i]);
+  }
+  double none[3];
+  ASSERT_EQ(modcal_problem_bound(open({"measurement.noise_level=0"}), none), 0);
+  for (const double one : none) EXPECT_EQ(one, 0.0);
+}
+
+TEST_F(Problems, MayBeOfSeveralRecords) {
+  const modcal_problem* problem =
+      open({"calibration.optimizer=staged", "further_strokes.contacts=[33 mm]",
+            "plucks=[{initial: {type: pluck, position: 43 mm, displacement: 1 mm, width: 3 mm}, "
+            "duration: 0.2 "
+            "s, sample_rate: 12.8 kHz}]"});
+  ASSERT_NE(problem, nullptr) << modcal_problem_message();
+  ASSERT_EQ(modcal_problem_dimension(problem), 4u);
+  EXPECT_STREQ(modcal_problem_name(problem, 3), "x_c 2");
+  double start[4], truth[4], bound[4], at_start = 0.0, at_truth = 0.0;
+  modcal_problem_start(problem, start);
+  ASSERT_EQ(modcal_problem_truth(problem, truth), 0) << modcal_problem_message();
+  ASSERT_EQ(modcal_problem_bound(problem, bound), 0) << modcal_problem_message();
+  EXPECT_DOUBLE_EQ(truth[3], 0.033);
+  for (const double one : bound) EXPECT_TRUE(one > 0.0 && std::isfinite(one));
+  ASSERT_EQ(modcal_problem_value(problem, start, &at_start), 0) << modcal_problem_message();
+  ASSERT_EQ(modcal_problem_value(problem, truth, &at_truth), 0) << modcal_problem_message();
+  EXPECT_LT(at_truth, at_start);
 }
 
 // SciPy's search by the example ends where the data put the optimum: within 4.5 bounds of the truth

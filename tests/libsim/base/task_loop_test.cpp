@@ -11,6 +11,8 @@
 #include <thread>
 #include <vector>
 
+#include "libsim/base/stop_scope.hpp"
+
 namespace modcal {
 namespace {
 
@@ -83,6 +85,38 @@ TEST(ForEachTask, BeginsNoTaskOnceItShallStop) {
     // Every thread may have polled just before the wish.
     EXPECT_LE(begun_after, threads);
   }
+}
+
+// What is called from everywhere stops by the wish of its thread, on the threads of a loop, too.
+TEST(StopScope, IsHeardInEveryThreadOfTheLoop) {
+  std::atomic<bool> wish{false}, other{false};
+  const StopToken token(wish), inner(other);
+  EXPECT_NO_THROW(throw_if_stopped());
+  {
+    const StopScope listening(token);
+    EXPECT_NO_THROW(throw_if_stopped());
+    std::atomic<int> stopped{0};
+    const auto task = [&](std::size_t) {
+      const StopScope nested(inner);
+      wish = true;
+      try {
+        throw_if_stopped();
+      } catch (const Interrupted&) {
+        ++stopped;
+        throw;
+      }
+    };
+    for (const int threads : {1, 3}) {
+      wish = false;
+      stopped = 0;
+      with_threads(threads, [&] { EXPECT_THROW(for_each_task(100, task), Interrupted); });
+      EXPECT_GE(stopped, 1);
+      EXPECT_LE(stopped, threads);
+    }
+    std::thread([] { EXPECT_NO_THROW(throw_if_stopped()); }).join();
+  }
+  EXPECT_TRUE(wish);
+  EXPECT_NO_THROW(throw_if_stopped());
 }
 
 }  // namespace
