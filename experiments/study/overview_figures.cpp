@@ -138,12 +138,22 @@ Figure signal_figure(const Drawing& drawing, Figure figure, std::initializer_lis
   return figure;
 }
 
+// What the bands are of.
+std::string band_text(const Drawing& drawing) {
+  for (const SideIdentification& side : drawing.sides) {
+    if (!std::isfinite(side.estimate.band_limit)) continue;
+    return fmt::format(" The band is that of what lies below {:.4g} kHz.",
+                       1e-3 * side.estimate.band_limit);
+  }
+  return {};
+}
+
 Figure force_figure(const Drawing& drawing) {
   Figure figure{.id = "identified_force",
                 .title = "Contact force",
                 .caption = fmt::format("{:g} periods from the middle of the record, static part "
-                                       "left out.",
-                                       kPeriodsShown)};
+                                       "left out.{}",
+                                       kPeriodsShown, band_text(drawing))};
   return signal_figure(drawing, std::move(figure), {{kForce, drawing.middle()}});
 }
 
@@ -160,8 +170,8 @@ Figure motion_figure(const Drawing& drawing) {
   Figure figure{.id = "identified_motion",
                 .title = "Motion of the string at the contact",
                 .caption = fmt::format("{:g} periods from the middle of the record, static parts "
-                                       "left out.",
-                                       kPeriodsShown)};
+                                       "left out.{}",
+                                       kPeriodsShown, band_text(drawing))};
   return signal_figure(drawing, std::move(figure),
                        {{kDisplacement, drawing.middle()}, {kVelocity, drawing.middle()}});
 }

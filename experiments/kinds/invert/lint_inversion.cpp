@@ -27,6 +27,9 @@ std::vector<Finding> lint_inversion(const InvertOptions& options) {
   lint_making(findings, "inversion", [&] { InversionRecipe recipe(options.inversion); });
   if (findings.size() == before) lint_parameter_choice(options.inversion, findings);
   append(findings, lint_scores(options.score, options.observation));
+  if (options.write_sound && options.observation.has_scene) {
+    lint_sound("write_sound", options.observation.measurement.sample_rate, findings);
+  }
   if (findings.empty() && is_known(options.observation.string_model())) {
     lint_making(findings, "model_error", [&] {
       with_errors(make_modal_basis(options.observation.string_model().before_reading()),

@@ -182,9 +182,11 @@ StudyResult FitModesOptions::run(const StudyContext& context) const {
   fit.table.names = loaded.names;
   StudyResult result;
   result.summary = sentence_of(fit, *this);
+  result.answer_by_summary();
   for (const std::string& text : loaded.warnings) result.warn(text);
   if (const std::string why = fit.rejection(); !why.empty()) {
     result.status = report::Status::kFailed;
+    result.answer = why;
     result.warn(why);
   }
   if (!context.numbers_alone) {

@@ -114,6 +114,24 @@ std::string printed_table(const std::vector<SweepRow>& rows) {
   return text;
 }
 
+// By side: the median at the least noise and at the most.
+std::string answer_of(const std::vector<SweepRow>& rows) {
+  std::string text;
+  for (auto first = rows.begin(); first != rows.end();) {
+    const auto end = std::find_if(first, rows.end(),
+                                  [first](const SweepRow& row) { return row.side != first->side; });
+    const SweepRow& last = *std::prev(end);
+    text +=
+        fmt::format("{} {}: {:.2f} at {:g} % of noise", text.empty() ? "Median R, side" : "; side",
+                    first->side, first->correlation.median(), first->noise_percent);
+    if (&last != &*first) {
+      text += fmt::format(", {:.2f} at {:g} %", last.correlation.median(), last.noise_percent);
+    }
+    first = end;
+  }
+  return text;
+}
+
 // A line about what had to be reached.
 void add_verdict(const std::string& text, bool passed, StudyResult& result) {
   result.summary += text + (passed ? "" : "  MISSED") + "\n";
@@ -280,14 +298,16 @@ void sum_up_sweep(const SweepOptions& options, const std::vector<std::string>& a
   }
   const std::vector<SweepRow> rows = sweep_rows(tasks, published);
   result.summary = printed_table(rows);
-  result.blocks.emplace_back(report::table_of(
-      {.id = options.name, .title = "Correlation and water level against noise"}, rows, write_row));
+  result.answer = answer_of(rows);
+  result.blocks.emplace_back(correlation_figure(options.name, rows));
   // Figures of a part are no figures of the whole.
   if (result.pending_tasks == 0) {
     if (options.has_comparison) judge_comparison(rows, options.comparison, result);
     judge_targets(options.targets, rows, result);
   }
-  result.blocks.emplace_back(correlation_figure(options.name, rows));
+  result.blocks.emplace_back(report::table_of(
+      {.id = options.name, .title = "Correlation and water level against noise"}, rows, write_row));
+  result.end_first_screen();
   result.files.emplace_back("tasks.csv", report::table_csv(task_table(axes, tasks)));
 }
 
