@@ -12,19 +12,6 @@ bool is_known(const StringModel& string) {
 
 namespace {
 
-// From a thread of a spider to the bass of a grand piano, with a factor of five.
-void lint_tension(const std::string& path, const StringModel& string, double speed,
-                  std::vector<Finding>& findings) {
-  constexpr double kLeast = 1e-3, kMost = 1e4;  // [N]
-  const double tension = string.linear_density * speed * speed;
-  if (tension >= kLeast && tension <= kMost) return;
-  findings.push_back({path + ".linear_density",
-                      fmt::format("linear_density {:g} kg/m makes a tension of {:.3g} N, which no "
-                                  "string carries: check the units, a bare number is in kg/m",
-                                  string.linear_density, tension),
-                      false});
-}
-
 // Transverse waves of a string run at the root of its stress over its density: 650 m/s at the
 // strength of the best steel wire, and no string that sounds is slower than 1 m/s.
 void lint_speed(const std::string& path, const StringModel& string,
@@ -32,7 +19,7 @@ void lint_speed(const std::string& path, const StringModel& string,
   constexpr double kSlowest = 1.0, kFastest = 5000.0;  // [m/s]
   if (!is_known(string)) return;
   const double speed = 2.0 * string.length * string.fundamental;
-  if (speed >= kSlowest && speed <= kFastest) return lint_tension(path, string, speed, findings);
+  if (speed >= kSlowest && speed <= kFastest) return;
   findings.push_back({path + ".length",
                       fmt::format("length {:g} m and fundamental {:g} Hz make waves of {:.3g} m/s, "
                                   "which no string carries: check the units, a bare number is in m "
@@ -107,14 +94,6 @@ void lint_decay(const Scene& scene, std::vector<Finding>& findings) {
 }
 
 }  // namespace
-
-void lint_sound(std::string path, double sample_rate, std::vector<Finding>& findings) {
-  if (!std::isfinite(sample_rate) || sample_rate == std::round(sample_rate)) return;
-  add_finding(findings, std::move(path),
-              "a sound file cannot hold a sample rate of {} Hz, only whole numbers of hertz: take "
-              "the CSV file alone",
-              sample_rate);
-}
 
 void append(std::vector<Finding>& all, std::vector<Finding> more) {
   all.insert(all.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));

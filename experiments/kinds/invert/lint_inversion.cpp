@@ -21,6 +21,14 @@ void lint_parameter_choice(const InversionOptions& inversion, std::vector<Findin
 
 }  // namespace
 
+void lint_sound(std::string path, double sample_rate, std::vector<Finding>& findings) {
+  if (!std::isfinite(sample_rate) || sample_rate == std::round(sample_rate)) return;
+  add_finding(findings, std::move(path),
+              "a sound file cannot hold a sample rate of {} Hz, only whole numbers of hertz: take "
+              "the CSV file alone",
+              sample_rate);
+}
+
 std::vector<Finding> lint_inversion(const InvertOptions& options) {
   std::vector<Finding> findings = lint_observation(options.observation);
   const std::size_t before = findings.size();

@@ -67,28 +67,22 @@ struct ForceOutcome {
   const StructureForce& found;
   const std::optional<ForceScore>& score;
 
-  /// [N]
-  double peak() const {
-    return *std::ranges::max_element(found.force, {}, [](double x) { return std::abs(x); });
-  }
-  /// Root of the mean square [N].
-  double deviation() const {
-    double squares = 0.0;
-    for (const double one : found.deviation) squares += one * one;
-    return std::sqrt(squares / static_cast<double>(found.deviation.size()));
-  }
   void visit(ResultVisitor& visitor) const {
     const double rate = loaded.record.sample_rate;
     visitor.list(
         {.key = "force", .table = "identified_force", .name = "Identified force"}, 1, {},
         [&](ResultVisitor& row, std::size_t) {
-          double impulse = 0.0;
-          for (const double value : found.force) impulse += value / rate;
+          double impulse = 0.0, peak = 0.0, squares = 0.0;
+          for (std::size_t j = 0; j < found.force.size(); ++j) {
+            impulse += found.force[j] / rate;
+            if (std::abs(found.force[j]) > std::abs(peak)) peak = found.force[j];
+            squares += found.deviation[j] * found.deviation[j];
+          }
           row({.key = "shape"}, name_of(found.shape));
-          row({.key = "peak_n", .name = "peak", .unit = "N"}, peak());
+          row({.key = "peak_n", .name = "peak", .unit = "N"}, peak);
           row({.key = "impulse_ns", .name = "impulse", .unit = "N s"}, impulse);
           row({.key = "deviation_n", .name = "rms deviation", .unit = "N", .format = "{:.2g}"},
-              deviation());
+              std::sqrt(squares / static_cast<double>(found.force.size())));
           row({.key = "correlation", .name = "R", .format = "{:.4f}"},
               score ? std::optional(score->correlation) : std::nullopt);
           row({.key = "relative_error", .name = "relative rms error", .format = "{:.3f}"},
@@ -119,18 +113,6 @@ struct ForceOutcome {
     visitor({.key = "misfit"}, known(found.misfit));
   }
 };
-
-std::string answer_of(const ForceOutcome& outcome) {
-  std::string text = fmt::format("Force up to {:.4g} N, standard deviation {:.2g} N (rms)",
-                                 outcome.peak(), outcome.deviation());
-  if (const auto& score = outcome.score) {
-    text += fmt::format(
-        "; against the measured one R = {:.4f}, relative rms error {:.3f}, {:.1f} % "
-        "within the 95 % band",
-        score->correlation, score->relative_error, 100.0 * score->coverage);
-  }
-  return text;
-}
 
 report::Figure force_figure(const LoadedStructureRecord& loaded, const StructureForce& found) {
   const double rate = loaded.record.sample_rate;
@@ -190,11 +172,13 @@ void doubt(const StructureForce& found, const LoadedStructureRecord& loaded, Stu
   // A force alone, with no model at all, explains one of K responses.
   if (power < 0.25 * static_cast<double>(loaded.kinds.size() - 1)) return;
   result.status = report::Status::kFailed;
-  result.answer = fmt::format(
-      "rejected: no force explains the responses together, {:.0f} % of {} is left: compare order, "
-      "sign and unit of the channels and the place of the contact with those of the table",
-      100.0 * *worst, loaded.names[static_cast<std::size_t>(worst - found.sensor_left.begin())]);
-  result.warn(result.answer);
+  result.warn(
+      result.answer = fmt::format(
+          "rejected: no force explains the responses together, {:.0f} % of {} is left: compare "
+          "order, "
+          "sign and unit of the channels and the place of the contact with those of the table",
+          100.0 * *worst,
+          loaded.names[static_cast<std::size_t>(worst - found.sensor_left.begin())]));
 }
 
 }  // namespace
@@ -281,9 +265,8 @@ StudyResult IdentifyForceOptions::run(const StudyContext& context) const {
                        .seed = static_cast<std::uint64_t>(seed),
                        .change = refines ? std::optional<StructureChange>(change) : std::nullopt});
   std::optional<ForceScore> score;
-  if (!loaded.record.force.empty()) {
-    score = score_of(found, loaded.record.force, loaded.record.sample_rate, modes);
-  }
+  const double rate = loaded.record.sample_rate;
+  if (!loaded.record.force.empty()) score = score_of(found, loaded.record.force, rate, modes);
   StudyResult result;
   const ForceOutcome outcome{loaded, found, score};
   result.summary = fmt::format("{} from {} sensors\n",
@@ -300,17 +283,16 @@ StudyResult IdentifyForceOptions::run(const StudyContext& context) const {
     result.summary += sentence_of(*found.refined, modes);
     result.files.emplace_back("table.yaml", table_text(refined_by(*found.refined, modes)));
   }
-  result.answer = answer_of(outcome);
+  result.answer_by_summary();
   for (const std::string& text : loaded.warnings) result.warn(text);
   doubt(found, loaded, result);
   if (!context.numbers_alone) result.blocks.emplace_back(force_figure(loaded, found));
   result.add(report::tables_of(outcome));
   result.files.emplace_back("force.json", report::json_file(report::json_of(outcome)));
-  const double rate = loaded.record.sample_rate;
-  const std::vector<Signal> signals = {{"f_c", "N", rate, found.force},
-                                       {"f_c_deviation", "N", rate, found.deviation}};
-  result.signal_files.push_back({"identified.csv", signals});
-  if (write_sound) result.signal_files.push_back({"identified.wav", signals});
+  SignalFile file{"identified.csv", {{"f_c", "N", rate, found.force}}};
+  file.signals.push_back({"f_c_deviation", "N", rate, found.deviation});
+  if (write_sound) result.signal_files.push_back({"identified.wav", file.signals});
+  result.signal_files.push_back(std::move(file));
   return result;
 }
 

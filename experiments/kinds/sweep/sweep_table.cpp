@@ -114,24 +114,6 @@ std::string printed_table(const std::vector<SweepRow>& rows) {
   return text;
 }
 
-// By side: the median at the least noise and at the most.
-std::string answer_of(const std::vector<SweepRow>& rows) {
-  std::string text;
-  for (auto first = rows.begin(); first != rows.end();) {
-    const auto end = std::find_if(first, rows.end(),
-                                  [first](const SweepRow& row) { return row.side != first->side; });
-    const SweepRow& last = *std::prev(end);
-    text +=
-        fmt::format("{} {}: {:.2f} at {:g} % of noise", text.empty() ? "Median R, side" : "; side",
-                    first->side, first->correlation.median(), first->noise_percent);
-    if (&last != &*first) {
-      text += fmt::format(", {:.2f} at {:g} %", last.correlation.median(), last.noise_percent);
-    }
-    first = end;
-  }
-  return text;
-}
-
 // A line about what had to be reached.
 void add_verdict(const std::string& text, bool passed, StudyResult& result) {
   result.summary += text + (passed ? "" : "  MISSED") + "\n";
@@ -298,7 +280,9 @@ void sum_up_sweep(const SweepOptions& options, const std::vector<std::string>& a
   }
   const std::vector<SweepRow> rows = sweep_rows(tasks, published);
   result.summary = printed_table(rows);
-  result.answer = answer_of(rows);
+  Sample medians;
+  for (const SweepRow& row : rows) medians.add(row.correlation.median());
+  result.answer = fmt::format("Median R over the settings: {:.2f}", medians.median());
   result.blocks.emplace_back(correlation_figure(options.name, rows));
   // Figures of a part are no figures of the whole.
   if (result.pending_tasks == 0) {
