@@ -37,8 +37,10 @@ bool choose_kind(LoadedExperiment& loaded) {
     return false;
   }
   if (std::find(names.begin(), names.end(), kind->text) == names.end()) {
-    loaded.mistakes.push_back({kind->position, fmt::format("unknown kind \"{}\"{}", kind->text,
-                                                           suggestion(kind->text, names))});
+    loaded.mistakes.push_back(
+        {kind->position, kind->text.empty() ? "kind must be one word" + suggestion("", names)
+                                            : fmt::format("unknown kind \"{}\"{}", kind->text,
+                                                          suggestion(kind->text, names))});
     return false;
   }
   loaded.kind = kind->text;
@@ -59,9 +61,11 @@ class Places {
   }
   void add(const Mistake& mistake) {
     all_.insert(key_of(mistake.position));
+    texts_.insert(mistake.text);
     if (mistake.text.starts_with("missing key")) missing_.insert(key_of(mistake.position));
   }
   bool known(const SourcePosition& position) const { return all_.contains(key_of(position)); }
+  bool said(const std::string& text) const { return texts_.contains(text); }
   // What a section says of itself follows from a key that it lacks.
   bool lacks_a_key(const YamlNode& node) const {
     if (missing_.empty()) return false;
@@ -79,6 +83,7 @@ class Places {
     return {position.line, position.column, position.origin};
   }
   std::set<Key> all_, missing_;
+  std::set<std::string> texts_;
 };
 
 // The node at a dotted path; null: the file does not have it.
@@ -128,6 +133,12 @@ bool check_memory(const Experiment& experiment, const Means& means, LoadedExperi
 void make_and_lint(LoadedExperiment& loaded, const Means& means) {
   const YamlNode& root = loaded.document.root;
   const bool had_errors = loaded.has_errors();
+  // Half of a number has been read in the place of it.
+  if (std::ranges::any_of(loaded.mistakes, [](const Mistake& mistake) {
+        return mistake.text.ends_with(kDecimalComma);
+      })) {
+    return;
+  }
   try {
     auto experiment = loaded.choice.make();
     if (!had_errors && !check_memory(*experiment, means, loaded)) return;
@@ -135,6 +146,7 @@ void make_and_lint(LoadedExperiment& loaded, const Means& means) {
     for (const Finding& finding : experiment->lint()) {
       const SourcePosition position = position_of_path(root, finding.path);
       const YamlNode* node = node_at(root, finding.path);
+      if (mistakes.said(finding.text)) continue;  // a simulator refuses what its scene does
       if (had_errors && (mistakes.known(position) || is_consequence(finding.text) ||
                          (node != nullptr && mistakes.lacks_a_key(*node)))) {
         continue;
@@ -177,6 +189,11 @@ LoadedExperiment load_experiment(YamlDocument document, const Means& means) {
                  loaded.choice.visit_options(visitor);
                },
                loaded.mistakes, {"kind"});
+  // Where the text cannot be read on, nothing is known of what follows.
+  if (!loaded.document.mistakes.empty()) {
+    std::erase_if(loaded.mistakes,
+                  [](const Mistake& mistake) { return mistake.text.starts_with("missing key"); });
+  }
   make_and_lint(loaded, means);
   return loaded;
 }

@@ -151,7 +151,8 @@ bool is_unknown_command(const CLI::App& app, int argc, const char* const* argv) 
 }
 
 std::string complaint_about_name(const std::string& name) {
-  return name.empty() ? "the name is empty: write one, or leave the option out" : "";
+  const bool is_blank = name.find_first_not_of(" \t\n") == std::string::npos;
+  return is_blank ? "the name is empty: write one, or leave the option out" : "";
 }
 
 std::string require_size(std::string text) {

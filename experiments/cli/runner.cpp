@@ -58,7 +58,7 @@ std::vector<std::string> names_of_list(const TaskExperiment& list,
   StudyResult empty =
       list.sum_up(TaskOutcomes(list.task_count()), {.work = none, .folder = folder});
   std::vector<std::string> names = names_of(empty);
-  report.sections.push_back({"", std::move(empty.blocks)});
+  report.sections.push_back({.blocks = std::move(empty.blocks)});
   for (std::string& name : report::file_names(report)) names.push_back(std::move(name));
   return names;
 }
@@ -86,14 +86,18 @@ OutputDirectory begin_together(const std::vector<std::string>& names, const RunS
 }
 
 // Ids are unique in one report: each table carries the name of its experiment.
-void add_section(const std::string& name, const std::string& title,
-                 std::vector<report::Block> blocks, report::Report& report) {
-  for (report::Block& block : blocks) {
+void add_section(const std::string& name, const std::string& title, StudyResult& result,
+                 report::Report& report) {
+  for (report::Block& block : result.blocks) {
     if (auto* table = std::get_if<report::Table>(&block)) {
       if (table->id != name) table->id = name + "_" + table->id;
     }
   }
-  report.sections.push_back({fmt::format("{}: {}", name, title), std::move(blocks)});
+  if (!result.answer.empty()) {
+    result.blocks.insert(result.blocks.begin(), report::Text{result.answer});
+    if (result.first_screen > 0) ++result.first_screen;
+  }
+  result.move_to(report, fmt::format("{}: {}", name, title), fmt::format("Details of {}", name));
 }
 
 // Of one experiment among several, for --json.
@@ -238,7 +242,7 @@ ExitCode run_together(const std::vector<LoadedExperiment>& experiments,
     folder.remove_earlier();
     say("== {}: {}\n{}", name, loaded.title, result.summary);
     found.push_back(answer_of_one(name, folder, result));
-    add_section(name, loaded.title, std::move(result.blocks), report);
+    add_section(name, loaded.title, result, report);
     if (result.status != report::Status::kOk) report.status = report::Status::kSomeFailed;
     worst = std::max(worst, exit_code_of(result));
     missed = missed || !result.missed.empty();

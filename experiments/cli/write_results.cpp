@@ -19,7 +19,9 @@ void write_signal_file(const OutputDirectory& out, const SignalFile& file) {
   if (path.extension() == ".wav") {
     write_wav(path, file.signals, {.samples = WavSamples::kDouble, .full_scale = file.full_scale});
   } else {
-    write_csv(path, file.signals, {.provenance = {version_text()}});
+    std::vector<std::string> provenance = {version_text()};
+    provenance.insert(provenance.end(), file.notes.begin(), file.notes.end());
+    write_csv(path, file.signals, {.provenance = std::move(provenance)});
   }
 }
 
@@ -85,14 +87,10 @@ report::Report report_of(const LoadedExperiment& loaded, StudyResult& result,
   report.description = loaded.description;
   report.status = result.status;
   report.status_text = status_text(loaded, result);
-  if (report.status_text.empty()) report.status_text = result.answer;
-  const auto answer = result.blocks.begin() + static_cast<std::ptrdiff_t>(result.first_screen);
-  if (result.first_screen > 0 && answer != result.blocks.end()) {
-    report.sections.push_back(
-        {"Details", {std::move_iterator(answer), std::move_iterator(result.blocks.end())}});
-    result.blocks.erase(answer, result.blocks.end());
+  if (!result.answer.empty()) {
+    report.status_text += (report.status_text.empty() ? "" : ": ") + result.answer;
   }
-  report.sections.insert(report.sections.begin(), {"Results", std::move(result.blocks)});
+  result.move_to(report, "Results", "Details");
   if (dynamic_cast<const TaskExperiment*>(loaded.experiment.get()) != nullptr) {
     report.replay = "modcal replay " + shell_word(settings.out.string());
   }

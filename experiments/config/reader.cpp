@@ -51,6 +51,8 @@ void YamlReader::read_members(const YamlNode& node, const VisitMembers& visit_me
 
 // What to do about a key that is not known.
 std::string YamlReader::remedy_of(const std::string& key) const {
+  // {rate: 12,5 kHz}
+  if (!key.empty() && key[0] >= '0' && key[0] <= '9') return std::string(kDecimalComma);
   const auto inner = std::find_if(inner_.begin(), inner_.end(),
                                   [&key](const auto& known) { return known.first == key; });
   if (inner == inner_.end()) return suggestion(key, seen_);

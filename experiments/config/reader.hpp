@@ -67,6 +67,9 @@ class YamlReader final : public OptionVisitor {
 void read_options(const YamlNode& node, const std::function<void(OptionVisitor&)>& visit,
                   std::vector<Mistake>& mistakes, const std::vector<std::string>& allowed = {});
 
+/// How a mistake ends that a decimal comma between commas has made.
+inline constexpr std::string_view kDecimalComma = ": write a decimal point, not a comma";
+
 /// Where the options of a key that was given up stand now; empty for other keys.
 std::string_view moved_key(std::string_view key);
 /// ", did you mean …?" or the list of names.

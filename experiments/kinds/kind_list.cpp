@@ -278,6 +278,7 @@ StudyResult sum_up_runs(const TaskExperiment& list, const TaskOutcomes& outcomes
   }
   result.end_first_screen();
   report::Table settings = summary.settings();
+  result.answer = fmt::format("{} settings, medians over their draws", settings.rows.size());
   result.summary = fmt::format("{} of {} tasks done, {} failed; {} settings, see tasks.csv\n",
                                outcomes.size() - result.pending_tasks, outcomes.size(),
                                result.failed_tasks, settings.rows.size());

@@ -58,6 +58,8 @@ void lint_making(std::vector<Finding>& findings, const std::string& path, Make m
     findings.push_back({path, error.what()});
   }
 }
+/// A sound file has a whole number of hertz.
+void lint_sound(std::string path, double sample_rate, std::vector<Finding>& findings);
 void append(std::vector<Finding>& all, std::vector<Finding> more);
 
 /// Text that is equal for simulations with equal signals.

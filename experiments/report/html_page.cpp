@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "experiments/report/encoding.hpp"
 #include "experiments/report/html_blocks.hpp"
 #include "experiments/report/typeset.hpp"
@@ -55,13 +57,39 @@ std::string contents_html(const Report& report) {
   return html + "<li><a href=\"#provenance\">Where the numbers come from</a></li></ol></nav>\n";
 }
 
+// "5 figures, 1 table": what a folded section holds.
+std::string counts_text(const Section& section) {
+  std::string text;
+  const auto count = [&](auto is_one, std::string_view one, std::string_view many) {
+    const auto found = std::ranges::count_if(section.blocks, is_one);
+    if (found == 0) return;
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", found, found == 1 ? one : many);
+  };
+  count([](const Block& block) { return std::holds_alternative<Figure>(block); }, "figure",
+        "figures");
+  count([](const Block& block) { return std::holds_alternative<Table>(block); }, "table", "tables");
+  count([](const Block& block) { return std::holds_alternative<Audio>(block); }, "set of sounds",
+        "sets of sounds");
+  return text;
+}
+
+// Whether the answer comes with a warning.
+bool is_warned(const Report& report) {
+  return !report.sections.empty() &&
+         std::ranges::any_of(report.sections.front().blocks, [](const Block& block) {
+           const auto* text = std::get_if<Text>(&block);
+           return text != nullptr && text->kind == Text::Kind::kWarning;
+         });
+}
+
 std::string header_html(const Report& report, const PageLinks& links) {
   struct Look {
     std::string_view kind, word;
   };
-  const Look look = report.status == Status::kOk       ? Look{"ok", "All done"}
-                    : report.status == Status::kFailed ? Look{"failed", "Failed"}
-                                                       : Look{"partial", "Partly failed"};
+  const Look look = report.status == Status::kFailed       ? Look{"failed", "Failed"}
+                    : report.status == Status::kSomeFailed ? Look{"partial", "Partly failed"}
+                    : is_warned(report)                    ? Look{"partial", "Done, with a warning"}
+                                                           : Look{"ok", "All done"};
   std::string html = fmt::format(
       "<header class=\"{}\"><h1>{}</h1>\n<p class=\"status\"><strong>{}</strong> {}</p>\n",
       look.kind, html_escaped(report.title), look.word, typeset_html(report.status_text));
@@ -93,9 +121,14 @@ std::string html_page(const Report& report, std::span<const DrawnFigure> figures
   std::string body;
   BlockWriter writer(figures, links);
   for (std::size_t i = 0; i < report.sections.size(); ++i) {
-    body += fmt::format("<section id=\"section-{}\"><h2>{}</h2>\n", i + 1,
-                        html_escaped(report.sections[i].title));
-    body += writer.section(report.sections[i], i == 0) + "</section>\n";
+    const Section& section = report.sections[i];
+    const std::string heading = fmt::format("<h2>{}</h2>", html_escaped(section.title));
+    body += fmt::format("<section id=\"section-{}\">", i + 1);
+    body += section.folded ? fmt::format("<details class=\"fold\"><summary>{} {}</summary>\n",
+                                         heading, counts_text(section))
+                           : heading + "\n";
+    body += writer.section(section, i == 0) +
+            (section.folded ? "</details></section>\n" : "</section>\n");
     // The answer first, then what else there is.
     if (i == 0) body += contents_html(report);
   }
@@ -115,8 +148,9 @@ std::string html_page(const Report& report, std::span<const DrawnFigure> figures
   page += fmt::format("<script type=\"application/json\" id=\"modcal-data\">{}</script>\n", data);
   page += fmt::format("<script>{}</script>\n<script>{}</script>\n", kDygraphsScript,
                       kDygraphsSynchronizer);
-  page += fmt::format("<script>(function () {{\n'use strict';\n{}\n{}\n{}\n{}\n{}}})();</script>\n",
-                      kPageValues, kPageMarks, kPageFilters, kPagePrint, kPageScript);
+  page +=
+      fmt::format("<script>(function () {{\n'use strict';\n{}\n{}\n{}\n{}\n{}\n{}}})();</script>\n",
+                  kPageValues, kPageMarks, kPageFilters, kPagePrint, kPageScript, kPageStart);
   return page + "</body></html>\n";
 }
 

@@ -44,6 +44,7 @@ extern const std::string_view kPageMarks;             // page/marks.js
 extern const std::string_view kPageFilters;           // page/filters.js
 extern const std::string_view kPagePrint;             // page/print.js
 extern const std::string_view kPageScript;            // page/report.js
+extern const std::string_view kPageStart;             // page/start.js
 extern const std::string_view kPageStyle;             // page/report.css
 
 }  // namespace modcal::report

@@ -46,6 +46,7 @@ using Block = std::variant<Text, Figure, Table, Audio>;
 struct Section {
   std::string title = {};
   std::vector<Block> blocks = {};
+  bool folded = false;  ///< closed until a reader opens it; printed whole
 };
 
 /// kFailed: nothing succeeded (the page is headed in red); kSomeFailed: part of it did.

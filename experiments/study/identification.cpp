@@ -195,6 +195,14 @@ std::vector<double> low_passed(std::span<const double> samples, double sample_ra
   return kept;
 }
 
+std::string band_note(const Estimate& estimate) {
+  if (!std::isfinite(estimate.band_limit)) return {};
+  return fmt::format(
+      "side {}: signals and deviations are those of what lies below {:.6g} Hz; low-pass there what "
+      "they are held against",
+      estimate.side, estimate.band_limit);
+}
+
 ForceScores scores_of(const Observation& observation, const ScoredForce& force,
                       const ScoreOptions* score) {
   if (score == nullptr || !observation.reference) return {};

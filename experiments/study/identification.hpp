@@ -119,6 +119,10 @@ struct MotionScore {
   WindowScore score;
 };
 
+/// What the band of an estimate is of: "f_c_joint_deviation is that of the force below 15.99 kHz:
+/// …"; empty where it has no limit.
+std::string band_note(const Estimate& estimate);
+
 /// One estimate of a record with its scores; empty without a reference.
 struct SideIdentification : ForceScores {
   Estimate estimate;

@@ -138,12 +138,17 @@ Figure signal_figure(const Drawing& drawing, Figure figure, std::initializer_lis
   return figure;
 }
 
+std::string band_text(const Drawing& drawing) {
+  const double limit = 1e-3 * drawing.sides.front().estimate.band_limit;
+  if (std::isnan(limit)) return {};
+  return fmt::format(" The band is that of what lies below {:.4g} kHz.", limit);
+}
+
 Figure force_figure(const Drawing& drawing) {
   Figure figure{.id = "identified_force",
                 .title = "Contact force",
-                .caption = fmt::format("{:g} periods from the middle of the record, static part "
-                                       "left out.",
-                                       kPeriodsShown)};
+                .caption = fmt::format("{:g} periods from the middle, static part left out.{}",
+                                       kPeriodsShown, band_text(drawing))};
   return signal_figure(drawing, std::move(figure), {{kForce, drawing.middle()}});
 }
 
@@ -159,9 +164,8 @@ Figure force_record_figure(const Drawing& drawing) {
 Figure motion_figure(const Drawing& drawing) {
   Figure figure{.id = "identified_motion",
                 .title = "Motion of the string at the contact",
-                .caption = fmt::format("{:g} periods from the middle of the record, static parts "
-                                       "left out.",
-                                       kPeriodsShown)};
+                .caption = fmt::format("{:g} periods from the middle, static parts left out.{}",
+                                       kPeriodsShown, band_text(drawing))};
   return signal_figure(drawing, std::move(figure),
                        {{kDisplacement, drawing.middle()}, {kVelocity, drawing.middle()}});
 }
@@ -181,9 +185,8 @@ Figure friction_loop_figure(const Drawing& drawing) {
                 .x = {.label = kVelocity.label, .unit = kVelocity.unit},
                 .y = {.label = kForce.label, .unit = kForce.unit}};
     Series loop{.label = "identified", .style = SeriesStyle::kPoints};
-    for (std::size_t j = part.first; j < std::min(part.last, found.force.size()); ++j) {
+    for (std::size_t j = part.first; j < std::min(part.last, found.force.size()); ++j)
       loop.add(kVelocity.scale * found.velocity[j], found.force[j]);
-    }
     panel.series.push_back(std::move(loop));
     figure.panels.push_back(std::move(panel));
   }

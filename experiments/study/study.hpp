@@ -33,6 +33,7 @@ struct SignalFile {
   std::string name;
   std::vector<Signal> signals;
   double full_scale = 1.0;  ///< of a sound file: what 1.0 stands for, in the signals' units
+  std::vector<std::string> notes = {};  ///< what a reader of the signals has to know
 };
 
 /// Tasks of a list that failed for the same reason, up to its numbers.
@@ -63,7 +64,7 @@ struct StudyResult {
   std::vector<FoundParameter> parameters;
   std::vector<FoundScore> scores;
   std::vector<report::Block> blocks;  ///< of the report
-  std::size_t first_screen = 0;       ///< blocks that answer the question; 0: all
+  std::size_t first_screen = 0;       ///< blocks that answer the question; 0: see take_parts()
   std::vector<std::pair<std::string, std::string>> files;  ///< name and content
   std::vector<SignalFile> signal_files;
   std::string summary;  ///< for standard output
@@ -83,8 +84,16 @@ struct StudyResult {
     };
     for (report::Block& block : blocks) std::visit(state, block);
   }
+  /// The answer is the first line of the summary.
+  void answer_by_summary() { answer = summary.substr(0, summary.find('\n')); }
   /// What is added from here on are details.
   void end_first_screen() { first_screen = blocks.size(); }
+  /// Takes the blocks apart: what answers the question, and details. Where nothing says so, the
+  /// answer is what is warned of, what is said before all else, the first figure and the first
+  /// table, if it is small.
+  std::pair<std::vector<report::Block>, std::vector<report::Block>> take_parts();
+  /// Takes them to a report: a section of its own for the answer, the details folded below it.
+  void move_to(report::Report& report, std::string title, std::string details);
   void add(std::vector<report::Table> tables) {
     std::move(tables.begin(), tables.end(), std::back_inserter(blocks));
   }

@@ -135,7 +135,12 @@ void CsvReader::comment(std::string_view text) {
                  "{}:{}: \"{}\" is no sample rate; write a positive number of hertz, such as "
                  "# sample_rate: 51200 Hz",
                  file_.name(), file_.line(), value);
-  commented_rate_ = unit.empty() ? number.value : to_si(number.value, unit, "Hz");
+  const double rate = unit.empty() ? number.value : to_si(number.value, unit, "Hz");
+  MODCAL_REQUIRE(!(std::abs(rate - commented_rate_) > 0.0),
+                 "{}:{}: the comment says {:.9g} Hz, that on line {} says {:.9g} Hz; delete one of "
+                 "them",
+                 file_.name(), file_.line(), rate, commented_rate_line_, commented_rate_);
+  commented_rate_ = rate;
   commented_rate_line_ = file_.line();
 }
 

@@ -3,6 +3,7 @@
 #include <memory>
 #include <mutex>
 
+#include "libsim/base/files.hpp"
 #include "libsim/records/formats.hpp"
 
 namespace modcal {
@@ -72,6 +73,7 @@ Recording read_record(const std::filesystem::path& path, const std::string& form
                       const ReadOptions& options) {
   const std::string name = path.filename().string();
   if (const auto recording = find_given(name)) return read_given(*recording, name, options);
+  require_regular_file(path);  // before its name is asked for a format
   return record_format(path, format).read(path, options);
 }
 

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# The Debian package of what is built: it is made, unpacked and used from where it was unpacked, and holds no
-# path of the machine that built it; that of Python, where it is built, likewise. package_test.sh ROOT BUILD CPACK
+# The Debian package of what is built: it is made, installed by dpkg below a folder of its own and used there, and
+# holds no path of the machine that built it; that of Python, where it is built, likewise. Removed, it leaves nothing.
+# package_test.sh ROOT BUILD CPACK
 set -euo pipefail
 root=$(cd "${1:?usage: package_test.sh ROOT BUILD CPACK}" && pwd)
 build=$(cd "$2" && pwd) cpack=$3
@@ -16,8 +17,13 @@ field() { dpkg-deb --field "$package" "$1"; }
 for library in libc6 libfftw3-double3 libyaml-cpp; do
   field Depends | grep -q "$library" || fail "the package does not depend on $library: $(field Depends)"
 done
-quietly dpkg-deb -x "$package" "$work/there"
-[ -z "$python" ] || quietly dpkg-deb -x "$python" "$work/there"
+# What it depends on is installed on this machine and not below the folder.
+mkdir -p "$work/there/var/lib/dpkg/info" "$work/there/var/lib/dpkg/updates"
+: >"$work/there/var/lib/dpkg/status"
+below() { dpkg --root="$work/there" --force-not-root,depends --log=/dev/null "$@"; }
+# shellcheck disable=SC2086 # no package of Python is no word
+quietly below --install "$package" $python
+[ "$(below --show --showformat='${db:Status-Status}' modcal)" = installed ] || fail "dpkg has not installed it"
 there=$work/there/usr
 for file in bin/modcal lib/libmodcal_calib.a include/modcal/libcalib/calibration.hpp \
   lib/cmake/modcal/modcalConfig.cmake lib/pkgconfig/modcal-calib.pc share/modcal/configs/paper/table1.yaml \
@@ -69,3 +75,7 @@ found = modcal.invert(modcal.Record(rate=12800, left=stroke.R1, right=stroke.R2)
 assert found.f_c_joint.shape == stroke.f_c.shape
 EOF
 fi
+# shellcheck disable=SC2046 # two words with the package of Python
+quietly below --purge modcal $([ -z "$python" ] || echo python3-modcal)
+left=$(find "$there" -mindepth 1 ! -type d)
+[ -z "$left" ] || fail "removed, it leaves $left"

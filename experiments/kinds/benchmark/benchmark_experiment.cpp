@@ -159,7 +159,9 @@ StudyResult BenchmarkExperiment::sum_up(const TaskOutcomes& outcomes,
   const std::vector<std::string> fail = failing_methods(grid, cells);
   for (const std::string& sentence : use) result.summary += sentence + "\n";
   for (const std::string& sentence : fail) result.summary += sentence + "\n";
-  result.blocks.emplace_back(report::Text{fmt::format("{}", fmt::join(use, "\n\n"))});
+  if (!use.empty()) result.answer = use.front();
+  result.blocks.emplace_back(report::Text{
+      fmt::format("{}", fmt::join(use.begin() + (use.empty() ? 0 : 1), use.end(), "\n\n"))});
   result.blocks.emplace_back(success_map(grid, cells));
   result.end_first_screen();
   result.blocks.emplace_back(report::Text{fmt::format("{}", fmt::join(fail, "\n\n"))});

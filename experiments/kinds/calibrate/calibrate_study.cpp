@@ -48,6 +48,7 @@ void add_answer(const CalibrateOptions& options, const InvertOptions& shown, con
          estimate->fits ? report::Text::Kind::kNote : report::Text::Kind::kFailure);
   }
   if (result.answer.empty()) result.answer = calibration_answer(found.outcome);
+  add_warnings(found.observation, found.sides, true, result);
   std::vector<report::Figure> overview;
   std::vector<report::Figure> force;
   if (shown.overview) {
@@ -85,13 +86,13 @@ void add_account(const CalibrateOptions& options, const InvertOptions& shown, co
     report::Figure misfit = misfit_figure(*estimate);
     if (!misfit.panels.empty()) result.blocks.emplace_back(std::move(misfit));
   }
-  for (const std::string& text : {found.measured.modes_taken, found.outcome.start,
-                                  default_text(options.calibration, found.measured),
-                                  correction_text(found.measured, found.sensors)}) {
+  for (const std::string& text :
+       {found.outcome.start, default_text(options.calibration, found.measured),
+        correction_text(found.measured, found.sensors)}) {
     if (!text.empty()) result.summary += text + "\n";
     note(result, text);
   }
-  add_warnings(found.observation, found.sides, true, result);
+  add_notes(found.observation, found.sides, result);
   add_scores(found.sides, result);
   if (estimate) result.summary += covariance_text(*estimate);
   if (estimate) {
@@ -101,8 +102,8 @@ void add_account(const CalibrateOptions& options, const InvertOptions& shown, co
   result.add(report::tables_of(found.outcome));
   add_identification_tables(found.sides, result);
   result.files.emplace_back("calibration.json", report::json_file(report::json_of(found.outcome)));
-  if (shown.write_signals) {
-    result.signal_files.push_back(identified_signals(found.observation, found.sides));
+  if (shown.writes()) {
+    shown.add_signals(identified_signals(found.observation, found.sides), result);
   }
 }
 

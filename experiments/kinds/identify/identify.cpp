@@ -86,8 +86,9 @@ std::vector<Finding> IdentifyOptions::lint() const {
   const double rate = measurement.sample_rate;
   if (!(identification.highest_frequency < 0.5 * rate)) {
     add_finding(findings, "identification.highest_frequency",
-                "{:g} Hz lie above half the sample rate {:g} Hz", identification.highest_frequency,
-                rate);
+                "{:g} Hz is not below half the sample rate, {:g} Hz: lower it, or raise "
+                "measurement.sample_rate",
+                identification.highest_frequency, 0.5 * rate);
   } else if (!(identification.highest_frequency > truth.scene.string.fundamental)) {
     add_finding(findings, "identification.highest_frequency",
                 "no mode lies below {:g} Hz: the fundamental is {:g} Hz",
@@ -198,19 +199,20 @@ report::Figure stabilization_figure(const IdentifyOutcome& outcome) {
 StudyResult IdentifyOptions::run(const StudyContext& context) const {
   const IdentifyOutcome outcome = identify_outcome(*this, context);
   StudyResult result;
+  if (!outcome.found.modes.empty()) result.blocks.emplace_back(errors_figure(outcome));
   result.add(report::tables_of(outcome));
   result.blocks.emplace_back(stabilization_figure(outcome));
-  if (!outcome.found.modes.empty()) result.blocks.emplace_back(errors_figure(outcome));
   result.files.emplace_back("identification.json", report::json_file(report::json_of(outcome)));
   result.summary = sentence_of(outcome);
+  result.answer_by_summary();
   if (outcome.found.modes.empty() || !outcome.found.converged) {
     result.status = report::Status::kFailed;
-    result.summary +=
-        outcome.found.modes.empty()
-            ? "no pole is stable over the orders: nothing was identified; record a "
-              "longer decay with less noise, or raise identification's orders\n"
-            : "the fit did not converge: its modes and error bars are not final; take "
-              "method: era, or lower identification.highest_frequency\n";
+    result.answer = outcome.found.modes.empty()
+                        ? "no pole is stable over the orders: nothing was identified; record a "
+                          "longer decay with less noise, or raise identification's orders"
+                        : "the fit did not converge: its modes and error bars are not final; take "
+                          "method: era, or lower identification.highest_frequency";
+    result.summary += result.answer + "\n";
   }
   return result;
 }

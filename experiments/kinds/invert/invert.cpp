@@ -18,6 +18,8 @@ void InvertOptions::visit(OptionVisitor& visitor) {
   visitor("seed", "key of noise and model errors", {.range = Range::non_negative()}, seed);
   visitor("write_signals", "write force, displacement and velocity at the contact as CSV",
           write_signals);
+  visitor("write_sound", "write them as a sound file as well, identified.wav: 1.0 is one SI unit",
+          write_sound);
   visitor("overview", "draw force, motion, spectra and misfit, beside the figures asked for",
           overview);
   visitor("figures", "what is drawn beside", figures);
@@ -40,6 +42,7 @@ void lint_windows(const InvertOptions& options, const Observation& observation,
   });
   const double duration = static_cast<double>(observation.samples()) / observation.sample_rate;
   append(findings, lint_figure_windows(options.figures, duration));
+  if (options.write_sound) lint_sound("write_sound", observation.sample_rate, findings);
 }
 
 std::vector<Finding> InvertOptions::lint_records(const std::filesystem::path& folder) const {
@@ -93,10 +96,19 @@ InversionOutputs inversion_outputs(const std::vector<FigureOptions>& figures, bo
           .side_misfit = all};
 }
 
+void InvertOptions::add_signals(const SignalFile& signals, StudyResult& result) const {
+  for (const auto& [wanted, extension] :
+       {std::pair(write_signals, ".csv"), {write_sound, ".wav"}}) {
+    if (!wanted) continue;
+    result.signal_files.push_back(signals);
+    result.signal_files.back().name += extension;
+  }
+}
+
 InvertOptions InvertOptions::as_read_by(const StudyContext& context) const {
   InvertOptions options = *this;
   if (!context.numbers_alone) return options;
-  options.write_signals = options.overview = false;
+  options.write_signals = options.write_sound = options.overview = false;
   options.figures.clear();
   return options;
 }
@@ -112,9 +124,11 @@ void add_identification_figures(const std::vector<FigureOptions>& figures,
 
 SignalFile identified_signals(const Observation& observation,
                               const std::vector<SideIdentification>& sides) {
-  SignalFile file{.name = "identified.csv"};
+  SignalFile file{.name = "identified"};
   for (const SideIdentification& side : sides) {
     const Estimate& estimate = side.estimate;
+    if (std::string note = band_note(estimate); !note.empty())
+      file.notes.push_back(std::move(note));
     const bool numbered = estimate.side.size() == 1;
     const auto add = [&](std::string name, std::string_view unit, std::vector<double> samples) {
       if (samples.empty()) return;
@@ -175,19 +189,36 @@ void add_warnings(const Observation& observation, const std::vector<SideIdentifi
                   bool is_calibrated, StudyResult& result) {
   for (const std::string& warning : observation.warnings) result.warn(warning);
   if (!observation.modes_missing.empty()) result.warn(observation.modes_missing);
+  std::vector<std::string> remedies;
   for (const SideIdentification& side : sides) {
-    for (const std::string& note : side.estimate.notes) {
-      result.summary += fmt::format("side {}  {}\n", side.estimate.side, note);
-      result.blocks.emplace_back(report::Text{note, report::Text::Kind::kNote});
-    }
     for (const std::string& warning : side.estimate.warnings) {
       result.warn(fmt::format("Estimate {}: {}", side.estimate.label, warning));
     }
-    for (const std::string& remedy : remedies_of(side, !observation.truth, is_calibrated)) {
-      const std::string text = fmt::format("to try: {}", remedy);
-      if (result.summary.find(text) != std::string::npos) continue;
-      result.summary += text + "\n";
-      result.blocks.emplace_back(report::Text{text, report::Text::Kind::kNote});
+    for (std::string& remedy : remedies_of(side, !observation.truth, is_calibrated)) {
+      if (std::ranges::find(remedies, remedy) == remedies.end()) {
+        remedies.push_back(std::move(remedy));
+      }
+    }
+  }
+  if (remedies.empty()) return;
+  for (const std::string& remedy : remedies) result.summary += fmt::format("to try: {}\n", remedy);
+  result.blocks.emplace_back(report::Text{fmt::format("To try: {}.", fmt::join(remedies, "; ")),
+                                          report::Text::Kind::kNote});
+}
+
+void add_notes(const Observation& observation, const std::vector<SideIdentification>& sides,
+               StudyResult& result) {
+  const auto note = [&result](const std::string& text) {
+    result.blocks.emplace_back(report::Text{text, report::Text::Kind::kNote});
+  };
+  if (!observation.modes_taken.empty()) {
+    result.summary += observation.modes_taken + "\n";
+    note(observation.modes_taken);
+  }
+  for (const SideIdentification& side : sides) {
+    for (const std::string& text : side.estimate.notes) {
+      result.summary += fmt::format("side {}  {}\n", side.estimate.side, text);
+      note(text);
     }
   }
 }
@@ -204,9 +235,13 @@ std::string answer_of(const std::vector<SideIdentification>& sides) {
       answer += ", " + side.scores.front().text();
     } else if (!std::isnan(estimate.force_deviation)) {
       answer += fmt::format(", standard deviation {:.3g} N", estimate.force_deviation);
+      if (std::isfinite(estimate.band_limit)) {
+        answer += fmt::format(" of what lies below {:.4g} kHz", 1e-3 * estimate.band_limit);
+      }
     } else {
       answer += ": neither a band nor a measured force to hold it against";
     }
+    if (!estimate.warnings.empty()) answer += ", doubtful (see the warning)";
   }
   return answer;
 }
@@ -227,29 +262,28 @@ StudyResult InvertOptions::run(const StudyContext& context) const {
 
   StudyResult result;
   result.answer = answer_of(sides);
+  add_warnings(observed, sides, false, result);
   std::vector<report::Figure> drawn;
   if (shown.overview) drawn = overview_figures(observed, sides);
-  // The force and what the reactions contradict each other by.
+  // The force and what the reactions contradict each other by; else what was asked for.
   const auto first = drawn.begin() + std::min<std::ptrdiff_t>(2, std::ssize(drawn));
   std::move(drawn.begin(), first, std::back_inserter(result.blocks));
+  if (drawn.empty()) add_identification_figures(shown.figures, observed, sides, result);
   add_identification_tables(sides, result);
   result.end_first_screen();
-  if (!observed.modes_taken.empty()) {
-    result.summary += observed.modes_taken + "\n";
-    result.blocks.emplace_back(report::Text{observed.modes_taken, report::Text::Kind::kNote});
-  }
-  add_warnings(observed, sides, false, result);
+  add_notes(observed, sides, result);
   std::move(first, drawn.end(), std::back_inserter(result.blocks));
-  add_identification_figures(shown.figures, observed, sides, result);
-  if (shown.write_signals) result.signal_files.push_back(identified_signals(observed, sides));
+  if (!drawn.empty()) add_identification_figures(shown.figures, observed, sides, result);
+  SignalFile signals;
+  if (shown.writes()) signals = identified_signals(observed, sides);
   if (wave_based) add_wave_based(observed, model, score, result);
   if (has_model_based) {
     const ModelIdentification by_model =
         identify_by_model(observed, model, model_based, score, context.stop);
     add_model_based(observed, by_model, score, result);
-    if (shown.write_signals)
-      add_model_signals(observed, by_model.result, result.signal_files.back());
+    if (shown.writes()) add_model_signals(observed, by_model.result, signals);
   }
+  shown.add_signals(signals, result);
   add_scores(sides, result);
   return result;
 }

@@ -18,6 +18,7 @@ struct InvertOptions {
   std::vector<FigureOptions> figures;
   std::int64_t seed = 1;
   bool write_signals = true;
+  bool write_sound = false;
   bool overview = true;
   void visit(OptionVisitor& visitor);
   std::int64_t& seed_slot() { return seed; }
@@ -29,7 +30,11 @@ struct InvertOptions {
   }
 
   /// Whether all signals at the contact are wanted.
-  bool wants_all() const { return write_signals || overview; }
+  bool wants_all() const { return writes() || overview; }
+  /// Whether any file of them is.
+  bool writes() const { return write_signals || write_sound; }
+  /// identified.csv and identified.wav, as far as they are wanted.
+  void add_signals(const SignalFile& signals, StudyResult& result) const;
   /// Without figures and signals where the context reads numbers alone.
   InvertOptions as_read_by(const StudyContext& context) const;
 
@@ -60,15 +65,18 @@ void add_identification_figures(const std::vector<FigureOptions>& figures,
                                 const std::vector<SideIdentification>& sides, StudyResult& result);
 /// A side in a table: 1 and 2 are numbers, as the paper counts them.
 report::Cell side_cell(const std::string& side);
-/// identified.csv: every identified signal.
+/// Every identified signal, in a file without an extension.
 SignalFile identified_signals(const Observation& observation,
                               const std::vector<SideIdentification>& sides);
 /// One line a side and window of the scores, and the scores for programs.
 void add_scores(const std::vector<SideIdentification>& sides, StudyResult& result);
-/// Warnings of the observation and of parameter choices that had to settle for a stand-in.
+/// Warnings of the observation and of the estimates, and what to try against them.
 /// is_calibrated: the model has been found from this record already.
 void add_warnings(const Observation& observation, const std::vector<SideIdentification>& sides,
                   bool is_calibrated, StudyResult& result);
+/// What the observation and the estimates took for granted.
+void add_notes(const Observation& observation, const std::vector<SideIdentification>& sides,
+               StudyResult& result);
 
 // Estimates beside the linear ones, by a friction law and by waves: scored where the truth is
 // known, drawn, and added to the result of an inversion.

@@ -21,12 +21,23 @@ void lint_parameter_choice(const InversionOptions& inversion, std::vector<Findin
 
 }  // namespace
 
+void lint_sound(std::string path, double sample_rate, std::vector<Finding>& findings) {
+  if (!std::isfinite(sample_rate) || sample_rate == std::round(sample_rate)) return;
+  add_finding(findings, std::move(path),
+              "a sound file cannot hold a sample rate of {} Hz, only whole numbers of hertz: take "
+              "the CSV file alone",
+              sample_rate);
+}
+
 std::vector<Finding> lint_inversion(const InvertOptions& options) {
   std::vector<Finding> findings = lint_observation(options.observation);
   const std::size_t before = findings.size();
   lint_making(findings, "inversion", [&] { InversionRecipe recipe(options.inversion); });
   if (findings.size() == before) lint_parameter_choice(options.inversion, findings);
   append(findings, lint_scores(options.score, options.observation));
+  if (options.write_sound && options.observation.has_scene) {
+    lint_sound("write_sound", options.observation.measurement.sample_rate, findings);
+  }
   if (findings.empty() && is_known(options.observation.string_model())) {
     lint_making(findings, "model_error", [&] {
       with_errors(make_modal_basis(options.observation.string_model().before_reading()),

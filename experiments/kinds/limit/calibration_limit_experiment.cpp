@@ -153,6 +153,13 @@ std::vector<Finding> CalibrationLimitExperiment::lint() const {
   if (options_.noise_levels.empty()) {
     add_finding(findings, "noise_levels", "no noise level is stated");
   }
+  for (std::size_t i = 1; i < options_.noise_levels.size(); ++i) {
+    const auto before = options_.noise_levels.begin() + static_cast<std::ptrdiff_t>(i);
+    if (std::find(options_.noise_levels.begin(), before, *before) == before) continue;
+    add_finding(findings, fmt::format("noise_levels.{}", i),
+                "the noise level {:g} % stands here twice: leave one of them, or raise seeds",
+                100.0 * *before);
+  }
   return findings;
 }
 

@@ -190,6 +190,27 @@ std::string summary_line(const LimitSummary& level) {
   return text + "\n";
 }
 
+// Over all levels: the errors in bounds, and what went wrong.
+std::string answer_of(const std::vector<LimitSummary>& levels) {
+  Sample ratios;
+  std::size_t runs = 0, wrong = 0, silent = 0;
+  for (const LimitSummary& level : levels) {
+    for (const LimitRow& row : level.rows) {
+      if (row.law && row.count > 0 && std::isfinite(row.ratio())) ratios.add(row.ratio());
+    }
+    runs += level.runs + level.broken;
+    wrong += level.wrong;
+    silent += level.silent;
+  }
+  const std::string errors =
+      ratios.values.empty()
+          ? "No error could be compared with its bound"
+          : fmt::format("Errors of the law and of x_c are {:.2f} to {:.2f} times their bounds",
+                        *std::ranges::min_element(ratios.values),
+                        *std::ranges::max_element(ratios.values));
+  return fmt::format("{}; {} of {} runs wrong, {} of them unsaid", errors, wrong, runs, silent);
+}
+
 // Errors over noise: law, x_c, median frequency, with bound and the paper's method.
 report::Figure limit_figure(const std::vector<LimitSummary>& levels) {
   report::Figure figure{.id = "calibration_limit_figure",
@@ -241,6 +262,7 @@ void sum_up_limit(const CalibrationLimitOptions& options, const std::vector<Limi
     summaries.push_back(summarize_level(level, truth, bound));
     result.summary += summary_line(summaries.back());
   }
+  result.answer = answer_of(summaries);
   judge(summaries, options.known_noise, result);
   report::Figure figure = limit_figure(summaries);
   if (!figure.panels.empty()) result.blocks.emplace_back(std::move(figure));

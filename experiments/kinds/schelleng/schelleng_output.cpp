@@ -174,20 +174,26 @@ void add_failures(const CellOutcomes& outcomes, StudyResult& result) {
       .kind = report::Text::Kind::kFailure});
 }
 
+std::vector<std::string> border_lines(const Borders& borders) {
+  std::vector<std::string> lines;
+  for (const auto& [name, ratios] : borders) {
+    lines.push_back(
+        ratios.values.empty()
+            ? fmt::format("{} force of Helmholtz motion: not on the map", name)
+            : fmt::format("{} force of Helmholtz motion / Schelleng's limit: {:.2f} [{:.2f}, "
+                          "{:.2f}] over {} bow positions",
+                          name, ratios.median(), ratios.q10(), ratios.q90(), ratios.values.size()));
+  }
+  return lines;
+}
+
 std::string summary_of(const report::Table& counts, const Borders& borders) {
   std::string text;
   for (const auto& row : counts.rows) {
     text += fmt::format("{:<18}{:>6} cells  {:>5} %\n", cell_text(row[0], counts.columns[0]),
                         cell_text(row[1], counts.columns[1]), cell_text(row[2], counts.columns[2]));
   }
-  for (const auto& [name, ratios] : borders) {
-    text += ratios.values.empty()
-                ? fmt::format("{} force of Helmholtz motion: not on the map\n", name)
-                : fmt::format(
-                      "{} force of Helmholtz motion / Schelleng's limit: {:.2f} [{:.2f}, "
-                      "{:.2f}] over {} bow positions\n",
-                      name, ratios.median(), ratios.q10(), ratios.q90(), ratios.values.size());
-  }
+  for (const std::string& line : border_lines(borders)) text += line + "\n";
   return text;
 }
 
@@ -216,6 +222,10 @@ void sum_up_map(const SchellengOptions& options, const CellOutcomes& outcomes,
                            {"highest", finite_sample(ratios, &BorderRatios::highest)}};
   report::Table counts = count_table(outcomes);
   result.summary = summary_of(counts, borders);
+  for (const std::string& line : border_lines(borders)) {
+    result.answer += (result.answer.empty() ? "" : "; ") + line;
+  }
+  result.answer[0] = 'L';  // lowest
   result.blocks.emplace_back(map_figure(options, outcomes));
   result.blocks.emplace_back(std::move(counts));
   result.blocks.emplace_back(border_table(borders));
@@ -237,6 +247,7 @@ StudyResult show_cell(const SchellengOptions& options, std::size_t cell,
     result.status = report::Status::kFailed;
     result.failed_tasks = 1;
     result.summary = outcome.failure + "\n";
+    result.answer = outcome.failure;
     result.blocks.emplace_back(
         report::Text{.text = outcome.failure, .kind = report::Text::Kind::kFailure});
     return result;
@@ -255,6 +266,7 @@ StudyResult show_cell(const SchellengOptions& options, std::size_t cell,
       "{:.4g} N and {:.4g} N\n",
       look_of(outcome.regime).label, f.slips_per_period, f.periodicity, f.period,
       100.0 * f.adherence, f.amplitude, scene.bow.normal_force, limits.lowest, limits.highest);
+  result.answer_by_summary();
   result.blocks.emplace_back(report::Text{.text = result.summary});
   result.signal_files.push_back({"signals.csv",
                                  {simulation.displacement, simulation.velocity, simulation.force,

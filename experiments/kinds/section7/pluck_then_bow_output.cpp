@@ -112,6 +112,18 @@ std::string sides_line(const std::vector<SideIdentification>& sides) {
   return text + "\n";
 }
 
+std::string answer_of(const PluckThenBowOutcome& outcome) {
+  const ModelStage& last =
+      outcome.bound_stages.empty() ? outcome.stages.back() : outcome.bound_stages.back();
+  std::string sides = sides_line(outcome.has_bound ? outcome.bound_sides : outcome.sides);
+  sides.pop_back();
+  return fmt::format(
+      "f0 = {:.6g} Hz, B = {}, x_c = {:.5g} mm; median error of a frequency {:.2g}; correlation "
+      "with the true force, by side:{}",
+      last.law.fundamental, inharmonicity_text(last.law.inharmonicity), 1e3 * last.model.contact,
+      last.median_error, sides);
+}
+
 }  // namespace
 
 void ModelStage::visit(ResultVisitor& visitor) const {
@@ -201,6 +213,7 @@ StudyResult PluckThenBowOptions::run(const StudyContext& context) const {
     }
     result.summary += "correlation with the true force, by side:" + sides_line(outcome.bound_sides);
   }
+  result.answer = answer_of(outcome);
   add_distance_warning(*this, outcome, result);
   result.add(report::tables_of(outcome));
   for (report::Figure& figure : pluck_then_bow_figures(*this, outcome)) {

@@ -24,6 +24,7 @@ void SimulateOptions::visit(OptionVisitor& visitor) {
 
 std::vector<Finding> SimulateOptions::lint() const {
   std::vector<Finding> findings = lint_scene(truth.scene, truth.simulator, measurement);
+  if (std::ranges::count(files, "wav") > 0) lint_sound("files", measurement.sample_rate, findings);
   append(findings, lint_figures(figures, {"waveforms"}, truth.scene.duration));
   for (const FigureOptions& figure : figures) {
     for (const std::string& quantity : figure.quantities) {
@@ -117,6 +118,7 @@ StudyResult SimulateOptions::run(const StudyContext& context) const {
       fmt::format("{} steps of {:.6g} s{}, {} attachments, {} signals of {} samples\n",
                   simulation.steps, simulation.time_step, refined, simulation.attachments,
                   signals.size(), signals.empty() ? 0 : signals[0].size());
+  result.answer_by_summary();
   return result;
 }
 

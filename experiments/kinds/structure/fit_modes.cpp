@@ -232,9 +232,11 @@ StudyResult FitModesOptions::run(const StudyContext& context) const {
   const StrikeFit& fit = fitted.fit;
   StudyResult result;
   result.summary = sentence_of(fit, *this);
+  result.answer_by_summary();
   for (const std::string& text : fitted.warnings) result.warn(text);
   if (const std::string why = fit.rejection(); !why.empty()) {
     result.status = report::Status::kFailed;
+    result.answer = why;
     result.warn(why);
   }
   if (!context.numbers_alone) {

@@ -48,10 +48,13 @@ void doubt(const StructureForce& found, const LoadedStructureRecord& loaded, Stu
   // A force alone, with no model at all, explains one of K responses.
   if (power < 0.25 * static_cast<double>(loaded.kinds.size() - 1)) return;
   result.status = report::Status::kFailed;
-  result.warn(fmt::format(
-      "rejected: no force explains the responses together, {:.0f} % of {} is left: compare order, "
-      "sign and unit of the channels and the place of the contact with those of the table",
-      100.0 * *worst, loaded.names[static_cast<std::size_t>(worst - found.sensor_left.begin())]));
+  result.warn(
+      result.answer = fmt::format(
+          "rejected: no force explains the responses together, {:.0f} % of {} is left: compare "
+          "order, "
+          "sign and unit of the channels and the place of the contact with those of the table",
+          100.0 * *worst,
+          loaded.names[static_cast<std::size_t>(worst - found.sensor_left.begin())]));
 }
 
 }  // namespace
@@ -92,6 +95,8 @@ void IdentifyForceOptions::visit(OptionVisitor& visitor) {
   visitor("draws", "models drawn from the table's deviations for the band",
           {.range = Range::closed(2.0, 1000.0)}, draws);
   visitor("seed", "key of the draws", {.range = Range::non_negative()}, seed);
+  visitor("write_sound", "write the force as a sound file as well, identified.wav: 1.0 is 1 N",
+          write_sound);
 }
 
 std::vector<std::string> IdentifyForceOptions::tables() const {
@@ -132,6 +137,7 @@ std::vector<Finding> IdentifyForceOptions::lint_records(const std::filesystem::p
   lint_making(findings, "record", [&] {
     const LoadedStructureRecord loaded = load_structure_record(record, folder);
     sensors = loaded.kinds.size();
+    if (write_sound) lint_sound("write_sound", loaded.record.sample_rate, findings);
     if (kinds.empty()) return;
     MODCAL_REQUIRE(sensors == kinds.size(),
                    "{} responses for a table of {} sensors: name the same channels in its order",
@@ -174,9 +180,8 @@ StudyResult IdentifyForceOptions::run(const StudyContext& context) const {
                        .seed = static_cast<std::uint64_t>(seed),
                        .change = refines ? std::optional<StructureChange>(change) : std::nullopt});
   std::optional<ForceScore> score;
-  if (!loaded.record.force.empty()) {
-    score = score_of(found, loaded.record.force, loaded.record.sample_rate, modes);
-  }
+  const double rate = loaded.record.sample_rate;
+  if (!loaded.record.force.empty()) score = score_of(found, loaded.record.force, rate, modes);
   StudyResult result;
   const ForceOutcome outcome{loaded, found, score};
   result.summary = fmt::format("{} from {} sensors\n",
@@ -193,6 +198,7 @@ StudyResult IdentifyForceOptions::run(const StudyContext& context) const {
     result.summary += sentence_of(*found.refined, modes);
     result.files.emplace_back("table.yaml", table_text(refined_by(*found.refined, modes)));
   }
+  result.answer_by_summary();
   for (const std::string& text : loaded.warnings) result.warn(text);
   if (where) {
     const PlacesOutcome told{tables(), *where};
@@ -203,10 +209,10 @@ StudyResult IdentifyForceOptions::run(const StudyContext& context) const {
   if (!context.numbers_alone) result.blocks.emplace_back(force_figure(loaded, found));
   result.add(report::tables_of(outcome));
   result.files.emplace_back("force.json", report::json_file(report::json_of(outcome)));
-  const double rate = loaded.record.sample_rate;
-  result.signal_files.push_back(
-      {"identified.csv",
-       {{"f_c", "N", rate, found.force}, {"f_c_deviation", "N", rate, found.deviation}}});
+  SignalFile file{"identified.csv", {{"f_c", "N", rate, found.force}}};
+  file.signals.push_back({"f_c_deviation", "N", rate, found.deviation});
+  if (write_sound) result.signal_files.push_back({"identified.wav", file.signals});
+  result.signal_files.push_back(std::move(file));
   return result;
 }
 

@@ -50,6 +50,7 @@ struct IdentifyForceOptions {
   StructureChangeOptions change;
   std::int64_t draws = 12;
   std::int64_t seed = 1;
+  bool write_sound = false;
   void visit(OptionVisitor& visitor);
 
   std::vector<Finding> lint() const;

@@ -280,14 +280,18 @@ void sum_up_sweep(const SweepOptions& options, const std::vector<std::string>& a
   }
   const std::vector<SweepRow> rows = sweep_rows(tasks, published);
   result.summary = printed_table(rows);
-  result.blocks.emplace_back(report::table_of(
-      {.id = options.name, .title = "Correlation and water level against noise"}, rows, write_row));
+  Sample medians;
+  for (const SweepRow& row : rows) medians.add(row.correlation.median());
+  result.answer = fmt::format("Median R over the settings: {:.2f}", medians.median());
+  result.blocks.emplace_back(correlation_figure(options.name, rows));
   // Figures of a part are no figures of the whole.
   if (result.pending_tasks == 0) {
     if (options.has_comparison) judge_comparison(rows, options.comparison, result);
     judge_targets(options.targets, rows, result);
   }
-  result.blocks.emplace_back(correlation_figure(options.name, rows));
+  result.blocks.emplace_back(report::table_of(
+      {.id = options.name, .title = "Correlation and water level against noise"}, rows, write_row));
+  result.end_first_screen();
   result.files.emplace_back("tasks.csv", report::table_csv(task_table(axes, tasks)));
 }
 

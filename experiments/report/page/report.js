@@ -1,5 +1,5 @@
 // Draws the charts of a report with dygraphs: one chart per .chart element, the charts of a figure
-// linked. window.__modcal_ready is the number of drawn charts once all of them are there.
+// linked.
 var charts = [];
 
 function escaped(text) {
@@ -271,56 +271,3 @@ function link_zoom(figure) {
 function repaint() {
   charts.forEach(function (item) { item.chart.updateOptions(looks(item.series)); });
 }
-
-read_facets();
-var waiting = Array.prototype.slice.call(document.querySelectorAll('.chart'));
-
-function finish() {
-  document.querySelectorAll('figure').forEach(link_zoom);
-  make_filters(apply_filters);
-  offer_cell_replays();
-  window.__modcal_ready = charts.length;
-  root.dataset.charts = String(charts.length);
-}
-
-// A chart that cannot be drawn says so, is reported on the console and leaves the others alone.
-function draw_safely(element) {
-  try {
-    draw(element);
-  } catch (error) {
-    element.textContent = 'This chart could not be drawn: ' + error.message;
-    setTimeout(function () { throw error; }, 0);
-  }
-}
-
-// In slices, from the top of the page: it can be read and scrolled while the rest is drawn.
-function draw_waiting(until) {
-  while (waiting.length && performance.now() < until) draw_safely(waiting.shift());
-  if (waiting.length) {
-    setTimeout(function () { draw_waiting(performance.now() + 30); }, 0);
-  } else if (window.__modcal_ready === null) {
-    finish();
-  }
-}
-
-window.matchMedia('(prefers-color-scheme: dark)').addEventListener('change', repaint);
-// What is folded is found by a link to it and printed.
-function unfold(details) { details.forEach(function (each) { each.open = true; }); }
-window.addEventListener('hashchange', function () {
-  var target = document.getElementById(location.hash.slice(1));
-  if (target) unfold(target.querySelectorAll('details.fold'));
-});
-window.addEventListener('beforeprint', function () {
-  unfold(document.querySelectorAll('details'));
-  draw_waiting(Infinity);
-  root.classList.add('printing');
-  charts.forEach(put_on_paper);
-  document.querySelectorAll('table').forEach(fit_table_to_paper);
-});
-window.addEventListener('afterprint', function () {
-  root.classList.remove('printing');
-  document.querySelectorAll('table').forEach(function (table) { table.style.zoom = ''; });
-  charts.forEach(take_from_paper);
-});
-// What is not drawn before the page has loaded is not in a PDF that is made at once.
-draw_waiting(performance.now() + 500);

@@ -42,7 +42,7 @@ TEST_F(FirstHour, GoesFromARecordToTheForceWithItsBand) {
   ASSERT_EQ(modcal("new calibrate record.csv --length '0.33 m' --out mine.yaml").code, 0);
   const Outcome valid = modcal("validate mine.yaml");
   ASSERT_EQ(valid.code, 0) << valid.err;
-  const Outcome run = modcal("run mine.yaml");
+  const Outcome run = modcal("run mine.yaml --set write_sound=true");
   ASSERT_EQ(run.code, 0) << run.out << run.err;
   EXPECT_THAT(run.out, HasSubstr("within the 95 % band"));
   const auto found =
@@ -62,7 +62,16 @@ TEST_F(FirstHour, GoesFromARecordToTheForceWithItsBand) {
   EXPECT_EQ(first_line("out/mine/identified.csv"),
             "t [s],y_joint [m],y_joint_deviation [m],v_joint [m/s],v_joint_deviation [m/s],"
             "f_c_joint [N],f_c_joint_deviation [N]");
+  // What the band is of stands in the file and on the page; the sound is the same, bit for bit.
+  const std::string csv = content_of(folder() / "out/mine/identified.csv");
+  EXPECT_THAT(csv,
+              HasSubstr("# side joint: signals and deviations are those of what lies below 1"));
+  ASSERT_EQ(modcal("convert out/mine/identified.wav back.csv").code, 0);
+  EXPECT_EQ(
+      shell("grep -v '^#' back.csv >back; grep -v '^#' out/mine/identified.csv | cmp - back").code,
+      0);
   const std::string page = content_of(folder() / "out/mine/report.html");
+  EXPECT_THAT(page, HasSubstr("The band is that of what lies below 1"));
   for (const char* figure :
        {"identified_force", "identified_motion", "frequencies_against_law", "reaction_spectra",
         "reaction_ratio", "Correlations of the parameters"}) {
@@ -144,6 +153,13 @@ TEST_F(FirstHour, IsToldOfOneSignalAtBothEndsAndOfAWrongGain) {
       0);
   ASSERT_EQ(modcal("new invert gain.csv --out gain.yaml").code, 0);
   EXPECT_THAT(modcal("run gain.yaml").out, HasSubstr("\nto try: check the gains of both sensors"));
+  // Before what is folded.
+  const std::string page = content_of(folder() / "out/gain/report.html");
+  const std::string first_screen =
+      page.substr(0, page.find("<details class=\"fold\"><summary><h2>"));
+  EXPECT_THAT(first_screen, HasSubstr("doubtful (see the warning)"));
+  EXPECT_THAT(first_screen, HasSubstr("the reactions contradict each other"));
+  EXPECT_THAT(first_screen, HasSubstr("To try: "));
   const Outcome calibrated =
       modcal("run gain.yaml --set kind=calibrate --set string.modes=20 --out calibrated");
   EXPECT_THAT(calibrated.out, HasSubstr("check the gains of both sensors"));

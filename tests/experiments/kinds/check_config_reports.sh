@@ -26,7 +26,12 @@ JS
 cat >"$folder/tail" <<'JS'
 <script>
 (function probe() {
-  if (window.__modcal_ready === null) { setTimeout(probe, 20); return; }
+  // What is folded is drawn when it is opened.
+  document.querySelectorAll('details').forEach(function (fold) { fold.open = true; });
+  if (window.__modcal_ready !== document.querySelectorAll('.chart').length) {
+    setTimeout(probe, 20);
+    return;
+  }
   var findings = [];
   var all = function (selector, within) {
     return Array.prototype.slice.call((within || document).querySelectorAll(selector));

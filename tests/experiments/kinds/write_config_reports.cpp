@@ -35,7 +35,8 @@ void write_reports(const std::string& configs, const std::filesystem::path& fold
     seen.merge(looks_of(small.kind, result));
     if (seen.size() == before) continue;
     report::Report report{.title = small.title, .description = small.description};
-    report.sections.push_back({"Results", std::move(result.blocks)});
+    report.status_text = result.answer;
+    result.move_to(report, "Results", "Details");
     std::filesystem::path name = std::filesystem::relative(file, configs).replace_extension();
     const auto written = write_report(report, folder / name, {.vector_figures = vector_figures});
     std::printf("%s\n", written.page.c_str());

@@ -17,8 +17,15 @@ cp "$page" "$probe"
 cat >>"$probe" <<'JS'
 <script>
 (function probe() {
-  if (window.__modcal_ready === null) { setTimeout(probe, 20); return; }
   var seen = document.documentElement.dataset;
+  var all = document.querySelectorAll('.chart').length;
+  var fold = document.querySelector('section > details');
+  if (window.__modcal_ready === null) { setTimeout(probe, 20); return; }
+  if (!fold.open && !seen.foldedCharts) {
+    seen.foldedCharts = [window.__modcal_ready, fold.querySelectorAll('canvas').length].join();
+    fold.open = true;
+  }
+  if (window.__modcal_ready < all) { setTimeout(probe, 20); return; }
   var panels = document.querySelectorAll('#fig8 .chart');
   var other = document.querySelector('#noise .chart');
   var picture = function (chart) { return chart.querySelector('canvas').toDataURL(); };
@@ -54,7 +61,9 @@ cat >>"$probe" <<'JS'
   map.querySelector('canvas:last-of-type').dispatchEvent(new MouseEvent('mousemove', {
     bubbles: true, clientX: box.left + 0.4 * box.width, clientY: box.top + 0.6 * box.height}));
   seen.cell = map.parentNode.querySelector('.values').lastChild.textContent;
+  fold.open = false;
   window.dispatchEvent(new Event('beforeprint'));
+  seen.openOnPaper = fold.open;
   seen.fits = Array.prototype.filter.call(document.querySelectorAll('.chart'), function (chart) {
     var columns = Number(getComputedStyle(chart.closest('figure')).getPropertyValue('--columns'));
     var paper = chart.querySelector('svg.paper');
@@ -63,7 +72,7 @@ cat >>"$probe" <<'JS'
         paper.querySelectorAll('path[stroke], path[fill]').length > 3;
   }).length;
   window.dispatchEvent(new Event('afterprint'));
-  seen.printed = picture(panels[0]) === start[0];
+  seen.printed = [picture(panels[0]) === start[0], fold.open].join();
 })();
 </script>
 JS
@@ -77,7 +86,9 @@ expect "cursor in another figure" "$(seen other-cursor)" ""
 expect "zoom (own, linked, other figure, reset button hidden)" "$(seen zoomed)" "true,true,false,false"
 expect "reset (own, linked, button hidden, values)" "$(seen reset)" "true,true,true,"
 expect "cell of the map" "$(seen cell)" "■ one slip"
-expect "printing restores the picture" "$(seen printed)" true
+expect "charts drawn before the fold is opened, and of the fold" "$(seen folded-charts)" "$((charts - 1)),0"
+expect "fold opened for paper" "$(seen open-on-paper)" true
+expect "printing restores the picture and the fold" "$(seen printed)" true,false
 expect "charts drawn as vectors that fit their column of the paper" "$(seen fits)" "$charts"
 give_verdict
 echo "$charts charts drawn, linked and reset without an error"

@@ -101,6 +101,18 @@ TEST(HtmlPage, LinksOnlyFilesThatExist) {
   EXPECT_THAT(page, Not(HasSubstr("href=\"table1.csv\"")));
 }
 
+TEST(HtmlPage, FoldsDetailsAndSaysWhatTheyHold) {
+  Report report{.sections = {{.title = "Results", .blocks = {noise_table()}},
+                             {.title = "Details",
+                              .blocks = {objective_figure(), noise_figure(), noise_table()},
+                              .folded = true}}};
+  const std::string page = page_of(report);
+  EXPECT_THAT(page, HasSubstr("<section id=\"section-1\"><h2>Results</h2>"));
+  EXPECT_THAT(page, HasSubstr("<section id=\"section-2\"><details class=\"fold\"><summary>"
+                              "<h2>Details</h2> 2 figures, 1 table</summary>"));
+  EXPECT_THAT(page, HasSubstr("</details></section>"));
+}
+
 TEST(HtmlPage, ShowsFailureInTheHeader) {
   Report report = sample_report();
   EXPECT_THAT(page_of(report), HasSubstr("<header class=\"partial\">"));
@@ -108,6 +120,9 @@ TEST(HtmlPage, ShowsFailureInTheHeader) {
   EXPECT_THAT(page_of(report), HasSubstr("<header class=\"failed\">"));
   report.status = Status::kOk;
   EXPECT_THAT(page_of(report), HasSubstr("<header class=\"ok\">"));
+  report.sections[0].blocks.emplace_back(Text{"doubtful", Text::Kind::kWarning});
+  EXPECT_THAT(page_of(report), HasSubstr("<header class=\"partial\">"));
+  EXPECT_THAT(page_of(report), HasSubstr("Done, with a warning"));
 }
 
 TEST(HtmlParagraphs, AreSeparatedByEmptyLines) {

@@ -285,7 +285,8 @@ Report sample_report() {
                                     .kind = Text::Kind::kNote},
                                curve_figure(), objective_figure(),
                                Text{.text = "1 task failed: seed 3.", .kind = Text::Kind::kFailure},
-                               long_figure(), map_figure()}}},
+                               long_figure()}},
+                   {.title = "Details", .blocks = {map_figure()}, .folded = true}},
       .provenance = {{"version", "0.1.0"}, {"commit", "0123456789abcdef"}, {"seeds", "1 … 5"}},
       .command = "modcal reproduce paper --out out/paper"};
 }
