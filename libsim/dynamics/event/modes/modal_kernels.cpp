@@ -228,9 +228,11 @@ namespace modcal::event {
 HWY_EXPORT(Table);
 
 const ModalKernels& modal_kernels() {
-  static const ModalKernels& kernels = *HWY_DYNAMIC_DISPATCH(Table)();
+  static const ModalKernels& kernels = modal_kernels_of_allowed_set();
   return kernels;
 }
+
+const ModalKernels& modal_kernels_of_allowed_set() { return *HWY_DYNAMIC_DISPATCH(Table)(); }
 
 }  // namespace modcal::event
 #endif

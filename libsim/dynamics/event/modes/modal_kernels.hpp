@@ -48,5 +48,7 @@ struct ModalKernels {
 
 /// Those of this machine.
 const ModalKernels& modal_kernels();
+/// Those of the set that is allowed now, which a test may have changed.
+const ModalKernels& modal_kernels_of_allowed_set();
 
 }  // namespace modcal::event

@@ -42,7 +42,7 @@ TEST_P(EverySet, PolynomialsAreTheSumsOfPowers) {
   }
   const std::array<double, 4> x = {0.0, 0.3, -0.7, 1.0};
   std::array<Octet, 4> found{};
-  modal_kernels().polynomials(table, x, found);
+  modal_kernels_of_allowed_set().polynomials(table, x, found);
   for (std::size_t i = 0; i < 4; ++i) {
     for (std::size_t k = 0; k < kVectorPadding; ++k) {
       double sum = 0.0, size = 0.0;
@@ -68,7 +68,8 @@ TEST_P(EverySet, WeightedSizeIsTheSumOfAbsoluteParts) {
     state.set(n, {values[3 * n + 1], values[3 * n + 2]});
     expected += weight[n] * (std::abs(values[3 * n + 1]) + std::abs(values[3 * n + 2]));
   }
-  EXPECT_NEAR(modal_kernels().weighted_size(weight, state), expected, 13 * 3e-16 * expected);
+  EXPECT_NEAR(modal_kernels_of_allowed_set().weighted_size(weight, state), expected,
+              13 * 3e-16 * expected);
 }
 
 TEST_P(EverySet, AdvanceByMultipliesEveryModeByItsExponential) {
@@ -84,7 +85,7 @@ TEST_P(EverySet, AdvanceByMultipliesEveryModeByItsExponential) {
     expected.sum += moved.real();
     expected.rate += (pole.at(n) * moved).real();
   }
-  const SumAndRate sums = modal_kernels().advance_by(time, pole, state, found);
+  const SumAndRate sums = modal_kernels_of_allowed_set().advance_by(time, pole, state, found);
   for (std::size_t n = 0; n < modes; ++n) {
     const std::complex<double> moved = std::exp(time * pole.at(n)) * state.at(n);
     // An exponential of a few ulp of a phase up to 10.
