@@ -1,6 +1,7 @@
 // What a fit makes of a record, and what causes of misfit would add to it.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -53,8 +54,8 @@ class FittedRecord {
   void decay(const LikelihoodMode& mode, double detuning, Complex sum, Complex rate_sum,
              std::vector<Complex>& motion) const;
   // Multiplies what is known by its numbers in the bins by a function of t/T in the time domain.
-  template <typename Function>
-  std::vector<Complex> modulated(std::span<const Complex> numbers, Function factor) const;
+  std::vector<Complex> modulated(std::span<const Complex> numbers,
+                                 const std::function<double(double)>& factor) const;
   // Sums of modal contributions: what the ends read of odd modes differs in its sign.
   struct Motions {
     explicit Motions(std::size_t bins) : odd(bins), even(bins) {}

@@ -13,6 +13,7 @@ namespace modcal {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr std::uint64_t kHeadBytes = 1 << 20, kWholeFile = ~std::uint64_t{0};
 
 // The time may have its unit behind any mark, "time/ms", "t_s", a force behind a stroke: "F_l/mN".
 ColumnHeading heading_of(std::string_view text) {
@@ -42,17 +43,14 @@ class CsvReader final : public CsvHandler {
       : file_(path), options_(options) {}
 
   Recording read() {
-    constexpr std::uint64_t kFirstBytes = 1 << 20;
-    file_.parse(*this,
-                options_.headers_only ? kFirstBytes : std::numeric_limits<std::uint64_t>::max());
+    file_.parse(*this, options_.headers_only ? kHeadBytes : kWholeFile);
     MODCAL_REQUIRE(!columns_.empty(),
                    "{}: no header; the first row must name the columns, such as t [s],R1 [N]",
                    file_.name());
     MODCAL_REQUIRE(rows_ > 0, "{}: there is a header but no row of samples", file_.name());
     settle_sample_rate();
-    record_.format =
-        fmt::format("CSV, separated by {}",
-                    file_.separator() == '\t' ? "tabs" : fmt::format("'{}'", file_.separator()));
+    const char mark = file_.separator();
+    record_.format = "CSV, separated by " + (mark == '\t' ? "tabs" : fmt::format("'{}'", mark));
     for (const std::size_t index : kept_) {
       record_.channels.push_back(std::move(columns_[index].channel));
     }
@@ -113,8 +111,7 @@ void CsvReader::refuse_hidden_row(std::string_view text) {
   if (parse_number(second).kind != NumberKind::kNumber) return;
   record_.add_problem(
       fmt::format("{}:{}:1: \"#{}\" begins a row of samples, which is left out as a comment; write "
-                  "its number, or "
-                  "crop the record before it",
+                  "its number, or crop the record before it",
                   file_.name(), file_.line(), text.substr(0, first)));
 }
 
@@ -137,8 +134,7 @@ void CsvReader::comment(std::string_view text) {
                  file_.name(), file_.line(), value);
   const double rate = unit.empty() ? number.value : to_si(number.value, unit, "Hz");
   MODCAL_REQUIRE(!(std::abs(rate - commented_rate_) > 0.0),
-                 "{}:{}: the comment says {:.9g} Hz, that on line {} says {:.9g} Hz; delete one of "
-                 "them",
+                 "{}:{}: the comment says {:.9g} Hz, that on line {} {:.9g} Hz; delete one of them",
                  file_.name(), file_.line(), rate, commented_rate_line_, commented_rate_);
   commented_rate_ = rate;
   commented_rate_line_ = file_.line();
