@@ -49,7 +49,7 @@ class FromArrays(Folder):
     def test_new_reads_an_array(self):
         record = self.record()
         text = modcal.new("invert", record, length="0.33 m")
-        self.assertIn("fundamental: 293.978 Hz", text)
+        self.assertIn("fundamental: 293.971 Hz", text)
         self.assertEqual(len(modcal.run(text).f_c_joint), len(record))
 
     def test_layouts(self):
