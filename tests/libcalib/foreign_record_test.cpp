@@ -381,7 +381,7 @@ TEST(ForeignRecord, ANonlinearSensorIsNamed) {
 TEST(ForeignRecord, NoCauseIsSeenWhereThereIsNone) {
   for (const double noise : {0.002, 0.05}) {
     const CalibrationResult result = calibrated(equal_sensors(), {.noise = noise});
-    ASSERT_EQ(result.continuation->tests.size(), 5u);
+    ASSERT_EQ(result.continuation->tests.size(), 6u);
     for (const ScoreTest& test : result.continuation->tests) {
       EXPECT_FALSE(test.named()) << test.cause << " " << test.log_p;
     }
