@@ -23,7 +23,7 @@ mkdir -p "$work/there/var/lib/dpkg/info" "$work/there/var/lib/dpkg/updates"
 below() { dpkg --root="$work/there" --force-not-root,depends --log=/dev/null "$@"; }
 # shellcheck disable=SC2086 # no package of Python is no word
 quietly below --install "$package" $python
-[ "$(below --show --showformat='${db:Status-Status}' modcal)" = installed ] || fail "dpkg has not installed it"
+[ "$(dpkg-query --admindir="$work/there/var/lib/dpkg" --show --showformat='${db:Status-Status}' modcal)" = installed ] || fail "dpkg has not installed it"
 there=$work/there/usr
 for file in bin/modcal lib/libmodcal_calib.a include/modcal/libcalib/calibration.hpp \
   lib/cmake/modcal/modcalConfig.cmake lib/pkgconfig/modcal-calib.pc share/modcal/configs/paper/table1.yaml \
