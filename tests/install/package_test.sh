@@ -77,5 +77,5 @@ EOF
 fi
 # shellcheck disable=SC2046 # two words with the package of Python
 quietly below --purge modcal $([ -z "$python" ] || echo python3-modcal)
-left=$(find "$there" -mindepth 1 ! -type d)
+left=$([ ! -e "$there" ] || find "$there" -mindepth 1 ! -type d)
 [ -z "$left" ] || fail "removed, it leaves $left"
