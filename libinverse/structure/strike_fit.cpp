@@ -62,7 +62,7 @@ class Fit {
     tell(search, best);
     // Now the residuals say how right a bin is: twice, as they depend on it.
     for (int round = 0; round < 2; ++round) {
-      weights_ = weights_of(result_.spectra, result_.table);
+      weights_ = weights_of(result_.spectra, result_.table.model, scatters_);
       const PoleSearch again(result_.spectra, record_.force, kinds_, weights_);
       again.fit(best, 30);
       std::ranges::sort(best, {}, &ModalPole::omega);
@@ -115,6 +115,7 @@ class Fit {
     result_.residuals.clear();
     result_.modeled.clear();
     table.scatters.clear();
+    scatters_.clear();
     table.low = options_.low, table.high = options_.high;
     table.model = {.poles = poles, .sensors = kinds_};
     const std::vector<SensorFit> fits = search.at(poles);
@@ -141,11 +142,11 @@ class Fit {
     std::vector<Eigen::VectorXd> variances;
     std::vector<double> noise;
     for (std::size_t k = 0; k < kinds_.size(); ++k) {
-      noise.push_back(table.scatters[k].noise * std::sqrt(share));
+      noise.push_back(scatters_[k].noise * std::sqrt(share));
       Eigen::VectorXd& own = variances.emplace_back(static_cast<Index>(spectra.count()));
       const std::vector<double> made = made_by_modes(spectra, table.model, k);
       for (std::size_t m = 0; m < spectra.count(); ++m) {
-        const double off = table.scatters[k].modal * weights_[k][m];
+        const double off = scatters_[k].modal * weights_[k][m];
         own[static_cast<Index>(m)] = 0.5 * share * counted_twice() * off * off * made[m];
       }
     }
@@ -177,19 +178,17 @@ class Fit {
     }
     result_.residuals.push_back(
         std::sqrt(rest / static_cast<double>(left.size()) / mean_power(spectra.responses[k])));
+    scatters_.push_back(scatter_of(left, modal, spectra.noise_power(), counted_twice()));
     // A response function tells nothing of the noise of other records.
-    if (record_.force.empty()) {
-      const double share = rest / std::accumulate(modal.begin(), modal.end(), 0.0);
-      result_.table.scatters.push_back({.modal = std::sqrt(share)});
-    } else {
-      result_.table.scatters.push_back(
-          scatter_of(left, modal, spectra.noise_power(), counted_twice()));
-    }
+    const double share = rest / std::accumulate(modal.begin(), modal.end(), 0.0);
+    result_.table.scatters.push_back(
+        record_.force.empty() ? SensorScatter{.modal = std::sqrt(share)} : scatters_.back());
   }
 
   StructureRecord record_;
   const std::vector<SensorKind>& kinds_;
   const StrikeFitOptions& options_;
+  std::vector<SensorScatter> scatters_;  // by which the bins weigh
   BinWeights weights_;
   StrikeFit result_;
 };

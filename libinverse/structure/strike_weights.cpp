@@ -56,15 +56,16 @@ std::vector<double> made_by_modes(const ContourSpectra& spectra, const ModalMode
   return made;
 }
 
-BinWeights weights_of(const ContourSpectra& spectra, const StructureTable& table) {
+BinWeights weights_of(const ContourSpectra& spectra, const ModalModel& model,
+                      const std::vector<SensorScatter>& scatters) {
   BinWeights result;
-  for (std::size_t k = 0; k < table.scatters.size(); ++k) {
-    const auto [modal, noise] = table.scatters[k];
+  for (std::size_t k = 0; k < scatters.size(); ++k) {
+    const auto [modal, noise] = scatters[k];
     // Rounding, where nothing else is left; a channel of zeros weighs something.
     const double least = 1e-20 * mean_power(spectra.responses[k]) + 1e-200;
     const double white = noise * noise * spectra.noise_power() + least;
     std::vector<double>& weights = result.emplace_back();
-    for (const double made : made_by_modes(spectra, table.model, k)) {
+    for (const double made : made_by_modes(spectra, model, k)) {
       weights.push_back(1.0 / std::sqrt(modal * modal * made + white));
     }
   }

@@ -18,8 +18,9 @@ BinWeights weights_of(const ContourSpectra& spectra, double share);
 std::vector<double> made_by_modes(const ContourSpectra& spectra, const ModalModel& model,
                                   std::size_t sensor);
 
-/// σ² = ε² |F|² Σ_n |H_n|² + noise, as the table has it.
-BinWeights weights_of(const ContourSpectra& spectra, const StructureTable& table);
+/// σ² = ε² |F|² Σ_n |H_n|² + noise, by the scatter of each sensor.
+BinWeights weights_of(const ContourSpectra& spectra, const ModalModel& model,
+                      const std::vector<SensorScatter>& scatters);
 
 /// Largest likelihood of |residual|², exponential about ε² |F|² Σ_n |H_n|² + noise (Itakura and
 /// Saito's divergence, by multiplicative steps). Of `correlated` bins one counts; a scatter that
