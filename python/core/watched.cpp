@@ -85,6 +85,7 @@ void do_watched(const py::object& progress, const std::function<void(const Watch
   }
   if (raised) std::rethrow_exception(raised);
   if (thrown) std::rethrow_exception(thrown);
+  if (!progress.is_none()) progress(1.0);
 }
 
 }  // namespace modcal::python

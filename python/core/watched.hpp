@@ -18,8 +18,9 @@ struct Watch {
 };
 
 /// Does the work in a thread of its own and waits for it. Between times Python sees its signals and
-/// `progress(share)` is called, unless it is None. What either raises stops the work and is raised
-/// when it has ended; else what the work throws.
+/// `progress(share)` is called, unless it is None, and progress(1) at a good end, however short the
+/// work was. What either raises stops the work and is raised when it has ended; else what the work
+/// throws.
 void do_watched(const py::object& progress, const std::function<void(const Watch&)>& work);
 
 /// With a result.

@@ -1,5 +1,4 @@
 """Records as arrays: the numbers of a file, and the sentences of the program for what is no record."""
-import time
 
 import numpy as np
 from cases import ROOT, Folder, main
@@ -131,21 +130,6 @@ class Prepared(Folder):
             inverter(np.zeros(999), np.zeros(999))
         with self.assertRaises(modcal.InvalidInput):
             inverter(np.full(1000, np.nan), np.zeros(1000))
-
-
-class Cost(Folder):
-    def test_inversion_of_a_second(self):
-        """What the door adds to the engine, the best of a few: a tenth at most."""
-        string = {"length": 0.33, "linear_density": 3.1e-3, "fundamental": 196}
-        stroke = modcal.simulate(scene={"string": string, "bow": {"position": 0.03}, "duration": 1},
-                                 simulator={"type": "modal_event"}, measurement={"sample_rate": 51200})
-        shares = []
-        for _ in range(5):
-            begin = time.perf_counter()
-            found = modcal.invert(modcal.Record(rate=51200, left=stroke.R1, right=stroke.R2), string, 0.03)
-            shares.append((time.perf_counter() - begin) / found.seconds)
-        self.assertEqual(found.f_c_joint.size, 51200)
-        self.assertLess(min(shares), 1.1)
 
 
 if __name__ == "__main__":

@@ -169,11 +169,9 @@ class Interrupt(unittest.TestCase):
         longer = {"scene.duration": 2, "measurement.sample_rate": "51.2 kHz"}
         problem = modcal.Problem(ROOT / "configs/beyond/simulator_in_the_loop.yaml", longer)
         for _ in range(2):
-            pressed = []
 
-            def press(pressed=pressed):
+            def press():
                 time.sleep(0.3)
-                pressed.append(time.process_time())
                 _thread.interrupt_main()
 
             thread = threading.Thread(target=press)

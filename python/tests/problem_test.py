@@ -1,6 +1,4 @@
 """Calibrations as functions, and searches of one's own."""
-import time
-import warnings
 
 import numpy as np
 from cases import CALIBRATE, SIMULATE, Folder, main
@@ -261,30 +259,7 @@ class OwnObjective(Folder):
                             optimizer={"type": "nlopt", "algorithm": "LD_LBFGS"})
 
 
-class Cost(Folder):
-    def test_evaluations_of_a_python_optimizer(self):
-        """What the door itself costs: the same evaluations with and without it."""
-        calibration = {"parameters": {"frequencies": "none", "law": False, "contact": True},
-                       "objective": "contact_location", "optimizer": "nlopt"}
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # so short a record is not for calibrating
-            problem = modcal.Problem({**CALIBRATE, "calibration": calibration}, {"scene.duration": 0.02})
-        calls = 10000
-
-        def own(evaluator):
-            z = evaluator.start
-            for _ in range(calls):
-                evaluator.value(z)
-
-        def cost(optimizer):
-            begin = time.process_time()
-            found = problem.minimize(optimizer, budget={"evaluations": calls + 1})
-            return (time.process_time() - begin) / found.evaluations
-
-        ours, engine = (min(cost(one) for _ in range(7)) for one in (own, {"type": "grid", "points": calls}))
-        print(f"an evaluation: {1e6 * engine:.2f} µs, {1e6 * (ours - engine):.2f} µs more by an optimizer in Python")
-        self.assertLess(ours - engine, 2e-6)
-
+class Counting(Folder):
     def test_evaluations_are_counted(self):
         count = []
 
