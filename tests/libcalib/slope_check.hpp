@@ -43,4 +43,36 @@ inline void expect_slopes_match(const ObjectiveFunction& function,
   }
 }
 
+/// How gradient, Jacobian and residuals agree in one variable.
+struct LeastSquaresSlope {
+  double gradient = 0.0;
+  double own = 0.0;       ///< Jᵀr
+  double quotient = 0.0;  ///< of values a hundredth of a standard deviation off, all else known
+  double scale = 0.0;     ///< √(JᵀJ): the slope of one standard deviation
+};
+
+inline std::vector<LeastSquaresSlope> least_squares_slopes(const ObjectiveFunction& function,
+                                                           const std::vector<double>& x) {
+  const std::size_t n = x.size(), m = function.residual_count();
+  std::vector<double> gradient(n), residuals(m), jacobian(m * n);
+  function.evaluate(
+      x, {.gradient = gradient.data(), .residuals = residuals.data(), .jacobian = jacobian.data()});
+  std::vector<LeastSquaresSlope> slopes(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    LeastSquaresSlope& slope = slopes[i];
+    slope.gradient = gradient[i];
+    for (std::size_t j = 0; j < m; ++j) {
+      slope.own += jacobian[j * n + i] * residuals[j];
+      slope.scale += jacobian[j * n + i] * jacobian[j * n + i];
+    }
+    slope.scale = std::sqrt(slope.scale);
+    EXPECT_GT(slope.scale, 0.0);
+    std::vector<double> above = x, below = x;
+    above[i] += 1e-2 / slope.scale;
+    below[i] -= 1e-2 / slope.scale;
+    slope.quotient = (function.value(above) - function.value(below)) * slope.scale / 2e-2;
+  }
+  return slopes;
+}
+
 }  // namespace modcal

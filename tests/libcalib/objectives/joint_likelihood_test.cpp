@@ -6,13 +6,14 @@
 #include <cmath>
 #include <numeric>
 
-#include "libcalib/problem/covariance.hpp"
 #include "libcalib/objectives/frequency_prior.hpp"
 #include "libcalib/objectives/weighted_sum.hpp"
 #include "libcalib/optimizers/ceres_optimizer.hpp"
 #include "libcalib/optimizers/tiny_least_squares.hpp"
+#include "libcalib/problem/covariance.hpp"
 #include "libsim/base/error.hpp"
 #include "tests/libcalib/likelihood/bowed_case.hpp"
+#include "tests/libcalib/slope_check.hpp"
 
 namespace modcal {
 namespace {
@@ -102,28 +103,13 @@ TEST_F(JointLikelihoodTest, SlopesOfDampingAndSensorsAreDifferenceQuotients) {
   for (const double damping : {0.0, 40.0}) {
     const auto function = objective(damping).bind(data, parameters);
     const std::vector<double> x = parameters.start();
-    const std::size_t n = x.size();
-    const std::size_t m = function->residual_count();
-    std::vector<double> gradient(n), residuals(m), jacobian(m * n);
-    function->evaluate(
-        x,
-        {.gradient = gradient.data(), .residuals = residuals.data(), .jacobian = jacobian.data()});
-    for (std::size_t i = 0; i < n; ++i) {
-      double own = 0.0, size = 0.0;
-      for (std::size_t j = 0; j < m; ++j) {
-        own += jacobian[j * n + i] * residuals[j];
-        size += jacobian[j * n + i] * jacobian[j * n + i];
-      }
-      // A hundredth of a standard deviation, all else known.
-      const double scale = std::sqrt(size);
-      std::vector<double> above = x, below = x;
-      above[i] += 1e-2 / scale;
-      below[i] -= 1e-2 / scale;
-      const double quotient = (function->value(above) - function->value(below)) * scale / 2e-2;
+    const std::vector<LeastSquaresSlope> slopes = least_squares_slopes(*function, x);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const auto& [gradient, own, quotient, scale] = slopes[i];
       const double tolerance = 2e-3 * scale * std::sqrt(function->value(x));
-      EXPECT_NEAR(gradient[i], quotient, tolerance) << parameters[i].variable.name;
-      EXPECT_NEAR(gradient[i], own, 1e-3 * scale) << parameters[i].variable.name;
-      EXPECT_GT(std::abs(gradient[i]), 10.0 * tolerance) << parameters[i].variable.name;
+      EXPECT_NEAR(gradient, quotient, tolerance) << parameters[i].variable.name;
+      EXPECT_NEAR(gradient, own, 1e-3 * scale) << parameters[i].variable.name;
+      EXPECT_GT(std::abs(gradient), 10.0 * tolerance) << parameters[i].variable.name;
     }
   }
 }

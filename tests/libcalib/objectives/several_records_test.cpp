@@ -12,6 +12,7 @@
 #include "libsim/base/error.hpp"
 #include "tests/libcalib/likelihood/bowed_case.hpp"
 #include "tests/libcalib/likelihood/pluck_record_case.hpp"
+#include "tests/libcalib/slope_check.hpp"
 
 namespace modcal {
 namespace {
@@ -53,36 +54,19 @@ class SeveralRecordsTest : public testing::Test {
 
   // Gradient, Jacobian and residuals of a function about x are each other's.
   static void expect_consistent(const ObjectiveFunction& function, const ParameterSet& parameters,
-                                std::vector<double> x) {
-    const std::size_t n = x.size(), m = function.residual_count();
-    std::vector<double> gradient(n), residuals(m), jacobian(m * n);
+                                const std::vector<double>& x) {
     double value = 0.0;
-    function.evaluate(x, {.value = &value,
-                          .gradient = gradient.data(),
-                          .residuals = residuals.data(),
-                          .jacobian = jacobian.data()});
+    std::vector<double> residuals(function.residual_count());
+    function.evaluate(x, {.value = &value, .residuals = residuals.data()});
     double sum = 0.0;
     for (const double r : residuals) sum += r * r;
     EXPECT_NEAR(value, 0.5 * sum, 1e-9 * value);
-    for (std::size_t i = 0; i < n; ++i) {
-      double own = 0.0, size = 0.0;
-      for (std::size_t j = 0; j < m; ++j) {
-        own += jacobian[j * n + i] * residuals[j];
-        size += jacobian[j * n + i] * jacobian[j * n + i];
-      }
-      // √(JᵀJ) is a slope of one standard deviation; a step of a hundredth of one, whose square's
-      // third derivative does not show.
-      const double scale = std::sqrt(size);
-      ASSERT_GT(scale, 0.0) << parameters[i].variable.name;
-      const double step = 1e-2 / scale, middle = x[i];
-      x[i] = middle + step;
-      const double above = function.value(x);
-      x[i] = middle - step;
-      const double below = function.value(x);
-      x[i] = middle;
-      const double quotient = (above - below) / (2.0 * step);
-      EXPECT_NEAR(gradient[i], quotient, 2e-3 * scale) << parameters[i].variable.name;
-      EXPECT_NEAR(gradient[i], own, 2e-3 * scale) << parameters[i].variable.name;
+    const std::vector<LeastSquaresSlope> slopes = least_squares_slopes(function, x);
+    for (std::size_t i = 0; i < slopes.size(); ++i) {
+      // A step whose square's third derivative does not show.
+      const double tolerance = 2e-3 * slopes[i].scale;
+      EXPECT_NEAR(slopes[i].gradient, slopes[i].quotient, tolerance) << parameters[i].variable.name;
+      EXPECT_NEAR(slopes[i].gradient, slopes[i].own, tolerance) << parameters[i].variable.name;
     }
   }
 };
