@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Measures what benchmarks/README.md states: run.sh BUILD_DIRECTORY. Medians of several repetitions.
+# Measures what benchmarks/README.md and benchmarks/measured state: run.sh BUILD_DIRECTORY. Medians of several repetitions.
 set -euo pipefail
 build=${1:?usage: run.sh BUILD_DIRECTORY}
 here=$(dirname "$0")

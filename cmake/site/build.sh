@@ -13,7 +13,7 @@ done
 rm -rf "$out"/{source,include,html}
 mkdir -p "$out"/source/{api,benchmarks}
 ln -s "$root"/{README.md,CHANGELOG.md,docs} "$out/source"
-ln -s "$root/benchmarks/README.md" "$out/source/benchmarks"
+ln -s "$root"/benchmarks/{README.md,measured} "$out/source/benchmarks"
 ln -sfn "$root"/cmake/site/{mkdocs.yml,theme} "$out"
 ln -sfn "$root/python" "$out/package"
 ln -s "$root/cmake/site/python_reference.md" "$out/source"

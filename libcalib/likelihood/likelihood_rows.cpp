@@ -10,7 +10,7 @@ namespace {
 
 using Index = Eigen::Index;
 
-// Beyond, all columns cost no more (benchmarks/README.md).
+// Beyond, all columns cost no more (benchmarks/measured/studies.md).
 constexpr std::size_t kMostRows = 6;
 static_assert(kMostRows <= kSharedColumns && kMostRows <= kDecayColumns);
 
