@@ -36,8 +36,9 @@ test:
 	@ctest --preset $(PRESET) --parallel $$(nproc)
 
 # Addresses, undefined behavior and threads: the tests that tests/CMakeLists.txt lists for them.
+SANITIZERS ?= asan-ubsan tsan
 sanitize: packages-test packages-fuzz
-	@for preset in asan-ubsan tsan; do \
+	@for preset in $(SANITIZERS); do \
 	  cmake --preset $$preset >/dev/null && cmake --build --preset $$preset && \
 	  ctest --preset $$preset --parallel $$(nproc) || exit 1; \
 	done
@@ -82,6 +83,14 @@ stress: packages
 	@cmake --preset $(PRESET) >/dev/null
 	@cmake --build --preset $(PRESET) --target stability_map
 	@benchmarks/stress/run.sh build/$(PRESET)
+
+# What configs/ give at test size: bits for 1, 2 and 8 threads, digests by instruction set.
+.PHONY: digests
+digests: packages
+	@cmake --preset $(PRESET) >/dev/null
+	@cmake --build --preset $(PRESET) --target digests_test
+	@build/$(PRESET)/tests/digests_test
+	@for set in baseline avx2; do MODCAL_INSTRUCTIONS=$$set build/$(PRESET)/tests/digests_test || [ $$? -eq 77 ]; done
 
 # The site: build/release/docs/html/index.html.
 docs: packages-test

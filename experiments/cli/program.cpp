@@ -1,6 +1,7 @@
 // The program without its process: all commands, from the words of a command line to the answer.
 #include "experiments/cli/command.hpp"
 #include "experiments/cli/runner.hpp"
+#include "libsim/base/instruction_set.hpp"
 
 namespace modcal {
 namespace {
@@ -39,7 +40,10 @@ ExitCode answer_words(int argc, const char* const* argv, void (*begin)()) {
     return guarded([&] { return answer_of(app, error); });
   }
   begin();
-  return guarded(action);
+  return guarded([&] {
+    limit_instructions_by_environment();
+    return action();
+  });
 }
 
 }  // namespace modcal
