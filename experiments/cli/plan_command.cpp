@@ -30,6 +30,16 @@ std::size_t spread_index(std::size_t k, std::size_t count) {
   return static_cast<std::size_t>(share * static_cast<double>(count));
 }
 
+// What takes longer is not done to its end to tell what a task costs [s].
+constexpr double kLongTask = 10.0;
+
+// Of a list of which not even one task ends in time.
+Price price_beyond(double count) {
+  return {.core_seconds = count * kLongTask,
+          .disk_bytes = {},
+          .basis = fmt::format("at least: no task ended within {:g} s", kLongTask)};
+}
+
 // Price of a list of tasks: does tasks that stand evenly in it, for about a second of
 // processor time. `simulations`: distinct simulations that the tasks share; what one costs is told
 // from the tasks that needed a new one. Throws InvalidInput where a task cannot be done at all.
@@ -46,7 +56,15 @@ Price price_of_tasks(const TaskExperiment& list, std::size_t simulations,
     if (!done.insert(task).second) continue;
     const std::size_t before = context.work.truths.simulated();
     const double begin = processor_seconds();
-    const std::string outcome = list.run_task(task, context);
+    std::string outcome;
+    try {
+      outcome = list.run_task(task, context);
+    } catch (const Interrupted&) {
+      if (interrupted()) throw;
+      done.erase(task);
+      if (done.empty()) return price_beyond(static_cast<double>(count));
+      break;
+    }
     const double seconds = processor_seconds() - begin;
     (context.work.truths.simulated() > before ? with_simulation : without).add(seconds);
     bytes.add(static_cast<double>(outcome.size()) + kJournalOverhead);
@@ -101,8 +119,24 @@ struct Plan {
   double memory = 0.0;  // that a run needs, about [B]
 };
 
-// A simulation that takes longer is not done to tell what a task costs [s].
-constexpr double kLongTask = 10.0;
+// A wish to stop that comes from the user or, `seconds` after it was made, from the clock.
+class Deadline {
+ public:
+  explicit Deadline(double seconds)
+      : clock_([this, seconds, user = interrupt_token()](const std::stop_token& done) {
+          constexpr std::chrono::milliseconds kPeriod(20);
+          const Stopwatch since;
+          while (!done.stop_requested() && !user.requested() && since.seconds() < seconds) {
+            std::this_thread::sleep_for(kPeriod);
+          }
+          passed_ = true;
+        }) {}
+  StopToken token() const { return StopToken(passed_); }
+
+ private:
+  std::atomic<bool> passed_{false};
+  std::jthread clock_;  // last: it ends before what it sets
+};
 
 Plan make_plan(const LoadedExperiment& loaded) {
   Plan plan{
@@ -115,13 +149,14 @@ Plan make_plan(const LoadedExperiment& loaded) {
   const auto* list = dynamic_cast<const TaskExperiment*>(loaded.experiment.get());
   const bool is_short = !plan.simulation || plan.simulation->seconds(plan.duration) < kLongTask;
   if (list != nullptr && is_short) {
-    SharedWork work(interrupt_token());
+    const Deadline deadline(kLongTask);
+    SharedWork work(deadline.token());
     const std::filesystem::path folder = loaded.document.folder();
     plan.price = price_of_tasks(*list, planned ? planned->count : 0,
                                 {.work = work,
                                  .folder = folder.empty() ? "." : folder,
                                  .command = {},
-                                 .stop = interrupt_token()});
+                                 .stop = deadline.token()});
   } else if (planned) {
     plan.price = price_of_simulations(*plan.simulation, *planned);
     for (const PlannedSimulations& other : planned->others) {
