@@ -229,12 +229,14 @@ void make_own_folder(const fs::path& folder) {
                  "{}: this is a link, not a folder: remove it", folder.string());
 }
 
-void remove_abandoned_parts(const fs::path& folder) {
+void remove_abandoned_parts(const fs::path& folder, const std::string& target) {
   std::error_code error;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
        entry.increment(error)) {
     const fs::path& file = entry->path();
-    if (is_part_name(file) && is_abandoned(file)) unlink(file.c_str());
+    // "NAME.xxxxxxxx.part"
+    const bool is_wanted = target.empty() || file.stem().stem() == target;
+    if (is_part_name(file) && is_wanted && is_abandoned(file)) unlink(file.c_str());
   }
 }
 

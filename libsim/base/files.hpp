@@ -78,8 +78,9 @@ void remove_parts() noexcept;
 /// link stands in its place: what is written below would go where somebody else wants it.
 void make_own_folder(const std::filesystem::path& folder);
 
-/// Removes the part files in a folder, not below it, that no process is writing.
-void remove_abandoned_parts(const std::filesystem::path& folder);
+/// Removes the part files in a folder, not below it, that no process is writing; with a `target`
+/// those of this file alone.
+void remove_abandoned_parts(const std::filesystem::path& folder, const std::string& target = {});
 
 /// Why no file can be made in the folder; empty where one can. What is there stays as it is.
 std::string why_not_writable(const std::filesystem::path& folder);

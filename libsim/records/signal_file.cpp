@@ -51,6 +51,8 @@ void require_one_record(std::span<const Signal> signals, std::string_view file) 
 
 void replace_file(const std::filesystem::path& path,
                   const std::function<void(const std::filesystem::path&)>& write) {
+  remove_abandoned_parts(path.has_parent_path() ? path.parent_path() : ".",
+                         path.filename().string());
   PartFile part(path);
   write(part.path());
   part.put_in_place();

@@ -45,6 +45,18 @@ TEST_F(Convert, WhatStandsThereIsNeverReplaced) {
   EXPECT_EQ(modcal("convert a.csv a.csv").code, 3);
 }
 
+TEST_F(Convert, AKilledConversionLeavesNothingBehindTheNext) {
+  // What SIGKILL leaves, a while ago; of other files nothing is ours to remove.
+  for (const char* name : {"b.csv.0badcafe.part", "other.csv.0badcafe.part"}) {
+    write(name, "half");
+    std::filesystem::last_write_time(
+        path(name), std::filesystem::file_time_type::clock::now() - std::chrono::minutes(1));
+  }
+  ASSERT_EQ(modcal("convert a.csv b.csv").code, 0);
+  EXPECT_FALSE(std::filesystem::exists(path("b.csv.0badcafe.part")));
+  EXPECT_TRUE(std::filesystem::exists(path("other.csv.0badcafe.part")));
+}
+
 TEST_F(Convert, HeadersAloneTellChannelsAndRate) {
   ASSERT_EQ(modcal("convert a.csv b.uff").code, 0);
   const Outcome inspected = modcal("inspect b.uff --headers");

@@ -107,6 +107,8 @@ TEST_F(Files, RemovesPartsOfKilledProcessesAlone) {
     fs::last_write_time(write(name, "half"), an_hour_ago);
   }
   write("young.csv.4711.part", "half");
+  remove_abandoned_parts(folder(), "a.csv");
+  EXPECT_EQ(names().size(), 6u);
   remove_abandoned_parts(folder());
   EXPECT_THAT(names(), ::testing::UnorderedElementsAre(in_work, "fig.svg.part", "x.part",
                                                        "resolved.yaml", "young.csv.4711.part"));
