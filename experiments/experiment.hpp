@@ -27,6 +27,18 @@ struct PlannedSimulations {
   std::vector<PlannedSimulations> others = {};
 };
 
+/// A file whose content a run depends on.
+struct FileRead {
+  std::string name;         ///< from the folder of the experiment's file
+  std::string key;          ///< where it is stated, such as "record.file"
+  std::string format = {};  ///< of a record; empty: another file
+  double channels = 0.0;    ///< that are taken of it
+  /// Most numbers a sample that the work on it holds at a time, about, beside what was read.
+  double numbers_per_sample = 0.0;
+
+  bool operator==(const FileRead&) const = default;
+};
+
 /// A line of what a run would do, and the same as data for programs.
 struct PlanLine {
   std::string text;
@@ -60,8 +72,7 @@ class Experiment {
   virtual std::vector<PlanLine> plan() const = 0;
   /// What it would simulate; nothing where it simulates nothing.
   virtual std::optional<PlannedSimulations> planned_simulations() const { return std::nullopt; }
-  /// Recorded files whose content a run depends on, from the folder of the experiment's file.
-  virtual std::vector<std::string> files_read() const { return {}; }
+  virtual std::vector<FileRead> files_read() const { return {}; }
   /// What it calibrates, whose limit can be stated; null where it calibrates nothing.
   virtual std::shared_ptr<const LimitQuestion> limit_question() const { return nullptr; }
   /// Its search with the records made or read, for who searches by himself; null where it

@@ -103,8 +103,25 @@ bool is_consequence(const std::string& text) {
   return std::regex_search(text, kNan);
 }
 
+// Before a record is read. False where it is too much.
+bool check_files(const Experiment& experiment, const Means& means, LoadedExperiment& loaded) {
+  const std::vector<FileRead> files = experiment.files_read();
+  const double needed = memory_of_files(files, loaded.document.folder());
+  loaded.memory = std::max(loaded.memory, needed);
+  const bool is_stated = means.memory > 0.0;
+  const double most = is_stated ? means.memory : machine_memory();
+  if (!(needed > most)) return true;
+  loaded.mistakes.push_back(
+      {position_of_path(loaded.document.root, files.front().key),
+       fmt::format(
+           "the run needs about {} of memory, {} {}, by the size of its records; state a part with "
+           "record.start and record.stop of a shorter file, or more with --memory",
+           bytes_text(needed), is_stated ? "--memory allows" : "there are", bytes_text(most))});
+  return false;
+}
+
 // Before anything is made of that size. False where it is too much.
-bool check_memory(const Experiment& experiment, const Means& means, LoadedExperiment& loaded) {
+bool check_simulations(const Experiment& experiment, const Means& means, LoadedExperiment& loaded) {
   std::optional<PlannedSimulations> planned;
   try {
     planned = experiment.planned_simulations();
@@ -126,6 +143,10 @@ bool check_memory(const Experiment& experiment, const Means& means, LoadedExperi
            duration, planned->sample_rate, std::round(duration * planned->sample_rate),
            planned->count > 1 ? ", take fewer --threads" : "")});
   return false;
+}
+
+bool check_memory(const Experiment& experiment, const Means& means, LoadedExperiment& loaded) {
+  return check_simulations(experiment, means, loaded) && check_files(experiment, means, loaded);
 }
 
 // Lints even where options are wrong, so that one look shows every mistake; what only follows from

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "experiments/runs/task_experiment.hpp"
+#include "libsim/records/record_file.hpp"
 
 namespace modcal {
 namespace {
@@ -37,6 +38,18 @@ double memory_needed(const Experiment& experiment, std::size_t threads) {
   add(*planned);
   for (const PlannedSimulations& other : planned->others) add(other);
   return sizeof(double) * (kept + static_cast<double>(std::min(threads, tasks)) * work);
+}
+
+double memory_of_files(const std::vector<FileRead>& files, const std::filesystem::path& folder) {
+  double bytes = 0.0;
+  for (const FileRead& file : files) {
+    if (file.format.empty()) continue;
+    const auto size = size_of_record(folder / file.name, file.format);
+    if (!size) continue;
+    bytes += size->bytes_to_read(std::min(size->channels, file.channels)) +
+             sizeof(double) * size->frames * file.numbers_per_sample;
+  }
+  return bytes;
 }
 
 double machine_memory() {

@@ -7,6 +7,7 @@
 #include "experiments/config/help.hpp"
 #include "experiments/config/reader.hpp"
 #include "experiments/loader.hpp"
+#include "experiments/memory.hpp"
 #include "experiments/records/inspection.hpp"
 #include "experiments/report/encoding.hpp"
 #include "libinverse/waves/end_relation.hpp"
@@ -66,10 +67,11 @@ std::string example_of(const std::string& kind, const std::string& out) {
     MODCAL_REQUIRE(std::filesystem::exists(file),
                    "{} is not there: install modcal with its configs", file.string());
     std::string text = content_of_file(file);
-    for (const std::string& read : load_experiment(file).experiment->files_read()) {
-      const std::size_t at = text.find(": " + read);
+    for (const FileRead& read : load_experiment(file).experiment->files_read()) {
+      const std::size_t at = text.find(": " + read.name);
       if (at == std::string::npos) continue;
-      text.replace(at + 2, read.size(), yaml_string(seen_from(out, file.parent_path() / read)));
+      text.replace(at + 2, read.name.size(),
+                   yaml_string(seen_from(out, file.parent_path() / read.name)));
     }
     Choice<Experiment> experiment;
     experiment.select(kind);
@@ -129,7 +131,7 @@ std::string file_for_record(const NewArguments& arguments) {
                  "a record is read by the kinds invert and calibrate, not by {}: leave the record "
                  "out, or name one of these",
                  arguments.kind);
-  const InspectionReport report = inspect(arguments.record);
+  const InspectionReport report = inspect(arguments.record, {.memory = machine_memory()});
   MODCAL_REQUIRE(report.problem_count == 0, "{}", report.problems.front());
   RecordOptions record = report.record;
   MODCAL_REQUIRE(record.has_left && record.has_right,

@@ -2,6 +2,7 @@
 
 #include "experiments/cli/command.hpp"
 #include "experiments/cli/runner.hpp"
+#include "experiments/memory.hpp"
 #include "experiments/records/inspection.hpp"
 #include "libsim/records/formats.hpp"
 
@@ -16,7 +17,9 @@ struct InspectArguments {
 };
 
 ExitCode print_inspection(const InspectArguments& arguments) {
-  const InspectionReport report = inspect(arguments.file, arguments.options);
+  InspectionOptions options = arguments.options;
+  options.memory = machine_memory();
+  const InspectionReport report = inspect(arguments.file, options);
   if (answer_style().json) {
     print_json(json(report));
   } else {
@@ -58,7 +61,8 @@ ExitCode convert(const ConvertArguments& arguments) {
                  "name",
                  arguments.to);
   Recording recording =
-      read_record(arguments.from, arguments.from_format, {.sample_rate = arguments.sample_rate});
+      read_record(arguments.from, arguments.from_format,
+                  {.sample_rate = arguments.sample_rate, .memory = machine_memory()});
   std::vector<Signal> signals;
   for (RecordedChannel& channel : recording.channels) {
     signals.push_back(signal_of(channel, recording.sample_rate));

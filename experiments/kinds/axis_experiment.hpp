@@ -129,7 +129,7 @@ class ProductExperiment : public TaskExperiment {
 
 /// Recorded files that options name, where they can.
 template <typename Options>
-std::vector<std::string> files_read_by(const Options& options) {
+std::vector<FileRead> files_read_by(const Options& options) {
   if constexpr (requires { options.files_read(); }) return options.files_read();
   return {};
 }
@@ -177,10 +177,13 @@ class AxisExperiment : public TaskExperiment {
     std::vector<Finding> findings;
     std::set<std::vector<std::string>> read;
     for (const Cell& cell : options_.cells.all()) {
-      if (read.insert(files_read_by(cell)).second) append(findings, record_findings(cell, folder));
+      std::vector<std::string> names;
+      for (const FileRead& file : files_read_by(cell)) names.push_back(file.name);
+      if (read.insert(names).second) append(findings, record_findings(cell, folder));
     }
     return distinct_findings(std::move(findings));
   }
+  std::vector<FileRead> files_read() const override { return files_read_by(options_.base); }
   std::vector<PlanLine> plan() const override {
     return axis_plan(options_.cells.plan(), task_count(), planned_simulations());
   }
@@ -200,8 +203,8 @@ class AxisExperiment : public TaskExperiment {
                          cell.visit(visitor);
                          visit_scoring(visitor);
                        });
-    for (const std::string& file : files_read_by(cell)) {
-      text += fmt::format(" {}", input_digest(folder / file));
+    for (const FileRead& file : files_read_by(cell)) {
+      text += fmt::format(" {}", input_digest(folder / file.name));
     }
     return text;
   }

@@ -18,7 +18,7 @@ class StudyExperiment final : public Experiment {
   std::optional<PlannedSimulations> planned_simulations() const override {
     return options_.planned_simulations();
   }
-  std::vector<std::string> files_read() const override { return files_read_by(options_); }
+  std::vector<FileRead> files_read() const override { return files_read_by(options_); }
   std::shared_ptr<const LimitQuestion> limit_question() const override {
     if constexpr (requires { options_.limit_question(); }) {
       return std::make_shared<const LimitQuestion>(options_.limit_question());

@@ -168,9 +168,11 @@ InspectionReport inspect(const std::filesystem::path& path, const InspectionOpti
   std::error_code unreadable;
   const bool large = std::filesystem::file_size(path, unreadable) > kMeasuredBytes && !unreadable;
   const bool headers_only = !unreadable && (large || options.headers_only);
-  Recording recording = read_record(
-      path, options.format,
-      {.sample_rate = options.sample_rate, .survey = true, .headers_only = headers_only});
+  Recording recording = read_record(path, options.format,
+                                    {.sample_rate = options.sample_rate,
+                                     .survey = true,
+                                     .headers_only = headers_only,
+                                     .memory = options.memory});
   InspectionReport report{.file = path.string(),
                           .format = recording.format,
                           .sample_rate = recording.sample_rate,

@@ -13,6 +13,8 @@ struct InspectionOptions {
   std::string format = "auto";
   double sample_rate = std::numeric_limits<double>::quiet_NaN();  ///< [Hz]; NaN: from the file
   bool headers_only = false;  ///< measure nothing; large files are never measured
+  /// A file whose reading needs more is refused before [B].
+  double memory = std::numeric_limits<double>::infinity();
 };
 
 struct ChannelInspection {

@@ -56,8 +56,9 @@ std::string modes_missing(const StringModel& string, const RecordedSignals& reco
       string.modes, told, told);
 }
 
-Observation observe_record(const ObservationOptions& options, const std::filesystem::path& folder) {
-  RecordedSignals record = load_record(options.record, folder);
+Observation observe_record(const ObservationOptions& options, const std::filesystem::path& folder,
+                           const StopToken& stop) {
+  RecordedSignals record = load_record(options.record, folder, stop);
   if (record.left && record.right) require_one_string(options, record);
   Observation observation;
   observation.sample_rate = record.sample_rate;
@@ -190,7 +191,7 @@ Observation observe(const ObservationOptions& options, const OutputRequest& trut
                     std::int64_t oversampling) {
   options.require_one_source();
   Observation observation = options.has_scene ? observe_scene(options, truth_outputs, cache, key)
-                                              : observe_record(options, folder);
+                                              : observe_record(options, folder, cache.stop());
   observation.fundamental = options.string_model().fundamental;
   const double top = observation.basis.frequency(observation.basis.size() - 1);
   if (!(top < 0.5 * observation.sample_rate)) {

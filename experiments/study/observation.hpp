@@ -38,6 +38,7 @@ class TruthCache {
                                    const OutputRequest& outputs, const StopToken::Told& told = {});
   /// Simulations done so far.
   std::size_t simulated() const { return truths_.size(); }
+  const StopToken& stop() const { return stop_; }
 
  private:
   StopToken stop_;

@@ -86,9 +86,8 @@ class CsvReader final : public CsvHandler {
   std::vector<std::size_t> kept_;
   std::optional<std::size_t> time_;
   PrintedDigits time_digits_;
-  std::size_t rows_ = 0;
+  std::size_t rows_ = 0, commented_rate_line_ = 0;
   double commented_rate_ = kNaN;
-  std::size_t commented_rate_line_ = 0;
 };
 
 // Their number follows from the size of the file where it was not read to its end.
@@ -158,6 +157,7 @@ void CsvReader::end_row(std::size_t fields) {
     return;
   }
   record_.lines.add(rows_, file_.line());
+  options_.stop.throw_if_requested();
   ++rows_;
   if (fields == columns_.size()) return;
   report_ragged_row(fields);

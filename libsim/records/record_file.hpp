@@ -19,6 +19,10 @@ struct ReadOptions {
   /// Keep no samples: Recording::stated_frames counts them. Of formats without a header the first
   /// rows are read, which tell about how many there are.
   bool headers_only = false;
+  /// Polled while samples are read; Interrupted is thrown where it is requested.
+  StopToken stop = {};
+  /// A file whose reading needs more is refused before [B].
+  double memory = std::numeric_limits<double>::infinity();
 };
 
 /// Reads a CSV record: an optional preamble of comments (# …), one row of headings `name [unit]`,
@@ -68,6 +72,20 @@ class GivenRecording {
 /// of the one that its extension tells. Throws InvalidInput for another one.
 Recording read_record(const std::filesystem::path& path, const std::string& format,
                       const ReadOptions& options = {});
+
+/// How much a record holds: rows, and the numbers in each.
+struct RecordSize {
+  double frames = 0.0;
+  double channels = 0.0;
+  /// To read so many of the channels [B]: a vector that grows holds up to twice its samples, and a
+  /// signal is a copy of its channel.
+  double bytes_to_read(double wanted) const { return 2.0 * sizeof(double) * frames * wanted; }
+};
+
+/// Told by its headers, or of a CSV file by its size and its first rows, about; no samples are
+/// read. Nothing for a given recording and for what is not there or cannot be read.
+std::optional<RecordSize> size_of_record(const std::filesystem::path& path,
+                                         const std::string& format);
 
 enum class WavSamples { kFloat, kDouble, kPcm24 };
 

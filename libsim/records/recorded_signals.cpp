@@ -144,7 +144,7 @@ void judge_samples(const Recording& recording, const RecordedChannel& channel, c
 }
 
 Recording read_channels(const RecordOptions& options, const std::filesystem::path& path,
-                        const std::vector<Role>& roles) {
+                        const std::vector<Role>& roles, const StopToken& stop) {
   std::vector<std::string> channels;
   for (const Role& role : roles) {
     MODCAL_REQUIRE(!role.chosen.channel.empty(), "record.{}.channel is empty; name a channel of {}",
@@ -153,7 +153,7 @@ Recording read_channels(const RecordOptions& options, const std::filesystem::pat
   }
   try {
     return read_record(path, options.format,
-                       {.channels = channels, .sample_rate = options.sample_rate});
+                       {.channels = channels, .sample_rate = options.sample_rate, .stop = stop});
   } catch (const WrongChannel& error) {
     throw WrongRecordKey(fmt::format("{}.channel", roles[error.place()].key), error.what());
   }
@@ -161,12 +161,13 @@ Recording read_channels(const RecordOptions& options, const std::filesystem::pat
 
 }  // namespace
 
-RecordedSignals load_record(const RecordOptions& options, const std::filesystem::path& folder) {
+RecordedSignals load_record(const RecordOptions& options, const std::filesystem::path& folder,
+                            const StopToken& stop) {
   MODCAL_REQUIRE(!options.file.empty(), "record.file is empty; name the recorded file");
   const std::filesystem::path path = folder / options.file;
   const std::string name = path.string();
   const std::vector<Role> roles = chosen_roles(options);
-  const Recording recording = read_channels(options, path, roles);
+  const Recording recording = read_channels(options, path, roles, stop);
   if (!recording.contradictions.empty()) {
     throw WrongRecordKey(
         "sample_rate", fmt::format("record.sample_rate is stated and the file contradicts it: {}; "

@@ -6,6 +6,7 @@
 
 #include "libsim/base/error.hpp"
 #include "libsim/base/options.hpp"
+#include "libsim/base/task_loop.hpp"
 #include "libsim/signal/signal.hpp"
 
 namespace modcal {
@@ -160,6 +161,8 @@ class WrongRecordKey : public InvalidInput {
 /// used twice or has neither a unit of its kind nor a calibration, a window outside the record and
 /// a stated sample rate that the file contradicts, and InvalidInput for a file that cannot be used
 /// and reactions whose samples tell against them (find_fault()).
-RecordedSignals load_record(const RecordOptions& options, const std::filesystem::path& folder);
+/// Throws Interrupted where `stop` was requested.
+RecordedSignals load_record(const RecordOptions& options, const std::filesystem::path& folder,
+                            const StopToken& stop = {});
 
 }  // namespace modcal

@@ -133,6 +133,7 @@ Recording assemble(std::string format, std::vector<StoredChannel> stored,
   for (const std::size_t index : chosen) {
     StoredChannel& channel = stored[index];
     channel.head.name = names[index];
+    options.stop.throw_if_requested();
     if (!options.headers_only) channel.head.samples = channel.read();
     for (std::size_t i = 0; i < channel.head.samples.size(); ++i) {
       if (std::isfinite(channel.head.samples[i])) continue;

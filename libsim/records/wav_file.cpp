@@ -128,7 +128,7 @@ std::vector<std::size_t> chosen_channels(const std::vector<RecordedChannel>& cha
 }
 
 void read_samples(SndfileHandle& file, const std::vector<std::size_t>& chosen, Recording& recording,
-                  const std::string& name) {
+                  const StopToken& stop, const std::string& name) {
   const auto width = static_cast<std::size_t>(file.channels());
   const std::size_t block_frames = std::max<std::size_t>(1, 2 * kBlockFrames / width);
   std::vector<double> block(width * block_frames);
@@ -139,6 +139,7 @@ void read_samples(SndfileHandle& file, const std::vector<std::size_t>& chosen, R
     const auto frames =
         static_cast<std::size_t>(file.readf(block.data(), static_cast<sf_count_t>(block_frames)));
     if (frames == 0) break;
+    stop.throw_if_requested();
     for (std::size_t c = 0; c < chosen.size(); ++c) {
       std::vector<double>& samples = recording.channels[c].samples;
       for (std::size_t i = 0; i < frames; ++i) samples.push_back(block[i * width + chosen[c]]);
@@ -207,7 +208,7 @@ Recording read_wav(const std::filesystem::path& path, const ReadOptions& options
   for (const std::size_t index : chosen) recording.channels.push_back(std::move(channels[index]));
   recording.stated_frames = static_cast<std::size_t>(file.frames());
   if (options.headers_only) return recording;
-  read_samples(file, chosen, recording, name);
+  read_samples(file, chosen, recording, options.stop, name);
   recording.check_finite(name);
   if (!options.survey) recording.refuse_problems();
   return recording;

@@ -98,7 +98,7 @@ struct CalibrateOptions {
   std::vector<Finding> lint_records(const std::filesystem::path& folder) const;
   std::vector<PlanLine> plan() const;
   std::optional<PlannedSimulations> planned_simulations() const;
-  std::vector<std::string> files_read() const;
+  std::vector<FileRead> files_read() const;
   LimitQuestion limit_question() const;
   std::unique_ptr<const SearchTask> search_task(const StudyContext& context) const;
   StudyResult run(const StudyContext& context) const;

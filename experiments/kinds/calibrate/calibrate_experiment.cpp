@@ -4,6 +4,9 @@
 
 namespace modcal {
 
+// Of each stroke and pluck, about: its spectra, their models and the derivatives of these.
+constexpr double kNumbersPerSample = 100.0;
+
 std::vector<PlanLine> CalibrateOptions::plan() const {
   const ObservationOptions& observation = inversion.observation;
   std::vector<PlanLine> lines = {source_line(planned_simulations(), observation)};
@@ -48,11 +51,19 @@ std::optional<PlannedSimulations> CalibrateOptions::planned_simulations() const 
   return planned;
 }
 
-std::vector<std::string> CalibrateOptions::files_read() const {
-  std::vector<std::string> files = inversion.files_read();
-  files.insert(files.end(), further.files.begin(), further.files.end());
-  for (const PluckRecordOptions& pluck : plucks) {
-    if (!pluck.file.empty()) files.push_back(pluck.file);
+std::vector<FileRead> CalibrateOptions::files_read() const {
+  std::vector<FileRead> files = inversion.files_read();
+  const auto add = [&](const std::string& file, std::string key) {
+    RecordOptions record = inversion.observation.record;  // laid out as the first one
+    record.file = file;
+    files.push_back(file_read(record, std::move(key), kNumbersPerSample));
+  };
+  if (!files.empty()) files.front().numbers_per_sample = kNumbersPerSample;
+  for (std::size_t i = 0; i < further.files.size(); ++i) {
+    add(further.files[i], fmt::format("further_strokes.records.{}", i));
+  }
+  for (std::size_t i = 0; i < plucks.size(); ++i) {
+    if (!plucks[i].file.empty()) add(plucks[i].file, fmt::format("plucks.{}.record", i));
   }
   return files;
 }

@@ -56,6 +56,12 @@ std::vector<Finding> InvertOptions::lint_records(const std::filesystem::path& fo
   return findings;
 }
 
+std::vector<FileRead> InvertOptions::files_read() const {
+  if (!observation.has_record) return {};
+  return {file_read(observation.record, "record.file",
+                    inversion.estimator.make()->numbers_per_sample())};
+}
+
 std::vector<PlanLine> InvertOptions::plan() const {
   std::vector<PlanLine> lines = {source_line(planned_simulations(), observation)};
   const InversionOutputs outputs = inversion_outputs(figures, wants_all());

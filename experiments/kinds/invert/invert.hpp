@@ -23,11 +23,7 @@ struct InvertOptions {
   void visit(OptionVisitor& visitor);
   std::int64_t& seed_slot() { return seed; }
   StreamKey key() const { return StreamKey(static_cast<std::uint64_t>(seed)); }
-  /// Recorded files, relative to the folder of the experiment's file.
-  std::vector<std::string> files_read() const {
-    if (!observation.has_record) return {};
-    return {observation.record.file};
-  }
+  std::vector<FileRead> files_read() const;
 
   /// Whether all signals at the contact are wanted.
   bool wants_all() const { return writes() || overview; }
@@ -44,6 +40,9 @@ struct InvertOptions {
   std::optional<PlannedSimulations> planned_simulations() const;
   StudyResult run(const StudyContext& context) const;
 };
+
+/// The file of a record. Of one that is cropped the work is not foreseen: its rate is in the file.
+FileRead file_read(const RecordOptions& record, std::string key, double numbers_per_sample);
 
 /// Findings about an inversion, without its figures.
 std::vector<Finding> lint_inversion(const InvertOptions& options);

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "experiments/kinds/invert/invert.hpp"
 #include "experiments/kinds/lint.hpp"
 #include "experiments/study/fingerprint.hpp"
@@ -46,6 +48,17 @@ std::vector<Finding> lint_inversion(const InvertOptions& options) {
     });
   }
   return findings;
+}
+
+FileRead file_read(const RecordOptions& record, std::string key, double numbers_per_sample) {
+  const bool present[] = {record.has_left, record.has_right, record.has_reference,
+                          record.has_reference_velocity, record.has_reference_displacement};
+  const bool is_cropped = record.start > 0.0 || !std::isnan(record.stop);
+  return {.name = record.file,
+          .key = std::move(key),
+          .format = record.format,
+          .channels = static_cast<double>(std::ranges::count(present, true)),
+          .numbers_per_sample = is_cropped ? 0.0 : numbers_per_sample};
 }
 
 }  // namespace modcal

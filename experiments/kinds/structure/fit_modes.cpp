@@ -117,6 +117,18 @@ std::string sentence_of(const StrikeFit& fit, const FitModesOptions& options) {
 
 }  // namespace
 
+FileRead file_read(const StructureRecordOptions& record) {
+  return {.name = record.file,
+          .key = "record.file",
+          .format = record.format,
+          .channels = static_cast<double>(record.responses.size() + (record.has_force ? 1 : 0))};
+}
+
+std::vector<FileRead> FitModesOptions::files_read() const {
+  if (!has_functions) return {file_read(record)};
+  return {{.name = functions.file, .key = "functions.file"}};
+}
+
 std::vector<Finding> lint_responses(const std::string& path,
                                     const std::vector<StructureChannelOptions>& responses) {
   std::vector<Finding> findings;
@@ -188,7 +200,7 @@ std::vector<Finding> FitModesOptions::lint_records(const std::filesystem::path& 
 
 std::vector<PlanLine> FitModesOptions::plan() const {
   const std::size_t count = has_functions ? functions.responses.size() : record.responses.size();
-  const std::string file = files_read().front();
+  const std::string file = files_read().front().name;
   return {{fmt::format("fit modes between {:g} and {:g} Hz to {} {} of {}", low, high, count,
                        has_functions ? "response functions" : "responses", file),
            {{"low", low}, {"high", high}, {"responses", count}, {"record", file}}}};
@@ -216,7 +228,8 @@ Fitted fit_of(const FitModesOptions& options, const StudyContext& context) {
     fitted.warnings = std::move(loaded.warnings);
     return fitted;
   }
-  LoadedStructureRecord loaded = load_structure_record(options.record, context.folder);
+  LoadedStructureRecord loaded =
+      load_structure_record(options.record, context.folder, context.stop);
   context.throw_if_interrupted();
   fitted.fit = fit_strike(loaded.record, loaded.kinds, how);
   fitted.fit.table.names = std::move(loaded.names);

@@ -105,9 +105,12 @@ std::vector<std::string> IdentifyForceOptions::tables() const {
   return all;
 }
 
-std::vector<std::string> IdentifyForceOptions::files_read() const {
-  std::vector<std::string> files = tables();
-  files.push_back(record.file);
+std::vector<FileRead> IdentifyForceOptions::files_read() const {
+  std::vector<FileRead> files;
+  for (const std::string& file : tables()) {
+    files.push_back({.name = file, .key = files.empty() ? "table" : "other_places"});
+  }
+  files.push_back(file_read(record));
   return files;
 }
 
@@ -160,7 +163,7 @@ std::vector<PlanLine> IdentifyForceOptions::plan() const {
 }
 
 StudyResult IdentifyForceOptions::run(const StudyContext& context) const {
-  const LoadedStructureRecord loaded = load_structure_record(record, context.folder);
+  const LoadedStructureRecord loaded = load_structure_record(record, context.folder, context.stop);
   std::vector<StructureTable> places;
   for (const std::string& file : tables()) places.push_back(read_table(context.folder / file));
   std::optional<ContactPlaces> where;

@@ -129,8 +129,9 @@ void StructureRecordOptions::visit(OptionVisitor& visitor) {
 }
 
 LoadedStructureRecord load_structure_record(const StructureRecordOptions& options,
-                                            const std::filesystem::path& folder) {
-  ReadOptions read{.sample_rate = options.sample_rate};
+                                            const std::filesystem::path& folder,
+                                            const StopToken& stop) {
+  ReadOptions read{.sample_rate = options.sample_rate, .stop = stop};
   for (const StructureChannelOptions& response : options.responses) {
     read.channels.push_back(response.channel);
   }

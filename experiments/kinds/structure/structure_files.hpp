@@ -6,6 +6,7 @@
 #include "libinverse/structure/structure_record.hpp"
 #include "libinverse/structure/structure_table.hpp"
 #include "libsim/base/options.hpp"
+#include "libsim/base/task_loop.hpp"
 
 namespace modcal {
 
@@ -71,7 +72,8 @@ struct LoadedStructureRecord {
 /// Throws InvalidInput where the file or a channel cannot be had, or has another unit than its
 /// kind.
 LoadedStructureRecord load_structure_record(const StructureRecordOptions& options,
-                                            const std::filesystem::path& folder);
+                                            const std::filesystem::path& folder,
+                                            const StopToken& stop = {});
 
 /// Modes and sensors as YAML that reads back to the same values.
 std::string table_text(const StructureTable& table);

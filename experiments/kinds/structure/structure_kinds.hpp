@@ -9,6 +9,9 @@
 
 namespace modcal {
 
+/// The file of a structure's record.
+FileRead file_read(const StructureRecordOptions& record);
+
 /// Kind "fit_modes": a table of modes from a strike whose force was measured, or from response
 /// functions.
 struct FitModesOptions {
@@ -26,9 +29,7 @@ struct FitModesOptions {
   std::vector<Finding> lint_records(const std::filesystem::path& folder) const;
   std::vector<PlanLine> plan() const;
   std::optional<PlannedSimulations> planned_simulations() const { return std::nullopt; }
-  std::vector<std::string> files_read() const {
-    return {has_functions ? functions.file : record.file};
-  }
+  std::vector<FileRead> files_read() const;
   StudyResult run(const StudyContext& context) const;
 };
 
@@ -57,7 +58,7 @@ struct IdentifyForceOptions {
   std::vector<Finding> lint_records(const std::filesystem::path& folder) const;
   std::vector<PlanLine> plan() const;
   std::optional<PlannedSimulations> planned_simulations() const { return std::nullopt; }
-  std::vector<std::string> files_read() const;
+  std::vector<FileRead> files_read() const;
   StudyResult run(const StudyContext& context) const;
 
  private:

@@ -56,7 +56,8 @@ struct UniversalValues {
   std::vector<std::complex<double>> values;
 };
 UniversalValues read_universal_values(const std::filesystem::path& path,
-                                      const UniversalFunction& function);
+                                      const UniversalFunction& function,
+                                      const StopToken& stop = {});
 
 /// The functions of time as channels.
 Recording read_universal(const std::filesystem::path& path, const ReadOptions& options = {});

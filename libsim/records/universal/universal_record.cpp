@@ -99,7 +99,7 @@ void set_response(const std::filesystem::path& path, const UniversalFunction& fu
 }
 
 StoredChannel stored(const std::filesystem::path& path, const UniversalFunction& function,
-                     const std::optional<UniversalUnits>& units) {
+                     const std::optional<UniversalUnits>& units, const StopToken& stop) {
   StoredChannel channel;
   channel.head.name = function.name;
   set_unit(function.ordinate, units, channel.head);
@@ -117,18 +117,18 @@ StoredChannel stored(const std::filesystem::path& path, const UniversalFunction&
     return channel;
   }
   set_rate(function, channel);
-  channel.read = [path, function] {
+  channel.read = [path, function, stop] {
     std::vector<double> samples;
     samples.reserve(function.size);
-    for (const auto& value : read_universal_values(path, function).values) {
+    for (const auto& value : read_universal_values(path, function, stop).values) {
       samples.push_back(value.real());
     }
     return samples;
   };
   if (!function.is_even) {
-    channel.read_times = [path, function] {
+    channel.read_times = [path, function, stop] {
       const auto& unit = function.abscissa.unit;
-      std::vector<double> times = read_universal_values(path, function).abscissa;
+      std::vector<double> times = read_universal_values(path, function, stop).abscissa;
       for (double& time : times) time *= is_unit_of(unit, "s") ? to_si(1.0, unit, "s") : 1.0;
       return times;
     };
@@ -137,14 +137,14 @@ StoredChannel stored(const std::filesystem::path& path, const UniversalFunction&
   return channel;
 }
 
-std::vector<StoredChannel> channels_of(const std::filesystem::path& path) {
+std::vector<StoredChannel> channels_of(const std::filesystem::path& path, const StopToken& stop) {
   const UniversalFile file = read_universal_headers(path);
   MODCAL_REQUIRE(!file.functions.empty(), "{}: no function (dataset 58) stands in it{}{}",
                  path.string(), file.other_datasets.empty() ? "" : ", only datasets ",
                  fmt::join(file.other_datasets, ", "));
   std::vector<StoredChannel> channels;
   for (const UniversalFunction& function : file.functions) {
-    channels.push_back(stored(path, function, file.units));
+    channels.push_back(stored(path, function, file.units, stop));
   }
   return channels;
 }
@@ -152,7 +152,7 @@ std::vector<StoredChannel> channels_of(const std::filesystem::path& path) {
 }  // namespace
 
 Recording read_universal(const std::filesystem::path& path, const ReadOptions& options) {
-  std::vector<StoredChannel> channels = channels_of(path);
+  std::vector<StoredChannel> channels = channels_of(path, options.stop);
   std::string format = fmt::format("universal file, {} function{}", channels.size(),
                                    channels.size() == 1 ? "" : "s");
   return assemble(std::move(format), std::move(channels), options, path.string());
@@ -160,7 +160,7 @@ Recording read_universal(const std::filesystem::path& path, const ReadOptions& o
 
 ResponseFunctions read_universal_responses(const std::filesystem::path& path,
                                            const std::vector<std::string>& channels) {
-  return assemble_responses(channels_of(path), channels, path.string());
+  return assemble_responses(channels_of(path, {}), channels, path.string());
 }
 
 }  // namespace modcal

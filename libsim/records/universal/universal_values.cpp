@@ -86,9 +86,11 @@ class TextNumbers {
 };
 
 template <typename Numbers>
-UniversalValues values_of(Numbers& numbers, const UniversalFunction& function) {
+UniversalValues values_of(Numbers& numbers, const UniversalFunction& function,
+                          const StopToken& stop) {
   UniversalValues result;
   for (std::uint64_t i = 0; i < function.size; ++i) {
+    stop.throw_if_requested();
     if (!function.is_even) result.abscissa.push_back(numbers.next(true));
     const double real = numbers.next(false);
     result.values.emplace_back(real, function.is_complex ? numbers.next(false) : 0.0);
@@ -99,15 +101,15 @@ UniversalValues values_of(Numbers& numbers, const UniversalFunction& function) {
 }  // namespace
 
 UniversalValues read_universal_values(const std::filesystem::path& path,
-                                      const UniversalFunction& function) {
+                                      const UniversalFunction& function, const StopToken& stop) {
   LineFile file(path);
   file.go_to(function.values);
   if (function.binary) {
     BinaryNumbers numbers(file, function);
-    return values_of(numbers, function);
+    return values_of(numbers, function, stop);
   }
   TextNumbers numbers(file, function);
-  UniversalValues result = values_of(numbers, function);
+  UniversalValues result = values_of(numbers, function, stop);
   numbers.finish();
   return result;
 }

@@ -156,6 +156,31 @@ TEST_F(Refusals, LongDecaysAreJudgedByTheirSizes) {
   EXPECT_EQ(within(10, "validate small.yaml --set scene.duration='1e300 s'").code, 3);
 }
 
+TEST_F(Refusals, RecordsBeyondTheMemoryAreRefusedBeforeTheyAreRead) {
+  std::string text = "# sample_rate: 51200 Hz\nR1 [N],R2 [N]\n";
+  while (text.size() < (2 << 20)) text += "0.125,-0.5\n";
+  write("long.csv", text);
+  write("long.yaml", R"(kind: invert
+record: {file: long.csv, left: {channel: R1}, right: {channel: R2}}
+string: {length: 0.33 m, linear_density: 1e-3 kg/m, fundamental: 294 Hz, modes: 5}
+bow: {position: 42 mm}
+)");
+  // 190 000 rows of two channels: 6 MB to read them, and 30 numbers a row to invert them.
+  const Outcome stated = within(5, "validate long.yaml --memory 10MB");
+  EXPECT_EQ(stated.code, 3);
+  EXPECT_THAT(stated.err, HasSubstr("long.yaml:2:16: error: the run needs about 51.9 MB of memory, "
+                                    "--memory allows 10 MB, by the size of its records"));
+  // Four terabytes, of which the disk holds the first two megabytes.
+  if (shell("truncate -s 4T long.csv").code != 0) GTEST_SKIP() << "no room for a file with holes";
+  for (const char* command :
+       {"validate long.yaml", "run long.yaml", "plan long.yaml", "inspect long.csv",
+        "convert long.csv long.mat", "new invert long.csv"}) {
+    const Outcome outcome = within(5, command);
+    EXPECT_EQ(outcome.code, 3) << command << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("needs about ")) << command;
+  }
+}
+
 TEST_F(Refusals, MemoryThatIsNotThereIsNoInternalError) {
   if (kAddressesAreChecked) GTEST_SKIP() << "its shadow memory is above any limit";
   const Outcome outcome = shell("ulimit -v 600000; '" MODCAL_PROGRAM

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "libsim/records/record_file.hpp"
+#include "libsim/records/formats.hpp"
 #include "libsim/records/recording.hpp"
 #include "libsim/signal/measurement.hpp"
 #include "tests/folder_test.hpp"
@@ -231,6 +231,30 @@ TEST_F(LoadRecord, RefusesARateThatTheFileContradicts) {
   options = csv("t [s],R1 [N],R2 [N]\n0,1,2\n1,2,3\n2,3,4\n5,5,6\n6,6,7\n7,6,7\n");
   options.sample_rate = 1.0;
   EXPECT_THAT(error(options), HasSubstr("r.csv:5: sample 3: a gap of 3 s before 5 s"));
+}
+
+TEST_F(LoadRecord, ForeseesWhatReadingNeedsAndStopsWhenAsked) {
+  std::string text = "a,b\n";
+  for (int i = 0; i < 10000; ++i) text += "1,2\n";
+  write("r.csv", "# sample_rate: 10 Hz\n# a comment\n" + text);
+  const auto size = size_of_record(path("r.csv"), "auto");
+  ASSERT_TRUE(size.has_value());
+  EXPECT_EQ(size->frames, 10000);
+  EXPECT_EQ(size->channels, 2);
+  const auto read = [&](double memory) {
+    return refusal_of([&] { read_record(path("r.csv"), "auto", {.memory = memory}); });
+  };
+  EXPECT_EQ(read(1e6), "accepted");
+  EXPECT_THAT(read(1e5), HasSubstr("reading 1e+04 rows of 2 channels needs about 0.00032 GB"));
+  const Signal signal{"R1", "N", 1000.0, std::vector<double>(300, 0.5)};
+  for (const RecordFormat& format : record_formats()) {
+    const std::filesystem::path file = path(fmt::format("s{}", format.extensions.front()));
+    format.write(file, std::span(&signal, 1), "test");
+    EXPECT_NEAR(size_of_record(file, "auto")->frames, 300, 1) << file;
+    const std::atomic<bool> stop{true};
+    EXPECT_THROW(read_record(file, "auto", {.stop = StopToken(stop)}), Interrupted) << file;
+  }
+  EXPECT_FALSE(size_of_record(path("missing.csv"), "auto").has_value());
 }
 
 TEST(Advanced, ShiftsASineByAFractionOfAPeriod) {
