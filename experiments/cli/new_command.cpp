@@ -13,6 +13,7 @@
 #include "libinverse/waves/end_relation.hpp"
 #include "libsim/base/files.hpp"
 #include "libsim/records/levels.hpp"
+#include "libsim/records/record_file.hpp"
 #include "libsim/records/recording.hpp"
 
 namespace modcal {
@@ -132,6 +133,8 @@ std::string file_for_record(const NewArguments& arguments) {
                  "out, or name one of these",
                  arguments.kind);
   const InspectionReport report = inspect(arguments.record, {.memory = machine_memory()});
+  require_memory(arguments.record, report.format,
+                 machine_memory());  // large ones are not inspected
   MODCAL_REQUIRE(report.problem_count == 0, "{}", report.problems.front());
   RecordOptions record = report.record;
   MODCAL_REQUIRE(record.has_left && record.has_right,

@@ -41,18 +41,6 @@ Recording read_given(const Recording& whole, const std::string& name, const Read
   return recording;
 }
 
-void require_memory(const std::filesystem::path& path, const std::string& format,
-                    const ReadOptions& options) {
-  if (std::isinf(options.memory)) return;
-  const auto size = size_of_record(path, format);
-  if (!size) return;
-  const double bytes = size->bytes_to_read(size->channels);
-  MODCAL_REQUIRE(bytes <= options.memory,
-                 "{}: reading {:.3g} rows of {:g} channels needs about {:.3g} GB of memory, there "
-                 "are {:.3g} GB; cut the record, or leave channels out",
-                 path.string(), size->frames, size->channels, 1e-9 * bytes, 1e-9 * options.memory);
-}
-
 }  // namespace
 
 std::optional<RecordSize> size_of_record(const std::filesystem::path& path,
@@ -68,6 +56,17 @@ std::optional<RecordSize> size_of_record(const std::filesystem::path& path,
   } catch (const InvalidInput&) {
     return std::nullopt;  // whoever reads it says so
   }
+}
+
+void require_memory(const std::filesystem::path& path, const std::string& format, double memory) {
+  if (std::isinf(memory)) return;
+  const auto size = size_of_record(path, format);
+  if (!size) return;
+  const double bytes = size->bytes_to_read(size->channels);
+  MODCAL_REQUIRE(bytes <= memory,
+                 "{}: reading {:.3g} rows of {:g} channels needs about {:.3g} GB of memory, there "
+                 "are {:.3g} GB; cut the record, or leave channels out",
+                 path.string(), size->frames, size->channels, 1e-9 * bytes, 1e-9 * memory);
 }
 
 GivenRecording::GivenRecording(std::string name, Recording recording) : name_(std::move(name)) {
@@ -102,7 +101,7 @@ Recording read_record(const std::filesystem::path& path, const std::string& form
   const std::string name = path.filename().string();
   if (const auto recording = find_given(name)) return read_given(*recording, name, options);
   require_regular_file(path);  // before its name is asked for a format
-  if (!options.headers_only) require_memory(path, format, options);
+  if (!options.headers_only) require_memory(path, format, options.memory);
   return record_format(path, format).read(path, options);
 }
 

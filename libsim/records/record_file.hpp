@@ -87,6 +87,9 @@ struct RecordSize {
 std::optional<RecordSize> size_of_record(const std::filesystem::path& path,
                                          const std::string& format);
 
+/// Throws InvalidInput where reading a record, all channels, needs more than `memory` [B].
+void require_memory(const std::filesystem::path& path, const std::string& format, double memory);
+
 enum class WavSamples { kFloat, kDouble, kPcm24 };
 
 struct WavWriteOptions {
