@@ -133,10 +133,10 @@ std::string file_for_record(const NewArguments& arguments) {
                  "out, or name one of these",
                  arguments.kind);
   const InspectionReport report = inspect(arguments.record, {.memory = machine_memory()});
-  require_memory(arguments.record, report.format,
-                 machine_memory());  // large ones are not inspected
   MODCAL_REQUIRE(report.problem_count == 0, "{}", report.problems.front());
   RecordOptions record = report.record;
+  // Of a large file inspect reads the head alone; what follows reads all of it.
+  require_memory(record.file, record.format, machine_memory());
   MODCAL_REQUIRE(record.has_left && record.has_right,
                  "{} has one channel: which string it is takes both reactions; state it by hand as "
                  "`modcal inspect` shows",
