@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "libsim/records/tuning.hpp"
 #include "libsim/signal/fft.hpp"
 #include "libsim/signal/statistics.hpp"
 
@@ -129,25 +130,52 @@ bool is_signal(Samples samples, const Run& run) {
   return (before(1) && behind(1)) || before(run.count) || behind(run.count);
 }
 
-Fault find_held(Samples samples, double sample_count) {
+std::size_t count_equal(Samples samples) {
   std::size_t equal = 0;
   for (std::size_t i = 1; i < samples.size(); ++i) equal += samples[i] == samples[i - 1];
+  return equal;
+}
+
+// Whether chance leaves a run of `count` in one of 10⁹ records, of which so many samples besides
+// equal the one before.
+bool is_no_chance(std::size_t count, std::size_t equal_besides, double sample_count) {
+  const double others = sample_count - static_cast<double>(count);
+  const double share = (static_cast<double>(equal_besides) + 1.0) / (others + 1.0);
+  const double chance = std::log(sample_count) + static_cast<double>(count - 1) * std::log(share);
+  return chance < std::log(1e-9);
+}
+
+Fault find_held(Samples samples, double sample_count) {
+  const std::size_t equal = count_equal(samples);
   const auto extremes = std::minmax_element(samples.begin(), samples.end());
   Fault fault;
   for_each_run(samples, [&](const Run& run) {
     const double level = samples[run.first];
     const bool extreme = level == *extremes.first || level == *extremes.second;
     if (fault || run.count < Clipping::kShortestRun || extreme) return;
-    const double others = sample_count - static_cast<double>(run.count);
-    const double share = (static_cast<double>(equal - (run.count - 1)) + 1.0) / (others + 1.0);
-    const double chance =
-        std::log(sample_count) + static_cast<double>(run.count - 1) * std::log(share);
-    if (!(chance < std::log(1e-9)) || is_signal(samples, run)) return;
+    if (!is_no_chance(run.count, equal - (run.count - 1), sample_count)) return;
+    if (is_signal(samples, run)) return;
     fault = {run.first, fmt::format("{} samples in a row are {:.6g}: a gap that was filled; crop "
                                     "to the part before or behind it",
                                     run.count, level)};
   });
   return fault;
+}
+
+// A string that rings out comes to rest within the last steps of the resolution.
+Fault find_cut_end(Samples samples, const Run& last) {
+  if (last.count < Clipping::kShortestRun) return std::nullopt;
+  const std::size_t equal = count_equal(samples) - (last.count - 1);
+  if (!is_no_chance(last.count, equal, static_cast<double>(samples.size()))) return std::nullopt;
+  const double level = samples[last.first], reach = 2.0 * resolution_of(samples);
+  const std::size_t before = std::min({last.first, last.count, kRingsOut});
+  const Samples end = samples.subspan(last.first - before, before);
+  const auto is_quiet = [&](double x) { return std::abs(x - level) <= reach; };
+  if (std::all_of(end.begin(), end.end(), is_quiet)) return std::nullopt;
+  return SampleFault{last.first,
+                     fmt::format("all {} samples from here to the end are {:.6g}: the channel was "
+                                 "cut off; crop to the part before (record.stop)",
+                                 last.count, level)};
 }
 
 }  // namespace
@@ -230,6 +258,7 @@ std::optional<SampleFault> find_fault(std::span<const double> samples) {
   fault = find_clipped(signal);
   if (!fault) fault = find_held(signal, static_cast<double>(samples.size()));
   if (fault) fault->first += first - 1;
+  if (!fault) fault = find_cut_end(samples, {end, samples.size() - end});
   return fault;
 }
 

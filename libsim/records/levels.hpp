@@ -84,8 +84,10 @@ struct SampleFault {
 /// - within the signal a run of equal samples is so long that chance leaves one in 10⁹ records:
 ///   N rⁿ⁻¹ < 10⁻⁹ of n, where the share r of the other neighbors are equal. Where the signal
 ///   comes and goes by no more than two steps of its resolution it turns, and where it stays so for
-///   as long before or behind it is silent.
-/// Runs of equal samples at the beginning and at the end are silence, too.
+///   as long before or behind it is silent;
+/// - such a run ends the record, though the signal before is still more than two steps of the
+///   resolution away: the channel was cut off.
+/// A run of equal samples at the beginning is silence, too.
 std::optional<SampleFault> find_fault(std::span<const double> samples);
 
 }  // namespace modcal

@@ -139,5 +139,26 @@ TEST(SampleFaults, SilenceIsNoGap) {
   EXPECT_EQ(fault_of(rounded(samples, 8)), "none");
 }
 
+TEST(SampleFaults, AChannelIsCutOffBeforeTheEnd) {
+  for (const double level : {0.0, 0.3, -2.0}) {
+    for (const std::size_t first : {kSize / 5, kSize - 40}) {
+      std::vector<double> samples = sawtooth();
+      std::fill(samples.begin() + static_cast<std::ptrdiff_t>(first), samples.end(), level);
+      EXPECT_THAT(fault_of(samples), HasSubstr("to the end")) << level;
+      EXPECT_EQ(find_fault(samples)->first, first);
+      EXPECT_THAT(fault_of(rounded(samples, 8)), HasSubstr("record.stop")) << level;
+    }
+  }
+  // Held at its last value, and repeated by chance.
+  EXPECT_THAT(fault_of(held(sawtooth(), kSize - 40, 40)), HasSubstr("all 41 samples"));
+  EXPECT_EQ(fault_of(held(sawtooth(), kSize - 2, 2)), "none");
+}
+
+TEST(SampleFaults, ABeginningOfEqualSamplesIsARest) {
+  std::vector<double> samples = sawtooth();
+  std::fill_n(samples.begin(), kSize / 5, 0.3);
+  EXPECT_EQ(fault_of(samples), "none");
+}
+
 }  // namespace
 }  // namespace modcal
