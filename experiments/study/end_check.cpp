@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "experiments/study/observation.hpp"
@@ -57,6 +58,54 @@ std::string remedy_of(EndRelation relation, const ObservationOptions& options,
   return "";
 }
 
+// Samples before the first that differs from the very first.
+std::size_t silent_start(std::span<const double> samples) {
+  const auto moved = std::ranges::find_if(samples, [&](double x) { return x != samples[0]; });
+  return static_cast<std::size_t>(moved - samples.begin());
+}
+
+// Whether a part of a reaction swings by so much of what the whole does that its resolution shows
+// it and noise is less.
+bool is_playing(std::span<const double> part, std::span<const double> whole) {
+  constexpr double kPlaying = 0.25;
+  if (part.empty()) return false;
+  const auto [low, high] = std::ranges::minmax(part);
+  const auto [lowest, highest] = std::ranges::minmax(whole);
+  return high - low > kPlaying * (highest - lowest);
+}
+
+// Where an equal value stands before what was recorded. A string that was at rest reaches both ends
+// within a period, and not at once.
+void require_whole_beginning(const ObservationOptions& options, const RecordedSignals& signals) {
+  const std::span<const double> reactions[] = {signals.left->samples, signals.right->samples};
+  const std::size_t silent[] = {silent_start(reactions[0]), silent_start(reactions[1])};
+  const std::size_t late = silent[0] > silent[1] ? 0 : 1;
+  const std::span<const double> first = reactions[1 - late], last = reactions[late];
+  const double period = signals.sample_rate / options.string.fundamental;
+  const RecordOptions& record = options.record;
+  const std::string* names[] = {&record.left.channel, &record.right.channel};
+  const double end = record.start + static_cast<double>(silent[late]) / signals.sample_rate;
+  if (static_cast<double>(silent[late] - silent[1 - late]) > period) {
+    MODCAL_REQUIRE(!is_playing(first.first(silent[late]), first),
+                   "{}: channel {} is {:.6g} up to {:.6g} s, while channel {} reads a string that "
+                   "moves: the channel was not connected yet, or was filled; crop to the part "
+                   "behind (record.start)",
+                   record.file, *names[late], last[0], end, *names[1 - late]);
+    return;
+  }
+  if (silent[1 - late] < Clipping::kShortestRun || silent[late] - silent[1 - late] > 1) return;
+  const double apart = std::abs(1.0 - 2.0 * options.contact.position / options.string.length);
+  const std::size_t count =
+      std::min(static_cast<std::size_t>(0.4 * apart * period), last.size() - silent[late]);
+  MODCAL_REQUIRE(
+      !is_playing(first.subspan(silent[late], count), first) ||
+          !is_playing(last.subspan(silent[late], count), last),
+      "{}: channels {} and {} are {:.6g} and {:.6g} up to {:.6g} s and read a string that "
+      "moves from there on: the beginning was filled; crop to the part behind "
+      "(record.start)",
+      record.file, *names[0], *names[1], reactions[0][0], reactions[1][0], end);
+}
+
 }  // namespace
 
 void require_one_string(const ObservationOptions& options, const RecordedSignals& signals) {
@@ -71,6 +120,7 @@ void require_one_string(const ObservationOptions& options, const RecordedSignals
                  "{:g} Hz: its modes cannot be told apart; record for longer",
                  record.file, signals.size(), signals.sample_rate, duration,
                  options.string.fundamental);
+  require_whole_beginning(options, signals);
   const EndRelationFit fit = relations_of(options, *signals.left, *signals.right);
   for (const End end : kEnds) {
     MODCAL_REQUIRE(!fit.noise_alone(static_cast<std::size_t>(end)),

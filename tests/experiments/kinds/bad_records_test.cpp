@@ -108,6 +108,16 @@ Spoil lost(std::size_t count, const char* time) {
   };
 }
 
+Spoil silent(double from, double to, bool left, bool right, double level = 0.0) {
+  return [=](Written& w) {
+    const auto size = static_cast<double>(w.r1.size());
+    const auto first = static_cast<std::ptrdiff_t>(from * size);
+    const auto last = static_cast<std::ptrdiff_t>(to * size);
+    if (left) std::fill(w.r1.begin() + first, w.r1.begin() + last, level);
+    if (right) std::fill(w.r2.begin() + first, w.r2.begin() + last, level);
+  };
+}
+
 Spoil kept(double from, double to) {
   return [=](Written& w) {
     const auto size = static_cast<double>(w.r1.size());
@@ -221,6 +231,14 @@ std::vector<Row> rows() {
       {"gap of zeros, 100 ms", "samples in a row are 0", filled(5120, false)},
       {"gap held, 0.1 ms", "samples in a row are", filled(5, true)},
       {"gap held, 10 ms", "samples in a row are", filled(512, true)},
+      {"cut off left", "record.csv:3074: channel R1, sample 3072 (0.06 s): all 12288 samples",
+       silent(0.2, 1.0, true, false)},
+      {"cut off both", "the channel was cut off", silent(0.2, 1.0, true, true)},
+      {"cut off late", "channel R2", silent(0.97, 1.0, false, true, 0.3)},
+      {"late left", "channel R1 is 0 up to 0.03 s, while channel R2",
+       silent(0.0, 0.1, true, false)},
+      {"late right", "record.start", silent(0.0, 0.5, false, true, 0.3)},
+      {"late both", "the beginning was filled", silent(0.0, 0.3, true, true)},
       {"gap in time, 1 sample", "record.csv:7682: sample 7680: a gap of", lost(1, "jumps")},
       {"gap in time, 100 ms", "a gap of", lost(5120, "jumps")},
       {"gap in time, rate stated", kRate, both(lost(51, "jumps"), stated_rate(51200))},
