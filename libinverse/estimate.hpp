@@ -91,6 +91,8 @@ struct Estimate {
   /// Variance of every bin of force [N²] and velocity [(m/s)²] under the noise alone, that of a
   /// sample being its mean over all K bins; empty: not known.
   std::vector<double> force_variance, velocity_variance;
+  /// What either sensor may err by beside its noise, as the other tells, adds to them.
+  std::vector<double> force_excess, velocity_excess;
   /// Of the two sides, in every bin, about 40 Hz smoothed: 1 where they agree within their noise.
   std::vector<double> side_misfit;
   /// Nothing is identified above it, and the deviations are of the part below [Hz]; NaN: no limit.

@@ -5,8 +5,29 @@
 #include <utility>
 
 #include "libinverse/joint/joint_estimators.hpp"
+#include "libinverse/joint/tuning.hpp"
 
 namespace modcal {
+namespace {
+
+void warn_of_sides(const JointInversion& inversion, const JointResult& result,
+                   std::vector<std::string>& warnings) {
+  if (result.misfit > inversion.contradiction()) {
+    warnings.push_back(fmt::format(
+        "the reactions contradict each other {:.2g} times more than their noise: the model or the "
+        "ends of the record limit the estimate, and its error bars are widened",
+        std::sqrt(result.misfit)));
+  }
+  if (result.slow_widening > kWorthAWord) {
+    warnings.push_back(fmt::format(
+        "the reactions contradict each other below the first mode, {:.4g} Hz: a sensor drifts or "
+        "hums, which makes the error bars {:.2g} times as wide; take it out of both reactions by "
+        "one high-pass filter below that mode, or record with sensors that hold their level",
+        inversion.fundamental(), result.slow_widening));
+  }
+}
+
+}  // namespace
 
 std::vector<Estimate> estimate_with(const JointInversion& inversion, const EstimationRecord& record,
                                     const SensorNoiseLevel& noise, const JointMethod& method,
@@ -18,6 +39,8 @@ std::vector<Estimate> estimate_with(const JointInversion& inversion, const Estim
   estimate.band_limit = method.band_limit;
   estimate.force_variance = std::move(result.force_variance);
   estimate.velocity_variance = std::move(result.velocity_variance);
+  estimate.force_excess = std::move(result.force_excess);
+  estimate.velocity_excess = std::move(result.velocity_excess);
   estimate.side_misfit = std::move(result.side_misfit);
   const bool both = !record.reactions[0].empty() && !record.reactions[1].empty();
   estimate.side = side;
@@ -39,12 +62,7 @@ std::vector<Estimate> estimate_with(const JointInversion& inversion, const Estim
                       {"offset_2", result.offset[1]},
                       {"force_deviation", result.deviation.force},
                       {"misfit_of_sides", result.misfit}};
-  if (result.misfit > inversion.contradiction()) {
-    estimate.warnings.push_back(fmt::format(
-        "the reactions contradict each other {:.2g} times more than their noise: the model or the "
-        "ends of the record limit the estimate, and its error bars are widened",
-        std::sqrt(result.misfit)));
-  }
+  warn_of_sides(inversion, result, estimate.warnings);
   if (!both) {
     estimate.warnings.push_back(fmt::format(
         "reaction {} is missing: the estimate rests on the other one alone, and nothing "

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 #include "libinverse/joint/joint_kernels.hpp"
@@ -21,8 +20,6 @@ double square_sum(std::span<const double> samples) {
   for (; j < samples.size(); ++j) sums[0] += samples[j] * samples[j];
   return (sums[0] + sums[1]) + (sums[2] + sums[3]);
 }
-
-constexpr double kMisfitWidth = 40.0;  // over which it is smoothed [Hz]
 
 FrequencyGrid contour_grid(std::size_t samples, double sample_rate, double sigma) {
   FrequencyGrid grid = FrequencyGrid::of_record(samples, sample_rate);
@@ -91,6 +88,7 @@ JointInversion::JointInversion(const ModalBasis& basis, double contact, std::siz
       largest_transfer_ = std::max(largest_transfer_, std::abs(value));
     }
   }
+  if (basis.size() > 0) fundamental_ = basis.frequency(0);
   arrival_ = first_arrivals(basis, contact, model.sensors);
   weight_power_ = static_cast<double>(samples);
   if (model.sigma > 0.0) {
@@ -173,60 +171,6 @@ void JointInversion::transform(const ReactionPair& reactions, OffsetRule rule,
     fft_.forward(workspace.spectrum[r]);
     if (!workspace.level_known) workspace.spectrum[r][0] = 0.0;
   }
-}
-
-// A mean over n samples errs by √(v/n), and that constant has the spectrum f_s/(σ + iω): at low
-// frequencies it parts the sides by more than their noise. Returns by how much the sum has fallen.
-double JointInversion::allow_for_offsets(OffsetRule rule, std::span<double> misfit) const {
-  if (rule == OffsetRule::kNone) return 0.0;
-  const std::size_t least = std::min(samples_before_arrival(0), samples_before_arrival(1));
-  if (least == 0) return 0.0;
-  const double power = sample_rate_ * sample_rate_ / (static_cast<double>(least) * weight_power_);
-  const double spacing = 2.0 * std::numbers::pi * grid_.bin_width();
-  double fallen = 0.0;
-  for (std::size_t k = 0; k < misfit.size(); ++k) {
-    const double omega = spacing * static_cast<double>(k);
-    const double share = power / (model_.sigma * model_.sigma + omega * omega);
-    if (share < 1e-3) break;
-    const double allowed = misfit[k] / (1.0 + share);
-    fallen += misfit[k] - allowed;
-    misfit[k] = allowed;
-  }
-  return fallen;
-}
-
-void JointInversion::compare_sides(const Weights& weights, const JointMethod& method,
-                                   JointWorkspace& workspace, JointResult& result) const {
-  const bool keep_misfit = method.variances || method.outputs.side_misfit;
-  result.side_misfit.clear();
-  result.misfit = std::numeric_limits<double>::quiet_NaN();
-  workspace.misfit.clear();
-  const auto& inverse = weights.inverse_variance;
-  if (inverse[0] == 0.0 || inverse[1] == 0.0) return;
-  const std::size_t bins = fft_.bins();
-  workspace.misfit.resize(bins);
-  const double sum =
-      joint_kernels().cross_misfit({1.0 / inverse[0], 1.0 / inverse[1]}, 1.0 / weight_power_,
-                                   transfer_, workspace.spectrum, workspace.misfit);
-  const double excess = allow_for_offsets(method.offset, workspace.misfit);
-  result.misfit = (sum - excess) / static_cast<double>(bins);
-  if (!std::isnan(method.band_limit)) {
-    // Above the limit nothing is identified, and the model need not hold.
-    const double within = std::floor(method.band_limit / grid_.bin_width()) + 1.0;
-    const auto count = static_cast<std::ptrdiff_t>(std::min(within, static_cast<double>(bins)));
-    result.misfit =
-        std::accumulate(workspace.misfit.begin(), workspace.misfit.begin() + count, 0.0) /
-        static_cast<double>(count);
-  }
-  const bool contradict =
-      model_.truncation == Truncation::kTransient || !(result.misfit < kContradiction);
-  if (contradict || keep_misfit) {
-    workspace.scratch.resize(bins);
-    const double half = std::max(4.0, 0.25 * kMisfitWidth / grid_.bin_width());
-    smooth_power(workspace.misfit, workspace.scratch, half, 0.0);
-  }
-  if (keep_misfit) result.side_misfit = workspace.misfit;
-  if (!contradict) workspace.misfit.clear();
 }
 
 // After it spectrum[0] holds Σ conj(H_r) R_r/v_r.

@@ -65,9 +65,14 @@ struct JointResult {
   /// Of every bin by the noise alone, not widened by the misfit, that of a sample being the mean
   /// over all K bins [N², (m/s)²]; where wanted.
   std::vector<double> force_variance, velocity_variance;
+  /// What the misfit adds to them.
+  std::vector<double> force_excess, velocity_excess;
   std::vector<double> side_misfit;            ///< of every bin, smoothed; where wanted
   std::array<double, 2> offset = {0.0, 0.0};  ///< subtracted from the reactions [N]
-  double noise_amplitude = 0.0;               ///< √v̄, v̄ the mean variance of the sides [N]
+  /// By how much what is added below the first mode, where sensors drift and hum, makes the force's
+  /// deviation larger.
+  double slow_widening = 1.0;
+  double noise_amplitude = 0.0;  ///< √v̄, v̄ the mean variance of the sides [N]
   /// Mean over the bins of the band of |R_1 H_2 − R_2 H_1|² over what the noise puts there: 1 where
   /// the model holds, NaN with one reaction.
   double misfit = std::numeric_limits<double>::quiet_NaN();
@@ -79,8 +84,11 @@ struct JointWorkspace {
   SideSpectra spectrum;
   std::vector<double> gain;      ///< q_k = Σ_r |H_r|²/v_r
   std::vector<double> variance;  ///< prior P_k, then posterior 1/(q_k + 1/P_k)
-  std::vector<double> misfit;  ///< of the sides in every bin, smoothed; empty: as the noise allows
-  std::vector<double> power;   ///< |Σ_r conj(H_r) R_r/v_r|² of a unit sum of weights
+  std::vector<double> misfit;    ///< of the sides in every bin, smoothed
+  /// By which share of what the data alone leave of F_k its variance grows by what the sensors err
+  /// by; empty: the sides differ as the noise allows.
+  std::vector<double> side_error;
+  std::vector<double> power;  ///< |Σ_r conj(H_r) R_r/v_r|² of a unit sum of weights
   std::vector<double> terms[3];
   SideSpectra recorded;         ///< before the decays are taken out
   std::vector<double> learned;  ///< prior variance of F_k that they were fitted with
@@ -101,9 +109,11 @@ struct JointWorkspace {
 /// The deviations are those of the posterior where the two reactions agree within the noise. Where
 /// they contradict each other by far more (on the contour a record of less than 0.1 % noise, whose
 /// aliases and wrapped end no noise level tells of; a model that is wrong), the variance that the
-/// data leave is multiplied by the misfit of the cross relation around each bin (Birge, 1932): what
-/// the model lacks is supposed to be as large along the force as across it. For bowed strings the
-/// 95 % band then holds 93 % to 98 % of the truth at 0.1 % to 10 % of noise and more of it below.
+/// data leave grows by what either sensor would have to err by to part them so, and F with it. Far
+/// below f_1 a contact near x = 0 is seen by R_1 alone: an error of R_1 moves F as much as it moves
+/// R_1, and the cross relation by |H_2/H_1| of that. No sensor errs by more than it reads. For
+/// bowed strings the 95 % band holds 93 % to 98 % of the truth at 0.1 % to 10 % of noise and more
+/// of it below.
 ///
 /// The parameter reported is λ = √(v̄/A), A the prior's amplitude: the |H| [N/N] at which a bin of
 /// prior shape 1 is kept by half. Prepared once per model and record length; const and safe to use
@@ -131,6 +141,7 @@ class JointInversion {
   double sigma() const { return model_.sigma; }
   /// max_k |H_r(s_k)| over both sides [N/N].
   double largest_transfer() const { return largest_transfer_; }
+  double fundamental() const { return fundamental_; }  ///< of the first mode [Hz]
 
   /// Throws InvalidInput for lengths that differ, no reaction at all, a sample that is not finite
   /// (with its index), a noise level that is negative.
@@ -164,6 +175,7 @@ class JointInversion {
   double allow_for_offsets(OffsetRule rule, std::span<double> misfit) const;
   void compare_sides(const Weights& weights, const JointMethod& method, JointWorkspace& workspace,
                      JointResult& result) const;
+  void find_side_errors(const Weights& weights, double half, JointWorkspace& workspace) const;
   void combine(const Weights& weights, JointWorkspace& workspace) const;
   void set_prior(const JointMethod& method, JointWorkspace& workspace) const;
   void fill_cells(const Weights& weights, JointWorkspace& workspace) const;
@@ -178,7 +190,7 @@ class JointInversion {
                              JointWorkspace& workspace) const;
   void apply_posterior(const Weights& weights, const JointMethod& method, JointWorkspace& workspace,
                        JointResult& result) const;
-  void widen_by_misfit(JointWorkspace& workspace) const;
+  void widen_by_misfit(bool keep, JointWorkspace& workspace, JointResult& result) const;
   void count_bins(double kept_pairs, JointWorkspace& workspace, InversionResult& identified) const;
   double deviation_of(double sum, std::span<const Complex> transfer, std::span<const double> more,
                       const JointWorkspace& workspace) const;
@@ -194,6 +206,7 @@ class JointInversion {
   std::vector<Complex> mobility_;
   std::array<double, 2> arrival_ = {0.0, 0.0};  ///< [s]
   double largest_transfer_ = 0.0;
+  double fundamental_ = 0.0;
   std::vector<double> decay_;   ///< exp(−σ t_j), empty for σ = 0
   std::vector<double> growth_;  ///< exp(σ t_j)/K
   double weight_power_ = 0.0;   ///< W = Σ_j exp(−2σ t_j)

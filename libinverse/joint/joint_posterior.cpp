@@ -136,16 +136,6 @@ double JointInversion::write_signal(ContactSignal what, bool wanted, JointWorksp
                       workspace);
 }
 
-// Means of about 20 bins of noise stay below 2.
-void JointInversion::widen_by_misfit(JointWorkspace& workspace) const {
-  constexpr double kSignificant = 2.0;
-  for (std::size_t k = 0; k < workspace.misfit.size(); ++k) {
-    if (!(workspace.misfit[k] > kSignificant)) continue;
-    const double share = workspace.gain[k] * workspace.variance[k];  // of the bin kept
-    workspace.variance[k] *= 1.0 + (workspace.misfit[k] - 1.0) * share;
-  }
-}
-
 void JointInversion::count_bins(double kept_pairs, JointWorkspace& workspace,
                                 InversionResult& identified) const {
   const std::size_t bins = fft_.bins(), last = bins - 1, first = workspace.level_known ? 0 : 1;
@@ -207,7 +197,7 @@ void JointInversion::apply_posterior(const Weights& weights, const JointMethod& 
       result.velocity_variance[k] += workspace.by_decays[2][k];
     }
   }
-  widen_by_misfit(workspace);
+  widen_by_misfit(method.variances, workspace, result);
   if (!workspace.level_known) workspace.variance[0] = 0.0;
   force.front() = force.front().real();
   if (samples() % 2 == 0) force.back() = force.back().real();

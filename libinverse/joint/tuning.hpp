@@ -37,6 +37,43 @@ constexpr double kLowestNoise = 50.0;
 /// Halved: 0.98 to 1.02, 91 to 96 % in the band, which then lacks what the model is off by.
 constexpr double kHighestNoise = 0.45;
 
+/// Width over which the misfit of the sides is smoothed [Hz].
+/// Source: records of benchmarks/truth, violin G, exponential friction, 0.1 and 1 % of noise: the
+/// band of good ones is 2.3 and 1.25 times as wide as the error; that of a saturated sensor (tanh_1
+/// of benchmarks/truth/bad_records.py) 1.7 times and holds 99 %, that of a ramp of R_1 1.2 times.
+/// Range tried: 20 to 80.
+/// Doubled: as now.
+/// Halved: 1.29 in the place of 1.25.
+constexpr double kMisfitWidth = 40.0;
+
+/// Misfit of the sides, of some 30 bins, from which on it is none of the noise.
+/// Source: records of benchmarks/truth, violin G, exponential friction, 0.1 and 1 % of noise: the
+/// band of good ones is 2.3 and 1.25 times as wide as the error; that of a saturated sensor (tanh_1
+/// of benchmarks/truth/bad_records.py) 1.7 times and holds 99 %, that of a ramp of R_1 1.2 times.
+/// Range tried: 1.4 to 4.
+/// Doubled: 2.26 and 1.25, saturated 1.65.
+/// Halved: not possible; at 1.4 2.35 and 1.42, as scatter of the noise counts.
+constexpr double kSidesApart = 2.0;
+
+/// Least share of the other sensor in what is known of a bin, over that of the bins around, by
+/// which a misfit tells of an error: where it is blind, next to a zero of its H_r, noise would.
+/// Source: records of benchmarks/truth, violin G, exponential friction, 0.1 and 1 % of noise: the
+/// band of good ones is 2.3 and 1.25 times as wide as the error; that of a saturated sensor (tanh_1
+/// of benchmarks/truth/bad_records.py) 1.7 times and holds 99 %, that of a ramp of R_1 1.2 times.
+/// Range tried: 0.125 to 0.5.
+/// Doubled: as now, saturated 1.69.
+/// Halved: as now, saturated 1.75.
+constexpr double kBlindShare = 0.25;
+
+/// Widening of the force's deviation by what the sensors err by below the first mode that is worth
+/// a warning.
+/// Source: records of benchmarks/truth, violin G: no good one is warned of, a ramp of a tenth of
+/// R_1's deviation is at 0.1 and 1 % of noise.
+/// Range tried: none.
+/// Doubled: not tried.
+/// Halved: not possible.
+constexpr double kWorthAWord = 2.0;
+
 /// Share of the first wave's time to the sensor in which a record that starts at rest is still:
 /// stiffness sends waves ahead.
 /// Source: 12 records of benchmarks/truth (violin D, G and E, exponential and thermal friction, 0.1

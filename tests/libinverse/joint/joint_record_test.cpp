@@ -151,5 +151,58 @@ TEST(JointRecord, HasBandsThatHoldWhatTheModelLacks) {
   EXPECT_GT(static_cast<double>(inside), 0.8 * static_cast<double>(samples));
 }
 
+// Below f_1 R_2 tells little of the force and R_1 nearly all: what R_1 errs by is the force's error
+// and moves the cross relation by a tenth of that.
+TEST(JointRecord, HasBandsThatHoldWhatEitherSensorErrsBy) {
+  const std::size_t samples = 16384;
+  const ModalBasis basis = violin_g();
+  const DrivenString good = drive(basis, kPosition, jumping_force(samples, StreamKey(7)), {}, true);
+  const double limit = basis.frequency(30);
+  const RealFft fft(samples);
+  JointOptions options;
+  options.band_limit = limit;
+  struct Band {
+    double held;   // share of the force's error in it
+    double width;  // its deviation over that of the error
+    std::vector<std::string> warnings;
+  };
+  const auto band_with = [&](double ramp_1, double ramp_2) {
+    DrivenString string = good;
+    add_noise(string, 0.01, StreamKey(8));
+    const double ramps[] = {ramp_1, ramp_2};
+    for (std::size_t r = 0; r < 2; ++r) {
+      const double size = ramps[r] * standard_deviation(good.reaction[r]);
+      for (std::size_t j = 0; j < samples; ++j) {
+        string.reaction[r][j] += size * static_cast<double>(j) / static_cast<double>(samples);
+      }
+    }
+    const Estimate estimate = estimate_with(options, basis, string.pair(), true);
+    std::vector<double> off = estimate.result.force;
+    for (std::size_t j = 0; j < samples; ++j) off[j] -= string.force[j];
+    std::vector<Complex> spectrum = fft.forward(off);
+    std::fill(spectrum.begin() + static_cast<std::ptrdiff_t>(limit * samples / kRate) + 1,
+              spectrum.end(), Complex{});
+    spectrum[0] = 0.0;
+    off = fft.inverse(std::move(spectrum));
+    const auto inside = std::ranges::count_if(
+        off, [&](double x) { return std::abs(x) < 1.96 * estimate.force_deviation; });
+    return Band{static_cast<double>(inside) / static_cast<double>(samples),
+                estimate.force_deviation / standard_deviation(off), estimate.warnings};
+  };
+  const Band clean = band_with(0.0, 0.0);
+  EXPECT_GT(clean.held, 0.93);
+  EXPECT_THAT(clean.warnings, testing::IsEmpty());
+  for (const double ramp : {0.1, 1.0}) {
+    const Band band = band_with(ramp, 0.0);
+    EXPECT_GT(band.held, 0.95) << ramp;
+    EXPECT_NEAR(band.width, 1.0, 0.4) << ramp;
+    EXPECT_THAT(band.warnings, testing::Contains(testing::HasSubstr("contradict each other")));
+  }
+  // Which of both errs is not told where the force itself may be as slow.
+  EXPECT_GT(band_with(0.0, 1.0).held, 0.95);
+  EXPECT_GT(band_with(1.0, 1.0).held, 0.95);
+  EXPECT_GT(band_with(-0.3, 0.3).held, 0.95);
+}
+
 }  // namespace
 }  // namespace modcal
