@@ -24,16 +24,7 @@ Combination combination_of(std::span<const double> observed, const Reference& jo
                            std::span<const double> errors, std::span<const double> deviation,
                            double error_square, bool beyond) {
   Combination result{combined(observed, joint, errors, beyond), {}};
-  const double spacing = joint.sample_rate / static_cast<double>(observed.size());
-  std::vector<double> left(errors.begin(), errors.end());
-  for (std::size_t k = 0; k < left.size(); ++k) {
-    if (static_cast<double>(k) * spacing > joint.band_limit) {
-      if (!beyond) left[k] = 0.0;
-    } else if (left[k] > 0.0) {
-      left[k] *= joint.variance[k] / (left[k] + joint.variance[k]);
-    }
-  }
-  const double shared = sample_square(left, observed.size());
+  const double shared = sample_square(combined_errors(joint, errors, beyond), observed.size());
   const double share = estimate_share(joint, errors);
   for (const double d : deviation) {
     const double of_noise = std::max(0.0, d * d - error_square);
@@ -72,7 +63,8 @@ class PreparedAuto final : public PreparedEstimator {
     try {
       ModelBasedResult model =
           observer_.estimate(basis_, contact_, sample_rate_, left, right, {}, recorded_);
-      const Reference joint = held(model, model.joint.result.force, model.joint.force_variance);
+      const Reference joint = held(model, model.joint.result.force, model.joint.force_variance,
+                                   model.joint.force_excess);
       const std::vector<double> errors = errors_of(model.unaliased_force, joint, model);
       const double share = estimate_share(joint, errors);
       const double least = model.explained() ? kToldShare : kTrustedShare;
@@ -90,10 +82,15 @@ class PreparedAuto final : public PreparedEstimator {
     }
   }
 
-  // A signal of the joint estimate with its noise alone: what else that is off by speaks for it.
+  // A signal of the joint estimate, weighted by its noise alone: what else that is off by speaks
+  // for it.
   Reference held(const ModelBasedResult& model, const std::vector<double>& samples,
-                 const std::vector<double>& variance) const {
-    return {samples, variance, sample_rate_, model.model_error.band_limit};
+                 const std::vector<double>& variance, std::span<const double> excess) const {
+    return {.samples = samples,
+            .variance = variance,
+            .sample_rate = sample_rate_,
+            .band_limit = model.model_error.band_limit,
+            .excess = excess};
   }
 
   static std::vector<double> errors_of(std::span<const double> observed, const Reference& joint,
@@ -113,9 +110,11 @@ class PreparedAuto final : public PreparedEstimator {
     const bool beyond = model.explained() && share >= kTrustedShare;
     const ModelError& error = model.model_error;
     Combination force =
-        combination_of(model.unaliased_force, held(model, signals.force, result.force_variance),
+        combination_of(model.unaliased_force,
+                       held(model, signals.force, result.force_variance, result.force_excess),
                        force_errors, model.deviation.force, error.force_square, beyond);
-    const Reference joint_velocity = held(model, signals.velocity, result.velocity_variance);
+    const Reference joint_velocity =
+        held(model, signals.velocity, result.velocity_variance, result.velocity_excess);
     std::vector<double> errors = errors_of(model.velocity, joint_velocity, model);
     Combination velocity = combination_of(model.velocity, joint_velocity, errors,
                                           model.deviation.velocity, error.velocity_square, beyond);
@@ -127,8 +126,8 @@ class PreparedAuto final : public PreparedEstimator {
       variance[k] /= omega * omega;
       errors[k] /= omega * omega;
     }
-    signals.displacement =
-        combined(model.displacement, held(model, signals.displacement, variance), errors, beyond);
+    signals.displacement = combined(
+        model.displacement, held(model, signals.displacement, variance, {}), errors, beyond);
     result.unaliased_force = std::move(force.samples);
     signals.force = result.unaliased_force;
     result.band_limit = error.band_limit;
@@ -145,6 +144,8 @@ class PreparedAuto final : public PreparedEstimator {
     result.velocity_deviation = rms_of(result.velocity_deviations);
     result.force_variance.clear();
     result.velocity_variance.clear();
+    result.force_excess.clear();
+    result.velocity_excess.clear();
     result.notes = {law_note(model),
                     fmt::format("the model-based estimate has a share of {:.3g} in the bins of the "
                                 "force, the joint one the rest",

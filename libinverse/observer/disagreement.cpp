@@ -114,6 +114,15 @@ std::vector<double> bin_errors(std::span<const double> estimate, std::span<const
   return errors;
 }
 
+std::vector<double> with_excess(std::vector<double> errors, const Reference& reference) {
+  const double spacing = reference.sample_rate / static_cast<double>(reference.samples.size());
+  for (std::size_t k = 0; k < reference.excess.size(); ++k) {
+    if (static_cast<double>(k) * spacing > reference.band_limit) break;
+    errors[k] = std::max(errors[k], reference.excess[k]);
+  }
+  return errors;
+}
+
 double sample_square(std::span<const double> bins, std::size_t samples) {
   double sum = 0.0;
   for (std::size_t k = 1; k < bins.size(); ++k) sum += 2.0 * bins[k];
@@ -139,6 +148,24 @@ std::vector<double> combined(std::span<const double> estimate, const Reference& 
     spectrum[k] += weight * (other[k] - spectrum[k]);
   }
   return fft.inverse(std::move(spectrum));
+}
+
+std::vector<double> combined_errors(const Reference& reference, std::span<const double> errors,
+                                    bool beyond) {
+  const double spacing = reference.sample_rate / static_cast<double>(reference.samples.size());
+  std::vector<double> left = with_excess({errors.begin(), errors.end()}, reference);
+  for (std::size_t k = 0; k < left.size(); ++k) {
+    if (static_cast<double>(k) * spacing > reference.band_limit) {
+      if (!beyond) left[k] = 0.0;
+      continue;
+    }
+    const double both = errors[k] + reference.variance[k];
+    const double weight = both > 0.0 ? errors[k] / both : 0.0;
+    const double excess = reference.excess.empty() ? 0.0 : reference.excess[k];
+    left[k] *= (1.0 - weight) * (1.0 - weight);
+    left[k] += weight * weight * (reference.variance[k] + excess);
+  }
+  return left;
 }
 
 double estimate_share(const Reference& reference, std::span<const double> errors) {

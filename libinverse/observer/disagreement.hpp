@@ -26,6 +26,9 @@ struct Reference {
   double band_limit = std::numeric_limits<double>::quiet_NaN();
   /// Shares of the record between which it counts.
   double begin = 0.08, end = 0.95;
+  /// x_k: what it may be off by beside v_k, as the estimate may be, too, which rests on the same
+  /// reactions; empty: nothing.
+  std::span<const double> excess = {};
 };
 
 /// e of half octaves up to the band limit, by moments weighted with 1/(e + v_k)², from
@@ -39,6 +42,10 @@ std::vector<BandError> band_errors(std::span<const double> estimate, const Refer
 std::vector<double> bin_errors(std::span<const double> estimate, std::span<const BandError> bands,
                                double sample_rate, bool trusted);
 
+/// The larger of an estimate's errors and the excess of its reference, bin by bin, below the band
+/// limit.
+std::vector<double> with_excess(std::vector<double> errors, const Reference& reference);
+
 /// Mean square of a sample from that of all K/2 + 1 bins.
 double sample_square(std::span<const double> bins, std::size_t samples);
 
@@ -47,6 +54,11 @@ double sample_square(std::span<const double> bins, std::size_t samples);
 /// reference's.
 std::vector<double> combined(std::span<const double> estimate, const Reference& reference,
                              std::span<const double> errors, bool beyond);
+
+/// Mean square error of the bins of that combination: (1 − w)² of the estimate's, with the excess,
+/// and w² (v + x).
+std::vector<double> combined_errors(const Reference& reference, std::span<const double> errors,
+                                    bool beyond);
 
 /// Share of the estimate's bins in that combination, weighted by their variance in the reference:
 /// 1 where it is the estimate alone, 0 where it is the reference.

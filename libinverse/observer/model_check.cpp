@@ -115,32 +115,36 @@ void add_model_error(Estimate joint, const ObservedRecord& record, ModelBasedRes
   const double top = record.basis.frequency(record.basis.size() - 1);
   error.band_limit = std::isnan(joint.band_limit) ? top : joint.band_limit;
   const double rate = record.sample_rate;
-  const double excess = std::sqrt(std::max(1.0, result.steady_misfit / result.misfit_limit));
+  const double unexplained = std::sqrt(std::max(1.0, result.steady_misfit / result.misfit_limit));
   for (auto* deviation : {&result.deviation.force, &result.deviation.velocity}) {
-    for (double& value : *deviation) value *= excess;
+    for (double& value : *deviation) value *= unexplained;
   }
-  // Where the sides contradict each other the joint estimate is off by more than their noise.
-  const auto own_error = [&joint](std::vector<double> variance) {
-    for (std::size_t k = 0; k < joint.side_misfit.size(); ++k) {
-      if (joint.side_misfit[k] > kSidesApart) variance[k] *= joint.side_misfit[k];
-    }
-    return variance;
-  };
-  const auto measure = [&](std::span<const double> estimate, std::span<const double> samples,
-                           const std::vector<double>& variance, std::vector<BandError>& bands,
-                           std::vector<double>& deviation) {
-    const std::vector<double> own = own_error(variance);
-    bands = band_errors(estimate, {samples, own, rate, error.band_limit, kBeforeSteady});
-    // A law that explains both reactions to their noise has no error but theirs.
-    if (result.explained()) return 0.0;
-    const double square = sample_square(bin_errors(estimate, bands, rate, false), estimate.size());
+  const auto measure = [&](std::span<const double> estimate, const Reference& reference,
+                           std::vector<BandError>& bands, std::vector<double>& deviation) {
+    bands = band_errors(estimate, reference);
+    // A law that explains both reactions to their noise has no error but theirs, which is more
+    // than noise where they contradict each other.
+    std::vector<double> errors(reference.variance.size(), 0.0);
+    if (!result.explained()) errors = bin_errors(estimate, bands, rate, false);
+    const double square = sample_square(with_excess(std::move(errors), reference), estimate.size());
     for (double& value : deviation) value = std::sqrt(value * value + square);
     return square;
   };
-  error.force_square = measure(result.unaliased_force, joint.result.force, joint.force_variance,
+  const auto held = [&](const std::vector<double>& samples, const std::vector<double>& variance,
+                        const std::vector<double>& excess) {
+    return Reference{.samples = samples,
+                     .variance = variance,
+                     .sample_rate = rate,
+                     .band_limit = error.band_limit,
+                     .begin = kBeforeSteady,
+                     .excess = excess};
+  };
+  error.force_square = measure(result.unaliased_force,
+                               held(joint.result.force, joint.force_variance, joint.force_excess),
                                error.force_bands, result.deviation.force);
-  error.velocity_square = measure(result.velocity, joint.result.velocity, joint.velocity_variance,
-                                  error.velocity_bands, result.deviation.velocity);
+  error.velocity_square = measure(
+      result.velocity, held(joint.result.velocity, joint.velocity_variance, joint.velocity_excess),
+      error.velocity_bands, result.deviation.velocity);
   result.joint = std::move(joint);
 }
 

@@ -43,13 +43,6 @@ constexpr double kTrustedShare = 0.5;
 /// Halved: decides no record tried.
 constexpr double kToldShare = 0.1;
 
-/// Misfit of the sides of the joint estimate from which on its variance grows by it.
-/// Source: that of joint_posterior.cpp: means of about 20 bins of noise stay below it.
-/// Range tried: none.
-/// Doubled: not tried.
-/// Halved: not tried.
-constexpr double kSidesApart = 2.0;
-
 /// Share of the record before steady motion, for the model error of the bands.
 /// Source: that of observed_record.cpp.
 /// Range tried: none.

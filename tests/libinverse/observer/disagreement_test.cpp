@@ -79,6 +79,25 @@ TEST(Combined, IsNoWorseThanTheBetterOfBoth) {
   }
 }
 
+// Both rest on the same reactions: an error of a sensor may be one of the estimate as well,
+// although the two agree.
+TEST(CombinedErrors, HoldWhatBothMayBeOffBy) {
+  const Case c(0.05, 0.1);
+  Reference reference = c.held();
+  const double apart = sample_square(combined_errors(reference, c.errors(), true), kCount);
+  EXPECT_NEAR(apart, 0.01 * 0.0035 / 0.0135, 0.1 * apart);
+  const std::vector<double> excess(kCount / 2 + 1, 0.09);
+  reference.excess = excess;
+  EXPECT_NEAR(sample_square(with_excess(c.errors(), reference), kCount), 0.09, 1e-3);
+  const double w = 0.0035 / 0.0135;
+  EXPECT_NEAR(sample_square(combined_errors(reference, c.errors(), true), kCount),
+              (1.0 - w) * (1.0 - w) * 0.09 + w * w * 0.1, 4e-3);
+  reference.band_limit = 0.25 * kSampleRate;
+  EXPECT_NEAR(
+      sample_square(with_excess(std::vector<double>(kCount / 2 + 1, 0.0), reference), kCount),
+      0.045, 1e-4);
+}
+
 TEST(Combined, EndsAtTheBandLimitUnlessTheModelIsToGoBeyond) {
   const Case c(0.1, 0.1);
   Reference limited = c.held();
