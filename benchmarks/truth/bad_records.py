@@ -37,8 +37,8 @@ UNSEEN = {
 class Record:
     """Columns of a file: R1, R2, f_c and a time column (None: left out), lines before them, keys of `record:`."""
 
-    def __init__(self, rows, rate, noise_key):
-        self.rate = rate
+    def __init__(self, rows, rate, noise_key, noise=NOISE):
+        self.rate, self.noise = rate, noise
         self.t = [i / rate for i in range(len(rows))]
         self.x = {"R1": [r[1] for r in rows], "R2": [r[2] for r in rows], "f_c": [r[3] for r in rows]}
         self.gauss = random.Random(noise_key).gauss
@@ -48,7 +48,7 @@ class Record:
         self.preamble, self.keys, self.swapped = [], "", False
 
     def noisy(self, x):
-        s = NOISE * spread(x)
+        s = self.noise * spread(x)
         return [v + s * self.gauss(0.0, 1.0) for v in x]
 
     def cell(self, channel, share, value):
@@ -139,7 +139,7 @@ def crosstalk(share):
 
 def noise_only(channel):
     def apply(r):
-        s = NOISE * spread(r.x[channel])
+        s = r.noise * spread(r.x[channel])
         r.x[channel] = [r.gauss(0.0, s) for _ in r.x[channel]]
     return apply
 
@@ -150,6 +150,30 @@ def hum(share):
             s = share * spread(r.x[k])
             r.x[k] = [v + sum(s / h * math.cos(2.0 * math.pi * 50.0 * h * i / r.rate + h) for h in range(1, 9))
                       for i, v in enumerate(r.x[k])]
+    return apply
+
+
+def added(shape, channels):
+    """A slow error: shape(share of the record) standard deviations of the channel."""
+    def change(x):
+        s = spread(x)
+        return [v + s * shape(i / len(x)) for i, v in enumerate(x)]
+    return each(change, channels)
+
+
+def saturated(drive):
+    """A sensor whose reading v of the peak p is p tanh(drive v/p)/drive."""
+    def change(x):
+        peak = max(map(abs, x))
+        return [peak / drive * math.tanh(drive * v / peak) for v in x]
+    return each(change)
+
+
+def silent(begin, end, channels, value=0.0):
+    def apply(r):
+        first, last = int(begin * len(r.t)), int(end * len(r.t))
+        for k in channels:
+            r.x[k][first:last] = [value] * (last - first)
     return apply
 
 
@@ -209,6 +233,16 @@ BAD = {
     "8_bit": bits(8), "6_bit": bits(6), "4_bit": bits(4),
     **{f"hum_{h:g}": hum(h) for h in (0.001, 0.01, 0.05)},
     "backwards": each(lambda x: x[::-1]),
+    # Errors of a sensor that no sample shows by itself.
+    **{f"ramp_{size:g}_{name}": added(lambda t, size=size: size * t, ks)
+       for size in (0.1, 1.0) for name, ks in (("R1", ["R1"]), ("R2", ["R2"]), ("both", REACTIONS))},
+    **{f"drift_{name}": added(lambda t: math.exp(-t / 0.2), ks)
+       for name, ks in (("R1", ["R1"]), ("R2", ["R2"]), ("both", REACTIONS))},
+    **{f"tanh_{drive:g}": saturated(drive) for drive in (0.3, 1, 4)},
+    **{f"cut_{name}": silent(0.2, 1.0, ks) for name, ks in (("R1", ["R1"]), ("both", REACTIONS))},
+    "cut_late_R2": silent(0.97, 1.0, ["R2"], 0.3),
+    **{f"late_start_{name}": silent(0.0, 0.2, ks) for name, ks in (("R1", ["R1"]), ("both", REACTIONS))},
+    "late_start_30ms_R1": silent(0.0, 0.03, ["R1"]),
 }
 
 

@@ -109,6 +109,7 @@ def judged(folder, side, truth_path, rate, start):
         exact = true[name] if math.isnan(limit) else below(true[name], rate, limit)
         line[f"held_{name}"] = held(signal, exact, deviation)
         line[f"sd_{name}"] = sum(deviation) / len(deviation)
+        line[f"off_{name}"] = rms(inner([a - b for a, b in zip(signal, exact)]))
     return line
 
 
