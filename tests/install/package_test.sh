@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # The Debian package of what is built: it is made, installed by dpkg below a folder of its own and used there, and
-# holds no path of the machine that built it; that of Python, where it is built, likewise. Removed, it leaves nothing.
+# neither it nor what it writes holds a path of the machine that built it; that of Python, where it is built, likewise.
+# Removed, it leaves nothing.
 # package_test.sh ROOT BUILD CPACK
 set -euo pipefail
 root=$(cd "${1:?usage: package_test.sh ROOT BUILD CPACK}" && pwd)
@@ -44,13 +45,18 @@ fi
 names_the_machine() { strings -a "$1" | grep -F -e "$root" -e "$build"; }
 printf 'text %s text' "$build" >"$work/planted"
 names_the_machine "$work/planted" >/dev/null || fail "self-check: a path goes unnoticed"
-while IFS= read -r -d '' file; do
-  if names_the_machine "$file"; then fail "$file names the machine it was built on"; fi
-done < <(find "$there" -type f -print0)
+none_names_the_machine() { # FOLDER
+  while IFS= read -r -d '' file; do
+    if names_the_machine "$file"; then fail "$file names the machine it was built on"; fi
+  done < <(find "$1" -type f -print0)
+}
+none_names_the_machine "$there"
 
 cd "$work" # away from the tree
 [ "$("$there/bin/modcal" man)" = "$(gzip -dc "$there/share/man/man1/modcal.1.gz")" ] || fail "another manual page"
 quietly "$there/bin/modcal" reproduce fig02
+[ -s out/fig02/report.html ] || fail "there is no report"
+none_names_the_machine out
 quietly "$there/bin/modcal" new calibrate --out mine.yaml
 quietly "$there/bin/modcal" validate mine.yaml
 if [ -n "$python" ]; then
