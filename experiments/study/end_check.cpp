@@ -9,17 +9,19 @@
 namespace modcal {
 namespace {
 
-EndRelationFit relations_of(const ObservationOptions& options, const Signal& left_reaction,
-                            const Signal& right_reaction) {
+EndRecord ends_of(const Signal& left_reaction, const Signal& right_reaction) {
   const std::span<const double> left = left_reaction.samples, right = right_reaction.samples;
-  return fit_end_relations({.left = left,
-                            .right = right,
-                            .sample_rate = left_reaction.sample_rate,
-                            .noise = {white_noise_rms(left), white_noise_rms(right)}},
-                           {.length = options.string.length,
-                            .fundamental = options.string.fundamental,
-                            .inharmonicity = options.string.inharmonicity,
-                            .contact = options.contact.position});
+  return {.left = left,
+          .right = right,
+          .sample_rate = left_reaction.sample_rate,
+          .noise = {white_noise_rms(left), white_noise_rms(right)}};
+}
+
+StatedString string_of(const ObservationOptions& options) {
+  return {.length = options.string.length,
+          .fundamental = options.string.fundamental,
+          .inharmonicity = options.string.inharmonicity,
+          .contact = options.contact.position};
 }
 
 constexpr std::string_view kSign =
@@ -106,6 +108,14 @@ void require_whole_beginning(const ObservationOptions& options, const RecordedSi
       record.file, *names[0], *names[1], reactions[0][0], reactions[1][0], end);
 }
 
+std::string remedy_of(double gain) {
+  return fmt::format(
+      "would be those of the string stated if the one at {} read {:.4g} times as much: check the "
+      "units and the sensitivity of both sensors (record.left.calibration, "
+      "record.right.calibration)",
+      label_of(gain > 1.0 ? End::kRight : End::kLeft), std::max(gain, 1.0 / gain));
+}
+
 }  // namespace
 
 void require_one_string(const ObservationOptions& options, const RecordedSignals& signals) {
@@ -121,7 +131,8 @@ void require_one_string(const ObservationOptions& options, const RecordedSignals
                  record.file, signals.size(), signals.sample_rate, duration,
                  options.string.fundamental);
   require_whole_beginning(options, signals);
-  const EndRelationFit fit = relations_of(options, *signals.left, *signals.right);
+  const EndRecord ends = ends_of(*signals.left, *signals.right);
+  const EndRelationFit fit = fit_end_relations(ends, string_of(options));
   for (const End end : kEnds) {
     MODCAL_REQUIRE(!fit.noise_alone(static_cast<std::size_t>(end)),
                    "{}: channel {}, the reaction at {}, holds nothing but noise between half and "
@@ -134,6 +145,10 @@ void require_one_string(const ObservationOptions& options, const RecordedSignals
                                        record.file, record.left.channel, record.right.channel);
   const EndRelation best = fit.best();
   MODCAL_REQUIRE(best == EndRelation::kString, "{} {}", pair, remedy_of(best, options, fit));
+  if (!fit.explained()) {
+    const std::optional<double> gain = gain_of_right(ends, string_of(options));
+    MODCAL_REQUIRE(!gain, "{} {}", pair, remedy_of(*gain));
+  }
   MODCAL_REQUIRE(fit.explained(),
                  "{} are not those of one string with f0 within 3 % of {:g} Hz and the contact "
                  "within 2 % of L of {:g} mm: the best, with f0 = {:.5g} Hz, leaves {:.3g} % of "
@@ -152,9 +167,10 @@ void require_told_fundamental(const ObservationOptions& options, const Observati
       !observation.reaction(End::kRight)) {
     return;
   }
-  const double told =
-      relations_of(options, *observation.reaction(End::kLeft), *observation.reaction(End::kRight))
-          .fundamental;
+  const double told = fit_end_relations(ends_of(*observation.reaction(End::kLeft),
+                                                *observation.reaction(End::kRight)),
+                                        string_of(options))
+                          .fundamental;
   const double difference = told / options.string.fundamental - 1.0;
   if (std::abs(difference) < 3e-3) return;
   const std::optional<ToldString> alone = told_string(observation);
@@ -181,11 +197,7 @@ std::optional<ToldString> told_string(const Observation& observation) {
   const auto& right = observation.reaction(End::kRight);
   if (observation.truth || !left || !right) return std::nullopt;
   try {
-    const ToldString told =
-        find_string({.left = left->samples,
-                     .right = right->samples,
-                     .sample_rate = observation.sample_rate,
-                     .noise = {white_noise_rms(left->samples), white_noise_rms(right->samples)}});
+    const ToldString told = find_string(ends_of(*left, *right));
     return told.explained ? std::optional(told) : std::nullopt;
   } catch (const InvalidInput&) {
     return std::nullopt;  // no note of a string: the calibration says so

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "libinverse/waves/end_residual.hpp"
 #include "libinverse/waves/end_search.hpp"
@@ -36,6 +37,17 @@ double copy_misfit(const EndBins& bins, double& gain) {
   double sum = 0.0;
   for (std::size_t i = 0; i < bins.size(); ++i) sum += std::log(bins.misfits(i, gain, 1.0)[0]);
   return sum / static_cast<double>(std::max<std::size_t>(1, bins.size()));
+}
+
+// What makes R₂ as strong as the relation asks.
+double gain_at(const EndBins& bins, const StatedString& string) {
+  double left = 0.0, right = 0.0;
+  for (std::size_t i = 0; i < bins.size(); ++i) {
+    const EndFactors factors = end_factors(bins.frequency[i], string);
+    left += factors.left * factors.left * bins.left[i];
+    right += factors.right * factors.right * bins.right[i];
+  }
+  return right > 0.0 ? std::sqrt(left / right) : 0.0;
 }
 
 }  // namespace
@@ -75,6 +87,24 @@ EndRelationFit fit_end_relations(const EndRecord& record, const StatedString& st
   fit.at_edge = shift > (kFundamentalSteps - 0.5) * kFundamentalStep;
   judge_residual(record, found, fit);
   return fit;
+}
+
+std::optional<double> gain_of_right(const EndRecord& record, const StatedString& string) {
+  require_record(record, string);
+  const EndBins bins = bins_of(EndSpectra(record), string.fundamental, kRelationTop);
+  const double gain = gain_at(bins, string);
+  if (!(gain > 0.0)) return std::nullopt;
+  std::vector<double> right(record.right.begin(), record.right.end());
+  for (double& sample : right) sample *= gain;
+  EndRecord mended = record;
+  mended.right = right;
+  mended.noise[1] *= gain;
+  const EndRelationFit fit = fit_end_relations(mended, string);
+  if (!fit.explained() || fit.best() != EndRelation::kString) return std::nullopt;
+  StatedString found = string;
+  found.fundamental = fit.fundamental;
+  found.contact = fit.contact;
+  return gain_at(bins, found);
 }
 
 }  // namespace modcal

@@ -64,6 +64,10 @@ struct EndRelationFit {
 /// a contact outside the string.
 EndRelationFit fit_end_relations(const EndRecord& record, const StatedString& string);
 
+/// How many times R₂ would have to read more for both to be those of the string, which they are not
+/// as they are; none: no gain of a sensor explains them. Throws as fit_end_relations() does.
+std::optional<double> gain_of_right(const EndRecord& record, const StatedString& string);
+
 /// What a record tells of a string of which nothing is known.
 struct ToldString {
   double fundamental = 0.0;    ///< f₀ [Hz]

@@ -69,6 +69,20 @@ TEST(EndRelation, TellsOfSignsAndExchangedEnds) {
   EXPECT_EQ(fitted(times(-1.0, left), times(-1.0, right)).best(), EndRelation::kString);
 }
 
+TEST(EndRelation, TellsTheGainThatOneEndLacks) {
+  const double level = kNoise * standard_deviation(good().r1);
+  for (const double gain : {0.001, 0.1, 4.448, 30.0}) {
+    const std::vector<double> right = times(1.0 / gain, good().r2);
+    ASSERT_FALSE(fitted(good().r1, right).explained()) << gain;
+    const auto found =
+        gain_of_right({good().r1, right, good().rate, {level, level / gain}}, kStated);
+    ASSERT_TRUE(found.has_value()) << gain;
+    EXPECT_NEAR(*found / gain, 1.0, 0.02);
+  }
+  const std::vector<double> other = times(1.0, good().r1);
+  EXPECT_FALSE(gain_of_right({good().r1, other, good().rate, {level, level}}, kStated).has_value());
+}
+
 TEST(EndRelation, TellsOfCopies) {
   for (const double gain : {1.0, 0.7, -1.0}) {
     const EndRelationFit fit = fitted(good().r1, times(gain, good().r1));
