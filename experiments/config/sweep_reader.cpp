@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <set>
 
 #include "experiments/config/help.hpp"
 #include "experiments/config/reader.hpp"
@@ -69,7 +70,7 @@ class Reader {
     if (member.key == "product") {
       for (const YamlNode::Member* axis : read_axes(member.value)) {
         table_.plan.product.push_back(plain(*axis));
-        groups_.push_back({axis});
+        add_group({axis});
       }
     } else if (member.key == "zip") {
       for (const YamlNode& item : items_of(member)) read_zip(item);
@@ -98,6 +99,12 @@ class Reader {
       mistake(map.position, "axes are a map of option paths and lists of values");
     }
     for (const YamlNode::Member& member : map.members) {
+      if (member.key == "kind" || member.key == "title" || member.key == "description") {
+        mistake(member.position,
+                fmt::format("{} is no axis: no number depends on it; sweep over other options",
+                            member.key));
+        continue;
+      }
       if (member.value.kind == YamlNode::Kind::kSequence && !member.value.items.empty()) {
         axes.push_back(&member);
         continue;
@@ -129,6 +136,22 @@ class Reader {
       axes.push_back(plain(*axis));
     }
     table_.plan.zip.push_back(std::move(axes));
+    add_group(std::move(group));
+  }
+
+  // The same values once more are no further draws.
+  void add_group(Group group) {
+    std::set<std::string> known;
+    for (std::size_t i = 0; i < size_of(group); ++i) {
+      std::string values;
+      for (const YamlNode::Member* axis : group) {
+        values += fmt::format("{}{} {}", values.empty() ? "" : ", ", axis->key,
+                              flow_text(axis->value.items[i]));
+      }
+      if (known.insert(values).second) continue;
+      mistake(group.front()->value.items[i].position,
+              fmt::format("{} stands here twice: leave one of them", values));
+    }
     groups_.push_back(std::move(group));
   }
 
