@@ -66,6 +66,11 @@ class Places {
   }
   bool known(const SourcePosition& position) const { return all_.contains(key_of(position)); }
   bool said(const std::string& text) const { return texts_.contains(text); }
+  // What a list says of itself follows from an item that could not be read.
+  bool has_wrong_item(const YamlNode& node) const {
+    return std::ranges::any_of(node.items,
+                               [this](const YamlNode& item) { return known(item.position); });
+  }
   // What a section says of itself follows from a key that it lacks.
   bool lacks_a_key(const YamlNode& node) const {
     if (missing_.empty()) return false;
@@ -168,8 +173,10 @@ void make_and_lint(LoadedExperiment& loaded, const Means& means) {
       const SourcePosition position = position_of_path(root, finding.path);
       const YamlNode* node = node_at(root, finding.path);
       if (mistakes.said(finding.text)) continue;  // a simulator refuses what its scene does
-      if (had_errors && (mistakes.known(position) || is_consequence(finding.text) ||
-                         (node != nullptr && mistakes.lacks_a_key(*node)))) {
+      // What is only doubtful is told when all could be read.
+      if (had_errors &&
+          (!finding.is_error || mistakes.known(position) || is_consequence(finding.text) ||
+           (node != nullptr && (mistakes.lacks_a_key(*node) || mistakes.has_wrong_item(*node))))) {
         continue;
       }
       loaded.mistakes.push_back({position, finding.text, !finding.is_error});

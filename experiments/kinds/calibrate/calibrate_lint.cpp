@@ -183,14 +183,16 @@ std::vector<Finding> CalibrateOptions::lint() const {
                   mode, string.modes);
     }
   }
+  std::vector<std::string> names;
   lint_making(findings, "calibration.parameters", [&] {
     const UnknownsOptions& unknowns = calibration.parameters.unknowns;
     unknowns.require_found_by(calibration.optimizer.selected(), calibration.by_schedule());
     if (is_known(string)) unknowns.response.laid_out(make_modal_basis(string));
     calibration.require_read(strokes, plucks.size());
-    calibration.objective.make()->require_moved_by(
-        calibration.parameters.names(static_cast<std::size_t>(string.modes)));
+    names = calibration.parameters.names(static_cast<std::size_t>(string.modes));
   });
+  lint_making(findings, "calibration.objective",
+              [&] { calibration.objective.make()->require_moved_by(names); });
   return findings;
 }
 
