@@ -13,19 +13,42 @@ bool is_known(const StringModel& string) {
 namespace {
 
 // Transverse waves of a string run at the root of its stress over its density: 650 m/s at the
-// strength of the best steel wire, and no string that sounds is slower than 1 m/s.
-void lint_speed(const std::string& path, const StringModel& string,
+// strength of the best steel wire, and no string that sounds is slower than 1 m/s. The tensions of
+// musical strings are 10 N to 1 kN; a density in another unit is off by a thousand.
+void lint_waves(const std::string& path, const StringModel& string,
                 std::vector<Finding>& findings) {
   constexpr double kSlowest = 1.0, kFastest = 5000.0;  // [m/s]
+  constexpr double kSlackest = 0.1, kTautest = 2e4;    // [N]
   if (!is_known(string)) return;
   const double speed = 2.0 * string.length * string.fundamental;
-  if (speed >= kSlowest && speed <= kFastest) return;
-  findings.push_back({path + ".length",
-                      fmt::format("length {:g} m and fundamental {:g} Hz make waves of {:.3g} m/s, "
-                                  "which no string carries: check the units, a bare number is in m "
-                                  "or Hz",
-                                  string.length, string.fundamental, speed),
-                      false});
+  const double tension = string.linear_density * speed * speed;
+  if (speed < kSlowest || speed > kFastest) {
+    findings.push_back(
+        {path + ".length",
+         fmt::format("length {:g} m and fundamental {:g} Hz make waves of {:.3g} m/s, which no "
+                     "string carries: check the units, a bare number is in m or Hz",
+                     string.length, string.fundamental, speed),
+         false});
+  } else if (tension < kSlackest || tension > kTautest) {
+    findings.push_back(
+        {path + ".linear_density",
+         fmt::format("linear_density {:g} kg/m and waves of {:.3g} m/s make a tension of {:.3g} N, "
+                     "which no string has: check the units, a bare number is in kg/m",
+                     string.linear_density, speed, tension),
+         false});
+  }
+}
+
+// Of the reactions' own level.
+void lint_noise_level(double level, std::vector<Finding>& findings) {
+  constexpr double kLoudest = 0.5;
+  if (!(level >= kLoudest)) return;
+  findings.push_back(
+      {"measurement.noise_level",
+       fmt::format("noise of {:g} % of what the sensors read hides the string: check "
+                   "the unit, a bare number is a share and 1 % is 0.01",
+                   100.0 * level),
+       false});
 }
 
 void lint_string(const std::string& path, const StringModel& string, double position,
@@ -116,7 +139,8 @@ std::vector<Finding> lint_scene(const Scene& scene, const Choice<Simulator>& sim
   lint_making(findings, "scene.duration",
               [&] { sample_count(scene.duration, measurement.sample_rate); });
   if (findings.size() == before) lint_step(scene, simulator, measurement.sample_rate, findings);
-  lint_speed("scene.string", scene.string, findings);
+  lint_waves("scene.string", scene.string, findings);
+  lint_noise_level(measurement.noise_level, findings);
   return findings;
 }
 
@@ -156,7 +180,7 @@ std::vector<Finding> lint_observation(const ObservationOptions& options) {
   }
   lint_unread(options, findings);
   lint_string("string", options.string.before_reading(), options.contact.position, "bow", findings);
-  lint_speed("string", options.string, findings);
+  lint_waves("string", options.string, findings);
   return findings;
 }
 
@@ -179,6 +203,11 @@ std::optional<Observation> lint_record(const std::string& path, const Observatio
       throw WrongKey(place, error.what());
     }
   });
+  if (observation) {
+    for (const std::string& warning : observation->warnings) {
+      findings.push_back({path, warning, false});
+    }
+  }
   return observation;
 }
 
@@ -207,44 +236,6 @@ std::vector<Finding> lint_scores(const ScoreOptions& score, const ObservationOpt
                 "the window from {:g} s over {:g} periods ends at {:.4g} s, "
                 "after the record of {:g} s",
                 start, score.periods, start + length, duration);
-  }
-  return findings;
-}
-
-std::vector<Finding> lint_priors(const std::string& path, const UnknownsOptions& unknowns,
-                                 const StringModel& string, std::size_t records) {
-  // Which modes there are, a record may have to tell.
-  const std::size_t modes =
-      string.modes_of_record() ? 5000 : static_cast<std::size_t>(string.modes);
-  std::vector<Finding> findings;
-  UnknownsOptions sound = unknowns;  // what has passed so far
-  sound.fixed.clear();
-  sound.priors.clear();
-  sound.correlations.clear();
-  std::set<std::string> wrong;
-  const auto passes = [&](const std::string& place) {
-    const std::size_t before = findings.size();
-    lint_making(findings, path + place,
-                [&] { require_priors(sound, modes, records, string.length); });
-    return findings.size() == before;
-  };
-  for (std::size_t i = 0; i < unknowns.fixed.size(); ++i) {
-    sound.fixed.push_back(unknowns.fixed[i]);
-    if (!passes(fmt::format(".fixed.{}", i))) sound.fixed.pop_back();
-  }
-  for (std::size_t i = 0; i < unknowns.priors.size(); ++i) {
-    sound.priors.push_back(unknowns.priors[i]);
-    if (passes(fmt::format(".priors.{}", i))) continue;
-    wrong.insert(unknowns.priors[i].parameter);
-    sound.priors.pop_back();
-  }
-  const auto is_wrong = [&](const std::string& name) { return wrong.contains(name); };
-  for (std::size_t i = 0; i < unknowns.correlations.size(); ++i) {
-    const PriorCorrelation& correlation = unknowns.correlations[i];
-    // What is wrong with a prior is said there.
-    if (std::ranges::any_of(correlation.between, is_wrong)) continue;
-    sound.correlations.push_back(correlation);
-    if (!passes(fmt::format(".correlations.{}", i))) sound.correlations.pop_back();
   }
   return findings;
 }
