@@ -38,8 +38,10 @@ std::string channel_text(const ChannelInspection& channel, bool measured) {
       number(levels.rms), number(levels.peak), number(levels.std), number(levels.mean),
       text(channel.clipping));
   result += std::isfinite(channel.noise_rms)
-                ? fmt::format("    noise: {} rms ({:.3g} % of std)\n", number(channel.noise_rms),
-                              100.0 * channel.noise_rms / levels.std)
+                ? fmt::format("    noise: {} rms{}\n", number(channel.noise_rms),
+                              levels.std > 0.0 ? fmt::format(" ({:.3g} % of std)",
+                                                             100.0 * channel.noise_rms / levels.std)
+                                               : "")
                 : "    noise: unknown (too few samples, or some are missing)\n";
   if (levels.not_finite > 0) {
     result += fmt::format("    {} samples are no numbers, first sample {}\n", levels.not_finite,

@@ -195,6 +195,17 @@ ParsedNumber parse_number(std::string_view text) {
   return {std::isfinite(value) ? NumberKind::kNumber : NumberKind::kNotFinite, value};
 }
 
+void require_apart(std::span<const std::string> headings, std::span<const std::string> wanted,
+                   std::string_view place) {
+  const bool together = headings.size() == 1 && wanted.size() > 1 &&
+                        std::ranges::all_of(wanted, [&headings](const std::string& name) {
+                          return headings.front().find(name) != std::string::npos;
+                        });
+  MODCAL_REQUIRE(!together,
+                 "{}: \"{}\" is one column; separate columns by commas, semicolons or tabs", place,
+                 headings.front());
+}
+
 std::string describe_bad_number(NumberKind kind, std::string_view text) {
   if (kind == NumberKind::kNotFinite) {
     return fmt::format("\"{}\" is no usable sample; repair the record or crop it away", text);

@@ -72,6 +72,11 @@ struct ParsedNumber {
 };
 ParsedNumber parse_number(std::string_view text);
 
+/// Throws InvalidInput where several names that are wanted stand in the only heading: the columns
+/// have other separators. place: of the heading.
+void require_apart(std::span<const std::string> headings, std::span<const std::string> wanted,
+                   std::string_view place);
+
 /// Why a field is no usable number and what to do about it.
 std::string describe_bad_number(NumberKind kind, std::string_view text);
 

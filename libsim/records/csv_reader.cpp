@@ -209,6 +209,7 @@ void CsvReader::settle_columns() {
 void CsvReader::choose_columns() {
   std::vector<std::string> names;
   for (const Column& column : columns_) names.push_back(column.channel.name);
+  require_apart(headings_, options_.channels, file_.place(0));
   kept_ = find_channels(names, options_.channels, fmt::format("{}:{}", file_.name(), file_.line()));
   for (std::size_t i = 0; options_.channels.empty() && i < columns_.size(); ++i) {
     if (i != time_) kept_.push_back(i);
@@ -242,8 +243,7 @@ void CsvReader::settle_sample_rate() {
 void CsvReader::use_time_axis(double stated) {
   Column& column = columns_[*time_];
   std::vector<double>& t = column.channel.samples;
-  const auto finite = [](double value) { return std::isfinite(value); };
-  if (!std::all_of(t.begin(), t.end(), finite)) return;  // reported where it was read
+  if (!std::ranges::all_of(t, [](double x) { return std::isfinite(x); })) return;  // reported
   double largest = 0.0;
   for (const double value : t) largest = std::max(largest, std::abs(value));
   double resolution = time_digits_.resolution(largest);
