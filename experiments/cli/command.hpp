@@ -141,6 +141,9 @@ struct ExperimentArguments {
 /// an empty one.
 std::string complaint_about_name(const std::string& name);
 
+/// A frequency such as 44.1 kHz as a number of hertz. Throws CLI::ValidationError.
+std::string hertz_of(std::string text);
+
 /// The text where it is a size such as 8GB. Throws CLI::ValidationError.
 std::string require_size(std::string text);
 

@@ -37,7 +37,7 @@ std::string unknown_option(const CLI::App& app) {
   }
   for (const std::string& word : app.remaining(true)) {
     const std::string name = word.substr(0, word.find('='));
-    if (name.size() < 2 || name[0] != '-' || std::isdigit(name[1]) != 0) continue;
+    if (name.size() < 2 || name == "--" || name[0] != '-' || std::isdigit(name[1]) != 0) continue;
     if (std::find(names.begin(), names.end(), name) == names.end()) {
       return fmt::format("unknown option \"{}\"{}", name, suggestion(name, names));
     }
@@ -155,8 +155,14 @@ std::string complaint_about_name(const std::string& name) {
   return is_blank ? "the name is empty: write one, or leave the option out" : "";
 }
 
+std::string hertz_of(std::string text) {
+  const ScalarNumber number = parse_number(text, "Hz");
+  if (!number.error.empty()) throw CLI::ValidationError(number.error);
+  return fmt::format("{}", number.value);
+}
+
 std::string require_size(std::string text) {
-  static const std::regex size("[0-9]+ ?([kmgtpe]i?)?b?", std::regex::icase);
+  static const std::regex size("0*[1-9][0-9]* ?([kmgtpe]i?)?b?", std::regex::icase);
   if (std::regex_match(text, size)) return text;
   throw CLI::ValidationError(
       fmt::format("\"{}\" is no size: write one such as 8GB or 500MB", text));

@@ -59,10 +59,15 @@ std::string seen_from(const std::string& out, const std::string& record) {
   return std::filesystem::proximate(std::filesystem::absolute(record), folder).string();
 }
 
-std::string example_of(const std::string& kind, const std::string& out) {
+void require_kind(const std::string& kind) {
   std::vector<std::string> kinds;
+  for (const Example& example : kExamples) kinds.emplace_back(example.kind);
+  MODCAL_REQUIRE(std::ranges::count(kinds, kind) > 0, "unknown kind \"{}\"{}", kind,
+                 suggestion(kind, kinds));
+}
+
+std::string example_of(const std::string& kind, const std::string& out) {
   for (const Example& example : kExamples) {
-    kinds.emplace_back(example.kind);
     if (example.kind != kind) continue;
     const std::filesystem::path file = std::filesystem::path(shipped_configs()) / example.file;
     MODCAL_REQUIRE(std::filesystem::exists(file),
@@ -80,7 +85,7 @@ std::string example_of(const std::string& kind, const std::string& out) {
                        experiment.visit_options(visitor);
                      }));
   }
-  throw_invalid_input("unknown kind \"{}\"{}", kind, suggestion(kind, kinds));
+  return {};
 }
 
 std::string channel_line(const char* end, const RecordedChannelOptions& force) {
@@ -188,6 +193,7 @@ std::string file_for_record(const NewArguments& arguments) {
 }
 
 ExitCode write_new(const NewArguments& arguments) {
+  require_kind(arguments.kind);
   const std::string text = arguments.record.empty() ? example_of(arguments.kind, arguments.out)
                                                     : file_for_record(arguments);
   if (arguments.out.empty()) {

@@ -11,6 +11,11 @@ namespace {
 
 std::string format_words() { return fmt::format("{}", fmt::join(record_format_choices(), ", ")); }
 
+void declare_rate(CLI::App& command, double& rate) {
+  command.add_option("--sample-rate", rate, "such as \"44.1 kHz\", where the file has none")
+      ->transform(hertz_of);
+}
+
 struct InspectArguments {
   std::string file;
   InspectionOptions options;
@@ -33,8 +38,7 @@ void declare(CLI::App& command, InspectArguments& arguments) {
   command.add_option("--format", arguments.options.format, format_words());
   command.add_flag("--headers", arguments.options.headers_only,
                    "read headers alone, or the first rows of what has none");
-  command.add_option("--sample-rate", arguments.options.sample_rate,
-                     "[Hz], where the file has none");
+  declare_rate(command, arguments.options.sample_rate);
 }
 
 struct ConvertArguments {
@@ -83,7 +87,7 @@ void declare(CLI::App& command, ConvertArguments& arguments) {
       ->check(complaint_about_name);
   command.add_option("--from-format", arguments.from_format, format_words());
   command.add_option("--to-format", arguments.to_format, format_words());
-  command.add_option("--sample-rate", arguments.sample_rate, "[Hz], where the file has none");
+  declare_rate(command, arguments.sample_rate);
 }
 
 }  // namespace
