@@ -23,6 +23,7 @@ void write_out(std::string_view text) {
     caller->said += text;
     return;
   }
+  const Progress::Pause pause;
   errno = 0;
   if (std::fwrite(text.data(), 1, text.size(), stdout) < text.size() && output_error == 0) {
     output_error = errno;
@@ -185,12 +186,15 @@ void complain(const std::vector<Complaint>& complaints) {
 }
 
 void hint_text(std::string_view text) {
-  if (Caller::here() == nullptr) std::fputs(colored(printable(text)).c_str(), stderr);
+  if (Caller::here() != nullptr) return;
+  const Progress::Pause pause;
+  std::fputs(colored(printable(text)).c_str(), stderr);
 }
 
 void remark_text(std::string_view text) {
-  if (!answer_style().quiet && Caller::here() == nullptr)
-    std::fputs(printable(text).c_str(), stderr);
+  if (answer_style().quiet || Caller::here() != nullptr) return;
+  const Progress::Pause pause;
+  std::fputs(printable(text).c_str(), stderr);
 }
 
 std::string json_text(const nlohmann::ordered_json& object) {

@@ -216,10 +216,19 @@ std::string colored(const std::string& text);
 
 // Progress on stderr: on a terminal one line that is rewritten, how long the work takes already and
 // what of it is done where it says so; elsewhere a line every few seconds of a list of tasks alone.
+// Every command has one; of those of a thread the last one that was made is shown.
 
 class Progress {
  public:
   enum class Of { kList, kOne };
+  /// As long as it lives no progress of its thread is in the way of what is said.
+  class Pause {
+   public:
+    Pause();
+
+   private:
+    std::unique_lock<std::mutex> lock_;
+  };
   Progress(std::string what, Of work);
   ~Progress();
   Progress(const Progress&) = delete;
@@ -233,6 +242,8 @@ class Progress {
   // While nobody reports: until it is told to stop.
   void beat(const std::stop_token& stop);
   void draw(Clock::time_point now);
+  void clear();
+  void cover(bool is_covered);
 
   std::mutex mutex_;
   std::condition_variable_any ended_;
@@ -241,9 +252,11 @@ class Progress {
   Caller* caller_ = Caller::here();
   bool terminal_;
   bool shown_ = false;
+  bool covered_ = false;  // another one is shown
   double share_ = 0.0;
   Clock::time_point start_;
   Clock::time_point last_;
+  Progress* outer_;    // null: none
   std::jthread beat_;  // last: it ends before the rest does
 };
 

@@ -60,12 +60,9 @@ ExitCode run(const FileArguments& arguments) {
 void declare_file(CLI::App& command, FileArguments& arguments) { arguments.declare_file(command); }
 
 ExitCode validate(const FileArguments& arguments) {
-  LoadedExperiment loaded;
-  {
-    const Progress progress(arguments.file, Progress::Of::kOne);
-    loaded = load_experiment(arguments.file, arguments.assignments, arguments.means());
-    check_records(loaded);
-  }
+  LoadedExperiment loaded =
+      load_experiment(arguments.file, arguments.assignments, arguments.means());
+  check_records(loaded);
   const bool valid = !loaded.has_errors();
   complain(complaints_of(loaded.document, loaded.mistakes));
   if (answer_style().json) {
@@ -88,20 +85,10 @@ ExitCode limit(const FileArguments& arguments) {
                  "{} is no calibration: limits exist for the kinds calibrate and calibration_limit",
                  arguments.file);
   TruthCache truths;
-  nlohmann::ordered_json numbers;
-  std::string text;
-  {
-    const Progress progress(arguments.file, Progress::Of::kOne);
-    if (answer_style().json) {
-      numbers = limit_json(*question, truths);
-    } else {
-      text = limit_text(*question, truths);
-    }
-  }
   if (answer_style().json) {
-    print_json(numbers);
+    print_json(limit_json(*question, truths));
   } else {
-    say_text(text);
+    say_text(limit_text(*question, truths));
   }
   return ExitCode::kOk;
 }

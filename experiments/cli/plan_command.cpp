@@ -238,10 +238,7 @@ ExitCode plan(const PlanArguments& arguments) {
   const auto loaded =
       load_and_print_mistakes(arguments.file, arguments.assignments, arguments.means());
   if (!loaded) return ExitCode::kInvalidInput;
-  const Plan made = [&loaded] {
-    const Progress progress("plan", Progress::Of::kOne);
-    return make_plan(*loaded);
-  }();
+  const Plan made = make_plan(*loaded);
   // A run that is no list of tasks simulates on one thread.
   const auto* list = dynamic_cast<const TaskExperiment*>(loaded->experiment.get());
   const std::size_t tasks = list != nullptr ? list->task_count() : 1;

@@ -42,6 +42,7 @@ ExitCode answer_words(int argc, const char* const* argv, void (*begin)()) {
   begin();
   return guarded([&] {
     limit_instructions_by_environment();
+    const Progress progress(app.get_subcommands().front()->get_name(), Progress::Of::kOne);
     return action();
   });
 }

@@ -13,14 +13,24 @@ namespace {
 constexpr std::chrono::milliseconds kFirst(1000), kNext(500);
 constexpr std::chrono::milliseconds kPauseOnTerminal(100), kPauseElsewhere(5000);
 
+thread_local Progress* innermost = nullptr;
+
 }  // namespace
+
+Progress::Pause::Pause() {
+  if (innermost == nullptr) return;
+  lock_ = std::unique_lock(innermost->mutex_);
+  innermost->clear();
+}
 
 Progress::Progress(std::string what, Of work)
     : what_(printable(what)),
       work_(work),
       terminal_(can_rewrite()),
       start_(Clock::now()),
-      last_(start_) {
+      last_(start_),
+      outer_(std::exchange(innermost, this)) {
+  if (outer_ != nullptr) outer_->cover(true);
   if (!terminal_ || caller_ != nullptr || answer_style().quiet) return;
   beat_ = std::jthread([this](const std::stop_token& stop) { beat(stop); });
 }
@@ -30,7 +40,19 @@ Progress::~Progress() {
     beat_.request_stop();
     beat_.join();
   }
-  if (shown_ && terminal_) std::fputs("\r\033[K", stderr);
+  clear();
+  innermost = outer_;
+  if (outer_ != nullptr) outer_->cover(false);
+}
+
+void Progress::clear() {
+  if (std::exchange(shown_, false) && terminal_) std::fputs("\r\033[K", stderr);
+}
+
+void Progress::cover(bool is_covered) {
+  const std::lock_guard lock(mutex_);
+  clear();
+  covered_ = is_covered;
 }
 
 void Progress::beat(const std::stop_token& stop) {
@@ -43,6 +65,7 @@ void Progress::beat(const std::stop_token& stop) {
 }
 
 void Progress::draw(Clock::time_point now) {
+  if (covered_) return;
   last_ = now;
   const double elapsed = std::chrono::duration<double>(now - start_).count();
   const std::string line = share_ > 0.0
