@@ -11,10 +11,32 @@ namespace {
 
 bool takes_value(const CLI::Option& option) { return option.get_items_expected_max() > 0; }
 
-// Names of plug-ins are asked of the program itself.
+// What stands behind a command: words, or what the program itself lists of a kind.
+struct Place {
+  std::string_view command;
+  int number;             // 1 is that behind the command
+  std::string_view kind;  // empty: the kinds; "before": that of the word before
+  std::string_view words = {};
+};
+constexpr Place kPlaces[] = {
+    {"list", 1, ""},          {"describe", 1, ""},         {"describe", 2, "before"},
+    {"new", 1, "experiment"}, {"help", 1, "", "commands"}, {"completion", 1, "", "bash zsh fish"}};
+
+// As all three shells expand it. before: the word before, as this one calls it.
+std::string words_of(const Place& place, const CLI::App& app, std::string_view before) {
+  if (place.words == "commands") {
+    std::string names;
+    for (const CLI::App* command : commands_of(app)) names += command->get_name() + " ";
+    return names;
+  }
+  if (!place.words.empty()) return std::string(place.words);
+  return fmt::format("$(modcal list {} 2>/dev/null | cut -d\" \" -f1)",
+                     place.kind == "before" ? before : place.kind);
+}
+
 std::string bash_completion(const CLI::App& app) {
   std::vector<std::string> names;
-  std::string cases;
+  std::string cases, places;
   for (const CLI::App* command : commands_of(app)) {
     names.push_back(command->get_name());
     std::vector<std::string> words;
@@ -22,6 +44,10 @@ std::string bash_completion(const CLI::App& app) {
       for (std::string& name : names_of(*option)) words.push_back(std::move(name));
     }
     cases += fmt::format("    {}) options=\"{}\" ;;\n", names.back(), fmt::join(words, " "));
+  }
+  for (const Place& place : kPlaces) {
+    places += fmt::format("    {}:{}) words=\"{}\" ;;\n", place.command, place.number + 1,
+                          words_of(place, app, "${COMP_WORDS[2]}"));
   }
   return fmt::format(R"(# bash completion of modcal
 _modcal() {{
@@ -37,17 +63,12 @@ _modcal() {{
     -*) COMPREPLY=($(compgen -W "$options" -- "$current")); return ;;
   esac
   case ${{COMP_WORDS[1]}}:$COMP_CWORD in
-    list:2 | describe:2) words=$(modcal list 2>/dev/null | cut -d ' ' -f 1) ;;
-    describe:3) words=$(modcal list "${{COMP_WORDS[2]}}" 2>/dev/null | cut -d ' ' -f 1) ;;
-    new:2) words=$(modcal list experiment 2>/dev/null | cut -d ' ' -f 1) ;;
-    help:2) words="{0}" ;;
-    completion:2) words="bash zsh fish" ;;
-  esac
+{2}  esac
   COMPREPLY=($(compgen -W "$words" -- "$current"))
 }}
 complete -o default -F _modcal modcal
 )",
-                     fmt::join(names, " "), cases);
+                     fmt::join(names, " "), cases, places);
 }
 
 std::string with_escapes(std::string_view text, std::string_view special, std::string_view escape) {
@@ -79,6 +100,11 @@ std::string zsh_completion(const CLI::App& app) {
         cases += fmt::format("        '{}[{}]{}' \\\n", name, zsh_text(option->get_description()),
                              takes_value(*option) ? ":value:_files" : "");
       }
+    }
+    for (const Place& place : kPlaces) {
+      if (place.command != command->get_name()) continue;
+      cases += fmt::format("        '{}:word:{{compadd -- {}}}' \\\n", place.number,
+                           words_of(place, app, "$words[2]"));
     }
     cases += "        '*:file:_files' ;;\n";
   }
@@ -118,6 +144,12 @@ std::string fish_completion(const CLI::App& app) {
       text += fmt::format("{} -d {}\n", takes_value(*option) ? " -r" : "",
                           quoted(option->get_description()));
     }
+  }
+  for (const Place& place : kPlaces) {
+    text += fmt::format(
+        "complete -c modcal -n '__fish_seen_subcommand_from {}; and test (count (commandline "
+        "-opc)) -eq {}' -f -a '{}'\n",
+        place.command, place.number + 1, words_of(place, app, "(commandline -opc)[3]"));
   }
   return text;
 }

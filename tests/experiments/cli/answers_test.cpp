@@ -112,6 +112,9 @@ TEST_F(Answers, ATerminalShowsThatLongWorkGoesOn) {
   EXPECT_THAT(seen("new calibrate record.csv --length 0.33 --out mine.yaml; '" MODCAL_PROGRAM
                    "' run mine.yaml"),
               ContainsRegex("record.csv: [0-9]+ s"));
+  // A command that says nothing of its share: the line is gone before the answer.
+  EXPECT_THAT(seen("plan '" + std::string(MODCAL_EXAMPLES) + "/../configs/schelleng.yaml'"),
+              ContainsRegex("plan: [0-9]+ s.*tasks: 4096"));
   EXPECT_THAT(seen("run small.yaml --quiet --out b " + slow), Not(HasSubstr("small: ")));
   // Nor where nobody sees it.
   EXPECT_THAT(modcal("run small.yaml --out c " + slow).err, Not(HasSubstr("small: ")));
@@ -167,6 +170,15 @@ TEST_F(Answers, CompletionIsTakenByItsShell) {
   EXPECT_EQ(completed("modcal describe opt", 2), "optimizer\n");
   EXPECT_EQ(completed("modcal describe optimizer nl", 3), "nlopt\n");
   EXPECT_EQ(completed("modcal new cal", 2), "calibrate calibration_limit\n");
+  const std::string path = "PATH=\"$(dirname '" MODCAL_PROGRAM "'):$PATH\" ";
+  const auto in_fish = [&](const std::string& words) {
+    return shell(path + "fish -c \"source script.fish; complete -C '" + words + "'\" | cut -f1")
+        .out;
+  };
+  EXPECT_EQ(in_fish("modcal va"), "validate\n");
+  EXPECT_EQ(in_fish("modcal describe opt"), "optimizer\n");
+  EXPECT_EQ(in_fish("modcal describe optimizer nl"), "nlopt\n");
+  EXPECT_EQ(in_fish("modcal new cal"), "calibrate\ncalibration_limit\n");
 }
 
 TEST_F(Answers, ManualPageIsWellFormed) {
