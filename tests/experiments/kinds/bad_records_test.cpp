@@ -267,7 +267,7 @@ std::vector<Row> rows() {
       {"late by 1 ms", kOther, late(51)},
       {"8 bit", "", rounded(8)},
       {"backwards", kContradicted, reversed()},
-      {"gain of 2", "read 1.992 times as much: check the units", scaled(1.0, 2.0)},
+      {"gain of 2", "read 1.99", scaled(1.0, 2.0)},
   };
 }
 

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # check_config_pdfs.sh WRITE_CONFIG_REPORTS CONFIGS: prints the reports of the experiment files, run
 # at a small size, to PDF by headless Chromium and fails on blank pages, on words that overlap or
-# leave the page, on charts and tables that are cut, split over two pages or not beside each other;
+# leave the page, on charts and tables that are cut, split over two pages or not beside each other, on headings
+# that end a page;
 # and on words of the figures that gnuplot draws that overlap or leave their sheet.
 # Exit code 77: there is no browser or no pdftotext.
 set -euo pipefail
@@ -18,7 +19,7 @@ cat >"$folder/marks" <<'JS'
 <style>
 .chart { position: relative; }
 .probe { position: absolute; font: 3px/3px sans-serif; color: #fefefe; z-index: 99; }
-th .probe { position: static; }
+th .probe, h2 .probe, h3 .probe { position: static; }
 </style>
 <script>
 window.addEventListener('beforeprint', function () {
@@ -37,6 +38,9 @@ window.addEventListener('beforeprint', function () {
       mark(chart, 'qqtop' + name, 'left: 0; top: 0');
       mark(chart, 'qqend' + name, 'right: 0; bottom: 0');
     });
+  });
+  document.querySelectorAll('section h2, section h3').forEach(function (heading, h) {
+    mark(heading, 'qqhead' + h, '');
   });
   document.querySelectorAll('table').forEach(function (table, t) {
     mark(table.querySelector('th:last-child'), 'qqtable' + t, '');

@@ -10,7 +10,7 @@ import sys
 
 Word = collections.namedtuple("Word", "text left top right bottom")
 
-MARK = re.compile(r"qq(top|end|table)([0-9x]+)")
+MARK = re.compile(r"qq(top|end|table|head)([0-9x]+)")
 MARGIN = 20  # points of paper that stay white
 SHEET_MARGIN = 1  # of a figure
 WIDTHS = {"1": 525, "2": 256}  # of charts alone in a row and of two
@@ -72,6 +72,10 @@ def findings_of_marks(pages, charts, tables):
     seen_tables = sum(kind == "table" for kind, _ in marks)
     if seen_tables != tables:
         yield f"{seen_tables} of {tables} tables show their last column"
+    for (kind, _), (page, mark) in marks.items():
+        below = [word for word in pages[page - 1][2] if word.top > mark.bottom and not MARK.search(word.text)]
+        if kind == "head" and not below:
+            yield f"page {page}: a heading ends the page"
     for name in tops:
         figure, chart, columns, share = name.split("x")
         page, top = marks["top", name]
