@@ -102,26 +102,26 @@ void add_distance_warning(const PluckThenBowOptions& options, const PluckThenBow
   result.warn(text);
 }
 
-std::string sides_line(const std::vector<SideIdentification>& sides) {
+// "correlation with the true force 0.801 from R_1, 0.818 from R_2".
+std::string sides_text(const std::vector<SideIdentification>& sides) {
   std::string text;
   for (const SideIdentification& side : sides) {
     for (const WindowScore& score : side.scores) {
-      text += fmt::format(" {} {:.3f}", side.estimate.side, score.correlation);
+      text += fmt::format("{}{:.3f} from R_{}",
+                          text.empty() ? "correlation with the true force " : ", ",
+                          score.correlation, side.estimate.side);
     }
   }
-  return text + "\n";
+  return text;
 }
 
 std::string answer_of(const PluckThenBowOutcome& outcome) {
   const ModelStage& last =
       outcome.bound_stages.empty() ? outcome.stages.back() : outcome.bound_stages.back();
-  std::string sides = sides_line(outcome.has_bound ? outcome.bound_sides : outcome.sides);
-  sides.pop_back();
   return fmt::format(
-      "f0 = {:.6g} Hz, B = {}, x_c = {:.5g} mm; median error of a frequency {:.2g}; correlation "
-      "with the true force, by side:{}",
+      "f0 = {:.6g} Hz, B = {}, x_c = {:.5g} mm; median error of a frequency {:.2g}; {}",
       last.law.fundamental, inharmonicity_text(last.law.inharmonicity), 1e3 * last.model.contact,
-      last.median_error, sides);
+      last.median_error, sides_text(outcome.has_bound ? outcome.bound_sides : outcome.sides));
 }
 
 }  // namespace
@@ -199,7 +199,7 @@ StudyResult PluckThenBowOptions::run(const StudyContext& context) const {
   for (const ModelStage& stage : outcome.stages) {
     result.summary += line_of(stage);
   }
-  result.summary += "correlation with the true force, by side:" + sides_line(outcome.sides);
+  result.summary += sides_text(outcome.sides) + "\n";
   for (const ModelStage& stage : outcome.bound_stages) {
     result.summary += line_of(stage);
   }
@@ -211,7 +211,7 @@ StudyResult PluckThenBowOptions::run(const StudyContext& context) const {
     if (outcome.bound.frequencies_free) {
       result.summary += prior_lines(outcome.bound.priors, "every frequency");
     }
-    result.summary += "correlation with the true force, by side:" + sides_line(outcome.bound_sides);
+    result.summary += sides_text(outcome.bound_sides) + "\n";
   }
   result.answer = answer_of(outcome);
   add_distance_warning(*this, outcome, result);

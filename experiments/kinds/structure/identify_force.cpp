@@ -33,6 +33,15 @@ std::string sentence_of(const BlindFit& fit, const StructureTable& table) {
       quantile(moved, 0.5), quantile(deviations, 0.5), fit.misfit, fit.degrees);
 }
 
+std::string sentence_of(const StructureForce& found, double rate, std::size_t sensors) {
+  const auto peak =
+      std::ranges::max_element(found.force, {}, [](double force) { return std::abs(force); });
+  const auto at = static_cast<std::size_t>(peak - found.force.begin());
+  return fmt::format("{} from {} sensors: at most {:.4g} +- {:.2g} N (95 %), at {:.4g} s\n",
+                     found.shape == ForceShape::kImpacts ? "impacts" : "a smooth force", sensors,
+                     *peak, 1.959964 * found.deviation[at], static_cast<double>(at) / rate);
+}
+
 // Sensors that contradict each other refuse the answer.
 void doubt(const StructureForce& found, const LoadedStructureRecord& loaded, StudyResult& result) {
   if (loaded.kinds.size() == 1) {
@@ -187,9 +196,7 @@ StudyResult IdentifyForceOptions::run(const StudyContext& context) const {
   if (!loaded.record.force.empty()) score = score_of(found, loaded.record.force, rate, modes);
   StudyResult result;
   const ForceOutcome outcome{loaded, found, score};
-  result.summary = fmt::format("{} from {} sensors\n",
-                               found.shape == ForceShape::kImpacts ? "impacts" : "a smooth force",
-                               loaded.kinds.size());
+  result.summary = sentence_of(found, rate, loaded.kinds.size());
   if (score) {
     result.summary += fmt::format(
         "against the measured force: relative rms error {:.3f}, {:.3f} between {:g} and {:g} Hz, R "
