@@ -112,8 +112,8 @@ double resolution_of(Samples samples) {
   return step;
 }
 
-// Whether within two steps of the resolution the signal comes and goes, as where it turns or dies
-// away, or as many samples as the run has stay before or behind it, as in silence.
+// Whether within two steps of the resolution the signal comes and goes, as where it turns, or as
+// many samples as the run has stay before or behind it, as in silence.
 bool is_signal(Samples samples, const Run& run) {
   const double reach = 2.0 * resolution_of(samples), level = samples[run.first];
   const auto quiet = [&](std::size_t first, std::size_t end) {
@@ -127,8 +127,7 @@ bool is_signal(Samples samples, const Run& run) {
   const auto behind = [&](std::size_t count) {
     return quiet(run.end(), std::min(samples.size(), run.end() + count));
   };
-  const bool ends = run.end() == samples.size();
-  return (before(1) && behind(1)) || before(run.count) || (!ends && behind(run.count));
+  return (before(1) && behind(1)) || before(run.count) || behind(run.count);
 }
 
 std::size_t count_equal(Samples samples) {
@@ -252,13 +251,12 @@ std::optional<SampleFault> find_fault(std::span<const double> samples) {
   }
   while (end > first && samples[end - 1] == samples.back()) --end;
   // The last of the silence before and the first of that behind belong to the signal.
-  const Samples begun = samples.subspan(first - 1);
-  const Samples signal = begun.first(std::min(end + 1, samples.size()) - first + 1);
+  const Samples signal = samples.subspan(first - 1, std::min(end + 1, samples.size()) - first + 1);
   Fault fault = find_extreme_magnitude(samples);
   if (!fault) fault = find_spike(samples);
   if (fault) return fault;
   fault = find_clipped(signal);
-  if (!fault) fault = find_held(begun, static_cast<double>(samples.size()));
+  if (!fault) fault = find_held(signal, static_cast<double>(samples.size()));
   if (fault) fault->first += first - 1;
   if (!fault) fault = find_cut_end(samples, {end, samples.size() - end});
   return fault;
