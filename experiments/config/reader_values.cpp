@@ -189,6 +189,19 @@ void YamlReader::value(const OptionInfo& info, OptionValue value) {
   std::visit([&](auto* held) { read(info, *node, *held); }, value);
 }
 
+namespace {
+
+// Of texts that were copied from a page.
+struct Lookalike {
+  std::string_view written, name, meant;
+};
+constexpr Lookalike kLookalikes[] = {{"\u2212", "a minus of print", "the hyphen -"},
+                                     {"\u2013", "a dash", "the hyphen -"},
+                                     {"\u00a0", "a blank that does not break", "a plain one"},
+                                     {"\u202f", "a narrow blank", "a plain one"}};
+
+}  // namespace
+
 ScalarNumber parse_number(std::string_view text, std::string_view si_unit) {
   const auto failed = [](std::string reason) { return ScalarNumber{0.0, std::move(reason)}; };
   const std::string expected =
@@ -197,6 +210,10 @@ ScalarNumber parse_number(std::string_view text, std::string_view si_unit) {
   if (text.empty()) return failed("there is no value: " + expected + " is needed");
   if (text[0] == '.' && text.size() > 1 && std::isalpha(static_cast<unsigned char>(text[1]))) {
     return failed(fmt::format("\"{}\" is not finite: {} is needed", text, expected));
+  }
+  for (const Lookalike& other : kLookalikes) {
+    if (text.find(other.written) == std::string_view::npos) continue;
+    return failed(fmt::format("\"{}\": {} stands here: write {}", text, other.name, other.meant));
   }
   if (looks_octal(text)) {
     return failed(fmt::format("\"{}\" looks octal: write it without the leading 0", text));
