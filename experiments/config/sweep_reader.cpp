@@ -151,6 +151,7 @@ class Reader {
       if (known.insert(values).second) continue;
       mistake(group.front()->value.items[i].position,
               fmt::format("{} stands here twice: leave one of them", values));
+      break;  // the first is enough
     }
     groups_.push_back(std::move(group));
   }

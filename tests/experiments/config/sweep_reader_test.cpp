@@ -1,9 +1,11 @@
-#include "experiments/config/reader.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "experiments/config/reader.hpp"
 
 namespace modcal {
 namespace {
@@ -84,7 +86,14 @@ TEST(SweepReader, NamesMistakesWithTheirPlaces) {
               ElementsAre("1:6: zip needs a list of maps, each beginning with a dash"));
   EXPECT_THAT(cells("exclude: [{a: 1}]")[0],
               HasSubstr("sweep needs a product, a zip or an include"));
-  const std::string many = fmt::format("{}", fmt::join(std::vector<int>(1001, 1), ", "));
+  EXPECT_THAT(cells("product: {a: [1, 2, 1, 1]}"),
+              ElementsAre("1:21: a 1 stands here twice: leave one of them"));
+  EXPECT_THAT(cells("zip: [{a: [1, 1, 1], b: [1, 2, 1]}]"),
+              ElementsAre("1:18: a 1, b 1 stands here twice: leave one of them"));
+  EXPECT_THAT(cells("product: {kind: [a]}")[0], HasSubstr("kind is no axis"));
+  std::vector<int> numbers(1001);
+  std::iota(numbers.begin(), numbers.end(), 0);
+  const std::string many = fmt::format("{}", fmt::join(numbers, ", "));
   EXPECT_THAT(cells(fmt::format("product: {{a: [{0}], b: [{0}]}}", many)),
               ElementsAre("1:1: the sweep has more than 1000000 cells"));
 }
