@@ -83,8 +83,6 @@ void scale_y(Panel& panel, const Prefix& prefix) {
   if (panel.map) scale(panel.map->y_edges, prefix.factor);
 }
 
-bool may_change(const Axis& axis) { return !axis.logarithmic && takes_prefix(axis.unit); }
-
 }  // namespace
 
 Figure in_readable_units(Figure figure) {
@@ -97,7 +95,7 @@ Figure in_readable_units(Figure figure) {
   }
   for (Panel& panel : figure.panels) {
     const auto prefix_of = [&shown](const Axis& axis) {
-      return may_change(axis) ? prefix_for(shown[axis.text()], axis.unit) : nullptr;
+      return takes_prefix(axis.unit) ? prefix_for(shown[axis.text()], axis.unit) : nullptr;
     };
     const Prefix* x = prefix_of(panel.x);
     const Prefix* y = prefix_of(panel.y);

@@ -33,10 +33,21 @@ TEST(ReadableUnits, TakePrefixesForPowersOfTen) {
   EXPECT_NEAR(panel.markers[0].value, 200.0, 1e-9);
 }
 
+TEST(ReadableUnits, TakePrefixesOnLogarithmicAxes) {
+  Figure figure{.id = "a"};
+  Series series;
+  series.add(1.0, 3e-8);
+  series.add(2.0, 3e-6);
+  figure.panels.push_back(
+      {.y = {.label = "error", .unit = "m", .logarithmic = true}, .series = {series}});
+  const Panel panel = in_readable_units(figure).panels.front();
+  EXPECT_EQ(panel.y.text(), "error [µm]");
+  EXPECT_THAT(panel.series[0].y, ElementsAre(DoubleNear(0.03, 1e-9), DoubleNear(3.0, 1e-9)));
+}
+
 TEST(ReadableUnits, LeaveOthersAlone) {
-  for (const Axis& y :
-       {Axis{.label = "y", .unit = "kg"}, Axis{.label = "y", .unit = "1"},
-        Axis{.label = "y", .unit = "m²"}, Axis{.label = "y", .unit = "m", .logarithmic = true}}) {
+  for (const Axis& y : {Axis{.label = "y", .unit = "kg"}, Axis{.label = "y", .unit = "1"},
+                        Axis{.label = "y", .unit = "m²"}}) {
     EXPECT_EQ(in_readable_units(figure_of({}, y, 2e-4)).panels[0].y.text(), y.text());
   }
   // Short as it is.
