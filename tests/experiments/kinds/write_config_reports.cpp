@@ -1,8 +1,6 @@
 // write_config_reports CONFIGS DIR [FIGURES] runs every experiment file at a small size and writes
-// the report of each that has a figure or table which those before it have not: for the browser's
-// test. With a third argument, whatever it is, gnuplot draws their figures, too.
+// their reports: for the browser's test. With a third argument, whatever it is, gnuplot draws their figures, too.
 #include <cstdio>
-#include <set>
 
 #include "experiments/report/report.hpp"
 #include "tests/experiments/kinds/small_config.hpp"
@@ -10,30 +8,13 @@
 namespace modcal {
 namespace {
 
-// Kinds of blocks: what a figure's name does not say, its number of panels does.
-std::set<std::string> looks_of(const std::string& kind, const StudyResult& result) {
-  std::set<std::string> looks;
-  for (const report::Block& block : result.blocks) {
-    if (const auto* table = std::get_if<report::Table>(&block)) {
-      looks.insert(fmt::format("{} table {}", kind, table->id));
-    } else if (const auto* figure = std::get_if<report::Figure>(&block)) {
-      looks.insert(fmt::format("{} figure {} {}", kind, figure->id, figure->panels.size()));
-    }
-  }
-  return looks;
-}
-
 void write_reports(const std::string& configs, const std::filesystem::path& folder,
                    bool vector_figures) {
-  std::set<std::string> seen;
   for (const std::string& file : config_files(configs)) {
     const LoadedExperiment small = load_small(file, load_experiment(file));
     SharedWork work;
     StudyResult result = small.experiment->run(
         {.work = work, .folder = small.document.folder(), .command = "modcal run " + file});
-    const std::size_t before = seen.size();
-    seen.merge(looks_of(small.kind, result));
-    if (seen.size() == before) continue;
     report::Report report{.title = small.title, .description = small.description};
     report.status_text = result.answer;
     result.move_to(report, "Results", "Details");
