@@ -165,7 +165,15 @@ bool YamlReader::read(const OptionInfo& info, const YamlNode& node, std::vector<
   values.clear();
   const auto add = [&](const YamlNode& item) {
     Value value{};
-    if (read(info, item, value)) return values.push_back(std::move(value));
+    if (read(info, item, value)) {
+      if constexpr (std::is_same_v<Value, std::string>) {
+        if (!info.choices.empty() && std::ranges::count(values, value) > 0) {
+          mistake(item,
+                  fmt::format("{}: {} stands here twice: leave one of them", info.key, value));
+        }
+      }
+      return values.push_back(std::move(value));
+    }
     const auto known = std::ranges::find(kListHints, info.key, &ListHint::key);
     const bool is_word = item.text.find_first_of("0123456789") == std::string::npos;
     if (known != std::end(kListHints) && is_word && !item.refused) {

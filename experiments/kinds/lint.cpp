@@ -60,6 +60,8 @@ void lint_string(const std::string& path, const StringModel& string, double posi
                 "lie between its ends",
                 position, string.length);
   }
+  // Of what is made of parts the first place is that of the part.
+  lint_making(findings, path + ".damping", [&] { string.damping.make(); });
   lint_making(findings, path, [&] { make_modal_basis(string); });
 }
 
@@ -130,6 +132,8 @@ std::vector<Finding> lint_scene(const Scene& scene, const Choice<Simulator>& sim
     lint_making(findings, "scene.initial",
                 [&] { initial_state(scene, make_modal_basis(scene.string)); });
   }
+  lint_making(findings, "scene.bow.velocity_gesture", [&] { scene.bow.velocity_gesture.make(); });
+  lint_making(findings, "scene.bow.force_gesture", [&] { scene.bow.force_gesture.make(); });
   lint_making(findings, "scene.bow", [&] { bow_motion(scene.bow, scene.duration); });
   lint_rate(scene.string, measurement.sample_rate, "scene.string", findings);
   const std::size_t before = findings.size();

@@ -25,6 +25,9 @@ void SimulateOptions::visit(OptionVisitor& visitor) {
 std::vector<Finding> SimulateOptions::lint() const {
   std::vector<Finding> findings = lint_scene(truth.scene, truth.simulator, measurement);
   if (std::ranges::count(files, "wav") > 0) lint_sound("files", measurement.sample_rate, findings);
+  if (outputs.empty()) {
+    add_finding(findings, "outputs", "nothing is computed: name an output, or leave the key out");
+  }
   append(findings, lint_figures(figures, {"waveforms"}, truth.scene.duration));
   for (const FigureOptions& figure : figures) {
     for (const std::string& quantity : figure.quantities) {
