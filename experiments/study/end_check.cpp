@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "experiments/study/observation.hpp"
 #include "libinverse/waves/end_relation.hpp"
@@ -76,6 +77,16 @@ bool is_playing(std::span<const double> part, std::span<const double> whole) {
   return high - low > kPlaying * (highest - lowest);
 }
 
+// Whether so few values occur that a moving string may read as one of them for long.
+bool is_coarse(std::span<const double> samples) {
+  constexpr std::size_t kFewest = 32;
+  std::set<double> values;
+  for (const double x : samples) {
+    if (values.insert(x).second && values.size() > kFewest) return false;
+  }
+  return true;
+}
+
 // Where an equal value stands before what was recorded. A string that was at rest reaches both ends
 // within a period, and not at once.
 void require_whole_beginning(const ObservationOptions& options, const RecordedSignals& signals) {
@@ -83,6 +94,7 @@ void require_whole_beginning(const ObservationOptions& options, const RecordedSi
   const std::size_t silent[] = {silent_start(reactions[0]), silent_start(reactions[1])};
   const std::size_t late = silent[0] > silent[1] ? 0 : 1;
   const std::span<const double> first = reactions[1 - late], last = reactions[late];
+  if (is_coarse(last)) return;
   const double period = signals.sample_rate / options.string.fundamental;
   const RecordOptions& record = options.record;
   const std::string* names[] = {&record.left.channel, &record.right.channel};
