@@ -56,6 +56,14 @@ python: packages-python
 	@cmake --build --preset $(PRESET) --target modcal modcal_python_package
 	@ctest --preset $(PRESET) --tests-regex '^python_'
 
+# The typed stub of the module, from the module.
+.PHONY: stubs
+stubs: packages-python
+	@cmake --preset $(PRESET) -DMODCAL_PYTHON=ON >/dev/null
+	@cmake --build --preset $(PRESET) --target modcal_python_package
+	@PYTHONPATH=build/$(PRESET)/python /usr/bin/python3 python/core/stubs.py > build/$(PRESET)/python/new.pyi
+	@mv build/$(PRESET)/python/new.pyi python/modcal/_core.pyi
+
 # Small wrong changes to the kernels: COUNT of them, drawn by SEED; those that no test sees are printed.
 SEED ?= 1
 COUNT ?= 20

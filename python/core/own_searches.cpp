@@ -21,7 +21,7 @@ struct OwnEvaluator {
     const py::gil_scoped_release unlocked;
     return evaluator->value(span_of(at));
   }
-  py::tuple value_and_gradient(const py::object& z) const {
+  std::pair<double, py::array> value_and_gradient(const py::object& z) const {
     const Numbers at = point_of("z", z, get().dimension());
     double value = 0.0;
     std::vector<double> gradient(get().dimension());
@@ -29,7 +29,7 @@ struct OwnEvaluator {
       const py::gil_scoped_release unlocked;
       evaluator->evaluate(span_of(at), {.value = &value, .gradient = gradient.data()});
     }
-    return py::make_tuple(value, array_of(std::move(gradient)));
+    return {value, array_of(std::move(gradient))};
   }
 };
 
@@ -128,7 +128,9 @@ void add_own_searches(py::module_& module) {
   const auto scaled = [](std::span<const double> numbers) {
     return array_of({numbers.begin(), numbers.end()});
   };
-  py::class_<OwnEvaluator>(module, "Evaluator")
+  py::class_<OwnEvaluator>(module, "Evaluator",
+                           "The evaluator of a search, for as long as that lasts. Points are "
+                           "scaled, z = (x - initial)/scale.")
       .def_property_readonly("dimension",
                              [](const OwnEvaluator& self) { return self.get().dimension(); })
       .def_property_readonly("start",

@@ -101,27 +101,28 @@ py::dict blocks_of(const Outcome& outcome, const Describe& describe) {
   return described;
 }
 
-// [(text, whether it contradicts the result)]
-py::list warnings_of(const Outcome& outcome) {
-  py::list warnings;
+// (text, whether it contradicts the result)
+std::vector<std::pair<std::string, bool>> warnings_of(const Outcome& outcome) {
+  std::vector<std::pair<std::string, bool>> warnings;
   for (const report::Block& block : outcome.result.blocks) {
     const auto* text = std::get_if<report::Text>(&block);
     if (text == nullptr) continue;
     const bool failure = text->kind == report::Text::Kind::kFailure;
     if (failure || text->kind == report::Text::Kind::kWarning) {
-      warnings.append(py::make_tuple(text->text, failure));
+      warnings.emplace_back(text->text, failure);
     }
   }
   return warnings;
 }
 
-// [(file, quantity, unit, sample rate, samples)]
-py::list signals_of(const py::object& self) {
-  py::list signals;
+// File, quantity, unit, sample rate, samples.
+using SignalOfFile = std::tuple<std::string, std::string, std::string, double, py::array>;
+std::vector<SignalOfFile> signals_of(const py::object& self) {
+  std::vector<SignalOfFile> signals;
   for (const SignalFile& file : self.cast<const Outcome&>().result.signal_files) {
     for (const Signal& signal : file.signals) {
-      signals.append(py::make_tuple(file.name, signal.quantity, signal.unit, signal.sample_rate,
-                                    view_of(signal.samples, self)));
+      signals.emplace_back(file.name, signal.quantity, signal.unit, signal.sample_rate,
+                           view_of(signal.samples, self));
     }
   }
   return signals;

@@ -10,13 +10,11 @@
 namespace modcal::python {
 namespace {
 
-py::dict capabilities_of(const ObjectiveFunction& function) {
+std::map<std::string, bool> capabilities_of(const ObjectiveFunction& function) {
   const Capabilities known = function.capabilities();
-  py::dict told;
-  told["gradient"] = known.gradient;
-  told["residuals"] = known.sum_of_squares();
-  told["jacobian"] = known.least_squares;
-  return told;
+  return {{"gradient", known.gradient},
+          {"residuals", known.sum_of_squares()},
+          {"jacobian", known.least_squares}};
 }
 
 py::dict minimize(const Search& search, const std::string& options, const py::object& progress) {
