@@ -162,13 +162,22 @@ TEST_F(Leftovers, AForgedListOfFoldersRemovesNothingOfThisRun) {
 }
 
 TEST_F(Leftovers, TablesHoldNoFormulas) {
-  write("formula.yaml", testing::kSmallSimulation +
-                            "sweep:\n  product:\n    title: [\"=cmd|' /C calc'!A0\", '@SUM(1)', "
-                            "'-2+3+cmd|x', '+1 dB', '-3 dB', '-1']\n");
+  shell(
+      "awk 'BEGIN {srand(1); print \"# sample_rate: 44100 Hz\\n=cmd|x [N],@SUM(1) [N],-1 [N]\"; "
+      "for (i = 0; i < 9000; ++i) {r = sin(0.04189*i) + sin(0.12567*i) + 0.01*rand(); "
+      "print r \",\" r \",\" r}}' > r.csv");
+  write("formula.yaml", R"yaml(kind: invert
+record: {file: r.csv, left: {channel: -1}}
+string: {length: 0.33 m, linear_density: 1e-3 kg/m, fundamental: 294 Hz, modes: 10}
+bow: {position: 41 mm}
+sweep: {product: {record.left.channel: ["=cmd|x", "@SUM(1)", "-1"]}}
+)yaml");
   const Outcome run = modcal("run formula.yaml --out a");
   ASSERT_EQ(run.code, 0) << run.err;
   const std::string table = content_of(folder() / "a/tasks.csv");
-  EXPECT_THAT(table, HasSubstr("'=cmd|"));
+  EXPECT_THAT(table, HasSubstr(",'=cmd|"));
+  EXPECT_THAT(table, HasSubstr(",'@SUM"));
+  EXPECT_THAT(table, HasSubstr(",-1,"));
   EXPECT_THAT(table, Not(HasSubstr(",=cmd")));
 }
 
