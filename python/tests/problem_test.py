@@ -1,4 +1,5 @@
 """Calibrations as functions, and searches of one's own."""
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 from cases import CALIBRATE, SIMULATE, Folder, main
@@ -76,6 +77,16 @@ class Functions(Folder):
         self.assertTrue(np.all(np.diff(found.trace["value"]) < 0))
         few = self.problem.minimize("nlopt", budget={"evaluations": 5})
         self.assertEqual((few.stop, few.evaluations), ("evaluation_budget", 5))
+
+    def test_four_problems_in_four_threads(self):
+        def found(seed):
+            search = modcal.Problem(CALIBRATE, {"seed": seed}).minimize({"type": "gsl", "algorithm": "dogleg"})
+            return *search.x, search.value
+
+        alone = [found(seed) for seed in range(1, 5)]
+        with ThreadPoolExecutor(4) as pool:
+            self.assertEqual(list(pool.map(found, range(1, 5))), alone)
+        self.assertEqual(len(set(alone)), 4)
 
     def test_refusals(self):
         with self.assertRaisesRegex(modcal.InvalidInput, "2 values: the problem has 3 variables"):
