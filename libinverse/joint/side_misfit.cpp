@@ -47,11 +47,6 @@ void JointInversion::compare_sides(const Weights& weights, const JointMethod& me
                                    transfer_, workspace.spectrum, workspace.misfit);
   workspace.side_error.assign(workspace.misfit.begin(), workspace.misfit.end());
   const double excess = allow_for_offsets(method.offset, workspace.misfit);
-  // What the noise of the offsets, too, does not put there, in units of the noise.
-  for (std::size_t k = 0; k < bins; ++k) {
-    double& error = workspace.side_error[k];
-    error = workspace.misfit[k] > 1.0 ? error * (1.0 - 1.0 / workspace.misfit[k]) : 0.0;
-  }
   result.misfit = (sum - excess) / static_cast<double>(bins);
   if (!std::isnan(method.band_limit)) {
     // Above the limit nothing is identified, and the model need not hold.
@@ -64,13 +59,17 @@ void JointInversion::compare_sides(const Weights& weights, const JointMethod& me
   const bool contradict =
       model_.truncation == Truncation::kTransient || !(result.misfit < kContradiction);
   const double half = std::max(4.0, 0.25 * kMisfitWidth / grid_.bin_width());
-  workspace.scratch.resize(bins);
-  if (contradict || keep_misfit) smooth_power(workspace.misfit, workspace.scratch, half, 0.0);
-  if (contradict) {
-    find_side_errors(weights, half, workspace);
-  } else {
-    workspace.side_error.clear();
+  if (!contradict) workspace.side_error.clear();
+  // What the noise of the offsets, too, does not put there, in units of the noise.
+  for (std::size_t k = 0; k < workspace.side_error.size(); ++k) {
+    double& error = workspace.side_error[k];
+    error = workspace.misfit[k] > 1.0 ? error * (1.0 - 1.0 / workspace.misfit[k]) : 0.0;
   }
+  if (contradict || keep_misfit) {
+    workspace.scratch.resize(bins);
+    smooth_power(workspace.misfit, workspace.scratch, half, 0.0);
+  }
+  if (contradict) find_side_errors(weights, half, workspace);
   if (keep_misfit) result.side_misfit = workspace.misfit;
 }
 
@@ -92,7 +91,7 @@ void JointInversion::find_side_errors(const Weights& weights, double half,
     const double excess = std::exchange(error, 0.0);
     if (!(workspace.misfit[k] > kSidesApart)) continue;
     const double seen[2] = {share[k], 1.0 - share[k]}, usual[2] = {around[k], 1.0 - around[k]};
-    for (std::size_t r = 0; r < 2; ++r) {
+    for (std::size_t r = 0; r < 2 && excess > 0.0; ++r) {  // 0/0 where a sensor is blind
       const double read =
           weights.inverse_variance[r] / weight_power_ * std::norm(workspace.spectrum[r][k]);
       const double own = excess / std::max(seen[r], kBlindShare * usual[r]);
