@@ -25,10 +25,10 @@ struct NewArguments {
 };
 
 // A file of configs/ that shows a kind at its simplest.
-struct Example {
+struct ExampleFile {
   std::string_view kind, file;
 };
-constexpr Example kExamples[] = {
+constexpr ExampleFile kExampleFiles[] = {
     {"benchmark", "benchmark/optimizers.yaml"},
     {"calibrate", "beyond/calibrate_to_the_bound.yaml"},
     {"calibration_limit", "beyond/calibration_limit.yaml"},
@@ -61,13 +61,13 @@ std::string seen_from(const std::string& out, const std::string& record) {
 
 void require_kind(const std::string& kind) {
   std::vector<std::string> kinds;
-  for (const Example& example : kExamples) kinds.emplace_back(example.kind);
+  for (const ExampleFile& example : kExampleFiles) kinds.emplace_back(example.kind);
   MODCAL_REQUIRE(std::ranges::count(kinds, kind) > 0, "unknown kind \"{}\"{}", kind,
                  suggestion(kind, kinds));
 }
 
 std::string example_of(const std::string& kind, const std::string& out) {
-  for (const Example& example : kExamples) {
+  for (const ExampleFile& example : kExampleFiles) {
     if (example.kind != kind) continue;
     const std::filesystem::path file = std::filesystem::path(shipped_configs()) / example.file;
     MODCAL_REQUIRE(std::filesystem::exists(file),

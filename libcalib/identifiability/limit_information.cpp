@@ -9,7 +9,7 @@ namespace modcal {
 namespace {
 
 using Index = Eigen::Index;
-constexpr std::size_t kNoiseRepeats = 4;
+constexpr std::size_t kLimitRepeats = 4;
 
 // Information under the best weights and the score's variance with the noise in it.
 LikelihoodPoint under_best_weights(const ProjectedLikelihood& clean, const ModelPoint& truth,
@@ -17,10 +17,10 @@ LikelihoodPoint under_best_weights(const ProjectedLikelihood& clean, const Model
   ProjectedLikelihood weighted = clean;
   weighted.set_weights(best_weights(clean, truth, columns));
   LikelihoodPoint point = weighted.evaluate(truth, columns, {.twice_weighted = true});
-  for (std::size_t r = 0; r < kNoiseRepeats; ++r) {
+  for (std::size_t r = 0; r < kLimitRepeats; ++r) {
     const ProjectedLikelihood noise(weighted.record().noise(r));
     point.twice_weighted +=
-        noise.evaluate(truth, columns, {.twice_weighted = true}).twice_weighted / kNoiseRepeats;
+        noise.evaluate(truth, columns, {.twice_weighted = true}).twice_weighted / kLimitRepeats;
   }
   return point;
 }

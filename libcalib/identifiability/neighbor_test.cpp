@@ -11,9 +11,9 @@
 namespace modcal {
 namespace {
 
-constexpr double kReach = 6e-3;
-constexpr double kMargin = 9.0;
-constexpr std::size_t kHalfBand = 128;
+constexpr double kNeighborReach = 6e-3;
+constexpr double kNeighborMargin = 9.0;
+constexpr std::size_t kNeighborHalfBand = 128;
 constexpr std::size_t kBeside = 2;
 
 // The likelihood at θ, from which single modes are moved.
@@ -37,18 +37,18 @@ class Field {
   double step(std::size_t n) const {
     const double omega = point_.basis.omega[n];
     const double width = (record_.sigma + point_.basis.zeta[n] * omega) / omega;
-    return std::max(0.5 * width, kReach / 32.0);
+    return std::max(0.5 * width, kNeighborReach / 32.0);
   }
 
   ModeSurroundings around(std::size_t n) const {
     const double omega = point_.basis.omega[n];
     const auto center = std::min(static_cast<std::size_t>(omega / record_.spacing), record_.bins);
-    const std::size_t begin = center > kHalfBand ? center - kHalfBand : 0;
-    const std::size_t count = std::min(2 * kHalfBand, record_.bins - begin);
-    ModeSurroundings result(2 * kHalfBand);
+    const std::size_t begin = center > kNeighborHalfBand ? center - kNeighborHalfBand : 0;
+    const std::size_t count = std::min(2 * kNeighborHalfBand, record_.bins - begin);
+    ModeSurroundings result(2 * kNeighborHalfBand);
     result.sigma = record_.sigma;
     result.deviation = record_.deviation;
-    for (std::size_t j = 0; j < 2 * kHalfBand; ++j) {
+    for (std::size_t j = 0; j < 2 * kNeighborHalfBand; ++j) {
       fill(n, std::min(begin + j, record_.bins - 1), j, result);
       result.weight[j] = j < count ? record_.root_weight[begin + j] : 0.0;
     }
@@ -124,7 +124,7 @@ Neighbor best_of(const std::vector<double>& costs, std::size_t here, double step
   Neighbor best{.gain = -std::numeric_limits<double>::infinity()};
   for (std::size_t j = 0; j < costs.size(); ++j) {
     const double gain = costs[here] - costs[j];
-    if (gain <= best.gain || (j >= first && j <= last && gain <= kMargin)) continue;
+    if (gain <= best.gain || (j >= first && j <= last && gain <= kNeighborMargin)) continue;
     best = {.shift = step * (static_cast<double>(j) - static_cast<double>(here)), .gain = gain};
   }
   return best;
@@ -143,7 +143,7 @@ std::vector<Neighbor> neighbors(const ProjectedLikelihood& likelihood,
     if (unknowns.held(i)) return;
     const ModeSurroundings around = field.around(n);
     const double step = field.step(n);
-    const auto here = static_cast<std::size_t>(kReach / step);
+    const auto here = static_cast<std::size_t>(kNeighborReach / step);
     std::vector<double> costs;
     for (std::size_t j = 0; j <= 2 * here; ++j) {
       const double shift = step * (static_cast<double>(j) - static_cast<double>(here));
@@ -162,7 +162,7 @@ std::size_t leave_false_minima(const std::vector<Neighbor>& neighbors, Eigen::Ve
   };
   std::size_t moved = 0;
   for (std::size_t n = 0; n < neighbors.size(); ++n) {
-    if (gain(n) <= kMargin) continue;
+    if (gain(n) <= kNeighborMargin) continue;
     // Beside a mode that is wrong the next ones seem to be.
     bool most = true;
     for (std::size_t away = 1; away <= kBeside; ++away) {

@@ -6,12 +6,12 @@
 namespace modcal {
 
 namespace {
-constexpr std::size_t kNoiseRepeats = 3;
+constexpr std::size_t kRecordsRepeats = 3;
 }
 
 Eigen::MatrixXd StrokeLikelihood::noise_information(const ModelPoint& point,
                                                     const LikelihoodColumns& columns) const {
-  return weighted_.noise_information(point, columns, kNoiseRepeats);
+  return weighted_.noise_information(point, columns, kRecordsRepeats);
 }
 
 LikelihoodPoint StrokeLikelihood::unweighted(const ModelPoint& point,

@@ -35,7 +35,7 @@ constexpr std::size_t kLine = 2;    // bins either side of a line of the force
 constexpr std::size_t kFloor = 60;  // and of a stretch between lines
 constexpr double kProof = 15.0;     // excess of five bins that noise has once in 60 000
 constexpr std::size_t kNoiseHalf = 3;
-constexpr std::size_t kNoiseRepeats = 2;
+constexpr std::size_t kWeightRepeats = 2;
 
 // J_k A⁻¹ J_kᴴ of every bin, A = LLᵀ scaled to a unit diagonal.
 class Shares {
@@ -110,10 +110,10 @@ SharesOverNoise shares_over_noise(const ProjectedLikelihood& likelihood, const M
   const Shares shares(at.information);
   result.ratio = shares.of(jacobian);
   std::vector<double> noise(result.ratio.size(), 0.0);
-  for (std::size_t r = 0; r < kNoiseRepeats; ++r) {
+  for (std::size_t r = 0; r < kWeightRepeats; ++r) {
     ProjectedLikelihood(record.noise(r)).evaluate(point, columns, {.jacobian = &jacobian});
     const std::vector<double> draw = shares.of(jacobian);
-    for (std::size_t k = 0; k < noise.size(); ++k) noise[k] += draw[k] / kNoiseRepeats;
+    for (std::size_t k = 0; k < noise.size(); ++k) noise[k] += draw[k] / kWeightRepeats;
   }
   const Windows expected(noise);
   for (std::size_t k = 0; k < noise.size(); ++k) {

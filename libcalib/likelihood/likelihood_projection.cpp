@@ -6,17 +6,15 @@
 namespace modcal {
 namespace {
 
-constexpr std::size_t kBins = LikelihoodBlock::kBins;
-
 using Index = Eigen::Index;
 
 // Calls give(row, real or imaginary part's place in the block's column) for the bins of a block.
 template <typename Give>
 void for_rows(std::size_t b, std::size_t bins, Give give) {
-  const std::size_t count = std::min(kBins, bins - b * kBins);
+  const std::size_t count = std::min(LikelihoodBlock::kBins, bins - b * LikelihoodBlock::kBins);
   for (std::size_t k = 0; k < count; ++k) {
-    give(2 * (b * kBins + k), k);
-    give(2 * (b * kBins + k) + 1, kBins + k);
+    give(2 * (b * LikelihoodBlock::kBins + k), k);
+    give(2 * (b * LikelihoodBlock::kBins + k) + 1, LikelihoodBlock::kBins + k);
   }
 }
 
@@ -85,7 +83,7 @@ void LikelihoodEvaluation::project_columns(const LikelihoodColumns& columns, Col
       });
     }
     if (!outputs.twice_weighted) return;
-    scale_columns(record_->root_weight.data() + b * kBins, full, jacobian);
+    scale_columns(record_->root_weight.data() + b * LikelihoodBlock::kBins, full, jacobian);
     add_products(jacobian, full, jacobian, full, true, parts[chunk].twice.data(), full);
   });
   if (!outputs.twice_weighted) return;
@@ -112,8 +110,9 @@ void LikelihoodEvaluation::give(const LikelihoodOutputs& outputs) {
     if (!numbers) return;
     numbers->resize(record_->bins);
     for (std::size_t k = 0; k < record_->bins; ++k) {
-      const LikelihoodBlock::Planar& of_block = blocks_[k / kBins].*member;
-      (*numbers)[k] = {of_block.re[k % kBins], of_block.im[k % kBins]};
+      const LikelihoodBlock::Planar& of_block = blocks_[k / LikelihoodBlock::kBins].*member;
+      (*numbers)[k] = {of_block.re[k % LikelihoodBlock::kBins],
+                       of_block.im[k % LikelihoodBlock::kBins]};
     }
   };
   give_bins(outputs.force, &LikelihoodBlock::force);
@@ -123,7 +122,8 @@ void LikelihoodEvaluation::give(const LikelihoodOutputs& outputs) {
   outputs.gain->resize(record_->bins);
   for (std::size_t k = 0; k < record_->bins; ++k) {
     (*outputs.gain)[k] =
-        1.0 / (blocks_[k / kBins].norm[k % kBins] * record_->noise_at(k).determinant());
+        1.0 / (blocks_[k / LikelihoodBlock::kBins].norm[k % LikelihoodBlock::kBins] *
+               record_->noise_at(k).determinant());
   }
 }
 

@@ -16,9 +16,9 @@ struct Measured {
   double deviation = 1.0;
 };
 
-class Function final : public ObjectiveFunction {
+class PriorFunction final : public ObjectiveFunction {
  public:
-  Function(ParameterSet parameters, std::vector<Measured> measured)
+  PriorFunction(ParameterSet parameters, std::vector<Measured> measured)
       : parameters_(std::move(parameters)), measured_(std::move(measured)) {}
   std::string_view name() const override { return "frequency_prior"; }
   std::size_t dimension() const override { return parameters_.size(); }
@@ -103,7 +103,7 @@ std::unique_ptr<const ObjectiveFunction> FrequencyPrior::do_bind(
     MODCAL_REQUIRE(n <= modes, "mode {} was measured, the model has {} modes", n, modes);
     measured.push_back({n - 1, options_.frequencies[j], options_.deviations[j]});
   }
-  return std::make_unique<Function>(parameters, std::move(measured));
+  return std::make_unique<PriorFunction>(parameters, std::move(measured));
 }
 
 }  // namespace modcal

@@ -42,10 +42,10 @@ std::size_t kept_samples(const CalibrationData& data, const ParameterSet& parame
   return data.samples - static_cast<std::size_t>(lost);
 }
 
-class Function final : public ObjectiveFunction {
+class InnovationFunction final : public ObjectiveFunction {
  public:
-  Function(const CalibrationData& data, ParameterSet parameters,
-           const InnovationMisfit::Options& options)
+  InnovationFunction(const CalibrationData& data, ParameterSet parameters,
+                     const InnovationMisfit::Options& options)
       : parameters_(std::move(parameters)),
         options_(options),
         sample_rate_(data.sample_rate),
@@ -167,7 +167,7 @@ std::unique_ptr<const ObjectiveFunction> InnovationMisfit::do_bind(
                  "objective \"innovation_misfit\" predicts both reactions: the {} "
                  "one is missing",
                  data.has(End::kLeft) ? "right" : "left");
-  return std::make_unique<Function>(data, parameters, options_);
+  return std::make_unique<InnovationFunction>(data, parameters, options_);
 }
 
 }  // namespace modcal

@@ -10,7 +10,7 @@
 namespace modcal {
 namespace {
 
-RegistryTable<Objective>& table() {
+RegistryTable<Objective>& objective_table() {
   static RegistryTable<Objective> rows = {
       entry_of<Objective, ContactLocation>(
           "contact_location", "relative difference of the two identified force waveforms"),
@@ -35,11 +35,11 @@ RegistryTable<Objective>& table() {
 
 }  // namespace
 
-Registry<Objective> Objective::registry() { return table().rows(); }
+Registry<Objective> Objective::registry() { return objective_table().rows(); }
 
 void Objective::add(std::string name, std::string summary,
                     std::shared_ptr<const Objective> product) {
-  table().add(std::move(name), std::move(summary), std::move(product));
+  objective_table().add(std::move(name), std::move(summary), std::move(product));
 }
 
 }  // namespace modcal

@@ -9,9 +9,9 @@
 namespace modcal {
 namespace {
 
-class Function final : public ObjectiveFunction {
+class SmoothPeakFunction final : public ObjectiveFunction {
  public:
-  Function(PeakBands bands, double softening) : bands_(std::move(bands)) {
+  SmoothPeakFunction(PeakBands bands, double softening) : bands_(std::move(bands)) {
     const ForceKernel::State state = bands_.force(bands_.parameters().start());
     double sum = 0.0, count = 0.0;
     for_each_bin([&](std::size_t r, std::size_t k) {
@@ -106,8 +106,8 @@ SmoothSpectralPeak::SmoothSpectralPeak(const Options& options) : options_(option
 
 std::unique_ptr<const ObjectiveFunction> SmoothSpectralPeak::do_bind(
     const CalibrationData& data, const ParameterSet& parameters) const {
-  return std::make_unique<Function>(PeakBands(data, parameters, options_.half_band),
-                                    options_.softening);
+  return std::make_unique<SmoothPeakFunction>(PeakBands(data, parameters, options_.half_band),
+                                              options_.softening);
 }
 
 }  // namespace modcal

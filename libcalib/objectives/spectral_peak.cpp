@@ -10,9 +10,9 @@
 namespace modcal {
 namespace {
 
-class Function final : public ObjectiveFunction {
+class PeakFunction final : public ObjectiveFunction {
  public:
-  explicit Function(PeakBands bands) : bands_(std::move(bands)) {}
+  explicit PeakFunction(PeakBands bands) : bands_(std::move(bands)) {}
   std::string_view name() const override { return "spectral_peak"; }
   std::size_t dimension() const override { return bands_.parameters().size(); }
   Capabilities capabilities() const override { return {.gradient = true}; }
@@ -52,7 +52,7 @@ class Function final : public ObjectiveFunction {
 // that shifts by a share s of its frequency changes its term by s/h at most in the bins of f_n.
 class Scanner final : public EvaluatingScanner {
  public:
-  Scanner(const Function& function, std::span<const double> x)
+  Scanner(const PeakFunction& function, std::span<const double> x)
       : EvaluatingScanner(function, x), bands_(function.bands()) {
     refresh();
   }
@@ -97,7 +97,7 @@ class Scanner final : public EvaluatingScanner {
   std::vector<double> omegas_;
 };
 
-std::unique_ptr<CoordinateScanner> Function::scanner(std::span<const double> x) const {
+std::unique_ptr<CoordinateScanner> PeakFunction::scanner(std::span<const double> x) const {
   return std::make_unique<Scanner>(*this, x);
 }
 
@@ -115,7 +115,7 @@ SpectralPeak::SpectralPeak(const Options& options) : options_(options) {
 
 std::unique_ptr<const ObjectiveFunction> SpectralPeak::do_bind(
     const CalibrationData& data, const ParameterSet& parameters) const {
-  return std::make_unique<Function>(PeakBands(data, parameters, options_.half_band));
+  return std::make_unique<PeakFunction>(PeakBands(data, parameters, options_.half_band));
 }
 
 }  // namespace modcal

@@ -53,9 +53,9 @@ Capabilities common(const Capabilities& a, const Capabilities& b) {
           .residuals = a.sum_of_squares() && b.sum_of_squares()};
 }
 
-class Function final : public ObjectiveFunction {
+class SumFunction final : public ObjectiveFunction {
  public:
-  explicit Function(std::vector<BoundTerm> terms) : terms_(std::move(terms)) {
+  explicit SumFunction(std::vector<BoundTerm> terms) : terms_(std::move(terms)) {
     for (const BoundTerm& term : terms_) {
       capabilities_ = common(capabilities_, term.function->capabilities());
       residual_count_ += term.function->residual_count();
@@ -158,7 +158,7 @@ std::unique_ptr<const ObjectiveFunction> WeightedSum::do_bind(
   for (const Term& term : options_.terms) {
     bound.push_back({term.weight, term.objective.make()->bind_term(data, parameters)});
   }
-  return std::make_unique<Function>(std::move(bound));
+  return std::make_unique<SumFunction>(std::move(bound));
 }
 
 }  // namespace modcal

@@ -29,7 +29,7 @@ struct Algorithm {
   }
 };
 
-constexpr std::array kTable = {
+constexpr std::array kAlgorithms = {
     Algorithm{"brent", &gsl_min_fminimizer_brent},
     Algorithm{"conjugate_fr", &gsl_multimin_fdfminimizer_conjugate_fr},
     Algorithm{"conjugate_pr", &gsl_multimin_fdfminimizer_conjugate_pr},
@@ -49,15 +49,15 @@ constexpr std::array kTable = {
 };
 
 constexpr auto kNames = [] {
-  std::array<std::string_view, kTable.size()> names;
-  for (std::size_t i = 0; i < names.size(); ++i) names[i] = kTable[i].name;
+  std::array<std::string_view, kAlgorithms.size()> names;
+  for (std::size_t i = 0; i < names.size(); ++i) names[i] = kAlgorithms[i].name;
   return names;
 }();
 
 const Algorithm* find(std::string_view name) {
-  const auto* found = std::find_if(kTable.begin(), kTable.end(),
+  const auto* found = std::find_if(kAlgorithms.begin(), kAlgorithms.end(),
                                    [&](const Algorithm& entry) { return entry.name == name; });
-  return found == kTable.end() ? nullptr : found;
+  return found == kAlgorithms.end() ? nullptr : found;
 }
 
 }  // namespace

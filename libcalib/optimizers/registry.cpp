@@ -10,7 +10,7 @@
 namespace modcal {
 namespace {
 
-RegistryTable<Optimizer>& table() {
+RegistryTable<Optimizer>& optimizer_table() {
   static RegistryTable<Optimizer> rows = {
       entry_of<Optimizer, CeresOptimizer>("ceres", "trust-region least squares of Ceres Solver"),
       entry_of<Optimizer, CeresLineSearch>("ceres_line_search",
@@ -33,11 +33,11 @@ RegistryTable<Optimizer>& table() {
 
 }  // namespace
 
-Registry<Optimizer> Optimizer::registry() { return table().rows(); }
+Registry<Optimizer> Optimizer::registry() { return optimizer_table().rows(); }
 
 void Optimizer::add(std::string name, std::string summary,
                     std::shared_ptr<const Optimizer> product) {
-  table().add(std::move(name), std::move(summary), std::move(product));
+  optimizer_table().add(std::move(name), std::move(summary), std::move(product));
 }
 
 }  // namespace modcal

@@ -20,8 +20,6 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr double kTurn = 2.0 * std::numbers::pi;
-
 // 97.5 % quantile of Student's t, from 2 degrees of freedom on: Cornish and Fisher's expansion,
 // to 1 % there.
 double student(std::size_t degrees) {
@@ -118,7 +116,7 @@ class ForceSearch {
   }
 
   void find_power(const BinEvidence& evidence) {
-    const double spacing = spectra_.grid.spacing / kTurn;
+    const double spacing = spectra_.grid.spacing / (2.0 * std::numbers::pi);
     std::vector<double> found;
     for (std::size_t m = 0; m < spectra_.count(); ++m) {
       const double told = evidence.told[m];

@@ -29,6 +29,9 @@ std::vector<std::string_view> choices_of(const std::array<std::string_view, kNam
   return {names.begin(), names.end()};
 }
 
+/// The text without the blanks around it.
+std::string_view trimmed(std::string_view text);
+
 /// The text with its ASCII capitals as small letters.
 std::string lower_case(std::string text);
 

@@ -65,14 +65,6 @@ char find_separator(std::string_view header) {
   return ',';
 }
 
-constexpr std::string_view kBlanks = " \t";
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(kBlanks);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
-}
-
 }  // namespace
 
 /// libcsv's parser. Its callbacks run inside C code, which an exception must not cross.
@@ -220,7 +212,7 @@ std::string describe_bad_number(NumberKind kind, std::string_view text) {
   if (with_point != text && parse_number(with_point).kind == NumberKind::kNumber) {
     return fmt::format("\"{}\" has a decimal comma; write a decimal point: {}", text, with_point);
   }
-  const bool several = text.find_first_of(kBlanks) != std::string_view::npos;
+  const bool several = text.find_first_of(" \t") != std::string_view::npos;
   return fmt::format("\"{}\" is not a number{}", text,
                      several ? "; separate columns by commas, semicolons or tabs"
                              : "; write digits with a decimal point, such as -0.25 or 1e-3");

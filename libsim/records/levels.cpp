@@ -14,7 +14,7 @@
 namespace modcal {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 using Samples = std::span<const double>;
 using Fault = std::optional<SampleFault>;
@@ -206,7 +206,7 @@ std::string text(const Clipping& clipping) {
 Levels measure_levels(std::span<const double> samples) {
   std::vector<double> finite;
   finite.reserve(samples.size());
-  Levels levels{kNaN, kNaN, kNaN, kNaN, kNaN, kNaN, 0, 0};
+  Levels levels{kUnknown, kUnknown, kUnknown, kUnknown, kUnknown, kUnknown, 0, 0};
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (std::isfinite(samples[i])) {
       finite.push_back(samples[i]);
@@ -229,7 +229,7 @@ double white_noise_rms(std::span<const double> samples) {
   const std::size_t length = samples.size();
   const auto finite = [](double value) { return std::isfinite(value); };
   if (length < kShortestNoiseRecord || !std::all_of(samples.begin(), samples.end(), finite)) {
-    return kNaN;
+    return kUnknown;
   }
   const std::vector<Complex> spectrum = hann_spectrum(samples);
   const double half = 0.5 * static_cast<double>(length);

@@ -9,7 +9,6 @@
 namespace modcal {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kGap = 1.5;           // median steps
 constexpr double kJitter = 0.01;       // steps
 constexpr double kCoarse = 0.25;       // steps; beyond, a missing sample cannot be told
@@ -68,6 +67,7 @@ double snapped_rate(double step, double duration, double resolution) {
 }  // namespace
 
 TimeAxis examine_time_axis(std::span<const double> t, double resolution) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   TimeAxis axis{kNaN, kNaN, 0, kNaN, false, {}};
   if (t.size() < 2) return axis;
   const double duration = t.back() - t.front();

@@ -28,7 +28,7 @@ struct InverterOptions {
   }
 };
 
-py::dict described(Estimate estimate) {
+py::dict described_estimate(Estimate estimate) {
   py::dict told;
   const auto deviations = [](std::vector<double>& each, double all) -> py::object {
     if (each.empty()) return py::float_(all);
@@ -81,7 +81,7 @@ class Inverter {
       invert();
     }
     py::list told;
-    for (Estimate& one : found) told.append(described(std::move(one)));
+    for (Estimate& one : found) told.append(described_estimate(std::move(one)));
     return told;
   }
 

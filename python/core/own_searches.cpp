@@ -91,8 +91,8 @@ std::vector<Variable> variables_of(const py::list& list) {
 }
 
 // Python's function by our optimizer.
-py::dict minimize(const py::dict& callables, std::size_t residuals, const py::list& variables,
-                  const std::string& options, const py::object& progress) {
+py::dict minimize_own(const py::dict& callables, std::size_t residuals, const py::list& variables,
+                      const std::string& options, const py::object& progress) {
   const std::vector<Variable> stated = variables_of(variables);
   const OwnFunction function(
       {callables["value"], callables["gradient"], callables["residuals"], callables["jacobian"]},
@@ -104,8 +104,8 @@ py::dict minimize(const py::dict& callables, std::size_t residuals, const py::li
 }
 
 // Our function by Python's optimizer.
-py::dict search(const Search& problem, const py::object& search, const std::string& options,
-                const py::object& progress) {
+py::dict search_with_own(const Search& problem, const py::object& search,
+                         const std::string& options, const py::object& progress) {
   const SearchOptions how = SearchOptions::read(options);
   const OwnOptimizer optimizer(search);
   return described(watched(progress, [&](const Watch& watch) {
@@ -145,11 +145,11 @@ void add_own_searches(py::module_& module) {
                              [](const OwnEvaluator& self) { return self.get().evaluations_left(); })
       .def("value", &OwnEvaluator::value, py::arg("z"))
       .def("value_and_gradient", &OwnEvaluator::value_and_gradient, py::arg("z"));
-  module.def("minimize", &minimize, py::arg("callables"), py::arg("residuals"),
+  module.def("minimize", &minimize_own, py::arg("callables"), py::arg("residuals"),
              py::arg("variables"), py::arg("options"), py::arg("progress"));
   module.def("add_optimizer", &add_optimizer, py::arg("name"), py::arg("search"),
              py::arg("summary"));
-  module.def("search", &search, py::arg("problem"), py::arg("search"), py::arg("options"),
+  module.def("search", &search_with_own, py::arg("problem"), py::arg("search"), py::arg("options"),
              py::arg("progress"));
 }
 

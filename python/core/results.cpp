@@ -102,7 +102,7 @@ py::dict blocks_of(const Outcome& outcome, const Describe& describe) {
 }
 
 // (text, whether it contradicts the result)
-std::vector<std::pair<std::string, bool>> warnings_of(const Outcome& outcome) {
+std::vector<std::pair<std::string, bool>> printed_warnings(const Outcome& outcome) {
   std::vector<std::pair<std::string, bool>> warnings;
   for (const report::Block& block : outcome.result.blocks) {
     const auto* text = std::get_if<report::Text>(&block);
@@ -158,7 +158,7 @@ void add_results(py::module_& module) {
                                  files[py::str(name)] = content;
                                return files;
                              })
-      .def("warnings", &warnings_of)
+      .def("warnings", &printed_warnings)
       .def("signals", &signals_of)
       .def("tables", [](const Outcome& self) { return blocks_of<report::Table>(self, &table_of); })
       .def("figures", [](const py::object& self) {

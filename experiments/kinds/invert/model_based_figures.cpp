@@ -9,7 +9,7 @@ using report::ColorRole;
 using report::Series;
 using report::SeriesStyle;
 
-constexpr double kBand = 1.96;  // 95 % of a normal distribution
+constexpr double kBarDeviations = 1.96;  // 95 % of a normal distribution
 
 Series cells_of(const std::vector<double>& velocity, const std::vector<double>& force,
                 double bow_velocity, const char* label, ColorRole color) {
@@ -65,7 +65,8 @@ report::Figure friction_figure(const Observation& observation, const ModelBasedR
                                                    ColorRole color) {
     Series series{.label = label, .style = SeriesStyle::kPoints, .color = color};
     for (std::size_t k = begin; k < end; ++k) {
-      series.add(v[k] - bow, f[k], f[k] - kBand * deviation[k], f[k] + kBand * deviation[k]);
+      series.add(v[k] - bow, f[k], f[k] - kBarDeviations * deviation[k],
+                 f[k] + kBarDeviations * deviation[k]);
     }
     return series;
   };

@@ -47,8 +47,8 @@ report::Series over_noise(const std::vector<LimitSummary>& levels, report::Serie
 }
 
 RmsInterval interval_of(std::size_t count) {
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  return count > 0 ? rms_interval(count) : RmsInterval{kNan, kNan};
+  constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
+  return count > 0 ? rms_interval(count) : RmsInterval{kUndefined, kUndefined};
 }
 
 void write_error(report::RowWriter& row, const LimitRow& item) {

@@ -9,7 +9,7 @@ namespace modcal {
 namespace {
 
 using Index = Eigen::Index;
-constexpr double kRidge = 1e-9;
+constexpr double kPluckRidge = 1e-9;
 
 }  // namespace
 
@@ -129,7 +129,7 @@ void PluckEvaluation::solve(const RowMatrix& products) {
   const Eigen::VectorXd with_data = products.row(count).head(count).transpose();
   scale_ = gram.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   Eigen::MatrixXd scaled = scale_.asDiagonal() * gram * scale_.asDiagonal();
-  scaled.diagonal().array() += kRidge;
+  scaled.diagonal().array() += kPluckRidge;
   normal_ = PositiveSolver(scaled);
   linear_ = scale_.asDiagonal() * normal_.solve(scale_.asDiagonal() * with_data);
   cost_ = products(count, count) - 2.0 * linear_.dot(with_data) + linear_.dot(gram * linear_);

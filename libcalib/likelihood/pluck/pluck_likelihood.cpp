@@ -9,7 +9,7 @@
 namespace modcal {
 namespace {
 
-constexpr std::size_t kNoiseRepeats = 3;
+constexpr std::size_t kPluckRepeats = 3;
 constexpr std::size_t kHalfBand = 128;
 
 }  // namespace
@@ -31,11 +31,11 @@ Eigen::MatrixXd PluckLikelihood::noise_information(const ModelPoint& point,
                                                    const LikelihoodColumns& columns) const {
   const auto n = static_cast<Eigen::Index>(columns.count);
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(n, n);
-  for (std::size_t r = 0; r < kNoiseRepeats; ++r) {
+  for (std::size_t r = 0; r < kPluckRepeats; ++r) {
     const WhitenedRecord noise = record_.noise(r);
     sum += PluckEvaluation(noise, point).differentiate(columns, {}).information;
   }
-  return sum / static_cast<double>(kNoiseRepeats);
+  return sum / static_cast<double>(kPluckRepeats);
 }
 
 LikelihoodPoint PluckLikelihood::unweighted(const ModelPoint& point,

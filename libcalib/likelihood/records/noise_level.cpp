@@ -15,8 +15,8 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double kClear = 1.4;   // the response there is 8e-4 of the signal or less
-constexpr double kMargin = 1.1;  // lines begin to stand apart; holds errors of the model, too
+constexpr double kClear = 1.4;       // the response there is 8e-4 of the signal or less
+constexpr double kLineMargin = 1.1;  // lines begin to stand apart; holds errors of the model, too
 constexpr std::size_t kFewestBins = 200;
 
 struct Bins {
@@ -46,7 +46,7 @@ NoiseBand NoiseBand::above(double top, double sample_rate, std::size_t samples) 
   NoiseBand band;
   if (kClear * top <= band.low * sample_rate) return band;
   band.clear = false;
-  band.low = std::max(band.low, kMargin * top / sample_rate);
+  band.low = std::max(band.low, kLineMargin * top / sample_rate);
   MODCAL_REQUIRE(bins_of(band, samples).count() >= kFewestBins,
                  "the noise cannot be read from {} samples at {:g} Hz with modes up to {:g} Hz: it "
                  "takes {} bins between {:g} Hz (1.1 times the highest mode) and {:g} Hz. State "

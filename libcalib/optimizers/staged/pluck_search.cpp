@@ -5,8 +5,8 @@
 namespace modcal {
 namespace {
 
-constexpr double kReach = 6e-3;
-constexpr double kMargin = 20.0;  // of the largest of some tens of places with noise alone
+constexpr double kPlaceReach = 6e-3;
+constexpr double kPlaceMargin = 20.0;  // of the largest of some tens of places with noise alone
 
 }  // namespace
 
@@ -22,8 +22,8 @@ double loudest_shift(std::span<const std::shared_ptr<const PluckLikelihood>> plu
     }
     return sum;
   };
-  double best = power(0.0) + kMargin, found = 0.0;
-  for (double shift = -kReach; shift <= kReach; shift += 0.5 * zeta) {
+  double best = power(0.0) + kPlaceMargin, found = 0.0;
+  for (double shift = -kPlaceReach; shift <= kPlaceReach; shift += 0.5 * zeta) {
     if (const double value = power(shift); value > best) {
       best = value;
       found = shift;

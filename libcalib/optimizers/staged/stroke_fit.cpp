@@ -9,7 +9,7 @@
 namespace modcal {
 namespace {
 
-constexpr std::size_t kNoiseRepeats = 3;
+constexpr std::size_t kStrokeRepeats = 3;
 
 }  // namespace
 
@@ -121,7 +121,7 @@ Eigen::MatrixXd StrokeFit::noise_at(const StringUnknowns& unknowns,
                                     const Eigen::VectorXd& theta) const {
   poll();
   return weighted_->noise_information(unknowns.model(theta), unknowns.columns(theta),
-                                      kNoiseRepeats);
+                                      kStrokeRepeats);
 }
 
 LikelihoodPoint StrokeFit::weighted_point(const StringUnknowns& unknowns,

@@ -8,7 +8,7 @@ namespace {
 using Complex = std::complex<double>;
 
 // Largest |μ|h of a power series of 25 terms: 1.6²⁵/25! = 8e-21 of its size is left out.
-constexpr double kSeriesPhase = 1.6;
+constexpr double kStickingPhase = 1.6;
 // Force this close to the limit (relative) at the attachment is the limit: the continuous rule.
 constexpr double kAtLimit = 1e-12;
 
@@ -55,7 +55,7 @@ Sticking::Sticking(ClosedLoop loop, StaticLimit static_limit, double longest_ste
       trial_(loop_.roots),
       wanted_(wanted) {
   step_factor_.push_back(loop_.propagator(longest_step_));
-  while (series_step_ * loop_.largest_pole > kSeriesPhase) {
+  while (series_step_ * loop_.largest_pole > kStickingPhase) {
     series_step_ *= 0.5;
     step_factor_.push_back(loop_.propagator(series_step_));
   }

@@ -6,7 +6,7 @@ namespace modcal {
 
 namespace {
 
-double sinc(double u) {
+double normalized_sinc(double u) {
   const double angle = std::numbers::pi * u;
   return u == 0.0 ? 1.0 : std::sin(angle) / angle;
 }
@@ -38,8 +38,8 @@ ModalState Pluck::state(const ModalBasis& basis) const {
   state.velocity.assign(basis.size(), 0.0);
   for (std::size_t i = 0; i < basis.size(); ++i) {
     const double n = static_cast<double>(i + 1);
-    state.displacement.push_back(scale * shape[i] * sinc(0.5 * n * options_.width / length) /
-                                 (n * n));
+    state.displacement.push_back(scale * shape[i] *
+                                 normalized_sinc(0.5 * n * options_.width / length) / (n * n));
   }
   return state;
 }

@@ -9,9 +9,9 @@
 namespace modcal {
 namespace {
 
-class Writer {
+class Hdf5Writer {
  public:
-  Writer(const std::filesystem::path& path, const std::string& name)
+  Hdf5Writer(const std::filesystem::path& path, const std::string& name)
       : name_(name), file_(created(path), H5Fclose) {}
 
   void add_text(hid_t object, const char* attribute, const std::string& text) const {
@@ -70,7 +70,7 @@ void write_hdf5(const std::filesystem::path& path, std::span<const Signal> signa
   require_one_record(signals, name);
   replace_file(path, [&](const std::filesystem::path& temporary) {
     const std::lock_guard lock(hdf5_lock());
-    Writer writer(temporary, name);
+    Hdf5Writer writer(temporary, name);
     MODCAL_REQUIRE(writer.root() >= 0, "{}: cannot be written; check the folder", name);
     const double rate = signals.front().sample_rate;
     writer.add_attribute(writer.root(), "sample_rate", H5T_NATIVE_DOUBLE, &rate);

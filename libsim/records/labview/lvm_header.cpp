@@ -5,6 +5,7 @@
 
 #include "libsim/base/error.hpp"
 #include "libsim/base/utf8.hpp"
+#include "libsim/base/words.hpp"
 #include "libsim/records/labview/lvm_reader.hpp"
 
 namespace modcal {
@@ -12,12 +13,6 @@ namespace {
 
 constexpr std::string_view kEnd = "***End_of_Header***";
 constexpr std::size_t kMostChannels = 1 << 12;
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \r\f\v");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \r\f\v") - first + 1);
-}
 
 }  // namespace
 

@@ -13,28 +13,28 @@ namespace {
 
 using Variable = std::unique_ptr<matvar_t, decltype(&Mat_VarFree)>;
 
-Variable owned(matvar_t* variable) {
+Variable created(matvar_t* variable) {
   if (variable == nullptr) throw std::bad_alloc();
   return {variable, &Mat_VarFree};
 }
 
 Variable column(const std::string& name, const std::vector<double>& samples) {
   std::size_t dims[] = {samples.size(), 1};
-  return owned(Mat_VarCreate(name.c_str(), MAT_C_DOUBLE, MAT_T_DOUBLE, 2, dims,
-                             const_cast<double*>(samples.data()), MAT_F_DONT_COPY_DATA));
+  return created(Mat_VarCreate(name.c_str(), MAT_C_DOUBLE, MAT_T_DOUBLE, 2, dims,
+                               const_cast<double*>(samples.data()), MAT_F_DONT_COPY_DATA));
 }
 
 Variable text(const std::string& letters) {
   std::size_t dims[] = {letters.empty() ? std::size_t{0} : std::size_t{1}, letters.size()};
-  return owned(Mat_VarCreate(nullptr, MAT_C_CHAR, MAT_T_UTF8, 2, dims,
-                             const_cast<char*>(letters.data()), 0));
+  return created(Mat_VarCreate(nullptr, MAT_C_CHAR, MAT_T_UTF8, 2, dims,
+                               const_cast<char*>(letters.data()), 0));
 }
 
 Variable structure(const char* name, const std::vector<std::string>& fields) {
   std::vector<const char*> names;
   for (const std::string& field : fields) names.push_back(field.c_str());
   std::size_t dims[] = {1, 1};
-  return owned(
+  return created(
       Mat_VarCreateStruct(name, 2, dims, names.data(), static_cast<unsigned>(names.size())));
 }
 

@@ -39,9 +39,9 @@ void require_plain_names(std::span<const Signal> signals, const std::string& fil
 }
 
 // What a member of the archive is made of; its parts must outlive it.
-class Writer {
+class NumpyWriter {
  public:
-  explicit Writer(const std::string& name) : name_(name) {
+  explicit NumpyWriter(const std::string& name) : name_(name) {
     zip_error_init(&error_);
     target_ = zip_source_buffer_create(nullptr, 0, 0, &error_);
     if (target_ == nullptr) throw std::bad_alloc();
@@ -49,13 +49,13 @@ class Writer {
     zip_ = zip_open_from_source(target_, ZIP_CREATE | ZIP_TRUNCATE, &error_);
     if (zip_ == nullptr) throw std::bad_alloc();
   }
-  ~Writer() {
+  ~NumpyWriter() {
     if (zip_ != nullptr) zip_discard(zip_);
     zip_source_free(target_);
     zip_error_fini(&error_);
   }
-  Writer(const Writer&) = delete;
-  Writer& operator=(const Writer&) = delete;
+  NumpyWriter(const NumpyWriter&) = delete;
+  NumpyWriter& operator=(const NumpyWriter&) = delete;
 
   void add(const std::string& member, std::string header, std::span<const char> data) {
     const std::string& kept = headers_.emplace_back(std::move(header));
@@ -151,7 +151,7 @@ void write_npz(const Path& path, std::span<const Signal> signals, const std::str
   require_one_record(signals, name);
   require_plain_names(signals, name);
   replace_file(path, [&](const Path& temporary) {
-    Writer writer(name);
+    NumpyWriter writer(name);
     const std::string number = npy_header_text(fmt::format("'{}'", kDouble), "()");
     writer.add("sample_rate", number, bytes_of({&signals.front().sample_rate, 1}));
     const std::string header =

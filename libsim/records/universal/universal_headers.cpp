@@ -3,17 +3,12 @@
 
 #include "libsim/base/error.hpp"
 #include "libsim/base/utf8.hpp"
+#include "libsim/base/words.hpp"
 #include "libsim/records/csv_grammar.hpp"
 #include "libsim/records/universal/universal_file.hpp"
 
 namespace modcal {
 namespace {
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t\f\0");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\f\0") - first + 1);
-}
 
 bool is_delimiter(std::string_view line) { return trimmed(line) == "-1"; }
 
