@@ -68,9 +68,9 @@ stubs: packages-python
 SEED ?= 1
 COUNT ?= 20
 mutation: packages-test
-	@cmake --preset $(PRESET) -DMODCAL_WERROR=ON >/dev/null
-	@cmake --build --preset $(PRESET)
-	@tests/mutation/mutate.py . build/$(PRESET) --seed $(SEED) --count $(COUNT)
+	@cmake --preset mutation >/dev/null
+	@cmake --build --preset mutation
+	@tests/mutation/mutate.py . build/mutation --seed $(SEED) --count $(COUNT)
 
 test-cluster: packages-cluster
 	@cmake --preset $(PRESET) >/dev/null

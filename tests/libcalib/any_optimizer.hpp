@@ -53,9 +53,9 @@ class FirstVariable final : public ObjectiveFunction {
 };
 
 /// A function of two variables as an optimizer can take it: whole, or along the first variable.
-class Problem {
+class FunctionProblem {
  public:
-  Problem(const ObjectiveFunction& function, std::vector<Variable> variables, bool line)
+  FunctionProblem(const ObjectiveFunction& function, std::vector<Variable> variables, bool line)
       : function_(function),
         line_(function, variables[1].initial),
         use_line_(line),

@@ -11,7 +11,7 @@
 #include "libsim/base/error.hpp"
 #include "tests/libcalib/calibration_case.hpp"
 
-namespace modcal {
+namespace modcal::calibration_test {
 namespace {
 
 CalibrationOptions refine_all(std::int64_t loops) {
@@ -139,4 +139,4 @@ TEST(Registries, AreSortedByName) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::calibration_test

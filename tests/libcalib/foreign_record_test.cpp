@@ -11,7 +11,7 @@
 #include "libcalib/objectives/joint_likelihood.hpp"
 #include "libsim/model/damping.hpp"
 
-namespace modcal {
+namespace modcal::foreign_record_test {
 namespace {
 
 constexpr double kFundamental = 294.0, kInharmonicity = 1.1e-4, kContact = 0.041;
@@ -395,4 +395,4 @@ TEST(ForeignRecord, SupportsMayFeelTheBending) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::foreign_record_test

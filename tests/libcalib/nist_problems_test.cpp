@@ -7,7 +7,7 @@
 #include "libcalib/optimizers/gsl_optimizer.hpp"
 #include "libcalib/optimizers/nlopt_optimizer.hpp"
 
-namespace modcal {
+namespace modcal::nist_problems_test {
 namespace {
 
 NistProblem problem_named(std::string_view name) { return NistProblem(MODCAL_NIST, name); }
@@ -59,4 +59,4 @@ TEST(NistProblems, AQuasiNewtonSearchThatGivesUpStartsAfresh) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::nist_problems_test

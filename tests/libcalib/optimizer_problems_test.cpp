@@ -7,7 +7,7 @@
 
 #include "tests/libcalib/any_optimizer.hpp"
 
-namespace modcal {
+namespace modcal::optimizer_problems_test {
 namespace {
 
 bool searches(const OptimizerCase& one) { return one.way != Way::kSystematic; }
@@ -80,7 +80,7 @@ TEST_P(SearchOfSeveral, AVariableMayStartOnItsBound) {
 
 TEST_P(Search, SolvesTheQuadratic) {
   const Quadratic function;
-  const Problem problem(function, box(0.0, 0.0, -5.0, 5.0), one_variable());
+  const FunctionProblem problem(function, box(0.0, 0.0, -5.0, 5.0), one_variable());
   const auto result = problem.minimize(optimizer(), enough());
   const double tolerance = quadratic_digits(way());
   EXPECT_NEAR(result.x[0], 3.0, tolerance);
@@ -120,7 +120,7 @@ double rejected_step_digits(Way way) {
 TEST_P(Search, OneValueThatIsNotFiniteIsARejectedStepAndNotTheEnd) {
   for (const int at : {1, 2, 4}) {
     const OnceUndefined function(at);
-    const Problem problem(function, box(0.0, 0.0, -5.0, 5.0), one_variable());
+    const FunctionProblem problem(function, box(0.0, 0.0, -5.0, 5.0), one_variable());
     const auto result = problem.minimize(optimizer(), enough());
     EXPECT_NE(result.stop, StopReason::kNotFinite);
     // To a bracket in one variable the point is a wall.
@@ -199,4 +199,4 @@ TEST_P(BySlopes, FormsMissingSlopesByDifferences) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::optimizer_problems_test

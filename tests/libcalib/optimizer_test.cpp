@@ -15,7 +15,7 @@
 #include "libsim/base/error.hpp"
 #include "tests/libcalib/any_optimizer.hpp"
 
-namespace modcal {
+namespace modcal::optimizer_test {
 namespace {
 
 using testing::HasSubstr;
@@ -63,7 +63,7 @@ TEST(Optimizer, NamesAreThoseOfTheRegistryAndEveryOneIsTested) {
 TEST_P(AnyOptimizer, NeverExceedsAnyBudgetOfEvaluations) {
   for (const std::int64_t budget : {1, 2, 3, 7, 60, 500}) {
     const Rosenbrock function;
-    const Problem problem(function, box(-1.2, 1.0, -2.0, 2.0), one_variable());
+    const FunctionProblem problem(function, box(-1.2, 1.0, -2.0, 2.0), one_variable());
     try {
       const OptimizationResult result = problem.minimize(optimizer(), {.evaluations = budget});
       EXPECT_EQ(result.evaluations, function.calls);
@@ -81,7 +81,7 @@ TEST_P(AnyOptimizer, NeverExceedsAnyBudgetOfEvaluations) {
 
 TEST_P(AnyOptimizer, StartsNoEvaluationAfterTheTimeIsUp) {
   const Rosenbrock function;
-  const Problem problem(function, box(-1.2, 1.0, -2.0, 2.0), one_variable());
+  const FunctionProblem problem(function, box(-1.2, 1.0, -2.0, 2.0), one_variable());
   // Every evaluation takes a second of this clock.
   const SecondsClock clock = [&function] { return static_cast<double>(function.calls); };
   const OptimizationResult result = problem.minimize(optimizer(), {.seconds = 5.0}, clock);
@@ -93,7 +93,7 @@ TEST_P(AnyOptimizer, StartsNoEvaluationAfterTheTimeIsUp) {
 TEST_P(AnyOptimizer, ReturnsTheObjectivesExceptionIntact) {
   for (const int at : {1, 2, 3, 5}) {
     const Throwing function(at);
-    const Problem problem(function, box(1.0, 1.0, -5.0, 5.0), one_variable());
+    const FunctionProblem problem(function, box(1.0, 1.0, -5.0, 5.0), one_variable());
     EXPECT_THROW(problem.minimize(optimizer(), {}), Boom) << "at evaluation " << at;
     EXPECT_EQ(function.calls, at);
   }
@@ -146,7 +146,7 @@ TEST_P(AnyOptimizer, AThrowingClockInterruptsTheSearch) {
     if (function.calls >= 5) throw Interrupted();
     return 0.0;
   };
-  const Problem problem(function, box(-1.2, 1.0, -2.0, 2.0), one_variable());
+  const FunctionProblem problem(function, box(-1.2, 1.0, -2.0, 2.0), one_variable());
   EXPECT_THROW(problem.minimize(optimizer(), {}, clock), Interrupted);
 }
 
@@ -159,7 +159,7 @@ TEST_P(OfAnyValue, NotANumberIsARejectedStep) {
   const ValueOnly function(2, [](std::span<const double> x) {
     return x[0] < 0.9999 ? std::numeric_limits<double>::quiet_NaN() : x[0] + x[1] * x[1];
   });
-  const Problem problem(function, box(1.0, 1.0, -2.0, 2.0), one_variable());
+  const FunctionProblem problem(function, box(1.0, 1.0, -2.0, 2.0), one_variable());
   const OptimizationResult result = problem.minimize(optimizer(), enough());
   EXPECT_NE(result.stop, StopReason::kNotFinite);
   EXPECT_TRUE(std::isfinite(result.value));
@@ -178,7 +178,7 @@ class HalfUndefined final : public LeastSquaresProblem {
 
 TEST_P(AnyOptimizer, ResidualsThatAreNoNumbersAreARejectedStep) {
   const HalfUndefined function;
-  const Problem problem(function, box(1.0, 1.0, -5.0, 5.0), one_variable());
+  const FunctionProblem problem(function, box(1.0, 1.0, -5.0, 5.0), one_variable());
   const OptimizationResult result = problem.minimize(optimizer(), enough());
   EXPECT_NE(result.stop, StopReason::kNotFinite);
   EXPECT_TRUE(std::isfinite(result.value));
@@ -187,7 +187,7 @@ TEST_P(AnyOptimizer, ResidualsThatAreNoNumbersAreARejectedStep) {
 
 TEST_P(AnyOptimizer, NotANumberAtTheInitialPointEndsTheSearchAndIsReported) {
   const HalfUndefined function;
-  const Problem problem(function, box(0.5, 1.0, -5.0, 5.0), one_variable());
+  const FunctionProblem problem(function, box(0.5, 1.0, -5.0, 5.0), one_variable());
   EXPECT_EQ(problem.minimize(optimizer(), {}).stop, StopReason::kNotFinite);
   EXPECT_EQ(function.calls, 1);
 }
@@ -196,7 +196,7 @@ TEST_P(OfAnyValue, AnInfiniteValueIsNeverTheAnswer) {
   const ValueOnly function(2, [](std::span<const double> x) {
     return x[0] < 0.9 ? std::numeric_limits<double>::infinity() : x[0] + x[1] * x[1];
   });
-  const Problem problem(function, box(1.0, 1.0, -2.0, 2.0), one_variable());
+  const FunctionProblem problem(function, box(1.0, 1.0, -2.0, 2.0), one_variable());
   const auto result = problem.minimize(optimizer(), enough());
   EXPECT_LE(result.value, 2.0);
   EXPECT_GE(result.x[0], 0.9);
@@ -204,7 +204,7 @@ TEST_P(OfAnyValue, AnInfiniteValueIsNeverTheAnswer) {
 
 TEST_P(TowardsATarget, StopsAtTheTarget) {
   const Quadratic function;
-  const Problem problem(function, box(1.0, -1.0, -5.0, 5.0, 5.0), one_variable());
+  const FunctionProblem problem(function, box(1.0, -1.0, -5.0, 5.0, 5.0), one_variable());
   const OptimizationResult result = problem.minimize(optimizer(), {.target = 0.5});
   EXPECT_EQ(result.stop, StopReason::kTargetReached);
   EXPECT_LE(result.value, 0.5);
@@ -213,7 +213,7 @@ TEST_P(TowardsATarget, StopsAtTheTarget) {
 
 TEST_P(AnyOptimizer, TheSameRunGivesTheSameBitsOnAnyThread) {
   const Rosenbrock function;
-  const Problem problem(function, box(-1.2, 1.0, -2.0, 2.0), one_variable());
+  const FunctionProblem problem(function, box(-1.2, 1.0, -2.0, 2.0), one_variable());
   const auto run = [&] { return problem.minimize(optimizer(), {.evaluations = 2000}); };
   const OptimizationResult first = run();
   std::array<OptimizationResult, 2> others;
@@ -242,7 +242,7 @@ TEST_P(OfAnyValue, RespectsTheBounds) {
     }
     return bowl_outside(x);
   });
-  const Problem problem(function, box(0.25, 0.25, -0.5, 0.5), one_variable());
+  const FunctionProblem problem(function, box(0.25, 0.25, -0.5, 0.5), one_variable());
   problem.minimize(optimizer(), {.evaluations = 3000});
   EXPECT_GE(least, -0.5);
   EXPECT_LE(most, 0.5);
@@ -250,7 +250,7 @@ TEST_P(OfAnyValue, RespectsTheBounds) {
 
 TEST_P(SearchOfAnyValue, EndsInTheCornerWhereTheBoundsCutTheOptimumOff) {
   const ValueOnly function(2, bowl_outside);
-  const Problem problem(function, box(0.25, 0.25, -0.5, 0.5), one_variable());
+  const FunctionProblem problem(function, box(0.25, 0.25, -0.5, 0.5), one_variable());
   const auto result = problem.minimize(optimizer(), {.evaluations = 3000});
   const double tolerance = way() == Way::kGlobal ? 1e-2 : 1e-6;
   EXPECT_NEAR(result.x[0], 0.5, tolerance);
@@ -291,4 +291,4 @@ TEST(OptimizersPage, HoldsEveryOptimizerAndEveryAlgorithm) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::optimizer_test

@@ -14,7 +14,7 @@
 #include "libsim/base/error.hpp"
 #include "libsim/base/random.hpp"
 
-namespace modcal {
+namespace modcal::ill_posed_problems_test {
 namespace {
 
 // Definitions: A x approximates the integral with an error of the midpoint rule, h²/24 of the
@@ -198,4 +198,4 @@ TEST(SvdProblem, RefusesAnotherPenaltyThanItIsPreparedFor) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::ill_posed_problems_test

@@ -9,7 +9,7 @@
 #include "libinverse/spectral/one_sided/one_sided_inversion.hpp"
 #include "tests/libinverse/safe_problem.hpp"
 
-namespace modcal {
+namespace modcal::inversion_curve_test {
 namespace {
 
 constexpr double kRate = 51200.0;
@@ -57,4 +57,4 @@ TEST_P(BruteForce, FindsTheNormsOfTheCurve) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::inversion_curve_test

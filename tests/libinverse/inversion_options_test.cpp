@@ -3,7 +3,7 @@
 #include "libinverse/invert.hpp"
 #include "libsim/base/error.hpp"
 
-namespace modcal {
+namespace modcal::inversion_options_test {
 namespace {
 
 TEST(InversionOptions, AreJointUnlessToldOtherwise) {
@@ -31,4 +31,4 @@ TEST(InversionOptions, RefuseAnUnknownEstimator) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::inversion_options_test

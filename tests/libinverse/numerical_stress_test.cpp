@@ -11,7 +11,7 @@
 #include "libsim/base/error.hpp"
 #include "tests/libinverse/joint/joint_case.hpp"
 
-namespace modcal {
+namespace modcal::numerical_stress_test {
 namespace {
 
 constexpr InversionOutputs kEverything = {
@@ -250,4 +250,4 @@ TEST(Metamorphic, TheLeftEndIsTheRightOneOfTheMirroredString) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::numerical_stress_test

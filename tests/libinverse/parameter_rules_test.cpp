@@ -14,7 +14,7 @@
 #include "libsim/base/error.hpp"
 #include "libsim/base/random.hpp"
 
-namespace modcal {
+namespace modcal::parameter_rules_test {
 namespace {
 
 const Tikhonov kTikhonov{Tikhonov::Options{}};
@@ -292,4 +292,4 @@ TEST(DisagreementOf, NamesTheRulesThatLieFarAway) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::parameter_rules_test

@@ -4,7 +4,8 @@
 mutate.py ROOT BUILD --seed S --count N draws N mutants of the .cpp and -inl.hpp files of libsim,
 libinverse and libcalib: an operator (operators.py) evenly, then one of its places evenly. Of each,
 the translation units that hold it are compiled anew, linked before the static libraries of BUILD,
-which has to be built, and the tests run that link it, nearest by folder first. A test that fails or
+which has to be built without unity (the preset mutation), and the test files run that link it, nearest by
+folder first. A test that fails or
 does not end in time kills the mutant. Survivors are printed with what they change; those that
 equivalent.txt proves to change nothing are counted apart. Exit 0: no other survivor; 1: some.
 
@@ -64,6 +65,7 @@ class Build:
     def __init__(self, root, folder):
         self.root, self.folder = root, folder
         self.compile, self.link, self.members, self.source = {}, {}, {}, {}
+        self.tests = {}  # as ctest names them: the program and the file in it
         database = subprocess.run(["ninja", "-t", "compdb"], cwd=folder, capture_output=True,
                                   text=True, check=True).stdout
         for edge in json.loads(database):
@@ -74,8 +76,13 @@ class Build:
                 self.source[output] = os.path.relpath(os.path.join(folder, edge["file"]), root)
             elif output.endswith(".a"):
                 self.members[output] = {word for word in inputs if word.endswith(".o")}
-            elif re.fullmatch(r"tests/(?!experiments_cli_)\w+_test", output):  # those run the program
+            elif re.fullmatch(r"tests/(?!experiments_cli_)\w+_tests", output):  # those run modcal
                 self.link[output] = (command, inputs)
+        for program, (_, inputs) in self.link.items():
+            for source in (self.source[o] for o in inputs if o in self.source):
+                file = source.removeprefix("tests/")
+                if file.endswith("_test.cpp"):
+                    self.tests[file.removesuffix(".cpp").replace("/", "_")] = (program, file)
         self.includers = self.objects_by_header()
         self.seconds = self.measured_seconds()
 
@@ -95,7 +102,7 @@ class Build:
         """Of every test, as ctest saw it last."""
         cost = self.folder / "Testing/Temporary/CTestCostData.txt"
         rows = [line.split() for line in cost.read_text().splitlines()] if cost.exists() else []
-        return {f"tests/{row[0]}": float(row[2]) for row in rows if len(row) == 3}
+        return {row[0]: float(row[2]) for row in rows if len(row) == 3}
 
     def objects_of(self, path):
         """Members of the static libraries that hold the file."""
@@ -110,14 +117,14 @@ class Build:
         stem = re.sub(r"(-inl)?\.\w+$", "", stem)
 
         def distance(test):
-            source = next(self.source[o] for o in self.link[test][1] if o in self.source)
-            here = source.removeprefix("tests/").rsplit("/", 1)[0]
+            file = self.tests[test][1]
+            here = file.rsplit("/", 1)[0]
             shared = len(os.path.commonpath([here, folder]).split("/")) if here.split("/")[0] == \
                 folder.split("/")[0] else 0
-            return (not source.endswith(f"/{stem}_test.cpp"), here != folder, -shared,
+            return (not file.endswith(f"/{stem}_test.cpp"), here != folder, -shared,
                     self.seconds.get(test, 1.0))
 
-        return sorted((t for t, (_, inputs) in self.link.items() if archives & set(inputs)),
+        return sorted((t for t, (program, _) in self.tests.items() if archives & set(self.link[program][1])),
                       key=distance)
 
 
@@ -149,8 +156,7 @@ class Judge:
             if test not in self.sound:
                 folder = self.scratch / "sound"
                 folder.mkdir(exist_ok=True)
-                program = self.link_test(test, [], folder)
-                self.sound[test] = self.run([program], folder, 600) == 0
+                self.sound[test] = self.run(self.linked(test, [], folder), folder, 600) == 0
                 if not self.sound[test]:
                     print(f"{test} fails without any mutant: build the tests first", flush=True)
             return self.sound[test]
@@ -181,20 +187,24 @@ class Judge:
             objects.append(str(folder / f"{i}.o"))
         return objects
 
-    def link_test(self, test, objects, folder):
-        command, inputs = self.build.link[test]
-        program = folder / "test"
-        command = command.replace(f" -o {test} ", f" -o {program} ", 1)
+    def linked(self, test, objects, folder):
+        """How its program is called, which is linked in the folder where it is not yet."""
+        name, file = self.build.tests[test]
+        program = folder / Path(name).name
+        if program.exists():
+            return [str(program), file]
+        command, inputs = self.build.link[name]
+        command = command.replace(f" -o {name} ", f" -o {program} ", 1)
         command = command.replace(f" {inputs[0]} ", f" {' '.join(objects)} {inputs[0]} ", 1)
         command = re.sub(r"^: && | && :\s*$", "", command) + " -Wl,--allow-multiple-definition"
         linked = subprocess.run(command, shell=True, cwd=self.build.folder, capture_output=True)
         if linked.returncode:
-            raise RuntimeError(f"{test} cannot be linked: {linked.stderr.decode()[-400:]}")
-        return str(program)
+            raise RuntimeError(f"{name} cannot be linked: {linked.stderr.decode()[-400:]}")
+        return [str(program), file]
 
     def fails(self, test, objects, folder):
         seconds = self.slack + 10.0 * self.build.seconds.get(test, 0.0)
-        code = self.run([self.link_test(test, objects, folder)], folder, seconds)
+        code = self.run(self.linked(test, objects, folder), folder, seconds)
         return code != 0 and self.is_sound(test)
 
     def verdict(self, number, mutant):

@@ -41,7 +41,7 @@ rule link
 build libsim/planted.o: cxx {root}/libsim/planted/kernel.cpp
 build libsim/libplanted.a: archive libsim/planted.o
 build tests/kernel.o: cxx {root}/tests/libsim/planted/kernel_test.cpp
-build tests/libsim_planted_kernel_test: link tests/kernel.o libsim/libplanted.a
+build tests/libsim_planted_tests: link tests/kernel.o libsim/libplanted.a
 """
 PROOFS = """# a comment
 libsim/planted/kernel.cpp: double magnitude(double x) { return x <= 0.0 ? -x : x; } ## -0 equals 0

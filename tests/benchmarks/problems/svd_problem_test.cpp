@@ -10,7 +10,7 @@
 #include "libinverse/spectral/regularizers/regularizers.hpp"
 #include "libsim/base/error.hpp"
 
-namespace modcal {
+namespace modcal::svd_problem_test {
 namespace {
 
 constexpr int kSize = 64;
@@ -196,4 +196,4 @@ TEST(SvdProblem, RefusesWhatIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::svd_problem_test

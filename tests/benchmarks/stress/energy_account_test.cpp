@@ -13,7 +13,7 @@
 #include "libsim/model/damping.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
-namespace modcal {
+namespace modcal::energy_account_test {
 namespace {
 
 Scene damped_scene() {
@@ -177,4 +177,4 @@ TEST(EnergyAudit, NeedsItsThreeSignals) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::energy_account_test

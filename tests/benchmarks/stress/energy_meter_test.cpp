@@ -11,7 +11,7 @@
 #include "libsim/model/damping.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
-namespace modcal {
+namespace modcal::energy_meter_test {
 namespace {
 
 constexpr double kRate = 51200.0;
@@ -236,4 +236,4 @@ TEST(EnergyMeter, SeesWrongJumps) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::energy_meter_test

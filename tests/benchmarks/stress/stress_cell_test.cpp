@@ -9,7 +9,7 @@
 #include "libsim/model/damping.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
-namespace modcal {
+namespace modcal::stress_cell_test {
 namespace {
 
 constexpr std::array kSimulators = {"newmark_explicit", "modal_exact", "modal_event"};
@@ -77,4 +77,4 @@ TEST(StabilityMap, ThePapersCaseIsRightAtItsTimeStep) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::stress_cell_test

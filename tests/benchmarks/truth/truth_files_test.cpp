@@ -11,7 +11,7 @@
 #include "libsim/records/recording.hpp"
 #include "tests/folder_test.hpp"
 
-namespace modcal::truth {
+namespace modcal::truth::truth_files_test {
 namespace {
 
 using nlohmann::json;
@@ -78,4 +78,4 @@ TEST_F(TruthFiles, RefuseWhatCannotBeWritten) {
 }
 
 }  // namespace
-}  // namespace modcal::truth
+}  // namespace modcal::truth::truth_files_test

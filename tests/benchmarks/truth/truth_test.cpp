@@ -13,7 +13,7 @@
 #include "benchmarks/truth/sensor.hpp"
 #include "tests/benchmarks/truth/continuum.hpp"
 
-namespace modcal::truth {
+namespace modcal::truth::truth_test {
 namespace {
 
 /// Small and quick, with a bow that excites it well.
@@ -375,4 +375,4 @@ TEST(TruthRecord, RefusesWhatItCannotSimulate) {
 }
 
 }  // namespace
-}  // namespace modcal::truth
+}  // namespace modcal::truth::truth_test

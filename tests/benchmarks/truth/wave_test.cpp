@@ -7,7 +7,7 @@
 
 #include "tests/benchmarks/truth/continuum.hpp"
 
-namespace modcal::truth {
+namespace modcal::truth::wave_test {
 namespace {
 
 TEST(TruthWave, HasTheModesOfTheContinuumToTheEndOfTheBand) {
@@ -109,4 +109,4 @@ TEST(TruthWave, RefusesGridsThatItsTimeStepCannotCarry) {
 }
 
 }  // namespace
-}  // namespace modcal::truth
+}  // namespace modcal::truth::wave_test

@@ -5,7 +5,7 @@
 
 #include "tests/experiments/cli/program_run.hpp"
 
-namespace modcal {
+namespace modcal::answers_test {
 namespace {
 
 using nlohmann::json;
@@ -195,4 +195,4 @@ TEST_F(Answers, ManualPageIsWellFormed) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::answers_test

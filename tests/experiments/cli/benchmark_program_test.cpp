@@ -5,7 +5,7 @@
 
 #include "tests/experiments/cli/program_run.hpp"
 
-namespace modcal {
+namespace modcal::benchmark_program_test {
 namespace {
 
 using nlohmann::json;
@@ -171,4 +171,4 @@ TEST_F(BenchmarkProgram, RefusesASecondRunInTheSameFolder) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::benchmark_program_test

@@ -4,7 +4,7 @@
 #include "libsim/records/formats.hpp"
 #include "tests/experiments/cli/program_run.hpp"
 
-namespace modcal {
+namespace modcal::convert_test {
 namespace {
 
 using ::testing::ContainsRegex;
@@ -78,4 +78,4 @@ TEST_F(Convert, ADamagedFileIsRefusedWithItsPlace) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::convert_test

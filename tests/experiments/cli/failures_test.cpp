@@ -6,7 +6,7 @@
 
 #include "tests/experiments/cli/program_run.hpp"
 
-namespace modcal {
+namespace modcal::failures_test {
 namespace {
 
 using nlohmann::json;
@@ -71,4 +71,4 @@ TEST_F(Failures, OfASweepAreSaidOnce) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::failures_test

@@ -7,7 +7,7 @@
 
 #include "tests/experiments/cli/program_run.hpp"
 
-namespace modcal {
+namespace modcal::first_hour_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -218,4 +218,4 @@ TEST_F(FirstHour, HasAnExampleOfEveryKind) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::first_hour_test

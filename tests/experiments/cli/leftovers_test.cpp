@@ -6,7 +6,7 @@
 #include "experiments/runs/journal.hpp"
 #include "tests/experiments/cli/program_run.hpp"
 
-namespace modcal {
+namespace modcal::leftovers_test {
 namespace {
 
 using nlohmann::json;
@@ -217,4 +217,4 @@ TEST_F(Leftovers, NothingIsLeftOfAnInterruptedConversion) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::leftovers_test

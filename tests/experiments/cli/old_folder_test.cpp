@@ -6,7 +6,7 @@
 
 #include "tests/experiments/cli/program_run.hpp"
 
-namespace modcal {
+namespace modcal::old_folder_test {
 namespace {
 
 using nlohmann::json;
@@ -185,4 +185,4 @@ TEST_F(OldFolder, KeepsScriptsThatSubmitDidNotWrite) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::old_folder_test

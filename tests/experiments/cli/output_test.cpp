@@ -5,7 +5,7 @@
 
 #include "tests/experiments/cli/program_run.hpp"
 
-namespace modcal {
+namespace modcal::output_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -119,4 +119,4 @@ TEST_F(Output, WritesWhatItFoundWhereTheFolderOfASingleRunIsGone) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::output_test

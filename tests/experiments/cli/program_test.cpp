@@ -6,7 +6,7 @@
 #include "tests/experiments/cli/program_run.hpp"
 #include "tests/experiments/config/json_schema.hpp"
 
-namespace modcal {
+namespace modcal::program_test {
 namespace {
 
 using nlohmann::json;
@@ -278,4 +278,4 @@ TEST_F(Program, PlansWithoutRunning) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::program_test

@@ -5,7 +5,7 @@
 
 #include "tests/experiments/cli/program_run.hpp"
 
-namespace modcal {
+namespace modcal::refusals_test {
 namespace {
 
 #if defined(__has_feature)
@@ -284,4 +284,4 @@ TEST_F(Refusals, NumbersThatAreTooLarge) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::refusals_test

@@ -6,7 +6,7 @@
 
 #include "tests/experiments/cli/program_run.hpp"
 
-namespace modcal {
+namespace modcal::resume_test {
 namespace {
 
 using nlohmann::json;
@@ -277,4 +277,4 @@ TEST_F(Resume, RefusesShardsOfWhatIsNoList) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::resume_test

@@ -1,11 +1,10 @@
-#include "experiments/cli/slurm.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "experiments/cli/command.hpp"
+#include "experiments/cli/slurm.hpp"
 
-namespace modcal {
+namespace modcal::slurm_script_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -55,4 +54,4 @@ TEST(ShellWord, QuotesWhatAShellWouldRead) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::slurm_script_test

@@ -11,7 +11,7 @@
 
 #include "tests/experiments/cli/program_run.hpp"
 
-namespace modcal {
+namespace modcal::wrong_inputs_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -163,4 +163,4 @@ TEST_F(WrongInputs, CommandLines) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::wrong_inputs_test

@@ -5,7 +5,7 @@
 #include "tests/experiments/config/example_options.hpp"
 #include "tests/experiments/config/json_schema.hpp"
 
-namespace modcal {
+namespace modcal::help_test {
 namespace {
 
 using nlohmann::json;
@@ -73,4 +73,4 @@ TEST(OptionsSchema, RejectsWrongOptions) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::help_test

@@ -6,7 +6,7 @@
 
 #include "tests/experiments/config/mistakes_of.hpp"
 
-namespace modcal {
+namespace modcal::reader_mistakes_test {
 namespace {
 
 using testing::mistakes;
@@ -207,4 +207,4 @@ TEST(ManyMistakes, AreShownFromTheFirstAndCounted) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::reader_mistakes_test

@@ -9,7 +9,7 @@
 #include "tests/experiments/config/example_options.hpp"
 #include "tests/experiments/config/mistakes_of.hpp"
 
-namespace modcal {
+namespace modcal::reader_test {
 namespace {
 
 using testing::ExampleOptions;
@@ -175,4 +175,4 @@ TEST(Assignments, AreNamedInMistakesAfterThoseOfTheFile) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::reader_test

@@ -7,7 +7,7 @@
 #include "libsim/model/damping.hpp"
 #include "tests/experiments/config/example_options.hpp"
 
-namespace modcal {
+namespace modcal::resolved_test {
 namespace {
 
 using testing::Band;
@@ -95,4 +95,4 @@ TEST(ResolvedWriter, AsksForValuesAloneThatAreMissing) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::resolved_test

@@ -1,5 +1,3 @@
-#include "experiments/config/reader.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,9 +5,10 @@
 #include <thread>
 #include <vector>
 
+#include "experiments/config/reader.hpp"
 #include "libsim/base/units.hpp"
 
-namespace modcal {
+namespace modcal::scalar_test {
 namespace {
 
 struct Reading {
@@ -121,4 +120,4 @@ TEST(UnitScale, CanBeAskedByManyThreads) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::scalar_test

@@ -7,7 +7,7 @@
 
 #include "experiments/config/reader.hpp"
 
-namespace modcal {
+namespace modcal::sweep_reader_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -99,4 +99,4 @@ TEST(SweepReader, NamesMistakesWithTheirPlaces) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::sweep_reader_test

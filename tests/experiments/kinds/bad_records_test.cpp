@@ -18,7 +18,7 @@
 #include "tests/folder_test.hpp"
 #include "tests/refusal.hpp"
 
-namespace modcal {
+namespace modcal::bad_records_test {
 namespace {
 
 constexpr double kFundamental = 294.0, kInharmonicity = 1.1e-4, kContact = 0.041;
@@ -382,4 +382,4 @@ TEST_F(BadRecords, MaySayHowFastTheirClockRan) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::bad_records_test

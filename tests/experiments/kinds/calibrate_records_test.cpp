@@ -14,7 +14,7 @@
 #include "tests/folder_test.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
-namespace modcal {
+namespace modcal::calibrate_records_test {
 namespace {
 
 using nlohmann::json;
@@ -299,4 +299,4 @@ TEST(SensorCorrection, TakesOutGainDelayAndHighPass) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::calibrate_records_test

@@ -14,7 +14,7 @@
 #include "experiments/study/study.hpp"
 #include "tests/experiments/kinds/small_config.hpp"
 
-namespace modcal {
+namespace modcal::configs_test {
 namespace {
 
 StudyResult run(const LoadedExperiment& loaded) {
@@ -142,4 +142,4 @@ TEST(Regularizers, AreComparedInACellEach) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::configs_test

@@ -21,7 +21,7 @@
 #include "libsim/base/instruction_set.hpp"
 #include "tests/experiments/kinds/small_config.hpp"
 
-namespace modcal {
+namespace modcal::digests_test {
 namespace {
 
 constexpr double kLeastBound = 1e-9;
@@ -217,7 +217,7 @@ INSTANTIATE_TEST_SUITE_P(All, Digests, testing::ValuesIn(config_files(MODCAL_CON
                          });
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::digests_test
 
 int main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);

@@ -8,7 +8,7 @@
 #include "experiments/loader.hpp"
 #include "experiments/study/study.hpp"
 
-namespace modcal {
+namespace modcal::identify_test {
 namespace {
 
 const std::string kConfig = std::string(MODCAL_CONFIGS) + "/calibration/pluck.yaml";
@@ -50,4 +50,4 @@ TEST(IdentifyPluck, RefusesAStringAtRest) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::identify_test

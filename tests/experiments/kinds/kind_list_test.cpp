@@ -9,7 +9,7 @@
 #include "experiments/loader.hpp"
 #include "tests/folder_test.hpp"
 
-namespace modcal {
+namespace modcal::kind_list_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -205,4 +205,4 @@ TEST(RunOutcome, HasTheNumbersOfTheTables) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::kind_list_test

@@ -6,7 +6,7 @@
 
 #include "experiments/loader.hpp"
 
-namespace modcal {
+namespace modcal::lint_test {
 namespace {
 
 std::string config(const std::string& friction, const std::string& bow,
@@ -388,4 +388,4 @@ TEST(LintFigures, NamesTheLineOfAWindowOutsideTheRecord) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::lint_test

@@ -16,7 +16,7 @@
 #include "libsim/signal/statistics.hpp"
 #include "tests/folder_test.hpp"
 
-namespace modcal {
+namespace modcal::record_round_trip_test {
 namespace {
 
 class RecordRoundTrip : public FolderTest {
@@ -191,4 +191,4 @@ TEST_F(RecordRoundTrip, TheInspectedStanzaAsksForTheStringAndNothingElse) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::record_round_trip_test

@@ -10,7 +10,7 @@
 #include "experiments/study/study.hpp"
 #include "tests/refusal.hpp"
 
-namespace modcal {
+namespace modcal::scene_faults_test {
 namespace {
 
 constexpr const char* kScene = R"(kind: simulate
@@ -169,4 +169,4 @@ TEST(SceneFaults, EveryCellIsRightOrRefused) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::scene_faults_test

@@ -12,7 +12,7 @@
 #include "libsim/signal/statistics.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
-namespace modcal {
+namespace modcal::schelleng_test {
 namespace {
 
 using testing::HasSubstr;
@@ -162,4 +162,4 @@ TEST(SchellengMap, RefusesWhatMakesNoMap) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::schelleng_test

@@ -5,7 +5,7 @@
 #include "experiments/loader.hpp"
 #include "experiments/study/study.hpp"
 
-namespace modcal {
+namespace modcal::simulate_test {
 namespace {
 
 struct RunSteps {
@@ -50,4 +50,4 @@ TEST(Simulate, SaysHowManyStepsWereTakenBack) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::simulate_test

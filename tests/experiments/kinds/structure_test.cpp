@@ -14,7 +14,7 @@
 #include "libsim/base/files.hpp"
 #include "tests/folder_test.hpp"
 
-namespace modcal {
+namespace modcal::structure_test {
 namespace {
 
 using testing::HasSubstr;
@@ -270,4 +270,4 @@ TEST_F(TableFile, IsRefusedWithThePlaceOfAMistake) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::structure_test

@@ -9,7 +9,7 @@
 #include "experiments/problems/modcal_problems.h"
 #include "tests/experiments/cli/program_run.hpp"
 
-namespace modcal {
+namespace modcal::problems_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -162,4 +162,4 @@ TEST_F(Problems, TheExampleWithSciPyFindsTheTruth) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::problems_test

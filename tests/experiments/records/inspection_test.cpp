@@ -13,7 +13,7 @@
 #include "libsim/records/recording.hpp"
 #include "tests/folder_test.hpp"
 
-namespace modcal {
+namespace modcal::inspection_test {
 namespace {
 
 using testing::ElementsAre;
@@ -199,4 +199,4 @@ TEST_F(Inspect, ProposalLoadsAsItStands) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::inspection_test

@@ -1,5 +1,3 @@
-#include "experiments/report/report.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,9 +5,10 @@
 #include <limits>
 #include <numbers>
 
+#include "experiments/report/report.hpp"
 #include "libsim/base/error.hpp"
 
-namespace modcal::report {
+namespace modcal::report::audio_test {
 namespace {
 
 std::vector<unsigned char> decoded(const std::string& uri) {
@@ -94,4 +93,4 @@ TEST(Audio, RefusesWhatNoBrowserPlays) {
 }
 
 }  // namespace
-}  // namespace modcal::report
+}  // namespace modcal::report::audio_test

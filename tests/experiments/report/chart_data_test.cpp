@@ -1,5 +1,3 @@
-#include "experiments/report/html_page.hpp"
-
 #include <gtest/gtest.h>
 
 #include <array>
@@ -8,9 +6,10 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/report/encoding.hpp"
+#include "experiments/report/html_page.hpp"
 #include "tests/experiments/report/sample_report.hpp"
 
-namespace modcal::report {
+namespace modcal::report::chart_data_test {
 namespace {
 
 std::string base64_of(std::string_view text) {
@@ -136,4 +135,4 @@ TEST(ChartData, CannotEndTheScriptElementOrCarryBrokenText) {
 }
 
 }  // namespace
-}  // namespace modcal::report
+}  // namespace modcal::report::chart_data_test

@@ -1,12 +1,12 @@
-#include "experiments/report/drawing.hpp"
-
 #include <gmock/gmock.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-namespace modcal::report {
+#include "experiments/report/drawing.hpp"
+
+namespace modcal::report::decimation_test {
 namespace {
 
 struct Ramp {
@@ -92,4 +92,4 @@ TEST(DrawnSamples, DescendingAbscissaeAreColumnsToo) {
 }
 
 }  // namespace
-}  // namespace modcal::report
+}  // namespace modcal::report::decimation_test

@@ -8,7 +8,7 @@
 #include "libsim/base/error.hpp"
 #include "tests/experiments/report/sample_report.hpp"
 
-namespace modcal::report {
+namespace modcal::report::drawing_test {
 namespace {
 
 using testing::ElementsAre;
@@ -166,4 +166,4 @@ TEST(HasSharedLegend, WhenAllPanelsShowTheSameThings) {
 }
 
 }  // namespace
-}  // namespace modcal::report
+}  // namespace modcal::report::drawing_test

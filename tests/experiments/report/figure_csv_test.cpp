@@ -1,13 +1,12 @@
-#include "experiments/report/figure.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <limits>
 
+#include "experiments/report/figure.hpp"
 #include "tests/experiments/report/sample_report.hpp"
 
-namespace modcal::report {
+namespace modcal::report::figure_csv_test {
 namespace {
 
 TEST(FigureCsv, SharesAbscissaeAndStatesUnits) {
@@ -40,4 +39,4 @@ TEST(FigureCsv, HoldsAllSamplesOfALongSeries) {
 }
 
 }  // namespace
-}  // namespace modcal::report
+}  // namespace modcal::report::figure_csv_test

@@ -6,7 +6,7 @@
 
 #include "tests/experiments/report/sample_report.hpp"
 
-namespace modcal::report {
+namespace modcal::report::gnuplot_sheet_test {
 namespace {
 
 // Two columns of panels with titles and as many curves, so many that no line holds all labels.
@@ -122,4 +122,4 @@ TEST(GnuplotScript, DrawsTheReferenceBehindTheBand) {
 }
 
 }  // namespace
-}  // namespace modcal::report
+}  // namespace modcal::report::gnuplot_sheet_test

@@ -10,7 +10,7 @@
 #include "tests/experiments/report/sample_report.hpp"
 #include "tests/folder_test.hpp"
 
-namespace modcal::report {
+namespace modcal::report::gnuplot_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -119,4 +119,4 @@ TEST(RunProcess, ReportsExitCodesSignalsAndOutput) {
 }
 
 }  // namespace
-}  // namespace modcal::report
+}  // namespace modcal::report::gnuplot_test

@@ -5,7 +5,7 @@
 #include "experiments/report/encoding.hpp"
 #include "tests/experiments/report/sample_report.hpp"
 
-namespace modcal::report {
+namespace modcal::report::html_page_test {
 namespace {
 
 using testing::HasSubstr;
@@ -131,4 +131,4 @@ TEST(HtmlParagraphs, AreSeparatedByEmptyLines) {
 }
 
 }  // namespace
-}  // namespace modcal::report
+}  // namespace modcal::report::html_page_test

@@ -3,7 +3,7 @@
 
 #include "experiments/report/drawing.hpp"
 
-namespace modcal::report {
+namespace modcal::report::readable_test {
 namespace {
 
 using ::testing::DoubleNear;
@@ -83,4 +83,4 @@ TEST(Symbols, HaveSubscriptsInPrint) {
 }
 
 }  // namespace
-}  // namespace modcal::report
+}  // namespace modcal::report::readable_test

@@ -1,12 +1,12 @@
 // One description of a result: JSON both ways, tables.
+#include "experiments/report/result.hpp"
+
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <limits>
 
-#include "experiments/report/result.hpp"
-
-namespace modcal::report {
+namespace modcal::report::result_test {
 namespace {
 
 using testing::ElementsAre;
@@ -105,4 +105,4 @@ TEST(TableOfRows, HasItsColumnsWithoutAnyRow) {
 }
 
 }  // namespace
-}  // namespace modcal::report
+}  // namespace modcal::report::result_test

@@ -8,7 +8,7 @@
 #include "libsim/base/error.hpp"
 #include "tests/experiments/report/sample_report.hpp"
 
-namespace modcal::report {
+namespace modcal::report::table_test {
 namespace {
 
 TEST(TableCsv, HasUnitsAllDigitsAndQuotes) {
@@ -79,4 +79,4 @@ TEST(CheckTable, RefusesWhatCannotBeWritten) {
 }
 
 }  // namespace
-}  // namespace modcal::report
+}  // namespace modcal::report::table_test

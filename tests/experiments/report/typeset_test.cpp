@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace modcal::report {
+namespace modcal::report::typeset_test {
 namespace {
 
 TEST(Typeset, WritesPowersOfTen) {
@@ -38,4 +38,4 @@ TEST(Typeset, EscapesWhatHtmlWouldTake) {
 }
 
 }  // namespace
-}  // namespace modcal::report
+}  // namespace modcal::report::typeset_test

@@ -11,7 +11,7 @@
 #include "tests/experiments/report/sample_report.hpp"
 #include "tests/folder_test.hpp"
 
-namespace modcal::report {
+namespace modcal::report::write_report_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -123,4 +123,4 @@ TEST_F(WriteReport, FilesAreReplacedAsAWhole) {
 }
 
 }  // namespace
-}  // namespace modcal::report
+}  // namespace modcal::report::write_report_test

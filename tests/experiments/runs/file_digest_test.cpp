@@ -6,7 +6,7 @@
 #include "experiments/runs/journal.hpp"
 #include "tests/folder_test.hpp"
 
-namespace modcal {
+namespace modcal::file_digest_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -44,4 +44,4 @@ TEST_F(FileDigest, IsThatOfTheContentWhereverItStands) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::file_digest_test

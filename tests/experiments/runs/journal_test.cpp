@@ -14,7 +14,7 @@
 #include "libsim/base/error.hpp"
 #include "tests/folder_test.hpp"
 
-namespace modcal {
+namespace modcal::journal_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -207,4 +207,4 @@ TEST_F(Journal, KeepsUnusualTimesAndLongOutcomes) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::journal_test

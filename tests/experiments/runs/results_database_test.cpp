@@ -8,7 +8,7 @@
 #include "libsim/base/error.hpp"
 #include "tests/folder_test.hpp"
 
-namespace modcal {
+namespace modcal::results_database_test {
 namespace {
 
 std::vector<ResultRow> rows() {
@@ -85,4 +85,4 @@ TEST(ResultsDatabase, DigestDependsOnEveryValueButTheTimes) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::results_database_test

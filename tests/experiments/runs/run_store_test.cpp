@@ -9,7 +9,7 @@
 #include "libsim/base/error.hpp"
 #include "tests/folder_test.hpp"
 
-namespace modcal {
+namespace modcal::run_store_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -109,4 +109,4 @@ TEST(ShardOption, SharesOutEveryTaskOnce) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::run_store_test

@@ -8,7 +8,7 @@
 
 #include "tests/folder_test.hpp"
 
-namespace modcal {
+namespace modcal::task_experiment_test {
 namespace {
 
 // Outcome of task i is i²; counts how often tasks are run.
@@ -117,4 +117,4 @@ TEST_F(TaskList, LetsAnErrorOfATaskThrough) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::task_experiment_test

@@ -6,7 +6,7 @@
 #include "libsim/base/error.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
-namespace modcal {
+namespace modcal::model_error_test {
 namespace {
 
 TEST(WithErrors, DrawsEveryFrequencyWithinTheStatedError) {
@@ -45,4 +45,4 @@ TEST(WithErrors, RefusesAContactOutsideTheString) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::model_error_test

@@ -1,14 +1,13 @@
-#include "experiments/study/sample.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
+#include "experiments/study/sample.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/base/random.hpp"
 
-namespace modcal {
+namespace modcal::paired_bootstrap_test {
 namespace {
 
 // Pairs (x_i e^{s z_i}, x_i) with log-normal x: common spread, ratio e^{shift}.
@@ -59,4 +58,4 @@ TEST(PairedBootstrap, ClaimsNothingFromAHandfulOfDrawsOrFromTies) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::paired_bootstrap_test

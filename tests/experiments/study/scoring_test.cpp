@@ -7,7 +7,7 @@
 #include "experiments/study/identification.hpp"
 #include "libsim/base/error.hpp"
 
-namespace modcal {
+namespace modcal::scoring_test {
 namespace {
 
 Signal sine(double phase, double offset) {
@@ -139,4 +139,4 @@ TEST(LowPassed, KeepsWhatIsBelowTheCutAtEveryStep) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::scoring_test

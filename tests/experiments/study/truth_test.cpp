@@ -7,7 +7,7 @@
 #include "libsim/base/task_loop.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
-namespace modcal {
+namespace modcal::truth_test {
 namespace {
 
 TruthOptions short_truth() {
@@ -41,4 +41,4 @@ TEST(TruthCache, TellsEveryWaiterWhyASceneCannotBeSimulated) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::truth_test

@@ -14,7 +14,7 @@
 #include "tests/libcalib/likelihood/bowed_case.hpp"
 #include "tests/libcalib/likelihood/pluck_record_case.hpp"
 
-namespace modcal {
+namespace modcal::expected_limit_test {
 namespace {
 
 constexpr double kAutomatic = std::numeric_limits<double>::quiet_NaN();
@@ -296,4 +296,4 @@ TEST_F(PapersString, RefusesWhatIsNoPrior) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::expected_limit_test

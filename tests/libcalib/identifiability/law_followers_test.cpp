@@ -6,7 +6,7 @@
 
 #include "libsim/base/random.hpp"
 
-namespace modcal {
+namespace modcal::law_followers_test {
 namespace {
 
 constexpr Eigen::Index kModes = 50;
@@ -134,4 +134,4 @@ TEST(LawFollowers, HaveNoScatterWhereEveryFrequencyIsKnownAndOnTheLaw) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::law_followers_test

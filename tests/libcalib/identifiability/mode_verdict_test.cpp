@@ -6,7 +6,7 @@
 
 #include "tests/libsim/dynamics/paper_case.hpp"
 
-namespace modcal {
+namespace modcal::mode_verdict_test {
 namespace {
 
 struct Found {
@@ -130,4 +130,4 @@ TEST(Departures, AreThoseFromTheLaw) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::mode_verdict_test

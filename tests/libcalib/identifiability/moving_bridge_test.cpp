@@ -10,7 +10,7 @@
 #include "benchmarks/truth/truth.hpp"
 #include "libcalib/identifiability/tuning.hpp"
 
-namespace modcal {
+namespace modcal::moving_bridge_test {
 namespace {
 
 constexpr std::size_t kModes = 12;
@@ -102,4 +102,4 @@ TEST(MovingBridge, ChangesAModeOfTheBody) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::moving_bridge_test

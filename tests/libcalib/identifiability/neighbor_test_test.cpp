@@ -8,7 +8,7 @@
 #include "libcalib/identifiability/neighbor_kernel.hpp"
 #include "tests/libcalib/likelihood/bowed_case.hpp"
 
-namespace modcal {
+namespace modcal::neighbor_test_test {
 namespace {
 
 constexpr std::size_t kMode = 8;  // f_9
@@ -94,4 +94,4 @@ TEST(Rivals, TakeTheSightOfAMode) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::neighbor_test_test

@@ -8,7 +8,7 @@
 #include "libsim/base/error.hpp"
 #include "libsim/base/random.hpp"
 
-namespace modcal {
+namespace modcal::rms_interval_test {
 namespace {
 
 TEST(RmsInterval, HasTheQuantilesOfTables) {
@@ -41,4 +41,4 @@ TEST(RmsInterval, RefusesNoDraws) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::rms_interval_test

@@ -10,7 +10,7 @@
 #include "libsim/base/error.hpp"
 #include "tests/libcalib/likelihood/bowed_case.hpp"
 
-namespace modcal {
+namespace modcal::bin_weights_test {
 namespace {
 
 constexpr double kAutomatic = std::numeric_limits<double>::quiet_NaN();
@@ -138,4 +138,4 @@ TEST(InformationWeights, LoseLittleMoreThanWeightsOfTheTrueForce) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::bin_weights_test

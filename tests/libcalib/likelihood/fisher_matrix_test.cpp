@@ -9,7 +9,7 @@
 #include "libcalib/parameters/string_unknowns.hpp"
 #include "tests/libcalib/likelihood/bowed_case.hpp"
 
-namespace modcal {
+namespace modcal::fisher_matrix_test {
 namespace {
 
 using Index = Eigen::Index;
@@ -246,4 +246,4 @@ TEST(FisherMatrix, KnowsTheCornerOfASensorAsFarAsTheMeanIsNotMeasured) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::fisher_matrix_test

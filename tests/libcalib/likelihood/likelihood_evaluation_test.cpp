@@ -12,7 +12,7 @@
 #include "libsim/base/task_loop.hpp"
 #include "tests/libcalib/likelihood/bowed_case.hpp"
 
-namespace modcal {
+namespace modcal::likelihood_evaluation_test {
 namespace {
 
 constexpr double kBand = 2.0 * std::numbers::pi * 10300.0;
@@ -364,4 +364,4 @@ TEST_F(OneSecond, ThreadsDoNotChangeABit) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::likelihood_evaluation_test

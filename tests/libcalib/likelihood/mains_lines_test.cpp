@@ -11,7 +11,7 @@
 #include "tests/libcalib/likelihood/bowed_case.hpp"
 #include "tests/libcalib/likelihood/pluck_record_case.hpp"
 
-namespace modcal {
+namespace modcal::mains_lines_test {
 namespace {
 
 using std::numbers::pi;
@@ -33,14 +33,14 @@ NoisyRecords with_hum(NoisyRecords records, const BowedCase& bowed, double mains
   return records;
 }
 
-class OneSecond : public ::testing::Test {
+class OneSecondOfMains : public ::testing::Test {
  protected:
   static void SetUpTestSuite() { bowed = bowed_case(0.0285, 1.39e-4, 1.0); }
   static BowedCase bowed;
 };
-BowedCase OneSecond::bowed;
+BowedCase OneSecondOfMains::bowed;
 
-TEST_F(OneSecond, OfHumAreFound) {
+TEST_F(OneSecondOfMains, OfHumAreFound) {
   const NoisyRecords records = noisy(bowed, 0.01, 3);
   ModelPoint start = bowed.truth;
   for (double& omega : start.basis.omega) omega *= 1.015;
@@ -62,7 +62,7 @@ TEST_F(OneSecond, OfHumAreFound) {
   }
 }
 
-TEST_F(OneSecond, AreAsStated) {
+TEST_F(OneSecondOfMains, AreAsStated) {
   const NoisyRecords records = noisy(bowed, 0.01, 3);
   EXPECT_TRUE(mains_lines(with_hum(records, bowed, 50.0, 0.1), bowed.truth, 0.0).empty());
   const std::vector<double> stated = mains_lines(records, bowed.truth, 25.0);
@@ -76,7 +76,7 @@ TEST(MainsLines, AreNotLookedForInAShortRecord) {
   EXPECT_TRUE(mains_lines(records, bowed.truth, kNan).empty());
 }
 
-TEST_F(OneSecond, AreNoMatterToTheFit) {
+TEST_F(OneSecondOfMains, AreNoMatterToTheFit) {
   const NoisyRecords plain = noisy(bowed, 0.01, 3);
   ModelPoint point = bowed.truth;
   point.contact += 1e-5;
@@ -133,4 +133,4 @@ TEST(MainsLines, OfEitherEndAreNoMatterToAPluck) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::mains_lines_test

@@ -13,7 +13,7 @@
 #include "libcalib/likelihood/kernels/mode_columns.hpp"
 #include "tests/libcalib/likelihood/bowed_case.hpp"
 
-namespace modcal {
+namespace modcal::projected_likelihood_test {
 namespace {
 
 using std::numbers::pi;
@@ -434,4 +434,4 @@ TEST_F(AtShortRecord, NoiseAddsItsOwnInformation) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::projected_likelihood_test

@@ -8,7 +8,7 @@
 #include "libcalib/parameters/string_unknowns.hpp"
 #include "tests/libcalib/likelihood/bowed_case.hpp"
 
-namespace modcal {
+namespace modcal::signal_column_test {
 namespace {
 
 constexpr double kBand = 2.0 * std::numbers::pi * 10300.0;
@@ -105,4 +105,4 @@ TEST_F(SignalColumns, AreCutWithTheirRecord) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::signal_column_test

@@ -10,7 +10,7 @@
 #include "tests/libcalib/likelihood/bowed_case.hpp"
 #include "tests/libcalib/likelihood/pluck_record_case.hpp"
 
-namespace modcal {
+namespace modcal::smooth_response_test {
 namespace {
 
 using Index = Eigen::Index;
@@ -284,4 +284,4 @@ TEST_F(WithResponse, ThreadsAndNodesChangeNothing) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::smooth_response_test

@@ -12,7 +12,7 @@
 #include "libsim/base/error.hpp"
 #include "tests/libcalib/likelihood/bowed_case.hpp"
 
-namespace modcal {
+namespace modcal::string_unknowns_test {
 namespace {
 
 using std::numbers::pi;
@@ -165,4 +165,4 @@ TEST(StringUnknowns, ALawOfDampingIsFound) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::string_unknowns_test

@@ -6,7 +6,7 @@
 
 #include "tests/libcalib/likelihood/bowed_case.hpp"
 
-namespace modcal {
+namespace modcal::noise_fit_test {
 namespace {
 
 constexpr double kBand = 2.0 * std::numbers::pi * 10300.0;
@@ -52,4 +52,4 @@ TEST(NoiseFit, KnowsTheMisfitOfAWrongModel) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::noise_fit_test

@@ -10,7 +10,7 @@
 #include "tests/libcalib/calibration_case.hpp"
 #include "tests/libcalib/slope_check.hpp"
 
-namespace modcal {
+namespace modcal::contact_location_test {
 namespace {
 
 using Names = std::vector<std::string>;
@@ -89,4 +89,4 @@ TEST(ContactLocation, NeedsTheContactToBeFreeAndBothReactions) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::contact_location_test

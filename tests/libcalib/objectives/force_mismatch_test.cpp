@@ -8,7 +8,7 @@
 #include "tests/libcalib/calibration_case.hpp"
 #include "tests/libcalib/slope_check.hpp"
 
-namespace modcal {
+namespace modcal::force_mismatch_test {
 namespace {
 
 using Names = std::vector<std::string>;
@@ -134,4 +134,4 @@ TEST(ForceMismatch, RefusesOneReactionAndEmptyBands) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::force_mismatch_test

@@ -12,7 +12,7 @@
 #include "tests/libcalib/calibration_case.hpp"
 #include "tests/libcalib/slope_check.hpp"
 
-namespace modcal {
+namespace modcal::frequency_prior_test {
 namespace {
 
 using Names = std::vector<std::string>;
@@ -81,4 +81,4 @@ TEST(FrequencyPrior, RefusesWhatIsNoMeasurement) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::frequency_prior_test

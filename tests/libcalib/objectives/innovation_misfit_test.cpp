@@ -13,7 +13,7 @@
 #include "libsim/signal/measurement.hpp"
 #include "tests/libinverse/observer/bowed_record.hpp"
 
-namespace modcal {
+namespace modcal::innovation_misfit_test {
 namespace {
 
 using Names = std::vector<std::string>;
@@ -145,4 +145,4 @@ TEST(InnovationMisfit, RefusesWhatItCannotPredict) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::innovation_misfit_test

@@ -15,7 +15,7 @@
 #include "tests/libcalib/likelihood/bowed_case.hpp"
 #include "tests/libcalib/slope_check.hpp"
 
-namespace modcal {
+namespace modcal::joint_likelihood_test {
 namespace {
 
 using Names = std::vector<std::string>;
@@ -268,4 +268,4 @@ TEST_F(JointLikelihoodTest, RefusesOneReaction) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::joint_likelihood_test

@@ -12,7 +12,7 @@
 #include "libcalib/objectives/spectral_peak.hpp"
 #include "tests/libcalib/calibration_case.hpp"
 
-namespace modcal {
+namespace modcal::objective_jets_test {
 namespace {
 
 using Jet = ceres::Jet<double, 4>;  // x_c, f_4, f0, B
@@ -223,4 +223,4 @@ TEST(ObjectiveJets, SpectralPeakAndItsSmoothVariant) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::objective_jets_test

@@ -14,7 +14,7 @@
 #include "tests/libcalib/likelihood/pluck_record_case.hpp"
 #include "tests/libcalib/slope_check.hpp"
 
-namespace modcal {
+namespace modcal::several_records_test {
 namespace {
 
 using Names = std::vector<std::string>;
@@ -188,4 +188,4 @@ TEST_F(SeveralRecordsTest, WhatNothingTellsHasNoBound) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::several_records_test

@@ -13,7 +13,7 @@
 #include "tests/libcalib/calibration_case.hpp"
 #include "tests/libcalib/slope_check.hpp"
 
-namespace modcal {
+namespace modcal::smooth_variants_test {
 namespace {
 
 using Names = std::vector<std::string>;
@@ -198,4 +198,4 @@ TEST(WeightedSum, RefusesWhatIsNoSum) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::smooth_variants_test

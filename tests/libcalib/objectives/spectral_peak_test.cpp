@@ -13,7 +13,7 @@
 #include "tests/libcalib/calibration_case.hpp"
 #include "tests/libcalib/slope_check.hpp"
 
-namespace modcal {
+namespace modcal::spectral_peak_test {
 namespace {
 
 using Names = std::vector<std::string>;
@@ -248,4 +248,4 @@ TEST(SpectralPeak, RefusesWhatItCannotIntegrate) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::spectral_peak_test

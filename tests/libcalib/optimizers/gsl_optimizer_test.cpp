@@ -8,7 +8,7 @@
 #include "libsim/base/error.hpp"
 #include "tests/libcalib/test_functions.hpp"
 
-namespace modcal {
+namespace modcal::gsl_optimizer_test {
 namespace {
 
 TEST(GslOptimizer, BrentFindsTheMinimumOfACosine) {
@@ -28,4 +28,4 @@ TEST(GslOptimizer, RefusesUnknownAlgorithmsAndTooFewResiduals) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::gsl_optimizer_test

@@ -7,7 +7,7 @@
 #include "libsim/base/error.hpp"
 #include "tests/libcalib/test_functions.hpp"
 
-namespace modcal {
+namespace modcal::nlopt_optimizer_test {
 namespace {
 
 using testing::HasSubstr;
@@ -69,4 +69,4 @@ TEST(NloptOptimizer, LocalAlgorithmsGoWithMlslAlone) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::nlopt_optimizer_test

@@ -9,7 +9,7 @@
 #include "libcalib/optimizers/systematic_search.hpp"
 #include "tests/libcalib/test_functions.hpp"
 
-namespace modcal {
+namespace modcal::settled_variables_test {
 namespace {
 
 using testing::Each;
@@ -154,4 +154,4 @@ TEST(ModeByModeSkipping, SearchesAVariableAgainWhenWhatReachesItMoves) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::settled_variables_test

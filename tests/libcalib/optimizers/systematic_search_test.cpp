@@ -10,7 +10,7 @@
 #include "libsim/base/error.hpp"
 #include "tests/libcalib/test_functions.hpp"
 
-namespace modcal {
+namespace modcal::systematic_search_test {
 namespace {
 
 using testing::HasSubstr;
@@ -126,4 +126,4 @@ TEST(ModeByMode, StaysWithinBoundsAndRefusesAVariableThatStartsAtZero) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::systematic_search_test

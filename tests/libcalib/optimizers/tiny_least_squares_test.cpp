@@ -3,25 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <new>
-
 #include "libsim/base/error.hpp"
+#include "tests/allocations.hpp"
 #include "tests/libcalib/test_functions.hpp"
 
-namespace {
-std::size_t allocations = 0;
-}
-
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size)) return memory;
-  throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t /*size*/) noexcept { std::free(memory); }
-
-namespace modcal {
+namespace modcal::tiny_least_squares_test {
 namespace {
 
 /// The damped sinusoids, noting how many allocations there had been at every evaluation.
@@ -39,8 +25,8 @@ class Noting final : public ObjectiveFunction {
   void do_evaluate(std::span<const double> x, const ObjectiveOutputs& outputs) const override {
     inner_.evaluate(x, outputs);
     // The first evaluation is the evaluator's, the second the search's own.
-    if (++calls == 3) after_third = allocations;
-    last = allocations;
+    if (++calls == 3) after_third = allocations();
+    last = allocations();
   }
   DampedSinusoids inner_;
 };
@@ -64,4 +50,4 @@ TEST(TinyLeastSquares, RefusesADampingThatIsNotPositive) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::tiny_least_squares_test

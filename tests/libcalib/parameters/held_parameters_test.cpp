@@ -10,7 +10,7 @@
 #include "tests/libcalib/likelihood/bowed_case.hpp"
 #include "tests/libcalib/optimizers/staged/as_calibration.hpp"
 
-namespace modcal {
+namespace modcal::held_parameters_test {
 namespace {
 
 constexpr double kInharmonicity = 1.39e-4;
@@ -169,4 +169,4 @@ TEST(FixedParameters, ThatCannotBeAreRefusedWithTheReason) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::held_parameters_test

@@ -10,7 +10,7 @@
 #include "tests/libcalib/likelihood/pluck_record_case.hpp"
 #include "tests/libcalib/optimizers/staged/as_calibration.hpp"
 
-namespace modcal {
+namespace modcal::named_covariance_test {
 namespace {
 
 NamedCovariance three() {
@@ -210,4 +210,4 @@ TEST_F(CovarianceOfAFit, OfSeveralRecordsNamesThemAsTheParametersDo) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::named_covariance_test

@@ -5,7 +5,7 @@
 #include "libsim/base/error.hpp"
 #include "tests/libcalib/calibration_case.hpp"
 
-namespace modcal {
+namespace modcal::parameters_test {
 namespace {
 
 using Names = std::vector<std::string>;
@@ -156,4 +156,4 @@ TEST(ParameterOptions, NameWhatIsFree) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::parameters_test

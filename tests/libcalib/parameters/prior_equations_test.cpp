@@ -5,7 +5,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
-namespace modcal {
+namespace modcal::prior_equations_test {
 namespace {
 
 using Index = Eigen::Index;
@@ -53,4 +53,4 @@ TEST(PriorEquations, LawIsThatOfLeastSquares) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::prior_equations_test

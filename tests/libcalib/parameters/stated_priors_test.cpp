@@ -14,7 +14,7 @@
 #include "tests/libcalib/likelihood/bowed_case.hpp"
 #include "tests/libcalib/optimizers/staged/as_calibration.hpp"
 
-namespace modcal {
+namespace modcal::stated_priors_test {
 namespace {
 
 constexpr double kBand = 2.0 * std::numbers::pi * 10300.0;
@@ -365,4 +365,4 @@ TEST(StatedPriors, ThatAreNoneAreRefusedWithTheReason) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::stated_priors_test

@@ -8,7 +8,7 @@
 #include "libsim/base/random.hpp"
 #include "libsim/model/string_model.hpp"
 
-namespace modcal {
+namespace modcal::stiff_string_fit_test {
 namespace {
 
 std::vector<double> law(double fundamental, double inharmonicity, std::size_t modes) {
@@ -106,4 +106,4 @@ TEST(InharmonicityText, NearZeroIsZeroOrHasItsDeviation) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::stiff_string_fit_test

@@ -8,7 +8,7 @@
 
 #include "libsim/base/error.hpp"
 
-namespace modcal {
+namespace modcal::calibration_data_test {
 namespace {
 
 TEST(CalibrationData, NamesAReactionThatNeverMoves) {
@@ -64,4 +64,4 @@ TEST(BinsBetween, HoldsBothEndsAndNeverBinZero) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::calibration_data_test

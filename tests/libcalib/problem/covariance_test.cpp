@@ -7,7 +7,7 @@
 #include "libsim/base/error.hpp"
 #include "tests/libcalib/test_functions.hpp"
 
-namespace modcal {
+namespace modcal::covariance_test {
 namespace {
 
 TEST(Covariance, IsTheInverseOfTheNormalMatrixInUserUnits) {
@@ -46,4 +46,4 @@ TEST(Covariance, NeedsResidualsAndAPointInTheBox) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::covariance_test

@@ -8,7 +8,7 @@
 #include "libsim/base/error.hpp"
 #include "tests/libcalib/test_functions.hpp"
 
-namespace modcal {
+namespace modcal::evaluator_test {
 namespace {
 
 using Point = std::vector<double>;
@@ -259,4 +259,4 @@ TEST(StopReason, EveryReasonHasAWordAndASentenceOfItsOwn) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::evaluator_test

@@ -10,7 +10,7 @@
 #include "libsim/signal/statistics.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
-namespace modcal {
+namespace modcal::bowed_coverage_test {
 namespace {
 
 constexpr double kRate = 51200.0;
@@ -109,4 +109,4 @@ TEST(CoverageWithoutNoise, IsKeptByTheMisfitOfTheSides) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::bowed_coverage_test

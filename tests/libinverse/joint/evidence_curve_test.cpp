@@ -7,7 +7,7 @@
 #include "libsim/base/error.hpp"
 #include "libsim/base/random.hpp"
 
-namespace modcal {
+namespace modcal::evidence_curve_test {
 namespace {
 
 struct Components {
@@ -93,4 +93,4 @@ TEST(EvidenceCurve, WhatIsNotSeenIsResidual) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::evidence_curve_test

@@ -8,7 +8,7 @@
 
 #include "libsim/base/random.hpp"
 
-namespace modcal {
+namespace modcal::force_prior_test {
 namespace {
 
 std::vector<double> box_means(const std::vector<double>& values, std::size_t half) {
@@ -63,4 +63,4 @@ TEST(JumpPrior, IsTheSpectrumOfAFirstOrderProcess) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::force_prior_test

@@ -9,7 +9,7 @@
 #include "libsim/signal/fft.hpp"
 #include "tests/libinverse/joint/joint_case.hpp"
 
-namespace modcal {
+namespace modcal::joint_estimator_test {
 namespace {
 
 TEST(JointEstimator, ReportsTheContourItHasChosen) {
@@ -161,4 +161,4 @@ TEST(JointEstimator, LinearLimitNeedsTheTruth) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::joint_estimator_test

@@ -9,7 +9,7 @@
 #include "tests/libinverse/joint/joint_case.hpp"
 #include "tests/refusal.hpp"
 
-namespace modcal {
+namespace modcal::joint_inversion_test {
 namespace {
 
 TEST(JointInversion, GivesBackTheForceOfARecordThatStillRings) {
@@ -159,4 +159,4 @@ TEST(JointInversion, RefusesWhatItCannotInvert) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::joint_inversion_test

@@ -1,27 +1,13 @@
 // What a joint inversion keeps: linearity, shifts, mirror, scale, zeros, allocations.
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cstdlib>
-#include <new>
 #include <numbers>
 
 #include "libsim/base/error.hpp"
+#include "tests/allocations.hpp"
 #include "tests/libinverse/joint/joint_case.hpp"
 
-namespace {
-std::atomic<std::size_t> allocations{0};
-}  // namespace
-
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size)) return memory;
-  throw std::bad_alloc();
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-
-namespace modcal {
+namespace modcal::joint_properties_test {
 namespace {
 
 TEST(JointInversion, ForwardOfTheInverseIsTheFilter) {
@@ -144,11 +130,11 @@ TEST(JointInversion, ScalesWithTheData) {
   }
 }
 
-class EveryLength : public testing::TestWithParam<std::size_t> {};
-INSTANTIATE_TEST_SUITE_P(JointInversion, EveryLength,
+class EveryJointLength : public testing::TestWithParam<std::size_t> {};
+INSTANTIATE_TEST_SUITE_P(JointInversion, EveryJointLength,
                          testing::Values(1, 2, 3, 4, 5, 97, 100, 101, 1009));
 
-TEST_P(EveryLength, TakesEveryPriorAndTruncationAndSignal) {
+TEST_P(EveryJointLength, TakesEveryPriorAndTruncationAndSignal) {
   const std::size_t samples = GetParam();
   const ModalBasis basis = violin_g();
   const SensorNoise sensors(basis, kPosition, samples, kRate, {}, {});
@@ -214,10 +200,10 @@ TEST(JointInversion, AllocatesNothingAfterTheFirstCall) {
     inversion.invert(pair, sensors.estimate(pair, workspace.noise), method, workspace, result);
   };
   call({a, b});
-  const std::size_t before = allocations;
+  const std::size_t before = allocations();
   call({b, c});
   call({c, a});
-  EXPECT_EQ(allocations - before, 0u);
+  EXPECT_EQ(allocations() - before, 0u);
 }
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::joint_properties_test

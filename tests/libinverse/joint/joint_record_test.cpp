@@ -4,7 +4,7 @@
 
 #include "tests/libinverse/joint/joint_case.hpp"
 
-namespace modcal {
+namespace modcal::joint_record_test {
 namespace {
 
 TEST(JointRecord, MayBeginInMidMotion) {
@@ -205,4 +205,4 @@ TEST(JointRecord, HasBandsThatHoldWhatEitherSensorErrsBy) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::joint_record_test

@@ -8,7 +8,7 @@
 
 #include "tests/libinverse/joint/joint_case.hpp"
 
-namespace modcal {
+namespace modcal::posterior_oracle_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -159,4 +159,4 @@ TEST_P(PosteriorOracle, EvidenceAndFreedomOfEveryAmplitudeAreThoseOfDenseMatrice
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::posterior_oracle_test

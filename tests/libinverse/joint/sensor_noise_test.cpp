@@ -8,7 +8,7 @@
 
 #include "tests/libinverse/joint/joint_case.hpp"
 
-namespace modcal {
+namespace modcal::sensor_noise_test {
 namespace {
 
 TEST(SensorNoise, IsMeasuredFromTheRecordAlone) {
@@ -68,4 +68,4 @@ TEST(ContourOf, LiesBetweenOneAndFourOverTheRecord) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::sensor_noise_test

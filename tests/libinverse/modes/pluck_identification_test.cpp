@@ -11,7 +11,7 @@
 #include "libsim/base/error.hpp"
 #include "tests/libinverse/modes/pluck_case.hpp"
 
-namespace modcal {
+namespace modcal::pluck_identification_test {
 namespace {
 
 // Three degrees of freedom, q'' + D q' + K q = 0, q(0) = 0, q'(0) = (1, 1, 1), velocities every
@@ -286,4 +286,4 @@ TEST(PluckIdentification, SilenceHasNoModesAndWrongInputIsRefused) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::pluck_identification_test

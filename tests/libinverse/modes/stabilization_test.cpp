@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace modcal {
+namespace modcal::stabilization_test {
 namespace {
 
 TEST(StablePoles, SpreadIsTheStandardDeviationOverTheOrders) {
@@ -24,4 +24,4 @@ TEST(StablePoles, SpreadIsTheStandardDeviationOverTheOrders) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::stabilization_test

@@ -8,7 +8,7 @@
 #include "libsim/signal/statistics.hpp"
 #include "tests/libinverse/observer/bowed_record.hpp"
 
-namespace modcal {
+namespace modcal::auto_estimator_test {
 namespace {
 
 using testing::HasSubstr;
@@ -78,4 +78,4 @@ TEST(AutoEstimator, PassesOnWhyTheObserverRefuses) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::auto_estimator_test

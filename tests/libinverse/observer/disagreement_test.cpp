@@ -9,7 +9,7 @@
 #include "libsim/base/random.hpp"
 #include "libsim/signal/statistics.hpp"
 
-namespace modcal::observer {
+namespace modcal::observer::disagreement_test {
 namespace {
 
 constexpr double kSampleRate = 8000.0;
@@ -120,4 +120,4 @@ TEST(BandErrors, RefuseVariancesOfAnotherLength) {
 }
 
 }  // namespace
-}  // namespace modcal::observer
+}  // namespace modcal::observer::disagreement_test

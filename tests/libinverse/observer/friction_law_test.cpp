@@ -11,7 +11,7 @@
 #include "libsim/dynamics/friction/sliding_laws.hpp"
 #include "tests/libinverse/observer/bowed_record.hpp"
 
-namespace modcal {
+namespace modcal::friction_law_test {
 namespace {
 
 // Samples on a known curve, once for each direction of the bow: medians and quantiles of a cell lie
@@ -165,4 +165,4 @@ TEST(FrictionCandidates, UnknownLawsAreRefused) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::friction_law_test

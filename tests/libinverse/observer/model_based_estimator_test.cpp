@@ -9,7 +9,7 @@
 #include "libsim/signal/statistics.hpp"
 #include "tests/libinverse/observer/bowed_record.hpp"
 
-namespace modcal {
+namespace modcal::model_based_estimator_test {
 namespace {
 
 ModelBasedResult estimate(const BowedRecord& r, const ModelBasedOptions& options,
@@ -257,4 +257,4 @@ TEST(ModelBasedEstimator, StopsWhenAsked) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::model_based_estimator_test

@@ -9,7 +9,7 @@
 #include "libsim/signal/statistics.hpp"
 #include "tests/libinverse/observer/bowed_record.hpp"
 
-namespace modcal::observer {
+namespace modcal::observer::model_check_test {
 namespace {
 
 using testing::HasSubstr;
@@ -127,4 +127,4 @@ TEST(ModelBasedEstimator, BarsHoldTheErrorOfASensor) {
 }
 
 }  // namespace
-}  // namespace modcal::observer
+}  // namespace modcal::observer::model_check_test

@@ -9,7 +9,7 @@
 #include "libsim/signal/statistics.hpp"
 #include "tests/libinverse/observer/bowed_record.hpp"
 
-namespace modcal::observer {
+namespace modcal::observer::observed_record_test {
 namespace {
 
 using testing::HasSubstr;
@@ -85,4 +85,4 @@ TEST(ObservedRecord, NeedsABandAboveTheModes) {
 }
 
 }  // namespace
-}  // namespace modcal::observer
+}  // namespace modcal::observer::observed_record_test

@@ -10,7 +10,7 @@
 #include "libsim/signal/statistics.hpp"
 #include "tests/libinverse/observer/bowed_record.hpp"
 
-namespace modcal::observer {
+namespace modcal::observer::observer_kernel_test {
 namespace {
 
 struct Observed {
@@ -150,4 +150,4 @@ TEST(ObserverKernel, ManyModesStayInMemory) {
 }
 
 }  // namespace
-}  // namespace modcal::observer
+}  // namespace modcal::observer::observer_kernel_test

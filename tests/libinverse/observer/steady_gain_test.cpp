@@ -10,7 +10,7 @@
 #include "libsim/model/transfer.hpp"
 #include "tests/libinverse/observer/bowed_record.hpp"
 
-namespace modcal::observer {
+namespace modcal::observer::steady_gain_test {
 namespace {
 
 constexpr double kContact = 0.03;
@@ -102,4 +102,4 @@ TEST(SteadyGain, RefusesNoiseThatIsNotPositive) {
 }
 
 }  // namespace
-}  // namespace modcal::observer
+}  // namespace modcal::observer::steady_gain_test

@@ -9,7 +9,7 @@
 #include "benchmarks/problems/six_modes.hpp"
 #include "tests/refusal.hpp"
 
-namespace modcal {
+namespace modcal::blind_fit_test {
 namespace {
 
 using namespace six_modes;
@@ -87,4 +87,4 @@ TEST(BlindFit, RefusesOneSensor) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::blind_fit_test

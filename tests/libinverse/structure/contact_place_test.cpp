@@ -9,7 +9,7 @@
 #include "benchmarks/problems/six_modes.hpp"
 #include "tests/refusal.hpp"
 
-namespace modcal {
+namespace modcal::contact_place_test {
 namespace {
 
 using namespace six_modes;
@@ -70,4 +70,4 @@ TEST(ContactPlace, RefusesWhatCannotTell) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::contact_place_test

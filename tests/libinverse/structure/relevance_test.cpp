@@ -7,7 +7,7 @@
 
 #include "libsim/base/random.hpp"
 
-namespace modcal {
+namespace modcal::relevance_test {
 namespace {
 
 using Index = Eigen::Index;
@@ -69,4 +69,4 @@ TEST(Relevance, OfOneSignIsTheLeastOfTheQuadratic) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::relevance_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace modcal {
+namespace modcal::strike_columns_test {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
@@ -67,4 +67,4 @@ TEST_P(StrikeColumnsAt, HoldWhatRingsOnPastTheEnd) {
 INSTANTIATE_TEST_SUITE_P(Contours, StrikeColumnsAt, testing::Values(0.0, 5.0, 50.0));
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::strike_columns_test

@@ -10,7 +10,7 @@
 #include "libsim/signal/statistics.hpp"
 #include "tests/refusal.hpp"
 
-namespace modcal {
+namespace modcal::end_relation_test {
 namespace {
 
 constexpr double kNoise = 0.01;
@@ -172,4 +172,4 @@ TEST(EndRelation, RefusesWhatItCannotJudge) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::end_relation_test

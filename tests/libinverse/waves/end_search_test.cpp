@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace modcal {
+namespace modcal::end_search_test {
 namespace {
 
 // By hand: a²|R₁|² + b²|R₂|² = 16 + 81, 2ab Re R₁R₂* = 24, v = 4/2 + 9/4 + 97/100.
@@ -23,4 +23,4 @@ TEST(EndBins, MisfitIsTheSquareOverWhatNoiseAndTheRelationAllow) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::end_search_test

@@ -8,7 +8,7 @@
 #include "libsim/signal/fft.hpp"
 #include "tests/refusal.hpp"
 
-namespace modcal {
+namespace modcal::told_string_test {
 namespace {
 
 struct Truth {
@@ -130,4 +130,4 @@ TEST(ToldString, RefusesWhatHasNoPeriod) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::told_string_test

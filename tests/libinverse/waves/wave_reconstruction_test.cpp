@@ -13,7 +13,7 @@
 #include "libsim/model/damping.hpp"
 #include "libsim/signal/statistics.hpp"
 
-namespace modcal {
+namespace modcal::wave_reconstruction_test {
 namespace {
 
 constexpr double kRate = 51200.0, kContact = 0.03;
@@ -157,4 +157,4 @@ TEST(WaveReconstruction, RefusesWhatIsNoPair) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::wave_reconstruction_test

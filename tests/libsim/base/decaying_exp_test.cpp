@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace modcal {
+namespace modcal::decaying_exp_test {
 namespace {
 
 TEST(DecayingExp, IsTheLibrarysToOneUlp) {
@@ -28,4 +28,4 @@ TEST(DecayingExp, KeepsItsEnds) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::decaying_exp_test

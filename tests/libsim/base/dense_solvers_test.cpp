@@ -4,7 +4,7 @@
 
 #include <Eigen/Dense>
 
-namespace modcal {
+namespace modcal::dense_solvers_test {
 namespace {
 
 // Entries of order 1 and condition numbers below 1e3: 1e-12 leaves three digits beyond rounding.
@@ -88,4 +88,4 @@ TEST(DenseSolvers, LeastSquaresRefuseWhatHasNotFullRank) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::dense_solvers_test

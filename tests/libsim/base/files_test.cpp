@@ -10,7 +10,7 @@
 #include "tests/folder_test.hpp"
 #include "tests/refusal.hpp"
 
-namespace modcal {
+namespace modcal::files_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -124,4 +124,4 @@ TEST_F(Files, TestsAFolderWithoutTouchingWhatIsThere) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::files_test

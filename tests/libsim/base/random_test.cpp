@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-namespace modcal {
+namespace modcal::random_test {
 namespace {
 
 constexpr std::size_t kCount = 200000;
@@ -113,4 +113,4 @@ TEST(StreamKey, TakesBothZerosForOneNumber) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::random_test

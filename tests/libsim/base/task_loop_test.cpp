@@ -13,7 +13,7 @@
 
 #include "libsim/base/stop_scope.hpp"
 
-namespace modcal {
+namespace modcal::task_loop_test {
 namespace {
 
 // Runs `work` with so many threads, more than the machine has if need be.
@@ -120,4 +120,4 @@ TEST(StopScope, IsHeardInEveryThreadOfTheLoop) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::task_loop_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace modcal {
+namespace modcal::utf8_test {
 namespace {
 
 TEST(Utf8, TakesWhatRfc3629TakesAndNothingElse) {
@@ -38,4 +38,4 @@ TEST(Utf8, WritesOutWhatATerminalObeys) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::utf8_test

@@ -12,7 +12,7 @@
 #include "libsim/dynamics/friction/friction_law.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
-namespace modcal {
+namespace modcal::plan_test {
 namespace {
 
 using ::testing::AllOf;
@@ -229,4 +229,4 @@ TEST(SimulationPlan, DoesNotNameWhatTheSceneAsksFor) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::plan_test

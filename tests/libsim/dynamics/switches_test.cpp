@@ -7,7 +7,7 @@
 #include "libsim/dynamics/fixed_step/fixed_step.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
-namespace modcal {
+namespace modcal::switches_test {
 namespace {
 
 constexpr double kRate = 51200.0;
@@ -73,4 +73,4 @@ TEST(Switches, OfTheLastPartAreThoseOfTheWholeRecord) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::switches_test

@@ -3,7 +3,7 @@
 #include "libsim/base/error.hpp"
 #include "libsim/model/damping.hpp"
 
-namespace modcal {
+namespace modcal::damping_fit_test {
 namespace {
 
 TEST(DampingFit, IsExactOnPolynomialsOfItsDegree) {
@@ -40,4 +40,4 @@ TEST(DampingFit, RefusesTooFewOrRepeatedModes) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::damping_fit_test

@@ -7,7 +7,7 @@
 
 #include "libsim/base/error.hpp"
 
-namespace modcal {
+namespace modcal::damping_test {
 namespace {
 
 const std::vector<double> kOmega = {1e3, 2e3, 3e3, 4e3, 5e3, 6e3};
@@ -93,4 +93,4 @@ TEST(Damping, RefusesModesThatDoNotOscillate) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::damping_test

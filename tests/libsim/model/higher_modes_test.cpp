@@ -8,7 +8,7 @@
 
 #include "libsim/model/string_model.hpp"
 
-namespace modcal {
+namespace modcal::higher_modes_test {
 namespace {
 
 using std::numbers::pi;
@@ -133,4 +133,4 @@ INSTANTIATE_TEST_SUITE_P(Limp, HigherModes, testing::Values(Case{0.0, 0.091, 1.0
 INSTANTIATE_TEST_SUITE_P(Strings, StiffHigherModes, kStiff);
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::higher_modes_test

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace modcal {
+namespace modcal::modal_model_test {
 namespace {
 
 constexpr std::size_t kModes = 7;
@@ -131,4 +131,4 @@ TEST(ModalModel, AModeThatNothingDrivesIsLeftOut) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::modal_model_test

@@ -8,7 +8,7 @@
 
 #include "libsim/model/damping.hpp"
 
-namespace modcal {
+namespace modcal::transfer_test {
 namespace {
 
 StringModel violin_g() {
@@ -99,4 +99,4 @@ TEST(SineShape, IsZeroAtNodes) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::transfer_test

@@ -8,7 +8,7 @@
 #include "tests/folder_test.hpp"
 #include "tests/refusal.hpp"
 
-namespace modcal {
+namespace modcal::csv_reader_test {
 namespace {
 
 using testing::ElementsAre;
@@ -320,4 +320,4 @@ TEST_F(CsvReader, TakesTimeAndForceWithTheirUnitsBehindAMark) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::csv_reader_test

@@ -14,7 +14,7 @@
 #include "tests/folder_test.hpp"
 #include "tests/refusal.hpp"
 
-namespace modcal {
+namespace modcal::csv_writer_test {
 namespace {
 
 using testing::HasSubstr;
@@ -120,4 +120,4 @@ TEST_F(CsvWriter, LeavesAnExistingFileAloneWhenItFails) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::csv_writer_test

@@ -6,7 +6,7 @@
 #include "tests/folder_test.hpp"
 #include "tests/refusal.hpp"
 
-namespace modcal {
+namespace modcal::formats_test {
 namespace {
 
 using testing::HasSubstr;
@@ -118,4 +118,4 @@ INSTANTIATE_TEST_SUITE_P(Every, Formats, testing::Values("npy", "npz", "hdf5", "
                          [](const auto& test) { return std::string(test.param); });
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::formats_test

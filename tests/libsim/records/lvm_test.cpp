@@ -5,7 +5,7 @@
 #include "tests/folder_test.hpp"
 #include "tests/refusal.hpp"
 
-namespace modcal {
+namespace modcal::lvm_test {
 namespace {
 
 using testing::ElementsAre;
@@ -136,4 +136,4 @@ TEST_F(Lvm, HeadersAloneEstimateTheLength) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::lvm_test

@@ -11,7 +11,7 @@
 #include "tests/folder_test.hpp"
 #include "tests/refusal.hpp"
 
-namespace modcal {
+namespace modcal::matlab_test {
 namespace {
 
 using testing::ElementsAre;
@@ -238,4 +238,4 @@ TEST_F(Matlab, OtherFilesAreRefused) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::matlab_test

@@ -10,7 +10,7 @@
 #include "tests/folder_test.hpp"
 #include "tests/refusal.hpp"
 
-namespace modcal {
+namespace modcal::recorded_signals_test {
 namespace {
 
 using testing::ElementsAre;
@@ -285,4 +285,4 @@ TEST(Advanced, LeavesSamplesAloneWithoutDelay) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::recorded_signals_test

@@ -8,7 +8,7 @@
 
 #include "libsim/records/levels.hpp"
 
-namespace modcal {
+namespace modcal::sample_faults_test {
 namespace {
 
 using testing::HasSubstr;
@@ -161,4 +161,4 @@ TEST(SampleFaults, ABeginningOfEqualSamplesIsARest) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::sample_faults_test

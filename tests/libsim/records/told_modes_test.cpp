@@ -9,7 +9,7 @@
 #include "libsim/base/random.hpp"
 #include "tests/refusal.hpp"
 
-namespace modcal {
+namespace modcal::told_modes_test {
 namespace {
 
 using testing::HasSubstr;
@@ -71,4 +71,4 @@ TEST(ToldModes, OfAStringTooHighOrTooLowAreRefused) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::told_modes_test

@@ -15,7 +15,7 @@
 #include "tests/folder_test.hpp"
 #include "tests/refusal.hpp"
 
-namespace modcal {
+namespace modcal::universal_file_test {
 namespace {
 
 using testing::ElementsAre;
@@ -277,4 +277,4 @@ TEST_F(Universal, ReadsRealFiles) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::universal_file_test

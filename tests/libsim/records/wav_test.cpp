@@ -12,7 +12,7 @@
 #include "tests/folder_test.hpp"
 #include "tests/refusal.hpp"
 
-namespace modcal {
+namespace modcal::wav_test {
 namespace {
 
 using testing::ElementsAre;
@@ -218,4 +218,4 @@ TEST(Rf64, IsTakenWhereThirtyTwoBitSizesDoNotSuffice) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::wav_test

@@ -9,7 +9,7 @@
 #include "libsim/base/error.hpp"
 #include "libsim/base/random.hpp"
 
-namespace modcal {
+namespace modcal::fft_test {
 namespace {
 
 std::vector<double> noise(std::size_t length) {
@@ -106,4 +106,4 @@ TEST(RealFft, GivesTheSameBitsFromSeveralThreads) {
 TEST(RealFft, RefusesAnEmptyRecord) { EXPECT_THROW(RealFft(0), InvalidInput); }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::fft_test

@@ -6,15 +6,15 @@
 #include "libsim/base/random.hpp"
 #include "libsim/signal/fft.hpp"
 
-namespace modcal {
+namespace modcal::in_place_fft_test {
 namespace {
 
-class EveryLength : public testing::TestWithParam<std::size_t> {};
-INSTANTIATE_TEST_SUITE_P(InPlaceFft, EveryLength,
+class EveryInPlaceLength : public testing::TestWithParam<std::size_t> {};
+INSTANTIATE_TEST_SUITE_P(InPlaceFft, EveryInPlaceLength,
                          testing::Values(1, 2, 3, 4, 5, 97, 100, 101, 4096, 51200));
 
 // log₂ K stages, each of which rounds: 1e-15 of the largest bin is ample.
-TEST_P(EveryLength, IsTheTransformOfRealFft) {
+TEST_P(EveryInPlaceLength, IsTheTransformOfRealFft) {
   const std::size_t length = GetParam();
   const InPlaceFft in_place(length);
   std::vector<double> samples(length);
@@ -53,4 +53,4 @@ TEST(InPlaceFft, GivesTheSameBitsAtAnyPlaceInMemory) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::in_place_fft_test

@@ -7,7 +7,7 @@
 
 #include "libsim/base/error.hpp"
 
-namespace modcal {
+namespace modcal::statistics_test {
 namespace {
 
 const std::vector<double> kSample = {2.0, 4.0, 4.0, 4.0, 5.0, 5.0, 7.0, 9.0};
@@ -66,4 +66,4 @@ TEST(Quantile, InterpolatesBetweenOrderStatistics) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::statistics_test

@@ -1,15 +1,14 @@
 // The bound that a benchmark's errors are held against.
-#include "experiments/kinds/benchmark/benchmark.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "experiments/config/reader.hpp"
+#include "experiments/kinds/benchmark/benchmark.hpp"
 #include "libcalib/identifiability/expected_limit.hpp"
 #include "libsim/signal/statistics.hpp"
 
-namespace modcal {
+namespace modcal::benchmark_bound_test {
 namespace {
 
 CalibrateOptions options_of(const std::string& parameters, double noise) {
@@ -102,4 +101,4 @@ TEST(FrequencyBounds, AveragesOverTheModesNamed) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::benchmark_bound_test

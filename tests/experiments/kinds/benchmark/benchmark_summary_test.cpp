@@ -8,7 +8,7 @@
 #include "libsim/base/error.hpp"
 #include "libsim/base/random.hpp"
 
-namespace modcal {
+namespace modcal::benchmark_summary_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -259,4 +259,4 @@ TEST(BenchmarkOutcome, TellsAWrongMinimumFromALocalOne) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::benchmark_summary_test

@@ -8,7 +8,7 @@
 #include "experiments/kinds/calibrate/calibrate.hpp"
 #include "experiments/report/result.hpp"
 
-namespace modcal {
+namespace modcal::calibrate_covariance_test {
 namespace {
 
 using testing::ElementsAre;
@@ -129,4 +129,4 @@ TEST(CalibrateCovariance, TellsNothingOfALawThatThePriorsContradict) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::calibrate_covariance_test

@@ -6,7 +6,7 @@
 #include "experiments/kinds/calibrate/calibrate.hpp"
 #include "experiments/report/result.hpp"
 
-namespace modcal {
+namespace modcal::calibrate_deviations_test {
 namespace {
 
 // Numbers that are no multiples of each other by 2: one in the place of another shows.
@@ -83,4 +83,4 @@ TEST(CalibrateDeviations, OfTheWholeFitAreInTheFile) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::calibrate_deviations_test

@@ -7,7 +7,7 @@
 #include "experiments/kinds/calibrate/calibrate.hpp"
 #include "experiments/report/result.hpp"
 
-namespace modcal {
+namespace modcal::calibrate_fit_stages_test {
 namespace {
 
 std::vector<FitStage> stages() {
@@ -47,4 +47,4 @@ TEST(CalibrateStages, AreATableOfTheReport) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::calibrate_fit_stages_test

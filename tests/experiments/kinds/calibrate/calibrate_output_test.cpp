@@ -8,7 +8,7 @@
 #include "experiments/kinds/calibrate/calibrate.hpp"
 #include "experiments/report/result.hpp"
 
-namespace modcal {
+namespace modcal::calibrate_output_test {
 namespace {
 
 using testing::HasSubstr;
@@ -136,4 +136,4 @@ TEST(CalibrateOutput, SaysWhichModesLeaveTheLawAndWhichAreDrawnToIt) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::calibrate_output_test

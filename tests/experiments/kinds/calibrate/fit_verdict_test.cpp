@@ -3,7 +3,7 @@
 
 #include "experiments/kinds/calibrate/calibrate.hpp"
 
-namespace modcal {
+namespace modcal::fit_verdict_test {
 namespace {
 
 using testing::AllOf;
@@ -53,4 +53,4 @@ TEST(CalibrationWarnings, RefuseWhatHasNoDeviation) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::fit_verdict_test

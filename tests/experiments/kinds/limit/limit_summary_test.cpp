@@ -1,13 +1,12 @@
-#include "experiments/kinds/limit/limit.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
+#include "experiments/kinds/limit/limit.hpp"
 #include "experiments/runs/task_experiment.hpp"
 
-namespace modcal {
+namespace modcal::limit_summary_test {
 namespace {
 
 LimitSummary level_of(double level, double ratio, double bias, double reported, std::size_t count) {
@@ -102,4 +101,4 @@ TEST(OutcomeOfALimit, KeepsTheDeviationOfChi2) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::limit_summary_test

@@ -11,7 +11,7 @@
 #include "experiments/loader.hpp"
 #include "libsim/base/error.hpp"
 
-namespace modcal {
+namespace modcal::limit_text_test {
 namespace {
 
 // Bowed at a fifth of its length, a node of modes 5 and 10.
@@ -175,4 +175,4 @@ TEST(LimitText, OfARecordAsksForASceneBeforeAnythingElse) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::limit_text_test

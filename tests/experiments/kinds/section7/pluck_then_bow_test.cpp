@@ -8,7 +8,7 @@
 #include "experiments/loader.hpp"
 #include "experiments/study/study.hpp"
 
-namespace modcal {
+namespace modcal::pluck_then_bow_test {
 namespace {
 
 using nlohmann::json;
@@ -133,4 +133,4 @@ TEST(PluckThenBow, RefusesWhatCannotBeDone) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::pluck_then_bow_test

@@ -7,7 +7,7 @@
 #include "experiments/runs/task_experiment.hpp"
 #include "libsim/base/error.hpp"
 
-namespace modcal {
+namespace modcal::sweep_outcome_test {
 namespace {
 
 TEST(SweepOutcome, ComesBackBitForBit) {
@@ -58,4 +58,4 @@ TEST(SweepOutcome, RefusesOtherTexts) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::sweep_outcome_test

@@ -7,7 +7,7 @@
 #include "libinverse/observer/model_based_estimator.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
-namespace modcal {
+namespace modcal::sweep_study_test {
 namespace {
 
 InvertOptions cell_with(double noise_level, double window) {
@@ -114,4 +114,4 @@ TEST(SumUpSweep, CountsWhatFailedAndWhatIsNotRunYet) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::sweep_study_test

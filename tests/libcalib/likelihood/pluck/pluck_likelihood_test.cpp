@@ -10,7 +10,7 @@
 #include "libsim/base/error.hpp"
 #include "tests/libcalib/likelihood/pluck_record_case.hpp"
 
-namespace modcal {
+namespace modcal::pluck_likelihood_test {
 namespace {
 
 using std::numbers::pi;
@@ -185,4 +185,4 @@ TEST(PluckLikelihood, RefusesADampedRecord) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::pluck_likelihood_test

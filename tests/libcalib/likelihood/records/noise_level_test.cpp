@@ -9,7 +9,7 @@
 #include "tests/libcalib/likelihood/bowed_case.hpp"
 #include "tests/refusal.hpp"
 
-namespace modcal {
+namespace modcal::noise_level_test {
 namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
@@ -116,4 +116,4 @@ TEST(NoiseDeviation, LeavesChi2AtOneWhereTheUsualBandHoldsModes) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::noise_level_test

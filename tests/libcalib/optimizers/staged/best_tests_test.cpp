@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace modcal {
+namespace modcal::best_tests_test {
 namespace {
 
 ScoreTest test_at(double place, double statistic, double log_evidence,
@@ -52,4 +52,4 @@ TEST(BestTests, NeverMakeAChanceLargerThanOne) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::best_tests_test

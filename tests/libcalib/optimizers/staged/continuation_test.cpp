@@ -9,7 +9,7 @@
 #include "libcalib/optimizers/staged/newton_fit.hpp"
 #include "tests/libcalib/likelihood/bowed_case.hpp"
 
-namespace modcal {
+namespace modcal::continuation_test {
 namespace {
 
 ModelPoint wrong_start(ModelPoint point, std::uint64_t seed) {
@@ -232,4 +232,4 @@ TEST(LawWidth, IsThatOfTheScatterBeyondTheErrors) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::continuation_test

@@ -8,7 +8,7 @@
 #include "tests/libcalib/likelihood/bowed_case.hpp"
 #include "tests/libcalib/optimizers/staged/as_calibration.hpp"
 
-namespace modcal {
+namespace modcal::fit_poll_test {
 namespace {
 
 class FitPollTest : public testing::Test {
@@ -93,4 +93,4 @@ TEST_F(FitPollTest, RangesHoldInEveryStage) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::fit_poll_test

@@ -8,7 +8,7 @@
 #include "libcalib/optimizers/staged/continuation.hpp"
 #include "tests/libcalib/likelihood/bowed_case.hpp"
 
-namespace modcal {
+namespace modcal::fit_stage_test {
 namespace {
 
 using testing::ElementsAre;
@@ -105,4 +105,4 @@ TEST(FitStage, OfSeveralRecordsNameThem) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::fit_stage_test

@@ -9,7 +9,7 @@
 #include "tests/libcalib/likelihood/pluck_record_case.hpp"
 #include "tests/libcalib/optimizers/staged/as_calibration.hpp"
 
-namespace modcal {
+namespace modcal::records_fit_test {
 namespace {
 
 constexpr double kInharmonicity = 1.39e-4;
@@ -325,4 +325,4 @@ TEST(RecordsFit, RefusesSharingThatCannotBe) {
 TEST(RecordsFit, RefusesNoRecord) { EXPECT_THROW(calibrate_records({}, {}, {}), InvalidInput); }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::records_fit_test

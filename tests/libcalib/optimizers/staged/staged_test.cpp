@@ -10,7 +10,7 @@
 #include "libsim/base/error.hpp"
 #include "tests/libcalib/likelihood/bowed_case.hpp"
 
-namespace modcal {
+namespace modcal::staged_test {
 namespace {
 
 class StagedSearch : public testing::Test {
@@ -89,4 +89,4 @@ TEST_F(StagedSearch, SaysWhatItCannotSearch) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::staged_test

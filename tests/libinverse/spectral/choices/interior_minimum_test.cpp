@@ -4,7 +4,7 @@
 
 #include "libinverse/spectral/choices/rules.hpp"
 
-namespace modcal {
+namespace modcal::interior_minimum_test {
 namespace {
 
 TEST(MostProminentMinimum, IsTheOneHardestToLeave) {
@@ -35,4 +35,4 @@ TEST(MostProminentMinimum, KnowsNoMinimumAtTheEnds) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::interior_minimum_test

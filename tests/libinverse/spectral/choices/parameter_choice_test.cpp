@@ -10,7 +10,7 @@
 #include "libinverse/spectral/problem/spectral_system.hpp"
 #include "libsim/base/error.hpp"
 
-namespace modcal {
+namespace modcal::parameter_choice_test {
 namespace {
 
 using testing::HasSubstr;
@@ -253,4 +253,4 @@ TEST(CurveOptions, RefuseARangeThatIsNone) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::parameter_choice_test

@@ -15,7 +15,7 @@
 #include "tests/libinverse/safe_problem.hpp"
 #include "tests/refusal.hpp"
 
-namespace modcal {
+namespace modcal::one_sided_inversion_test {
 namespace {
 
 constexpr double kRate = 51200.0;
@@ -257,4 +257,4 @@ TEST(OneSidedInversion, RefusesWhatItCannotInvert) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::one_sided_inversion_test

@@ -10,7 +10,7 @@
 #include "libsim/base/error.hpp"
 #include "libsim/base/random.hpp"
 
-namespace modcal {
+namespace modcal::regularizer_test {
 namespace {
 
 std::shared_ptr<const Regularizer> make(std::string_view name) {
@@ -210,4 +210,4 @@ TEST(SpectralOperator, RefusesWhatIsNoSingularValue) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::regularizer_test

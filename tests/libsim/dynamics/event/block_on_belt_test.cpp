@@ -9,7 +9,7 @@
 #include "libsim/dynamics/event/event_loop.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
-namespace modcal::event {
+namespace modcal::event::block_on_belt_test {
 namespace {
 
 TEST(EventLoop, OneModeIsTheBlockOnABelt) {
@@ -53,4 +53,4 @@ TEST(EventLoop, OneModeIsTheBlockOnABelt) {
 }
 
 }  // namespace
-}  // namespace modcal::event
+}  // namespace modcal::event::block_on_belt_test

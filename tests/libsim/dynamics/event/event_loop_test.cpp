@@ -10,7 +10,7 @@
 #include "libsim/dynamics/scene/contact_modes.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
-namespace modcal::event {
+namespace modcal::event::event_loop_test {
 namespace {
 
 constexpr double kStep = 1.0 / 51200.0;
@@ -262,4 +262,4 @@ TEST(Sticking, ReleasesExactlyAtTheLimit) {
 }
 
 }  // namespace
-}  // namespace modcal::event
+}  // namespace modcal::event::event_loop_test

@@ -10,7 +10,7 @@
 #include "tests/libsim/dynamics/paper_case.hpp"
 #include "tests/libsim/dynamics/simulators/long_double_twin.hpp"
 
-namespace modcal::event {
+namespace modcal::event::gesture_test {
 namespace {
 
 constexpr double kStep = 2e-5;
@@ -259,4 +259,4 @@ TEST(BowGesture, ASlowBowIsFollowedQuasiStatically) {
 }
 
 }  // namespace
-}  // namespace modcal::event
+}  // namespace modcal::event::gesture_test

@@ -13,7 +13,7 @@
 #include "tests/libsim/dynamics/simulators/compared_runs.hpp"
 #include "tests/libsim/dynamics/simulators/long_double_twin.hpp"
 
-namespace modcal {
+namespace modcal::modal_event_test {
 namespace {
 
 constexpr double kRate = 51200.0;
@@ -290,4 +290,4 @@ TEST(ModalEvent, RefusesOptionsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::modal_event_test

@@ -12,7 +12,7 @@
 #include "libsim/model/transfer.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
-namespace modcal {
+namespace modcal::line_step_test {
 namespace {
 
 constexpr double kRate = 50000.0;
@@ -265,4 +265,4 @@ TEST(Simulators, RefuseScenesThatTheyCannotFollow) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::line_step_test

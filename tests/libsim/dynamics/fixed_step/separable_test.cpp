@@ -11,7 +11,7 @@
 #include "libsim/model/damping.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
-namespace modcal {
+namespace modcal::separable_test {
 namespace {
 
 // Im r = share · |1 − r| on the unit circle, where |1 − e^{iθ}| = 2 sin(θ/2): cos(θ/2) = share.
@@ -87,4 +87,4 @@ TEST(Separable, AModeThatNearlyCancelsMovesAsInTheGeneralLoop) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::separable_test

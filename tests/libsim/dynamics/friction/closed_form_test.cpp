@@ -4,7 +4,7 @@
 
 #include "libsim/dynamics/friction/sliding_laws.hpp"
 
-namespace modcal {
+namespace modcal::closed_form_test {
 namespace {
 
 // Root of u + b (F_D + ΔF e^{−Cu}) = w by bisection in extended precision.
@@ -43,4 +43,4 @@ TEST(ExponentialSliding, ClosedFormIsTheRootOfTheStep) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::closed_form_test

@@ -6,7 +6,7 @@
 #include "libsim/base/random.hpp"
 #include "libsim/dynamics/friction/friction_law.hpp"
 
-namespace modcal {
+namespace modcal::sliding_laws_test {
 namespace {
 
 SlidingPoint point(const SlidingLaw& law, double speed) {
@@ -77,4 +77,4 @@ TEST(Hyperbolic, RefusesARisingLaw) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::sliding_laws_test

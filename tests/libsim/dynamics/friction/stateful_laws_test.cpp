@@ -7,7 +7,7 @@
 #include "libsim/dynamics/friction/friction_law.hpp"
 #include "libsim/dynamics/friction/sliding_laws.hpp"
 
-namespace modcal {
+namespace modcal::stateful_laws_test {
 namespace {
 
 ThermalSliding thermal() { return std::get<ThermalSliding>(Thermal({}).stateful()); }
@@ -156,4 +156,4 @@ TEST(StatefulLaws, SayThatTheyHaveAStateAndRefuseToBeACurve) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::stateful_laws_test

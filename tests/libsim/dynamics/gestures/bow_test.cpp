@@ -8,7 +8,7 @@
 #include "libsim/base/error.hpp"
 #include "libsim/dynamics/gestures/gesture.hpp"
 
-namespace modcal {
+namespace modcal::bow_test {
 namespace {
 
 Choice<Gesture> table(std::vector<double> times, std::vector<double> factors) {
@@ -101,4 +101,4 @@ TEST(GestureNoise, DependsOnSeedAndRoleAloneAndStartsTheSameInALongerRecord) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::bow_test

@@ -6,7 +6,7 @@
 #include "libsim/base/error.hpp"
 #include "libsim/dynamics/gestures/gesture.hpp"
 
-namespace modcal {
+namespace modcal::piecewise_linear_test {
 namespace {
 
 const PiecewiseLinear kTrapezoid({0.5, 1.0, 2.0, 2.25}, {0.0, 2.0, 2.0, -1.0});
@@ -73,4 +73,4 @@ TEST(PiecewiseLinear, RefusesKnotsThatAreNoFunction) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::piecewise_linear_test

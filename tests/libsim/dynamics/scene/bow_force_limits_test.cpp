@@ -9,7 +9,7 @@
 #include "libsim/model/damping.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
-namespace modcal {
+namespace modcal::bow_force_limits_test {
 namespace {
 
 using std::numbers::pi;
@@ -129,4 +129,4 @@ TEST(HelmholtzMotion, SticksAndSlipsAtTheContact) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::bow_force_limits_test

@@ -9,7 +9,7 @@
 #include "libsim/dynamics/scene/simulator.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
-namespace modcal {
+namespace modcal::ensemble_test {
 namespace {
 
 template <typename Work>
@@ -110,4 +110,4 @@ TEST(Ensemble, StopsInTheMiddleOfAScene) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::ensemble_test

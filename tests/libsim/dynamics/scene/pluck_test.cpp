@@ -6,7 +6,7 @@
 #include "libsim/dynamics/scene/scene.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
-namespace modcal {
+namespace modcal::pluck_test {
 namespace {
 
 ModalBasis basis_of(std::int64_t modes) {
@@ -62,4 +62,4 @@ TEST(Pluck, RefusesAPointOffTheString) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::pluck_test

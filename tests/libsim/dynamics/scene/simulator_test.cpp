@@ -12,7 +12,7 @@
 #include "libsim/signal/statistics.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
-namespace modcal {
+namespace modcal::simulator_test {
 namespace {
 
 ModalExact exact_with(double step) { return ModalExact({.time_step = step}); }
@@ -267,4 +267,4 @@ TEST(Simulators, RefuseInputsWhoseEnergyOverflows) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::simulator_test

@@ -10,7 +10,7 @@
 #include "libsim/dynamics/event/modal_event.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
-namespace modcal {
+namespace modcal::string_regime_test {
 namespace {
 
 constexpr double kRate = 51200.0;
@@ -168,4 +168,4 @@ TEST(StringRegime, TellsTheMotionsOfASimulatedStringApart) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::string_regime_test

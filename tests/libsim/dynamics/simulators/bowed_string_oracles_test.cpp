@@ -9,7 +9,7 @@
 #include "libsim/dynamics/scene/simulator.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
-namespace modcal {
+namespace modcal::bowed_string_oracles_test {
 namespace {
 
 using Complex = std::complex<double>;
@@ -129,4 +129,4 @@ TEST_P(BowedString, LosesHelmholtzMotionAtSchellengsForce) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::bowed_string_oracles_test

@@ -12,7 +12,7 @@
 #include "tests/libsim/dynamics/block_on_belt.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
-namespace modcal {
+namespace modcal::fixed_step_oracles_test {
 namespace {
 
 // Half critical: the next sticking forgets what a release amplifies.
@@ -312,4 +312,4 @@ TEST(FixedSteps, ConvergeToOneAnswer) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::fixed_step_oracles_test

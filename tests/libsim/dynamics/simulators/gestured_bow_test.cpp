@@ -8,7 +8,7 @@
 #include "libsim/dynamics/gestures/gesture.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
-namespace modcal {
+namespace modcal::gestured_bow_test {
 namespace {
 
 constexpr double kRate = 50000.0;
@@ -108,4 +108,4 @@ TEST(Gestures, MirroredGesturesGiveMirroredMotion) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::gestured_bow_test

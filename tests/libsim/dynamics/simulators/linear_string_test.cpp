@@ -11,7 +11,7 @@
 #include "libsim/model/transfer.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
-namespace modcal {
+namespace modcal::linear_string_test {
 namespace {
 
 ModalExact exact_with(double step) { return ModalExact({.time_step = step}); }
@@ -137,4 +137,4 @@ TEST(ModalExact, ReactionToAForceStepHasTheTransferFunctionAsItsLaplaceTransform
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::linear_string_test

@@ -6,7 +6,7 @@
 #include "tests/libsim/dynamics/paper_case.hpp"
 #include "tests/libsim/dynamics/simulators/compared_runs.hpp"
 
-namespace modcal {
+namespace modcal::modal_event_gestures_test {
 namespace {
 
 constexpr double kRate = 51200.0;
@@ -72,4 +72,4 @@ TEST(ModalEvent, StepsOfRoundingLengthChangeNothing) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::modal_event_gestures_test

@@ -11,7 +11,7 @@
 #include "tests/libsim/dynamics/paper_case.hpp"
 #include "tests/libsim/dynamics/simulators/compared_runs.hpp"
 
-namespace modcal {
+namespace modcal::modal_event_scenes_test {
 namespace {
 
 constexpr double kRate = 50000.0;
@@ -94,4 +94,4 @@ TEST(ModalEventManyModes, AreTheLimitOfTheFixedStepScheme) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::modal_event_scenes_test

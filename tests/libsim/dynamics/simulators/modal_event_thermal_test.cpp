@@ -14,7 +14,7 @@
 #include "tests/libsim/dynamics/paper_case.hpp"
 #include "tests/libsim/dynamics/simulators/compared_runs.hpp"
 
-namespace modcal {
+namespace modcal::modal_event_thermal_test {
 namespace {
 
 Scene thermal_scene(double duration, const Thermal::Options& law = {}) {
@@ -264,4 +264,4 @@ TEST(StaticLimit, SeriesAndValueAgree) {
 
 }  // namespace event_level
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::modal_event_thermal_test

@@ -10,7 +10,7 @@
 #include "libsim/dynamics/event/modes/secular_roots.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
-namespace modcal::event {
+namespace modcal::event::closed_loop_test {
 namespace {
 
 using Complex = std::complex<double>;
@@ -227,4 +227,4 @@ TEST(ClosedLoop, CoordinatesOfManyModesGoThereAndBack) {
 }
 
 }  // namespace
-}  // namespace modcal::event
+}  // namespace modcal::event::closed_loop_test

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-namespace modcal::event {
+namespace modcal::event::first_crossing_test {
 namespace {
 
 // Coefficients of Π (θ − root)·scale.
@@ -60,4 +60,4 @@ TEST(FirstCrossing, LooksNoFurtherThanAsked) {
 }
 
 }  // namespace
-}  // namespace modcal::event
+}  // namespace modcal::event::first_crossing_test

@@ -9,7 +9,7 @@
 
 #include "libsim/base/random.hpp"
 
-namespace modcal::event {
+namespace modcal::event::modal_kernels_test {
 namespace {
 
 /// Runs the test once for every instruction set that this machine has.
@@ -96,4 +96,4 @@ TEST_P(EverySet, AdvanceByMultipliesEveryModeByItsExponential) {
 }
 
 }  // namespace
-}  // namespace modcal::event
+}  // namespace modcal::event::modal_kernels_test
