@@ -13,6 +13,10 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND NOT MODCAL_TIDY)
   target_compile_options(modcal_flags INTERFACE -Wno-restrict -Wno-maybe-uninitialized
                                                 -fcx-limited-range)
 endif()
+# GCC takes the sources that one unit includes for headers, whose classes hold nothing unnamed.
+if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  target_compile_options(modcal_flags INTERFACE -Wno-subobject-linkage)
+endif()
 if(MODCAL_WERROR)
   target_compile_options(modcal_flags INTERFACE -Werror)
 endif()
@@ -42,6 +46,19 @@ function(modcal_precompiled name)
                             ${PROJECT_SOURCE_DIR}/cmake/precompiled/${name}.hpp)
 endfunction()
 
+# Kernels that Highway compiles once per instruction set include themselves: each is compiled alone.
+function(modcal_single)
+  foreach(source IN LISTS ARGN)
+    if(source MATCHES "generated|page_assets")
+      continue()
+    endif()
+    file(STRINGS ${source} repeats REGEX "include .hwy/foreach_target.h" LIMIT_COUNT 1)
+    if(repeats)
+      set_source_files_properties(${source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+    endif()
+  endforeach()
+endfunction()
+
 # modcal_library(model COMPONENT model FOLDERS base model LINK fmt::fmt) makes the static library
 # modcal_model with the alias modcal::model of every source file in and below these folders, save those
 # EXCEPT names. LINK: what its headers include; PRIVATE_LINK: what its sources include; BUILD_WITH: the
@@ -58,6 +75,7 @@ function(modcal_library name)
   foreach(file IN LISTS ARG_EXCEPT)
     list(FILTER ARG_SOURCES EXCLUDE REGEX "/${file}$")
   endforeach()
+  modcal_single(${ARG_SOURCES})
   add_library(modcal_${name} STATIC ${ARG_SOURCES})
   add_library(modcal::${name} ALIAS modcal_${name})
   target_compile_features(modcal_${name} PUBLIC cxx_std_20)
