@@ -77,14 +77,17 @@ Pile pile_at(Samples samples, bool highest) {
   return pile;
 }
 
-Fault find_clipped(Samples samples) {
+// Whether a pile is so many times as high as one where a signal of few steps turns.
+bool is_higher(const Pile& pile, double factor) {
   constexpr double kRoundest = std::numbers::sqrt2 + 1.0;
+  return static_cast<double>(pile.at_value) >
+         factor * kRoundest * static_cast<double>(pile.at_next);
+}
+
+Fault find_clipped(Samples samples) {
   for (const bool highest : {true, false}) {
     const Pile pile = pile_at(samples, highest);
-    if (!(static_cast<double>(pile.at_value) >
-          2.0 * kRoundest * static_cast<double>(pile.at_next))) {
-      continue;
-    }
+    if (!is_higher(pile, 2.0)) continue;
     std::size_t runs = 0, first = 0;
     for_each_run(samples, [&](const Run& run) {
       if (samples[run.first] != pile.value || run.count < Clipping::kShortestRun) return;
@@ -184,9 +187,12 @@ Clipping find_clipping(std::span<const double> samples) {
   const Levels levels = measure_levels(samples);
   Clipping clipping{.lowest = levels.lowest, .highest = levels.highest};
   if (!(levels.lowest < levels.highest)) return clipping;
+  const bool at_lowest = is_higher(pile_at(samples, false), 1.0);
+  const bool at_highest = is_higher(pile_at(samples, true), 1.0);
   for_each_run(samples, [&](const Run& run) {
     const double value = samples[run.first];
-    const bool extreme = value == levels.lowest || value == levels.highest;
+    const bool extreme =
+        (at_lowest && value == levels.lowest) || (at_highest && value == levels.highest);
     if (!extreme || run.count < Clipping::kShortestRun) return;
     if (clipping.runs++ == 0) clipping.first = run.first;
     clipping.samples += run.count;

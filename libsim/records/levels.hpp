@@ -8,7 +8,8 @@
 
 namespace modcal {
 
-/// Runs of kShortestRun or more equal samples at the largest or the smallest value.
+/// Runs of kShortestRun or more equal samples at the largest or the smallest value, where more
+/// stand there than where a signal of few steps turns.
 struct Clipping {
   std::size_t runs = 0;
   std::size_t samples = 0;  ///< samples in these runs

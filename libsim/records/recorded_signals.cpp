@@ -140,7 +140,10 @@ void judge_samples(const Recording& recording, const RecordedChannel& channel, c
   }
   const Clipping clipping = find_clipping(used);
   if (clipping.samples == 0) return;
-  warnings.push_back(fmt::format("{}: channel {}: {}", file, channel.name, text(clipping)));
+  warnings.push_back(
+      fmt::format("{}: channel {}: {}: peaks may be cut; record again with less gain, or crop to a "
+                  "part without",
+                  file, channel.name, text(clipping)));
 }
 
 Recording read_channels(const RecordOptions& options, const std::filesystem::path& path,

@@ -25,6 +25,14 @@ double median_step(std::span<const double> t) {
 void find_gaps(std::span<const double> t, double mean_step, double resolution, bool coarse,
                std::vector<TimeFinding>& findings) {
   const double nominal = median_step(t);
+  if (nominal < 0.0) {
+    findings.push_back({1,
+                        fmt::format("time falls from {:.9g} s to {:.9g} s, and so in most rows: "
+                                    "they stand in reverse; turn them around",
+                                    t[0], t[1]),
+                        true});
+    return;
+  }
   const double longest = kGap * (nominal > 0.0 ? nominal : mean_step) + resolution;
   for (std::size_t i = 1; i < t.size() && findings.size() < kFindings; ++i) {
     const double step = t[i] - t[i - 1];
@@ -32,7 +40,7 @@ void find_gaps(std::span<const double> t, double mean_step, double resolution, b
     if (!(coarse ? step >= 0.0 : step > 0.0)) {
       findings.push_back({i,
                           fmt::format("time goes from {:.9g} s to {:.9g} s; sampling instants "
-                                      "must increase",
+                                      "must increase: sort the rows by time, or crop the record",
                                       t[i - 1], t[i]),
                           true});
     } else if (step > longest) {

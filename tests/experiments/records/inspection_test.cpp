@@ -96,6 +96,14 @@ TEST_F(Inspect, FindsClipping) {
   EXPECT_EQ(find_clipping({}).runs, 0u);
 }
 
+TEST_F(Inspect, TakesNoSignalOfFewStepsForClipped) {
+  std::vector<double> samples = noisy_sine(1.0, 0.0, 0.0, 5120);
+  for (double& value : samples) value = std::round(5.0 * value);
+  EXPECT_EQ(find_clipping(samples).runs, 0u);
+  for (double& value : samples) value = std::clamp(value, -3.0, 3.0);
+  EXPECT_GT(find_clipping(samples).runs, 0u);
+}
+
 TEST_F(Inspect, ListsWhatARunWouldRefuse) {
   const auto file = write("r.csv", "t,R1 [N],R2 [N]\n0,1,2\n1,nan,3\n2,x,1\n");
   const InspectionReport report = inspect(file);

@@ -159,7 +159,8 @@ TEST_F(CsvReader, ReportsGapsJitterAndReturnsInTime) {
             "off the uniform grid; resample the record, or state sample_rate if its time column is "
             "not to be trusted");
   EXPECT_EQ(error("t,R1\n0,1\n0.10,1\n0.20,1\n0.20,1\n0.45,1\n"),
-            "r.csv:5: sample 3: time goes from 0.2 s to 0.2 s; sampling instants must increase\n"
+            "r.csv:5: sample 3: time goes from 0.2 s to 0.2 s; sampling instants must increase: "
+            "sort the rows by time, or crop the record\n"
             "r.csv:6: sample 4: a gap of 0.25 s before 0.45 s where the steps are 0.1 s; crop the "
             "record before or behind the gap");
   const std::string_view gap = "t,R1\n0,1\n0.1,1\n0.4,1\n0.5,1\n0.6,1\n";
