@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <set>
 
+#include "experiments/kinds/lint_bow.hpp"
+
 namespace modcal {
 
 bool is_known(const StringModel& string) {
@@ -62,7 +64,8 @@ void lint_string(const std::string& path, const StringModel& string, double posi
   }
   // Of what is made of parts the first place is that of the part.
   lint_making(findings, path + ".damping", [&] { string.damping.make(); });
-  lint_making(findings, path, [&] { make_modal_basis(string); });
+  lint_making(findings, string.modes_of_record() ? path + ".modes" : path,
+              [&] { make_modal_basis(string); });
 }
 
 void lint_rate(const StringModel& string, double sample_rate, const std::string& string_path,
@@ -74,6 +77,10 @@ void lint_rate(const StringModel& string, double sample_rate, const std::string&
   const double top = frequency(most), half = 0.5 * sample_rate;
   if (!std::isfinite(top) || top < half) return;
   while (most > 0 && !(frequency(most) < half)) --most;
+  if (most == 0)
+    return add_finding(findings, "measurement.sample_rate",
+                       "{:.6g} Hz show no string of {:.6g} Hz: check the unit", sample_rate,
+                       frequency(1));
   add_finding(findings, string_path + ".modes",
               "mode {} at {:.6g} Hz is not below half the sample rate, {:.6g} Hz: use at most "
               "{} modes or a higher measurement.sample_rate",
@@ -132,9 +139,7 @@ std::vector<Finding> lint_scene(const Scene& scene, const Choice<Simulator>& sim
     lint_making(findings, "scene.initial",
                 [&] { initial_state(scene, make_modal_basis(scene.string)); });
   }
-  lint_making(findings, "scene.bow.velocity_gesture", [&] { scene.bow.velocity_gesture.make(); });
-  lint_making(findings, "scene.bow.force_gesture", [&] { scene.bow.force_gesture.make(); });
-  lint_making(findings, "scene.bow", [&] { bow_motion(scene.bow, scene.duration); });
+  lint_bow(scene, findings);
   lint_rate(scene.string, measurement.sample_rate, "scene.string", findings);
   const std::size_t before = findings.size();
   lint_making(findings, "scene.friction", [&] { scene.friction.make(); });

@@ -137,11 +137,11 @@ void require_one_string(const ObservationOptions& options, const RecordedSignals
                  "units of the rate or of the time column (a bare number is in Hz or s), and f0",
                  record.file, signals.sample_rate, options.string.fundamental);
   const double duration = static_cast<double>(signals.size()) / signals.sample_rate;
-  MODCAL_REQUIRE(duration * options.string.fundamental >= 2.0,
-                 "{}: {} samples at {:g} Hz are {:.3g} s, less than two periods of the string of "
-                 "{:g} Hz: its modes cannot be told apart; record for longer",
-                 record.file, signals.size(), signals.sample_rate, duration,
-                 options.string.fundamental);
+  MODCAL_REQUIRE(
+      duration * options.string.fundamental >= 2.0,
+      "{}: {} samples at {:g} Hz are {:.3g} s, less than two periods of the string of "
+      "{:g} Hz: its modes cannot be told apart; record for longer, or check the rate's unit",
+      record.file, signals.size(), signals.sample_rate, duration, options.string.fundamental);
   require_whole_beginning(options, signals);
   const EndRecord ends = ends_of(*signals.left, *signals.right);
   const EndRelationFit fit = fit_end_relations(ends, string_of(options));
@@ -164,7 +164,7 @@ void require_one_string(const ObservationOptions& options, const RecordedSignals
   MODCAL_REQUIRE(fit.explained(),
                  "{} are not those of one string with f0 within 3 % of {:g} Hz and the contact "
                  "within 2 % of L of {:g} mm: the best, with f0 = {:.5g} Hz, leaves {:.3g} % of "
-                 "their power unexplained; check channels, sample rate, f0 and bow.position",
+                 "their power unexplained; check channels, sample rate, f0, B and bow.position",
                  pair, options.string.fundamental, 1e3 * options.contact.position, fit.fundamental,
                  100.0 * fit.unexplained);
   MODCAL_REQUIRE(!fit.disturbance,

@@ -1,0 +1,53 @@
+#include "experiments/kinds/lint_bow.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "experiments/kinds/lint.hpp"
+
+namespace modcal {
+namespace {
+
+// Of hands: a bow is drawn at up to 2 m/s and pressed with up to 5 N.
+void lint_hand(const Bow& bow, std::vector<Finding>& findings) {
+  constexpr double kFastest = 20.0, kStrongest = 100.0;  // [m/s], [N]
+  const auto warn = [&findings](const char* key, double value, const char* unit) {
+    findings.push_back({key,
+                        fmt::format("{:g} {} are beyond any hand: check the unit, a bare "
+                                    "number is in {}",
+                                    value, unit, unit),
+                        false});
+  };
+  if (std::abs(bow.velocity) > kFastest) warn("scene.bow.velocity", bow.velocity, "m/s");
+  if (bow.normal_force > kStrongest) warn("scene.bow.normal_force", bow.normal_force, "N");
+}
+
+// A change that the end of the scene comes before does nothing.
+void lint_gesture(const std::string& path, const Choice<Gesture>& gesture, double duration,
+                  std::vector<Finding>& findings) {
+  lint_making(findings, path, [&] {
+    const auto made = gesture.make();
+    if (!(duration > 0.0 && std::isfinite(duration))) return;
+    const PiecewiseLinear factor = made->over(duration);
+    const std::vector<double>& times = factor.times();
+    if (times.size() < 2 || times[times.size() - 2] < duration) return;
+    const auto unread = std::ranges::find_if(times, [&](double t) { return t >= duration; });
+    findings.push_back(
+        {path,
+         fmt::format("from {:g} s on the gesture lies behind the end of the scene at {:g} s: "
+                     "state earlier times or a longer scene.duration",
+                     *unread, duration),
+         unread == times.begin()});
+  });
+}
+
+}  // namespace
+
+void lint_bow(const Scene& scene, std::vector<Finding>& findings) {
+  lint_hand(scene.bow, findings);
+  lint_gesture("scene.bow.velocity_gesture", scene.bow.velocity_gesture, scene.duration, findings);
+  lint_gesture("scene.bow.force_gesture", scene.bow.force_gesture, scene.duration, findings);
+  lint_making(findings, "scene.bow", [&] { bow_motion(scene.bow, scene.duration); });
+}
+
+}  // namespace modcal
