@@ -1,6 +1,7 @@
 #include "experiments/kinds/simulate/simulate_study.hpp"
 
 #include "experiments/kinds/lint.hpp"
+#include "experiments/kinds/simulate/motion_text.hpp"
 #include "experiments/report/result.hpp"
 #include "libsim/signal/statistics.hpp"
 
@@ -52,6 +53,8 @@ std::optional<PlannedSimulations> SimulateOptions::planned_simulations() const {
 
 namespace {
 
+constexpr double kPeriodsShown = 6.0;
+
 // Reactions go through the sensor; motion and force at the contact are the truth.
 std::vector<Signal> measured(const Simulation& simulation, const SimulateOptions& options) {
   const StreamKey noise =
@@ -59,7 +62,7 @@ std::vector<Signal> measured(const Simulation& simulation, const SimulateOptions
   std::vector<Signal> signals;
   for (const Quantity& quantity : kQuantities) {
     const Signal& signal = simulation.*quantity.simulated;
-    if (signal.samples.empty()) continue;
+    if (std::ranges::count(options.outputs, quantity.name) == 0) continue;
     const bool reaction = quantity.identified == nullptr;
     signals.push_back(reaction ? measure(signal, options.measurement, noise.with(signal.quantity))
                                : signal);
@@ -96,8 +99,10 @@ report::Table level_table(const std::vector<Signal>& signals) {
 }  // namespace
 
 StudyResult SimulateOptions::run(const StudyContext& context) const {
-  const auto truth_found = context.work.truths.get(truth, measurement.sample_rate,
-                                                   request_of(outputs), context.progress);
+  OutputRequest request = request_of(outputs);
+  request.velocity = true;  // tells the motion
+  const auto truth_found =
+      context.work.truths.get(truth, measurement.sample_rate, request, context.progress);
   Simulation simulation = truth_found->simulation;
   const std::vector<Signal> signals = measured(simulation, *this);
   for (const Signal& signal : signals) {
@@ -105,11 +110,17 @@ StudyResult SimulateOptions::run(const StudyContext& context) const {
   }
 
   StudyResult result;
-  for (const FigureOptions& figure : figures) {
+  std::vector<FigureOptions> drawn = figures;
+  if (drawn.empty()) {
+    drawn.push_back({.id = "motion", .title = "The last periods", .quantities = outputs});
+    const double shown = kPeriodsShown / truth.scene.string.fundamental;
+    drawn.back().windows = {{.start = std::max(0.0, truth.scene.duration - shown)}};
+  }
+  for (const FigureOptions& figure : drawn) {
     result.blocks.emplace_back(simulation_figure(figure, simulation));
   }
-  result.add({run_table(simulation)});
   if (!signals.empty()) result.add({level_table(signals)});
+  result.add({run_table(simulation)});
   for (const std::string& format : files) {
     result.signal_files.push_back({"signals." + format, signals, wav_full_scale});
   }
@@ -117,10 +128,10 @@ StudyResult SimulateOptions::run(const StudyContext& context) const {
       simulation.refined_steps == 0
           ? ""
           : fmt::format(" ({} taken back for shorter ones)", simulation.refined_steps);
-  result.summary =
-      fmt::format("{} steps of {:.6g} s{}, {} attachments, {} signals of {} samples\n",
-                  simulation.steps, simulation.time_step, refined, simulation.attachments,
-                  signals.size(), signals.empty() ? 0 : signals[0].size());
+  result.summary = fmt::format(
+      "{}\n{} steps of {:.6g} s{}, {} attachments, {} signals of {} samples\n",
+      motion_text(truth.scene, simulation), simulation.steps, simulation.time_step, refined,
+      simulation.attachments, signals.size(), signals.empty() ? 0 : signals[0].size());
   result.answer_by_summary();
   return result;
 }

@@ -49,5 +49,53 @@ TEST(Simulate, SaysHowManyStepsWereTakenBack) {
               testing::HasSubstr(fmt::format("({} taken back for shorter ones)", stated.refined)));
 }
 
+std::string answer_of(const std::string& scene, const std::vector<std::string>& assignments) {
+  YamlDocument document = read_yaml_file(std::string(MODCAL_CONFIGS) + "/scenes/" + scene);
+  for (std::size_t i = 0; i < assignments.size(); ++i) {
+    apply_assignment(document, assignments[i], i);
+  }
+  const LoadedExperiment loaded = load_experiment(std::move(document));
+  EXPECT_EQ(format_mistakes(loaded.document, loaded.mistakes), "");
+  SharedWork work;
+  return loaded.experiment
+      ->run({.work = work, .folder = loaded.document.folder(), .command = "test"})
+      .answer;
+}
+
+TEST(Simulate, SaysWhatTheStringDid) {
+  using testing::HasSubstr;
+  using testing::StartsWith;
+  const std::string event = "simulator={type: modal_event}";
+  EXPECT_THAT(answer_of("torsion.yaml", {}),
+              AllOf(StartsWith("Helmholtz motion at 196"), HasSubstr("one slip a period"),
+                    HasSubstr("under 1 N of the bow")));
+  EXPECT_THAT(answer_of("hyperbolic.yaml", {}), StartsWith("Multiple slip at 196"));
+  EXPECT_THAT(answer_of("hyperbolic.yaml", {event, "scene.bow.normal_force=500 N"}),
+              StartsWith("The bow holds the string without a slip"));
+  EXPECT_THAT(answer_of("hyperbolic.yaml", {event, "scene.bow.normal_force=1 mN"}),
+              StartsWith("The string slides under the bow"));
+  EXPECT_THAT(answer_of("hyperbolic.yaml", {event, "scene.bow.velocity=0 m/s"}),
+              "The bow stands still on the string");
+  EXPECT_THAT(answer_of("pluck.yaml", {}),
+              StartsWith("The string rings freely at 196 Hz, falling"));
+  EXPECT_THAT(answer_of("bow_lifted.yaml", {}), StartsWith("The string rings freely at 196.01 Hz"));
+  EXPECT_THAT(answer_of("bow_change.yaml", {}), StartsWith("The bow changes until the end"));
+  EXPECT_THAT(answer_of("torsion.yaml", {"scene.duration=0.1 s", "figures=[]"}),
+              HasSubstr("this is 0.1 s of it"));
+}
+
+TEST(Simulate, DrawsTheLastPeriodsWhereNothingIsAskedFor) {
+  YamlDocument document = read_yaml_file(std::string(MODCAL_CONFIGS) + "/scenes/pluck.yaml");
+  apply_assignment(document, "figures=[]", 0);
+  const LoadedExperiment loaded = load_experiment(std::move(document));
+  SharedWork work;
+  StudyResult result =
+      loaded.experiment->run({.work = work, .folder = loaded.document.folder(), .command = "test"});
+  const auto [first, details] = result.take_parts();
+  ASSERT_EQ(first.size(), 2u);
+  EXPECT_EQ(std::get<report::Figure>(first[0]).panels.size(), 3u);  // y, R1, R2
+  EXPECT_EQ(std::get<report::Table>(first[1]).id, "levels");
+}
+
 }  // namespace
 }  // namespace modcal::simulate_test
