@@ -215,15 +215,20 @@ StudyResult PluckThenBowOptions::run(const StudyContext& context) const {
   }
   result.answer = answer_of(outcome);
   add_distance_warning(*this, outcome, result);
+  std::vector<report::Figure> figures_of_steps = pluck_then_bow_figures(*this, outcome);
+  const auto errors = std::ranges::find(figures_of_steps, "frequency_errors", &report::Figure::id);
+  result.blocks.emplace_back(std::move(*errors));
+  figures_of_steps.erase(errors);
+  report::Table from_ends =
+      sides_table("identification", "8. Identification from either end", outcome.sides);
+  result.add({outcome.has_bound
+                  ? sides_table("identification_bound",
+                                "Identification with the model at the bound", outcome.bound_sides)
+                  : from_ends});
+  result.end_first_screen();
+  if (outcome.has_bound) result.add({std::move(from_ends)});
   result.add(report::tables_of(outcome));
-  for (report::Figure& figure : pluck_then_bow_figures(*this, outcome)) {
-    result.blocks.emplace_back(std::move(figure));
-  }
-  result.add({sides_table("identification", "8. Identification from either end", outcome.sides)});
-  if (outcome.has_bound) {
-    result.add({sides_table("identification_bound", "Identification with the model at the bound",
-                            outcome.bound_sides)});
-  }
+  for (report::Figure& figure : figures_of_steps) result.blocks.emplace_back(std::move(figure));
   add_identification_figures(figures, outcome.stroke, outcome.sides, result);
   result.files.emplace_back("pluck_then_bow.json", report::json_file(report::json_of(outcome)));
   return result;
