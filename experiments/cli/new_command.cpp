@@ -143,7 +143,7 @@ std::string file_for_record(const NewArguments& arguments) {
   // Of a large file inspect reads the head alone; what follows reads all of it.
   require_memory(record.file, record.format, machine_memory());
   MODCAL_REQUIRE(record.has_left && record.has_right,
-                 "{} has one channel: which string it is takes both reactions; state it by hand as "
+                 "{} has one reaction: which string it is takes both; state it by hand as "
                  "`modcal inspect` shows",
                  arguments.record);
   ToldString told = told_by(record);
