@@ -63,7 +63,7 @@ class ArrayPool {
 
 std::string_view style_name(SeriesStyle style) {
   static constexpr std::array<std::string_view, 4> kNames = {"line", "points", "line_with_points",
-                                                             "dotted"};
+                                                             "dashed"};
   return kNames.at(static_cast<std::size_t>(style));
 }
 

@@ -65,7 +65,7 @@ void raise_marked_ends(DrawnSeries& drawn) {
 Look look_of(const Series& series) {
   const bool points = series.style == SeriesStyle::kPoints;
   return {.line = !points,
-          .dotted = series.style == SeriesStyle::kDotted,
+          .dashed = series.style == SeriesStyle::kDashed,
           .points = points || series.style == SeriesStyle::kLineWithPoints,
           .ink = &ink_of(series.color)};
 }
@@ -208,16 +208,28 @@ std::vector<LegendEntry> legend_of(const Panel& panel) {
   return legend;
 }
 
-bool has_shared_legend(const Figure& figure) {
-  const auto same = [](const Series* a, const Series* b) {
-    return a->label == b->label && a->style == b->style && a->color == b->color;
-  };
-  const std::vector<const Series*> first = shown_series(figure.panels.front());
-  return std::all_of(figure.panels.begin(), figure.panels.end(), [&](const Panel& panel) {
-    if (panel.map && figure.panels.size() > 1) return false;
-    const std::vector<const Series*> series = shown_series(panel);
-    return std::equal(series.begin(), series.end(), first.begin(), first.end(), same);
-  });
+// Of several panels, where one repeats what another one shows and no label has two looks, no look
+// two labels.
+std::vector<LegendEntry> common_legend(const std::vector<DrawnPanel>& panels) {
+  if (panels.size() == 1) return panels.front().legend;
+  std::vector<LegendEntry> common;
+  bool repeats = false;
+  for (const DrawnPanel& panel : panels) {
+    if (panel.source->map) return {};
+    for (const LegendEntry& entry : panel.legend) {
+      const auto known = std::ranges::find_if(common, [&](const LegendEntry& other) {
+        return other.label == entry.label || other.look == entry.look;
+      });
+      if (known == common.end()) {
+        common.push_back(entry);
+      } else if (known->label == entry.label && known->look == entry.look) {
+        repeats = true;
+      } else {
+        return {};
+      }
+    }
+  }
+  return repeats ? common : std::vector<LegendEntry>{};
 }
 
 std::string counted(std::size_t count, std::string_view one, std::string_view many) {
@@ -261,7 +273,7 @@ bool DrawnPanel::has_values() const {
 
 DrawnFigure draw_figure(const Figure& figure, std::size_t columns) {
   check_figure(figure);
-  DrawnFigure result{.source = &figure, .shared_legend = has_shared_legend(figure)};
+  DrawnFigure result{.source = &figure};
   LeftOut left_out;
   for (const Panel& panel : figure.panels) {
     DrawnPanel drawn{.source = &panel, .legend = legend_of(panel)};
@@ -275,6 +287,7 @@ DrawnFigure draw_figure(const Figure& figure, std::size_t columns) {
     set_y_window(drawn);
     result.panels.push_back(std::move(drawn));
   }
+  result.legend = common_legend(result.panels);
   result.notes = notes_on(left_out);
   return result;
 }

@@ -10,12 +10,14 @@
 
 namespace modcal::report {
 
-/// How a series is drawn: a line, dotted or not, points, or both.
+/// How a series is drawn: a line, dashed or not, points, or both.
 struct Look {
   bool line = true;
-  bool dotted = false;
+  bool dashed = false;
   bool points = false;
   const Ink* ink = nullptr;
+
+  bool operator==(const Look&) const = default;
 };
 
 struct LegendEntry {
@@ -50,8 +52,9 @@ struct DrawnPanel {
 struct DrawnFigure {
   const Figure* source = nullptr;
   std::vector<DrawnPanel> panels = {};
-  /// All panels show the same labels in the same looks: one legend serves the figure.
-  bool shared_legend = false;
+  /// One legend for all panels, where labels and looks belong together in all of them; empty: each
+  /// panel has its own.
+  std::vector<LegendEntry> legend = {};
   /// Sentences for the caption: values left out on logarithmic axes, gaps, thinned series.
   std::vector<std::string> notes = {};
 };

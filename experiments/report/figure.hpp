@@ -13,7 +13,7 @@ namespace modcal::report {
 
 /// Meaning of a colour (and of a point's shape): the palette is that of Okabe and Ito (2008), which
 /// colour-blind readers can tell apart; kReference is the ink of the page. kSeventh to kTwelfth
-/// have the colours of the first six and other shapes: draw their lines dotted.
+/// have the colours of the first six and other shapes: draw their lines dashed.
 enum class ColorRole {
   kReference,
   kFirst,
@@ -32,7 +32,7 @@ enum class ColorRole {
 };
 constexpr std::size_t kColorRoles = 14;
 
-enum class SeriesStyle { kLine, kPoints, kLineWithPoints, kDotted };
+enum class SeriesStyle { kLine, kPoints, kLineWithPoints, kDashed };
 
 /// What a reader can filter a page by: a facet ("noise") and the values under which something is
 /// shown. A facet that has the value kEverything somewhere offers one value at a time, "all" first;

@@ -78,7 +78,10 @@ std::string softened(std::string_view color) {
 }
 
 // A reference is thin: what it is compared with, and its band, are to be seen beside it.
-double line_width(const Look& look) { return look.dotted ? 0.9 : 1.3; }
+double line_width(const Look& look) { return look.dashed ? 1.1 : 1.3; }
+
+// Long enough to be seen where it lies over another line, or over an area of many periods.
+constexpr std::string_view kDashes = " dashtype (6,3)";
 
 // A place on the sheet [in] as gnuplot takes it.
 std::string at(const PrintSheet& sheet, double x, double y) {
@@ -123,7 +126,7 @@ std::string legend_commands(const PrintSheet& sheet, std::size_t place) {
     } else if (look.line) {
       text += fmt::format("set arrow from {} to {} nohead linewidth {} linecolor rgb '{}'{}\n",
                           at(sheet, begin, y), at(sheet, end, y), line_width(look), color,
-                          look.dotted ? " dashtype 3" : "");
+                          look.dashed ? kDashes : "");
     }
     if (look.points && !entry.is_cell) {
       text +=
@@ -158,7 +161,7 @@ std::vector<std::string> elements_of(const Figure& figure, const DrawnSeries& dr
   // Thinner within a band, which is often hardly wider.
   const bool banded = look.line && !drawn.low.empty();
   if (look.line) style += fmt::format(" linewidth {}", banded ? 0.9 : line_width(look));
-  if (look.dotted) style += " dashtype 3";
+  if (look.dashed) style += kDashes;
   elements.push_back(fmt::format("{} using 1:2 with {}{} {} notitle", data,
                                  look.line ? "lines" : "", look.points ? "points" : "", style));
   return elements;
@@ -189,9 +192,9 @@ std::vector<std::string> panel_elements(const Figure& figure, const DrawnPanel& 
   if (drawn.source->map) others = map_elements(figure, *drawn.source->map, index);
   for (const DrawnSeries& series : drawn.series) {
     if (!series.has_values() || series.source->hidden) continue;
-    // A dotted reference would hide a narrow band about what is compared with it.
+    // A dashed reference would hide a narrow band about what is compared with it.
     const bool behind =
-        banded && series.look.dotted && series.source->color == ColorRole::kReference;
+        banded && series.look.dashed && series.source->color == ColorRole::kReference;
     for (auto& element : elements_of(figure, series, index)) {
       (behind ? references : others).push_back(std::move(element));
     }
@@ -244,7 +247,7 @@ std::string gnuplot_script(const DrawnFigure& figure) {
       "reset\n"
       "if (!exists(\"output_svg\")) output_svg = '{0}.svg'\n"
       "if (!exists(\"output_pdf\")) output_pdf = '{0}.pdf'\n"
-      "set encoding utf8\n"
+      "set encoding utf8\nset minussign\n"
       "set style line 100 linecolor rgb '#d9d9d9' linewidth 0.5\n",
       id);
   const std::pair<std::string_view, std::string> terminals[] = {

@@ -128,10 +128,10 @@ std::vector<LegendEntry> printed_legend(const DrawnPanel& panel) {
 PrintSheet::PrintSheet(const DrawnFigure& figure)
     : figure_(figure),
       columns_(std::min(figure.source->columns, figure.panels.size())),
-      shared_(figure.shared_legend && figure.panels.size() > 1) {
+      shared_(!figure.legend.empty() && figure.panels.size() > 1) {
   rows_ = (figure.panels.size() + columns_ - 1) / columns_;
   panel_width_ = columns_ == 1 ? 6.4 : columns_ == 2 ? 4.4 : 3.3;
-  plot_height_ = columns_ == 1 ? 2.55 : 1.4;
+  plot_height_ = columns_ == 1 ? 2.55 : rows_ <= 2 ? 2.0 : 1.4;
   width_ = panel_width_ * static_cast<double>(columns_);
   for (const DrawnPanel& panel : figure.panels) {
     right_margin_ = std::max(right_margin_, widest_level_label(panel));
@@ -150,9 +150,8 @@ PrintSheet::PrintSheet(const DrawnFigure& figure)
     }
   }
   if (shared_) {
-    const auto entries = flow(printed_legend(figure.panels.front()), kLeft, width_ - kEdge, 0.0);
-    shared_legend_ =
-        kLine * static_cast<double>(lines_in(entries)) + (entries.empty() ? 0.0 : kTop);
+    const auto entries = flow(figure.legend, kLeft, width_ - kEdge, 0.0);
+    shared_legend_ = kLine * static_cast<double>(lines_in(entries)) + kTop;
   }
   panel_height_ = kTop + kLine * static_cast<double>(title_lines_ + legend_lines_ + label_lines_) +
                   kTop + plot_height_ + kBottom;
@@ -218,7 +217,7 @@ std::vector<PlacedEntry> PrintSheet::own_legend(std::size_t panel) const {
 std::vector<PlacedEntry> PrintSheet::legend_of(std::size_t panel) const {
   if (!shared_) return own_legend(panel);
   if (panel > 0) return {};
-  return flow(printed_legend(figure_.panels.front()), kLeft, width_ - kEdge, height_ - kTop);
+  return flow(figure_.legend, kLeft, width_ - kEdge, height_ - kTop);
 }
 
 std::vector<PlacedText> PrintSheet::upright_labels(std::size_t panel) const {

@@ -11,16 +11,16 @@
 namespace modcal::report {
 namespace {
 
-std::string legend_html(const DrawnPanel& panel) {
+std::string legend_html(const std::vector<LegendEntry>& legend) {
   std::string html;
-  for (const auto& [label, look, is_cell] : panel.legend) {
+  for (const auto& [label, look, is_cell] : legend) {
     const std::string text = html_escaped(label);
     html += fmt::format(
         "<span class=\"key\"{}><span class=\"mark{} ink-{}\" "
         "aria-hidden=\"true\">{}</span>{}</span>",
         is_cell ? "" : " data-label=\"" + text + "\"",
         is_cell       ? " cell"
-        : look.dotted ? " dotted"
+        : look.dashed ? " dashed"
         : look.line   ? " line"
                       : "",
         look.ink->name, look.points ? look.ink->glyph : "", typeset_html(label));
@@ -48,7 +48,8 @@ std::string panel_html(const DrawnPanel& drawn, std::size_t place, bool legend_i
   const Panel& panel = *drawn.source;
   std::string html = "<div class=\"panel\"><div class=\"head\">";
   html += fmt::format("<span class=\"title\">{}</span>", typeset_html(panel.title));
-  if (legend_in_panel) html += fmt::format("<span class=\"keys\">{}</span>", legend_html(drawn));
+  if (legend_in_panel)
+    html += fmt::format("<span class=\"keys\">{}</span>", legend_html(drawn.legend));
   html += "<output class=\"values\"></output></div>\n";
   if (!drawn.has_values()) return html + "<div class=\"nothing\">no data</div></div>\n";
   return html + fmt::format(
@@ -144,10 +145,9 @@ std::string BlockWriter::operator()(const Figure& figure) {
       "class=\"caption-head\"><h3>{2}</h3>{3}<button type=\"button\" class=\"reset\" "
       "hidden>Reset zoom</button></div>\n<div class=\"grid\">\n",
       figure.id, figure.columns, typeset_html(figure.title),
-      drawn.shared_legend ? "<span class=\"keys\">" + legend_html(drawn.panels.front()) + "</span>"
-                          : "");
+      drawn.legend.empty() ? "" : "<span class=\"keys\">" + legend_html(drawn.legend) + "</span>");
   for (std::size_t i = 0; i < drawn.panels.size(); ++i) {
-    html += panel_html(drawn.panels[i], i, !drawn.shared_legend);
+    html += panel_html(drawn.panels[i], i, drawn.legend.empty());
   }
   html += "</div>\n<figcaption>" + html_paragraphs(figure.caption);
   for (const std::string& note : drawn.notes) {

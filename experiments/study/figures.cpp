@@ -178,13 +178,11 @@ Figure spectrum_figure(const Layout& layout, double highest, const TraceLookup& 
 }
 
 // A curve over the parameter and the point that was chosen on it.
-std::vector<Series> curve_with_choice(const ChosenParameter& choice, std::string name,
-                                      double CurvePoint::*x, double CurvePoint::*y) {
-  Series curve{.label = std::move(name)};
+std::vector<Series> curve_with_choice(const ChosenParameter& choice, double CurvePoint::*x,
+                                      double CurvePoint::*y) {
+  Series curve{.label = "all parameters"};
   for (const CurvePoint& point : choice.curve) curve.add(point.*x, point.*y);
-  Series chosen{.label = fmt::format("chosen: {:.3g}", choice.point.parameter),
-                .style = SeriesStyle::kPoints,
-                .color = ColorRole::kSecond};
+  Series chosen{.label = "chosen", .style = SeriesStyle::kPoints, .color = ColorRole::kSecond};
   chosen.add(choice.point.*x, choice.point.*y);
   return {std::move(curve), std::move(chosen)};
 }
@@ -203,16 +201,17 @@ Figure parameter_curve_figure(const Layout& layout, const std::vector<SideIdenti
                .unit = "N",
                .logarithmic = true},
          .y = {.label = fmt::format("‖d F_{}/dt‖", name), .unit = "N/s", .logarithmic = true},
-         .series = curve_with_choice(side.estimate.result.choice, "all parameters",
-                                     &CurvePoint::residual_norm, &CurvePoint::solution_norm)});
+         .series = curve_with_choice(side.estimate.result.choice, &CurvePoint::residual_norm,
+                                     &CurvePoint::solution_norm)});
   }
   for (const SideIdentification& side : sides) {
     figure.panels.push_back(
-        {.title = side.estimate.label,
+        {.title = fmt::format("{}: ε = {:.3g} chosen", side.estimate.label,
+                              side.estimate.result.choice.point.parameter),
          .x = {.label = "ε", .unit = "N/N", .logarithmic = true},
          .y = {.label = "criterion", .unit = "1", .logarithmic = true},
-         .series = curve_with_choice(side.estimate.result.choice, "criterion",
-                                     &CurvePoint::parameter, &CurvePoint::criterion)});
+         .series = curve_with_choice(side.estimate.result.choice, &CurvePoint::parameter,
+                                     &CurvePoint::criterion)});
   }
   return figure;
 }
@@ -241,7 +240,7 @@ Figure simulation_figure(const FigureOptions& options, const Simulation& simulat
                          [&](const std::string& quantity, std::size_t column) {
                            const std::string& name =
                                reactions ? options.quantities[column] : quantity;
-                           return std::vector<Trace>{{"simulated", &simulated(name).samples}};
+                           return std::vector<Trace>{{"", &simulated(name).samples}};
                          });
 }
 
@@ -267,11 +266,10 @@ Figure identification_figure(const FigureOptions& options, const Observation& ob
   }
   const TraceLookup traces = [&](const std::string& name, std::size_t column) {
     std::vector<Trace> result = {
-        {"identified", &(sides[column].estimate.result.*quantity_of(name).identified),
-         SeriesStyle::kLine, column == 0 ? ColorRole::kFirst : ColorRole::kSecond}};
+        {"identified", &(sides[column].estimate.result.*quantity_of(name).identified)}};
     const auto known_truth = truth.find(name);
     if (known_truth != truth.end() && !known_truth->second.empty()) {
-      result.push_back({"true", &known_truth->second, SeriesStyle::kDotted, ColorRole::kReference});
+      result.push_back({"true", &known_truth->second, SeriesStyle::kDashed, ColorRole::kReference});
     }
     return result;
   };

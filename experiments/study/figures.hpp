@@ -41,7 +41,7 @@ std::vector<TimeWindow> windows_or_all(const FigureOptions& options, double dura
 /// 3): rows are quantities × windows.
 report::Figure simulation_figure(const FigureOptions& options, const Simulation& simulation);
 
-/// Of identified (solid) and true (dotted) signals, one column a side, the waveforms or the moduli
+/// Of identified (solid) and true (dashed) signals, one column a side, the waveforms or the moduli
 /// of the spectra |X(ω)| (unscaled sum over f_s) (paper, figs. 4–8, 10–12, 15–17); or L-curves
 /// (first row) and criterion curves (second row) (figs. 9 and 21).
 report::Figure identification_figure(const FigureOptions& options, const Observation& observation,

@@ -115,7 +115,7 @@ Panel signal_panel(const Drawing& drawing, const SideIdentification& side, const
   // Along a record it is an area that would cover all else.
   const bool along = part.stretch > 1;
   Series reference{.label = drawing.observation.truth ? "true" : "measured",
-                   .style = along ? SeriesStyle::kLine : SeriesStyle::kDotted,
+                   .style = along ? SeriesStyle::kLine : SeriesStyle::kDashed,
                    .color = along ? ColorRole::kMuted : ColorRole::kReference};
   for (const std::size_t j : drawn_of(part, truth)) reference.add(time(j), shown.scale * truth[j]);
   panel.series.insert(along ? panel.series.begin() : panel.series.end(), std::move(reference));
@@ -194,9 +194,7 @@ Figure friction_loop_figure(const Drawing& drawing) {
 }
 
 // |X_k|/f_s below the highest mode's neighborhood, frequencies in kHz.
-Series spectrum_of(std::span<const double> samples, double rate, double highest,
-                   std::string label) {
-  Series series{.label = std::move(label)};
+Series spectrum_of(std::span<const double> samples, double rate, double highest, Series series) {
   const RealFft fft(samples.size());
   const std::vector<Complex> spectrum = fft.forward(samples);
   for (std::size_t k = 1; k < spectrum.size(); ++k) {
@@ -220,16 +218,16 @@ double noise_of(const std::vector<SideIdentification>& sides, std::size_t reacti
 Figure spectra_figure(const Drawing& drawing) {
   Figure figure{.id = "reaction_spectra",
                 .title = "Spectra of the reactions and of the force",
-                .caption = "Dotted: the noise of the sensor."};
+                .caption = "Dashed: the noise of the sensor."};
   const Observation& observation = drawing.observation;
   const double highest = std::min(0.5 * drawing.rate(),
                                   1.1 * observation.basis.frequency(observation.basis.size() - 1));
-  const auto add = [&](std::string title, std::string label, std::span<const double> samples,
-                       double limit) {
+  const auto add = [&](std::string title, std::string label, Series series,
+                       std::span<const double> samples, double limit) {
     Panel panel{.title = std::move(title),
                 .x = {.label = "frequency", .unit = "kHz"},
                 .y = {.label = std::move(label), .unit = "N s", .logarithmic = true}};
-    panel.series.push_back(spectrum_of(samples, drawing.rate(), limit, "record"));
+    panel.series.push_back(spectrum_of(samples, drawing.rate(), limit, std::move(series)));
     figure.panels.push_back(std::move(panel));
   };
   for (const End end : kEnds) {
@@ -237,12 +235,12 @@ Figure spectra_figure(const Drawing& drawing) {
     if (!reaction) continue;
     const auto r = static_cast<std::size_t>(end);
     add(fmt::format("reaction at {}", label_of(end)), fmt::format("|R_{}|", r + 1),
-        reaction->samples, highest);
+        {.label = "record", .color = ColorRole::kReference}, reaction->samples, highest);
     const double noise = noise_of(drawing.sides, r);
     if (!(noise > 0.0)) continue;
     const double floor = noise * std::sqrt(static_cast<double>(reaction->size())) / drawing.rate();
     Series level{.label = "noise of the sensor",
-                 .style = SeriesStyle::kDotted,
+                 .style = SeriesStyle::kDashed,
                  .color = ColorRole::kReference};
     level.add(0.0, floor);
     level.add(1e-3 * highest, floor);
@@ -250,9 +248,8 @@ Figure spectra_figure(const Drawing& drawing) {
   }
   for (const SideIdentification& side : drawing.sides) {
     // Above the limit of its band a force is rounding. Of NaN fmin takes the other.
-    add("force " + side.estimate.label, "|F_c|", side.estimate.result.force,
-        std::fmin(highest, side.estimate.band_limit));
-    figure.panels.back().series.front().label = "identified";
+    add("force " + side.estimate.label, "|F_c|", {.label = "identified"},
+        side.estimate.result.force, std::fmin(highest, side.estimate.band_limit));
   }
   figure.columns = std::min<std::size_t>(figure.panels.size(), 2);
   return figure;

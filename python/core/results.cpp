@@ -55,7 +55,7 @@ py::dict series_of(const report::Series& series, const py::object& owner) {
   described["color"] = report::ink_of(series.color).light;
   described["line"] = !points;
   described["points"] = points || series.style == report::SeriesStyle::kLineWithPoints;
-  described["dotted"] = series.style == report::SeriesStyle::kDotted;
+  described["dashed"] = series.style == report::SeriesStyle::kDashed;
   return described;
 }
 

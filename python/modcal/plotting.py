@@ -76,7 +76,7 @@ def _drawn(described: dict[str, Any]) -> Any:
 
 def _series(axes: Any, series: dict[str, Any]) -> None:
     color = series["color"]
-    style = ":" if series["dotted"] else "-" if series["line"] else ""
+    style = "--" if series["dashed"] else "-" if series["line"] else ""
     points = "o" if series["points"] else ""
     banded = len(series["y_low"]) > 0
     if banded and series["line"]:

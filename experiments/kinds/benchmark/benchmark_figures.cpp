@@ -100,7 +100,7 @@ report::Series method_series(const BenchmarkGrid& grid, std::size_t method, std:
   const std::string& search = grid.searches[method];
   const std::size_t place = place_in(distinct(grid.searches), search);
   const bool second_set = place >= kLooks.size() / 2;
-  if (second_set && style == SeriesStyle::kLine) style = SeriesStyle::kDotted;
+  if (second_set && style == SeriesStyle::kLine) style = SeriesStyle::kDashed;
   report::Series series{.label = search,
                         .style = style,
                         .color = place < kLooks.size() ? kLooks[place] : ColorRole::kMuted,

@@ -54,7 +54,7 @@ report::Figure law_figure(const CalibrationOutcome& outcome) {
     if (!series.x.empty()) panel.series.push_back(std::move(series));
   }
   if (!outcome.true_frequencies.empty()) {
-    Series truth{.label = "true", .style = SeriesStyle::kDotted, .color = ColorRole::kReference};
+    Series truth{.label = "true", .style = SeriesStyle::kDashed, .color = ColorRole::kReference};
     for (std::size_t i = 0; i < outcome.true_frequencies.size(); ++i) {
       const auto n = static_cast<double>(i + 1);
       truth.add(n, 1e3 * (outcome.true_frequencies[i] / law_frequency(law, n) - 1.0));
@@ -117,7 +117,7 @@ report::Figure ratio_figure(const CalibrationOutcome& outcome, const Observation
     series.color = color;
     panel.series.push_back(std::move(series));
   };
-  add(outcome.initial, "initial model", SeriesStyle::kDotted, ColorRole::kSecond);
+  add(outcome.initial, "initial model", SeriesStyle::kDashed, ColorRole::kSecond);
   add(outcome.refined, "refined model", SeriesStyle::kLine, ColorRole::kFirst);
   figure.panels.push_back(std::move(panel));
   return figure;

@@ -110,7 +110,7 @@ report::Figure model_force_figure(const Observation& observation, const ModelBas
       .series = {curve("linear", result.linear.force, SeriesStyle::kLine, ColorRole::kMuted),
                  curve("model-based", result.force, SeriesStyle::kLine, ColorRole::kFirst)}};
   if (observation.reference) {
-    panel.series.push_back(curve("truth", observation.reference->samples, SeriesStyle::kDotted,
+    panel.series.push_back(curve("truth", observation.reference->samples, SeriesStyle::kDashed,
                                  ColorRole::kReference));
   }
   return {.id = "model_based_force",

@@ -238,7 +238,7 @@ report::Figure limit_figure(const std::vector<LimitSummary>& levels) {
            levels,
            {.label = "joint likelihood", .style = SeriesStyle::kPoints, .color = ColorRole::kFirst},
            &LimitSummary::median_error),
-       over_noise(levels, {.label = "bound, median mode", .color = ColorRole::kReference},
+       over_noise(levels, {.label = "bound", .color = ColorRole::kReference},
                   &LimitSummary::median_bound),
        over_noise(levels,
                   {.label = "spectral peak (the paper)",

@@ -52,7 +52,7 @@ BowForceLimits limits_at(const SchellengOptions& options, std::size_t position) 
 report::Series limit_series(const SchellengOptions& options, bool highest) {
   report::Series series{
       .label = highest ? "Schelleng's maximum" : "Schelleng's minimum",
-      .style = highest ? report::SeriesStyle::kLine : report::SeriesStyle::kDotted,
+      .style = highest ? report::SeriesStyle::kLine : report::SeriesStyle::kDashed,
       .color = report::ColorRole::kReference};
   for (std::size_t i = 0; i < static_cast<std::size_t>(options.positions.count); ++i) {
     const BowForceLimits limits = limits_at(options, i);

@@ -29,7 +29,7 @@ report::Figure damping_figure(const PluckThenBowOutcome& outcome) {
               {.x = {.label = "mode number n"},
                .y = {.label = "damping ratio"},
                .series = {
-                   mode_series("true", ColorRole::kReference, SeriesStyle::kDotted, basis.size(),
+                   mode_series("true", ColorRole::kReference, SeriesStyle::kDashed, basis.size(),
                                [&](std::size_t n) { return basis.zeta[n - 1]; }),
                    mode_series("polynomial", ColorRole::kSecond, SeriesStyle::kLine, basis.size(),
                                [&](std::size_t n) { return outcome.damping.ratio(n); }),
@@ -66,7 +66,7 @@ report::Figure law_figure(const PluckThenBowOutcome& outcome) {
       .x = {.label = "mode number n"},
       .y = {.label = "f_n / (n f_0), true f_0"},
       .series = {
-          of(stroke.basis, plucked, "true", ColorRole::kReference, SeriesStyle::kDotted),
+          of(stroke.basis, plucked, "true", ColorRole::kReference, SeriesStyle::kDashed),
           of(from_pluck, from_pluck.size(), "plucked", ColorRole::kFirst, SeriesStyle::kPoints),
           of(first.model.basis, plucked, "first modes refined", ColorRole::kSecond,
              SeriesStyle::kPoints),
@@ -77,7 +77,7 @@ report::Figure law_figure(const PluckThenBowOutcome& outcome) {
       .title = "all modes",
       .x = {.label = "mode number n"},
       .y = {.label = "f_n / (n f_0)"},
-      .series = {of(stroke.basis, all, "true", ColorRole::kReference, SeriesStyle::kDotted),
+      .series = {of(stroke.basis, all, "true", ColorRole::kReference, SeriesStyle::kDashed),
                  by_law(law, all, "eq. 18", ColorRole::kSecond),
                  of(refined, refined.size(), "refined", ColorRole::kFirst, SeriesStyle::kPoints),
                  by_law(stage_of(outcome.stages, "law_again").law, all, "eq. 18 again",
@@ -111,20 +111,18 @@ report::Figure errors_figure(const PluckThenBowOptions& options,
     panel.series.push_back(errors(outcome.bound_stages.back(), ColorRole::kThird));
   }
   return {.id = "frequency_errors",
-          .title = "5. Errors of the modal frequencies",
+          .title = "Errors of the modal frequencies after the steps",
           .caption = "Modes that the contact excites.",
           .panels = {std::move(panel)}};
 }
 
 report::Figure contact_figure(const PluckThenBowOptions& options,
                               const PluckThenBowOutcome& outcome) {
-  report::Series curve{.label = std::string(options.contact.objective.selected()),
-                       .y = outcome.curve.values,
-                       .style = SeriesStyle::kLineWithPoints};
+  report::Series curve{.y = outcome.curve.values, .style = SeriesStyle::kLineWithPoints};
   for (const double x : outcome.curve.positions) curve.x.push_back(1e3 * x);
   report::Panel panel{
       .x = {.label = "contact point", .unit = "mm"},
-      .y = {.label = "objective"},
+      .y = {.label = fmt::format("objective {}", options.contact.objective.selected())},
       .series = {std::move(curve)},
       .markers = {
           {.value = 1e3 * outcome.stroke.contact, .label = "true"},

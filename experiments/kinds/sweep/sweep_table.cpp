@@ -189,7 +189,6 @@ std::vector<report::Panel> side_panels(const std::vector<SweepRow>& rows) {
   std::vector<report::Panel> panels;
   for (const std::string side : {"1", "2"}) {
     report::Series ours{.label = "median, 10-90 %", .style = SeriesStyle::kLineWithPoints};
-    ours.color = side == "1" ? ColorRole::kFirst : ColorRole::kSecond;
     report::Series paper{
         .label = "paper", .style = SeriesStyle::kPoints, .color = ColorRole::kReference};
     for (const SweepRow& row : rows) {

@@ -90,8 +90,8 @@ function points_only(e) {
 function series_options(s, bars, dense) {
   var points = s.style === 'points' || s.style === 'line_with_points';
   return {
-    strokeWidth: s.style === 'points' ? 0 : s.style === 'dotted' ? 1 : 1.4,
-    strokePattern: s.style === 'dotted' ? [2, 3] : null,
+    strokeWidth: s.style === 'points' ? 0 : s.style === 'dashed' ? 1.2 : 1.4,
+    strokePattern: s.style === 'dashed' ? [4, 2] : null,
     drawPoints: points,
     pointSize: dense ? 1.6 : 3.2,
     drawPointCallback: point_of(s.shape),

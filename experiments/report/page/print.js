@@ -79,7 +79,7 @@ function sizes(on_paper) {
 function put_on_paper(item) {
   if (!item.element.clientWidth) return;  // filtered away
   var columns = Number(getComputedStyle(item.figure).getPropertyValue('--columns'));
-  var narrow = columns > 1 || (item.figure.closest('.row') && item.figure.parentNode.children.length > 1);
+  var narrow = columns > 1 || item.figure.matches('.row > :not(:last-child:nth-child(odd))');
   var width = narrow ? 342 : 700;
   var height = item.panel.map ? Math.round(0.67 * width) : narrow ? 205 : 270;
   var paper = new SvgContext(width, height);

@@ -121,9 +121,9 @@ function looks(series) {
 }
 
 function read_series(panel) {
-  // A dotted reference lies behind a band about what is compared with it.
+  // A dashed reference lies behind a band about what is compared with it.
   var banded = panel.series.some(function (s) { return s.low !== undefined && s.style !== 'points'; });
-  var behind = function (s) { return banded && s.style === 'dotted' && s.ink === 'reference' ? 0 : 1; };
+  var behind = function (s) { return banded && s.style === 'dashed' && s.ink === 'reference' ? 0 : 1; };
   return panel.series.slice().sort(function (a, b) { return behind(a) - behind(b); }).map(function (s) {
     return {label: s.label, style: s.style, ink: s.ink, shape: s.shape, x: numbers(s.x), y: numbers(s.y),
             low: numbers(s.low), high: numbers(s.high), path: numbers(s.path), task: numbers(s.task),

@@ -32,7 +32,7 @@ window.addEventListener('beforeprint', function () {
   }
   document.querySelectorAll('figure').forEach(function (figure, f) {
     var columns = Number(getComputedStyle(figure).getPropertyValue('--columns')) > 1 ? 2 : 1;
-    var shared = figure.closest('.row') && figure.parentNode.children.length > 1;
+    var shared = figure.matches('.row > :not(:last-child:nth-child(odd))');
     figure.querySelectorAll('.chart').forEach(function (chart, c) {
       var name = [f, c, columns, columns > 1 || shared ? 2 : 1].join('x');
       mark(chart, 'qqtop' + name, 'left: 0; top: 0');

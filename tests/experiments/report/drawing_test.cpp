@@ -13,6 +13,7 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -158,11 +159,31 @@ TEST(CheckFigure, SaysWhatIsWrong) {
   EXPECT_THAT(message(figure), HasSubstr("marker \"true\""));
 }
 
-TEST(HasSharedLegend, WhenAllPanelsShowTheSameThings) {
-  EXPECT_TRUE(draw_figure(waveform_figure(), 100).shared_legend);
-  EXPECT_TRUE(draw_figure(objective_figure(), 100).shared_legend);
-  EXPECT_FALSE(draw_figure(noise_figure(), 100).shared_legend);
-  EXPECT_FALSE(draw_figure(long_figure(), 100).shared_legend);
+std::vector<std::string> legend_of(const std::vector<std::vector<Series>>& panels) {
+  Figure figure{.id = "figure"};
+  for (const auto& series : panels) figure.panels.push_back({.series = series});
+  std::vector<std::string> labels;
+  for (const LegendEntry& entry : draw_figure(figure, 100).legend) labels.push_back(entry.label);
+  return labels;
+}
+
+TEST(CommonLegend, ServesPanelsThatShowTheSameThings) {
+  EXPECT_FALSE(draw_figure(waveform_figure(), 100).legend.empty());
+  EXPECT_FALSE(draw_figure(objective_figure(), 100).legend.empty());
+  EXPECT_TRUE(draw_figure(noise_figure(), 100).legend.empty());
+  EXPECT_TRUE(draw_figure(long_figure(), 100).legend.empty());
+}
+
+TEST(CommonLegend, ServesPanelsThatShowPartsOfItInOneLookEach) {
+  const Series found{.label = "identified"};
+  const Series truth{.label = "true", .color = ColorRole::kReference};
+  const Series other_truth{.label = "true", .color = ColorRole::kSecond};
+  const Series misfit{.label = "misfit"};
+  EXPECT_THAT(legend_of({{found}, {found, truth}}), ElementsAre("identified", "true"));
+  EXPECT_THAT(legend_of({{found, truth}, {truth}}), ElementsAre("identified", "true"));
+  EXPECT_THAT(legend_of({{found}, {truth}}), IsEmpty()) << "nothing is repeated";
+  EXPECT_THAT(legend_of({{found, truth}, {other_truth}}), IsEmpty()) << "one label in two looks";
+  EXPECT_THAT(legend_of({{found, truth}, {misfit, truth}}), IsEmpty()) << "two labels in one look";
 }
 
 }  // namespace

@@ -111,7 +111,7 @@ TEST(GnuplotScript, DrawsTheReferenceBehindTheBand) {
   Series& found = figure.panels[0].series.front();
   found.y_low = {-1.0, -1.0};
   found.y_high = {1.0, 1.0};
-  Series truth{.label = "true", .style = SeriesStyle::kDotted, .color = ColorRole::kReference};
+  Series truth{.label = "true", .style = SeriesStyle::kDashed, .color = ColorRole::kReference};
   truth.add(0.0, 0.0);
   truth.add(1.0, 1.0);
   figure.panels[0].series.push_back(truth);

@@ -46,7 +46,7 @@ Panel waveform_panel(const Axis& y, double (*truth)(double), double ripple, cons
   Series computed{.label = "computed",
                   .x = t,
                   .y = {},
-                  .style = SeriesStyle::kDotted,
+                  .style = SeriesStyle::kDashed,
                   .color = ColorRole::kReference};
   Series identified{.label = "identified", .x = t, .y = {}, .color = ColorRole::kFirst};
   for (const double time : t) {
