@@ -1,6 +1,5 @@
 #include "experiments/kinds/lint_bow.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "experiments/kinds/lint.hpp"
@@ -22,7 +21,7 @@ void lint_hand(const Bow& bow, std::vector<Finding>& findings) {
   if (bow.normal_force > kStrongest) warn("scene.bow.normal_force", bow.normal_force, "N");
 }
 
-// A change that the end of the scene comes before does nothing.
+// A gesture that begins behind the end of the scene does nothing.
 void lint_gesture(const std::string& path, const Choice<Gesture>& gesture, double duration,
                   std::vector<Finding>& findings) {
   lint_making(findings, path, [&] {
@@ -30,14 +29,10 @@ void lint_gesture(const std::string& path, const Choice<Gesture>& gesture, doubl
     if (!(duration > 0.0 && std::isfinite(duration))) return;
     const PiecewiseLinear factor = made->over(duration);
     const std::vector<double>& times = factor.times();
-    if (times.size() < 2 || times[times.size() - 2] < duration) return;
-    const auto unread = std::ranges::find_if(times, [&](double t) { return t >= duration; });
-    findings.push_back(
-        {path,
-         fmt::format("from {:g} s on the gesture lies behind the end of the scene at {:g} s: "
-                     "state earlier times or a longer scene.duration",
-                     *unread, duration),
-         unread == times.begin()});
+    MODCAL_REQUIRE(times.size() < 2 || times.front() < duration,
+                   "the gesture begins at {:g} s, behind the end of the scene at {:g} s: state "
+                   "earlier times or a longer scene.duration",
+                   times.front(), duration);
   });
 }
 

@@ -5,7 +5,7 @@
 
 namespace modcal {
 
-/// Speeds and forces of no hand, gestures that cannot be or that the scene ends before.
+/// Speeds and forces of no hand, gestures that cannot be or that begin behind the scene.
 void lint_bow(const Scene& scene, std::vector<Finding>& findings);
 
 }  // namespace modcal

@@ -198,7 +198,7 @@ TEST_F(LoadRecord, CalibratesEveryChannelOfAForeignWav) {
 
 TEST_F(LoadRecord, WarnsOfClipping) {
   const RecordedSignals signals =
-      load(csv("# sample_rate: 8 Hz\nR1 [N],R2 [N]\n0,0\n1,1\n1,2\n1,3\n0,2\n"));
+      load(csv("# sample_rate: 8 Hz\nR1 [N],R2 [N]\n0,0\n1,1\n1,2\n1,3\n0.5,2\n"));
   EXPECT_THAT(signals.warnings,
               ElementsAre(HasSubstr("channel R1: 3 samples in 1 run of 3 or more at the limits 0 "
                                     "and 1, first at sample 1")));
