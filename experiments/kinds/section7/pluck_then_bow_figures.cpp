@@ -79,7 +79,7 @@ report::Figure law_figure(const PluckThenBowOutcome& outcome) {
       .y = {.label = "f_n / (n f_0)"},
       .series = {of(stroke.basis, all, "true", ColorRole::kReference, SeriesStyle::kDashed),
                  by_law(law, all, "eq. 18", ColorRole::kSecond),
-                 of(refined, refined.size(), "refined", ColorRole::kFirst, SeriesStyle::kPoints),
+                 of(refined, refined.size(), "refined", ColorRole::kFourth, SeriesStyle::kPoints),
                  by_law(stage_of(outcome.stages, "law_again").law, all, "eq. 18 again",
                         ColorRole::kThird)}};
   return {.id = "law",
