@@ -46,6 +46,15 @@ std::string decade_tics(char name, const std::array<double, 2>& window, double m
                      std::pow(10.0, std::max(1.0, std::ceil(decades / most))));
 }
 
+// Multiples of a step by name: on a logarithmic axis gnuplot takes a step for a factor.
+std::string listed_tics(const std::array<double, 2>& window, double step) {
+  std::vector<std::string> tics;
+  for (double k = std::ceil(window[0] / step); k * step <= window[1]; ++k) {
+    tics.push_back(fmt::format("{:.10g}", k * step));
+  }
+  return fmt::format("({})", fmt::join(tics, ","));
+}
+
 std::string axis_settings(char name, const Axis& axis, const std::array<double, 2>& window,
                           double length) {
   const bool upright = name == 'y';
@@ -60,9 +69,11 @@ std::string axis_settings(char name, const Axis& axis, const std::array<double, 
   } else if (dense) {
     text += dense_tics(name, window);
   } else {
-    text += fmt::format("{} logscale {}; set format {} '%h'; set {}tics {:.10g}\n",
-                        axis.logarithmic ? "set" : "unset", name, name, name,
-                        tic_step(window, length, most, upright));
+    const double step = tic_step(window, length, most, upright);
+    text +=
+        fmt::format("{} logscale {}; set format {} '%h'; set {}tics {}\n",
+                    axis.logarithmic ? "set" : "unset", name, name, name,
+                    axis.logarithmic ? listed_tics(window, step) : fmt::format("{:.10g}", step));
   }
   return text + fmt::format("set {}range [{:.10g}:{:.10g}]\n", name, window[0], window[1]);
 }

@@ -108,6 +108,13 @@ TEST(GnuplotData, WritesGapsAndOneBlockPerSeries) {
   EXPECT_EQ(gnuplot_data(draw_figure(figure, 10)), "1 3\n2 NaN\n\n\n1 3 2 4\n");
 }
 
+TEST(GnuplotScript, NamesTheTicsOfALogarithmicAxisThatHoldsNoPowers) {
+  const Figure figure{.id = "f",
+                      .panels = {{.y = {.label = "y", .logarithmic = true, .range = {{1.8, 2.9}}},
+                                  .series = {{.label = "", .x = {1, 2}, .y = {1.9, 2.8}}}}}};
+  EXPECT_THAT(gnuplot_script(draw_figure(figure, 10)), HasSubstr("set ytics (1.8,2,2.2,"));
+}
+
 TEST(RunProcess, ReportsExitCodesSignalsAndOutput) {
   const ProcessOutcome failed = run_process({"sh", "-c", "echo out; echo err >&2; exit 7"}, "/");
   EXPECT_TRUE(failed.started);
