@@ -5,6 +5,7 @@
 #include "experiments/kinds/lint.hpp"
 #include "experiments/kinds/structure/structure_kinds.hpp"
 #include "experiments/report/result.hpp"
+#include "libsim/records/universal/universal_modes.hpp"
 
 namespace modcal {
 namespace {
@@ -259,6 +260,9 @@ StudyResult FitModesOptions::run(const StudyContext& context) const {
   result.add(report::tables_of(outcome));
   if (!context.numbers_alone) result.blocks.emplace_back(criterion_figure(fit));
   result.files.emplace_back("table.yaml", table_text(fit.table));
+  if (std::ranges::all_of(fit.table.model.sensors, is_motion)) {
+    result.files.emplace_back("modes.uff", universal_modes_text(fit.table.model, fit.table.names));
+  }
   result.files.emplace_back("modes_fit.json", report::json_file(report::json_of(outcome)));
   return result;
 }

@@ -2,6 +2,7 @@
 #include "experiments/config/help.hpp"
 #include "experiments/config/reader.hpp"
 #include "experiments/kinds/structure/structure_files.hpp"
+#include "experiments/kinds/structure/table_shapes.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -45,6 +46,8 @@ struct SensorOptions {
 struct TableOptions {
   std::vector<SensorOptions> sensors;
   std::vector<ModeOptions> modes;
+  bool has_shapes = false;
+  ShapesOptions shapes;
   double low = 0.0, high = 0.0, pulse_step = 0.0;
   std::vector<double> pulse;
   void visit(OptionVisitor& visitor) {
@@ -53,18 +56,23 @@ struct TableOptions {
     visitor("high", "largest frequency of the band",
             {.unit = "Hz", .range = Range::positive(), .required = true}, high);
     visitor("sensors", "in the order of the record's responses", {.required = true}, sensors);
-    visitor("modes", "pairs of poles with a modal constant a sensor", {.required = true}, modes);
+    visitor("modes", "pairs of poles with a modal constant a sensor", modes);
+    visitor("shapes", "modes of a universal file (UFF 55) in the place of modes", has_shapes,
+            shapes);
     visitor("pulse_step", "between the magnitudes of pulse", {.unit = "Hz"}, pulse_step);
     visitor("pulse", "spectrum of a pulse of the force at 0, pulse_step, …, 1 at 0 Hz", pulse);
   }
 };
 
-StructureTable table_of(const TableOptions& options, const std::string& file) {
+StructureTable table_of(const TableOptions& options, const std::filesystem::path& path) {
+  const std::string file = path.string();
   constexpr double kTurn = 6.283185307179586;
   MODCAL_REQUIRE(options.low < options.high, "{}: low = {:g} Hz is not below high = {:g} Hz", file,
                  options.low, options.high);
   MODCAL_REQUIRE(options.pulse.empty() || options.pulse_step > 0.0,
                  "{}: pulse needs a positive pulse_step, not {:g} Hz", file, options.pulse_step);
+  MODCAL_REQUIRE(options.modes.empty() == options.has_shapes,
+                 "{}: state modes or shapes, one of both", file);
   StructureTable table{
       .low = options.low, .high = options.high, .lag = options.pulse_step, .pulse = options.pulse};
   for (const SensorOptions& sensor : options.sensors) {
@@ -72,6 +80,10 @@ StructureTable table_of(const TableOptions& options, const std::string& file) {
     table.model.sensors.push_back(sensor_kind_of(sensor.kind));
     table.model.residuals.push_back(sensor.residual);
     table.scatters.push_back(sensor.scatter);
+  }
+  if (options.has_shapes) {
+    take_shapes(options.shapes, path, table);
+    return table;
   }
   for (std::size_t n = 0; n < options.modes.size(); ++n) {
     const ModeOptions& mode = options.modes[n];
@@ -130,7 +142,7 @@ StructureTable read_table(const std::filesystem::path& path) {
         document.root, [&](OptionVisitor& visitor) { options.visit(visitor); }, mistakes);
   }
   if (!mistakes.empty()) throw InvalidInput(format_mistakes(document, mistakes));
-  return table_of(options, path.string());
+  return table_of(options, path);
 }
 
 }  // namespace modcal

@@ -43,6 +43,7 @@ struct UniversalUnits {
 struct UniversalFile {
   std::vector<UniversalFunction> functions;
   std::optional<UniversalUnits> units;  ///< none stated: SI
+  std::vector<FilePlace> shapes;        ///< where datasets 55 begin, behind their number
   std::vector<int> other_datasets;      ///< numbers of those that are passed over, once each
 };
 

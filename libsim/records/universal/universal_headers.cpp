@@ -2,62 +2,12 @@
 #include <charconv>
 
 #include "libsim/base/error.hpp"
-#include "libsim/base/utf8.hpp"
-#include "libsim/base/words.hpp"
 #include "libsim/records/csv_grammar.hpp"
+#include "libsim/records/universal/columns.hpp"
 #include "libsim/records/universal/universal_file.hpp"
 
 namespace modcal {
 namespace {
-
-bool is_delimiter(std::string_view line) { return trimmed(line) == "-1"; }
-
-std::string known(std::string_view text) {
-  const std::string_view word = trimmed(text);
-  return word == "NONE" ? std::string() : std::string(word);
-}
-
-// A line in columns of characters, whatever bytes they have.
-class Columns {
- public:
-  Columns(std::string_view line, std::string where)
-      : text_(utf8_or_latin1(line)), where_(std::move(where)) {}
-
-  std::string_view text(std::size_t first, std::size_t count) const {
-    return std::string_view(text_).substr(byte(first), byte(first + count) - byte(first));
-  }
-  long long whole(std::size_t first, std::size_t count) const {
-    const std::string_view field = trimmed(text(first, count));
-    long long value = 0;
-    const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-    const bool good = error == std::errc() && end == field.data() + field.size();
-    MODCAL_REQUIRE(good || field.empty(), "{}: \"{}\" in column {} is no whole number", where_,
-                   field, first + 1);
-    return value;
-  }
-  int small(std::size_t first, std::size_t count) const {
-    return static_cast<int>(std::clamp<long long>(whole(first, count), -9999999, 9999999));
-  }
-  double number(std::size_t first, std::size_t count) const {
-    std::string field(trimmed(text(first, count)));
-    std::replace(field.begin(), field.end(), 'D', 'E');
-    if (field.empty()) return 0.0;
-    const ParsedNumber parsed = parse_number(field);
-    MODCAL_REQUIRE(parsed.kind == NumberKind::kNumber, "{}: \"{}\" in column {} is no number",
-                   where_, field, first + 1);
-    return parsed.value;
-  }
-
- private:
-  std::size_t byte(std::size_t column) const {
-    std::size_t at = 0;
-    for (; column > 0 && at < text_.size(); --column) {
-      at += std::max<std::size_t>(1, utf8_size(std::string_view(text_).substr(at)));
-    }
-    return std::min(at, text_.size());
-  }
-  std::string text_, where_;
-};
 
 class HeaderReader {
  public:
@@ -66,7 +16,7 @@ class HeaderReader {
   UniversalFile read() {
     std::string line;
     while (file_.next(line)) {
-      if (trimmed(line).empty()) continue;
+      if (trimmed_field(line).empty()) continue;
       MODCAL_REQUIRE(is_delimiter(line),
                      "{}:{}: byte {}: a dataset of a universal file begins with -1", file_.name(),
                      file_.place().line - 1, file_.place().byte);
@@ -109,12 +59,13 @@ void HeaderReader::read_dataset() {
   const Columns heading = line();
   number_ = heading.small(0, 6);
   MODCAL_REQUIRE(number_ > 0, "{}: a number of a dataset is expected", where());
-  binary_ = trimmed(heading.text(6, 1)) == "b";
+  binary_ = trimmed_field(heading.text(6, 1)) == "b";
   if (number_ == 58) return read_function(heading);
   if (number_ == 164) return read_units();
   auto& others = result_.other_datasets;
   if (std::find(others.begin(), others.end(), number_) == others.end()) others.push_back(number_);
   MODCAL_REQUIRE(!binary_, "{}: binary datasets other than 58b are not read", where());
+  if (number_ == 55) result_.shapes.push_back(file_.place());
   skip_to_end();
 }
 
@@ -142,13 +93,13 @@ void HeaderReader::read_units() {
 UniversalAxis axis_of(const Columns& line) {
   return {line.small(0, 10),
           {line.small(10, 5), line.small(15, 5), line.small(20, 5)},
-          known(line.text(26, 20)),
-          known(line.text(47, 20))};
+          known_field(line.text(26, 20)),
+          known_field(line.text(47, 20))};
 }
 
 std::string name_of(const UniversalFunction& function, const std::string& entity) {
   if (entity.empty()) {
-    const std::string id = known(function.id_lines[0]);
+    const std::string id = known_field(function.id_lines[0]);
     return id.empty() && function.response_node > 0
                ? fmt::format("node {} {:+d}", function.response_node, function.response_direction)
                : id;
@@ -160,14 +111,14 @@ std::string name_of(const UniversalFunction& function, const std::string& entity
 void HeaderReader::read_function(const Columns& heading) {
   UniversalFunction function;
   function.header = {file_.place().byte, file_.place().line - 1};
-  for (std::string& id : function.id_lines) id = std::string(trimmed(line().text(0, 80)));
+  for (std::string& id : function.id_lines) id = std::string(trimmed_field(line().text(0, 80)));
   const Columns dof = line();
   function.type = dof.small(0, 5);
   function.response_node = dof.small(41, 10);
   function.response_direction = dof.small(51, 4);
   function.reference_node = dof.small(66, 10);
   function.reference_direction = dof.small(76, 4);
-  function.name = name_of(function, known(dof.text(31, 10)));
+  function.name = name_of(function, known_field(dof.text(31, 10)));
   const Columns form = line();
   const int data_type = form.small(0, 10);
   MODCAL_REQUIRE(data_type == 2 || (data_type >= 4 && data_type <= 6),
@@ -182,7 +133,7 @@ void HeaderReader::read_function(const Columns& heading) {
   function.first = form.number(30, 13);
   function.step = form.number(43, 13);
   PrintedDigits digits;
-  digits.add(trimmed(form.text(43, 13)));
+  digits.add(trimmed_field(form.text(43, 13)));
   if (function.step > 0.0) {
     function.step_resolution = 0.5 * digits.resolution(function.step) / function.step;
   }
@@ -270,7 +221,7 @@ void HeaderReader::skip_values(const UniversalFunction& function) {
     MODCAL_REQUIRE(file_.next(text),
                    "{}: its values have no end, -1, up to byte {}; it was cut off", begin,
                    file_.size());
-    MODCAL_REQUIRE(!function.binary || trimmed(text).empty() || is_delimiter(text),
+    MODCAL_REQUIRE(!function.binary || trimmed_field(text).empty() || is_delimiter(text),
                    "{}: byte {}: more than the {} bytes announced stand before its end, -1", begin,
                    file_.place().byte, function.byte_count);
   } while (!is_delimiter(text));

@@ -139,9 +139,10 @@ StoredChannel stored(const std::filesystem::path& path, const UniversalFunction&
 
 std::vector<StoredChannel> channels_of(const std::filesystem::path& path, const StopToken& stop) {
   const UniversalFile file = read_universal_headers(path);
-  MODCAL_REQUIRE(!file.functions.empty(), "{}: no function (dataset 58) stands in it{}{}",
-                 path.string(), file.other_datasets.empty() ? "" : ", only datasets ",
-                 fmt::join(file.other_datasets, ", "));
+  MODCAL_REQUIRE(
+      !file.functions.empty(), "{}: no function (dataset 58) stands in it{}{}{}", path.string(),
+      file.other_datasets.empty() ? "" : ", only datasets ", fmt::join(file.other_datasets, ", "),
+      file.shapes.empty() ? "" : "; a table of modes reads its shapes (shapes: {file:})");
   std::vector<StoredChannel> channels;
   for (const UniversalFunction& function : file.functions) {
     channels.push_back(stored(path, function, file.units, stop));

@@ -13,6 +13,7 @@
 #include "libsim/base/error.hpp"
 #include "libsim/base/files.hpp"
 #include "tests/folder_test.hpp"
+#include "tests/refusal.hpp"
 
 namespace modcal::structure_test {
 namespace {
@@ -254,6 +255,38 @@ TEST_F(TableFile, ReadsBackToItself) {
   const std::string text = table_text(table);
   write("table.yaml", text);
   EXPECT_EQ(table_text(read_table(path("table.yaml"))), text);
+}
+
+// The force by the universal file that the fit has written, and by its table without what has no
+// place there.
+TEST_F(TableFile, ShapesOfAUniversalFileAreItsModes) {
+  const StudyResult fit = run("fit_plate.yaml");
+  for (const auto& [file, text] : fit.files) write(file, text);
+  const StructureTable whole = read_table(path("table.yaml"));
+  std::string text = "low: 10\nhigh: 600\nsensors:\n";
+  for (const std::string& name : whole.names) {
+    text += fmt::format("- {{name: {}, kind: acceleration}}\n", name);
+  }
+  const std::string sensors = "[1 +3, \"2:+3\", 3 z, 4 +Z]";
+  const auto shapes = [&](const std::string& contact, const std::string& places) {
+    write("shapes.yaml",
+          text + fmt::format("shapes: {{file: modes.uff, contact: {}, sensors: {}}}\n", contact,
+                             places));
+    return read_table(path("shapes.yaml"));
+  };
+  const StructureTable read = shapes("5 +3", sensors);
+  ASSERT_EQ(read.model.constants.size(), whole.model.constants.size());
+  for (std::size_t i = 0; i < read.model.constants.size(); ++i) {
+    const Complex a(whole.model.constants[i], whole.model.quadrature[i]);
+    const Complex b(read.model.constants[i], read.model.quadrature[i]);
+    EXPECT_LT(std::abs(a - b), 1e-4 * std::abs(a)) << i;
+  }
+  const auto said = [&](const std::string& contact, const std::string& places) {
+    return refusal_of([&] { shapes(contact, places); });
+  };
+  EXPECT_THAT(said("5", sensors), HasSubstr("\"5\" is no node with a direction"));
+  EXPECT_THAT(said("9 +3", sensors), HasSubstr("has no node 9"));
+  EXPECT_THAT(said("5 +3", "[1 +3]"), HasSubstr("1 places for 4 sensors"));
 }
 
 TEST_F(TableFile, IsRefusedWithThePlaceOfAMistake) {
