@@ -49,7 +49,8 @@ class Fit {
           numbers() * std::log(cost / counted_twice() / numbers()) + told * std::log(numbers());
       result_.steps.push_back({.modes = poles.size(),
                                .misfit = cost / counted_twice() / (numbers() - told),
-                               .criterion = criterion});
+                               .criterion = criterion,
+                               .poles = poles});
       if (criterion < least) least = criterion, best = poles;
       if (poles.size() > best.size() + 3) break;
     }
@@ -219,6 +220,13 @@ double modal_power(const ModalModel& model, std::size_t pair, Complex s) {
     sum += std::norm(numerator_of(kind, pole, constant, s) / pole.denominator(s));
   }
   return sum;
+}
+
+bool stays(const ModalPole& pole, std::span<const ModalPole> others) {
+  return std::ranges::any_of(others, [&](const ModalPole& other) {
+    return std::abs(other.omega - pole.omega) < 0.01 * pole.omega &&
+           std::abs(other.zeta - pole.zeta) < 0.2 * pole.zeta;
+  });
 }
 
 std::string StrikeFit::rejection() const {

@@ -20,9 +20,14 @@ struct StrikeFitOptions {
 /// One step of the search: so many modes, how much they leave.
 struct ModeCount {
   std::size_t modes = 0;
-  double misfit = 0.0;     ///< weighted cost over its degrees of freedom
-  double criterion = 0.0;  ///< BIC
+  double misfit = 0.0;           ///< weighted cost over its degrees of freedom
+  double criterion = 0.0;        ///< BIC
+  std::vector<ModalPole> poles;  ///< as they are then
 };
+
+/// Whether a pair of poles has moved by less than 1 % in frequency and 20 % in damping from one of
+/// the others: what a mode does when another is added.
+bool stays(const ModalPole& pole, std::span<const ModalPole> others);
 
 struct StrikeFit {
   StructureTable table;

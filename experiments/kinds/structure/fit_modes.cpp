@@ -3,14 +3,13 @@
 #include <numbers>
 
 #include "experiments/kinds/lint.hpp"
+#include "experiments/kinds/structure/modes_figures.hpp"
 #include "experiments/kinds/structure/structure_kinds.hpp"
 #include "experiments/report/result.hpp"
 #include "libsim/records/universal/universal_modes.hpp"
 
 namespace modcal {
 namespace {
-
-using report::Series;
 
 struct ModesOutcome {
   const StrikeFit& fit;
@@ -62,52 +61,6 @@ struct ModesOutcome {
     visitor({.key = "misfit"}, fit.misfit);
   }
 };
-
-report::Figure criterion_figure(const StrikeFit& fit) {
-  Series criterion{.label = "BIC", .style = report::SeriesStyle::kLineWithPoints};
-  for (const ModeCount& step : fit.steps) {
-    criterion.add(static_cast<double>(step.modes), step.criterion);
-  }
-  const auto chosen = static_cast<double>(fit.table.model.poles.size());
-  return {.id = "criterion",
-          .title = "How many modes the record tells",
-          .caption = "Bayesian information criterion over the number of modes; the least is taken.",
-          .panels = {{.x = {.label = "number of modes"},
-                      .y = {.label = "BIC"},
-                      .series = {std::move(criterion)},
-                      .markers = {{.value = chosen, .label = "taken"}}}}};
-}
-
-report::Figure responses_figure(const StrikeFit& fit) {
-  const StructureTable& table = fit.table;
-  report::Figure figure{
-      .id = "responses",
-      .title = "Responses to the strike and the model's",
-      .caption =
-          "Magnitude of response over force on the contour of the fit, and of what the model "
-          "leaves of it.",
-      .columns = table.names.size() > 1 ? 2u : 1u};
-  for (std::size_t k = 0; k < table.names.size(); ++k) {
-    Series measured{.label = "measured", .color = report::ColorRole::kReference};
-    Series modeled{.label = "model"};
-    Series left{.label = "left", .color = report::ColorRole::kMuted};
-    for (std::size_t m = 0; m < fit.spectra.count(); ++m) {
-      const double at = fit.spectra.s(m).imag() / (2.0 * std::numbers::pi);
-      const Complex y = fit.spectra.responses[k][m], f = fit.spectra.force[m];
-      measured.add(at, std::abs(y / f));
-      modeled.add(at, std::abs(fit.modeled[k][m] / f));
-      left.add(at, std::abs((y - fit.modeled[k][m]) / f));
-    }
-    figure.panels.push_back(
-        {.title = table.names[k],
-         .x = {.label = "frequency", .unit = "Hz"},
-         .y = {.label = fmt::format("{} over force", name_of(table.model.sensors[k])),
-               .unit = fmt::format("{}/N", unit_of(table.model.sensors[k])),
-               .logarithmic = true},
-         .series = {std::move(left), std::move(measured), std::move(modeled)}});
-  }
-  return figure;
-}
 
 std::string sentence_of(const StrikeFit& fit, const FitModesOptions& options) {
   const auto [least, most] = std::ranges::minmax(fit.residuals);
@@ -258,7 +211,10 @@ StudyResult FitModesOptions::run(const StudyContext& context) const {
   }
   const ModesOutcome outcome{fit, fitted.rest};
   result.add(report::tables_of(outcome));
-  if (!context.numbers_alone) result.blocks.emplace_back(criterion_figure(fit));
+  if (!context.numbers_alone) {
+    result.blocks.emplace_back(criterion_figure(fit));
+    result.blocks.emplace_back(stabilization_figure(fit));
+  }
   result.files.emplace_back("table.yaml", table_text(fit.table));
   if (std::ranges::all_of(fit.table.model.sensors, is_motion)) {
     result.files.emplace_back("modes.uff", universal_modes_text(fit.table.model, fit.table.names));

@@ -80,6 +80,35 @@ TEST(FitModes, FindsThePolesOfThePlateWithinTheirErrorBars) {
   for (const auto& sensor : document["sensors"]) EXPECT_LT(sensor["left"].get<double>(), 2e-3);
 }
 
+// Frequencies (the figure's x) of those that stay when the mode is added that makes `modes`.
+std::vector<double> stable_at(const StudyResult& result, std::size_t modes) {
+  std::vector<double> frequencies;
+  for (const auto& block : result.blocks) {
+    const auto* const figure = std::get_if<report::Figure>(&block);
+    if (figure == nullptr || figure->id != "stabilization") continue;
+    const auto& stable = figure->panels[0].series[1];
+    for (std::size_t i = 0; i < stable.x.size(); ++i) {
+      if (stable.y[i] == static_cast<double>(modes)) frequencies.push_back(stable.x[i]);
+    }
+  }
+  return frequencies;
+}
+
+TEST(FitModes, ModesOfThePlateStayInTheDiagramOfStabilization) {
+  const StudyResult result = run("fit_plate.yaml");
+  const std::size_t modes = file_of(result, "modes_fit.json")["modes"].size();
+  const std::vector<double> stable = stable_at(result, modes);
+  // Well separated modes of the plate's matrices, by LAPACK.
+  for (const double frequency : {111.725379, 178.117182, 202.538128, 231.340090, 285.457125,
+                                 338.952940, 361.534986, 482.816784}) {
+    EXPECT_TRUE(std::ranges::any_of(stable, [&](double found) {
+      return std::abs(found - frequency) < 2e-3 * frequency;
+    })) << frequency;
+  }
+  // Of the first mode nothing was there before.
+  EXPECT_TRUE(stable_at(result, 1).empty());
+}
+
 class ResponseFunctionsOf : public FolderTest {
  protected:
   // A universal file of an acceleration in g per lbf with two modes, from 5 to 200 Hz.
