@@ -20,8 +20,6 @@ ModalPole moved(const ModalPole& pole, double frequency, double damping) {
           .zeta = std::clamp(pole.zeta * std::exp(damping), kLeastDamping, kMostDamping)};
 }
 
-std::size_t power_index(SensorKind kind) { return static_cast<std::size_t>(power_of_s(kind)); }
-
 }  // namespace
 
 PoleSearch::PoleSearch(const ContourSpectra& spectra, std::span<const double> force,
@@ -54,31 +52,6 @@ Eigen::VectorXd PoleSearch::weighted(std::size_t k, const std::vector<Complex>& 
     result[m + count] = weights_[k][i] * spectrum[i].imag();
   }
   return result;
-}
-
-void PoleSearch::lay_grid() {
-  // No resonance is narrower on the contour than 2σ.
-  const double width = std::max(2.0 * spectra_.grid.sigma, spectra_.grid.spacing);
-  const double low = spectra_.s(0).imag(), high = spectra_.s(spectra_.count() - 1).imag();
-  const auto count = static_cast<std::size_t>(std::ceil((high - low) / width));
-  for (std::size_t i = 0; i < count; ++i) {
-    const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
-    for (const double zeta : {0.002, 0.006, 0.02})
-      grid_.push_back({low + share * (high - low), zeta});
-  }
-  for (std::size_t k = 0; k < sensors(); ++k) {
-    grid_columns_.emplace_back(data_[k].size(), 2 * std::ssize(grid_));
-  }
-  for_each_task(grid_.size(), [&](std::size_t i) {
-    const Columns columns = strike_.of(grid_[i], powers_);
-    for (std::size_t k = 0; k < sensors(); ++k) {
-      for (const std::size_t turned : {0, 1}) {
-        const auto at = static_cast<Index>(2 * i + turned);
-        grid_columns_[k].col(at) = weighted(k, columns[power_index(kinds_[k])][turned]);
-        grid_columns_[k].col(at).normalize();
-      }
-    }
-  });
 }
 
 SensorFit PoleSearch::sensor_at(std::size_t k, const std::vector<Columns>& columns,
@@ -240,31 +213,6 @@ double PoleSearch::fit(std::vector<ModalPole>& poles, int steps) const {
     if (!better) break;
   }
   return here;
-}
-
-ModalPole PoleSearch::best_addition(const std::vector<ModalPole>& poles) {
-  if (grid_.empty()) lay_grid();
-  const std::vector<SensorFit> fits = at(poles);
-  std::vector<Eigen::VectorXd> gains(sensors());
-  for_each_task(sensors(), [&](std::size_t k) {
-    const Eigen::MatrixXd& grid = grid_columns_[k];
-    const Eigen::MatrixXd mixed = fits[k].columns.transpose() * grid;
-    const Eigen::MatrixXd taken = fits[k].gram.solve(mixed);
-    const Eigen::VectorXd score = grid.transpose() * fits[k].residual;
-    gains[k].resize(std::ssize(grid_));
-    for (Index i = 0; i < gains[k].size(); ++i) {
-      Eigen::Matrix2d left = grid.middleCols(2 * i, 2).transpose() * grid.middleCols(2 * i, 2) -
-                             mixed.middleCols(2 * i, 2).transpose() * taken.middleCols(2 * i, 2);
-      left.diagonal().array() += 1e-9;
-      const Eigen::Vector2d own = score.segment(2 * i, 2);
-      gains[k][i] = own.dot(left.ldlt().solve(own));
-    }
-  });
-  Eigen::VectorXd sum = gains.front();
-  for (std::size_t k = 1; k < sensors(); ++k) sum += gains[k];
-  Index best = 0;
-  sum.maxCoeff(&best);
-  return grid_[static_cast<std::size_t>(best)];
 }
 
 }  // namespace modcal

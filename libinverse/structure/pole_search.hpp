@@ -49,6 +49,9 @@ class PoleSearch {
 
  private:
   using Columns = std::array<ColumnPair, 3>;
+  static std::size_t power_index(SensorKind kind) {
+    return static_cast<std::size_t>(power_of_s(kind));
+  }
   struct Equations {
     Eigen::MatrixXd matrix;  // JᵀJ
     Eigen::VectorXd slope;   // Jᵀr
@@ -61,6 +64,8 @@ class PoleSearch {
                       const std::vector<ModalPole>& poles) const;
   Eigen::VectorXd weighted(std::size_t k, const std::vector<Complex>& spectrum) const;
   void lay_grid();
+  Eigen::Matrix2d kept(std::size_t k, std::size_t i, const SensorFit& fit) const;
+  void take_last(const std::vector<SensorFit>& fits);
 
   const ContourSpectra& spectra_;
   StrikeColumns strike_;
@@ -70,7 +75,8 @@ class PoleSearch {
   std::vector<Eigen::VectorXd> data_;    // weighted, K
   std::vector<Eigen::MatrixXd> static_;  // weighted columns, K
   std::vector<ModalPole> grid_;
-  std::vector<Eigen::MatrixXd> grid_columns_;  // two a pole, K
+  std::vector<Eigen::MatrixXd> grid_columns_;       // two a pole, K
+  std::vector<std::vector<Eigen::Matrix2d>> kept_;  // about: what they keep beside the others, K
 };
 
 }  // namespace modcal

@@ -1,0 +1,109 @@
+// The pairs of poles that a search may add next.
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "libinverse/structure/pole_search.hpp"
+#include "libinverse/structure/tuning.hpp"
+#include "libsim/base/task_loop.hpp"
+
+namespace modcal {
+
+using Index = Eigen::Index;
+
+void PoleSearch::lay_grid() {
+  // No resonance is narrower on the contour than 2σ.
+  const double width = std::max(2.0 * spectra_.grid.sigma, spectra_.grid.spacing);
+  const double low = spectra_.s(0).imag(), high = spectra_.s(spectra_.count() - 1).imag();
+  const auto count = static_cast<std::size_t>(std::ceil((high - low) / width));
+  for (std::size_t i = 0; i < count; ++i) {
+    const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
+    for (const double zeta : {0.002, 0.006, 0.02})
+      grid_.push_back({low + share * (high - low), zeta});
+  }
+  for (std::size_t k = 0; k < sensors(); ++k) {
+    grid_columns_.emplace_back(data_[k].size(), 2 * std::ssize(grid_));
+    kept_.emplace_back(grid_.size());
+  }
+  for_each_task(grid_.size(), [&](std::size_t i) {
+    const Columns columns = strike_.of(grid_[i], powers_);
+    for (std::size_t k = 0; k < sensors(); ++k) {
+      for (const std::size_t turned : {0, 1}) {
+        const auto at = static_cast<Index>(2 * i + turned);
+        grid_columns_[k].col(at) = weighted(k, columns[power_index(kinds_[k])][turned]);
+        grid_columns_[k].col(at).normalize();
+      }
+      const auto own = grid_columns_[k].middleCols(2 * static_cast<Index>(i), 2);
+      kept_[k][i] = own.transpose() * own;
+    }
+  });
+}
+
+// What the columns of a pair of poles on the grid keep beside those of `fit`.
+Eigen::Matrix2d PoleSearch::kept(std::size_t k, std::size_t i, const SensorFit& fit) const {
+  const auto own = grid_columns_[k].middleCols(2 * static_cast<Index>(i), 2);
+  const Eigen::MatrixXd mixed = fit.columns.transpose() * own;
+  return own.transpose() * own - mixed.transpose() * fit.gram.solve(mixed);
+}
+
+// The pair added last takes its share of what the columns of the grid keep beside the others, which
+// have moved little since.
+void PoleSearch::take_last(const std::vector<SensorFit>& fits) {
+  for_each_task(sensors(), [&](std::size_t k) {
+    const Eigen::MatrixXd& columns = fits[k].columns;
+    const Index last = columns.cols() - kStatics - 2;
+    // The first time all that there is: the static terms.
+    const Eigen::MatrixXd own = last < 0 ? static_[k] : columns.middleCols(last, 2);
+    Eigen::MatrixXd others(columns.rows(), std::max<Index>(0, last));
+    if (last >= 0) {
+      others.resize(columns.rows(), last + kStatics);
+      others << columns.leftCols(last), columns.rightCols(kStatics);
+    }
+    Eigen::MatrixXd basis = own;
+    if (others.cols() > 0) basis -= others * others.householderQr().solve(own);
+    basis = basis.householderQr().householderQ() *
+            Eigen::MatrixXd::Identity(basis.rows(), basis.cols());
+    const Eigen::MatrixXd taken = basis.transpose() * grid_columns_[k];
+    for (std::size_t i = 0; i < grid_.size(); ++i) {
+      const auto pair = taken.middleCols(2 * static_cast<Index>(i), 2);
+      kept_[k][i] -= pair.transpose() * pair;
+    }
+  });
+}
+
+ModalPole PoleSearch::best_addition(const std::vector<ModalPole>& poles) {
+  if (grid_.empty()) lay_grid();
+  const std::vector<SensorFit> fits = at(poles);
+  take_last(fits);
+  std::vector<Eigen::VectorXd> scores(sensors());
+  for_each_task(sensors(), [&](std::size_t k) {
+    scores[k] = grid_columns_[k].transpose() * fits[k].residual;
+  });
+  const auto gain = [&](std::size_t k, std::size_t i, Eigen::Matrix2d left) {
+    left.diagonal().array() += 1e-9;
+    const Eigen::Vector2d own = scores[k].segment(2 * static_cast<Index>(i), 2);
+    return own.dot(left.ldlt().solve(own));
+  };
+  // The exact gain costs as many products as there are columns: of those alone that promise most.
+  std::vector<double> promised(grid_.size(), 0.0);
+  for (std::size_t i = 0; i < grid_.size(); ++i) {
+    for (std::size_t k = 0; k < sensors(); ++k) promised[i] += gain(k, i, kept_[k][i]);
+  }
+  std::vector<std::size_t> order(grid_.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto few = std::min<std::ptrdiff_t>(kExactGains, std::ssize(order));
+  std::ranges::partial_sort(order, order.begin() + few, std::greater{},
+                            [&](std::size_t i) { return promised[i]; });
+  order.resize(static_cast<std::size_t>(few));
+  std::vector<double> gains(order.size(), 0.0);
+  for_each_task(order.size(), [&](std::size_t j) {
+    for (std::size_t k = 0; k < sensors(); ++k) {
+      kept_[k][order[j]] = kept(k, order[j], fits[k]);
+      gains[j] += gain(k, order[j], kept_[k][order[j]]);
+    }
+  });
+  const auto best = std::ranges::max_element(gains) - gains.begin();
+  return grid_[order[static_cast<std::size_t>(best)]];
+}
+
+}  // namespace modcal
