@@ -34,6 +34,7 @@ BlindLikelihood::BlindLikelihood(const ContourSpectra& spectra,
   }
   for (std::size_t m = 0; m < bins(); ++m) {
     delay_.push_back(std::exp(-spectra.s(m) / spectra.sample_rate));
+    turned_.push_back(-1.0 / spectra.s(m));
   }
 }
 
@@ -97,20 +98,14 @@ Eigen::MatrixXd BlindLikelihood::jacobian(const ModalModel& start, const ModalMo
   Eigen::MatrixXd result(2 * static_cast<Index>(bins() * sensors()), count);
   for_each_task(modes, [&](std::size_t n) {
     const ModalPole& pole = model.poles[n];
-    const double step = std::cbrt(std::numeric_limits<double>::epsilon());
+    std::vector<Complex> inverse(bins());
+    for (std::size_t m = 0; m < bins(); ++m) inverse[m] = 1.0 / pole.denominator(spectra_.s(m));
     for (const bool damping : {false, true}) {
-      const double near = damping ? 100.0 * step : step;
-      ModalPole up = pole, down = pole;
-      (damping ? up.zeta : up.omega) *= std::exp(near);
-      (damping ? down.zeta : down.omega) *= std::exp(-near);
       Transfers slope(sensors());
       for (std::size_t k = 0; k < sensors(); ++k) {
         const Complex constant = constant_of(model, k, n);
-        slope[k] = made_by(point, k, n, up, constant);
-        const std::vector<Complex> other = made_by(point, k, n, down, constant);
-        for (std::size_t m = 0; m < bins(); ++m) {
-          slope[k][m] = (slope[k][m] - other[m]) / (2.0 * near);
-        }
+        slope[k] = slope_of(point, k, pole, constant, inverse, damping);
+        if (free_ends_) add_slope_of_ends(point, k, n, pole, constant, damping, slope[k]);
       }
       result.col(static_cast<Index>(2 * n) + (damping ? 1 : 0)) = -projected(point, slope);
     }
@@ -166,6 +161,41 @@ std::vector<Complex> BlindLikelihood::made_by(const BlindPoint& point, std::size
       end_column(k, pole, constant, {point.ends[i], point.ends[i + 1]});
   for (std::size_t m = 0; m < bins(); ++m) result[m] += ends[m];
   return result;
+}
+
+// What of it changes by ln ω or ln ζ through the force; inverse: 1/D.
+std::vector<Complex> BlindLikelihood::slope_of(const BlindPoint& point, std::size_t k,
+                                               const ModalPole& pole, Complex constant,
+                                               const std::vector<Complex>& inverse,
+                                               bool damping) const {
+  const int p = power_of_s(kinds_[k]);
+  // Of the numerator q alone moves: s/ω falls and −ω/s grows with ω.
+  const double turns = damping ? 0.0 : p == 0 ? -constant.imag() : constant.imag();
+  const double omega = pole.omega, loss = 2.0 * pole.zeta * omega;
+  std::vector<Complex> result(bins());
+  for (std::size_t m = 0; m < bins(); ++m) {
+    const Complex s = spectra_.s(m), q = p == 0 ? s / omega : omega * turned_[m];
+    const Complex own = p == 0 ? 1.0 : p == 1 ? s : s * s;
+    const Complex rise = damping ? loss * s : 2.0 * omega * omega + loss * s;
+    const Complex made = (constant.real() + constant.imag() * q) * inverse[m];
+    result[m] = roots_[k][m] * point.force[m] * own * (turns * q - made * rise) * inverse[m];
+  }
+  return result;
+}
+
+// Through what rings at the ends, by central differences.
+void BlindLikelihood::add_slope_of_ends(const BlindPoint& point, std::size_t k, std::size_t n,
+                                        const ModalPole& pole, Complex constant, bool damping,
+                                        std::vector<Complex>& slope) const {
+  const double step = (damping ? 100.0 : 1.0) * std::cbrt(std::numeric_limits<double>::epsilon());
+  ModalPole up = pole, down = pole;
+  (damping ? up.zeta : up.omega) *= std::exp(step);
+  (damping ? down.zeta : down.omega) *= std::exp(-step);
+  const auto i = static_cast<Index>(2 * n);
+  const Complex state(point.ends[i], point.ends[i + 1]);
+  const std::vector<Complex> above = end_column(k, up, constant, state),
+                             below = end_column(k, down, constant, state);
+  for (std::size_t m = 0; m < bins(); ++m) slope[m] += (above[m] - below[m]) / (2.0 * step);
 }
 
 // r c U + conj(r c) U', whitened.

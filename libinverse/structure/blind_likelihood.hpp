@@ -48,6 +48,12 @@ class BlindLikelihood {
   Eigen::VectorXd projected(const BlindPoint& point, const Transfers& v) const;
   std::vector<Complex> made_by(const BlindPoint& point, std::size_t k, std::size_t n,
                                const ModalPole& pole, Complex constant) const;
+  std::vector<Complex> slope_of(const BlindPoint& point, std::size_t k, const ModalPole& pole,
+                                Complex constant, const std::vector<Complex>& inverse,
+                                bool damping) const;
+  void add_slope_of_ends(const BlindPoint& point, std::size_t k, std::size_t n,
+                         const ModalPole& pole, Complex constant, bool damping,
+                         std::vector<Complex>& slope) const;
   std::vector<Complex> end_column(std::size_t k, const ModalPole& pole, Complex constant,
                                   Complex state) const;
   Transfers whitened(const Transfers& values) const;
@@ -59,6 +65,7 @@ class BlindLikelihood {
   const std::vector<SensorKind>& kinds_;
   bool free_ends_;
   std::vector<Complex> delay_;              // exp(−s/f_s)
+  std::vector<Complex> turned_;             // −1/s
   std::vector<std::vector<double>> roots_;  // 1/√V, K
 };
 
