@@ -45,24 +45,31 @@ Eigen::VectorXd prior_of(const ModalModel& table, const StructureChange& change)
   return sd;
 }
 
-}  // namespace
-
-ModalModel BlindFit::drawn(std::span<const double> normal) const {
-  MODCAL_REQUIRE(std::ssize(normal) == change.size(), "{} normal numbers for {} unknowns",
-                 normal.size(), change.size());
-  const Eigen::Map<const Eigen::VectorXd> numbers(normal.data(), change.size());
-  const Eigen::VectorXd step = root * numbers;
-  return moved(model, step);
+// The same with what the table itself does not know of its poles.
+Eigen::VectorXd prior_of(const StructureTable& table, const StructureChange& change) {
+  Eigen::VectorXd sd = prior_of(table.model, change);
+  const auto add = [&sd](std::size_t i, double deviation) {
+    double& own = sd[static_cast<Index>(i)];
+    own = std::hypot(own, std::min(1.0, deviation));
+  };
+  for (std::size_t n = 0; n < table.frequency_deviations.size(); ++n) {
+    add(2 * n, table.frequency_deviations[n]);
+  }
+  for (std::size_t n = 0; n < table.damping_deviations.size(); ++n) {
+    add(2 * n + 1, table.damping_deviations[n]);
+  }
+  return sd;
 }
 
-BlindFit fit_blindly(const ModalModel& table, const ContourSpectra& spectra,
-                     const BinVariances& variances, const StructureChange& change, bool at_rest,
-                     const Eigen::VectorXd& start_at) {
+BlindFit fit_with(const Eigen::VectorXd& prior, const ModalModel& table,
+                  const ContourSpectra& spectra, const BinVariances& variances, bool at_rest,
+                  const Eigen::VectorXd& start_at) {
   MODCAL_REQUIRE(table.sensors.size() >= 2,
                  "{}: one response explains any model; modes are refined by two sensors and more",
                  table.sensors.size());
   const BlindLikelihood likelihood(spectra, table.sensors, variances, at_rest);
-  const Eigen::VectorXd weight = prior_of(table, change).cwiseAbs2().cwiseInverse();
+  const Eigen::VectorXd weight = prior.cwiseAbs2().cwiseInverse();
+  const bool factors = prior.size() > 2 * std::ssize(table.poles);
   const double share = 2.0 / likelihood.correlated();
   BlindFit fit{.model = with_quadrature(table), .change = Eigen::VectorXd::Zero(weight.size())};
   const ModalModel start = fit.model;
@@ -75,8 +82,7 @@ BlindFit fit_blindly(const ModalModel& table, const ContourSpectra& spectra,
   Eigen::MatrixXd information;
   // As many steps as Levenberg and Marquardt take from a start within the priors, and some more.
   for (int step = 0; step < 30; ++step) {
-    const Eigen::MatrixXd jacobian =
-        likelihood.jacobian(start, fit.model, here, change.residue > 0.0);
+    const Eigen::MatrixXd jacobian = likelihood.jacobian(start, fit.model, here, factors);
     information = share * (jacobian.transpose() * jacobian);
     information.diagonal() += weight;
     const Eigen::VectorXd slope =
@@ -112,6 +118,22 @@ BlindFit fit_blindly(const ModalModel& table, const ContourSpectra& spectra,
   return fit;
 }
 
+}  // namespace
+
+ModalModel BlindFit::drawn(std::span<const double> normal) const {
+  MODCAL_REQUIRE(std::ssize(normal) == change.size(), "{} normal numbers for {} unknowns",
+                 normal.size(), change.size());
+  const Eigen::Map<const Eigen::VectorXd> numbers(normal.data(), change.size());
+  const Eigen::VectorXd step = root * numbers;
+  return moved(model, step);
+}
+
+BlindFit fit_blindly(const ModalModel& table, const ContourSpectra& spectra,
+                     const BinVariances& variances, const StructureChange& change, bool at_rest,
+                     const Eigen::VectorXd& start_at) {
+  return fit_with(prior_of(table, change), table, spectra, variances, at_rest, start_at);
+}
+
 BlindFit fit_ringing(const ModalModel& table, const StructureRecord& record,
                      std::span<const double> noise, double low, double high,
                      const StructureChange& change) {
@@ -135,6 +157,7 @@ BlindFit refined_table(const StructureTable& table, const StructureRecord& recor
                        const StructureChange& change) {
   // What rings on behind the part that is taken has e^−8 of its amplitude.
   constexpr double rung_out = 8.0;
+  const Eigen::VectorXd prior = prior_of(table, change);
   StructureTable refined = table;
   BlindFit fit;
   for (const double contour : {sigma, 0.5 * sigma, 0.25 * sigma, 0.25 * sigma}) {
@@ -150,7 +173,7 @@ BlindFit refined_table(const StructureTable& table, const StructureRecord& recor
     const auto spectra = ContourSpectra::of(part, contour, table.low, table.high);
     const BinVariances variances =
         variances_of(refined, spectra, transfers_of(refined.model, spectra));
-    fit = fit_blindly(table.model, spectra, variances, change, ends, fit.change);
+    fit = fit_with(prior, table.model, spectra, variances, ends, fit.change);
     refined.model = fit.model;
   }
   // The variances are those of what was left before the fit took its share.
