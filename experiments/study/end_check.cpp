@@ -4,6 +4,7 @@
 
 #include "experiments/study/observation.hpp"
 #include "libinverse/waves/end_relation.hpp"
+#include "libinverse/waves/saturation.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/records/levels.hpp"
 
@@ -128,6 +129,30 @@ std::string remedy_of(double gain) {
       label_of(gain > 1.0 ? End::kRight : End::kLeft), std::max(gain, 1.0 / gain));
 }
 
+// Where a string explains the reactions once both are raised to what their sensors lacked.
+void require_linear_sensors(const EndRecord& ends, const ObservationOptions& options,
+                            const EndRelationFit& fit, std::string_view pair) {
+  StatedString string = string_of(options);
+  if (fit.fundamental > 0.0) {
+    string.fundamental = fit.fundamental;
+    string.contact = fit.contact;
+  }
+  const std::optional<Saturation> saturation = saturation_of(ends, string);
+  if (!saturation) return;
+  std::string lacking;
+  for (const End end : kEnds) {
+    const double missing = saturation->missing[static_cast<std::size_t>(end)];
+    if (missing == 0.0) continue;
+    lacking += fmt::format("{}that at {} reads {:.0f} % too little at its peaks",
+                           lacking.empty() ? "" : ", ", label_of(end), 100.0 * missing);
+  }
+  throw_invalid_input(
+      "{} are those of one string but for sensors or amplifiers that saturate: {}. A string as it "
+      "was read leaves {:.2g} % of their power, raised to what is missing {:.2g} %. Record with "
+      "less gain or play softer, or use sensors of a wider range",
+      pair, lacking, 100.0 * saturation->unexplained, 100.0 * saturation->mended);
+}
+
 }  // namespace
 
 void require_one_string(const ObservationOptions& options, const RecordedSignals& signals) {
@@ -157,6 +182,7 @@ void require_one_string(const ObservationOptions& options, const RecordedSignals
                                        record.file, record.left.channel, record.right.channel);
   const EndRelation best = fit.best();
   MODCAL_REQUIRE(best == EndRelation::kString, "{} {}", pair, remedy_of(best, options, fit));
+  require_linear_sensors(ends, options, fit, pair);
   if (!fit.explained()) {
     const std::optional<double> gain = gain_of_right(ends, string_of(options));
     MODCAL_REQUIRE(!gain, "{} {}", pair, remedy_of(*gain));

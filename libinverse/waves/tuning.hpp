@@ -73,6 +73,21 @@ constexpr std::size_t kEndPeriods = 8;
 constexpr std::size_t kLeastPeriods = 20;
 constexpr double kDisturbance = 3.0;
 
+/// Drives d of a sensor that reads (p/d) tanh(d R/p), how many times less a string may leave of what
+/// such sensors read once it is raised, and by how many periods and of the strongest bins that is
+/// judged.
+/// Source: six records of benchmarks/truth (violin G and D, cello D; exponential and thermal
+/// friction; 0.1 and 5 % of noise) judged by all bins: good ones leave at most 2.1 times less, 21
+/// of violin D with a mismatch 1.0; both saturated by a quarter (d = 1) 3.8 to 146, by three
+/// quarters (d = 4) 120 to 3300, and the drives are found.
+/// Range tried: evidence 1.5 to 6; periods and bins: none.
+/// Doubled: evidence: three of the twelve saturated by a quarter are not told.
+/// Halved: evidence: one good record (violin D, exponential, 0.1 %) is refused.
+constexpr double kSaturationDrives[] = {0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0};
+constexpr double kSaturationEvidence = 3.0;
+constexpr double kSaturationPeriods = 400.0;
+constexpr std::size_t kSaturationBins = 500;
+
 /// Modes, in f₀, below which a string of which nothing is known is looked for, and how many bins
 /// have to stand above the noise there. Here and below 213 records are asked: those named above and
 /// the 18 of `make coverage` without noise; as it is all strings are told, f0 to 5.4e-4, B to 4 %,

@@ -82,6 +82,18 @@ Spoil clipped(double share, bool left, bool right) {
   };
 }
 
+Spoil saturated(double drive, bool left, bool right) {
+  return [=](Written& w) {
+    for (std::size_t r = 0; r < 2; ++r) {
+      if (!(r == 0 ? left : right)) continue;
+      std::vector<double>& x = *w.channels()[r];
+      const auto [low, high] = std::minmax_element(x.begin(), x.end());
+      const double peak = std::max(-*low, *high);
+      for (double& value : x) value = peak / drive * std::tanh(drive * value / peak);
+    }
+  };
+}
+
 Spoil filled(std::size_t count, bool hold) {
   return [=](Written& w) {
     for (std::vector<double>* x : w.channels()) {
@@ -227,6 +239,11 @@ std::vector<Row> rows() {
       {"clipped at 80 %", "the peaks are clipped", clipped(0.8, true, true)},
       {"clipped left", "channel R1", clipped(0.5, true, false)},
       {"clipped right", "channel R2", clipped(0.5, false, true)},
+      {"saturated to a quarter", "that at x = 0 reads 75 % too little at its peaks, that at x = L",
+       saturated(4.0, true, true)},
+      {"saturated to three", "saturate: that at x = 0 reads 24 %", saturated(1.0, true, true)},
+      {"saturated left", "reads 67 % too little at its peaks. A string",
+       saturated(3.0, true, false)},
       {"gap of zeros, 1 ms", "samples in a row are 0", filled(51, false)},
       {"gap of zeros, 100 ms", "samples in a row are 0", filled(5120, false)},
       {"gap held, 0.1 ms", "samples in a row are", filled(5, true)},
