@@ -1,7 +1,10 @@
 #include "libinverse/joint/string_transfer.hpp"
 
 #include <cmath>
+#include <numbers>
 #include <utility>
+
+#include "libinverse/joint/tuning.hpp"
 
 namespace modcal {
 namespace {
@@ -17,9 +20,27 @@ void read_by_sensor(const FrequencyGrid& grid, const Sensor& sensor,
 
 }  // namespace
 
+ModalBasis with_law_beyond(ModalBasis basis, double highest) {
+  if (basis.size() == 0) return basis;
+  const double inharmonicity = inharmonicity_of(basis);
+  const double density = 2.0 * basis.mass.back() / basis.length;
+  const double unit = std::numbers::pi / basis.length * std::sqrt(basis.tension / density);
+  for (std::size_t n = basis.size() + 1;; ++n) {
+    const double omega = stiff_string_frequency(unit, inharmonicity, n);
+    if (!(omega <= highest)) return basis;
+    basis.omega.push_back(omega);
+    basis.zeta.push_back(basis.zeta.back());
+    basis.mass.push_back(basis.mass.back());
+  }
+}
+
 StringTransfer string_transfer(const ModalBasis& basis, double contact, const FrequencyGrid& grid,
                                const StringSupport& support, const SensorPair& sensors) {
-  std::vector<std::vector<Complex>> all = string_model(basis, contact, support).transfer(grid);
+  const double band = grid.spacing * static_cast<double>(grid.bins - 1);
+  const ModalModel model =
+      support.remainder ? string_model(with_law_beyond(basis, kModesApart * band), contact, support)
+                        : string_model(basis, contact, support);
+  std::vector<std::vector<Complex>> all = model.transfer(grid);
   StringTransfer transfer{{std::move(all[0]), std::move(all[1])}, std::move(all[2])};
   for (std::size_t r = 0; r < 2; ++r) {
     read_by_sensor(grid, sensors[r], transfer.reaction[r]);

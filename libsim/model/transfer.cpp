@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "libsim/base/words.hpp"
+#include "libsim/model/tuning.hpp"
 
 namespace modcal {
 namespace {
@@ -59,6 +60,27 @@ double cosine_series(double y, double inharmonicity) {
   const double a = 1.0 / std::sqrt(inharmonicity);
   return ideal - 0.5 * std::numbers::pi / a * cosh_ratio(a, std::abs(std::numbers::pi - y)) +
          0.5 / (a * a);
+}
+
+// −Σ c_n/ω_n⁴ over the modes above the highest one, by the law: what is left of Σ c_n/(ω_n² + s²)
+// when its constant is taken, over s².
+StaticResponse slope_beyond(const ModalBasis& basis, double contact, bool bending) {
+  if (basis.size() == 0) return {};
+  const double law = inharmonicity_of(basis);
+  const double mass = basis.mass.back(), ideal = ideal_omega(basis, basis.size());
+  const double unit = ideal / static_cast<double>(basis.size());
+  StaticResponse slope;
+  for (std::size_t n = basis.size() + 1; n <= basis.size() + kRemainderModes; ++n) {
+    const double number = static_cast<double>(n), stiff = stiffening(law, n);
+    const double shape = sine_shape(n, contact / basis.length);
+    const double square = number * number * unit * unit * stiff;
+    const double by = shape / (mass * square * square);
+    const double gain = basis.tension * number * kPi / basis.length * (bending ? stiff : 1.0);
+    slope.reaction[0] += gain * by;
+    slope.reaction[1] += n % 2 == 1 ? gain * by : -gain * by;
+    slope.compliance -= shape * by;
+  }
+  return slope;
 }
 
 }  // namespace
@@ -133,10 +155,13 @@ ModalModel string_model(const ModalBasis& basis, double contact, const StringSup
   if (!support.remainder) return model;
   const StaticResponse all = static_response(basis, contact, support.bending);
   const StaticResponse kept = static_response_of_modes(basis, contact, support.bending);
+  const StaticResponse slope = slope_beyond(basis, contact, support.bending);
   for (std::size_t r = 0; r < 2; ++r) {
-    model.residuals.push_back({.constant = all.reaction[r] - kept.reaction[r]});
+    model.residuals.push_back(
+        {.constant = all.reaction[r] - kept.reaction[r], .above = slope.reaction[r]});
   }
-  model.residuals.push_back({.constant = all.compliance - kept.compliance});
+  model.residuals.push_back(
+      {.constant = all.compliance - kept.compliance, .above = slope.compliance});
   return model;
 }
 
