@@ -239,11 +239,11 @@ void TransientFit::error_variances(const Setting& setting, Spectra spectra, cons
   const Eigen::MatrixXd moves = moves_without_clusters(setting, spectra, workspace);
   const Index equations = equations_of(setting);
   const std::vector<double> window = inner_window();
-  const std::size_t order = window.size() - 1;
+  const std::size_t order = window.size() - 1, lowest = setting.level_known ? 0 : 1;
   Rows force, motion, moved, windowed;
   for_blocks(1, grid_.bins, kBlock, [&](std::size_t begin, std::size_t end) {
     // With the bins beside the block, which the window mixes in.
-    const std::size_t first = begin > order ? begin - order : 1;
+    const std::size_t first = begin > order ? begin - order : lowest;
     const std::size_t last = std::min(grid_.bins, end + order);
     const auto row_of = [&](std::size_t k) { return 2 * static_cast<Index>(k - first); };
     const auto write = [&](const Rows& rows, std::span<double> variance) {
@@ -252,6 +252,11 @@ void TransientFit::error_variances(const Setting& setting, Spectra spectra, cons
         windowed = window.front() * moved.middleRows(row_of(k), 2);
         for (std::size_t m = 1; m < window.size(); ++m) {
           if (k >= first + m) windowed += window[m] * moved.middleRows(row_of(k - m), 2);
+          if (m > k && m - k >= first) {
+            // Bins below 0 are the conjugates of those above: a blow at t = 0 is in all of them.
+            windowed.row(0) += window[m] * moved.row(row_of(m - k));
+            windowed.row(1) -= window[m] * moved.row(row_of(m - k) + 1);
+          }
           if (k + m < last) windowed += window[m] * moved.middleRows(row_of(k + m), 2);
         }
         variance[k] = windowed.squaredNorm();
