@@ -5,20 +5,15 @@
 
 #include "libsim/base/error.hpp"
 #include "libsim/base/utf8.hpp"
+#include "libsim/base/words.hpp"
 #include "libsim/records/csv_grammar.hpp"
 
 namespace modcal {
 
-std::string_view trimmed_field(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t\f\0");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\f\0") - first + 1);
-}
-
-bool is_delimiter(std::string_view line) { return trimmed_field(line) == "-1"; }
+bool is_delimiter(std::string_view line) { return trimmed(line) == "-1"; }
 
 std::string known_field(std::string_view text) {
-  const std::string_view word = trimmed_field(text);
+  const std::string_view word = trimmed(text);
   return word == "NONE" ? std::string() : std::string(word);
 }
 
@@ -30,7 +25,7 @@ std::string_view Columns::text(std::size_t first, std::size_t count) const {
 }
 
 long long Columns::whole(std::size_t first, std::size_t count) const {
-  const std::string_view field = trimmed_field(text(first, count));
+  const std::string_view field = trimmed(text(first, count));
   long long value = 0;
   const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
   const bool good = error == std::errc() && end == field.data() + field.size();
@@ -44,7 +39,7 @@ int Columns::small(std::size_t first, std::size_t count) const {
 }
 
 double Columns::number(std::size_t first, std::size_t count) const {
-  std::string field(trimmed_field(text(first, count)));
+  std::string field(trimmed(text(first, count)));
   std::replace(field.begin(), field.end(), 'D', 'E');
   if (field.empty()) return 0.0;
   const ParsedNumber parsed = parse_number(field);
@@ -54,8 +49,8 @@ double Columns::number(std::size_t first, std::size_t count) const {
 }
 
 double Columns::stated_number(std::size_t first, std::size_t count) const {
-  MODCAL_REQUIRE(!trimmed_field(text(first, count)).empty(),
-                 "{}: a number is expected in column {}", where_, first + 1);
+  MODCAL_REQUIRE(!trimmed(text(first, count)).empty(), "{}: a number is expected in column {}",
+                 where_, first + 1);
   return number(first, count);
 }
 

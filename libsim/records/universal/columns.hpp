@@ -6,9 +6,6 @@
 
 namespace modcal {
 
-/// Without blanks at both ends.
-std::string_view trimmed_field(std::string_view text);
-
 /// Whether the line begins or ends a dataset: -1.
 bool is_delimiter(std::string_view line);
 

@@ -2,6 +2,7 @@
 #include <charconv>
 
 #include "libsim/base/error.hpp"
+#include "libsim/base/words.hpp"
 #include "libsim/records/csv_grammar.hpp"
 #include "libsim/records/universal/columns.hpp"
 #include "libsim/records/universal/universal_file.hpp"
@@ -16,7 +17,7 @@ class HeaderReader {
   UniversalFile read() {
     std::string line;
     while (file_.next(line)) {
-      if (trimmed_field(line).empty()) continue;
+      if (trimmed(line).empty()) continue;
       MODCAL_REQUIRE(is_delimiter(line),
                      "{}:{}: byte {}: a dataset of a universal file begins with -1", file_.name(),
                      file_.place().line - 1, file_.place().byte);
@@ -59,7 +60,7 @@ void HeaderReader::read_dataset() {
   const Columns heading = line();
   number_ = heading.small(0, 6);
   MODCAL_REQUIRE(number_ > 0, "{}: a number of a dataset is expected", where());
-  binary_ = trimmed_field(heading.text(6, 1)) == "b";
+  binary_ = trimmed(heading.text(6, 1)) == "b";
   if (number_ == 58) return read_function(heading);
   if (number_ == 164) return read_units();
   auto& others = result_.other_datasets;
@@ -111,7 +112,7 @@ std::string name_of(const UniversalFunction& function, const std::string& entity
 void HeaderReader::read_function(const Columns& heading) {
   UniversalFunction function;
   function.header = {file_.place().byte, file_.place().line - 1};
-  for (std::string& id : function.id_lines) id = std::string(trimmed_field(line().text(0, 80)));
+  for (std::string& id : function.id_lines) id = std::string(trimmed(line().text(0, 80)));
   const Columns dof = line();
   function.type = dof.small(0, 5);
   function.response_node = dof.small(41, 10);
@@ -133,7 +134,7 @@ void HeaderReader::read_function(const Columns& heading) {
   function.first = form.number(30, 13);
   function.step = form.number(43, 13);
   PrintedDigits digits;
-  digits.add(trimmed_field(form.text(43, 13)));
+  digits.add(trimmed(form.text(43, 13)));
   if (function.step > 0.0) {
     function.step_resolution = 0.5 * digits.resolution(function.step) / function.step;
   }
@@ -221,7 +222,7 @@ void HeaderReader::skip_values(const UniversalFunction& function) {
     MODCAL_REQUIRE(file_.next(text),
                    "{}: its values have no end, -1, up to byte {}; it was cut off", begin,
                    file_.size());
-    MODCAL_REQUIRE(!function.binary || trimmed_field(text).empty() || is_delimiter(text),
+    MODCAL_REQUIRE(!function.binary || trimmed(text).empty() || is_delimiter(text),
                    "{}: byte {}: more than the {} bytes announced stand before its end, -1", begin,
                    file_.place().byte, function.byte_count);
   } while (!is_delimiter(text));

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <numbers>
 
-namespace modcal {
+namespace modcal::string_transfer_test {
 namespace {
 
 ModalBasis string_of(std::int64_t modes) {
@@ -39,4 +39,4 @@ TEST(StringTransfer, HoldsTheModesAboveTheLastOneUpToTheBandsEnd) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::string_transfer_test

@@ -9,7 +9,7 @@
 #include "benchmarks/truth/truth.hpp"
 #include "libsim/signal/statistics.hpp"
 
-namespace modcal {
+namespace modcal::saturation_test {
 namespace {
 
 constexpr double kNoise = 0.01;
@@ -68,4 +68,4 @@ TEST(Saturation, OfNoSignalIsNone) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::saturation_test

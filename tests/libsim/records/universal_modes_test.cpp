@@ -12,7 +12,7 @@
 #include "tests/folder_test.hpp"
 #include "tests/refusal.hpp"
 
-namespace modcal {
+namespace modcal::universal_modes_test {
 namespace {
 
 using testing::HasSubstr;
@@ -201,4 +201,4 @@ TEST_F(UniversalModesOf, ChangedBytesAreReadOrRefused) {
 }
 
 }  // namespace
-}  // namespace modcal
+}  // namespace modcal::universal_modes_test
