@@ -75,7 +75,7 @@ StaticResponse slope_beyond(const ModalBasis& basis, double contact, bool bendin
     const double shape = sine_shape(n, contact / basis.length);
     const double square = number * number * unit * unit * stiff;
     const double by = shape / (mass * square * square);
-    const double gain = basis.tension * number * kPi / basis.length * (bending ? stiff : 1.0);
+    const double gain = basis.tension * number * std::numbers::pi / basis.length * (bending ? stiff : 1.0);
     slope.reaction[0] += gain * by;
     slope.reaction[1] += n % 2 == 1 ? gain * by : -gain * by;
     slope.compliance -= shape * by;

@@ -13,7 +13,7 @@ namespace modcal {
 namespace {
 
 enum Analysis : int { kNormalMode = 2, kComplexMode = 3 };
-enum SpecificData : int { kUnknown = 0, kDisplacement = 8 };
+enum ModeData : int { kNotTold = 0, kDisplacement = 8 };
 enum DataType : int { kReal = 2, kComplex = 5 };
 constexpr std::size_t kNumbersOnLine = 6, kNumberWidth = 13;
 
@@ -31,7 +31,7 @@ class ModeReader {
     const int analysis = form.small(10, 10);
     if (analysis != kNormalMode && analysis != kComplexMode) return std::nullopt;
     const int specific = form.small(30, 10), type = form.small(40, 10);
-    MODCAL_REQUIRE(specific == kUnknown || specific == kDisplacement,
+    MODCAL_REQUIRE(specific == kNotTold || specific == kDisplacement,
                    "{}: shapes of data type {} are not read: the scale of shapes other than of "
                    "displacements (8) is not told; write them as displacements",
                    where(), specific);
