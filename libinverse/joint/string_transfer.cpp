@@ -18,8 +18,7 @@ void read_by_sensor(const FrequencyGrid& grid, const Sensor& sensor,
   }
 }
 
-}  // namespace
-
+// With the modes of the law above the last one up to this one [rad/s], as lossy as that.
 ModalBasis with_law_beyond(ModalBasis basis, double highest) {
   if (basis.size() == 0) return basis;
   const double inharmonicity = inharmonicity_of(basis);
@@ -33,6 +32,8 @@ ModalBasis with_law_beyond(ModalBasis basis, double highest) {
     basis.mass.push_back(basis.mass.back());
   }
 }
+
+}  // namespace
 
 StringTransfer string_transfer(const ModalBasis& basis, double contact, const FrequencyGrid& grid,
                                const StringSupport& support, const SensorPair& sensors) {

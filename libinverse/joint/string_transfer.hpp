@@ -14,9 +14,6 @@ struct StringTransfer {
   std::vector<Complex> receptance;   ///< [m/N]
 };
 
-/// With the modes of the string's law above the last one up to this one [rad/s], as lossy as that.
-ModalBasis with_law_beyond(ModalBasis basis, double highest);
-
 /// H_1, H_2 and the receptance at s_k of the grid; x_c in [0, L] [m]. Throws InvalidInput outside.
 StringTransfer string_transfer(const ModalBasis& basis, double contact, const FrequencyGrid& grid,
                                const StringSupport& support, const SensorPair& sensors);
