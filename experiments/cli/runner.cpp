@@ -85,13 +85,15 @@ OutputDirectory begin_together(const std::vector<std::string>& names, const RunS
   return out;
 }
 
-// Ids are unique in one report: each table carries the name of its experiment.
+// Ids are unique in one report: tables and figures carry the name of their experiment.
 void add_section(const std::string& name, const std::string& title, StudyResult& result,
                  report::Report& report) {
+  const auto name_it = [&name](std::string& id) {
+    if (id != name && !id.starts_with(name + "_")) id = name + "_" + id;
+  };
   for (report::Block& block : result.blocks) {
-    if (auto* table = std::get_if<report::Table>(&block)) {
-      if (table->id != name) table->id = name + "_" + table->id;
-    }
+    if (auto* table = std::get_if<report::Table>(&block)) name_it(table->id);
+    if (auto* figure = std::get_if<report::Figure>(&block)) name_it(figure->id);
   }
   if (!result.answer.empty()) {
     result.blocks.insert(result.blocks.begin(), report::Text{result.answer});

@@ -85,7 +85,7 @@ struct Block {
 };
 
 std::string name_of(const Panel& panel, const Series& series) {
-  if (panel.title.empty()) return series.label;
+  if (panel.title.empty()) return series.label.empty() ? panel.y.label : series.label;
   return series.label.empty() ? panel.title : panel.title + ": " + series.label;
 }
 

@@ -155,6 +155,8 @@ std::optional<Saturation> saturation_of(const EndRecord& record, StatedString st
     for (std::size_t d = 0; d < kDrives; ++d) try_drives({d, best[1]});
     for (std::size_t d = 0; d < kDrives; ++d) try_drives({best[0], d});
   }
+  // The search began from a string that may be the wrong one: as it was read, from the best, too.
+  found.unexplained = std::min(found.unexplained, reactions.unexplained({0, 0}, nearest));
   if (!(kSaturationEvidence * found.mended < found.unexplained)) return std::nullopt;
   for (std::size_t r = 0; r < 2; ++r) found.missing[r] = missing_share(kSaturationDrives[best[r]]);
   return found;

@@ -98,12 +98,10 @@ TEST_F(OldFolder, WhoseListOfFilesIsForgedLosesNothingElse) {
   write("victim", "kept\n");
   std::filesystem::create_directories(path("other"));
   write("other/victim", "kept\n");
-  std::filesystem::remove_all(path("a/figures"));
-  std::filesystem::create_directory_symlink(path("other"), path("a/figures"));
-  for (const std::string& name :
-       {std::string("../victim"), path("victim").string(), std::string("figures/victim"),
-        std::string("figures/../../victim"), std::string("."), std::string(".."),
-        std::string("journal")}) {
+  std::filesystem::create_directory_symlink(path("other"), path("a/links"));
+  for (const std::string& name : {std::string("../victim"), path("victim").string(),
+                                  std::string("links/victim"), std::string("links/../../victim"),
+                                  std::string("."), std::string(".."), std::string("journal")}) {
     provenance["files"].push_back(name);
   }
   provenance["files"].push_back(3);

@@ -90,7 +90,7 @@ expect "rows" "$(seen rows)" 312
 expect "one noise level (picture changed, rows)" "$(seen one-noise)" "true,39"
 expect "all again (picture as before, rows)" "$(seen back)" "true,312"
 expect "an objective less (panels, rows)" "$(seen one-objective-less)" "2,26"
-expect "an optimizer less (legend, rows)" "$(seen one-optimizer-less)" "3,36"
+expect "an optimizer less (legend, rows)" "$(seen one-optimizer-less)" "1,36"
 expect "all filters undone" "$(seen restored)" true
 expect "no command at first" "$(seen bar-first)" true
 expect "command of a cell" "$(seen cell-command)" "modcal replay out/made-up N"

@@ -33,6 +33,17 @@ TEST(FigureCsv, SharesAbscissaeAndStatesUnits) {
             ",,,,,3,9\n");
 }
 
+TEST(FigureCsv, NamesALoneCurveByItsAxis) {
+  const Figure figure{.id = "f",
+                      .title = "",
+                      .caption = "",
+                      .panels = {{.x = {.label = "t", .unit = "s"},
+                                  .y = {.label = "objective"},
+                                  .series = {{.x = {0, 0.5}, .y = {1, 2}}}}},
+                      .command = ""};
+  EXPECT_EQ(figure_csv(figure), "t [s],objective\n0,1\n0.5,2\n");
+}
+
 TEST(FigureCsv, HoldsAllSamplesOfALongSeries) {
   const std::string text = figure_csv(long_figure());
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 51'201);
