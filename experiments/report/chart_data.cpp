@@ -1,5 +1,3 @@
-#include "experiments/report/html_page.hpp"
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -10,6 +8,7 @@
 #include <numeric>
 
 #include "experiments/report/encoding.hpp"
+#include "experiments/report/html_page.hpp"
 
 namespace modcal::report {
 namespace {

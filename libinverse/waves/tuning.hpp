@@ -73,9 +73,9 @@ constexpr std::size_t kEndPeriods = 8;
 constexpr std::size_t kLeastPeriods = 20;
 constexpr double kDisturbance = 3.0;
 
-/// Drives d of a sensor that reads (p/d) tanh(d R/p), how many times less a string may leave of what
-/// such sensors read once it is raised, and by how many periods and of the strongest bins that is
-/// judged.
+/// Drives d of a sensor that reads (p/d) tanh(d R/p), how many times less a string may leave of
+/// what such sensors read once it is raised, and by how many periods and of the strongest bins
+/// that is judged.
 /// Source: six records of benchmarks/truth (violin G and D, cello D; exponential and thermal
 /// friction; 0.1 and 5 % of noise) judged by all bins: good ones leave at most 2.1 times less, 21
 /// of violin D with a mismatch 1.0; both saturated by a quarter (d = 1) 3.8 to 146, by three

@@ -11,6 +11,8 @@
 namespace modcal {
 namespace {
 
+using std::numbers::pi;
+
 // A number with its derivatives by x_c and B.
 struct Varying {
   double value = 0.0, by_contact = 0.0, by_inharmonicity = 0.0;
@@ -25,18 +27,16 @@ void add(Varying& sum, const Varying& term, double factor) {
 // Σ_{n ≥ 1} of the static terms at ξ, (π/2) A(ξ): A = (1 − ξ) − sinh(β(1 − ξ))/sinh(β), β = π/√B;
 // by ξ in the place of x_c.
 Varying whole_string(double place, double inharmonicity, bool bending) {
-  Varying all{.value = 0.5 * std::numbers::pi * (1.0 - place),
-              .by_contact = -0.5 * std::numbers::pi};
+  Varying all{.value = 0.5 * pi * (1.0 - place), .by_contact = -0.5 * pi};
   if (bending || inharmonicity <= 0.0) return all;
-  const double beta = std::numbers::pi / std::sqrt(inharmonicity), y = 1.0 - place;
+  const double beta = pi / std::sqrt(inharmonicity), y = 1.0 - place;
   const double norm = -std::expm1(-2.0 * beta);
   const double sinh = -std::exp(-beta * place) * std::expm1(-2.0 * beta * y) / norm;
   const double cosh = std::exp(-beta * place) * (1.0 + std::exp(-2.0 * beta * y)) / norm;
   const double coth = (1.0 + std::exp(-2.0 * beta)) / norm;
-  all.value -= 0.5 * std::numbers::pi * sinh;
-  all.by_contact += 0.5 * std::numbers::pi * beta * cosh;
-  all.by_inharmonicity =
-      0.5 * std::numbers::pi * (y * cosh - sinh * coth) * 0.5 * beta / inharmonicity;
+  all.value -= 0.5 * pi * sinh;
+  all.by_contact += 0.5 * pi * beta * cosh;
+  all.by_inharmonicity = 0.5 * pi * (y * cosh - sinh * coth) * 0.5 * beta / inharmonicity;
   return all;
 }
 
@@ -45,7 +45,7 @@ Varying static_term(double n, std::complex<double> turn, double inharmonicity, b
   const double stiff = bending ? 1.0 : 1.0 + inharmonicity * n * n;
   const double value = turn.imag() / (n * stiff);
   return {.value = value,
-          .by_contact = std::numbers::pi * turn.real() / stiff,
+          .by_contact = pi * turn.real() / stiff,
           .by_inharmonicity = bending ? 0.0 : -value * n * n / stiff};
 }
 
@@ -86,12 +86,12 @@ HigherMode mode_of(bool even, double omega, const Varying& residue, double lengt
 // times what makes a static term one of a_n/ω_n².
 void add_equivalents(const HigherModeLaw& law, const ParitySums& sums, Varying all, bool even,
                      double length, double scale, std::vector<HigherMode>& modes) {
-  const double unit = 2.0 * std::numbers::pi * law.fundamental;
+  const double unit = 2.0 * pi * law.fundamental;
   const double interval = 1.0 / static_cast<double>(law.apart * law.apart);
   add(all, sums.before, -1.0);
   for (std::size_t k = 0; k < kRemainderPoints; ++k) {
     const double angle =
-        std::numbers::pi * (static_cast<double>(k) + 0.5) / static_cast<double>(kRemainderPoints);
+        pi * (static_cast<double>(k) + 0.5) / static_cast<double>(kRemainderPoints);
     const double lambda = 0.5 * interval * (1.0 + std::cos(angle));
     Varying weight;
     for (std::size_t j = 0; j < kRemainderPoints; ++j) {
@@ -131,10 +131,10 @@ std::vector<HigherMode> higher_modes(const HigherModeLaw& law, const ModalBasis&
                                      double contact) {
   const double b = std::max(law.inharmonicity, 0.0);
   const double place = contact / basis.length;
-  const double unit = 2.0 * std::numbers::pi * law.fundamental;
+  const double unit = 2.0 * pi * law.fundamental;
   // a_n/ω_n² = scale/ω0² times the static term.
-  const double scale = basis.tension * std::numbers::pi / (basis.length * basis.mass.front());
-  const std::complex<double> step = std::polar(1.0, std::numbers::pi * place);
+  const double scale = basis.tension * pi / (basis.length * basis.mass.front());
+  const std::complex<double> step = std::polar(1.0, pi * place);
   std::complex<double> turn = 1.0;
   std::vector<HigherMode> modes;
   std::array<ParitySums, 2> sums;
@@ -157,8 +157,7 @@ std::vector<HigherMode> higher_modes(const HigherModeLaw& law, const ModalBasis&
          .even = even,
          .omega = unit * number * std::sqrt(stiff),
          .residue = scale * number * bending * turn.imag(),
-         .by_contact =
-             scale * number * bending * number * std::numbers::pi / basis.length * turn.real(),
+         .by_contact = scale * number * bending * number * pi / basis.length * turn.real(),
          .by_inharmonicity = law.bending ? scale * number * number * number * turn.imag() : 0.0});
   }
   const Varying left = whole_string(place, b, law.bending);

@@ -10,6 +10,8 @@
 namespace modcal {
 namespace {
 
+using std::numbers::pi;
+
 enum class Remainder { kAuto, kLaw, kNone };
 constexpr std::array<std::string_view, 3> kRemainders = {"auto", "law", "none"};
 enum class Reaction { kTension, kSupport };
@@ -25,8 +27,7 @@ ModalModel model_with(const ModalBasis& basis, std::vector<SensorKind> sensors) 
 
 double ideal_omega(const ModalBasis& basis, std::size_t n) {
   const double density = 2.0 * basis.mass[n - 1] / basis.length;
-  return static_cast<double>(n) * std::numbers::pi / basis.length *
-         std::sqrt(basis.tension / density);
+  return static_cast<double>(n) * pi / basis.length * std::sqrt(basis.tension / density);
 }
 
 double stiffening(double inharmonicity, std::size_t n) {
@@ -35,31 +36,26 @@ double stiffening(double inharmonicity, std::size_t n) {
 
 // sinh(a x)/sinh(a π) and cosh(a x)/sinh(a π) for 0 <= x <= π without overflow.
 double sinh_ratio(double a, double x) {
-  return std::exp(a * (x - std::numbers::pi)) * std::expm1(-2.0 * a * x) /
-         std::expm1(-2.0 * a * std::numbers::pi);
+  return std::exp(a * (x - pi)) * std::expm1(-2.0 * a * x) / std::expm1(-2.0 * a * pi);
 }
 double cosh_ratio(double a, double x) {
-  return -std::exp(a * (x - std::numbers::pi)) * (1.0 + std::exp(-2.0 * a * x)) /
-         std::expm1(-2.0 * a * std::numbers::pi);
+  return -std::exp(a * (x - pi)) * (1.0 + std::exp(-2.0 * a * x)) / std::expm1(-2.0 * a * pi);
 }
 
 // Σ_n sin(nx)/(n (1 + B n²)), 0 <= x <= π.
 double sine_series(double x, double inharmonicity) {
   if (x <= 0.0) return 0.0;
-  const double ideal = 0.5 * (std::numbers::pi - x);
+  const double ideal = 0.5 * (pi - x);
   if (inharmonicity == 0.0) return ideal;
-  return ideal -
-         0.5 * std::numbers::pi * sinh_ratio(1.0 / std::sqrt(inharmonicity), std::numbers::pi - x);
+  return ideal - 0.5 * pi * sinh_ratio(1.0 / std::sqrt(inharmonicity), pi - x);
 }
 
 // Σ_n cos(ny)/(n² (1 + B n²)), 0 <= y <= 2π.
 double cosine_series(double y, double inharmonicity) {
-  const double ideal =
-      std::numbers::pi * std::numbers::pi / 6.0 - 0.5 * std::numbers::pi * y + 0.25 * y * y;
+  const double ideal = pi * pi / 6.0 - 0.5 * pi * y + 0.25 * y * y;
   if (inharmonicity == 0.0) return ideal;
   const double a = 1.0 / std::sqrt(inharmonicity);
-  return ideal - 0.5 * std::numbers::pi / a * cosh_ratio(a, std::abs(std::numbers::pi - y)) +
-         0.5 / (a * a);
+  return ideal - 0.5 * pi / a * cosh_ratio(a, std::abs(pi - y)) + 0.5 / (a * a);
 }
 
 // −Σ c_n/ω_n⁴ over the modes above the highest one, by the law: what is left of Σ c_n/(ω_n² + s²)
@@ -75,7 +71,7 @@ StaticResponse slope_beyond(const ModalBasis& basis, double contact, bool bendin
     const double shape = sine_shape(n, contact / basis.length);
     const double square = number * number * unit * unit * stiff;
     const double by = shape / (mass * square * square);
-    const double gain = basis.tension * number * std::numbers::pi / basis.length * (bending ? stiff : 1.0);
+    const double gain = basis.tension * number * pi / basis.length * (bending ? stiff : 1.0);
     slope.reaction[0] += gain * by;
     slope.reaction[1] += n % 2 == 1 ? gain * by : -gain * by;
     slope.compliance -= shape * by;
@@ -105,8 +101,7 @@ StringSupport SupportOptions::support(bool recorded) const {
 std::vector<double> reaction_gains(const ModalBasis& basis, End end) {
   std::vector<double> gains(basis.size());
   for (std::size_t i = 0; i < gains.size(); ++i) {
-    const double slope =
-        basis.tension * static_cast<double>(i + 1) * std::numbers::pi / basis.length;
+    const double slope = basis.tension * static_cast<double>(i + 1) * pi / basis.length;
     const bool odd = i % 2 == 0;  // mode number n = i + 1
     gains[i] = end == End::kLeft || odd ? -slope : slope;
   }
@@ -134,7 +129,7 @@ ModalModel end_reaction_slopes(const ModalBasis& basis, double contact) {
   for (std::size_t i = 0; i < slope.size(); ++i) {
     const double n = static_cast<double>(i + 1);
     const double half_turns = std::remainder(n * contact / basis.length, 2.0);
-    slope[i] = n * std::numbers::pi / basis.length * std::cos(std::numbers::pi * half_turns);
+    slope[i] = n * pi / basis.length * std::cos(pi * half_turns);
   }
   return end_reactions(basis, slope);
 }
@@ -192,12 +187,12 @@ double inharmonicity_of(const ModalBasis& basis) {
 StaticResponse static_response(const ModalBasis& basis, double contact, bool bending) {
   const double law = inharmonicity_of(basis);
   const double of_reactions = bending ? 0.0 : law;
-  const double x = std::numbers::pi * contact / basis.length;
+  const double x = pi * contact / basis.length;
   StaticResponse response;
-  response.reaction[0] = -2.0 / std::numbers::pi * sine_series(x, of_reactions);
-  response.reaction[1] = -2.0 / std::numbers::pi * sine_series(std::numbers::pi - x, of_reactions);
+  response.reaction[0] = -2.0 / pi * sine_series(x, of_reactions);
+  response.reaction[1] = -2.0 / pi * sine_series(pi - x, of_reactions);
   // Σ φ²/(m ω_n²) with m ω_n² = T π² n² (1 + B n²)/(2 L) and φ² = (1 − cos 2nx)/2.
-  response.compliance = basis.length / (basis.tension * std::numbers::pi * std::numbers::pi) *
+  response.compliance = basis.length / (basis.tension * pi * pi) *
                         (cosine_series(0.0, law) - cosine_series(2.0 * x, law));
   return response;
 }
