@@ -12,6 +12,7 @@ struct Finding {
   std::string path;  ///< dotted path of the option it concerns
   std::string text;
   bool is_error = true;
+  bool is_idle = false;  ///< what it names does nothing: no mistake where another task reads it
 };
 
 /// The simulations of a run, by one of them.

@@ -161,16 +161,21 @@ void report_estimate(const Problem& problem, const std::vector<Variable>& variab
   const ContinuationResult& found = *result.continuation;
   result.model = found.model;
   result.parameters = found_parameters(problem.model, found, problem.parameters.unknowns);
+  ParameterRanges ranges = problem.parameters.ranges;
   for (CalibratedParameter& parameter : result.parameters) {
+    const auto name = parse_parameter(parameter.name);
     const auto of = std::ranges::find(variables, parameter.name, &Variable::name);
-    if (of == variables.end()) continue;
+    const bool is_variable = of != variables.end();
+    // The factor of all ratios is none where every ratio is, but what the law's stage searches.
+    if (!is_variable && (!name || name->kind != ParameterKind::kDampingFactor)) continue;
     // A damping ratio may be as many times larger as smaller, and nothing lies below the 0 of what
     // can only rise; bounds of logarithms come back with their rounding.
-    const ParameterType& type = type_of(*parse_parameter(parameter.name));
+    const ParameterType& type = type_of(*name);
     const bool ratio = type.moves == Moves::kDamping && type.range_kind == RangeKind::kShare;
-    const double upper = ratio ? parameter.initial * parameter.initial / of->lower : of->upper;
-    const double margin = 1e-9 * (upper - of->lower);
-    const bool low = type.range_kind != RangeKind::kRise && parameter.final <= of->lower + margin;
+    const double lower = is_variable ? of->lower : parameter.initial * (1.0 - type.range(ranges));
+    const double upper = ratio ? parameter.initial * parameter.initial / lower : of->upper;
+    const double margin = 1e-9 * (upper - lower);
+    const bool low = type.range_kind != RangeKind::kRise && parameter.final <= lower + margin;
     parameter.at_bound = low || parameter.final >= upper - margin;
   }
   result.modes = found_modes(problem.model, found, problem.excitation_threshold);

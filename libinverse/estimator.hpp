@@ -59,6 +59,8 @@ class Estimator {
   virtual SensorPair sensors() const { return {}; }
   /// Whether it takes the ends to feel the bending of the string (StringSupport).
   virtual bool feels_bending() const { return false; }
+  /// Whether the regularizer and the parameter choice of the method play a part.
+  virtual bool filters() const { return false; }
   /// Numbers a sample of the record that the work on one holds at a time, about.
   virtual double numbers_per_sample() const { return 30.0; }
 

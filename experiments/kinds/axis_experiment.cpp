@@ -2,6 +2,8 @@
 
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <map>
 #include <set>
 
 namespace modcal {
@@ -12,6 +14,24 @@ std::vector<Finding> distinct_findings(std::vector<Finding> findings) {
     return !known.insert({finding.path, finding.text}).second;
   });
   return findings;
+}
+
+std::vector<Finding> findings_of_list(const std::vector<std::vector<Finding>>& of_tasks) {
+  std::map<std::string, std::size_t> idle_tasks;
+  for (const std::vector<Finding>& findings : of_tasks) {
+    std::set<std::string> paths;
+    for (const Finding& finding : findings) {
+      if (finding.is_idle) paths.insert(finding.path);
+    }
+    for (const std::string& path : paths) ++idle_tasks[path];
+  }
+  std::vector<Finding> all;
+  for (const std::vector<Finding>& findings : of_tasks) {
+    std::ranges::copy_if(findings, std::back_inserter(all), [&](const Finding& finding) {
+      return !finding.is_idle || idle_tasks[finding.path] == of_tasks.size();
+    });
+  }
+  return distinct_findings(std::move(all));
 }
 
 SweepAxis axis_of(std::string path, std::size_t count,

@@ -97,6 +97,8 @@ inline bool is_seed_axis(const std::string& path) { return ("." + path).ends_wit
 
 /// Findings, each once.
 std::vector<Finding> distinct_findings(std::vector<Finding> findings);
+/// Those of the tasks of a list, each once; what is idle in some tasks and read in others is none.
+std::vector<Finding> findings_of_list(const std::vector<std::vector<Finding>>& of_tasks);
 
 /// One line an axis, the number of tasks, the simulations and those that tasks share.
 std::vector<PlanLine> axis_plan(const SweepPlan& plan, std::size_t tasks,
@@ -165,13 +167,13 @@ class AxisExperiment : public TaskExperiment {
   explicit AxisExperiment(Options options) : options_(std::move(options)) {}
 
   std::vector<Finding> lint() const override {
-    std::vector<Finding> findings;
+    std::vector<std::vector<Finding>> findings;
     for (const Cell& cell : options_.cells.all()) {
-      for (Finding& finding : cell.lint()) {
-        if (!is_excused(cell, finding)) findings.push_back(std::move(finding));
-      }
+      findings.push_back(cell.lint());
+      std::erase_if(findings.back(),
+                    [&](const Finding& finding) { return is_excused(cell, finding); });
     }
-    return distinct_findings(std::move(findings));
+    return findings_of_list(findings);
   }
   std::vector<Finding> lint_records(const std::filesystem::path& folder) const override {
     std::vector<Finding> findings;

@@ -1,7 +1,6 @@
 #include "experiments/kinds/lint.hpp"
 
 #include <algorithm>
-#include <set>
 
 #include "experiments/kinds/lint_bow.hpp"
 
@@ -102,9 +101,18 @@ void lint_step(const Scene& scene, const Choice<Simulator>& simulator, double sa
   const double step = made->longest_step();
   if (!is_known(scene.string) || !std::isfinite(step)) return;
   const double rate = 1.0 / plan_steps(step, sample_rate).time_step;
+  const std::size_t before = findings.size();
   Scene begin = scene;
   begin.duration = std::min(scene.duration, 2.0 / rate);
   lint_making(findings, "simulator.time_step", [&] { made->simulate(begin, rate, {}); });
+  // Rounding apart; a step that nobody has stated is cut without a word.
+  const double usual = Choice<Simulator>(simulator.selected()).make()->longest_step();
+  if (findings.size() > before || step == usual || !(step > (1.0 + 1e-9) / sample_rate)) return;
+  findings.push_back({"simulator.time_step",
+                      fmt::format("time_step {:g} s is longer than the {:.4g} s from one sample "
+                                  "to the next, which is the step then: state that or less",
+                                  step, 1.0 / sample_rate),
+                      false});
 }
 
 void lint_decay(const Scene& scene, std::vector<Finding>& findings) {
@@ -245,54 +253,6 @@ std::vector<Finding> lint_scores(const ScoreOptions& score, const ObservationOpt
                 "the window from {:g} s over {:g} periods ends at {:.4g} s, "
                 "after the record of {:g} s",
                 start, score.periods, start + length, duration);
-  }
-  return findings;
-}
-
-std::vector<Finding> lint_figure_windows(const std::vector<FigureOptions>& figures,
-                                         double duration) {
-  std::vector<Finding> findings;
-  for (std::size_t i = 0; i < figures.size(); ++i) {
-    for (std::size_t j = 0; j < figures[i].windows.size(); ++j) {
-      lint_making(findings, fmt::format("figures.{}.windows.{}", i, j),
-                  [&] { require_inside(figures[i].id, figures[i].windows[j], duration); });
-    }
-  }
-  return findings;
-}
-
-std::vector<Finding> lint_figures(const std::vector<FigureOptions>& figures,
-                                  const std::vector<std::string_view>& contents, double duration) {
-  std::vector<Finding> findings;
-  if (!std::isnan(duration)) findings = lint_figure_windows(figures, duration);
-  std::set<std::string> ids;
-  for (std::size_t i = 0; i < figures.size(); ++i) {
-    const FigureOptions& figure = figures[i];
-    const std::string place = fmt::format("figures.{}", i);
-    if (!report::is_file_stem(figure.id)) {
-      add_finding(findings, place,
-                  "\"{}\" cannot name a figure's files: use letters, digits, - and _", figure.id);
-    }
-    if (!ids.insert(figure.id).second) {
-      add_finding(findings, place + ".id", "two figures have the id \"{}\": give each its own",
-                  figure.id);
-    }
-    if (figure.quantities.empty()) {
-      add_finding(findings, place, "figure {} has no quantities: name one, or leave the key out",
-                  figure.id);
-    }
-    const bool identified = std::ranges::count(contents, "spectra") > 0;
-    for (const std::string& name : figure.quantities) {
-      if (!identified || (name != "R1" && name != "R2")) continue;
-      add_finding(findings, place,
-                  "figure {} draws {}, which is measured, not identified: use y, v or f_c",
-                  figure.id, name);
-    }
-    if (std::ranges::count(contents, figure.content) == 0) {
-      add_finding(findings, place + ".content",
-                  "figure {}: this kind of experiment has no {}; it has {}", figure.id,
-                  figure.content, fmt::join(contents, ", "));
-    }
   }
   return findings;
 }

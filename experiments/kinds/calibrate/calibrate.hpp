@@ -261,7 +261,7 @@ std::string unknown_values(const ContinuationResult& found);
 
 /// What contradicts a result that is not right: χ², the priors stated, a cause of misfit, or
 /// several of them; else empty.
-std::string contradiction(const ContinuationResult& found);
+std::string contradiction(const CalibrationResult& result);
 
 /// What is in the record beside what was stated: sensors, damping, causes of misfit; or which of
 /// these were looked for; empty where none was. Of a search with an estimate.

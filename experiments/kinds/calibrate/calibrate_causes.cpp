@@ -194,14 +194,38 @@ std::string_view remedy_of_prior(std::string_view farthest) {
   return "";
 }
 
+// Waves that grow from sample to sample are those of a decay read from its end: the fit takes all
+// damping that it may from most of the modes.
+bool runs_backwards(const CalibrationResult& result) {
+  std::size_t ratios = 0, lowest = 0;
+  for (const CalibratedParameter& one : result.parameters) {
+    const auto name = parse_parameter(one.name);
+    if (!name || (name->kind != ParameterKind::kDampingRatio &&
+                  name->kind != ParameterKind::kDampingFactor)) {
+      continue;
+    }
+    ++ratios;
+    if (one.at_bound && one.final < one.initial) ++lowest;
+  }
+  return 2 * lowest > ratios;
+}
+
 }  // namespace
 
-std::string contradiction(const ContinuationResult& found) {
+std::string contradiction(const CalibrationResult& result) {
+  const ContinuationResult& found = *result.continuation;
   std::vector<std::string> reasons;
   if (!found.fits) {
     reasons.push_back(
         fmt::format("the fit is wrong: reduced chi2 {:.4f}, where {:.4f} would scatter from 1",
                     found.chi2, found.chi2_deviation));
+  }
+  if (!found.fits && runs_backwards(result)) {
+    reasons.emplace_back(
+        "most damping ratios end at their lowest, as where the string gains energy: the rows stand "
+        "in reverse (turn them around), or the damping stated is many times too large "
+        "(string.damping)");
+    return fmt::format("{}", fmt::join(reasons, "; "));
   }
   if (found.priors.contradicted()) {
     reasons.push_back(fmt::format(

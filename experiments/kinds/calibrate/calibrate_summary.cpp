@@ -228,7 +228,7 @@ void add_calibration_warnings(const CalibrationOutcome& outcome, StudyResult& re
     result.status = report::Status::kFailed;
   };
   if (const auto& found = outcome.result.continuation) {
-    if (!found->right) fail(contradiction(*found));
+    if (!found->right) fail(contradiction(outcome.result));
     if (const auto unknown = unknown_values(*found); !unknown.empty()) {
       fail(fmt::format(
           "what the record tells of {} is not known: record for longer, or with less noise",

@@ -7,18 +7,32 @@
 namespace modcal {
 namespace {
 
-// A rule that chooses nothing.
-void lint_parameter_choice(const InversionOptions& inversion, std::vector<Finding>& findings) {
-  const auto text_of = [](Choice<ParameterChoice> choice) {
+// A filter that nothing passes and a rule that chooses nothing, where they are not as they stand in
+// every file that a run writes out.
+void lint_filter(const InversionOptions& inversion, std::vector<Finding>& findings) {
+  const auto text_of = [](auto choice) {
     return fingerprint([&choice](OptionVisitor& visitor) { visitor("", "", choice); });
   };
-  const bool stated =
-      text_of(inversion.parameter_choice) != text_of(InversionOptions().parameter_choice);
-  if (!stated || inversion.regularizer.make()->has_parameter()) return;
-  add_finding(findings, "inversion.parameter_choice",
-              "regularizer {} has no parameter to choose: leave parameter_choice out, or take "
-              "another regularizer (modcal list regularizer)",
-              inversion.regularizer.selected());
+  const InversionOptions usual;
+  const bool states_filter = text_of(inversion.regularizer) != text_of(usual.regularizer);
+  const bool states_rule = text_of(inversion.parameter_choice) != text_of(usual.parameter_choice);
+  const auto add = [&findings](bool stated, const char* key, std::string text) {
+    if (!stated) return;
+    findings.push_back({fmt::format("inversion.{}", key), std::move(text), true, true});
+  };
+  if (!inversion.estimator.make()->filters()) {
+    for (const auto& [stated, key] :
+         {std::pair(states_filter, "regularizer"), std::pair(states_rule, "parameter_choice")}) {
+      add(stated, key,
+          fmt::format("estimator {} does not read {}: leave it out, or state estimator: one_sided",
+                      inversion.estimator.selected(), key));
+    }
+  } else if (!inversion.regularizer.make()->has_parameter()) {
+    add(states_rule, "parameter_choice",
+        fmt::format("regularizer {} has no parameter to choose: leave parameter_choice out, or "
+                    "take another regularizer (modcal list regularizer)",
+                    inversion.regularizer.selected()));
+  }
 }
 
 }  // namespace
@@ -35,7 +49,7 @@ std::vector<Finding> lint_inversion(const InvertOptions& options) {
   std::vector<Finding> findings = lint_observation(options.observation);
   const std::size_t before = findings.size();
   lint_making(findings, "inversion", [&] { InversionRecipe recipe(options.inversion); });
-  if (findings.size() == before) lint_parameter_choice(options.inversion, findings);
+  if (findings.size() == before) lint_filter(options.inversion, findings);
   append(findings, lint_scores(options.score, options.observation));
   if (options.write_sound && options.observation.has_scene) {
     lint_sound("write_sound", options.observation.measurement.sample_rate, findings);

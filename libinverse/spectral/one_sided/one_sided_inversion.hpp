@@ -83,6 +83,7 @@ class OneSidedEstimator final : public Estimator {
     void visit(OptionVisitor& /*visitor*/) {}
   };
   explicit OneSidedEstimator(const Options& /*options*/) {}
+  bool filters() const override { return true; }
 
  private:
   std::shared_ptr<const PreparedEstimator> do_prepare(const EstimationModel& model) const override;

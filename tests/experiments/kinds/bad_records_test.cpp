@@ -372,6 +372,7 @@ TEST_F(BadRecords, GiveARightAnswerOrOneClearRefusal) {
     if (row.refusal == kContradicted) {
       EXPECT_EQ(said, "accepted");
       EXPECT_EQ(result.status, report::Status::kFailed);
+      EXPECT_THAT(result.answer, testing::HasSubstr("the rows stand in reverse"));
       continue;
     }
     EXPECT_THAT(said, testing::HasSubstr(row.refusal));

@@ -10,6 +10,12 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
+CalibrationResult with(const ContinuationResult& found) {
+  CalibrationResult result;
+  result.continuation = std::make_shared<ContinuationResult>(found);
+  return result;
+}
+
 ContinuationResult result_of(bool fits, const PriorMisfit& priors) {
   ContinuationResult found;
   found.chi2 = fits ? 1.001 : 1.4;
@@ -22,14 +28,29 @@ ContinuationResult result_of(bool fits, const PriorMisfit& priors) {
 
 TEST(FitVerdict, TellsAWrongFitFromWrongPriors) {
   const PriorMisfit far_off{.chi2 = 136900.0, .count = 2, .farthest = "x_c", .deviations = 370.0};
-  EXPECT_THAT(contradiction(result_of(true, far_off)),
+  EXPECT_THAT(contradiction(with(result_of(true, far_off))),
               AllOf(HasSubstr("priors stated, that of x_c most (370 deviations)"),
                     Not(HasSubstr("fit is wrong"))));
-  EXPECT_THAT(contradiction(result_of(false, {})),
+  EXPECT_THAT(contradiction(with(result_of(false, {}))),
               AllOf(HasSubstr("the fit is wrong: reduced chi2 1.4000"), Not(HasSubstr("priors"))));
-  EXPECT_THAT(contradiction(result_of(false, far_off)),
+  EXPECT_THAT(contradiction(with(result_of(false, far_off))),
               AllOf(HasSubstr("the fit is wrong"), HasSubstr("; the data contradict the priors")));
-  EXPECT_EQ(contradiction(result_of(true, {})), "");
+  EXPECT_EQ(contradiction(with(result_of(true, {}))), "");
+}
+
+TEST(FitVerdict, TellsARecordThatRunsBackwards) {
+  CalibrationResult result = with(result_of(false, {}));
+  for (int n = 1; n <= 3; ++n) {
+    result.parameters.push_back(
+        {.name = fmt::format("zeta_{}", n), .initial = 1e-3, .final = 1e-5, .at_bound = n < 3});
+  }
+  EXPECT_THAT(contradiction(result), HasSubstr("the rows stand in reverse"));
+  result.parameters[1].at_bound = false;
+  EXPECT_THAT(contradiction(result), Not(HasSubstr("in reverse")));
+  // Damping that ends at its largest is a string that rings for shorter than stated.
+  for (CalibratedParameter& one : result.parameters)
+    one = {.name = one.name, .initial = 1e-3, .final = 1e-1, .at_bound = true};
+  EXPECT_THAT(contradiction(result), Not(HasSubstr("in reverse")));
 }
 
 TEST(CalibrationWarnings, RefuseWhatHasNoDeviation) {
