@@ -63,6 +63,17 @@ class MainsSearch {
     return found;
   }
 
+  // Without those that do not stand where the first one says: what the model leaves of the string
+  // stands out, too. A line tells its frequency to a tenth of a bin, the bins another half.
+  void keep_harmonics_of_first(double mains, std::vector<Line>& lines) const {
+    const double first = refined(mains, {lines.front()});
+    std::erase_if(lines, [&](const Line& line) {
+      const auto h = static_cast<double>(line.harmonic);
+      const double told = 0.1 * h / static_cast<double>(lines.front().harmonic);
+      return peak(first * h / spacing_, 0.5 + told) <= kLineRatio * line.floor;
+    });
+  }
+
   // The frequency of these lines' harmonics, by a grid an eighth of a bin apart at the highest,
   // then between its neighbors.
   double refined(double mains, const std::vector<Line>& lines) const {
@@ -102,22 +113,30 @@ class MainsSearch {
     });
   }
 
+  // Highest power of the bins this near.
+  double peak(double center, double reach) const {
+    double highest = 0.0;
+    for (std::size_t k = 1; k < power_.size(); ++k) {
+      if (std::abs(static_cast<double>(k) - center) <= reach)
+        highest = std::max(highest, power_[k]);
+    }
+    return highest;
+  }
+
   // Median power about bin `center`, outside the four bins of the window's lobe, where what stands
   // there is a line; else 0. fundamental: as far as to the next line.
   double line_floor(double center, double fundamental) const {
     const double reach = 1.0 + 0.005 * center;
     const double about = std::min(20.0, 0.5 * fundamental);
-    double peak = 0.0;
     std::vector<double> others;
     for (std::size_t k = 1; k < power_.size(); ++k) {
       const double off = std::abs(static_cast<double>(k) - center);
-      if (off <= reach) peak = std::max(peak, power_[k]);
       if (off > reach + 6.0 && off < reach + about) others.push_back(power_[k]);
     }
     if (others.empty()) return 0.0;
     const auto middle = others.begin() + static_cast<std::ptrdiff_t>(others.size() / 2);
     std::nth_element(others.begin(), middle, others.end());
-    return peak > kLineRatio * *middle ? *middle : 0.0;
+    return peak(center, reach) > kLineRatio * *middle ? *middle : 0.0;
   }
 
   // Of all lines over what is about them.
@@ -166,6 +185,7 @@ std::vector<double> mains_lines(const NoisyRecords& records, const ModelPoint& p
   if (std::isnan(frequency)) return {};
   std::size_t count = 8;
   if (!lines.empty()) {
+    search.keep_harmonics_of_first(frequency, lines);
     frequency = search.refined(frequency, lines);
     count = std::max(count, lines.back().harmonic);
   }
