@@ -30,8 +30,8 @@ SampledString sampled_string(const ContactModes& modes, const std::vector<double
     s.transition.block<2, 2>(2 * n, 2 * n) << r.real(), -r.imag(), r.imag(), r.real();
     s.drive(2 * n, 0) = b.real();
     s.drive(2 * n + 1, 0) = b.imag();
-    s.observation(0, 2 * n + 1) = modes.left_gain[i] * shape[i];
-    s.observation(1, 2 * n + 1) = modes.right_gain[i] * shape[i];
+    s.observation(0, 2 * n + 1) = modes.left_gain[i].imag() * shape[i];
+    s.observation(1, 2 * n + 1) = modes.right_gain[i].imag() * shape[i];
   }
   return s;
 }

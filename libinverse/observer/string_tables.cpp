@@ -50,8 +50,12 @@ StringTables make_string_tables(const ModalBasis& basis, double contact, double 
   }
   tables.quadrature = padded(modes.quadrature);
   tables.compliance = padded(modes.compliance);
-  tables.gain[0] = padded(modes.left_gain);
-  tables.gain[1] = padded(modes.right_gain);
+  // Of a string, whose reactions follow the displacement.
+  const auto gains = [](const std::vector<std::complex<double>>& all) {
+    return padded(all.size(), 0.0, [&all](std::size_t n) { return all[n].imag(); });
+  };
+  tables.gain[0] = gains(modes.left_gain);
+  tables.gain[1] = gains(modes.right_gain);
   tables.effective_mass = modes.effective_mass();
   return tables;
 }

@@ -60,8 +60,8 @@ LineArrays make_line_arrays(const LineModes& modes, const SchemeWeights& w) {
   c.inverse_mass = padded(modes.inverse_mass);
   c.quadrature = padded(modes.quadrature);
   c.compliance = padded(modes.compliance);
-  c.left_gain = padded(modes.left_gain);
-  c.right_gain = padded(modes.right_gain);
+  c.left_gain = PlanarVector(modes.left_gain);
+  c.right_gain = PlanarVector(modes.right_gain);
   for (const std::vector<double>& shape : modes.shape) c.shape.push_back(padded(shape));
   return c;
 }
@@ -77,8 +77,8 @@ DirectResponse direct_response(const LineModes& modes, const SchemeWeights& weig
     const double v = modes.motion(n, d).velocity;
     for (std::size_t j = 0; j < modes.points(); ++j) {
       const double phi = modes.shape[j][n];
-      response.left[j] += modes.left_gain[n] * phi * d.imag();
-      response.right[j] += modes.right_gain[n] * phi * d.imag();
+      response.left[j] += LineModes::reading(modes.left_gain[n] * phi, d);
+      response.right[j] += LineModes::reading(modes.right_gain[n] * phi, d);
       for (std::size_t i = 0; i < modes.points(); ++i) {
         response.velocity[i][j] += modes.shape[i][n] * phi * v;
         response.displacement[i][j] += modes.shape[i][n] * phi * modes.compliance[n] * d.imag();

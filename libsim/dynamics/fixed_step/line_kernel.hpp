@@ -13,7 +13,8 @@ constexpr std::size_t kMostPoints = 16;
 /// f_j/m.
 struct LineArrays {
   PlanarVector propagate, deferred;
-  AlignedVector inverse_mass, quadrature, compliance, left_gain, right_gain;
+  AlignedVector inverse_mass, quadrature, compliance;
+  PlanarVector left_gain, right_gain;
   std::vector<AlignedVector> shape;
   PlanarVector state;  ///< S
 };

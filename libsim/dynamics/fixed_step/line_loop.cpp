@@ -131,10 +131,11 @@ class Run {
   // At t = 0 S still holds all of Z.
   void store(std::size_t sample) {
     const SampleTargets& to = run_.targets;
-    const auto reaction = [&](const double* wanted, const AlignedVector& gain,
+    const auto reaction = [&](const double* wanted, const PlanarVector& gain,
                               const double* direct) {
       if (wanted == nullptr) return 0.0;
-      const double sum = sum_of_products(gain, arrays_.state.im);
+      const double sum =
+          sum_of_products(gain.im, arrays_.state.im) + sum_of_products(gain.re, arrays_.state.re);
       return sample == 0 ? sum : sum + dot(direct, driving_, size_);
     };
     to.write(sample, {.displacement = mean(motion_.displacement),

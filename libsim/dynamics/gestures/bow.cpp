@@ -22,12 +22,20 @@ double time_of_lowest(const PiecewiseLinear& function) {
 void Bow::visit(OptionVisitor& visitor) {
   visitor("position", "contact point x_c, from the end x = 0",
           {.unit = "m", .range = Range::positive(), .required = true}, position);
-  visitor("velocity", "bow velocity", {.unit = "m/s", .range = Range::any()}, velocity);
-  visitor("normal_force", "force that presses the bow on the string",
-          {.unit = "N", .range = Range::non_negative()}, normal_force);
+  visit_levels(visitor);
   visitor("width", "width of the bow hair along the string",
           {.unit = "m", .range = Range::non_negative()}, width);
   visitor("points", "contact points over the width", {.range = Range::closed(1, 16)}, points);
+  visit_course(visitor);
+}
+
+void Bow::visit_levels(OptionVisitor& visitor) {
+  visitor("velocity", "bow velocity", {.unit = "m/s", .range = Range::any()}, velocity);
+  visitor("normal_force", "force that presses the bow on the string",
+          {.unit = "N", .range = Range::non_negative()}, normal_force);
+}
+
+void Bow::visit_course(OptionVisitor& visitor) {
   visitor("velocity_gesture", "factor of the velocity against time", velocity_gesture);
   visitor("force_gesture", "factor of the normal force against time", force_gesture);
   visit_noise(visitor, "velocity_noise", "band-limited noise on the velocity", velocity_noise);

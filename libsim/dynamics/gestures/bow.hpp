@@ -18,6 +18,10 @@ struct Bow {
   GestureNoise velocity_noise;
   GestureNoise force_noise;
   void visit(OptionVisitor& visitor);
+  /// Velocity and force: what a contact of any structure has as well.
+  void visit_levels(OptionVisitor& visitor);
+  /// How they change in time.
+  void visit_course(OptionVisitor& visitor);
 
   /// The contact points x_c + width ((i + ½)/points − ½) [m], each of which carries an equal share
   /// of force, adherence and friction state.

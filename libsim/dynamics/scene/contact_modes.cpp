@@ -56,8 +56,8 @@ std::vector<std::size_t> add_modes(const ModalBasis& basis, std::span<const doub
     table.pole.emplace_back(-decay, damped);
     table.quadrature.push_back(decay / damped);
     table.compliance.push_back(1.0 / damped);
-    table.left_gain.push_back(left[n] / (phi * damped));
-    table.right_gain.push_back(right[n] / (phi * damped));
+    table.left_gain.emplace_back(0.0, left[n] / (phi * damped));
+    table.right_gain.emplace_back(0.0, right[n] / (phi * damped));
     table.initial.emplace_back(phi * (p + decay * q), phi * damped * q);
   }
   MODCAL_REQUIRE(moves,
@@ -78,6 +78,12 @@ void add_line_modes(const ModalBasis& basis, std::span<const double> positions,
     }
     return 1.0;
   });
+}
+
+// One point, φ = 1.
+LineModes line_of(const ContactModes& modes) {
+  LineModes line{modes, modes.drive, {std::vector<double>(modes.size(), 1.0)}};
+  return line;
 }
 
 }  // namespace
@@ -137,6 +143,7 @@ ContactModes scene_modes(const Scene& scene) {
                  "{} contact points over {:g} m: this simulator has one; use modal_exact or "
                  "newmark_explicit, or a bow of width 0",
                  scene.bow.points, scene.bow.width);
+  if (scene.structure != nullptr) return *scene.structure;
   const ModalBasis basis = make_modal_basis(scene.string);
   ContactModes modes = contact_modes(basis, scene.bow.position, initial_state(scene, basis));
   if (scene.torsion.present) {
@@ -147,6 +154,7 @@ ContactModes scene_modes(const Scene& scene) {
 }
 
 LineModes scene_line_modes(const Scene& scene) {
+  if (scene.structure != nullptr) return line_of(scene_modes(scene));
   const ModalBasis basis = make_modal_basis(scene.string);
   const std::vector<double> positions = scene.bow.contact_points();
   for (const double x : positions) {

@@ -12,11 +12,15 @@ namespace modcal {
 /// Modes in a variable Z = φ (p + ζω q + i ω_d q), p = q̇, ω_d = ω √(1 − ζ²), that obeys
 /// Z' = λ Z + φ F, λ = −ζω + iω_d, under the modal acceleration F = Σ_j φ_j f_j/m.
 struct ModeTable {
+  /// Re(ḡ Z).
+  static double reading(std::complex<double> gain, std::complex<double> z) {
+    return gain.real() * z.real() + gain.imag() * z.imag();
+  }
   std::vector<std::complex<double>> pole;     ///< λ [1/s]
   std::vector<double> quadrature;             ///< ζω/ω_d [1]
   std::vector<double> compliance;             ///< 1/ω_d [s]
-  std::vector<double> left_gain;              ///< g₁/(φ ω_d) [N s/m]
-  std::vector<double> right_gain;             ///< g₂/(φ ω_d) [N s/m]
+  /// What two sensors read of Z, Re(ḡ Z) with φ = 1: of a string's ends g = i g_r/(φ ω_d) [N s/m].
+  std::vector<std::complex<double>> left_gain, right_gain;
   std::vector<std::complex<double>> initial;  ///< Z at t = 0 [m/s]
 
   std::size_t size() const { return pole.size(); }
@@ -24,8 +28,8 @@ struct ModeTable {
   MotionSample motion(std::size_t n, std::complex<double> z) const {
     return {.displacement = compliance[n] * z.imag(),
             .velocity = z.real() - quadrature[n] * z.imag(),
-            .left = left_gain[n] * z.imag(),
-            .right = right_gain[n] * z.imag()};
+            .left = reading(left_gain[n], z),
+            .right = reading(right_gain[n], z)};
   }
 };
 
@@ -66,8 +70,8 @@ ContactModes contact_modes(const ModalBasis& basis, double contact, const ModalS
 /// Motion of the contact and reactions of the ends in the state Z of the modes.
 MotionSample motion_of(const ContactModes& modes, const std::vector<std::complex<double>>& state);
 
-/// The modes of the scene's string as one contact point sees them, the torsional ones last. Throws
-/// InvalidInput for a bow with several contact points.
+/// The modes of the scene's string as one contact point sees them, the torsional ones last, or
+/// those of its structure. Throws InvalidInput for a bow with several contact points.
 ContactModes scene_modes(const Scene& scene);
 
 /// The same as all contact points of the bow see them. Throws InvalidInput for a point outside the

@@ -73,6 +73,8 @@ struct Torsion {
   ModalBasis basis(const ModalBasis& transverse, double wave_speed) const;
 };
 
+struct ContactModes;
+
 struct Scene {
   StringModel string;
   Bow bow;
@@ -82,6 +84,9 @@ struct Scene {
   Torsion torsion;
   /// Modal state set in code, in the place of `start`; empty: that of `start`.
   ModalState initial;
+  /// Modes set in code, in the place of the string, of bow.position and of what `start` says; null:
+  /// the string's (libsim/dynamics/scene/driven_structure.hpp).
+  std::shared_ptr<const ContactModes> structure;
   void visit(OptionVisitor& visitor);
 };
 

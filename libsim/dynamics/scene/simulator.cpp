@@ -11,9 +11,12 @@ constexpr double kLargestInput = 1e150;
 Simulation Simulator::simulate(const Scene& scene, double sample_rate, const OutputRequest& outputs,
                                const StopToken& stop) const {
   const double length = scene.string.length;
-  MODCAL_REQUIRE(scene.bow.position > 0.0 && scene.bow.position < length,
-                 "bow position {:g} m is not inside the string: it must lie in (0, {:g}) m",
-                 scene.bow.position, length);
+  MODCAL_REQUIRE(
+      scene.structure != nullptr || (scene.bow.position > 0.0 && scene.bow.position < length),
+      "bow position {:g} m is not inside the string: it must lie in (0, {:g}) m",
+      scene.bow.position, length);
+  MODCAL_REQUIRE(scene.structure == nullptr || !scene.torsion.present,
+                 "torsion is that of a string: leave scene.torsion out for a structure");
   MODCAL_REQUIRE(std::abs(scene.bow.velocity) <= kLargestInput &&
                      std::abs(scene.bow.normal_force) <= kLargestInput,
                  "bow velocity {:g} m/s or normal force {:g} N is beyond {:g}: energies would "

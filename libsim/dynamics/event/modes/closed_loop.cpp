@@ -44,15 +44,18 @@ std::vector<OpenLoopMode> open_loop(const ContactModes& modes) {
   return result;
 }
 
-// Response of Σ gain Im Z to a slow force.
-QuasiStatic quasi_static(const ContactModes& modes, const std::vector<double>& gain) {
+// Response of Σ Re(ḡ Z) to a slow force.
+template <typename GainOf>
+QuasiStatic quasi_static(const ContactModes& modes, const GainOf& gain_of) {
   QuasiStatic result;
   for (std::size_t n = 0; n < modes.size(); ++n) {
-    const Complex inverse = 1.0 / modes.pole[n];
-    const Complex response = -gain[n] * modes.drive[n] * inverse;
-    result.value += response.imag();
-    result.rate += (response * inverse).imag();
-    result.curvature += (response * inverse * inverse).imag();
+    const Complex inverse = 1.0 / modes.pole[n], gain = gain_of(n);
+    // Of Im Z and of Re Z.
+    const Complex turned = -gain.imag() * modes.drive[n] * inverse;
+    const Complex straight = -gain.real() * modes.drive[n] * inverse;
+    result.value += turned.imag() + straight.real();
+    result.rate += (turned * inverse).imag() + (straight * inverse).real();
+    result.curvature += (turned * inverse * inverse).imag() + (straight * inverse * inverse).real();
   }
   return result;
 }
@@ -110,9 +113,13 @@ void fill_root(const ContactModes& modes, std::span<const OpenLoopMode> open, st
       const Complex pair = -root.minus(pole) * (pole - std::conj(mu));
       loop.to_open.matrix.set(j, n, 1.0 / pair);
     }
-    const double weight = open[n].drive * pole.imag();
-    left += modes.left_gain[n] * weight * column.inverse[n];
-    right += modes.right_gain[n] * weight * column.inverse[n];
+    // Re(ḡ Z_n) = Re Σ_j w_j d [Re g (μ_j − Re λ) + Im g ω_d]/((μ_j − λ)(μ_j − λ̄)).
+    const auto weight = [&](Complex gain) {
+      return gain.imag() * (open[n].drive * pole.imag()) +
+             gain.real() * open[n].drive * (mu - pole.real());
+    };
+    left += weight(modes.left_gain[n]) * column.inverse[n];
+    right += weight(modes.right_gain[n]) * column.inverse[n];
   }
   loop.observed.set(ClosedLoop::kVelocity, j, -mu / (loop.stiffness + loop.damping * mu));
   loop.observed.set(ClosedLoop::kLeft, j, left);
@@ -130,9 +137,10 @@ void fill_particular(const ContactModes& modes, ClosedLoop& loop) {
     }
     apply(loop.to_closed, loop.modes, loop.open_slow[k], loop.closed_slow[k]);
   }
-  loop.displacement = quasi_static(modes, modes.compliance);
-  loop.left = quasi_static(modes, modes.left_gain);
-  loop.right = quasi_static(modes, modes.right_gain);
+  loop.displacement =
+      quasi_static(modes, [&](std::size_t n) { return Complex(0.0, modes.compliance[n]); });
+  loop.left = quasi_static(modes, [&](std::size_t n) { return modes.left_gain[n]; });
+  loop.right = quasi_static(modes, [&](std::size_t n) { return modes.right_gain[n]; });
 }
 
 // Whether the coordinates are complete: a state that touches every mode comes back from them. Fails

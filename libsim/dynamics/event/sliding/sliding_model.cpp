@@ -59,8 +59,8 @@ void SlidingModel::fill_observed(const ContactModes& modes) {
     // Re(w Z) with w = −i g is g Im Z.
     observed_.set(kVelocity, n, velocity_weight(modes, n));
     observed_.set(kDisplacement, n, {0.0, -modes.compliance[n]});
-    observed_.set(kLeft, n, {0.0, -modes.left_gain[n]});
-    observed_.set(kRight, n, {0.0, -modes.right_gain[n]});
+    observed_.set(kLeft, n, std::conj(modes.left_gain[n]));
+    observed_.set(kRight, n, std::conj(modes.right_gain[n]));
   }
 }
 
