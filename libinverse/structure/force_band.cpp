@@ -6,7 +6,7 @@
 namespace modcal {
 
 double power_outside(const ContourSpectra& spectra, const std::vector<double>& power) {
-  const double below = static_cast<double>(spectra.bins.first) - 0.5;
+  const double below = std::max(0.0, static_cast<double>(spectra.bins.first) - 0.5);
   double x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, n = 0.0;
   for (std::size_t m = power.size() / 2; m < power.size(); ++m) {
     const double at = std::log(spectra.s(m).imag()), value = std::log(power[m]);

@@ -37,6 +37,8 @@ ContourSpectra ContourSpectra::of(const StructureRecord& record, double sigma, d
   result.grid = FrequencyGrid::of_record(result.samples, result.sample_rate);
   result.grid.sigma = sigma;
   result.bins = bins_between(result.grid, kTurn * low, kTurn * high);
+  // On a contour the mean is one more bin, which reaches to half of the spacing.
+  if (sigma > 0.0 && kTurn * low < 0.5 * result.grid.spacing) result.bins.first = 0;
   MODCAL_REQUIRE(result.count() > 0 && high < 0.5 * record.sample_rate,
                  "no bin of the record lies from {:g} Hz to {:g} Hz, below half its rate {:g} Hz",
                  low, high, record.sample_rate);
