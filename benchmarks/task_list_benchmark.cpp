@@ -46,6 +46,7 @@ class Tasks final : public TaskExperiment {
   Tasks(std::size_t count, int spins) : count_(count), spins_(spins) {}
   std::vector<Finding> lint() const override { return {}; }
   std::vector<PlanLine> plan() const override { return {}; }
+  std::string_view for_structures() const override { return {}; }
   std::size_t task_count() const override { return count_; }
   std::vector<std::string> axes() const override { return {"noise", "seed"}; }
   std::vector<std::string> axis_values(std::size_t task) const override {

@@ -81,6 +81,8 @@ class Experiment {
   virtual std::shared_ptr<const SearchTask> search_task(const StudyContext& /*context*/) const {
     return nullptr;
   }
+  /// What to state where the structure is a table of modes, for who stated it here.
+  virtual std::string_view for_structures() const = 0;
   virtual StudyResult run(const StudyContext& context) const = 0;
 };
 

@@ -154,6 +154,22 @@ bool check_memory(const Experiment& experiment, const Means& means, LoadedExperi
   return check_simulations(experiment, means, loaded) && check_files(experiment, means, loaded);
 }
 
+// A table of modes where the kind has none.
+void tell_of_structures(LoadedExperiment& loaded) {
+  static const std::regex kKeys("unknown key \"(table|structure|model|shapes|responses)\".*");
+  std::string_view what;
+  for (Mistake& mistake : loaded.mistakes) {
+    std::smatch found;
+    if (!std::regex_match(mistake.text, found, kKeys)) continue;
+    try {
+      if (what.empty()) what = loaded.choice.make()->for_structures();
+    } catch (const InvalidInput&) {
+      return;  // what it cannot be made of is told by itself
+    }
+    mistake.text = fmt::format("unknown key \"{}\": {}", found[1].str(), what);
+  }
+}
+
 // Lints even where options are wrong, so that one look shows every mistake; what only follows from
 // a wrong option is left out by the lint itself.
 void make_and_lint(LoadedExperiment& loaded, const Means& means) {
@@ -222,6 +238,7 @@ LoadedExperiment load_experiment(YamlDocument document, const Means& means) {
     std::erase_if(loaded.mistakes,
                   [](const Mistake& mistake) { return mistake.text.starts_with("missing key"); });
   }
+  tell_of_structures(loaded);
   make_and_lint(loaded, means);
   return loaded;
 }

@@ -27,7 +27,8 @@ Registry<Experiment> Experiment::registry() {
           "pluck_then_bow", "pluck test, law, refinement and contact on a stroke, identification"),
       entry_of<Experiment, SchellengExperiment>(
           "schelleng", "which motion a steady bow stroke settles in, over positions and forces"),
-      kind_of<SimulateOptions>("simulate", "a bowed string, its signals and figures"),
+      kind_of<SimulateOptions>("simulate",
+                               "a bowed string or a bow on any structure, its signals and figures"),
       entry_of<Experiment, SweepExperiment>(
           "sweep", "the same inversion over axes of settings, summed up in a table"),
   };

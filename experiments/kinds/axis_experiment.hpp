@@ -186,6 +186,7 @@ class AxisExperiment : public TaskExperiment {
     return distinct_findings(std::move(findings));
   }
   std::vector<FileRead> files_read() const override { return files_read_by(options_.base); }
+  std::string_view for_structures() const override { return Cell::kForStructures; }
   std::vector<PlanLine> plan() const override {
     return axis_plan(options_.cells.plan(), task_count(), planned_simulations());
   }

@@ -29,6 +29,7 @@ class StudyExperiment final : public Experiment {
     if constexpr (requires { options_.search_task(context); }) return options_.search_task(context);
     return nullptr;
   }
+  std::string_view for_structures() const override { return Options::kForStructures; }
   StudyResult run(const StudyContext& context) const override { return options_.run(context); }
 
  private:

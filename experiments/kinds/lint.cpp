@@ -147,7 +147,7 @@ std::vector<Finding> lint_scene(const Scene& scene, const Choice<Simulator>& sim
     lint_making(findings, "scene.initial",
                 [&] { initial_state(scene, make_modal_basis(scene.string)); });
   }
-  lint_bow(scene, findings);
+  lint_bow("scene.bow", scene.bow, scene.duration, findings);
   lint_rate(scene.string, measurement.sample_rate, "scene.string", findings);
   const std::size_t before = findings.size();
   lint_making(findings, "scene.friction", [&] { scene.friction.make(); });

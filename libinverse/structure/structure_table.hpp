@@ -22,6 +22,7 @@ struct StructureTable {
   std::vector<double> frequency_deviations;  ///< of ln f_n; empty: exact
   std::vector<double> damping_deviations;    ///< of ln ζ_n; empty: exact
   std::vector<SensorScatter> scatters;       ///< K
+  std::vector<double> contact;               ///< φ_n²/m_n of the force [1/kg]; empty: unknown
   double low = 0.0, high = 0.0;              ///< band [Hz]
   double lag = 0.0;                          ///< of the pulse's spectrum [Hz]
   std::vector<double> pulse;                 ///< |G| at 0, lag, 2 lag, … [1]; empty: 1

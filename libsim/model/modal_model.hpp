@@ -65,6 +65,7 @@ struct ResidualTerms {
   double above = 0.0;     ///< c_2
 
   Complex at(Complex s) const;
+  bool operator==(const ResidualTerms&) const = default;
 };
 
 /// Real and imaginary parts of several spectra over consecutive bins, each part in one row.

@@ -8,15 +8,13 @@
 namespace modcal {
 namespace {
 
-constexpr double kAttenuation = 80.0;  // [dB], of a 24 bit recorder's filter
-
 // Half of the filter, from its middle on; its sum over both halves is 1.
 std::vector<double> half_filter(std::size_t step) {
-  const double reach = static_cast<double>(kDecimationReach * step);
-  const double beta = 0.1102 * (kAttenuation - 8.7);
+  const double reach = static_cast<double>(decimation_reach() * step);
+  const double beta = 0.1102 * (80.0 - 8.7);  // of 80 dB
   std::vector<double> filter;
   double sum = 0.0;
-  for (std::size_t j = 0; j <= kDecimationReach * step; ++j) {
+  for (std::size_t j = 0; j <= decimation_reach() * step; ++j) {
     const double at = static_cast<double>(j),
                  angle = std::numbers::pi * at / static_cast<double>(step);
     const double sinc = j == 0 ? 1.0 : std::sin(angle) / angle;

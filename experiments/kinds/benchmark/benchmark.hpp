@@ -232,6 +232,11 @@ std::vector<std::size_t> spread_indices(std::size_t size, std::size_t count);
 class BenchmarkExperiment final : public AxisExperiment<CalibrateOptions, SuccessOptions> {
  public:
   using AxisExperiment::AxisExperiment;
+  std::string_view for_structures() const override {
+    return "benchmark compares calibrations of a string; for any other structure sweep the "
+           "settings of kind: "
+           "identify_force (sweep: {product: ...} in its file)";
+  }
   std::vector<Finding> lint() const override;
   std::vector<PlanLine> plan() const override;
 

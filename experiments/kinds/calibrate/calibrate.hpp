@@ -84,6 +84,9 @@ struct FurtherStrokes {
 };
 
 struct CalibrateOptions {
+  static constexpr std::string_view kForStructures =
+      "calibrate refines the modes of a string; those of any other structure are refined by its "
+      "responses alone by kind: identify_force with change: {frequency: 1 %}";
   InvertOptions inversion;
   CalibrationOptions calibration;
   FurtherStrokes further;

@@ -71,6 +71,10 @@ class CalibrationLimitExperiment final : public ProductExperiment {
  public:
   using Options = CalibrationLimitOptions;
   explicit CalibrationLimitExperiment(Options options);
+  std::string_view for_structures() const override {
+    return "calibration_limit bounds what is found of a string; for any other structure kind: "
+           "identify_force states deviations of its force and, with change:, of the refined modes";
+  }
   std::vector<Finding> lint() const override;
   std::vector<PlanLine> plan() const override;
   std::optional<PlannedSimulations> planned_simulations() const override;

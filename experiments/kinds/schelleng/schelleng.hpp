@@ -77,6 +77,12 @@ class SchellengExperiment final : public ProductExperiment {
  public:
   using Options = SchellengOptions;
   explicit SchellengExperiment(Options options);
+  std::string_view for_structures() const override {
+    return "schelleng tells the motions of a bowed string apart; for any other structure state "
+           "kind: "
+           "simulate with structure: {table: modes.yaml} and sweep: over "
+           "structure.bow.normal_force";
+  }
   std::vector<Finding> lint() const override;
   std::vector<PlanLine> plan() const override;
   std::optional<PlannedSimulations> planned_simulations() const override;

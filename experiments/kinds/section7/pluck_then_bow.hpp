@@ -39,6 +39,10 @@ struct ContactSearchOptions {
 };
 
 struct PluckThenBowOptions {
+  static constexpr std::string_view kForStructures =
+      "pluck_then_bow plucks and bows a string; for any other structure state kind: fit_modes with "
+      "a "
+      "strike whose force was measured, then kind: identify_force with its table";
   TruthOptions truth;
   Measurement measurement;
   PluckTestOptions pluck;

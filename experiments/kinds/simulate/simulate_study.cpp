@@ -8,10 +8,14 @@
 namespace modcal {
 
 void SimulateOptions::visit(OptionVisitor& visitor) {
-  visitor("scene", "string, bow, friction", {.required = true}, truth.scene);
+  visitor("scene", "a bowed string: string, bow, friction", has_scene, truth.scene);
+  visitor("structure", "any structure under a bow, in the place of a scene", has_structure,
+          structure);
   visitor("simulator", "how the scene is simulated", truth.simulator);
   visitor("measurement", "sampling and noise of the reactions", measurement);
-  visitor("outputs", "signals that are computed: motion and force at the contact, reactions",
+  visitor("outputs",
+          "signals that are computed: motion and force at the contact, reactions; of a structure "
+          "all that its sensors read besides, and no reactions",
           {.choices = {"y", "v", "f_c", "R1", "R2"}}, outputs);
   visitor("files", "record files to write: signals.csv, signals.wav", {.choices = {"csv", "wav"}},
           files);
@@ -24,27 +28,67 @@ void SimulateOptions::visit(OptionVisitor& visitor) {
 }
 
 std::vector<Finding> SimulateOptions::lint() const {
-  std::vector<Finding> findings = lint_scene(truth.scene, truth.simulator, measurement);
+  std::vector<Finding> findings;
+  if (has_scene == has_structure) {
+    add_finding(findings, has_scene ? "structure" : "",
+                "one of both is simulated: state scene: (a bowed string) or structure: (a bow on "
+                "what a table of modes describes)");
+    return findings;
+  }
+  findings = has_scene ? lint_scene(truth.scene, truth.simulator, measurement)
+                       : structure.lint(truth.simulator, measurement);
+  append(findings, lint_signals());
+  return findings;
+}
+
+std::vector<Finding> SimulateOptions::lint_signals() const {
+  std::vector<Finding> findings;
   if (std::ranges::count(files, "wav") > 0) lint_sound("files", measurement.sample_rate, findings);
-  if (outputs.empty()) {
+  if (outputs.empty() && has_scene) {
     add_finding(findings, "outputs", "nothing is computed: name an output, or leave the key out");
   }
-  append(findings, lint_figures(figures, {"waveforms"}, truth.scene.duration));
+  append(findings, lint_figures(figures, {"waveforms"},
+                                has_scene ? truth.scene.duration : structure.duration));
   for (const FigureOptions& figure : figures) {
     for (const std::string& quantity : figure.quantities) {
-      if (std::find(outputs.begin(), outputs.end(), quantity) != outputs.end()) continue;
-      add_finding(findings, "outputs",
-                  "figure {} draws {}, which is not among the outputs: "
-                  "add it there, or draw another one",
-                  figure.id, quantity);
+      const bool reaction = quantity_of(quantity).identified == nullptr;
+      if (has_structure && reaction) {
+        add_finding(findings, "figures",
+                    "figure {} draws {}, the reaction at the end of a string, which a structure "
+                    "does not have: draw y, v or f_c",
+                    figure.id, quantity);
+      } else if (std::find(outputs.begin(), outputs.end(), quantity) == outputs.end()) {
+        add_finding(findings, "outputs",
+                    "figure {} draws {}, which is not among the outputs: "
+                    "add it there, or draw another one",
+                    figure.id, quantity);
+      }
     }
   }
   return findings;
 }
 
-std::vector<PlanLine> SimulateOptions::plan() const { return {plan_line(*planned_simulations())}; }
+std::vector<Finding> SimulateOptions::lint_records(const std::filesystem::path& folder) const {
+  if (!has_structure) return {};
+  return structure.lint_table(folder, truth.simulator, measurement);
+}
+
+std::vector<FileRead> SimulateOptions::files_read() const {
+  if (!has_structure) return {};
+  return {{.name = structure.table, .key = "structure.table"}};
+}
+
+std::vector<PlanLine> SimulateOptions::plan() const {
+  if (const auto planned = planned_simulations()) return {plan_line(*planned)};
+  return {{fmt::format("simulate {:g} s of a bow on the structure of {}, {} samples at {:g} Hz",
+                       structure.duration, structure.table,
+                       sample_count(structure.duration, measurement.sample_rate),
+                       measurement.sample_rate),
+           {{"table", structure.table}, {"duration", structure.duration}}}};
+}
 
 std::optional<PlannedSimulations> SimulateOptions::planned_simulations() const {
+  if (!has_scene) return std::nullopt;
   return PlannedSimulations{.truth = truth,
                             .sample_rate = measurement.sample_rate,
                             .outputs = request_of(outputs),
@@ -98,7 +142,26 @@ report::Table level_table(const std::vector<Signal>& signals) {
 
 }  // namespace
 
+void add_signals(const std::vector<Signal>& signals, const Simulation& simulation,
+                 const SimulateOptions& options, StudyResult& result) {
+  if (!signals.empty()) result.add({level_table(signals)});
+  result.add({run_table(simulation)});
+  for (const std::string& format : options.files) {
+    result.signal_files.push_back({"signals." + format, signals, options.wav_full_scale});
+  }
+  const std::string refined =
+      simulation.refined_steps == 0
+          ? ""
+          : fmt::format(" ({} taken back for shorter ones)", simulation.refined_steps);
+  result.summary +=
+      fmt::format("\n{} steps of {:.6g} s{}, {} attachments, {} signals of {} samples\n",
+                  simulation.steps, simulation.time_step, refined, simulation.attachments,
+                  signals.size(), signals.empty() ? 0 : signals[0].size());
+  result.answer_by_summary();
+}
+
 StudyResult SimulateOptions::run(const StudyContext& context) const {
+  if (has_structure) return run_structure(context);
   OutputRequest request = request_of(outputs);
   request.velocity = true;  // tells the motion
   const auto truth_found =
@@ -119,20 +182,8 @@ StudyResult SimulateOptions::run(const StudyContext& context) const {
   for (const FigureOptions& figure : drawn) {
     result.blocks.emplace_back(simulation_figure(figure, simulation));
   }
-  if (!signals.empty()) result.add({level_table(signals)});
-  result.add({run_table(simulation)});
-  for (const std::string& format : files) {
-    result.signal_files.push_back({"signals." + format, signals, wav_full_scale});
-  }
-  const std::string refined =
-      simulation.refined_steps == 0
-          ? ""
-          : fmt::format(" ({} taken back for shorter ones)", simulation.refined_steps);
-  result.summary = fmt::format(
-      "{}\n{} steps of {:.6g} s{}, {} attachments, {} signals of {} samples\n",
-      motion_text(truth.scene, simulation), simulation.steps, simulation.time_step, refined,
-      simulation.attachments, signals.size(), signals.empty() ? 0 : signals[0].size());
-  result.answer_by_summary();
+  result.summary = motion_text(truth.scene, simulation);
+  add_signals(signals, simulation, *this, result);
   return result;
 }
 

@@ -15,6 +15,9 @@ FileRead file_read(const StructureRecordOptions& record);
 /// Kind "fit_modes": a table of modes from a strike whose force was measured, or from response
 /// functions.
 struct FitModesOptions {
+  static constexpr std::string_view kForStructures =
+      "fit_modes makes a table; one is read by kind: identify_force (table: modes.yaml) and kind: "
+      "simulate (structure: {table: modes.yaml})";
   bool has_record = false;
   StructureRecordOptions record;
   bool has_functions = false;
@@ -40,6 +43,8 @@ struct StructureChangeOptions : StructureChange {
 
 /// Kind "identify_force": the force at a structure's contact from K responses and a table.
 struct IdentifyForceOptions {
+  static constexpr std::string_view kForStructures =
+      "state table: modes.yaml and record: {file: ..., responses: [{channel: ...}, ...]}";
   std::string table;
   std::vector<std::string> other_places;  ///< tables of the same structure driven elsewhere
   StructureRecordOptions record;

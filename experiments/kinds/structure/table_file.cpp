@@ -1,4 +1,6 @@
 // The file of a structure's modes.
+#include <algorithm>
+
 #include "experiments/config/help.hpp"
 #include "experiments/config/reader.hpp"
 #include "experiments/kinds/structure/structure_files.hpp"
@@ -49,7 +51,7 @@ struct TableOptions {
   bool has_shapes = false;
   ShapesOptions shapes;
   double low = 0.0, high = 0.0, pulse_step = 0.0;
-  std::vector<double> pulse;
+  std::vector<double> contact, pulse;
   void visit(OptionVisitor& visitor) {
     visitor("low", "least frequency of the band",
             {.unit = "Hz", .range = Range::positive(), .required = true}, low);
@@ -59,6 +61,11 @@ struct TableOptions {
     visitor("modes", "pairs of poles with a modal constant a sensor", modes);
     visitor("shapes", "modes of a universal file (UFF 55) in the place of modes", has_shapes,
             shapes);
+    visitor(
+        "contact",
+        "phi^2/m of every mode where the force acts [1/kg], what a sensor of displacement there "
+        "has for a constant; none: not known",
+        contact);
     visitor("pulse_step", "between the magnitudes of pulse", {.unit = "Hz"}, pulse_step);
     visitor("pulse", "spectrum of a pulse of the force at 0, pulse_step, …, 1 at 0 Hz", pulse);
   }
@@ -73,8 +80,14 @@ StructureTable table_of(const TableOptions& options, const std::filesystem::path
                  "{}: pulse needs a positive pulse_step, not {:g} Hz", file, options.pulse_step);
   MODCAL_REQUIRE(options.modes.empty() == options.has_shapes,
                  "{}: state modes or shapes, one of both", file);
+  MODCAL_REQUIRE(options.contact.empty() || options.contact.size() == options.modes.size(),
+                 "{}: contact has {} values for {} modes{}", file, options.contact.size(),
+                 options.modes.size(), options.has_shapes ? ": shapes tell them" : "");
+  MODCAL_REQUIRE(std::ranges::all_of(options.contact, [](double x) { return x >= 0.0; }),
+                 "{}: contact holds squares over masses, which are >= 0", file);
   StructureTable table{
       .low = options.low, .high = options.high, .lag = options.pulse_step, .pulse = options.pulse};
+  table.contact = options.contact;
   for (const SensorOptions& sensor : options.sensors) {
     table.names.push_back(sensor.name);
     table.model.sensors.push_back(sensor_kind_of(sensor.kind));
@@ -108,8 +121,11 @@ StructureTable table_of(const TableOptions& options, const std::filesystem::path
 }  // namespace
 
 std::string table_text(const StructureTable& table) {
-  TableOptions options{
-      .low = table.low, .high = table.high, .pulse_step = table.lag, .pulse = table.pulse};
+  TableOptions options{.low = table.low,
+                       .high = table.high,
+                       .pulse_step = table.lag,
+                       .contact = table.contact,
+                       .pulse = table.pulse};
   const std::size_t modes = table.model.poles.size();
   for (std::size_t k = 0; k < table.model.sensors.size(); ++k) {
     options.sensors.push_back({.name = table.names[k],

@@ -56,18 +56,31 @@ void take_shapes(const ShapesOptions& options, const std::filesystem::path& file
                    path.string(), mode.line, file.string());
     model.poles.push_back(mode.pole);
   }
+  const auto constant_of = [&](const UniversalMode& mode, const UniversalPlace& sensor,
+                               SensorKind kind) {
+    try {
+      return read.per_newton * mode.constant(contact, sensor, kind);
+    } catch (const InvalidInput& error) {
+      throw_invalid_input("{}: {}", path.string(), error.what());
+    }
+  };
   for (std::size_t k = 0; k < model.sensors.size(); ++k) {
     const UniversalPlace sensor = place_of(options.sensors[k]);
     for (const UniversalMode& mode : read.modes) {
-      Complex constant;
-      try {
-        constant = read.per_newton * mode.constant(contact, sensor, model.sensors[k]);
-      } catch (const InvalidInput& error) {
-        throw_invalid_input("{}: {}", path.string(), error.what());
-      }
+      const Complex constant = constant_of(mode, sensor, model.sensors[k]);
       model.constants.push_back(constant.real());
       model.quadrature.push_back(constant.imag());
     }
+  }
+  for (const UniversalMode& mode : read.modes) {
+    const Complex constant = constant_of(mode, contact, SensorKind::kDisplacement);
+    // A shape that was not measured there stands for no motion, such as the 1 that fit_modes
+    // writes.
+    if (!(std::abs(constant.imag()) <= constant.real())) {
+      table.contact.clear();
+      break;
+    }
+    table.contact.push_back(constant.real());
   }
   table.frequency_deviations.assign(model.poles.size(), 0.0);
   table.damping_deviations.assign(model.poles.size(), 0.0);

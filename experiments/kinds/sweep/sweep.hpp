@@ -105,6 +105,11 @@ void sum_up_sweep(const SweepOptions& options, const std::vector<std::string>& a
 class SweepExperiment final : public AxisExperiment<InvertOptions, SweepOptions> {
  public:
   using AxisExperiment::AxisExperiment;
+  std::string_view for_structures() const override {
+    return "sweep repeats invert, which takes a string; for any other structure state sweep: "
+           "{product: ...} "
+           "in a file of kind: identify_force, fit_modes or simulate";
+  }
   std::vector<Finding> lint() const override;
   std::vector<Finding> lint_records(const std::filesystem::path& folder) const override;
   std::string run_task(std::size_t task, const StudyContext& context) const override;

@@ -16,9 +16,9 @@ struct ModeTable {
   static double reading(std::complex<double> gain, std::complex<double> z) {
     return gain.real() * z.real() + gain.imag() * z.imag();
   }
-  std::vector<std::complex<double>> pole;     ///< λ [1/s]
-  std::vector<double> quadrature;             ///< ζω/ω_d [1]
-  std::vector<double> compliance;             ///< 1/ω_d [s]
+  std::vector<std::complex<double>> pole;  ///< λ [1/s]
+  std::vector<double> quadrature;          ///< ζω/ω_d [1]
+  std::vector<double> compliance;          ///< 1/ω_d [s]
   /// What two sensors read of Z, Re(ḡ Z) with φ = 1: of a string's ends g = i g_r/(φ ω_d) [N s/m].
   std::vector<std::complex<double>> left_gain, right_gain;
   std::vector<std::complex<double>> initial;  ///< Z at t = 0 [m/s]

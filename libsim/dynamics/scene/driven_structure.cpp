@@ -5,9 +5,6 @@
 namespace modcal {
 namespace {
 
-// A node's d_n over the largest: such a mode is driven, and is not felt by the contact.
-constexpr double kNodeDrive = 1e-40;
-
 // Whether a mode is seen by nobody.
 bool is_silent(const DrivenStructure& structure, std::size_t n) {
   const ModalModel& model = structure.model;
@@ -42,7 +39,9 @@ ContactModes driven_modes(const DrivenStructure& structure, std::vector<std::siz
     modes.quadrature.push_back(decay / damped);
     modes.compliance.push_back(1.0 / damped);
     modes.initial.emplace_back(0.0);
-    modes.drive.push_back(std::max(structure.drive[n], kNodeDrive * most));
+    // A mode with a node at the contact is driven, and below any rounding of what the contact
+    // feels.
+    modes.drive.push_back(std::max(structure.drive[n], 1e-40 * most));
     kept.push_back(n);
   }
   return modes;
@@ -116,7 +115,9 @@ StructureSimulation simulate_structure(const Simulator& simulator, Scene scene,
     modes.left_gain = gains(first);
     modes.right_gain = gains(first + 1);
     scene.structure = std::make_shared<const ContactModes>(modes);
-    Simulation run = simulator.simulate(scene, sample_rate, OutputRequest::all(), stop);
+    OutputRequest outputs = OutputRequest::all();
+    if (first == 0) outputs.switches_from = 0.0;
+    Simulation run = simulator.simulate(scene, sample_rate, outputs, stop);
     for (std::size_t k = first; k < std::min(first + 2, sensors) && !run.diverged_at; ++k) {
       Signal& read = k == first ? run.left_reaction : run.right_reaction;
       const double share = direct_share(structure.model, k);

@@ -21,7 +21,7 @@ ModalModel simulated_part(ModalModel model);
 
 /// What the contact and the sensors do.
 struct StructureSimulation {
-  Simulation contact;                        ///< without reactions
+  Simulation contact;                        ///< without reactions; its switches are listed
   std::vector<std::vector<double>> sensors;  ///< K; none where the simulation could not go on
 };
 

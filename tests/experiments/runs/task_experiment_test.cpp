@@ -17,6 +17,7 @@ class Squares final : public TaskExperiment {
   explicit Squares(std::size_t tasks) : tasks_(tasks) {}
   std::vector<Finding> lint() const override { return {}; }
   std::vector<PlanLine> plan() const override { return {}; }
+  std::string_view for_structures() const override { return {}; }
   std::size_t task_count() const override { return tasks_; }
   std::vector<std::string> axes() const override { return {"i"}; }
   std::vector<std::string> axis_values(std::size_t task) const override {
@@ -99,6 +100,7 @@ TEST_F(TaskList, LetsAnErrorOfATaskThrough) {
    public:
     std::vector<Finding> lint() const override { return {}; }
     std::vector<PlanLine> plan() const override { return {}; }
+    std::string_view for_structures() const override { return {}; }
     std::size_t task_count() const override { return 3; }
     std::vector<std::string> axes() const override { return {}; }
     std::vector<std::string> axis_values(std::size_t) const override { return {}; }

@@ -18,7 +18,7 @@ double left_of(double cycles, std::size_t step) {
   }
   const std::vector<double> kept = decimated(signal, step);
   double most = 0.0;
-  for (std::size_t j = kDecimationReach; j < kept.size(); ++j) {
+  for (std::size_t j = decimation_reach(); j < kept.size(); ++j) {
     most = std::max(most, std::abs(kept[j]));
   }
   return most;
@@ -38,9 +38,9 @@ TEST(Decimated, HasNoDelayAndKeepsALevel) {
   std::vector<double> line(800);
   for (std::size_t j = 0; j < line.size(); ++j) line[j] = 3.0 + 0.01 * static_cast<double>(j);
   const std::vector<double> kept = decimated(line, 4);
-  ASSERT_EQ(kept.size(), 200 - kDecimationReach);
+  ASSERT_EQ(kept.size(), 200 - decimation_reach());
   // Symmetric, of sum 1: rounding of 105 products.
-  for (std::size_t j = kDecimationReach; j < kept.size(); ++j) {
+  for (std::size_t j = decimation_reach(); j < kept.size(); ++j) {
     EXPECT_NEAR(kept[j], line[4 * j], 105 * 1.1e-16 * 11.0);
   }
 }
