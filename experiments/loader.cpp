@@ -189,6 +189,8 @@ void make_and_lint(LoadedExperiment& loaded, const Means& means) {
       const SourcePosition position = position_of_path(root, finding.path);
       const YamlNode* node = node_at(root, finding.path);
       if (mistakes.said(finding.text)) continue;  // a simulator refuses what its scene does
+      // Of a text that cannot be read on, what it lacks may follow.
+      if (finding.path.empty() && !loaded.document.mistakes.empty()) continue;
       // What is only doubtful is told when all could be read.
       if (had_errors &&
           (!finding.is_error || mistakes.known(position) || is_consequence(finding.text) ||
