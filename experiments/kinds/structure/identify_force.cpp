@@ -42,6 +42,19 @@ std::string sentence_of(const StructureForce& found, double rate, std::size_t se
                      *peak, 1.959964 * found.deviation[at], static_cast<double>(at) / rate);
 }
 
+// Velocities and accelerations vanish with the frequency: a force that pushes one way is told but
+// for most of it, and no spectrum of what is told says how much that is.
+void warn_of_slow_part(const StructureForce& found, const LoadedStructureRecord& loaded,
+                       StudyResult& result) {
+  const bool told =
+      std::ranges::any_of(loaded.kinds, [](SensorKind kind) { return power_of_s(kind) == 0; });
+  if (told || found.shape != ForceShape::kSmooth) return;
+  result.warn(
+      "velocities and accelerations do not tell the mean and the slow part of a smooth force: "
+      "where it pushes one way, this answer is wrong by that and its band does not hold it; record "
+      "a displacement, force or strain as well, or state shape: impacts for blows");
+}
+
 // Sensors that contradict each other refuse the answer.
 void doubt(const StructureForce& found, const LoadedStructureRecord& loaded, StudyResult& result) {
   if (loaded.kinds.size() == 1) {
@@ -215,6 +228,7 @@ StudyResult IdentifyForceOptions::run(const StudyContext& context) const {
     result.summary += told.sentence();
     result.add(report::tables_of(told));
   }
+  warn_of_slow_part(found, loaded, result);
   doubt(found, loaded, result);
   if (!context.numbers_alone) result.blocks.emplace_back(force_figure(loaded, found));
   result.add(report::tables_of(outcome));

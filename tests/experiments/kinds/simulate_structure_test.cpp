@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "experiments/kinds/structure/structure_files.hpp"
@@ -18,6 +19,7 @@ namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 class BowOnAStructure : public FolderTest {
  protected:
@@ -72,6 +74,19 @@ TEST_F(BowOnAStructure, ItsForceIsFoundFromItsSensors) {
   EXPECT_LT(told["relative_error"].get<double>(), 0.01);
   EXPECT_LT(told["relative_error_in_band"].get<double>(), 0.004);
   EXPECT_GT(told["coverage"].get<double>(), 0.93);
+  EXPECT_THAT(found.summary, Not(HasSubstr("the mean and the slow part")));
+  // Two accelerations do not tell it.
+  std::ifstream modes(std::string(MODCAL_CONFIGS) + "/structures/bar_modes.json");
+  auto table = nlohmann::json::parse(modes);
+  table["low"] = 5.0;
+  table["sensors"].erase(2);
+  for (auto& mode : table["modes"]) mode["constants"].erase(2);
+  write("two.json", table.dump());
+  write("accelerations.yaml",
+        "kind: identify_force\ntable: two.json\nshape: smooth\nwindow: 1.2 s\n"
+        "record:\n  file: signals.csv\n  responses: [{channel: a1}, {channel: a2}]\n");
+  EXPECT_THAT(run(path("accelerations.yaml")).summary,
+              HasSubstr("accelerations do not tell the mean and the slow part"));
 }
 
 TEST_F(BowOnAStructure, AStringAsATableIsTheString) {

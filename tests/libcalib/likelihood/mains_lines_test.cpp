@@ -62,6 +62,20 @@ TEST_F(OneSecondOfMains, OfHumAreFound) {
   }
 }
 
+// Two and a half bins below the fourteenth harmonic, halfway between two modes.
+TEST_F(OneSecondOfMains, AreNotDrawnByAnotherLine) {
+  NoisyRecords records = with_hum(noisy(bowed, 0.01, 3), bowed, 50.0, 0.01);
+  for (std::size_t j = 0; j < records.samples(); ++j) {
+    records.reactions[0][j] +=
+        0.05 * bowed.spread[0] *
+        std::cos(2.0 * pi * 697.5 * static_cast<double>(j) / records.sample_rate);
+  }
+  const std::vector<double> lines = mains_lines(records, bowed.truth, kNan);
+  ASSERT_FALSE(lines.empty());
+  // As above; drawn, they would be at 697.5/14 = 49.82 Hz.
+  EXPECT_NEAR(lines[0], 50.0, 3.5e-2);
+}
+
 TEST_F(OneSecondOfMains, AreAsStated) {
   const NoisyRecords records = noisy(bowed, 0.01, 3);
   EXPECT_TRUE(mains_lines(with_hum(records, bowed, 50.0, 0.1), bowed.truth, 0.0).empty());
