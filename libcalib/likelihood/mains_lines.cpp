@@ -17,6 +17,7 @@ using std::numbers::pi;
 struct Line {
   std::size_t harmonic = 0;
   double floor = 0.0;
+  double top = 0.0;  // the bin of most power
 };
 
 // What the force leaves of both reactions under the window, (H_2 Y_1 - H_1 Y_2)/|H|: of a model
@@ -56,8 +57,8 @@ class MainsSearch {
     for (std::size_t h = 1; h <= 20; ++h) {
       const double frequency = mains * static_cast<double>(h);
       if (frequency >= 0.45 * rate_ || near_the_string(frequency)) continue;
-      const double floor = line_floor(frequency / spacing_, mains / spacing_);
-      if (floor > 0.0) found.push_back({h, floor});
+      const Line line = line_near(h, frequency / spacing_, mains / spacing_);
+      if (line.floor > 0.0) found.push_back(line);
     }
     if (!found.empty() && found.front().harmonic > 2) found.clear();
     return found;
@@ -67,10 +68,11 @@ class MainsSearch {
   // stands out, too. A line tells its frequency to a tenth of a bin, the bins another half.
   void keep_harmonics_of_first(double mains, std::vector<Line>& lines) const {
     const double first = refined(mains, {lines.front()});
+    const std::size_t lowest = lines.front().harmonic;
     std::erase_if(lines, [&](const Line& line) {
       const auto h = static_cast<double>(line.harmonic);
-      const double told = 0.1 * h / static_cast<double>(lines.front().harmonic);
-      return peak(first * h / spacing_, 0.5 + told) <= kLineRatio * line.floor;
+      const double told = 0.1 * h / static_cast<double>(lowest);
+      return line.harmonic > lowest && std::abs(line.top - first * h / spacing_) > 0.5 + told;
     });
   }
 
@@ -113,30 +115,27 @@ class MainsSearch {
     });
   }
 
-  // Highest power of the bins this near.
-  double peak(double center, double reach) const {
-    double highest = 0.0;
-    for (std::size_t k = 1; k < power_.size(); ++k) {
-      if (std::abs(static_cast<double>(k) - center) <= reach)
-        highest = std::max(highest, power_[k]);
-    }
-    return highest;
-  }
-
-  // Median power about bin `center`, outside the four bins of the window's lobe, where what stands
-  // there is a line; else 0. fundamental: as far as to the next line.
-  double line_floor(double center, double fundamental) const {
+  // What stands out near bin `center`, and the median power about it outside the four bins of the
+  // window's lobe; that is 0 where nothing does. fundamental: as far as to the next line.
+  Line line_near(std::size_t harmonic, double center, double fundamental) const {
     const double reach = 1.0 + 0.005 * center;
     const double about = std::min(20.0, 0.5 * fundamental);
+    Line line{harmonic};
+    double most = 0.0;
     std::vector<double> others;
     for (std::size_t k = 1; k < power_.size(); ++k) {
       const double off = std::abs(static_cast<double>(k) - center);
+      if (off <= reach && power_[k] > most) {
+        most = power_[k];
+        line.top = static_cast<double>(k);
+      }
       if (off > reach + 6.0 && off < reach + about) others.push_back(power_[k]);
     }
-    if (others.empty()) return 0.0;
+    if (others.empty()) return line;
     const auto middle = others.begin() + static_cast<std::ptrdiff_t>(others.size() / 2);
     std::nth_element(others.begin(), middle, others.end());
-    return peak(center, reach) > kLineRatio * *middle ? *middle : 0.0;
+    if (most > kLineRatio * *middle) line.floor = *middle;
+    return line;
   }
 
   // Of all lines over what is about them.
