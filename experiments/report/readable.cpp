@@ -1,5 +1,6 @@
 // Units as people read them: 200 µm and 20 kHz, where the data have 2×10⁻⁴ m and 20000 Hz.
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -83,6 +84,20 @@ void scale_y(Panel& panel, const Prefix& prefix) {
   if (panel.map) scale(panel.map->y_edges, prefix.factor);
 }
 
+// m/s2 as m/s².
+std::string with_exponents(std::string_view unit) {
+  std::string text;
+  for (std::size_t i = 0; i < unit.size(); ++i) {
+    const bool follows = i > 0 && std::isalpha(static_cast<unsigned char>(unit[i - 1])) != 0;
+    if (follows && (unit[i] == '2' || unit[i] == '3')) {
+      text += unit[i] == '2' ? "²" : "³";
+    } else {
+      text += unit[i];
+    }
+  }
+  return text;
+}
+
 }  // namespace
 
 Figure in_readable_units(Figure figure) {
@@ -101,6 +116,7 @@ Figure in_readable_units(Figure figure) {
     const Prefix* y = prefix_of(panel.y);
     if (x != nullptr) scale_x(panel, *x);
     if (y != nullptr) scale_y(panel, *y);
+    for (Axis* axis : {&panel.x, &panel.y}) axis->unit = with_exponents(axis->unit);
   }
   return figure;
 }

@@ -45,6 +45,11 @@ TEST(ReadableUnits, TakePrefixesOnLogarithmicAxes) {
   EXPECT_THAT(panel.series[0].y, ElementsAre(DoubleNear(0.03, 1e-9), DoubleNear(3.0, 1e-9)));
 }
 
+TEST(ReadableUnits, HaveExponents) {
+  const Axis y{.label = "a", .unit = "m/s2"};
+  EXPECT_EQ(in_readable_units(figure_of({}, y, 0.5)).panels[0].y.text(), "a [m/s²]");
+}
+
 TEST(ReadableUnits, LeaveOthersAlone) {
   for (const Axis& y : {Axis{.label = "y", .unit = "kg"}, Axis{.label = "y", .unit = "1"},
                         Axis{.label = "y", .unit = "m²"}}) {
