@@ -78,11 +78,14 @@ class Soak:
             else:
                 process.send_signal(signal.SIGKILL if way == "killed" else signal.SIGINT)
         said = process.communicate()[1]
-        if (self.folder / "moved").exists():
-            # Whatever the run has made in its place holds nothing of it.
-            shutil.rmtree(self.folder / "out", ignore_errors=True)
-            os.rename(self.folder / "moved", self.folder / "out")
         code = process.returncode
+        if (self.folder / "moved").exists():
+            # A run that had not opened it yet makes one of its own, and is done with it; else what it has
+            # made in its place holds nothing of it.
+            whole = code == 0 and (self.folder / "out").exists()
+            shutil.rmtree(self.folder / ("moved" if whole else "out"), ignore_errors=True)
+            if not whole:
+                os.rename(self.folder / "moved", self.folder / "out")
         self.outcomes[way, code] += 1
         allowed = {"killed": (-9, 0), "stopped": (130, -2, 0), "moved": (3, 7, 0), "no room": (3, 7, 0)}[way]
         # A signal that comes before the program has begun to listen ends it without a word.
