@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+
+#include "libinverse/structure/tuning.hpp"
 
 namespace modcal {
 
@@ -21,6 +24,16 @@ double power_outside(const ContourSpectra& spectra, const std::vector<double>& p
                                            static_cast<double>(spectra.bins.last - 1)));
   }
   return sum;
+}
+
+double rise_towards_zero(const std::vector<double>& power, std::size_t first) {
+  const std::size_t count = std::max(first, kFewestRiseBins);
+  if (power.size() < 3 * count) return 0.0;
+  const auto begin = power.begin(), middle = begin + static_cast<std::ptrdiff_t>(count);
+  const double low = std::accumulate(begin, middle, 0.0);
+  const double next =
+      0.5 * std::accumulate(middle, middle + 2 * static_cast<std::ptrdiff_t>(count), 0.0);
+  return low > 0.0 ? low / std::max(next, 1e-300) : 0.0;
 }
 
 Eigen::VectorXd variance_of_shape(const Eigen::VectorXd& force, double rate, double high) {

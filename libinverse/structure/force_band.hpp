@@ -11,6 +11,11 @@ namespace modcal {
 /// its lower end, above as its upper octave goes on by a power of frequency, which does not rise.
 double power_outside(const ContourSpectra& spectra, const std::vector<double>& power);
 
+/// How many times the density of a force's power in the lowest bins of its band, up to twice its
+/// least frequency, is that in the next so wide octave: 1 of white noise, 4 and more of a force
+/// whose mean or slow part stands below. 0: a band too narrow to tell. first: of the band's bins.
+double rise_towards_zero(const std::vector<double>& power, std::size_t first);
+
 /// Variance of the samples of pulses whose spectrum above `high` [Hz] is supposed, not measured:
 /// all of it may be otherwise, at the instants where it stands (its envelope, by Hilbert's
 /// transform).

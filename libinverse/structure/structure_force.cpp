@@ -120,8 +120,10 @@ class ForceSearch {
     std::vector<double> found;
     for (std::size_t m = 0; m < spectra_.count(); ++m) {
       const double told = evidence.told[m];
-      found.push_back(std::max(0.0, std::norm(evidence.score[m] / told) - 1.0 / told));
+      found.push_back(std::norm(evidence.score[m] / told) - 1.0 / told);
     }
+    result_.rise = rise_towards_zero(found, spectra_.bins.first);
+    for (double& power : found) power = std::max(power, 0.0);
     power_ = smoothed(found, spacing, kReach);
     for (double& power : power_) power = std::max(power, 1e-300);
     background_ = power_;

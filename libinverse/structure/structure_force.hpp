@@ -38,6 +38,7 @@ struct StructureForce {
   double background = 0.0;        ///< of impacts: share of the force's power that adds to them
   double evidence_impacts = 0.0;  ///< ln p(data) over that without force
   double evidence_smooth = 0.0;
+  double rise = 0.0;  ///< rise_towards_zero() of the force's power
   double misfit =
       0.0;  ///< (K − 1) sensors against the last, over what the scatter expects; NaN: K = 1
   std::vector<double> sensor_misfit;        ///< rms of what each leaves over what is expected, K

@@ -14,6 +14,21 @@ namespace modcal {
 /// Halved: by .077; a smooth force on a changed plate has 97.3 % in its band (98.3).
 constexpr double kReach = 40.0;
 
+/// rise_towards_zero() from which a force has a slow part below its band.
+/// Source: a bowed bar by two accelerometers, bands from 0.1 to 50 Hz on, has 11 to 271, begun at
+/// once 3.1 to 183 and once 0.5; of 18 forces of 15 to 300 Hz on a plate 17 have at most 1.1.
+/// Range tried: 1.5 to 6.
+/// Doubled: two more of those begun at once are only warned of.
+/// Halved: the eighteenth on the plate, 2.6 and right, is rejected.
+constexpr double kRise = 3.0;
+
+/// Bins that rise_towards_zero() averages over at least.
+/// Source: the mean of 16 powers of noise scatters by a quarter.
+/// Range tried: 16.
+/// Doubled: not tried.
+/// Halved: not tried.
+constexpr std::size_t kFewestRiseBins = 16;
+
 /// Sweeps of automatic relevance determination at most.
 /// Source: it ends before where its evidence stays.
 /// Range tried: 75 to 300.

@@ -234,8 +234,7 @@ class BenchmarkExperiment final : public AxisExperiment<CalibrateOptions, Succes
   using AxisExperiment::AxisExperiment;
   std::string_view for_structures() const override {
     return "benchmark compares calibrations of a string; for any other structure sweep the "
-           "settings of kind: "
-           "identify_force (sweep: {product: ...} in its file)";
+           "settings of kind: identify_force (sweep: {product: ...} in its file)";
   }
   std::vector<Finding> lint() const override;
   std::vector<PlanLine> plan() const override;

@@ -10,8 +10,7 @@ namespace modcal {
 struct IdentifyOptions {
   static constexpr std::string_view kForStructures =
       "identify finds the modes of a plucked string from the reactions at its ends; for those of "
-      "any "
-      "other structure state kind: fit_modes with a record of responses and force";
+      "any other structure state kind: fit_modes with a record of responses and force";
   TruthOptions truth;
   Measurement measurement;
   PluckOptions identification;

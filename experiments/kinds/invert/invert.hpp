@@ -10,9 +10,8 @@ namespace modcal {
 struct InvertOptions {
   static constexpr std::string_view kForStructures =
       "invert finds the force on a string from the reactions at its ends; on any other structure "
-      "state "
-      "kind: identify_force with table: modes.yaml and record: {file: ..., responses: [{channel: "
-      "...}, ...]}";
+      "state kind: identify_force with table: modes.yaml and record: {file: ..., responses: "
+      "[{channel: ...}, ...]}";
   ObservationOptions observation;
   ModelErrorOptions model_error;
   InversionOptions inversion;

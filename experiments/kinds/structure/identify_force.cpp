@@ -5,6 +5,7 @@
 #include "experiments/kinds/structure/force_outcome.hpp"
 #include "experiments/kinds/structure/structure_kinds.hpp"
 #include "experiments/report/result.hpp"
+#include "libinverse/structure/tuning.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {
@@ -42,17 +43,26 @@ std::string sentence_of(const StructureForce& found, double rate, std::size_t se
                      *peak, 1.959964 * found.deviation[at], static_cast<double>(at) / rate);
 }
 
-// Velocities and accelerations vanish with the frequency: a force that pushes one way is told but
-// for most of it, and no spectrum of what is told says how much that is.
-void warn_of_slow_part(const StructureForce& found, const LoadedStructureRecord& loaded,
-                       StudyResult& result) {
+// Velocities and accelerations vanish with the frequency: of a force that pushes one way they tell
+// all but the largest part. Where the band begins low enough, it shows.
+void doubt_slow_part(const StructureForce& found, const LoadedStructureRecord& loaded, double low,
+                     StudyResult& result) {
   const bool told =
       std::ranges::any_of(loaded.kinds, [](SensorKind kind) { return power_of_s(kind) == 0; });
   if (told || found.shape != ForceShape::kSmooth) return;
-  result.warn(
-      "velocities and accelerations do not tell the mean and the slow part of a smooth force: "
-      "where it pushes one way, this answer is wrong by that and its band does not hold it; record "
-      "a displacement, force or strain as well, or state shape: impacts for blows");
+  constexpr std::string_view kRemedy =
+      "record a displacement, force or strain as well, or state shape: impacts for blows";
+  if (found.rise < kRise) {
+    return result.warn(fmt::format(
+        "velocities and accelerations tell nothing of a smooth force below {:g} Hz: where it "
+        "pushes one way, this answer is wrong by that and its band does not hold it; {}",
+        low, kRemedy));
+  }
+  result.status = report::Status::kFailed;
+  result.warn(result.answer = fmt::format(
+                  "rejected: the force rises towards {:g} Hz, below which velocities and "
+                  "accelerations tell nothing of it, and its band does not hold that: {}",
+                  low, kRemedy));
 }
 
 // Sensors that contradict each other refuse the answer.
@@ -228,7 +238,7 @@ StudyResult IdentifyForceOptions::run(const StudyContext& context) const {
     result.summary += told.sentence();
     result.add(report::tables_of(told));
   }
-  warn_of_slow_part(found, loaded, result);
+  doubt_slow_part(found, loaded, modes.low, result);
   doubt(found, loaded, result);
   if (!context.numbers_alone) result.blocks.emplace_back(force_figure(loaded, found));
   result.add(report::tables_of(outcome));

@@ -107,8 +107,7 @@ class SweepExperiment final : public AxisExperiment<InvertOptions, SweepOptions>
   using AxisExperiment::AxisExperiment;
   std::string_view for_structures() const override {
     return "sweep repeats invert, which takes a string; for any other structure state sweep: "
-           "{product: ...} "
-           "in a file of kind: identify_force, fit_modes or simulate";
+           "{product: ...} in a file of kind: identify_force, fit_modes or simulate";
   }
   std::vector<Finding> lint() const override;
   std::vector<Finding> lint_records(const std::filesystem::path& folder) const override;
