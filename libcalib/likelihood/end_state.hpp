@@ -25,7 +25,8 @@ struct PlainTransient {
 /// of its own, or may have one, what it holds at the end of the record: one sample and its own
 /// decay. Where there are modes above the stated ones, what these leave ringing, smooth in the
 /// band: 1, s and s² at both ends; and the signals of the record. At any σ the cosine and sine of
-/// every line of the mains.
+/// every line of the mains, steady and growing in time: the mains wander, and F is known to a
+/// fraction of 1/T.
 std::vector<PlainTransient> plain_transients(const WhitenedRecord& record, const ModelPoint& point);
 
 /// At σ = 0 the complex amplitudes c_n of the sampled free decays (2N columns x_n, x'_n, see

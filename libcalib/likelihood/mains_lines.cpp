@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
+#include <span>
+#include <utility>
 
-#include "libcalib/likelihood/projected_likelihood.hpp"
 #include "libcalib/likelihood/tuning.hpp"
 #include "libsim/signal/fft.hpp"
 
@@ -20,20 +22,22 @@ struct Line {
   double top = 0.0;  // the bin of most power
 };
 
-// What the force leaves of both reactions under the window, (H_2 Y_1 - H_1 Y_2)/|H|: of a model
-// that is off by a few per cent little of the string's motion below its modes, and all of a hum
-// that does not reach both ends as a force does.
+// Lines in signals under the window; `kept` gives the power at a frequency that holds no force.
 class MainsSearch {
  public:
-  MainsSearch(const NoisyRecords& records, const ModelPoint& point)
-      : rate_(records.sample_rate),
-        spacing_(rate_ / static_cast<double>(records.samples())),
-        modes_(likelihood_modes(point, rate_)) {
-    const RealFft fft(records.samples());
+  using Kept = std::function<double(double frequency, Complex left, Complex right)>;
+
+  MainsSearch(std::array<std::vector<double>, 2> signals, double rate,
+              std::span<const LikelihoodMode> modes, Kept kept)
+      : rate_(rate),
+        spacing_(rate / static_cast<double>(signals[0].size())),
+        modes_(modes),
+        kept_(std::move(kept)),
+        samples_(std::move(signals)) {
+    const RealFft fft(samples_[0].size());
     std::array<std::vector<Complex>, 2> spectra;
     for (std::size_t r = 0; r < 2; ++r) {
-      samples_[r] = records.reactions[r];
-      const double turn = 2.0 * pi / static_cast<double>(records.samples());
+      const double turn = 2.0 * pi / static_cast<double>(samples_[r].size());
       for (std::size_t j = 0; j < samples_[r].size(); ++j) {
         const double t = turn * static_cast<double>(j);
         samples_[r][j] *= 0.35875 - 0.48829 * std::cos(t) + 0.14128 * std::cos(2.0 * t) -
@@ -44,7 +48,7 @@ class MainsSearch {
     const auto bins = static_cast<std::size_t>(21.0 * 62.0 / spacing_);
     for (std::size_t k = 0; k < std::min(bins, spectra[0].size()); ++k) {
       const double frequency = spacing_ * static_cast<double>(k);
-      power_.push_back(misfit(frequency, spectra[0][k], spectra[1][k]));
+      power_.push_back(kept_(frequency, spectra[0][k], spectra[1][k]));
     }
   }
 
@@ -96,18 +100,6 @@ class MainsSearch {
   }
 
  private:
-  double misfit(double frequency, Complex left, Complex right) const {
-    const double omega = 2.0 * pi * frequency;
-    Complex odd = 0.0, even = 0.0;
-    for (const LikelihoodMode& mode : modes_) {
-      const Complex denominator(mode.omega_squared - omega * omega, mode.two_zeta_omega * omega);
-      (mode.even ? even : odd) += mode.residue / denominator;
-    }
-    const Complex at_left = -(odd + even), at_right = even - odd;
-    return std::norm(at_right * left - at_left * right) /
-           (std::norm(at_left) + std::norm(at_right));
-  }
-
   bool near_the_string(double frequency) const {
     return std::any_of(modes_.begin(), modes_.end(), [&](const LikelihoodMode& mode) {
       const double own = std::sqrt(mode.omega_squared) / (2.0 * pi);
@@ -153,23 +145,19 @@ class MainsSearch {
         }
         spectrum[r] = last - std::polar(1.0, -turn) * before;
       }
-      sum += misfit(frequency, spectrum[0], spectrum[1]) / line.floor;
+      sum += kept_(frequency, spectrum[0], spectrum[1]) / line.floor;
     }
     return sum;
   }
 
   double rate_, spacing_;
-  std::vector<LikelihoodMode> modes_;
+  std::span<const LikelihoodMode> modes_;
+  Kept kept_;
   std::array<std::vector<double>, 2> samples_;
   std::vector<double> power_;
 };
 
-}  // namespace
-
-std::vector<double> mains_lines(const NoisyRecords& records, const ModelPoint& point,
-                                double mains) {
-  if (mains == 0.0) return {};
-  const MainsSearch search(records, point);
+std::vector<double> harmonics(const MainsSearch& search, double mains) {
   std::vector<double> candidates = {50.0, 60.0};
   if (mains > 0.0) candidates = {mains};
   double frequency = mains;
@@ -191,6 +179,47 @@ std::vector<double> mains_lines(const NoisyRecords& records, const ModelPoint& p
   std::vector<double> result;
   for (std::size_t h = 1; h <= count; ++h) result.push_back(frequency * static_cast<double>(h));
   return result;
+}
+
+}  // namespace
+
+// (H_2 Y_1 - H_1 Y_2)/|H| under the window is, of a model that is off by a few per cent, little of
+// the string's motion below its modes, and all of a hum that does not reach both ends as a force.
+std::vector<double> mains_lines(const NoisyRecords& records, const ModelPoint& point,
+                                double mains) {
+  if (mains == 0.0) return {};
+  const std::vector<LikelihoodMode> modes = likelihood_modes(point, records.sample_rate);
+  const auto kept = [&modes](double frequency, Complex left, Complex right) {
+    const double omega = 2.0 * pi * frequency;
+    Complex odd = 0.0, even = 0.0;
+    for (const LikelihoodMode& mode : modes) {
+      const Complex denominator(mode.omega_squared - omega * omega, mode.two_zeta_omega * omega);
+      (mode.even ? even : odd) += mode.residue / denominator;
+    }
+    const Complex at_left = -(odd + even), at_right = even - odd;
+    return std::norm(at_right * left - at_left * right) /
+           (std::norm(at_left) + std::norm(at_right));
+  };
+  return harmonics(MainsSearch(records.reactions, records.sample_rate, modes, kept), mains);
+}
+
+std::vector<double> mains_lines(const ProjectedLikelihood& likelihood, const ModelPoint& point,
+                                double mains) {
+  if (mains == 0.0) return {};
+  const WhitenedRecord& record = likelihood.record();
+  std::vector<double> residuals;
+  likelihood.evaluate(point, {}, {.residuals = &residuals});
+  const RealFft fft(
+      static_cast<std::size_t>(std::round(2.0 * pi * record.sample_rate / record.spacing)));
+  std::vector<Complex> spectrum(fft.bins());
+  for (std::size_t k = 0; k < record.bins; ++k) {
+    spectrum[record.first + k] = {residuals[2 * k], residuals[2 * k + 1]};
+  }
+  const auto all = [](double, Complex residual, Complex) { return std::norm(residual); };
+  std::vector<double> left = fft.inverse(std::move(spectrum)), none(left.size());
+  const std::vector<LikelihoodMode> modes = likelihood_modes(point, record.sample_rate);
+  return harmonics(MainsSearch({std::move(left), std::move(none)}, record.sample_rate, modes, all),
+                   mains);
 }
 
 }  // namespace modcal

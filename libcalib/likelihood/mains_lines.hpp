@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "libcalib/likelihood/projected_likelihood.hpp"
 #include "libcalib/likelihood/records/whitened_record.hpp"
 #include "libcalib/parameters/parameter_table.hpp"
 
@@ -16,5 +17,10 @@ namespace modcal {
 /// kNearMode and six bins or more from the string's modes. mains = 0, or a record of less than 16
 /// periods: none. point: the model as it is expected, its modes to a few per cent.
 std::vector<double> mains_lines(const NoisyRecords& records, const ModelPoint& point, double mains);
+
+/// The same by what a fit leaves, e at σ = 0 (projected_likelihood.hpp), in which neither force nor
+/// end state are: of a record whose `lines` are empty. point: the model as it is fitted.
+std::vector<double> mains_lines(const ProjectedLikelihood& likelihood, const ModelPoint& point,
+                                double mains);
 
 }  // namespace modcal

@@ -25,6 +25,7 @@ ContinuationResult with_misfit_for_noise(const AttemptInput& input,
   const double misfit = contradicted.law.chi2;
   if (!(misfit > 1.0)) return contradicted;
   NoisyRecords records = input.records;
+  records.lines = contradicted.lines;
   for (double& deviation : records.deviation) deviation *= std::sqrt(misfit);
   ContinuationResult found = attempt_continuation({.initial = input.initial,
                                                    .records = records,
@@ -48,6 +49,7 @@ ContinuationResult with_misfit_for_noise(const AttemptInput& input,
   found.noise = contradicted.noise;
   found.noise_spectrum = contradicted.noise_spectrum;
   found.noise_error = contradicted.noise_error;
+  found.lines = std::move(contradicted.lines);
   return found;
 }
 
@@ -55,6 +57,13 @@ bool begins_moving(const NoisyRecords& records, const ModelPoint& point) {
   const auto arrivals = first_arrivals(point.basis, point.contact, {});
   return record_start({records.reactions[0], records.reactions[1]}, records.deviation, arrivals,
                       point.basis.frequency(0), records.sample_rate) == RecordStart::kMoving;
+}
+
+// The next fit takes the place of one before it, whose stages stay.
+void follow(ContinuationResult& found, const char* prefix, ContinuationResult next) {
+  append_stages(next.stages, prefix, 0, found.stages);
+  next.stages = std::move(found.stages);
+  found = std::move(next);
 }
 
 // Where the noise is not what was read, the fit is made again with what it leaves; once more for
@@ -70,10 +79,7 @@ ContinuationResult attempt_with_its_noise(const AttemptInput& input, double shif
     if (found.law.accepted && found.chi2 > 1.0 - 3.0 * found.chi2_deviation) break;
     const ProjectedLikelihood whole(WhitenedRecord::of(input.records, 0.0, input.highest));
     if (!input.take_noise(whole, found.model, 0.05)) break;
-    std::vector<FitStage> stages = std::move(found.stages);
-    found = attempt_continuation(input, shift, found.evaluations);
-    append_stages(found.stages, "other noise: ", 0, stages);
-    found.stages = std::move(stages);
+    follow(found, "other noise: ", attempt_continuation(input, shift, found.evaluations));
   }
   return found;
 }
@@ -104,9 +110,7 @@ ContinuationResult on_moving_bridge(const AttemptInput& input, double shift,
     ModalBasis basis = next.model.basis;
     const bool serves = !next.repeats && power_left(next) < power_left(found);
     if (!serves || !put_on_bridge(basis, body)) break;
-    append_stages(next.stages, "bridge taken out: ", 0, found.stages);
-    next.stages = std::move(found.stages);
-    found = std::move(next);
+    follow(found, "bridge taken out: ", std::move(next));
     taken_out = body;
     on_bridge = std::move(basis);
   }
@@ -164,6 +168,27 @@ ContinuationResult attempt(const AttemptInput& input, double shift, std::size_t 
   return found;
 }
 
+// The model as it is stated, off by per cents, may hide hum of the mains or its frequency; what a
+// fit without lines leaves does not. True: the lines are others.
+bool take_lines(const AttemptInput& input, const ModelPoint& found) {
+  const std::vector<double> before = std::exchange(input.records.lines, {});
+  const ProjectedLikelihood whole(WhitenedRecord::of(input.records, 0.0, input.highest));
+  input.records.lines = mains_lines(whole, found, input.options.unknowns.mains);
+  return input.records.lines != before;
+}
+
+// A fit that is not right is made again with the lines of the hum that it shows.
+ContinuationResult attempt_with_its_lines(const AttemptInput& input, double shift,
+                                          std::size_t evaluations) {
+  ContinuationResult found = attempt(input, shift, evaluations);
+  if (!found.repeats && !found.right && take_lines(input, found.model)) {
+    input.first_law.reset();
+    follow(found, "hum as it is found: ", attempt(input, shift, found.evaluations));
+  }
+  found.lines = input.records.lines;
+  return found;
+}
+
 // alone: there are no other records.
 ContinuationResult calibrate_stroke(const ModelPoint& initial, const CalibrationData& data,
                                     const ContinuationOptions& options, const StatedPriors& priors,
@@ -188,7 +213,7 @@ ContinuationResult calibrate_stroke(const ModelPoint& initial, const Calibration
   std::size_t evaluations = 0;
   std::vector<FitStage> stages;
   for (std::size_t i = 0; i <= static_cast<std::size_t>(options.restarts); ++i) {
-    ContinuationResult found = attempt(input, kShifts[i], evaluations);
+    ContinuationResult found = attempt_with_its_lines(input, kShifts[i], evaluations);
     evaluations = found.evaluations;
     append_stages(found.stages, i == 0 ? "" : fmt::format("restart {}: ", i), 0, stages);
     found.restarts = i;
@@ -198,7 +223,6 @@ ContinuationResult calibrate_stroke(const ModelPoint& initial, const Calibration
   best.evaluations = evaluations;
   best.stages = std::move(stages);
   if (!best.fits && options.frequencies) best = with_misfit_for_noise(input, std::move(best));
-  best.lines = records.lines;
   return best;
 }
 

@@ -121,7 +121,7 @@ class JointFit {
   Index modes() const { return static_cast<Index>(unknowns().modes()); }
   double inharmonicity() const { return fit_.single.front().law.inharmonicity; }
   // stated: levels of the noise, or NaN; single: the fit of a stroke by itself, which has found its
-  // noise and the causes of misfit that are free in it.
+  // noise, the lines of its hum and the causes of misfit that are free in it.
   WhitenedRecord whitened(const CalibrationData& data, const std::array<double, 2>& stated,
                           const ContinuationResult* single) {
     if (within_) within_->poll();
@@ -131,7 +131,8 @@ class JointFit {
     highest_ = std::max(highest_, band);
     NoisyRecords records =
         NoisyRecords::of_data(data, initial_.basis, single ? single->noise : stated);
-    records.lines = mains_lines(records, initial_, options_.unknowns.mains);
+    records.lines =
+        single ? single->lines : mains_lines(records, initial_, options_.unknowns.mains);
     if (!single) return WhitenedRecord::of(records, 0.0, band);
     records.noise = single->noise_spectrum;
     for (const ScoreTest& cause : single->freed) {
