@@ -36,6 +36,7 @@ struct FileRead {
   double channels = 0.0;    ///< that are taken of it
   /// Most numbers a sample that the work on it holds at a time, about, beside what was read.
   double numbers_per_sample = 0.0;
+  double numbers = 0.0;  ///< those that do not depend on the file's length
 
   bool operator==(const FileRead&) const = default;
 };

@@ -116,12 +116,16 @@ bool check_files(const Experiment& experiment, const Means& means, LoadedExperim
   const bool is_stated = means.memory > 0.0;
   const double most = is_stated ? means.memory : machine_memory();
   if (!(needed > most)) return true;
+  const bool is_scene = files.front().numbers > 0.0;
   loaded.mistakes.push_back(
-      {position_of_path(loaded.document.root, files.front().key),
-       fmt::format(
-           "the run needs about {} of memory, {} {}, by the size of its records; state a part with "
-           "record.start and record.stop of a shorter file, or more with --memory",
-           bytes_text(needed), is_stated ? "--memory allows" : "there are", bytes_text(most))});
+      {position_of_path(loaded.document.root, is_scene ? "structure.duration" : files.front().key),
+       fmt::format("the run needs about {} of memory, {} {}, by {}, or more with --memory",
+                   bytes_text(needed), is_stated ? "--memory allows" : "there are",
+                   bytes_text(most),
+                   is_scene ? "the samples of its scene; state a shorter one, a lower "
+                              "measurement.sample_rate or structure.oversampling"
+                            : "the size of its records; state a part with record.start and "
+                              "record.stop of a shorter file")});
   return false;
 }
 

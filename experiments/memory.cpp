@@ -43,6 +43,7 @@ double memory_needed(const Experiment& experiment, std::size_t threads) {
 double memory_of_files(const std::vector<FileRead>& files, const std::filesystem::path& folder) {
   double bytes = 0.0;
   for (const FileRead& file : files) {
+    bytes += sizeof(double) * file.numbers;
     if (file.format.empty()) continue;
     const auto size = size_of_record(folder / file.name, file.format);
     if (!size) continue;

@@ -75,7 +75,12 @@ std::vector<Finding> SimulateOptions::lint_records(const std::filesystem::path& 
 
 std::vector<FileRead> SimulateOptions::files_read() const {
   if (!has_structure) return {};
-  return {{.name = structure.table, .key = "structure.table"}};
+  // Of a table of three sensors; each further one is another number a step.
+  constexpr double kNumbersPerStep = 10.0;
+  return {{.name = structure.table,
+           .key = "structure.table",
+           .numbers = kNumbersPerStep * structure.duration *
+                      structure.fine_rate(measurement.sample_rate)}};
 }
 
 std::vector<PlanLine> SimulateOptions::plan() const {

@@ -156,6 +156,24 @@ TEST_F(Refusals, LongDecaysAreJudgedByTheirSizes) {
   EXPECT_EQ(within(10, "validate small.yaml --set scene.duration='1e300 s'").code, 3);
 }
 
+TEST_F(Refusals, StructuresBeyondTheMemoryAreRefusedBeforeTheirTableIsRead) {
+  write("bowed.yaml", R"(kind: simulate
+structure:
+  table: not_there.json
+  bow: {velocity: 0.1, normal_force: 5 N}
+  duration: 1e4 s
+measurement: {sample_rate: 100 kHz}
+)");
+  // Ten numbers for each of 8 steps a sample.
+  for (const char* command : {"validate bowed.yaml", "plan bowed.yaml", "run bowed.yaml"}) {
+    const Outcome outcome = within(5, std::string(command) + " --memory 20GB");
+    EXPECT_EQ(outcome.code, 3) << command << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("bowed.yaml:5:13: error: the run needs about 640 GB of "
+                                       "memory, --memory allows 20 GB, by the samples of its "
+                                       "scene; state a shorter one"));
+  }
+}
+
 TEST_F(Refusals, RecordsBeyondTheMemoryAreRefusedBeforeTheyAreRead) {
   std::string text = "# sample_rate: 51200 Hz\nR1 [N],R2 [N]\n";
   while (text.size() < (2 << 20)) text += "0.125,-0.5\n";
