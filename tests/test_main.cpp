@@ -8,6 +8,8 @@
 #include <string>
 #include <string_view>
 
+#include "tests/leaks_of_libraries.hpp"
+
 namespace {
 
 // GoogleTest's filter for the tests of the file; empty where there are none.

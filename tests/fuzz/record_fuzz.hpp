@@ -6,9 +6,7 @@
 #include "experiments/records/inspection.hpp"
 #include "libsim/records/record_file.hpp"
 #include "tests/fuzz/fuzz.hpp"
-
-// What parses units keeps some bytes of a unit that it does not know.
-extern "C" inline const char* __lsan_default_suppressions() { return "leak:libudunits2"; }
+#include "tests/leaks_of_libraries.hpp"
 
 namespace modcal::fuzz {
 
