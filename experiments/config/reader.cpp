@@ -19,7 +19,7 @@ void YamlReader::mistake(const YamlNode& node, std::string text) {
 }
 
 const YamlNode* YamlReader::take(const OptionInfo& info) {
-  seen_.emplace_back(info.key);
+  allow(info.key);
   const YamlNode* value = node_.find(info.key);
   if (value == nullptr && info.required) {
     missing_.emplace_back(info.key);

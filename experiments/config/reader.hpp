@@ -2,6 +2,7 @@
 // every value be of its kind, unit and range. All mistakes are collected, none is thrown.
 #pragma once
 
+#include <algorithm>
 #include <map>
 
 #include "experiments/config/document.hpp"
@@ -27,10 +28,12 @@ class YamlReader final : public OptionVisitor {
   void sweep(const OptionInfo& info, SweepSlot& slot) override;
 
   /// A key that is read elsewhere.
-  void allow(std::string_view key) { seen_.emplace_back(key); }
+  void allow(std::string_view key) {
+    if (std::find(seen_.begin(), seen_.end(), key) == seen_.end()) seen_.emplace_back(key);
+  }
   /// Keys that another reader of the same map has read or was told of.
   void allow_all_known(const YamlReader& other) {
-    seen_.insert(seen_.end(), other.seen_.begin(), other.seen_.end());
+    for (const std::string& key : other.seen_) allow(key);
   }
   /// Reports the keys that nobody asked for.
   void finish();

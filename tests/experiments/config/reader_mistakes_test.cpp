@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <vector>
 
+#include "experiments/config/reader.hpp"
 #include "tests/experiments/config/mistakes_of.hpp"
 
 namespace modcal::reader_mistakes_test {
@@ -193,6 +195,22 @@ INSTANTIATE_TEST_SUITE_P(
              "linear_density, fundamental\n"
              "    windows: [1]\n"
              "    ^\n"}));
+
+// The cells of a sweep are readers of one map, and each knows its own keys.
+TEST(UnknownKey, HasEachOfTheKnownNamedOnce) {
+  const YamlDocument document = parse_yaml("sigma: 1\n", "a.yaml");
+  std::vector<Mistake> mistakes;
+  YamlReader base(document.root, mistakes), cell(document.root, mistakes);
+  for (YamlReader* reader : {&base, &cell}) {
+    reader->allow("contour");
+    reader->allow("seed");
+  }
+  cell.allow("shape");
+  base.allow_all_known(cell);
+  base.finish();
+  ASSERT_EQ(mistakes.size(), 1u);
+  EXPECT_EQ(mistakes[0].text, "unknown key \"sigma\"; known: contour, seed, shape");
+}
 
 // Of 60 000 wrong keys in one line the first are shown, in the time of a line: what looks through
 // all others at each of them takes minutes.
