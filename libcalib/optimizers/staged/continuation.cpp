@@ -177,11 +177,13 @@ bool take_lines(const AttemptInput& input, const ModelPoint& found) {
   return input.records.lines != before;
 }
 
-// A fit that is not right is made again with the lines of the hum that it shows.
+// A fit that is not right is made again with the lines of the hum that it shows, if no other start
+// has shown them.
 ContinuationResult attempt_with_its_lines(const AttemptInput& input, double shift,
-                                          std::size_t evaluations) {
+                                          std::size_t evaluations, bool& shown) {
   ContinuationResult found = attempt(input, shift, evaluations);
-  if (!found.repeats && !found.right && take_lines(input, found.model)) {
+  if (!shown && !found.repeats && !found.right && take_lines(input, found.model)) {
+    shown = true;
     input.first_law.reset();
     follow(found, "hum as it is found: ", attempt(input, shift, found.evaluations));
   }
@@ -212,8 +214,9 @@ ContinuationResult calibrate_stroke(const ModelPoint& initial, const Calibration
   ContinuationResult best;
   std::size_t evaluations = 0;
   std::vector<FitStage> stages;
+  bool shown = false;
   for (std::size_t i = 0; i <= static_cast<std::size_t>(options.restarts); ++i) {
-    ContinuationResult found = attempt_with_its_lines(input, kShifts[i], evaluations);
+    ContinuationResult found = attempt_with_its_lines(input, kShifts[i], evaluations, shown);
     evaluations = found.evaluations;
     append_stages(found.stages, i == 0 ? "" : fmt::format("restart {}: ", i), 0, stages);
     found.restarts = i;
