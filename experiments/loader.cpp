@@ -111,7 +111,7 @@ bool is_consequence(const std::string& text) {
 // Before a record is read. False where it is too much.
 bool check_files(const Experiment& experiment, const Means& means, LoadedExperiment& loaded) {
   const std::vector<FileRead> files = experiment.files_read();
-  const double needed = memory_of_files(files, loaded.document.folder());
+  const double needed = memory_of_files(experiment, loaded.document.folder(), means.threads);
   loaded.memory = std::max(loaded.memory, needed);
   const bool is_stated = means.memory > 0.0;
   const double most = is_stated ? means.memory : machine_memory();

@@ -20,14 +20,17 @@ double signals_of(const OutputRequest& outputs) {
   return static_cast<double>(std::count(std::begin(wanted), std::end(wanted), true));
 }
 
+double tasks_at_a_time(const Experiment& experiment, std::size_t threads) {
+  const auto* list = dynamic_cast<const TaskExperiment*>(&experiment);
+  if (threads == 0) threads = std::max(1u, std::thread::hardware_concurrency());
+  return static_cast<double>(std::min(threads, list != nullptr ? list->task_count() : 1));
+}
+
 }  // namespace
 
 double memory_needed(const Experiment& experiment, std::size_t threads) {
   const auto planned = experiment.planned_simulations();
   if (!planned) return 0.0;
-  const auto* list = dynamic_cast<const TaskExperiment*>(&experiment);
-  const std::size_t tasks = list != nullptr ? list->task_count() : 1;
-  if (threads == 0) threads = std::max(1u, std::thread::hardware_concurrency());
   double kept = 0.0, work = 0.0;
   const auto add = [&](const PlannedSimulations& one) {
     const double samples = one.truth.scene.duration * one.sample_rate;
@@ -37,13 +40,14 @@ double memory_needed(const Experiment& experiment, std::size_t threads) {
   };
   add(*planned);
   for (const PlannedSimulations& other : planned->others) add(other);
-  return sizeof(double) * (kept + static_cast<double>(std::min(threads, tasks)) * work);
+  return sizeof(double) * (kept + tasks_at_a_time(experiment, threads) * work);
 }
 
-double memory_of_files(const std::vector<FileRead>& files, const std::filesystem::path& folder) {
+double memory_of_files(const Experiment& experiment, const std::filesystem::path& folder,
+                       std::size_t threads) {
   double bytes = 0.0;
-  for (const FileRead& file : files) {
-    bytes += sizeof(double) * file.numbers;
+  for (const FileRead& file : experiment.files_read()) {
+    bytes += sizeof(double) * file.numbers * tasks_at_a_time(experiment, threads);
     if (file.format.empty()) continue;
     const auto size = size_of_record(folder / file.name, file.format);
     if (!size) continue;

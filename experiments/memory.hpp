@@ -12,8 +12,9 @@ namespace modcal {
 double memory_needed(const Experiment& experiment, std::size_t threads);
 
 /// Memory that reading records and the work on them needs, about, from the sizes of the files and
-/// their headers alone [B]; 0: of no file it is known.
-double memory_of_files(const std::vector<FileRead>& files, const std::filesystem::path& folder);
+/// their headers alone [B]; 0: of no file it is known. threads: as above.
+double memory_of_files(const Experiment& experiment, const std::filesystem::path& folder,
+                       std::size_t threads);
 
 /// Memory of the machine, or what of it this process may have [B].
 double machine_memory();

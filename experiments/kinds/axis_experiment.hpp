@@ -2,6 +2,7 @@
 // every cell.
 #pragma once
 
+#include <algorithm>
 #include <set>
 #include <typeinfo>
 
@@ -185,7 +186,19 @@ class AxisExperiment : public TaskExperiment {
     }
     return distinct_findings(std::move(findings));
   }
-  std::vector<FileRead> files_read() const override { return files_read_by(options_.base); }
+  /// Those of the settings without axes, with the most that any cell holds.
+  std::vector<FileRead> files_read() const override {
+    std::vector<FileRead> files = files_read_by(options_.base);
+    if (std::ranges::none_of(files, [](const FileRead& file) { return file.numbers > 0.0; })) {
+      return files;
+    }
+    for (const Cell& cell : options_.cells.all()) {
+      for (const FileRead& file : files_read_by(cell)) {
+        files.front().numbers = std::max(files.front().numbers, file.numbers);
+      }
+    }
+    return files;
+  }
   std::string_view for_structures() const override { return Cell::kForStructures; }
   std::vector<PlanLine> plan() const override {
     return axis_plan(options_.cells.plan(), task_count(), planned_simulations());

@@ -172,6 +172,12 @@ measurement: {sample_rate: 100 kHz}
                                        "memory, --memory allows 20 GB, by the samples of its "
                                        "scene; state a shorter one"));
   }
+  // Of a list the longest counts, for each that runs at a time.
+  const Outcome list = within(5,
+                              "validate bowed.yaml --memory 1TB --set "
+                              "sweep='{product: {structure.duration: [1 s, 2e5 s]}}'");
+  EXPECT_EQ(list.code, 3) << list.err;
+  EXPECT_THAT(list.err, HasSubstr("--memory allows 1 TB, by the samples"));
 }
 
 TEST_F(Refusals, RecordsBeyondTheMemoryAreRefusedBeforeTheyAreRead) {
