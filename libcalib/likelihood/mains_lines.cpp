@@ -222,4 +222,10 @@ std::vector<double> mains_lines(const ProjectedLikelihood& likelihood, const Mod
                    mains);
 }
 
+bool same_lines(const std::vector<double>& lines, const NoisyRecords& records) {
+  const double least = 0.01 * records.sample_rate / static_cast<double>(records.samples());
+  return lines.size() == records.lines.size() &&
+         (lines.empty() || std::abs(lines.back() - records.lines.back()) <= least);
+}
+
 }  // namespace modcal

@@ -23,4 +23,8 @@ std::vector<double> mains_lines(const NoisyRecords& records, const ModelPoint& p
 std::vector<double> mains_lines(const ProjectedLikelihood& likelihood, const ModelPoint& point,
                                 double mains);
 
+/// Whether a fit with these lines leaves what one with the lines of the records does: they are
+/// within 0.01/T, of which the steady change of a line leaves (π/100)²/2 rms(τ² − 1/3) = 1.5e-4.
+bool same_lines(const std::vector<double>& lines, const NoisyRecords& records);
+
 }  // namespace modcal

@@ -59,7 +59,7 @@ bool begins_moving(const NoisyRecords& records, const ModelPoint& point) {
                       point.basis.frequency(0), records.sample_rate) == RecordStart::kMoving;
 }
 
-// The next fit takes the place of one before it, whose stages stay.
+// The next fit in the place of one before it, whose stages stay.
 void follow(ContinuationResult& found, const char* prefix, ContinuationResult next) {
   append_stages(next.stages, prefix, 0, found.stages);
   next.stages = std::move(found.stages);
@@ -168,17 +168,17 @@ ContinuationResult attempt(const AttemptInput& input, double shift, std::size_t 
   return found;
 }
 
-// The model as it is stated, off by per cents, may hide hum of the mains or its frequency; what a
-// fit without lines leaves does not. True: the lines are others.
+// By what a fit without lines leaves, where the model as it is stated hides a hum. True: others.
 bool take_lines(const AttemptInput& input, const ModelPoint& found) {
-  const std::vector<double> before = std::exchange(input.records.lines, {});
+  std::vector<double> before = std::exchange(input.records.lines, {});
   const ProjectedLikelihood whole(WhitenedRecord::of(input.records, 0.0, input.highest));
   input.records.lines = mains_lines(whole, found, input.options.unknowns.mains);
-  return input.records.lines != before;
+  const bool same = same_lines(before, input.records);
+  if (same) input.records.lines = std::move(before);
+  return !same;
 }
 
-// A fit that is not right is made again with the lines of the hum that it shows, if no other start
-// has shown them.
+// A fit that is not right is made again with the lines that it, and no other start, has shown.
 ContinuationResult attempt_with_its_lines(const AttemptInput& input, double shift,
                                           std::size_t evaluations, bool& shown) {
   ContinuationResult found = attempt(input, shift, evaluations);
@@ -213,8 +213,8 @@ ContinuationResult calibrate_stroke(const ModelPoint& initial, const Calibration
                            .first_law = first_law};
   ContinuationResult best;
   std::size_t evaluations = 0;
-  std::vector<FitStage> stages;
   bool shown = false;
+  std::vector<FitStage> stages;
   for (std::size_t i = 0; i <= static_cast<std::size_t>(options.restarts); ++i) {
     ContinuationResult found = attempt_with_its_lines(input, kShifts[i], evaluations, shown);
     evaluations = found.evaluations;

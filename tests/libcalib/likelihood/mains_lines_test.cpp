@@ -79,6 +79,15 @@ TEST_F(OneSecondOfMains, AreFoundInWhatAFitLeaves) {
   }
 }
 
+TEST_F(OneSecondOfMains, AreTheSameWithinAHundredthOfABin) {
+  NoisyRecords records = noisy(bowed, 0.01, 3);
+  EXPECT_TRUE(same_lines({}, records));
+  EXPECT_FALSE(same_lines({50.0, 100.0}, records));
+  records.lines = {50.0, 100.0};
+  EXPECT_TRUE(same_lines({50.0045, 100.009}, records));
+  EXPECT_FALSE(same_lines({50.0055, 100.011}, records));
+}
+
 // Two and a half bins below the fourteenth harmonic, halfway between two modes.
 TEST_F(OneSecondOfMains, AreNotDrawnByAnotherLine) {
   NoisyRecords records = with_hum(noisy(bowed, 0.01, 3), bowed, 50.0, 0.01);
