@@ -6,13 +6,13 @@
 
 #include <cmath>
 
-#include "benchmarks/problems/six_modes.hpp"
+#include "benchmarks/problems/known_structures.hpp"
 #include "tests/refusal.hpp"
 
 namespace modcal::blind_fit_test {
 namespace {
 
-using namespace six_modes;
+using namespace known_structures;
 
 // Of the poles that lie within 1.96 of their deviations.
 double share_within(const Eigen::VectorXd& off, const BlindFit& fit) {
@@ -24,7 +24,7 @@ class BlindFitOf : public testing::TestWithParam<std::pair<std::size_t, double>>
 
 TEST_P(BlindFitOf, ReachesTheBoundFromOnePercentOff) {
   const auto [sensors, level] = GetParam();
-  const ModalModel truth = structure(sensors);
+  const ModalModel truth = six_modes(sensors);
   const StructureRecord clean = clean_record(truth);
   const StructureChange change{.frequency = 0.01, .damping = 0.3, .residue = 0.0};
   // The bound: without noise in the data, the noise in the weights alone.
@@ -56,7 +56,7 @@ INSTANTIATE_TEST_SUITE_P(Cases, BlindFitOf,
                                          std::pair{2ul, 0.01}, std::pair{2ul, 0.05}));
 
 TEST(BlindFit, CorrectsResiduesThatAreThreePercentOff) {
-  const ModalModel truth = structure(3);
+  const ModalModel truth = six_modes(3);
   const StructureRecord clean = clean_record(truth);
   double inside = 0.0, ignored = 0.0, misfit = 0.0;
   constexpr int kSeeds = 15;
@@ -80,7 +80,7 @@ TEST(BlindFit, CorrectsResiduesThatAreThreePercentOff) {
 }
 
 TEST(BlindFit, APoleThatTheTableDoesNotKnowIsFree) {
-  const ModalModel truth = structure(3);
+  const ModalModel truth = six_modes(3);
   const StructureRecord clean = clean_record(truth);
   const Noisy noisy = with_noise(clean, 0.01, 1);
   StructureTable table{.model = truth, .low = kLow, .high = kHigh};
@@ -105,7 +105,7 @@ TEST(BlindFit, APoleThatTheTableDoesNotKnowIsFree) {
 }
 
 TEST(BlindFit, RefusesOneSensor) {
-  const ModalModel truth = structure(1);
+  const ModalModel truth = six_modes(1);
   const auto spectra = ContourSpectra::of(clean_record(truth), 0.0, kLow, kHigh);
   EXPECT_THAT(refusal_of([&] { fit_blindly(truth, spectra, {}, {}, false); }),
               testing::HasSubstr("one response explains any model"));

@@ -6,19 +6,19 @@
 
 #include <cmath>
 
-#include "benchmarks/problems/six_modes.hpp"
+#include "benchmarks/problems/known_structures.hpp"
 #include "tests/refusal.hpp"
 
 namespace modcal::contact_place_test {
 namespace {
 
-using namespace six_modes;
+using namespace known_structures;
 using testing::HasSubstr;
 
 // The six modes driven where their shapes are others: modal constants common to all sensors are
 // those of the contact.
 StructureTable driven_at(double place) {
-  StructureTable table{.model = structure(3), .low = kLow, .high = kHigh};
+  StructureTable table{.model = six_modes(3), .low = kLow, .high = kHigh};
   const std::size_t modes = table.model.poles.size();
   for (std::size_t i = 0; i < table.model.constants.size(); ++i) {
     const double shape = std::sin(place * static_cast<double>(i % modes + 1));

@@ -1,4 +1,4 @@
-#include "benchmarks/problems/six_modes.hpp"
+#include "benchmarks/problems/known_structures.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include "libsim/base/random.hpp"
 
-namespace modcal::six_modes {
+namespace modcal::known_structures {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
@@ -30,7 +30,7 @@ std::vector<Complex> force_spectrum(const FrequencyGrid& grid, bool impact) {
 
 }  // namespace
 
-ModalModel structure(std::size_t sensors) {
+ModalModel six_modes(std::size_t sensors) {
   const std::vector<double> frequencies = {47.0, 88.0, 161.0, 171.0, 256.0, 372.0};
   const std::vector<double> ratios = {0.01, 0.008, 0.006, 0.007, 0.005, 0.004};
   const std::vector<SensorKind> kinds = {SensorKind::kAcceleration, SensorKind::kVelocity,
@@ -43,6 +43,39 @@ ModalModel structure(std::size_t sensors) {
       const double at = static_cast<double>((n + 1) * (k + 2));
       model.constants.push_back(std::cos(0.9 * at));
       model.quadrature.push_back(0.2 * std::sin(1.7 * at));
+    }
+  }
+  return model;
+}
+
+ModalModel plate() {
+  constexpr double kLength = 1.0, kWidth = 0.72, kScale = 6.85;  // sides and f a², [Hz]
+  struct Shape {
+    double frequency, p, q;
+    double at(double x, double y) const {
+      return std::sin(0.5 * kTurn * p * x / kLength) * std::sin(0.5 * kTurn * q * y / kWidth);
+    }
+  };
+  std::vector<Shape> shapes;
+  for (double p = 1.0; p < 12.0; ++p) {
+    for (double q = 1.0; q < 12.0; ++q) {
+      const double frequency = kScale * (std::pow(p / kLength, 2) + std::pow(q / kWidth, 2));
+      if (frequency < 390.0) shapes.push_back({frequency, p, q});
+    }
+  }
+  std::ranges::sort(shapes, {}, &Shape::frequency);
+  ModalModel model{.sensors = std::vector<SensorKind>(4, SensorKind::kAcceleration)};
+  for (std::size_t n = 0; n < shapes.size(); ++n) {
+    const double ratio = 0.003 + 0.005 * std::pow(std::sin(1.3 * static_cast<double>(n)), 2);
+    model.poles.push_back({kTurn * shapes[n].frequency, ratio});
+  }
+  constexpr double kStruck[2] = {0.37, 0.31};
+  constexpr double kSensors[4][2] = {{0.11, 0.13}, {0.83, 0.21}, {0.61, 0.57}, {0.23, 0.46}};
+  for (const auto& sensor : kSensors) {
+    for (const Shape& shape : shapes) {
+      const double constant = shape.at(sensor[0], sensor[1]) * shape.at(kStruck[0], kStruck[1]);
+      model.constants.push_back(constant);
+      model.quadrature.push_back(0.1 * constant * std::cos(shape.frequency));
     }
   }
   return model;
@@ -127,4 +160,4 @@ Eigen::VectorXd logarithms(const ModalModel& model) {
   return result;
 }
 
-}  // namespace modcal::six_modes
+}  // namespace modcal::known_structures
