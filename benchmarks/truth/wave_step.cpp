@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
-// One version of a function for each instruction set, chosen when the program starts.
+// One version of a function for each instruction set, chosen before a sanitizer has begun.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
-    !defined(__SANITIZE_ADDRESS__)
+    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define MODCAL_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
 #define MODCAL_INLINE __attribute__((always_inline)) inline
 #else
