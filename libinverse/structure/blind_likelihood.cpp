@@ -2,6 +2,7 @@
 
 #include <Eigen/QR>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -22,51 +23,93 @@ Complex constant_of(const ModalModel& model, std::size_t k, std::size_t n) {
   return {model.constants[i], model.quadrature[i]};
 }
 
+// r of the states 1: the residue of numerator/D at λ.
+Complex residue_of(SensorKind kind, const ModalPole& pole, Complex constant) {
+  const Complex rate = rate_of(pole);
+  return numerator_of(kind, pole, constant, rate) / (rate - std::conj(rate));
+}
+
+// −P (signals), signals of every sensor.
+void project(const BlindBins& bins, const std::vector<PlanarVector>& signals, double* column) {
+  const std::vector<double> none(bins.sensors.size(), 0.0);
+  project_column(bins, {&bins.s, &bins.s, &bins.s, none.data(), none.data(), &signals}, column);
+}
+
 }  // namespace
 
 BlindLikelihood::BlindLikelihood(const ContourSpectra& spectra,
                                  const std::vector<SensorKind>& kinds,
                                  const BinVariances& variances, bool at_rest)
-    : spectra_(spectra), kinds_(kinds), free_ends_(!at_rest) {
+    : spectra_(spectra),
+      kinds_(kinds),
+      free_ends_(!at_rest),
+      s_(spectra.count()),
+      turned_(spectra.count()),
+      delay_(spectra.count()) {
   for (const std::vector<double>& own : variances.of) {
-    std::vector<double>& root = roots_.emplace_back();
-    for (const double v : own) root.push_back(1.0 / std::sqrt(v));
+    roots_.push_back(
+        padded(own.size(), 0.0, [&own](std::size_t m) { return 1.0 / std::sqrt(own[m]); }));
   }
   for (std::size_t m = 0; m < bins(); ++m) {
-    delay_.push_back(std::exp(-spectra.s(m) / spectra.sample_rate));
-    turned_.push_back(-1.0 / spectra.s(m));
+    s_.set(m, spectra.s(m));
+    turned_.set(m, -1.0 / spectra.s(m));
+    delay_.set(m, std::exp(-spectra.s(m) / spectra.sample_rate));
+  }
+  for (std::size_t k = 0; k < roots_.size(); ++k) {
+    PlanarVector& own = data_.emplace_back(bins());
+    for (std::size_t m = 0; m < bins(); ++m) own.set(m, roots_[k][m] * spectra.responses[k][m]);
   }
 }
 
-Transfers BlindLikelihood::whitened(const Transfers& values) const {
-  Transfers result = values;
+BlindBins BlindLikelihood::bins_of(const ModalModel& model, std::vector<double>& told) const {
+  BlindBins result{.s = s_, .turned = turned_};
+  const Transfers transfers = transfers_of(model, spectra_);
+  told.assign(bins(), 0.0);
   for (std::size_t k = 0; k < sensors(); ++k) {
-    for (std::size_t m = 0; m < bins(); ++m) result[k][m] *= roots_[k][m];
+    result.sensors.push_back({.low = power_of_s(kinds_[k]) == 0,
+                              .root = roots_[k],
+                              .weighted = PlanarVector(bins()),
+                              .told = PlanarVector(bins()),
+                              .made = PlanarVector(bins())});
+    for (std::size_t m = 0; m < bins(); ++m) {
+      const Complex own = roots_[k][m] * transfers[k][m];
+      result.sensors[k].weighted.set(m, own);
+      told[m] += std::norm(own);
+    }
+  }
+  for (BlindBins::Sensor& sensor : result.sensors) {
+    for (std::size_t m = 0; m < bins(); ++m) {
+      sensor.told.set(m, std::conj(sensor.weighted.at(m)) / told[m]);
+    }
   }
   return result;
 }
 
 BlindPoint BlindLikelihood::at(const ModalModel& model) const {
-  BlindPoint point{.weighted = whitened(transfers_of(model, spectra_)),
-                   .told = std::vector<double>(bins())};
-  Transfers data = whitened(spectra_.responses);
-  for (std::size_t k = 0; k < sensors(); ++k) {
-    for (std::size_t m = 0; m < bins(); ++m) point.told[m] += std::norm(point.weighted[k][m]);
-  }
-  point.residual = projected(point, data);
+  BlindPoint point;
+  point.bins = bins_of(model, point.told);
+  point.residual.resize(2 * static_cast<Index>(sensors() * s_.size()));
+  project(point.bins, data_, point.residual.data());
+  point.residual = -point.residual;
+  Signals data = data_;
   if (free_ends_) fit_ends(model, point, data);
   point.force = force_of(point, data);
+  for (std::size_t k = 0; k < sensors(); ++k) {
+    const int p = power_of_s(kinds_[k]);
+    for (std::size_t m = 0; m < bins(); ++m) {
+      const Complex s = spectra_.s(m), own = p == 0 ? 1.0 : p == 1 ? s : s * s;
+      point.bins.sensors[k].made.set(m, roots_[k][m] * own * point.force[m]);
+    }
+  }
   point.cost = 2.0 * point.residual.squaredNorm() / spectra_.correlated();
   return point;
 }
 
-std::vector<Complex> BlindLikelihood::force_of(const BlindPoint& point,
-                                               const Transfers& data) const {
+std::vector<Complex> BlindLikelihood::force_of(const BlindPoint& point, const Signals& data) const {
   std::vector<Complex> force(bins());
-  for (std::size_t m = 0; m < bins(); ++m) {
-    for (std::size_t k = 0; k < sensors(); ++k) {
-      force[m] += std::conj(point.weighted[k][m]) * data[k][m] / point.told[m];
-    }
+  for (std::size_t k = 0; k < sensors(); ++k) {
+    const PlanarVector& told = point.bins.sensors[k].told;
+    for (std::size_t m = 0; m < bins(); ++m) force[m] += told.at(m) * data[k].at(m);
   }
   return force;
 }
@@ -77,10 +120,10 @@ std::vector<Complex> BlindLikelihood::force_drawn(const ModalModel& model,
   MODCAL_REQUIRE(normal.size() == static_cast<std::size_t>(point.ends.size()) + 2 * bins(),
                  "{} normal numbers for {} bins and {} parts of the ends", normal.size(), bins(),
                  point.ends.size());
-  Transfers data = whitened(spectra_.responses);
+  Signals data = data_;
   if (free_ends_) {
     const Eigen::Map<const Eigen::VectorXd> drawn(normal.data(), point.ends.size());
-    take_ends(model, point.ends + point.ends_root * drawn, data);
+    take_ends(model, point, point.ends + point.ends_root * drawn, data);
     normal = normal.subspan(static_cast<std::size_t>(point.ends.size()));
   }
   std::vector<Complex> force = force_of(point, data);
@@ -93,34 +136,54 @@ std::vector<Complex> BlindLikelihood::force_drawn(const ModalModel& model,
 Eigen::MatrixXd BlindLikelihood::jacobian(const ModalModel& start, const ModalModel& model,
                                           const BlindPoint& point, bool factors) const {
   const std::size_t modes = model.poles.size();
-  const auto poles = static_cast<Index>(2 * modes);
-  const Index count = factors ? poles + static_cast<Index>(2 * modes * sensors()) : poles;
-  Eigen::MatrixXd result(2 * static_cast<Index>(bins() * sensors()), count);
-  for_each_task(modes, [&](std::size_t n) {
-    const ModalPole& pole = model.poles[n];
-    std::vector<Complex> inverse(bins());
-    for (std::size_t m = 0; m < bins(); ++m) inverse[m] = 1.0 / pole.denominator(spectra_.s(m));
-    for (const bool damping : {false, true}) {
-      Transfers slope(sensors());
-      for (std::size_t k = 0; k < sensors(); ++k) {
-        const Complex constant = constant_of(model, k, n);
-        slope[k] = slope_of(point, k, pole, constant, inverse, damping);
-        if (free_ends_) add_slope_of_ends(point, k, n, pole, constant, damping, slope[k]);
-      }
-      result.col(static_cast<Index>(2 * n) + (damping ? 1 : 0)) = -projected(point, slope);
-    }
-    for (std::size_t k = 0; factors && k < sensors(); ++k) {
-      for (const bool imaginary : {false, true}) {
-        Transfers slope(sensors(), std::vector<Complex>(bins()));
-        const Complex unit = imaginary ? Complex(0.0, 1.0) : Complex(1.0);
-        slope[k] = made_by(point, k, n, pole, unit * constant_of(start, k, n));
-        result.col(poles + static_cast<Index>(2 * (k * modes + n)) + (imaginary ? 1 : 0)) =
-            -projected(point, slope);
-      }
-    }
-  });
+  const auto count = static_cast<Index>(2 * modes * (factors ? 1 + sensors() : 1));
+  Eigen::MatrixXd result(point.residual.size(), count);
+  for_each_task(modes,
+                [&](std::size_t n) { mode_columns(start, model, point, n, factors, result); });
   if (free_ends_) result -= point.basis * (point.basis.transpose() * result);
   return result;
+}
+
+void BlindLikelihood::mode_columns(const ModalModel& start, const ModalModel& model,
+                                   const BlindPoint& point, std::size_t n, bool factors,
+                                   Eigen::MatrixXd& result) const {
+  const std::size_t modes = model.poles.size();
+  ModeShapes shapes(bins());
+  shape_mode(point.bins, model.poles[n], shapes);
+  std::vector<double> a, b;
+  for (std::size_t k = 0; k < sensors(); ++k) {
+    a.push_back(constant_of(model, k, n).real());
+    b.push_back(constant_of(model, k, n).imag());
+  }
+  Signals ends;
+  ColumnTerms omega{&shapes.by_omega, &shapes.low_omega, &shapes.high_omega, a.data(), b.data()};
+  ColumnTerms zeta{&shapes.by_zeta, &shapes.low_zeta, &shapes.high_zeta, a.data(), b.data()};
+  for (const bool damping : {false, true}) {
+    ColumnTerms& terms = damping ? zeta : omega;
+    if (free_ends_) ends = slope_of_ends(point, model, n, damping), terms.extra = &ends;
+    project_column(point.bins, terms,
+                   result.col(static_cast<Index>(2 * n) + (damping ? 1 : 0)).data());
+  }
+  for (std::size_t k = 0; factors && k < sensors(); ++k) {
+    for (const bool imaginary : {false, true}) {
+      const Complex unit = (imaginary ? Complex(0.0, 1.0) : 1.0) * constant_of(start, k, n);
+      std::ranges::fill(a, 0.0);
+      std::ranges::fill(b, 0.0);
+      a[k] = unit.real();
+      b[k] = unit.imag();
+      ColumnTerms terms{&shapes.inverse, &shapes.low, &shapes.high, a.data(), b.data()};
+      if (free_ends_) {
+        ends = rest();
+        const auto i = static_cast<Index>(2 * n);
+        const Complex state(point.ends[i], point.ends[i + 1]);
+        add_ends(point.ends_shapes[n], roots_[k],
+                 state * residue_of(kinds_[k], model.poles[n], unit), 0.0, ends[k]);
+        terms.extra = &ends;
+      }
+      const std::size_t column = 2 * (modes + k * modes + n) + (imaginary ? 1 : 0);
+      project_column(point.bins, terms, result.col(static_cast<Index>(column)).data());
+    }
+  }
 }
 
 double BlindLikelihood::numbers(std::size_t modes) const {
@@ -128,115 +191,65 @@ double BlindLikelihood::numbers(std::size_t modes) const {
          (free_ends_ ? 2.0 * static_cast<double>(modes) : 0.0);
 }
 
-// P v, stacked.
-Eigen::VectorXd BlindLikelihood::projected(const BlindPoint& point, const Transfers& v) const {
-  const auto count = static_cast<Index>(bins() * sensors());
-  Eigen::VectorXd result(2 * count);
-  for (std::size_t m = 0; m < bins(); ++m) {
-    Complex along;
-    for (std::size_t k = 0; k < sensors(); ++k) along += std::conj(point.weighted[k][m]) * v[k][m];
-    along /= point.told[m];
-    for (std::size_t k = 0; k < sensors(); ++k) {
-      const Complex left = v[k][m] - point.weighted[k][m] * along;
-      const auto i = static_cast<Index>(k * bins() + m);
-      result[i] = left.real();
-      result[i + count] = left.imag();
-    }
-  }
-  return result;
+BlindLikelihood::Signals BlindLikelihood::rest() const {
+  return Signals(sensors(), PlanarVector(bins()));
 }
 
-// What a mode makes of the force at a sensor, whitened, with what it makes of its end state.
-std::vector<Complex> BlindLikelihood::made_by(const BlindPoint& point, std::size_t k, std::size_t n,
-                                              const ModalPole& pole, Complex constant) const {
-  std::vector<Complex> result(bins());
-  for (std::size_t m = 0; m < bins(); ++m) {
-    const Complex s = spectra_.s(m);
-    result[m] = roots_[k][m] * numerator_of(kinds_[k], pole, constant, s) / pole.denominator(s) *
-                point.force[m];
-  }
-  if (!free_ends_) return result;
-  const auto i = static_cast<Index>(2 * n);
-  const std::vector<Complex> ends =
-      end_column(k, pole, constant, {point.ends[i], point.ends[i + 1]});
-  for (std::size_t m = 0; m < bins(); ++m) result[m] += ends[m];
-  return result;
-}
-
-// What of it changes by ln ω or ln ζ through the force; inverse: 1/D.
-std::vector<Complex> BlindLikelihood::slope_of(const BlindPoint& point, std::size_t k,
-                                               const ModalPole& pole, Complex constant,
-                                               const std::vector<Complex>& inverse,
-                                               bool damping) const {
-  const int p = power_of_s(kinds_[k]);
-  // Of the numerator q alone moves: s/ω falls and −ω/s grows with ω.
-  const double turns = damping ? 0.0 : p == 0 ? -constant.imag() : constant.imag();
-  const double omega = pole.omega, loss = 2.0 * pole.zeta * omega;
-  std::vector<Complex> result(bins());
-  for (std::size_t m = 0; m < bins(); ++m) {
-    const Complex s = spectra_.s(m), q = p == 0 ? s / omega : omega * turned_[m];
-    const Complex own = p == 0 ? 1.0 : p == 1 ? s : s * s;
-    const Complex rise = damping ? loss * s : 2.0 * omega * omega + loss * s;
-    const Complex made = (constant.real() + constant.imag() * q) * inverse[m];
-    result[m] = roots_[k][m] * point.force[m] * own * (turns * q - made * rise) * inverse[m];
-  }
-  return result;
-}
-
-// Through what rings at the ends, by central differences.
-void BlindLikelihood::add_slope_of_ends(const BlindPoint& point, std::size_t k, std::size_t n,
-                                        const ModalPole& pole, Complex constant, bool damping,
-                                        std::vector<Complex>& slope) const {
+// What of a mode's ringing at the ends changes by ln ω or ln ζ: of its residue by central
+// differences, of U by dU/dλ = U (U − 1)/f_s.
+BlindLikelihood::Signals BlindLikelihood::slope_of_ends(const BlindPoint& point,
+                                                        const ModalModel& model, std::size_t n,
+                                                        bool damping) const {
   const double step = (damping ? 100.0 : 1.0) * std::cbrt(std::numeric_limits<double>::epsilon());
-  ModalPole up = pole, down = pole;
+  ModalPole up = model.poles[n], down = up;
   (damping ? up.zeta : up.omega) *= std::exp(step);
   (damping ? down.zeta : down.omega) *= std::exp(-step);
   const auto i = static_cast<Index>(2 * n);
   const Complex state(point.ends[i], point.ends[i + 1]);
-  const std::vector<Complex> above = end_column(k, up, constant, state),
-                             below = end_column(k, down, constant, state);
-  for (std::size_t m = 0; m < bins(); ++m) slope[m] += (above[m] - below[m]) / (2.0 * step);
-}
-
-// r c U + conj(r c) U', whitened.
-std::vector<Complex> BlindLikelihood::end_column(std::size_t k, const ModalPole& pole,
-                                                 Complex constant, Complex state) const {
-  const Complex rate = rate_of(pole), step = std::exp(rate / spectra_.sample_rate);
-  const Complex residue =
-      numerator_of(kinds_[k], pole, constant, rate) / (rate - std::conj(rate)) * state;
-  std::vector<Complex> result(bins());
-  for (std::size_t m = 0; m < bins(); ++m) {
-    result[m] = roots_[k][m] * (residue / (1.0 - step * delay_[m]) +
-                                std::conj(residue) / (1.0 - std::conj(step) * delay_[m]));
+  const Complex moves = (rate_of(up) - rate_of(down)) / (2.0 * step * spectra_.sample_rate);
+  Signals result = rest();
+  for (std::size_t k = 0; k < sensors(); ++k) {
+    const Complex constant = constant_of(model, k, n);
+    const Complex slope =
+        (residue_of(kinds_[k], up, constant) - residue_of(kinds_[k], down, constant)) /
+        (2.0 * step);
+    add_ends(point.ends_shapes[n], roots_[k], state * slope,
+             state * residue_of(kinds_[k], model.poles[n], constant) * moves, result[k]);
   }
   return result;
 }
 
-// y − X c, whitened.
-void BlindLikelihood::take_ends(const ModalModel& model, const Eigen::VectorXd& ends,
-                                Transfers& data) const {
+// y − X c.
+void BlindLikelihood::take_ends(const ModalModel& model, const BlindPoint& point,
+                                const Eigen::VectorXd& ends, Signals& data) const {
   for (std::size_t n = 0; n < model.poles.size(); ++n) {
     const auto i = static_cast<Index>(2 * n);
+    const Complex state(ends[i], ends[i + 1]);
     for (std::size_t k = 0; k < sensors(); ++k) {
-      const std::vector<Complex> column =
-          end_column(k, model.poles[n], constant_of(model, k, n), {ends[i], ends[i + 1]});
-      for (std::size_t m = 0; m < bins(); ++m) data[k][m] -= column[m];
+      const Complex residue = residue_of(kinds_[k], model.poles[n], constant_of(model, k, n));
+      add_ends(point.ends_shapes[n], roots_[k], -state * residue, 0.0, data[k]);
     }
   }
 }
 
-void BlindLikelihood::fit_ends(const ModalModel& model, BlindPoint& point, Transfers& data) const {
+void BlindLikelihood::fit_ends(const ModalModel& model, BlindPoint& point, Signals& data) const {
   const auto count = static_cast<Index>(2 * model.poles.size());
   Eigen::MatrixXd matrix(point.residual.size(), count);
   Eigen::VectorXd norms(count);
+  point.ends_shapes.assign(model.poles.size(), EndShapes(bins()));
   for (Index i = 0; i < count; ++i) {
     const auto n = static_cast<std::size_t>(i / 2);
-    const Complex state = i % 2 == 0 ? Complex(1.0) : Complex(0.0, 1.0);
-    Transfers column;
-    for (std::size_t k = 0; k < sensors(); ++k) {
-      column.push_back(end_column(k, model.poles[n], constant_of(model, k, n), state));
+    const ModalPole& pole = model.poles[n];
+    const Complex state = i % 2 == 0 ? Complex(-1.0) : Complex(0.0, -1.0);
+    if (i % 2 == 0) {
+      shape_ends(delay_, std::exp(rate_of(pole) / spectra_.sample_rate), point.ends_shapes[n]);
     }
-    matrix.col(i) = projected(point, column);
+    Signals column = rest();
+    for (std::size_t k = 0; k < sensors(); ++k) {
+      const Complex residue = residue_of(kinds_[k], pole, constant_of(model, k, n));
+      add_ends(point.ends_shapes[n], roots_[k], state * residue, 0.0, column[k]);
+    }
+    project(point.bins, column, matrix.col(i).data());
     norms[i] = std::max(matrix.col(i).norm(), std::numeric_limits<double>::min());
     matrix.col(i) /= norms[i];
   }
@@ -249,7 +262,7 @@ void BlindLikelihood::fit_ends(const ModalModel& model, BlindPoint& point, Trans
   point.ends_root =
       std::sqrt(0.5 * spectra_.correlated()) * norms.cwiseInverse().asDiagonal() * inverse;
   point.residual -= point.basis * (point.basis.transpose() * point.residual);
-  take_ends(model, point.ends, data);
+  take_ends(model, point, point.ends, data);
 }
 
 }  // namespace modcal

@@ -4,17 +4,19 @@
 #include <Eigen/Core>
 
 #include "libinverse/structure/bin_evidence.hpp"
+#include "libinverse/structure/blind_kernel.hpp"
 
 namespace modcal {
 
 /// A model with the force and the end state that explain most, and what they leave.
 struct BlindPoint {
-  Transfers weighted;         ///< h = H/√V, K
-  std::vector<double> told;   ///< |h|²
-  Eigen::MatrixXd basis;      ///< orthonormal columns of PX; none: at rest
-  Eigen::VectorXd ends;       ///< c: real and imaginary part of every mode
-  Eigen::MatrixXd ends_root;  ///< c has the covariance of this times standard normal numbers
-  Eigen::VectorXd residual;  ///< e = P (y − X c), real over imaginary parts, of all sensors in turn
+  BlindBins bins;
+  std::vector<double> told;            ///< |h|²
+  std::vector<EndShapes> ends_shapes;  ///< of every mode; none: at rest
+  Eigen::MatrixXd basis;               ///< orthonormal columns of PX; none: at rest
+  Eigen::VectorXd ends;                ///< c: real and imaginary part of every mode
+  Eigen::MatrixXd ends_root;   ///< c has the covariance of this times standard normal numbers
+  Eigen::VectorXd residual;    ///< e = P (y − X c), a column of BlindBins
   std::vector<Complex> force;  ///< F of every bin
   double cost = 0.0;           ///< 2|e|²/κ
 };
@@ -43,30 +45,27 @@ class BlindLikelihood {
   double numbers(std::size_t modes) const;
 
  private:
+  using Signals = std::vector<PlanarVector>;  // of every sensor, whitened
+
   std::size_t bins() const { return spectra_.count(); }
-  std::size_t sensors() const { return roots_.size(); }
-  Eigen::VectorXd projected(const BlindPoint& point, const Transfers& v) const;
-  std::vector<Complex> made_by(const BlindPoint& point, std::size_t k, std::size_t n,
-                               const ModalPole& pole, Complex constant) const;
-  std::vector<Complex> slope_of(const BlindPoint& point, std::size_t k, const ModalPole& pole,
-                                Complex constant, const std::vector<Complex>& inverse,
-                                bool damping) const;
-  void add_slope_of_ends(const BlindPoint& point, std::size_t k, std::size_t n,
-                         const ModalPole& pole, Complex constant, bool damping,
-                         std::vector<Complex>& slope) const;
-  std::vector<Complex> end_column(std::size_t k, const ModalPole& pole, Complex constant,
-                                  Complex state) const;
-  Transfers whitened(const Transfers& values) const;
-  void take_ends(const ModalModel& model, const Eigen::VectorXd& ends, Transfers& data) const;
-  void fit_ends(const ModalModel& model, BlindPoint& point, Transfers& data) const;
-  std::vector<Complex> force_of(const BlindPoint& point, const Transfers& data) const;
+  std::size_t sensors() const { return data_.size(); }
+  BlindBins bins_of(const ModalModel& model, std::vector<double>& told) const;
+  Signals rest() const;
+  Signals slope_of_ends(const BlindPoint& point, const ModalModel& model, std::size_t n,
+                        bool damping) const;
+  void mode_columns(const ModalModel& start, const ModalModel& model, const BlindPoint& point,
+                    std::size_t n, bool factors, Eigen::MatrixXd& result) const;
+  void take_ends(const ModalModel& model, const BlindPoint& point, const Eigen::VectorXd& ends,
+                 Signals& data) const;
+  void fit_ends(const ModalModel& model, BlindPoint& point, Signals& data) const;
+  std::vector<Complex> force_of(const BlindPoint& point, const Signals& data) const;
 
   const ContourSpectra& spectra_;
   const std::vector<SensorKind>& kinds_;
   bool free_ends_;
-  std::vector<Complex> delay_;              // exp(−s/f_s)
-  std::vector<Complex> turned_;             // −1/s
-  std::vector<std::vector<double>> roots_;  // 1/√V, K
+  PlanarVector s_, turned_, delay_;   // s, −1/s, exp(−s/f_s)
+  std::vector<AlignedVector> roots_;  // 1/√V, K
+  Signals data_;                      // the responses
 };
 
 }  // namespace modcal

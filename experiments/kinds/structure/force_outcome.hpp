@@ -6,7 +6,7 @@
 #include "experiments/kinds/structure/structure_files.hpp"
 #include "experiments/report/report.hpp"
 #include "libinverse/structure/contact_place.hpp"
-#include "libinverse/structure/structure_force.hpp"
+#include "libinverse/structure/force/structure_force.hpp"
 #include "libsim/base/result_visitor.hpp"
 
 namespace modcal {

@@ -4,8 +4,8 @@
 #include "experiments/experiment.hpp"
 #include "experiments/kinds/structure/structure_files.hpp"
 #include "libinverse/structure/contact_place.hpp"
+#include "libinverse/structure/force/structure_force.hpp"
 #include "libinverse/structure/strike_fit.hpp"
-#include "libinverse/structure/structure_force.hpp"
 
 namespace modcal {
 

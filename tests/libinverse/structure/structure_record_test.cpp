@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "libinverse/structure/force_band.hpp"
+#include "libinverse/structure/force/force_band.hpp"
 
 namespace modcal::structure_record_test {
 namespace {

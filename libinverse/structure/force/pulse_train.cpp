@@ -1,4 +1,4 @@
-#include "libinverse/structure/pulse_train.hpp"
+#include "libinverse/structure/force/pulse_train.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "libinverse/structure/force_band.hpp"
+#include "libinverse/structure/force/force_band.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "libinverse/structure/structure_force.hpp"
+#include "libinverse/structure/force/structure_force.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,9 +7,9 @@
 #include <optional>
 
 #include "libinverse/structure/bin_evidence.hpp"
-#include "libinverse/structure/force_band.hpp"
-#include "libinverse/structure/pulse_train.hpp"
-#include "libinverse/structure/relevance.hpp"
+#include "libinverse/structure/force/force_band.hpp"
+#include "libinverse/structure/force/pulse_train.hpp"
+#include "libinverse/structure/force/relevance.hpp"
 #include "libinverse/structure/tuning.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/base/random.hpp"

@@ -1,5 +1,5 @@
 // Sparse amplitudes: what the data ask for is found, what they do not is left out.
-#include "libinverse/structure/relevance.hpp"
+#include "libinverse/structure/force/relevance.hpp"
 
 #include <gtest/gtest.h>
 

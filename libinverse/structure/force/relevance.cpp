@@ -1,4 +1,4 @@
-#include "libinverse/structure/relevance.hpp"
+#include "libinverse/structure/force/relevance.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
