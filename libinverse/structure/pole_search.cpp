@@ -20,6 +20,13 @@ ModalPole moved(const ModalPole& pole, double frequency, double damping) {
           .zeta = std::clamp(pole.zeta * std::exp(damping), kLeastDamping, kMostDamping)};
 }
 
+// AᵀA; half of it is calculated.
+Eigen::MatrixXd products_of(const Eigen::MatrixXd& columns) {
+  Eigen::MatrixXd half = Eigen::MatrixXd::Zero(columns.cols(), columns.cols());
+  half.selfadjointView<Eigen::Lower>().rankUpdate(columns.transpose());
+  return half.selfadjointView<Eigen::Lower>();
+}
+
 }  // namespace
 
 PoleSearch::PoleSearch(const ContourSpectra& spectra, std::span<const double> force,
@@ -68,7 +75,7 @@ SensorFit PoleSearch::sensor_at(std::size_t k, const std::vector<Columns>& colum
   fit.columns.rightCols(kStatics) = static_[k];
   fit.norms = fit.columns.colwise().norm();
   fit.columns.array().rowwise() /= fit.norms.transpose().array();
-  Eigen::MatrixXd gram = fit.columns.transpose() * fit.columns;
+  Eigen::MatrixXd gram = products_of(fit.columns);
   gram.diagonal().array() += 1e-12;
   fit.gram.compute(gram);
   fit.amplitudes = fit.gram.solve(fit.columns.transpose() * data_[k]);
@@ -131,7 +138,7 @@ PoleSearch::Equations PoleSearch::equations(const std::vector<ModalPole>& poles)
   const Index unknowns = 2 * std::ssize(poles);
   std::vector<Equations> parts(sensors());
   for_each_task(sensors(), [&](std::size_t k) {
-    parts[k] = {slopes[k].transpose() * slopes[k], slopes[k].transpose() * fits[k].residual};
+    parts[k] = {products_of(slopes[k]), slopes[k].transpose() * fits[k].residual};
   });
   Equations sum{Eigen::MatrixXd::Zero(unknowns, unknowns), Eigen::VectorXd::Zero(unknowns)};
   for (const Equations& part : parts) {
@@ -173,7 +180,7 @@ Eigen::MatrixXd PoleSearch::covariance(const std::vector<ModalPole>& poles,
   const Index unknowns = 2 * std::ssize(poles);
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(unknowns, unknowns), spread = information;
   for (std::size_t k = 0; k < sensors(); ++k) {
-    information += slopes[k].transpose() * slopes[k];
+    information += products_of(slopes[k]);
     // Real over imaginary parts.
     spread += slopes[k].transpose() * variances[k].replicate(2, 1).asDiagonal() * slopes[k];
     if (noise[k] == 0.0) continue;
