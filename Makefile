@@ -1,7 +1,7 @@
 # Every target can be the first one run on a fresh Debian 12 (root or sudo).
 PRESET ?= release
 
-.PHONY: reproduce test sanitize fuzz mutation test-cluster python bench accuracy stress format tidy docs clean build
+.PHONY: reproduce test sanitize fuzz mutation test-cluster python bench accuracy stress format tidy tidy-changed docs clean build
 .PHONY: packages packages-test packages-python packages-cluster packages-develop packages-fuzz
 
 build: packages
@@ -110,6 +110,14 @@ format: packages-develop
 tidy: packages packages-develop
 	@cmake --preset tidy >/dev/null
 	@cmake --build --preset tidy
+
+# The sources that commits of the HOURS before the last one changed.
+HOURS ?= 24
+tidy-changed: packages packages-test packages-develop
+	@cmake --preset tidy -DCMAKE_EXPORT_COMPILE_COMMANDS=ON >/dev/null
+	@git log --since=$$(($$(git log -1 --format=%ct) - 3600 * $(HOURS))) --name-only --format= -- '*.cpp' | sort -u | \
+	  while read -r file; do if [ -f "$$file" ]; then echo "^$$PWD/$$file\$$"; fi; done | \
+	  xargs -r run-clang-tidy -quiet -j $$(nproc) -p build/tidy
 
 clean:
 	@cmake -E rm -rf build

@@ -57,8 +57,9 @@ ModalModel plate() {
     }
   };
   std::vector<Shape> shapes;
-  for (double p = 1.0; p < 12.0; ++p) {
-    for (double q = 1.0; q < 12.0; ++q) {
+  for (int across = 1; across < 12; ++across) {
+    for (int along = 1; along < 12; ++along) {
+      const double p = across, q = along;
       const double frequency = kScale * (std::pow(p / kLength, 2) + std::pow(q / kWidth, 2));
       if (frequency < 390.0) shapes.push_back({frequency, p, q});
     }

@@ -205,15 +205,17 @@ class ForceSearch {
       }
     }
     model.quadrature.resize(model.constants.size());
-    for (std::size_t i = 0; i < model.constants.size(); ++i) {
+    for (std::size_t pair = 0; pair < pairs; ++pair) {
       // Half of a complex number's power each.
       const double scatter =
-          std::sqrt(0.5 * contradiction()) * table_.scatters[i / modes / model.contacts].modal;
-      const Complex factor(1.0 + scatter * normal[2 * modes + 2 * i],
-                           scatter * normal[2 * modes + 2 * i + 1]);
-      const Complex constant = factor * Complex(model.constants[i], model.quadrature[i]);
-      model.constants[i] = constant.real();
-      model.quadrature[i] = constant.imag();
+          std::sqrt(0.5 * contradiction()) * table_.scatters[pair / model.contacts].modal;
+      for (std::size_t i = pair * modes; i < (pair + 1) * modes; ++i) {
+        const Complex factor(1.0 + scatter * normal[2 * modes + 2 * i],
+                             scatter * normal[2 * modes + 2 * i + 1]);
+        const Complex constant = factor * Complex(model.constants[i], model.quadrature[i]);
+        model.constants[i] = constant.real();
+        model.quadrature[i] = constant.imag();
+      }
     }
     return model;
   }
