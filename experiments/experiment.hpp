@@ -37,6 +37,8 @@ struct FileRead {
   /// Most numbers a sample that the work on it holds at a time, about, beside what was read.
   double numbers_per_sample = 0.0;
   double numbers = 0.0;  ///< those that do not depend on the file's length
+  /// Files that this one names, whose content is a part of it; null: it names none.
+  std::vector<std::filesystem::path> (*named)(const std::filesystem::path&) = nullptr;
 
   bool operator==(const FileRead&) const = default;
 };

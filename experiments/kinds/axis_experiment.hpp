@@ -221,6 +221,10 @@ class AxisExperiment : public TaskExperiment {
                        });
     for (const FileRead& file : files_read_by(cell)) {
       text += fmt::format(" {}", input_digest(folder / file.name));
+      if (file.named == nullptr) continue;
+      for (const auto& other : file.named(folder / file.name)) {
+        text += fmt::format(" {}", input_digest(other));
+      }
     }
     return text;
   }

@@ -2,6 +2,7 @@
 
 #include "experiments/kinds/lint.hpp"
 #include "experiments/kinds/simulate/motion_text.hpp"
+#include "experiments/kinds/structure/structure_files.hpp"
 #include "experiments/report/result.hpp"
 #include "libsim/signal/statistics.hpp"
 
@@ -79,8 +80,9 @@ std::vector<FileRead> SimulateOptions::files_read() const {
   constexpr double kNumbersPerStep = 10.0;
   return {{.name = structure.table,
            .key = "structure.table",
-           .numbers = kNumbersPerStep * structure.duration *
-                      structure.fine_rate(measurement.sample_rate)}};
+           .numbers =
+               kNumbersPerStep * structure.duration * structure.fine_rate(measurement.sample_rate),
+           .named = files_named_by_table}};
 }
 
 std::vector<PlanLine> SimulateOptions::plan() const {

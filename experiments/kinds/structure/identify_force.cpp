@@ -140,7 +140,9 @@ std::vector<std::string> IdentifyForceOptions::tables() const {
 std::vector<FileRead> IdentifyForceOptions::files_read() const {
   std::vector<FileRead> files;
   for (const std::string& file : tables()) {
-    files.push_back({.name = file, .key = files.empty() ? "table" : "other_places"});
+    files.push_back({.name = file,
+                     .key = files.empty() ? "table" : "other_places",
+                     .named = files_named_by_table});
   }
   files.push_back(file_read(record));
   return files;

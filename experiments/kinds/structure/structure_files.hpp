@@ -79,6 +79,8 @@ LoadedStructureRecord load_structure_record(const StructureRecordOptions& option
 std::string table_text(const StructureTable& table);
 /// Throws InvalidInput with all mistakes of the file, each at its place.
 StructureTable read_table(const std::filesystem::path& path);
+/// Files that the table names for its modes; none where it cannot be read.
+std::vector<std::filesystem::path> files_named_by_table(const std::filesystem::path& path);
 
 /// What sensors may read, by name.
 std::vector<std::string_view> sensor_kind_names();

@@ -4,6 +4,7 @@
 #include "experiments/config/help.hpp"
 #include "experiments/config/reader.hpp"
 #include "experiments/kinds/structure/structure_files.hpp"
+#include "experiments/kinds/structure/table_columns.hpp"
 #include "experiments/kinds/structure/table_shapes.hpp"
 #include "libsim/base/error.hpp"
 
@@ -11,24 +12,6 @@ namespace modcal {
 namespace {
 
 // The table as a file states it.
-struct ModeOptions {
-  double frequency = 0.0, ratio = 0.0, frequency_sd = 0.0, ratio_sd = 0.0;
-  std::vector<double> constants, quadrature;
-  void visit(OptionVisitor& visitor) {
-    visitor("frequency", "of the pair of poles",
-            {.unit = "Hz", .range = Range::positive(), .required = true}, frequency);
-    visitor("damping_ratio", "of the pair of poles",
-            {.range = Range::open(0.0, 1.0), .required = true}, ratio);
-    visitor("constants", "real parts of the modal constants, one a sensor", {.required = true},
-            constants);
-    visitor("quadrature", "their imaginary parts; none: proportional damping", quadrature);
-    visitor("frequency_deviation", "relative standard deviation", {.range = Range::non_negative()},
-            frequency_sd);
-    visitor("damping_deviation", "relative standard deviation", {.range = Range::non_negative()},
-            ratio_sd);
-  }
-};
-
 struct SensorOptions {
   std::string name, kind = "acceleration";
   ResidualTerms residual;
@@ -48,6 +31,7 @@ struct SensorOptions {
 struct TableOptions {
   std::vector<SensorOptions> sensors;
   std::vector<ModeOptions> modes;
+  std::string modes_file;
   bool has_shapes = false;
   ShapesOptions shapes;
   double low = 0.0, high = 0.0, pulse_step = 0.0;
@@ -59,6 +43,11 @@ struct TableOptions {
             {.unit = "Hz", .range = Range::positive(), .required = true}, high);
     visitor("sensors", "in the order of the record's responses", {.required = true}, sensors);
     visitor("modes", "pairs of poles with a modal constant a sensor", modes);
+    visitor("modes_file",
+            "CSV file of the modes, a row each, in the place of modes: frequency [Hz], "
+            "damping_ratio and the constants of every sensor by its name; relative to the table's "
+            "folder",
+            modes_file);
     visitor("shapes", "modes of a universal file (UFF 55) in the place of modes", has_shapes,
             shapes);
     visitor(
@@ -71,15 +60,24 @@ struct TableOptions {
   }
 };
 
-StructureTable table_of(const TableOptions& options, const std::filesystem::path& path) {
+StructureTable table_of(TableOptions options, const std::filesystem::path& path) {
   const std::string file = path.string();
   constexpr double kTurn = 6.283185307179586;
   MODCAL_REQUIRE(options.low < options.high, "{}: low = {:g} Hz is not below high = {:g} Hz", file,
                  options.low, options.high);
   MODCAL_REQUIRE(options.pulse.empty() || options.pulse_step > 0.0,
                  "{}: pulse needs a positive pulse_step, not {:g} Hz", file, options.pulse_step);
-  MODCAL_REQUIRE(options.modes.empty() == options.has_shapes,
-                 "{}: state modes or shapes, one of both", file);
+  const bool has_file = !options.modes_file.empty();
+  MODCAL_REQUIRE(
+      (options.modes.empty() ? 0 : 1) + (has_file ? 1 : 0) + (options.has_shapes ? 1 : 0) == 1,
+      "{}: state modes, modes_file or shapes, one of them", file);
+  if (has_file) {
+    std::vector<std::string> names;
+    for (const SensorOptions& sensor : options.sensors) names.push_back(sensor.name);
+    ModeColumns read = read_mode_columns(path.parent_path() / options.modes_file, names);
+    options.modes = std::move(read.modes);
+    if (options.contact.empty()) options.contact = std::move(read.contact);
+  }
   MODCAL_REQUIRE(options.contact.empty() || options.contact.size() == options.modes.size(),
                  "{}: contact has {} values for {} modes{}", file, options.contact.size(),
                  options.modes.size(), options.has_shapes ? ": shapes tell them" : "");
@@ -118,6 +116,18 @@ StructureTable table_of(const TableOptions& options, const std::filesystem::path
   return table;
 }
 
+TableOptions read_table_options(const std::filesystem::path& path) {
+  const YamlDocument document = read_yaml_file(path);
+  TableOptions options;
+  std::vector<Mistake> mistakes = document.mistakes;
+  if (mistakes.empty()) {
+    read_options(
+        document.root, [&](OptionVisitor& visitor) { options.visit(visitor); }, mistakes);
+  }
+  if (!mistakes.empty()) throw InvalidInput(format_mistakes(document, mistakes));
+  return options;
+}
+
 }  // namespace
 
 std::string table_text(const StructureTable& table) {
@@ -150,15 +160,20 @@ std::string table_text(const StructureTable& table) {
 }
 
 StructureTable read_table(const std::filesystem::path& path) {
-  const YamlDocument document = read_yaml_file(path);
-  TableOptions options;
-  std::vector<Mistake> mistakes = document.mistakes;
-  if (mistakes.empty()) {
-    read_options(
-        document.root, [&](OptionVisitor& visitor) { options.visit(visitor); }, mistakes);
+  return table_of(read_table_options(path), path);
+}
+
+std::vector<std::filesystem::path> files_named_by_table(const std::filesystem::path& path) {
+  std::vector<std::filesystem::path> files;
+  try {
+    const TableOptions options = read_table_options(path);
+    for (const std::string& file : {options.modes_file, options.shapes.file}) {
+      if (!file.empty()) files.push_back(path.parent_path() / file);
+    }
+  } catch (const InvalidInput&) {
+    // The lint tells it at its place.
   }
-  if (!mistakes.empty()) throw InvalidInput(format_mistakes(document, mistakes));
-  return table_of(options, path);
+  return files;
 }
 
 }  // namespace modcal

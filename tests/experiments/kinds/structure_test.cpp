@@ -318,6 +318,34 @@ TEST_F(TableFile, ShapesOfAUniversalFileAreItsModes) {
   EXPECT_THAT(said("5 +3", "[1 +3]"), HasSubstr("1 places for 4 sensors"));
 }
 
+TEST_F(TableFile, ColumnsOfACsvFileAreItsModes) {
+  write("table.yaml",
+        "low: 10\nhigh: 600\nmodes_file: modes.csv\nsensors:\n- {name: a1, kind: acceleration}\n"
+        "- {name: d, kind: displacement}\n");
+  const auto read = [&](const std::string& csv) {
+    write("modes.csv", csv);
+    return read_table(path("table.yaml"));
+  };
+  const StructureTable table = read(
+      "# by hand\nd,damping_ratio,frequency [Hz],a1,a1 imaginary,frequency_deviation,contact\n"
+      "0.5,0.01,50,1.5,-0.25,1e-4,2\n-0.75,0.02,80,2.5,0.125,0,3\n");
+  ASSERT_EQ(table.model.poles.size(), 2u);
+  EXPECT_DOUBLE_EQ(table.frequency(1), 80.0);
+  EXPECT_EQ(table.model.poles[0].zeta, 0.01);
+  EXPECT_THAT(table.model.constants, testing::ElementsAre(1.5, 2.5, 0.5, -0.75));
+  EXPECT_THAT(table.model.quadrature, testing::ElementsAre(-0.25, 0.125, 0.0, 0.0));
+  EXPECT_THAT(table.frequency_deviations, testing::ElementsAre(1e-4, 0.0));
+  EXPECT_THAT(table.contact, testing::ElementsAre(2.0, 3.0));
+  EXPECT_THAT(files_named_by_table(path("table.yaml")), testing::ElementsAre(path("modes.csv")));
+  const auto said = [&](const std::string& csv) { return refusal_of([&] { read(csv); }); };
+  EXPECT_THAT(said("frequency,damping_ratio,a1\n50,0.01,1\n"), HasSubstr("has no column \"d\""));
+  EXPECT_THAT(said("frequency,damping_ratio,a1,d,a2\n50,0.01,1,1,1\n"),
+              HasSubstr("the column \"a2\" has no meaning"));
+  EXPECT_THAT(said("frequency,damping_ratio,a1,d\n50,0.01,1,1\n60,1.5,1,1\n"),
+              HasSubstr("modes.csv:3: damping_ratio = 1.5; it must be in (0, 1)"));
+  EXPECT_THAT(said("frequency [kHz],damping_ratio,a1,d\n50,0.01,1,1\n"), HasSubstr("in kHz"));
+}
+
 TEST_F(TableFile, IsRefusedWithThePlaceOfAMistake) {
   std::string text = table_text(read_table(kFolder + "plate_modes.json"));
   text.replace(text.find("damping_ratio: 0.0"), 18, "damping_ratio: 1.0");
