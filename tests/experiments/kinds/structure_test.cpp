@@ -9,6 +9,7 @@
 
 #include "experiments/kinds/structure/structure_files.hpp"
 #include "experiments/loader.hpp"
+#include "experiments/runs/task_experiment.hpp"
 #include "experiments/study/study.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/base/files.hpp"
@@ -344,6 +345,25 @@ TEST_F(TableFile, ColumnsOfACsvFileAreItsModes) {
   EXPECT_THAT(said("frequency,damping_ratio,a1,d\n50,0.01,1,1\n60,1.5,1,1\n"),
               HasSubstr("modes.csv:3: damping_ratio = 1.5; it must be in (0, 1)"));
   EXPECT_THAT(said("frequency [kHz],damping_ratio,a1,d\n50,0.01,1,1\n"), HasSubstr("in kHz"));
+}
+
+TEST_F(TableFile, AListKnowsTheFilesOfATableByTheirContent) {
+  write("modes.csv", "frequency,damping_ratio,a1\n50,0.01,1\n");
+  write("table.yaml",
+        "low: 10\nhigh: 600\nmodes_file: modes.csv\nsensors: [{name: a1, kind: acceleration}]\n");
+  write(
+      "list.yaml",
+      "kind: identify_force\ntable: table.yaml\nrecord: {file: r.csv, responses: [{channel: a1}]}\n"
+      "sweep: {product: {shape: [smooth, impacts]}}\n");
+  const auto fingerprint = [&] {
+    const LoadedExperiment loaded = load_experiment(path("list.yaml"));
+    const auto& list = dynamic_cast<const TaskExperiment&>(*loaded.experiment);
+    return list.fingerprint(1, loaded.document.folder());
+  };
+  const std::string before = fingerprint();
+  EXPECT_EQ(fingerprint(), before);
+  write("modes.csv", "frequency,damping_ratio,a1\n50,0.01,2\n");
+  EXPECT_NE(fingerprint(), before);
 }
 
 TEST_F(TableFile, IsRefusedWithThePlaceOfAMistake) {
