@@ -1,6 +1,7 @@
 #include "experiments/loader.hpp"
 
 #include <algorithm>
+#include <array>
 #include <regex>
 #include <set>
 #include <tuple>
@@ -160,17 +161,17 @@ bool check_memory(const Experiment& experiment, const Means& means, LoadedExperi
 
 // A table of modes where the kind has none.
 void tell_of_structures(LoadedExperiment& loaded) {
-  static const std::regex kKeys("unknown key \"(table|structure|model|shapes|responses)\".*");
+  constexpr std::array<std::string_view, 5> kKeys = {"table", "structure", "model", "shapes",
+                                                     "responses"};
   std::string_view what;
   for (Mistake& mistake : loaded.mistakes) {
-    std::smatch found;
-    if (!std::regex_match(mistake.text, found, kKeys)) continue;
+    if (std::ranges::count(kKeys, mistake.unknown_key) == 0) continue;
     try {
       if (what.empty()) what = loaded.choice.make()->for_structures();
     } catch (const InvalidInput&) {
       return;  // what it cannot be made of is told by itself
     }
-    mistake.text = fmt::format("unknown key \"{}\": {}", found[1].str(), what);
+    mistake.text = fmt::format("unknown key \"{}\": {}", mistake.unknown_key, what);
   }
 }
 

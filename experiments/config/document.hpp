@@ -49,6 +49,7 @@ struct Mistake {
   SourcePosition position;
   std::string text;
   bool warning = false;
+  std::string unknown_key = {};  ///< where that is the mistake
 };
 
 struct YamlDocument {

@@ -34,10 +34,14 @@ void YamlReader::finish() {
     if (std::find(seen_.begin(), seen_.end(), member.key) != seen_.end()) continue;
     if (member.key == "<<") continue;  // reported by the parser
     const std::string_view moved = moved_key(member.key);
-    mistakes_.push_back(
-        {member.position,
-         moved.empty() ? fmt::format("unknown key \"{}\"{}", member.key, remedy_of(member.key))
-                       : fmt::format("\"{}\" {}", member.key, moved)});
+    if (moved.empty()) {
+      mistakes_.push_back(
+          {.position = member.position,
+           .text = fmt::format("unknown key \"{}\"{}", member.key, remedy_of(member.key)),
+           .unknown_key = member.key});
+    } else {
+      mistakes_.push_back({member.position, fmt::format("\"{}\" {}", member.key, moved)});
+    }
   }
 }
 

@@ -109,7 +109,8 @@ void ForceOutcome::visit(ResultVisitor& visitor) const {
   visitor({.key = "background"}, found.background);
   visitor({.key = "evidence_impacts"}, known(found.evidence_impacts));
   visitor({.key = "evidence_smooth"}, known(found.evidence_smooth));
-  visitor({.key = "rise", .name = "rise of the power towards 0 Hz", .format = "{:.2g}"}, found.rise);
+  visitor({.key = "rise", .name = "rise of the power towards 0 Hz", .format = "{:.2g}"},
+          found.rise);
   visitor({.key = "misfit"}, known(found.misfit));
 }
 

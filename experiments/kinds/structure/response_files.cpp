@@ -45,6 +45,7 @@ void ResponseFunctionOptions::visit(OptionVisitor& visitor) {
           {.choices = record_format_choices()}, format);
   visitor("responses", "response functions of the sensors, all of one contact", {.required = true},
           responses);
+  visit_exponential_window(visitor, window);
 }
 
 LoadedResponseFunctions load_response_functions(const ResponseFunctionOptions& options,
@@ -55,6 +56,8 @@ LoadedResponseFunctions load_response_functions(const ResponseFunctionOptions& o
   }
   ResponseFunctions read = read_response_functions(folder / options.file, options.format, channels);
   LoadedResponseFunctions loaded{.grid = read.grid};
+  // Force and responses weighted by exp(−t/τ) have H on that contour.
+  loaded.grid.sigma = window_decay(options.window);
   std::vector<std::string> unstated;
   for (std::size_t k = 0; k < read.functions.size(); ++k) {
     ResponseFunction& function = read.functions[k];

@@ -126,7 +126,17 @@ void StructureRecordOptions::visit(OptionVisitor& visitor) {
           "nothing moves so long from the start on: the mean of it is taken out of every channel; "
           "automatic: until a channel leaves its level by 1 % of its largest departure",
           {.unit = "s", .range = Range::non_negative(), .word = "automatic"}, rest);
+  visit_exponential_window(visitor, window);
 }
+
+void visit_exponential_window(OptionVisitor& visitor, double& window) {
+  visitor("exponential_window",
+          "time constant by which the instrument has weighted all channels, exp(-t/tau): taken "
+          "out, or every mode would be damped by 1/tau more",
+          {.unit = "s", .range = Range::positive(), .word = "none"}, window);
+}
+
+double window_decay(double window) { return std::isnan(window) ? 0.0 : 1.0 / window; }
 
 LoadedStructureRecord load_structure_record(const StructureRecordOptions& options,
                                             const std::filesystem::path& folder,
@@ -150,11 +160,21 @@ LoadedStructureRecord load_structure_record(const StructureRecordOptions& option
   const std::size_t last = std::isnan(options.stop) ? recording.frames() : index(options.stop);
   MODCAL_REQUIRE(first < last, "{}: no sample lies between record.start = {:g} s and its end",
                  options.file, options.start);
+  // Of double precision nothing is left by then.
+  const double decay = window_decay(options.window);
+  const double end = static_cast<double>(last) / recording.sample_rate;
+  MODCAL_REQUIRE(end * decay < 36.0,
+                 "{}: at {:g} s the window of {:g} s has left nothing: state an earlier "
+                 "record.stop or another exponential_window",
+                 options.file, end, options.window);
   const auto part = [&](std::size_t channel, double scale) {
     std::vector<double> samples(
         recording.channels[channel].samples.begin() + static_cast<std::ptrdiff_t>(first),
         recording.channels[channel].samples.begin() + static_cast<std::ptrdiff_t>(last));
-    for (double& x : samples) x *= scale;
+    for (std::size_t j = 0; j < samples.size(); ++j) {
+      const double t = static_cast<double>(first + j) / recording.sample_rate;
+      samples[j] *= scale * std::exp(t * decay);
+    }
     return samples;
   };
   std::vector<std::string> unstated;

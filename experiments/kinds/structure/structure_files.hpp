@@ -35,6 +35,7 @@ struct StructureRecordOptions {
   double start = 0.0;
   double stop = std::numeric_limits<double>::quiet_NaN();
   double rest = std::numeric_limits<double>::quiet_NaN();
+  double window = std::numeric_limits<double>::quiet_NaN();  ///< τ [s]; NaN: none
   void visit(OptionVisitor& visitor);
 };
 
@@ -43,8 +44,14 @@ struct ResponseFunctionOptions {
   std::string file;
   std::string format = "auto";
   std::vector<StructureChannelOptions> responses;
+  double window = std::numeric_limits<double>::quiet_NaN();  ///< τ [s]; NaN: none
   void visit(OptionVisitor& visitor);
 };
+
+/// exp(−t/τ), by which an instrument has weighted all channels of a strike. τ [s]; NaN: none.
+void visit_exponential_window(OptionVisitor& visitor, double& window);
+/// 1/τ [1/s].
+double window_decay(double window);
 
 /// In SI units per newton.
 struct LoadedResponseFunctions {

@@ -112,8 +112,9 @@ TEST(FitModes, ModesOfThePlateStayInTheDiagramOfStabilization) {
 
 class ResponseFunctionsOf : public FolderTest {
  protected:
-  // A universal file of an acceleration in g per lbf with two modes, from 5 to 200 Hz.
-  void write_function() const {
+  // A universal file of an acceleration in g per lbf with two modes, from 5 to 200 Hz. decay [1/s]:
+  // of the window by which force and response were weighted.
+  void write_function(double decay = 0.0) const {
     constexpr double kTurn = 6.283185307179586, kGravity = 9.80665, kPound = 4.4482216152605;
     std::string text =
         "    -1\n    58\nacc\nNONE\nNONE\nNONE\nNONE\n"
@@ -125,7 +126,7 @@ class ResponseFunctionsOf : public FolderTest {
       text += fmt::format("{:10}{:5}{:5}{:5} {:20} {:20}\n", code, 0, 0, 0, label, unit);
     }
     for (std::size_t m = 0; m < 391; ++m) {
-      const Complex s(0.0, kTurn * (5.0 + 0.5 * static_cast<double>(m)));
+      const Complex s(decay, kTurn * (5.0 + 0.5 * static_cast<double>(m)));
       const Complex h = s * s *
                         (2.0 / ModalPole{kTurn * 60.0, 0.01}.denominator(s) -
                          1.5 / ModalPole{kTurn * 130.0, 0.02}.denominator(s)) /
@@ -138,35 +139,45 @@ class ResponseFunctionsOf : public FolderTest {
     write("fit.yaml", "kind: fit_modes\n" + keys);
     return run(read_yaml_file(path("fit.yaml")));
   }
+  // Fits the file and compares with what it was made of.
+  void expect_modes(const std::string& keys) const {
+    const StudyResult result = run_file("functions: {file: acc.uff, responses: [{channel: acc}]" +
+                                        keys + "}\nlow: 10\nhigh: 190\n");
+    ASSERT_EQ(result.status, report::Status::kOk) << result.summary;
+    for (const auto& [file, text] : result.files) {
+      if (file == "table.yaml") write("table.yaml", text);
+    }
+    const StructureTable table = read_table(path("table.yaml"));
+    // 13 digits were written; a mode more than there are would take what rounding leaves.
+    ASSERT_GE(table.model.poles.size(), 2u);
+    const auto mode_near = [&](double frequency) {
+      std::size_t best = 0;
+      for (std::size_t n = 0; n < table.model.poles.size(); ++n) {
+        if (std::abs(table.frequency(n) - frequency) <
+            std::abs(table.frequency(best) - frequency)) {
+          best = n;
+        }
+      }
+      return best;
+    };
+    for (const auto& [frequency, ratio, constant] :
+         {std::tuple(60.0, 0.01, 2.0), std::tuple(130.0, 0.02, -1.5)}) {
+      const std::size_t n = mode_near(frequency);
+      EXPECT_NEAR(table.frequency(n), frequency, 1e-6);
+      EXPECT_NEAR(table.model.poles[n].zeta, ratio, 1e-7);
+      EXPECT_NEAR(table.model.constant(0, n), constant, 1e-5);
+    }
+  }
 };
 
 TEST_F(ResponseFunctionsOf, AUniversalFileGiveModesInSi) {
   write_function();
-  const StudyResult result =
-      run_file("functions: {file: acc.uff, responses: [{channel: acc}]}\nlow: 10\nhigh: 190\n");
-  ASSERT_EQ(result.status, report::Status::kOk) << result.summary;
-  for (const auto& [file, text] : result.files) {
-    if (file == "table.yaml") write("table.yaml", text);
-  }
-  const StructureTable table = read_table(path("table.yaml"));
-  // 13 digits were written; a mode more than there are would take what rounding leaves.
-  ASSERT_GE(table.model.poles.size(), 2u);
-  const auto mode_near = [&](double frequency) {
-    std::size_t best = 0;
-    for (std::size_t n = 0; n < table.model.poles.size(); ++n) {
-      if (std::abs(table.frequency(n) - frequency) < std::abs(table.frequency(best) - frequency)) {
-        best = n;
-      }
-    }
-    return best;
-  };
-  for (const auto& [frequency, ratio, constant] :
-       {std::tuple(60.0, 0.01, 2.0), std::tuple(130.0, 0.02, -1.5)}) {
-    const std::size_t n = mode_near(frequency);
-    EXPECT_NEAR(table.frequency(n), frequency, 1e-6);
-    EXPECT_NEAR(table.model.poles[n].zeta, ratio, 1e-7);
-    EXPECT_NEAR(table.model.constant(0, n), constant, 1e-5);
-  }
+  expect_modes("");
+}
+
+TEST_F(ResponseFunctionsOf, AnExponentialWindowIsNoDamping) {
+  write_function(3.0);
+  expect_modes(", exponential_window: 0.3333333333333333 s");
 }
 
 TEST_F(ResponseFunctionsOf, AreRefusedWhereTheyAreNone) {
@@ -185,6 +196,35 @@ TEST_F(ResponseFunctionsOf, AreRefusedWhereTheyAreNone) {
               HasSubstr("in \"g\" per \"lbf\", which is none of what it is said to be"));
   EXPECT_THAT(said("functions: {file: acc.uff, responses: [{channel: acc}]}\ncontour: 5\n"),
               HasSubstr("leave contour out"));
+}
+
+class ExponentialWindow : public FolderTest {};
+
+TEST_F(ExponentialWindow, IsTakenOutOfARecord) {
+  write("plain.csv", "t [s],f [N],a [m/s2]\n0,0,0\n0.1,1,2\n0.2,0.5,-3\n0.3,0,1\n");
+  std::string text = "t [s],f [N],a [m/s2]\n";
+  for (const auto& [time, force, response] :
+       {std::tuple(0.0, 0.0, 0.0), std::tuple(0.1, 1.0, 2.0), std::tuple(0.2, 0.5, -3.0),
+        std::tuple(0.3, 0.0, 1.0)}) {
+    const double left = std::exp(-time / 0.25);
+    text += fmt::format("{},{:.17g},{:.17g}\n", time, left * force, left * response);
+  }
+  write("weighted.csv", text);
+  StructureRecordOptions options{.has_force = true, .responses = {{.channel = "a"}}, .start = 0.1};
+  options.force.channel = "f";
+  const auto loaded = [&](const char* file, double window) {
+    options.file = file;
+    options.window = window;
+    return load_structure_record(options, path("."));
+  };
+  const LoadedStructureRecord plain = loaded("plain.csv", NAN),
+                              other = loaded("weighted.csv", 0.25);
+  ASSERT_EQ(other.record.samples(), 3u);
+  for (std::size_t j = 0; j < 3; ++j) {
+    EXPECT_NEAR(other.record.force[j], plain.record.force[j], 1e-14);
+    EXPECT_NEAR(other.record.responses[0][j], plain.record.responses[0][j], 1e-14);
+  }
+  EXPECT_THAT(refusal_of([&] { loaded("weighted.csv", 0.01); }), HasSubstr("has left nothing"));
 }
 
 TEST(IdentifyForce, FindsTheForceOfAnotherStrikeAndHoldsItInItsBand) {
