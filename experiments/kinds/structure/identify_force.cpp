@@ -5,6 +5,7 @@
 #include "experiments/kinds/structure/force_outcome.hpp"
 #include "experiments/kinds/structure/structure_kinds.hpp"
 #include "experiments/report/result.hpp"
+#include "libinverse/structure/force/pulse_train.hpp"
 #include "libinverse/structure/tuning.hpp"
 #include "libsim/signal/statistics.hpp"
 
@@ -239,6 +240,12 @@ StudyResult IdentifyForceOptions::run(const StudyContext& context) const {
     const PlacesOutcome told{tables(), *where};
     result.summary += told.sentence();
     result.add(report::tables_of(told));
+  }
+  if (found.untried > 0.0) {
+    result.warn(fmt::format(
+        "impacts were not tried: the window of {:g} s holds {:g} instants of a pulse, {:g} are "
+        "possible; where the force is one of impacts, state a shorter window",
+        found.window, found.untried, PulseTrain::kMostInstants));
   }
   doubt_slow_part(found, loaded, modes.low, result);
   doubt(found, loaded, result);

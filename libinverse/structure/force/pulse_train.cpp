@@ -14,16 +14,24 @@ using Index = Eigen::Index;
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
+double step_of(const StructureTable& table, double sample_rate) {
+  return std::max(1.0 / (3.0 * table.high), 0.5 / sample_rate);
+}
+
 }  // namespace
 
+double PulseTrain::instants_in(const StructureTable& table, double sample_rate, double window) {
+  return std::floor(window / step_of(table, sample_rate));
+}
+
 PulseTrain::PulseTrain(const StructureTable& table, const ContourSpectra& spectra, double window)
-    : table_(table), spectra_(spectra) {
-  step_ = std::max(1.0 / (3.0 * table.high), 0.5 / spectra.sample_rate);
-  const auto count = static_cast<std::size_t>(window / step_);
-  MODCAL_REQUIRE(count >= 1 && count <= 4000,
-                 "a window of {:g} s holds {} instants of a pulse, {:g} s apart: state a window of "
-                 "1 to 4000 of them, or shape: smooth",
-                 window, count, step_);
+    : table_(table), spectra_(spectra), step_(step_of(table, spectra.sample_rate)) {
+  const double most = instants_in(table, spectra.sample_rate, window);
+  MODCAL_REQUIRE(most >= 1.0 && most <= kMostInstants,
+                 "a window of {:g} s holds {:g} instants of a pulse, {:g} s apart: state a window "
+                 "of 1 to {:g} of them, or shape: smooth",
+                 window, most, step_, kMostInstants);
+  const auto count = static_cast<std::size_t>(most);
   decay_.resize(static_cast<Index>(count));
   for (std::size_t i = 0; i < count; ++i) {
     instants_.push_back(step_ * static_cast<double>(i));

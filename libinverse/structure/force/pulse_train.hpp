@@ -12,7 +12,11 @@ namespace modcal {
 /// window. G is the pulse of the table.
 class PulseTrain {
  public:
-  /// Both must outlive this. Throws InvalidInput for a window of no or more than 4000 instants.
+  static constexpr double kMostInstants = 4000.0;  ///< matrices of 128 MB
+  /// How many instants a window [s] of a record holds.
+  static double instants_in(const StructureTable& table, double sample_rate, double window);
+
+  /// Both must outlive this. Throws InvalidInput for a window of no or more than kMostInstants.
   PulseTrain(const StructureTable& table, const ContourSpectra& spectra, double window);
 
   std::size_t count() const { return instants_.size(); }

@@ -56,7 +56,7 @@ class ForceSearch {
     result_.predicted = predictions_of(spectra_, transfers_, variances_);
     const BinEvidence evidence = evidence_of(spectra_, transfers_, variances_, kNone);
     find_power(evidence);
-    if (options_.shape != ForceShape::kSmooth) find_pulses(evidence);
+    if (wants_pulses()) find_pulses(evidence);
     const Eigen::VectorXd best = force_of(evidence);
     const Eigen::VectorXd own = variance_of(evidence);
     const Eigen::VectorXd drawn = by_models(best), left_out = by_sensors();
@@ -71,6 +71,13 @@ class ForceSearch {
 
  private:
   double rate() const { return spectra_.sample_rate; }
+
+  bool wants_pulses() {
+    if (options_.shape != ForceShape::kAuto) return options_.shape == ForceShape::kImpacts;
+    const double instants = PulseTrain::instants_in(table_, rate(), result_.window);
+    if (instants > PulseTrain::kMostInstants) result_.untried = instants;
+    return result_.untried == 0.0;
+  }
 
   // Pulses on a background of a share of the force's power: the share of largest evidence. All of
   // it and no pulse is a smooth force.

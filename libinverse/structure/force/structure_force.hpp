@@ -10,7 +10,7 @@ namespace modcal {
 
 /// What is supposed about the force before the responses are looked at.
 enum class ForceShape {
-  kAuto,     ///< the one of larger evidence
+  kAuto,     ///< the one of larger evidence; a smooth one where the window is too long for pulses
   kImpacts,  ///< pulses of the table's shape, few of all instants
   kSmooth,   ///< a stationary force of a smooth spectrum
 };
@@ -38,6 +38,8 @@ struct StructureForce {
   double background = 0.0;        ///< of impacts: share of the force's power that adds to them
   double evidence_impacts = 0.0;  ///< ln p(data) over that without force
   double evidence_smooth = 0.0;
+  /// Instants of a pulse in the window where they are too many for `auto` to try; 0: tried.
+  double untried = 0.0;
   double rise = 0.0;  ///< rise_towards_zero() of the force's power
   double misfit =
       0.0;  ///< (K − 1) sensors against the last, over what the scatter expects; NaN: K = 1
