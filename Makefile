@@ -115,9 +115,11 @@ tidy: packages packages-develop
 HOURS ?= 24
 tidy-changed: packages packages-test packages-develop
 	@cmake --preset tidy -DCMAKE_EXPORT_COMPILE_COMMANDS=ON >/dev/null
-	@git log --since=$$(($$(git log -1 --format=%ct) - 3600 * $(HOURS))) --name-only --format= -- '*.cpp' | sort -u | \
-	  while read -r file; do if [ -f "$$file" ]; then echo "^$$PWD/$$file\$$"; fi; done | \
-	  xargs -r run-clang-tidy -quiet -j $$(nproc) -p build/tidy
+	@last=$$(git log -1 --format=%ct) && \
+	  changed=$$(git log --since=$$((last - 3600 * $(HOURS))) --name-only --format= -- '*.cpp') && \
+	  files=$$(for file in $$(echo "$$changed" | sort -u); do if [ -f $$file ]; then echo "^$$PWD/$$file\$$"; fi; done) && \
+	  echo "clang-tidy: $$(echo "$$files" | grep -c .) files; those of python/ are not built and left out" && \
+	  if [ -n "$$files" ]; then run-clang-tidy -quiet -j $$(nproc) -p build/tidy $$files; fi
 
 clean:
 	@cmake -E rm -rf build

@@ -34,16 +34,16 @@ void ShapeMode(const BlindBins& bins, const ModalPole& pole, ModeShapes& out) {
                    hn::Mul(hn::Sub(omega, at.im), hn::Add(omega, at.im))),
         hn::Mul(at.im, hn::Add(loss, hn::Add(at.re, at.re)))};
     const Vector scale = hn::Div(one, Power(denominator));
-    const ComplexVector inv = {hn::Mul(denominator.re, scale),
-                               hn::Neg(hn::Mul(denominator.im, scale))};
-    const ComplexVector square = Minus(Times(inv, inv)), lost = Scaled(at, loss);
+    const ComplexVector reciprocal = {hn::Mul(denominator.re, scale),
+                                      hn::Neg(hn::Mul(denominator.im, scale))};
+    const ComplexVector square = Minus(Times(reciprocal, reciprocal)), lost = Scaled(at, loss);
     const ComplexVector zeta = Times(lost, square);
     const ComplexVector slope = Times({hn::Add(twice, lost.re), lost.im}, square);
-    inverse.Set(m, inv);
+    inverse.Set(m, reciprocal);
     by_omega.Set(m, slope);
     by_zeta.Set(m, zeta);
     const ComplexVector q_low = Scaled(at, period), q_high = Scaled(turned[m], omega);
-    const ComplexVector own_low = Times(q_low, inv), own_high = Times(q_high, inv);
+    const ComplexVector own_low = Times(q_low, reciprocal), own_high = Times(q_high, reciprocal);
     low.Set(m, own_low);
     high.Set(m, own_high);
     // s/ω falls and −ω/s grows with ω.

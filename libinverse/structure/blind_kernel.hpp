@@ -11,7 +11,6 @@ namespace modcal {
 struct BlindBins {
   struct Sensor {
     bool low;               ///< p = 0
-    AlignedVector root;     ///< 1/√V
     PlanarVector weighted;  ///< h = H/√V
     PlanarVector told;      ///< conj(h)/|h|² of all sensors
     PlanarVector made;      ///< s^p F/√V

@@ -2,7 +2,6 @@
 
 #include <Eigen/QR>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -67,7 +66,6 @@ BlindBins BlindLikelihood::bins_of(const ModalModel& model, std::vector<double>&
   told.assign(bins(), 0.0);
   for (std::size_t k = 0; k < sensors(); ++k) {
     result.sensors.push_back({.low = power_of_s(kinds_[k]) == 0,
-                              .root = roots_[k],
                               .weighted = PlanarVector(bins()),
                               .told = PlanarVector(bins()),
                               .made = PlanarVector(bins())});

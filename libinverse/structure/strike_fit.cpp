@@ -238,6 +238,14 @@ std::string StrikeFit::rejection() const {
       100.0 * most);
 }
 
+std::string StrikeFit::without_damping() const {
+  for (std::size_t n = 0; n < table.model.poles.size(); ++n) {
+    if (table.model.poles[n].zeta > 1.01 * kLeastDampingRatio) continue;
+    return fmt::format("rejected: no damping is left of the mode at {:.5g} Hz", table.frequency(n));
+  }
+  return {};
+}
+
 StrikeFit fit_strike(const StructureRecord& record, const std::vector<SensorKind>& kinds,
                      const StrikeFitOptions& options) {
   MODCAL_REQUIRE(!record.force.empty(),

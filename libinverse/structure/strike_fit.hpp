@@ -39,6 +39,9 @@ struct StrikeFit {
 
   /// Why these are no modes of the structure: they leave more than half of a response; else empty.
   std::string rejection() const;
+  /// Names a mode that stands at the least damping ratio that is tried: the record was damped less
+  /// than is supposed; else empty.
+  std::string without_damping() const;
 };
 
 /// Poles common to all sensors, complex modal constants and static terms (ModalModel), by weighted
@@ -51,9 +54,10 @@ StrikeFit fit_strike(const StructureRecord& record, const std::vector<SensorKind
                      const StrikeFitOptions& options);
 
 /// The same for measured H_k(σ + iω) [sensor's unit/N], a value for every bin of the grid; σ > 0 is
-/// 1/τ of an exponential window of the instrument. The force is 1 everywhere and nothing rings on. What is left grows with the force: the table's
-/// scatter is modal, its noise 0, and it has no pulse. Throws InvalidInput for another number of
-/// lines, one of the band that is not finite, and as above.
+/// 1/τ of an exponential window of the instrument. The force is 1 everywhere and nothing rings on.
+/// What is left grows with the force: the table's scatter is modal, its noise 0, and it has no
+/// pulse. Throws InvalidInput for another number of lines, one of the band that is not finite, and
+/// as above.
 StrikeFit fit_response(const FrequencyGrid& grid, const std::vector<std::vector<Complex>>& response,
                        const std::vector<SensorKind>& kinds, const StrikeFitOptions& options);
 

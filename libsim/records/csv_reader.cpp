@@ -201,7 +201,7 @@ void CsvReader::settle_columns() {
     }
     columns_[i].channel.name = heading.name;
     columns_[i].channel.unit = heading.unit;
-    if (!time_ && is_time(heading)) time_ = i;
+    if (options_.has_time && !time_ && is_time(heading)) time_ = i;
   }
   choose_columns();
 }

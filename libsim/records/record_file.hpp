@@ -13,6 +13,8 @@ struct ReadOptions {
   std::vector<std::string> channels = {};
   /// [Hz]; overrides what the file says (a difference becomes a warning). NaN: from the file.
   double sample_rate = std::numeric_limits<double>::quiet_NaN();
+  /// Columns of a CSV file may be instants; false: every column is a channel.
+  bool has_time = true;
   /// Keep going over errors in the samples: they are listed in Recording::problems, and what is no
   /// number is NaN. Otherwise they throw.
   bool survey = false;

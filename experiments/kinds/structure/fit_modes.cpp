@@ -124,7 +124,7 @@ std::vector<Finding> FitModesOptions::lint() const {
                 "(force: {{channel: ...}})");
   } else if (has_functions && !std::isnan(contour)) {
     add_finding(findings, "contour",
-                "response functions are known on the frequency axis alone: leave contour out");
+                "response functions are known on one contour alone: leave contour out");
   }
   if (!(low < high)) {
     add_finding(findings, "high", "{:g} Hz is not above low, {:g} Hz", high, low);
@@ -201,7 +201,13 @@ StudyResult FitModesOptions::run(const StudyContext& context) const {
   result.summary = sentence_of(fit, *this);
   result.answer_by_summary();
   for (const std::string& text : fitted.warnings) result.warn(text);
-  if (const std::string why = fit.rejection(); !why.empty()) {
+  std::string why = fit.rejection();
+  // Without a window it is one mode too many, of what rounding leaves.
+  const bool windowed = !std::isnan(has_functions ? functions.window : record.window);
+  if (why.empty() && windowed && !fit.without_damping().empty()) {
+    why = fit.without_damping() + ": state a longer exponential_window";
+  }
+  if (!why.empty()) {
     result.status = report::Status::kFailed;
     result.answer = why;
     result.warn(why);

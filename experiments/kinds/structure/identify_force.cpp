@@ -114,7 +114,7 @@ void IdentifyForceOptions::visit(OptionVisitor& visitor) {
           {.required = true}, record);
   visitor("shape",
           "impacts: pulses of the table's shape at few instants; smooth: a force that never stops; "
-          "auto: the one of larger evidence",
+          "auto: the one of larger evidence; smooth where the window has more than 4000 instants",
           {.choices = {"auto", "impacts", "smooth"}}, shape);
   visitor("non_negative", "pulses that only press", non_negative);
   visitor("window", "the force acts from the start on, so long; automatic: as long as the record",

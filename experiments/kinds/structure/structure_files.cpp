@@ -47,14 +47,18 @@ double scale_of(const StructureChannelOptions& options, const RecordedChannel& c
          to_si(std::isfinite(channel.full_scale) ? channel.full_scale : 1.0, channel.unit, si_unit);
 }
 
-// Until then no signal has left its level at first by a hundredth of its largest departure.
-std::size_t quiet_samples(const std::vector<std::vector<double>>& signals) {
+// Until then no signal has left its level at first by a hundredth of its largest departure. The
+// noise that a window taken out has made large is weighted by it again; decay: of a sample.
+std::size_t quiet_samples(const std::vector<std::vector<double>>& signals, double decay) {
   std::size_t quiet = signals.front().size();
   for (const std::vector<double>& signal : signals) {
     const std::size_t few = std::min<std::size_t>(5, signal.size());
     double level = 0.0, most = 0.0;
     for (std::size_t j = 0; j < few; ++j) level += signal[j] / static_cast<double>(few);
-    for (const double x : signal) most = std::max(most, std::abs(x - level));
+    for (std::size_t i = 0; i < signal.size(); ++i) {
+      const double weight = std::exp(-decay * static_cast<double>(i));
+      most = std::max(most, weight * std::abs(signal[i] - level));
+    }
     std::size_t j = 0;
     while (j < quiet && std::abs(signal[j] - level) < 0.01 * most) ++j;
     quiet = std::min(quiet, j);
@@ -63,12 +67,24 @@ std::size_t quiet_samples(const std::vector<std::vector<double>>& signals) {
   return quiet * 4 / 5;
 }
 
+// first: sample of the file with which the record begins.
+void take_window_out(double window, std::size_t first, StructureRecord& record) {
+  if (std::isnan(window)) return;
+  const auto take_out = [&](std::vector<double>& signal) {
+    for (std::size_t j = 0; j < signal.size(); ++j) {
+      signal[j] *= std::exp(static_cast<double>(first + j) / record.sample_rate / window);
+    }
+  };
+  std::ranges::for_each(record.responses, take_out);
+  take_out(record.force);
+}
+
 void remove_level(const StructureRecordOptions& options, LoadedStructureRecord& loaded) {
   StructureRecord& record = loaded.record;
   // By the responses alone: a force that is only compared with must not change the answer.
   const std::size_t count =
       std::isnan(options.rest)
-          ? quiet_samples(record.responses)
+          ? quiet_samples(record.responses, window_decay(options.window) / record.sample_rate)
           : static_cast<std::size_t>(std::llround(options.rest * record.sample_rate));
   MODCAL_REQUIRE(count < record.samples(), "record.rest = {:g} s is all of the record's {:g} s",
                  options.rest, record.duration());
@@ -130,10 +146,11 @@ void StructureRecordOptions::visit(OptionVisitor& visitor) {
 }
 
 void visit_exponential_window(OptionVisitor& visitor, double& window) {
-  visitor("exponential_window",
-          "time constant by which the instrument has weighted all channels, exp(-t/tau): taken "
-          "out, or every mode would be damped by 1/tau more",
-          {.unit = "s", .range = Range::positive(), .word = "none"}, window);
+  visitor(
+      "exponential_window",
+      "time constant by which the instrument has weighted all channels, exp(-t/tau), t from the "
+      "file's first sample on: taken out, or every mode would be damped by 1/tau more",
+      {.unit = "s", .range = Range::positive(), .word = "none"}, window);
 }
 
 double window_decay(double window) { return std::isnan(window) ? 0.0 : 1.0 / window; }
@@ -160,21 +177,17 @@ LoadedStructureRecord load_structure_record(const StructureRecordOptions& option
   const std::size_t last = std::isnan(options.stop) ? recording.frames() : index(options.stop);
   MODCAL_REQUIRE(first < last, "{}: no sample lies between record.start = {:g} s and its end",
                  options.file, options.start);
-  // Of double precision nothing is left by then.
-  const double decay = window_decay(options.window);
+  // A thousandth of a signal is what instruments leave of it at the least.
   const double end = static_cast<double>(last) / recording.sample_rate;
-  MODCAL_REQUIRE(end * decay < 36.0,
-                 "{}: at {:g} s the window of {:g} s has left nothing: state an earlier "
-                 "record.stop or another exponential_window",
+  MODCAL_REQUIRE(end * window_decay(options.window) < 7.0,
+                 "{}: at {:g} s the exponential_window of {:g} s has left less than a thousandth: "
+                 "state an earlier record.stop or another window",
                  options.file, end, options.window);
   const auto part = [&](std::size_t channel, double scale) {
     std::vector<double> samples(
         recording.channels[channel].samples.begin() + static_cast<std::ptrdiff_t>(first),
         recording.channels[channel].samples.begin() + static_cast<std::ptrdiff_t>(last));
-    for (std::size_t j = 0; j < samples.size(); ++j) {
-      const double t = static_cast<double>(first + j) / recording.sample_rate;
-      samples[j] *= scale * std::exp(t * decay);
-    }
+    for (double& x : samples) x *= scale;
     return samples;
   };
   std::vector<std::string> unstated;
@@ -194,6 +207,7 @@ LoadedStructureRecord load_structure_record(const StructureRecordOptions& option
         "no unit is stated of {}: taken to be SI; state calibration where it is another one",
         fmt::join(unstated, ", ")));
   }
+  take_window_out(options.window, first, loaded.record);
   remove_level(options, loaded);
   return loaded;
 }

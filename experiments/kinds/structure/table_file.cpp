@@ -6,6 +6,8 @@
 #include "experiments/kinds/structure/structure_files.hpp"
 #include "experiments/kinds/structure/table_columns.hpp"
 #include "experiments/kinds/structure/table_shapes.hpp"
+#include "experiments/runs/journal.hpp"
+#include "experiments/study/fingerprint.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -76,6 +78,9 @@ StructureTable table_of(TableOptions options, const std::filesystem::path& path)
     for (const SensorOptions& sensor : options.sensors) names.push_back(sensor.name);
     ModeColumns read = read_mode_columns(path.parent_path() / options.modes_file, names);
     options.modes = std::move(read.modes);
+    MODCAL_REQUIRE(options.contact.empty() || read.contact.empty(),
+                   "{}: contact is stated here and is a column of {}: keep one", file,
+                   options.modes_file);
     if (options.contact.empty()) options.contact = std::move(read.contact);
   }
   MODCAL_REQUIRE(options.contact.empty() || options.contact.size() == options.modes.size(),
@@ -128,6 +133,19 @@ TableOptions read_table_options(const std::filesystem::path& path) {
   return options;
 }
 
+std::vector<std::filesystem::path> read_names(const std::filesystem::path& path) {
+  std::vector<std::filesystem::path> files;
+  try {
+    const TableOptions options = read_table_options(path);
+    for (const std::string& file : {options.modes_file, options.shapes.file}) {
+      if (!file.empty()) files.push_back(path.parent_path() / file);
+    }
+  } catch (const InvalidInput&) {
+    // The lint tells it at its place.
+  }
+  return files;
+}
+
 }  // namespace
 
 std::string table_text(const StructureTable& table) {
@@ -164,16 +182,9 @@ StructureTable read_table(const std::filesystem::path& path) {
 }
 
 std::vector<std::filesystem::path> files_named_by_table(const std::filesystem::path& path) {
-  std::vector<std::filesystem::path> files;
-  try {
-    const TableOptions options = read_table_options(path);
-    for (const std::string& file : {options.modes_file, options.shapes.file}) {
-      if (!file.empty()) files.push_back(path.parent_path() / file);
-    }
-  } catch (const InvalidInput&) {
-    // The lint tells it at its place.
-  }
-  return files;
+  // Of a list every task asks.
+  static ComputedOnce<std::vector<std::filesystem::path>> known;
+  return known.get(path.string() + input_digest(path), [&] { return read_names(path); });
 }
 
 }  // namespace modcal

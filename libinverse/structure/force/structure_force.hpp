@@ -36,7 +36,8 @@ struct StructureForce {
   std::vector<double> deviation;  ///< of each [N]
   std::vector<double> by_model;   ///< share of the table's errors in it [N]
   double background = 0.0;        ///< of impacts: share of the force's power that adds to them
-  double evidence_impacts = 0.0;  ///< ln p(data) over that without force
+  /// ln p(data) over that without force; NaN: not tried.
+  double evidence_impacts = std::numeric_limits<double>::quiet_NaN();
   double evidence_smooth = 0.0;
   /// Instants of a pulse in the window where they are too many for `auto` to try; 0: tried.
   double untried = 0.0;

@@ -9,7 +9,6 @@
 
 #include "experiments/kinds/structure/structure_files.hpp"
 #include "experiments/loader.hpp"
-#include "experiments/runs/task_experiment.hpp"
 #include "experiments/study/study.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/base/files.hpp"
@@ -224,7 +223,37 @@ TEST_F(ExponentialWindow, IsTakenOutOfARecord) {
     EXPECT_NEAR(other.record.force[j], plain.record.force[j], 1e-14);
     EXPECT_NEAR(other.record.responses[0][j], plain.record.responses[0][j], 1e-14);
   }
-  EXPECT_THAT(refusal_of([&] { loaded("weighted.csv", 0.01); }), HasSubstr("has left nothing"));
+  EXPECT_THAT(refusal_of([&] { loaded("weighted.csv", 0.01); }),
+              HasSubstr("has left less than a thousandth"));
+}
+
+// What noise is at the end of a weighted record grows by e^6, beyond the strike; that is none the
+// less seen.
+TEST_F(ExponentialWindow, IsTakenOutBehindTheRest) {
+  std::string text = "t [s],a [m/s2]\n";
+  constexpr double kWindow = 0.5, kOffset = 0.25;
+  for (int j = 0; j < 300; ++j) {
+    const double t = 0.01 * j, left = std::exp(-t / kWindow);
+    const double moved = j < 40 ? 0.0 : std::exp(-(t - 0.4)) * std::cos(20.0 * (t - 0.4));
+    text += fmt::format("{},{:.17g}\n", t, left * (moved + kOffset) + (j % 2 == 0 ? 1e-3 : -1e-3));
+  }
+  write("weighted.csv", text);
+  const LoadedStructureRecord loaded = load_structure_record(
+      {.file = "weighted.csv", .responses = {{.channel = "a"}}, .window = kWindow}, path("."));
+  EXPECT_LE(loaded.rest, 0.4);
+  EXPECT_GE(loaded.rest, 0.2);
+  // Noise of .001 is e^.8 as large at the strike.
+  EXPECT_NEAR(loaded.record.responses[0][40], 1.0, 0.01);
+}
+
+TEST_F(ResponseFunctionsOf, AWindowThatIsTooShortIsRefused) {
+  // The first mode decays by 3.8 1/s without the window, by 6.8 with it.
+  write_function(3.0);
+  const StudyResult result = run_file(
+      "functions: {file: acc.uff, responses: [{channel: acc}], exponential_window: 0.1 s}\n"
+      "low: 10\nhigh: 190\n");
+  EXPECT_EQ(result.status, report::Status::kFailed);
+  EXPECT_THAT(result.answer, HasSubstr("state a longer exponential_window"));
 }
 
 TEST(IdentifyForce, FindsTheForceOfAnotherStrikeAndHoldsItInItsBand) {
@@ -317,19 +346,11 @@ TEST(FitModes, RefusesAForceThatIsNotThatOfTheStrike) {
   EXPECT_EQ(result.status, report::Status::kFailed);
 }
 
-class TableFile : public FolderTest {};
-
-TEST_F(TableFile, ReadsBackToItself) {
-  const StructureTable table = read_table(kFolder + "plate_modes.json");
-  ASSERT_EQ(table.model.sensors.size(), 4u);
-  const std::string text = table_text(table);
-  write("table.yaml", text);
-  EXPECT_EQ(table_text(read_table(path("table.yaml"))), text);
-}
+class ModesOfAUniversalFile : public FolderTest {};
 
 // The force by the universal file that the fit has written, and by its table without what has no
 // place there.
-TEST_F(TableFile, ShapesOfAUniversalFileAreItsModes) {
+TEST_F(ModesOfAUniversalFile, AreThoseOfATable) {
   const StudyResult fit = run("fit_plate.yaml");
   for (const auto& [file, text] : fit.files) write(file, text);
   const StructureTable whole = read_table(path("table.yaml"));
@@ -357,66 +378,6 @@ TEST_F(TableFile, ShapesOfAUniversalFileAreItsModes) {
   EXPECT_THAT(said("5", sensors), HasSubstr("\"5\" is no node with a direction"));
   EXPECT_THAT(said("9 +3", sensors), HasSubstr("has no node 9"));
   EXPECT_THAT(said("5 +3", "[1 +3]"), HasSubstr("1 places for 4 sensors"));
-}
-
-TEST_F(TableFile, ColumnsOfACsvFileAreItsModes) {
-  write("table.yaml",
-        "low: 10\nhigh: 600\nmodes_file: modes.csv\nsensors:\n- {name: a1, kind: acceleration}\n"
-        "- {name: d, kind: displacement}\n");
-  const auto read = [&](const std::string& csv) {
-    write("modes.csv", csv);
-    return read_table(path("table.yaml"));
-  };
-  const StructureTable table = read(
-      "# by hand\nd,damping_ratio,frequency [Hz],a1,a1 imaginary,frequency_deviation,contact\n"
-      "0.5,0.01,50,1.5,-0.25,1e-4,2\n-0.75,0.02,80,2.5,0.125,0,3\n");
-  ASSERT_EQ(table.model.poles.size(), 2u);
-  EXPECT_DOUBLE_EQ(table.frequency(1), 80.0);
-  EXPECT_EQ(table.model.poles[0].zeta, 0.01);
-  EXPECT_THAT(table.model.constants, testing::ElementsAre(1.5, 2.5, 0.5, -0.75));
-  EXPECT_THAT(table.model.quadrature, testing::ElementsAre(-0.25, 0.125, 0.0, 0.0));
-  EXPECT_THAT(table.frequency_deviations, testing::ElementsAre(1e-4, 0.0));
-  EXPECT_THAT(table.contact, testing::ElementsAre(2.0, 3.0));
-  EXPECT_THAT(files_named_by_table(path("table.yaml")), testing::ElementsAre(path("modes.csv")));
-  const auto said = [&](const std::string& csv) { return refusal_of([&] { read(csv); }); };
-  EXPECT_THAT(said("frequency,damping_ratio,a1\n50,0.01,1\n"), HasSubstr("has no column \"d\""));
-  EXPECT_THAT(said("frequency,damping_ratio,a1,d,a2\n50,0.01,1,1,1\n"),
-              HasSubstr("the column \"a2\" has no meaning"));
-  EXPECT_THAT(said("frequency,damping_ratio,a1,d\n50,0.01,1,1\n60,1.5,1,1\n"),
-              HasSubstr("modes.csv:3: damping_ratio = 1.5; it must be in (0, 1)"));
-  EXPECT_THAT(said("frequency [kHz],damping_ratio,a1,d\n50,0.01,1,1\n"), HasSubstr("in kHz"));
-}
-
-TEST_F(TableFile, AListKnowsTheFilesOfATableByTheirContent) {
-  write("modes.csv", "frequency,damping_ratio,a1\n50,0.01,1\n");
-  write("table.yaml",
-        "low: 10\nhigh: 600\nmodes_file: modes.csv\nsensors: [{name: a1, kind: acceleration}]\n");
-  write(
-      "list.yaml",
-      "kind: identify_force\ntable: table.yaml\nrecord: {file: r.csv, responses: [{channel: a1}]}\n"
-      "sweep: {product: {shape: [smooth, impacts]}}\n");
-  const auto fingerprint = [&] {
-    const LoadedExperiment loaded = load_experiment(path("list.yaml"));
-    const auto& list = dynamic_cast<const TaskExperiment&>(*loaded.experiment);
-    return list.fingerprint(1, loaded.document.folder());
-  };
-  const std::string before = fingerprint();
-  EXPECT_EQ(fingerprint(), before);
-  write("modes.csv", "frequency,damping_ratio,a1\n50,0.01,2\n");
-  EXPECT_NE(fingerprint(), before);
-}
-
-TEST_F(TableFile, IsRefusedWithThePlaceOfAMistake) {
-  std::string text = table_text(read_table(kFolder + "plate_modes.json"));
-  text.replace(text.find("damping_ratio: 0.0"), 18, "damping_ratio: 1.0");
-  write("table.yaml", text);
-  try {
-    read_table(path("table.yaml"));
-    FAIL();
-  } catch (const InvalidInput& error) {
-    EXPECT_THAT(error.what(), HasSubstr("it must be in (0, 1)"));
-    EXPECT_THAT(error.what(), HasSubstr("table.yaml:"));
-  }
 }
 
 }  // namespace

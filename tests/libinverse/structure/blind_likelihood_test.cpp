@@ -38,13 +38,13 @@ TEST_P(BlindLikelihoodAtRest, JacobianIsTheSlopeOfTheCost) {
   const BlindLikelihood likelihood(spectra, truth.sensors, variances, GetParam());
   const BlindPoint point = likelihood.at(model);
   // J = 2|e|²/κ; what a column has along h or along PX is orthogonal to e.
+  const Eigen::MatrixXd jacobian = likelihood.jacobian(model, model, point, true);
   const Eigen::VectorXd slope =
-      4.0 / spectra.correlated() *
-      (likelihood.jacobian(model, model, point, true).transpose() * point.residual);
+      4.0 / spectra.correlated() * (jacobian.transpose() * point.residual);
   ASSERT_EQ(slope.size(), 12 + 36);
   for (std::size_t i = 0; i < 48; ++i) {
-    // Far within a mode's width. Differences leave O(step²) of the slope and the rounding of a
-    // cost.
+    // (step/ζ)²/6 of a slope is left by its third derivative, ζ > .003, and 1e-7 by the Jacobian's
+    // own step of what rings; besides the rounding of a cost over a step.
     const double step = i < 12 && i % 2 == 0 ? 1e-6 : 1e-5;
     const double difference =
         (likelihood.at(moved(model, i, step)).cost - likelihood.at(moved(model, i, -step)).cost) /
@@ -52,6 +52,23 @@ TEST_P(BlindLikelihoodAtRest, JacobianIsTheSlopeOfTheCost) {
     EXPECT_NEAR(slope[static_cast<Eigen::Index>(i)], difference,
                 1e-5 * std::abs(difference) + 1e-12 * point.cost / step)
         << i;
+  }
+  // The cost does not see what a column has along PX or h; the information does.
+  const double rounding = 1e-10 * jacobian.norm();
+  if (!GetParam()) {
+    EXPECT_LT((point.basis.transpose() * jacobian).norm(), rounding);
+  }
+  const auto length = static_cast<Eigen::Index>(point.bins.padded());
+  for (Eigen::Index i = 0; i < jacobian.cols(); ++i) {
+    for (std::size_t m = 0; m < point.told.size(); ++m) {
+      const auto at = static_cast<Eigen::Index>(m);
+      Complex along;
+      for (Eigen::Index k = 0; k < 3; ++k) {
+        const Complex part(jacobian(k * length + at, i), jacobian((3 + k) * length + at, i));
+        along += std::conj(point.bins.sensors[static_cast<std::size_t>(k)].weighted.at(m)) * part;
+      }
+      ASSERT_LT(std::abs(along) / std::sqrt(point.told[m]), rounding) << i << ' ' << m;
+    }
   }
 }
 
