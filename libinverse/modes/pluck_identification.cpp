@@ -74,6 +74,10 @@ class LawNumbers {
     const double ratio = frequency * frequency / square_;
     return std::sqrt(2.0 * ratio / (1.0 + std::sqrt(1.0 + 4.0 * bend_ / square_ * ratio)));
   }
+  double frequency(std::size_t number) const {
+    const double n = static_cast<double>(number);
+    return n * std::sqrt(square_ + bend_ * n * n);
+  }
   /// What lies farther from the law than the fundamental stated may, or half way to the middle
   /// between two modes, numbers no others. Stiffness is never negative.
   void add(std::size_t number, double frequency) {
@@ -95,6 +99,49 @@ class LawNumbers {
   Eigen::Vector2d right_ = Eigen::Vector2d::Zero();
   int count_ = 0;
 };
+
+using NumberedModes = std::map<std::size_t, DecayMode>;
+
+// One mode a number, of two the larger one.
+NumberedModes numbered_modes(std::vector<DecayMode> modes, double highest, LawNumbers& law) {
+  std::ranges::sort(modes, {}, [](const DecayMode& mode) { return mode.pole.frequency; });
+  NumberedModes numbered;
+  for (DecayMode& mode : modes) {
+    const double frequency = mode.pole.frequency;
+    if (frequency > highest || !(mode.pole.damping_ratio > 0.0)) continue;
+    const auto number = static_cast<std::size_t>(std::lround(law.place(frequency)));
+    if (number == 0) continue;
+    const auto [place, fresh] = numbered.try_emplace(number, mode);
+    if (fresh) law.add(number, frequency);
+    if (!fresh && size_of(mode) > size_of(place->second)) place->second = std::move(mode);
+  }
+  return numbered;
+}
+
+// Numbers below the highest that no mode has.
+std::vector<std::size_t> missing_in(const NumberedModes& numbered) {
+  std::vector<std::size_t> missing;
+  std::size_t next = 1;
+  for (const auto& [number, mode] : numbered) {
+    for (; next < number; ++next) missing.push_back(next);
+    next = number + 1;
+  }
+  return missing;
+}
+
+// A weak mode that was not stable leaves a signal that no other explains. It stands where the law
+// has it and decays as fast as its neighbor.
+std::vector<StablePole> with_missing(std::vector<StablePole> stable, const NumberedModes& numbered,
+                                     const LawNumbers& law) {
+  for (const std::size_t number : missing_in(numbered)) {
+    const DecayPole& neighbor = numbered.upper_bound(number)->second.pole;
+    const double frequency = law.frequency(number);
+    stable.push_back(
+        {.pole = {.frequency = frequency,
+                  .damping_ratio = neighbor.damping_ratio * neighbor.frequency / frequency}});
+  }
+  return stable;
+}
 
 }  // namespace
 
@@ -128,28 +175,22 @@ PluckIdentification identify_pluck(const DecayRecord& record, double fundamental
   result.diagram = stabilization_diagram(realization, options.stabilization);
   const std::vector<StablePole> stable = stable_poles(result.diagram, options.stabilization);
   if (stable.empty()) return result;
-  std::vector<DecayMode> modes = modes_of(decay, stable, options, result);
-  std::sort(modes.begin(), modes.end(), [](const DecayMode& a, const DecayMode& b) {
-    return a.pole.frequency < b.pole.frequency;
-  });
-  std::map<std::size_t, DecayMode> numbered;
   LawNumbers law(fundamental);
-  for (DecayMode& mode : modes) {
-    const double frequency = mode.pole.frequency;
-    if (frequency > options.highest_frequency || !(mode.pole.damping_ratio > 0.0)) continue;
-    const auto number = static_cast<std::size_t>(std::lround(law.place(frequency)));
-    if (number == 0) continue;
-    const auto [place, fresh] = numbered.try_emplace(number, mode);
-    if (fresh) law.add(number, frequency);
-    if (!fresh && size_of(mode) > size_of(place->second)) place->second = std::move(mode);
-  }
-  for (auto& [number, mode] : numbered) {
-    for (std::size_t n = result.modes.empty() ? 1 : result.modes.back().number + 1; n < number;
-         ++n) {
-      result.missing.push_back(n);
+  NumberedModes numbered =
+      numbered_modes(modes_of(decay, stable, options, result), options.highest_frequency, law);
+  if (!result.converged && !missing_in(numbered).empty()) {
+    PluckIdentification again = result;
+    again.noise.clear();
+    std::vector<DecayMode> modes =
+        modes_of(decay, with_missing(stable, numbered, law), options, again);
+    if (again.converged && again.full_rank) {
+      result = std::move(again);
+      law = LawNumbers(fundamental);
+      numbered = numbered_modes(std::move(modes), options.highest_frequency, law);
     }
-    result.modes.push_back({number, std::move(mode)});
   }
+  result.missing = missing_in(numbered);
+  for (auto& [number, mode] : numbered) result.modes.push_back({number, std::move(mode)});
   return result;
 }
 

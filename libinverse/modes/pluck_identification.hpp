@@ -44,8 +44,9 @@ struct PluckIdentification {
 /// Cramér–Rao bound for maximum_likelihood; the spread over the orders, no error bar, for era.
 /// Modes are numbered upwards along the law f = n f₀ √(1 + B n²) of those numbered before: far up a
 /// stiff string f/f₀ is off by more than one. Of two with one number the one with the larger
-/// amplitude is kept. fundamental: f₀ to about 1 % [Hz]. Throws InvalidInput for an invalid or too
-/// short record, a fundamental that is not positive, an unknown method.
+/// amplitude is kept. A fit that does not converge is made again with the modes that are missing,
+/// where the law has them. fundamental: f₀ to about 1 % [Hz]. Throws InvalidInput for an invalid or
+/// too short record, a fundamental that is not positive, an unknown method.
 PluckIdentification identify_pluck(const DecayRecord& record, double fundamental,
                                    const PluckOptions& options = {});
 

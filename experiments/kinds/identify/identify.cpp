@@ -1,5 +1,6 @@
 #include "experiments/kinds/identify/identify.hpp"
 
+#include "experiments/kinds/invert/invert.hpp"
 #include "experiments/kinds/lint.hpp"
 #include "experiments/report/result.hpp"
 
@@ -34,21 +35,30 @@ std::optional<StiffStringFit> law_of(const PluckIdentification& found) {
 using report::Series;
 using report::SeriesStyle;
 
+// Against the truth, or of a record against the law through all of its frequencies.
 report::Figure errors_figure(const IdentifyOutcome& outcome) {
-  const ModalBasis& basis = outcome.truth->basis;
-  Series errors{.label = "identified minus true", .style = SeriesStyle::kPoints};
+  const bool is_recorded = outcome.truth == nullptr;
+  const auto expected = [&](std::size_t number) {
+    if (is_recorded) return outcome.law->frequency(number);
+    const ModalBasis& basis = outcome.truth->basis;
+    return number > basis.size() ? 0.0 : basis.frequency(number - 1);
+  };
+  Series errors{.label = is_recorded ? "identified minus law" : "identified minus true",
+                .style = SeriesStyle::kPoints};
   for (const auto& [number, mode] : outcome.found.modes) {
-    if (number > basis.size()) continue;
-    const double truth = basis.frequency(number - 1);
+    const double truth = expected(number);
+    if (truth == 0.0) continue;
     const double error = mode.pole.frequency / truth - 1.0;
     const double deviation = mode.deviation.frequency / truth;
     errors.add(static_cast<double>(number), error, error - deviation, error + deviation);
   }
   return {.id = "frequency_errors",
-          .title = "Errors of the identified frequencies",
+          .title = is_recorded ? "Frequencies beside the law of a stiff string"
+                               : "Errors of the identified frequencies",
           .caption = "Bars: one standard deviation to either side.",
           .panels = {{.x = {.label = "mode"},
-                      .y = {.label = "relative error of the frequency"},
+                      .y = {.label = is_recorded ? "relative distance of the frequency"
+                                                 : "relative error of the frequency"},
                       .series = {std::move(errors)},
                       .markers = {{.direction = report::Marker::Direction::kHorizontal}}}}};
 }
@@ -69,14 +79,66 @@ std::string sentence_of(const IdentifyOutcome& outcome) {
 }  // namespace
 
 void IdentifyOptions::visit(OptionVisitor& visitor) {
-  visitor("scene", "string and how it is plucked", {.required = true}, truth.scene);
+  visitor("scene", "string and how it is plucked, simulated", has_scene, truth.scene);
   visitor("simulator", "how the scene is simulated", truth.simulator);
   visitor("measurement", "sampling and noise of the reactions", measurement);
+  visitor("record", "recorded reactions of a plucked string, in place of a scene", has_record,
+          record);
+  visitor("fundamental", "f0 of the recorded string, to about 1 %",
+          {.unit = "Hz", .range = Range::positive(), .word = "none"}, fundamental);
   visitor("identification", "how the modes are found", identification);
   visitor("seed", "key of the noise", {.range = Range::non_negative()}, seed);
 }
 
 std::vector<Finding> IdentifyOptions::lint() const {
+  if (has_scene && !has_record) return lint_simulated();
+  std::vector<Finding> findings;
+  if (has_scene) {
+    add_finding(findings, "record", "both a scene and a record are stated: keep one");
+  } else if (!has_record) {
+    add_finding(findings, "",
+                "nothing to identify: state a scene (simulated) or a record (a file)");
+  } else if (std::isnan(fundamental)) {
+    add_finding(findings, "record",
+                "modes are numbered by the string's f0: state fundamental: ... Hz, to about 1 %");
+  } else if (!(identification.highest_frequency > fundamental)) {
+    add_finding(findings, "identification.highest_frequency",
+                "no mode lies below {:g} Hz: the fundamental is {:g} Hz",
+                identification.highest_frequency, fundamental);
+  }
+  return findings;
+}
+
+std::vector<Finding> IdentifyOptions::lint_records(const std::filesystem::path& folder) const {
+  std::vector<Finding> findings;
+  if (!has_record || std::isnan(fundamental)) return findings;
+  lint_making(findings, "record.file", [&] {
+    PluckedRecord pluck;
+    try {
+      pluck = load_pluck(record, folder, fundamental);
+    } catch (const WrongRecordKey& error) {
+      throw WrongKey("record." + error.key(), error.what());
+    }
+    const DecayRecord& decay = pluck.decay;
+    MODCAL_REQUIRE(identification.highest_frequency < 0.5 * decay.sample_rate,
+                   "half the record's sample rate, {:g} Hz, is not above "
+                   "identification.highest_frequency, {:g} Hz: lower that",
+                   0.5 * decay.sample_rate, identification.highest_frequency);
+    require_decay_length(decay.channels.front().size(), decay.sample_rate, identification);
+    for (const std::string& warning : pluck.warnings) {
+      findings.push_back({"record.file", warning, false});
+    }
+  });
+  return findings;
+}
+
+std::vector<FileRead> IdentifyOptions::files_read() const {
+  if (!has_record) return {};
+  // The record, its decay and what is left of the band, each filtered and whitened.
+  return {file_read(record, "record.file", 12.0)};
+}
+
+std::vector<Finding> IdentifyOptions::lint_simulated() const {
   std::vector<Finding> findings = lint_scene(truth.scene, truth.simulator, measurement);
   if (truth.scene.start.selected() == "rest") {
     add_finding(
@@ -122,6 +184,7 @@ std::vector<PlanLine> IdentifyOptions::plan() const {
 }
 
 std::optional<PlannedSimulations> IdentifyOptions::planned_simulations() const {
+  if (!has_scene) return std::nullopt;
   // The fit has columns for every mode; of the samples, the band's share is left.
   const double left =
       std::min(1.0, 2.6 * identification.highest_frequency / measurement.sample_rate);
@@ -133,6 +196,15 @@ std::optional<PlannedSimulations> IdentifyOptions::planned_simulations() const {
 }
 
 IdentifyOutcome identify_outcome(const IdentifyOptions& options, const StudyContext& context) {
+  if (options.has_record) {
+    IdentifyOutcome outcome{
+        .record = load_pluck(options.record, context.folder, options.fundamental, context.stop)};
+    context.throw_if_interrupted();
+    outcome.found =
+        identify_pluck(outcome.record->decay, options.fundamental, options.identification);
+    outcome.law = law_of(outcome.found);
+    return outcome;
+  }
   const auto truth = context.work.truths.get(options.truth, options.measurement.sample_rate,
                                              {.left_reaction = true, .right_reaction = true});
   context.throw_if_interrupted();
@@ -145,7 +217,7 @@ IdentifyOutcome identify_outcome(const IdentifyOptions& options, const StudyCont
 }
 
 void IdentifyOutcome::visit(ResultVisitor& visitor) const {
-  const ModalBasis& basis = truth->basis;
+  const std::size_t known_modes = truth ? truth->basis.size() : 0;
   visitor.rows(
       {.key = "modes",
        .table = "modes",
@@ -157,7 +229,7 @@ void IdentifyOutcome::visit(ResultVisitor& visitor) const {
       found.modes, [&](ResultVisitor& row, const PluckedMode& plucked) {
         const auto& [number, mode] = plucked;
         const auto of_truth = [&, n = number](auto value) {
-          return n <= basis.size() ? std::optional<double>(value(n - 1)) : std::nullopt;
+          return n <= known_modes ? std::optional<double>(value(n - 1)) : std::nullopt;
         };
         row({.key = "n", .name = "mode"}, number);
         row({.key = "f_hz", .name = "frequency", .unit = "Hz", .format = "{:.7g}"},
@@ -165,14 +237,15 @@ void IdentifyOutcome::visit(ResultVisitor& visitor) const {
         row({.key = "f_sd_hz", .name = "its deviation", .unit = "Hz", .format = "{:.2g}"},
             mode.deviation.frequency);
         row({.key = "f_true_hz", .name = "true frequency", .unit = "Hz", .format = "{:.7g}"},
-            of_truth([&](std::size_t n) { return basis.frequency(n); }));
+            of_truth([&](std::size_t n) { return truth->basis.frequency(n); }));
         row({.key = "zeta", .name = "damping ratio"}, mode.pole.damping_ratio);
         row({.key = "zeta_sd", .name = "its deviation", .format = "{:.2g}"},
             mode.deviation.damping_ratio);
         row({.key = "zeta_true", .name = "true damping ratio"},
-            of_truth([&](std::size_t n) { return basis.zeta[n]; }));
+            of_truth([&](std::size_t n) { return truth->basis.zeta[n]; }));
       });
   visitor({.key = "missing"}, found.missing);
+  if (record) visitor({.key = "begin_s"}, record->begin);
   visitor({.key = "deviations_are_error_bars"}, found.full_rank);
   visitor({.key = "noise_in_band_n"}, found.noise);
   visitor({.key = "converged"}, found.converged);
@@ -199,7 +272,9 @@ report::Figure stabilization_figure(const IdentifyOutcome& outcome) {
 StudyResult IdentifyOptions::run(const StudyContext& context) const {
   const IdentifyOutcome outcome = identify_outcome(*this, context);
   StudyResult result;
-  if (!outcome.found.modes.empty()) result.blocks.emplace_back(errors_figure(outcome));
+  if (!outcome.found.modes.empty() && (outcome.truth || outcome.law)) {
+    result.blocks.emplace_back(errors_figure(outcome));
+  }
   result.add(report::tables_of(outcome));
   result.blocks.emplace_back(stabilization_figure(outcome));
   result.files.emplace_back("identification.json", report::json_file(report::json_of(outcome)));
@@ -213,6 +288,15 @@ StudyResult IdentifyOptions::run(const StudyContext& context) const {
                         : "the fit did not converge: its modes and error bars are not final; take "
                           "method: era, or lower identification.highest_frequency";
     result.summary += result.answer + "\n";
+  }
+  if (!outcome.record) return result;
+  for (const std::string& warning : outcome.record->warnings) result.warn(warning);
+  const std::string why =
+      rejection_of(outcome.found, outcome.record->decay, fundamental, outcome.law);
+  if (result.status == report::Status::kOk && !why.empty()) {
+    result.status = report::Status::kFailed;
+    result.answer = why;
+    result.warn(why);
   }
   return result;
 }

@@ -1,9 +1,9 @@
-// Kind "identify": a plucked string, its modes with error bars.
+// Kind "identify": a plucked string, simulated or recorded, its modes with error bars.
 #pragma once
 
 #include "experiments/experiment.hpp"
+#include "experiments/kinds/identify/identify_record.hpp"
 #include "libcalib/parameters/stiff_string_fit.hpp"
-#include "libinverse/modes/pluck_identification.hpp"
 
 namespace modcal {
 
@@ -11,21 +11,31 @@ struct IdentifyOptions {
   static constexpr std::string_view kForStructures =
       "identify finds the modes of a plucked string from the reactions at its ends; for those of "
       "any other structure state kind: fit_modes with a record of responses and force";
+  bool has_scene = false;
   TruthOptions truth;
   Measurement measurement;
+  bool has_record = false;
+  RecordOptions record;
+  double fundamental = std::numeric_limits<double>::quiet_NaN();  ///< of a record [Hz]
   PluckOptions identification;
   std::int64_t seed = 1;
   void visit(OptionVisitor& visitor);
 
   std::vector<Finding> lint() const;
+  std::vector<Finding> lint_records(const std::filesystem::path& folder) const;
   std::vector<PlanLine> plan() const;
   std::optional<PlannedSimulations> planned_simulations() const;
+  std::vector<FileRead> files_read() const;
   StudyResult run(const StudyContext& context) const;
+
+ private:
+  std::vector<Finding> lint_simulated() const;
 };
 
 struct IdentifyOutcome {
   PluckIdentification found;
-  std::shared_ptr<const Truth> truth;
+  std::shared_ptr<const Truth> truth;  ///< null: recorded
+  std::optional<PluckedRecord> record;
   /// Law through the frequencies, weighted by their deviations where they have some; empty with
   /// fewer than two modes.
   std::optional<StiffStringFit> law;
@@ -33,7 +43,7 @@ struct IdentifyOutcome {
   void visit(ResultVisitor& visitor) const;
 };
 
-/// Simulates, measures and identifies.
+/// Simulates and measures, or reads, and identifies.
 IdentifyOutcome identify_outcome(const IdentifyOptions& options, const StudyContext& context);
 
 /// Poles over the order of the realization, stable ones apart.

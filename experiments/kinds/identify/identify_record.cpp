@@ -1,0 +1,97 @@
+#include "experiments/kinds/identify/identify_record.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "libsim/base/error.hpp"
+
+namespace modcal {
+namespace {
+
+// First sample of the period in which the channels change most; each counts alike.
+std::size_t liveliest(const std::vector<const std::vector<double>*>& channels, std::size_t period) {
+  const std::size_t periods = channels.front()->size() / period;
+  std::vector<double> changes(periods, 0.0);
+  for (const std::vector<double>* channel : channels) {
+    std::vector<double> own(periods, 0.0);
+    for (std::size_t j = 1; j < periods * period; ++j) {
+      own[j / period] += std::pow((*channel)[j] - (*channel)[j - 1], 2);
+    }
+    const double whole = std::accumulate(own.begin(), own.end(), 0.0);
+    for (std::size_t i = 0; i < periods && whole > 0.0; ++i) changes[i] += own[i] / whole;
+  }
+  return period * static_cast<std::size_t>(std::ranges::max_element(changes) - changes.begin());
+}
+
+}  // namespace
+
+PluckedRecord load_pluck(const RecordOptions& options, const std::filesystem::path& folder,
+                         double fundamental, const StopToken& stop) {
+  const RecordedSignals signals = load_record(options, folder, stop);
+  const auto period = static_cast<std::size_t>(std::ceil(signals.sample_rate / fundamental));
+  MODCAL_REQUIRE(signals.size() >= 3 * period,
+                 "{} samples are less than three periods of {:g} Hz: state a longer part of the "
+                 "record",
+                 signals.size(), fundamental);
+  std::vector<const std::vector<double>*> channels;
+  for (const std::optional<Signal>* reaction : {&signals.left, &signals.right}) {
+    if (*reaction) channels.push_back(&(*reaction)->samples);
+  }
+  const std::size_t first = liveliest(channels, period) + period;
+  PluckedRecord result{.decay = {.sample_rate = signals.sample_rate},
+                       .begin = static_cast<double>(first) / signals.sample_rate,
+                       .warnings = signals.warnings};
+  for (const std::vector<double>* channel : channels) {
+    std::vector<double>& samples = result.decay.channels.emplace_back(
+        channel->begin() + static_cast<std::ptrdiff_t>(first), channel->end());
+    const double mean = std::accumulate(samples.begin(), samples.end(), 0.0) /
+                        std::max(1.0, static_cast<double>(samples.size()));
+    for (double& x : samples) x -= mean;
+  }
+  return result;
+}
+
+std::string rejection_of(const PluckIdentification& found, const DecayRecord& decay,
+                         double fundamental, const std::optional<StiffStringFit>& law) {
+  std::size_t damped = 0;
+  for (const auto& [number, mode] : found.modes) {
+    if (mode.pole.damping_ratio > 3.0 * mode.deviation.damping_ratio) ++damped;
+  }
+  if (2 * damped < found.modes.size()) {
+    return fmt::format(
+        "rejected: {} of {} modes decay by more than what noise makes of them: this is no free "
+        "decay; state record.start and record.stop of one, behind the pluck",
+        damped, found.modes.size());
+  }
+  for (std::size_t k = 0; k < found.noise.size(); ++k) {
+    double power = 0.0;
+    for (const double x : decay.channels[k]) power += x * x;
+    const double rms = std::sqrt(power / static_cast<double>(decay.channels[k].size()));
+    if (found.noise[k] > 0.5 * rms) {
+      return fmt::format(
+          "rejected: the modes leave {:.0f} % of reaction {}: the record holds more than one "
+          "string's free decay in the band; lower identification.highest_frequency or state "
+          "another part",
+          100.0 * found.noise[k] / rms, k + 1);
+    }
+  }
+  std::size_t divisor = 0;
+  for (const auto& [number, mode] : found.modes) divisor = std::gcd(divisor, number);
+  if (found.modes.size() > 2 && divisor > 1) {
+    return fmt::format(
+        "rejected: the number of every mode is a multiple of {0}, as of a string {0} times as "
+        "high: "
+        "state fundamental: {1:g} Hz",
+        divisor, static_cast<double>(divisor) * fundamental);
+  }
+  if (law && !(std::abs(law->fundamental / fundamental - 1.0) < 0.03)) {
+    return fmt::format(
+        "rejected: the modes tell f0 = {:.5g} Hz, not the {:g} Hz that number them: state the "
+        "string's own fundamental",
+        law->fundamental, fundamental);
+  }
+  return {};
+}
+
+}  // namespace modcal

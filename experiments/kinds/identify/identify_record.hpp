@@ -1,0 +1,31 @@
+// A recorded pluck: which part of it is a free decay, and whether what was found are its modes.
+#pragma once
+
+#include <optional>
+
+#include "libcalib/parameters/stiff_string_fit.hpp"
+#include "libinverse/modes/pluck_identification.hpp"
+#include "libsim/records/recording.hpp"
+
+namespace modcal {
+
+struct PluckedRecord {
+  DecayRecord decay;   ///< from the pluck on, means taken out
+  double begin = 0.0;  ///< of it in the record's part [s]
+  std::vector<std::string> warnings;
+};
+
+/// The record's reactions from one period behind the one in which they change most, by the power of
+/// their differences: a string that is held before is at rest or bent. fundamental: f₀ [Hz]. Throws
+/// InvalidInput as load_record() does and for a part shorter than three periods.
+PluckedRecord load_pluck(const RecordOptions& options, const std::filesystem::path& folder,
+                         double fundamental, const StopToken& stop = {});
+
+/// Why these are no modes of a string of this f₀ [Hz] that decays freely: fewer than half of the
+/// damping ratios lie above zero by three deviations, the modes leave more than half of a reaction,
+/// all numbers have a common divisor, or the law through the frequencies has another f₀ by 3 %.
+/// Empty: nothing tells against it.
+std::string rejection_of(const PluckIdentification& found, const DecayRecord& decay,
+                         double fundamental, const std::optional<StiffStringFit>& law);
+
+}  // namespace modcal

@@ -1,0 +1,110 @@
+// Kind "identify" on recorded plucks: sums of damped sinusoids that no string model of modcal made.
+#include "experiments/kinds/identify/identify_record.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "experiments/loader.hpp"
+#include "experiments/study/study.hpp"
+#include "libsim/base/random.hpp"
+#include "tests/folder_test.hpp"
+
+namespace modcal::identify_record_test {
+namespace {
+
+using testing::HasSubstr;
+
+class RecordedPluck : public FolderTest {
+ protected:
+  static constexpr double kRate = 20e3, kHeld = 0.3, kNoise = 0.01;
+
+  static double frequency(int n) { return 196.0 * n * std::sqrt(1.0 + 1.5e-4 * n * n); }
+  static double ratio(int n) { return 1e-3 + 1e-4 * n; }
+
+  // The string is held for a while, bent to one side, and let go. Every mode is driven.
+  void write_pluck() const {
+    const auto count = static_cast<std::size_t>(1.5 * kRate);
+    std::vector<double> left(count), right(count);
+    fill_standard_normal(StreamKey(1).with("left"), left);
+    fill_standard_normal(StreamKey(1).with("right"), right);
+    std::string text = fmt::format("# sample_rate: {} Hz\nR1 [N],R2 [N]\n", kRate);
+    for (std::size_t j = 0; j < count; ++j) {
+      const double t = std::max(0.0, static_cast<double>(j) / kRate - kHeld);
+      double sums[2] = {kNoise * left[j], kNoise * right[j]};
+      for (int n = 1; n <= 11; ++n) {
+        const double omega = 2.0 * std::numbers::pi * frequency(n);
+        const double moved = std::exp(-ratio(n) * omega * t) * std::cos(omega * t) / n;
+        sums[0] += moved;
+        sums[1] -= (n % 2 == 0 ? -1.0 : 1.0) * moved;
+      }
+      text += fmt::format("{:.12g},{:.12g}\n", sums[0], sums[1]);
+    }
+    write("pluck.csv", text);
+  }
+  StudyResult run(const std::string& record, const std::string& keys) const {
+    write("identify.yaml", "kind: identify\nrecord: {file: " + record +
+                               ", left: {channel: R1}, right: {channel: R2}}\n" + keys);
+    const LoadedExperiment loaded = load_experiment(path("identify.yaml"));
+    if (!loaded.experiment) throw InvalidInput(format_mistakes(loaded.document, loaded.mistakes));
+    SharedWork work;
+    return loaded.experiment->run(
+        {.work = work, .folder = loaded.document.folder(), .command = "test"});
+  }
+};
+
+TEST_F(RecordedPluck, HasItsModesWithinTheirErrorBars) {
+  write_pluck();
+  const StudyResult result = run("pluck.csv", "fundamental: 197 Hz\n");
+  ASSERT_EQ(result.status, report::Status::kOk) << result.answer;
+  const auto document = nlohmann::json::parse(result.files.at(0).second);
+  ASSERT_EQ(document["modes"].size(), 11u);
+  // The period of 5.1 ms in which the string is let go lies around .3 s; the next begins the decay.
+  EXPECT_NEAR(document["begin_s"].get<double>(), kHeld + 0.0052, 0.0052);
+  double squares = 0.0;
+  for (const auto& mode : document["modes"]) {
+    const int n = mode["n"].get<int>();
+    const double off = (mode["f_hz"].get<double>() - frequency(n)) / mode["f_sd_hz"].get<double>();
+    const double of_ratio = (mode["zeta"].get<double>() - ratio(n)) / mode["zeta_sd"].get<double>();
+    squares += (off * off + of_ratio * of_ratio) / 22.0;
+    EXPECT_TRUE(mode["f_true_hz"].is_null());
+  }
+  // The mean of 22 squared standard normal numbers is 1 ± .3.
+  EXPECT_LT(squares, 2.2);
+  EXPECT_GT(squares, 0.3);
+  EXPECT_NEAR(document["stiff_string_law"]["B"].get<double>(), 1.5e-4, 2e-6);
+}
+
+TEST_F(RecordedPluck, IsRefusedWhereItsNumbersOrItsDecayAreWrong) {
+  write_pluck();
+  StudyResult result = run("pluck.csv", "fundamental: 98 Hz\n");
+  EXPECT_EQ(result.status, report::Status::kFailed);
+  EXPECT_THAT(result.answer, HasSubstr("a multiple of 2"));
+  EXPECT_THAT(result.answer, HasSubstr("state fundamental: 196 Hz"));
+  result = run("pluck.csv", "fundamental: 392 Hz\n");
+  EXPECT_EQ(result.status, report::Status::kFailed);
+  // A bowed string does not decay.
+  result = run(MODCAL_EXAMPLES "/bowed_violin_d.csv", "fundamental: 294 Hz\n");
+  EXPECT_EQ(result.status, report::Status::kFailed);
+  EXPECT_THAT(result.answer, HasSubstr("rejected"));
+}
+
+TEST_F(RecordedPluck, NeedsItsFundamentalAndARecordOrAScene) {
+  write_pluck();
+  const auto said = [&](const std::string& text) {
+    write("wrong.yaml", "kind: identify\n" + text);
+    const LoadedExperiment loaded = load_experiment(path("wrong.yaml"));
+    return format_mistakes(loaded.document, loaded.mistakes);
+  };
+  EXPECT_THAT(said("seed: 1\n"), HasSubstr("state a scene (simulated) or a record (a file)"));
+  EXPECT_THAT(said("record: {file: pluck.csv, left: {channel: R1}}\n"),
+              HasSubstr("state fundamental: ... Hz"));
+  EXPECT_THAT(said("record: {file: pluck.csv, left: {channel: R1}}\nfundamental: 3000 Hz\n"),
+              HasSubstr("no mode lies below 2300 Hz"));
+}
+
+}  // namespace
+}  // namespace modcal::identify_record_test
