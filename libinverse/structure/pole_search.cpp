@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "libinverse/structure/tuning.hpp"
 #include "libsim/base/task_loop.hpp"
 
 namespace modcal {
@@ -13,11 +14,10 @@ using Index = Eigen::Index;
 
 // Steps of a fit are small against a mode's width and what damping may be off.
 constexpr double kFrequencyStep = 0.02, kDampingStep = 0.5;
-constexpr double kMostDamping = 0.5;
 
 ModalPole moved(const ModalPole& pole, double frequency, double damping) {
   return {.omega = pole.omega * std::exp(frequency),
-          .zeta = std::clamp(pole.zeta * std::exp(damping), kLeastDampingRatio, kMostDamping)};
+          .zeta = std::clamp(pole.zeta * std::exp(damping), kLeastDampingRatio, kMostDampingRatio)};
 }
 
 // AᵀA; half of it is calculated.

@@ -8,9 +8,6 @@
 
 namespace modcal {
 
-/// No mode is damped less.
-inline constexpr double kLeastDampingRatio = 1e-5;
-
 /// One sensor at given poles: y = M x + r, columns of unit norm.
 struct SensorFit {
   Eigen::MatrixXd columns;  ///< weighted; real over imaginary parts

@@ -7,6 +7,7 @@
 
 #include "libinverse/structure/pole_search.hpp"
 #include "libinverse/structure/strike_weights.hpp"
+#include "libinverse/structure/tuning.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {

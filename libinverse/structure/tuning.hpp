@@ -43,4 +43,18 @@ constexpr int kMostSweeps = 150;
 /// Halved: not tried.
 constexpr std::ptrdiff_t kExactGains = 48;
 
+/// Damping ratios between which a search of modes stays.
+/// Source: what is damped less rings longer than any record of its bandwidth; more is no mode.
+/// Range tried: these.
+/// Doubled: not tried.
+/// Halved: not tried.
+constexpr double kLeastDampingRatio = 1e-5, kMostDampingRatio = 0.5;
+
+/// Instants of pulses that a window holds at most.
+/// Source: matrices of 128 MB.
+/// Range tried: this.
+/// Doubled: not tried.
+/// Halved: not tried.
+constexpr double kMostInstants = 4000.0;
+
 }  // namespace modcal

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "experiments/kinds/identify/identify.hpp"
+#include "experiments/kinds/invert/invert.hpp"
+#include "experiments/kinds/lint.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -92,6 +95,35 @@ std::string rejection_of(const PluckIdentification& found, const DecayRecord& de
         law->fundamental, fundamental);
   }
   return {};
+}
+
+std::vector<Finding> IdentifyOptions::lint_records(const std::filesystem::path& folder) const {
+  std::vector<Finding> findings;
+  if (!has_record || std::isnan(fundamental)) return findings;
+  lint_making(findings, "record.file", [&] {
+    PluckedRecord pluck;
+    try {
+      pluck = load_pluck(record, folder, fundamental);
+    } catch (const WrongRecordKey& error) {
+      throw WrongKey("record." + error.key(), error.what());
+    }
+    const DecayRecord& decay = pluck.decay;
+    MODCAL_REQUIRE(identification.highest_frequency < 0.5 * decay.sample_rate,
+                   "half the record's sample rate, {:g} Hz, is not above "
+                   "identification.highest_frequency, {:g} Hz: lower that",
+                   0.5 * decay.sample_rate, identification.highest_frequency);
+    require_decay_length(decay.channels.front().size(), decay.sample_rate, identification);
+    for (const std::string& warning : pluck.warnings) {
+      findings.push_back({"record.file", warning, false});
+    }
+  });
+  return findings;
+}
+
+std::vector<FileRead> IdentifyOptions::files_read() const {
+  if (!has_record) return {};
+  // The record, its decay and what is left of the band, each filtered and whitened.
+  return {file_read(record, "record.file", 12.0)};
 }
 
 }  // namespace modcal

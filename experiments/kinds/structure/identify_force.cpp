@@ -5,7 +5,6 @@
 #include "experiments/kinds/structure/force_outcome.hpp"
 #include "experiments/kinds/structure/structure_kinds.hpp"
 #include "experiments/report/result.hpp"
-#include "libinverse/structure/force/pulse_train.hpp"
 #include "libinverse/structure/tuning.hpp"
 #include "libsim/signal/statistics.hpp"
 
@@ -68,6 +67,12 @@ void doubt_slow_part(const StructureForce& found, const LoadedStructureRecord& l
 
 // Sensors that contradict each other refuse the answer.
 void doubt(const StructureForce& found, const LoadedStructureRecord& loaded, StudyResult& result) {
+  if (found.untried > 0.0) {
+    result.warn(fmt::format(
+        "impacts were not tried: the window of {:g} s holds {:g} instants of a pulse, {:g} are "
+        "possible; where the force is one of impacts, state a shorter window",
+        found.window, found.untried, kMostInstants));
+  }
   if (loaded.kinds.size() == 1) {
     result.warn(
         "one response explains any model: nothing tells whether the table is that of this "
@@ -240,12 +245,6 @@ StudyResult IdentifyForceOptions::run(const StudyContext& context) const {
     const PlacesOutcome told{tables(), *where};
     result.summary += told.sentence();
     result.add(report::tables_of(told));
-  }
-  if (found.untried > 0.0) {
-    result.warn(fmt::format(
-        "impacts were not tried: the window of {:g} s holds {:g} instants of a pulse, {:g} are "
-        "possible; where the force is one of impacts, state a shorter window",
-        found.window, found.untried, PulseTrain::kMostInstants));
   }
   doubt_slow_part(found, loaded, modes.low, result);
   doubt(found, loaded, result);

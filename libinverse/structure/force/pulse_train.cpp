@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "libinverse/structure/tuning.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/base/task_loop.hpp"
 

@@ -12,7 +12,6 @@ namespace modcal {
 /// window. G is the pulse of the table.
 class PulseTrain {
  public:
-  static constexpr double kMostInstants = 4000.0;  ///< matrices of 128 MB
   /// How many instants a window [s] of a record holds.
   static double instants_in(const StructureTable& table, double sample_rate, double window);
 

@@ -75,7 +75,7 @@ class ForceSearch {
   bool wants_pulses() {
     if (options_.shape != ForceShape::kAuto) return options_.shape == ForceShape::kImpacts;
     const double instants = PulseTrain::instants_in(table_, rate(), result_.window);
-    if (instants > PulseTrain::kMostInstants) result_.untried = instants;
+    if (instants > kMostInstants) result_.untried = instants;
     return result_.untried == 0.0;
   }
 
