@@ -12,6 +12,7 @@
 
 #include "libsim/base/error.hpp"
 #include "libsim/base/files.hpp"
+#include "libsim/base/words.hpp"
 
 namespace modcal {
 namespace {
