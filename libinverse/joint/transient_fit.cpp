@@ -252,7 +252,7 @@ void TransientFit::error_variances(const Setting& setting, Spectra spectra, cons
         windowed = window.front() * moved.middleRows(row_of(k), 2);
         for (std::size_t m = 1; m < window.size(); ++m) {
           if (k >= first + m) windowed += window[m] * moved.middleRows(row_of(k - m), 2);
-          if (m > k && m - k >= first) {
+          if (m > k && m - k >= first && m - k < last) {
             // Bins below 0 are the conjugates of those above: a blow at t = 0 is in all of them.
             windowed.row(0) += window[m] * moved.row(row_of(m - k));
             windowed.row(1) -= window[m] * moved.row(row_of(m - k) + 1);
