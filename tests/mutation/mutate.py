@@ -4,15 +4,17 @@
 mutate.py ROOT BUILD --seed S --count N draws N mutants of the .cpp and -inl.hpp files of libsim,
 libinverse and libcalib: an operator (operators.py) evenly, then one of its places evenly. Of each,
 the translation units that hold it are compiled anew, linked before the static libraries of BUILD,
-which has to be built without unity (the preset mutation), and the test files run that link it, nearest by
-folder first. A test that fails or
-does not end in time kills the mutant. Survivors are printed with what they change; those that
+which has to be built without unity (the preset mutation), and the test files of the programs built
+there run that link it, nearest by folder first. A test that fails or does not end in time kills the
+mutant. Survivors are printed with what they change; those that
 equivalent.txt proves to change nothing are counted apart. Exit 0: no other survivor; 1: some.
 
 --list prints the mutants drawn and ends; --only TEXT draws among those whose path or new line holds
-TEXT; --check tells which lines of equivalent.txt are no mutant any more.
+TEXT; --results FILE keeps verdicts, so that a run which was ended goes on (strike out the lines of
+those to be judged again); --check tells which lines of equivalent.txt are no mutant any more.
 """
 import argparse
+import copy
 import json
 import os
 import random
@@ -27,10 +29,14 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent))
+from build import Build  # noqa: E402
 from operators import OPERATORS, mutants_of  # noqa: E402
 
 LIBRARIES = ("libsim", "libinverse", "libcalib")
 LINKING = 0.7  # seconds
+# Compiled with assertions, which show what reads past an array's end: subscripts are shifted, summed
+# and limited.
+ASSERTED = ("index", "comparison", "sign", "extreme")
 # Files, texts and lists of names hold no numerics.
 NO_KERNEL = re.compile(r"^libsim/(base|records)/|/registry\.cpp$|_options\.cpp$|_text\.cpp$")
 
@@ -59,73 +65,21 @@ def drawn(root, seed, count, only):
     return result
 
 
-class Build:
-    """What ninja knows of a build directory: how objects are compiled, what tests link."""
+class Results:
+    """Verdicts, a line of JSON each in a file that a run goes on from; without a file, none are kept."""
 
-    def __init__(self, root, folder):
-        self.root, self.folder = root, folder
-        self.compile, self.link, self.members, self.source = {}, {}, {}, {}
-        self.tests = {}  # as ctest names them: the program and the file in it
-        database = subprocess.run(["ninja", "-t", "compdb"], cwd=folder, capture_output=True,
-                                  text=True, check=True).stdout
-        for edge in json.loads(database):
-            output, command = edge["output"], edge["command"]
-            inputs = [word for word in command.split() if word.endswith((".o", ".a"))]
-            if output.endswith(".o") and edge["file"].endswith(".cpp"):
-                self.compile[output] = command
-                self.source[output] = os.path.relpath(os.path.join(folder, edge["file"]), root)
-            elif output.endswith(".a"):
-                self.members[output] = {word for word in inputs if word.endswith(".o")}
-            elif re.fullmatch(r"tests/(?!experiments_cli_)\w+_tests", output):  # those run modcal
-                self.link[output] = (command, inputs)
-        for program, (_, inputs) in self.link.items():
-            for source in (self.source[o] for o in inputs if o in self.source):
-                file = source.removeprefix("tests/")
-                if file.endswith("_test.cpp"):
-                    self.tests[file.removesuffix(".cpp").replace("/", "_")] = (program, file)
-        self.includers = self.objects_by_header()
-        self.seconds = self.measured_seconds()
+    def __init__(self, path):
+        self.path, self.known = path, {}
+        if path and path.exists():
+            for line in path.read_text().splitlines():
+                row = json.loads(line)
+                self.known[row["mutant"]] = (row["verdict"], row["by"])
 
-    def objects_by_header(self):
-        found, output = {}, None
-        text = subprocess.run(["ninja", "-t", "deps"], cwd=self.folder, capture_output=True,
-                              text=True).stdout
-        for line in text.splitlines():
-            if line.startswith(" "):
-                name = os.path.relpath(os.path.join(self.folder, line.strip()), self.root)
-                found.setdefault(name, set()).add(output)
-            else:
-                output = line.split(":")[0]
-        return found
-
-    def measured_seconds(self):
-        """Of every test, as ctest saw it last."""
-        cost = self.folder / "Testing/Temporary/CTestCostData.txt"
-        rows = [line.split() for line in cost.read_text().splitlines()] if cost.exists() else []
-        return {row[0]: float(row[2]) for row in rows if len(row) == 3}
-
-    def objects_of(self, path):
-        """Members of the static libraries that hold the file."""
-        everything = set().union(*self.members.values())
-        holds = {o for o, source in self.source.items() if source == path}
-        return sorted((holds | self.includers.get(path, set())) & everything)
-
-    def tests_of(self, path):
-        """Those that link it: of its own name first, then by what of its folder they share."""
-        archives = {a for a, members in self.members.items() if members & set(self.objects_of(path))}
-        folder, stem = path.rsplit("/", 1)
-        stem = re.sub(r"(-inl)?\.\w+$", "", stem)
-
-        def distance(test):
-            file = self.tests[test][1]
-            here = file.rsplit("/", 1)[0]
-            shared = len(os.path.commonpath([here, folder]).split("/")) if here.split("/")[0] == \
-                folder.split("/")[0] else 0
-            return (not file.endswith(f"/{stem}_test.cpp"), here != folder, -shared,
-                    self.seconds.get(test, 1.0))
-
-        return sorted((t for t, (program, _) in self.tests.items() if archives & set(self.link[program][1])),
-                      key=distance)
+    def add(self, mutant, verdict, by):
+        self.known[mutant.report()] = (verdict, by)
+        if self.path:
+            with self.path.open("a") as file:
+                file.write(json.dumps({"verdict": verdict, "by": by, "mutant": mutant.report()}) + "\n")
 
 
 class Judge:
@@ -177,7 +131,7 @@ class Judge:
                     del words[at:at + 2]
             # Before all other folders, so that a file that includes itself takes the changed one.
             words.insert(1, f"-I{shadow}")
-            if mutant.operator in ("index", "comparison"):  # what reads past an array's end shows
+            if mutant.operator in ASSERTED:
                 words += ["-D_GLIBCXX_ASSERTIONS", "-UNDEBUG", "-Wno-invalid-pch"]
             words[words.index("-o") + 1] = str(folder / f"{i}.o")
             if self.build.source[output] == mutant.path:
@@ -203,9 +157,22 @@ class Judge:
         return [str(program), file]
 
     def fails(self, test, objects, folder):
-        seconds = self.slack + 10.0 * self.build.seconds.get(test, 0.0)
+        seconds = self.slack + 10.0 * self.build.seconds.get(test, 1.0)
         code = self.run(self.linked(test, objects, folder), folder, seconds)
         return code != 0 and self.is_sound(test)
+
+    def by_itself(self, mutant, test, folder):
+        """Whether the unchanged file passes, compiled as the mutant was."""
+        if mutant.operator not in ASSERTED:
+            return True
+        plain, here = copy.copy(mutant), folder / "plain"
+        plain.changed = (self.build.root / mutant.path).read_text()
+        shutil.rmtree(here, ignore_errors=True)
+        here.mkdir()
+        passes = self.run(self.linked(test, self.compile(plain, here), here), here, 600) == 0
+        if not passes:
+            print(f"{test} fails with the assertions of {mutant.path}", flush=True)
+        return passes
 
     def verdict(self, number, mutant):
         """(mutant, verdict, by which test or after how many)."""
@@ -217,11 +184,12 @@ class Judge:
                 return mutant, "not compiled" if objects is None else "in no library", ""
             spent, ran = 0.0, 0
             for test in self.build.tests_of(mutant.path):
-                seconds = LINKING + self.build.seconds.get(test, 1.0)
+                linked = (folder / Path(self.build.tests[test][0]).name).exists()
+                seconds = (0.0 if linked else LINKING) + self.build.seconds.get(test, 1.0)
                 if ran > 0 and spent + seconds > self.most_seconds:
                     continue
                 spent, ran = spent + seconds, ran + 1
-                if self.fails(test, objects, folder):
+                if self.fails(test, objects, folder) and self.by_itself(mutant, test, folder):
                     return mutant, "killed", test
             return mutant, "survived", f"{ran} tests"
         finally:
@@ -242,7 +210,7 @@ def check_equivalents(root, proofs):
     return 1 if gone else 0
 
 
-def judge_all(judge, mutants, proofs, jobs):
+def judge_all(judge, mutants, proofs, results, jobs):
     """Prints what becomes of each; the counts."""
     counts = {name: 0 for name in ("killed", "survived", "equivalent", "not compiled", "in no library")}
     todo = []
@@ -251,11 +219,17 @@ def judge_all(judge, mutants, proofs, jobs):
             counts["equivalent"] += 1
         else:
             todo.append((number, mutant))
+
+    def verdict(pair):
+        if pair[1].report() not in results.known:
+            results.add(*judge.verdict(*pair))
+        return pair[1], *results.known[pair[1].report()]
+
     with ThreadPoolExecutor(jobs) as pool:
-        for mutant, verdict, by in pool.map(lambda pair: judge.verdict(*pair), todo):
-            counts[verdict] += 1
-            text = mutant.report() if verdict == "survived" else f"{mutant.path}:{mutant.line}: {mutant.new}"
-            print(f"{verdict.upper() if verdict == 'survived' else verdict} {text}  [{by}]", flush=True)
+        for mutant, what, by in pool.map(verdict, todo):
+            counts[what] += 1
+            text = mutant.report() if what == "survived" else f"{mutant.path}:{mutant.line}: {mutant.new}"
+            print(f"{what.upper() if what == 'survived' else what} {text}  [{by}]", flush=True)
     return counts
 
 
@@ -271,6 +245,7 @@ def main():
                         help="seconds beyond ten times its own after which a test has not ended")
     parser.add_argument("--only", default="")
     parser.add_argument("--equivalent", type=Path, default=Path(__file__).parent / "equivalent.txt")
+    parser.add_argument("--results", type=Path, help="verdicts so far, which are kept and not judged again")
     parser.add_argument("--list", action="store_true")
     parser.add_argument("--check", action="store_true")
     how = parser.parse_args()
@@ -286,7 +261,7 @@ def main():
     shutil.rmtree(scratch, ignore_errors=True)
     scratch.mkdir()
     judge = Judge(Build(root, how.build.resolve()), scratch, how.seconds, how.slack)
-    counts = judge_all(judge, mutants, proofs, how.jobs)
+    counts = judge_all(judge, mutants, proofs, Results(how.results), how.jobs)
     print(f"seed {how.seed}: {len(mutants)} mutants, " +
           ", ".join(f"{count} {name}" for name, count in counts.items() if count))
     return 1 if counts["survived"] else 0

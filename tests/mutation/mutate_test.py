@@ -89,6 +89,15 @@ class Planted(unittest.TestCase):
         self.assertEqual(once, again)
         self.assertNotEqual(once, other)
 
+    def test_a_run_goes_on_from_the_verdicts_it_kept(self):
+        kept = self.root / "verdicts.txt"
+        options = ("--only", "double seen", "--results", str(kept))
+        self.assertIn("2 mutants, 2 killed", self.mutate(*options).stdout)
+        line = kept.read_text().splitlines()[0]
+        kept.write_text(line.replace('"killed"', '"survived"') + "\n")
+        self.assertIn("2 mutants, 1 killed, 1 survived", self.mutate(*options).stdout)
+        self.assertEqual(len(kept.read_text().splitlines()), 2, "the second is judged again")
+
     def test_nothing_to_find_is_a_success(self):
         run = self.mutate("--only", "return x - 3.0")
         self.assertEqual(run.returncode, 0, run.stdout)
@@ -124,7 +133,8 @@ class Operators(unittest.TestCase):
 
     def test_what_is_no_arithmetic_is_left_alone(self):
         for text in ('// a + b\n', '/* a * b */', 'f("a + b");', '#define A (b + c)\n', "f('+', \" - \");",
-                     "MODCAL_REQUIRE(a < b, \"no\", c + d);", "double values[3] = {};", "[k](int i) {}",
+                     "MODCAL_REQUIRE(a < b, \"no\", c + d);", "double values[3] = {};", "double values[n][3];",
+                     "assert(a + b == c);", "[k](int i) {}",
                      "a = 0.0;", "std::vector<int> a;"):
             self.assertEqual([m.new for m in mutants_of("x.cpp", text)], [], text)
 

@@ -7,8 +7,8 @@ import re
 
 TOKENS = re.compile(r'//[^\n]*|/\*.*?\*/|R"\((?:.|\n)*?\)"|"(?:\\.|[^"\\\n])*"'
                     r"|(?<![\w'])'(?:\\.|[^'\\\n])'|^[ \t]*#(?:[^\n]*\\\n)*[^\n]*", re.S | re.M)
-# What says, states or refuses is no arithmetic: messages, options, output.
-STATEMENTS = re.compile(r"\b(MODCAL_REQUIRE|static_assert|visitor|fmt::format\w*|throw_invalid_input|template <)")
+# What says, states or refuses is no arithmetic: messages, options, output, and what a release leaves out.
+STATEMENTS = re.compile(r"\b(MODCAL_REQUIRE|static_assert|assert|visitor|fmt::format\w*|throw_invalid_input|template <)")
 
 
 def closing(text, start):
@@ -73,7 +73,7 @@ def shifted(code):
     found = []
     for m in re.finditer(r"(?<=[\w)\]])\[([a-z]\w*|\d+)\](?!\s*(?:=\s*)?\{)", code):
         line = code[code.rfind("\n", 0, m.start()) + 1:m.start()]
-        if re.match(r"\s*(?:static |constexpr |const |inline )*[\w:<>]+ \w+$", line) \
+        if re.match(r"\s*(?:static |constexpr |const |inline )*[\w:<>]+ \w+(?:\[\w+\])*$", line) \
                 and "return" not in line:
             continue
         index = m.group(1)
