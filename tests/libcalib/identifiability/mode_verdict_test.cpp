@@ -129,5 +129,21 @@ TEST(Departures, AreThoseFromTheLaw) {
   EXPECT_EQ(result.modes[8].deviation, follows);
 }
 
+// Modes 46 and above of f0 = 196 Hz lie above 9 kHz.
+TEST(ModesOutOfBand, AreNotSeenWhereOthersStandAboveThem) {
+  Found found;
+  ModeSight sight{.seen = found.seen, .error = found.seen};
+  const double highest = 2.0 * M_PI * 9000.0;
+  leave_out_of_band(found.model, highest, sight);
+  EXPECT_EQ(sight.seen, found.seen);
+  found.model.higher = HigherModeLaw::above(found.model.basis, 196.0, 0.0, 9000.0);
+  leave_out_of_band(found.model, highest, sight);
+  for (Eigen::Index n = 0; n < sight.seen.size(); ++n) {
+    const double left = n + 1 < 46 ? 1e-4 : kWidePrior;
+    EXPECT_EQ(sight.seen[n], left) << n;
+    EXPECT_EQ(sight.error[n], left) << n;
+  }
+}
+
 }  // namespace
 }  // namespace modcal::mode_verdict_test

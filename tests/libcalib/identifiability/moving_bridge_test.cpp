@@ -9,6 +9,7 @@
 #include "benchmarks/truth/bridge.hpp"
 #include "benchmarks/truth/truth.hpp"
 #include "libcalib/identifiability/tuning.hpp"
+#include "tests/libcalib/likelihood/bowed_case.hpp"
 
 namespace modcal::moving_bridge_test {
 namespace {
@@ -99,6 +100,48 @@ TEST(MovingBridge, ChangesAModeOfTheBody) {
     EXPECT_NEAR(other.omega[n] / one.omega[n], 1.0, 1e-13);
     EXPECT_NEAR(other.zeta[n], one.zeta[n], 1e-13);
   }
+}
+
+// Four quarters of a step are one.
+TEST(MovingBridge, IsTriedAQuarterOfAStepBeside) {
+  const auto [below, above] = places_beside(430.0);
+  EXPECT_NEAR(std::pow(above / 430.0, 4.0), kBodyStep, 1e-14);
+  EXPECT_NEAR(std::pow(430.0 / below, 4.0), kBodyStep, 1e-14);
+}
+
+// What the amplitudes make of the columns leaves the record, bin by bin; beyond the band nothing
+// changes. Whitened spectra go through two transforms: rounding of their largest bin.
+TEST(MovingBridge, IsTakenOutOfARecord) {
+  const BowedCase bowed = bowed_case(0.03, 0.0, 0.1);
+  NoisyRecords records = noisy(bowed, 0.01, 1);
+  constexpr double kHighest = 2.0 * M_PI * 5000.0, kAll = 2.0 * M_PI * 10000.0;
+  const WhitenedRecord before = WhitenedRecord::of(records, 0.0, kAll);
+  const std::vector<ScoreTest> modes = {body(430.0, 0.1)};
+  take_out(modes, bowed.truth, kHighest, records);
+  const WhitenedRecord after = WhitenedRecord::of(records, 0.0, kAll);
+  NoisyRecords recorded = noisy(bowed, 0.01, 1);
+  recorded.on_bridge = recorded.reactions[1];
+  recorded.body = {430.0};
+  const ProjectedLikelihood whole(WhitenedRecord::of(recorded, 0.0, kHighest));
+  const std::vector<MisfitCause> causes = bridges_at(whole, bowed.truth, recorded.body);
+  ASSERT_EQ(causes.size(), 1u);
+  double largest = 0.0;
+  for (std::size_t k = 0; k < before.bins; ++k) {
+    largest = std::max({largest, std::abs(before.left.at(k)), std::abs(before.right.at(k))});
+  }
+  double taken = 0.0;
+  for (std::size_t k = 0; k < before.bins; ++k) {
+    Complex left, right;
+    for (Eigen::Index j = 0; j < 3 && k < whole.record().bins; ++j) {
+      const SignalColumn& column = causes[0].columns[static_cast<std::size_t>(j)];
+      left += modes[0].amplitudes[j] * column.left.at(k);
+      right += modes[0].amplitudes[j] * column.right.at(k);
+    }
+    EXPECT_LT(std::abs(before.left.at(k) - after.left.at(k) - left), 1e-12 * largest) << k;
+    EXPECT_LT(std::abs(before.right.at(k) - after.right.at(k) - right), 1e-12 * largest) << k;
+    taken = std::max(taken, std::abs(right));
+  }
+  EXPECT_GT(taken, 1e-3 * largest);
 }
 
 }  // namespace

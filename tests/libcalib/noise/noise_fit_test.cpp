@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "tests/libcalib/likelihood/bowed_case.hpp"
@@ -49,6 +50,9 @@ TEST(NoiseFit, KnowsTheMisfitOfAWrongModel) {
   bowed.truth.sensors.gain = 1.02;
   const NoiseFit found = fit_noise(likelihood, bowed.truth);
   EXPECT_TRUE(found.misfit);
+  // By a third of some of the 10 300 bins, √(3/bins).
+  EXPECT_GT(found.error, std::sqrt(3.0 / 10300.0));
+  EXPECT_LT(found.error, std::sqrt(3.0 / 5000.0));
 }
 
 }  // namespace

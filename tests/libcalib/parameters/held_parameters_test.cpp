@@ -166,6 +166,12 @@ TEST(FixedParameters, ThatCannotBeAreRefusedWithTheReason) {
   UnknownsOptions all;
   all.fixed = {{"f_1"}, {"f_2"}, {"f_3"}, {"f0"}, {"B"}};
   EXPECT_NO_THROW(require_priors(all, 3));
+  // Beside what acts through the first ratios any other parameter may be fixed.
+  UnknownsOptions beside;
+  beside.damping = "power";
+  beside.fixed = {{"f_1"}, {"x_c", 0.03}, {"zeta_3", 1e-3}};
+  beside.priors = {{"damping", 1.0, 0.1}, {"damping_power", 0.0, 0.1}};
+  EXPECT_NO_THROW(require_priors(beside, 5));
 }
 
 }  // namespace

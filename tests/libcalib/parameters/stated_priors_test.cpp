@@ -267,6 +267,7 @@ TEST(FreedUnknowns, ComeBackUnderTheNamesOfTheirPriorsWithDeviations) {
       ASSERT_NE(parameter, nullptr) << names[i];
       EXPECT_GT(parameter->deviation, 0.0) << names[i];
       EXPECT_LT(std::abs(parameter->final - truths[i]), 6.0 * parameter->deviation) << names[i];
+      EXPECT_FALSE(parameter->at_bound) << names[i];
     }
     const double factor = named(found, "damping")->final;
     const double power = named(found, "damping_power")->final;
@@ -288,23 +289,28 @@ TEST(FreedUnknowns, AmongThemEveryDampingRatio) {
                                                .restarts = 0});
   options.parameters.unknowns.damping = "each";
   options.parameters.unknowns.fixed = {{"zeta_5", 1e-3}};
-  const CalibrationResult found = calibrate(bowed.truth, data, options);
-  EXPECT_EQ(named(found, "damping"), nullptr);
-  EXPECT_EQ(named(found, "zeta_5"), nullptr);
-  std::size_t count = 0;
-  for (std::size_t n = 0; n < 50; ++n) {
-    const CalibratedParameter* ratio = named(found, fmt::format("zeta_{}", n + 1));
-    if (ratio == nullptr) continue;
-    ++count;
-    EXPECT_EQ(ratio->final, found.model.basis.zeta[n]);
-    EXPECT_GT(ratio->deviation, 0.0);
-    // No worse than the prior of 30 % in the logarithm, what noise adds to JᵀJ aside.
-    EXPECT_LT(ratio->deviation, 0.5 * ratio->final) << n + 1;
-    EXPECT_LT(std::abs(ratio->final - bowed.truth.basis.zeta[n]), 6.0 * ratio->deviation) << n + 1;
+  for (const std::size_t strokes : {1u, 2u}) {
+    const CalibrationResult found =
+        calibrate(bowed.truth, as_records(std::vector(strokes, data)), options);
+    EXPECT_EQ(named(found, "damping"), nullptr);
+    EXPECT_EQ(found.continuation->damping_power, 0.0);  // there is none
+    EXPECT_EQ(named(found, "zeta_5"), nullptr);
+    std::size_t count = 0;
+    for (std::size_t n = 0; n < 50; ++n) {
+      const CalibratedParameter* ratio = named(found, fmt::format("zeta_{}", n + 1));
+      if (ratio == nullptr) continue;
+      ++count;
+      EXPECT_EQ(ratio->final, found.model.basis.zeta[n]);
+      EXPECT_GT(ratio->deviation, 0.0);
+      // No worse than the prior of 30 % in the logarithm, what noise adds to JᵀJ aside.
+      EXPECT_LT(ratio->deviation, 0.5 * ratio->final) << n + 1;
+      EXPECT_LT(std::abs(ratio->final - bowed.truth.basis.zeta[n]), 6.0 * ratio->deviation)
+          << n + 1;
+    }
+    EXPECT_EQ(count, 49u);
+    const std::vector<double> shape = found.model.basis.shape_at(found.model.contact);
+    for (const CalibratedMode& mode : found.modes) EXPECT_EQ(mode.shape, shape[mode.number - 1]);
   }
-  EXPECT_EQ(count, 49u);
-  const std::vector<double> shape = found.model.basis.shape_at(found.model.contact);
-  for (const CalibratedMode& mode : found.modes) EXPECT_EQ(mode.shape, shape[mode.number - 1]);
 }
 
 TEST(StatedPriors, WithoutThoseOfSingleFrequenciesKeepTheRest) {

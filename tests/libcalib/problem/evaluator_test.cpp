@@ -67,6 +67,18 @@ TEST(Evaluator, FormsMissingSlopesByDifferencesAndCountsThem) {
   EXPECT_EQ(by_jacobian.finish(StopReason::kConverged).evaluations, 1);
 }
 
+// (2, 1) of the quadratic from a start at (1, 2): slopes of a quadratic are exact but for rounding,
+// ε·10/h of h = 6e-6·2.
+TEST(Evaluator, GivesTheGradientOfWhatHasValuesAlone) {
+  const Quadratic full;
+  const Without values(full, {});
+  const auto variables = box(1.0, 2.0, -10.0, 10.0, 0.5);
+  const std::vector<double> gradient = gradient_at(values, variables, Point{2.0, 1.0});
+  EXPECT_NEAR(gradient[0], -1.0, 1e-8);
+  EXPECT_NEAR(gradient[1], 8.0, 1e-8);
+  EXPECT_EQ(gradient_at(full, variables, Point{2.0, 1.0}), (Point{-1.0, 8.0}));
+}
+
 TEST(Evaluator, PutsPointsOutsideTheBoxOntoIt) {
   const Quadratic quadratic;
   Evaluator evaluator(quadratic, box(0.0, 0.0, -1.0, 1.0), {});

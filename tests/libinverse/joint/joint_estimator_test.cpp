@@ -34,6 +34,30 @@ TEST(JointEstimator, ReportsTheContourItHasChosen) {
   EXPECT_EQ(figure(estimate_with(given, basis, string.pair()), "sigma"), 7.0);
 }
 
+// Nobody who does not know the spectra does better; the prior of jumps is this force's own, but for
+// the scatter of the spectrum drawn.
+TEST(LinearLimit, IsNotBeatenByWhoDoesNotKnowTheSpectra) {
+  const std::size_t samples = 8192;
+  const ModalBasis basis = violin_g();
+  DrivenString string = drive(basis, kPosition, jumping_force(samples, StreamKey(1)));
+  SensorNoiseLevel truth;
+  add_noise(string, 0.02, StreamKey(2), &truth);
+  const auto regularizer = Choice<Regularizer>("none").make();
+  const auto rule = Choice<ParameterChoice>("gcv").make();
+  EstimationRecord record;
+  record.reactions = string.pair();
+  record.stated_noise = truth.rms;
+  record.true_force = string.force;
+  const Estimate limit = LinearLimitEstimator({})
+                             .prepare({basis, kPosition, samples, kRate, false})
+                             ->estimate(record, {*regularizer, *rule, kEverything})
+                             .front();
+  const double found =
+      middle_error(estimate_with({}, basis, string.pair()).result.force, string.force);
+  EXPECT_LT(middle_error(limit.result.force, string.force), 1.02 * found);
+  EXPECT_GT(middle_error(limit.result.force, string.force), 0.5 * found);
+}
+
 TEST(JointEstimator, StaticRemainderIsOnForRecordedStringsUnlessStated) {
   const std::size_t samples = 4096;
   const ModalBasis basis = violin_g();

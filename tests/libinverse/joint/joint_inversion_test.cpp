@@ -29,6 +29,27 @@ TEST(JointInversion, GivesBackTheForceOfARecordThatStillRings) {
   EXPECT_LT(middle_error(of_contour.identified.velocity, string.velocity), 0.02);
 }
 
+TEST(JointInversion, LowersTheNoiseOfTwoNoisySensorsOnly) {
+  const std::size_t samples = 8192;
+  const ModalBasis basis = violin_g();
+  DrivenString string = drive(basis, kPosition, jumping_force(samples, StreamKey(1)));
+  SensorNoiseLevel truth;
+  add_noise(string, 0.01, StreamKey(2), &truth);
+  const JointInversion inversion(basis, kPosition, samples, kRate, contour_at(4.0, samples));
+  JointWorkspace workspace;
+  SensorNoiseLevel read{.rms = {2.0 * truth.rms[0], 2.0 * truth.rms[1]}};
+  const auto lowered = [&] {
+    return inversion.lowered_noise(string.pair(), read, OffsetRule::kNone, workspace);
+  };
+  for (std::size_t r = 0; r < 2; ++r) EXPECT_LT(lowered().rms[r], 0.8 * read.rms[r]);
+  // One that has none tells nothing of the other.
+  for (std::size_t r = 0; r < 2; ++r) {
+    read.rms = {2.0 * truth.rms[0], 2.0 * truth.rms[1]};
+    read.rms[r] = 0.0;
+    EXPECT_EQ(lowered().rms, read.rms);
+  }
+}
+
 TEST(JointInversion, InvertsFourPeriodsStartedFromRestOrNot) {
   const ModalBasis basis = violin_g();
   const std::size_t samples = 1045;  // 4/196 s

@@ -31,6 +31,53 @@ TEST(SensorNoise, IsMeasuredFromTheRecordAlone) {
   EXPECT_LT(sensors.estimate(clean.pair(), workspace).noise_share, 1e-2);
 }
 
+// Noise v of the right sensor alone: the cross relation leaves Σ a v of Σ (1 − a) P_1 + a P_2, a
+// the share |H_1|²/(|H_1|² + |H_2|²) of the bin, each bin having the same say, also where H_1 has a
+// zero.
+TEST(SensorNoise, OfOneSensorIsToldByTheDirectionsOfAllBinsAlike) {
+  const std::size_t samples = 16384;
+  const ModalBasis basis = violin_g();
+  for (const double contact : {0.0237, 0.0348, 0.0422, 0.0681}) {
+    DrivenString string = drive(basis, contact, jumping_force(samples, StreamKey(10)));
+    const double deviation = 1e-3 * standard_deviation(string.reaction[1]);
+    const std::vector<double> noise = normal_draw(samples, StreamKey(4));
+    for (std::size_t j = 0; j < samples; ++j) string.reaction[1][j] += deviation * noise[j];
+    SensorNoise::Workspace workspace;
+    const SensorNoiseLevel level =
+        SensorNoise(basis, contact, samples, kRate, {}, {}).estimate(string.pair(), workspace);
+    const FrequencyGrid grid = FrequencyGrid::of_record(4096, kRate);
+    const StringTransfer transfer = string_transfer(basis, contact, grid, {}, {});
+    double along = 0.0, across = 0.0;
+    for (std::size_t k = 0; k < grid.bins; ++k) {
+      if (grid.omega(k) < 1.2 * basis.omega.back() || grid.omega(k) > 0.97 * M_PI * kRate) continue;
+      const double left = std::norm(transfer.reaction[0][k]);
+      const double right = std::norm(transfer.reaction[1][k]);
+      along += left / (left + right);
+      across += right / (left + right);
+    }
+    const double powers[] = {level.rms[0] * level.rms[0] / level.noise_share,
+                             level.rms[1] * level.rms[1] / level.noise_share};
+    const double expected =
+        along * deviation * deviation / (across * powers[0] + along * powers[1]);
+    // The variance of noise is told by some 4000 bins, 1.6 % of it; two of them.
+    EXPECT_NEAR(level.noise_share / expected, 1.0, 0.032) << contact;
+  }
+}
+
+// At twice the frequency of the highest mode no band is left above it.
+TEST(SensorNoise, IsSupposedToBeAPercentWhereNoBandShowsIt) {
+  const std::size_t samples = 4096;
+  const SensorNoise sensors(violin_g(), kPosition, samples, 2.05 * 50.0 * 196.0, {}, {});
+  ReactionPair pair;
+  const std::vector<double> left = normal_draw(samples, StreamKey(3));
+  pair[0] = left;
+  SensorNoise::Workspace workspace;
+  const SensorNoiseLevel level = sensors.estimate(pair, workspace);
+  EXPECT_FALSE(level.measured);
+  EXPECT_DOUBLE_EQ(level.rms[0], 0.01 * standard_deviation(left));
+  EXPECT_EQ(level.rms[1], 0.0);
+}
+
 // A ramp of the period of 196 Hz at 51.2 kHz, which the far sensor sees for 107 samples before a
 // wave arrives from 0.1 L, the near one for 11.
 TEST(StartsAtRest, WhereTheReactionsAreStillBeforeAWaveArrives) {

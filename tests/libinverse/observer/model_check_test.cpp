@@ -60,6 +60,26 @@ TEST(Stiffness, OfARigidContactIsRefused) {
     EXPECT_THAT(refusal.what(), HasSubstr("runs away: at 1e+10 N/m"));
     EXPECT_THAT(refusal.what(), HasSubstr("take fewer modes"));
   }
+  // Two deviations of one parameter are a factor e² of the likelihood: what tells it from four
+  // times as much by a little more is held, by a little less is not.
+  for (const double share : {1.15, 2.0}) {
+    p.stiffness = share * rigid_stiffness(runs);
+    ObserverParameters stiffer = p;
+    stiffer.stiffness *= 4.0;
+    const double here = misfit(runs.innovations(p, {0}, record.samples()));
+    const double there = misfit(runs.innovations(stiffer, {0}, record.samples()));
+    // Of two numbers a sample with the misfit at its least, ln L is −N ln J.
+    const double told = static_cast<double>(record.samples()) * std::log(there / here);
+    if (share < 2.0) {
+      EXPECT_GT(told, 2.1);
+      EXPECT_LT(told, 3.0);
+      EXPECT_NO_THROW(require_finite_stiffness(runs, p, {0}));
+    } else {
+      EXPECT_LT(told, 1.9);
+      EXPECT_GT(told, 1.0);
+      EXPECT_THROW(require_finite_stiffness(runs, p, {0}), InvalidInput);
+    }
+  }
 }
 
 TEST(Offset, BesideTheLevelBeforeTheFirstWaveIsWarnedOfWithARemedy) {

@@ -53,6 +53,16 @@ TEST(ObservedRecord, KnowsTheRippleBeforeTheFirstWave) {
   }
 }
 
+// A sensor whose noise is known to be large has no part in the estimate, whatever it reads.
+TEST(LinearEstimate, TrustsASensorByItsNoise) {
+  const BowedRecord r = bowed_record(0.1, 0.01);
+  ObservedRecord record = observed(r);
+  record.noise[1] = 1e6 * record.noise[0];
+  const std::vector<double> force = linear_estimate(record).force;
+  for (double& sample : record.reaction[1]) sample *= -3.0;
+  EXPECT_LT(relative_rms_error(linear_estimate(record).force, force), 1e-6);
+}
+
 TEST(ObservedRecord, KeepsAFloorUnderTheNoise) {
   const BowedRecord r = bowed_record(0.1, 0.0);
   const ObservedRecord record = observed(r);

@@ -124,6 +124,21 @@ TEST(ObserverKernel, WithTrueParametersItFollowsCleanData) {
   EXPECT_LT(standard_deviation(r.left_innovation), 0.05 * noise[0]);
 }
 
+// A contact that slides as fast as the bow has come to rest on it: nothing moves, and no force
+// does.
+TEST(ObserverKernel, AStringAtRestUnderABowAtRestSticks) {
+  BowedRecord record = bowed_record(0.003, 0.0);
+  record.scene.bow.velocity = 0.0;
+  for (Signal* reaction : {&record.truth.left_reaction, &record.truth.right_reaction}) {
+    std::ranges::fill(reaction->samples, 0.0);
+  }
+  const Observed r = run(record, {10, 16}, nullptr, 100, 100);
+  for (std::size_t k = 0; k < 100; ++k) {
+    EXPECT_EQ(r.force[k], 0.0) << k;
+    EXPECT_EQ(r.velocity[k], 0.0) << k;
+  }
+}
+
 // The state holds everything: blocks give the bits of one run.
 TEST(ObserverKernel, BlocksContinueTheRun) {
   const BowedRecord record = bowed_record(0.03, 0.0);

@@ -49,6 +49,16 @@ TEST(ContactPlace, TheRightPlaceIsTheLikeliest) {
   }
 }
 
+// Of noise alone all neighboring bins are apart: two numbers of each and of each sensor, less one
+// force.
+TEST(ContactPlace, CountsTheNumbersThatTellIt) {
+  const std::vector<StructureTable> tables = {driven_at(1.0), driven_at(0.8)};
+  const ContactPlaces found = weigh_places(tables, struck_at(1.0, 100.0, 1), 0.0);
+  const double most = 2.0 * (kHigh - kLow + 1.0) * 2.0;
+  EXPECT_GT(found.numbers, 0.7 * most);
+  EXPECT_LE(found.numbers, most);
+}
+
 TEST(ContactPlace, PlacesThatAreNearlyAlikeStandInOneSet) {
   const std::vector<StructureTable> tables = {driven_at(1.0), driven_at(1.0), driven_at(0.8)};
   const ContactPlaces found = weigh_places(tables, struck_at(1.0, 0.01, 1), 0.0);

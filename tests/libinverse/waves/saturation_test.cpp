@@ -67,5 +67,12 @@ TEST(Saturation, OfNoSignalIsNone) {
   EXPECT_FALSE(saturation_of({silent, silent, 51200.0, {}}, kFound).has_value());
 }
 
+// Of a click in the middle all bins are alike; no order of them is the right one.
+TEST(Saturation, OfAClickIsNone) {
+  std::vector<double> click(4096, 0.0);
+  click[2048] = 1.0;
+  EXPECT_FALSE(saturation_of({click, click, 51200.0, {}}, kFound).has_value());
+}
+
 }  // namespace
 }  // namespace modcal::saturation_test

@@ -31,7 +31,7 @@ Scene short_scene() {
   return scene;
 }
 
-double relative_error(const Signal& a, const Signal& b, std::size_t stride = 1) {
+double error_by_stride(const Signal& a, const Signal& b, std::size_t stride = 1) {
   EXPECT_EQ((a.size() - 1) / 1, (b.size() - 1) / stride);
   double error = 0.0, power = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -59,11 +59,11 @@ TEST(Skipping, ModesAtANodeChangesNoOutput) {
     EXPECT_EQ(skipping.modes_moved, 46u) << name;
     EXPECT_EQ(whole.modes_moved, 50u) << name;
     EXPECT_EQ(skipping.releases, whole.releases) << name;
-    EXPECT_LT(relative_error(skipping.displacement, whole.displacement), 1e-9) << name;
-    EXPECT_LT(relative_error(skipping.velocity, whole.velocity), 1e-9) << name;
-    EXPECT_LT(relative_error(skipping.force, whole.force), 1e-9) << name;
-    EXPECT_LT(relative_error(skipping.left_reaction, whole.left_reaction), 1e-9) << name;
-    EXPECT_LT(relative_error(skipping.right_reaction, whole.right_reaction), 1e-9) << name;
+    EXPECT_LT(error_by_stride(skipping.displacement, whole.displacement), 1e-9) << name;
+    EXPECT_LT(error_by_stride(skipping.velocity, whole.velocity), 1e-9) << name;
+    EXPECT_LT(error_by_stride(skipping.force, whole.force), 1e-9) << name;
+    EXPECT_LT(error_by_stride(skipping.left_reaction, whole.left_reaction), 1e-9) << name;
+    EXPECT_LT(error_by_stride(skipping.right_reaction, whole.right_reaction), 1e-9) << name;
   }
 }
 
@@ -73,7 +73,7 @@ TEST(Skipping, OutputsNobodyReadsChangesNoOther) {
     const Simulation all = simulator->simulate(scene, kRate, OutputRequest::all());
     const auto alone = [&](OutputRequest outputs, Signal Simulation::*signal) {
       const Simulation run = simulator->simulate(scene, kRate, outputs);
-      EXPECT_LT(relative_error(run.*signal, all.*signal), 1e-9) << name;
+      EXPECT_LT(error_by_stride(run.*signal, all.*signal), 1e-9) << name;
       std::size_t kept = 0;
       for (const Signal* each : {&run.displacement, &run.velocity, &run.force, &run.left_reaction,
                                  &run.right_reaction}) {
@@ -101,9 +101,9 @@ TEST(Skipping, OutputsBetweenSamplesChangesNoSample) {
     const Simulation every =
         simulator.simulate(longer, kRate * static_cast<double>(stride), OutputRequest::all());
     ASSERT_EQ(every.force.size(), (few.force.size() - 1) * stride + 1);
-    EXPECT_LT(relative_error(few.velocity, every.velocity, stride), 1e-9);
-    EXPECT_LT(relative_error(few.force, every.force, stride), 1e-9);
-    EXPECT_LT(relative_error(few.left_reaction, every.left_reaction, stride), 1e-9);
+    EXPECT_LT(error_by_stride(few.velocity, every.velocity, stride), 1e-9);
+    EXPECT_LT(error_by_stride(few.force, every.force, stride), 1e-9);
+    EXPECT_LT(error_by_stride(few.left_reaction, every.left_reaction, stride), 1e-9);
   };
   compare(ModalEvent({.max_step = 0.25 / kRate}), 4);
   compare(ModalExact({.time_step = 1.0 / (10.0 * kRate)}), 10);
@@ -152,9 +152,9 @@ TEST(Skipping, TorsionThatIsOffChangesNoOutput) {
     const double tolerance = name == "modal_event" ? 1e-6 : 1e-9;
     EXPECT_EQ(on.modes_moved, off.modes_moved + 19) << name;
     EXPECT_EQ(on.releases, off.releases) << name;
-    EXPECT_LT(relative_error(off.velocity, on.velocity), tolerance) << name;
-    EXPECT_LT(relative_error(off.force, on.force), tolerance) << name;
-    EXPECT_LT(relative_error(off.right_reaction, on.right_reaction), tolerance) << name;
+    EXPECT_LT(error_by_stride(off.velocity, on.velocity), tolerance) << name;
+    EXPECT_LT(error_by_stride(off.force, on.force), tolerance) << name;
+    EXPECT_LT(error_by_stride(off.right_reaction, on.right_reaction), tolerance) << name;
   }
 }
 
@@ -176,11 +176,18 @@ TEST(Skipping, TemperatureAndWidthThatAreOffChangeNoOutput) {
     EXPECT_GT(off.releases, 0u);
     for (const Scene& with : {warm, wide}) {
       const Simulation on = simulator->simulate(with, kRate, OutputRequest::all());
-      EXPECT_LT(relative_error(off.velocity, on.velocity), 1e-7) << name;
-      EXPECT_LT(relative_error(off.force, on.force), 1e-7) << name;
-      EXPECT_LT(relative_error(off.left_reaction, on.left_reaction), 1e-7) << name;
+      EXPECT_LT(error_by_stride(off.velocity, on.velocity), 1e-7) << name;
+      EXPECT_LT(error_by_stride(off.force, on.force), 1e-7) << name;
+      EXPECT_LT(error_by_stride(off.left_reaction, on.left_reaction), 1e-7) << name;
     }
   }
+}
+
+TEST(SimulationPlan, SimulatesNoMoreThanTheRecord) {
+  Scene scene = short_scene();
+  scene.duration = 1e-3;  // less than what is simulated in no time
+  const SimulationPlan plan = plan_simulation(scene, ModalEvent({}), kRate, OutputRequest::all());
+  EXPECT_EQ(plan.piece, scene.duration);
 }
 
 TEST(SimulationPlan, NamesWhatIsLeftOut) {

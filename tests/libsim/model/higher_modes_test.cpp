@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "libsim/model/string_model.hpp"
+#include "libsim/model/tuning.hpp"
 
 namespace modcal::higher_modes_test {
 namespace {
@@ -122,6 +123,36 @@ TEST_P(StiffHigherModes, HaveDerivatives) {
   // Central differences: third derivatives over their steps.
   EXPECT_NEAR(by_contact, x_slope, 1e-4 * std::abs(x_slope) + 1e-4);
   EXPECT_NEAR(by_b, b_slope, 1e-4 * std::abs(b_slope) + 1e-4);
+}
+
+// The interpolation's pole has to lie outside its interval by so much; modes below that are apart.
+TEST(HigherModeLaw, LetsNoMoreModesStandForThemselvesThanTheInterpolationNeeds) {
+  for (const double highest : {9000.0, 12000.0, 20000.0}) {
+    const HigherModeLaw law = HigherModeLaw::above(basis_of(0.0, 30), 294.0, 0.0, highest);
+    const auto square = [&](std::size_t n) {
+      return std::pow(294.0 * static_cast<double>(n) / highest, 2);
+    };
+    EXPECT_GE(square(law.apart), kRemainderApart) << highest;
+    EXPECT_LT(square(law.apart - 1), kRemainderApart) << highest;
+  }
+}
+
+// Without bending what one side alone has to its inharmonicity is left out; the contact's stays.
+TEST(LimpHigherModes, HaveADerivativeWithRespectToTheContact) {
+  const ModalBasis basis = basis_of(0.0, 30);
+  const double highest = basis.frequency(basis.size() - 1), contact = 0.03, dx = 1e-6;
+  const HigherModeLaw law = HigherModeLaw::above(basis, 294.0, 0.0, highest, false);
+  const auto modes = higher_modes(law, basis, contact);
+  const auto before = higher_modes(law, basis, contact - dx);
+  const auto behind = higher_modes(law, basis, contact + dx);
+  ASSERT_FALSE(modes.empty());
+  for (std::size_t n = 0; n < modes.size(); ++n) {
+    const double slope = (behind[n].residue - before[n].residue) / (2 * dx);
+    // (n π dx/L)²/6 of the number n = 60 of them, 5e-8, and rounding over dx.
+    EXPECT_NEAR(modes[n].by_contact, slope,
+                1e-5 * std::abs(slope) + 1e-9 * std::abs(modes[n].residue) / dx)
+        << n;
+  }
 }
 
 const auto kStiff =

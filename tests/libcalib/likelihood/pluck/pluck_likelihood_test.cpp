@@ -47,6 +47,26 @@ TEST(PluckLikelihood, IsNoiseAtTheTruth) {
   }
 }
 
+// Of a D(z) and b D(z) it explains all, (|a|² + |b|²) Σ |D|² over the 256 bins about it.
+TEST(PluckLikelihood, ExplainsThePowerOfADecayAtBothEnds) {
+  WhitenedRecord record =
+      WhitenedRecord::of(plucked_records(1.39e-4, 0.1, 0.02, 3, 12), 0.0, 2.0 * pi * 8000.0);
+  const double omega = 2.0 * pi * 4000.0;
+  const Complex pole = std::exp(Complex(-20.0, omega) / record.sample_rate);
+  const Complex a(0.6, -0.3), b(1.0, 2.0);
+  const auto center = static_cast<std::size_t>(omega / record.spacing);
+  double power = 0.0;
+  for (std::size_t k = 0; k < record.bins; ++k) {
+    const Complex decay = 1.0 / (1.0 - pole * record.delay.at(k));
+    record.left.set(k, a * decay);
+    record.right.set(k, b * decay);
+    if (k + 128 >= center && k < center + 128) power += std::norm(decay);
+  }
+  ASSERT_GT(center, 128u);
+  const double explained = PluckLikelihood(record).power_about(pole, omega);
+  EXPECT_NEAR(explained / ((std::norm(a) + std::norm(b)) * power), 1.0, 1e-12);
+}
+
 TEST(PluckLikelihood, GradientOfEveryUnknownIsTheDifferenceQuotient) {
   const PluckLikelihood pluck(
       WhitenedRecord::of(plucked_records(1.39e-4, 0.1, 0.02, 3, 12), 0.0, 2.0 * pi * 3000.0));

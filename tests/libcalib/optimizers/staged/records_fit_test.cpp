@@ -203,6 +203,20 @@ TEST(RecordsFit, APluckFindsABlindModeThatLeavesTheLaw) {
   expect_modes(fit, truth, {11, 22, 33, 44});
 }
 
+// A pluck counts among the records that a prior may be stated of.
+TEST(RecordsFit, APluckMayHaveAPriorOfItsOwn) {
+  Strokes one = blind_stroke();
+  UnknownsOptions& unknowns = one.options.unknowns;
+  unknowns.sensor[Sensor::kGain].free = true;
+  unknowns.per_record = {"gain"};
+  unknowns.priors = {{"gain 2", 1.0, 1e-5}};
+  const std::vector<PluckRecord> plucks = {as_record(plucked_records(0.0, 0.5, 0.01, 3))};
+  const ContinuationResult fit = calibrate_records(one.start, one.data, one.options, plucks);
+  ASSERT_EQ(fit.values.size(), 2u);
+  EXPECT_LT(fit.values[1].sensor_deviation[0], 1.01e-5);
+  EXPECT_GT(fit.values[0].sensor_deviation[0], 1.01e-5);
+}
+
 TEST(RecordsFit, EachRecordHasTheGainAndDampingThatAreItsOwn) {
   Strokes two = strokes({0.0285, 0.0291});
   two.options.frequencies = false;

@@ -68,5 +68,17 @@ TEST(Relevance, OfOneSignIsTheLeastOfTheQuadratic) {
   EXPECT_EQ(p[4], 0.0);
 }
 
+// Of 10 (1, 1)/√2 and (1, 0) the first serves y = (1, −0.2) better, but beside the second it would
+// be negative, −0.2 of (1, 1): it has to leave again, and the second alone gives 1.
+TEST(Relevance, OfOneSignLeavesAgainWhatAnotherServesBetter) {
+  Eigen::Matrix2d columns;
+  columns << 10.0 / std::sqrt(2.0), 1.0, 10.0 / std::sqrt(2.0), 0.0;
+  const Eigen::Vector2d y(1.0, -0.2);
+  const Eigen::VectorXd p = non_negative_mean(
+      columns.transpose() * columns, columns.transpose() * y, Eigen::VectorXd::Constant(2, 1e12));
+  EXPECT_EQ(p[0], 0.0);
+  EXPECT_NEAR(p[1], 1.0, 2e-12);  // the width's 1e-12
+}
+
 }  // namespace
 }  // namespace modcal::relevance_test

@@ -115,12 +115,11 @@ double step_response(const ModalModel& model, std::size_t sensor, double t) {
   return sum;
 }
 
-TEST(DrivenStructure, EverySensorAnswersAStepOfTheForceAsItsTransferFunction) {
+// A temperature that changes nothing takes the fixed-step schemes' general loop.
+void expect_answers_to_a_step(const Choice<FrictionLaw>& friction) {
   Scene scene;
   scene.bow.velocity = 1000.0;  // so fast that the contact always slides
-  scene.friction = Choice<FrictionLaw>::of<CoulombExponential>(
-      "coulomb_exponential",
-      CoulombExponential::Options{.static_coefficient = 0.8, .dynamic_coefficient = 0.8});
+  scene.friction = friction;
   scene.duration = 0.05;
   const DrivenStructure structure = two_modes();
   const auto expect_steps = [&](const Simulator& simulator, double tolerance) {
@@ -144,6 +143,15 @@ TEST(DrivenStructure, EverySensorAnswersAStepOfTheForceAsItsTransferFunction) {
   // The trapezoidal rule is off by ω³h²t/12 = 1.3e-5 of a phase at the end, the force of the step
   // before comes 1 µs late: ωh = 1.4e-3.
   expect_steps(NewmarkExplicit({.time_step = 1e-6}), 2e-3);
+}
+
+TEST(DrivenStructure, EverySensorAnswersAStepOfTheForceAsItsTransferFunction) {
+  expect_answers_to_a_step(Choice<FrictionLaw>::of<CoulombExponential>(
+      "coulomb_exponential",
+      CoulombExponential::Options{.static_coefficient = 0.8, .dynamic_coefficient = 0.8}));
+  Thermal::Options even;
+  even.cold_coefficient = even.hot_coefficient = 0.8;
+  expect_answers_to_a_step(Choice<FrictionLaw>::of<Thermal>("thermal", even));
 }
 
 // What the friction force does on the contact is what the modes hold and what their dampers take,

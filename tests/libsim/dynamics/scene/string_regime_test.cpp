@@ -140,6 +140,15 @@ TEST(StringRegime, CallsAHeldAndADyingStringSilent) {
   EXPECT_EQ(classify(regime_features(scene, dying, {}), {}), StringRegime::kSilent);
 }
 
+// The longest period sought is 1.25 of the string's, up to a sample.
+TEST(StringRegime, FindsAPeriodAtTheEndOfItsRange) {
+  const Scene scene = stroke();
+  const RegimeFeatures features = features_of(scene, regular(scene, 1, 1.25));
+  const double sample = scene.string.fundamental / kRate;
+  EXPECT_NEAR(features.period, 1.25, sample);
+  EXPECT_GT(features.periodicity, 0.9);
+}
+
 TEST(StringRegime, RefusesWhatItCannotJudge) {
   const Scene brief = stroke(0.1);
   EXPECT_THROW(features_of(brief, regular(brief, 1)), InvalidInput);

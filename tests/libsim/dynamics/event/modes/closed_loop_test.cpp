@@ -199,6 +199,27 @@ TEST(ClosedLoop, ObservesWhatTheModesShow) {
   EXPECT_NEAR(row[ClosedLoop::kRight], right, 1e-12 * std::abs(modes.left_gain[0]) * 20);
 }
 
+// Z = −(d/λ) f − (d/λ²) f' − (d/λ³) f'' answers a slow force, and the sensor reads Re(ḡ Z).
+TEST(ClosedLoop, ASensorSeesBothPartsOfTheAnswerToASlowForce) {
+  ContactModes modes = paper_modes(20);
+  for (std::complex<double>& gain : modes.left_gain) gain *= std::complex(0.6, 0.8);
+  const auto loop = make_closed_loop(modes, 1e5, critical_damping(modes, 1e5));
+  ASSERT_TRUE(loop.has_value());
+  std::array<double, 3> sums{}, sizes{};
+  for (std::size_t n = 0; n < modes.size(); ++n) {
+    Complex answer = -std::conj(modes.left_gain[n]) * modes.drive[n];
+    for (std::size_t k = 0; k < 3; ++k) {
+      answer /= modes.pole[n];
+      sums[k] += answer.real();
+      sizes[k] += std::abs(answer);
+    }
+  }
+  // A few roundings of each of 20 terms.
+  EXPECT_NEAR(loop->left.value, sums[0], 1e-14 * sizes[0]);
+  EXPECT_NEAR(loop->left.rate, sums[1], 1e-14 * sizes[1]);
+  EXPECT_NEAR(loop->left.curvature, sums[2], 1e-14 * sizes[2]);
+}
+
 // Beyond 512 modes the matrices of the change of basis are computed, not kept; the rounding of the
 // sums grows with their terms.
 TEST(ClosedLoop, CoordinatesOfManyModesGoThereAndBack) {

@@ -1,0 +1,44 @@
+#include "libinverse/structure/strike_weights.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace modcal::strike_weights_test {
+namespace {
+
+// Bins 0.5 Hz apart, one of them of |y|² = 25: a thirteenth of it is the mean over 3 Hz to both
+// sides, and the floor is a hundredth of the mean of all.
+TEST(StrikeWeights, AreOfTheResponseWithinThreeHertz) {
+  constexpr std::size_t kBins = 101, kPeak = 50;
+  ContourSpectra spectra;
+  spectra.grid.spacing = 2.0 * std::numbers::pi * 0.5;
+  spectra.responses.assign(1, std::vector<Complex>(kBins));
+  spectra.responses[0][kPeak] = Complex(3.0, 4.0);
+  const BinWeights weights = weights_of(spectra, 0.2);
+  ASSERT_EQ(weights.size(), 1u);
+  ASSERT_EQ(weights[0].size(), kBins);
+  const double floor = 0.01 * 25.0 / 101.0;
+  for (std::size_t m = 0; m < kBins; ++m) {
+    const bool near = m + 6 >= kPeak && m <= kPeak + 6;
+    const double deviation = 0.2 * std::sqrt((near ? 25.0 / 13.0 : 0.0) + floor);
+    EXPECT_NEAR(weights[0][m] * deviation, 1.0, 1e-13) << m;  // sums of 101 terms
+  }
+}
+
+// Powers that are what they are expected to be, ε² of the modes' and noise: the likelihood is
+// largest there, to what 200 multiplicative steps leave.
+TEST(SensorScatterOf, ExpectedPowersIsTheirOwn) {
+  std::vector<double> modal, left;
+  for (int m = 0; m < 200; ++m) {
+    modal.push_back(std::exp(-0.05 * m));
+    left.push_back(0.03 * 0.03 * modal.back() + 2.0 * 4e-6);
+  }
+  const SensorScatter found = scatter_of(left, modal, 2.0, 1.0);
+  EXPECT_NEAR(found.modal, 0.03, 3e-5);
+  EXPECT_NEAR(found.noise, 2e-3, 2e-6);
+}
+
+}  // namespace
+}  // namespace modcal::strike_weights_test
