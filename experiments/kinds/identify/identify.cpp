@@ -261,8 +261,10 @@ StudyResult IdentifyOptions::run(const StudyContext& context) const {
   }
   if (!outcome.record) return result;
   for (const std::string& warning : outcome.record->warnings) result.warn(warning);
-  const std::string why =
-      rejection_of(outcome.found, outcome.record->decay, fundamental, outcome.law);
+  std::string why = rejection_of(outcome.found, outcome.record->decay, fundamental, outcome.law);
+  if (result.status == report::Status::kOk && why.empty()) {
+    why = change_along(outcome.record->decay, fundamental, identification);
+  }
   if (result.status == report::Status::kOk && !why.empty()) {
     result.status = report::Status::kFailed;
     result.answer = why;

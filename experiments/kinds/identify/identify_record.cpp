@@ -1,6 +1,7 @@
 #include "experiments/kinds/identify/identify_record.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -93,6 +94,43 @@ std::string rejection_of(const PluckIdentification& found, const DecayRecord& de
         "rejected: the modes tell f0 = {:.5g} Hz, not the {:g} Hz that number them: state the "
         "string's own fundamental",
         law->fundamental, fundamental);
+  }
+  return {};
+}
+
+std::string change_along(const DecayRecord& decay, double fundamental,
+                         const PluckOptions& options) {
+  const auto half = static_cast<std::ptrdiff_t>(decay.samples() / 2);
+  std::array<DecayRecord, 2> parts;
+  std::array<PluckIdentification, 2> found;
+  for (std::size_t i = 0; i < 2; ++i) {
+    parts[i].sample_rate = decay.sample_rate;
+    for (const std::vector<double>& channel : decay.channels) {
+      const auto first = channel.begin() + (i == 0 ? 0 : half);
+      parts[i].channels.emplace_back(first, first + half);
+    }
+    try {
+      found[i] = identify_pluck(parts[i], fundamental, options);
+    } catch (const InvalidInput&) {
+      return {};  // half of it is too short
+    }
+    if (!found[i].converged || !found[i].full_rank) return {};
+  }
+  for (const auto& [number, early] : found[0].modes) {
+    const auto late = std::ranges::find(found[1].modes, number, &PluckedMode::number);
+    if (late == found[1].modes.end()) continue;
+    const auto differs = [&, &one = early, &other = late->mode](double DecayPole::*of) {
+      return std::abs(one.pole.*of - other.pole.*of) >
+             5.0 * std::hypot(one.deviation.*of, other.deviation.*of);
+    };
+    if (!differs(&DecayPole::frequency) && !differs(&DecayPole::damping_ratio)) continue;
+    return fmt::format(
+        "rejected: mode {} has {:.7g} Hz and a damping ratio of {:.3g} in the first half of the "
+        "decay, {:.7g} Hz and {:.3g} in the second: it is not one damped sinusoid alone, as where "
+        "the string moves in two planes or mains hum stands beside it; pluck towards the sensor, "
+        "remove the hum, or state another part",
+        number, early.pole.frequency, early.pole.damping_ratio, late->mode.pole.frequency,
+        late->mode.pole.damping_ratio);
   }
   return {};
 }

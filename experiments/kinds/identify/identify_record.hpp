@@ -28,4 +28,9 @@ PluckedRecord load_pluck(const RecordOptions& options, const std::filesystem::pa
 std::string rejection_of(const PluckIdentification& found, const DecayRecord& decay,
                          double fundamental, const std::optional<StiffStringFit>& law);
 
+/// Names the mode whose frequency or damping differs by more than five deviations between the
+/// halves of the decay: it is not one damped sinusoid, as of a string with two polarizations, and
+/// error bars do not hold. Empty: none does, or half of the decay tells no error bars.
+std::string change_along(const DecayRecord& decay, double fundamental, const PluckOptions& options);
+
 }  // namespace modcal

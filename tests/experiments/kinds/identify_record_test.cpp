@@ -25,8 +25,9 @@ class RecordedPluck : public FolderTest {
   static double frequency(int n) { return 196.0 * n * std::sqrt(1.0 + 1.5e-4 * n * n); }
   static double ratio(int n) { return 1e-3 + 1e-4 * n; }
 
+  // In a second plane each mode is `split` higher, a tenth as large.
   // The string is held for a while, bent to one side, and let go. Every mode is driven.
-  void write_pluck() const {
+  void write_pluck(double split = 0.0) const {
     const auto count = static_cast<std::size_t>(1.5 * kRate);
     std::vector<double> left(count), right(count);
     fill_standard_normal(StreamKey(1).with("left"), left);
@@ -39,6 +40,10 @@ class RecordedPluck : public FolderTest {
         const double omega = 2.0 * std::numbers::pi * frequency(n);
         const double moved = std::exp(-ratio(n) * omega * t) * std::cos(omega * t) / n;
         sums[0] += moved;
+        if (split > 0.0) {
+          const double other = (1.0 + split) * omega;
+          sums[0] += 0.1 * std::exp(-ratio(n) * other * t) * std::cos(other * t) / n;
+        }
         sums[1] -= (n % 2 == 0 ? -1.0 : 1.0) * moved;
       }
       text += fmt::format("{:.12g},{:.12g}\n", sums[0], sums[1]);
@@ -90,6 +95,13 @@ TEST_F(RecordedPluck, IsRefusedWhereItsNumbersOrItsDecayAreWrong) {
   result = run(MODCAL_EXAMPLES "/bowed_violin_d.csv", "fundamental: 294 Hz\n");
   EXPECT_EQ(result.status, report::Status::kFailed);
   EXPECT_THAT(result.answer, HasSubstr("rejected"));
+}
+
+TEST_F(RecordedPluck, ThatMovesInTwoPlanesIsRefused) {
+  write_pluck(2e-3);
+  const StudyResult result = run("pluck.csv", "fundamental: 197 Hz\n");
+  EXPECT_EQ(result.status, report::Status::kFailed);
+  EXPECT_THAT(result.answer, HasSubstr("it is not one damped sinusoid alone"));
 }
 
 TEST_F(RecordedPluck, NeedsItsFundamentalAndARecordOrAScene) {
