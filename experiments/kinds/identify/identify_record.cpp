@@ -119,6 +119,9 @@ std::string change_along(const DecayRecord& decay, double fundamental,
   for (const auto& [number, early] : found[0].modes) {
     const auto late = std::ranges::find(found[1].modes, number, &PluckedMode::number);
     if (late == found[1].modes.end()) continue;
+    // A pole of noise takes the number of a mode too weak to be seen; it is not that mode.
+    const double apart = std::abs(early.pole.frequency - late->mode.pole.frequency);
+    if (apart > 0.1 * fundamental) continue;
     const auto differs = [&, &one = early, &other = late->mode](double DecayPole::*of) {
       return std::abs(one.pole.*of - other.pole.*of) >
              5.0 * std::hypot(one.deviation.*of, other.deviation.*of);
