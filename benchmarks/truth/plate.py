@@ -5,7 +5,8 @@ plate.py BUILD OUT makes a plate of free edges by finite differences (masses, be
 dampers: complex modes), steps it exactly in time under a hammer's force (matrix exponential, force linear between steps),
 reads accelerations through an anti-alias filter, fits a table to one strike (`modcal fit_modes`) and identifies the force of
 another one (`modcal identify_force`) after the plate has changed: stiffness, damping and sensitivities of the sensors are off
-by what --change says. Prints relative error and the share of the samples that lie in the 95 % band, all and about the pulse.
+by what --change says. With --sessions S no modes are fitted: S sessions of four strikes each, the plate changed by --change
+between them, give response functions (H1) with coherence in universal files. Prints relative error and the share of the samples that lie in the 95 % band, all and about the pulse.
 """
 import argparse
 import json
@@ -76,7 +77,7 @@ def hammer(rng, count, start, kind):
     return force
 
 
-def record(rng, change, duration, kind="strike", noise=0.002):
+def record(rng, change, duration, kind="strike", noise=0.002, own=None):
     mass, damping, stiffness, node = plate(rng, change)
     n, step = mass.size, 1 / (RATE * STEPS)
     system = np.zeros((2 * n + 2, 2 * n + 2))  # state, force, its slope
@@ -86,7 +87,9 @@ def record(rng, change, duration, kind="strike", noise=0.002):
     system[n + node(*CONTACT), 2 * n] = 1 / mass[node(*CONTACT)]
     system[2 * n, 2 * n + 1] = 1
     advance = linalg.expm(system * step)[:2 * n]
-    own, by_force, by_slope = advance[:, :2 * n], advance[:, 2 * n], advance[:, 2 * n + 1]
+    by_state, by_force, by_slope = advance[:, :2 * n], advance[:, 2 * n], advance[:, 2 * n + 1]
+    gains = 1 + 10 * change * rng.standard_normal(len(SENSORS)) if own else None
+    rng = own or rng
     count = int(duration * RATE) * STEPS
     force = hammer(rng, count + 1, 0.012, kind)
     places = [node(*s) for s in SENSORS]
@@ -95,12 +98,12 @@ def record(rng, change, duration, kind="strike", noise=0.002):
     state, read = np.zeros(2 * n), np.empty((count, len(places)))
     for j in range(count):
         read[j] = rows @ state + direct * force[j]
-        state = own @ state + by_force * force[j] + by_slope * (force[j + 1] - force[j]) / step
+        state = by_state @ state + by_force * force[j] + by_slope * (force[j + 1] - force[j]) / step
     # The same anti-alias filter on force and responses.
     low_pass = signal.firwin(24 * STEPS + 1, 0.42 * RATE, fs=RATE * STEPS, window=("kaiser", 9.0))
     keep = lambda x: signal.lfilter(low_pass, 1, x, axis=0)[::STEPS]
     responses, force = keep(read), keep(force[:-1])
-    responses *= 1 + 10 * change * rng.standard_normal(len(places))
+    responses *= 1 + 10 * change * rng.standard_normal(len(places)) if gains is None else gains
     responses += noise * responses.std(axis=0) * rng.standard_normal(responses.shape)
     force = force + 0.001 * force.std() * rng.standard_normal(force.shape)
     return force, responses
@@ -110,6 +113,55 @@ def write(path, force, responses):
     t = np.arange(force.size) / RATE
     header = "t [s],force [N]," + ",".join(f"a{k + 1} [m/s2]" for k in range(responses.shape[1]))
     np.savetxt(path, np.column_stack([t, force, responses]), "%.7g", ",", header=header, comments="")
+
+
+def functions_of(rng, change, duration, strikes=4, highest=900.0):
+    """H1 and coherence of so many strikes on one plate, K x lines from 0 Hz on."""
+    seed = rng.integers(1 << 62)
+    cross = power = powers = 0
+    for strike in range(strikes):
+        # The same plate every time, another noise and another hammer.
+        force, responses = record(np.random.default_rng(seed), change, duration, own=np.random.default_rng([seed % 997, strike]))
+        f, y = np.fft.rfft(force), np.fft.rfft(responses, axis=0)
+        cross, power, powers = cross + np.conj(f)[:, None] * y, power + abs(f) ** 2, powers + abs(y) ** 2
+    lines = int(highest * duration) + 1
+    return (cross / power[:, None]).T[:, :lines], (abs(cross) ** 2 / (power[:, None] * powers)).T[:, :lines]
+
+
+def write_functions(path, values, coherence, step):
+    """Datasets 58: response functions h1, h2, ... and their coherences c1, c2, ..."""
+    def axis(code, label, unit):
+        return f"{code:10d}{0:5d}{0:5d}{0:5d} {label:20s} {unit:20s}\n"
+
+    with open(path, "w") as out:
+        for k, (h, c) in enumerate(zip(values, coherence)):
+            for name, kind, ordinate, y in ((f"h{k + 1}", 4, 6, h), (f"c{k + 1}", 6, 4, c)):
+                out.write(f"{-1:6d}\n{58:6d}\n{name}\nNONE\nNONE\nNONE\nNONE\n"
+                          f"{kind:5d}{0:10d}{0:5d}{0:10d} {'NONE':10s}{k + 2:10d}{3:4d} {'NONE':10s}{1:10d}{3:4d}\n"
+                          f"{ordinate:10d}{y.size:10d}{1:10d}{0.0:13.5E}{step:13.5E}{0.0:13.5E}\n")
+                out.write(axis(18, "Frequency", "Hz") + axis(12 if kind == 4 else 0, "Response", "m/s2" if kind == 4 else "NONE")
+                          + axis(13 if kind == 4 else 0, "Force", "N" if kind == 4 else "NONE") + axis(0, "NONE", "NONE"))
+                columns = (y.real, y.imag) if kind == 4 else (y, )
+                numbers = np.column_stack(columns).ravel()
+                per_line = 4 if kind == 4 else 6
+                width = 20 if kind == 4 else 13
+                for i in range(0, numbers.size, per_line):
+                    out.write("".join(f"{x:{width}.{11 if kind == 4 else 5}E}" for x in numbers[i:i + per_line]) + "\n")
+                out.write(f"{-1:6d}\n")
+
+
+def measure_functions(out, sessions, change, duration=2.0):
+    names = []
+    for session in range(sessions):
+        rng = np.random.default_rng([11, session, int(1e6 * change)])
+        names.append(f"functions_{change:g}_{session}.uff")
+        if not (out / names[-1]).exists():
+            # The first session is of the plate as it is, as the modes are.
+            write_functions(out / names[-1], *functions_of(rng, change if session else 0, duration), 1 / duration)
+    responses = ", ".join(f"{{channel: h{k + 1}, coherence: c{k + 1}}}" for k in range(len(SENSORS)))
+    (out / f"functions_{change:g}.yaml").write_text(
+        f"low: 10 Hz\nhigh: 600 Hz\nfunctions:\n  file: {names[0]}\n  sessions: [{', '.join(names[1:])}]\n"
+        f"  averages: 4\n  responses: [{responses}]\n")
 
 
 def yaml(kind, name, **keys):
@@ -132,16 +184,21 @@ def main():
     p.add_argument("--change", nargs="+", type=float, default=[0, 1e-3, 3e-3],
                    help="of the stiffness; sensors ten times, dampers a hundred times as much")
     p.add_argument("--kinds", nargs="+", default=["strike", "smooth"])
+    p.add_argument("--sessions", type=int, default=0, help="of response functions in the place of modes")
     p.add_argument("--keys", default="", help="further keys of identify_force: \"key: value; key: value\"")
     a = p.parse_args()
     a.out.mkdir(parents=True, exist_ok=True)
     keys = dict(k.strip().split(": ", 1) for k in a.keys.split(";") if k)
-    write(a.out / "strike.csv", *record(np.random.default_rng(1), 0, 1.5))
-    (a.out / "strike.yaml").write_text(yaml("fit_modes", "strike", low="10 Hz", high="600 Hz"))
-    run(a.build, a.out / "strike.yaml", a.out / "strike")
-    print(json.loads((a.out / "strike/modes_fit.json").read_text())["sensors"])
+    if not a.sessions:
+        write(a.out / "strike.csv", *record(np.random.default_rng(1), 0, 1.5))
+        (a.out / "strike.yaml").write_text(yaml("fit_modes", "strike", low="10 Hz", high="600 Hz"))
+        run(a.build, a.out / "strike.yaml", a.out / "strike")
+        print(json.loads((a.out / "strike/modes_fit.json").read_text())["sensors"])
     for kind in a.kinds:
         for change in a.change:
+            if a.sessions:
+                measure_functions(a.out, a.sessions, change)
+            table = f"functions_{change:g}.yaml" if a.sessions else "strike/table.yaml"
             rows = []
             for draw in range(a.draws):
                 rng = np.random.default_rng([7, draw, int(1e6 * change)])
@@ -150,7 +207,7 @@ def main():
                     write(a.out / f"{name}.csv", *record(rng, change, 1.0, kind))
                 window = "80 ms" if kind == "strike" else "0.5 s"
                 (a.out / f"{name}.yaml").write_text(
-                    yaml("identify_force", name, table="strike/table.yaml", window=window, **keys))
+                    yaml("identify_force", name, table=table, window=window, **keys))
                 run(a.build, a.out / f"{name}.yaml", a.out / name)
                 found = np.genfromtxt(a.out / name / "identified.csv", delimiter=",", names=True)
                 truth = np.genfromtxt(a.out / f"{name}.csv", delimiter=",", names=True)

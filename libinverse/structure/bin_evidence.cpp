@@ -57,7 +57,24 @@ std::vector<double> contradiction(const ContourSpectra& spectra, const Transfers
   return left;
 }
 
+// E|δH|² of every sensor is a share of these.
+std::vector<std::vector<double>> spread_of(const StructureTable& table,
+                                           const ContourSpectra& spectra) {
+  if (!table.measured.empty()) return table.measured.variances(spectra);
+  std::vector<std::vector<double>> spread(table.model.pairs());
+  for (std::size_t k = 0; k < spread.size(); ++k) {
+    for (std::size_t m = 0; m < spectra.count(); ++m) {
+      spread[k].push_back(modal_power(table.model, k, spectra.s(m)));
+    }
+  }
+  return spread;
+}
+
 }  // namespace
+
+Transfers transfers_of(const StructureTable& table, const ContourSpectra& spectra) {
+  return table.measured.empty() ? transfers_of(table.model, spectra) : table.measured.at(spectra);
+}
 
 Transfers transfers_of(const ModalModel& model, const ContourSpectra& spectra) {
   SplitSpectra split;
@@ -84,13 +101,8 @@ BinEvidence evidence_of(const ContourSpectra& spectra, const Transfers& transfer
 BinVariances variances_of(const StructureTable& table, const ContourSpectra& spectra,
                           const Transfers& transfers) {
   const std::size_t sensors = transfers.size(), bins = spectra.count();
-  std::vector<std::vector<double>> modal(sensors);
-  for (std::size_t k = 0; k < sensors; ++k) {
-    for (std::size_t m = 0; m < bins; ++m) {
-      modal[k].push_back(modal_power(table.model, k, spectra.s(m)));
-    }
-  }
-  BinVariances result{.of = modal};
+  const std::vector<std::vector<double>> spread = spread_of(table, spectra);
+  BinVariances result{.of = spread};
   const double noise_power = spectra.noise_power();
   std::vector<double> more(bins, 1.0);
   for (int round = 0; round < 4; ++round) {
@@ -108,8 +120,9 @@ BinVariances variances_of(const StructureTable& table, const ContourSpectra& spe
     }
     for (std::size_t k = 0; k < sensors; ++k) {
       const SensorScatter& scatter = table.scatters[k];
+      const double share = table.measured.empty() ? scatter.modal * scatter.modal : 1.0;
       for (std::size_t m = 0; m < bins; ++m) {
-        result.of[k][m] = more[m] * (scatter.modal * scatter.modal * power[m] * modal[k][m] +
+        result.of[k][m] = more[m] * (share * power[m] * spread[k][m] +
                                      scatter.noise * scatter.noise * noise_power) +
                           1e-300;
       }

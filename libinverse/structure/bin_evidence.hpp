@@ -6,8 +6,6 @@
 
 namespace modcal {
 
-using Transfers = std::vector<std::vector<Complex>>;  ///< H of every sensor at every bin
-
 /// F of a bin has the likelihood exp(−told |F|² + 2 Re conj(score) F).
 struct BinEvidence {
   std::vector<double> told;    ///< Σ_k |H_k|²/V_k [1/N²]
@@ -24,8 +22,10 @@ struct BinVariances {
 
 /// H of the table's model at the bins.
 Transfers transfers_of(const ModalModel& model, const ContourSpectra& spectra);
+Transfers transfers_of(const StructureTable& table, const ContourSpectra& spectra);
 
-/// V_k = ε_k² |F|² Σ_n |H_kn|² + noise, |F|² the power that the responses tell, smoothed, times the
+/// V_k = |F|² E|δH_k|² + noise, E|δH_k|² = ε_k² Σ_n |H_kn|² of modes or that of measured functions,
+/// |F|² the power that the responses tell, smoothed, times the
 /// mean square by which the sensors contradict each other about the bin (K > 1).
 BinVariances variances_of(const StructureTable& table, const ContourSpectra& spectra,
                           const Transfers& transfers);

@@ -157,6 +157,7 @@ BlindFit refined_table(const StructureTable& table, const StructureRecord& recor
                        const StructureChange& change) {
   // What rings on behind the part that is taken has e^−8 of its amplitude.
   constexpr double rung_out = 8.0;
+  table.require_modes("a refinement");
   const Eigen::VectorXd prior = prior_of(table, change);
   StructureTable refined = table;
   BlindFit fit;

@@ -12,9 +12,9 @@ namespace modcal {
 namespace {
 
 // P y of every sensor: what no force at the contact of the model explains.
-Transfers unexplained(const ModalModel& model, const ContourSpectra& spectra,
+Transfers unexplained(const StructureTable& table, const ContourSpectra& spectra,
                       const BinWeights& weights) {
-  Transfers h = transfers_of(model, spectra), left = spectra.responses;
+  Transfers h = transfers_of(table, spectra), left = spectra.responses;
   for (std::size_t m = 0; m < spectra.count(); ++m) {
     Complex along;
     double told = 0.0;
@@ -95,7 +95,7 @@ ContactPlaces weigh_places(std::span<const StructureTable> tables, const Structu
     for (std::size_t m = 0; m < spectra.count(); ++m) all[k][m] *= weights[k][m];
   }
   for (const StructureTable& table : tables) {
-    Transfers left = unexplained(table.model, spectra, weights);
+    Transfers left = unexplained(table, spectra, weights);
     costs.push_back(power_of(left));
     result.left.push_back(std::sqrt(costs.back() / power_of(all)));
     if (costs.back() <= std::ranges::min(costs)) {

@@ -9,6 +9,7 @@
 #include "libinverse/structure/strike_weights.hpp"
 #include "libinverse/structure/tuning.hpp"
 #include "libsim/base/error.hpp"
+#include "libsim/signal/statistics.hpp"
 
 namespace modcal {
 namespace {
@@ -144,12 +145,17 @@ class Fit {
     std::vector<Eigen::VectorXd> variances;
     std::vector<double> noise;
     for (std::size_t k = 0; k < kinds_.size(); ++k) {
-      noise.push_back(scatters_[k].noise * std::sqrt(share));
+      const bool measured = !spectra.variances.empty();
+      noise.push_back(measured ? 0.0 : scatters_[k].noise * std::sqrt(share));
       Eigen::VectorXd& own = variances.emplace_back(static_cast<Index>(spectra.count()));
       const std::vector<double> made = made_by_modes(spectra, table.model, k);
       for (std::size_t m = 0; m < spectra.count(); ++m) {
         const double off = scatters_[k].modal * weights_[k][m];
-        own[static_cast<Index>(m)] = 0.5 * share * counted_twice() * off * off * made[m];
+        double& variance = own[static_cast<Index>(m)];
+        variance = 0.5 * share * counted_twice() * off * off * made[m];
+        if (!measured) continue;
+        const double by_line = scatters_[k].noise * weights_[k][m];
+        variance += 0.5 * share * counted_twice() * by_line * by_line * spectra.variances[k][m];
       }
     }
     const Eigen::MatrixXd covariance = search.covariance(poles, variances, noise);
@@ -180,11 +186,22 @@ class Fit {
     }
     result_.residuals.push_back(
         std::sqrt(rest / static_cast<double>(left.size()) / mean_power(spectra.responses[k])));
-    scatters_.push_back(scatter_of(left, modal, spectra.noise_power(), counted_twice()));
+    scatters_.push_back(scatter_of(left, modal, spectra.noise_powers(k), counted_twice()));
     // A response function tells nothing of the noise of other records.
     const double share = rest / std::accumulate(modal.begin(), modal.end(), 0.0);
     result_.table.scatters.push_back(
-        record_.force.empty() ? SensorScatter{.modal = std::sqrt(share)} : scatters_.back());
+        record_.force.empty()
+            ? SensorScatter{.modal = std::sqrt(share + told_by_sessions(k, modal))}
+            : scatters_.back());
+  }
+
+  // What measured functions are known to be off by is no part of what the fit leaves: another
+  // session is off by both.
+  double told_by_sessions(std::size_t k, const std::vector<double>& modal) const {
+    const std::vector<std::vector<double>>& variances = result_.spectra.variances;
+    if (variances.empty()) return 0.0;
+    return std::accumulate(variances[k].begin(), variances[k].end(), 0.0) /
+           std::accumulate(modal.begin(), modal.end(), 0.0);
   }
 
   StructureRecord record_;
@@ -196,32 +213,6 @@ class Fit {
 };
 
 }  // namespace
-
-double StructureTable::frequency(std::size_t n) const {
-  return model.poles[n].omega / (2.0 * std::numbers::pi);
-}
-
-double StructureTable::pulse_at(double frequency) const {
-  if (pulse.empty()) return 1.0;
-  const double at = frequency / lag;
-  const auto i = static_cast<std::size_t>(at);
-  if (i + 1 >= pulse.size()) return pulse.back();
-  const double share = at - static_cast<double>(i);
-  return (1.0 - share) * pulse[i] + share * pulse[i + 1];
-}
-
-double modal_power(const ModalModel& model, std::size_t pair, Complex s) {
-  const SensorKind kind = model.sensors[pair / model.contacts];
-  double sum = 0.0;
-  for (std::size_t n = 0; n < model.poles.size(); ++n) {
-    const ModalPole& pole = model.poles[n];
-    const Complex constant(
-        model.constant(pair, n),
-        model.quadrature.empty() ? 0.0 : model.quadrature[pair * model.poles.size() + n]);
-    sum += std::norm(numerator_of(kind, pole, constant, s) / pole.denominator(s));
-  }
-  return sum;
-}
 
 bool stays(const ModalPole& pole, std::span<const ModalPole> others) {
   return std::ranges::any_of(others, [&](const ModalPole& other) {
@@ -256,11 +247,11 @@ StrikeFit fit_strike(const StructureRecord& record, const std::vector<SensorKind
   return Fit(record, kinds, options).run();
 }
 
-StrikeFit fit_response(const FrequencyGrid& grid, const std::vector<std::vector<Complex>>& response,
-                       const std::vector<SensorKind>& kinds, const StrikeFitOptions& options) {
+StrikeFit fit_response(const MeasuredFunctions& measured, const StrikeFitOptions& options) {
   constexpr double kTurn = 2.0 * std::numbers::pi;
-  MODCAL_REQUIRE(!response.empty() && kinds.size() == response.size(),
-                 "{} kinds of sensors for {} response functions", kinds.size(), response.size());
+  const FrequencyGrid& grid = measured.grid;
+  const Transfers response = measured.mean();
+  MODCAL_REQUIRE(!response.empty(), "modes need {} response function and more", 1);
   ContourSpectra spectra{.grid = grid,
                          .bins = bins_between(grid, kTurn * options.low, kTurn * options.high)};
   spectra.samples = 2 * (grid.bins - 1);
@@ -280,7 +271,16 @@ StrikeFit fit_response(const FrequencyGrid& grid, const std::vector<std::vector<
                      spectra.s(m).imag() / kTurn);
     }
   }
-  return Fit(spectra, kinds, options).run();
+  // What sessions and coherence say of the lines.
+  if (measured.sessions.size() > 1 || !measured.random.empty()) {
+    spectra.variances = measured.variances(spectra);
+    for (std::vector<double>& variances : spectra.variances) {
+      // A coherence of 1 is rounded: no line is a hundred times as right as all.
+      const double least = 1e-4 * mean(variances);
+      for (double& variance : variances) variance = std::max({variance, least, 1e-300});
+    }
+  }
+  return Fit(spectra, measured.sensors, options).run();
 }
 
 }  // namespace modcal

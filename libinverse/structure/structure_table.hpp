@@ -2,9 +2,10 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "libsim/model/modal_model.hpp"
+#include "libinverse/structure/measured_functions.hpp"
 
 namespace modcal {
 
@@ -15,9 +16,11 @@ struct SensorScatter {
   double noise = 0.0;  ///< standard deviation of one sample, in the sensor's unit
 };
 
-/// A modal model with error bars, between `low` and `high` [Hz].
+/// A model with error bars, between `low` and `high` [Hz]: modes, or what was measured in their
+/// place.
 struct StructureTable {
-  ModalModel model;
+  ModalModel model;                          ///< without poles where functions were measured
+  MeasuredFunctions measured;                ///< empty: modes
   std::vector<std::string> names;            ///< of the sensors, K
   std::vector<double> frequency_deviations;  ///< of ln f_n; empty: exact
   std::vector<double> damping_deviations;    ///< of ln ζ_n; empty: exact
@@ -25,11 +28,16 @@ struct StructureTable {
   std::vector<double> contact;               ///< φ_n²/m_n of the force [1/kg]; empty: unknown
   double low = 0.0, high = 0.0;              ///< band [Hz]
   double lag = 0.0;                          ///< of the pulse's spectrum [Hz]
-  std::vector<double> pulse;                 ///< |G| at 0, lag, 2 lag, … [1]; empty: 1
+  std::vector<double> pulse;                 ///< |G| at 0, lag, 2 lag, … [1]; empty: not known
 
-  /// |G| of the force's pulse at a frequency [Hz].
+  std::vector<std::string> warnings;  ///< what was supposed where its files do not tell
+
+  /// |G| of the force's pulse at a frequency [Hz]. Of one that is not known the band alone is told:
+  /// 1 up to `high`, fading out over a quarter above it.
   double pulse_at(double frequency) const;
   double frequency(std::size_t n) const;  ///< [Hz]
+  /// Throws InvalidInput for measured functions: `what` needs modes.
+  void require_modes(std::string_view what) const;
 };
 
 /// Σ_n |H_n(s)|² of a pair: what its modes make, each by itself.

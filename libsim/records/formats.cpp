@@ -72,12 +72,13 @@ const RecordFormat& record_format(const Path& path, const std::string& name) {
 }
 
 ResponseFunctions read_response_functions(const Path& path, const std::string& format,
-                                          const std::vector<std::string>& channels) {
+                                          const std::vector<std::string>& channels,
+                                          FrequencyFunction wanted) {
   const RecordFormat& known = record_format(path, format);
   MODCAL_REQUIRE(known.read_responses != nullptr,
                  "{}: {} keep no response functions: state a universal file (UFF 58)",
                  path.string(), known.meaning);
-  return known.read_responses(path, channels);
+  return known.read_responses(path, channels, wanted);
 }
 
 }  // namespace modcal

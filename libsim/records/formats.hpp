@@ -18,7 +18,8 @@ struct RecordFormat {
                 const std::string& provenance) = nullptr;
   /// Null: the format keeps no response functions.
   ResponseFunctions (*read_responses)(const std::filesystem::path& path,
-                                      const std::vector<std::string>& channels) = nullptr;
+                                      const std::vector<std::string>& channels,
+                                      FrequencyFunction wanted) = nullptr;
 };
 
 /// Those this program was built with.

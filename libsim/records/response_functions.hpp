@@ -6,6 +6,9 @@
 
 namespace modcal {
 
+/// What a function over frequency is: H, or how much of a response the force explains (γ²).
+enum class FrequencyFunction { kResponse, kCoherence };
+
 /// H at the lines of a grid from 0 on; NaN below the first line that the file has.
 struct ResponseFunction {
   std::string name;
@@ -21,10 +24,11 @@ struct ResponseFunctions {
 };
 
 /// The functions named, by name or by number from 1 among all that the file holds, of one grid.
-/// Throws WrongChannel for one that is not there, is no response function or has another grid, and
-/// InvalidInput for a format that keeps none.
+/// Throws WrongChannel for one that is not there, is none of what is wanted or has another grid,
+/// and InvalidInput for a format that keeps none.
 ResponseFunctions read_response_functions(const std::filesystem::path& path,
                                           const std::string& format,
-                                          const std::vector<std::string>& channels);
+                                          const std::vector<std::string>& channels,
+                                          FrequencyFunction wanted = FrequencyFunction::kResponse);
 
 }  // namespace modcal

@@ -149,17 +149,18 @@ Recording assemble(std::string format, std::vector<StoredChannel> stored,
 
 ResponseFunctions assemble_responses(const std::vector<StoredChannel>& stored,
                                      const std::vector<std::string>& channels,
-                                     const std::string& file) {
+                                     FrequencyFunction wanted, const std::string& file) {
   const std::vector<std::string> names = different_names(stored);
   const std::vector<std::size_t> chosen = find_channels(names, channels, file);
+  const bool wants_coherence = wanted == FrequencyFunction::kCoherence;
   ResponseFunctions result;
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     const StoredChannel& channel = stored[chosen[i]];
-    if (!channel.read_response) {
-      throw WrongChannel(i,
-                         fmt::format("{}: channel \"{}\" is no response function over even lines "
-                                     "but has {}",
-                                     file, names[chosen[i]], grid_text(channel)));
+    if (!channel.read_response || channel.is_coherence != wants_coherence) {
+      throw WrongChannel(
+          i, fmt::format("{}: channel \"{}\" is no {} over even lines but has {}", file,
+                         names[chosen[i]], wants_coherence ? "coherence" : "response function",
+                         grid_text(channel)));
     }
     const StoredChannel& one = stored[chosen[0]];
     if (channel.size != one.size || channel.first_line != one.first_line ||

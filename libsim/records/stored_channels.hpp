@@ -23,10 +23,11 @@ struct StoredChannel {
   /// sample rate.
   std::function<std::vector<double>()> read_times = {};
   double time_resolution = 0.0;  ///< of the largest instant as it was stored, relative
-  /// Of a response function: its lines [Hz], the first one a whole number of steps from 0, the unit
-  /// of its force, and its values; null for anything else.
+  /// Of a response function or a coherence: its lines [Hz], the first one a whole number of steps
+  /// from 0, the unit of its force, and its values; null for anything else.
   double first_line = 0.0, line_step = 0.0;
   std::string per_unit = {};
+  bool is_coherence = false;
   std::function<std::vector<Complex>()> read_response = {};
 };
 
@@ -40,7 +41,7 @@ Recording assemble(std::string format, std::vector<StoredChannel> stored,
 /// The wanted response functions, as read_response_functions() says.
 ResponseFunctions assemble_responses(const std::vector<StoredChannel>& stored,
                                      const std::vector<std::string>& channels,
-                                     const std::string& file);
+                                     FrequencyFunction wanted, const std::string& file);
 
 /// A rate whose period was printed to a relative `resolution`: the whole number of hertz within it,
 /// where there is one.

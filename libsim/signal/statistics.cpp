@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 
 #include "libsim/base/error.hpp"
@@ -71,6 +72,16 @@ double quantile(std::vector<double> values, double q) {
   const auto lower = static_cast<std::size_t>(position);
   const std::size_t upper = std::min(lower + 1, values.size() - 1);
   return std::lerp(values[lower], values[upper], position - static_cast<double>(lower));
+}
+
+double student_quantile(std::size_t degrees) {
+  constexpr double z = 1.959964, z3 = z * z * z, z5 = z3 * z * z, z7 = z5 * z * z;
+  if (degrees == 0) return z;
+  // The expansion does not reach one degree of freedom, Cauchy's distribution.
+  if (degrees == 1) return std::tan(0.475 * std::numbers::pi);
+  const double n = static_cast<double>(degrees);
+  return z + (z3 + z) / (4.0 * n) + (5.0 * z5 + 16.0 * z3 + 3.0 * z) / (96.0 * n * n) +
+         (3.0 * z7 + 19.0 * z5 + 17.0 * z3 - 15.0 * z) / (384.0 * n * n * n);
 }
 
 }  // namespace modcal

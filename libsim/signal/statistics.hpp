@@ -19,5 +19,8 @@ void remove_mean(std::span<double> x);
 /// Quantile q in [0, 1] with linear interpolation between order statistics (Hyndman and Fan, 1996,
 /// type 7). NaN for an empty sample.
 double quantile(std::vector<double> values, double q);
+/// 97.5 % quantile of Student's t with so many degrees of freedom, to 1 %; 0: of the normal
+/// distribution (Cornish and Fisher's expansion; Abramowitz and Stegun, 1964, eq. 26.7.5).
+double student_quantile(std::size_t degrees);
 
 }  // namespace modcal

@@ -26,16 +26,16 @@ std::string fit_response(double step, const py::array_t<Complex, py::array::c_st
                          const std::vector<std::string>& kinds, double low, double high,
                          std::size_t most_modes) {
   const auto lines = static_cast<std::size_t>(responses.shape(1));
-  std::vector<std::vector<Complex>> rows;
-  std::vector<SensorKind> sensors;
+  MeasuredFunctions measured{.grid = {.spacing = kTurn * step, .bins = lines}};
+  Transfers& rows = measured.sessions.emplace_back();
   for (std::size_t k = 0; k < names.size(); ++k) {
     const Complex* const row = responses.data() + k * lines;
     rows.emplace_back(row, row + lines);
-    sensors.push_back(kind_of_sensor(names[k], kinds[k]));
+    measured.sensors.push_back(kind_of_sensor(names[k], kinds[k]));
   }
   return watched(py::none(), [&](const Watch&) {
-    StrikeFit fit = modcal::fit_response({.spacing = kTurn * step, .bins = lines}, rows, sensors,
-                                         {.low = low, .high = high, .most_modes = most_modes});
+    StrikeFit fit =
+        modcal::fit_response(measured, {.low = low, .high = high, .most_modes = most_modes});
     if (const std::string why = fit.rejection(); !why.empty()) throw_invalid_input("{}", why);
     fit.table.names = names;
     return table_text(fit.table);
@@ -67,6 +67,7 @@ Model Model::of_string(const std::string& yaml, bool recorded) {
 
 Model Model::of_table(const std::string& path) {
   StructureTable table = read_table(path);
+  table.require_modes("a Model");
   return {std::move(table.model), std::move(table.names)};
 }
 

@@ -106,6 +106,7 @@ std::vector<double> StructureSceneOptions::recorded(const std::vector<double>& f
 }
 
 DrivenStructure StructureSceneOptions::driven(const StructureTable& told) const {
+  told.require_modes("a simulation");
   if (!contact.empty()) return {simulated_part(told.model), drive_of(contact, told)};
   if (told.contact.empty()) {
     throw WrongKey("structure.table",

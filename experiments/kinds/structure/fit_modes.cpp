@@ -80,13 +80,15 @@ FileRead file_read(const StructureRecordOptions& record) {
 
 std::vector<FileRead> FitModesOptions::files_read() const {
   if (!has_functions) return {file_read(record)};
-  return {{.name = functions.file, .key = "functions.file"}};
+  std::vector<FileRead> files;
+  for (const std::string& file : functions.files()) {
+    files.push_back({.name = file, .key = files.empty() ? "functions.file" : "functions.sessions"});
+  }
+  return files;
 }
 
-std::vector<Finding> lint_responses(const std::string& path,
-                                    const std::vector<StructureChannelOptions>& responses) {
+std::vector<Finding> lint_responses(const std::string& path, std::size_t sensors) {
   std::vector<Finding> findings;
-  const std::size_t sensors = responses.size();
   if (sensors < 1 || sensors > 16) {
     add_finding(findings, path, "{} responses: state the channels of 1 to 16 sensors", sensors);
   }
@@ -109,9 +111,9 @@ void FitModesOptions::visit(OptionVisitor& visitor) {
 }
 
 std::vector<Finding> FitModesOptions::lint() const {
-  std::vector<Finding> findings = has_functions
-                                      ? lint_responses("functions.responses", functions.responses)
-                                      : lint_responses("record.responses", record.responses);
+  std::vector<Finding> findings =
+      has_functions ? lint_responses("functions.responses", functions.responses.size())
+                    : lint_responses("record.responses", record.responses.size());
   if (has_record == has_functions) {
     findings.clear();
     add_finding(
@@ -140,7 +142,7 @@ std::vector<Finding> FitModesOptions::lint_records(const std::filesystem::path& 
   };
   if (has_functions) {
     lint_making(findings, "functions", [&] {
-      const FrequencyGrid grid = load_response_functions(functions, folder).grid;
+      const FrequencyGrid grid = load_response_functions(functions, folder).measured.grid;
       require_band(grid.omega(grid.bins) / (2.0 * std::numbers::pi), "the last line,");
     });
     return findings;
@@ -177,7 +179,7 @@ Fitted fit_of(const FitModesOptions& options, const StudyContext& context) {
   if (options.has_functions) {
     LoadedResponseFunctions loaded = load_response_functions(options.functions, context.folder);
     context.throw_if_interrupted();
-    fitted.fit = fit_response(loaded.grid, loaded.values, loaded.kinds, how);
+    fitted.fit = fit_response(loaded.measured, how);
     fitted.fit.table.names = std::move(loaded.names);
     fitted.warnings = std::move(loaded.warnings);
     return fitted;

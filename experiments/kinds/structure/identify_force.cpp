@@ -66,12 +66,19 @@ void doubt_slow_part(const StructureForce& found, const LoadedStructureRecord& l
 }
 
 // Sensors that contradict each other refuse the answer.
-void doubt(const StructureForce& found, const LoadedStructureRecord& loaded, StudyResult& result) {
+void doubt(const StructureForce& found, const LoadedStructureRecord& loaded,
+           const StructureTable& modes, StudyResult& result) {
   if (found.untried > 0.0) {
     result.warn(fmt::format(
         "impacts were not tried: the window of {:g} s holds {:g} instants of a pulse, {:g} are "
         "possible; where the force is one of impacts, state a shorter window",
         found.window, found.untried, kMostInstants));
+  }
+  if (found.shape == ForceShape::kImpacts && modes.pulse.empty()) {
+    result.warn(fmt::format(
+        "the table knows no pulse: the force is told up to {:g} Hz; a shorter pulse is higher and "
+        "narrower than that. Modes that fit_modes makes of a strike know it",
+        modes.high));
   }
   if (loaded.kinds.size() == 1) {
     result.warn(
@@ -155,7 +162,7 @@ std::vector<FileRead> IdentifyForceOptions::files_read() const {
 }
 
 std::vector<Finding> IdentifyForceOptions::lint() const {
-  std::vector<Finding> findings = lint_responses("record.responses", record.responses);
+  std::vector<Finding> findings = lint_responses("record.responses", record.responses.size());
   if (!other_places.empty() && record.responses.size() == 1) {
     add_finding(findings, "other_places",
                 "one response is explained by a force at any place: name a second sensor, or leave "
@@ -168,7 +175,18 @@ std::vector<Finding> IdentifyForceOptions::lint_records(const std::filesystem::p
   std::vector<Finding> findings;
   std::size_t sensors = 0;
   std::vector<SensorKind> kinds;
-  lint_making(findings, "table", [&] { kinds = read_table(folder / table).model.sensors; });
+  lint_making(findings, "table", [&] {
+    const StructureTable told = read_table(folder / table);
+    kinds = told.model.sensors;
+    if (refines) told.require_modes("change:");
+    const double least = told.measured.grid.sigma;
+    if (contour < least) {
+      add_finding(findings, "contour",
+                  "the response functions of {} were weighted by an exponential window, which is a "
+                  "contour of {:g} 1/s: state that or more",
+                  table, least);
+    }
+  });
   for (std::size_t i = 0; i < other_places.size(); ++i) {
     lint_making(findings, fmt::format("other_places.{}", i), [&] {
       const StructureTable other = read_table(folder / other_places[i]);
@@ -209,7 +227,9 @@ StudyResult IdentifyForceOptions::run(const StudyContext& context) const {
   std::optional<ContactPlaces> where;
   if (places.size() > 1) {
     const double acts = std::isnan(window) ? loaded.record.duration() : window;
-    where = weigh_places(places, loaded.record, std::isnan(contour) ? 2.0 / acts : contour);
+    double sigma = std::isnan(contour) ? 2.0 / acts : contour;
+    for (const StructureTable& place : places) sigma = std::max(sigma, place.measured.grid.sigma);
+    where = weigh_places(places, loaded.record, sigma);
   }
   const StructureTable& modes = places[where ? where->best : 0];
   context.throw_if_interrupted();
@@ -241,13 +261,14 @@ StudyResult IdentifyForceOptions::run(const StudyContext& context) const {
   }
   result.answer_by_summary();
   for (const std::string& text : loaded.warnings) result.warn(text);
+  for (const std::string& text : modes.warnings) result.warn(text);
   if (where) {
     const PlacesOutcome told{tables(), *where};
     result.summary += told.sentence();
     result.add(report::tables_of(told));
   }
   doubt_slow_part(found, loaded, modes.low, result);
-  doubt(found, loaded, result);
+  doubt(found, loaded, modes, result);
   if (!context.numbers_alone) result.blocks.emplace_back(force_figure(loaded, found));
   result.add(report::tables_of(outcome));
   result.files.emplace_back("force.json", report::json_file(report::json_of(outcome)));

@@ -3,7 +3,6 @@
 
 #include <filesystem>
 
-#include "libinverse/structure/structure_record.hpp"
 #include "libinverse/structure/structure_table.hpp"
 #include "libsim/base/options.hpp"
 #include "libsim/base/task_loop.hpp"
@@ -39,13 +38,22 @@ struct StructureRecordOptions {
   void visit(OptionVisitor& visitor);
 };
 
-/// The `functions:` section: measured response functions in the place of a record.
+/// One response function of a file.
+struct FunctionChannelOptions : StructureChannelOptions {
+  std::string coherence;  ///< channel of it; empty: not told
+  void visit(OptionVisitor& visitor);
+};
+
+/// The `functions:` section: measured response functions in the place of a record or of modes.
 struct ResponseFunctionOptions {
   std::string file;
+  std::vector<std::string> sessions;  ///< further files, of the same functions
   std::string format = "auto";
-  std::vector<StructureChannelOptions> responses;
+  std::vector<FunctionChannelOptions> responses;
+  double averages = std::numeric_limits<double>::quiet_NaN();
   double window = std::numeric_limits<double>::quiet_NaN();  ///< τ [s]; NaN: none
   void visit(OptionVisitor& visitor);
+  std::vector<std::string> files() const;
 };
 
 /// exp(−t/τ), by which an instrument has weighted all channels of a strike. τ [s]; NaN: none.
@@ -55,15 +63,13 @@ double window_decay(double window);
 
 /// In SI units per newton.
 struct LoadedResponseFunctions {
-  FrequencyGrid grid;
-  std::vector<std::vector<Complex>> values;
-  std::vector<SensorKind> kinds;
+  MeasuredFunctions measured;  ///< without scatter
   std::vector<std::string> names;
   std::vector<std::string> warnings;
 };
 
-/// Throws InvalidInput where the file or a function cannot be had, or has another unit than its
-/// kind.
+/// Throws InvalidInput where a file or a function cannot be had, or has another unit than its kind,
+/// and for a coherence that is none or whose averages are not stated.
 LoadedResponseFunctions load_response_functions(const ResponseFunctionOptions& options,
                                                 const std::filesystem::path& folder);
 

@@ -72,7 +72,6 @@ struct IdentifyForceOptions {
 };
 
 /// What the channels of a structure's sensors state wrongly; path: of the list.
-std::vector<Finding> lint_responses(const std::string& path,
-                                    const std::vector<StructureChannelOptions>& responses);
+std::vector<Finding> lint_responses(const std::string& path, std::size_t sensors);
 
 }  // namespace modcal

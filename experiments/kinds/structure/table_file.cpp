@@ -1,10 +1,12 @@
 // The file of a structure's modes.
 #include <algorithm>
+#include <cmath>
 
 #include "experiments/config/help.hpp"
 #include "experiments/config/reader.hpp"
 #include "experiments/kinds/structure/structure_files.hpp"
 #include "experiments/kinds/structure/table_columns.hpp"
+#include "experiments/kinds/structure/table_functions.hpp"
 #include "experiments/kinds/structure/table_shapes.hpp"
 #include "experiments/runs/journal.hpp"
 #include "experiments/study/fingerprint.hpp"
@@ -13,18 +15,21 @@
 namespace modcal {
 namespace {
 
+constexpr double kTurn = 6.283185307179586;
 // The table as a file states it.
 struct SensorOptions {
   std::string name, kind = "acceleration";
   ResidualTerms residual;
-  SensorScatter scatter{.modal = 0.05};
+  SensorScatter scatter{.modal = std::numeric_limits<double>::quiet_NaN()};
   void visit(OptionVisitor& visitor) {
     visitor("name", "channel of the record it was fitted to", name);
     visitor("kind", "what it reads", {.required = true, .choices = sensor_kind_names()}, kind);
     visitor("below", "static term of the modes below the band", residual.below);
     visitor("constant", "static term of the modes above the band", residual.constant);
-    visitor("scatter", "share of a mode's response by which the model may be off",
-            {.range = Range::non_negative()}, scatter.modal);
+    visitor("scatter",
+            "share of a mode's response, or of a measured function, by which the model may be off; "
+            "automatic: 0.05, of functions of several sessions 0",
+            {.range = Range::non_negative(), .word = "automatic"}, scatter.modal);
     visitor("noise", "standard deviation of a sample, in the sensor's SI unit",
             {.range = Range::non_negative()}, scatter.noise);
   }
@@ -34,8 +39,9 @@ struct TableOptions {
   std::vector<SensorOptions> sensors;
   std::vector<ModeOptions> modes;
   std::string modes_file;
-  bool has_shapes = false;
+  bool has_shapes = false, has_functions = false;
   ShapesOptions shapes;
+  ResponseFunctionOptions functions;
   double low = 0.0, high = 0.0, pulse_step = 0.0;
   std::vector<double> contact, pulse;
   void visit(OptionVisitor& visitor) {
@@ -43,7 +49,8 @@ struct TableOptions {
             {.unit = "Hz", .range = Range::positive(), .required = true}, low);
     visitor("high", "largest frequency of the band",
             {.unit = "Hz", .range = Range::positive(), .required = true}, high);
-    visitor("sensors", "in the order of the record's responses", {.required = true}, sensors);
+    visitor("sensors", "in the order of the record's responses; functions tell them by themselves",
+            sensors);
     visitor("modes", "pairs of poles with a modal constant a sensor", modes);
     visitor("modes_file",
             "CSV file of the modes, a row each, in the place of modes: frequency [Hz], "
@@ -52,6 +59,8 @@ struct TableOptions {
             modes_file);
     visitor("shapes", "modes of a universal file (UFF 55) in the place of modes", has_shapes,
             shapes);
+    visitor("functions", "measured response functions in the place of modes", has_functions,
+            functions);
     visitor(
         "contact",
         "phi^2/m of every mode where the force acts [1/kg], what a sensor of displacement there "
@@ -62,45 +71,17 @@ struct TableOptions {
   }
 };
 
-StructureTable table_of(TableOptions options, const std::filesystem::path& path) {
-  const std::string file = path.string();
-  constexpr double kTurn = 6.283185307179586;
-  MODCAL_REQUIRE(options.low < options.high, "{}: low = {:g} Hz is not below high = {:g} Hz", file,
-                 options.low, options.high);
-  MODCAL_REQUIRE(options.pulse.empty() || options.pulse_step > 0.0,
-                 "{}: pulse needs a positive pulse_step, not {:g} Hz", file, options.pulse_step);
-  const bool has_file = !options.modes_file.empty();
-  MODCAL_REQUIRE(
-      (options.modes.empty() ? 0 : 1) + (has_file ? 1 : 0) + (options.has_shapes ? 1 : 0) == 1,
-      "{}: state modes, modes_file or shapes, one of them", file);
-  if (has_file) {
-    std::vector<std::string> names;
-    for (const SensorOptions& sensor : options.sensors) names.push_back(sensor.name);
-    ModeColumns read = read_mode_columns(path.parent_path() / options.modes_file, names);
-    options.modes = std::move(read.modes);
-    MODCAL_REQUIRE(options.contact.empty() || read.contact.empty(),
-                   "{}: contact is stated here and is a column of {}: keep one", file,
-                   options.modes_file);
-    if (options.contact.empty()) options.contact = std::move(read.contact);
-  }
+void require_contact(const TableOptions& options, const std::string& file) {
+  MODCAL_REQUIRE(options.contact.empty() || !options.has_functions,
+                 "{}: contact is of modes, functions have none: leave it out", file);
   MODCAL_REQUIRE(options.contact.empty() || options.contact.size() == options.modes.size(),
                  "{}: contact has {} values for {} modes{}", file, options.contact.size(),
                  options.modes.size(), options.has_shapes ? ": shapes tell them" : "");
   MODCAL_REQUIRE(std::ranges::all_of(options.contact, [](double x) { return x >= 0.0; }),
                  "{}: contact holds squares over masses, which are >= 0", file);
-  StructureTable table{
-      .low = options.low, .high = options.high, .lag = options.pulse_step, .pulse = options.pulse};
-  table.contact = options.contact;
-  for (const SensorOptions& sensor : options.sensors) {
-    table.names.push_back(sensor.name);
-    table.model.sensors.push_back(sensor_kind_of(sensor.kind));
-    table.model.residuals.push_back(sensor.residual);
-    table.scatters.push_back(sensor.scatter);
-  }
-  if (options.has_shapes) {
-    take_shapes(options.shapes, path, table);
-    return table;
-  }
+}
+
+void take_modes(const TableOptions& options, const std::string& file, StructureTable& table) {
   for (std::size_t n = 0; n < options.modes.size(); ++n) {
     const ModeOptions& mode = options.modes[n];
     const bool real = mode.quadrature.empty();
@@ -118,6 +99,52 @@ StructureTable table_of(TableOptions options, const std::filesystem::path& path)
       table.model.quadrature.push_back(mode.quadrature.empty() ? 0.0 : mode.quadrature[k]);
     }
   }
+}
+
+StructureTable table_of(TableOptions options, const std::filesystem::path& path) {
+  const std::string file = path.string();
+  MODCAL_REQUIRE(options.low < options.high, "{}: low = {:g} Hz is not below high = {:g} Hz", file,
+                 options.low, options.high);
+  MODCAL_REQUIRE(options.pulse.empty() || options.pulse_step > 0.0,
+                 "{}: pulse needs a positive pulse_step, not {:g} Hz", file, options.pulse_step);
+  const bool has_file = !options.modes_file.empty();
+  MODCAL_REQUIRE((options.modes.empty() ? 0 : 1) + (has_file ? 1 : 0) +
+                         (options.has_shapes ? 1 : 0) + (options.has_functions ? 1 : 0) ==
+                     1,
+                 "{}: state modes, modes_file, shapes or functions, one of them", file);
+  if (has_file) {
+    std::vector<std::string> names;
+    for (const SensorOptions& sensor : options.sensors) names.push_back(sensor.name);
+    ModeColumns read = read_mode_columns(path.parent_path() / options.modes_file, names);
+    options.modes = std::move(read.modes);
+    MODCAL_REQUIRE(options.contact.empty() || read.contact.empty(),
+                   "{}: contact is stated here and is a column of {}: keep one", file,
+                   options.modes_file);
+    if (options.contact.empty()) options.contact = std::move(read.contact);
+  }
+  require_contact(options, file);
+  StructureTable table{
+      .low = options.low, .high = options.high, .lag = options.pulse_step, .pulse = options.pulse};
+  table.contact = options.contact;
+  for (const SensorOptions& sensor : options.sensors) {
+    table.names.push_back(sensor.name);
+    table.model.sensors.push_back(sensor_kind_of(sensor.kind));
+    table.model.residuals.push_back(sensor.residual);
+    table.scatters.push_back(sensor.scatter);
+    double& scatter = table.scatters.back().modal;
+    if (std::isnan(scatter)) scatter = scatter_untold(options.functions.sessions);
+  }
+  if (options.has_functions) {
+    take_functions(options.functions, path, table);
+    return table;
+  }
+  MODCAL_REQUIRE(!options.sensors.empty(), "{}: sensors names none: state kind and name of each",
+                 file);
+  if (options.has_shapes) {
+    take_shapes(options.shapes, path, table);
+    return table;
+  }
+  take_modes(options, file, table);
   return table;
 }
 
@@ -137,7 +164,9 @@ std::vector<std::filesystem::path> read_names(const std::filesystem::path& path)
   std::vector<std::filesystem::path> files;
   try {
     const TableOptions options = read_table_options(path);
-    for (const std::string& file : {options.modes_file, options.shapes.file}) {
+    std::vector<std::string> named = {options.modes_file, options.shapes.file};
+    std::ranges::copy(options.functions.files(), std::back_inserter(named));
+    for (const std::string& file : named) {
       if (!file.empty()) files.push_back(path.parent_path() / file);
     }
   } catch (const InvalidInput&) {

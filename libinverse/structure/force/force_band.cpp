@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "libinverse/structure/tuning.hpp"
@@ -36,7 +37,10 @@ double rise_towards_zero(const std::vector<double>& power, std::size_t first) {
   return low > 0.0 ? low / std::max(next, 1e-300) : 0.0;
 }
 
-Eigen::VectorXd variance_of_shape(const Eigen::VectorXd& force, double rate, double high) {
+namespace {
+
+// Squared envelope of what stands above a frequency [Hz].
+Eigen::VectorXd envelope_above(const Eigen::VectorXd& force, double rate, double low) {
   const auto samples = force.size();
   const RealFft fft(4 * static_cast<std::size_t>(samples));
   std::vector<double> signal(fft.length(), 0.0);
@@ -44,7 +48,7 @@ Eigen::VectorXd variance_of_shape(const Eigen::VectorXd& force, double rate, dou
   std::vector<Complex> spectrum = fft.forward(signal);
   for (std::size_t k = 0; k < spectrum.size(); ++k) {
     const double at = rate * static_cast<double>(k) / static_cast<double>(fft.length());
-    if (at <= high) spectrum[k] = 0.0;
+    if (at <= low) spectrum[k] = 0.0;
   }
   std::vector<double> turned(fft.length());
   fft.inverse(spectrum, signal);
@@ -56,6 +60,25 @@ Eigen::VectorXd variance_of_shape(const Eigen::VectorXd& force, double rate, dou
     result[j] = signal[i] * signal[i] + turned[i] * turned[i];
   }
   return result;
+}
+
+}  // namespace
+
+Eigen::VectorXd variance_of_shape(const Eigen::VectorXd& force, double rate, double high) {
+  return envelope_above(force, rate, high);
+}
+
+Eigen::VectorXd variance_about(const Eigen::VectorXd& force, const ContourSpectra& spectra,
+                               double outside) {
+  const double highest = spectra.s(spectra.count() - 1).imag() / (2.0 * std::numbers::pi);
+  const Eigen::VectorXd envelope = envelope_above(force, spectra.sample_rate, 0.5 * highest);
+  double weighted = 0.0;
+  for (Eigen::Index j = 0; j < envelope.size(); ++j) {
+    const double at = static_cast<double>(j) / spectra.sample_rate;
+    weighted += envelope[j] * std::exp(-2.0 * spectra.grid.sigma * at);
+  }
+  // outside is that of noise that lasts as long as the contour weighs it.
+  return envelope * (outside * spectra.noise_power() / std::max(weighted, 1e-300));
 }
 
 }  // namespace modcal

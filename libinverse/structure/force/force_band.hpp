@@ -21,4 +21,10 @@ double rise_towards_zero(const std::vector<double>& power, std::size_t first);
 /// transform).
 Eigen::VectorXd variance_of_shape(const Eigen::VectorXd& force, double rate, double high);
 
+/// Variance of the samples of pulses whose shape is not known. What stands outside of the band has
+/// the mean power `outside` [N²], weighted by exp(−2σt), and stands where the upper half of the
+/// band does.
+Eigen::VectorXd variance_about(const Eigen::VectorXd& force, const ContourSpectra& spectra,
+                               double outside);
+
 }  // namespace modcal

@@ -7,27 +7,19 @@
 #include <optional>
 
 #include "libinverse/structure/bin_evidence.hpp"
+#include "libinverse/structure/force/drawn_models.hpp"
 #include "libinverse/structure/force/force_band.hpp"
 #include "libinverse/structure/force/pulse_train.hpp"
 #include "libinverse/structure/force/relevance.hpp"
 #include "libinverse/structure/tuning.hpp"
 #include "libsim/base/error.hpp"
-#include "libsim/base/random.hpp"
 #include "libsim/base/task_loop.hpp"
+#include "libsim/signal/statistics.hpp"
 
 namespace modcal {
 namespace {
 
 using Index = Eigen::Index;
-
-// 97.5 % quantile of Student's t, from 2 degrees of freedom on: Cornish and Fisher's expansion,
-// to 1 % there.
-double student(std::size_t degrees) {
-  const double z = 1.959964, z3 = z * z * z, z5 = z3 * z * z, z7 = z5 * z * z;
-  const double n = static_cast<double>(degrees);
-  return z + (z3 + z) / (4.0 * n) + (5.0 * z5 + 16.0 * z3 + 3.0 * z) / (96.0 * n * n) +
-         (3.0 * z7 + 19.0 * z5 + 17.0 * z3 - 15.0 * z) / (384.0 * n * n * n);
-}
 
 // Force signals in the window, linear in unknown amplitudes of pulses or bins.
 class ForceSearch {
@@ -39,12 +31,15 @@ class ForceSearch {
     MODCAL_REQUIRE(result_.window > 0.0 && result_.window <= record.duration(),
                    "a window of {:g} s does not lie in the record's {:g} s", result_.window,
                    record.duration());
-    result_.sigma = std::isnan(options.sigma) ? 2.0 / result_.window : options.sigma;
+    // Functions of an exponential window are known on its contour and to the right of it.
+    const double least = table.measured.grid.sigma;
+    result_.sigma =
+        std::isnan(options.sigma) ? std::max(2.0 / result_.window, least) : options.sigma;
     spectra_ = ContourSpectra::of(record, result_.sigma, table.low, table.high);
     if (options.change)
       result_.refined = refined_table(table_, record, result_.sigma, *options.change);
     if (result_.refined) table_.model = result_.refined->model;
-    transfers_ = transfers_of(table_.model, spectra_);
+    transfers_ = transfers_of(table_, spectra_);
     variances_ = variances_of(table_, spectra_, transfers_);
     samples_ = static_cast<Index>(std::floor(result_.window * record.sample_rate));
   }
@@ -174,57 +169,24 @@ class ForceSearch {
     if (result_.shape == ForceShape::kSmooth) return variance;
     const auto [matrix, score] = train_->normal_of(beside(evidence, background_));
     const Relevance found = posterior_of(matrix, score, widths_);
-    return variance + (pulses_ * found.covariance).cwiseProduct(pulses_).rowwise().sum() +
-           variance_of_shape(pulses_ * found.mean, rate(), table_.high);
+    variance += (pulses_ * found.covariance).cwiseProduct(pulses_).rowwise().sum();
+    const Eigen::VectorXd force = pulses_ * found.mean;
+    if (!table_.pulse.empty()) return variance + variance_of_shape(force, rate(), table_.high);
+    return variance + variance_about(force, spectra_, share * power_outside(spectra_, power_));
   }
 
   // Variance of the force by models drawn from the table's deviations.
   Eigen::VectorXd by_models(const Eigen::VectorXd& best) const {
     std::vector<Eigen::VectorXd> forces(options_.draws);
     for_each_task(options_.draws, [&](std::size_t draw) {
-      const Transfers transfers = transfers_of(drawn(draw), spectra_);
-      forces[draw] = force_of(evidence_of(spectra_, transfers, variances_, kNone));
+      const DrawnModels models{table_, result_.refined, contradiction(), options_.seed};
+      forces[draw] = force_of(evidence_of(spectra_, models.at(draw, spectra_), variances_, kNone));
     });
     Eigen::VectorXd variance = Eigen::VectorXd::Zero(best.size());
     for (const Eigen::VectorXd& force : forces) {
       variance += (force - best).cwiseAbs2() / static_cast<double>(options_.draws);
     }
     return variance;
-  }
-
-  ModalModel drawn(std::size_t draw) const {
-    if (result_.refined) {
-      std::vector<double> normal(static_cast<std::size_t>(result_.refined->change.size()));
-      fill_standard_normal(StreamKey(options_.seed).with("model").with(draw), normal);
-      return result_.refined->drawn(normal);
-    }
-    ModalModel model = table_.model;
-    const std::size_t modes = model.poles.size(), pairs = model.pairs();
-    std::vector<double> normal(2 * modes + 2 * modes * pairs);
-    fill_standard_normal(StreamKey(options_.seed).with("model").with(draw), normal);
-    for (std::size_t n = 0; n < modes; ++n) {
-      if (!table_.frequency_deviations.empty()) {
-        model.poles[n].omega *= std::exp(table_.frequency_deviations[n] * normal[n]);
-      }
-      if (!table_.damping_deviations.empty()) {
-        model.poles[n].zeta *=
-            std::exp(std::clamp(table_.damping_deviations[n], 0.0, 1.0) * normal[modes + n]);
-      }
-    }
-    model.quadrature.resize(model.constants.size());
-    for (std::size_t pair = 0; pair < pairs; ++pair) {
-      // Half of a complex number's power each.
-      const double scatter =
-          std::sqrt(0.5 * contradiction()) * table_.scatters[pair / model.contacts].modal;
-      for (std::size_t i = pair * modes; i < (pair + 1) * modes; ++i) {
-        const Complex factor(1.0 + scatter * normal[2 * modes + 2 * i],
-                             scatter * normal[2 * modes + 2 * i + 1]);
-        const Complex constant = factor * Complex(model.constants[i], model.quadrature[i]);
-        model.constants[i] = constant.real();
-        model.quadrature[i] = constant.imag();
-      }
-    }
-    return model;
   }
 
   // Where the sensors contradict each other by more than the table says, so is it off by more.
@@ -244,7 +206,7 @@ class ForceSearch {
     Eigen::VectorXd mean = Eigen::VectorXd::Zero(samples_), sum = mean;
     for (const Eigen::VectorXd& force : forces) mean += force / count;
     for (const Eigen::VectorXd& force : forces) sum += (force - mean).cwiseAbs2();
-    const double wide = student(sensors - 1) / 1.959964;
+    const double wide = student_quantile(sensors - 1) / student_quantile(0);
     return (count - 1.0) / count * wide * wide * sum;
   }
 

@@ -20,7 +20,8 @@ struct StructureForceOptions {
   bool non_negative = false;  ///< pulses of one sign
   /// The force acts from t = 0 until then [s]; NaN: as long as the record.
   double window = std::numeric_limits<double>::quiet_NaN();
-  /// Contour [1/s]; NaN: 2 over the window, what the force does later weighs little then.
+  /// Contour [1/s]; NaN: 2 over the window, what the force does later weighs little then, or that
+  /// of measured functions, if that is more.
   double sigma = std::numeric_limits<double>::quiet_NaN();
   std::size_t draws = 12;  ///< models drawn from the table's deviations for the band
   std::uint64_t seed = 1;

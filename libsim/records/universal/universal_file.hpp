@@ -65,7 +65,8 @@ Recording read_universal(const std::filesystem::path& path, const ReadOptions& o
 
 /// Its frequency response functions, as read_response_functions() says.
 ResponseFunctions read_universal_responses(const std::filesystem::path& path,
-                                           const std::vector<std::string>& channels);
+                                           const std::vector<std::string>& channels,
+                                           FrequencyFunction wanted);
 
 /// One dataset 58b in doubles for each signal.
 void write_universal(const std::filesystem::path& path, std::span<const Signal> signals,

@@ -12,7 +12,7 @@ namespace modcal {
 namespace {
 
 enum SpecificData : int { kTime = 17, kFrequency = 18 };
-enum FunctionType : int { kTimeResponse = 1, kFrequencyResponse = 4 };
+enum FunctionType : int { kTimeResponse = 1, kFrequencyResponse = 4, kCoherence = 6 };
 constexpr std::string_view kRateLine = "sample_rate: ";
 
 std::string_view type_name(int type) {
@@ -81,13 +81,16 @@ double force_factor(const UniversalAxis& axis, const std::optional<UniversalUnit
   return axis.unit.empty() ? force.full_scale : 1.0;
 }
 
-// A function of even lines over frequency that begin at a whole number of steps.
+// A response function or coherence of even lines over frequency that begin at a whole number of
+// steps.
 void set_response(const std::filesystem::path& path, const UniversalFunction& function,
                   const std::optional<UniversalUnits>& units, StoredChannel& channel) {
   const double step = function.step, lines = function.first / step;
   const bool is_even = function.is_even && step > 0.0 && lines >= 0.0 && lines < 1e9 &&
                        std::abs(lines - std::round(lines)) < 1e-3;
-  if (function.type != kFrequencyResponse || !function.is_complex || !is_even ||
+  channel.is_coherence = function.type == kCoherence && !function.is_complex;
+  const bool is_response = function.type == kFrequencyResponse && function.is_complex;
+  if (!(is_response || channel.is_coherence) || !is_even ||
       (function.abscissa.code != kFrequency && function.abscissa.code > 1)) {
     return;
   }
@@ -160,8 +163,9 @@ Recording read_universal(const std::filesystem::path& path, const ReadOptions& o
 }
 
 ResponseFunctions read_universal_responses(const std::filesystem::path& path,
-                                           const std::vector<std::string>& channels) {
-  return assemble_responses(channels_of(path, {}), channels, path.string());
+                                           const std::vector<std::string>& channels,
+                                           FrequencyFunction wanted) {
+  return assemble_responses(channels_of(path, {}), channels, wanted, path.string());
 }
 
 }  // namespace modcal

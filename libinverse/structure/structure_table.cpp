@@ -1,0 +1,49 @@
+#include "libinverse/structure/structure_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "libinverse/structure/structure_record.hpp"
+#include "libsim/base/error.hpp"
+
+namespace modcal {
+
+double StructureTable::frequency(std::size_t n) const {
+  return model.poles[n].omega / (2.0 * std::numbers::pi);
+}
+
+void StructureTable::require_modes(std::string_view what) const {
+  MODCAL_REQUIRE(measured.empty(),
+                 "{} needs modes, measured functions have none: fit modes to them (kind: fit_modes "
+                 "with functions:)",
+                 what);
+}
+
+double StructureTable::pulse_at(double frequency) const {
+  if (pulse.empty()) {
+    const double above = std::clamp(4.0 * (frequency / high - 1.0), 0.0, 1.0);
+    const double fading = std::cos(0.5 * std::numbers::pi * above);
+    return fading * fading;
+  }
+  const double at = frequency / lag;
+  const auto i = static_cast<std::size_t>(at);
+  if (i + 1 >= pulse.size()) return pulse.back();
+  const double share = at - static_cast<double>(i);
+  return (1.0 - share) * pulse[i] + share * pulse[i + 1];
+}
+
+double modal_power(const ModalModel& model, std::size_t pair, Complex s) {
+  const SensorKind kind = model.sensors[pair / model.contacts];
+  double sum = 0.0;
+  for (std::size_t n = 0; n < model.poles.size(); ++n) {
+    const ModalPole& pole = model.poles[n];
+    const Complex constant(
+        model.constant(pair, n),
+        model.quadrature.empty() ? 0.0 : model.quadrature[pair * model.poles.size() + n]);
+    sum += std::norm(numerator_of(kind, pole, constant, s) / pole.denominator(s));
+  }
+  return sum;
+}
+
+}  // namespace modcal
