@@ -154,7 +154,7 @@ BlindFit fit_ringing(const ModalModel& table, const StructureRecord& record,
 }
 
 BlindFit refined_table(const StructureTable& table, const StructureRecord& record, double sigma,
-                       const StructureChange& change) {
+                       const StructureChange& change, bool at_rest) {
   // What rings on behind the part that is taken has e^−8 of its amplitude.
   constexpr double rung_out = 8.0;
   table.require_modes("a refinement");
@@ -174,7 +174,7 @@ BlindFit refined_table(const StructureTable& table, const StructureRecord& recor
     const auto spectra = ContourSpectra::of(part, contour, table.low, table.high);
     const BinVariances variances =
         variances_of(refined, spectra, transfers_of(refined.model, spectra));
-    fit = fit_with(prior, table.model, spectra, variances, ends, fit.change);
+    fit = fit_with(prior, table.model, spectra, variances, ends && at_rest, fit.change);
     refined.model = fit.model;
   }
   // The variances are those of what was left before the fit took its share.

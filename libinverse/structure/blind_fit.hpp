@@ -53,6 +53,6 @@ BlindFit fit_ringing(const ModalModel& table, const StructureRecord& record,
 /// has found, with variances_of() the model so far. The covariance is χ² times as large where it is
 /// above 1. The table is not changed.
 BlindFit refined_table(const StructureTable& table, const StructureRecord& record, double sigma,
-                       const StructureChange& change);
+                       const StructureChange& change, bool at_rest = true);
 
 }  // namespace modcal

@@ -108,6 +108,7 @@ void ForceOutcome::visit(ResultVisitor& visitor) const {
       });
   visitor({.key = "contour_per_s"}, found.sigma);
   visitor({.key = "window_s"}, found.window);
+  visitor({.key = "rang_before"}, found.rang);
   visitor({.key = "background"}, found.background);
   visitor({.key = "evidence_impacts"}, known(found.evidence_impacts));
   visitor({.key = "evidence_smooth"}, known(found.evidence_smooth));

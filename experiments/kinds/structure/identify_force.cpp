@@ -2,10 +2,10 @@
 #include <cmath>
 
 #include "experiments/kinds/lint.hpp"
+#include "experiments/kinds/structure/force_doubts.hpp"
 #include "experiments/kinds/structure/force_outcome.hpp"
 #include "experiments/kinds/structure/structure_kinds.hpp"
 #include "experiments/report/result.hpp"
-#include "libinverse/structure/tuning.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {
@@ -38,68 +38,11 @@ std::string sentence_of(const StructureForce& found, double rate, std::size_t se
   const auto peak =
       std::ranges::max_element(found.force, {}, [](double force) { return std::abs(force); });
   const auto at = static_cast<std::size_t>(peak - found.force.begin());
-  return fmt::format("{} from {} sensors: at most {:.4g} +- {:.2g} N (95 %), at {:.4g} s\n",
-                     found.shape == ForceShape::kImpacts ? "impacts" : "a smooth force", sensors,
-                     *peak, 1.959964 * found.deviation[at], static_cast<double>(at) / rate);
-}
-
-// Velocities and accelerations vanish with the frequency: of a force that pushes one way they tell
-// all but the largest part. Where the band begins low enough, it shows.
-void doubt_slow_part(const StructureForce& found, const LoadedStructureRecord& loaded, double low,
-                     StudyResult& result) {
-  const bool told =
-      std::ranges::any_of(loaded.kinds, [](SensorKind kind) { return power_of_s(kind) == 0; });
-  if (told || found.shape != ForceShape::kSmooth) return;
-  constexpr std::string_view kRemedy =
-      "record a displacement, force or strain as well, or state shape: impacts for blows";
-  if (found.rise < kRise) {
-    return result.warn(fmt::format(
-        "velocities and accelerations tell nothing of a smooth force below {:g} Hz: where it "
-        "pushes one way, this answer is wrong by that and its band does not hold it; {}",
-        low, kRemedy));
-  }
-  result.status = report::Status::kFailed;
-  result.warn(result.answer = fmt::format(
-                  "rejected: the force rises towards {:g} Hz, below which velocities and "
-                  "accelerations tell nothing of it, and its band does not hold that: {}",
-                  low, kRemedy));
-}
-
-// Sensors that contradict each other refuse the answer.
-void doubt(const StructureForce& found, const LoadedStructureRecord& loaded,
-           const StructureTable& modes, StudyResult& result) {
-  if (found.untried > 0.0) {
-    result.warn(fmt::format(
-        "impacts were not tried: the window of {:g} s holds {:g} instants of a pulse, {:g} are "
-        "possible; where the force is one of impacts, state a shorter window",
-        found.window, found.untried, kMostInstants));
-  }
-  if (found.shape == ForceShape::kImpacts && modes.pulse.empty()) {
-    result.warn(fmt::format(
-        "the table knows no pulse: the force is told up to {:g} Hz; a shorter pulse is higher and "
-        "narrower than that. Modes that fit_modes makes of a strike know it",
-        modes.high));
-  }
-  if (loaded.kinds.size() == 1) {
-    result.warn(
-        "one response explains any model: nothing tells whether the table is that of this "
-        "structure; "
-        "record a second sensor");
-    return;
-  }
-  const auto worst = std::ranges::max_element(found.sensor_left);
-  double power = 0.0;
-  for (const double left : found.sensor_left) power += left * left;
-  // A force alone, with no model at all, explains one of K responses.
-  if (power < 0.25 * static_cast<double>(loaded.kinds.size() - 1)) return;
-  result.status = report::Status::kFailed;
-  result.warn(
-      result.answer = fmt::format(
-          "rejected: no force explains the responses together, {:.0f} % of {} is left: compare "
-          "order, "
-          "sign and unit of the channels and the place of the contact with those of the table",
-          100.0 * *worst,
-          loaded.names[static_cast<std::size_t>(worst - found.sensor_left.begin())]));
+  return fmt::format(
+      "{} from {} sensors: at most {:.4g} +- {:.2g} N (95 %), at {:.4g} s{}\n",
+      found.shape == ForceShape::kImpacts ? "impacts" : "a smooth force", sensors, *peak,
+      1.959964 * found.deviation[at], static_cast<double>(at) / rate,
+      found.rang ? "; what rang before the record or goes on behind it is taken out" : "");
 }
 
 }  // namespace
@@ -121,7 +64,7 @@ void IdentifyForceOptions::visit(OptionVisitor& visitor) {
           "where the force acts; needs two sensors and more",
           other_places);
   visitor("record",
-          "responses from rest, in the order of the table's sensors; a force is only "
+          "responses in the order of the table's sensors; a force is only "
           "compared with",
           {.required = true}, record);
   visitor("shape",
@@ -239,6 +182,7 @@ StudyResult IdentifyForceOptions::run(const StudyContext& context) const {
                        .non_negative = non_negative,
                        .window = window,
                        .sigma = contour,
+                       .rests = loaded.rest > 0.0,
                        .draws = static_cast<std::size_t>(draws),
                        .seed = static_cast<std::uint64_t>(seed),
                        .change = refines ? std::optional<StructureChange>(change) : std::nullopt});
@@ -267,8 +211,7 @@ StudyResult IdentifyForceOptions::run(const StudyContext& context) const {
     result.summary += told.sentence();
     result.add(report::tables_of(told));
   }
-  doubt_slow_part(found, loaded, modes.low, result);
-  doubt(found, loaded, modes, result);
+  doubt_force(found, loaded, modes, result);
   if (!context.numbers_alone) result.blocks.emplace_back(force_figure(loaded, found));
   result.add(report::tables_of(outcome));
   result.files.emplace_back("force.json", report::json_file(report::json_of(outcome)));

@@ -17,8 +17,6 @@ struct DrawnModels {
   std::uint64_t seed = 1;
 
   Transfers at(std::size_t draw, const ContourSpectra& spectra) const;
-
- private:
   ModalModel modes(std::size_t draw) const;
 };
 

@@ -37,10 +37,16 @@ Relevance posterior_of(const Eigen::MatrixXd& a, const Eigen::VectorXd& b,
   const Eigen::VectorXd score = root.cwiseProduct(b(chosen));
   Relevance result{.widths = widths,
                    .mean = Eigen::VectorXd::Zero(b.size()),
-                   .covariance = Eigen::MatrixXd::Zero(b.size(), b.size())};
+                   .covariance = Eigen::MatrixXd::Zero(b.size(), b.size()),
+                   .evidence = -std::numeric_limits<double>::infinity()};
   const Eigen::VectorXd scaled = inverse * score;
   result.mean(chosen) = root.cwiseProduct(scaled);
   result.covariance(chosen, chosen) = root.asDiagonal() * inverse * root.asDiagonal();
+  // The data may tell some combinations 1e16 times as well as others; then rounding is all there
+  // is.
+  const bool is_right =
+      solver.info() == Eigen::Success && (matrix * scaled - score).norm() <= 1e-6 * score.norm();
+  if (!is_right) return result;
   result.evidence = 0.5 * score.dot(scaled) - solver.matrixLLT().diagonal().array().log().sum();
   return result;
 }

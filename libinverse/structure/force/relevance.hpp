@@ -10,7 +10,7 @@ struct Relevance {
   Eigen::VectorXd widths;  ///< a_j
   Eigen::VectorXd mean;
   Eigen::MatrixXd covariance;
-  double evidence = 0.0;  ///< ln of it, over that of p = 0
+  double evidence = 0.0;  ///< ln of it, over that of p = 0; −∞: lost in rounding
 };
 
 /// The a_j of largest evidence: a_j ← μ_j²/γ_j, γ_j = 1 − C_jj/a_j (MacKay, 1992; Tipping, 2001).

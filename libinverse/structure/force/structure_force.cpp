@@ -9,10 +9,12 @@
 #include "libinverse/structure/bin_evidence.hpp"
 #include "libinverse/structure/force/drawn_models.hpp"
 #include "libinverse/structure/force/force_band.hpp"
+#include "libinverse/structure/force/initial_state.hpp"
 #include "libinverse/structure/force/pulse_train.hpp"
 #include "libinverse/structure/force/relevance.hpp"
 #include "libinverse/structure/tuning.hpp"
 #include "libsim/base/error.hpp"
+#include "libsim/base/random.hpp"
 #include "libsim/base/task_loop.hpp"
 #include "libsim/signal/statistics.hpp"
 
@@ -20,6 +22,12 @@ namespace modcal {
 namespace {
 
 using Index = Eigen::Index;
+
+double power_of(const std::vector<Complex>& spectrum) {
+  double sum = 0.0;
+  for (const Complex& x : spectrum) sum += std::norm(x);
+  return sum;
+}
 
 // Force signals in the window, linear in unknown amplitudes of pulses or bins.
 class ForceSearch {
@@ -36,11 +44,10 @@ class ForceSearch {
     result_.sigma =
         std::isnan(options.sigma) ? std::max(2.0 / result_.window, least) : options.sigma;
     spectra_ = ContourSpectra::of(record, result_.sigma, table.low, table.high);
-    if (options.change)
-      result_.refined = refined_table(table_, record, result_.sigma, *options.change);
-    if (result_.refined) table_.model = result_.refined->model;
     transfers_ = transfers_of(table_, spectra_);
     variances_ = variances_of(table_, spectra_, transfers_);
+    take_state_out();
+    if (options.change) refine(record);
     samples_ = static_cast<Index>(std::floor(result_.window * record.sample_rate));
   }
 
@@ -48,6 +55,10 @@ class ForceSearch {
     result_.misfit = variances_.misfit;
     result_.sensor_misfit = variances_.by_sensor;
     result_.sensor_left = variances_.left;
+    for (std::size_t k = 0; k < result_.sensor_left.size() && result_.rang; ++k) {
+      // Of the whole response.
+      result_.sensor_left[k] *= std::sqrt(power_of(spectra_.responses[k]) / power_of(recorded_[k]));
+    }
     result_.predicted = predictions_of(spectra_, transfers_, variances_);
     const BinEvidence evidence = evidence_of(spectra_, transfers_, variances_, kNone);
     find_power(evidence);
@@ -67,6 +78,46 @@ class ForceSearch {
  private:
   double rate() const { return spectra_.sample_rate; }
 
+  void refine(const StructureRecord& record) {
+    result_.refined = refined_table(table_, record, result_.sigma, *options_.change, !result_.rang);
+    table_.model = result_.refined->model;
+    if (result_.rang) spectra_.responses = recorded_;
+    transfers_ = transfers_of(table_, spectra_);
+    variances_ = variances_of(table_, spectra_, transfers_);
+    take_state_out();
+  }
+
+  // Force, variances and state depend on each other: a few rounds.
+  void take_state_out() {
+    if (!table_.measured.empty() || (options_.rests && transfers_.size() == 1)) return;
+    recorded_ = spectra_.responses;
+    const InitialState state(table_.model, spectra_);
+    for (int round = 0; round < kStateRounds; ++round) {
+      find_power(evidence_of(spectra_, transfers_, variances_, kNone));
+      spectra_.responses = recorded_;
+      const InitialState::Fit fit = state.fit(transfers_, variances_, power_);
+      if (round == 0) result_.rang = state.is_told(fit);
+      if (!result_.rang) return;
+      spectra_.responses = state.without(fit.state);
+      variances_ = variances_of(table_, spectra_, transfers_);
+    }
+  }
+
+  // The force by another model, what rang fitted anew and off by what is not known of it.
+  Eigen::VectorXd force_by(const DrawnModels& models, std::size_t draw) const {
+    const Transfers transfers = models.at(draw, spectra_);
+    if (!result_.rang) return force_of(evidence_of(spectra_, transfers, variances_, kNone));
+    ContourSpectra own = spectra_;
+    own.responses = recorded_;
+    const InitialState state(models.modes(draw), own);
+    const InitialState::Fit fit = state.fit(transfers, variances_, power_);
+    std::vector<double> normal(static_cast<std::size_t>(fit.state.size()));
+    fill_standard_normal(StreamKey(options_.seed).with("state").with(draw), normal);
+    own.responses = state.without(
+        fit.state + fit.root * Eigen::Map<const Eigen::VectorXd>(normal.data(), fit.state.size()));
+    return force_of(evidence_of(own, transfers, variances_, kNone));
+  }
+
   bool wants_pulses() {
     if (options_.shape != ForceShape::kAuto) return options_.shape == ForceShape::kImpacts;
     const double instants = PulseTrain::instants_in(table_, rate(), result_.window);
@@ -79,6 +130,10 @@ class ForceSearch {
   void find_pulses(const BinEvidence& evidence) {
     train_.emplace(table_, spectra_, result_.window);
     result_.evidence_impacts = -std::numeric_limits<double>::infinity();
+    double most = 0.0;
+    for (std::size_t m = 0; m < spectra_.count(); ++m) {
+      most += std::norm(evidence.score[m]) / evidence.told[m] / spectra_.correlated();
+    }
     for (const double share : {1e-6, 1e-4, 1e-2}) {
       std::vector<double> background = power_;
       for (double& power : background) power *= share;
@@ -86,7 +141,8 @@ class ForceSearch {
       const Relevance found = determine_relevance(matrix, score);
       const double told = found.evidence + evidence_of_power(evidence, background);
       const bool wanted = options_.shape == ForceShape::kImpacts || told > result_.evidence_smooth;
-      if (!(told > result_.evidence_impacts)) continue;
+      // No force explains more than the one that is free in every bin.
+      if (!(told > result_.evidence_impacts && told <= most)) continue;
       result_.evidence_impacts = told;
       if (!wanted) continue;
       result_.shape = ForceShape::kImpacts;
@@ -94,6 +150,11 @@ class ForceSearch {
       widths_ = found.widths;
       background_ = background;
     }
+    MODCAL_REQUIRE(
+        options_.shape == ForceShape::kAuto || result_.shape == ForceShape::kImpacts,
+        "the responses tell the {} pulses of the window so unequally that rounding is all "
+        "there is: state a shorter window, or shape: smooth",
+        train_->count());
     if (result_.shape == ForceShape::kImpacts) pulses_ = train_->columns(samples_);
   }
 
@@ -180,7 +241,7 @@ class ForceSearch {
     std::vector<Eigen::VectorXd> forces(options_.draws);
     for_each_task(options_.draws, [&](std::size_t draw) {
       const DrawnModels models{table_, result_.refined, contradiction(), options_.seed};
-      forces[draw] = force_of(evidence_of(spectra_, models.at(draw, spectra_), variances_, kNone));
+      forces[draw] = force_by(models, draw);
     });
     Eigen::VectorXd variance = Eigen::VectorXd::Zero(best.size());
     for (const Eigen::VectorXd& force : forces) {
@@ -213,6 +274,7 @@ class ForceSearch {
   StructureTable table_;
   const StructureForceOptions& options_;
   ContourSpectra spectra_;
+  Transfers recorded_;  // responses with what rang before
   Transfers transfers_;
   BinVariances variances_;
   Index samples_ = 0;

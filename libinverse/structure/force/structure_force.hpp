@@ -23,6 +23,8 @@ struct StructureForceOptions {
   /// Contour [1/s]; NaN: 2 over the window, what the force does later weighs little then, or that
   /// of measured functions, if that is more.
   double sigma = std::numeric_limits<double>::quiet_NaN();
+  /// A quiet beginning was seen. One sensor then needs no state before it; several tell it.
+  bool rests = false;
   std::size_t draws = 12;  ///< models drawn from the table's deviations for the band
   std::uint64_t seed = 1;
   /// The structure may have changed since its table was made: the modes are refined first.
@@ -43,6 +45,7 @@ struct StructureForce {
   /// Instants of a pulse in the window where they are too many for `auto` to try; 0: tried.
   double untried = 0.0;
   double rise = 0.0;  ///< rise_towards_zero() of the force's power
+  bool rang = false;  ///< when the record began, by what the responses tell
   double misfit =
       0.0;  ///< (K − 1) sensors against the last, over what the scatter expects; NaN: K = 1
   std::vector<double> sensor_misfit;        ///< rms of what each leaves over what is expected, K
@@ -57,8 +60,9 @@ struct StructureForce {
 /// 1e-2 of the power. V_k is the table's scatter,
 /// ε_k² |F|² Σ_n |H_kn|² and noise, times what the sensors contradict each other by. The band holds
 /// the posterior, the table's errors (models drawn, solved again) and, from three sensors on, the
-/// jackknife over them, the larger of both. Rest at t = 0. Throws InvalidInput for a record whose
-/// sensors are not those of the table.
+/// jackknife over them, the larger of both. Where the responses tell that the structure rang when
+/// the record began, that is fitted and taken out first (InitialState); measured functions do not
+/// know of it. Throws InvalidInput for a record whose sensors are not those of the table.
 StructureForce structure_force(const StructureTable& table, const StructureRecord& record,
                                const StructureForceOptions& options);
 

@@ -287,5 +287,18 @@ TEST_F(TableOfFunctions, IsRefusedForWhatNeedsModesOrDoesNotFit) {
   EXPECT_THAT(said("low: 10", "contact: [1]\nlow: 10"), HasSubstr("functions have none"));
 }
 
+// Functions do not tell what rang before a record.
+TEST_F(TableOfFunctions, OfARecordThatBeginsInTheRingIsRefused) {
+  write_session("monday.uff");
+  write_table("  file: monday.uff\n");
+  std::string text = content_of(path("force.yaml"));
+  const std::string file = "plate_other_strike.csv\n";
+  text.replace(text.find(file), file.size(), file + "  start: 0.06 s\n");
+  write("force.yaml", text);
+  const StudyResult result = identified();
+  EXPECT_EQ(result.status, report::Status::kFailed);
+  EXPECT_THAT(result.answer, HasSubstr("do not tell what rang before"));
+}
+
 }  // namespace
 }  // namespace modcal::response_functions_test

@@ -1,5 +1,6 @@
 // write_config_reports CONFIGS DIR [FIGURES] runs every experiment file at a small size and writes
-// their reports: for the browser's test. With a third argument, whatever it is, gnuplot draws their figures, too.
+// their reports: for the browser's test. With a third argument, whatever it is, gnuplot draws their
+// figures, too.
 #include <cstdio>
 
 #include "experiments/report/report.hpp"

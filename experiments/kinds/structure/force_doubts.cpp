@@ -1,0 +1,114 @@
+#include "experiments/kinds/structure/force_doubts.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libinverse/structure/tuning.hpp"
+
+namespace modcal {
+namespace {
+
+double mean_square(const std::vector<double>& samples) {
+  double sum = 0.0;
+  for (const double x : samples) sum += x * x;
+  return sum / static_cast<double>(samples.size());
+}
+
+// Velocities and accelerations vanish with the frequency: of a force that pushes one way they tell
+// all but the largest part. Where the band begins low enough, it shows.
+void doubt_slow_part(const StructureForce& found, const LoadedStructureRecord& loaded, double low,
+                     StudyResult& result) {
+  const bool told =
+      std::ranges::any_of(loaded.kinds, [](SensorKind kind) { return power_of_s(kind) == 0; });
+  if (told || found.shape != ForceShape::kSmooth) return;
+  constexpr std::string_view kRemedy =
+      "record a displacement, force or strain as well, or state shape: impacts for blows";
+  if (found.rise < kRise) {
+    return result.warn(fmt::format(
+        "velocities and accelerations tell nothing of a smooth force below {:g} Hz: where it "
+        "pushes one way, this answer is wrong by that and its band does not hold it; {}",
+        low, kRemedy));
+  }
+  result.status = report::Status::kFailed;
+  result.warn(result.answer = fmt::format(
+                  "rejected: the force rises towards {:g} Hz, below which velocities and "
+                  "accelerations tell nothing of it, and its band does not hold that: {}",
+                  low, kRemedy));
+}
+
+// What rang before the record is told by modes, and from the force by two sensors.
+void doubt_begin(const StructureForce& found, const LoadedStructureRecord& loaded,
+                 const StructureTable& modes, StudyResult& result) {
+  std::string why;
+  if (found.rang && loaded.kinds.size() == 1 && found.shape == ForceShape::kSmooth) {
+    why =
+        "rejected: the structure may ring when the record begins, and one sensor does not tell "
+        "that "
+        "from a smooth force: begin the record at rest, with a quiet part, or record a second "
+        "sensor";
+  }
+  // Of what rings about a half stands above this share of its rms at any instant.
+  constexpr double kBegins = 0.5;
+  for (std::size_t k = 0; k < loaded.kinds.size() && !modes.measured.empty(); ++k) {
+    const std::vector<double>& response = loaded.record.responses[k];
+    const double first = response.front(), rms = std::sqrt(mean_square(response));
+    if (std::abs(first) < kBegins * rms) continue;
+    why = fmt::format(
+        "rejected: {} begins at {:.2g} times its rms, and response functions do not tell what rang "
+        "before: begin the record at rest, or fit modes to the functions",
+        loaded.names[k], std::abs(first) / rms);
+    break;
+  }
+  if (why.empty()) return;
+  result.status = report::Status::kFailed;
+  result.warn(result.answer = why);
+}
+
+// Sensors that contradict each other refuse the answer.
+void doubt(const StructureForce& found, const LoadedStructureRecord& loaded,
+           const StructureTable& modes, StudyResult& result) {
+  if (found.untried > 0.0) {
+    result.warn(fmt::format(
+        "impacts were not tried: the window of {:g} s holds {:g} instants of a pulse, {:g} are "
+        "possible; where the force is one of impacts, state a shorter window",
+        found.window, found.untried, kMostInstants));
+  }
+  if (found.shape == ForceShape::kImpacts && modes.pulse.empty()) {
+    result.warn(fmt::format(
+        "the table knows no pulse: the force is told up to {:g} Hz; a shorter pulse is higher and "
+        "narrower than that. Modes that fit_modes makes of a strike know it",
+        modes.high));
+  }
+  if (loaded.kinds.size() == 1) {
+    result.warn(
+        "one response explains any model: nothing tells whether the table is that of this "
+        "structure; "
+        "record a second sensor");
+    return;
+  }
+  const auto worst = std::ranges::max_element(found.sensor_left);
+  double power = 0.0;
+  for (const double left : found.sensor_left) power += left * left;
+  // A force alone, with no model at all, explains one of K responses.
+  if (power < 0.25 * static_cast<double>(loaded.kinds.size() - 1)) return;
+  result.status = report::Status::kFailed;
+  result.warn(
+      result.answer = fmt::format(
+          "rejected: no force explains the responses together, {:.0f} % of {} is left: compare "
+          "order, "
+          "sign and unit of the channels and the place of the contact with those of the table",
+          100.0 * *worst,
+          loaded.names[static_cast<std::size_t>(worst - found.sensor_left.begin())]));
+}
+
+}  // namespace
+
+void doubt_force(const StructureForce& found, const LoadedStructureRecord& loaded,
+                 const StructureTable& modes, StudyResult& result) {
+  doubt_slow_part(found, loaded, modes.low, result);
+  doubt(found, loaded, modes, result);
+  // Names the cause where sensors contradict each other by it: its answer stands.
+  doubt_begin(found, loaded, modes, result);
+}
+
+}  // namespace modcal
