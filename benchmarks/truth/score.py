@@ -141,8 +141,12 @@ def second_polarization(name, action):
 
 def simulated(name, action, mismatch, a, truth_digest, further=()):
     """Path of the record's files without their endings."""
-    command = [*truth_command(name, action, mismatch, a), *further]
-    path = a.out / "records" / f"{name}-{action}-{digest(truth_digest, *command)}"
+    return made(f"{name}-{action}", [*truth_command(name, action, mismatch, a), *further], a, truth_digest)
+
+
+def made(label, command, a, truth_digest):
+    """The same of a command line of truth."""
+    path = a.out / "records" / f"{label}-{digest(truth_digest, *command)}"
     if not path.with_suffix(".json").exists():
         path.parent.mkdir(parents=True, exist_ok=True)
         draft = path.with_name(path.name + f".{os.getpid()}.{threading.get_ident()}")
