@@ -5,15 +5,6 @@
 
 namespace modcal {
 
-/// Power of a line of the mains over the median of the bins about it. A false alarm takes a few
-/// bins and doubles the time of a fit; it biases nothing.
-/// Source: without hum 9 is the most of first and second lines, 36 of others; of 0.1 % of hum,
-/// which does no harm yet, the first line has 71 to 93, of 1 % 8700 and more.
-/// Range tried: 15 to 60.
-/// Doubled: every hum is found as now.
-/// Halved: every hum is found as now, and lines beside it that are none help to place it.
-constexpr double kLineRatio = 30.0;
-
 /// How far from a mode of the start a line must lie, of the mode's frequency.
 /// Source: the start may be off by 2 %, and the string plays a little flat.
 /// Range tried: 0.02 to 0.08.
