@@ -1,10 +1,13 @@
 #include "libinverse/modes/damped_sinusoid_fit.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 
+#include "libinverse/modes/decay_hum.hpp"
 #include "libsim/base/dense_solvers.hpp"
 #include "libsim/base/error.hpp"
 
@@ -18,30 +21,34 @@ using Eigen::VectorXd;
 /// The poles as unknowns: (d_1, ν_1, d_2, ν_2, …) with λ = −d + iν.
 class Problem {
  public:
-  Problem(const DecayRecord& record, std::size_t poles)
+  Problem(const DecayRecord& record, std::size_t poles, std::span<const double> lines)
       : rate_(record.sample_rate),
         poles_(static_cast<Index>(poles)),
+        hum_(hum_columns(record.samples(), record.sample_rate, lines)),
         data_(static_cast<Index>(record.samples()), static_cast<Index>(record.channels.size())) {
+    if (hum_.cols() > 0) hum_ = ThinQr(hum_).q();
     for (Index c = 0; c < data_.cols(); ++c) {
       for (Index m = 0; m < data_.rows(); ++m) {
         data_(m, c) = record.channels[static_cast<std::size_t>(c)][static_cast<std::size_t>(m)];
       }
     }
+    data_ = beside_hum(std::move(data_));
   }
 
   Index samples() const { return data_.rows(); }
   Index channels() const { return data_.cols(); }
   Index poles() const { return poles_; }
+  Index columns() const { return 2 * poles_ + 1 + hum_.cols(); }
   double degrees_of_freedom() const {
     const double shared = 2.0 * static_cast<double>(poles_) / static_cast<double>(channels());
-    return static_cast<double>(samples() - 2 * poles_ - 1) - shared;
+    return static_cast<double>(samples() - columns()) - shared;
   }
 
   /// What is known at one set of poles.
   struct State {
     VectorXd poles;
     MatrixXd basis;         // exp(−dt) cos νt, exp(−dt) sin νt in turn, and 1
-    MatrixXd thin_q;        // orthonormal basis of its columns
+    MatrixXd thin_q;        // orthonormal basis of its columns, the hum projected out
     MatrixXd coefficients;  // per channel: a cos + b sin, so that A = a − ib
     MatrixXd residual;
   };
@@ -50,11 +57,20 @@ class Problem {
     State state{.poles = poles, .basis = MatrixXd(samples(), 2 * poles_ + 1)};
     for (Index k = 0; k < poles_; ++k) fill_exponential(state, k);
     state.basis.col(2 * poles_).setOnes();
-    const ThinQr qr(state.basis);
+    const MatrixXd beside = beside_hum(state.basis);
+    const ThinQr qr(beside);
     state.thin_q = qr.q();
     state.coefficients = qr.solve(data_);
-    state.residual = data_ - state.basis * state.coefficients;
+    state.residual = data_ - beside * state.coefficients;
     return state;
+  }
+
+  /// Where no pole grows by more than e over the record: one that starts too broad would grow
+  /// beyond all numbers, and the columns of the others would be rounding beside it.
+  VectorXd bounded(VectorXd poles) const {
+    const double least = -rate_ / static_cast<double>(samples());
+    for (Index k = 0; k < poles_; ++k) poles[2 * k] = std::max(poles[2 * k], least);
+    return poles;
   }
 
   /// Slopes of the residuals of one channel, over the projector that the linear unknowns leave.
@@ -71,11 +87,17 @@ class Problem {
         slopes(m, 2 * k + 1) = -t * (b * cosine - a * sine);
       }
     }
+    slopes = beside_hum(std::move(slopes));
     slopes -= state.thin_q * (state.thin_q.transpose() * slopes);
     return slopes;
   }
 
  private:
+  MatrixXd beside_hum(MatrixXd columns) const {
+    if (hum_.cols() > 0) columns -= hum_ * (hum_.transpose() * columns);
+    return columns;
+  }
+
   // By recurrence in blocks, restarted so that rounding does not gather.
   void fill_exponential(State& state, Index k) const {
     const std::complex<double> exponent(-state.poles[2 * k], state.poles[2 * k + 1]);
@@ -92,6 +114,7 @@ class Problem {
 
   double rate_;
   Index poles_;
+  MatrixXd hum_;  // orthonormal, of which nothing is left in data, columns and slopes
   MatrixXd data_;
 };
 
@@ -130,6 +153,26 @@ DecayPole deviation_of(double d, double nu, const Eigen::Matrix2d& covariance) {
   const Eigen::Vector2d ratio = Eigen::Vector2d(nu * nu, -d * nu) / (omega * omega * omega);
   return {std::sqrt(frequency.dot(covariance * frequency)),
           std::sqrt(ratio.dot(covariance * ratio))};
+}
+
+// aᵀ(RᵀR)_kk a over the channels, R⁻¹R⁻ᵀ the covariance of the linear unknowns.
+std::vector<double> evidence_of(const Problem& problem, const Problem::State& state,
+                                const VectorXd& variances) {
+  const MatrixXd r = state.thin_q.transpose() * state.basis;
+  const MatrixXd inverse =
+      r.triangularView<Eigen::Upper>().solve(MatrixXd::Identity(r.rows(), r.cols()));
+  std::vector<double> evidence;
+  for (Index k = 0; k < problem.poles(); ++k) {
+    const auto rows = inverse.middleRows(2 * k, 2);
+    const Eigen::Matrix2d precision = Eigen::Matrix2d(rows * rows.transpose()).inverse();
+    double sum = 0.0;
+    for (Index c = 0; c < problem.channels(); ++c) {
+      const Eigen::Vector2d a = state.coefficients.col(c).segment<2>(2 * k);
+      sum += a.dot(precision * a) / variances[c];
+    }
+    evidence.push_back(std::isfinite(sum) ? sum : std::numeric_limits<double>::quiet_NaN());
+  }
+  return evidence;
 }
 
 std::vector<DecayMode> modes_of(const Problem& problem, const Problem::State& state,
@@ -172,7 +215,7 @@ DampedSinusoidFit fit_damped_sinusoids(const DecayRecord& record, std::span<cons
                                        const DampedSinusoidOptions& options) {
   record.require_valid();
   MODCAL_REQUIRE(!start.empty(), "a fit without poles: find some first");
-  const Problem problem(record, start.size());
+  const Problem problem(record, start.size(), options.lines);
   MODCAL_REQUIRE(problem.degrees_of_freedom() >= 1.0,
                  "{} samples a channel cannot determine {} modes: take a longer record",
                  problem.samples(), problem.poles());
@@ -188,7 +231,7 @@ DampedSinusoidFit fit_damped_sinusoids(const DecayRecord& record, std::span<cons
     double share = 1.0;
     constexpr double kSmallest = 1e-6;
     while (share > kSmallest) {
-      Problem::State next = problem.at(state.poles + share * step->solution);
+      Problem::State next = problem.at(problem.bounded(state.poles + share * step->solution));
       if (next.poles.allFinite() && cost_of(next, variances) <= cost) {
         state = std::move(next);
         break;
@@ -205,7 +248,9 @@ DampedSinusoidFit fit_damped_sinusoids(const DecayRecord& record, std::span<cons
   }
   fit.full_rank = step.has_value();
   fit.modes = modes_of(problem, state, step, options.in_band_variance);
+  fit.evidence = evidence_of(problem, state, options.in_band_variance * variances);
   for (const double variance : variances) fit.noise.push_back(std::sqrt(variance));
+  for (const auto channel : state.residual.colwise()) fit.squares.push_back(channel.squaredNorm());
   return fit;
 }
 

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <map>
 
+#include "libinverse/modes/decay_hum.hpp"
 #include "libinverse/modes/decay_record.hpp"
+#include "libinverse/modes/significant_fit.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/base/words.hpp"
 
@@ -39,14 +41,19 @@ double size_of(const DecayMode& mode) {
 
 // Amplitudes come from the fit for both methods; for era the poles are left where they are.
 std::vector<DecayMode> modes_of(const DecimatedDecay& decay, const std::vector<StablePole>& stable,
-                                const PluckOptions& options, PluckIdentification& result) {
+                                double fundamental, const PluckOptions& options,
+                                PluckIdentification& result) {
   std::vector<DecayPole> start;
   for (const StablePole& pole : stable) start.push_back(pole.pole);
   const bool likelihood = method_of(options) == Method::kMaximumLikelihood;
-  const DampedSinusoidFit fit =
-      fit_damped_sinusoids(decay.record, start,
-                           {.iterations = likelihood ? std::size_t{50} : std::size_t{0},
-                            .in_band_variance = decay.in_band_variance()});
+  const DampedSinusoidOptions how = {.iterations = likelihood ? std::size_t{50} : std::size_t{0},
+                                     .in_band_variance = decay.in_band_variance(),
+                                     .lines = result.lines};
+  // A second pole of a mode stands within some bins of it, and nearer than the next mode.
+  const double duration = static_cast<double>(decay.record.samples()) / decay.record.sample_rate;
+  const double reach = std::min(0.25 * fundamental, 10.0 / duration);
+  const DampedSinusoidFit fit = likelihood ? fit_significant(decay.record, start, reach, how)
+                                           : fit_damped_sinusoids(decay.record, start, how);
   result.converged = fit.converged || !likelihood;
   result.full_rank = fit.full_rank && likelihood;
   if (likelihood) {
@@ -55,7 +62,9 @@ std::vector<DecayMode> modes_of(const DecimatedDecay& decay, const std::vector<S
     }
   }
   std::vector<DecayMode> modes = fit.modes;
+  result.poles.clear();
   for (std::size_t k = 0; k < modes.size(); ++k) {
+    result.poles.push_back(modes[k].pole);
     if (!likelihood) modes[k].deviation = stable[k].spread;
     const std::complex<double> gain = decay.gain(modes[k].pole.exponent());
     for (auto& amplitude : modes[k].amplitude) amplitude /= gain;
@@ -143,6 +152,80 @@ std::vector<StablePole> with_missing(std::vector<StablePole> stable, const Numbe
   return stable;
 }
 
+DecimatedDecay band_of(const DecayRecord& record, double fundamental, const PluckOptions& options) {
+  record.require_valid();
+  MODCAL_REQUIRE(fundamental > 0.0 && std::isfinite(fundamental),
+                 "fundamental {:g} Hz must be > 0: it numbers the modes", fundamental);
+  method_of(options);
+  return decimate(after(record, options.skip), options.highest_frequency);
+}
+
+// Poles over the orders, and those that are stable.
+struct Realized {
+  Realized(const DecayRecord& decay, const PluckOptions& options) {
+    const EigensystemRealization realization(decay, static_cast<std::size_t>(options.block_rows),
+                                             static_cast<std::size_t>(options.columns));
+    const Eigen::VectorXd& sigma = realization.singular_values();
+    singular_values.assign(sigma.begin(), sigma.end());
+    diagram = stabilization_diagram(realization, options.stabilization);
+    stable = stable_poles(diagram, options.stabilization);
+  }
+
+  std::vector<double> singular_values;
+  std::vector<StabilizationPoint> diagram;
+  std::vector<StablePole> stable;
+};
+
+// Lines that stand apart from the poles are taken out before the realization, which has too few
+// orders for both. Of one that is left the realization has a pole, which the fit would have twice;
+// the fit before tells that it is a line's.
+Realized beside_hum(const DecayRecord& decay, const PluckIdentification& known, double fundamental,
+                    const PluckOptions& options) {
+  Realized realized(without_hum(decay, known.lines, known.poles, fundamental), options);
+  const double duration = static_cast<double>(decay.samples()) / decay.sample_rate;
+  std::erase_if(realized.stable, [&](const StablePole& stable) {
+    const DecayPole& pole = stable.pole;
+    const auto nearest = std::ranges::min_element(known.poles, {}, [&](const DecayPole& other) {
+      return std::abs(other.frequency - pole.frequency);
+    });
+    return is_line(pole, known.lines, duration) ||
+           (nearest != known.poles.end() && is_line(*nearest, known.lines, duration) &&
+            std::abs(nearest->frequency - pole.frequency) < 3.0 / duration);
+  });
+  return realized;
+}
+
+PluckIdentification identified(const DecimatedDecay& decay, Realized realized, double fundamental,
+                               const PluckOptions& options, std::vector<double> lines) {
+  PluckIdentification result{.diagram = std::move(realized.diagram),
+                             .singular_values = std::move(realized.singular_values),
+                             .lines = std::move(lines)};
+  const std::vector<StablePole>& stable = realized.stable;
+  if (stable.empty()) return result;
+  const auto number = [&](std::vector<DecayMode> modes, LawNumbers& law) {
+    const double duration = static_cast<double>(decay.record.samples()) / decay.record.sample_rate;
+    std::erase_if(
+        modes, [&](const DecayMode& mode) { return is_line(mode.pole, result.lines, duration); });
+    return numbered_modes(std::move(modes), options.highest_frequency, law);
+  };
+  LawNumbers law(fundamental);
+  NumberedModes numbered = number(modes_of(decay, stable, fundamental, options, result), law);
+  if (!result.converged && !missing_in(numbered).empty()) {
+    PluckIdentification again = result;
+    again.noise.clear();
+    std::vector<DecayMode> modes =
+        modes_of(decay, with_missing(stable, numbered, law), fundamental, options, again);
+    if (again.converged && again.full_rank) {
+      result = std::move(again);
+      law = LawNumbers(fundamental);
+      numbered = number(std::move(modes), law);
+    }
+  }
+  result.missing = missing_in(numbered);
+  for (auto& [n, mode] : numbered) result.modes.push_back({n, std::move(mode)});
+  return result;
+}
+
 }  // namespace
 
 void PluckOptions::visit(OptionVisitor& visitor) {
@@ -161,37 +244,20 @@ void PluckOptions::visit(OptionVisitor& visitor) {
 
 PluckIdentification identify_pluck(const DecayRecord& record, double fundamental,
                                    const PluckOptions& options) {
-  record.require_valid();
-  MODCAL_REQUIRE(fundamental > 0.0 && std::isfinite(fundamental),
-                 "fundamental {:g} Hz must be > 0: it numbers the modes", fundamental);
-  method_of(options);
-  const DecimatedDecay decay = decimate(after(record, options.skip), options.highest_frequency);
-  const EigensystemRealization realization(decay.record,
-                                           static_cast<std::size_t>(options.block_rows),
-                                           static_cast<std::size_t>(options.columns));
-  PluckIdentification result;
-  const Eigen::VectorXd& sigma = realization.singular_values();
-  result.singular_values.assign(sigma.begin(), sigma.end());
-  result.diagram = stabilization_diagram(realization, options.stabilization);
-  const std::vector<StablePole> stable = stable_poles(result.diagram, options.stabilization);
-  if (stable.empty()) return result;
-  LawNumbers law(fundamental);
-  NumberedModes numbered =
-      numbered_modes(modes_of(decay, stable, options, result), options.highest_frequency, law);
-  if (!result.converged && !missing_in(numbered).empty()) {
-    PluckIdentification again = result;
-    again.noise.clear();
-    std::vector<DecayMode> modes =
-        modes_of(decay, with_missing(stable, numbered, law), options, again);
-    if (again.converged && again.full_rank) {
-      result = std::move(again);
-      law = LawNumbers(fundamental);
-      numbered = numbered_modes(std::move(modes), options.highest_frequency, law);
-    }
-  }
-  result.missing = missing_in(numbered);
-  for (auto& [number, mode] : numbered) result.modes.push_back({number, std::move(mode)});
-  return result;
+  const DecimatedDecay decay = band_of(record, fundamental, options);
+  PluckIdentification found =
+      identified(decay, Realized(decay.record, options), fundamental, options, {});
+  found.lines = hum_in(decay.record, found.poles, fundamental);
+  if (found.lines.empty()) return found;
+  return identified(decay, beside_hum(decay.record, found, fundamental, options), fundamental,
+                    options, found.lines);
+}
+
+PluckIdentification identify_part(const DecayRecord& part, const PluckIdentification& whole,
+                                  double fundamental, const PluckOptions& options) {
+  const DecimatedDecay decay = band_of(part, fundamental, options);
+  return identified(decay, beside_hum(decay.record, whole, fundamental, options), fundamental,
+                    options, whole.lines);
 }
 
 void require_decay_length(std::size_t samples, double sample_rate, const PluckOptions& options) {

@@ -33,6 +33,8 @@ struct PluckIdentification {
   std::vector<StabilizationPoint> diagram;
   std::vector<double> singular_values;  ///< of the Hankel matrix
   std::vector<std::size_t> missing;     ///< numbers below the highest with no mode
+  std::vector<DecayPole> poles;         ///< of the fit, those that are no modes, too
+  std::vector<double> lines;            ///< of the mains [Hz]
   std::vector<double> noise;            ///< residual of each channel within the band; empty for era
   bool converged = false;               ///< the fit; true for era
   bool full_rank = false;               ///< error bars are known
@@ -40,15 +42,20 @@ struct PluckIdentification {
 
 /// Modes of a free decay: low-pass to the band, poles by the eigensystem realization algorithm (the
 /// paper's route, section 7.1), those kept that are stable over the orders, and for
-/// maximum_likelihood all of them fitted together as damped sinusoids. Deviations are the
-/// Cramér–Rao bound for maximum_likelihood; the spread over the orders, no error bar, for era.
-/// Modes are numbered upwards along the law f = n f₀ √(1 + B n²) of those numbered before: far up a
-/// stiff string f/f₀ is off by more than one. Of two with one number the one with the larger
-/// amplitude is kept. A fit that does not converge is made again with the modes that are missing,
-/// where the law has them. fundamental: f₀ to about 1 % [Hz]. Throws InvalidInput for an invalid or
-/// too short record, a fundamental that is not positive, an unknown method.
+/// maximum_likelihood all of them fitted together as damped sinusoids, without those that noise may
+/// be (fit_significant). Deviations are the Cramér–Rao bound for maximum_likelihood; the spread
+/// over the orders, no error bar, for era. Modes are numbered upwards along the law f = n f₀ √(1 +
+/// B n²) of those numbered before: far up a stiff string f/f₀ is off by more than one. Of two with
+/// one number the one with the larger amplitude is kept. A fit that does not converge is made again
+/// with the modes that are missing, where the law has them. Hum of the mains, where there is some,
+/// is fitted beside the modes; a pole that the record does not tell from one of its lines is no
+/// mode. fundamental: f₀ to about 1 % [Hz]. Throws InvalidInput for an invalid or too short record,
+/// a fundamental that is not positive, an unknown method.
 PluckIdentification identify_pluck(const DecayRecord& record, double fundamental,
                                    const PluckOptions& options = {});
+/// Of a part of a decay with the hum of the mains that the whole has.
+PluckIdentification identify_part(const DecayRecord& part, const PluckIdentification& whole,
+                                  double fundamental, const PluckOptions& options);
 
 /// Throws InvalidInput, as identify_pluck() would, where `samples` at `sample_rate` [Hz] leave
 /// nothing behind the time skipped, are too few for the filter of the band, or for the block rows

@@ -72,7 +72,23 @@ std::string sentence_of(const IdentifyOutcome& outcome) {
         "; f0 = {:.6g} Hz, B = {}", outcome.law->fundamental,
         inharmonicity_text(outcome.law->inharmonicity, outcome.law->inharmonicity_deviation));
   }
-  return text + "\n";
+  text += "\n";
+  const std::vector<double>& lines = outcome.found.lines;
+  if (!lines.empty()) {
+    text += fmt::format("hum of the mains at {:.3f} Hz: {} lines are fitted beside the modes\n",
+                        lines.front(), lines.size());
+  }
+  return text;
+}
+
+std::string why_nothing(const IdentifyOutcome& outcome) {
+  if (outcome.record && !outcome.found.diagram.empty()) {
+    return "rejected: no pole that is stable over the orders decays as a mode of this string does: "
+           "state record.start and record.stop of a free decay, behind the pluck, or record a "
+           "longer one with less noise";
+  }
+  return "no pole is stable over the orders: nothing was identified; record a longer decay with "
+         "less noise, or raise identification's orders";
 }
 
 }  // namespace
@@ -217,6 +233,7 @@ void IdentifyOutcome::visit(ResultVisitor& visitor) const {
   visitor({.key = "missing"}, found.missing);
   if (record) visitor({.key = "begin_s"}, record->begin);
   visitor({.key = "deviations_are_error_bars"}, found.full_rank);
+  visitor({.key = "mains_lines_hz"}, found.lines);
   visitor({.key = "noise_in_band_n"}, found.noise);
   visitor({.key = "converged"}, found.converged);
   visitor({.key = "stiff_string_law", .optional = true}, law);
@@ -253,8 +270,7 @@ StudyResult IdentifyOptions::run(const StudyContext& context) const {
   if (outcome.found.modes.empty() || !outcome.found.converged) {
     result.status = report::Status::kFailed;
     result.answer = outcome.found.modes.empty()
-                        ? "no pole is stable over the orders: nothing was identified; record a "
-                          "longer decay with less noise, or raise identification's orders"
+                        ? why_nothing(outcome)
                         : "the fit did not converge: its modes and error bars are not final; take "
                           "method: era, or lower identification.highest_frequency";
     result.summary += result.answer + "\n";
@@ -263,7 +279,7 @@ StudyResult IdentifyOptions::run(const StudyContext& context) const {
   for (const std::string& warning : outcome.record->warnings) result.warn(warning);
   std::string why = rejection_of(outcome.found, outcome.record->decay, fundamental, outcome.law);
   if (result.status == report::Status::kOk && why.empty()) {
-    why = change_along(outcome.record->decay, fundamental, identification);
+    why = change_along(outcome.found, outcome.record->decay, fundamental, identification);
   }
   if (result.status == report::Status::kOk && !why.empty()) {
     result.status = report::Status::kFailed;

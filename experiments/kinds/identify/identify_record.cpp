@@ -98,8 +98,8 @@ std::string rejection_of(const PluckIdentification& found, const DecayRecord& de
   return {};
 }
 
-std::string change_along(const DecayRecord& decay, double fundamental,
-                         const PluckOptions& options) {
+std::string change_along(const PluckIdentification& whole, const DecayRecord& decay,
+                         double fundamental, const PluckOptions& options) {
   const auto half = static_cast<std::ptrdiff_t>(decay.samples() / 2);
   std::array<DecayRecord, 2> parts;
   std::array<PluckIdentification, 2> found;
@@ -110,7 +110,7 @@ std::string change_along(const DecayRecord& decay, double fundamental,
       parts[i].channels.emplace_back(first, first + half);
     }
     try {
-      found[i] = identify_pluck(parts[i], fundamental, options);
+      found[i] = identify_part(parts[i], whole, fundamental, options);
     } catch (const InvalidInput&) {
       return {};  // half of it is too short
     }

@@ -30,7 +30,9 @@ std::string rejection_of(const PluckIdentification& found, const DecayRecord& de
 
 /// Names the mode whose frequency or damping differs by more than five deviations between the
 /// halves of the decay: it is not one damped sinusoid, as of a string with two polarizations, and
-/// error bars do not hold. Empty: none does, or half of the decay tells no error bars.
-std::string change_along(const DecayRecord& decay, double fundamental, const PluckOptions& options);
+/// error bars do not hold. whole: what the decay in the whole tells. Empty: none does, or half of
+/// the decay tells no error bars.
+std::string change_along(const PluckIdentification& whole, const DecayRecord& decay,
+                         double fundamental, const PluckOptions& options);
 
 }  // namespace modcal
