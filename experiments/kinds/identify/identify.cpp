@@ -232,6 +232,7 @@ void IdentifyOutcome::visit(ResultVisitor& visitor) const {
       });
   visitor({.key = "missing"}, found.missing);
   if (record) visitor({.key = "begin_s"}, record->begin);
+  if (record) visitor({.key = "end_s"}, record->end);
   visitor({.key = "deviations_are_error_bars"}, found.full_rank);
   visitor({.key = "mains_lines_hz"}, found.lines);
   visitor({.key = "noise_in_band_n"}, found.noise);

@@ -28,6 +28,43 @@ std::size_t liveliest(const std::vector<const std::vector<double>*>& channels, s
   return period * static_cast<std::size_t>(std::ranges::max_element(changes) - changes.begin());
 }
 
+// The step of a signal all of whose values are multiples of it; 0: there is none.
+double step_of(std::vector<double> samples) {
+  std::ranges::sort(samples);
+  const auto repeated = std::ranges::unique(samples);
+  samples.erase(repeated.begin(), repeated.end());
+  if (samples.size() < 2) return 0.0;
+  double step = samples.back() - samples.front();
+  for (std::size_t j = 1; j < samples.size(); ++j) {
+    step = std::min(step, samples[j] - samples[j - 1]);
+  }
+  const bool all = std::ranges::all_of(samples, [&](double x) {
+    const double place = (x - samples.front()) / step;
+    return std::abs(place - std::round(place)) < 0.1;
+  });
+  return all ? step : 0.0;
+}
+
+// Where the last period ends in which the signal's rms is two steps: what is rounded off below is
+// no noise, it follows the signal. The number of samples where there is no step.
+std::size_t resolved_until(const std::vector<double>& samples, std::size_t period) {
+  const double step = step_of(samples);
+  const std::size_t periods = samples.size() / period;
+  if (!(step > 0.0)) return samples.size();
+  for (std::size_t i = periods; i > 0; --i) {
+    const auto first = samples.begin() + static_cast<std::ptrdiff_t>((i - 1) * period);
+    double sum = 0.0, squares = 0.0;
+    for (auto x = first; x != first + static_cast<std::ptrdiff_t>(period); ++x) {
+      sum += *x - *first;
+      squares += (*x - *first) * (*x - *first);
+    }
+    const double n = static_cast<double>(period);
+    if (squares / n - sum * sum / (n * n) < 4.0 * step * step) continue;
+    return i == periods ? samples.size() : i * period;
+  }
+  return 0;
+}
+
 }  // namespace
 
 PluckedRecord load_pluck(const RecordOptions& options, const std::filesystem::path& folder,
@@ -46,9 +83,28 @@ PluckedRecord load_pluck(const RecordOptions& options, const std::filesystem::pa
   PluckedRecord result{.decay = {.sample_rate = signals.sample_rate},
                        .begin = static_cast<double>(first) / signals.sample_rate,
                        .warnings = signals.warnings};
+  std::size_t end = channels.front()->size();
   for (const std::vector<double>* channel : channels) {
-    std::vector<double>& samples = result.decay.channels.emplace_back(
-        channel->begin() + static_cast<std::ptrdiff_t>(first), channel->end());
+    end = std::min(
+        end, first + resolved_until(
+                         {channel->begin() + static_cast<std::ptrdiff_t>(first), channel->end()},
+                         period));
+  }
+  result.end = static_cast<double>(end) / signals.sample_rate;
+  MODCAL_REQUIRE(end >= first + 3 * period,
+                 "the decay has an rms of less than two of the record's steps from {:.3g} s on: "
+                 "record it with more gain or more bits",
+                 result.end);
+  if (end < channels.front()->size()) {
+    result.warnings.push_back(fmt::format(
+        "the decay is used up to {:.3g} s: from there on its rms is less than two of the record's "
+        "steps, and what they round off is no noise; more gain or more bits make use of the rest",
+        result.end));
+  }
+  for (const std::vector<double>* channel : channels) {
+    std::vector<double>& samples =
+        result.decay.channels.emplace_back(channel->begin() + static_cast<std::ptrdiff_t>(first),
+                                           channel->begin() + static_cast<std::ptrdiff_t>(end));
     const double mean = std::accumulate(samples.begin(), samples.end(), 0.0) /
                         std::max(1.0, static_cast<double>(samples.size()));
     for (double& x : samples) x -= mean;

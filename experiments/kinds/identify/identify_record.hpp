@@ -12,12 +12,14 @@ namespace modcal {
 struct PluckedRecord {
   DecayRecord decay;   ///< from the pluck on, means taken out
   double begin = 0.0;  ///< of it in the record's part [s]
+  double end = 0.0;    ///< of it in the record's part [s]
   std::vector<std::string> warnings;
 };
 
 /// The record's reactions from one period behind the one in which they change most, by the power of
-/// their differences: a string that is held before is at rest or bent. fundamental: f₀ [Hz]. Throws
-/// InvalidInput as load_record() does and for a part shorter than three periods.
+/// their differences: a string that is held before is at rest or bent. Of values that are multiples
+/// of a step up to the last period whose rms is two of them. fundamental: f₀ [Hz]. Throws
+/// InvalidInput as load_record() does and for a part, or decay, shorter than three periods.
 PluckedRecord load_pluck(const RecordOptions& options, const std::filesystem::path& folder,
                          double fundamental, const StopToken& stop = {});
 
