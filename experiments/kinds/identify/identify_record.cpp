@@ -186,8 +186,7 @@ std::string change_along(const PluckIdentification& whole, const DecayRecord& de
     return fmt::format(
         "rejected: mode {} has {:.7g} Hz and a damping ratio of {:.3g} in the first half of the "
         "decay, {:.7g} Hz and {:.3g} in the second: it is not one damped sinusoid alone, as where "
-        "the string moves in two planes or mains hum stands beside it; pluck towards the sensor, "
-        "remove the hum, or state another part",
+        "the string moves in two planes; pluck towards the sensor, or state another part",
         number, early.pole.frequency, early.pole.damping_ratio, late->mode.pole.frequency,
         late->mode.pole.damping_ratio);
   }
