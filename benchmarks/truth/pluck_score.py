@@ -184,7 +184,7 @@ def summary(lines, a):
             print(f"WRONG  {label}: {what} of mode {m[0]} by {z:.1f} deviations, {m[3]:.6g} Hz for {m[4]:.6g} Hz")
         if not line["accepted"]:
             right = f"right (largest |z| {z:.1f})" if m and z <= 5.0 else f"off by {z:.1f} deviations" if m else "without modes"
-            said = next((t for t in line["said"].split("\n") if "rejected" in t), line["said"].split("\n")[-1])
+            said = next((t for t in line["said"].split("\n") if "rejected" in t or "error" in t), line["said"].split("\n")[-1])
             print(f"refused  {label}, {right}: {said[:260]}")
 
 
