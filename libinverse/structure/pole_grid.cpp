@@ -1,4 +1,5 @@
 // The pairs of poles that a search may add next.
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
