@@ -38,14 +38,14 @@ PointSamples replay_linear(const LineModes& modes, std::span<const PointRecord> 
   const std::vector<std::span<const double>> pushes(force.begin(), force.end());
   const double start = replay.energy();
   for (std::size_t k = 0; k + 1 < count; ++k) {
-    for (double p = 0.0; p < parts; p += 1.0) {
+    for (int p = 0; p < parts; ++p) {
       for (std::size_t j = 0; j < points.size(); ++j) {
         const double change = points[j].force[k + 1] - points[j].force[k];
         force[j] = {points[j].force[k] + change * (p / parts), change / parts};
       }
       account.dissipated += replay.advance(part, pushes, velocity);
       for (std::size_t j = 0; j < points.size(); ++j) {
-        if (k == 0 && p == 0.0) replayed[j][0] = velocity[j][0];
+        if (k == 0 && p == 0) replayed[j][0] = velocity[j][0];
         replayed[j][k + 1] = 0.0;
         for (std::size_t i = 0; i < velocity[j].size(); ++i) {
           const auto power = static_cast<double>(i);

@@ -54,7 +54,7 @@ void EnergyMeter::piece(const ForcePiece& piece) {
 void EnergyMeter::divide(const ForcePiece& piece, double phase) {
   const double parts = std::ceil(phase / ModeReplay::kLongestPhase);
   const double length = 1.0 / parts, duration = piece.duration / parts;
-  for (double k = 0.0; k < parts; k += 1.0) {
+  for (int k = 0; k < parts; ++k) {
     const std::vector<double> force = restricted(piece.force, k * length, length);
     const std::vector<double> rise = restricted(piece.rise, k * length, length);
     ForcePiece smaller = piece;

@@ -13,14 +13,15 @@ namespace {
 // Tics of a logarithmic axis that holds less than two powers of ten: 1, 2, 5, 10, …
 std::string dense_tics(char name, const std::array<double, 2>& window) {
   std::vector<std::string> tics;
-  for (double decade = std::pow(10.0, std::floor(std::log10(window[0]))); decade <= window[1];
-       decade *= 10.0) {
+  double decade = std::pow(10.0, std::floor(std::log10(window[0])));
+  while (decade <= window[1]) {
     for (const double multiple : {1.0, 2.0, 5.0}) {
       const double tic = multiple * decade;
       if (tic >= window[0] * (1.0 - 1e-9) && tic <= window[1] * (1.0 + 1e-9)) {
         tics.push_back(fmt::format("{:.6g}", tic));
       }
     }
+    decade *= 10.0;
   }
   const bool is_plain = window[0] >= 1e-3 && window[1] < 1e5;
   return fmt::format("set logscale {0}; set format {0} '{1}'; set {0}tics ({2})\n", name,

@@ -34,8 +34,10 @@ std::vector<MisfitCause> misfit_causes(const ProjectedLikelihood& likelihood,
   causes.push_back(fitted.modes_above());
   causes.push_back(fitted.moving_contact());
   const double fundamental = point.basis.omega[0] / (2.0 * std::numbers::pi);
-  for (double place = 0.5; place < kHighestBody; place *= kBodyStep) {
+  double place = 0.5;
+  while (place < kHighestBody) {
     causes.push_back(fitted.bridge(place * fundamental, kBodyDamping));
+    place *= kBodyStep;
   }
   return causes;
 }

@@ -88,15 +88,18 @@ std::vector<Candidate> scanned(const EndSpectra& spectra, double top, double low
                                double highest) {
   const double step = 0.1 / top;
   std::vector<Candidate> of_contact(static_cast<std::size_t>(std::ceil(1.0 / step)));
-  for (double f = lowest; f <= highest; f *= 1.0 + step) {
+  double f = lowest;
+  while (f <= highest) {
     const EndBins bins = bins_of(spectra, f, top);
-    if (bins.size() < kLeastBins) continue;
-    for (std::size_t i = 0; i < of_contact.size(); ++i) {
-      const double contact = (static_cast<double>(i) + 0.5) * step;
-      StatedString string{.length = 1.0, .fundamental = f, .contact = contact};
-      const double misfit = least_misfits(bins, {}, string)[0];
-      if (misfit < of_contact[i].misfit) of_contact[i] = {string, misfit};
+    if (bins.size() >= kLeastBins) {
+      for (std::size_t i = 0; i < of_contact.size(); ++i) {
+        const double contact = (static_cast<double>(i) + 0.5) * step;
+        StatedString string{.length = 1.0, .fundamental = f, .contact = contact};
+        const double misfit = least_misfits(bins, {}, string)[0];
+        if (misfit < of_contact[i].misfit) of_contact[i] = {string, misfit};
+      }
     }
+    f *= 1.0 + step;
   }
   std::vector<Candidate> best;
   for (std::size_t i = 0; i < of_contact.size(); ++i) {

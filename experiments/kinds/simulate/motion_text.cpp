@@ -39,8 +39,10 @@ struct Held {
 Held held_value(const PiecewiseLinear& stroke, double start, double end) {
   const double last = stroke.at(end), most = std::max(stroke.highest(), -stroke.lowest());
   bool steady = true;
-  for (double t = start; t < end; t = stroke.next_knot(t)) {
+  double t = start;
+  while (t < end) {
     steady = steady && std::abs(stroke.at(t) - last) <= kSteady * most;
+    t = stroke.next_knot(t);
   }
   return {std::abs(last) <= kSteady * most ? 0.0 : last, steady};
 }

@@ -23,11 +23,13 @@ double loudest_shift(std::span<const std::shared_ptr<const PluckLikelihood>> plu
     return sum;
   };
   double best = power(0.0) + kPlaceMargin, found = 0.0;
-  for (double shift = -kPlaceReach; shift <= kPlaceReach; shift += 0.5 * zeta) {
+  double shift = -kPlaceReach;
+  while (shift <= kPlaceReach) {
     if (const double value = power(shift); value > best) {
       best = value;
       found = shift;
     }
+    shift += 0.5 * zeta;
   }
   return found;
 }

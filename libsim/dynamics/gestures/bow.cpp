@@ -50,7 +50,7 @@ std::vector<double> Bow::contact_points() const {
                  width);
   std::vector<double> result;
   const auto count = static_cast<double>(points);
-  for (double i = 0.0; i < count; i += 1.0) {
+  for (int i = 0; i < points; ++i) {
     result.push_back(position + width * ((i + 0.5) / count - 0.5));
   }
   return result;
