@@ -106,7 +106,7 @@ TEST(DampedSinusoidFit, ErrorBarsAreTheScatterOverDraws) {
     double frequency = 0.0, ratio = 0.0, bar_frequency = 0.0, bar_ratio = 0.0, bias = 0.0;
     for (int draw = 0; draw < kDraws; ++draw) {
       DecayRecord record = clean;
-      add_noise(record, 0.05, static_cast<std::uint64_t>(100 + draw));
+      add_noise(record, 0.05, 100 + static_cast<std::uint64_t>(draw));
       const auto fit = fit_damped_sinusoids(record, std::vector{truth[0].pole, truth[1].pole});
       ASSERT_TRUE(fit.converged);
       const DecayMode& mode = fit.modes[k];

@@ -109,7 +109,8 @@ TEST(EndRelation, TellsOfNoiseAlone) {
 }
 
 TEST(EndRelation, TellsWhereSamplesAreMissing) {
-  const auto ratio_at = [](std::vector<double> left, std::vector<double> right, double time) {
+  const auto ratio_at = [](const std::vector<double>& left, const std::vector<double>& right,
+                           double time) {
     const EndRelationFit fit = fitted(left, right);
     EXPECT_TRUE(fit.disturbance.has_value());
     if (!fit.disturbance) return;

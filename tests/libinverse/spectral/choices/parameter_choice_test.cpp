@@ -21,7 +21,7 @@ std::shared_ptr<const Regularizer> regularizer(std::string_view name) {
 
 // Components of one degree of freedom each, σ falling, derivative weight 4, one datum outside.
 struct Problem {
-  Problem(std::vector<double> sigma, std::vector<double> power_given, double outside)
+  Problem(const std::vector<double>& sigma, std::vector<double> power_given, double outside)
       : problem(sigma, std::vector(sigma.size(), 1.0), std::vector(sigma.size(), 4.0),
                 sigma.size() + 1),
         power(std::move(power_given)),
