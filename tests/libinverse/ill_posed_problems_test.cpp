@@ -75,8 +75,10 @@ TEST_P(EveryProblem, EveryPairImprovesOnDirectInversionOrWarns) {
     };
     const double direct = error_at(0.0);
     double best = direct;
-    for (double level = svd.problem().sigma()[0]; level > 1e-8; level *= 0.9) {
+    double level = svd.problem().sigma()[0];
+    while (level > 1e-8) {
       best = std::min(best, error_at(level));
+      level *= 0.9;
     }
     const auto check = [&](const char* name, const ParameterChoice& rule) {
       const SvdSolution solution = svd.solve(data, *regularizer, rule, rms);

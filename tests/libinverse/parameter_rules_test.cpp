@@ -50,9 +50,10 @@ constexpr double kStep = 0.0025;
 
 template <typename Criterion>
 double minimum_over_lost(Criterion criterion) {
-  double best = 1e-6;
-  for (double l = 1e-6; l < 1.0; l *= 1.0005) {
+  double best = 1e-6, l = 1e-6;
+  while (l < 1.0) {
     if (criterion(l) < criterion(best)) best = l;
+    l *= 1.0005;
   }
   return best;
 }
@@ -111,9 +112,10 @@ TEST(ClosedForm, CurvatureOfTheLCurve) {
     return (r1 * x2 - r2 * x1) / std::pow(r1 * r1 + x1 * x1, 1.5);
   };
   const double low = std::log(1e-3), high = 0.0;
-  double expected = low;
-  for (double t = low; t < high; t += 1e-3) {
+  double expected = low, t = low;
+  while (t < high) {
     if (curvature(t) > curvature(expected)) expected = t;
+    t += 1e-3;
   }
   const SpectralOperator problem(sigma, {1.0, 1.0}, {}, 2);
   SpectralData data;

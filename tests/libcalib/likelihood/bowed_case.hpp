@@ -71,10 +71,12 @@ inline NoisyRecords with_colored_noise(const BowedCase& bowed, double level, std
 /// Their covariance, |1 + 0.3/(1 − 0.9 z⁻¹)|² the power of the first.
 inline NoiseSpectrum colored_spectrum() {
   NoiseSpectrum spectrum;
-  for (double f = 50.0; f < 11000.0; f *= 1.1) {
+  double f = 50.0;
+  while (f < 11000.0) {
     const double power =
         std::norm(1.0 + 0.3 / (1.0 - 0.9 * std::polar(1.0, -2.0 * std::numbers::pi * f / 51200.0)));
     spectrum.knots.push_back({f, {power, 0.36 * power + 1.0, 0.6 * power}});
+    f *= 1.1;
   }
   return spectrum;
 }

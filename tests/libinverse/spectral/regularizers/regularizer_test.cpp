@@ -71,7 +71,11 @@ struct RandomProblem {
 
 std::vector<double> parameters_of(const RandomProblem& random) {
   std::vector<double> parameters = {0.0};
-  for (double p = 1e-6; p < 1e6; p *= 1.7) parameters.push_back(p);
+  double p = 1e-6;
+  while (p < 1e6) {
+    parameters.push_back(p);
+    p *= 1.7;
+  }
   parameters.push_back(random.problem.sigma()[7]);  // exactly a singular value
   parameters.push_back(random.problem.sigma()[0]);
   std::sort(parameters.begin(), parameters.end());

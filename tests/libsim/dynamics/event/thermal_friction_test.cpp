@@ -65,7 +65,8 @@ TEST(ThermalFriction, IsSolvedAsFarAsItsConditionAllows) {
   for (const double z : {4.6, 4.63, 4.64}) {
     const double even = 1.0 + z * z / 10.0, odd = z / 2.0 + z * z * z / 120.0;
     const double growth = (even + odd) / (even - odd);
-    for (double rise = 1.0; rise < 9.0; rise += 0.237) {
+    for (int i = 0; i < 34; ++i) {
+      const double rise = 1.0 + 0.237 * i;
       // Rounding of the equations times their condition, about the growth's size.
       EXPECT_NEAR(grown(4, z, rise) / (growth * rise), 1.0, 1e-14 * growth) << z << ", " << rise;
     }

@@ -42,7 +42,8 @@ TEST(Bow, ASineStaysWithinTheErrorOfItsPieces) {
   const PiecewiseLinear factor = gesture.over(0.4);
   // Interpolation error of a piece h: (2πf)² h²/8 · amplitude, h = 1/(128 f).
   const double bound = 2.0 * std::pow(2.0 * std::numbers::pi / 128.0, 2) / 8.0;
-  for (double t = 0.0; t <= 0.4; t += 0.00037) {
+  for (int i = 0; i <= 1081; ++i) {
+    const double t = 0.00037 * i;
     EXPECT_NEAR(factor.at(t), 0.5 + 2.0 * std::sin(2.0 * std::numbers::pi * 7.0 * t + 0.3),
                 bound * (1.0 + 1e-9));
   }
@@ -92,7 +93,7 @@ TEST(GestureNoise, DependsOnSeedAndRoleAloneAndStartsTheSameInALongerRecord) {
   const PiecewiseLinear one = noise.factor(1.0, "bow velocity");
   const PiecewiseLinear longer = noise.factor(3.0, "bow velocity");
   EXPECT_NE(one.at(0.3), noise.factor(1.0, "normal force").at(0.3));
-  for (double t = 0.0; t < 1.0; t += 0.01) EXPECT_EQ(one.at(t), longer.at(t));
+  for (int i = 0; i < 100; ++i) EXPECT_EQ(one.at(0.01 * i), longer.at(0.01 * i));
   GestureNoise other = noise;
   other.seed = 4;
   EXPECT_NE(one.at(0.3), other.factor(1.0, "bow velocity").at(0.3));

@@ -87,7 +87,7 @@ DrivenStructure two_modes() {
   model.poles = {{2.0 * std::numbers::pi * 100.0, 0.01}, {2.0 * std::numbers::pi * 230.0, 0.03}};
   model.sensors = {SensorKind::kDisplacement, SensorKind::kVelocity, SensorKind::kAcceleration,
                    SensorKind::kForce, SensorKind::kStrain};
-  for (double k = 0.0; k < 5.0; k += 1.0) {
+  for (int k = 0; k < 5; ++k) {
     model.constants.insert(model.constants.end(), {2.0 - k, 0.5 + k});
     model.quadrature.insert(model.quadrature.end(), {0.3 * k - 0.4, 0.2});
     model.residuals.push_back({.below = 0.7, .constant = 1e-4});

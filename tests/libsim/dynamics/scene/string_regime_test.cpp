@@ -53,8 +53,10 @@ std::vector<Slip> regular(const Scene& scene, int count, double stretch = 1.0) {
   const double beta = scene.bow.position / scene.string.length;
   const double period = stretch / scene.string.fundamental;
   std::vector<Slip> slips;
-  for (double start = 0.3 * period; start < scene.duration; start += period / count) {
+  double start = 0.3 * period;
+  while (start < scene.duration) {
     slips.push_back({start, beta * period / count, kBow * period / count});
+    start += period / count;
   }
   return slips;
 }

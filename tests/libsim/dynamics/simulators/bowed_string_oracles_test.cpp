@@ -32,7 +32,8 @@ Complex component(const Signal& signal, double f) {
 // The strongest frequency about the string's fundamental.
 double playing_frequency(const Signal& signal) {
   double best = 0.0, strongest = 0.0;
-  for (double f = 185.0; f < 207.0; f += 0.05) {
+  for (int i = 0; i < 440; ++i) {
+    const double f = 185.0 + 0.05 * i;
     const double strength = std::abs(component(signal, f));
     if (strength > strongest) {
       strongest = strength;
