@@ -4,6 +4,7 @@
 #include "experiments/kinds/simulate/simulate_study.hpp"
 #include "experiments/kinds/structure/structure_files.hpp"
 #include "libsim/signal/fft.hpp"
+#include "libsim/signal/statistics.hpp"
 
 namespace modcal {
 namespace {
