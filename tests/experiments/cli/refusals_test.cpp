@@ -1,4 +1,5 @@
 // Whatever a user gives: refused at once, in words, and never an internal error.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
@@ -42,13 +43,13 @@ TEST_F(Refusals, WhatIsNoFileIsNotOpened) {
        {"journal/pipe.journal", "provenance.json", "resolved.yaml", "journal/shard-1-of-1.lock"}) {
     const std::string file = std::string("a/") + name;
     for (const char* make : {"mkfifo ", "mkdir ", "ln -s /dev/zero "}) {
-      shell("mv " + file + " kept; " + make + file);
+      shell(fmt::format("mv {0} kept; {1}{0}", file, make));
       for (const char* command : {"status a", "merge a", "report a", "run list.yaml --out a"}) {
         const Outcome outcome = within(20, command);
         EXPECT_TRUE(outcome.code == 3 || outcome.code == 0) << command << name << outcome.code;
         EXPECT_THAT(outcome.err, Not(HasSubstr("internal"))) << command << name;
       }
-      shell("rm -rf " + file + "; mv kept " + file);
+      shell(fmt::format("rm -rf {0}; mv kept {0}", file));
     }
   }
   EXPECT_EQ(modcal("status a").code, 0);

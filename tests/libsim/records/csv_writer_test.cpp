@@ -21,7 +21,7 @@ using testing::HasSubstr;
 
 class CsvWriter : public FolderTest {};
 
-Signal noise(std::string quantity, std::string unit, double rate, std::size_t size) {
+Signal noise(const std::string& quantity, const std::string& unit, double rate, std::size_t size) {
   Signal signal{quantity, unit, rate, std::vector<double>(size)};
   fill_standard_normal(StreamKey(1).with(quantity), signal.samples);
   return signal;

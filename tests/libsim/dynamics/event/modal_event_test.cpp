@@ -18,7 +18,8 @@ namespace {
 
 constexpr double kRate = 51200.0;
 
-Simulation run_with(const Scene& scene, ModalEvent::Options options = {}, double rate = kRate) {
+Simulation run_with(const Scene& scene, const ModalEvent::Options& options = {},
+                    double rate = kRate) {
   return event_run(scene, options, rate);
 }
 
