@@ -159,9 +159,9 @@ PrintSheet::PrintSheet(const DrawnFigure& figure)
 }
 
 Frame PrintSheet::panel_of(std::size_t panel) const {
-  const double left = panel_width_ * static_cast<double>(panel % columns_);
-  const double top =
-      height_ - shared_legend_ - panel_height_ * static_cast<double>(panel / columns_);
+  const std::size_t row = panel / columns_, column = panel % columns_;
+  const double left = panel_width_ * static_cast<double>(column);
+  const double top = height_ - shared_legend_ - panel_height_ * static_cast<double>(row);
   return {left, left + panel_width_, top - panel_height_, top};
 }
 

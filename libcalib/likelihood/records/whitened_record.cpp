@@ -183,7 +183,8 @@ void WhitenedRecord::place_bins() {
   node_delay = PlanarVector(node_omega.size());
   const double half = 0.5 * static_cast<double>(kBlock - 1);
   for (std::size_t i = 0; i < node_omega.size(); ++i) {
-    const double begin = static_cast<double>(first + i / kNodes * kBlock);
+    const std::size_t block = i / kNodes;
+    const auto begin = static_cast<double>(first + block * kBlock);
     node_omega[i] = spacing * (begin + half * (1.0 + node_place(i % kNodes)));
     node_delay.set(i, std::polar(std::exp(-sigma / sample_rate), -node_omega[i] / sample_rate));
   }

@@ -47,8 +47,8 @@ LikelihoodPoint extended_point(const ProjectedLikelihood& likelihood,
 std::string name_of_unknown(const StringUnknowns& unknowns, const ModelPoint& point, Index i) {
   if (i < unknowns.named()) return text_of(unknowns.parameters()[static_cast<std::size_t>(i)]);
   const double spacing = point.sensors.smooth.spacing / (2.0 * std::numbers::pi);
-  const auto knot = static_cast<double>((i - unknowns.named()) / 2);
-  return fmt::format("response at {:.0f} Hz", knot * spacing);
+  const Index knot = (i - unknowns.named()) / 2;
+  return fmt::format("response at {:.0f} Hz", static_cast<double>(knot) * spacing);
 }
 
 // ln of the likelihood of a cause over that of its amplitudes being 0, by their priors; of those
