@@ -145,7 +145,7 @@ LoadedResponseFunctions load_response_functions(const ResponseFunctionOptions& o
   // Force and responses weighted by exp(−t/τ) have H on that contour.
   grid.sigma = window_decay(options.window);
   std::ranges::sort(unstated);
-  unstated.erase(std::ranges::unique(unstated).begin(), unstated.end());
+  unstated.erase(std::unique(unstated.begin(), unstated.end()), unstated.end());
   if (!unstated.empty()) {
     loaded.warnings.push_back(fmt::format(
         "no unit is stated of {}: taken to be SI; state calibration where it is another one",
