@@ -2,7 +2,7 @@
 #pragma once
 
 #include "experiments/kinds/structure/structure_files.hpp"
-#include "experiments/report/result.hpp"
+#include "experiments/study/study.hpp"
 #include "libinverse/structure/force/structure_force.hpp"
 
 namespace modcal {
