@@ -143,6 +143,13 @@ BinVariances variances_of(const StructureTable& table, const ContourSpectra& spe
   return result;
 }
 
+std::vector<double> hidden_power(const BinEvidence& evidence, const ContourSpectra& spectra) {
+  std::vector<double> power = smoothed(evidence.told, spacing_of(spectra), kReach);
+  const double bins = std::max(1.0, 2.0 * kReach / spacing_of(spectra) / spectra.correlated());
+  for (double& x : power) x = std::max(1.0 / (x * std::sqrt(bins)), 1e-300);
+  return power;
+}
+
 std::vector<SensorPrediction> predictions_of(const ContourSpectra& spectra,
                                              const Transfers& transfers,
                                              const BinVariances& variances) {

@@ -34,6 +34,10 @@ BinVariances variances_of(const StructureTable& table, const ContourSpectra& spe
 BinEvidence evidence_of(const ContourSpectra& spectra, const Transfers& transfers,
                         const BinVariances& variances, std::size_t left_out);
 
+/// E|F|² that the bins within kReach of each may hide: a force that is not seen is not 0 without an
+/// error bar. The noise of F̂ over the root of how many they are.
+std::vector<double> hidden_power(const BinEvidence& evidence, const ContourSpectra& spectra);
+
 /// One response predicted from the others.
 struct SensorPrediction {
   double error = 0.0;     ///< rms of what is off over that of the response, over the bins [1]

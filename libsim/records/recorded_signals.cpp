@@ -10,6 +10,18 @@
 #include "libsim/signal/measurement.hpp"
 
 namespace modcal {
+
+void require_vibration(const Recording& recording, const RecordedChannel& channel,
+                       std::size_t first, std::size_t last, const std::string& file) {
+  const auto fault = find_fault(std::span(channel.samples).subspan(first, last - first));
+  if (!fault) return;
+  const std::size_t sample = first + fault->first;
+  throw_invalid_input(
+      "{}{}: channel {}, sample {} ({:.6g} s): {}", file,
+      recording.lines.empty() ? "" : fmt::format(":{}", recording.lines.line(sample)), channel.name,
+      sample, static_cast<double>(sample) / recording.sample_rate, fault->text);
+}
+
 namespace {
 
 // What a channel of a record may be.
@@ -131,13 +143,7 @@ Signal signal_of(const RecordedChannel& channel, const Role& role, double sample
 void judge_samples(const Recording& recording, const RecordedChannel& channel, const Window& window,
                    const std::string& file, bool is_reaction, std::vector<std::string>& warnings) {
   const auto used = std::span(channel.samples).subspan(window.first, window.last - window.first);
-  if (const auto fault = is_reaction ? find_fault(used) : std::nullopt) {
-    const std::size_t sample = window.first + fault->first;
-    throw_invalid_input(
-        "{}{}: channel {}, sample {} ({:.6g} s): {}", file,
-        recording.lines.empty() ? "" : fmt::format(":{}", recording.lines.line(sample)),
-        channel.name, sample, static_cast<double>(sample) / recording.sample_rate, fault->text);
-  }
+  if (is_reaction) require_vibration(recording, channel, window.first, window.last, file);
   const Clipping clipping = find_clipping(used);
   if (clipping.samples == 0) return;
   warnings.push_back(

@@ -156,6 +156,11 @@ class WrongRecordKey : public InvalidInput {
   std::string key_;
 };
 
+/// Throws InvalidInput, with the place, for samples [first, last) of a channel that no sensor of a
+/// vibration has read (find_fault()).
+void require_vibration(const Recording& recording, const RecordedChannel& channel,
+                       std::size_t first, std::size_t last, const std::string& file);
+
 /// Reads the chosen channels of the file (relative to `folder`), converts them to SI units, shifts
 /// them by their delays and crops them. Throws WrongRecordKey for a channel that is not there or
 /// used twice or has neither a unit of its kind nor a calibration, a window outside the record and

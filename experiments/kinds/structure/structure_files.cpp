@@ -67,6 +67,20 @@ std::size_t quiet_samples(const std::vector<std::vector<double>>& signals, doubl
   return quiet * 4 / 5;
 }
 
+// Two sensors that read the same are one.
+void require_different(const LoadedStructureRecord& loaded, const std::string& file) {
+  const auto& responses = loaded.record.responses;
+  for (std::size_t k = 1; k < responses.size(); ++k) {
+    const auto twin = std::find(responses.begin(),
+                                responses.begin() + static_cast<std::ptrdiff_t>(k), responses[k]);
+    MODCAL_REQUIRE(
+        twin == responses.begin() + static_cast<std::ptrdiff_t>(k),
+        "{}: channels {} and {} are the same samples: name the channel of each sensor, or "
+        "leave one out",
+        file, loaded.names[static_cast<std::size_t>(twin - responses.begin())], loaded.names[k]);
+  }
+}
+
 // first: sample of the file with which the record begins.
 void take_window_out(double window, std::size_t first, StructureRecord& record) {
   if (std::isnan(window)) return;
@@ -195,9 +209,11 @@ LoadedStructureRecord load_structure_record(const StructureRecordOptions& option
     const SensorKind kind = sensor_kind_of(options.responses[k].kind);
     loaded.kinds.push_back(kind);
     loaded.names.push_back(recording.channels[k].name);
+    require_vibration(recording, recording.channels[k], first, last, options.file);
     loaded.record.responses.push_back(
         part(k, scale_of(options.responses[k], recording.channels[k], unit_of(kind), unstated)));
   }
+  require_different(loaded, options.file);
   if (options.has_force) {
     loaded.record.force = part(options.responses.size(),
                                scale_of(options.force, recording.channels.back(), "N", unstated));

@@ -188,7 +188,8 @@ class ForceSearch {
     result_.rise = rise_towards_zero(found, spectra_.bins.first);
     for (double& power : found) power = std::max(power, 0.0);
     power_ = smoothed(found, spacing, kReach);
-    for (double& power : power_) power = std::max(power, 1e-300);
+    const std::vector<double> hidden = hidden_power(evidence, spectra_);
+    for (std::size_t m = 0; m < power_.size(); ++m) power_[m] = std::max(power_[m], hidden[m]);
     background_ = power_;
     result_.evidence_smooth = evidence_of_power(evidence, power_);
   }
