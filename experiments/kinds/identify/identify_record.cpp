@@ -31,8 +31,7 @@ std::size_t liveliest(const std::vector<const std::vector<double>*>& channels, s
 // The step of a signal all of whose values are multiples of it; 0: there is none.
 double step_of(std::vector<double> samples) {
   std::ranges::sort(samples);
-  const auto repeated = std::ranges::unique(samples);
-  samples.erase(repeated.begin(), repeated.end());
+  samples.erase(std::unique(samples.begin(), samples.end()), samples.end());
   if (samples.size() < 2) return 0.0;
   double step = samples.back() - samples.front();
   for (std::size_t j = 1; j < samples.size(); ++j) {
