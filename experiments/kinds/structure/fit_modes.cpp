@@ -110,6 +110,28 @@ void FitModesOptions::visit(OptionVisitor& visitor) {
   visitor("most_modes", "no more are tried", {.range = Range::closed(1.0, 200.0)}, most_modes);
 }
 
+namespace {
+
+// What changes between sessions moves whole resonances, which no scatter of single lines tells.
+void lint_one_session(const ResponseFunctionOptions& functions, std::vector<Finding>& findings) {
+  if (!functions.sessions.empty()) {
+    add_finding(findings, "functions.sessions",
+                "modes are fitted to one session, as what changes between them moves whole "
+                "resonances: fit modes to each; a table of functions (functions: in the file that "
+                "identify_force reads) takes them together");
+  }
+  const bool told = std::ranges::any_of(
+      functions.responses,
+      [](const FunctionChannelOptions& response) { return !response.coherence.empty(); });
+  if (told) {
+    add_finding(findings, "functions.responses",
+                "a coherence of few averages scatters too much to weigh lines by: leave coherence "
+                "out; a table of functions takes it");
+  }
+}
+
+}  // namespace
+
 std::vector<Finding> FitModesOptions::lint() const {
   std::vector<Finding> findings =
       has_functions ? lint_responses("functions.responses", functions.responses.size())
@@ -128,6 +150,7 @@ std::vector<Finding> FitModesOptions::lint() const {
     add_finding(findings, "contour",
                 "response functions are known on one contour alone: leave contour out");
   }
+  if (has_functions) lint_one_session(functions, findings);
   if (!(low < high)) {
     add_finding(findings, "high", "{:g} Hz is not above low, {:g} Hz", high, low);
   }

@@ -117,6 +117,12 @@ TEST_F(ResponseFunctionsOf, AreRefusedWhereTheyAreNone) {
               HasSubstr("in \"g\" per \"lbf\", which is none of what it is said to be"));
   EXPECT_THAT(said("functions: {file: acc.uff, responses: [{channel: acc}]}\ncontour: 5\n"),
               HasSubstr("leave contour out"));
+  EXPECT_THAT(
+      said("functions: {file: acc.uff, sessions: [acc.uff], responses: [{channel: acc}]}\n"),
+      HasSubstr("modes are fitted to one session"));
+  EXPECT_THAT(
+      said("functions: {file: acc.uff, averages: 4, responses: [{channel: acc, coherence: c}]}\n"),
+      HasSubstr("leave coherence"));
 }
 
 TEST_F(ResponseFunctionsOf, AWindowThatIsTooShortIsRefused) {
