@@ -278,15 +278,15 @@ StudyResult IdentifyOptions::run(const StudyContext& context) const {
   }
   if (!outcome.record) return result;
   for (const std::string& warning : outcome.record->warnings) result.warn(warning);
-  std::string why = rejection_of(outcome.found, outcome.record->decay, fundamental, outcome.law);
-  if (result.status == report::Status::kOk && why.empty()) {
-    why = change_along(outcome.found, outcome.record->decay, fundamental, identification);
-  }
-  if (result.status == report::Status::kOk && !why.empty()) {
-    result.status = report::Status::kFailed;
-    result.answer = why;
-    result.warn(why);
-  }
+  if (result.status != report::Status::kOk) return result;
+  std::vector<std::string> warnings;
+  const std::string why = doubt_decay(outcome.found, outcome.record->decay, fundamental,
+                                      outcome.law, identification, warnings);
+  for (const std::string& warning : warnings) result.warn(warning);
+  if (why.empty()) return result;
+  result.status = report::Status::kFailed;
+  result.answer = why;
+  result.warn(why);
   return result;
 }
 

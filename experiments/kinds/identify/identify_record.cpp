@@ -153,8 +153,8 @@ std::string rejection_of(const PluckIdentification& found, const DecayRecord& de
   return {};
 }
 
-std::string change_along(const PluckIdentification& whole, const DecayRecord& decay,
-                         double fundamental, const PluckOptions& options) {
+std::optional<std::string> change_along(const PluckIdentification& whole, const DecayRecord& decay,
+                                        double fundamental, const PluckOptions& options) {
   const auto half = static_cast<std::ptrdiff_t>(decay.samples() / 2);
   std::array<DecayRecord, 2> parts;
   std::array<PluckIdentification, 2> found;
@@ -167,9 +167,9 @@ std::string change_along(const PluckIdentification& whole, const DecayRecord& de
     try {
       found[i] = identify_part(parts[i], whole, fundamental, options);
     } catch (const InvalidInput&) {
-      return {};  // half of it is too short
+      return std::nullopt;  // half of it is too short
     }
-    if (!found[i].converged || !found[i].full_rank) return {};
+    if (!found[i].converged || !found[i].full_rank) return std::nullopt;
   }
   for (const auto& [number, early] : found[0].modes) {
     const auto late = std::ranges::find(found[1].modes, number, &PluckedMode::number);
@@ -189,7 +189,7 @@ std::string change_along(const PluckIdentification& whole, const DecayRecord& de
         number, early.pole.frequency, early.pole.damping_ratio, late->mode.pole.frequency,
         late->mode.pole.damping_ratio);
   }
-  return {};
+  return std::string();
 }
 
 std::vector<Finding> IdentifyOptions::lint_records(const std::filesystem::path& folder) const {
@@ -219,6 +219,20 @@ std::vector<FileRead> IdentifyOptions::files_read() const {
   if (!has_record) return {};
   // The record, its decay and what is left of the band, each filtered and whitened.
   return {file_read(record, "record.file", 12.0)};
+}
+
+std::string doubt_decay(const PluckIdentification& found, const DecayRecord& decay,
+                        double fundamental, const std::optional<StiffStringFit>& law,
+                        const PluckOptions& options, std::vector<std::string>& warnings) {
+  std::string why = rejection_of(found, decay, fundamental, law);
+  if (!why.empty()) return why;
+  const auto changes = change_along(found, decay, fundamental, options);
+  if (!changes) {
+    warnings.emplace_back(
+        "the halves of the decay were not compared, as one of them tells no error bars: a string "
+        "that moves in two planes is not seen; record a longer decay, or one with less noise");
+  }
+  return changes.value_or("");
 }
 
 }  // namespace modcal

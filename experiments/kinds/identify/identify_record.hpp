@@ -32,9 +32,14 @@ std::string rejection_of(const PluckIdentification& found, const DecayRecord& de
 
 /// Names the mode whose frequency or damping differs by more than five deviations between the
 /// halves of the decay: it is not one damped sinusoid, as of a string with two polarizations, and
-/// error bars do not hold. whole: what the decay in the whole tells. Empty: none does, or half of
-/// the decay tells no error bars.
-std::string change_along(const PluckIdentification& whole, const DecayRecord& decay,
-                         double fundamental, const PluckOptions& options);
+/// error bars do not hold. whole: what the decay in the whole tells. Empty: none does. Nothing: a
+/// half tells no error bars, and they were not compared.
+std::optional<std::string> change_along(const PluckIdentification& whole, const DecayRecord& decay,
+                                        double fundamental, const PluckOptions& options);
+
+/// rejection_of(), or change_along(); warnings: that this was not compared.
+std::string doubt_decay(const PluckIdentification& found, const DecayRecord& decay,
+                        double fundamental, const std::optional<StiffStringFit>& law,
+                        const PluckOptions& options, std::vector<std::string>& warnings);
 
 }  // namespace modcal
