@@ -45,6 +45,15 @@ std::string sentence_of(const StructureForce& found, double rate, std::size_t se
       found.rang ? "; what rang before the record or goes on behind it is taken out" : "");
 }
 
+void tell_places(const PlacesOutcome& told, bool rang, StudyResult& result) {
+  result.summary += told.sentence();
+  result.add(report::tables_of(told));
+  if (!rang) return;
+  result.warn(
+      "the places are weighed as if the structure rested when the record began: what rang before "
+      "counts for the place where that was struck");
+}
+
 }  // namespace
 
 void StructureChangeOptions::visit(OptionVisitor& visitor) {
@@ -206,11 +215,7 @@ StudyResult IdentifyForceOptions::run(const StudyContext& context) const {
   result.answer_by_summary();
   for (const std::string& text : loaded.warnings) result.warn(text);
   for (const std::string& text : modes.warnings) result.warn(text);
-  if (where) {
-    const PlacesOutcome told{tables(), *where};
-    result.summary += told.sentence();
-    result.add(report::tables_of(told));
-  }
+  if (where) tell_places({tables(), *where}, found.rang, result);
   doubt_force(found, loaded, modes, result);
   if (!context.numbers_alone) result.blocks.emplace_back(force_figure(loaded, found));
   result.add(report::tables_of(outcome));
