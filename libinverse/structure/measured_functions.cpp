@@ -66,12 +66,6 @@ void multiply_by_factor(std::vector<Complex>& values, const ContourSpectra& spec
 
 }  // namespace
 
-Transfers MeasuredFunctions::mean() const {
-  Transfers result;
-  for (std::size_t k = 0; k < sensors.size(); ++k) result.push_back(mean_of(sessions, k));
-  return result;
-}
-
 Transfers MeasuredFunctions::at(const ContourSpectra& spectra) const {
   const FunctionContour contour(grid, spectra);
   Transfers result;

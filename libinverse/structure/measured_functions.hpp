@@ -22,9 +22,7 @@ struct MeasuredFunctions {
 
   bool empty() const { return sessions.empty(); }
 
-  /// The mean of the sessions at the lines.
-  Transfers mean() const;
-  /// The same at the bins of a record.
+  /// The mean of the sessions at the bins of a record.
   Transfers at(const ContourSpectra& spectra) const;
 
   /// E|δH_k|² of a further session at the bins: (1 + 1/S) of the scatter of the sessions about

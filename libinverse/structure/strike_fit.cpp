@@ -9,7 +9,6 @@
 #include "libinverse/structure/strike_weights.hpp"
 #include "libinverse/structure/tuning.hpp"
 #include "libsim/base/error.hpp"
-#include "libsim/signal/statistics.hpp"
 
 namespace modcal {
 namespace {
@@ -145,17 +144,12 @@ class Fit {
     std::vector<Eigen::VectorXd> variances;
     std::vector<double> noise;
     for (std::size_t k = 0; k < kinds_.size(); ++k) {
-      const bool measured = !spectra.variances.empty();
-      noise.push_back(measured ? 0.0 : scatters_[k].noise * std::sqrt(share));
+      noise.push_back(scatters_[k].noise * std::sqrt(share));
       Eigen::VectorXd& own = variances.emplace_back(static_cast<Index>(spectra.count()));
       const std::vector<double> made = made_by_modes(spectra, table.model, k);
       for (std::size_t m = 0; m < spectra.count(); ++m) {
         const double off = scatters_[k].modal * weights_[k][m];
-        double& variance = own[static_cast<Index>(m)];
-        variance = 0.5 * share * counted_twice() * off * off * made[m];
-        if (!measured) continue;
-        const double by_line = scatters_[k].noise * weights_[k][m];
-        variance += 0.5 * share * counted_twice() * by_line * by_line * spectra.variances[k][m];
+        own[static_cast<Index>(m)] = 0.5 * share * counted_twice() * off * off * made[m];
       }
     }
     const Eigen::MatrixXd covariance = search.covariance(poles, variances, noise);
@@ -186,22 +180,11 @@ class Fit {
     }
     result_.residuals.push_back(
         std::sqrt(rest / static_cast<double>(left.size()) / mean_power(spectra.responses[k])));
-    scatters_.push_back(scatter_of(left, modal, spectra.noise_powers(k), counted_twice()));
+    scatters_.push_back(scatter_of(left, modal, spectra.noise_power(), counted_twice()));
     // A response function tells nothing of the noise of other records.
     const double share = rest / std::accumulate(modal.begin(), modal.end(), 0.0);
     result_.table.scatters.push_back(
-        record_.force.empty()
-            ? SensorScatter{.modal = std::sqrt(share + told_by_sessions(k, modal))}
-            : scatters_.back());
-  }
-
-  // What measured functions are known to be off by is no part of what the fit leaves: another
-  // session is off by both.
-  double told_by_sessions(std::size_t k, const std::vector<double>& modal) const {
-    const std::vector<std::vector<double>>& variances = result_.spectra.variances;
-    if (variances.empty()) return 0.0;
-    return std::accumulate(variances[k].begin(), variances[k].end(), 0.0) /
-           std::accumulate(modal.begin(), modal.end(), 0.0);
+        record_.force.empty() ? SensorScatter{.modal = std::sqrt(share)} : scatters_.back());
   }
 
   StructureRecord record_;
@@ -250,8 +233,14 @@ StrikeFit fit_strike(const StructureRecord& record, const std::vector<SensorKind
 StrikeFit fit_response(const MeasuredFunctions& measured, const StrikeFitOptions& options) {
   constexpr double kTurn = 2.0 * std::numbers::pi;
   const FrequencyGrid& grid = measured.grid;
-  const Transfers response = measured.mean();
-  MODCAL_REQUIRE(!response.empty(), "modes need {} response function and more", 1);
+  MODCAL_REQUIRE(measured.sessions.size() == 1,
+                 "modes are fitted to one session of response functions, not to {}: what changes "
+                 "between sessions moves whole resonances",
+                 measured.sessions.size());
+  const Transfers& response = measured.sessions.front();
+  MODCAL_REQUIRE(!response.empty() && measured.sensors.size() == response.size(),
+                 "{} kinds of sensors for {} response functions", measured.sensors.size(),
+                 response.size());
   ContourSpectra spectra{.grid = grid,
                          .bins = bins_between(grid, kTurn * options.low, kTurn * options.high)};
   spectra.samples = 2 * (grid.bins - 1);
@@ -269,15 +258,6 @@ StrikeFit fit_response(const MeasuredFunctions& measured, const StrikeFitOptions
       MODCAL_REQUIRE(std::isfinite(h.real()) && std::isfinite(h.imag()),
                      "response {} is not finite at {:g} Hz: leave that line out of the band", k + 1,
                      spectra.s(m).imag() / kTurn);
-    }
-  }
-  // What sessions and coherence say of the lines.
-  if (measured.sessions.size() > 1 || !measured.random.empty()) {
-    spectra.variances = measured.variances(spectra);
-    for (std::vector<double>& variances : spectra.variances) {
-      // A coherence of 1 is rounded: no line is a hundred times as right as all.
-      const double least = 1e-4 * mean(variances);
-      for (double& variance : variances) variance = std::max({variance, least, 1e-300});
     }
   }
   return Fit(spectra, measured.sensors, options).run();

@@ -53,9 +53,8 @@ struct StrikeFit {
 StrikeFit fit_strike(const StructureRecord& record, const std::vector<SensorKind>& kinds,
                      const StrikeFitOptions& options);
 
-/// The same for measured H_k(σ + iω), the mean of their sessions. The force is 1 everywhere and
-/// nothing rings on.
-/// What is left grows with the force: the table's scatter is modal, its noise 0, and it has no
+/// The same for measured H_k(σ + iω) of one session. The force is 1 everywhere and nothing rings
+/// on. What is left grows with the force: the table's scatter is modal, its noise 0, and it has no
 /// pulse. Throws InvalidInput for another number of lines, one of the band that is not finite, and
 /// as above.
 StrikeFit fit_response(const MeasuredFunctions& measured, const StrikeFitOptions& options);

@@ -15,8 +15,7 @@ double mean_power(const std::vector<Complex>& spectrum) {
 BinWeights weights_of(const ContourSpectra& spectra, double share) {
   BinWeights result;
   const double spacing = spectra.grid.spacing / (2.0 * std::numbers::pi);
-  for (std::size_t k = 0; k < spectra.responses.size(); ++k) {
-    const std::vector<Complex>& response = spectra.responses[k];
+  for (const std::vector<Complex>& response : spectra.responses) {
     std::vector<double> power;
     for (const Complex& y : response) power.push_back(std::norm(y));
     std::vector<double>& weights = result.emplace_back();
@@ -24,36 +23,28 @@ BinWeights weights_of(const ContourSpectra& spectra, double share) {
     for (const double p : smoothed(power, spacing, 3.0)) {
       weights.push_back(1.0 / (share * std::sqrt(p + floor)));
     }
-    if (spectra.variances.empty()) continue;
-    for (std::size_t m = 0; m < weights.size(); ++m) {
-      weights[m] /= std::sqrt(1.0 + spectra.variances[k][m] * weights[m] * weights[m]);
-    }
   }
   return result;
 }
 
 SensorScatter scatter_of(const std::vector<double>& left, const std::vector<double>& modal,
-                         const std::vector<double>& noise_power, double correlated) {
+                         double noise_power, double correlated) {
   const auto n = static_cast<Eigen::Index>(left.size());
   const Eigen::Map<const Eigen::ArrayXd> r(left.data(), n), power(modal.data(), n);
   const double unit = std::max(1e-300, power.maxCoeff()), mean = std::max(1e-300, r.mean());
   const Eigen::ArrayXd x = power / unit;
-  const Eigen::Map<const Eigen::ArrayXd> noise(noise_power.data(), n);
-  const double largest = std::max(1e-300, noise.maxCoeff());
-  const Eigen::ArrayXd u = noise / largest;
   double slope = mean / std::max(1e-300, x.mean()), level = mean;
   Eigen::ArrayXd expected;
   for (int step = 0; step < 200; ++step) {
-    expected = slope * x + level * u;
+    expected = slope * x + level;
     const Eigen::ArrayXd score = r / expected.square(), all = expected.inverse();
     slope *= (x * score).sum() / (x * all).sum();
-    level *= (u * score).sum() / (u * all).sum();
+    level *= score.sum() / all.sum();
   }
-  const double alone = (r / u).mean();
-  const double gain = static_cast<double>(n) * (std::log(alone) + 1.0) + u.log().sum() -
-                      (expected.log() + r / expected).sum();
-  if (!(2.0 * gain / correlated > 4.0)) slope = 0.0, level = alone;
-  return {.modal = std::sqrt(slope / unit), .noise = std::sqrt(level / largest)};
+  const double gain =
+      static_cast<double>(n) * (std::log(mean) + 1.0) - (expected.log() + r / expected).sum();
+  if (!(2.0 * gain / correlated > 4.0)) slope = 0.0, level = mean;
+  return {.modal = std::sqrt(slope / unit), .noise = std::sqrt(level / noise_power)};
 }
 
 std::vector<double> made_by_modes(const ContourSpectra& spectra, const ModalModel& model,
@@ -72,12 +63,10 @@ BinWeights weights_of(const ContourSpectra& spectra, const ModalModel& model,
     const auto [modal, noise] = scatters[k];
     // Rounding, where nothing else is left; a channel of zeros weighs something.
     const double least = 1e-20 * mean_power(spectra.responses[k]) + 1e-200;
-    const std::vector<double> made = made_by_modes(spectra, model, k);
-    const std::vector<double> power = spectra.noise_powers(k);
+    const double white = noise * noise * spectra.noise_power() + least;
     std::vector<double>& weights = result.emplace_back();
-    for (std::size_t m = 0; m < made.size(); ++m) {
-      weights.push_back(1.0 /
-                        std::sqrt(modal * modal * made[m] + noise * noise * power[m] + least));
+    for (const double made : made_by_modes(spectra, model, k)) {
+      weights.push_back(1.0 / std::sqrt(modal * modal * made + white));
     }
   }
   return result;

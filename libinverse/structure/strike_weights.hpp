@@ -11,8 +11,7 @@ using BinWeights = std::vector<std::vector<double>>;  ///< 1/σ of every bin, by
 /// Mean of |x|².
 double mean_power(const std::vector<Complex>& spectrum);
 
-/// σ a share of the response about the bin, a tenth of that share of its rms, and what was measured
-/// of the bin.
+/// σ a share of the response about the bin, and a tenth of that share of its rms.
 BinWeights weights_of(const ContourSpectra& spectra, double share);
 
 /// |F|² Σ_n |H_n|² of a sensor in every bin.
@@ -23,11 +22,10 @@ std::vector<double> made_by_modes(const ContourSpectra& spectra, const ModalMode
 BinWeights weights_of(const ContourSpectra& spectra, const ModalModel& model,
                       const std::vector<SensorScatter>& scatters);
 
-/// Largest likelihood of |residual|², exponential about ε² |F|² Σ_n |H_n|² + noise, which has
-/// `noise_power` in every bin times the square of what is found (Itakura and
+/// Largest likelihood of |residual|², exponential about ε² |F|² Σ_n |H_n|² + noise (Itakura and
 /// Saito's divergence, by multiplicative steps). Of `correlated` bins one counts; a scatter that
 /// does not raise it by two deviations is that of the few bins of a peak, not of the model.
 SensorScatter scatter_of(const std::vector<double>& left, const std::vector<double>& modal,
-                         const std::vector<double>& noise_power, double correlated);
+                         double noise_power, double correlated);
 
 }  // namespace modcal

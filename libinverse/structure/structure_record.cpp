@@ -56,10 +56,6 @@ double ContourSpectra::noise_power() const {
   return step > 0.0 ? -std::expm1(-step * count) / -std::expm1(-step) : count;
 }
 
-std::vector<double> ContourSpectra::noise_powers(std::size_t sensor) const {
-  return variances.empty() ? std::vector<double>(count(), noise_power()) : variances[sensor];
-}
-
 Complex numerator_of(SensorKind kind, const ModalPole& pole, Complex constant, Complex s) {
   const int p = power_of_s(kind);
   const Complex own = p == 0 ? 1.0 : p == 1 ? s : s * s;

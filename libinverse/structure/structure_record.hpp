@@ -31,8 +31,6 @@ struct ContourSpectra {
   std::size_t samples = 0;
   std::vector<Complex> force;                   ///< empty: not measured
   std::vector<std::vector<Complex>> responses;  ///< K
-  /// Variance of every bin of functions that were measured, K; empty: white noise.
-  std::vector<std::vector<double>> variances;
 
   /// low, high: band [Hz]; σ ≥ 0 [1/s]. Throws InvalidInput for signals of different lengths, a
   /// sample that is not finite and a band that holds no bin.
@@ -45,8 +43,6 @@ struct ContourSpectra {
   double correlated() const { return std::max(1.0, grid.sigma * duration()); }
   /// Σ_j exp(−2σt_j): the variance that white noise of variance 1 has in a bin.
   double noise_power() const;
-  /// That of a bin of a sensor: as large, or what was measured of it.
-  std::vector<double> noise_powers(std::size_t sensor) const;
 };
 
 /// What stands over D(s) in the H of one mode: s^p (Re A + Im A q(s)) (ModalModel).

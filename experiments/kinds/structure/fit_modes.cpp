@@ -123,10 +123,10 @@ void lint_one_session(const ResponseFunctionOptions& functions, std::vector<Find
   const bool told = std::ranges::any_of(
       functions.responses,
       [](const FunctionChannelOptions& response) { return !response.coherence.empty(); });
-  if (told) {
-    add_finding(findings, "functions.responses",
+  if (told || !std::isnan(functions.averages)) {
+    add_finding(findings, told ? "functions.responses" : "functions.averages",
                 "a coherence of few averages scatters too much to weigh lines by: leave coherence "
-                "out; a table of functions takes it");
+                "and averages out; a table of functions takes them");
   }
 }
 

@@ -35,7 +35,7 @@ TEST(SensorScatterOf, ExpectedPowersIsTheirOwn) {
     modal.push_back(std::exp(-0.05 * m));
     left.push_back(0.03 * 0.03 * modal.back() + 2.0 * 4e-6);
   }
-  const SensorScatter found = scatter_of(left, modal, std::vector(200, 2.0), 1.0);
+  const SensorScatter found = scatter_of(left, modal, 2.0, 1.0);
   EXPECT_NEAR(found.modal, 0.03, 3e-5);
   EXPECT_NEAR(found.noise, 2e-3, 2e-6);
 }
