@@ -4,15 +4,10 @@
 #include <cmath>
 
 #include "libinverse/structure/tuning.hpp"
+#include "libsim/records/levels.hpp"
 
 namespace modcal {
 namespace {
-
-double mean_square(const std::vector<double>& samples) {
-  double sum = 0.0;
-  for (const double x : samples) sum += x * x;
-  return sum / static_cast<double>(samples.size());
-}
 
 // Velocities and accelerations vanish with the frequency: of a force that pushes one way they tell
 // all but the largest part. Where the band begins low enough, it shows.
@@ -51,7 +46,7 @@ void doubt_begin(const StructureForce& found, const LoadedStructureRecord& loade
   constexpr double kBegins = 0.5;
   for (std::size_t k = 0; k < loaded.kinds.size() && !modes.measured.empty(); ++k) {
     const std::vector<double>& response = loaded.record.responses[k];
-    const double first = response.front(), rms = std::sqrt(mean_square(response));
+    const double first = response.front(), rms = measure_levels(response).rms;
     if (std::abs(first) < kBegins * rms) continue;
     why = fmt::format(
         "rejected: {} begins at {:.2g} times its rms, and response functions do not tell what rang "

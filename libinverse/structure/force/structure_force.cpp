@@ -12,6 +12,7 @@
 #include "libinverse/structure/force/initial_state.hpp"
 #include "libinverse/structure/force/pulse_train.hpp"
 #include "libinverse/structure/force/relevance.hpp"
+#include "libinverse/structure/strike_weights.hpp"
 #include "libinverse/structure/tuning.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/base/random.hpp"
@@ -22,12 +23,6 @@ namespace modcal {
 namespace {
 
 using Index = Eigen::Index;
-
-double power_of(const std::vector<Complex>& spectrum) {
-  double sum = 0.0;
-  for (const Complex& x : spectrum) sum += std::norm(x);
-  return sum;
-}
 
 // Force signals in the window, linear in unknown amplitudes of pulses or bins.
 class ForceSearch {
@@ -57,7 +52,8 @@ class ForceSearch {
     result_.sensor_left = variances_.left;
     for (std::size_t k = 0; k < result_.sensor_left.size() && result_.rang; ++k) {
       // Of the whole response.
-      result_.sensor_left[k] *= std::sqrt(power_of(spectra_.responses[k]) / power_of(recorded_[k]));
+      result_.sensor_left[k] *=
+          std::sqrt(mean_power(spectra_.responses[k]) / mean_power(recorded_[k]));
     }
     result_.predicted = predictions_of(spectra_, transfers_, variances_);
     const BinEvidence evidence = evidence_of(spectra_, transfers_, variances_, kNone);

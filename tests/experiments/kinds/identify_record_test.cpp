@@ -11,6 +11,7 @@
 #include "experiments/loader.hpp"
 #include "experiments/study/study.hpp"
 #include "libsim/base/random.hpp"
+#include "tests/experiments/kinds/run_document.hpp"
 #include "tests/folder_test.hpp"
 
 namespace modcal::identify_record_test {
@@ -82,11 +83,7 @@ class RecordedPluck : public FolderTest {
   StudyResult run(const std::string& record, const std::string& keys) const {
     write("identify.yaml", "kind: identify\nrecord: {file: " + record +
                                ", left: {channel: R1}, right: {channel: R2}}\n" + keys);
-    const LoadedExperiment loaded = load_experiment(path("identify.yaml"));
-    if (!loaded.experiment) throw InvalidInput(format_mistakes(loaded.document, loaded.mistakes));
-    SharedWork work;
-    return loaded.experiment->run(
-        {.work = work, .folder = loaded.document.folder(), .command = "test"});
+    return run_document(read_yaml_file(path("identify.yaml")));
   }
 };
 

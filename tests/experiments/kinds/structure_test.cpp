@@ -8,10 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/kinds/structure/structure_files.hpp"
-#include "experiments/loader.hpp"
-#include "experiments/study/study.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/base/files.hpp"
+#include "tests/experiments/kinds/run_document.hpp"
 #include "tests/folder_test.hpp"
 #include "tests/refusal.hpp"
 
@@ -22,19 +21,11 @@ using testing::HasSubstr;
 
 const std::string kFolder = std::string(MODCAL_CONFIGS) + "/structures/";
 
-StudyResult run(YamlDocument document) {
-  const LoadedExperiment loaded = load_experiment(std::move(document));
-  if (!loaded.experiment) throw InvalidInput(format_mistakes(loaded.document, loaded.mistakes));
-  SharedWork work;
-  return loaded.experiment->run(
-      {.work = work, .folder = loaded.document.folder(), .command = "test"});
-}
-
 StudyResult run(const std::string& file, const std::vector<std::string>& changes = {}) {
   YamlDocument document = read_yaml_file(kFolder + file);
   std::size_t number = 0;
   for (const std::string& change : changes) apply_assignment(document, change, ++number);
-  return run(std::move(document));
+  return run_document(std::move(document));
 }
 
 nlohmann::json file_of(const StudyResult& result, const std::string& name) {
@@ -188,7 +179,7 @@ TEST(IdentifyForce, DoesNotNeedTheForceItIsComparedWith) {
   YamlDocument document = read_yaml_file(kFolder + "force_on_plate.yaml");
   std::erase_if(document.root.find("record")->members,
                 [](const auto& member) { return member.key == "force"; });
-  const auto without = file_of(run(std::move(document)), "force.json")["force"][0];
+  const auto without = file_of(run_document(std::move(document)), "force.json")["force"][0];
   EXPECT_TRUE(without["relative_error"].is_null());
   EXPECT_EQ(with["peak_n"], without["peak_n"]);
   EXPECT_EQ(with["deviation_n"], without["deviation_n"]);

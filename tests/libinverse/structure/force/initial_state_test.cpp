@@ -143,5 +143,16 @@ TEST(InitialState, IsKnownAsWellAsItsRootSays) {
   EXPECT_NEAR(squares, 1.0, 0.3);
 }
 
+// Nothing but noise: no force is told, and its error bar is not 0. |f| beyond five deviations has a
+// chance of 6e-7 a sample.
+TEST(InitialState, OfNoiseAloneIsNoneAndTheForceHasAnErrorBar) {
+  const std::vector<double> none(kSamples, 0.0);
+  const StructureForce found = found_in(record(none, 0.0, 0.0));
+  EXPECT_FALSE(found.rang);
+  for (std::size_t j = 0; j < found.force.size(); ++j) {
+    EXPECT_LT(std::abs(found.force[j]), 5.0 * found.deviation[j]) << j;
+  }
+}
+
 }  // namespace
 }  // namespace modcal::initial_state_test

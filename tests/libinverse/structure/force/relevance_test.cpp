@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "libsim/base/random.hpp"
 
@@ -78,6 +79,19 @@ TEST(Relevance, OfOneSignLeavesAgainWhatAnotherServesBetter) {
       columns.transpose() * columns, columns.transpose() * y, Eigen::VectorXd::Constant(2, 1e12));
   EXPECT_EQ(p[0], 0.0);
   EXPECT_NEAR(p[1], 1.0, 2e-12);  // the width's 1e-12
+}
+
+// The sum of two amplitudes is told to 1e−12 of their widths, the difference not at all: beside
+// 1e24 the 1 of its prior is lost.
+TEST(Relevance, ThatRoundingAloneTellsHasNoEvidence) {
+  const Eigen::MatrixXd matrix = Eigen::MatrixXd::Constant(2, 2, 1e24);
+  const Eigen::VectorXd score = Eigen::Vector2d(1e24, 1e24);
+  const Relevance found = posterior_of(matrix, score, Eigen::VectorXd::Constant(2, 1.0));
+  EXPECT_EQ(found.evidence, -std::numeric_limits<double>::infinity());
+  const Relevance told = posterior_of(Eigen::Matrix2d::Identity(), Eigen::Vector2d(3.0, 0.0),
+                                      Eigen::VectorXd::Constant(2, 1.0));
+  // y = 3 with p ~ N(0, 1) and noise of 1: 9/4 − ln 2.
+  EXPECT_NEAR(told.evidence, 2.25 - std::log(2.0), 1e-14);
 }
 
 }  // namespace
