@@ -1,11 +1,11 @@
 #include "benchmarks/problems/svd_problem.hpp"
 
-#include <Eigen/SVD>
 #include <cmath>
 #include <numbers>
 #include <utility>
 #include <vector>
 
+#include "libsim/base/dense_solvers.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -87,10 +87,10 @@ void SvdProblem::decompose(const Eigen::MatrixXd& matrix, std::size_t rows, bool
     problem_ = SpectralOperator({}, {}, {}, rows, penalized);
     return;
   }
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(matrix, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  left_ = svd.matrixU();
-  right_ = svd.matrixV();
-  const Eigen::VectorXd& sigma = svd.singularValues();
+  ThinSvd svd(matrix);
+  left_ = std::move(svd.left);
+  right_ = std::move(svd.right);
+  const Eigen::VectorXd& sigma = svd.values;
   std::vector<double> multiplicity(static_cast<std::size_t>(sigma.size()), 1.0);
   problem_ =
       SpectralOperator({sigma.begin(), sigma.end()}, std::move(multiplicity), {}, rows, penalized);

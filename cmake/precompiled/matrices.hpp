@@ -3,4 +3,5 @@
 
 #include <Eigen/Dense>
 
+#include "libsim/base/dense_solvers.hpp"
 #include "standard.hpp"

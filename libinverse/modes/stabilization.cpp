@@ -1,10 +1,10 @@
 #include "libinverse/modes/stabilization.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
+#include "libsim/base/dense_solvers.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/signal/statistics.hpp"
 
@@ -83,10 +83,9 @@ EigensystemRealization::EigensystemRealization(const DecayRecord& record, std::s
   const std::size_t spread = std::max<std::size_t>(1, (places - 1) / used);
   const auto channels = without_means(record);
   const Eigen::MatrixXd base = hankel(channels, block_rows, used, spread, 0);
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(base, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  sigma_ = svd.singularValues();
-  shifted_ =
-      svd.matrixU().transpose() * hankel(channels, block_rows, used, spread, 1) * svd.matrixV();
+  const ThinSvd svd(base);
+  sigma_ = svd.values;
+  shifted_ = svd.left.transpose() * hankel(channels, block_rows, used, spread, 1) * svd.right;
 }
 
 std::vector<DecayPole> EigensystemRealization::poles(std::size_t order) const {
@@ -100,9 +99,7 @@ std::vector<DecayPole> EigensystemRealization::poles(std::size_t order) const {
   const Eigen::VectorXd root = sigma_.head(n).cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd model =
       root.asDiagonal() * shifted_.topLeftCorner(n, n) * root.asDiagonal();
-  const Eigen::EigenSolver<Eigen::MatrixXd> solver(model, false);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const std::complex<double> z = solver.eigenvalues()[i];
+  for (const std::complex<double> z : eigenvalues(model)) {
     if (!(z.imag() > 0.0)) continue;
     found.push_back(DecayPole::of_exponent(std::log(z) * sample_rate_));
   }

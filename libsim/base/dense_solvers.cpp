@@ -1,7 +1,13 @@
 #include "libsim/base/dense_solvers.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
+#include <Eigen/SVD>
+
+template class Eigen::HouseholderQR<Eigen::MatrixXd>;
+template class Eigen::ColPivHouseholderQR<Eigen::MatrixXd>;
+template class Eigen::LDLT<Eigen::MatrixXd>;
+template class Eigen::LLT<Eigen::MatrixXd>;
+template class Eigen::PartialPivLU<Eigen::MatrixXd>;
+template class Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>;
 
 namespace modcal {
 namespace {
@@ -42,6 +48,17 @@ Eigen::VectorXd whiten(const PositiveSolver& solver, const Eigen::VectorXd& righ
 
 Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& matrix) {
   return matrix.selfadjointView<Eigen::Lower>().eigenvalues();
+}
+
+Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& matrix) {
+  return Eigen::EigenSolver<Eigen::MatrixXd>(matrix, false).eigenvalues();
+}
+
+ThinSvd::ThinSvd(const Eigen::MatrixXd& a) {
+  const Eigen::BDCSVD<Eigen::MatrixXd> svd(a, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  left = svd.matrixU();
+  values = svd.singularValues();
+  right = svd.matrixV();
 }
 
 GeneralizedEigen generalized_eigen(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {

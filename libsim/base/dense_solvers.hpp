@@ -4,8 +4,18 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <Eigen/QR>
 #include <optional>
+
+// The members of these are compiled in dense_solvers.cpp alone.
+extern template class Eigen::HouseholderQR<Eigen::MatrixXd>;
+extern template class Eigen::ColPivHouseholderQR<Eigen::MatrixXd>;
+extern template class Eigen::LDLT<Eigen::MatrixXd>;
+extern template class Eigen::LLT<Eigen::MatrixXd>;
+extern template class Eigen::PartialPivLU<Eigen::MatrixXd>;
+extern template class Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>;
 
 namespace modcal {
 
@@ -44,6 +54,17 @@ Eigen::VectorXd whiten(const PositiveSolver& solver, const Eigen::VectorXd& righ
 
 /// Ascending, of a symmetric matrix, of which the lower triangle is read.
 Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& matrix);
+
+/// Of a square matrix, in no order.
+Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& matrix);
+
+/// A = U diag(σ) Vᵀ with the columns of U and V that σ has.
+struct ThinSvd {
+  explicit ThinSvd(const Eigen::MatrixXd& a);
+  Eigen::MatrixXd left;    ///< U
+  Eigen::VectorXd values;  ///< σ, descending
+  Eigen::MatrixXd right;   ///< V
+};
 
 /// Ax = λBx with xᵀBx = 1, A symmetric and B positive definite.
 struct GeneralizedEigen {
