@@ -70,6 +70,20 @@ std::vector<std::vector<double>> spread_of(const StructureTable& table,
   return spread;
 }
 
+// What the sensors other than `k` leave of the force that they tell.
+double left_by_others(const ContourSpectra& spectra, const Transfers& transfers,
+                      const BinVariances& variances, const BinEvidence& others, std::size_t k) {
+  double sum = 0.0;
+  for (std::size_t j = 0; j < transfers.size(); ++j) {
+    for (std::size_t m = 0; m < spectra.count() && j != k; ++m) {
+      const Complex left =
+          spectra.responses[j][m] - transfers[j][m] * (others.score[m] / others.told[m]);
+      sum += std::norm(left) / variances.of[j][m];
+    }
+  }
+  return sum / static_cast<double>(spectra.count() * (transfers.size() - 2));
+}
+
 }  // namespace
 
 Transfers transfers_of(const StructureTable& table, const ContourSpectra& spectra) {
@@ -170,8 +184,29 @@ std::vector<SensorPrediction> predictions_of(const ContourSpectra& spectra,
     }
     result.push_back({.error = std::sqrt(off / power),
                       .coverage = inside / (2.0 * static_cast<double>(spectra.count()))});
+    if (transfers.size() < 3) continue;
+    result.back().others = left_by_others(spectra, transfers, variances, others, k);
   }
   return result;
+}
+
+double contradiction_of(std::span<const double> left) {
+  double power = 0.0;
+  for (const double x : left) power += x * x;
+  return left.size() < 2 ? 0.0 : power / static_cast<double>(left.size() - 1);
+}
+
+std::optional<std::size_t> odd_one_out(std::span<const SensorPrediction> predicted) {
+  const auto odd = std::ranges::min_element(predicted, {}, &SensorPrediction::others);
+  if (odd == predicted.end() || !(odd->others < kAgreement)) return std::nullopt;
+  return static_cast<std::size_t>(odd - predicted.begin());
+}
+
+std::optional<std::size_t> odd_of_many(const ContourSpectra& spectra, const Transfers& transfers,
+                                       const BinVariances& variances) {
+  if (transfers.size() < 4) return std::nullopt;
+  if (!(contradiction_of(variances.left) >= kContradiction * kContradiction)) return std::nullopt;
+  return odd_one_out(predictions_of(spectra, transfers, variances));
 }
 
 }  // namespace modcal

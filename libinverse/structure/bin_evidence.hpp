@@ -1,6 +1,10 @@
 // What every bin of a record tells of the force, the sensors weighted by how far they may be off.
 #pragma once
 
+#include <limits>
+#include <optional>
+#include <span>
+
 #include "libinverse/structure/structure_record.hpp"
 #include "libinverse/structure/structure_table.hpp"
 
@@ -42,6 +46,9 @@ std::vector<double> hidden_power(const BinEvidence& evidence, const ContourSpect
 struct SensorPrediction {
   double error = 0.0;     ///< rms of what is off over that of the response, over the bins [1]
   double coverage = 0.0;  ///< of real and imaginary parts within 95 % of what is expected
+  /// Mean square of what the others leave without it, over what is expected of them, per degree of
+  /// freedom: about 1, and far below where this sensor alone contradicts the others. NaN: K = 2.
+  double others = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// H_k F of the force that the other sensors tell, with the variance |H_k|²/told + V_k, for every
@@ -49,6 +56,17 @@ struct SensorPrediction {
 std::vector<SensorPrediction> predictions_of(const ContourSpectra& spectra,
                                              const Transfers& transfers,
                                              const BinVariances& variances);
+
+/// Mean square of what the sensors leave of their responses, per degree of freedom; 0: K = 1.
+double contradiction_of(std::span<const double> left);
+
+/// The one sensor without which the others agree (kAgreement); none: K < 3.
+std::optional<std::size_t> odd_one_out(std::span<const SensorPrediction> predicted);
+
+/// That one where the sensors contradict each other by kContradiction; none of three, as two that
+/// agree by chance are no majority.
+std::optional<std::size_t> odd_of_many(const ContourSpectra& spectra, const Transfers& transfers,
+                                       const BinVariances& variances);
 
 inline constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 

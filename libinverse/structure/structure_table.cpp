@@ -13,6 +13,25 @@ double StructureTable::frequency(std::size_t n) const {
   return model.poles[n].omega / (2.0 * std::numbers::pi);
 }
 
+StructureTable StructureTable::without_sensor(std::size_t k) const {
+  StructureTable table = *this;
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < model.sensors.size(); ++i) {
+    if (i != k) kept.push_back(i);
+  }
+  table.model = model.with_sensors(kept);
+  const auto drop = [k](auto& of_sensors) {
+    if (!of_sensors.empty()) of_sensors.erase(of_sensors.begin() + static_cast<std::ptrdiff_t>(k));
+  };
+  drop(table.names);
+  drop(table.scatters);
+  drop(table.measured.sensors);
+  for (Transfers& session : table.measured.sessions) drop(session);
+  drop(table.measured.random);
+  drop(table.measured.scatter);
+  return table;
+}
+
 void StructureTable::require_modes(std::string_view what) const {
   MODCAL_REQUIRE(measured.empty(),
                  "{} needs modes, measured functions have none: fit modes to them (kind: fit_modes "

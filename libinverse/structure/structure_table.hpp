@@ -36,6 +36,7 @@ struct StructureTable {
   /// 1 up to `high`, fading out over a quarter above it.
   double pulse_at(double frequency) const;
   double frequency(std::size_t n) const;  ///< [Hz]
+  StructureTable without_sensor(std::size_t k) const;
   /// Throws InvalidInput for measured functions: `what` needs modes.
   void require_modes(std::string_view what) const;
 };

@@ -76,6 +76,22 @@ constexpr std::ptrdiff_t kExactGains = 48;
 /// Halved: not tried.
 constexpr double kLeastDampingRatio = 1e-5, kMostDampingRatio = 0.5;
 
+/// Share of the responses, an amplitude, that sensors contradict each other by where the answer is
+/// doubted.
+/// Source: more than a table of another day leaves, .06 of the plate that changed by 3e-3.
+/// Range tried: this.
+/// Doubled: not tried.
+/// Halved: not tried.
+constexpr double kContradiction = 0.1;
+
+/// Mean square over what is expected that the other sensors leave where one alone contradicts them.
+/// Source: one sensor of four with a gain of 1.1 or 2, a delay of 1 or 3 samples, or 3 samples
+/// dropped leaves .001 to .11; whole records, hum, noise, a wrong clock, exchanged sensors .56 up.
+/// Range tried: this.
+/// Doubled: as it is.
+/// Halved: as it is.
+constexpr double kAgreement = 0.25;
+
 /// Instants of pulses that a window holds at most.
 /// Source: matrices of 128 MB.
 /// Range tried: this.

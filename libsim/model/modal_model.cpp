@@ -60,7 +60,7 @@ std::vector<Complex> SplitSpectra::joined(std::size_t i) const {
   return values;
 }
 
-ModalModel ModalModel::with_sensors(std::initializer_list<std::size_t> chosen) const {
+ModalModel ModalModel::with_sensors(const std::vector<std::size_t>& chosen) const {
   ModalModel model{.poles = poles, .sensors = {}, .contacts = contacts};
   const auto append = [this](const auto& from, std::size_t sensor, std::size_t width, auto& to) {
     if (from.empty()) return;

@@ -126,7 +126,7 @@ struct ModalModel {
   }
 
   /// The model of some of the sensors, in the order given.
-  ModalModel with_sensors(std::initializer_list<std::size_t> chosen) const;
+  ModalModel with_sensors(const std::vector<std::size_t>& chosen) const;
 
   /// H of all pairs over some bins of the grid.
   void evaluate(const FrequencyGrid& grid, const BinRange& bins, SplitSpectra& out) const;

@@ -2,12 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "libinverse/structure/tuning.hpp"
 #include "libsim/records/levels.hpp"
 
 namespace modcal {
 namespace {
+
+void reject(std::string why, StudyResult& result) {
+  result.status = report::Status::kFailed;
+  result.warn(result.answer = std::move(why));
+}
 
 // Velocities and accelerations vanish with the frequency: of a force that pushes one way they tell
 // all but the largest part. Where the band begins low enough, it shows.
@@ -24,11 +31,10 @@ void doubt_slow_part(const StructureForce& found, const LoadedStructureRecord& l
         "pushes one way, this answer is wrong by that and its band does not hold it; {}",
         low, kRemedy));
   }
-  result.status = report::Status::kFailed;
-  result.warn(result.answer = fmt::format(
-                  "rejected: the force rises towards {:g} Hz, below which velocities and "
-                  "accelerations tell nothing of it, and its band does not hold that: {}",
-                  low, kRemedy));
+  reject(fmt::format("rejected: the force rises towards {:g} Hz, below which velocities and "
+                     "accelerations tell nothing of it, and its band does not hold that: {}",
+                     low, kRemedy),
+         result);
 }
 
 // What rang before the record is told by modes, and from the force by two sensors.
@@ -54,14 +60,40 @@ void doubt_begin(const StructureForce& found, const LoadedStructureRecord& loade
         loaded.names[k], std::abs(first) / rms);
     break;
   }
-  if (why.empty()) return;
-  result.status = report::Status::kFailed;
-  result.warn(result.answer = why);
+  if (!why.empty()) reject(std::move(why), result);
 }
 
 // Sensors that contradict each other refuse the answer.
-void doubt(const StructureForce& found, const LoadedStructureRecord& loaded,
-           const StructureTable& modes, StudyResult& result) {
+void doubt_sensors(const StructureForce& found, const LoadedStructureRecord& loaded,
+                   StudyResult& result) {
+  const auto worst = std::ranges::max_element(found.sensor_left);
+  const double power = contradiction_of(found.sensor_left);
+  if (power < kContradiction * kContradiction) return;
+  if (const std::optional<std::size_t> odd = odd_one_out(found.predicted)) {
+    return reject(fmt::format("rejected: {} contradicts the other sensors, which agree without it: "
+                              "look for a gap, a gain, a delay, another sign or noise in it",
+                              loaded.names[*odd]),
+                  result);
+  }
+  const std::string& name =
+      loaded.names[static_cast<std::size_t>(worst - found.sensor_left.begin())];
+  // A force alone, with no model at all, explains one of K responses.
+  if (power < 0.25) {
+    return result.warn(
+        fmt::format("the sensors contradict each other, {:.0f} % of {} is left: the band holds "
+                    "that as far as it is noise; a clock or a gap may be off by more",
+                    100.0 * *worst, name));
+  }
+  reject(fmt::format("rejected: no force explains the responses together, {:.0f} % of {} is left: "
+                     "compare order, sign and unit of the channels and the place of the contact "
+                     "with those of the table",
+                     100.0 * *worst, name),
+         result);
+}
+
+// What was not tried, and what table and record do not tell.
+void tell_unknowns(const StructureForce& found, const LoadedStructureRecord& loaded,
+                   const StructureTable& modes, StudyResult& result) {
   if (found.untried > 0.0) {
     result.warn(fmt::format(
         "impacts were not tried: the window of {:g} s holds {:g} instants of a pulse, {:g} are "
@@ -77,33 +109,8 @@ void doubt(const StructureForce& found, const LoadedStructureRecord& loaded,
   if (loaded.kinds.size() == 1) {
     result.warn(
         "one response explains any model: nothing tells whether the table is that of this "
-        "structure; "
-        "record a second sensor");
-    return;
+        "structure; record a second sensor");
   }
-  const auto worst = std::ranges::max_element(found.sensor_left);
-  double power = 0.0;
-  for (const double left : found.sensor_left) power += left * left;
-  const auto others = static_cast<double>(loaded.kinds.size() - 1);
-  const std::string& name =
-      loaded.names[static_cast<std::size_t>(worst - found.sensor_left.begin())];
-  // A force alone, with no model at all, explains one of K responses.
-  if (power < 0.25 * others) {
-    // A tenth of each: more than a table of another day leaves.
-    if (power < 0.01 * others) return;
-    return result.warn(
-        fmt::format("the sensors contradict each other, {:.0f} % of {} is left: the band holds "
-                    "that as far as it "
-                    "is noise; a clock, a gap or a channel that is another one may be off by more",
-                    100.0 * *worst, name));
-  }
-  result.status = report::Status::kFailed;
-  result.warn(
-      result.answer = fmt::format(
-          "rejected: no force explains the responses together, {:.0f} % of {} is left: compare "
-          "order, "
-          "sign and unit of the channels and the place of the contact with those of the table",
-          100.0 * *worst, name));
 }
 
 }  // namespace
@@ -111,7 +118,8 @@ void doubt(const StructureForce& found, const LoadedStructureRecord& loaded,
 void doubt_force(const StructureForce& found, const LoadedStructureRecord& loaded,
                  const StructureTable& modes, StudyResult& result) {
   doubt_slow_part(found, loaded, modes.low, result);
-  doubt(found, loaded, modes, result);
+  tell_unknowns(found, loaded, modes, result);
+  if (loaded.kinds.size() > 1) doubt_sensors(found, loaded, result);
   // Names the cause where sensors contradict each other by it: its answer stands.
   doubt_begin(found, loaded, modes, result);
 }

@@ -60,6 +60,47 @@ ForceScore score_of(const StructureForce& found, const std::vector<double>& meas
           .coverage = inside / static_cast<double>(count)};
 }
 
+namespace {
+
+void visit_sensors(const LoadedStructureRecord& loaded, const StructureForce& found,
+                   ResultVisitor& visitor) {
+  visitor.rows(
+      {.key = "sensors",
+       .table = "sensors",
+       .name = "Sensors",
+       .meaning =
+           "rms of what the common force leaves of each response, over what the "
+           "table's scatter and noise expect, and over the response itself; how far a prediction "
+           "from the other sensors alone is off, what of its bins lies in 95 %, and the mean "
+           "square "
+           "of what the others leave without it, over what is expected: about 1, far less where it "
+           "alone contradicts them."},
+      found.sensor_misfit, [&](ResultVisitor& row, const double& misfit) {
+        const auto k = static_cast<std::size_t>(&misfit - found.sensor_misfit.data());
+        row({.key = "channel"}, loaded.names[k]);
+        row({.key = "misfit", .name = "left, as expected: 1", .format = "{:.2f}"}, misfit);
+        row({.key = "left", .name = "left of the response", .format = "{:.2g}"},
+            found.sensor_left[k]);
+        row({.key = "predicted_error", .name = "off from the others", .format = "{:.2g}"},
+            found.predicted[k].error);
+        row({.key = "predicted_coverage", .name = "in 95 %", .format = "{:.3f}"},
+            found.predicted[k].coverage);
+        row({.key = "others", .name = "left by the others", .format = "{:.2g}"},
+            known(found.predicted[k].others));
+      });
+  visitor({.key = "contour_per_s"}, found.sigma);
+  visitor({.key = "window_s"}, found.window);
+  visitor({.key = "rang_before"}, found.rang);
+  visitor({.key = "background"}, found.background);
+  visitor({.key = "evidence_impacts"}, known(found.evidence_impacts));
+  visitor({.key = "evidence_smooth"}, known(found.evidence_smooth));
+  visitor({.key = "rise", .name = "rise of the power towards 0 Hz", .format = "{:.2g}"},
+          found.rise);
+  visitor({.key = "misfit"}, known(found.misfit));
+}
+
+}  // namespace
+
 void ForceOutcome::visit(ResultVisitor& visitor) const {
   const double rate = loaded.record.sample_rate;
   visitor.list(
@@ -87,34 +128,7 @@ void ForceOutcome::visit(ResultVisitor& visitor) const {
         row({.key = "coverage", .name = "in the 95 % band", .format = "{:.3f}"},
             score ? std::optional(score->coverage) : std::nullopt);
       });
-  visitor.rows(
-      {.key = "sensors",
-       .table = "sensors",
-       .name = "Sensors",
-       .meaning =
-           "rms of what the common force leaves of each response, over what the "
-           "table's scatter and noise expect, and over the response itself; how far a prediction "
-           "from the other sensors alone is off, and what of its bins lies in 95 %."},
-      found.sensor_misfit, [&](ResultVisitor& row, const double& misfit) {
-        const auto k = static_cast<std::size_t>(&misfit - found.sensor_misfit.data());
-        row({.key = "channel"}, loaded.names[k]);
-        row({.key = "misfit", .name = "left, as expected: 1", .format = "{:.2f}"}, misfit);
-        row({.key = "left", .name = "left of the response", .format = "{:.2g}"},
-            found.sensor_left[k]);
-        row({.key = "predicted_error", .name = "off from the others", .format = "{:.2g}"},
-            found.predicted[k].error);
-        row({.key = "predicted_coverage", .name = "in 95 %", .format = "{:.3f}"},
-            found.predicted[k].coverage);
-      });
-  visitor({.key = "contour_per_s"}, found.sigma);
-  visitor({.key = "window_s"}, found.window);
-  visitor({.key = "rang_before"}, found.rang);
-  visitor({.key = "background"}, found.background);
-  visitor({.key = "evidence_impacts"}, known(found.evidence_impacts));
-  visitor({.key = "evidence_smooth"}, known(found.evidence_smooth));
-  visitor({.key = "rise", .name = "rise of the power towards 0 Hz", .format = "{:.2g}"},
-          found.rise);
-  visitor({.key = "misfit"}, known(found.misfit));
+  visit_sensors(loaded, found, visitor);
 }
 
 void PlacesOutcome::visit(ResultVisitor& visitor) const {

@@ -54,6 +54,30 @@ void tell_places(const PlacesOutcome& told, bool rang, StudyResult& result) {
       "counts for the place where that was struck");
 }
 
+// The record of the other sensors; returns the name of the one that was left out.
+std::string leave_out(std::size_t odd, LoadedStructureRecord& loaded) {
+  const auto at = static_cast<std::ptrdiff_t>(odd);
+  std::string name = loaded.names[odd];
+  loaded.names.erase(loaded.names.begin() + at);
+  loaded.kinds.erase(loaded.kinds.begin() + at);
+  loaded.record.responses.erase(loaded.record.responses.begin() + at);
+  return name;
+}
+
+void tell_left_out(const std::string& name, bool places, StudyResult& result) {
+  if (name.empty()) return;
+  std::string text = fmt::format("{} contradicts the other sensors, which agree without it", name);
+  constexpr std::string_view kRemedy =
+      "look for a gap, a gain, a delay, another sign or noise in it";
+  if (!places) return result.warn(fmt::format("{}: it is left out; {}", text, kRemedy));
+  result.status = report::Status::kFailed;
+  result.answer = fmt::format(
+      "rejected: {}, and the places are weighed by all of them: {}, or fit "
+      "the tables without it",
+      text, kRemedy);
+  result.warn(result.answer);
+}
+
 }  // namespace
 
 void StructureChangeOptions::visit(OptionVisitor& visitor) {
@@ -173,7 +197,7 @@ std::vector<PlanLine> IdentifyForceOptions::plan() const {
 }
 
 StudyResult IdentifyForceOptions::run(const StudyContext& context) const {
-  const LoadedStructureRecord loaded = load_structure_record(record, context.folder, context.stop);
+  LoadedStructureRecord loaded = load_structure_record(record, context.folder, context.stop);
   std::vector<StructureTable> places;
   for (const std::string& file : tables()) places.push_back(read_table(context.folder / file));
   std::optional<ContactPlaces> where;
@@ -183,7 +207,7 @@ StudyResult IdentifyForceOptions::run(const StudyContext& context) const {
     for (const StructureTable& place : places) sigma = std::max(sigma, place.measured.grid.sigma);
     where = weigh_places(places, loaded.record, sigma);
   }
-  const StructureTable& modes = places[where ? where->best : 0];
+  StructureTable& modes = places[where ? where->best : 0];
   context.throw_if_interrupted();
   const StructureForce found =
       structure_force(modes, loaded.record,
@@ -195,6 +219,11 @@ StudyResult IdentifyForceOptions::run(const StudyContext& context) const {
                        .draws = static_cast<std::size_t>(draws),
                        .seed = static_cast<std::uint64_t>(seed),
                        .change = refines ? std::optional<StructureChange>(change) : std::nullopt});
+  std::string odd;
+  if (found.left_out) {
+    odd = leave_out(*found.left_out, loaded);
+    modes = modes.without_sensor(*found.left_out);
+  }
   std::optional<ForceScore> score;
   const double rate = loaded.record.sample_rate;
   if (!loaded.record.force.empty()) score = score_of(found, loaded.record.force, rate, modes);
@@ -215,6 +244,7 @@ StudyResult IdentifyForceOptions::run(const StudyContext& context) const {
   result.answer_by_summary();
   for (const std::string& text : loaded.warnings) result.warn(text);
   for (const std::string& text : modes.warnings) result.warn(text);
+  tell_left_out(odd, where.has_value(), result);
   if (where) tell_places({tables(), *where}, found.rang, result);
   doubt_force(found, loaded, modes, result);
   if (!context.numbers_alone) result.blocks.emplace_back(force_figure(loaded, found));

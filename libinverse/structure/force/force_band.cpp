@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "libinverse/structure/tuning.hpp"
+#include "libsim/signal/statistics.hpp"
 
 namespace modcal {
 
@@ -79,6 +80,15 @@ Eigen::VectorXd variance_about(const Eigen::VectorXd& force, const ContourSpectr
   }
   // outside is that of noise that lasts as long as the contour weighs it.
   return envelope * (outside * spectra.noise_power() / std::max(weighted, 1e-300));
+}
+
+Eigen::VectorXd jackknife(const std::vector<Eigen::VectorXd>& forces) {
+  const auto count = static_cast<double>(forces.size());
+  Eigen::VectorXd mean = Eigen::VectorXd::Zero(forces.front().size()), sum = mean;
+  for (const Eigen::VectorXd& force : forces) mean += force / count;
+  for (const Eigen::VectorXd& force : forces) sum += (force - mean).cwiseAbs2();
+  const double wide = student_quantile(forces.size() - 1) / student_quantile(0);
+  return (count - 1.0) / count * wide * wide * sum;
 }
 
 }  // namespace modcal

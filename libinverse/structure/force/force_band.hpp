@@ -27,4 +27,8 @@ Eigen::VectorXd variance_of_shape(const Eigen::VectorXd& force, double rate, dou
 Eigen::VectorXd variance_about(const Eigen::VectorXd& force, const ContourSpectra& spectra,
                                double outside);
 
+/// (K − 1)/K Σ_k (f_k − mean)² of the forces without one of K sensors each, times the square by
+/// which Student's t of so few is wider than the normal.
+Eigen::VectorXd jackknife(const std::vector<Eigen::VectorXd>& forces);
+
 }  // namespace modcal

@@ -17,7 +17,6 @@
 #include "libsim/base/error.hpp"
 #include "libsim/base/random.hpp"
 #include "libsim/base/task_loop.hpp"
-#include "libsim/signal/statistics.hpp"
 
 namespace modcal {
 namespace {
@@ -42,11 +41,15 @@ class ForceSearch {
     transfers_ = transfers_of(table_, spectra_);
     variances_ = variances_of(table_, spectra_, transfers_);
     take_state_out();
-    if (options.change) refine(record);
     samples_ = static_cast<Index>(std::floor(result_.window * record.sample_rate));
   }
 
-  StructureForce run() {
+  std::optional<std::size_t> odd_sensor() const {
+    return odd_of_many(spectra_, transfers_, variances_);
+  }
+
+  StructureForce run(const StructureRecord& record) {
+    if (options_.change) refine(record);
     result_.misfit = variances_.misfit;
     result_.sensor_misfit = variances_.by_sensor;
     result_.sensor_left = variances_.left;
@@ -252,7 +255,7 @@ class ForceSearch {
     return std::isnan(variances_.misfit) ? 1.0 : std::max(1.0, variances_.misfit);
   }
 
-  // Jackknife over the sensors, as wide as Student's t of so few; nothing below three.
+  // Jackknife over the sensors; nothing below three.
   Eigen::VectorXd by_sensors() const {
     const std::size_t sensors = transfers_.size();
     if (sensors < 3) return {};
@@ -260,19 +263,13 @@ class ForceSearch {
     for_each_task(sensors, [&](std::size_t k) {
       forces[k] = force_of(evidence_of(spectra_, transfers_, variances_, k));
     });
-    const auto count = static_cast<double>(sensors);
-    Eigen::VectorXd mean = Eigen::VectorXd::Zero(samples_), sum = mean;
-    for (const Eigen::VectorXd& force : forces) mean += force / count;
-    for (const Eigen::VectorXd& force : forces) sum += (force - mean).cwiseAbs2();
-    const double wide = student_quantile(sensors - 1) / student_quantile(0);
-    return (count - 1.0) / count * wide * wide * sum;
+    return jackknife(forces);
   }
 
   StructureTable table_;
   const StructureForceOptions& options_;
   ContourSpectra spectra_;
-  Transfers recorded_;  // responses with what rang before
-  Transfers transfers_;
+  Transfers transfers_, recorded_;  // recorded_: responses with what rang before
   BinVariances variances_;
   Index samples_ = 0;
   std::optional<PulseTrain> train_;
@@ -289,7 +286,15 @@ StructureForce structure_force(const StructureTable& table, const StructureRecor
   MODCAL_REQUIRE(table.model.pairs() == record.responses.size(),
                  "the model has {} sensors, the record {}: name the channels of all of them",
                  table.model.pairs(), record.responses.size());
-  return ForceSearch(table, record, options).run();
+  ForceSearch all(table, record, options);
+  const std::optional<std::size_t> odd = all.odd_sensor();
+  if (!odd) return all.run(record);
+  StructureRecord others = record;
+  others.responses.erase(others.responses.begin() + static_cast<std::ptrdiff_t>(*odd));
+  const StructureTable those = table.without_sensor(*odd);
+  StructureForce found = ForceSearch(those, others, options).run(others);
+  found.left_out = odd;
+  return found;
 }
 
 }  // namespace modcal

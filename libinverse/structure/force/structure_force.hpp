@@ -52,6 +52,8 @@ struct StructureForce {
   std::vector<double> sensor_left;          ///< the same over its response, K; both empty: K = 1
   std::vector<SensorPrediction> predicted;  ///< of each from the others, K; empty: K = 1
   std::optional<BlindFit> refined;          ///< where a change was allowed for
+  /// The sensor without which the others agree, as they did not by far: nothing above has it.
+  std::optional<std::size_t> left_out;
 };
 
 /// F = Σ_k conj(H_k) Y_k/V_k ÷ (Σ_k |H_k|²/V_k + 1/P) in every bin of a contour, or, for impacts,
@@ -62,7 +64,9 @@ struct StructureForce {
 /// the posterior, the table's errors (models drawn, solved again) and, from three sensors on, the
 /// jackknife over them, the larger of both. Where the responses tell that the structure rang when
 /// the record began, that is fitted and taken out first (InitialState); measured functions do not
-/// know of it. Throws InvalidInput for a record whose sensors are not those of the table.
+/// know of it. One sensor of four or more without which the others agree (odd_one_out()) is left
+/// out where they contradict each other by kContradiction. Throws InvalidInput for a record whose
+/// sensors are not those of the table.
 StructureForce structure_force(const StructureTable& table, const StructureRecord& record,
                                const StructureForceOptions& options);
 

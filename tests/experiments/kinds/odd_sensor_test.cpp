@@ -1,0 +1,87 @@
+// One sensor that contradicts the others: left out, or refused by name where they are too few.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "libsim/records/record_file.hpp"
+#include "tests/experiments/kinds/run_document.hpp"
+#include "tests/folder_test.hpp"
+
+namespace modcal::odd_sensor_test {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+using Samples = std::vector<double>;
+
+const std::string kFolder = std::string(MODCAL_CONFIGS) + "/structures/";
+
+StudyResult run(const std::string& file, const std::vector<std::string>& changes) {
+  YamlDocument document = read_yaml_file(kFolder + file);
+  std::size_t number = 0;
+  for (const std::string& change : changes) apply_assignment(document, change, ++number);
+  return run_document(std::move(document));
+}
+
+class OddSensor : public FolderTest {
+ protected:
+  // The other strike of configs/ with its second response changed.
+  std::string spoilt(const std::function<void(Samples&)>& change) const {
+    Recording strike = read_csv(kFolder + "plate_other_strike.csv");
+    change(strike.channels[2].samples);
+    std::string text =
+        "# sample_rate: 4000 Hz\nforce [N],a1 [m/s2],a2 [m/s2],a3 [m/s2],a4 [m/s2]\n";
+    for (std::size_t j = 0; j < strike.channels[0].samples.size(); ++j) {
+      for (std::size_t k = 0; k < 5; ++k) {
+        text += fmt::format("{:.9g}{}", strike.channels[k].samples[j], k < 4 ? "," : "\n");
+      }
+    }
+    return "record.file=" + write("record.csv", text).string();
+  }
+};
+
+double error_of(const StudyResult& result) {
+  for (const auto& [file, text] : result.files) {
+    if (file != "force.json") continue;
+    return nlohmann::json::parse(text)["force"][0]["relative_error"].get<double>();
+  }
+  throw std::runtime_error("no force.json");
+}
+
+void drop_samples(Samples& a) { std::rotate(a.begin() + 90, a.begin() + 93, a.end()); }
+void double_gain(Samples& a) {
+  for (double& x : a) x *= 2.0;
+}
+void turn_sign(Samples& a) {
+  for (double& x : a) x = -x;
+}
+
+// Three sensors find the force as well as four do.
+TEST_F(OddSensor, OfFourIsLeftOutAndNamed) {
+  const StudyResult whole = run("force_on_plate.yaml", {spoilt([](Samples&) {})});
+  EXPECT_THAT(whole.summary, Not(HasSubstr("a2")));
+  for (const auto& change : {drop_samples, double_gain, turn_sign}) {
+    const StudyResult result = run("force_on_plate.yaml", {spoilt(change)});
+    EXPECT_EQ(result.status, report::Status::kOk);
+    EXPECT_THAT(result.summary, HasSubstr("impacts from 3 sensors"));
+    EXPECT_THAT(result.summary, HasSubstr("a2 contradicts the other sensors, which agree without "
+                                          "it: it is left out"));
+    EXPECT_NEAR(error_of(result), error_of(whole), 0.2 * error_of(whole));
+  }
+}
+
+// Two of three may agree by chance: no answer.
+TEST_F(OddSensor, OfThreeIsRefusedByName) {
+  const std::string three = "record.responses=[{channel: a1}, {channel: a2}, {channel: a3}]";
+  for (const auto& [file, text] : run("fit_plate.yaml", {three}).files) write(file, text);
+  const StudyResult result = run(
+      "force_on_plate.yaml", {three, "table=" + path("table.yaml").string(), spoilt(drop_samples)});
+  EXPECT_EQ(result.status, report::Status::kFailed);
+  EXPECT_THAT(result.answer, HasSubstr("rejected: a2 contradicts the other sensors, which agree"));
+}
+
+}  // namespace
+}  // namespace modcal::odd_sensor_test
