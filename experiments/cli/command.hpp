@@ -142,7 +142,7 @@ struct ExperimentArguments {
 std::string complaint_about_name(const std::string& name);
 
 /// A frequency such as 44.1 kHz as a number of hertz. Throws CLI::ValidationError.
-std::string hertz_of(std::string text);
+std::string hertz_of(const std::string& text);
 
 /// The text where it is a size such as 8GB. Throws CLI::ValidationError.
 std::string require_size(std::string text);
@@ -229,7 +229,7 @@ class Progress {
    private:
     std::unique_lock<std::mutex> lock_;
   };
-  Progress(std::string what, Of work);
+  Progress(std::string_view what, Of work);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;

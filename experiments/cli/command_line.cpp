@@ -155,7 +155,7 @@ std::string complaint_about_name(const std::string& name) {
   return is_blank ? "the name is empty: write one, or leave the option out" : "";
 }
 
-std::string hertz_of(std::string text) {
+std::string hertz_of(const std::string& text) {
   const ScalarNumber number = parse_number(text, "Hz");
   if (!number.error.empty()) throw CLI::ValidationError(number.error);
   return fmt::format("{}", number.value);

@@ -23,7 +23,7 @@ Progress::Pause::Pause() {
   innermost->clear();
 }
 
-Progress::Progress(std::string what, Of work)
+Progress::Progress(std::string_view what, Of work)
     : what_(printable(what)),
       work_(work),
       terminal_(can_rewrite()),

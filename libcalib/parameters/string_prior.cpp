@@ -147,7 +147,7 @@ PriorMisfit StringUnknowns::misfit_at(const Eigen::VectorXd& theta,
 }
 
 PriorMisfit StringUnknowns::worse_of_response(const Eigen::VectorXd& theta,
-                                              PriorMisfit stated) const {
+                                              const PriorMisfit& stated) const {
   PriorMisfit response{.count = 2 * knots_};
   const SmoothResponse& reference = reference_.sensors.smooth;
   for (std::size_t k = 0; k < knots_; ++k) {

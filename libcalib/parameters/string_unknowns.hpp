@@ -71,7 +71,7 @@ class StringUnknowns {
   /// Those of the real and imaginary parts of the knots of the response; empty: it is not free.
   std::vector<std::complex<double>> response_deviations(const Eigen::MatrixXd& covariance) const;
   /// The misfit of the response to its prior where that contradicts it, else what is stated.
-  PriorMisfit worse_of_response(const Eigen::VectorXd& theta, PriorMisfit stated) const;
+  PriorMisfit worse_of_response(const Eigen::VectorXd& theta, const PriorMisfit& stated) const;
   /// False where the law, the contact, damping or sensors leave what a string can be.
   bool admits(const Eigen::VectorXd& theta) const;
   ModelPoint model(const Eigen::VectorXd& theta) const;

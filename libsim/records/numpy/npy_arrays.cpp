@@ -83,8 +83,8 @@ std::vector<std::size_t> table_of(std::vector<std::size_t> shape) {
 
 }  // namespace
 
-void NpyArrays::add(std::vector<std::string> name, const std::string& place, std::uint64_t size,
-                    std::function<NpyBytes()> open) {
+void NpyArrays::add(const std::vector<std::string>& name, const std::string& place,
+                    std::uint64_t size, const std::function<NpyBytes()>& open) {
   const NpyHeader header = read_npy_header(open(), place);
   // Objects of Python are pickled, in any number of bytes.
   const bool has_objects = std::ranges::any_of(

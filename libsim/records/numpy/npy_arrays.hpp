@@ -10,8 +10,8 @@ class NpyArrays : public ArrayFile {
  public:
   /// An array of `size` bytes with its header; `open` reads them from the first on. Throws
   /// InvalidInput for another number of bytes than the header states.
-  void add(std::vector<std::string> name, const std::string& place, std::uint64_t size,
-           std::function<NpyBytes()> open);
+  void add(const std::vector<std::string>& name, const std::string& place, std::uint64_t size,
+           const std::function<NpyBytes()>& open);
 
   std::vector<double> column(const NamedArray& array, std::size_t j) override;
   std::string text(const NamedArray& array) override;
