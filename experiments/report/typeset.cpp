@@ -22,8 +22,9 @@ std::string typeset_powers(std::string_view text) {
   // "1e-3" of a file's name or of an option is not within a word.
   static const std::regex power(
       R"((^|[^A-Za-z0-9_.])([0-9]+(?:\.[0-9]+)?)e([+-])0*([0-9]+)(?![A-Za-z0-9_]))");
+  constexpr auto kNone = std::string_view::npos;
+  if (text.find("e-") == kNone && text.find("e+") == kNone) return std::string(text);
   const std::string plain(text);
-  if (plain.find("e-") == std::string::npos && plain.find("e+") == std::string::npos) return plain;
   std::string result;
   auto rest = plain.begin();
   for (std::sregex_iterator at(plain.begin(), plain.end(), power), end; at != end; ++at) {

@@ -157,7 +157,7 @@ void ResultsDatabase::add(const ResultRow& row) {
 }
 
 std::string ResultsDatabase::finish(std::vector<std::pair<std::string, std::string>> facts) {
-  const std::string digest = digest_.text();
+  std::string digest = digest_.text();
   facts.emplace_back("digest", digest);
   writer_->finish(facts);
   writer_.reset();

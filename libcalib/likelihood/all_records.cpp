@@ -85,7 +85,7 @@ bool AllRecords::admits(const Eigen::VectorXd& theta) const {
 
 std::optional<LinearForm> AllRecords::coordinate(const ParameterName& name,
                                                  const Eigen::VectorXd& theta) const {
-  const std::optional<LinearForm> of_record = unknowns_.coordinate(name, own(theta, name.record));
+  std::optional<LinearForm> of_record = unknowns_.coordinate(name, own(theta, name.record));
   if (!of_record) return of_record;
   LinearForm form{.slope = Eigen::VectorXd::Zero(size() + 2), .offset = of_record->offset};
   for (Index i = 0; i < unknowns_.size(); ++i) {

@@ -49,11 +49,11 @@ Eigen::MatrixXd padded_prior(const Eigen::MatrixXd& prior, Eigen::Index size) {
 Eigen::MatrixXd debiased_hessian(const Eigen::MatrixXd& information, const Eigen::MatrixXd& noise,
                                  const Eigen::MatrixXd& prior) {
   const Eigen::MatrixXd q = padded_prior(prior, information.rows());
-  const Eigen::MatrixXd full = information + q;
+  Eigen::MatrixXd full = information + q;
   if (noise.size() == 0 || noise.isZero(0.0)) return full;
   double share = 1.0;
   for (int i = 0; i < 60; ++i, share *= 0.9) {
-    const Eigen::MatrixXd hessian = full - share * noise;
+    Eigen::MatrixXd hessian = full - share * noise;
     if (positive_definite(hessian - kPriorShare * q)) return hessian;
   }
   return full;
