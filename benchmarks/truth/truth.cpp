@@ -318,11 +318,12 @@ TruthRecord simulate(const TruthString& string, const TruthGesture& gesture,
   require(options.duration > 0.0, "duration must be > 0");
   const WaveGrid grid = grid_of(string, options);
   const double cell = string.length / static_cast<double>(grid.intervals);
-  const double reach = cell * (kInterpolationPoints / 2);
+  constexpr std::size_t kCellsBeside = kInterpolationPoints / 2;
+  const double reach = cell * kCellsBeside;
   if (!(gesture.position > reach) || !(gesture.position < string.length - reach)) {
     throw std::invalid_argument(
         fmt::format("contact at {:g} m: {} cells of {:g} m are needed on both sides of it",
-                    gesture.position, kInterpolationPoints / 2, cell));
+                    gesture.position, kCellsBeside, cell));
   }
   return Session(string, gesture, options).run();
 }

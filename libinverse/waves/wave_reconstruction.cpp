@@ -13,6 +13,7 @@ namespace modcal {
 namespace {
 
 constexpr int kTaps = 64;
+constexpr int kHalf = kTaps / 2;
 constexpr double kKaiser = 9.0;  // side lobes below 1e-4 from 0.06 f_s under half the rate
 
 void require_pair(const ModalBasis& basis, double contact, double sample_rate,
@@ -35,7 +36,7 @@ double value_at(std::span<const double> x, double place) {
   const auto centre = static_cast<std::ptrdiff_t>(std::floor(place));
   const double norm = std::cyl_bessel_i(0.0, kKaiser);
   double sum = 0.0;
-  for (std::ptrdiff_t j = centre - kTaps / 2 + 1; j <= centre + kTaps / 2; ++j) {
+  for (std::ptrdiff_t j = centre - kHalf + 1; j <= centre + kHalf; ++j) {
     if (j < 0 || j >= static_cast<std::ptrdiff_t>(x.size())) continue;
     const double distance = place - static_cast<double>(j);
     const double share = 2.0 * distance / kTaps;
@@ -52,18 +53,18 @@ double value_at(std::span<const double> x, double place) {
 std::vector<double> shifted(std::span<const double> x, double shift) {
   const double whole = std::floor(shift);
   std::vector<double> impulse(kTaps + 1, 0.0), weight;
-  impulse[kTaps / 2] = 1.0;
-  for (int tap = -kTaps / 2; tap <= kTaps / 2; ++tap) {
-    weight.push_back(value_at(impulse, kTaps / 2 + (shift - whole) - tap));
+  impulse[kHalf] = 1.0;
+  for (std::ptrdiff_t tap = -kHalf; tap <= kHalf; ++tap) {
+    weight.push_back(value_at(impulse, kHalf + (shift - whole) - static_cast<double>(tap)));
   }
   std::vector<double> result(x.size(), 0.0);
   const auto size = static_cast<std::ptrdiff_t>(x.size());
   for (std::ptrdiff_t k = 0; k < size; ++k) {
     double sum = 0.0;
-    for (int tap = -kTaps / 2; tap <= kTaps / 2; ++tap) {
+    for (std::ptrdiff_t tap = -kHalf; tap <= kHalf; ++tap) {
       const std::ptrdiff_t j = k + static_cast<std::ptrdiff_t>(whole) + tap;
       if (j >= 0 && j < size) {
-        sum += weight[static_cast<std::size_t>(tap + kTaps / 2)] * x[static_cast<std::size_t>(j)];
+        sum += weight[static_cast<std::size_t>(tap + kHalf)] * x[static_cast<std::size_t>(j)];
       }
     }
     result[static_cast<std::size_t>(k)] = sum;
@@ -145,7 +146,7 @@ WaveReconstruction reconstruct_from_waves(const ModalBasis& basis, double contac
   const double near_path = is_left ? contact : basis.length - contact;
   const double near_delay = near_path / speed * sample_rate;
   const double far_delay = (basis.length - near_path) / speed * sample_rate;
-  const double ahead = std::ceil(near_delay) + kTaps / 2;
+  const double ahead = std::ceil(near_delay) + kHalf;
   MODCAL_REQUIRE(static_cast<double>(near.size()) > ahead,
                  "the record of {} samples ends before a wave from the contact has arrived ({:g} "
                  "samples)",

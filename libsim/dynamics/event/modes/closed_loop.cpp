@@ -9,7 +9,7 @@ using Complex = std::complex<double>;
 
 constexpr double kWorstCondition = 1e8;
 // Entries of a change of basis that is kept; 16 bytes each, there and back.
-constexpr std::size_t kMostEntries = 512 * 512;
+constexpr std::size_t kMostEntries = std::size_t{512} * 512;
 constexpr double kWorstRoundTrip = 1e-7;
 
 // What one root contributes: 1/((μ − λ_n)(μ − λ̄_n)) for every mode and sums over them.
