@@ -107,7 +107,7 @@ nlohmann::ordered_json answer_of_one(const std::string& name, const OutputDirect
                                      const StudyResult& result) {
   nlohmann::ordered_json answer = {{"name", name}, {"out", folder.path().string()}};
   answer.update(findings_json(result));
-  for (const std::string& text : result.warnings) note_warning(name + ": " + text);
+  for (const std::string& text : result.warnings) note_warning(fmt::format("{}: {}", name, text));
   return answer;
 }
 

@@ -164,7 +164,7 @@ class Literal {
       }
       expect(',');
       const std::size_t first = fields.size();
-      const std::string full = name.empty() ? own : name + "." + own;
+      const std::string full = name.empty() ? own : fmt::format("{}.{}", name, own);
       const std::size_t one = type(fields, full, offset + size);
       std::size_t times = 1;
       if (take(',')) {
