@@ -10,6 +10,7 @@
 
 #include "experiments/kinds/structure/structure_files.hpp"
 #include "experiments/loader.hpp"
+#include "experiments/runs/task_experiment.hpp"
 #include "experiments/study/study.hpp"
 #include "libsim/model/transfer.hpp"
 #include "tests/folder_test.hpp"
@@ -203,12 +204,9 @@ TEST_F(BowOnAStructure, EveryKindSaysWhatTakesATable) {
                                                         {"pluck_then_bow", "kind: fit_modes"},
                                                         {"schelleng", "kind: simulate"}}) {
     for (const std::string key : {"table", "model", "structure"}) {
-      EXPECT_THAT(said("kind: " + kind + "\n" + key + ": {table: modes.yaml}\n"),
-                  HasSubstr(fmt::format("error: unknown key \"{}\": ", key)))
-          << kind;
-      EXPECT_THAT(said("kind: " + kind + "\n" + key + ": {table: modes.yaml}\n"),
-                  HasSubstr(instead))
-          << kind;
+      const std::string config = fmt::format("kind: {}\n{}: {{table: modes.yaml}}\n", kind, key);
+      EXPECT_THAT(said(config), HasSubstr(fmt::format("error: unknown key \"{}\": ", key))) << kind;
+      EXPECT_THAT(said(config), HasSubstr(instead)) << kind;
     }
   }
   EXPECT_THAT(said("kind: identify_force\nmodel: {table: modes.yaml}\n"),
