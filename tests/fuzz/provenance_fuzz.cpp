@@ -10,7 +10,7 @@ namespace {
 const std::filesystem::path& run_folder() {
   static const std::filesystem::path kFolder = [] {
     std::string name = (std::filesystem::temp_directory_path() / "modcal-fuzz-XXXXXX").string();
-    const std::filesystem::path folder = mkdtemp(name.data());
+    std::filesystem::path folder = mkdtemp(name.data());
     std::ofstream(folder / kResolvedFile) << R"(kind: simulate
 scene:
   string: {length: 0.33 m, linear_density: 3.1e-3 kg/m, fundamental: 196 Hz, modes: 10}

@@ -1,4 +1,5 @@
 // What every command has in common: help, --json, --quiet, and the texts made of the commands.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
@@ -151,11 +152,12 @@ TEST_F(Answers, HelpOfExamplesIsTrue) {
 
 TEST_F(Answers, CompletionIsTakenByItsShell) {
   for (const std::string shell_name : {"bash", "zsh", "fish"}) {
+    const std::string script = fmt::format("script.{}", shell_name);
     ASSERT_EQ(
-        shell("'" MODCAL_PROGRAM "' completion " + shell_name + " > script." + shell_name).code, 0);
-    const Outcome parsed = shell(shell_name + " -n script." + shell_name);
+        shell(fmt::format("'" MODCAL_PROGRAM "' completion {} > {}", shell_name, script)).code, 0);
+    const Outcome parsed = shell(fmt::format("{} -n {}", shell_name, script));
     EXPECT_EQ(parsed.code, 0) << shell_name << parsed.err;
-    const std::string text = content_of(path("script." + shell_name));
+    const std::string text = content_of(path(script));
     for (const std::string& command : commands()) EXPECT_THAT(text, HasSubstr(command));
   }
   const auto completed = [this](const std::string& words, int word) {

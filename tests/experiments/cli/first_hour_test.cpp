@@ -1,4 +1,5 @@
 // What a newcomer does: from a recorded file to the string and the force with their error bars.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -206,7 +207,7 @@ TEST_F(FirstHour, HasAnExampleOfEveryKind) {
     const std::string kind = line.substr(0, line.find(' '));
     if (kind.empty()) continue;
     ++count;
-    const Outcome written = modcal("new " + kind + " --out " + kind + ".yaml");
+    const Outcome written = modcal(fmt::format("new {0} --out {0}.yaml", kind));
     EXPECT_EQ(written.code, 0) << kind << written.err;
     // What its sections are for stands beside them.
     EXPECT_THAT(content_of(folder() / (kind + ".yaml")), HasSubstr("  # ")) << kind;

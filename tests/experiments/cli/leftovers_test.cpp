@@ -98,7 +98,7 @@ TEST_F(Leftovers, LinksOfOthersAreNotWrittenThrough) {
   std::filesystem::create_directories(folder() / "a/journal");
   const auto refuses = [&](const std::string& name, const std::string& how) {
     shell("ln -f " + how + " \"$PWD\"/victim a/" + name);
-    const Outcome outcome = modcal("run list.yaml --out a");
+    Outcome outcome = modcal("run list.yaml --out a");
     EXPECT_EQ(content_of(folder() / "victim"), "kept\n") << name << how;
     shell("rm -f a/" + name);
     return outcome;

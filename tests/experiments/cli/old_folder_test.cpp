@@ -1,4 +1,5 @@
 // A run in the folder of an earlier one: what stands there is of one run, and files of others stay.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
@@ -37,7 +38,7 @@ class OldFolder : public testing::SmallRuns {
 TEST_F(OldFolder, HoldsTheFilesOfTheLastRunAlone) {
   const std::vector<std::string> kinds = {"small", "invert", "list"};
   for (const std::string& kind : kinds) {
-    ASSERT_EQ(modcal("run " + kind + ".yaml --out fresh/" + kind).code, 0) << kind;
+    ASSERT_EQ(modcal(fmt::format("run {0}.yaml --out fresh/{0}", kind)).code, 0) << kind;
   }
   for (const char* kind : {"small", "invert", "list", "invert", "small"}) {
     const std::string name = kind;

@@ -1,4 +1,5 @@
 // The program from outside: exit codes, what goes to which stream, what stays in the folder.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
@@ -197,10 +198,11 @@ TEST_F(Program, ListsAndDescribesEveryPlugin) {
     const json plugins = json::parse(modcal("list " + name + " --json").out);
     EXPECT_FALSE(plugins.empty()) << name;
     const std::string plugin = plugins[0]["name"];
-    const json description = json::parse(modcal("describe " + name + " " + plugin + " --json").out);
+    const std::string describe = fmt::format("describe {} {}", name, plugin);
+    const json description = json::parse(modcal(describe + " --json").out);
     EXPECT_EQ(description["name"], plugin);
     EXPECT_TRUE(description["options"].is_array());
-    EXPECT_EQ(modcal("describe " + name + " " + plugin).code, 0);
+    EXPECT_EQ(modcal(describe).code, 0);
   }
   EXPECT_THAT(modcal("list dampng").err, HasSubstr("did you mean \"damping\"?"));
   EXPECT_THAT(modcal("describe damping constnt").err, HasSubstr("did you mean \"constant\"?"));

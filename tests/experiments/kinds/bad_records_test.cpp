@@ -66,7 +66,7 @@ Spoil raised(double left, double right) {
   };
 }
 
-Spoil cell(std::string text) {
+Spoil cell(const std::string& text) {
   return [=](Written& w) { w.cell = text; };
 }
 

@@ -207,7 +207,7 @@ TEST_F(Matlab, VariablesWithoutANameAreNoChannels) {
     const std::array<std::uint32_t, 5> header = {0, count, 1, 0, letters};
     out.write(reinterpret_cast<const char*>(header.data()), sizeof header);
     out << name;
-    out.write(reinterpret_cast<const char*>(numbers.data()), 8 * count);
+    out.write(reinterpret_cast<const char*>(numbers.data()), std::streamsize{8} * count);
   };
   write(std::string("a\0", 2), {1.0, 2.0, 3.0});
   write(std::string("fs\0", 3), {100.0});
@@ -233,7 +233,7 @@ TEST_F(Matlab, HeadersThatStateMoreThanThereIsAreRefused) {
 TEST_F(Matlab, OtherFilesAreRefused) {
   std::ofstream(file()) << "t,f\n1,2\n";
   EXPECT_THAT(refusal(), HasSubstr("cannot be read as a MAT file"));
-  std::ofstream(file(), std::ios::trunc);
+  std::ofstream(file(), std::ios::trunc).close();
   EXPECT_THAT(refusal(), HasSubstr("the file is empty"));
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kRate = 51200.0;
 
-Simulation run_with(const Scene& scene, ModalEvent::Options options = {}) {
+Simulation run_with(const Scene& scene, const ModalEvent::Options& options = {}) {
   return event_run(scene, options, kRate);
 }
 
