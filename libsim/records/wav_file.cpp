@@ -101,11 +101,13 @@ bool is_cut_off(SndfileHandle& file) {
   return data != std::string::npos && log.find("(should be", data) < log.find('\n', data + 1);
 }
 
-SndfileHandle open_wav(const std::string& name) {
+void require_bytes(const std::string& name) {
   require_regular_file(name);
   MODCAL_REQUIRE(std::filesystem::exists(name), "{}: there is no such file; check the path", name);
   MODCAL_REQUIRE(std::filesystem::file_size(name) > 0, "{}: the file is empty", name);
-  SndfileHandle file(name);
+}
+
+void require_samples(SndfileHandle& file, const std::string& name) {
   std::string reason = file.strError();
   reason.erase(reason.find_last_not_of(". ") + 1);
   MODCAL_REQUIRE(file.error() == SF_ERR_NO_ERROR,
@@ -113,7 +115,6 @@ SndfileHandle open_wav(const std::string& name) {
                  name, reason);
   MODCAL_REQUIRE(file.frames() > 0, "{}: the file has {} channels but no samples", name,
                  file.channels());
-  return file;
 }
 
 /// Positions of the wanted channels in a frame.
@@ -188,7 +189,9 @@ void write_wav(const std::filesystem::path& path, std::span<const Signal> signal
 
 Recording read_wav(const std::filesystem::path& path, const ReadOptions& options) {
   const std::string name = path.string();
-  SndfileHandle file = open_wav(name);
+  require_bytes(name);
+  SndfileHandle file(name);
+  require_samples(file, name);
   const char* const comment = file.getString(SF_STR_COMMENT);
   std::vector<RecordedChannel> channels = channels_of_comment(
       comment == nullptr ? "" : comment, static_cast<std::size_t>(file.channels()));

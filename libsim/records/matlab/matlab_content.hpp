@@ -10,7 +10,7 @@
 namespace modcal {
 
 /// Read once each and kept as long as a channel may be asked for; from any thread.
-class MatlabContent : public ArrayFile {
+class MatlabContent final : public ArrayFile {
  public:
   /// Throws InvalidInput for what is no whole MAT file.
   explicit MatlabContent(std::filesystem::path path);
