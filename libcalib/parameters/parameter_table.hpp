@@ -68,8 +68,8 @@ struct ParameterType {
   Moves moves = Moves::kFrequencies;
   bool of_mode = false;      ///< f_n and zeta_n
   bool logarithmic = false;  ///< its values are > 0; fits and priors act on the logarithm
-  double per_unit = 1.0;     ///< what the model has for one unit of its values: 2π rad/s for 1 Hz
   bool may_be_own = false;   ///< each record may have its own
+  double per_unit = 1.0;     ///< what the model has for one unit of its values: 2π rad/s for 1 Hz
   Range stated = {};         ///< values that may be stated, of a sensor
   double farthest = 0.0;     ///< beyond this coordinate no sensor is
   int digits = 5;            ///< of its value in a text
