@@ -29,7 +29,7 @@ void fill_blind(CalibrationOutcome& outcome) {
 
 // T = 4 L² f₀² ρ_L: what is stated of a recorded string gives ρ_L and L, the f₀ found the tension.
 void follow_tension(const Observation& observation, CalibrationOutcome& outcome) {
-  double fundamental = observation.fundamental;
+  double fundamental = 0.0;
   if (const auto& found = outcome.result.continuation) {
     fundamental = found->found_law.fundamental;
   } else {
