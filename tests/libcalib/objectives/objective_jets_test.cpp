@@ -215,9 +215,11 @@ TEST(ObjectiveJets, SpectralPeakAndItsSmoothVariant) {
   expect_gradient(SpectralPeak(SpectralPeak::Options{}), given, sum, kExact);
   const double floor = std::pow(0.01 * mean / count, 2);
   std::vector<Jet> residuals(2 * bins, Jet(0.0));
-  for (std::size_t j = 0; j < residuals.size(); ++j) {
-    if (all.count[j % bins] == 0.0) continue;
-    residuals[j] = sqrt(2.0 * all.count[j % bins] * sqrt(powers[j] + floor));
+  for (std::size_t r = 0; r < 2; ++r) {
+    for (std::size_t k = 0; k < bins; ++k) {
+      if (all.count[k] == 0.0) continue;
+      residuals[r * bins + k] = sqrt(2.0 * all.count[k] * sqrt(powers[r * bins + k] + floor));
+    }
   }
   expect_same(SmoothSpectralPeak(SmoothSpectralPeak::Options{}), given, residuals, kExact);
 }
