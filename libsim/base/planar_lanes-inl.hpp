@@ -86,7 +86,7 @@ struct Rows {
   const double* data;
   std::size_t size;
   explicit Rows(const PlanarRows& rows, std::size_t first = 0)
-      : data(rows.re(first)), size(rows.size) {}
+      : data(rows.re(first < rows.count ? first : rows.count)), size(rows.size) {}
   HWY_INLINE Vector Re(std::size_t row, std::size_t i) const {
     return hn::Load(Tag(), data + 2 * row * size + i);
   }
