@@ -115,6 +115,7 @@ tidy: packages packages-develop
 HOURS ?= 24
 tidy-changed: packages packages-test packages-develop
 	@cmake --preset tidy -DCMAKE_EXPORT_COMPILE_COMMANDS=ON >/dev/null
+	@cmake --build --preset tidy --target modcal_build_info >/dev/null
 	@last=$$(git log -1 --format=%ct) && \
 	  changed=$$(git log --since=$$((last - 3600 * $(HOURS))) --name-only --format= -- '*.cpp') && \
 	  files=$$(for file in $$(echo "$$changed" | sort -u); do if [ -f $$file ]; then echo "^$$PWD/$$file\$$"; fi; done) && \
