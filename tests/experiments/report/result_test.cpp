@@ -9,7 +9,6 @@
 namespace modcal::report::result_test {
 namespace {
 
-using testing::ElementsAre;
 using testing::HasSubstr;
 
 enum class Stop { kConverged, kBudget };
