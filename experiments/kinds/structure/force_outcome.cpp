@@ -69,12 +69,11 @@ void visit_sensors(const LoadedStructureRecord& loaded, const StructureForce& fo
        .table = "sensors",
        .name = "Sensors",
        .meaning =
-           "rms of what the common force leaves of each response, over what the "
-           "table's scatter and noise expect, and over the response itself; how far a prediction "
-           "from the other sensors alone is off, what of its bins lies in 95 %, and the mean "
-           "square "
-           "of what the others leave without it, over what is expected: about 1, far less where it "
-           "alone contradicts them."},
+           "rms of what the common force leaves of each response, over what the table's scatter "
+           "and noise expect, and over the response itself; how far a prediction from the other "
+           "sensors alone is off, and what of its bins lies in 95 %; the mean square of what the "
+           "others leave without it, over what is expected: about 1, far less where it alone "
+           "contradicts them."},
       found.sensor_misfit, [&](ResultVisitor& row, const double& misfit) {
         const auto k = static_cast<std::size_t>(&misfit - found.sensor_misfit.data());
         row({.key = "channel"}, loaded.names[k]);
@@ -88,15 +87,6 @@ void visit_sensors(const LoadedStructureRecord& loaded, const StructureForce& fo
         row({.key = "others", .name = "left by the others", .format = "{:.2g}"},
             known(found.predicted[k].others));
       });
-  visitor({.key = "contour_per_s"}, found.sigma);
-  visitor({.key = "window_s"}, found.window);
-  visitor({.key = "rang_before"}, found.rang);
-  visitor({.key = "background"}, found.background);
-  visitor({.key = "evidence_impacts"}, known(found.evidence_impacts));
-  visitor({.key = "evidence_smooth"}, known(found.evidence_smooth));
-  visitor({.key = "rise", .name = "rise of the power towards 0 Hz", .format = "{:.2g}"},
-          found.rise);
-  visitor({.key = "misfit"}, known(found.misfit));
 }
 
 }  // namespace
@@ -129,6 +119,16 @@ void ForceOutcome::visit(ResultVisitor& visitor) const {
             score ? std::optional(score->coverage) : std::nullopt);
       });
   visit_sensors(loaded, found, visitor);
+  visitor({.key = "contour_per_s"}, found.sigma);
+  visitor({.key = "window_s"}, found.window);
+  visitor({.key = "rang_before"}, found.rang);
+  visitor({.key = "left_out"}, left_out.empty() ? std::nullopt : std::optional(left_out));
+  visitor({.key = "background"}, found.background);
+  visitor({.key = "evidence_impacts"}, known(found.evidence_impacts));
+  visitor({.key = "evidence_smooth"}, known(found.evidence_smooth));
+  visitor({.key = "rise", .name = "rise of the power towards 0 Hz", .format = "{:.2g}"},
+          found.rise);
+  visitor({.key = "misfit"}, known(found.misfit));
 }
 
 void PlacesOutcome::visit(ResultVisitor& visitor) const {

@@ -31,6 +31,7 @@ struct ForceOutcome {
   const LoadedStructureRecord& loaded;
   const StructureForce& found;
   const std::optional<ForceScore>& score;
+  const std::string& left_out;  ///< name of the sensor that contradicts the others; empty: none
   void visit(ResultVisitor& visitor) const;
 };
 

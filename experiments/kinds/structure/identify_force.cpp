@@ -228,7 +228,7 @@ StudyResult IdentifyForceOptions::run(const StudyContext& context) const {
   const double rate = loaded.record.sample_rate;
   if (!loaded.record.force.empty()) score = score_of(found, loaded.record.force, rate, modes);
   StudyResult result;
-  const ForceOutcome outcome{loaded, found, score};
+  const ForceOutcome outcome{loaded, found, score, odd};
   result.summary = sentence_of(found, rate, loaded.kinds.size());
   if (score) {
     result.summary += fmt::format(

@@ -43,12 +43,15 @@ class OddSensor : public FolderTest {
   }
 };
 
-double error_of(const StudyResult& result) {
+nlohmann::json document_of(const StudyResult& result) {
   for (const auto& [file, text] : result.files) {
-    if (file != "force.json") continue;
-    return nlohmann::json::parse(text)["force"][0]["relative_error"].get<double>();
+    if (file == "force.json") return nlohmann::json::parse(text);
   }
   throw std::runtime_error("no force.json");
+}
+
+double error_of(const StudyResult& result) {
+  return document_of(result)["force"][0]["relative_error"].get<double>();
 }
 
 void drop_samples(Samples& a) { std::rotate(a.begin() + 90, a.begin() + 93, a.end()); }
@@ -63,12 +66,14 @@ void turn_sign(Samples& a) {
 TEST_F(OddSensor, OfFourIsLeftOutAndNamed) {
   const StudyResult whole = run("force_on_plate.yaml", {spoilt([](Samples&) {})});
   EXPECT_THAT(whole.summary, Not(HasSubstr("a2")));
+  EXPECT_TRUE(document_of(whole)["left_out"].is_null());
   for (const auto& change : {drop_samples, double_gain, turn_sign}) {
     const StudyResult result = run("force_on_plate.yaml", {spoilt(change)});
     EXPECT_EQ(result.status, report::Status::kOk);
     EXPECT_THAT(result.summary, HasSubstr("impacts from 3 sensors"));
     EXPECT_THAT(result.summary, HasSubstr("a2 contradicts the other sensors, which agree without "
                                           "it: it is left out"));
+    EXPECT_EQ(document_of(result)["left_out"], "a2");
     EXPECT_NEAR(error_of(result), error_of(whole), 0.2 * error_of(whole));
   }
 }
