@@ -75,7 +75,8 @@ double left_by_others(const ContourSpectra& spectra, const Transfers& transfers,
                       const BinVariances& variances, const BinEvidence& others, std::size_t k) {
   double sum = 0.0;
   for (std::size_t j = 0; j < transfers.size(); ++j) {
-    for (std::size_t m = 0; m < spectra.count() && j != k; ++m) {
+    if (j == k) continue;
+    for (std::size_t m = 0; m < spectra.count(); ++m) {
       const Complex left =
           spectra.responses[j][m] - transfers[j][m] * (others.score[m] / others.told[m]);
       sum += std::norm(left) / variances.of[j][m];

@@ -11,18 +11,18 @@ namespace {
 
 constexpr double kRate = 3200.0;
 
-// Two modes and so many sensors, which a blow after 50 ms makes ring; sensor 1 reads by `gain` too
-// much, all of it in closed form.
+// Two modes and a sensor for each gain that it has, which a blow after 50 ms makes ring, all of it
+// in closed form.
 struct Struck {
   StructureTable table{.low = 20.0, .high = 400.0};
   StructureRecord record{.sample_rate = kRate};
 };
 
-Struck struck(std::size_t sensors, double gain) {
+Struck struck(const std::vector<double>& gains) {
   Struck result;
   result.table.model.poles = {{2.0 * std::numbers::pi * 61.0, 0.03},
                               {2.0 * std::numbers::pi * 140.0, 0.02}};
-  for (std::size_t k = 0; k < sensors; ++k) {
+  for (std::size_t k = 0; k < gains.size(); ++k) {
     result.table.model.sensors.push_back(SensorKind::kDisplacement);
     result.table.scatters.push_back({.modal = 0.01, .noise = 1e-9});
     std::vector<double>& response = result.record.responses.emplace_back(3200);
@@ -33,16 +33,16 @@ Struck struck(std::size_t sensors, double gain) {
       const double damped = omega * std::sqrt(1.0 - zeta * zeta);
       for (std::size_t j = 160; j < response.size(); ++j) {
         const double t = static_cast<double>(j - 160) / kRate;
-        response[j] += (k == 1 ? gain : 1.0) * constant / damped * std::exp(-zeta * omega * t) *
-                       std::sin(damped * t);
+        response[j] +=
+            gains[k] * constant / damped * std::exp(-zeta * omega * t) * std::sin(damped * t);
       }
     }
   }
   return result;
 }
 
-std::vector<SensorPrediction> predictions(std::size_t sensors, double gain) {
-  const Struck it = struck(sensors, gain);
+std::vector<SensorPrediction> predictions(const std::vector<double>& gains) {
+  const Struck it = struck(gains);
   const ContourSpectra spectra = ContourSpectra::of(it.record, 4.0, it.table.low, it.table.high);
   const Transfers transfers = transfers_of(it.table, spectra);
   return predictions_of(spectra, transfers, variances_of(it.table, spectra, transfers));
@@ -52,7 +52,10 @@ std::vector<SensorPrediction> predictions(std::size_t sensors, double gain) {
 // With it two of three leave as much as all do, about 1 a degree of freedom.
 TEST(BinEvidence, NamesTheOneSensorThatContradictsTheOthers) {
   for (const std::size_t sensors : {std::size_t{3}, std::size_t{5}}) {
-    const std::vector<SensorPrediction> found = predictions(sensors, 1.5);
+    std::vector<double> gains(sensors, 1.0);
+    gains[1] = 1.5;
+    const std::vector<SensorPrediction> found = predictions(gains);
+    EXPECT_EQ(odd_one_out(found), 1u);
     ASSERT_EQ(found.size(), sensors);
     for (std::size_t k = 0; k < sensors; ++k) {
       if (k == 1) {
@@ -66,10 +69,15 @@ TEST(BinEvidence, NamesTheOneSensorThatContradictsTheOthers) {
 
 // Of two, either may be the one.
 TEST(BinEvidence, NamesNoneOfTwoSensors) {
-  for (const SensorPrediction& sensor : predictions(2, 1.5)) {
+  for (const SensorPrediction& sensor : predictions({1.0, 1.5})) {
     EXPECT_TRUE(std::isnan(sensor.others));
     EXPECT_GT(sensor.error, 0.0);
   }
+}
+
+// A structure that has changed: without any one of them the others contradict each other, too.
+TEST(BinEvidence, NamesNoneWhereAllSensorsAreOff) {
+  EXPECT_EQ(odd_one_out(predictions({1.2, 0.8, 1.1, 0.9})), std::nullopt);
 }
 
 }  // namespace
