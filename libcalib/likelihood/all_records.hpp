@@ -24,7 +24,7 @@ class StrokeLikelihood final : public RecordLikelihood {
   LikelihoodPoint slope(const ModelPoint& point, const LikelihoodColumns& columns) const override {
     return weighted_.slope(point, columns);
   }
-  std::size_t residual_count() const override { return 2 * weighted_.record().bins; }
+  std::size_t residual_count() const override { return 2 * weighted_.record().bins + 1; }
   Eigen::MatrixXd noise_information(const ModelPoint& point,
                                     const LikelihoodColumns& columns) const override;
   LikelihoodPoint unweighted(const ModelPoint& point,

@@ -50,7 +50,7 @@ class Shares {
   std::vector<double> of(const Eigen::MatrixXd& jacobian) const {
     const Eigen::MatrixXd scaled = scale_.asDiagonal() * jacobian.transpose();
     const Eigen::MatrixXd rows = whiten(factor_, scaled);
-    std::vector<double> shares(static_cast<std::size_t>(rows.cols() / 2));
+    std::vector<double> shares(static_cast<std::size_t>(rows.cols() / 2));  // not that of √R
     for (std::size_t k = 0; k < shares.size(); ++k) {
       const auto i = static_cast<Eigen::Index>(2 * k);
       shares[k] = rows.col(i).squaredNorm() + rows.col(i + 1).squaredNorm();

@@ -5,12 +5,11 @@
 #include <numbers>
 #include <utility>
 
+#include "libcalib/likelihood/tuning.hpp"
+
 namespace modcal {
 namespace {
 
-constexpr double kRidge = 1e-9;
-// Powers of s at either end: as many as go with the residual and a sensor's decay.
-constexpr std::size_t smooth_powers() { return (kDecayColumns - 2) / 2; }
 using Index = Eigen::Index;
 
 // Σ conj(κ_m U_m) κ_n U_n and the three sums with U' in the place of U_m, U_n or both.
@@ -27,6 +26,17 @@ PairSums pair_sums(Complex left, Complex left_conj, Complex right, Complex right
       .left_conj = (std::conj(left_conj) + right - total) / (1.0 - left_pole * right_pole),
       .both_conj =
           (std::conj(left_conj) + right_conj - total) / (1.0 - left_pole * std::conj(right_pole))};
+}
+
+// Σ|u|²/2, the square of a column whose bins both ends share alike; u: numbers/s, or 1 where they
+// are no constants of the record.
+double mean_square(const WhitenedRecord& record, const PlainTransient& transient) {
+  if (transient.by_sensor[Sensor::kCorner].size() > 0)
+    return 0.5 * static_cast<double>(record.bins);
+  double sum = 0.0;
+  for (std::size_t k = 0; k < record.bins; ++k) sum += std::norm(transient.numbers.at(k));
+  const double deviation = record.deviation[transient.right ? 1 : 0];
+  return 0.5 * sum / (deviation * deviation);
 }
 
 // Products of x_m, x'_m with x_n, x'_n.
@@ -91,115 +101,32 @@ EndState::Sums added(std::span<const EndState::Sums> parts) {
   return sum;
 }
 
-// What modes above the band leave ringing is smooth in it: powers of iω/ω_top.
-void add_smooth_transients(const WhitenedRecord& record, std::vector<PlainTransient>& transients) {
-  const double top = record.omega[record.bins - 1];
-  for (const bool right : {false, true}) {
-    std::vector<Complex> numbers(record.bins, record.deviation[right ? 1 : 0]);
-    for (std::size_t power = 0; power < smooth_powers(); ++power) {
-      transients.push_back({right, PlanarVector(record.root_weight.size())});
-      for (std::size_t k = 0; k < record.bins; ++k) {
-        transients.back().numbers.set(k, numbers[k]);
-        numbers[k] *= Complex(0.0, record.omega[k] / top);
-      }
-    }
-  }
-}
-
-// One sample, which smooth transients hold already, and the sensor's own decay.
-void add_sensor_transients(const WhitenedRecord& record, const Sensor& sensors,
-                           std::vector<PlainTransient>& transients) {
-  const std::size_t padded = record.root_weight.size();
-  PlainTransient sample{true, PlanarVector(padded)};
-  PlainTransient decay{true, PlanarVector(padded)};
-  PlanarVector& by_corner = decay.by_sensor[Sensor::kCorner] = PlanarVector(padded);
-  const double pole = std::exp(-sensors.corner / record.sample_rate);
-  for (std::size_t k = 0; k < record.bins; ++k) {
-    sample.numbers.set(k, record.deviation[1]);
-    const Complex u = 1.0 / (1.0 - pole * record.delay.at(k));
-    decay.numbers.set(k, record.deviation[1] * u);
-    // dU/dE = U² z^−1 and E U z^−1 = U − 1.
-    by_corner.set(k, record.deviation[1] * u * (1.0 - u) / record.sample_rate);
-  }
-  if (transients.empty()) transients.push_back(std::move(sample));
-  transients.push_back(std::move(decay));
-}
-
-// Σ_j q^j and Σ_j (2j/n − 1) q^j over n samples, q = e^{±iω_h/f_s} z^−1 at σ, of which q^n is the
-// same in every bin: geometric series. A line that stands in a bin is all there.
-struct LineSums {
-  Complex steady, changing;
-};
-LineSums line_sums(Complex ratio, Complex power, double samples) {
-  const Complex off = 1.0 - ratio;
-  // Beyond, the difference of two sums of about n takes as many digits as the limit's error leaves.
-  if (std::abs(off) * samples < 1e-5) return {samples, -1.0};
-  const Complex sum = (1.0 - power) / off;
-  const Complex by_place = (ratio * sum - samples * power) / off;
-  return {sum, 2.0 / samples * by_place - sum};
-}
-
-// Cosine and sine of the lines of the mains, steady and growing over the record: its frequency is
-// known and steady but to a fraction of 1/T.
-void add_lines(const WhitenedRecord& record, std::vector<PlainTransient>& transients) {
-  const double samples = 2.0 * std::numbers::pi * record.sample_rate / record.spacing;
-  const double norm = 1.0 / std::sqrt(samples);
-  for (const double line : record.lines) {
-    const Complex turn = std::polar(1.0, line / record.sample_rate);
-    const Complex end = std::exp(Complex(-record.sigma, line) * samples / record.sample_rate);
-    std::array<PlanarVector, 4> waves;
-    waves.fill(PlanarVector(record.root_weight.size()));
-    for (std::size_t k = 0; k < record.bins; ++k) {
-      const Complex delay = record.delay.at(k);
-      const LineSums forward = line_sums(turn * delay, end, samples);
-      const LineSums backward = line_sums(std::conj(turn) * delay, std::conj(end), samples);
-      waves[0].set(k, 0.5 * norm * (forward.steady + backward.steady));
-      waves[1].set(k, Complex(0.0, -0.5) * norm * (forward.steady - backward.steady));
-      waves[2].set(k, 0.5 * norm * (forward.changing + backward.changing));
-      waves[3].set(k, Complex(0.0, -0.5) * norm * (forward.changing - backward.changing));
-    }
-    for (const bool right : {false, true}) {
-      for (const PlanarVector& wave : waves) transients.push_back({right, wave});
-    }
-  }
-}
-
-// The residual takes what is at x = L from the record, and adds what is at x = 0.
-void add_signals(const WhitenedRecord& record, std::vector<PlainTransient>& transients) {
-  for (const SignalColumn& signal : record.signals) {
-    PlanarVector left(record.root_weight.size()), right(record.root_weight.size());
-    for (std::size_t k = 0; k < record.bins; ++k) {
-      left.set(k, -record.deviation[0] * signal.left.at(k));
-      right.set(k, record.deviation[1] * signal.right.at(k));
-    }
-    transients.push_back({true, std::move(right), std::move(left)});
-  }
-}
-
 using Columns = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic>>;
 
 }  // namespace
 
-std::vector<PlainTransient> plain_transients(const WhitenedRecord& record,
-                                             const ModelPoint& point) {
-  std::vector<PlainTransient> transients;
-  if (record.sigma > 0.0) {
-    transients = {{false, record.offset}, {true, record.offset}};
-  } else {
-    if (point.higher) add_smooth_transients(record, transients);
-    if (point.sensors.may_differ()) add_sensor_transients(record, point.sensors, transients);
-  }
-  add_lines(record, transients);
-  add_signals(record, transients);
-  return transients;
-}
-
 EndState::EndState(const WhitenedRecord& record, std::span<const LikelihoodMode> modes,
-                   std::size_t plain)
-    : modes_(modes), decays_(0), plain_(plain) {
-  if (record.sigma > 0.0) return;
-  decays_ = static_cast<std::size_t>(std::count_if(
-      modes.begin(), modes.end(), [](const LikelihoodMode& mode) { return mode.decays; }));
+                   std::span<const PlainTransient> plain)
+    : modes_(modes), decays_(0), plain_(plain.size()) {
+  if (record.sigma == 0.0) {
+    decays_ = static_cast<std::size_t>(std::count_if(
+        modes.begin(), modes.end(), [](const LikelihoodMode& mode) { return mode.decays; }));
+  }
+  ridge_.resize(static_cast<Index>(size()));
+  const double ridge = kEndStateRidge / record.energy;
+  const double samples = 2.0 * std::numbers::pi * record.sample_rate / record.spacing;
+  const double scale = ridge * samples / (record.deviation[0] * record.deviation[1]);
+  for (std::size_t n = 0; n < decays_; ++n) {
+    // |E_n| = e^−loss, loss = ζ_nω_n/f_s, to which ω_n and ζ_n are the same.
+    const double loss = 0.5 * modes[n].two_zeta_omega / record.sample_rate;
+    const double gain = scale / -std::expm1(-2.0 * loss);
+    ridge_.segment<2>(static_cast<Index>(2 * n)).setConstant(gain);
+    ridge_slopes_.push_back(2.0 * loss * gain / std::expm1(2.0 * loss));
+  }
+  for (std::size_t p = 0; p < plain_; ++p) {
+    ridge_[static_cast<Index>(2 * decays_ + p)] =
+        kPlainShare * ridge * mean_square(record, plain[p]);
+  }
 }
 
 void EndState::add_gram(const WhitenedRecord& record, std::size_t block_index,
@@ -260,7 +187,7 @@ void EndState::solve(std::span<const Sums> parts) {
   inverse_norms_ = gram.diagonal();
   for (double& norm : inverse_norms_) norm = norm > 0.0 ? 1.0 / std::sqrt(norm) : 1.0;
   Eigen::MatrixXd scaled = inverse_norms_.asDiagonal() * gram * inverse_norms_.asDiagonal();
-  scaled.diagonal().array() += kRidge;
+  scaled.diagonal() += ridge_.cwiseProduct(inverse_norms_.cwiseAbs2());
   normal_ = PositiveSolver(scaled);
   find(products.col(0));
 }
@@ -270,13 +197,24 @@ void EndState::solve_again(std::span<const Sums> parts) {
 }
 
 void EndState::find(const Eigen::VectorXd& products) {
-  const Eigen::VectorXd found = -fit(products);
+  found_ = -fit(products);
   amplitudes_.clear();
   for (std::size_t n = 0; n < decays_; ++n) {
     const auto i = static_cast<Index>(2 * n);
-    amplitudes_.emplace_back(found[i], found[i + 1]);
+    amplitudes_.emplace_back(found_[i], found_[i + 1]);
   }
-  plain_amplitudes_.assign(found.end() - static_cast<Index>(plain_), found.end());
+  plain_amplitudes_.assign(found_.end() - static_cast<Index>(plain_), found_.end());
+  cost_ = found_.cwiseAbs2().dot(ridge_);
+}
+
+double EndState::slope(std::size_t n) const {
+  return -0.5 * ridge_slopes_[n] * std::norm(amplitudes_[n]);
+}
+
+Eigen::VectorXd EndState::root_slope(const Eigen::VectorXd& slope,
+                                     const Eigen::MatrixXd& fit) const {
+  if (!(cost_ > 0.0)) return Eigen::VectorXd::Zero(slope.size());
+  return (slope - fit.transpose() * ridge_.cwiseProduct(found_)) / std::sqrt(cost_);
 }
 
 Eigen::MatrixXd EndState::fit(const Eigen::MatrixXd& products) const {

@@ -2,43 +2,35 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <span>
 #include <vector>
 
 #include "libcalib/likelihood/kernels/decay_kernel.hpp"
-#include "libcalib/parameters/parameter_table.hpp"
+#include "libcalib/likelihood/plain_transients.hpp"
 #include "libsim/base/dense_solvers.hpp"
 
 namespace modcal {
 
-/// Something in the record of one end, known but for its real amplitude.
-struct PlainTransient {
-  bool right = false;
-  PlanarVector numbers;  ///< its transform, whitened but for 1/s_r
-  /// What is in the record of x = 0 where that at x = L is in `numbers`; empty: nothing.
-  PlanarVector left = {};
-  /// ∂numbers by the numbers of the sensor at x = L; empty: none.
-  std::array<PlanarVector, Sensor::kCount> by_sensor = {};
-};
-/// σ > 0: static offsets of both records. σ = 0: where the sensor at x = L has a delay or a corner
-/// of its own, or may have one, what it holds at the end of the record: one sample and its own
-/// decay. Where there are modes above the stated ones, what these leave ringing, smooth in the
-/// band: 1, s and s² at both ends; and the signals of the record. At any σ the cosine and sine of
-/// every line of the mains, steady and growing in time: the mains wander, and F is known to a
-/// fraction of 1/T.
-std::vector<PlainTransient> plain_transients(const WhitenedRecord& record, const ModelPoint& point);
-
 /// At σ = 0 the complex amplitudes c_n of the sampled free decays (2N columns x_n, x'_n, see
-/// decay_kernel.hpp), and the amplitudes of plain transients behind them. Least squares by the
-/// normal equations, columns normalized, ridge 1e-9. The Gram matrix of the decays takes one sum a
-/// mode and parity, since with |z| = 1
+/// decay_kernel.hpp), and the amplitudes a_p of plain transients behind them. Least squares by the
+/// normal equations, columns normalized. The Gram matrix of the decays takes one sum a mode and
+/// parity, since with |z| = 1
 ///
 ///     conj(U_m) U_n = (conj(U_m) + U_n − 1)/(1 − conj(E_m) E_n).
+///
+/// What an impulse of the force at the begin or the end of the record leaves ringing moves both
+/// ends as the force does, and the residual hardly sees it. A prior holds these amplitudes, by
+/// their energy over that of the record, E = Σ |y_1|² + |y_2|²:
+///
+///     R = Σ_n ρ_n |c_n|² + Σ_p ρ_p a_p²,
+///     ρ_n = ρ N/(E s_1 s_2 (1 − |E_n|²)),  ρ_p = 1e-3 ρ Σ |u_p|²/2E.
+///
+/// It belongs to the cost: without it, half the cost's gradient would not be the slope Re Jᴴ W e.
 class EndState {
  public:
-  /// `modes` must outlive this. plain: how many plain transients there are.
-  EndState(const WhitenedRecord& record, std::span<const LikelihoodMode> modes, std::size_t plain);
+  /// `modes` must outlive this.
+  EndState(const WhitenedRecord& record, std::span<const LikelihoodMode> modes,
+           std::span<const PlainTransient> plain);
 
   /// Sums over some of the blocks.
   struct Sums {
@@ -62,7 +54,12 @@ class EndState {
 
   std::span<const Complex> amplitudes() const { return amplitudes_; }  ///< c_n
   double plain_amplitude(std::size_t i) const { return plain_amplitudes_[i]; }
-  /// (XᵀX)⁻¹ B for the columns X.
+  double cost() const { return cost_; }  ///< R
+  double slope(std::size_t n) const;  ///< ½ ∂R/∂ln ω_n = ½ ∂R/∂ln ζ_n at fixed amplitudes
+  /// ∂√R of some unknowns. slope: ½ ∂R at fixed amplitudes; fit: fit() of the unknowns' products,
+  /// which the amplitudes follow.
+  Eigen::VectorXd root_slope(const Eigen::VectorXd& slope, const Eigen::MatrixXd& fit) const;
+  /// (XᵀX + R'')⁻¹ B for the columns X.
   Eigen::MatrixXd fit(const Eigen::MatrixXd& products) const;
 
  private:
@@ -72,7 +69,9 @@ class EndState {
 
   std::span<const LikelihoodMode> modes_;
   std::size_t decays_, plain_;
-  Eigen::VectorXd inverse_norms_;
+  Eigen::VectorXd inverse_norms_, ridge_, found_;
+  std::vector<double> ridge_slopes_;  // −∂ρ_n/∂ln ω_n
+  double cost_ = 0.0;
   PositiveSolver normal_;
   std::vector<Complex> amplitudes_;
   std::vector<double> plain_amplitudes_;

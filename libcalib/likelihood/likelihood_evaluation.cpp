@@ -51,7 +51,7 @@ LikelihoodEvaluation::LikelihoodEvaluation(const WhitenedRecord& record, const M
       modes_(likelihood_modes(point, record.sample_rate)),
       splits_(record, modes_, interpolate),
       plain_(plain_transients(record, point)),
-      end_state_(record, modes_, plain_.size()),
+      end_state_(record, modes_, plain_),
       plain_width_(tiled(plain_.size())),
       arrays_(std::move(spare())) {
   if (arrays_.blocks.size() < record.blocks()) arrays_.blocks.resize(record.blocks());
@@ -224,6 +224,19 @@ void LikelihoodEvaluation::add_knot_slopes(std::size_t b, const double* by_gain,
   }
 }
 
+// Half of what the cost of the end state changes by, its amplitudes held.
+Eigen::VectorXd LikelihoodEvaluation::end_state_slope(const LikelihoodColumns& columns) const {
+  Eigen::VectorXd slope = Eigen::VectorXd::Zero(static_cast<Index>(columns.count));
+  for (std::size_t n = 0; columns.count > 0 && n < end_state_.decays(); ++n) {
+    for (std::size_t i = columns.share_begin[n]; i < columns.share_begin[n + 1]; ++i) {
+      const ColumnShare& share = columns.shares[i];
+      slope[static_cast<Index>(share.column)] +=
+          (share.frequency + share.damping) * end_state_.slope(n);
+    }
+  }
+  return slope;
+}
+
 LikelihoodPoint LikelihoodEvaluation::slope(const LikelihoodColumns& columns) {
   prepare_sensor(columns);
   const auto& sensors = columns.sensors;
@@ -267,6 +280,8 @@ LikelihoodPoint LikelihoodEvaluation::slope(const LikelihoodColumns& columns) {
     point.slope[at] = sum.knots[k].real();
     point.slope[at + 1] = sum.knots[k].imag();
   }
+  point.cost += end_state_.cost();
+  point.slope += end_state_slope(columns);
   return point;
 }
 

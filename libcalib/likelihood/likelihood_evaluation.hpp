@@ -10,8 +10,8 @@
 
 #include "libcalib/likelihood/end_state.hpp"
 #include "libcalib/likelihood/kernels/likelihood_kernel.hpp"
-#include "libcalib/likelihood/likelihood_outputs.hpp"
 #include "libcalib/likelihood/kernels/mode_columns.hpp"
+#include "libcalib/likelihood/likelihood_outputs.hpp"
 
 namespace modcal {
 
@@ -86,6 +86,7 @@ class LikelihoodEvaluation {
                                const LikelihoodColumns& columns);
   /// Products with what every unknown's column is made of, from the sums of add_mode_slopes().
   Eigen::VectorXd mode_products(const double* sums, const LikelihoodColumns& columns) const;
+  Eigen::VectorXd end_state_slope(const LikelihoodColumns& columns) const;
   void add_own_products(const BlockColumns& own, std::size_t all, const double* jacobian,
                         Products& sums) const;
   void add_cross_products(std::size_t b, const LikelihoodColumns& columns, const BlockColumns& own,

@@ -10,7 +10,7 @@ namespace modcal {
 
 /// One evaluation at a model.
 struct LikelihoodPoint {
-  double cost = 0.0;               ///< Σ_k w_k |e_k|²
+  double cost = 0.0;               ///< Σ_k w_k |e_k|², and what holds the end state (EndState)
   Eigen::VectorXd slope;           ///< Re Jᴴ W e: half the gradient of the cost
   Eigen::MatrixXd information;     ///< Re J⊥ᴴ W J⊥
   Eigen::MatrixXd twice_weighted;  ///< Re J⊥ᴴ W² J⊥, where asked for
@@ -19,10 +19,11 @@ struct LikelihoodPoint {
 /// Null: not asked for.
 struct LikelihoodOutputs {
   bool twice_weighted = false;
-  std::vector<double>* residuals = nullptr;  ///< √w e, real and imaginary part in turn: 2K_b
-  Eigen::MatrixXd* jacobian = nullptr;       ///< √w J⊥, rows in the same order
-  std::vector<Complex>* force = nullptr;     ///< F̂, whitened like y_r, K_b numbers
-  std::vector<double>* gain = nullptr;       ///< hᴴC⁻¹h, K_b numbers
+  /// √w e, real and imaginary part in turn, then √R of the end state: 2K_b + 1.
+  std::vector<double>* residuals = nullptr;
+  Eigen::MatrixXd* jacobian = nullptr;    ///< √w J⊥ and ∂√R, rows in the same order
+  std::vector<Complex>* force = nullptr;  ///< F̂, whitened like y_r, K_b numbers
+  std::vector<double>* gain = nullptr;    ///< hᴴC⁻¹h, K_b numbers
   std::vector<Complex>* amplitudes = nullptr;
   std::vector<Complex>* left = nullptr;   ///< h_1, K_b numbers
   std::vector<Complex>* right = nullptr;  ///< h_2

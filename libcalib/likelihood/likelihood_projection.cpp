@@ -1,5 +1,6 @@
 // The columns of one evaluation with the end state projected out, and what is given of the blocks.
 #include <algorithm>
+#include <cmath>
 
 #include "libcalib/likelihood/likelihood_work.hpp"
 
@@ -62,7 +63,11 @@ void LikelihoodEvaluation::project_columns(const LikelihoodColumns& columns, Col
   const auto width = static_cast<Index>(full);
   RowMatrix factors = RowMatrix::Zero(fit.rows(), width);
   factors.leftCols(fit.cols()) = fit;
-  if (outputs.jacobian) outputs.jacobian->resize(static_cast<long>(2 * record_->bins), fit.cols());
+  if (outputs.jacobian) {
+    outputs.jacobian->resize(static_cast<Index>(2 * record_->bins + 1), fit.cols());
+    outputs.jacobian->bottomRows(1) =
+        end_state_.root_slope(end_state_slope(columns), fit).transpose();
+  }
   struct Part {
     RowMatrix twice;
     AlignedVector state, columns;
@@ -98,7 +103,8 @@ void LikelihoodEvaluation::give(const LikelihoodOutputs& outputs) {
     outputs.amplitudes->assign(end_state_.amplitudes().begin(), end_state_.amplitudes().end());
   }
   if (outputs.residuals) {
-    outputs.residuals->resize(2 * record_->bins);
+    outputs.residuals->resize(2 * record_->bins + 1);
+    outputs.residuals->back() = std::sqrt(end_state_.cost());
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
       for_rows(b, record_->bins, [&](std::size_t row, std::size_t at) {
         (*outputs.residuals)[row] = residual_of(b)[at];

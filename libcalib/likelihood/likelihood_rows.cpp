@@ -122,6 +122,8 @@ LikelihoodPoint LikelihoodEvaluation::rows(const LikelihoodColumns& columns,
     point.slope[column] = products(n, place);
     point.information.col(column) = own.col(place).head(point.information.rows());
   }
+  point.cost += end_state_.cost();
+  point.slope += end_state_slope(columns);
   return point;
 }
 

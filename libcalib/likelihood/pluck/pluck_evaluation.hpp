@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "libcalib/likelihood/end_state.hpp"
 #include "libcalib/likelihood/likelihood_outputs.hpp"
+#include "libcalib/likelihood/plain_transients.hpp"
 #include "libsim/base/dense_solvers.hpp"
 
 namespace modcal {

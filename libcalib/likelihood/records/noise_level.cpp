@@ -17,7 +17,7 @@ using std::numbers::pi;
 
 constexpr double kClear = 1.4;       // the response there is 8e-4 of the signal or less
 constexpr double kLineMargin = 1.1;  // lines begin to stand apart; holds errors of the model, too
-constexpr std::size_t kFewestBins = 200;
+constexpr std::size_t kFewestNoiseBins = 200;
 
 struct Bins {
   std::size_t first, last;
@@ -47,11 +47,11 @@ NoiseBand NoiseBand::above(double top, double sample_rate, std::size_t samples) 
   if (kClear * top <= band.low * sample_rate) return band;
   band.clear = false;
   band.low = std::max(band.low, kLineMargin * top / sample_rate);
-  MODCAL_REQUIRE(bins_of(band, samples).count() >= kFewestBins,
+  MODCAL_REQUIRE(bins_of(band, samples).count() >= kFewestNoiseBins,
                  "the noise cannot be read from {} samples at {:g} Hz with modes up to {:g} Hz: it "
                  "takes {} bins between {:g} Hz (1.1 times the highest mode) and {:g} Hz. State "
                  "noise_rms_1 and noise_rms_2, use fewer modes, or sample faster",
-                 samples, sample_rate, top, kFewestBins, band.low * sample_rate,
+                 samples, sample_rate, top, kFewestNoiseBins, band.low * sample_rate,
                  band.high * sample_rate);
   return band;
 }

@@ -135,6 +135,9 @@ WhitenedRecord WhitenedRecord::of(const NoisyRecords& records, double sigma, dou
   };
   whiten_end(records.reactions[0], 0, record.left);
   whiten_end(records.reactions[1], 1, record.right);
+  for (std::size_t k = 0; k < record.bins; ++k) {
+    record.energy += std::norm(record.left.at(k)) + std::norm(record.right.at(k));
+  }
   if (sigma == 0.0 && !records.on_bridge.empty()) {
     record.on_bridge = PlanarVector(padded);
     whiten_end(records.on_bridge, 1, record.on_bridge);
@@ -198,6 +201,7 @@ WhitenedRecord WhitenedRecord::slice(std::size_t begin, std::size_t count) const
                       .first = first + begin,
                       .sample_rate = sample_rate,
                       .deviation = deviation,
+                      .energy = energy,
                       .lines = lines};
   const std::size_t padded = (part.bins + kBlock - 1) / kBlock * kBlock;
   part.left = part.right = part.delay = part.offset = PlanarVector(padded);

@@ -53,6 +53,7 @@ struct WhitenedRecord {
   std::size_t first = 1;     ///< 1, save in a slice
   double sample_rate = 0.0;  ///< [Hz]
   std::array<double, 2> deviation{};
+  double energy = 0.0;        ///< Σ |y_1|² + |y_2|² of the record
   std::vector<double> lines;  ///< [rad/s]
   std::vector<SignalColumn> signals;
   PlanarVector left, right;  ///< y_1, y_2

@@ -96,6 +96,7 @@ LossOfB loss_of_b(const BowedCase& bowed, double inharmonicity, double level, in
   const Eigen::MatrixXd inverse =
       whole.evaluate(bowed.truth, columns, {.jacobian = &clean, .force = &force, .gain = &known})
           .information.inverse();
+  clean.conservativeResize(static_cast<Eigen::Index>(2 * known.size()), Eigen::NoChange);
   const double bound = 0.5 * inverse(1, 1);
   for (std::size_t k = 0; k < known.size(); ++k) {
     const double signal = known[k] * std::norm(force[k]);
@@ -105,10 +106,12 @@ LossOfB loss_of_b(const BowedCase& bowed, double inharmonicity, double level, in
   for (int seed = 0; seed < draws; ++seed) {
     const ProjectedLikelihood likelihood(
         WhitenedRecord::of(noisy(bowed, level, static_cast<std::uint64_t>(seed)), 0.0, highest));
-    std::vector<double> residuals(2 * likelihood.record().bins);
+    std::vector<double> residuals;
     likelihood.evaluate(bowed.truth, columns, {.residuals = &residuals, .jacobian = &jacobian});
-    const Eigen::Map<const Eigen::VectorXd> e(residuals.data(),
-                                              static_cast<Eigen::Index>(residuals.size()));
+    // Of the bins, without the cost of the end state.
+    const auto numbers = static_cast<Eigen::Index>(2 * known.size());
+    const Eigen::Map<const Eigen::VectorXd> e(residuals.data(), numbers);
+    jacobian.conservativeResize(numbers, Eigen::NoChange);
     const double efficient = (inverse * (clean.transpose() * e))[1];
     const auto added = [&](const std::vector<double>& weights) {
       Eigen::VectorXd twice(e.size());

@@ -145,12 +145,13 @@ TEST_F(OneSecondOfMains, AreNoMatterToTheFit) {
     const LikelihoodPoint b =
         LikelihoodEvaluation(of_hum, point).differentiate(columns, {.twice_weighted = true});
     EXPECT_GT(wrong, 1.05 * a.cost);
-    // The ridge leaves 1e-9 of the lines' power, which is 1e4 times that of the noise in a bin.
-    EXPECT_NEAR(b.cost / a.cost, 1.0, 1e-6) << sigma;
+    // What the end state costs, in which the lines count a thousandth of their power over that of
+    // the record, is a little less where that holds the lines.
+    EXPECT_NEAR(b.cost / a.cost, 1.0, 1e-5) << sigma;
     for (Eigen::Index i = 0; i < a.slope.size(); ++i) {
       const double own = std::sqrt(a.information(i, i));
       EXPECT_NEAR(a.slope[i] / own, b.slope[i] / own, 1e-4) << i << ", sigma " << sigma;
-      EXPECT_NEAR(a.information(i, i) / b.information(i, i), 1.0, 1e-5) << i;
+      EXPECT_NEAR(a.information(i, i) / b.information(i, i), 1.0, 1e-4) << i;
     }
     // Some rows, and the slope alone, hold the lines alike.
     const std::vector<std::size_t> wanted = {0, 50};
