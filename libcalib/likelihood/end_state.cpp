@@ -113,7 +113,9 @@ EndState::EndState(const WhitenedRecord& record, std::span<const LikelihoodMode>
         modes.begin(), modes.end(), [](const LikelihoodMode& mode) { return mode.decays; }));
   }
   ridge_.resize(static_cast<Index>(size()));
-  const double ridge = kEndStateRidge / record.energy;
+  // Of a record that is silent that of its noise.
+  const double ridge =
+      kEndStateRidge / std::max(record.energy, 2.0 * static_cast<double>(record.bins));
   const double samples = 2.0 * std::numbers::pi * record.sample_rate / record.spacing;
   const double scale = ridge * samples / (record.deviation[0] * record.deviation[1]);
   for (std::size_t n = 0; n < decays_; ++n) {
