@@ -35,12 +35,14 @@ test:
 	@cmake --build --preset $(PRESET)
 	@ctest --preset $(PRESET) --parallel $$(nproc)
 
-# Addresses, undefined behavior and threads: the tests that tests/CMakeLists.txt lists for them.
+# Addresses, undefined behavior and threads: the tests that tests/CMakeLists.txt lists for them, or a GROUP of its own.
 SANITIZERS ?= asan-ubsan tsan
 sanitize: packages-test packages-fuzz
 	@for preset in $(SANITIZERS); do \
-	  cmake --preset $$preset >/dev/null && cmake --build --preset $$preset && \
-	  ctest --preset $$preset --parallel $$(nproc) || exit 1; \
+	  cmake --preset $$preset >/dev/null && \
+	  cmake --build --preset $$preset $(if $(GROUP),--target $(GROUP)_tests) && \
+	  ctest $(if $(GROUP),--test-dir build/$$preset --label-regex $(GROUP) --output-on-failure,--preset $$preset) \
+	    --parallel $$(nproc) || exit 1; \
 	done
 
 # Each fuzzer for SECONDS; 0: the corpora once. What they find: build/asan-ubsan/findings.
