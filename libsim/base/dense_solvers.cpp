@@ -32,6 +32,7 @@ Eigen::VectorXd SymmetricSolver<Factor>::vector(const Eigen::VectorXd& right) co
 
 template <typename Factor>
 Eigen::MatrixXd SymmetricSolver<Factor>::columns(const Eigen::MatrixXd& right) const {
+  if (right.size() == 0) return right;  // Eigen would ask for its first number
   return factor_.solve(right);
 }
 
