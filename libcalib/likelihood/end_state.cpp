@@ -28,15 +28,21 @@ PairSums pair_sums(Complex left, Complex left_conj, Complex right, Complex right
           (std::conj(left_conj) + right_conj - total) / (1.0 - left_pole * std::conj(right_pole))};
 }
 
-// Σ|u|²/2, the square of a column whose bins both ends share alike; u: numbers/s, or 1 where they
-// are no constants of the record.
+// Σ|u|²/2 over both ends, the square of a column whose bins these share alike; u: numbers/s, or 1
+// where they are no constants of the record.
 double mean_square(const WhitenedRecord& record, const PlainTransient& transient) {
-  if (transient.by_sensor[Sensor::kCorner].size() > 0)
-    return 0.5 * static_cast<double>(record.bins);
+  const auto bins = static_cast<double>(record.bins);
+  if (transient.by_sensor[Sensor::kCorner].size() > 0) return 0.5 * bins;
   double sum = 0.0;
-  for (std::size_t k = 0; k < record.bins; ++k) sum += std::norm(transient.numbers.at(k));
-  const double deviation = record.deviation[transient.right ? 1 : 0];
-  return 0.5 * sum / (deviation * deviation);
+  const auto add = [&](const PlanarVector& numbers, std::size_t end) {
+    const double power = 1.0 / (record.deviation[end] * record.deviation[end]);
+    for (std::size_t k = 0; numbers.size() > 0 && k < record.bins; ++k) {
+      sum += power * std::norm(numbers.at(k));
+    }
+  };
+  add(transient.numbers, transient.right ? 1 : 0);
+  add(transient.left, 0);
+  return 0.5 * sum;
 }
 
 // Products of x_m, x'_m with x_n, x'_n.

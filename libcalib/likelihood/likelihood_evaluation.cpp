@@ -237,6 +237,12 @@ Eigen::VectorXd LikelihoodEvaluation::end_state_slope(const LikelihoodColumns& c
   return slope;
 }
 
+void LikelihoodEvaluation::add_end_state(const LikelihoodColumns& columns,
+                                         LikelihoodPoint& point) const {
+  point.cost += end_state_.cost();
+  point.slope += end_state_slope(columns);
+}
+
 LikelihoodPoint LikelihoodEvaluation::slope(const LikelihoodColumns& columns) {
   prepare_sensor(columns);
   const auto& sensors = columns.sensors;
@@ -280,8 +286,7 @@ LikelihoodPoint LikelihoodEvaluation::slope(const LikelihoodColumns& columns) {
     point.slope[at] = sum.knots[k].real();
     point.slope[at + 1] = sum.knots[k].imag();
   }
-  point.cost += end_state_.cost();
-  point.slope += end_state_slope(columns);
+  add_end_state(columns, point);
   return point;
 }
 

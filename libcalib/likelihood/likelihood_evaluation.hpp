@@ -87,6 +87,7 @@ class LikelihoodEvaluation {
   /// Products with what every unknown's column is made of, from the sums of add_mode_slopes().
   Eigen::VectorXd mode_products(const double* sums, const LikelihoodColumns& columns) const;
   Eigen::VectorXd end_state_slope(const LikelihoodColumns& columns) const;
+  void add_end_state(const LikelihoodColumns& columns, LikelihoodPoint& point) const;
   void add_own_products(const BlockColumns& own, std::size_t all, const double* jacobian,
                         Products& sums) const;
   void add_cross_products(std::size_t b, const LikelihoodColumns& columns, const BlockColumns& own,

@@ -261,8 +261,7 @@ LikelihoodPoint LikelihoodEvaluation::differentiate(const LikelihoodColumns& col
   const Products sum = multiply_columns(columns, work, [](std::size_t, std::size_t) {});
   const Eigen::MatrixXd products = symmetric(sum.own, work.count + 1);
   LikelihoodPoint point{.cost = products(n, n), .slope = products.col(n).head(n)};
-  point.cost += end_state_.cost();
-  point.slope += end_state_slope(columns);
+  add_end_state(columns, point);
   give(outputs);
   if (n == 0) return point;
   const Eigen::MatrixXd cross = cross_products(work, sum);

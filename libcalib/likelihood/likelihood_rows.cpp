@@ -122,8 +122,7 @@ LikelihoodPoint LikelihoodEvaluation::rows(const LikelihoodColumns& columns,
     point.slope[column] = products(n, place);
     point.information.col(column) = own.col(place).head(point.information.rows());
   }
-  point.cost += end_state_.cost();
-  point.slope += end_state_slope(columns);
+  add_end_state(columns, point);
   return point;
 }
 
