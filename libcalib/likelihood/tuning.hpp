@@ -14,15 +14,17 @@ constexpr double kNearMode = 0.04;
 
 /// What an end state costs that has the energy of the record (EndState).
 /// Source: as large as that it is expected. A record each of the six strings of benchmarks/truth,
-/// 0.1 to 5 % of noise: 285 evaluations in all. More costs likelihood (100: 40 of 9500, and tests
-/// of 0.1 s see modes above that are not there at 3); less leaves amplitudes to what noise says,
-/// and a search takes more steps (0.1: 362 evaluations). Range tried: 0.1 to 100. Doubled: χ² as
-/// now to 2e-4, about 280 evaluations. Halved: χ² as now to 1e-4, 311 evaluations.
+/// 0.1 to 5 % of noise: 300 evaluations in all. More costs likelihood (100: 40 of 9500, and tests
+/// of 0.1 s see modes above that are not there at 3). Less leaves amplitudes to what noise says,
+/// and a search takes more steps (0.1: 362 evaluations).
+/// Range tried: 0.1 to 100.
+/// Doubled: χ² as now to 6e-5, 296 evaluations.
+/// Halved: χ² as now to 1e-4, 311 evaluations.
 constexpr double kEndStateRidge = 1.0;
 
 /// The same of a plain transient, of what a decay costs: it may be as large as it likes, and this
 /// decides only where columns depend on each other.
-/// Source: three of those records. Nothing depends on it.
+/// Source: those records. Nothing depends on it.
 /// Range tried: 3e-5 to 1.
 /// Doubled: evaluations and χ² as now.
 /// Halved: the same.
