@@ -6,10 +6,13 @@ dampers: complex modes), steps it exactly in time under a hammer's force (matrix
 reads accelerations through an anti-alias filter, fits a table to one strike (`modcal fit_modes`) and identifies the force of
 another one (`modcal identify_force`) after the plate has changed: stiffness, damping and sensitivities of the sensors are off
 by what --change says. With --sessions S no modes are fitted: S sessions of four strikes each, the plate changed by --change
-between them, give response functions (H1) with coherence in universal files. Prints relative error and the share of the samples that lie in the 95 % band, all and about the pulse.
+between them, give response functions (H1) with coherence in universal files. With --strikes S modes are fitted to S strikes, the plate
+changed by --change between them (with --sessions S: to the S response functions). Prints relative error and the share of the samples that
+lie in the 95 % band, all and about the pulse, and how far the poles of the changed plates are off in the table's deviations.
 """
 import argparse
 import json
+import re
 import subprocess
 from pathlib import Path
 
@@ -164,6 +167,28 @@ def measure_functions(out, sessions, change, duration=2.0):
         f"  averages: 4\n  responses: [{responses}]\n")
 
 
+def true_poles(rng, change):
+    """Hz and damping ratios of a plate below 700 Hz."""
+    mass, damping, stiffness, _ = plate(rng, change)
+    n = mass.size
+    system = np.block([[np.zeros((n, n)), np.eye(n)], [-stiffness / mass[:, None], -damping / mass[:, None]]])
+    poles = linalg.eigvals(system)
+    poles = poles[(poles.imag > 0) & (abs(poles) < 2 * np.pi * 700)]
+    return abs(poles) / 2 / np.pi, -poles.real / abs(poles)
+
+
+def pole_scores(fit, rng, change):
+    """|found - true| over the deviation, of ln f and ln zeta of every mode of a fit that stands for no others."""
+    f, zeta = true_poles(rng, change)
+    scores = []
+    for mode in fit["modes"]:
+        if mode["stands_in"]:
+            continue
+        n = np.argmin(abs(f - mode["f_hz"]))
+        scores.append([(mode["f_hz"] - f[n]) / mode["f_sd_hz"], np.log(mode["zeta"] / zeta[n]) * mode["zeta"] / mode["zeta_sd"]])
+    return np.abs(scores)
+
+
 def yaml(kind, name, **keys):
     lines = [f"kind: {kind}", "record:", f"  file: {name}.csv", "  force: {channel: force}",
              "  responses: [" + ", ".join(f"{{channel: a{k + 1}}}" for k in range(len(SENSORS))) + "]"]
@@ -181,13 +206,30 @@ def run(build, file, out):
     return done.returncode == 0
 
 
-def measure_modes(build, out):
-    """Table of modes of the plate as it is, OUT/strike/table.yaml, from one strike."""
+def measure_modes(build, out, strikes=1, change=0, drawn=0):
+    """Table of modes, OUT/NAME/table.yaml: from one strike of the plate as it is, or from several, before each of which it has changed. Returns NAME."""
     out.mkdir(parents=True, exist_ok=True)
-    write(out / "strike.csv", *record(np.random.default_rng(1), 0, 1.5))
-    (out / "strike.yaml").write_text(yaml("fit_modes", "strike", low="10 Hz", high="600 Hz"))
-    if not run(build, out / "strike.yaml", out / "strike"):
+    name = "strike" if strikes == 1 else f"strikes_{change:g}_{strikes}_{drawn}"
+    files = ["strike"] if strikes == 1 else [f"strike_{change:g}_{drawn}_{i}" for i in range(strikes)]
+    for i, file in enumerate(files):
+        if not (out / f"{file}.csv").exists():
+            rng = np.random.default_rng([13, drawn, i, int(1e6 * change)] if strikes > 1 else 1)
+            write(out / f"{file}.csv", *record(rng, change, 1.5))
+    keys = {"other_strikes": "[" + ", ".join(f"{{file: {file}.csv}}" for file in files[1:]) + "]"} if strikes > 1 else {}
+    (out / f"{name}.yaml").write_text(yaml("fit_modes", files[0], low="10 Hz", high="600 Hz", **keys))
+    if not run(build, out / f"{name}.yaml", out / name):
         raise SystemExit("the table of the plate is rejected")
+    return name
+
+
+def measure_modes_of_functions(build, out, sessions, change):
+    """The same from sessions of response functions."""
+    name = f"modes_{change:g}_{sessions}"
+    text = (out / f"functions_{change:g}.yaml").read_text().replace("  averages: 4\n", "")
+    (out / f"{name}.yaml").write_text("kind: fit_modes\n" + re.sub(", coherence: c[0-9]", "", text))
+    if not run(build, out / f"{name}.yaml", out / name):
+        raise SystemExit("the table of the plate's functions is rejected")
+    return name
 
 
 def main():
@@ -199,6 +241,7 @@ def main():
                    help="of the stiffness; sensors ten times, dampers a hundred times as much")
     p.add_argument("--kinds", nargs="+", default=["strike", "smooth"])
     p.add_argument("--sessions", type=int, default=0, help="of response functions in the place of modes")
+    p.add_argument("--strikes", type=int, default=0, help="to which modes are fitted")
     p.add_argument("--keys", default="", help="further keys of identify_force: \"key: value; key: value\"")
     a = p.parse_args()
     a.out.mkdir(parents=True, exist_ok=True)
@@ -208,12 +251,21 @@ def main():
         print(json.loads((a.out / "strike/modes_fit.json").read_text())["sensors"])
     for kind in a.kinds:
         for change in a.change:
+            fitted = None if a.sessions else "strike"
             if a.sessions:
                 measure_functions(a.out, a.sessions, change)
-            table = f"functions_{change:g}.yaml" if a.sessions else "strike/table.yaml"
-            rows, rejected = [], 0
+            if a.strikes and a.sessions:
+                fitted = measure_modes_of_functions(a.build, a.out, a.sessions, change)
+            elif a.strikes > 1:
+                fitted = measure_modes(a.build, a.out, a.strikes, change)
+            table = f"{fitted}/table.yaml" if fitted else f"functions_{change:g}.yaml"
+            rows, scores, rejected = [], [], 0
             for draw in range(a.draws):
-                rng = np.random.default_rng([7, draw, int(1e6 * change)])
+                seed = [7, draw, int(1e6 * change)]
+                rng = np.random.default_rng(seed)
+                if fitted:
+                    fit = json.loads((a.out / fitted / "modes_fit.json").read_text())
+                    scores.append(pole_scores(fit, np.random.default_rng(seed), change))
                 name = f"{kind}_{change:g}_{draw}"
                 if not (a.out / f"{name}.csv").exists():
                     write(a.out / f"{name}.csv", *record(rng, change, 1.0, kind))
@@ -232,6 +284,11 @@ def main():
                 result = json.loads((a.out / name / "force.json").read_text())
                 rows.append((np.sqrt(np.mean((f - ref) ** 2) / np.mean(ref**2)), inside.mean(), inside[loud].mean(),
                              1.96 * sd.mean() / np.sqrt(np.mean(ref**2)), result["force"][0]["shape"] == "impacts"))
+            if scores:
+                z = np.array(scores)
+                print(f"{kind:7s} change {change:g}: of {z.shape[0]} x {z.shape[1]} poles within 1 and 2 deviations: frequencies "
+                      f"{(z[..., 0] < 1).mean():.2f} {(z[..., 0] < 2).mean():.2f} (most {z[..., 0].max():.1f}), damping ratios "
+                      f"{(z[..., 1] < 1).mean():.2f} {(z[..., 1] < 2).mean():.2f} (most {z[..., 1].max():.1f})", flush=True)
             if rejected:
                 print(f"{kind:7s} change {change:g}: {rejected} rejected")
             if not rows:

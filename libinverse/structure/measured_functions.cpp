@@ -7,6 +7,7 @@
 
 #include "libinverse/structure/function_contour.hpp"
 #include "libinverse/structure/tuning.hpp"
+#include "libsim/base/error.hpp"
 #include "libsim/base/random.hpp"
 #include "libsim/signal/statistics.hpp"
 
@@ -65,6 +66,32 @@ void multiply_by_factor(std::vector<Complex>& values, const ContourSpectra& spec
 }
 
 }  // namespace
+
+ContourSpectra MeasuredFunctions::lines(std::size_t session, double low, double high) const {
+  const Transfers& response = sessions[session];
+  MODCAL_REQUIRE(!response.empty() && sensors.size() == response.size(),
+                 "{} kinds of sensors for {} response functions", sensors.size(), response.size());
+  ContourSpectra spectra{.grid = grid,
+                         .bins = bins_between(grid, kFullTurn * low, kFullTurn * high)};
+  spectra.samples = 2 * (grid.bins - 1);
+  spectra.sample_rate = static_cast<double>(spectra.samples) * grid.spacing / kFullTurn;
+  MODCAL_REQUIRE(spectra.count() > 0, "no line of the response lies from {:g} Hz to {:g} Hz", low,
+                 high);
+  spectra.force.assign(spectra.count(), 1.0);
+  for (std::size_t k = 0; k < response.size(); ++k) {
+    MODCAL_REQUIRE(response[k].size() == grid.bins, "response {} has {} lines in the place of {}",
+                   k + 1, response[k].size(), grid.bins);
+    const auto first = response[k].begin() + static_cast<std::ptrdiff_t>(spectra.bins.first);
+    spectra.responses.emplace_back(first, first + static_cast<std::ptrdiff_t>(spectra.count()));
+    for (std::size_t m = 0; m < spectra.count(); ++m) {
+      const Complex h = spectra.responses.back()[m];
+      MODCAL_REQUIRE(std::isfinite(h.real()) && std::isfinite(h.imag()),
+                     "response {} is not finite at {:g} Hz: leave that line out of the band", k + 1,
+                     spectra.s(m).imag() / kFullTurn);
+    }
+  }
+  return spectra;
+}
 
 Transfers MeasuredFunctions::at(const ContourSpectra& spectra) const {
   const FunctionContour contour(grid, spectra);

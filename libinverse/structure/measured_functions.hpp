@@ -22,6 +22,11 @@ struct MeasuredFunctions {
 
   bool empty() const { return sessions.empty(); }
 
+  /// The measured lines of a session in a band [Hz], as the spectra of a strike with a force of 1.
+  /// Throws InvalidInput for a band without lines or with one that is not finite, and for another
+  /// number of functions or lines than stated.
+  ContourSpectra lines(std::size_t session, double low, double high) const;
+
   /// The mean of the sessions at the bins of a record.
   Transfers at(const ContourSpectra& spectra) const;
 

@@ -14,8 +14,9 @@ using Index = Eigen::Index;
 
 void PoleSearch::lay_grid() {
   // No resonance is narrower on the contour than 2σ.
-  const double width = std::max(2.0 * spectra_.grid.sigma, spectra_.grid.spacing);
-  const double low = spectra_.s(0).imag(), high = spectra_.s(spectra_.count() - 1).imag();
+  const ContourSpectra& spectra = strikes_.front().spectra;
+  const double width = std::max(2.0 * spectra.grid.sigma, spectra.grid.spacing);
+  const double low = spectra.s(0).imag(), high = spectra.s(spectra.count() - 1).imag();
   const auto count = static_cast<std::size_t>(std::ceil((high - low) / width));
   for (std::size_t i = 0; i < count; ++i) {
     const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
@@ -27,11 +28,11 @@ void PoleSearch::lay_grid() {
     kept_.emplace_back(grid_.size());
   }
   for_each_task(grid_.size(), [&](std::size_t i) {
-    const Columns columns = strike_.of(grid_[i], powers_);
+    const Columns columns = columns_of(grid_[i]);
     for (std::size_t k = 0; k < sensors(); ++k) {
-      for (const std::size_t turned : {0, 1}) {
-        const auto at = static_cast<Index>(2 * i + turned);
-        grid_columns_[k].col(at) = weighted(k, columns[power_index(kinds_[k])][turned]);
+      for (const bool turned : {false, true}) {
+        const Index at = 2 * static_cast<Index>(i) + (turned ? 1 : 0);
+        grid_columns_[k].col(at) = weighted(k, columns, turned);
         grid_columns_[k].col(at).normalize();
       }
       const auto own = grid_columns_[k].middleCols(2 * static_cast<Index>(i), 2);

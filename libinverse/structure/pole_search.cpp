@@ -29,36 +29,59 @@ Eigen::MatrixXd products_of(const Eigen::MatrixXd& columns) {
 
 }  // namespace
 
-PoleSearch::PoleSearch(const ContourSpectra& spectra, std::span<const double> force,
-                       const std::vector<SensorKind>& kinds,
-                       const std::vector<std::vector<double>>& weights)
-    : spectra_(spectra), strike_(spectra, force), kinds_(kinds), weights_(weights) {
+PoleSearch::PoleSearch(std::span<const SearchedStrike> strikes,
+                       const std::vector<SensorKind>& kinds)
+    : kinds_(kinds) {
+  for (const SearchedStrike& strike : strikes) {
+    strikes_.push_back({.spectra = strike.spectra,
+                        .columns = StrikeColumns(strike.spectra, strike.force),
+                        .weights = strike.weights,
+                        .first = rows_});
+    rows_ += 2 * static_cast<Index>(strike.spectra.count());
+  }
   for (std::size_t k = 0; k < kinds.size(); ++k) {
     powers_[power_index(kinds[k])] = true;
-    data_.push_back(weighted(k, spectra.responses[k]));
-    Eigen::MatrixXd columns(data_[k].size(), kStatics);
-    for (Index i = 0; i < kStatics; ++i) {
-      std::vector<Complex> column(spectra.count());
-      for (std::size_t m = 0; m < column.size(); ++m) {
-        const Complex s = spectra.s(m);
-        const Complex own = power_of_s(kinds[k]) == 0 ? 1.0 : power_of_s(kinds[k]) == 1 ? s : s * s;
-        column[m] = own * (i == 0 ? 1.0 / (s * s) : 1.0) * spectra.force[m];
+    data_.emplace_back(rows_);
+    static_.emplace_back(rows_, kStatics);
+    for (const Strike& strike : strikes_) {
+      const ContourSpectra& spectra = strike.spectra;
+      weigh(strike, k, spectra.responses[k], data_[k]);
+      for (Index i = 0; i < kStatics; ++i) {
+        std::vector<Complex> column(spectra.count());
+        for (std::size_t m = 0; m < column.size(); ++m) {
+          const Complex s = spectra.s(m);
+          const int p = power_of_s(kinds[k]);
+          const Complex own = p == 0 ? 1.0 : p == 1 ? s : s * s;
+          column[m] = own * (i == 0 ? 1.0 / (s * s) : 1.0) * spectra.force[m];
+        }
+        weigh(strike, k, column, static_[k].col(i));
       }
-      columns.col(i) = weighted(k, column);
     }
-    static_.push_back(std::move(columns));
   }
 }
 
-Eigen::VectorXd PoleSearch::weighted(std::size_t k, const std::vector<Complex>& spectrum) const {
+void PoleSearch::weigh(const Strike& strike, std::size_t k, const std::vector<Complex>& spectrum,
+                       Eigen::Ref<Eigen::VectorXd> rows) const {
   const auto count = static_cast<Index>(spectrum.size());
-  Eigen::VectorXd result(2 * count);
   for (Index m = 0; m < count; ++m) {
     const auto i = static_cast<std::size_t>(m);
-    result[m] = weights_[k][i] * spectrum[i].real();
-    result[m + count] = weights_[k][i] * spectrum[i].imag();
+    rows[strike.first + m] = strike.weights[k][i] * spectrum[i].real();
+    rows[strike.first + m + count] = strike.weights[k][i] * spectrum[i].imag();
   }
-  return result;
+}
+
+PoleSearch::Columns PoleSearch::columns_of(const ModalPole& pole) const {
+  Columns columns;
+  for (const Strike& strike : strikes_) columns.push_back(strike.columns.of(pole, powers_));
+  return columns;
+}
+
+Eigen::VectorXd PoleSearch::weighted(std::size_t k, const Columns& columns, bool turned) const {
+  Eigen::VectorXd rows(rows_);
+  for (std::size_t i = 0; i < strikes_.size(); ++i) {
+    weigh(strikes_[i], k, columns[i][power_index(kinds_[k])][turned ? 1 : 0], rows);
+  }
+  return rows;
 }
 
 SensorFit PoleSearch::sensor_at(std::size_t k, const std::vector<Columns>& columns,
@@ -67,9 +90,9 @@ SensorFit PoleSearch::sensor_at(std::size_t k, const std::vector<Columns>& colum
   const Index modes = std::ssize(poles);
   fit.columns.resize(data_[k].size(), 2 * modes + kStatics);
   for (Index n = 0; n < modes; ++n) {
-    const ColumnPair& pair = columns[static_cast<std::size_t>(n)][power_index(kinds_[k])];
-    for (const std::size_t turned : {0, 1}) {
-      fit.columns.col(2 * n + static_cast<Index>(turned)) = weighted(k, pair[turned]);
+    for (const bool turned : {false, true}) {
+      fit.columns.col(2 * n + (turned ? 1 : 0)) =
+          weighted(k, columns[static_cast<std::size_t>(n)], turned);
     }
   }
   fit.columns.rightCols(kStatics) = static_[k];
@@ -85,7 +108,7 @@ SensorFit PoleSearch::sensor_at(std::size_t k, const std::vector<Columns>& colum
 
 std::vector<SensorFit> PoleSearch::at(const std::vector<ModalPole>& poles) const {
   std::vector<Columns> columns(poles.size());
-  for_each_task(poles.size(), [&](std::size_t n) { columns[n] = strike_.of(poles[n], powers_); });
+  for_each_task(poles.size(), [&](std::size_t n) { columns[n] = columns_of(poles[n]); });
   std::vector<SensorFit> result(sensors());
   for_each_task(sensors(), [&](std::size_t k) { result[k] = sensor_at(k, columns, poles); });
   return result;
@@ -106,10 +129,8 @@ std::vector<Eigen::MatrixXd> PoleSearch::jacobians(const std::vector<ModalPole>&
   const Index unknowns = 2 * std::ssize(poles);
   std::vector<std::array<Columns, 4>> beside(poles.size());
   for_each_task(poles.size(), [&](std::size_t n) {
-    beside[n] = {strike_.of(moved(poles[n], near, 0.0), powers_),
-                 strike_.of(moved(poles[n], -near, 0.0), powers_),
-                 strike_.of(moved(poles[n], 0.0, far), powers_),
-                 strike_.of(moved(poles[n], 0.0, -far), powers_)};
+    beside[n] = {columns_of(moved(poles[n], near, 0.0)), columns_of(moved(poles[n], -near, 0.0)),
+                 columns_of(moved(poles[n], 0.0, far)), columns_of(moved(poles[n], 0.0, -far))};
   });
   std::vector<Eigen::MatrixXd> result(sensors());
   for_each_task(sensors(), [&](std::size_t k) {
@@ -119,12 +140,11 @@ std::vector<Eigen::MatrixXd> PoleSearch::jacobians(const std::vector<ModalPole>&
       const auto up = static_cast<std::size_t>(2 * (i % 2));
       const double step = 2.0 * (i % 2 == 0 ? near : far);
       slopes.col(i).setZero();
-      for (const std::size_t turned : {0, 1}) {
-        const Index at = 2 * static_cast<Index>(n) + static_cast<Index>(turned);
-        const std::size_t p = power_index(kinds_[k]);
+      for (const bool turned : {false, true}) {
+        const Index at = 2 * static_cast<Index>(n) + (turned ? 1 : 0);
         slopes.col(i) +=
             fits[k].amplitudes[at] / fits[k].norms[at] / step *
-            (weighted(k, beside[n][up][p][turned]) - weighted(k, beside[n][up + 1][p][turned]));
+            (weighted(k, beside[n][up], turned) - weighted(k, beside[n][up + 1], turned));
       }
     }
     result[k] = -fits[k].project(slopes);
@@ -151,23 +171,26 @@ PoleSearch::Equations PoleSearch::equations(const std::vector<ModalPole>& poles)
 // Jᵀ r for noise of a deviation of 1 in every sample of a sensor, as columns over the samples. On a
 // contour the noise dies away with exp(−σt), and J, the slope of what rings, is large later: to
 // take a share κ of the bins for independent would double the variance.
-Eigen::MatrixXd PoleSearch::noise_seen_by(std::size_t k, const Eigen::MatrixXd& slopes) const {
-  const RealFft fft(spectra_.samples);
-  const auto count = static_cast<Index>(spectra_.count());
-  Eigen::MatrixXd result(static_cast<Index>(spectra_.samples), slopes.cols());
+Eigen::MatrixXd PoleSearch::noise_seen_by(const Strike& strike, std::size_t k,
+                                          const Eigen::MatrixXd& slopes) const {
+  const ContourSpectra& spectra = strike.spectra;
+  const RealFft fft(spectra.samples);
+  const auto count = static_cast<Index>(spectra.count());
+  Eigen::MatrixXd result(static_cast<Index>(spectra.samples), slopes.cols());
   for_each_task(static_cast<std::size_t>(slopes.cols()), [&](std::size_t i) {
     const auto at = static_cast<Index>(i);
     std::vector<Complex> spectrum(fft.bins());
     for (Index m = 0; m < count; ++m) {
       const auto bin = static_cast<std::size_t>(m);
-      spectrum[spectra_.bins.first + bin] =
-          weights_[k][bin] * Complex(slopes(m, at), slopes(m + count, at));
+      const Index row = strike.first + m;
+      spectrum[spectra.bins.first + bin] =
+          strike.weights[k][bin] * Complex(slopes(row, at), slopes(row + count, at));
     }
     // Re Σ_m c_m exp(iω_m t): half of what a real signal of these bins has.
-    fft.inverse(spectrum, {result.col(at).data(), spectra_.samples});
-    result.col(at) *= 0.5 * static_cast<double>(spectra_.samples);
+    fft.inverse(spectrum, {result.col(at).data(), spectra.samples});
+    result.col(at) *= 0.5 * static_cast<double>(spectra.samples);
   });
-  const double decay = std::exp(-spectra_.grid.sigma / spectra_.sample_rate);
+  const double decay = std::exp(-spectra.grid.sigma / spectra.sample_rate);
   double left = 1.0;
   for (Index j = 0; j < result.rows(); ++j, left *= decay) result.row(j) *= left;
   return result;
@@ -181,11 +204,15 @@ Eigen::MatrixXd PoleSearch::covariance(const std::vector<ModalPole>& poles,
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(unknowns, unknowns), spread = information;
   for (std::size_t k = 0; k < sensors(); ++k) {
     information += products_of(slopes[k]);
-    // Real over imaginary parts.
-    spread += slopes[k].transpose() * variances[k].replicate(2, 1).asDiagonal() * slopes[k];
-    if (noise[k] == 0.0) continue;
-    const Eigen::MatrixXd seen = noise_seen_by(k, slopes[k]);
-    spread += noise[k] * noise[k] * (seen.transpose() * seen);
+    for (const Strike& strike : strikes_) {
+      const auto count = static_cast<Index>(strike.spectra.count());
+      const auto own = slopes[k].middleRows(strike.first, 2 * count);
+      const auto variance = variances[k].segment(strike.first / 2, count);
+      spread += own.transpose() * variance.replicate(2, 1).asDiagonal() * own;
+      if (noise[k] == 0.0) continue;
+      const Eigen::MatrixXd seen = noise_seen_by(strike, k, slopes[k]);
+      spread += noise[k] * noise[k] * (seen.transpose() * seen);
+    }
   }
   const Eigen::LDLT<Eigen::MatrixXd> solver(information);
   const Eigen::MatrixXd half = solver.solve(spread);

@@ -23,11 +23,17 @@ struct SensorFit {
   }
 };
 
+/// A strike that a search looks at; all must outlive it.
+struct SearchedStrike {
+  const ContourSpectra& spectra;
+  std::span<const double> force;                    ///< samples [N]
+  const std::vector<std::vector<double>>& weights;  ///< 1/σ of every bin, by sensor
+};
+
 class PoleSearch {
  public:
-  /// weights: 1/σ of every bin, by sensor. The arguments must outlive this.
-  PoleSearch(const ContourSpectra& spectra, std::span<const double> force,
-             const std::vector<SensorKind>& kinds, const std::vector<std::vector<double>>& weights);
+  /// Strikes at one place, on one contour: they have all poles and modal constants in common.
+  PoleSearch(std::span<const SearchedStrike> strikes, const std::vector<SensorKind>& kinds);
 
   std::vector<SensorFit> at(const std::vector<ModalPole>& poles) const;
   double cost(const std::vector<ModalPole>& poles) const;
@@ -37,8 +43,9 @@ class PoleSearch {
   ModalPole best_addition(const std::vector<ModalPole>& poles);
   /// Covariance A⁻¹ (Σ_k Jᵀ V J + S_k) A⁻¹ of ln f and ln ζ of every mode in turn, the linear
   /// unknowns eliminated, A = Σ JᵀJ (White, 1980), where the weighted residuals of sensor k have
-  /// these variances, one a bin, of independent bins, and a sample has white noise of this
-  /// deviation: what J takes from exp(−σt) noise. Weights that are off cost sharpness, not honesty.
+  /// these variances, one a bin of every strike in turn, of independent bins, and a sample has
+  /// white noise of this deviation: what J takes from exp(−σt) noise. Weights that are off cost
+  /// sharpness, not honesty.
   Eigen::MatrixXd covariance(const std::vector<ModalPole>& poles,
                              const std::vector<Eigen::VectorXd>& variances,
                              std::span<const double> noise) const;
@@ -48,7 +55,13 @@ class PoleSearch {
   std::size_t sensors() const { return kinds_.size(); }
 
  private:
-  using Columns = std::array<ColumnPair, 3>;
+  using Columns = std::vector<std::array<ColumnPair, 3>>;  // of a pair of poles, by strike
+  struct Strike {
+    const ContourSpectra& spectra;
+    StrikeColumns columns;
+    const std::vector<std::vector<double>>& weights;
+    Eigen::Index first;  // of its rows: real over imaginary parts
+  };
   static std::size_t power_index(SensorKind kind) {
     return static_cast<std::size_t>(power_of_s(kind));
   }
@@ -58,19 +71,22 @@ class PoleSearch {
   };
   std::vector<Eigen::MatrixXd> jacobians(const std::vector<ModalPole>& poles,
                                          const std::vector<SensorFit>& fits) const;
-  Eigen::MatrixXd noise_seen_by(std::size_t k, const Eigen::MatrixXd& slopes) const;
+  Columns columns_of(const ModalPole& pole) const;
+  Eigen::MatrixXd noise_seen_by(const Strike& strike, std::size_t k,
+                                const Eigen::MatrixXd& slopes) const;
   Equations equations(const std::vector<ModalPole>& poles) const;
   SensorFit sensor_at(std::size_t k, const std::vector<Columns>& columns,
                       const std::vector<ModalPole>& poles) const;
-  Eigen::VectorXd weighted(std::size_t k, const std::vector<Complex>& spectrum) const;
+  void weigh(const Strike& strike, std::size_t k, const std::vector<Complex>& spectrum,
+             Eigen::Ref<Eigen::VectorXd> rows) const;
+  Eigen::VectorXd weighted(std::size_t k, const Columns& columns, bool turned) const;
   void lay_grid();
   Eigen::Matrix2d kept(std::size_t k, std::size_t i, const SensorFit& fit) const;
   void take_last(const std::vector<SensorFit>& fits);
 
-  const ContourSpectra& spectra_;
-  StrikeColumns strike_;
+  std::vector<Strike> strikes_;
+  Eigen::Index rows_ = 0;
   const std::vector<SensorKind>& kinds_;
-  const std::vector<std::vector<double>>& weights_;
   std::array<bool, 3> powers_ = {false, false, false};
   std::vector<Eigen::VectorXd> data_;    // weighted, K
   std::vector<Eigen::MatrixXd> static_;  // weighted columns, K

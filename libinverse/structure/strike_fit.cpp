@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <numeric>
 
+#include "libinverse/structure/pole_scatter.hpp"
 #include "libinverse/structure/pole_search.hpp"
 #include "libinverse/structure/strike_weights.hpp"
 #include "libinverse/structure/tuning.hpp"
 #include "libsim/base/error.hpp"
+#include "libsim/signal/statistics.hpp"
 
 namespace modcal {
 namespace {
@@ -17,29 +17,54 @@ using Index = Eigen::Index;
 
 class Fit {
  public:
-  Fit(const StructureRecord& record, const std::vector<SensorKind>& kinds,
-      const StrikeFitOptions& options)
-      : record_(record), kinds_(kinds), options_(options) {
-    const double sigma = std::isnan(options.sigma)
-                             ? std::min(20.0 / record.duration(), options.high / 50.0)
-                             : options.sigma;
-    // What comes later has a part of e^−12 in the power, and the columns know of the end.
-    const auto count = static_cast<std::size_t>(6.0 / sigma * record.sample_rate);
-    if (count < record.samples()) {
-      record_.force.resize(count);
-      for (std::vector<double>& response : record_.responses) response.resize(count);
+  /// records: of the forces; empty: of response functions, which have none.
+  Fit(std::vector<StructureRecord> records, std::vector<ContourSpectra> spectra,
+      const std::vector<SensorKind>& kinds, const StrikeFitOptions& options)
+      : records_(std::move(records)), kinds_(kinds), options_(options) {
+    records_.resize(spectra.size());
+    for (ContourSpectra& own : spectra) {
+      for (const FittedStrike& other : result_.strikes) {
+        MODCAL_REQUIRE(other.spectra.responses != own.responses,
+                       "measurement {} is one of those before: state each once",
+                       result_.strikes.size() + 1);
+      }
+      result_.strikes.push_back({.spectra = std::move(own)});
     }
-    result_.spectra = ContourSpectra::of(record_, sigma, options.low, options.high);
-  }
-  Fit(const ContourSpectra& spectra, const std::vector<SensorKind>& kinds,
-      const StrikeFitOptions& options)
-      : kinds_(kinds), options_(options) {
-    result_.spectra = spectra;
   }
 
   StrikeFit run() {
-    weights_ = weights_of(result_.spectra, options_.relative_error);
-    PoleSearch search(result_.spectra, record_.force, kinds_, weights_);
+    for (const FittedStrike& strike : result_.strikes) {
+      weights_.push_back(weights_of(strike.spectra, options_.relative_error));
+    }
+    std::vector<ModalPole> best = chosen();
+    // Now the residuals say how right a bin is: twice, as they depend on it.
+    for (int round = 0; round < 2; ++round) {
+      for (std::size_t i = 0; i < weights_.size(); ++i) {
+        weights_[i] = weights_of(result_.strikes[i].spectra, result_.table.model, scatters_);
+      }
+      const PoleSearch again(searched(), kinds_);
+      again.fit(best, 30);
+      std::ranges::sort(best, {}, &ModalPole::omega);
+      tell(again, best);
+      if (round == 1) tell_deviations(again, best);
+    }
+    if (result_.strikes.size() > 1) tell_further(best);
+    if (!records_.front().force.empty()) result_.table.take_pulse(records_.front());
+    return std::move(result_);
+  }
+
+ private:
+  std::vector<SearchedStrike> searched() const {
+    std::vector<SearchedStrike> strikes;
+    for (std::size_t i = 0; i < records_.size(); ++i) {
+      strikes.push_back({result_.strikes[i].spectra, records_[i].force, weights_[i]});
+    }
+    return strikes;
+  }
+
+  // The poles of least BIC.
+  std::vector<ModalPole> chosen() {
+    PoleSearch search(searched(), kinds_);
     std::vector<ModalPole> poles, best;
     double least = std::numeric_limits<double>::infinity();
     while (poles.size() < options_.most_modes && parameters(poles.size() + 1) < 0.75 * numbers()) {
@@ -62,60 +87,29 @@ class Fit {
     const double cost = search.fit(best, 30);
     result_.misfit = cost / counted_twice() / (numbers() - parameters(best.size()));
     tell(search, best);
-    // Now the residuals say how right a bin is: twice, as they depend on it.
-    for (int round = 0; round < 2; ++round) {
-      weights_ = weights_of(result_.spectra, result_.table.model, scatters_);
-      const PoleSearch again(result_.spectra, record_.force, kinds_, weights_);
-      again.fit(best, 30);
-      std::ranges::sort(best, {}, &ModalPole::omega);
-      tell(again, best);
-      if (round == 1) tell_deviations(again, best);
-    }
-    tell_pulse();
-    return std::move(result_);
+    return best;
   }
 
- private:
   // Bins that tell alike count as one; of real and imaginary part each.
   double numbers() const {
-    return 2.0 * static_cast<double>(result_.spectra.count() * kinds_.size()) /
-           result_.spectra.correlated();
+    return 2.0 * static_cast<double>(bins() * kinds_.size()) / counted_twice();
   }
-  double counted_twice() const { return result_.spectra.correlated(); }
+  std::size_t bins() const {
+    std::size_t sum = 0;
+    for (const FittedStrike& strike : result_.strikes) sum += strike.spectra.count();
+    return sum;
+  }
+  double counted_twice() const { return result_.strikes.front().spectra.correlated(); }
   double parameters(std::size_t modes) const {
     const auto n = static_cast<double>(modes), k = static_cast<double>(kinds_.size());
     return n * (2.0 + 2.0 * k) + 2.0 * k;
-  }
-
-  // |G| of the largest pulse, ten periods of the band's top to either side of its peak, fading out.
-  void tell_pulse() {
-    const std::vector<double>& force = record_.force;
-    if (force.empty()) return;
-    const auto larger = [](double a, double b) { return std::abs(a) < std::abs(b); };
-    const auto peak = std::max_element(force.begin(), force.end(), larger) - force.begin();
-    const auto reach = static_cast<std::ptrdiff_t>(10.0 * record_.sample_rate / options_.high);
-    const RealFft fft(static_cast<std::size_t>(4 * reach));
-    std::vector<double> pulse(fft.length(), 0.0);
-    for (std::ptrdiff_t j = -reach; j <= reach; ++j) {
-      if (peak + j < 0 || peak + j >= std::ssize(force)) continue;
-      const double fading = std::cos(0.5 * std::numbers::pi * static_cast<double>(j) /
-                                     (static_cast<double>(reach) + 1.0));
-      pulse[static_cast<std::size_t>(j + reach)] =
-          fading * fading * force[static_cast<std::size_t>(peak + j)];
-    }
-    const std::vector<Complex> spectrum = fft.forward(pulse);
-    StructureTable& table = result_.table;
-    table.lag = record_.sample_rate / static_cast<double>(fft.length());
-    for (const Complex& g : spectrum) {
-      table.pulse.push_back(std::abs(g) / std::max(std::abs(spectrum[0]), 1e-300));
-    }
   }
 
   void tell(const PoleSearch& search, const std::vector<ModalPole>& poles) {
     StructureTable& table = result_.table;
     const std::size_t modes = poles.size();
     result_.residuals.clear();
-    result_.modeled.clear();
+    for (FittedStrike& strike : result_.strikes) strike.modeled.clear(), strike.residuals.clear();
     table.scatters.clear();
     scatters_.clear();
     table.low = options_.low, table.high = options_.high;
@@ -137,7 +131,6 @@ class Fit {
   // By what scatter and noise expect of the residuals: a share of the response everywhere, as the
   // weights have it, would make a sharp resonance as uncertain as its flanks.
   void tell_deviations(const PoleSearch& search, const std::vector<ModalPole>& poles) {
-    const ContourSpectra& spectra = result_.spectra;
     StructureTable& table = result_.table;
     // Unknowns took their share of the residuals.
     const double share = numbers() / (numbers() - parameters(poles.size()));
@@ -145,11 +138,14 @@ class Fit {
     std::vector<double> noise;
     for (std::size_t k = 0; k < kinds_.size(); ++k) {
       noise.push_back(scatters_[k].noise * std::sqrt(share));
-      Eigen::VectorXd& own = variances.emplace_back(static_cast<Index>(spectra.count()));
-      const std::vector<double> made = made_by_modes(spectra, table.model, k);
-      for (std::size_t m = 0; m < spectra.count(); ++m) {
-        const double off = scatters_[k].modal * weights_[k][m];
-        own[static_cast<Index>(m)] = 0.5 * share * counted_twice() * off * off * made[m];
+      Eigen::VectorXd& own = variances.emplace_back(static_cast<Index>(bins()));
+      Index row = 0;
+      for (std::size_t i = 0; i < weights_.size(); ++i) {
+        const std::vector<double> made = made_by_modes(result_.strikes[i].spectra, table.model, k);
+        for (std::size_t m = 0; m < made.size(); ++m, ++row) {
+          const double off = scatters_[k].modal * weights_[i][k][m];
+          own[row] = 0.5 * share * counted_twice() * off * off * made[m];
+        }
       }
     }
     const Eigen::MatrixXd covariance = search.covariance(poles, variances, noise);
@@ -161,56 +157,101 @@ class Fit {
                      table.frequency(n));
       table.frequency_deviations.push_back(std::sqrt(covariance(i, i)));
       table.damping_deviations.push_back(std::sqrt(covariance(i + 1, i + 1)));
+      const double f = table.frequency(n);
+      if (f < table.low || f > table.high || table.frequency_deviations[n] > poles[n].zeta) {
+        result_.stand_ins.push_back(n);
+      }
     }
+  }
+
+  // What the structure changes from strike to strike no residual of one tells.
+  void tell_further(const std::vector<ModalPole>& poles) {
+    StructureTable& table = result_.table;
+    const std::vector<SearchedStrike> strikes = searched();
+    const Index count = std::ssize(strikes);
+    // One row a strike, the last of all together; ln f and ln ζ.
+    std::array<Eigen::MatrixXd, 2> values;
+    values.fill(Eigen::MatrixXd(count + 1, std::ssize(poles)));
+    for (Index i = 0; i <= count; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      std::vector<ModalPole> own = poles;
+      if (i < count) {
+        PoleSearch(std::span(strikes).subspan(at, 1), kinds_).fit(own, 30);
+        result_.strikes[at].poles = own;
+      }
+      for (Index n = 0; n < std::ssize(poles); ++n) {
+        values[0](i, n) = std::log(own[static_cast<std::size_t>(n)].omega);
+        values[1](i, n) = std::log(own[static_cast<std::size_t>(n)].zeta);
+      }
+    }
+    const auto take = [count](const Eigen::MatrixXd& of, std::vector<double>& deviations) {
+      const Eigen::Map<const Eigen::VectorXd> told(deviations.data(), std::ssize(deviations));
+      const FurtherStrike further = further_strike(of.topRows(count), told, of.row(count));
+      deviations.assign(further.deviations.begin(), further.deviations.end());
+      return quantile({further.scatters.begin(), further.scatters.end()}, 0.5);
+    };
+    result_.frequency_scatter = take(values[0], table.frequency_deviations);
+    result_.damping_scatter = take(values[1], table.damping_deviations);
   }
 
   void tell_rest(std::size_t k, const SensorFit& fit) {
-    const ContourSpectra& spectra = result_.spectra;
     const ModalModel& model = result_.table.model;
-    std::vector<double> left;
-    const std::vector<double> modal = made_by_modes(spectra, model, k);
-    std::vector<Complex>& modeled = result_.modeled.emplace_back();
-    double rest = 0.0;
-    for (std::size_t m = 0; m < spectra.count(); ++m) {
-      const auto i = static_cast<Index>(m), count = static_cast<Index>(spectra.count());
-      const Complex residual = Complex(fit.residual[i], fit.residual[i + count]) / weights_[k][m];
-      modeled.push_back(spectra.responses[k][m] - residual);
-      left.push_back(std::norm(residual));
-      rest += std::norm(residual);
+    // Of noise of a deviation of 1 in every sample.
+    std::vector<double> left, made;
+    double rest = 0.0, all = 0.0, modal = 0.0;
+    Index row = 0;
+    for (std::size_t i = 0; i < weights_.size(); ++i) {
+      FittedStrike& strike = result_.strikes[i];
+      const ContourSpectra& spectra = strike.spectra;
+      const double power = spectra.noise_power();
+      const std::vector<double> own = made_by_modes(spectra, model, k);
+      std::vector<Complex>& modeled = strike.modeled.emplace_back();
+      const auto count = static_cast<Index>(spectra.count());
+      double of_strike = 0.0;
+      for (std::size_t m = 0; m < spectra.count(); ++m, ++row) {
+        const Complex residual =
+            Complex(fit.residual[row], fit.residual[row + count]) / weights_[i][k][m];
+        modeled.push_back(spectra.responses[k][m] - residual);
+        left.push_back(std::norm(residual) / power);
+        made.push_back(own[m] / power);
+        of_strike += std::norm(residual);
+        modal += own[m];
+      }
+      row += count;
+      const double total = mean_power(spectra.responses[k]) * static_cast<double>(count);
+      strike.residuals.push_back(std::sqrt(of_strike / total));
+      rest += of_strike;
+      all += total;
     }
-    result_.residuals.push_back(
-        std::sqrt(rest / static_cast<double>(left.size()) / mean_power(spectra.responses[k])));
-    scatters_.push_back(scatter_of(left, modal, spectra.noise_power(), counted_twice()));
+    result_.residuals.push_back(std::sqrt(rest / all));
+    scatters_.push_back(scatter_of(left, made, 1.0, counted_twice()));
     // A response function tells nothing of the noise of other records.
-    const double share = rest / std::accumulate(modal.begin(), modal.end(), 0.0);
-    result_.table.scatters.push_back(
-        record_.force.empty() ? SensorScatter{.modal = std::sqrt(share)} : scatters_.back());
+    result_.table.scatters.push_back(records_.front().force.empty()
+                                         ? SensorScatter{.modal = std::sqrt(rest / modal)}
+                                         : scatters_.back());
   }
 
-  StructureRecord record_;
+  std::vector<StructureRecord> records_;
   const std::vector<SensorKind>& kinds_;
   const StrikeFitOptions& options_;
   std::vector<SensorScatter> scatters_;  // by which the bins weigh
-  BinWeights weights_;
+  std::vector<BinWeights> weights_;      // by strike
   StrikeFit result_;
 };
 
 }  // namespace
 
-bool stays(const ModalPole& pole, std::span<const ModalPole> others) {
-  return std::ranges::any_of(others, [&](const ModalPole& other) {
-    return std::abs(other.omega - pole.omega) < 0.01 * pole.omega &&
-           std::abs(other.zeta - pole.zeta) < 0.2 * pole.zeta;
-  });
-}
-
-std::string StrikeFit::rejection() const {
-  const double most = std::ranges::max(residuals);
-  if (most <= 0.5) return {};
-  return fmt::format(
-      "rejected: the modes leave {:.0f} % of a response: compare the channels and their units, and "
-      "whether the structure rests when the record begins; a smaller contour tells more modes",
-      100.0 * most);
+std::string StrikeFit::rejection(std::span<const std::string> names) const {
+  for (std::size_t i = 0; i < strikes.size(); ++i) {
+    const double most = std::ranges::max(strikes[i].residuals);
+    if (most <= 0.5) continue;
+    return fmt::format(
+        "rejected: the modes leave {:.0f} % of a response{}: compare the channels and their units, "
+        "and whether the structure rests when the record begins; a smaller contour tells more "
+        "modes",
+        100.0 * most, i < names.size() ? fmt::format(" of {}", names[i]) : "");
+  }
+  return {};
 }
 
 std::string StrikeFit::without_damping() const {
@@ -221,46 +262,39 @@ std::string StrikeFit::without_damping() const {
   return {};
 }
 
-StrikeFit fit_strike(const StructureRecord& record, const std::vector<SensorKind>& kinds,
-                     const StrikeFitOptions& options) {
-  MODCAL_REQUIRE(!record.force.empty(),
-                 "modes from a strike need the force of {} record: name its channel", 1);
-  MODCAL_REQUIRE(kinds.size() == record.responses.size(), "{} kinds of sensors for {} responses",
-                 kinds.size(), record.responses.size());
-  return Fit(record, kinds, options).run();
+StrikeFit fit_strikes(std::vector<StructureRecord> records, const std::vector<SensorKind>& kinds,
+                      const StrikeFitOptions& options) {
+  MODCAL_REQUIRE(!records.empty(), "modes need at least {} strike", 1);
+  double shortest = std::numeric_limits<double>::infinity();
+  for (const StructureRecord& record : records) {
+    MODCAL_REQUIRE(!record.force.empty(),
+                   "modes from a strike need the force of {} record: name its channel", 1);
+    MODCAL_REQUIRE(kinds.size() == record.responses.size(), "{} kinds of sensors for {} responses",
+                   kinds.size(), record.responses.size());
+    shortest = std::min(shortest, record.duration());
+  }
+  const double sigma =
+      std::isnan(options.sigma) ? std::min(20.0 / shortest, options.high / 50.0) : options.sigma;
+  std::vector<ContourSpectra> spectra;
+  for (StructureRecord& record : records) {
+    // What comes later has a part of e^−12 in the power, and the columns know of the end.
+    const auto count = static_cast<std::size_t>(6.0 / sigma * record.sample_rate);
+    if (count < record.samples()) {
+      record.force.resize(count);
+      for (std::vector<double>& response : record.responses) response.resize(count);
+    }
+    spectra.push_back(ContourSpectra::of(record, sigma, options.low, options.high));
+  }
+  return Fit(std::move(records), std::move(spectra), kinds, options).run();
 }
 
 StrikeFit fit_response(const MeasuredFunctions& measured, const StrikeFitOptions& options) {
-  constexpr double kTurn = 2.0 * std::numbers::pi;
-  const FrequencyGrid& grid = measured.grid;
-  MODCAL_REQUIRE(measured.sessions.size() == 1,
-                 "modes are fitted to one session of response functions, not to {}: what changes "
-                 "between sessions moves whole resonances",
-                 measured.sessions.size());
-  const Transfers& response = measured.sessions.front();
-  MODCAL_REQUIRE(!response.empty() && measured.sensors.size() == response.size(),
-                 "{} kinds of sensors for {} response functions", measured.sensors.size(),
-                 response.size());
-  ContourSpectra spectra{.grid = grid,
-                         .bins = bins_between(grid, kTurn * options.low, kTurn * options.high)};
-  spectra.samples = 2 * (grid.bins - 1);
-  spectra.sample_rate = static_cast<double>(spectra.samples) * grid.spacing / kTurn;
-  MODCAL_REQUIRE(spectra.count() > 0, "no line of the response lies from {:g} Hz to {:g} Hz",
-                 options.low, options.high);
-  spectra.force.assign(spectra.count(), 1.0);
-  for (std::size_t k = 0; k < response.size(); ++k) {
-    MODCAL_REQUIRE(response[k].size() == grid.bins, "response {} has {} lines in the place of {}",
-                   k + 1, response[k].size(), grid.bins);
-    const auto first = response[k].begin() + static_cast<std::ptrdiff_t>(spectra.bins.first);
-    spectra.responses.emplace_back(first, first + static_cast<std::ptrdiff_t>(spectra.count()));
-    for (std::size_t m = 0; m < spectra.count(); ++m) {
-      const Complex h = spectra.responses.back()[m];
-      MODCAL_REQUIRE(std::isfinite(h.real()) && std::isfinite(h.imag()),
-                     "response {} is not finite at {:g} Hz: leave that line out of the band", k + 1,
-                     spectra.s(m).imag() / kTurn);
-    }
+  MODCAL_REQUIRE(!measured.empty(), "modes need at least {} session of response functions", 1);
+  std::vector<ContourSpectra> spectra;
+  for (std::size_t i = 0; i < measured.sessions.size(); ++i) {
+    spectra.push_back(measured.lines(i, options.low, options.high));
   }
-  return Fit(spectra, measured.sensors, options).run();
+  return Fit({}, std::move(spectra), measured.sensors, options).run();
 }
 
 }  // namespace modcal

@@ -1,4 +1,4 @@
-// Modes of a structure from a strike whose force was measured.
+// Modes of a structure from strikes whose force was measured.
 #pragma once
 
 #include "libinverse/structure/structure_record.hpp"
@@ -25,20 +25,31 @@ struct ModeCount {
   std::vector<ModalPole> poles;  ///< as they are then
 };
 
-/// Whether a pair of poles has moved by less than 1 % in frequency and 20 % in damping from one of
-/// the others: what a mode does when another is added.
-bool stays(const ModalPole& pole, std::span<const ModalPole> others);
+/// One strike, and what the modes of all make of it.
+struct FittedStrike {
+  ContourSpectra spectra;
+  std::vector<std::vector<Complex>> modeled;  ///< responses of the model at its bins, K
+  std::vector<double> residuals;              ///< rms of what is left over rms of the response, K
+  std::vector<ModalPole> poles;  ///< fitted to it alone; empty: there is no other strike
+};
 
 struct StrikeFit {
   StructureTable table;
   std::vector<ModeCount> steps;
-  std::vector<double> residuals;  ///< rms of what is left over rms of the response, K
+  std::vector<double> residuals;  ///< those of the strikes, together; K
   double misfit = 0.0;            ///< χ² over its degrees of freedom
-  ContourSpectra spectra;
-  std::vector<std::vector<Complex>> modeled;  ///< responses of the model at its bins, K
+  std::vector<FittedStrike> strikes;
+  /// Modes that are none of the structure's, by their place: outside of the band, or told no better
+  /// than by their own width. They stand for many, or for what leaks from line to line.
+  std::vector<std::size_t> stand_ins;
+  /// By how much ln f and ln ζ of a mode differ from strike to strike, rms; the median of the
+  /// modes. NaN: one strike.
+  double frequency_scatter = std::numeric_limits<double>::quiet_NaN();
+  double damping_scatter = std::numeric_limits<double>::quiet_NaN();
 
   /// Why these are no modes of the structure: they leave more than half of a response; else empty.
-  std::string rejection() const;
+  /// names: what the strikes are called.
+  std::string rejection(std::span<const std::string> names = {}) const;
   /// Names a mode that stands at the least damping ratio that is tried: the record was damped less
   /// than is supposed; else empty.
   std::string without_damping() const;
@@ -48,15 +59,19 @@ struct StrikeFit {
 /// least squares on a contour s = σ + iω, linear unknowns eliminated (Golub and Pereyra, 1973;
 /// Kaufman, 1975). One mode more at a time, where it takes most from the misfit, as long as
 /// BIC = n ln(cost/n) + p ln n falls (Schwarz, 1978); n bins that tell alike count as one. The
-/// structure is at rest at t = 0; rebounds are part of the force. Throws InvalidInput for a record
-/// without force, a band without bins, or one that has fewer numbers than one mode takes.
-StrikeFit fit_strike(const StructureRecord& record, const std::vector<SensorKind>& kinds,
-                     const StrikeFitOptions& options);
+/// structure is at rest at t = 0; rebounds are part of the force. Strikes at one place have poles
+/// and modal constants in common. Of one, the table's deviations are those of the fit; of several,
+/// those of a further strike, by the poles of each alone (further_strike()), and what the structure
+/// changes between them is part of the table's scatter. Throws InvalidInput for a record without
+/// force, strikes of different sensors or the same samples, a band without bins, or one that has
+/// fewer numbers than one mode takes.
+StrikeFit fit_strikes(std::vector<StructureRecord> records, const std::vector<SensorKind>& kinds,
+                      const StrikeFitOptions& options);
 
-/// The same for measured H_k(σ + iω) of one session. The force is 1 everywhere and nothing rings
-/// on. What is left grows with the force: the table's scatter is modal, its noise 0, and it has no
-/// pulse. Throws InvalidInput for another number of lines, one of the band that is not finite, and
-/// as above.
+/// The same for measured H_k(σ + iω) of one session or more. The force is 1 everywhere and nothing
+/// rings on. What is left grows with the force: the table's scatter is modal, its noise 0, and it
+/// has no pulse. Throws InvalidInput for another number of lines, one of the band that is not
+/// finite, and as above.
 StrikeFit fit_response(const MeasuredFunctions& measured, const StrikeFitOptions& options);
 
 }  // namespace modcal

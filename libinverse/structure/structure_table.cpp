@@ -39,6 +39,28 @@ void StructureTable::require_modes(std::string_view what) const {
                  what);
 }
 
+void StructureTable::take_pulse(const StructureRecord& strike) {
+  const std::vector<double>& force = strike.force;
+  const auto larger = [](double a, double b) { return std::abs(a) < std::abs(b); };
+  const auto peak = std::max_element(force.begin(), force.end(), larger) - force.begin();
+  const auto reach = static_cast<std::ptrdiff_t>(10.0 * strike.sample_rate / high);
+  const RealFft fft(static_cast<std::size_t>(4 * reach));
+  std::vector<double> around(fft.length(), 0.0);
+  for (std::ptrdiff_t j = -reach; j <= reach; ++j) {
+    if (peak + j < 0 || peak + j >= std::ssize(force)) continue;
+    const double fading = std::cos(0.5 * std::numbers::pi * static_cast<double>(j) /
+                                   (static_cast<double>(reach) + 1.0));
+    around[static_cast<std::size_t>(j + reach)] =
+        fading * fading * force[static_cast<std::size_t>(peak + j)];
+  }
+  const std::vector<Complex> spectrum = fft.forward(around);
+  lag = strike.sample_rate / static_cast<double>(fft.length());
+  pulse.clear();
+  for (const Complex& g : spectrum) {
+    pulse.push_back(std::abs(g) / std::max(std::abs(spectrum[0]), 1e-300));
+  }
+}
+
 double StructureTable::pulse_at(double frequency) const {
   if (pulse.empty()) {
     const double above = std::clamp(4.0 * (frequency / high - 1.0), 0.0, 1.0);

@@ -19,16 +19,16 @@ struct SensorScatter {
 /// A model with error bars, between `low` and `high` [Hz]: modes, or what was measured in their
 /// place.
 struct StructureTable {
-  ModalModel model;                          ///< without poles where functions were measured
-  MeasuredFunctions measured;                ///< empty: modes
-  std::vector<std::string> names;            ///< of the sensors, K
-  std::vector<double> frequency_deviations;  ///< of ln f_n; empty: exact
-  std::vector<double> damping_deviations;    ///< of ln ζ_n; empty: exact
-  std::vector<SensorScatter> scatters;       ///< K
-  std::vector<double> contact;               ///< φ_n²/m_n of the force [1/kg]; empty: unknown
-  double low = 0.0, high = 0.0;              ///< band [Hz]
-  double lag = 0.0;                          ///< of the pulse's spectrum [Hz]
-  std::vector<double> pulse;                 ///< |G| at 0, lag, 2 lag, … [1]; empty: not known
+  ModalModel model;                ///< without poles where functions were measured
+  MeasuredFunctions measured;      ///< empty: modes
+  std::vector<std::string> names;  ///< of the sensors, K
+  /// Of ln f_n and ln ζ_n, of a further strike where several tell it; empty: exact.
+  std::vector<double> frequency_deviations, damping_deviations;
+  std::vector<SensorScatter> scatters;  ///< K
+  std::vector<double> contact;          ///< φ_n²/m_n of the force [1/kg]; empty: unknown
+  double low = 0.0, high = 0.0;         ///< band [Hz]
+  double lag = 0.0;                     ///< of the pulse's spectrum [Hz]
+  std::vector<double> pulse;            ///< |G| at 0, lag, 2 lag, … [1]; empty: not known
 
   std::vector<std::string> warnings;  ///< what was supposed where its files do not tell
 
@@ -36,6 +36,9 @@ struct StructureTable {
   /// 1 up to `high`, fading out over a quarter above it.
   double pulse_at(double frequency) const;
   double frequency(std::size_t n) const;  ///< [Hz]
+  /// |G| of the largest pulse of a strike's force, ten periods of `high` to either side of its
+  /// peak, fading out.
+  void take_pulse(const StructureRecord& strike);
   StructureTable without_sensor(std::size_t k) const;
   /// Throws InvalidInput for measured functions: `what` needs modes.
   void require_modes(std::string_view what) const;

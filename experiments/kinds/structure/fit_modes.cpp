@@ -1,72 +1,32 @@
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "experiments/kinds/lint.hpp"
 #include "experiments/kinds/structure/modes_figures.hpp"
+#include "experiments/kinds/structure/modes_outcome.hpp"
 #include "experiments/kinds/structure/structure_kinds.hpp"
-#include "experiments/report/result.hpp"
+#include "libsim/records/record_keys.hpp"
 #include "libsim/records/universal/universal_modes.hpp"
 
 namespace modcal {
 namespace {
 
-struct ModesOutcome {
-  const StrikeFit& fit;
-  double rest;  // of which the mean was taken [s]; NaN: response functions
-
-  void visit(ResultVisitor& visitor) const {
-    const StructureTable& table = fit.table;
-    std::vector<std::size_t> modes(table.model.poles.size()), sensors(table.names.size());
-    for (std::size_t n = 0; n < modes.size(); ++n) modes[n] = n;
-    for (std::size_t k = 0; k < sensors.size(); ++k) sensors[k] = k;
-    visitor.rows(
-        {.key = "modes",
-         .table = "modes",
-         .name = "Modes",
-         .meaning = "Pairs of poles common to all sensors, with the standard deviations "
-                    "of the fit. Another strike may differ by more than these."},
-        modes, [&](ResultVisitor& row, std::size_t n) {
-          const double frequency = table.frequency(n);
-          row({.key = "n", .name = "mode"}, n + 1);
-          row({.key = "f_hz", .name = "frequency", .unit = "Hz", .format = "{:.6g}"}, frequency);
-          row({.key = "f_sd_hz", .name = "its deviation", .unit = "Hz", .format = "{:.2g}"},
-              frequency * table.frequency_deviations[n]);
-          row({.key = "zeta", .name = "damping ratio"}, table.model.poles[n].zeta);
-          row({.key = "zeta_sd", .name = "its deviation", .format = "{:.2g}"},
-              table.model.poles[n].zeta * table.damping_deviations[n]);
-        });
-    visitor.rows({.key = "sensors",
-                  .table = "sensors",
-                  .name = "Sensors",
-                  .meaning = "What the model leaves of each response, and what that says of the "
-                             "model's scatter about a mode and of the noise."},
-                 sensors, [&](ResultVisitor& row, std::size_t k) {
-                   row({.key = "channel"}, table.names[k]);
-                   row({.key = "kind"}, name_of(table.model.sensors[k]));
-                   row({.key = "left", .name = "left of the response", .format = "{:.3g}"},
-                       fit.residuals[k]);
-                   row({.key = "scatter", .format = "{:.3g}"}, table.scatters[k].modal);
-                   row({.key = "noise_rms", .name = "noise", .format = "{:.3g}"},
-                       table.scatters[k].noise);
-                 });
-    visitor.rows({.key = "steps", .shown = ResultVisitor::kInJson}, fit.steps,
-                 [](ResultVisitor& row, const ModeCount& step) {
-                   row({.key = "modes"}, step.modes);
-                   row({.key = "misfit"}, step.misfit);
-                   row({.key = "criterion"}, step.criterion);
-                 });
-    visitor({.key = "contour_per_s"}, fit.spectra.grid.sigma);
-    visitor({.key = "rest_s"}, known(rest));
-    visitor({.key = "misfit"}, fit.misfit);
-  }
-};
-
 std::string sentence_of(const StrikeFit& fit, const FitModesOptions& options) {
   const auto [least, most] = std::ranges::minmax(fit.residuals);
-  return fmt::format(
+  std::string text = fmt::format(
       "{} modes between {:g} and {:g} Hz; the model leaves {:.2g} to {:.2g} % of the responses\n",
       fit.table.model.poles.size(), options.low, options.high, 100.0 * least, 100.0 * most);
+  if (fit.strikes.size() > 1) {
+    text += fmt::format(
+        "from {} to {} frequencies differ by {:.2g} %, damping ratios by {:.2g} % (medians of "
+        "{})\n",
+        options.has_functions ? "session" : "strike", options.has_functions ? "session" : "strike",
+        100.0 * fit.frequency_scatter, 100.0 * fit.damping_scatter, fit.strikes.size());
+  }
+  return text;
 }
 
 }  // namespace
@@ -79,8 +39,14 @@ FileRead file_read(const StructureRecordOptions& record) {
 }
 
 std::vector<FileRead> FitModesOptions::files_read() const {
-  if (!has_functions) return {file_read(record)};
   std::vector<FileRead> files;
+  if (!has_functions) {
+    for (const StructureRecordOptions& strike : strikes()) {
+      files.push_back(file_read(strike));
+      if (files.size() > 1) files.back().key = "other_strikes";
+    }
+    return files;
+  }
   for (const std::string& file : functions.files()) {
     files.push_back({.name = file, .key = files.empty() ? "functions.file" : "functions.sessions"});
   }
@@ -95,8 +61,38 @@ std::vector<Finding> lint_responses(const std::string& path, std::size_t sensors
   return findings;
 }
 
+std::vector<StructureRecordOptions> FitModesOptions::strikes() const {
+  std::vector<StructureRecordOptions> all = {record};
+  for (const OtherStrikeOptions& other : other_strikes) {
+    StructureRecordOptions& strike = all.emplace_back(record);
+    if (!other.file.empty()) strike.file = other.file;
+    strike.start = other.start, strike.stop = other.stop;
+  }
+  return all;
+}
+
+std::vector<std::string> FitModesOptions::strike_names() const {
+  if (has_functions) return functions.files();
+  std::vector<std::string> names;
+  for (const StructureRecordOptions& strike : strikes()) {
+    names.push_back(strike.start > 0.0 ? fmt::format("{} from {:g} s", strike.file, strike.start)
+                                       : strike.file);
+  }
+  return names;
+}
+
+void OtherStrikeOptions::visit(OptionVisitor& visitor) {
+  visitor("file", "file of the same channels; none: that of record", file);
+  visit_record_part(visitor, *this);
+}
+
 void FitModesOptions::visit(OptionVisitor& visitor) {
   visitor("record", "a strike from rest, force and responses", has_record, record);
+  visitor(
+      "other_strikes",
+      "strikes at the same place, in files of the same channels or other parts of the record's: "
+      "modes are fitted to all, and their deviations are those of a further strike",
+      other_strikes);
   visitor("functions", "measured response functions in the place of a record", has_functions,
           functions);
   visitor("low", "least frequency of the band that is fitted",
@@ -112,14 +108,7 @@ void FitModesOptions::visit(OptionVisitor& visitor) {
 
 namespace {
 
-// What changes between sessions moves whole resonances, which no scatter of single lines tells.
-void lint_one_session(const ResponseFunctionOptions& functions, std::vector<Finding>& findings) {
-  if (!functions.sessions.empty()) {
-    add_finding(findings, "functions.sessions",
-                "modes are fitted to one session, as what changes between them moves whole "
-                "resonances: fit modes to each; a table of functions (functions: in the file that "
-                "identify_force reads) takes them together");
-  }
+void lint_coherence(const ResponseFunctionOptions& functions, std::vector<Finding>& findings) {
   const bool told = std::ranges::any_of(
       functions.responses,
       [](const FunctionChannelOptions& response) { return !response.coherence.empty(); });
@@ -150,7 +139,12 @@ std::vector<Finding> FitModesOptions::lint() const {
     add_finding(findings, "contour",
                 "response functions are known on one contour alone: leave contour out");
   }
-  if (has_functions) lint_one_session(functions, findings);
+  if (has_functions) lint_coherence(functions, findings);
+  if (has_functions && !other_strikes.empty()) {
+    add_finding(findings, "other_strikes",
+                "response functions have no strikes: name files of further measurements in "
+                "functions.sessions");
+  }
   if (!(low < high)) {
     add_finding(findings, "high", "{:g} Hz is not above low, {:g} Hz", high, low);
   }
@@ -170,19 +164,27 @@ std::vector<Finding> FitModesOptions::lint_records(const std::filesystem::path& 
     });
     return findings;
   }
-  lint_making(findings, "record", [&] {
-    require_band(0.5 * load_structure_record(record, folder).record.sample_rate,
-                 "half the sample rate");
-  });
+  for (const StructureRecordOptions& strike : strikes()) {
+    lint_making(findings,
+                findings.empty() && strike.file == record.file ? "record" : "other_strikes", [&] {
+                  require_band(0.5 * load_structure_record(strike, folder).record.sample_rate,
+                               "half the sample rate");
+                });
+    if (!findings.empty()) break;
+  }
   return findings;
 }
 
 std::vector<PlanLine> FitModesOptions::plan() const {
   const std::size_t count = has_functions ? functions.responses.size() : record.responses.size();
-  const std::string file = files_read().front().name;
-  return {{fmt::format("fit modes between {:g} and {:g} Hz to {} {} of {}", low, high, count,
-                       has_functions ? "response functions" : "responses", file),
-           {{"low", low}, {"high", high}, {"responses", count}, {"record", file}}}};
+  const std::vector<std::string> names = strike_names();
+  const std::string also = names.size() > 1
+                               ? fmt::format(" and {} {}", names.size() - 1,
+                                             has_functions ? "further sessions" : "other strikes")
+                               : "";
+  return {{fmt::format("fit modes between {:g} and {:g} Hz to {} {} of {}{}", low, high, count,
+                       has_functions ? "response functions" : "responses", names.front(), also),
+           {{"low", low}, {"high", high}, {"responses", count}, {"record", names.front()}}}};
 }
 
 namespace {
@@ -207,14 +209,32 @@ Fitted fit_of(const FitModesOptions& options, const StudyContext& context) {
     fitted.warnings = std::move(loaded.warnings);
     return fitted;
   }
-  LoadedStructureRecord loaded =
-      load_structure_record(options.record, context.folder, context.stop);
-  context.throw_if_interrupted();
-  fitted.fit = fit_strike(loaded.record, loaded.kinds, how);
-  fitted.fit.table.names = std::move(loaded.names);
-  fitted.rest = loaded.rest;
-  fitted.warnings = std::move(loaded.warnings);
+  std::vector<LoadedStructureRecord> loaded;
+  std::vector<StructureRecord> records;
+  for (const StructureRecordOptions& strike : options.strikes()) {
+    loaded.push_back(load_structure_record(strike, context.folder, context.stop));
+    context.throw_if_interrupted();
+    for (const std::string& text : loaded.back().warnings) {
+      if (std::ranges::count(fitted.warnings, text) == 0) fitted.warnings.push_back(text);
+    }
+    records.push_back(std::move(loaded.back().record));
+  }
+  fitted.fit = fit_strikes(std::move(records), loaded.front().kinds, how);
+  fitted.fit.table.names = std::move(loaded.front().names);
+  fitted.rest = loaded.front().rest;
   return fitted;
+}
+
+void warn_of_stand_ins(const StrikeFit& fit, StudyResult& result) {
+  if (fit.stand_ins.empty()) return;
+  std::vector<std::string> some;
+  for (const std::size_t n : fit.stand_ins) {
+    some.push_back(fmt::format("{:.5g}", fit.table.frequency(n)));
+  }
+  result.warn(fmt::format(
+      "modes at {} Hz are none of the structure's: they lie outside of the band, or are "
+      "told no better than by their own width, and stand for what no other mode explains",
+      fmt::join(some, ", ")));
 }
 
 }  // namespace
@@ -226,7 +246,8 @@ StudyResult FitModesOptions::run(const StudyContext& context) const {
   result.summary = sentence_of(fit, *this);
   result.answer_by_summary();
   for (const std::string& text : fitted.warnings) result.warn(text);
-  std::string why = fit.rejection();
+  const std::vector<std::string> names = strike_names();
+  std::string why = fit.strikes.size() > 1 ? fit.rejection(names) : fit.rejection();
   // Without a window it is one mode too many, of what rounding leaves.
   const bool windowed = !std::isnan(has_functions ? functions.window : record.window);
   if (why.empty() && windowed && !fit.without_damping().empty()) {
@@ -237,10 +258,11 @@ StudyResult FitModesOptions::run(const StudyContext& context) const {
     result.answer = why;
     result.warn(why);
   }
+  warn_of_stand_ins(fit, result);
   if (!context.numbers_alone) {
     result.blocks.emplace_back(responses_figure(fit));
   }
-  const ModesOutcome outcome{fit, fitted.rest};
+  const ModesOutcome outcome{fit, names, fitted.rest};
   result.add(report::tables_of(outcome));
   if (!context.numbers_alone) {
     result.blocks.emplace_back(criterion_figure(fit));

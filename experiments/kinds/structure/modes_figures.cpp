@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -10,6 +11,19 @@
 namespace modcal {
 
 using report::Series;
+
+namespace {
+
+// Whether a pair of poles has moved by less than 1 % in frequency and 20 % in damping from one of
+// the others: what a mode does when another is added.
+bool stays(const ModalPole& pole, std::span<const ModalPole> others) {
+  return std::ranges::any_of(others, [&](const ModalPole& other) {
+    return std::abs(other.omega - pole.omega) < 0.01 * pole.omega &&
+           std::abs(other.zeta - pole.zeta) < 0.2 * pole.zeta;
+  });
+}
+
+}  // namespace
 
 report::Figure stabilization_figure(const StrikeFit& fit) {
   Series moving{.label = "moves when a mode is added",
@@ -53,7 +67,8 @@ report::Figure responses_figure(const StrikeFit& fit) {
   const StructureTable& table = fit.table;
   report::Figure figure{
       .id = "responses",
-      .title = "Responses to the strike and the model's",
+      .title = fit.strikes.size() > 1 ? "Responses to the first strike and the model's"
+                                      : "Responses to the strike and the model's",
       .caption =
           "Magnitude of response over force on the contour of the fit, and of what the model "
           "leaves of it.",
@@ -62,12 +77,13 @@ report::Figure responses_figure(const StrikeFit& fit) {
     Series measured{.label = "measured", .color = report::ColorRole::kReference};
     Series modeled{.label = "model"};
     Series left{.label = "left", .color = report::ColorRole::kMuted};
-    for (std::size_t m = 0; m < fit.spectra.count(); ++m) {
-      const double at = fit.spectra.s(m).imag() / (2.0 * std::numbers::pi);
-      const Complex y = fit.spectra.responses[k][m], f = fit.spectra.force[m];
+    const FittedStrike& strike = fit.strikes.front();
+    for (std::size_t m = 0; m < strike.spectra.count(); ++m) {
+      const double at = strike.spectra.s(m).imag() / (2.0 * std::numbers::pi);
+      const Complex y = strike.spectra.responses[k][m], f = strike.spectra.force[m];
       measured.add(at, std::abs(y / f));
-      modeled.add(at, std::abs(fit.modeled[k][m] / f));
-      left.add(at, std::abs((y - fit.modeled[k][m]) / f));
+      modeled.add(at, std::abs(strike.modeled[k][m] / f));
+      left.add(at, std::abs((y - strike.modeled[k][m]) / f));
     }
     figure.panels.push_back(
         {.title = table.names[k],

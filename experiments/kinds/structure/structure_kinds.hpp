@@ -12,7 +12,15 @@ namespace modcal {
 /// The file of a structure's record.
 FileRead file_read(const StructureRecordOptions& record);
 
-/// Kind "fit_modes": a table of modes from a strike whose force was measured, or from response
+/// A further strike at the same place: another file of the same channels, or another part of it.
+struct OtherStrikeOptions {
+  std::string file;  ///< empty: that of the record
+  double start = 0.0;
+  double stop = std::numeric_limits<double>::quiet_NaN();
+  void visit(OptionVisitor& visitor);
+};
+
+/// Kind "fit_modes": a table of modes from strikes whose force was measured, or from response
 /// functions.
 struct FitModesOptions {
   static constexpr std::string_view kForStructures =
@@ -20,6 +28,7 @@ struct FitModesOptions {
       "simulate (structure: {table: modes.yaml})";
   bool has_record = false;
   StructureRecordOptions record;
+  std::vector<OtherStrikeOptions> other_strikes;
   bool has_functions = false;
   ResponseFunctionOptions functions;
   double low = 0.0, high = 0.0;
@@ -34,6 +43,11 @@ struct FitModesOptions {
   std::optional<PlannedSimulations> planned_simulations() const { return std::nullopt; }
   std::vector<FileRead> files_read() const;
   StudyResult run(const StudyContext& context) const;
+
+  /// The record, then the other strikes.
+  std::vector<StructureRecordOptions> strikes() const;
+  /// What strikes or sessions are called.
+  std::vector<std::string> strike_names() const;
 };
 
 /// How far the structure may have changed since its table was made.

@@ -102,7 +102,10 @@ TEST_F(ResponseFunctionsOf, AreRefusedWhereTheyAreNone) {
               HasSubstr("leave contour out"));
   EXPECT_THAT(
       said("functions: {file: acc.uff, sessions: [acc.uff], responses: [{channel: acc}]}\n"),
-      HasSubstr("modes are fitted to one session"));
+      HasSubstr("measurement 2 is one of those before"));
+  EXPECT_THAT(said("functions: {file: acc.uff, responses: [{channel: acc}]}\n"
+                   "other_strikes: [{file: acc.uff}]\n"),
+              HasSubstr("name files of further measurements in functions.sessions"));
   EXPECT_THAT(
       said("functions: {file: acc.uff, averages: 4, responses: [{channel: acc, coherence: c}]}\n"),
       HasSubstr("leave coherence"));
