@@ -23,7 +23,8 @@ const std::vector<RecordFormat>& table() {
        read_csv,
        [](const Path& path, std::span<const Signal> signals, const std::string& provenance) {
          write_csv(path, signals, {.provenance = {provenance}});
-       }},
+       },
+       read_csv_responses},
       {"wav",
        "WAV and other sound files",
        {".wav", ".wave", ".rf64", ".bwf", ".w64"},
@@ -37,10 +38,15 @@ const std::vector<RecordFormat>& table() {
        read_universal,
        write_universal,
        read_universal_responses},
-      {"mat", "MAT files of MATLAB and Octave", {".mat"}, read_matlab, write_matlab},
-      {"npy", "an array of NumPy", {".npy"}, read_npy, write_npy},
-      {"npz", "archives of NumPy", {".npz"}, read_npz, write_npz},
-      {"hdf5", "HDF5 files", {".h5", ".hdf5", ".hdf"}, read_hdf5, write_hdf5},
+      {"mat",
+       "MAT files of MATLAB and Octave",
+       {".mat"},
+       read_matlab,
+       write_matlab,
+       read_matlab_responses},
+      {"npy", "an array of NumPy", {".npy"}, read_npy, write_npy, read_npy_responses},
+      {"npz", "archives of NumPy", {".npz"}, read_npz, write_npz, read_npz_responses},
+      {"hdf5", "HDF5 files", {".h5", ".hdf5", ".hdf"}, read_hdf5, write_hdf5, read_hdf5_responses},
       {"lvm", "LabVIEW measurement files", {".lvm"}, read_lvm, write_lvm},
   };
   return formats;
@@ -75,9 +81,10 @@ ResponseFunctions read_response_functions(const Path& path, const std::string& f
                                           const std::vector<std::string>& channels,
                                           FrequencyFunction wanted) {
   const RecordFormat& known = record_format(path, format);
-  MODCAL_REQUIRE(known.read_responses != nullptr,
-                 "{}: {} keep no response functions: state a universal file (UFF 58)",
-                 path.string(), known.meaning);
+  MODCAL_REQUIRE(
+      known.read_responses != nullptr,
+      "{}: {} keep no response functions: state a universal file (UFF 58), CSV, MAT, NumPy or HDF5",
+      path.string(), known.meaning);
   return known.read_responses(path, channels, wanted);
 }
 

@@ -31,4 +31,10 @@ ResponseFunctions read_response_functions(const std::filesystem::path& path,
                                           const std::vector<std::string>& channels,
                                           FrequencyFunction wanted = FrequencyFunction::kResponse);
 
+/// Of a CSV file: a column frequency [Hz], and for each function "NAME" or "NAME real" with "NAME
+/// imaginary", or "NAME" with "NAME phase [deg]" or [rad]; a column by itself is a coherence.
+ResponseFunctions read_csv_responses(const std::filesystem::path& path,
+                                     const std::vector<std::string>& channels,
+                                     FrequencyFunction wanted);
+
 }  // namespace modcal

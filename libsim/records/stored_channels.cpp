@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "libsim/base/error.hpp"
+#include "libsim/base/units.hpp"
 #include "libsim/records/csv_grammar.hpp"
 #include "libsim/records/tuning.hpp"
 
@@ -109,6 +110,17 @@ void settle_rate(const StoredChannel& channel, const ReadOptions& options, const
   }
 }
 
+// "g/lbf" is an acceleration over a force, where a library of units has a mass over one.
+std::pair<std::string, std::string> units_of_quotient(const std::string& unit) {
+  const std::size_t stroke = unit.rfind('/');
+  if (stroke == std::string::npos || !is_unit_of(unit.substr(stroke + 1), "N")) return {unit, {}};
+  std::string response = unit.substr(0, stroke);
+  if (response.starts_with('(') && response.ends_with(')')) {
+    response = response.substr(1, response.size() - 2);
+  }
+  return {response, unit.substr(stroke + 1)};
+}
+
 }  // namespace
 
 double rate_of_period(double period, double resolution) {
@@ -147,6 +159,24 @@ Recording assemble(std::string format, std::vector<StoredChannel> stored,
   return recording;
 }
 
+void set_lines(std::span<const double> hertz, StoredChannel& channel,
+               std::function<std::vector<Complex>()> read) {
+  const auto count = static_cast<double>(hertz.size());
+  const double step = hertz.size() < 2 ? 0.0 : (hertz.back() - hertz.front()) / (count - 1.0);
+  const double before = step > 0.0 ? std::round(hertz.front() / step) : -1.0;
+  bool is_even = before >= 0.0 && before < kMostLinesBefore;
+  for (std::size_t m = 0; m < hertz.size() && is_even; ++m) {
+    is_even = std::abs(hertz[m] - (before + static_cast<double>(m)) * step) < 0.01 * step;
+  }
+  if (!is_even) {
+    channel.other_than_time = fmt::format("{} lines that are not even", hertz.size());
+    return;
+  }
+  channel.first_line = before * step;
+  channel.line_step = step;
+  channel.read_response = std::move(read);
+}
+
 ResponseFunctions assemble_responses(const std::vector<StoredChannel>& stored,
                                      const std::vector<std::string>& channels,
                                      FrequencyFunction wanted, const std::string& file) {
@@ -177,10 +207,13 @@ ResponseFunctions assemble_responses(const std::vector<StoredChannel>& stored,
     const std::vector<Complex> read = channel.read_response();
     values.insert(values.end(), read.begin(), read.end());
     result.grid = {.spacing = 2.0 * std::numbers::pi * one.line_step, .bins = values.size()};
+    const auto [unit, per_unit] = channel.per_unit.empty()
+                                      ? units_of_quotient(channel.head.unit)
+                                      : std::pair(channel.head.unit, channel.per_unit);
     result.functions.push_back({.name = names[chosen[i]],
                                 .kind = channel.head.kind,
-                                .unit = channel.head.unit,
-                                .per_unit = channel.per_unit,
+                                .unit = unit,
+                                .per_unit = per_unit,
                                 .full_scale = channel.head.full_scale,
                                 .values = std::move(values)});
   }

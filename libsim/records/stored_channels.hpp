@@ -38,6 +38,11 @@ struct StoredChannel {
 Recording assemble(std::string format, std::vector<StoredChannel> stored,
                    const ReadOptions& options, const std::string& file);
 
+/// A response function or a coherence at these frequencies [Hz], where they are even to a hundredth
+/// of their distance and the first one lies a whole number of it from 0.
+void set_lines(std::span<const double> hertz, StoredChannel& channel,
+               std::function<std::vector<Complex>()> read);
+
 /// The wanted response functions, as read_response_functions() says.
 ResponseFunctions assemble_responses(const std::vector<StoredChannel>& stored,
                                      const std::vector<std::string>& channels,

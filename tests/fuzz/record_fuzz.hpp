@@ -5,6 +5,7 @@
 
 #include "experiments/records/inspection.hpp"
 #include "libsim/records/record_file.hpp"
+#include "libsim/records/response_functions.hpp"
 #include "tests/fuzz/fuzz.hpp"
 #include "tests/leaks_of_libraries.hpp"
 
@@ -23,6 +24,17 @@ inline void read_as(const std::string& format, std::string_view content) {
     constexpr auto kReplace = nlohmann::json::error_handler_t::replace;
     require(!text(report).empty() && !json(report).dump(2, ' ', false, kReplace).empty(),
             "nothing is said of a record");
+  }
+  for (const FrequencyFunction wanted :
+       {FrequencyFunction::kResponse, FrequencyFunction::kCoherence}) {
+    ResponseFunctions functions;
+    if (!accepted(
+            [&] { functions = read_response_functions(file.path(), format, {"1"}, wanted); })) {
+      continue;
+    }
+    require(functions.functions.size() == 1 &&
+                functions.functions[0].values.size() == functions.grid.bins,
+            "a response function of another number of lines");
   }
   if (!is_good) return;
   require(is_inspected, "a record that a run takes cannot be inspected");

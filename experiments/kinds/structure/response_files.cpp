@@ -101,7 +101,9 @@ void FunctionChannelOptions::visit(OptionVisitor& visitor) {
 }
 
 void ResponseFunctionOptions::visit(OptionVisitor& visitor) {
-  visitor("file", "universal file (UFF 58), relative to the folder of the file that names it",
+  visitor("file",
+          "universal file (UFF 58), CSV, MAT, NumPy or HDF5 file, relative to the folder of the "
+          "file that names it",
           {.required = true}, file);
   visitor("sessions",
           "files of the same functions, measured again: their scatter is the model's error",

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "libsim/records/record_file.hpp"
+#include "libsim/records/response_functions.hpp"
 
 namespace modcal {
 
@@ -47,7 +48,7 @@ class ArrayFile {
   const std::vector<NamedArray>& arrays() const { return arrays_; }
 
   // Throw InvalidInput where the array is not what its header says.
-  /// The j-th channel of a real table.
+  /// The j-th channel of a table; of a complex one real and imaginary part of each value in turn.
   virtual std::vector<double> column(const NamedArray& array, std::size_t j) = 0;
   /// Of an array of texts the first one.
   virtual std::string text(const NamedArray& array) = 0;
@@ -65,5 +66,13 @@ class ArrayFile {
 /// vectors, and as assemble() does.
 Recording recording_of(const std::shared_ptr<ArrayFile>& content, std::string_view kind,
                        const std::filesystem::path& path, const ReadOptions& options);
+
+/// The columns of complex tables as response functions, those of real ones as coherences. Their
+/// lines [Hz] are a vector called f, freq, frequency or the like, or whole multiples from 0 of a
+/// number called df, in the same structure or around it. Throws InvalidInput as
+/// assemble_responses() does.
+ResponseFunctions responses_of(const std::shared_ptr<ArrayFile>& content,
+                               const std::filesystem::path& path,
+                               const std::vector<std::string>& channels, FrequencyFunction wanted);
 
 }  // namespace modcal

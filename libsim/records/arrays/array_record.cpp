@@ -55,6 +55,28 @@ bool is_period(const NamedArray& array) {
                    {"dt", "ts", "increment", "wf_increment", "sample_period", "delta_t"});
 }
 
+bool is_lines(const NamedArray& array) {
+  return is_one_of(last_of(array), {"f", "freq", "freqs", "frequency", "frequencies", "f_hz"});
+}
+bool is_line_step(const NamedArray& array) {
+  return array.size() == 1 && array.is_real() &&
+         is_one_of(last_of(array), {"df", "delta_f", "frequency_step", "frequency_resolution"});
+}
+
+// The lines of a function of as many values, or the first two of even ones; empty where nothing
+// tells them.
+std::vector<double> lines_of(const Content& content, const NamedArray& array) {
+  const std::vector<NamedArray>& arrays = content->arrays();
+  const NamedArray* const lines = nearest(arrays, array, [&array](const NamedArray& other) {
+    return is_lines(other) && other.is_real() && other.is_table() && other.columns() == 1 &&
+           other.rows() == array.rows();
+  });
+  if (lines != nullptr) return content->column(*lines, 0);
+  const NamedArray* const step = nearest(arrays, array, is_line_step);
+  if (step == nullptr) return {};
+  return {0.0, content->number(*step)};
+}
+
 void set_rate(const Content& content, const NamedArray& array, StoredChannel& channel) {
   const std::vector<NamedArray>& arrays = content->arrays();
   const auto tells = [](const NamedArray& other) { return is_rate(other) || is_period(other); };
@@ -115,6 +137,35 @@ void add_channels(const Content& content, const std::filesystem::path& path,
   }
 }
 
+void add_functions(const Content& content, const std::filesystem::path& path,
+                   const NamedArray& array, std::vector<StoredChannel>& functions) {
+  const std::vector<double> lines = lines_of(content, array);
+  for (std::size_t j = 0; j < array.columns(); ++j) {
+    StoredChannel& function = functions.emplace_back();
+    function.head.name = array.text();
+    if (array.columns() > 1) function.head.name += fmt::format("_{}", j + 1);
+    function.head.unit = unit_of(content, array);
+    function.place = fmt::format("{}: {}", path.string(), function.head.name);
+    function.size = array.rows();
+    if (lines.empty()) {
+      function.other_than_time = fmt::format(
+          "{} values without their lines: state them as a vector f [Hz], or a number df",
+          array.rows());
+      continue;
+    }
+    const bool is_complex = !array.is_real();
+    function.is_coherence = !is_complex;
+    set_lines(lines, function, [content, array, j, is_complex] {
+      const std::vector<double> parts = content->column(array, j);
+      std::vector<Complex> values(array.rows());
+      for (std::size_t m = 0; m < values.size(); ++m) {
+        values[m] = is_complex ? Complex(parts[2 * m], parts[2 * m + 1]) : parts[m];
+      }
+      return values;
+    });
+  }
+}
+
 }  // namespace
 
 std::string NamedArray::text() const {
@@ -133,6 +184,18 @@ Recording recording_of(const Content& content, std::string_view kind,
   const std::size_t count = channels.size();
   return assemble(fmt::format("{}, {} channel{}", kind, count, count == 1 ? "" : "s"),
                   std::move(channels), options, path.string());
+}
+
+ResponseFunctions responses_of(const Content& content, const std::filesystem::path& path,
+                               const std::vector<std::string>& channels, FrequencyFunction wanted) {
+  std::vector<StoredChannel> functions;
+  for (const NamedArray& array : content->arrays()) {
+    constexpr std::size_t kMostFunctions = 1 << 12;
+    const bool is_table = array.has_numbers() && array.is_table();
+    if (!is_table || is_lines(array) || array.columns() > kMostFunctions) continue;
+    add_functions(content, path, array, functions);
+  }
+  return assemble_responses(functions, channels, wanted, path.string());
 }
 
 }  // namespace modcal

@@ -63,6 +63,17 @@ bool is_complex(hid_t type) {
   return H5Tget_member_class(type, 0) == H5T_FLOAT && H5Tget_member_class(type, 1) == H5T_FLOAT;
 }
 
+// Two doubles by the names of the stored pair.
+Hdf5Id complex_in_memory(hid_t stored) {
+  Hdf5Id type(H5Tcreate(H5T_COMPOUND, 2 * sizeof(double)), H5Tclose);
+  for (unsigned part = 0; part < 2; ++part) {
+    char* const name = H5Tget_member_name(stored, part);
+    H5Tinsert(type.get(), name, part * sizeof(double), H5T_NATIVE_DOUBLE);
+    H5free_memory(name);
+  }
+  return type;
+}
+
 NamedArray::Holds holds(hid_t type) {
   const H5T_class_t kind = H5Tget_class(type);
   if (kind == H5T_FLOAT || kind == H5T_INTEGER) return NamedArray::Holds::kReal;
@@ -216,7 +227,7 @@ void Hdf5Content::refuse(const NamedArray& array) const {
 
 std::vector<double> Hdf5Content::column(const NamedArray& array, std::size_t j) {
   const std::lock_guard lock(hdf5_lock());
-  const std::size_t rows = array.size() == 1 ? 1 : array.rows();
+  const std::size_t rows = (array.size() == 1 ? 1 : array.rows()) * (array.is_real() ? 1 : 2);
   // Compressed a thousand times at the most, and only as large as its header says where it is
   // whole.
   constexpr std::uint64_t kMostCompressed = 1 << 11;
@@ -246,7 +257,7 @@ bool Hdf5Content::read_column(const NamedArray& array, std::size_t j,
   if (!space.good() || dims_of(space.get()) != array.dims) return false;
   // The j-th row or column of a table; all of a vector.
   const bool across = array.is_across();
-  const hsize_t rows = samples.size();
+  const hsize_t rows = samples.size() / (array.is_real() ? 1 : 2);
   const std::array<hsize_t, 2> start = {across ? j : 0, across ? 0 : j};
   const std::array<hsize_t, 2> count = {across ? 1 : rows, across ? rows : 1};
   if (place.rank > 0 && H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr,
@@ -254,7 +265,10 @@ bool Hdf5Content::read_column(const NamedArray& array, std::size_t j,
     return false;
   }
   const Hdf5Id memory(H5Screate_simple(1, &rows, nullptr), H5Sclose);
-  return H5Dread(dataset.get(), H5T_NATIVE_DOUBLE, memory.get(), space.get(), H5P_DEFAULT,
+  const Hdf5Id stored(H5Dget_type(dataset.get()), H5Tclose);
+  const Hdf5Id number = array.is_real() ? Hdf5Id(H5Tcopy(H5T_NATIVE_DOUBLE), H5Tclose)
+                                        : complex_in_memory(stored.get());
+  return H5Dread(dataset.get(), number.get(), memory.get(), space.get(), H5P_DEFAULT,
                  samples.data()) >= 0;
 }
 
@@ -277,10 +291,6 @@ std::string Hdf5Content::read_text(const NamedArray& array) const {
   if (!attribute.good()) refuse(array);
   const Hdf5Id type(H5Aget_type(attribute.get()), H5Tclose);
   return text_of(type.get(), [&](hid_t as, void* to) { return H5Aread(attribute.get(), as, to); });
-}
-
-Recording read_hdf5(const Path& path, const ReadOptions& options) {
-  return recording_of(std::make_shared<Hdf5Content>(path), "HDF5 file", path, options);
 }
 
 }  // namespace modcal

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "libsim/records/record_file.hpp"
+#include "libsim/records/response_functions.hpp"
 
 namespace modcal {
 
@@ -16,6 +17,11 @@ std::mutex& hdf5_lock();
 /// group: `unit`, `sample_rate`, `dt` and the like; `name` is the channel's. Data that stand in
 /// other files are not read. Throws InvalidInput for what is no whole HDF5 file.
 Recording read_hdf5(const std::filesystem::path& path, const ReadOptions& options = {});
+
+/// Response functions and coherences as responses_of() reads them.
+ResponseFunctions read_hdf5_responses(const std::filesystem::path& path,
+                                      const std::vector<std::string>& channels,
+                                      FrequencyFunction wanted);
 
 /// Writes a dataset of doubles a signal with the attributes `unit` and `name`, and `sample_rate`
 /// [Hz] and `provenance` of the file.

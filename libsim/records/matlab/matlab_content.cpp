@@ -98,11 +98,11 @@ std::size_t size_of(const matvar_t& variable) {
 }
 
 template <typename Number>
-double number_at(const matvar_t& variable, std::size_t i) {
-  return static_cast<double>(static_cast<const Number*>(variable.data)[i]);
+double number_at(const void* numbers, std::size_t i) {
+  return static_cast<double>(static_cast<const Number*>(numbers)[i]);
 }
 
-using NumberAt = double (*)(const matvar_t&, std::size_t);
+using NumberAt = double (*)(const void*, std::size_t);
 
 // How a number of a class is read; null: it has no numbers.
 NumberAt number_of_class(matio_classes type) {
@@ -180,8 +180,16 @@ std::vector<double> MatlabContent::column(const NamedArray& array, std::size_t j
   // Numbers stand column by column.
   const std::size_t step = array.is_across() ? array.dims[0] : 1;
   const std::size_t first = array.is_across() ? j : j * array.dims[0];
-  std::vector<double> samples(array.rows());
-  for (std::size_t i = 0; i < samples.size(); ++i) samples[i] = read(field, first + i * step);
+  std::vector<const void*> parts = {field.data};
+  if (!array.is_real()) {
+    const auto& split = *static_cast<const mat_complex_split_t*>(field.data);
+    parts = {split.Re, split.Im};
+  }
+  std::vector<double> samples;
+  samples.reserve(array.rows() * parts.size());
+  for (std::size_t i = 0; i < array.rows(); ++i) {
+    for (const void* const part : parts) samples.push_back(read(part, first + i * step));
+  }
   return samples;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "libsim/records/record_file.hpp"
+#include "libsim/records/response_functions.hpp"
 
 namespace modcal {
 
@@ -17,6 +18,11 @@ inline constexpr const char* kMatlabHeads = "modcal";
 /// [s] tells it. Names and units are those of a structure `modcal` where write_matlab() left it;
 /// other files state no units. Throws InvalidInput for what is no whole MAT file.
 Recording read_matlab(const std::filesystem::path& path, const ReadOptions& options = {});
+
+/// Response functions and coherences as responses_of() reads them.
+ResponseFunctions read_matlab_responses(const std::filesystem::path& path,
+                                        const std::vector<std::string>& channels,
+                                        FrequencyFunction wanted);
 
 /// Writes version 5: a column a signal, `sample_rate`, and a structure `modcal` with names and
 /// units. An existing file is replaced only when the new one is complete. Throws InvalidInput where

@@ -57,7 +57,8 @@ NumberOf number_of_type(const NpyType& type) {
 }
 
 NamedArray::Holds holds(const NpyType& type) {
-  if (type.kind == 'c') return NamedArray::Holds::kComplex;
+  const bool is_complex = type.kind == 'c' && (type.size == 8 || type.size == 16);
+  if (is_complex) return NamedArray::Holds::kComplex;
   if (type.kind == 'U' || type.kind == 'S') return NamedArray::Holds::kText;
   return number_of_type(type) == nullptr ? NamedArray::Holds::kOther : NamedArray::Holds::kReal;
 }
@@ -113,7 +114,10 @@ void NpyArrays::add(const std::vector<std::string>& name, const std::string& pla
 std::vector<double> NpyArrays::column(const NamedArray& array, std::size_t j) {
   const Stored& stored = stored_[array.place];
   const NpyHeader& header = stored.header;
-  const NumberOf read = number_of_type(stored.field.type);
+  // A complex number is two floats.
+  const std::size_t parts = stored.field.type.kind == 'c' ? 2 : 1;
+  const std::size_t width = stored.field.type.size / parts;
+  const NumberOf read = number_of_type(parts == 2 ? NpyType{'f', width} : stored.field.type);
   const std::size_t rows = array.rows(), item = header.item_size;
   // Places of the channel's samples among the items.
   const bool is_along = array.is_across() == header.is_fortran;
@@ -124,17 +128,20 @@ std::vector<double> NpyArrays::column(const NamedArray& array, std::size_t j) {
   bytes(block.data(), block.size());
   const std::size_t held = std::max<std::size_t>(1, (1 << 16) / item);
   block.resize(held * item);
-  const std::size_t end = first + (rows - 1) * step + 1, width = stored.field.type.size;
+  const std::size_t end = first + (rows - 1) * step + 1;
   std::vector<double> samples;
-  samples.reserve(rows);
+  samples.reserve(rows * parts);
   std::size_t wanted = first;
   for (std::size_t begin = 0; begin < end; begin += held) {
     const std::size_t count = std::min(held, end - begin);
     bytes(block.data(), count * item);
-    for (; wanted < begin + count && samples.size() < rows; wanted += step) {
-      char* const at = block.data() + (wanted - begin) * item + stored.field.offset;
-      if (stored.field.type.is_swapped) std::reverse(at, at + width);
-      samples.push_back(read(at));
+    for (; wanted < begin + count && samples.size() < rows * parts; wanted += step) {
+      for (std::size_t part = 0; part < parts; ++part) {
+        char* const at =
+            block.data() + (wanted - begin) * item + stored.field.offset + part * width;
+        if (stored.field.type.is_swapped) std::reverse(at, at + width);
+        samples.push_back(read(at));
+      }
     }
   }
   return samples;

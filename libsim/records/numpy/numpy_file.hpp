@@ -5,6 +5,7 @@
 #include <string>
 
 #include "libsim/records/record_file.hpp"
+#include "libsim/records/response_functions.hpp"
 
 namespace modcal {
 
@@ -14,8 +15,18 @@ namespace modcal {
 /// of Python are never unpickled.
 Recording read_npy(const std::filesystem::path& path, const ReadOptions& options = {});
 
+/// Response functions and coherences as responses_of() reads them.
+ResponseFunctions read_npy_responses(const std::filesystem::path& path,
+                                     const std::vector<std::string>& channels,
+                                     FrequencyFunction wanted);
+
 /// Reads the arrays of an archive as recording_of() says; checksums are compared.
 Recording read_npz(const std::filesystem::path& path, const ReadOptions& options = {});
+
+/// Response functions and coherences as responses_of() reads them.
+ResponseFunctions read_npz_responses(const std::filesystem::path& path,
+                                     const std::vector<std::string>& channels,
+                                     FrequencyFunction wanted);
 
 /// Writes a structured array of doubles: t [s] and a field a signal, "R1 [N]". Every bit of the
 /// samples is kept.

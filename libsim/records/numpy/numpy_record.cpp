@@ -93,19 +93,17 @@ std::vector<std::string> names_of(std::string member) {
   return {member, std::string(kUnit.substr(1))};
 }
 
-}  // namespace
-
-Recording read_npy(const Path& path, const ReadOptions& options) {
+std::shared_ptr<NpyArrays> array_of(const Path& path) {
   const std::uint64_t size = size_of(path);
-  const auto arrays = std::make_shared<NpyArrays>();
+  auto arrays = std::make_shared<NpyArrays>();
   arrays->add({utf8_or_latin1(path.stem().string())}, path.string(), size,
               [path] { return bytes_of_file(path); });
-  return recording_of(arrays, "NumPy array", path, options);
+  return arrays;
 }
 
-Recording read_npz(const Path& path, const ReadOptions& options) {
+std::shared_ptr<NpyArrays> arrays_of(const Path& path) {
   size_of(path);
-  const auto arrays = std::make_shared<NpyArrays>();
+  auto arrays = std::make_shared<NpyArrays>();
   const Archive archive(path);
   const zip_int64_t count = zip_get_num_entries(archive.zip(), 0);
   for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(std::max<zip_int64_t>(0, count)); ++i) {
@@ -119,7 +117,27 @@ Recording read_npz(const Path& path, const ReadOptions& options) {
   }
   MODCAL_REQUIRE(!arrays->arrays().empty(), "{}: no array of NumPy stands in this archive",
                  path.string());
-  return recording_of(arrays, "NumPy archive", path, options);
+  return arrays;
+}
+
+}  // namespace
+
+Recording read_npy(const Path& path, const ReadOptions& options) {
+  return recording_of(array_of(path), "NumPy array", path, options);
+}
+
+Recording read_npz(const Path& path, const ReadOptions& options) {
+  return recording_of(arrays_of(path), "NumPy archive", path, options);
+}
+
+ResponseFunctions read_npy_responses(const Path& path, const std::vector<std::string>& channels,
+                                     FrequencyFunction wanted) {
+  return responses_of(array_of(path), path, channels, wanted);
+}
+
+ResponseFunctions read_npz_responses(const Path& path, const std::vector<std::string>& channels,
+                                     FrequencyFunction wanted) {
+  return responses_of(arrays_of(path), path, channels, wanted);
 }
 
 }  // namespace modcal

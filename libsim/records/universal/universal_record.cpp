@@ -6,6 +6,7 @@
 #include "libsim/records/csv_grammar.hpp"
 #include "libsim/records/quantities.hpp"
 #include "libsim/records/stored_channels.hpp"
+#include "libsim/records/tuning.hpp"
 #include "libsim/records/universal/universal_file.hpp"
 
 namespace modcal {
@@ -86,7 +87,7 @@ double force_factor(const UniversalAxis& axis, const std::optional<UniversalUnit
 void set_response(const std::filesystem::path& path, const UniversalFunction& function,
                   const std::optional<UniversalUnits>& units, StoredChannel& channel) {
   const double step = function.step, lines = function.first / step;
-  const bool is_even = function.is_even && step > 0.0 && lines >= 0.0 && lines < 1e9 &&
+  const bool is_even = function.is_even && step > 0.0 && lines >= 0.0 && lines < kMostLinesBefore &&
                        std::abs(lines - std::round(lines)) < 1e-3;
   channel.is_coherence = function.type == kCoherence && !function.is_complex;
   const bool is_response = function.type == kFrequencyResponse && function.is_complex;

@@ -119,11 +119,45 @@ def units(folder):
     assert [channel["unit"] for channel in report["channels"]] == ["lbf", "m/s2"], report["channels"]
 
 
+def functions(folder):
+    """Response functions of a plate with two modes are the same table in every format."""
+    lines = np.arange(4.0, 200.0, 0.5)
+    turn = 2 * np.pi
+    s = 1j * turn * lines
+    modes = [(60.0, 0.01, 2.0), (130.0, 0.02, -1.5)]
+    response = s**2 * sum(a / (s**2 + 2 * z * turn * f * s + (turn * f)**2) for f, z, a in modes)
+    two = np.stack([response, 0.3 * response * np.exp(0.2j)], axis=1)
+    np.savez(folder / "h.npz", frequency=lines, H=two, **{"H.unit": "g/lbf"})
+    scipy.io.savemat(folder / "h.mat", {"test": {"f": lines[:, None], "H": two, "unit": "none"}})
+    with h5py.File(folder / "h.h5", "w") as file:
+        file["freq"] = lines
+        file["H"] = two.T.astype(">c16")
+        file["H"].attrs["unit"] = "g/lbf"
+    fields = np.zeros(lines.size, dtype=[("f [Hz]", "f8"), ("H_1 [g/lbf]", ">c16"), ("H_2 [g/lbf]", "c16")])
+    fields["f [Hz]"], fields["H_1 [g/lbf]"], fields["H_2 [g/lbf]"] = lines, two[:, 0], two[:, 1]
+    np.save(folder / "h.npy", fields)
+    rows = "\n".join(",".join(repr(float(x)) for x in (f, h[0].real, h[0].imag, abs(h[1]), np.angle(h[1], deg=True)))
+                     for f, h in zip(lines, two))
+    (folder / "h.csv").write_text(f"frequency [Hz],H_1 real [g/lbf],H_1 imaginary [g/lbf],H_2 [g/lbf],H_2 phase [deg]\n{rows}\n")
+    tables = {}
+    for name in ("h.csv", "h.npz", "h.npy", "h.h5", "h.mat"):
+        names, more = (("test.H_1", "test.H_2"), ", calibration: 2.204622621848776") if name == "h.mat" else (("H_1", "H_2"), "")
+        channels = ", ".join(f"{{channel: {channel}{more}}}" for channel in names)
+        (folder / "fit.yaml").write_text(f"kind: fit_modes\nfunctions: {{file: {name}, responses: [{channels}]}}\nlow: 10\nhigh: 190\nmost_modes: 3\n")
+        done = modcal("run", folder / "fit.yaml", "--out", folder / ("out_" + name))
+        assert done.returncode == 0, (name, done.stderr)
+        fit = json.loads((folder / ("out_" + name) / "modes_fit.json").read_text())
+        tables[name] = [(mode["f_hz"], mode["zeta"]) for mode in fit["modes"] if not mode["stands_in"]]
+        for f, z, _ in modes:
+            assert any(abs(found[0] / f - 1) < 1e-6 and abs(found[1] / z - 1) < 1e-5 for found in tables[name]), (name, tables)
+
+
 def main():
     with tempfile.TemporaryDirectory() as name:
         theirs(Path(name))
         ours(Path(name))
         units(Path(name))
+        functions(Path(name))
 
 
 if __name__ == "__main__":

@@ -180,8 +180,8 @@ TEST_F(Universal, ReadsResponseFunctionsWithTheirUnits) {
   EXPECT_EQ(read.functions[0].values[4], numbers(9, true).values[2]);
   EXPECT_THAT(refusal_of([&] { read_response_functions(file, "auto", {"A"}); }),
               HasSubstr("\"A\" is no response function over even lines but has 5 samples"));
-  EXPECT_THAT(refusal_of([&] { read_response_functions(write("a.csv", "t\n1\n"), "auto", {"A"}); }),
-              HasSubstr("columns of text keep no response functions"));
+  EXPECT_THAT(refusal_of([&] { read_response_functions(write("a.wav", "RIFF"), "auto", {"A"}); }),
+              HasSubstr("WAV and other sound files keep no response functions"));
 }
 
 TEST_F(Universal, UnitsOfDataset164ScaleWhatHasNoLabel) {
