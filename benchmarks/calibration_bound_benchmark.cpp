@@ -11,10 +11,10 @@
 #include <ctime>
 
 #include "benchmarks/noisy_stroke.hpp"
-#include "libcalib/likelihood/kernels/column_products.hpp"
 #include "libcalib/likelihood/likelihood_evaluation.hpp"
 #include "libcalib/likelihood/projected_likelihood.hpp"
 #include "libcalib/parameters/string_unknowns.hpp"
+#include "libsim/base/kernels/column_products.hpp"
 
 namespace modcal {
 namespace {

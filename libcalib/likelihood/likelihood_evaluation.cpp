@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cassert>
 
-#include "libcalib/likelihood/kernels/column_products.hpp"
 #include "libcalib/likelihood/projected_likelihood.hpp"
+#include "libsim/base/kernels/column_products.hpp"
 #include "libsim/base/task_loop.hpp"
 
 namespace modcal {

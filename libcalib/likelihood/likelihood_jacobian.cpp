@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cassert>
 
-#include "libcalib/likelihood/kernels/column_products.hpp"
 #include "libcalib/likelihood/kernels/far_products.hpp"
 #include "libcalib/likelihood/likelihood_evaluation.hpp"
 #include "libcalib/likelihood/likelihood_work.hpp"
+#include "libsim/base/kernels/column_products.hpp"
 
 namespace modcal {
 namespace {

@@ -1,8 +1,8 @@
 // What the passes of an evaluation with columns have in hand.
 #pragma once
 
-#include "libcalib/likelihood/kernels/column_products.hpp"
 #include "libcalib/likelihood/likelihood_evaluation.hpp"
+#include "libsim/base/kernels/column_products.hpp"
 
 namespace modcal {
 

@@ -42,9 +42,6 @@ struct LikelihoodBlock {
   alignas(64) double norm[kBins];  // 1/|h|², |h|² the variance of h_2n_1 − h_1n_2
 };
 
-/// Length of a column of one block: real parts, then imaginary parts.
-inline constexpr std::size_t kColumnLength = 2 * WhitenedRecord::kBlock;
-
 /// Fills transfer functions, κ and 1/|h|² of `block`. sensor: how the sensor at x = L reads for one
 /// that reads 1 at x = 0, a factor of h_2 and of its decays; null: alike.
 void fill_block(const WhitenedRecord& record, std::size_t block_index, const ModeSplit& split,

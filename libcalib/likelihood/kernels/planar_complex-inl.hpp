@@ -13,19 +13,16 @@
 
 #include "libcalib/likelihood/kernels/likelihood_kernel.hpp"
 #include "libcalib/likelihood/kernels/mode_split.hpp"
+#include "libsim/base/kernels/sampled_decay-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace modcal::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
 
-using D = hn::ScalableTag<double>;
-using V = hn::Vec<D>;
+using D = Tag;
+using V = Vector;
+using C = ComplexVector;
 constexpr std::size_t kBins = WhitenedRecord::kBlock;
 constexpr std::size_t kNodes = WhitenedRecord::kNodes;
-
-struct C {
-  V re, im;
-};
 
 HWY_INLINE V Real(double x) { return hn::Set(D(), x); }
 HWY_INLINE C Make(V re, V im) { return {re, im}; }
@@ -89,28 +86,6 @@ HWY_INLINE V ResidualVariance(C h1, C h2, V first, V second, V mixed) {
 }
 HWY_INLINE double Sum(V v) { return hn::GetLane(hn::SumOfLanes(D(), v)); }
 HWY_INLINE std::complex<double> Sum(C z) { return {Sum(z.re), Sum(z.im)}; }
-
-// U = 1/(1 − E z^−1) and U' = 1/(1 − conj(E) z^−1), one division for both, and their norms.
-struct Decays {
-  C u, u_conj;
-  V norm, norm_conj;
-};
-HWY_INLINE Decays DecaysAt(std::complex<double> pole, C delay) {
-  const V re = Real(pole.real());
-  const V im = Real(pole.imag());
-  const V rr = hn::NegMulAdd(re, delay.re, Real(1.0));  // 1 − Re E Re z^−1
-  const V ri = hn::Mul(re, delay.im);
-  const V ii = hn::Mul(im, delay.im);
-  const V ir = hn::Mul(im, delay.re);
-  const C a{hn::Add(rr, ii), hn::Add(ri, ir)};  // conj(1 − E z^−1)
-  const C b{hn::Sub(rr, ii), hn::Sub(ri, ir)};  // conj(1 − conj(E) z^−1)
-  const V a_norm = Norm(a);
-  const V b_norm = Norm(b);
-  const V inverse = hn::Div(Real(1.0), hn::Mul(a_norm, b_norm));
-  const V norm = hn::Mul(b_norm, inverse);
-  const V norm_conj = hn::Mul(a_norm, inverse);
-  return {Scale(a, norm), Scale(b, norm_conj), norm, norm_conj};
-}
 
 // s_k and s_k² of neighboring bins or nodes.
 struct Bins {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "libcalib/likelihood/kernels/column_products.hpp"
 #include "libcalib/likelihood/projected_likelihood.hpp"
+#include "libsim/base/kernels/column_products.hpp"
 
 namespace modcal {
 namespace {

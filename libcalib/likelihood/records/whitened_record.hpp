@@ -11,6 +11,7 @@
 #include "libcalib/problem/calibration_data.hpp"
 #include "libinverse/noise/noise_spectrum.hpp"
 #include "libsim/base/aligned_vector.hpp"
+#include "libsim/base/kernels/column_products.hpp"
 #include "libsim/model/modal_basis.hpp"
 
 namespace modcal {
@@ -44,7 +45,7 @@ struct NoisyRecords {
 /// their noise: y_r with noise CN(0, C_k), C_k the identity or that of a spectrum. Arrays are
 /// padded to whole blocks of kBlock bins; the padding has weight 0.
 struct WhitenedRecord {
-  static constexpr std::size_t kBlock = 256;
+  static constexpr std::size_t kBlock = kColumnLength / 2;  ///< a column holds both parts
   static constexpr std::size_t kNodes = 16;  ///< Chebyshev nodes of a block
 
   std::size_t bins = 0;      ///< K_b
