@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "libinverse/joint/ringing_columns.hpp"
 #include "libinverse/record.hpp"
 #include "libsim/model/transfer.hpp"
 
@@ -21,13 +22,18 @@ class TransientFit {
   TransientFit(const ModalBasis& basis, double contact, const FrequencyGrid& grid,
                double sample_rate, bool bending, const SensorPair& sensors);
 
-  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   struct Workspace {
-    Eigen::MatrixXd normal;
-    Eigen::VectorXd right;
-    Rows rows;  ///< of a block of bins
-    Eigen::VectorXd data;
+    Eigen::MatrixXd normal;  ///< its lower triangle
     Eigen::VectorXd decays;  ///< Re c_1, Im c_1, … of the last fit, scaled
+    PlanarVector delay;      ///< of a block of bins
+    std::array<RingingFactors, 2> factors;
+    AlignedVector columns;
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> products;
+
+    Complex decay(std::size_t mode) const {
+      const auto at = static_cast<Eigen::Index>(2 * mode);
+      return {decays[at], decays[at + 1]};
+    }
   };
 
   /// What is known of the record at bin k = 1 … : transfer functions, noise variances of a bin
@@ -76,24 +82,32 @@ class TransientFit {
                        Workspace& workspace) const;
 
  private:
-  void fill_rows(const Setting& setting, std::size_t begin, std::size_t end, const Spectra& spectra,
-                 Workspace& workspace) const;
+  enum Signal : std::size_t { kForce, kDisplacement, kVelocity };
+  /// Both complex equations of a bin: what the two ends are multiplied by.
+  struct Equations {
+    std::array<Complex, 2> along, across;
+  };
+  Equations equations_at(const Setting& setting, std::size_t k) const;
+  std::size_t fill_columns(const Setting& setting, std::size_t begin, std::size_t count,
+                           const Spectra& spectra, Workspace& workspace) const;
+  void multiply_columns(const Setting& setting, std::size_t first, std::size_t last,
+                        const Spectra& spectra, Workspace& workspace) const;
   Eigen::MatrixXd moves_without_clusters(const Setting& setting, const Spectra& spectra,
                                          Workspace& workspace) const;
-  void fill_motion(const Effect& effect, bool velocity, std::size_t k, Eigen::Index row,
-                   const Rows& force, Rows& rows) const;
-  std::array<Complex, 2> decay_of(std::size_t n, Complex shift) const;
-  std::array<Complex, 2> motion_of(bool velocity, std::size_t n, Complex shift) const;
-  Complex shift_of(std::size_t k) const;
+  void fill_effect(const Setting& setting, const Effect& effect, Signal signal,
+                   std::ptrdiff_t first, Workspace& workspace) const;
+  std::vector<RingingMode> moving(bool velocity) const;
+  template <typename Take>
+  void add_up(std::span<const RingingMode> modes, std::size_t first, Take take) const;
   Complex reading(std::size_t side, std::size_t k) const;
+  Complex delay_of(std::size_t k) const;
 
   FrequencyGrid grid_;
   double sample_rate_ = 0.0;
   SensorPair sensors_;
-  std::vector<Complex> poles_;    ///< exp(λ_n/f_s)
-  std::vector<Complex> rates_;    ///< λ_n [1/s]
-  std::vector<double> gains_[2];  ///< g_rn, scaled to at most 1
-  std::vector<double> contact_;   ///< φ_n(x_c), scaled so
+  std::vector<RingingMode> modes_;  ///< by their g_rn, scaled to at most 1
+  std::vector<Complex> rates_;      ///< λ_n [1/s]
+  std::vector<double> contact_;     ///< φ_n(x_c), scaled so
 };
 
 }  // namespace modcal
