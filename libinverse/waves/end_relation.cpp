@@ -79,7 +79,7 @@ EndRelationFit fit_end_relations(const EndRecord& record, const StatedString& st
   bins.error = kRefinedError;
   for (int round = 0; round < kRefinements; ++round) {
     grid = grid.halved();
-    least_misfits(bins, grid, found);
+    least_misfit(bins, grid, found);
   }
   fit.fundamental = found.fundamental;
   fit.contact = found.contact;

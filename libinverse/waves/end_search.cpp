@@ -52,52 +52,75 @@ EndBins bins_of(const EndSpectra& spectra, double fundamental, double top) {
   return bins;
 }
 
+EndPowers powers_of(const EndBins& bins) {
+  EndPowers powers;
+  const double share = bins.error * bins.error;
+  powers.frequency = padded(bins.frequency);
+  powers.left = padded(bins.left);
+  powers.right = padded(bins.right);
+  powers.product = padded(bins.size(), 0.0, [&](std::size_t i) { return 2.0 * bins.product[i]; });
+  powers.left_allowed = padded(
+      bins.size(), 0.0, [&](std::size_t i) { return bins.variance[0] + share * bins.left[i]; });
+  powers.right_allowed = padded(
+      bins.size(), 0.0, [&](std::size_t i) { return bins.variance[1] + share * bins.right[i]; });
+  return powers;
+}
+
 namespace {
 
-StringMisfits string_misfits(const EndBins& bins, const StatedString& string) {
-  StringMisfits misfits{};
-  // Sums of logarithms as logarithms of products that stay in range.
-  StringMisfits products{1.0, 1.0, 1.0, 1.0};
-  for (std::size_t i = 0; i < bins.size(); ++i) {
-    const EndFactors factors = end_factors(bins.frequency[i], string);
-    const auto stated = bins.misfits(i, factors.left, factors.right);
-    const auto exchanged = bins.misfits(i, factors.right, factors.left);
-    const StringMisfits factor = {stated[0], stated[1], exchanged[0], exchanged[1]};
-    const bool whole = i % 32 == 31 || i + 1 == bins.size();
-    for (std::size_t h = 0; h < misfits.size(); ++h) {
-      products[h] *= factor[h];
-      if (!whole) continue;
-      misfits[h] += std::log(products[h]) / static_cast<double>(bins.size());
-      products[h] = 1.0;
+// Calls take(string, misfits) for the strings of the grid.
+template <typename Take>
+void search(const EndBins& bins, const StringGrid& grid, const StatedString& start,
+            bool string_alone, Take take) {
+  const EndPowers powers = powers_of(bins);
+  const int steps = grid.contact.count;
+  std::vector<StringMisfits> sums(static_cast<std::size_t>(2 * steps + 1));
+  for (int f = -grid.fundamental.count; f <= grid.fundamental.count; ++f) {
+    for (int b = -grid.inharmonicity.count; b <= grid.inharmonicity.count; ++b) {
+      StatedString string = start;
+      string.fundamental *= 1.0 + grid.fundamental.size * f;
+      string.inharmonicity += grid.inharmonicity.size * b;
+      if (string.inharmonicity < 0.0) continue;
+      sum_misfits(powers,
+                  {.fundamental = string.fundamental,
+                   .inharmonicity = string.inharmonicity,
+                   .contact = start.contact / start.length - grid.contact.size * steps,
+                   .step = grid.contact.size},
+                  string_alone, sums);
+      for (int x = -steps; x <= steps; ++x) {
+        string.contact = start.contact + grid.contact.size * start.length * x;
+        if (!(string.contact > 0.0 && string.contact < start.length)) continue;
+        StringMisfits& misfits = sums[static_cast<std::size_t>(x + steps)];
+        for (double& misfit : misfits) misfit /= static_cast<double>(bins.size());
+        take(string, misfits);
+      }
     }
   }
-  return misfits;
 }
 
 }  // namespace
 
 StringMisfits least_misfits(const EndBins& bins, const StringGrid& grid, StatedString& best) {
-  const StatedString start = best;
   StringMisfits least;
   least.fill(std::numeric_limits<double>::infinity());
-  const auto try_string = [&](int f, int x, int b) {
-    StatedString string = start;
-    string.fundamental *= 1.0 + grid.fundamental.size * f;
-    string.contact += grid.contact.size * start.length * x;
-    string.inharmonicity += grid.inharmonicity.size * b;
-    if (!(string.contact > 0.0 && string.contact < start.length)) return;
-    if (string.inharmonicity < 0.0) return;
-    const StringMisfits misfits = string_misfits(bins, string);
-    if (misfits[0] < least[0]) best = string;
-    for (std::size_t h = 0; h < misfits.size(); ++h) least[h] = std::min(least[h], misfits[h]);
-  };
-  for (int f = -grid.fundamental.count; f <= grid.fundamental.count; ++f) {
-    for (int x = -grid.contact.count; x <= grid.contact.count; ++x) {
-      for (int b = -grid.inharmonicity.count; b <= grid.inharmonicity.count; ++b) {
-        try_string(f, x, b);
-      }
-    }
-  }
+  search(bins, grid, StatedString(best), false,
+         [&](const StatedString& string, const StringMisfits& misfits) {
+           if (misfits[0] < least[0]) best = string;
+           for (std::size_t h = 0; h < misfits.size(); ++h) {
+             least[h] = std::min(least[h], misfits[h]);
+           }
+         });
+  return least;
+}
+
+double least_misfit(const EndBins& bins, const StringGrid& grid, StatedString& best) {
+  double least = std::numeric_limits<double>::infinity();
+  search(bins, grid, StatedString(best), true,
+         [&](const StatedString& string, const StringMisfits& misfits) {
+           if (misfits[0] >= least) return;
+           least = misfits[0];
+           best = string;
+         });
   return least;
 }
 

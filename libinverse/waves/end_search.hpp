@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "libinverse/waves/end_misfits.hpp"
 #include "libinverse/waves/end_residual.hpp"
 #include "libsim/signal/fft.hpp"
 
@@ -32,9 +33,8 @@ struct EndBins {
 /// Bins up to `top` f₀ that stand above the noise: the others tell of no relation.
 EndBins bins_of(const EndSpectra& spectra, double fundamental, double top);
 
-/// Mean of ln(1 + |e|²/v) over the bins of one string, as stated, with one sign turned, and both
-/// again with the ends exchanged.
-using StringMisfits = std::array<double, 4>;
+/// The same for the kernel.
+EndPowers powers_of(const EndBins& bins);
 
 /// Steps about a string, so many to either side.
 struct StringGrid {
@@ -53,5 +53,7 @@ struct StringGrid {
 
 /// The least misfits of the strings of the grid; `best` becomes the one that serves best as stated.
 StringMisfits least_misfits(const EndBins& bins, const StringGrid& grid, StatedString& best);
+/// Of the string as stated alone, the first of these.
+double least_misfit(const EndBins& bins, const StringGrid& grid, StatedString& best);
 
 }  // namespace modcal

@@ -59,7 +59,7 @@ double refine(const EndSpectra& spectra, double top, StringGrid grid, StatedStri
   double misfit = std::numeric_limits<double>::infinity();
   if (bins.size() == 0) return misfit;
   for (int round = 0; round <= kRefinements; ++round) {
-    misfit = least_misfits(bins, grid, string)[0];
+    misfit = least_misfit(bins, grid, string);
     grid = grid.halved();
   }
   return misfit;
@@ -88,15 +88,18 @@ std::vector<Candidate> scanned(const EndSpectra& spectra, double top, double low
                                double highest) {
   const double step = 0.1 / top;
   std::vector<Candidate> of_contact(static_cast<std::size_t>(std::ceil(1.0 / step)));
+  std::vector<StringMisfits> sums(of_contact.size());
   double f = lowest;
   while (f <= highest) {
     const EndBins bins = bins_of(spectra, f, top);
     if (bins.size() >= kLeastBins) {
+      sum_misfits(powers_of(bins), {.fundamental = f, .contact = 0.5 * step, .step = step}, true,
+                  sums);
       for (std::size_t i = 0; i < of_contact.size(); ++i) {
         const double contact = (static_cast<double>(i) + 0.5) * step;
-        StatedString string{.length = 1.0, .fundamental = f, .contact = contact};
-        const double misfit = least_misfits(bins, {}, string)[0];
-        if (misfit < of_contact[i].misfit) of_contact[i] = {string, misfit};
+        const double misfit = sums[i][0] / static_cast<double>(bins.size());
+        if (misfit >= of_contact[i].misfit || contact >= 1.0) continue;
+        of_contact[i] = {{.length = 1.0, .fundamental = f, .contact = contact}, misfit};
       }
     }
     f *= 1.0 + step;
