@@ -1,6 +1,8 @@
 #include "libcalib/parameters/prior_equations.hpp"
 
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "libsim/base/dense_solvers.hpp"
 
@@ -35,9 +37,19 @@ void PriorEquations::add(const std::vector<LinearForm>& forms, const Eigen::Vect
   right_ += slopes.transpose() * targets;
 }
 
+// A form names few of the unknowns.
 void PriorEquations::add(const LinearForm& form, double mean, double deviation) {
-  add({form}, Eigen::VectorXd::Constant(1, mean),
-      Eigen::MatrixXd::Constant(1, 1, deviation * deviation));
+  const Index own = form.slope.size() - 2;
+  std::vector<std::pair<Index, double>> entries;
+  for (Index i = 0; i < form.slope.size(); ++i) {
+    if (form.slope[i] == 0.0) continue;
+    entries.emplace_back(i < own ? i : unknowns_ + i - own, form.slope[i] / deviation);
+  }
+  const double target = (mean - form.offset) / deviation;
+  for (const auto& [i, slope] : entries) {
+    for (const auto& [j, other] : entries) normal_(i, j) += slope * other;
+    right_[i] += slope * target;
+  }
 }
 
 void PriorEquations::add_scatter(const LawScatter& law, const Eigen::VectorXd& reference) {
