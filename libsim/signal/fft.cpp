@@ -25,10 +25,34 @@ enum class Memory { kApart, kInPlace, kInPlaceUnaligned };
 
 }  // namespace
 
+// Made when they are first asked for: of most lengths one direction is, and of arrays of the caller
+// one alignment.
 struct FftPlans {
-  fftw_plan forward, inverse;
+  const std::size_t length;
+  const Memory memory;
 
-  FftPlans(std::size_t length, Memory memory) {
+  FftPlans(std::size_t samples, Memory where) : length(samples), memory(where) {}
+  FftPlans(const FftPlans&) = delete;
+  FftPlans& operator=(const FftPlans&) = delete;
+  ~FftPlans() {
+    fftw_destroy_plan(forward_);
+    fftw_destroy_plan(inverse_);
+  }
+
+  fftw_plan forward() const {
+    std::call_once(forward_made_, [this] { forward_ = make(true); });
+    return forward_;
+  }
+  fftw_plan inverse() const {
+    std::call_once(inverse_made_, [this] { inverse_ = make(false); });
+    return inverse_;
+  }
+
+ private:
+  fftw_plan make(bool forward) const {
+    // FFTW's planner is not thread-safe; executing a plan on new arrays is.
+    static std::mutex planner;
+    const std::lock_guard lock(planner);
     std::vector<Complex> spectrum(length / 2 + 1);
     std::vector<double> apart(memory == Memory::kApart ? length : 0);
     double* samples = apart.empty() ? samples_in(spectrum.data()) : apart.data();
@@ -37,15 +61,12 @@ struct FftPlans {
         memory == Memory::kInPlace ? FFTW_ESTIMATE : FFTW_ESTIMATE | FFTW_UNALIGNED;
     const unsigned keep = apart.empty() ? 0 : FFTW_PRESERVE_INPUT;
     const unsigned spoil = apart.empty() ? 0 : FFTW_DESTROY_INPUT;
-    forward = fftw_plan_dft_r2c_1d(n, samples, as_fftw(spectrum.data()), flags | keep);
-    inverse = fftw_plan_dft_c2r_1d(n, as_fftw(spectrum.data()), samples, flags | spoil);
+    return forward ? fftw_plan_dft_r2c_1d(n, samples, as_fftw(spectrum.data()), flags | keep)
+                   : fftw_plan_dft_c2r_1d(n, as_fftw(spectrum.data()), samples, flags | spoil);
   }
-  FftPlans(const FftPlans&) = delete;
-  FftPlans& operator=(const FftPlans&) = delete;
-  ~FftPlans() {
-    fftw_destroy_plan(forward);
-    fftw_destroy_plan(inverse);
-  }
+
+  mutable std::once_flag forward_made_, inverse_made_;
+  mutable fftw_plan forward_ = nullptr, inverse_ = nullptr;
 };
 
 namespace {
@@ -53,7 +74,6 @@ namespace {
 // Plans live as long as the process: their number is the number of distinct record lengths.
 const FftPlans* plans_for(std::size_t length, Memory memory) {
   MODCAL_REQUIRE(length >= 1, "a Fourier transform needs at least one sample");
-  // FFTW's planner is not thread-safe; executing a plan on new arrays is.
   static std::mutex mutex;
   static std::map<std::pair<std::size_t, Memory>, FftPlans> cache;
   const std::lock_guard lock(mutex);
@@ -68,14 +88,14 @@ void RealFft::forward(std::span<const double> samples, std::span<Complex> spectr
   throw_if_stopped();
   assert(samples.size() == length_ && spectrum.size() == bins());
   // The plan preserves its input; FFTW's interface is merely not const.
-  fftw_execute_dft_r2c(plans_->forward, const_cast<double*>(samples.data()),
+  fftw_execute_dft_r2c(plans_->forward(), const_cast<double*>(samples.data()),
                        as_fftw(spectrum.data()));
 }
 
 void RealFft::inverse(std::span<Complex> spectrum, std::span<double> samples) const {
   throw_if_stopped();
   assert(samples.size() == length_ && spectrum.size() == bins());
-  fftw_execute_dft_c2r(plans_->inverse, as_fftw(spectrum.data()), samples.data());
+  fftw_execute_dft_c2r(plans_->inverse(), as_fftw(spectrum.data()), samples.data());
   const double scale = 1.0 / static_cast<double>(length_);
   std::transform(samples.begin(), samples.end(), samples.begin(),
                  [scale](double value) { return scale * value; });
@@ -103,7 +123,7 @@ void InPlaceFft::forward(std::span<Complex> memory) const {
   assert(memory.size() == bins());
   double* samples = modcal::samples_in(memory.data());
   const FftPlans* plans = fftw_alignment_of(samples) == 0 ? aligned_ : unaligned_;
-  fftw_execute_dft_r2c(plans->forward, samples, as_fftw(memory.data()));
+  fftw_execute_dft_r2c(plans->forward(), samples, as_fftw(memory.data()));
 }
 
 void InPlaceFft::inverse(std::span<Complex> memory) const {
@@ -111,7 +131,7 @@ void InPlaceFft::inverse(std::span<Complex> memory) const {
   assert(memory.size() == bins());
   double* samples = modcal::samples_in(memory.data());
   const FftPlans* plans = fftw_alignment_of(samples) == 0 ? aligned_ : unaligned_;
-  fftw_execute_dft_c2r(plans->inverse, as_fftw(memory.data()), samples);
+  fftw_execute_dft_c2r(plans->inverse(), as_fftw(memory.data()), samples);
 }
 
 double bin_multiplicity(std::size_t k, std::size_t length) {
