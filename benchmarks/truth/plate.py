@@ -242,6 +242,7 @@ def main():
     p.add_argument("--kinds", nargs="+", default=["strike", "smooth"])
     p.add_argument("--sessions", type=int, default=0, help="of response functions in the place of modes")
     p.add_argument("--strikes", type=int, default=0, help="to which modes are fitted")
+    p.add_argument("--sets", type=int, default=1, help="of strikes, whose poles are scored; the force by the first")
     p.add_argument("--keys", default="", help="further keys of identify_force: \"key: value; key: value\"")
     a = p.parse_args()
     a.out.mkdir(parents=True, exist_ok=True)
@@ -258,14 +259,15 @@ def main():
                 fitted = measure_modes_of_functions(a.build, a.out, a.sessions, change)
             elif a.strikes > 1:
                 fitted = measure_modes(a.build, a.out, a.strikes, change)
+            others = [measure_modes(a.build, a.out, a.strikes, change, i) for i in range(1, a.sets)] if a.strikes > 1 and not a.sessions else []
             table = f"{fitted}/table.yaml" if fitted else f"functions_{change:g}.yaml"
             rows, scores, rejected = [], [], 0
             for draw in range(a.draws):
                 seed = [7, draw, int(1e6 * change)]
                 rng = np.random.default_rng(seed)
-                if fitted:
-                    fit = json.loads((a.out / fitted / "modes_fit.json").read_text())
-                    scores.append(pole_scores(fit, np.random.default_rng(seed), change))
+                for modes in [fitted, *others] if fitted else []:
+                    fit = json.loads((a.out / modes / "modes_fit.json").read_text())
+                    scores.extend(pole_scores(fit, np.random.default_rng(seed), change))
                 name = f"{kind}_{change:g}_{draw}"
                 if not (a.out / f"{name}.csv").exists():
                     write(a.out / f"{name}.csv", *record(rng, change, 1.0, kind))
@@ -286,7 +288,7 @@ def main():
                              1.96 * sd.mean() / np.sqrt(np.mean(ref**2)), result["force"][0]["shape"] == "impacts"))
             if scores:
                 z = np.array(scores)
-                print(f"{kind:7s} change {change:g}: of {z.shape[0]} x {z.shape[1]} poles within 1 and 2 deviations: frequencies "
+                print(f"{kind:7s} change {change:g}: of {len(z)} poles within 1 and 2 deviations: frequencies "
                       f"{(z[..., 0] < 1).mean():.2f} {(z[..., 0] < 2).mean():.2f} (most {z[..., 0].max():.1f}), damping ratios "
                       f"{(z[..., 1] < 1).mean():.2f} {(z[..., 1] < 2).mean():.2f} (most {z[..., 1].max():.1f})", flush=True)
             if rejected:
