@@ -37,7 +37,7 @@ PoleSearch::PoleSearch(std::span<const SearchedStrike> strikes,
                         .columns = StrikeColumns(strike.spectra, strike.force),
                         .weights = strike.weights,
                         .first = rows_});
-    rows_ += 2 * static_cast<Index>(strike.spectra.count());
+    rows_ += strikes_.back().rows();
   }
   for (std::size_t k = 0; k < kinds.size(); ++k) {
     powers_[power_index(kinds[k])] = true;

@@ -61,6 +61,11 @@ class PoleSearch {
     StrikeColumns columns;
     const std::vector<std::vector<double>>& weights;
     Eigen::Index first;  // of its rows: real over imaginary parts
+    Eigen::Index rows() const { return 2 * static_cast<Eigen::Index>(spectra.count()); }
+  };
+  struct Promise {
+    Eigen::Matrix2d kept;
+    Eigen::Vector2d score;
   };
   static std::size_t power_index(SensorKind kind) {
     return static_cast<std::size_t>(power_of_s(kind));
@@ -81,7 +86,7 @@ class PoleSearch {
              Eigen::Ref<Eigen::VectorXd> rows) const;
   Eigen::VectorXd weighted(std::size_t k, const Columns& columns, bool turned) const;
   void lay_grid();
-  Eigen::Matrix2d kept(std::size_t k, std::size_t i, const SensorFit& fit) const;
+  Promise exact(std::size_t k, std::size_t i, const Columns& columns, const SensorFit& fit) const;
   void take_last(const std::vector<SensorFit>& fits);
 
   std::vector<Strike> strikes_;
@@ -91,6 +96,7 @@ class PoleSearch {
   std::vector<Eigen::VectorXd> data_;    // weighted, K
   std::vector<Eigen::MatrixXd> static_;  // weighted columns, K
   std::vector<ModalPole> grid_;
+  Eigen::Index grid_rows_ = 0;                      // of the first strikes
   std::vector<Eigen::MatrixXd> grid_columns_;       // two a pole, K
   std::vector<std::vector<Eigen::Matrix2d>> kept_;  // about: what they keep beside the others, K
 };
