@@ -49,6 +49,8 @@ def csv_records(root):
         good.insert(3, good.pop(0))  # the tables count lines from comments before the headings
         Path(folder, "good.csv").write_text("\n".join(good) + "\n")
         yield "good", Path(folder, "good.csv").read_bytes()
+        yield "functions", b"h1 [g/lbf],h1 imaginary,p [m/N],p phase [deg],c,frequency [Hz]\n" + b"".join(
+            b"%g,%g,%g,%g,0.9,%g\n" % (i, 2 * i, 3 * i, 4 * i, 0.5 * i) for i in range(1, 30))
         for name, marks in tables(root / "tests/experiments/cli/wrong/records.txt"):
             for command in marks["$"]:
                 subprocess.run(["sh", "-c", command], cwd=folder, stderr=subprocess.DEVNULL)
@@ -143,10 +145,12 @@ def element(kind, content):
     return struct.pack("<II", kind, len(content)) + content + b"\0" * (-len(content) % 8)
 
 
-def matrix(name, values, is_text=False):
+def matrix(name, values, is_text=False, imaginary=()):
     data = element(4, struct.pack(f"<{len(values)}H", *map(ord, values))) if is_text else element(
         9, struct.pack(f"<{len(values)}d", *values))
-    flags = element(6, struct.pack("<II", 4 if is_text else 6, 0))
+    if imaginary:
+        data += element(9, struct.pack(f"<{len(imaginary)}d", *imaginary))
+    flags = element(6, struct.pack("<II", (4 if is_text else 6) | (0x800 if imaginary else 0), 0))
     size = element(5, struct.pack("<ii", 1, len(values)))
     return element(14, flags + size + element(1, name.encode()) + data)
 
@@ -157,6 +161,7 @@ def matlab_files():
     head = b"MATLAB 5.0 MAT-file".ljust(124) + struct.pack("<H", 0x0100) + b"IM"
     parts = [matrix(name, held) for name, held in values.items()] + [matrix("note", "a text", is_text=True)]
     yield "5", head + b"".join(parts)
+    yield "functions", head + matrix("H", values["R1"], imaginary=values["R2"]) + matrix("f", values["t"])
     yield "5z", head + b"".join(struct.pack("<II", 15, len(z)) + z for z in map(zlib.compress, parts))
     yield "4", b"".join(struct.pack("<5i", 0, 1, len(held), 0, len(name) + 1) + name.encode() + b"\0" +
                         struct.pack(f"<{len(held)}d", *held) for name, held in values.items())
@@ -178,6 +183,9 @@ def numpy_archives():
         with io.BytesIO() as file:
             save(file, sample_rate=100.0, **{"R1.unit": "N"}, **values)
             yield name, file.getvalue()
+    with io.BytesIO() as file:
+        np.savez(file, H=np.array(values["R1"]) + 1j * np.array(values["R2"]), frequency=0.5 * np.arange(30), coherence=np.ones(30))
+        yield "functions", file.getvalue()
 
 
 def hdf5_files():
@@ -188,6 +196,11 @@ def hdf5_files():
             data.attrs["unit"] = "N"
         file.flush()
         yield "two", file.id.get_file_image()
+    with h5py.File("seed", "w", driver="core", backing_store=False) as file:
+        file.create_dataset("H", data=np.ones((2, 30), dtype=">c8") * 1j)
+        file["df"] = 0.5
+        file.flush()
+        yield "functions", file.id.get_file_image()
 
 
 def labview_files():
