@@ -28,7 +28,7 @@ endfunction()
 modcal_pkg_config(model "Modal model of a string" LIBRARIES -lmodcal_model
                   REQUIRES eigen3 fmt tbb fftw3 libhwy udunits)
 modcal_pkg_config(io "Records in CSV and audio files" LIBRARIES -lmodcal_io -lcsv
-                  REQUIRES modcal-model sndfile matio hdf5 libzip)
+                  REQUIRES modcal-model sndfile matio hdf5 libzip zlib)
 modcal_pkg_config(sim "Simulation of a bowed string" LIBRARIES -lmodcal_sim REQUIRES modcal-model)
 modcal_pkg_config(inverse "Forces at the contact from reactions" REQUIRES modcal-sim
                   LIBRARIES -lmodcal_pluck -lmodcal_identify -lmodcal_inverse)

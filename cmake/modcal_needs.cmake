@@ -3,7 +3,7 @@
 # NAME=module is a module of pkg-config; its target PkgConfig::MODCAL_NAME carries a prefix that the
 # user's own project will not have.
 set(modcal_needs_model Eigen3 fmt TBB FFTW=fftw3 HWY=libhwy UDUNITS=udunits)
-set(modcal_needs_io LibCsv SNDFILE=sndfile MATIO=matio HDF=hdf5 ZIP=libzip)
+set(modcal_needs_io LibCsv SNDFILE=sndfile MATIO=matio HDF=hdf5 ZIP=libzip ZLIB=zlib)
 set(modcal_needs_sim "")
 set(modcal_needs_inverse "")
 set(modcal_needs_calib Ceres GSL=gsl NLOPT=nlopt_cxx)

@@ -1,6 +1,7 @@
 #include "libsim/records/matlab/matlab_content.hpp"
 
 #include <hdf5.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <array>
@@ -48,30 +49,63 @@ double bytes_of_version_4(const std::array<std::uint32_t, 5>& header) {
   return 20.0 + header[4] + parts * kBytes[precision] * header[1] * header[2];
 }
 
+// What a compressed variable of version 5 begins with: tags of itself, of its flags and of its
+// dimensions. libmatio takes memory for as many dimensions as are stated, up to 2^30.
+bool has_few_dimensions(std::ifstream& file, std::streamoff at, std::streamoff size,
+                        bool is_swapped) {
+  constexpr std::size_t kMostTaken = 256;
+  constexpr std::uint32_t kFlagBytes = 8, kMostBytes = 4 * 64;
+  std::array<unsigned char, kMostTaken> packed{};
+  const auto taken = std::min<std::streamoff>(kMostTaken, size);
+  file.seekg(at);
+  file.read(reinterpret_cast<char*>(packed.data()), taken);
+  std::array<std::uint32_t, 8> words{};
+  z_stream stream{};
+  if (inflateInit(&stream) != Z_OK) return false;
+  stream.next_in = packed.data();
+  stream.avail_in = static_cast<uInt>(taken);
+  stream.next_out = reinterpret_cast<unsigned char*>(words.data());
+  stream.avail_out = sizeof words;
+  inflate(&stream, Z_SYNC_FLUSH);
+  inflateEnd(&stream);
+  if (stream.avail_out > 0) return false;
+  for (std::uint32_t& word : words) word = is_swapped ? __builtin_bswap32(word) : word;
+  return words[3] == kFlagBytes && words[7] <= kMostBytes;
+}
+
 // libmatio takes the end of a file that was cut off for the end of its variables, and asks for
 // what a header states. Version 5: a header of 128 bytes, then variables, each with its size before
 // it; version 4: variables alone; the others are those of HDF5.
 void require_whole(const Path& path) {
-  constexpr std::streamoff kHeader = 128, kOrder = 126, kTag = 8;
+  constexpr std::streamoff kHeader = 128, kVersion = 124, kOrder = 126, kTag = 8;
   std::ifstream file(path, std::ios::binary);
   std::array<char, kHeader> header{};
   const auto size = static_cast<std::streamoff>(std::filesystem::file_size(path));
   file.read(header.data(), kHeader);
   file.clear();
-  const std::string_view begin(header.data(), 10);
-  const bool is_five = begin == "MATLAB 5.0" && size >= kHeader;
+  const std::string_view begin(header.data(), 10), order(header.data() + kVersion, 4);
+  // As libmatio knows it: 0x0100 and "MI", in the order of bytes of the file.
+  const bool is_five = size >= kHeader && (order == std::string_view("\0\1IM", 4) ||
+                                           order == std::string_view("\1\0MI", 4));
   if (!is_five && (begin.starts_with("MATLAB") || begin.starts_with("\x89HDF"))) return;
   const bool is_swapped =
       is_five ? (header[kOrder] == 'I') != (std::endian::native == std::endian::little)
               : words_at<1>(file, 0, false)[0] >= 5000;
   for (std::streamoff at = is_five ? kHeader : 0; at < size;) {
-    const double bytes = is_five ? static_cast<double>(kTag + words_at<2>(file, at, is_swapped)[1])
+    const std::array<std::uint32_t, 2> tag = words_at<2>(file, at, is_swapped);
+    const double bytes = is_five ? static_cast<double>(kTag) + tag[1]
                                  : bytes_of_version_4(words_at<5>(file, at, is_swapped));
     if (at == 0 && std::isinf(bytes)) return;  // another file
     MODCAL_REQUIRE(file && bytes <= static_cast<double>(size - at),
                    "{}: the file is cut off: the variable at byte {} is not whole; copy or save "
                    "it again",
                    path.string(), at);
+    constexpr std::uint32_t kCompressed = 15;
+    MODCAL_REQUIRE(!is_five || tag[0] != kCompressed ||
+                       has_few_dimensions(file, at + kTag, tag[1], is_swapped),
+                   "{}: the compressed variable at byte {} is damaged; copy or save it again",
+                   path.string(), at);
+    file.clear();
     at += static_cast<std::streamoff>(bytes);
   }
 }

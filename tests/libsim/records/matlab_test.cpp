@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <matio.h>
+#include <zlib.h>
 
 #include <cmath>
 #include <fstream>
@@ -227,6 +228,29 @@ TEST_F(Matlab, HeadersThatStateMoreThanThereIsAreRefused) {
     out << std::string(300, 'a');
     out.close();
     EXPECT_THAT(refusal(), HasSubstr("the variable at byte 0 is not whole"));
+  }
+}
+
+// A variable of 185 bytes that states 2^29 dimensions kept a reader busy for 12 s and 3 GB.
+TEST_F(Matlab, ACompressedVariableOfManyDimensionsIsRefused) {
+  std::array<std::uint32_t, 10> words = {14, 200, 6, 8, 6, 0, 5, 0x68010008, 1, 30};
+  for (const bool is_damaged : {true, false}) {
+    if (!is_damaged) words[7] = 8;
+    std::array<unsigned char, 128> packed{};
+    uLongf size = packed.size();
+    ASSERT_EQ(
+        compress(packed.data(), &size, reinterpret_cast<const Bytef*>(words.data()), sizeof words),
+        Z_OK);
+    std::string text = "MATLAB 5.0 MAT-file";
+    text.resize(124, ' ');
+    text += std::string("\x00\x01IM", 4);
+    const std::array<std::uint32_t, 2> tag = {15, static_cast<std::uint32_t>(size)};
+    text.append(reinterpret_cast<const char*>(tag.data()), sizeof tag);
+    text.append(reinterpret_cast<const char*>(packed.data()), size);
+    write("a.mat", text);
+    const std::string said = refusal();
+    const char* const damaged = "the compressed variable at byte 128 is damaged";
+    EXPECT_EQ(said.find(damaged) != std::string::npos, is_damaged) << said;
   }
 }
 
