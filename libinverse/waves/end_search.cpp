@@ -90,7 +90,8 @@ void search(const EndBins& bins, const StringGrid& grid, const StatedString& sta
       for (int x = -steps; x <= steps; ++x) {
         string.contact = start.contact + grid.contact.size * start.length * x;
         if (!(string.contact > 0.0 && string.contact < start.length)) continue;
-        StringMisfits& misfits = sums[static_cast<std::size_t>(x + steps)];
+        const int place = x + steps;
+        StringMisfits& misfits = sums[static_cast<std::size_t>(place)];
         for (double& misfit : misfits) misfit /= static_cast<double>(bins.size());
         take(string, misfits);
       }

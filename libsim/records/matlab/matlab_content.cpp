@@ -53,10 +53,9 @@ double bytes_of_version_4(const std::array<std::uint32_t, 5>& header) {
 // dimensions. libmatio takes memory for as many dimensions as are stated, up to 2^30.
 bool has_few_dimensions(std::ifstream& file, std::streamoff at, std::streamoff size,
                         bool is_swapped) {
-  constexpr std::size_t kMostTaken = 256;
   constexpr std::uint32_t kFlagBytes = 8, kMostBytes = 4 * 64;
-  std::array<unsigned char, kMostTaken> packed{};
-  const auto taken = std::min<std::streamoff>(kMostTaken, size);
+  std::array<unsigned char, 256> packed{};
+  const auto taken = std::min(std::ssize(packed), size);
   file.seekg(at);
   file.read(reinterpret_cast<char*>(packed.data()), taken);
   std::array<std::uint32_t, 8> words{};
