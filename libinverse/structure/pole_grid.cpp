@@ -17,7 +17,7 @@ void PoleSearch::lay_grid() {
   const ContourSpectra& spectra = strikes_.front().spectra;
   const double width = std::max(2.0 * spectra.grid.sigma, spectra.grid.spacing);
   const double low = spectra.s(0).imag(), high = spectra.s(spectra.count() - 1).imag();
-  const auto count = static_cast<std::size_t>(std::ceil((high - low) / width));
+  const auto count = static_cast<std::size_t>(std::max(1.0, std::ceil((high - low) / width)));
   for (std::size_t i = 0; i < count; ++i) {
     const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
     for (const double zeta : {0.002, 0.006, 0.02})
@@ -102,10 +102,13 @@ ModalPole PoleSearch::best_addition(const std::vector<ModalPole>& poles) {
     return of.score.dot(of.kept.ldlt().solve(of.score));
   };
   // The exact gain costs as many products as there are columns: of those alone that promise most.
-  std::vector<double> promised(grid_.size(), 0.0);
+  // What the shares that were taken since have left inexact promises no more than there is.
+  std::vector<double> promised(grid_.size(), 0.0), most;
+  for (const SensorFit& fit : fits) most.push_back(fit.residual.head(grid_rows_).squaredNorm());
   for (std::size_t i = 0; i < grid_.size(); ++i) {
     for (std::size_t k = 0; k < sensors(); ++k) {
-      promised[i] += gain({kept_[k][i], scores[k].segment(2 * static_cast<Index>(i), 2)});
+      const double own = gain({kept_[k][i], scores[k].segment(2 * static_cast<Index>(i), 2)});
+      promised[i] += std::clamp(own, 0.0, most[k]);
     }
   }
   std::vector<std::size_t> order(grid_.size());

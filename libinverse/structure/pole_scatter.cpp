@@ -11,7 +11,8 @@
 namespace modcal {
 namespace {
 
-// Where a function that falls over positive numbers has this value; 0 or `most` beyond its ends.
+// Where a function that falls over positive numbers has this value; `least` or `most` beyond its
+// ends.
 template <typename Function>
 double falls_to(double value, double least, double most, Function&& function) {
   if (function(least) <= value) return least;

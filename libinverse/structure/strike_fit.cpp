@@ -99,7 +99,14 @@ class Fit {
     for (const FittedStrike& strike : result_.strikes) sum += strike.spectra.count();
     return sum;
   }
-  double counted_twice() const { return result_.strikes.front().spectra.correlated(); }
+  // Of records of several lengths the most, whichever stands first.
+  double counted_twice() const {
+    double most = 1.0;
+    for (const FittedStrike& strike : result_.strikes) {
+      most = std::max(most, strike.spectra.correlated());
+    }
+    return most;
+  }
   double parameters(std::size_t modes) const {
     const auto n = static_cast<double>(modes), k = static_cast<double>(kinds_.size());
     return n * (2.0 + 2.0 * k) + 2.0 * k;
@@ -240,27 +247,6 @@ class Fit {
 };
 
 }  // namespace
-
-std::string StrikeFit::rejection(std::span<const std::string> names) const {
-  for (std::size_t i = 0; i < strikes.size(); ++i) {
-    const double most = std::ranges::max(strikes[i].residuals);
-    if (most <= 0.5) continue;
-    return fmt::format(
-        "rejected: the modes leave {:.0f} % of a response{}: compare the channels and their units, "
-        "and whether the structure rests when the record begins; a smaller contour tells more "
-        "modes",
-        100.0 * most, i < names.size() ? fmt::format(" of {}", names[i]) : "");
-  }
-  return {};
-}
-
-std::string StrikeFit::without_damping() const {
-  for (std::size_t n = 0; n < table.model.poles.size(); ++n) {
-    if (table.model.poles[n].zeta > 1.01 * kLeastDampingRatio) continue;
-    return fmt::format("rejected: no damping is left of the mode at {:.5g} Hz", table.frequency(n));
-  }
-  return {};
-}
 
 StrikeFit fit_strikes(std::vector<StructureRecord> records, const std::vector<SensorKind>& kinds,
                       const StrikeFitOptions& options) {

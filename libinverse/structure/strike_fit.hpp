@@ -9,8 +9,9 @@ namespace modcal {
 /// How the modes are fitted.
 struct StrikeFitOptions {
   double low = 0.0, high = 0.0;  ///< band [Hz]
-  /// Contour [1/s]; NaN: 20 over the duration, which leaves nothing of the end, but no more than
-  /// weighs 50 periods of `high` by 1/e: a shorter record keeps its end, of which the columns know.
+  /// Contour [1/s]; NaN: 20 over the shortest duration, which leaves nothing of the end, but no
+  /// more than weighs 50 periods of `high` by 1/e: a shorter record keeps its end, of which the
+  /// columns know.
   double sigma = std::numeric_limits<double>::quiet_NaN();
   std::size_t most_modes = 60;
   /// Error of the model in a bin, as a share of the response about it [1].

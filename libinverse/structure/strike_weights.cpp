@@ -1,8 +1,14 @@
 #include "libinverse/structure/strike_weights.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "libinverse/structure/strike_fit.hpp"
+#include "libinverse/structure/tuning.hpp"
 
 namespace modcal {
 
@@ -70,6 +76,28 @@ BinWeights weights_of(const ContourSpectra& spectra, const ModalModel& model,
     }
   }
   return result;
+}
+
+std::string StrikeFit::rejection(std::span<const std::string> names) const {
+  double most = 0.5;
+  std::size_t worst = strikes.size();
+  for (std::size_t i = 0; i < strikes.size(); ++i) {
+    const double left = std::ranges::max(strikes[i].residuals);
+    if (left > most) most = left, worst = i;
+  }
+  if (worst == strikes.size()) return {};
+  return fmt::format(
+      "rejected: the modes leave {:.0f} % of a response{}: compare the channels and their units, "
+      "and whether the structure rests when the record begins; a smaller contour tells more modes",
+      100.0 * most, worst < names.size() ? fmt::format(" of {}", names[worst]) : "");
+}
+
+std::string StrikeFit::without_damping() const {
+  for (std::size_t n = 0; n < table.model.poles.size(); ++n) {
+    if (table.model.poles[n].zeta > 1.01 * kLeastDampingRatio) continue;
+    return fmt::format("rejected: no damping is left of the mode at {:.5g} Hz", table.frequency(n));
+  }
+  return {};
 }
 
 }  // namespace modcal

@@ -9,7 +9,7 @@
 
 namespace modcal {
 
-/// Mean of ln(1 + |e|²/v) over the bins of one string, as stated, with one sign turned, and both
+/// Sum or mean of ln(1 + |e|²/v) over the bins of one string, as stated, with one sign turned, and both
 /// again with the ends exchanged.
 using StringMisfits = std::array<double, 4>;
 

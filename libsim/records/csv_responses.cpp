@@ -49,6 +49,12 @@ StoredChannel function_of(const Recording& columns, const RecordedChannel& colum
   const RecordedChannel* const imaginary = find(columns, name + std::string(kImaginary));
   const RecordedChannel* const phase = find(columns, name + std::string(kPhase));
   function.is_coherence = imaginary == nullptr && phase == nullptr;
+  MODCAL_REQUIRE(imaginary == nullptr || phase == nullptr,
+                 "{}: {} has an imaginary part and a phase; leave one column out", file, name);
+  MODCAL_REQUIRE(imaginary != nullptr || name == column.name,
+                 "{}: {} has a real part and no column \"{} imaginary\"", file, name, name);
+  MODCAL_REQUIRE(column.unit.find("dB") == std::string::npos,
+                 "{}: {} is in \"{}\"; write magnitudes, not levels", file, name, column.unit);
   MODCAL_REQUIRE(imaginary == nullptr || imaginary->unit.empty() || imaginary->unit == column.unit,
                  "{}: {} is in \"{}\", its imaginary part in \"{}\"", file, name, column.unit,
                  imaginary->unit);

@@ -108,6 +108,24 @@ void FitModesOptions::visit(OptionVisitor& visitor) {
 
 namespace {
 
+// A strike that counts twice would tell that strikes do not differ.
+void lint_overlap(const std::vector<StructureRecordOptions>& strikes,
+                  std::vector<Finding>& findings) {
+  const auto end_of = [](const StructureRecordOptions& strike) {
+    return std::isnan(strike.stop) ? std::numeric_limits<double>::infinity() : strike.stop;
+  };
+  for (std::size_t i = 0; i < strikes.size(); ++i) {
+    for (std::size_t j = i + 1; j < strikes.size(); ++j) {
+      const StructureRecordOptions &a = strikes[i], &b = strikes[j];
+      if (a.file != b.file || a.start >= end_of(b) || b.start >= end_of(a)) continue;
+      add_finding(
+          findings, "other_strikes",
+          "strikes {} and {} overlap in {}: state start and stop of each, in the record, too",
+          i + 1, j + 1, a.file);
+    }
+  }
+}
+
 void lint_coherence(const ResponseFunctionOptions& functions, std::vector<Finding>& findings) {
   const bool told = std::ranges::any_of(
       functions.responses,
@@ -140,6 +158,7 @@ std::vector<Finding> FitModesOptions::lint() const {
                 "response functions are known on one contour alone: leave contour out");
   }
   if (has_functions) lint_coherence(functions, findings);
+  if (has_record) lint_overlap(strikes(), findings);
   if (has_functions && !other_strikes.empty()) {
     add_finding(findings, "other_strikes",
                 "response functions have no strikes: name files of further measurements in "

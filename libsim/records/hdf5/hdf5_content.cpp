@@ -7,6 +7,7 @@
 #include "libsim/base/files.hpp"
 #include "libsim/base/trial.hpp"
 #include "libsim/base/utf8.hpp"
+#include "libsim/records/hdf5/hdf5_complex.hpp"
 #include "libsim/records/hdf5/hdf5_file.hpp"
 
 namespace modcal {
@@ -55,23 +56,6 @@ std::optional<std::vector<std::size_t>> dims_of(hid_t space) {
     if (__builtin_mul_overflow(size, n, &size)) return std::nullopt;
   }
   return result;
-}
-
-// As NumPy has it: a pair of r and i.
-bool is_complex(hid_t type) {
-  if (H5Tget_class(type) != H5T_COMPOUND || H5Tget_nmembers(type) != 2) return false;
-  return H5Tget_member_class(type, 0) == H5T_FLOAT && H5Tget_member_class(type, 1) == H5T_FLOAT;
-}
-
-// Two doubles by the names of the stored pair.
-Hdf5Id complex_in_memory(hid_t stored) {
-  Hdf5Id type(H5Tcreate(H5T_COMPOUND, 2 * sizeof(double)), H5Tclose);
-  for (unsigned part = 0; part < 2; ++part) {
-    char* const name = H5Tget_member_name(stored, part);
-    H5Tinsert(type.get(), name, part * sizeof(double), H5T_NATIVE_DOUBLE);
-    H5free_memory(name);
-  }
-  return type;
 }
 
 NamedArray::Holds holds(hid_t type) {
@@ -231,7 +215,7 @@ std::vector<double> Hdf5Content::column(const NamedArray& array, std::size_t j) 
   // Compressed a thousand times at the most, and only as large as its header says where it is
   // whole.
   constexpr std::uint64_t kMostCompressed = 1 << 11;
-  if (rows / kMostCompressed > std::filesystem::file_size(path_)) refuse(array);
+  if (array.rows() / kMostCompressed > std::filesystem::file_size(path_)) refuse(array);
   // The samples, and whether they were read.
   const SharedMemory memory((rows + 1) * sizeof(double));
   const std::span<double> values = memory.as<double>();

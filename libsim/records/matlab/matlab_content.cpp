@@ -53,8 +53,8 @@ double bytes_of_version_4(const std::array<std::uint32_t, 5>& header) {
 // dimensions. libmatio takes memory for as many dimensions as are stated, up to 2^30.
 bool has_few_dimensions(std::ifstream& file, std::streamoff at, std::streamoff size,
                         bool is_swapped) {
-  constexpr std::uint32_t kFlagBytes = 8, kMostBytes = 4 * 64;
-  std::array<unsigned char, 256> packed{};
+  constexpr std::uint32_t kFlagBytes = 8, kDimensions = 5, kMostBytes = 4 * 64;
+  std::array<unsigned char, 1024> packed{};
   const auto taken = std::min(std::ssize(packed), size);
   file.seekg(at);
   file.read(reinterpret_cast<char*>(packed.data()), taken);
@@ -69,7 +69,8 @@ bool has_few_dimensions(std::ifstream& file, std::streamoff at, std::streamoff s
   inflateEnd(&stream);
   if (stream.avail_out > 0) return false;
   for (std::uint32_t& word : words) word = is_swapped ? __builtin_bswap32(word) : word;
-  return words[3] == kFlagBytes && words[7] <= kMostBytes;
+  // Tables, texts and dates of MATLAB's own have none.
+  return words[3] == kFlagBytes && (words[6] != kDimensions || words[7] <= kMostBytes);
 }
 
 // libmatio takes the end of a file that was cut off for the end of its variables, and asks for
@@ -217,6 +218,9 @@ std::vector<double> MatlabContent::column(const NamedArray& array, std::size_t j
   if (!array.is_real()) {
     const auto& split = *static_cast<const mat_complex_split_t*>(field.data);
     parts = {split.Re, split.Im};
+    MODCAL_REQUIRE(field.isComplex != 0 && split.Re != nullptr && split.Im != nullptr,
+                   "{}: the variable {} cannot be read: the file is damaged; save it again",
+                   path_.string(), array.text());
   }
   std::vector<double> samples;
   samples.reserve(array.rows() * parts.size());

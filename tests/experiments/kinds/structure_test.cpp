@@ -92,10 +92,11 @@ TEST(FitModes, OfTwoStrikesSaysHowFarAFurtherOneIsOff) {
 
 TEST(FitModes, NamesTheStrikeThatIsNoneOfThese) {
   // The other strike's first part before its end alone: the structure rings when it begins.
-  const StudyResult result = run("fit_plate.yaml", {"other_strikes=[{start: 0.1 s}]"});
+  const StudyResult result =
+      run("fit_plate.yaml", {"other_strikes=[{file: plate_other_strike.csv, start: 0.1 s}]"});
   EXPECT_EQ(result.status, report::Status::kFailed);
-  EXPECT_THAT(result.answer, HasSubstr("of plate_strike.csv from 0.1 s"));
-  EXPECT_THROW(run("fit_plate.yaml", {"other_strikes=[{file: plate_strike.csv}]"}), InvalidInput);
+  EXPECT_THAT(result.answer, HasSubstr("of plate_other_strike.csv from 0.1 s"));
+  EXPECT_THROW(run("fit_plate.yaml", {"other_strikes=[{start: 0.1 s}]"}), InvalidInput);  // overlap
 }
 
 // Frequencies (the figure's x) of those that stay when the mode is added that makes `modes`.

@@ -81,6 +81,12 @@ TEST_F(ResponseFunctionsIn, ColumnsThatAreNoneAreRefused) {
               HasSubstr("its imaginary part in"));
   EXPECT_THAT(refusal("frequency [Hz],h,h imaginary\n1,2,3\n2,3,4\n4,3,4\n", "h"),
               HasSubstr("3 lines that are not even"));
+  EXPECT_THAT(refusal("frequency [Hz],h,h imaginary,h phase [deg]\n1,2,3,4\n2,3,4,5\n", "h"),
+              HasSubstr("leave one column out"));
+  EXPECT_THAT(refusal("frequency [Hz],h real\n1,2\n2,3\n", "h"),
+              HasSubstr("no column \"h imaginary\""));
+  EXPECT_THAT(refusal("frequency [Hz],h [dB],h phase [deg]\n1,2,3\n2,3,4\n", "h"),
+              HasSubstr("write magnitudes"));
   // 1.3 Hz is no whole number of steps of 1 Hz.
   EXPECT_THAT(refusal("frequency [Hz],h,h imaginary\n1.3,2,3\n2.3,3,4\n", "h"),
               HasSubstr("not even"));
