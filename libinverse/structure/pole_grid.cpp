@@ -27,7 +27,7 @@ void PoleSearch::lay_grid() {
   const double numbers = 2.0 * static_cast<double>(grid_.size() * sensors());
   for (const Strike& strike : strikes_) {
     const Index rows = strike.first + strike.rows();
-    if (grid_rows_ == 0 || static_cast<double>(rows) * numbers < kGridNumbers) grid_rows_ = rows;
+    if (grid_rows_ == 0 || static_cast<double>(rows) * numbers < grid_numbers_) grid_rows_ = rows;
   }
   for (std::size_t k = 0; k < sensors(); ++k) {
     grid_columns_.emplace_back(grid_rows_, 2 * std::ssize(grid_));

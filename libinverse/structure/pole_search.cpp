@@ -30,8 +30,8 @@ Eigen::MatrixXd products_of(const Eigen::MatrixXd& columns) {
 }  // namespace
 
 PoleSearch::PoleSearch(std::span<const SearchedStrike> strikes,
-                       const std::vector<SensorKind>& kinds)
-    : kinds_(kinds) {
+                       const std::vector<SensorKind>& kinds, double grid_numbers)
+    : grid_numbers_(grid_numbers), kinds_(kinds) {
   for (const SearchedStrike& strike : strikes) {
     strikes_.push_back({.spectra = strike.spectra,
                         .columns = StrikeColumns(strike.spectra, strike.force),

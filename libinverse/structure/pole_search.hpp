@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 
 #include "libinverse/structure/strike_columns.hpp"
+#include "libinverse/structure/tuning.hpp"
 
 namespace modcal {
 
@@ -33,7 +34,9 @@ struct SearchedStrike {
 class PoleSearch {
  public:
   /// Strikes at one place, on one contour: they have all poles and modal constants in common.
-  PoleSearch(std::span<const SearchedStrike> strikes, const std::vector<SensorKind>& kinds);
+  /// grid_numbers: the grid looks at as many strikes as these hold, and at one at least.
+  PoleSearch(std::span<const SearchedStrike> strikes, const std::vector<SensorKind>& kinds,
+             double grid_numbers = kGridNumbers);
 
   std::vector<SensorFit> at(const std::vector<ModalPole>& poles) const;
   double cost(const std::vector<ModalPole>& poles) const;
@@ -90,6 +93,7 @@ class PoleSearch {
   void take_last(const std::vector<SensorFit>& fits);
 
   std::vector<Strike> strikes_;
+  double grid_numbers_;
   Eigen::Index rows_ = 0;
   const std::vector<SensorKind>& kinds_;
   std::array<bool, 3> powers_ = {false, false, false};

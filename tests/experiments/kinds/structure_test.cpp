@@ -10,30 +10,15 @@
 #include "experiments/kinds/structure/structure_files.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/base/files.hpp"
-#include "tests/experiments/kinds/run_document.hpp"
+#include "tests/experiments/kinds/structure_config.hpp"
 #include "tests/folder_test.hpp"
 #include "tests/refusal.hpp"
 
 namespace modcal::structure_test {
 namespace {
 
+using structure_config::file_of, structure_config::kFolder, structure_config::run;
 using testing::HasSubstr;
-
-const std::string kFolder = std::string(MODCAL_CONFIGS) + "/structures/";
-
-StudyResult run(const std::string& file, const std::vector<std::string>& changes = {}) {
-  YamlDocument document = read_yaml_file(kFolder + file);
-  std::size_t number = 0;
-  for (const std::string& change : changes) apply_assignment(document, change, ++number);
-  return run_document(std::move(document));
-}
-
-nlohmann::json file_of(const StudyResult& result, const std::string& name) {
-  for (const auto& [file, text] : result.files) {
-    if (file == name) return nlohmann::json::parse(text);
-  }
-  throw std::runtime_error("no " + name);
-}
 
 TEST(FitModes, FindsThePolesOfThePlateWithinTheirErrorBars) {
   const StudyResult result = run("fit_plate.yaml");
@@ -69,34 +54,6 @@ TEST(FitModes, FindsThePolesOfThePlateWithinTheirErrorBars) {
   EXPECT_GT(of_frequencies, 0.4);
   EXPECT_GT(of_ratios, 0.4);
   for (const auto& sensor : document["sensors"]) EXPECT_LT(sensor["left"].get<double>(), 2e-3);
-}
-
-TEST(FitModes, OfTwoStrikesSaysHowFarAFurtherOneIsOff) {
-  const StudyResult result =
-      run("fit_plate.yaml", {"other_strikes=[{file: plate_other_strike.csv}]"});
-  EXPECT_EQ(result.status, report::Status::kOk);
-  EXPECT_THAT(result.summary, HasSubstr("from strike to strike frequencies differ by"));
-  const auto both = file_of(result, "modes_fit.json"),
-             one = file_of(run("fit_plate.yaml"), "modes_fit.json");
-  ASSERT_EQ(both["strikes"].size(), 2u);
-  EXPECT_EQ(both["strikes"][1]["strike"], "plate_other_strike.csv");
-  // Stiffness was changed by 1e-3, of normal numbers: the strikes' own frequencies lie on both
-  // sides of those of both.
-  EXPECT_LT(both["strikes"][0]["shift"].get<double>() * both["strikes"][1]["shift"].get<double>(),
-            0.0);
-  // Two strikes tell how far a third is off, and that is more than what one leaves of itself.
-  EXPECT_GT(both["modes"][5]["f_sd_hz"].get<double>(),
-            10.0 * one["modes"][5]["f_sd_hz"].get<double>());
-  EXPECT_FALSE(one.contains("strikes"));
-}
-
-TEST(FitModes, NamesTheStrikeThatIsNoneOfThese) {
-  // The other strike's first part before its end alone: the structure rings when it begins.
-  const StudyResult result =
-      run("fit_plate.yaml", {"other_strikes=[{file: plate_other_strike.csv, start: 0.1 s}]"});
-  EXPECT_EQ(result.status, report::Status::kFailed);
-  EXPECT_THAT(result.answer, HasSubstr("of plate_other_strike.csv from 0.1 s"));
-  EXPECT_THROW(run("fit_plate.yaml", {"other_strikes=[{start: 0.1 s}]"}), InvalidInput);  // overlap
 }
 
 // Frequencies (the figure's x) of those that stay when the mode is added that makes `modes`.
