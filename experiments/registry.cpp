@@ -14,8 +14,11 @@ Registry<Experiment> Experiment::registry() {
           "benchmark", "objectives and optimizers on the same truths, noise and starts"),
       kind_of<CalibrateOptions>("calibrate",
                                 "refine the modal model, then identify force and motion with it"),
-      entry_of<Experiment, CalibrationLimitExperiment>(
-          "calibration_limit", "calibration error against noise beside the Cramer-Rao bound"),
+      RegistryEntry<Experiment>{
+          "calibration_limit", "calibration error against noise beside the Cramer-Rao bound",
+          +[]() -> std::unique_ptr<Recipe<Experiment>> {
+            return std::make_unique<CalibrationLimitRecipe>();
+          }},
       kind_of<FitModesOptions>("fit_modes",
                                "modes of any structure from a strike that was measured"),
       kind_of<IdentifyOptions>("identify", "modes of a plucked string from its end reactions"),

@@ -77,7 +77,7 @@ void joint_inversion(benchmark::State& state) {
     const BinVariances variances{
         .of = std::vector(4, std::vector<double>(spectra.count(), spectra.noise_power()))};
     const BinEvidence evidence =
-        evidence_of(spectra, transfers_of(model, spectra), variances, kNone);
+        evidence_of(spectra, transfers_of(model, spectra), variances, kNoSensor);
     std::vector<Complex> whole(fft.bins());
     for (std::size_t m = 0; m < spectra.count(); ++m) {
       whole[spectra.bins.first + m] = evidence.score[m] / (evidence.told[m] + 1e-9);

@@ -190,6 +190,20 @@ def pole_scores(fit, rng, change):
     return np.abs(scores[(f > 10) & (f < 590)])
 
 
+def refined_scores(result, fit, rng, change):
+    """The same of the modes that the responses refined without the force."""
+    modes = [{**mode, "stands_in": fit["modes"][i]["stands_in"]} for i, mode in enumerate(result["refined_modes"])]
+    return pole_scores({"modes": modes}, rng, change)
+
+
+def tell(what, scores):
+    z = np.array(scores)
+    missed, z = np.isinf(z[:, 0]).sum(), z[np.isfinite(z[:, 0])]
+    print(f"{what}: {missed} modes missed; of {len(z)} poles within 1 and 2 deviations: frequencies "
+          f"{(z[..., 0] < 1).mean():.2f} {(z[..., 0] < 2).mean():.2f} (most {z[..., 0].max():.1f}), damping ratios "
+          f"{(z[..., 1] < 1).mean():.2f} {(z[..., 1] < 2).mean():.2f} (most {z[..., 1].max():.1f})", flush=True)
+
+
 def yaml(kind, name, **keys):
     lines = [f"kind: {kind}", "record:", f"  file: {name}.csv", "  force: {channel: force}",
              "  responses: [" + ", ".join(f"{{channel: a{k + 1}}}" for k in range(len(SENSORS))) + "]"]
@@ -244,7 +258,7 @@ def main():
     p.add_argument("--sessions", type=int, default=0, help="of response functions in the place of modes")
     p.add_argument("--strikes", type=int, default=0, help="to which modes are fitted")
     p.add_argument("--sets", type=int, default=1, help="of strikes, whose poles are scored; the force by the first")
-    p.add_argument("--keys", default="", help="further keys of identify_force: \"key: value; key: value\"")
+    p.add_argument("--keys", default="", help="further keys of identify_force: \"key: value; key: value\"; with change: the refined modes are scored, too")
     a = p.parse_args()
     a.out.mkdir(parents=True, exist_ok=True)
     keys = dict(k.strip().split(": ", 1) for k in a.keys.split(";") if k)
@@ -262,7 +276,7 @@ def main():
                 fitted = measure_modes(a.build, a.out, a.strikes, change)
             others = [measure_modes(a.build, a.out, a.strikes, change, i) for i in range(1, a.sets)] if a.strikes > 1 and not a.sessions else []
             table = f"{fitted}/table.yaml" if fitted else f"functions_{change:g}.yaml"
-            rows, scores, rejected = [], [], 0
+            rows, scores, refined, rejected = [], [], [], 0
             for draw in range(a.draws):
                 seed = [7, draw, int(1e6 * change)]
                 rng = np.random.default_rng(seed)
@@ -285,14 +299,15 @@ def main():
                 inside = np.abs(f - ref) <= 1.959964 * sd
                 loud = np.abs(ref) > 0.1 * np.abs(ref).max()
                 result = json.loads((a.out / name / "force.json").read_text())
+                if "refined_modes" in result:
+                    fit = json.loads((a.out / fitted / "modes_fit.json").read_text())
+                    refined.extend(refined_scores(result, fit, np.random.default_rng(seed), change))
                 rows.append((np.sqrt(np.mean((f - ref) ** 2) / np.mean(ref**2)), inside.mean(), inside[loud].mean(),
                              1.96 * sd.mean() / np.sqrt(np.mean(ref**2)), result["force"][0]["shape"] == "impacts"))
             if scores:
-                z = np.array(scores)
-                missed, z = np.isinf(z[:, 0]).sum(), z[np.isfinite(z[:, 0])]
-                print(f"{kind:7s} change {change:g}: {missed} modes missed; of {len(z)} poles within 1 and 2 deviations: frequencies "
-                      f"{(z[..., 0] < 1).mean():.2f} {(z[..., 0] < 2).mean():.2f} (most {z[..., 0].max():.1f}), damping ratios "
-                      f"{(z[..., 1] < 1).mean():.2f} {(z[..., 1] < 2).mean():.2f} (most {z[..., 1].max():.1f})", flush=True)
+                tell(f"{kind:7s} change {change:g}", scores)
+            if refined:
+                tell(f"{kind:7s} change {change:g}: refined without the force", refined)
             if rejected:
                 print(f"{kind:7s} change {change:g}: {rejected} rejected")
             if not rows:

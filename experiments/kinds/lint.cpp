@@ -135,6 +135,16 @@ void lint_decay(const Scene& scene, std::vector<Finding>& findings) {
 
 }  // namespace
 
+void refuse_beside_structure(std::initializer_list<StatedKey> keys,
+                             std::vector<Finding>& findings) {
+  for (const auto& [key, stated] : keys) {
+    if (!stated) continue;
+    add_finding(findings, key,
+                "{} is for a string and would do nothing beside structure: leave one of both out",
+                key);
+  }
+}
+
 void append(std::vector<Finding>& all, std::vector<Finding> more) {
   all.insert(all.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }

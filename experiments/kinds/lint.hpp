@@ -58,6 +58,20 @@ void lint_making(std::vector<Finding>& findings, const std::string& path, Make m
     findings.push_back({path, error.what()});
   }
 }
+/// Whether two sets of options say the same.
+template <typename Options>
+bool same_options(Options a, Options b) {
+  const auto text = [](Options& options) {
+    return fingerprint([&](OptionVisitor& visitor) { options.visit(visitor); });
+  };
+  return text(a) == text(b);
+}
+/// Keys of a string that are stated beside `structure:`, where they would do nothing.
+struct StatedKey {
+  const char* key;
+  bool stated;
+};
+void refuse_beside_structure(std::initializer_list<StatedKey> keys, std::vector<Finding>& findings);
 /// A sound file has a whole number of hertz.
 void lint_sound(std::string path, double sample_rate, std::vector<Finding>& findings);
 void append(std::vector<Finding>& all, std::vector<Finding> more);

@@ -37,7 +37,7 @@ std::vector<double> power_of_force(const ContourSpectra& spectra, const BinEvide
 std::vector<double> contradiction(const ContourSpectra& spectra, const Transfers& transfers,
                                   const std::vector<double>& more, BinVariances& variances) {
   const std::size_t sensors = transfers.size(), bins = spectra.count();
-  const BinEvidence whole = evidence_of(spectra, transfers, variances, kNone);
+  const BinEvidence whole = evidence_of(spectra, transfers, variances, kNoSensor);
   std::vector<double> left(bins, 0.0);
   variances.by_sensor.assign(sensors, 0.0);
   variances.left.assign(sensors, 0.0);
@@ -121,7 +121,7 @@ BinVariances variances_of(const StructureTable& table, const ContourSpectra& spe
   const double noise_power = spectra.noise_power();
   std::vector<double> more(bins, 1.0);
   for (int round = 0; round < 4; ++round) {
-    const BinEvidence evidence = evidence_of(spectra, transfers, result, kNone);
+    const BinEvidence evidence = evidence_of(spectra, transfers, result, kNoSensor);
     // Once they are variances: at first they are relative weights alone.
     std::vector<double> power(bins);
     if (round == 0) {

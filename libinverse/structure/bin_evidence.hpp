@@ -68,6 +68,6 @@ std::optional<std::size_t> odd_one_out(std::span<const SensorPrediction> predict
 std::optional<std::size_t> odd_of_many(const ContourSpectra& spectra, const Transfers& transfers,
                                        const BinVariances& variances);
 
-inline constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+inline constexpr std::size_t kNoSensor = static_cast<std::size_t>(-1);
 
 }  // namespace modcal

@@ -3,51 +3,26 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "libinverse/structure/blind_likelihood.hpp"
 #include "libsim/base/error.hpp"
+#include "libsim/base/task_loop.hpp"
+#include "libsim/signal/fft.hpp"
 
 namespace modcal {
 namespace {
 
 using Index = Eigen::Index;
 
-ModalModel moved(const ModalModel& table, const Eigen::VectorXd& theta) {
-  ModalModel model = table;
-  const std::size_t modes = model.poles.size();
-  Index i = 0;
-  for (ModalPole& pole : model.poles) {
-    pole.omega *= std::exp(theta[i]);
-    pole.zeta = std::min(0.9, pole.zeta * std::exp(theta[i + 1]));
-    i += 2;
-  }
-  for (std::size_t j = 0; i < theta.size() && j < modes * model.sensors.size(); ++j, i += 2) {
-    const Complex constant =
-        Complex(model.constants[j], model.quadrature[j]) * Complex(1.0 + theta[i], theta[i + 1]);
-    model.constants[j] = constant.real();
-    model.quadrature[j] = constant.imag();
-  }
-  return model;
-}
-
 ModalModel with_quadrature(ModalModel model) {
   model.quadrature.resize(model.constants.size());
   return model;
 }
 
-Eigen::VectorXd prior_of(const ModalModel& table, const StructureChange& change) {
-  const auto modes = static_cast<Index>(table.poles.size());
-  const Index factors =
-      change.residue > 0.0 ? 2 * modes * static_cast<Index>(table.sensors.size()) : 0;
-  Eigen::VectorXd sd(2 * modes + factors);
-  for (Index n = 0; n < modes; ++n) sd.segment<2>(2 * n) << change.frequency, change.damping;
-  sd.tail(factors).setConstant(change.residue);
-  return sd;
-}
-
-// The same with what the table itself does not know of its poles.
+// With what the table itself does not know of its poles.
 Eigen::VectorXd prior_of(const StructureTable& table, const StructureChange& change) {
-  Eigen::VectorXd sd = prior_of(table.model, change);
+  Eigen::VectorXd sd = deviations_of(change, table.model);
   const auto add = [&sd](std::size_t i, double deviation) {
     double& own = sd[static_cast<Index>(i)];
     own = std::hypot(own, std::min(1.0, deviation));
@@ -59,6 +34,85 @@ Eigen::VectorXd prior_of(const StructureTable& table, const StructureChange& cha
     add(2 * n + 1, table.damping_deviations[n]);
   }
   return sd;
+}
+
+// C J of columns J of a BlindLikelihood, E[e eᴴ] = C between the bins of a sensor: on a contour
+// they tell alike, C_mm' = Σ_j exp(−2σt_j) exp(−i(ω_m − ω_m')t_j) / Σ_j exp(−2σt_j).
+Eigen::MatrixXd times_correlation(const ContourSpectra& spectra, const Eigen::MatrixXd& columns) {
+  const auto sensors = static_cast<Index>(spectra.responses.size());
+  const Index padded = columns.rows() / (2 * sensors);
+  // As a signal of the record's duration, so many samples that its band and what the weights add to
+  // either side of it fit in; times the weights at its instants.
+  const std::size_t first = spectra.bins.first, bins = spectra.count();
+  const std::size_t length = 4 * (first + bins);
+  std::vector<double> weights(length);
+  double sum = 0.0;
+  for (std::size_t j = 0; j < length; ++j) {
+    const double t = static_cast<double>(j) / static_cast<double>(length) * spectra.duration();
+    sum += weights[j] = std::exp(-2.0 * spectra.grid.sigma * t);
+  }
+  for (double& weight : weights) weight *= static_cast<double>(length) / sum;
+  const RealFft fft(length);
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(columns.rows(), columns.cols());
+  for_each_task(static_cast<std::size_t>(columns.cols()), [&](std::size_t c) {
+    std::vector<Complex> spectrum(fft.bins());
+    std::vector<double> samples(length);
+    for (Index k = 0; k < sensors; ++k) {
+      const Index re = k * padded, im = re + sensors * padded;
+      const auto column = static_cast<Index>(c);
+      std::ranges::fill(spectrum, 0.0);
+      for (std::size_t m = 0; m < bins; ++m) {
+        const auto i = static_cast<Index>(m);
+        spectrum[first + m] = {columns(re + i, column), columns(im + i, column)};
+      }
+      fft.inverse(spectrum, samples);
+      for (std::size_t j = 0; j < length; ++j) samples[j] *= weights[j];
+      fft.forward(samples, spectrum);
+      for (std::size_t m = 0; m < bins; ++m) {
+        const auto i = static_cast<Index>(m);
+        result(re + i, column) = spectrum[first + m].real();
+        result(im + i, column) = spectrum[first + m].imag();
+      }
+    }
+  });
+  return result;
+}
+
+// A⁻¹ (B + Π) A⁻¹, how far θ scatters: A = (2/κ) JᵀJ + Π is the curvature of what is minimized, in
+// which of κ bins one counts; B = (2/κ²) JᵀCJ the variance of its slope, by how the bins of the
+// contour are correlated (Huber, 1967). A⁻¹ alone is half of it where a response dies out faster
+// than the weights.
+void tell_deviations(const ContourSpectra& spectra, const Eigen::MatrixXd& jacobian, double share,
+                     BlindFit& fit) {
+  const Eigen::VectorXd weight = fit.prior.cwiseAbs2().cwiseInverse();
+  Eigen::MatrixXd curvature = share * (jacobian.transpose() * jacobian);
+  curvature.diagonal() += weight;
+  fit.covariance = curvature.llt().solve(Eigen::MatrixXd::Identity(weight.size(), weight.size()));
+  fit.told = 1.0 - fit.covariance.diagonal().cwiseProduct(weight).array();
+  if (spectra.grid.sigma > 0.0) {
+    Eigen::MatrixXd slope =
+        0.5 * share * share * (jacobian.transpose() * times_correlation(spectra, jacobian));
+    slope.diagonal() += weight;
+    const Eigen::MatrixXd scatter = fit.covariance * slope * fit.covariance;
+    fit.covariance = 0.5 * (scatter + scatter.transpose());
+  }
+  fit.root = Eigen::LLT<Eigen::MatrixXd>(fit.covariance).matrixL();
+}
+
+// Variances by the model so far. What a table that is off contradicts, and what rings at the ends,
+// count as noise until the same contour has been fitted once: then the ends are taken out, and of
+// the numbers that the data are worth so many are left as the fit had degrees of freedom.
+BinVariances variances_beside(const StructureTable& table, const ContourSpectra& spectra,
+                              const BlindFit& fit, bool is_fitted) {
+  const Transfers transfers = transfers_of(table.model, spectra);
+  if (!is_fitted || fit.degrees < 1.0) return variances_of(table, spectra, transfers);
+  ContourSpectra between = spectra;
+  between.responses = fit.between;
+  BinVariances variances = variances_of(table, between, transfers);
+  for (std::vector<double>& of : variances.of) {
+    for (double& one : of) one *= fit.numbers / fit.degrees;
+  }
+  return variances;
 }
 
 BlindFit fit_with(const Eigen::VectorXd& prior, const ModalModel& table,
@@ -75,15 +129,15 @@ BlindFit fit_with(const Eigen::VectorXd& prior, const ModalModel& table,
   const ModalModel start = fit.model;
   if (start_at.size() == fit.change.size()) {
     fit.change = start_at;
-    fit.model = moved(start, start_at);
+    fit.model = moved_by(start, start_at);
   }
   BlindPoint here = likelihood.at(fit.model);
   double cost = here.cost + weight.dot(fit.change.cwiseAbs2()), damping = 1e-3;
-  Eigen::MatrixXd information;
+  Eigen::MatrixXd jacobian;
   // As many steps as Levenberg and Marquardt take from a start within the priors, and some more.
   for (int step = 0; step < 30; ++step) {
-    const Eigen::MatrixXd jacobian = likelihood.jacobian(start, fit.model, here, factors);
-    information = share * (jacobian.transpose() * jacobian);
+    jacobian = likelihood.jacobian(start, fit.model, here, factors);
+    Eigen::MatrixXd information = share * (jacobian.transpose() * jacobian);
     information.diagonal() += weight;
     const Eigen::VectorXd slope =
         share * (jacobian.transpose() * here.residual) + weight.cwiseProduct(fit.change);
@@ -93,7 +147,7 @@ BlindFit fit_with(const Eigen::VectorXd& prior, const ModalModel& table,
       Eigen::MatrixXd matrix = information;
       matrix.diagonal() *= 1.0 + damping;
       const Eigen::VectorXd theta = fit.change - matrix.llt().solve(slope);
-      const ModalModel model = moved(start, theta);
+      const ModalModel model = moved_by(start, theta);
       BlindPoint there = likelihood.at(model);
       const double next = there.cost + weight.dot(theta.cwiseAbs2());
       better = next < cost;
@@ -107,12 +161,13 @@ BlindFit fit_with(const Eigen::VectorXd& prior, const ModalModel& table,
     damping *= 0.1;
     if (!better || gain < 1e-6) break;
   }
-  fit.covariance = information.llt().solve(Eigen::MatrixXd::Identity(weight.size(), weight.size()));
-  fit.root = Eigen::LLT<Eigen::MatrixXd>(fit.covariance).matrixL();
+  fit.prior = prior;
+  tell_deviations(spectra, jacobian, share, fit);
+  fit.numbers = likelihood.numbers();
   // An unknown that the data do not tell counts for nothing.
-  const double told = static_cast<double>(weight.size()) - fit.covariance.diagonal().dot(weight);
-  fit.degrees = likelihood.numbers(table.poles.size()) - told;
-  fit.misfit = here.cost / fit.degrees;
+  fit.degrees = fit.numbers - likelihood.end_unknowns(table.poles.size()) - fit.told.sum();
+  if (fit.degrees >= 1.0) fit.misfit = here.cost / fit.degrees;
+  fit.between = likelihood.without_ends(fit.model, here);
   fit.force = here.force;
   for (const double one : here.told) fit.force_variance.push_back(1.0 / one);
   return fit;
@@ -120,18 +175,52 @@ BlindFit fit_with(const Eigen::VectorXd& prior, const ModalModel& table,
 
 }  // namespace
 
+ModalModel moved_by(const ModalModel& table, const Eigen::VectorXd& theta) {
+  ModalModel model = with_quadrature(table);
+  const std::size_t modes = model.poles.size();
+  Index i = 0;
+  for (ModalPole& pole : model.poles) {
+    pole.omega *= std::exp(theta[i]);
+    pole.zeta = std::min(0.9, pole.zeta * std::exp(theta[i + 1]));
+    i += 2;
+  }
+  for (std::size_t j = 0; i < theta.size() && j < modes * model.sensors.size(); ++j, i += 2) {
+    const Complex constant =
+        Complex(model.constants[j], model.quadrature[j]) * Complex(1.0 + theta[i], theta[i + 1]);
+    model.constants[j] = constant.real();
+    model.quadrature[j] = constant.imag();
+  }
+  return model;
+}
+
+Eigen::VectorXd deviations_of(const StructureChange& change, const ModalModel& table) {
+  const auto modes = static_cast<Index>(table.poles.size());
+  const Index factors =
+      change.residue > 0.0 ? 2 * modes * static_cast<Index>(table.sensors.size()) : 0;
+  Eigen::VectorXd sd(2 * modes + factors);
+  for (Index n = 0; n < modes; ++n) sd.segment<2>(2 * n) << change.frequency, change.damping;
+  sd.tail(factors).setConstant(change.residue);
+  return sd;
+}
+
+double BlindFit::surprise(Index i) const {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  // The posterior mean of θ ~ N(0, p²) that data tell by a share w has the variance w p².
+  return told[i] > 0.5 ? change[i] / (prior[i] * std::sqrt(told[i])) : kNan;
+}
+
 ModalModel BlindFit::drawn(std::span<const double> normal) const {
   MODCAL_REQUIRE(std::ssize(normal) == change.size(), "{} normal numbers for {} unknowns",
                  normal.size(), change.size());
-  const Eigen::Map<const Eigen::VectorXd> numbers(normal.data(), change.size());
-  const Eigen::VectorXd step = root * numbers;
-  return moved(model, step);
+  const Eigen::Map<const Eigen::VectorXd> standard(normal.data(), change.size());
+  const Eigen::VectorXd step = root * standard;
+  return moved_by(model, step);
 }
 
 BlindFit fit_blindly(const ModalModel& table, const ContourSpectra& spectra,
                      const BinVariances& variances, const StructureChange& change, bool at_rest,
                      const Eigen::VectorXd& start_at) {
-  return fit_with(prior_of(table, change), table, spectra, variances, at_rest, start_at);
+  return fit_with(deviations_of(change, table), table, spectra, variances, at_rest, start_at);
 }
 
 BlindFit fit_ringing(const ModalModel& table, const StructureRecord& record,
@@ -161,9 +250,11 @@ BlindFit refined_table(const StructureTable& table, const StructureRecord& recor
   const Eigen::VectorXd prior = prior_of(table, change);
   StructureTable refined = table;
   BlindFit fit;
-  for (const double contour : {sigma, 0.5 * sigma, 0.25 * sigma, 0.25 * sigma}) {
+  double contour = 0.0;
+  for (const double share : {1.0, 0.5, 0.25, 0.25}) {
+    const double before = contour;
+    if (before == 0.0 || share * sigma * record.duration() >= rung_out) contour = share * sigma;
     const bool ends = contour * record.duration() >= rung_out;
-    if (!ends && contour < sigma) break;
     StructureRecord part{.sample_rate = record.sample_rate};
     const auto count =
         ends ? static_cast<std::ptrdiff_t>(std::floor(rung_out / contour * record.sample_rate))
@@ -172,12 +263,10 @@ BlindFit refined_table(const StructureTable& table, const StructureRecord& recor
       part.responses.emplace_back(response.begin(), response.begin() + count);
     }
     const auto spectra = ContourSpectra::of(part, contour, table.low, table.high);
-    const BinVariances variances =
-        variances_of(refined, spectra, transfers_of(refined.model, spectra));
+    const BinVariances variances = variances_beside(refined, spectra, fit, contour == before);
     fit = fit_with(prior, table.model, spectra, variances, ends && at_rest, fit.change);
     refined.model = fit.model;
   }
-  // The variances are those of what was left before the fit took its share.
   const double left = std::max(1.0, fit.misfit);
   fit.covariance *= left;
   fit.root *= std::sqrt(left);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 
 #include "libinverse/structure/bin_evidence.hpp"
 
@@ -14,18 +15,31 @@ struct StructureChange {
   double residue = 0.05;  ///< of each modal constant, real and imaginary part of d_kn [1]; 0: known
 };
 
+/// θ = ln f_n, ln ζ_n, then Re d_kn and Im d_kn (BlindFit), away from a model.
+ModalModel moved_by(const ModalModel& table, const Eigen::VectorXd& theta);
+/// Of every θ_i of the model's modes, K sensors each.
+Eigen::VectorXd deviations_of(const StructureChange& change, const ModalModel& table);
+
 /// The unknowns are, for mode n, ln f_n and ln ζ_n, then Re d_kn and Im d_kn, A_kn → A_kn (1 +
 /// d_kn), of every sensor and mode in turn.
 struct BlindFit {
   ModalModel model;
-  Eigen::VectorXd change;              ///< θ from the table
-  Eigen::MatrixXd covariance;          ///< of θ
-  Eigen::MatrixXd root;                ///< its lower triangular factor
-  double misfit = 0.0;                 ///< 2|e|² over its degrees of freedom
-  double degrees = 0.0;                ///< 2B(K − 1)/κ − 2N − p_eff
+  Eigen::VectorXd change;      ///< θ from the table
+  Eigen::MatrixXd covariance;  ///< of θ
+  Eigen::MatrixXd root;        ///< its lower triangular factor
+  Eigen::VectorXd prior;       ///< deviations of θ before the responses
+  Eigen::VectorXd told;        ///< 1 − variance/prior²: the responses' share of θ_i
+  double numbers = 0.0;        ///< 2B(K − 1)/κ, what the data are worth
+  double degrees = 0.0;        ///< of these less the 2N of c and p_eff
+  /// 2|e|² over its degrees of freedom; NaN: there is none.
+  double misfit = std::numeric_limits<double>::quiet_NaN();
+  Transfers between;                   ///< responses without what rings at the record's ends, K
   std::vector<Complex> force;          ///< F of every bin
   std::vector<double> force_variance;  ///< of |F|², noise alone
 
+  /// θ_i over what the prior expects of it, ~ N(0, 1) where that is right; NaN: told by less than a
+  /// half.
+  double surprise(Eigen::Index i) const;
   /// A model as the data allow it: θ moved by covariance^½ times standard normal numbers, one an
   /// unknown.
   ModalModel drawn(std::span<const double> normal) const;
@@ -48,10 +62,10 @@ BlindFit fit_ringing(const ModalModel& table, const StructureRecord& record,
                      std::span<const double> noise, double low, double high,
                      const StructureChange& change);
 
-/// The fit of a record that begins at rest: on the contours σ, σ/2 and σ/4, the lower ones as far
-/// as the record is long enough for nothing to be left of its end, each from what the one before
-/// has found, with variances_of() the model so far. The covariance is χ² times as large where it is
-/// above 1. The table is not changed.
+/// The fit of a record that begins at rest: on the contours σ, σ/2, σ/4 and σ/4, the lower ones as
+/// far as the record is long enough for nothing to be left of its end, else the one before again,
+/// each from what the one before has found, with variances_of() the model so far. The covariance is
+/// χ² times as large where it is above 1. The table is not changed.
 BlindFit refined_table(const StructureTable& table, const StructureRecord& record, double sigma,
                        const StructureChange& change, bool at_rest = true);
 

@@ -131,6 +131,16 @@ std::vector<Complex> BlindLikelihood::force_drawn(const ModalModel& model,
   return force;
 }
 
+Transfers BlindLikelihood::without_ends(const ModalModel& model, const BlindPoint& point) const {
+  Signals data = data_;
+  if (free_ends_) take_ends(model, point, point.ends, data);
+  Transfers result(sensors(), std::vector<Complex>(bins()));
+  for (std::size_t k = 0; k < sensors(); ++k) {
+    for (std::size_t m = 0; m < bins(); ++m) result[k][m] = data[k].at(m) / roots_[k][m];
+  }
+  return result;
+}
+
 Eigen::MatrixXd BlindLikelihood::jacobian(const ModalModel& start, const ModalModel& model,
                                           const BlindPoint& point, bool factors) const {
   const std::size_t modes = model.poles.size();
@@ -184,9 +194,8 @@ void BlindLikelihood::mode_columns(const ModalModel& start, const ModalModel& mo
   }
 }
 
-double BlindLikelihood::numbers(std::size_t modes) const {
-  return 2.0 * static_cast<double>(bins() * (sensors() - 1)) / correlated() -
-         (free_ends_ ? 2.0 * static_cast<double>(modes) : 0.0);
+double BlindLikelihood::numbers() const {
+  return 2.0 * static_cast<double>(bins() * (sensors() - 1)) / correlated();
 }
 
 BlindLikelihood::Signals BlindLikelihood::rest() const {

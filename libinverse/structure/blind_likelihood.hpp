@@ -40,9 +40,15 @@ class BlindLikelihood {
   /// deviation times standard normal numbers, two a mode, F by that of its noise, CN(0, 1/|h|²),
   /// two a bin behind them. On the frequency axis: bins of a contour are not independent.
   std::vector<Complex> force_drawn(const ModalModel& model, std::span<const double> normal) const;
+  /// The responses without what rings at the record's begin and end, K.
+  Transfers without_ends(const ModalModel& model, const BlindPoint& point) const;
   double correlated() const { return spectra_.correlated(); }
-  /// Numbers that the data have when force and ends are eliminated.
-  double numbers(std::size_t modes) const;
+  /// Numbers that the data have when the force is eliminated, 2B(K − 1)/κ.
+  double numbers() const;
+  /// Unknowns that are eliminated besides: c, two a mode, or none.
+  double end_unknowns(std::size_t modes) const {
+    return free_ends_ ? 2.0 * static_cast<double>(modes) : 0.0;
+  }
 
  private:
   using Signals = std::vector<PlanarVector>;  // of every sensor, whitened

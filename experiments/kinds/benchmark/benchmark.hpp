@@ -233,8 +233,9 @@ class BenchmarkExperiment final : public AxisExperiment<CalibrateOptions, Succes
  public:
   using AxisExperiment::AxisExperiment;
   std::string_view for_structures() const override {
-    return "benchmark compares calibrations of a string; for any other structure sweep the "
-           "settings of kind: identify_force (sweep: {product: ...} in its file)";
+    return "benchmark compares optimizers on a string; the modes of any other structure have one "
+           "search of their own: sweep its settings (sweep: {product: ...} in the file of kind: "
+           "calibrate or identify_force)";
   }
   std::vector<Finding> lint() const override;
   std::vector<PlanLine> plan() const override;

@@ -77,6 +77,10 @@ void BenchmarkExperiment::visit_scoring(OptionVisitor& visitor) const {
 std::vector<Finding> BenchmarkExperiment::lint() const {
   std::vector<Finding> findings = AxisExperiment::lint();
   const auto& cells = options_.cells.all();
+  if (std::ranges::any_of(cells, &CalibrateOptions::has_structure)) {
+    add_finding(findings, "structure", "{}", for_structures());
+    return findings;
+  }
   if (std::any_of(cells.begin(), cells.end(), [](const CalibrateOptions& cell) {
         return cell.inversion.observation.has_record;
       })) {

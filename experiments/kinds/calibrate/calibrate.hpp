@@ -4,6 +4,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "experiments/kinds/calibrate/calibrate_structure.hpp"
 #include "experiments/kinds/invert/invert.hpp"
 #include "libcalib/calibration.hpp"
 #include "libcalib/identifiability/expected_limit.hpp"
@@ -40,8 +41,6 @@ nlohmann::ordered_json limit_json(const LimitQuestion& question, TruthCache& tru
 
 // Plucks that a calibration fits together with its strokes.
 
-struct CalibrationOptions;
-struct StudyContext;
 struct SearchTask;
 
 /// Keys of a simulated pluck.
@@ -85,8 +84,9 @@ struct FurtherStrokes {
 
 struct CalibrateOptions {
   static constexpr std::string_view kForStructures =
-      "calibrate refines the modes of a string; those of any other structure are refined by its "
-      "responses alone by kind: identify_force with change: {frequency: 1 %}";
+      "state structure: {table: modes.yaml, record: {file: ..., responses: [{channel: ...}]}}";
+  bool has_structure = false;  ///< nothing below `structure` is read then
+  StructureCalibrationOptions structure;
   InvertOptions inversion;
   CalibrationOptions calibration;
   FurtherStrokes further;
@@ -105,6 +105,7 @@ struct CalibrateOptions {
   LimitQuestion limit_question() const;
   std::unique_ptr<const SearchTask> search_task(const StudyContext& context) const;
   StudyResult run(const StudyContext& context) const;
+  std::vector<Finding> lint_structure() const;
 };
 
 /// Whether the model of a record starts from what its ends tell: nothing is stated to be known.

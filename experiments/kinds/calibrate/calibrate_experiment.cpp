@@ -8,6 +8,7 @@ namespace modcal {
 constexpr double kNumbersPerSample = 100.0;
 
 std::vector<PlanLine> CalibrateOptions::plan() const {
+  if (has_structure) return structure.plan();
   const ObservationOptions& observation = inversion.observation;
   std::vector<PlanLine> lines = {source_line(planned_simulations(), observation)};
   const StringModel string = observation.string_model().before_reading();
@@ -42,6 +43,7 @@ std::vector<PlanLine> CalibrateOptions::plan() const {
 }
 
 std::optional<PlannedSimulations> CalibrateOptions::planned_simulations() const {
+  if (has_structure) return std::nullopt;
   const ObservationOptions& first = inversion.observation;
   auto planned = planned_truths(first, truth_outputs(inversion.figures, inversion.overview),
                                 1 + further.contacts.size());
@@ -52,6 +54,7 @@ std::optional<PlannedSimulations> CalibrateOptions::planned_simulations() const 
 }
 
 std::vector<FileRead> CalibrateOptions::files_read() const {
+  if (has_structure) return structure.files_read();
   std::vector<FileRead> files = inversion.files_read();
   const auto add = [&](const std::string& file, std::string key) {
     RecordOptions record = inversion.observation.record;  // laid out as the first one
@@ -69,6 +72,9 @@ std::vector<FileRead> CalibrateOptions::files_read() const {
 }
 
 LimitQuestion CalibrateOptions::limit_question() const {
+  MODCAL_REQUIRE(!has_structure,
+                 "the limit of a structure depends on the force that acts: kind: calibration_limit "
+                 "with structure: simulates one");
   const ObservationOptions& first = inversion.observation;
   LimitQuestion question{.observation = first,
                          .noise_level = first.measurement.noise_level,

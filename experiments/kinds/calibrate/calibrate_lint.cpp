@@ -145,6 +145,7 @@ std::vector<Finding> lint_plucks(const std::vector<PluckRecordOptions>& plucks,
 }  // namespace
 
 std::vector<Finding> CalibrateOptions::lint() const {
+  if (has_structure) return lint_structure();
   std::vector<Finding> findings = lint_inversion(inversion);
   lint_sensors(*this, findings);
   lint_start(*this, findings);
@@ -197,6 +198,7 @@ std::vector<Finding> CalibrateOptions::lint() const {
 }
 
 std::vector<Finding> CalibrateOptions::lint_records(const std::filesystem::path& folder) const {
+  if (has_structure) return structure.lint_records(folder);
   std::vector<Finding> findings;
   const ObservationOptions& first = inversion.observation;
   const auto observed = lint_record("record.file", first, folder, findings);

@@ -243,6 +243,9 @@ std::vector<double> SearchTask::bound_deviations() const {
 }
 
 std::unique_ptr<const SearchTask> CalibrateOptions::search_task(const StudyContext& context) const {
+  MODCAL_REQUIRE(!has_structure,
+                 "the modes of a structure are searched by one Newton search of its own, which "
+                 "takes no other optimizer: run the file");
   const ObservedRecords observed =
       observe_records(*this, {.left_reaction = true, .right_reaction = true}, context);
   CalibrationOutcome outcome;

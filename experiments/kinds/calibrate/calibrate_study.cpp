@@ -111,6 +111,10 @@ void add_account(const CalibrateOptions& options, const InvertOptions& shown, co
 
 void CalibrateOptions::visit(OptionVisitor& visitor) {
   inversion.visit(visitor);
+  visitor("structure",
+          "any structure, in the place of a string: a table of modes that responses refine, their "
+          "force unknown",
+          has_structure, structure);
   visitor("calibration", "what is refined, by which objective and optimizer", calibration);
   visitor("further_strokes", "strokes of the same string that are fitted together with the first",
           further);
@@ -126,6 +130,7 @@ void CalibrateOptions::visit(OptionVisitor& visitor) {
 }
 
 StudyResult CalibrateOptions::run(const StudyContext& context) const {
+  if (has_structure) return structure.run(context, inversion.seed);
   const InvertOptions shown = inversion.as_read_by(context);
   OutputRequest outputs = truth_outputs(shown.figures, shown.overview);
   if (audio) outputs.velocity = true;

@@ -1,4 +1,5 @@
 #include "experiments/kinds/limit/limit.hpp"
+#include "experiments/kinds/limit/structure_limit.hpp"
 #include "experiments/study/sample.hpp"
 
 namespace modcal {
@@ -108,6 +109,8 @@ void lint_start(const CalibrationLimitOptions& options, std::vector<Finding>& fi
 
 void CalibrationLimitOptions::visit(OptionVisitor& visitor) {
   observation.visit(visitor);
+  visitor("structure", "any structure under a bow, in the place of a string", has_structure,
+          structure);
   visitor("model_error", "bounds of the start's errors: uniform, drawn for each seed", model_error);
   visitor("calibration", "how the calibration is done", calibration);
   visitor("noise_levels", "noise standard deviations over those of the signals",
@@ -121,13 +124,31 @@ void CalibrationLimitOptions::visit(OptionVisitor& visitor) {
           inversion);
 }
 
+std::shared_ptr<const Experiment> CalibrationLimitRecipe::make() const {
+  if (options_.has_structure) return std::make_shared<const StructureLimitExperiment>(options_);
+  return std::make_shared<const CalibrationLimitExperiment>(options_);
+}
+
+std::vector<SweepAxis> axes_of(const CalibrationLimitOptions& options) {
+  return {axis_of("noise_level", options.noise_levels.size(),
+                  [&](std::size_t i) { return fmt::format("{:g}", options.noise_levels[i]); }),
+          axis_of("seed", static_cast<std::size_t>(options.seeds),
+                  [](std::size_t i) { return std::to_string(i); })};
+}
+
 CalibrationLimitExperiment::CalibrationLimitExperiment(Options options)
-    : ProductExperiment(
-          {axis_of("noise_level", options.noise_levels.size(),
-                   [&](std::size_t i) { return fmt::format("{:g}", options.noise_levels[i]); }),
-           axis_of("seed", static_cast<std::size_t>(options.seeds),
-                   [](std::size_t i) { return std::to_string(i); })}),
-      options_(std::move(options)) {}
+    : ProductExperiment(axes_of(options)), options_(std::move(options)) {}
+
+void lint_levels(const std::vector<double>& levels, std::vector<Finding>& findings) {
+  if (levels.empty()) add_finding(findings, "noise_levels", "no noise level is stated");
+  for (std::size_t i = 1; i < levels.size(); ++i) {
+    const auto before = levels.begin() + static_cast<std::ptrdiff_t>(i);
+    if (std::find(levels.begin(), before, *before) == before) continue;
+    add_finding(findings, fmt::format("noise_levels.{}", i),
+                "the noise level {:g} % stands here twice: leave one of them, or raise seeds",
+                100.0 * *before);
+  }
+}
 
 LimitQuestion limit_question_of(const CalibrationLimitOptions& options, double noise_level) {
   LimitQuestion question{.observation = options.observation, .noise_level = noise_level};
@@ -150,16 +171,7 @@ std::vector<Finding> CalibrationLimitExperiment::lint() const {
   lint_making(findings, "calibration", [&] { options_.calibration.require_schedule(); });
   append(findings, lint_priors("calibration.parameters", options_.calibration.parameters.unknowns,
                                options_.observation.string_model()));
-  if (options_.noise_levels.empty()) {
-    add_finding(findings, "noise_levels", "no noise level is stated");
-  }
-  for (std::size_t i = 1; i < options_.noise_levels.size(); ++i) {
-    const auto before = options_.noise_levels.begin() + static_cast<std::ptrdiff_t>(i);
-    if (std::find(options_.noise_levels.begin(), before, *before) == before) continue;
-    add_finding(findings, fmt::format("noise_levels.{}", i),
-                "the noise level {:g} % stands here twice: leave one of them, or raise seeds",
-                100.0 * *before);
-  }
+  lint_levels(options_.noise_levels, findings);
   return findings;
 }
 

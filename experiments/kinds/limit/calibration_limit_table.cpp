@@ -70,23 +70,6 @@ void write_error(report::RowWriter& row, const LimitRow& item) {
   row({.key = "failures"}, item.failures);
 }
 
-report::Table row_table(const std::vector<LimitSummary>& levels) {
-  std::vector<LimitRow> rows;
-  for (const LimitSummary& level : levels) {
-    for (LimitRow row : level.rows) {
-      row.failures += level.broken;
-      rows.push_back(std::move(row));
-    }
-  }
-  return report::table_of(
-      {.id = "calibration_limit",
-       .title = "Error and bound",
-       .caption = "Frequencies f_n as shares of f_n; efficiency is bound/RMSE; the "
-                  "intervals hold the true ratio with 95 % (chi-square of n draws); a "
-                  "failure is an error beyond 7.8 bounds or a run that broke."},
-      rows, write_error);
-}
-
 void write_pooled(report::RowWriter& row, const PooledRow& item) {
   const RmsInterval interval = interval_of(item.count);
   const auto ratio = [&row](std::string_view key, std::string_view name, double value) {
@@ -251,6 +234,16 @@ report::Figure limit_figure(const std::vector<LimitSummary>& levels) {
 
 }  // namespace
 
+report::Table limit_table(const std::vector<LimitRow>& rows) {
+  return report::table_of(
+      {.id = "calibration_limit",
+       .title = "Error and bound",
+       .caption = "Frequencies f_n as shares of f_n; efficiency is bound/RMSE; the "
+                  "intervals hold the true ratio with 95 % (chi-square of n draws); a "
+                  "failure is an error beyond 7.8 bounds or a run that broke."},
+      rows, write_error);
+}
+
 void sum_up_limit(const CalibrationLimitOptions& options, const std::vector<LimitLevel>& levels,
                   const StudyContext& context, StudyResult& result) {
   std::vector<LimitSummary> summaries;
@@ -266,7 +259,14 @@ void sum_up_limit(const CalibrationLimitOptions& options, const std::vector<Limi
   judge(summaries, options.known_noise, result);
   report::Figure figure = limit_figure(summaries);
   if (!figure.panels.empty()) result.blocks.emplace_back(std::move(figure));
-  const report::Table rows = row_table(summaries);
+  std::vector<LimitRow> all;
+  for (const LimitSummary& level : summaries) {
+    for (LimitRow row : level.rows) {
+      row.failures += level.broken;
+      all.push_back(std::move(row));
+    }
+  }
+  const report::Table rows = limit_table(all);
   result.files.emplace_back("calibration_limit.json", report::table_json(rows));
   result.blocks.emplace_back(report::table_of(
       {.id = "calibration_limit_levels", .title = "Noise levels"}, summaries, write_level));

@@ -3,11 +3,22 @@
 
 #include "experiments/kinds/axis_experiment.hpp"
 #include "experiments/kinds/calibrate/calibrate.hpp"
+#include "experiments/kinds/simulate/structure_scene.hpp"
 
 namespace modcal {
 
+/// A bow on any structure, whose modes are refined without the force.
+struct StructureLimitOptions : StructureSceneOptions {
+  StructureChangeOptions change;
+  void visit(OptionVisitor& visitor);
+};
+
 struct CalibrationLimitOptions {
+  static constexpr std::string_view kForStructures =
+      "state structure: {table: modes.yaml, bow: ..., friction: ...} in the place of scene:";
   ObservationOptions observation;
+  bool has_structure = false;
+  StructureLimitOptions structure;  ///< in the place of a string
   /// Bounds of the start's errors: uniform and independent, x_c included.
   ModelErrorOptions model_error;
   CalibrationOptions calibration = calibration_to_the_bound();
@@ -66,15 +77,17 @@ struct LimitTruth {
 LimitTruth limit_truth(const ObservationOptions& observation, double noise_level,
                        TruthCache& truths, OutputRequest outputs = {});
 
-/// Kind "calibration_limit": noise levels by seeds.
+/// Noise levels by seeds.
+std::vector<SweepAxis> axes_of(const CalibrationLimitOptions& options);
+/// Levels that are there, each once.
+void lint_levels(const std::vector<double>& levels, std::vector<Finding>& findings);
+
+/// Kind "calibration_limit" of a string; that of a structure is StructureLimitExperiment.
 class CalibrationLimitExperiment final : public ProductExperiment {
  public:
   using Options = CalibrationLimitOptions;
   explicit CalibrationLimitExperiment(Options options);
-  std::string_view for_structures() const override {
-    return "calibration_limit bounds what is found of a string; for any other structure kind: "
-           "identify_force states deviations of its force and, with change:, of the refined modes";
-  }
+  std::string_view for_structures() const override { return Options::kForStructures; }
   std::vector<Finding> lint() const override;
   std::vector<PlanLine> plan() const override;
   std::optional<PlannedSimulations> planned_simulations() const override;
@@ -89,6 +102,19 @@ class CalibrationLimitExperiment final : public ProductExperiment {
   LimitOutcome calibrate_draw(std::size_t task, TruthCache& truths) const;
   double level_of(std::size_t task) const { return options_.noise_levels[place(task, 0)]; }
   Options options_;
+};
+
+/// What makes the one or the other.
+class CalibrationLimitRecipe final : public Recipe<Experiment> {
+ public:
+  void visit(OptionVisitor& visitor) override { options_.visit(visitor); }
+  std::shared_ptr<const Experiment> make() const override;
+  std::unique_ptr<Recipe<Experiment>> clone() const override {
+    return std::make_unique<CalibrationLimitRecipe>(*this);
+  }
+
+ private:
+  CalibrationLimitOptions options_;
 };
 
 // What a Monte Carlo study of calibrations says at one noise level.
@@ -135,6 +161,9 @@ struct LimitSummary {
 
   const LimitRow* find(const std::string& parameter) const;
 };
+
+/// Errors beside bounds, a row a parameter and level.
+report::Table limit_table(const std::vector<LimitRow>& rows);
 
 LimitSummary summarize_level(const LimitLevel& level, const LimitTruth& truth,
                              const ExpectedLimit& bound);

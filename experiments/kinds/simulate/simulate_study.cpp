@@ -76,13 +76,7 @@ std::vector<Finding> SimulateOptions::lint_records(const std::filesystem::path& 
 
 std::vector<FileRead> SimulateOptions::files_read() const {
   if (!has_structure) return {};
-  // Of a table of three sensors; each further one is another number a step.
-  constexpr double kNumbersPerStep = 10.0;
-  return {{.name = structure.table,
-           .key = "structure.table",
-           .numbers =
-               kNumbersPerStep * structure.duration * structure.fine_rate(measurement.sample_rate),
-           .named = files_named_by_table}};
+  return {structure.file_read(measurement.sample_rate)};
 }
 
 std::vector<PlanLine> SimulateOptions::plan() const {

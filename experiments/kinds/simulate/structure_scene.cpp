@@ -118,6 +118,15 @@ DrivenStructure StructureSceneOptions::driven(const StructureTable& told) const 
   return {simulated_part(told.model), told.contact};
 }
 
+FileRead StructureSceneOptions::file_read(double sample_rate) const {
+  // Of a table of three sensors; each further one is another number a step.
+  constexpr double kNumbersPerStep = 10.0;
+  return {.name = table,
+          .key = "structure.table",
+          .numbers = kNumbersPerStep * duration * fine_rate(sample_rate),
+          .named = files_named_by_table};
+}
+
 std::vector<Finding> StructureSceneOptions::lint(const Choice<Simulator>& simulator,
                                                  const Measurement& measurement) const {
   std::vector<Finding> findings;

@@ -34,6 +34,9 @@ struct StructureSceneOptions {
   /// Throws WrongKey where it does not tell how the contact moves.
   DrivenStructure driven(const StructureTable& told) const;
 
+  /// The file of its modes, with what its simulation holds.
+  FileRead file_read(double sample_rate) const;
+
   std::vector<Finding> lint(const Choice<Simulator>& simulator,
                             const Measurement& measurement) const;
   /// What the table says against them; reads it.

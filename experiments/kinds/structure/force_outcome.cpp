@@ -129,6 +129,7 @@ void ForceOutcome::visit(ResultVisitor& visitor) const {
   visitor({.key = "rise", .name = "rise of the power towards 0 Hz", .format = "{:.2g}"},
           found.rise);
   visitor({.key = "misfit"}, known(found.misfit));
+  if (refined) refined->visit(visitor);
 }
 
 void PlacesOutcome::visit(ResultVisitor& visitor) const {

@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "experiments/kinds/structure/refined_modes.hpp"
 #include "experiments/kinds/structure/structure_files.hpp"
 #include "experiments/report/report.hpp"
 #include "libinverse/structure/contact_place.hpp"
@@ -32,6 +33,7 @@ struct ForceOutcome {
   const StructureForce& found;
   const std::optional<ForceScore>& score;
   const std::string& left_out;  ///< name of the sensor that contradicts the others; empty: none
+  const std::optional<RefinedModes>& refined;
   void visit(ResultVisitor& visitor) const;
 };
 

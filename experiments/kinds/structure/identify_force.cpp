@@ -4,35 +4,13 @@
 #include "experiments/kinds/lint.hpp"
 #include "experiments/kinds/structure/force_doubts.hpp"
 #include "experiments/kinds/structure/force_outcome.hpp"
+#include "experiments/kinds/structure/refined_modes.hpp"
 #include "experiments/kinds/structure/structure_kinds.hpp"
 #include "experiments/report/result.hpp"
 #include "libsim/signal/statistics.hpp"
 
 namespace modcal {
 namespace {
-
-StructureTable refined_by(const BlindFit& fit, StructureTable table) {
-  table.model = fit.model;
-  for (std::size_t n = 0; n < table.model.poles.size(); ++n) {
-    const auto i = static_cast<Eigen::Index>(2 * n);
-    table.frequency_deviations[n] = std::sqrt(fit.covariance(i, i));
-    table.damping_deviations[n] = std::sqrt(fit.covariance(i + 1, i + 1));
-  }
-  return table;
-}
-
-std::string sentence_of(const BlindFit& fit, const StructureTable& table) {
-  std::vector<double> moved, deviations;
-  for (std::size_t n = 0; n < table.model.poles.size(); ++n) {
-    const auto i = static_cast<Eigen::Index>(2 * n);
-    moved.push_back(std::abs(fit.change[i]));
-    deviations.push_back(std::sqrt(fit.covariance(i, i)));
-  }
-  return fmt::format(
-      "modes refined without the force: median change of a frequency {:.2g}, its deviation {:.2g}; "
-      "reduced chi2 {:.3f} of {:.0f} degrees of freedom\n",
-      quantile(moved, 0.5), quantile(deviations, 0.5), fit.misfit, fit.degrees);
-}
 
 std::string sentence_of(const StructureForce& found, double rate, std::size_t sensors) {
   const auto peak =
@@ -43,6 +21,21 @@ std::string sentence_of(const StructureForce& found, double rate, std::size_t se
       found.shape == ForceShape::kImpacts ? "impacts" : "a smooth force", sensors, *peak,
       1.959964 * found.deviation[at], static_cast<double>(at) / rate,
       found.rang ? "; what rang before the record or goes on behind it is taken out" : "");
+}
+
+std::string sentence_of(const ForceScore& score, const StructureTable& modes) {
+  return fmt::format(
+      "against the measured force: relative rms error {:.3f}, {:.3f} between {:g} and {:g} Hz, R "
+      "{:.4f}; {:.1f} % in the 95 % band\n",
+      score.relative_error, score.in_band, modes.low, modes.high, score.correlation,
+      100.0 * score.coverage);
+}
+
+void add_signals(const StructureForce& force, double rate, bool as_sound, StudyResult& result) {
+  SignalFile file{"identified.csv", {{"f_c", "N", rate, force.force}}};
+  file.signals.push_back({"f_c_deviation", "N", rate, force.deviation});
+  if (as_sound) result.signal_files.push_back({"identified.wav", file.signals});
+  result.signal_files.push_back(std::move(file));
 }
 
 void tell_places(const PlacesOutcome& told, bool rang, StudyResult& result) {
@@ -89,7 +82,7 @@ void StructureChangeOptions::visit(OptionVisitor& visitor) {
           {.range = Range::closed(0.0, 1.0)}, residue);
 }
 
-void IdentifyForceOptions::visit(OptionVisitor& visitor) {
+void IdentifyForceOptions::visit_keys(OptionVisitor& visitor) {
   visitor("table", "file of the modes, as fit_modes writes it; relative to the experiment's folder",
           {.required = true}, table);
   visitor("other_places",
@@ -115,9 +108,13 @@ void IdentifyForceOptions::visit(OptionVisitor& visitor) {
           refines, change);
   visitor("draws", "models drawn from the table's deviations for the band",
           {.range = Range::closed(2.0, 1000.0)}, draws);
-  visitor("seed", "key of the draws", {.range = Range::non_negative()}, seed);
   visitor("write_sound", "write the force as a sound file as well, identified.wav: 1.0 is 1 N",
           write_sound);
+}
+
+void IdentifyForceOptions::visit(OptionVisitor& visitor) {
+  visit_keys(visitor);
+  visitor("seed", "key of the draws", {.range = Range::non_negative()}, seed);
 }
 
 std::vector<std::string> IdentifyForceOptions::tables() const {
@@ -143,6 +140,11 @@ std::vector<Finding> IdentifyForceOptions::lint() const {
     add_finding(findings, "other_places",
                 "one response is explained by a force at any place: name a second sensor, or leave "
                 "the other places out");
+  }
+  if (refines && record.responses.size() == 1) {
+    add_finding(findings, "record.responses",
+                "one response is explained by any model and some force: modes are refined by the "
+                "responses of two sensors and more");
   }
   return findings;
 }
@@ -196,64 +198,74 @@ std::vector<PlanLine> IdentifyForceOptions::plan() const {
            {{"responses", record.responses.size()}, {"record", record.file}, {"table", table}}}};
 }
 
-StudyResult IdentifyForceOptions::run(const StudyContext& context) const {
+std::optional<ContactPlaces> IdentifyForceOptions::weighed(
+    const std::vector<StructureTable>& places, const StructureRecord& responses) const {
+  if (places.size() < 2) return std::nullopt;
+  const double acts = std::isnan(window) ? responses.duration() : window;
+  double sigma = std::isnan(contour) ? 2.0 / acts : contour;
+  for (const StructureTable& place : places) sigma = std::max(sigma, place.measured.grid.sigma);
+  return weigh_places(places, responses, sigma);
+}
+
+StructureForceOptions IdentifyForceOptions::force_options(bool rests) const {
+  return {.shape = force_shape_of(shape),
+          .non_negative = non_negative,
+          .window = window,
+          .sigma = contour,
+          .rests = rests,
+          .draws = static_cast<std::size_t>(draws),
+          .seed = static_cast<std::uint64_t>(seed),
+          .change = refines ? std::optional<StructureChange>(change) : std::nullopt};
+}
+
+StudyResult IdentifyForceOptions::found(const StudyContext& context, bool modes_first) const {
   LoadedStructureRecord loaded = load_structure_record(record, context.folder, context.stop);
   std::vector<StructureTable> places;
   for (const std::string& file : tables()) places.push_back(read_table(context.folder / file));
-  std::optional<ContactPlaces> where;
-  if (places.size() > 1) {
-    const double acts = std::isnan(window) ? loaded.record.duration() : window;
-    double sigma = std::isnan(contour) ? 2.0 / acts : contour;
-    for (const StructureTable& place : places) sigma = std::max(sigma, place.measured.grid.sigma);
-    where = weigh_places(places, loaded.record, sigma);
-  }
+  const std::optional<ContactPlaces> where = weighed(places, loaded.record);
   StructureTable& modes = places[where ? where->best : 0];
   context.throw_if_interrupted();
-  const StructureForce found =
-      structure_force(modes, loaded.record,
-                      {.shape = force_shape_of(shape),
-                       .non_negative = non_negative,
-                       .window = window,
-                       .sigma = contour,
-                       .rests = loaded.rest > 0.0,
-                       .draws = static_cast<std::size_t>(draws),
-                       .seed = static_cast<std::uint64_t>(seed),
-                       .change = refines ? std::optional<StructureChange>(change) : std::nullopt});
+  const StructureForce force =
+      structure_force(modes, loaded.record, force_options(loaded.rest > 0.0));
   std::string odd;
-  if (found.left_out) {
-    odd = leave_out(*found.left_out, loaded);
-    modes = modes.without_sensor(*found.left_out);
+  if (force.left_out) {
+    odd = leave_out(*force.left_out, loaded);
+    modes = modes.without_sensor(*force.left_out);
   }
   std::optional<ForceScore> score;
   const double rate = loaded.record.sample_rate;
-  if (!loaded.record.force.empty()) score = score_of(found, loaded.record.force, rate, modes);
+  if (!loaded.record.force.empty()) score = score_of(force, loaded.record.force, rate, modes);
   StudyResult result;
-  const ForceOutcome outcome{loaded, found, score, odd};
-  result.summary = sentence_of(found, rate, loaded.kinds.size());
-  if (score) {
-    result.summary += fmt::format(
-        "against the measured force: relative rms error {:.3f}, {:.3f} between {:g} and {:g} Hz, R "
-        "{:.4f}; {:.1f} % in the 95 % band\n",
-        score->relative_error, score->in_band, modes.low, modes.high, score->correlation,
-        100.0 * score->coverage);
-  }
-  if (found.refined) {
-    result.summary += sentence_of(*found.refined, modes);
-    result.files.emplace_back("table.yaml", table_text(refined_by(*found.refined, modes)));
+  std::optional<RefinedModes> refined;
+  if (force.refined) refined.emplace(modes, *force.refined);
+  const ForceOutcome outcome{loaded, force, score, odd, refined};
+  if (refined && modes_first) result.summary = refined->sentence();
+  result.summary += sentence_of(force, rate, loaded.kinds.size());
+  if (score) result.summary += sentence_of(*score, modes);
+  if (refined) {
+    if (!modes_first) result.summary += refined->sentence();
+    result.files.emplace_back("table.yaml", table_text(refined->after()));
+    refined->add_parameters(result.parameters);
   }
   result.answer_by_summary();
   for (const std::string& text : loaded.warnings) result.warn(text);
   for (const std::string& text : modes.warnings) result.warn(text);
   tell_left_out(odd, where.has_value(), result);
-  if (where) tell_places({tables(), *where}, found.rang, result);
-  doubt_force(found, loaded, modes, result);
-  if (!context.numbers_alone) result.blocks.emplace_back(force_figure(loaded, found));
+  if (where) tell_places({tables(), *where}, force.rang, result);
+  doubt_force(force, loaded, modes, result);
+  if (refined) {
+    for (const std::string& text : refined->doubts()) result.warn(text);
+  }
+  if (!context.numbers_alone) {
+    result.blocks.emplace_back(force_figure(loaded, force));
+    if (refined) {
+      result.blocks.emplace_back(refined->figure());
+      if (modes_first) std::iter_swap(result.blocks.end() - 1, result.blocks.end() - 2);
+    }
+  }
   result.add(report::tables_of(outcome));
   result.files.emplace_back("force.json", report::json_file(report::json_of(outcome)));
-  SignalFile file{"identified.csv", {{"f_c", "N", rate, found.force}}};
-  file.signals.push_back({"f_c_deviation", "N", rate, found.deviation});
-  if (write_sound) result.signal_files.push_back({"identified.wav", file.signals});
-  result.signal_files.push_back(std::move(file));
+  add_signals(force, rate, write_sound, result);
   return result;
 }
 

@@ -78,11 +78,21 @@ struct IdentifyForceOptions {
   std::vector<PlanLine> plan() const;
   std::optional<PlannedSimulations> planned_simulations() const { return std::nullopt; }
   std::vector<FileRead> files_read() const;
-  StudyResult run(const StudyContext& context) const;
+  StudyResult run(const StudyContext& context) const { return found(context, false); }
+
+ protected:
+  /// All keys but that of the draws.
+  void visit_keys(OptionVisitor& visitor);
+  /// modes_first: what was asked for are the modes, not the force.
+  StudyResult found(const StudyContext& context, bool modes_first) const;
 
  private:
   /// The table first, then those of the other places.
   std::vector<std::string> tables() const;
+  /// Which of several places it is; nothing of one.
+  std::optional<ContactPlaces> weighed(const std::vector<StructureTable>& places,
+                                       const StructureRecord& responses) const;
+  StructureForceOptions force_options(bool rests) const;
 };
 
 /// What the channels of a structure's sensors state wrongly; path: of the list.

@@ -59,7 +59,7 @@ class ForceSearch {
           std::sqrt(mean_power(spectra_.responses[k]) / mean_power(recorded_[k]));
     }
     result_.predicted = predictions_of(spectra_, transfers_, variances_);
-    const BinEvidence evidence = evidence_of(spectra_, transfers_, variances_, kNone);
+    const BinEvidence evidence = evidence_of(spectra_, transfers_, variances_, kNoSensor);
     find_power(evidence);
     if (wants_pulses()) find_pulses(evidence);
     const Eigen::VectorXd best = force_of(evidence);
@@ -92,7 +92,7 @@ class ForceSearch {
     recorded_ = spectra_.responses;
     const InitialState state(table_.model, spectra_);
     for (int round = 0; round < kStateRounds; ++round) {
-      find_power(evidence_of(spectra_, transfers_, variances_, kNone));
+      find_power(evidence_of(spectra_, transfers_, variances_, kNoSensor));
       spectra_.responses = recorded_;
       const InitialState::Fit fit = state.fit(transfers_, variances_, power_);
       if (round == 0) result_.rang = state.is_told(fit);
@@ -105,7 +105,7 @@ class ForceSearch {
   // The force by another model, what rang fitted anew and off by what is not known of it.
   Eigen::VectorXd force_by(const DrawnModels& models, std::size_t draw) const {
     const Transfers transfers = models.at(draw, spectra_);
-    if (!result_.rang) return force_of(evidence_of(spectra_, transfers, variances_, kNone));
+    if (!result_.rang) return force_of(evidence_of(spectra_, transfers, variances_, kNoSensor));
     ContourSpectra own = spectra_;
     own.responses = recorded_;
     const InitialState state(models.modes(draw), own);
@@ -114,7 +114,7 @@ class ForceSearch {
     fill_standard_normal(StreamKey(options_.seed).with("state").with(draw), normal);
     own.responses = state.without(
         fit.state + fit.root * Eigen::Map<const Eigen::VectorXd>(normal.data(), fit.state.size()));
-    return force_of(evidence_of(own, transfers, variances_, kNone));
+    return force_of(evidence_of(own, transfers, variances_, kNoSensor));
   }
 
   bool wants_pulses() {

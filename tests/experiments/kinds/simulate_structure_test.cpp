@@ -195,10 +195,7 @@ TEST_F(BowOnAStructure, RefusesWhatTheTableDoesNotTell) {
 TEST_F(BowOnAStructure, EveryKindSaysWhatTakesATable) {
   for (const auto& [kind, instead] :
        std::vector<std::pair<std::string, std::string>>{{"invert", "kind: identify_force"},
-                                                        {"calibrate", "with change:"},
-                                                        {"calibration_limit", "identify_force"},
                                                         {"sweep", "sweep: {product: ...}"},
-                                                        {"benchmark", "sweep: {product: ...}"},
                                                         {"identify", "kind: fit_modes"},
                                                         {"pluck_then_bow", "kind: fit_modes"},
                                                         {"schelleng", "kind: simulate"}}) {
@@ -208,6 +205,16 @@ TEST_F(BowOnAStructure, EveryKindSaysWhatTakesATable) {
       EXPECT_THAT(said(config), HasSubstr(instead)) << kind;
     }
   }
+  for (const std::string kind : {"calibrate", "calibration_limit"}) {
+    EXPECT_THAT(said(fmt::format("kind: {}\ntable: modes.yaml\n", kind)),
+                HasSubstr("unknown key \"table\": state structure: {table: modes.yaml"));
+  }
+  const std::string plate = std::string(MODCAL_CONFIGS) + "/structures/plate_modes.json";
+  EXPECT_THAT(said(fmt::format("kind: benchmark\nsweep: {{product: {{seed: [1, 2]}}}}\n"
+                               "structure: {{table: {}, record: {{file: a.csv, responses: "
+                               "[{{channel: a}}, {{channel: b}}]}}}}\n",
+                               plate)),
+              HasSubstr("error: benchmark compares optimizers on a string"));
   EXPECT_THAT(said("kind: identify_force\nmodel: {table: modes.yaml}\n"),
               HasSubstr("unknown key \"model\": state table: modes.yaml"));
   EXPECT_THAT(said("kind: simulate\ntable: modes.yaml\n"),
