@@ -194,12 +194,29 @@ ModalModel moved_by(const ModalModel& table, const Eigen::VectorXd& theta) {
 }
 
 Eigen::VectorXd deviations_of(const StructureChange& change, const ModalModel& table) {
-  const auto modes = static_cast<Index>(table.poles.size());
-  const Index factors =
-      change.residue > 0.0 ? 2 * modes * static_cast<Index>(table.sensors.size()) : 0;
-  Eigen::VectorXd sd(2 * modes + factors);
-  for (Index n = 0; n < modes; ++n) sd.segment<2>(2 * n) << change.frequency, change.damping;
-  sd.tail(factors).setConstant(change.residue);
+  const std::size_t modes = table.poles.size(), sensors = table.sensors.size();
+  const bool factors = change.residue > 0.0;
+  Eigen::VectorXd sd(static_cast<Index>(2 * modes * (factors ? 1 + sensors : 1)));
+  for (std::size_t n = 0; n < modes; ++n) {
+    sd.segment<2>(static_cast<Index>(2 * n)) << change.frequency, change.damping;
+  }
+  const auto size = [&](std::size_t k, std::size_t n) {
+    const std::size_t j = k * modes + n;
+    return std::hypot(table.constants[j], table.quadrature.empty() ? 0.0 : table.quadrature[j]);
+  };
+  for (std::size_t k = 0; factors && k < sensors; ++k) {
+    for (std::size_t n = 0; n < modes; ++n) {
+      double squares = 0.0, alike = 0.0;
+      for (std::size_t other = 0; other < sensors; ++other) {
+        if (table.sensors[other] != table.sensors[k]) continue;
+        squares += std::pow(size(other, n), 2);
+        alike += 1.0;
+      }
+      const double typical = std::sqrt(squares / alike), own = size(k, n);
+      sd.segment<2>(static_cast<Index>(2 * (modes + k * modes + n)))
+          .setConstant(change.residue * (own > 0.0 ? std::max(1.0, typical / own) : 1.0));
+    }
+  }
   return sd;
 }
 

@@ -12,7 +12,10 @@ namespace modcal {
 struct StructureChange {
   double frequency = 0.01;  ///< of ln f_n [1]
   double damping = 0.3;     ///< of ln ζ_n [1]
-  double residue = 0.05;  ///< of each modal constant, real and imaginary part of d_kn [1]; 0: known
+  /// Of each modal constant, real and imaginary part, over its size or, where that is smaller, over
+  /// the rms of the mode's constants at the sensors of one kind [1]; 0: known. What changes a shape
+  /// does not spare its nodes.
+  double residue = 0.05;
 };
 
 /// θ = ln f_n, ln ζ_n, then Re d_kn and Im d_kn (BlindFit), away from a model.

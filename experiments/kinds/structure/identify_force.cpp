@@ -78,7 +78,9 @@ void StructureChangeOptions::visit(OptionVisitor& visitor) {
           {.range = Range::open(0.0, 0.1)}, frequency);
   visitor("damping", "relative standard deviation of every damping ratio",
           {.range = Range::open(0.0, 2.0)}, damping);
-  visitor("residue", "relative standard deviation of every modal constant; 0: known",
+  visitor("residue",
+          "standard deviation of every modal constant, over its size or, near a node, over what is "
+          "usual of the mode; 0: known",
           {.range = Range::closed(0.0, 1.0)}, residue);
 }
 

@@ -111,7 +111,7 @@ void RefinedModes::add_parameters(std::vector<FoundParameter>& parameters) const
 }
 
 std::vector<std::string> RefinedModes::doubts() const {
-  Surprises frequencies, dampings;
+  Surprises frequencies, dampings, constants;
   std::vector<std::string> untold;
   for (std::size_t n = 0; n < modes(); ++n) {
     frequencies.add(fit.surprise(frequency_of(n)));
@@ -119,9 +119,11 @@ std::vector<std::string> RefinedModes::doubts() const {
     if (fit.told[frequency_of(n)] > 0.5) continue;
     untold.push_back(fmt::format("{:.4g}", table.frequency(n)));
   }
+  for (Index i = frequency_of(modes()); i < fit.change.size(); ++i) constants.add(fit.surprise(i));
   std::vector<std::string> texts;
   if (frequencies.contradict()) texts.push_back(frequencies.text("frequencies", "frequency"));
   if (dampings.contradict()) texts.push_back(dampings.text("damping ratios", "damping"));
+  if (constants.contradict()) texts.push_back(constants.text("modal constants", "residue"));
   if (!untold.empty()) {
     texts.push_back(
         fmt::format("the responses do not tell the frequencies of {} of {} modes, which stay the "
