@@ -4,14 +4,18 @@
 #include <fmt/format.h>
 #include <fmt/os.h>
 
+#include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <functional>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "benchmarks/stress/stress_cell.hpp"
+#include "libsim/base/task_loop.hpp"
 #include "libsim/dynamics/friction/friction_law.hpp"
 #include "libsim/model/damping.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
@@ -97,41 +101,79 @@ class Map {
         "distance sensitivity reason\n");
   }
 
+  /// Cells are independent of each other: threads run them, the longest first.
   void run() {
-    fmt::print(
-        "| varied | simulator | right | refused | reported | wrong | balance open by | bound | "
-        "repeat | no digits |\n|---|---|---|---|---|---|---|---|---|---|\n");
-    int panel = 0;
-    for (const Axis& axis : axes()) number_panel(axis, panel++);
-    for (const NamedAxis& axis : kNamedAxes) named_panel(axis, panel++);
-    long_records();
-    fmt::print("\nReasons given:\n\n");
-    for (const auto& [reason, count] : reasons_) fmt::print("- {} × {}\n", count, reason);
+    plan();
+    std::atomic<std::size_t> done = 0;
+    for_each_task(cells_todo_.size(), [&](std::size_t i) {
+      Cell& cell = cells_todo_[i];
+      cell.result = run_cell(cell.simulator, cell.scene, cell.step, cell.samples);
+      if (++done % 100 == 0)
+        fmt::print(stderr, "{} of {} cells\n", done.load(), cells_todo_.size());
+    });
+    print();
   }
 
   bool wrong() const { return wrong_; }
 
  private:
-  struct Place {
-    int panel;
+  struct Cell {
+    std::size_t row;
     const char* simulator;
-    std::size_t step, value;
+    Scene scene;
+    double step;
+    std::size_t samples;
+    std::string place;  // panel, simulator, step and value in cells.txt; empty: in no panel
+    CellResult result;
   };
+  struct Row {
+    std::string axis;
+    const char* simulator;
+    Tally tally;
+  };
+
+  void plan() {
+    long_records();
+    // Rows of the table end with the long records.
+    std::vector<Row> last = std::exchange(rows_, {});
+    const std::size_t long_cells = cells_todo_.size();
+    int panel = 0;
+    for (const Axis& axis : axes()) number_panel(axis, panel++);
+    for (const NamedAxis& axis : kNamedAxes) named_panel(axis, panel++);
+    for (std::size_t i = 0; i < long_cells; ++i) cells_todo_[i].row += rows_.size();
+    std::ranges::move(last, std::back_inserter(rows_));
+  }
+
+  void print() {
+    fmt::print(
+        "| varied | simulator | right | refused | reported | wrong | balance open by | bound | "
+        "repeat | no digits |\n|---|---|---|---|---|---|---|---|---|---|\n");
+    for (const Cell& cell : cells_todo_) {
+      const CellResult& result = cell.result;
+      note(result, rows_[cell.row].tally);
+      if (cell.place.empty()) continue;
+      cells_.print("{} {} {:.1e} {:.1e} {:.2f} {:.1e} {:.1e} {}\n", cell.place,
+                   static_cast<int>(result.outcome), result.unbalanced, result.allowed,
+                   result.passivity, result.distance, result.sensitivity, result.reason);
+    }
+    for (const Row& row : rows_) print_row(row.axis, row.simulator, row.tally);
+    fmt::print("\nReasons given:\n\n");
+    for (const auto& [reason, count] : reasons_) fmt::print("- {} × {}\n", count, reason);
+  }
 
   void number_panel(const Axis& axis, int panel) {
     std::vector<std::string> ticks;
     for (const double value : axis.values) ticks.push_back(fmt::format("{:.3g}", value));
     write_ticks(fmt::format("{} [{}]", axis.name, axis.unit), ticks, panel);
     for (const char* simulator : kSimulators) {
-      Tally tally;
+      rows_.push_back({axis.name, simulator, {}});
       for (std::size_t i = 0; i < kSteps.size(); ++i) {
         for (std::size_t j = 0; j < axis.values.size(); ++j) {
           Scene scene = paper_scene();
           axis.set(scene, axis.values[j]);
-          cell({panel, simulator, i, j}, scene, affordable_samples(scene, kSteps[i]), tally);
+          add_cell(panel, i, j, scene, affordable_samples(scene, kSteps[i]));
         }
       }
-      print_row(axis.name, simulator, tally);
     }
   }
 
@@ -140,26 +182,26 @@ class Map {
     for (const NamedScene& scene : axis.scenes(1.0)) ticks.push_back(scene.name);
     write_ticks(axis.name, ticks, panel);
     for (const char* simulator : kSimulators) {
-      Tally tally;
+      rows_.push_back({axis.name, simulator, {}});
       for (std::size_t i = 0; i < kSteps.size(); ++i) {
         const std::size_t samples = affordable_samples(paper_scene(), kSteps[i]);
         const auto scenes = axis.scenes(static_cast<double>(samples) * kSteps[i]);
         for (std::size_t j = 0; j < scenes.size(); ++j) {
-          cell({panel, simulator, i, j}, scenes[j].scene, samples, tally);
+          add_cell(panel, i, j, scenes[j].scene, samples);
         }
       }
-      print_row(axis.name, simulator, tally);
     }
   }
 
-  void cell(const Place& at, const Scene& scene, std::size_t samples, Tally& tally) {
-    const CellResult result = run_cell(at.simulator, scene, kSteps[at.step], samples);
-    note(result, tally);
-    cells_.print("{} {} {} {} {} {:.1e} {:.1e} {:.2f} {:.1e} {:.1e} {}\n", at.panel, at.simulator,
-                 at.step, at.value, static_cast<int>(result.outcome), result.unbalanced,
-                 result.allowed, result.passivity, result.distance, result.sensitivity,
-                 result.reason);
-    cells_.flush();
+  void add_cell(int panel, std::size_t i, std::size_t j, const Scene& scene, std::size_t samples) {
+    const char* simulator = rows_.back().simulator;
+    cells_todo_.push_back({rows_.size() - 1,
+                           simulator,
+                           scene,
+                           kSteps[i],
+                           samples,
+                           fmt::format("{} {} {} {}", panel, simulator, i, j),
+                           {}});
   }
 
   void write_ticks(const std::string& title, const std::vector<std::string>& ticks, int panel) {
@@ -175,13 +217,14 @@ class Map {
     constexpr double kStep = 1e-5;
     for (const bool reverses : {false, true}) {
       for (const char* simulator : kSimulators) {
-        Tally tally;
         Scene scene =
             reverses ? moving_bows(static_cast<double>(kSamples) * kStep)[1].scene : paper_scene();
         scene.string.modes = 10;
-        note(run_cell(simulator, scene, kStep, kSamples), tally);
-        print_row(reverses ? "60 s of strokes, 10 modes, step 10 µs" : "60 s, 10 modes, step 10 µs",
-                  simulator, tally);
+        rows_.push_back(
+            {reverses ? "60 s of strokes, 10 modes, step 10 µs" : "60 s, 10 modes, step 10 µs",
+             simulator,
+             {}});
+        cells_todo_.push_back({rows_.size() - 1, simulator, scene, kStep, kSamples, {}, {}});
       }
     }
   }
@@ -220,6 +263,8 @@ class Map {
   }
 
   fmt::ostream cells_, axes_;
+  std::vector<Cell> cells_todo_;
+  std::vector<Row> rows_;
   std::map<std::string, int> reasons_;
   bool wrong_ = false;
 };

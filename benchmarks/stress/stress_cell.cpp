@@ -75,12 +75,14 @@ double force_limit(const Scene& scene, const FrictionLaw& law, double normal_for
 std::string excess_force(const Scene& scene, const BowMotion& bow, const CellRun& cell,
                          double step) {
   const auto law = scene.friction.make();
+  // At the instant of a lift the normal force is what two rounded times leave of it.
+  const double rounding = 1e-14 * force_limit(scene, *law, bow.normal_force.highest());
   for (const PointMotion& point : cell.points) {
     for (std::size_t k = 0; k < point.force.size(); ++k) {
       const double t = static_cast<double>(k) * step;
       const double limit = force_limit(scene, *law, bow.normal_force.at(t));
-      if (std::abs(point.force[k]) <= limit * (1.0 + (cell.points.size() > 1 ? 1e-7 : 1e-12)))
-        continue;
+      const double solved = cell.points.size() > 1 ? 1e-7 : 1e-12;
+      if (std::abs(point.force[k]) <= limit * (1.0 + solved) + rounding) continue;
       return fmt::format("force of {:g} N above the limit of {:g} N", point.force[k], limit);
     }
   }
@@ -271,7 +273,10 @@ std::size_t affordable_samples(const Scene& scene, double time_step) {
   const double modes = static_cast<double>(scene.string.modes);
   const double radians = 6.28 * scene.string.fundamental * modes * time_step;
   const double operations = modes * (1.0 + std::min(radians, 8.0));
-  return static_cast<std::size_t>(std::clamp(5e5 / operations, 20.0, 20000.0));
+  // The audit takes a step in parts of at most four radians of the fastest mode, each of some 300
+  // operations a mode.
+  const double audited = 1e9 / (300.0 * modes * (1.0 + radians / 4.0));
+  return static_cast<std::size_t>(std::clamp(std::min(5e5 / operations, audited), 4.0, 20000.0));
 }
 
 }  // namespace modcal

@@ -51,7 +51,7 @@ std::vector<NamedScene> moving_bows(double duration);
 /// The paper's case with every other friction law, torsion and wide bows.
 std::vector<NamedScene> other_contacts(double duration);
 
-/// Samples that keep simulation and audit of such a cell at about a tenth of a second; ≥ 20.
+/// Samples that keep simulation and audit of such a cell at about a second at most; ≥ 4.
 std::size_t affordable_samples(const Scene& scene, double time_step);
 
 }  // namespace modcal

@@ -140,6 +140,12 @@ std::vector<FileRead> StructureLimitExperiment::files_read() const {
   return {options_.structure.file_read(options_.observation.measurement.sample_rate)};
 }
 
+std::shared_ptr<const LimitQuestion> StructureLimitExperiment::limit_question() const {
+  throw InvalidInput(
+      "the limit of a structure depends on the force that acts: run the file, its tables state the "
+      "bound");
+}
+
 std::string StructureLimitExperiment::fingerprint(std::size_t task,
                                                   const std::filesystem::path& folder) const {
   CalibrationLimitOptions options = options_;

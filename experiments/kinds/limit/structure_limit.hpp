@@ -43,6 +43,7 @@ class StructureLimitExperiment final : public ProductExperiment {
   std::vector<Finding> lint_records(const std::filesystem::path& folder) const override;
   std::vector<PlanLine> plan() const override;
   std::vector<FileRead> files_read() const override;
+  std::shared_ptr<const LimitQuestion> limit_question() const override;
 
   std::string fingerprint(std::size_t task, const std::filesystem::path& folder) const override;
   std::string run_task(std::size_t task, const StudyContext& context) const override;
