@@ -87,16 +87,22 @@ void tell_deviations(const ContourSpectra& spectra, const Eigen::MatrixXd& jacob
   const Eigen::VectorXd weight = fit.prior.cwiseAbs2().cwiseInverse();
   Eigen::MatrixXd curvature = share * (jacobian.transpose() * jacobian);
   curvature.diagonal() += weight;
+  MODCAL_REQUIRE(
+      curvature.allFinite(),
+      "the modes cannot be refined: a response is not finite, or a sensor does not move; "
+      "leave that one out");
   fit.covariance = curvature.llt().solve(Eigen::MatrixXd::Identity(weight.size(), weight.size()));
   fit.told = 1.0 - fit.covariance.diagonal().cwiseProduct(weight).array();
-  if (spectra.grid.sigma > 0.0) {
-    Eigen::MatrixXd slope =
-        0.5 * share * share * (jacobian.transpose() * times_correlation(spectra, jacobian));
-    slope.diagonal() += weight;
-    const Eigen::MatrixXd scatter = fit.covariance * slope * fit.covariance;
-    fit.covariance = 0.5 * (scatter + scatter.transpose());
+  if (spectra.grid.sigma == 0.0) {
+    fit.root = Eigen::LLT<Eigen::MatrixXd>(fit.covariance).matrixL();
+    return;
   }
-  fit.root = Eigen::LLT<Eigen::MatrixXd>(fit.covariance).matrixL();
+  Eigen::MatrixXd slope =
+      0.5 * share * share * (jacobian.transpose() * times_correlation(spectra, jacobian));
+  slope.diagonal() += weight;
+  const Eigen::MatrixXd factor = Eigen::LLT<Eigen::MatrixXd>(slope).matrixL();
+  fit.root = curvature.llt().solve(factor);
+  fit.covariance = fit.root * fit.root.transpose();
 }
 
 // Variances by the model so far. What a table that is off contradicts, and what rings at the ends,
@@ -105,7 +111,8 @@ void tell_deviations(const ContourSpectra& spectra, const Eigen::MatrixXd& jacob
 BinVariances variances_beside(const StructureTable& table, const ContourSpectra& spectra,
                               const BlindFit& fit, bool is_fitted) {
   const Transfers transfers = transfers_of(table.model, spectra);
-  if (!is_fitted || fit.degrees < 1.0) return variances_of(table, spectra, transfers);
+  // Of a tenth and less of the numbers nothing follows for the others.
+  if (!is_fitted || fit.degrees < 0.1 * fit.numbers) return variances_of(table, spectra, transfers);
   ContourSpectra between = spectra;
   between.responses = fit.between;
   BinVariances variances = variances_of(table, between, transfers);

@@ -29,9 +29,9 @@ struct BlindFit {
   ModalModel model;
   Eigen::VectorXd change;      ///< θ from the table
   Eigen::MatrixXd covariance;  ///< of θ
-  Eigen::MatrixXd root;        ///< its lower triangular factor
+  Eigen::MatrixXd root;        ///< covariance = root rootᵀ
   Eigen::VectorXd prior;       ///< deviations of θ before the responses
-  Eigen::VectorXd told;        ///< 1 − variance/prior²: the responses' share of θ_i
+  Eigen::VectorXd told;        ///< share of θ_i that the responses tell, by the curvature
   double numbers = 0.0;        ///< 2B(K − 1)/κ, what the data are worth
   double degrees = 0.0;        ///< of these less the 2N of c and p_eff
   /// 2|e|² over its degrees of freedom; NaN: there is none.

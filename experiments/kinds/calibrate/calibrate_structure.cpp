@@ -5,6 +5,11 @@
 namespace modcal {
 namespace {
 
+struct SimulatorAlone {
+  Choice<Simulator> simulator;
+  void visit(OptionVisitor& visitor) { visitor("simulator", "", simulator); }
+};
+
 template <typename Item>
 std::vector<Item> below_structure(std::vector<Item> items, std::string Item::*path) {
   for (Item& item : items) item.*path = "structure." + item.*path;
@@ -52,6 +57,15 @@ std::vector<Finding> CalibrateOptions::lint_structure() const {
        {"model_error", !same_options(mine.model_error, usual.model_error)},
        {"inversion", !same_options(mine.inversion, usual.inversion)},
        {"model_based", mine.has_model_based},
+       {"simulator", !same_options(SimulatorAlone{mine.observation.truth.simulator},
+                                   SimulatorAlone{usual.observation.truth.simulator})},
+       {"wave_based", mine.wave_based},
+       {"score", !same_options(mine.score, usual.score)},
+       {"write_sound", mine.write_sound},
+       {"write_signals", mine.write_signals != usual.write_signals},
+       {"overview", mine.overview != usual.overview},
+       {"audio", audio},
+       {"fill_blind_modes", fill_blind_modes},
        {"calibration", !same_options(calibration, plain.calibration)},
        {"further_strokes", !same_options(further, plain.further)},
        {"plucks", !plucks.empty()},

@@ -32,7 +32,7 @@ void sum_up_structure_limit(const std::vector<double>& frequencies,
                             const std::vector<StructureLimitLevel>& levels, StudyResult& result);
 
 /// A bow on the structure of a table, simulated once. Each draw starts from a table that is off by
-/// normal numbers of the change's deviations, adds noise and refines it as kind "calibrate" does.
+/// normal numbers of the change's deviations, adds noise and refines it as kind "calibrate" does by its default contour.
 class StructureLimitExperiment final : public ProductExperiment {
  public:
   explicit StructureLimitExperiment(CalibrationLimitOptions options);
@@ -53,6 +53,7 @@ class StructureLimitExperiment final : public ProductExperiment {
  private:
   struct Truth;
   const Truth& truth(const StudyContext& context) const;
+  Truth simulated(const StudyContext& context) const;
   StructureLimitOutcome draw(std::size_t task, const StudyContext& context) const;
   StudyResult sum_up_levels(std::vector<StructureLimitLevel> levels, const StudyContext& context,
                             StudyResult result) const;
@@ -61,6 +62,7 @@ class StructureLimitExperiment final : public ProductExperiment {
   CalibrationLimitOptions options_;
   mutable std::once_flag simulated_;
   mutable std::shared_ptr<const Truth> truth_;
+  mutable std::string failure_;  ///< why there is none
 };
 
 }  // namespace modcal

@@ -80,7 +80,7 @@ KindSum sum_of(const StructureLimitLevel& level, const std::vector<Unknown>& unk
   double squares = 0.0, held = 0.0, count = 0.0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     // Nothing tells the phase of a constant that is 0.
-    if (unknowns[i].kind != kKinds[kind] || !(rows[i].rmse > 0.0)) continue;
+    if (unknowns[i].kind != kKinds[kind] || rows[i].rmse == 0.0) continue;
     bounds.add(rows[i].bound);
     errors.add(rows[i].rmse);
     squares += rows[i].ratio() * rows[i].ratio();
@@ -158,6 +158,14 @@ void judge(const KindSum& sum, StudyResult& result) {
 }
 
 }  // namespace
+
+void StructureLimitOutcome::visit(ResultVisitor& visitor) {
+  visitor({.key = "failure", .optional = true}, failure);
+  if (!failure.empty()) return;
+  visitor({.key = "errors"}, errors);
+  visitor({.key = "deviations"}, deviations);
+  visitor({.key = "chi2"}, chi2);
+}
 
 void sum_up_structure_limit(const std::vector<double>& frequencies,
                             const std::vector<std::string>& sensors,

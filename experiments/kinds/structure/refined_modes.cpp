@@ -88,15 +88,15 @@ std::string RefinedModes::sentence() const {
     moved.push_back(std::abs(fit.change[f]));
     deviations.push_back(std::sqrt(fit.covariance(f, f)));
   }
-  const std::string misfit =
+  const std::string left =
       std::isnan(fit.misfit)
-          ? "the responses are worth no more numbers than there are unknowns, so no chi2"
-          : fmt::format("reduced chi2 {:.3f} of {:.0f} degrees of freedom", fit.misfit,
-                        fit.degrees);
+          ? std::string("the responses are worth no more numbers than there are unknowns")
+          : fmt::format("{:.0f} of the {:.0f} numbers that the responses are worth are left",
+                        fit.degrees, fit.numbers);
   return fmt::format(
       "modes refined without the force: median change of a frequency {:.2g}, its deviation "
       "{:.2g}; {}\n",
-      quantile(moved, 0.5), quantile(deviations, 0.5), misfit);
+      quantile(moved, 0.5), quantile(deviations, 0.5), left);
 }
 
 void RefinedModes::add_parameters(std::vector<FoundParameter>& parameters) const {

@@ -63,6 +63,8 @@ TEST(CalibrateStructure, RefusesWhatItWouldNotRead) {
               HasSubstr("model_error is for a string and would do nothing beside structure"));
   EXPECT_THAT(said("calibration.parameters.contact=false"),
               HasSubstr("calibration is for a string"));
+  EXPECT_THAT(said("write_sound=true"), HasSubstr("write_sound is for a string"));
+  EXPECT_THAT(said("audio=true"), HasSubstr("audio is for a string"));
   EXPECT_THAT(said("measurement.noise_level=1%"), HasSubstr("measurement is for a string"));
   EXPECT_THAT(said("structure.record.responses=[{channel: a1}]"),
               HasSubstr("modes are refined by the responses of two sensors and more"));
@@ -73,6 +75,7 @@ TEST(CalibrateStructure, RefusesWhatItWouldNotRead) {
   };
   EXPECT_THAT(limit("noise_levels=[0.01, 0]"), HasSubstr("without noise a structure has no bound"));
   EXPECT_THAT(limit("noise_levels=[0.01, 0.01]"), HasSubstr("stands here twice"));
+  EXPECT_THAT(limit("measurement.noise_level=1%"), HasSubstr("noise_level is for a string"));
   EXPECT_THAT(limit("known_noise=false"), HasSubstr("known_noise is for a string"));
   EXPECT_THAT(limit("structure.contact=a9"), HasSubstr("the table has no sensor \"a9\""));
 }
@@ -105,6 +108,13 @@ TEST(CalibrationLimitOfAStructure, ReachesTheBound) {
     EXPECT_LT(number("largest"), 5.0);
   }
   EXPECT_EQ(file_of(found, "calibration_limit.json").size(), 2u * (14u + 42u));
+}
+
+TEST(CalibrationLimitOfAStructure, TakesConstantsThatAreKnown) {
+  const StudyResult found = run(kLimit, {"seeds=1", "noise_levels=[0.01]",
+                                         "structure.change.residue=0", "structure.duration=1.3 s"});
+  EXPECT_EQ(found.failed_tasks, 0u);
+  EXPECT_EQ(file_of(found, "calibration_limit.json").size(), 14u);
 }
 
 }  // namespace
