@@ -239,7 +239,7 @@ StudyResult IdentifyForceOptions::found(const StudyContext& context, bool modes_
   if (!loaded.record.force.empty()) score = score_of(force, loaded.record.force, rate, modes);
   StudyResult result;
   std::optional<RefinedModes> refined;
-  if (force.refined) refined.emplace(modes, *force.refined);
+  if (force.refined) refined.emplace(RefinedModes{modes, *force.refined});
   const ForceOutcome outcome{loaded, force, score, odd, refined};
   if (refined && modes_first) result.summary = refined->sentence();
   result.summary += sentence_of(force, rate, loaded.kinds.size());
