@@ -8,7 +8,6 @@
 #include "libinverse/structure/blind_likelihood.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/base/task_loop.hpp"
-#include "libsim/signal/fft.hpp"
 
 namespace modcal {
 namespace {
@@ -36,42 +35,24 @@ Eigen::VectorXd prior_of(const StructureTable& table, const StructureChange& cha
   return sd;
 }
 
-// C J of columns J of a BlindLikelihood, E[e eᴴ] = C between the bins of a sensor: on a contour
-// they tell alike, C_mm' = Σ_j exp(−2σt_j) exp(−i(ω_m − ω_m')t_j) / Σ_j exp(−2σt_j).
+// C J of columns J of a BlindLikelihood, C the correlation of a sensor's bins.
 Eigen::MatrixXd times_correlation(const ContourSpectra& spectra, const Eigen::MatrixXd& columns) {
+  const BinCorrelation correlation(spectra);
   const auto sensors = static_cast<Index>(spectra.responses.size());
   const Index padded = columns.rows() / (2 * sensors);
-  // As a signal of the record's duration, so many samples that its band and what the weights add to
-  // either side of it fit in; times the weights at its instants.
-  const std::size_t first = spectra.bins.first, bins = spectra.count();
-  const std::size_t length = 4 * (first + bins);
-  std::vector<double> weights(length);
-  double sum = 0.0;
-  for (std::size_t j = 0; j < length; ++j) {
-    const double t = static_cast<double>(j) / static_cast<double>(length) * spectra.duration();
-    sum += weights[j] = std::exp(-2.0 * spectra.grid.sigma * t);
-  }
-  for (double& weight : weights) weight *= static_cast<double>(length) / sum;
-  const RealFft fft(length);
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(columns.rows(), columns.cols());
   for_each_task(static_cast<std::size_t>(columns.cols()), [&](std::size_t c) {
-    std::vector<Complex> spectrum(fft.bins());
-    std::vector<double> samples(length);
-    for (Index k = 0; k < sensors; ++k) {
-      const Index re = k * padded, im = re + sensors * padded;
-      const auto column = static_cast<Index>(c);
-      std::ranges::fill(spectrum, 0.0);
-      for (std::size_t m = 0; m < bins; ++m) {
-        const auto i = static_cast<Index>(m);
-        spectrum[first + m] = {columns(re + i, column), columns(im + i, column)};
-      }
-      fft.inverse(spectrum, samples);
-      for (std::size_t j = 0; j < length; ++j) samples[j] *= weights[j];
-      fft.forward(samples, spectrum);
-      for (std::size_t m = 0; m < bins; ++m) {
-        const auto i = static_cast<Index>(m);
-        result(re + i, column) = spectrum[first + m].real();
-        result(im + i, column) = spectrum[first + m].imag();
+    const auto column = static_cast<Index>(c);
+    std::vector<Complex> own(spectra.count());
+    for (Index re = 0; re < sensors * padded; re += padded) {
+      const Index im = re + sensors * padded;
+      Index i = 0;
+      for (Complex& bin : own) bin = {columns(re + i, column), columns(im + i, column)}, ++i;
+      correlation.multiply(own);
+      i = 0;
+      for (const Complex& bin : own) {
+        result(re + i, column) = bin.real();
+        result(im + i++, column) = bin.imag();
       }
     }
   });
@@ -81,27 +62,41 @@ Eigen::MatrixXd times_correlation(const ContourSpectra& spectra, const Eigen::Ma
 // A⁻¹ (B + Π) A⁻¹, how far θ scatters: A = (2/κ) JᵀJ + Π is the curvature of what is minimized, in
 // which of κ bins one counts; B = (2/κ²) JᵀCJ the variance of its slope, by how the bins of the
 // contour are correlated (Huber, 1967). A⁻¹ alone is half of it where a response dies out faster
-// than the weights.
-void tell_deviations(const ContourSpectra& spectra, const Eigen::MatrixXd& jacobian, double share,
-                     BlindFit& fit) {
+// than the weights. With M = A − Π, what θ takes of 2|e|²/κ is 2 tr A⁻¹B − tr A⁻¹M A⁻¹(B + Π), and
+// θ itself has the variance A⁻¹ (B + M Π⁻¹ M) A⁻¹ where the prior is right. Without correlation
+// B = M: tr A⁻¹M and M A⁻¹ Π⁻¹. What c takes is tr QᵀCQ/κ of a basis Q of its columns.
+void tell_deviations(const ContourSpectra& spectra, const Eigen::MatrixXd& jacobian,
+                     const Eigen::MatrixXd& ends, BlindFit& fit) {
+  const double correlated = spectra.correlated();
   const Eigen::VectorXd weight = fit.prior.cwiseAbs2().cwiseInverse();
-  Eigen::MatrixXd curvature = share * (jacobian.transpose() * jacobian);
+  const Eigen::MatrixXd made = 2.0 / correlated * (jacobian.transpose() * jacobian);  // M
+  Eigen::MatrixXd curvature = made;
   curvature.diagonal() += weight;
   MODCAL_REQUIRE(
       curvature.allFinite(),
       "the modes cannot be refined: a response is not finite, or a sensor does not move; "
       "leave that one out");
-  fit.covariance = curvature.llt().solve(Eigen::MatrixXd::Identity(weight.size(), weight.size()));
-  fit.told = 1.0 - fit.covariance.diagonal().cwiseProduct(weight).array();
-  if (spectra.grid.sigma == 0.0) {
-    fit.root = Eigen::LLT<Eigen::MatrixXd>(fit.covariance).matrixL();
-    return;
-  }
-  Eigen::MatrixXd slope =
-      0.5 * share * share * (jacobian.transpose() * times_correlation(spectra, jacobian));
-  slope.diagonal() += weight;
-  const Eigen::MatrixXd factor = Eigen::LLT<Eigen::MatrixXd>(slope).matrixL();
-  fit.root = curvature.llt().solve(factor);
+  const bool is_white = spectra.grid.sigma == 0.0;
+  const auto correlate = [&](const Eigen::MatrixXd& columns) {
+    return is_white ? columns : times_correlation(spectra, columns);
+  };
+  Eigen::MatrixXd scatter = jacobian.transpose() * correlate(jacobian);
+  scatter *= 2.0 / (correlated * correlated);  // B
+  const Eigen::LLT<Eigen::MatrixXd> solver(curvature);
+  const Eigen::MatrixXd inverse =
+      solver.solve(Eigen::MatrixXd::Identity(weight.size(), weight.size()));
+  fit.told = 1.0 - inverse.diagonal().cwiseProduct(weight).array();
+  const Eigen::MatrixXd pull = inverse * made;  // of θ towards its true value
+  fit.expected =
+      (inverse * scatter * inverse + pull * fit.prior.cwiseAbs2().asDiagonal() * pull.transpose())
+          .diagonal()
+          .cwiseMax(0.0)
+          .cwiseSqrt();
+  fit.degrees = fit.numbers - 2.0 * (inverse * scatter).trace();
+  if (ends.cols() > 0) fit.degrees -= ends.cwiseProduct(correlate(ends)).sum() / correlated;
+  scatter.diagonal() += weight;
+  fit.degrees += (pull * inverse * scatter).trace();
+  fit.root = solver.solve(Eigen::MatrixXd(Eigen::LLT<Eigen::MatrixXd>(scatter).matrixL()));
   fit.covariance = fit.root * fit.root.transpose();
 }
 
@@ -169,10 +164,8 @@ BlindFit fit_with(const Eigen::VectorXd& prior, const ModalModel& table,
     if (!better || gain < 1e-6) break;
   }
   fit.prior = prior;
-  tell_deviations(spectra, jacobian, share, fit);
   fit.numbers = likelihood.numbers();
-  // An unknown that the data do not tell counts for nothing.
-  fit.degrees = fit.numbers - likelihood.end_unknowns(table.poles.size()) - fit.told.sum();
+  tell_deviations(spectra, jacobian, here.basis, fit);
   if (fit.degrees >= 1.0) fit.misfit = here.cost / fit.degrees;
   fit.between = likelihood.without_ends(fit.model, here);
   fit.force = here.force;
@@ -229,8 +222,7 @@ Eigen::VectorXd deviations_of(const StructureChange& change, const ModalModel& t
 
 double BlindFit::surprise(Index i) const {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  // The posterior mean of θ ~ N(0, p²) that data tell by a share w has the variance w p².
-  return told[i] > 0.5 ? change[i] / (prior[i] * std::sqrt(told[i])) : kNan;
+  return told[i] > 0.5 ? change[i] / expected[i] : kNan;
 }
 
 ModalModel BlindFit::drawn(std::span<const double> normal) const {

@@ -32,8 +32,9 @@ struct BlindFit {
   Eigen::MatrixXd root;        ///< covariance = root rootᵀ
   Eigen::VectorXd prior;       ///< deviations of θ before the responses
   Eigen::VectorXd told;        ///< share of θ_i that the responses tell, by the curvature
+  Eigen::VectorXd expected;    ///< deviation of θ where the prior is right
   double numbers = 0.0;        ///< 2B(K − 1)/κ, what the data are worth
-  double degrees = 0.0;        ///< of these less the 2N of c and p_eff
+  double degrees = 0.0;        ///< of these less what c and θ take
   /// 2|e|² over its degrees of freedom; NaN: there is none.
   double misfit = std::numeric_limits<double>::quiet_NaN();
   Transfers between;                   ///< responses without what rings at the record's ends, K

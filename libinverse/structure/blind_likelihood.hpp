@@ -45,10 +45,6 @@ class BlindLikelihood {
   double correlated() const { return spectra_.correlated(); }
   /// Numbers that the data have when the force is eliminated, 2B(K − 1)/κ.
   double numbers() const;
-  /// Unknowns that are eliminated besides: c, two a mode, or none.
-  double end_unknowns(std::size_t modes) const {
-    return free_ends_ ? 2.0 * static_cast<double>(modes) : 0.0;
-  }
 
  private:
   using Signals = std::vector<PlanarVector>;  // of every sensor, whitened

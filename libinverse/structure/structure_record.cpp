@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include "libsim/base/error.hpp"
@@ -54,6 +55,31 @@ ContourSpectra ContourSpectra::of(const StructureRecord& record, double sigma, d
 double ContourSpectra::noise_power() const {
   const double step = 2.0 * grid.sigma / sample_rate, count = static_cast<double>(samples);
   return step > 0.0 ? -std::expm1(-step * count) / -std::expm1(-step) : count;
+}
+
+// As a signal of the record's duration, so many samples that its band and what the weights add to
+// either side of it fit in; times the weights at its instants.
+BinCorrelation::BinCorrelation(const ContourSpectra& spectra)
+    : first_(spectra.bins.first), weights_(4 * (first_ + spectra.count())) {
+  const auto count = static_cast<double>(weights_.size());
+  double sum = 0.0, j = 0.0;
+  for (double& weight : weights_) {
+    weight = std::exp(-2.0 * spectra.grid.sigma * spectra.duration() * j++ / count);
+    sum += weight;
+  }
+  for (double& weight : weights_) weight *= count / sum;
+}
+
+void BinCorrelation::multiply(std::span<Complex> bins) const {
+  const RealFft fft(weights_.size());
+  std::vector<Complex> spectrum(fft.bins());
+  std::vector<double> samples(weights_.size());
+  const auto band = spectrum.begin() + static_cast<std::ptrdiff_t>(first_);
+  std::ranges::copy(bins, band);
+  fft.inverse(spectrum, samples);
+  std::ranges::transform(samples, weights_, samples.begin(), std::multiplies<>());
+  fft.forward(samples, spectrum);
+  std::copy_n(band, bins.size(), bins.begin());
 }
 
 Complex numerator_of(SensorKind kind, const ModalPole& pole, Complex constant, Complex s) {

@@ -45,6 +45,19 @@ struct ContourSpectra {
   double noise_power() const;
 };
 
+/// How white noise correlates the bins of a contour, which tell alike: C_mm' = Σ_j exp(−2σt_j)
+/// exp(−i(ω_m − ω_m')t_j) / Σ_j exp(−2σt_j).
+class BinCorrelation {
+ public:
+  explicit BinCorrelation(const ContourSpectra& spectra);
+  /// C x in the place of x, a number a bin.
+  void multiply(std::span<Complex> bins) const;
+
+ private:
+  std::size_t first_;
+  std::vector<double> weights_;
+};
+
 /// What stands over D(s) in the H of one mode: s^p (Re A + Im A q(s)) (ModalModel).
 Complex numerator_of(SensorKind kind, const ModalPole& pole, Complex constant, Complex s);
 

@@ -242,8 +242,7 @@ StructureLimitOutcome StructureLimitExperiment::draw(std::size_t task,
   const BlindFit fit =
       refined_table(start, record, 2.0 / record.duration(), options_.structure.change, false);
   StructureLimitOutcome outcome{.errors = relative_errors(fit.model, truth.table.model),
-                                .deviations = deviations_of(fit, start.model, truth.table.model),
-                                .chi2 = fit.misfit};
+                                .deviations = deviations_of(fit, start.model, truth.table.model)};
   outcome.errors.resize(outcome.deviations.size());  // constants that are known have none
   return outcome;
 }

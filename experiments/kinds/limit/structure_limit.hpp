@@ -14,7 +14,6 @@ namespace modcal {
 struct StructureLimitOutcome {
   std::string failure;
   std::vector<double> errors, deviations;
-  double chi2 = 0.0;
   void visit(ResultVisitor& visitor);
 };
 
@@ -32,7 +31,8 @@ void sum_up_structure_limit(const std::vector<double>& frequencies,
                             const std::vector<StructureLimitLevel>& levels, StudyResult& result);
 
 /// A bow on the structure of a table, simulated once. Each draw starts from a table that is off by
-/// normal numbers of the change's deviations, adds noise and refines it as kind "calibrate" does by its default contour.
+/// normal numbers of the change's deviations, adds noise and refines it as kind "calibrate" does by
+/// its default contour.
 class StructureLimitExperiment final : public ProductExperiment {
  public:
   explicit StructureLimitExperiment(CalibrationLimitOptions options);

@@ -164,7 +164,6 @@ void StructureLimitOutcome::visit(ResultVisitor& visitor) {
   if (!failure.empty()) return;
   visitor({.key = "errors"}, errors);
   visitor({.key = "deviations"}, deviations);
-  visitor({.key = "chi2"}, chi2);
 }
 
 void sum_up_structure_limit(const std::vector<double>& frequencies,
