@@ -66,9 +66,11 @@ Outcome run(const Case& test, const StructureRecord& clean, const VectorXd& boun
   const ModalModel table = with_wrong_residues(started_off(truth, seed, 0.01, 0.2), seed,
                                                test.residues / std::sqrt(2.0));
   const Noisy noisy = with_noise(clean, test.noise, seed);
-  const BlindFit fit =
-      fit_ringing(table, noisy.record, noisy.noise, kLow, kHigh,
-                  {.frequency = 0.01, .damping = 0.3, .residue = test.prior / std::sqrt(2.0)});
+  const BlindFit fit = fit_ringing(table, noisy.record, noisy.noise, kLow, kHigh,
+                                   {.frequency = 0.01,
+                                    .damping = 0.3,
+                                    .residue = test.prior / std::sqrt(2.0),
+                                    .coupling = 0.0});  // each residue is off by itself
   const VectorXd off = logarithms(fit.model) - logarithms(truth);
   const VectorXd sd = fit.covariance.diagonal().head(off.size()).cwiseSqrt();
   const auto spectra = ContourSpectra::of(noisy.record, 0.0, kLow, kHigh);
@@ -93,7 +95,7 @@ void report(const Case& test, std::uint64_t seeds) {
   const Noisy noisy = with_noise(clean, test.noise, 0);
   const auto spectra = ContourSpectra::of(clean, 0.0, kLow, kHigh);
   const StructureChange change{
-      .frequency = 0.01, .damping = 0.3, .residue = test.prior / std::sqrt(2.0)};
+      .frequency = 0.01, .damping = 0.3, .residue = test.prior / std::sqrt(2.0), .coupling = 0.0};
   const BlindFit best = fit_blindly(truth, spectra, noisy.variances(spectra), change, false);
   const Eigen::Index poles = 2 * std::ssize(truth.poles);
   const VectorXd bound = best.covariance.diagonal().head(poles).cwiseSqrt();

@@ -182,9 +182,12 @@ def pole_scores(fit, rng, change):
     Modes that stand for others, of which modcal warns, are left out; each other one counts for one true mode at most."""
     f, zeta = true_poles(rng, change)
     found = [mode for mode in fit["modes"] if not mode["stands_in"]]
-    distance = np.array([[abs(np.log(mode["f_hz"] / x)) for mode in found] for x in f])
+    # Farther off than 5 % is no neighbor: one mode that is none does not shift all others by a place.
+    distance = np.minimum([[abs(np.log(mode["f_hz"] / x)) for mode in found] for x in f], 0.05)
     scores = np.full((f.size, 2), np.inf)
     for n, i in zip(*optimize.linear_sum_assignment(distance)):
+        if distance[n, i] == 0.05:
+            continue
         mode = found[i]
         scores[n] = ((mode["f_hz"] - f[n]) / mode["f_sd_hz"], np.log(mode["zeta"] / zeta[n]) * mode["zeta"] / mode["zeta_sd"])
     return np.abs(scores[(f > 10) & (f < 590)])

@@ -143,7 +143,7 @@ def main():
     p.add_argument("--change", type=float, default=1e-3, help="of the plate since it was measured (plate.py)")
     p.add_argument("--kinds", nargs="+", default=["strike", "smooth"])
     p.add_argument("--refine", default="", help="how far the modes may have changed, the keys of change:")
-    p.add_argument("--faults", nargs="+", choices=FAULTS, default=list(FAULTS), metavar="NAME", help=", ".join(FAULTS))
+    p.add_argument("--faults", nargs="+", choices=FAULTS, default=list(FAULTS), metavar="NAME", help=", ".join(FAULTS).replace("%", "%%"))
     a = p.parse_args()
     a.build, a.out = a.build.resolve(), a.out.resolve()
     plate.measure_modes(a.build, a.out)

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "libinverse/structure/blind_likelihood.hpp"
 #include "libsim/base/error.hpp"
@@ -13,11 +14,6 @@ namespace modcal {
 namespace {
 
 using Index = Eigen::Index;
-
-ModalModel with_quadrature(ModalModel model) {
-  model.quadrature.resize(model.constants.size());
-  return model;
-}
 
 // With what the table itself does not know of its poles.
 Eigen::VectorXd prior_of(const StructureTable& table, const StructureChange& change) {
@@ -68,35 +64,31 @@ Eigen::MatrixXd times_correlation(const ContourSpectra& spectra, const Eigen::Ma
 void tell_deviations(const ContourSpectra& spectra, const Eigen::MatrixXd& jacobian,
                      const Eigen::MatrixXd& ends, BlindFit& fit) {
   const double correlated = spectra.correlated();
-  const Eigen::VectorXd weight = fit.prior.cwiseAbs2().cwiseInverse();
-  const Eigen::MatrixXd made = 2.0 / correlated * (jacobian.transpose() * jacobian);  // M
-  Eigen::MatrixXd curvature = made;
-  curvature.diagonal() += weight;
+  // Of θ over its prior's deviations: Π = 1, whatever the deviations of constants near nodes are.
+  const Eigen::MatrixXd slopes = jacobian * fit.prior.asDiagonal();
   MODCAL_REQUIRE(
-      curvature.allFinite(),
+      slopes.allFinite(),
       "the modes cannot be refined: a response is not finite, or a sensor does not move; "
       "leave that one out");
   const bool is_white = spectra.grid.sigma == 0.0;
   const auto correlate = [&](const Eigen::MatrixXd& columns) {
     return is_white ? columns : times_correlation(spectra, columns);
   };
-  Eigen::MatrixXd scatter = jacobian.transpose() * correlate(jacobian);
-  scatter *= 2.0 / (correlated * correlated);  // B
-  const Eigen::LLT<Eigen::MatrixXd> solver(curvature);
-  const Eigen::MatrixXd inverse =
-      solver.solve(Eigen::MatrixXd::Identity(weight.size(), weight.size()));
-  fit.told = 1.0 - inverse.diagonal().cwiseProduct(weight).array();
+  const auto one = Eigen::MatrixXd::Identity(slopes.cols(), slopes.cols());
+  const Eigen::MatrixXd made = 2.0 / correlated * (slopes.transpose() * slopes);  // M
+  const Eigen::MatrixXd scatter =
+      2.0 / (correlated * correlated) * (slopes.transpose() * correlate(slopes));  // B
+  const Eigen::LLT<Eigen::MatrixXd> curvature(made + one);
+  const Eigen::MatrixXd inverse = curvature.solve(one);
+  fit.told = 1.0 - inverse.diagonal().array();
   const Eigen::MatrixXd pull = inverse * made;  // of θ towards its true value
-  fit.expected =
-      (inverse * scatter * inverse + pull * fit.prior.cwiseAbs2().asDiagonal() * pull.transpose())
-          .diagonal()
-          .cwiseMax(0.0)
-          .cwiseSqrt();
-  fit.degrees = fit.numbers - 2.0 * (inverse * scatter).trace();
+  const Eigen::VectorXd moves = (inverse * scatter * inverse + pull * pull.transpose()).diagonal();
+  fit.expected = fit.prior.cwiseProduct(moves.cwiseMax(0.0).cwiseSqrt());
+  fit.degrees = fit.numbers - (inverse * scatter * (2.0 * one - inverse * made)).trace() +
+                (pull * inverse).trace();
   if (ends.cols() > 0) fit.degrees -= ends.cwiseProduct(correlate(ends)).sum() / correlated;
-  scatter.diagonal() += weight;
-  fit.degrees += (pull * inverse * scatter).trace();
-  fit.root = solver.solve(Eigen::MatrixXd(Eigen::LLT<Eigen::MatrixXd>(scatter).matrixL()));
+  const Eigen::MatrixXd root = Eigen::LLT<Eigen::MatrixXd>(scatter + one).matrixL();
+  fit.root = fit.prior.asDiagonal() * curvature.solve(root);
   fit.covariance = fit.root * fit.root.transpose();
 }
 
@@ -115,6 +107,15 @@ BinVariances variances_beside(const StructureTable& table, const ContourSpectra&
     for (double& one : of) one *= fit.numbers / fit.degrees;
   }
   return variances;
+}
+
+double mean_logarithm(const BinVariances& variances) {
+  double sum = 0.0, count = 0.0;
+  for (const std::vector<double>& of : variances.of) {
+    for (const double one : of) sum += std::log(one);
+    count += static_cast<double>(of.size());
+  }
+  return sum / count;
 }
 
 BlindFit fit_with(const Eigen::VectorXd& prior, const ModalModel& table,
@@ -175,51 +176,6 @@ BlindFit fit_with(const Eigen::VectorXd& prior, const ModalModel& table,
 
 }  // namespace
 
-ModalModel moved_by(const ModalModel& table, const Eigen::VectorXd& theta) {
-  ModalModel model = with_quadrature(table);
-  const std::size_t modes = model.poles.size();
-  Index i = 0;
-  for (ModalPole& pole : model.poles) {
-    pole.omega *= std::exp(theta[i]);
-    pole.zeta = std::min(0.9, pole.zeta * std::exp(theta[i + 1]));
-    i += 2;
-  }
-  for (std::size_t j = 0; i < theta.size() && j < modes * model.sensors.size(); ++j, i += 2) {
-    const Complex constant =
-        Complex(model.constants[j], model.quadrature[j]) * Complex(1.0 + theta[i], theta[i + 1]);
-    model.constants[j] = constant.real();
-    model.quadrature[j] = constant.imag();
-  }
-  return model;
-}
-
-Eigen::VectorXd deviations_of(const StructureChange& change, const ModalModel& table) {
-  const std::size_t modes = table.poles.size(), sensors = table.sensors.size();
-  const bool factors = change.residue > 0.0;
-  Eigen::VectorXd sd(static_cast<Index>(2 * modes * (factors ? 1 + sensors : 1)));
-  for (std::size_t n = 0; n < modes; ++n) {
-    sd.segment<2>(static_cast<Index>(2 * n)) << change.frequency, change.damping;
-  }
-  const auto size = [&](std::size_t k, std::size_t n) {
-    const std::size_t j = k * modes + n;
-    return std::hypot(table.constants[j], table.quadrature.empty() ? 0.0 : table.quadrature[j]);
-  };
-  for (std::size_t k = 0; factors && k < sensors; ++k) {
-    for (std::size_t n = 0; n < modes; ++n) {
-      double squares = 0.0, alike = 0.0;
-      for (std::size_t other = 0; other < sensors; ++other) {
-        if (table.sensors[other] != table.sensors[k]) continue;
-        squares += std::pow(size(other, n), 2);
-        alike += 1.0;
-      }
-      const double typical = std::sqrt(squares / alike), own = size(k, n);
-      sd.segment<2>(static_cast<Index>(2 * (modes + k * modes + n)))
-          .setConstant(change.residue * (own > 0.0 ? std::max(1.0, typical / own) : 1.0));
-    }
-  }
-  return sd;
-}
-
 double BlindFit::surprise(Index i) const {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   return told[i] > 0.5 ? change[i] / expected[i] : kNan;
@@ -266,9 +222,11 @@ BlindFit refined_table(const StructureTable& table, const StructureRecord& recor
   const Eigen::VectorXd prior = prior_of(table, change);
   StructureTable refined = table;
   BlindFit fit;
-  double contour = 0.0;
-  for (const double share : {1.0, 0.5, 0.25, 0.25}) {
-    const double before = contour;
+  double contour = 0.0, level = 0.0;
+  // Four as a rule; more where the table was so far off that the variances have not settled, to 2
+  // %, a hundredth of the deviations.
+  for (int pass = 0; pass < 16; ++pass) {
+    const double share = pass < 2 ? 1.0 / (1.0 + pass) : 0.25, before = contour;
     if (before == 0.0 || share * sigma * record.duration() >= rung_out) contour = share * sigma;
     const bool ends = contour * record.duration() >= rung_out;
     StructureRecord part{.sample_rate = record.sample_rate};
@@ -282,6 +240,8 @@ BlindFit refined_table(const StructureTable& table, const StructureRecord& recor
     const BinVariances variances = variances_beside(refined, spectra, fit, contour == before);
     fit = fit_with(prior, table.model, spectra, variances, ends && at_rest, fit.change);
     refined.model = fit.model;
+    const double last = std::exchange(level, mean_logarithm(variances));
+    if (pass >= 3 && std::abs(level - last) < 0.02) break;
   }
   const double left = std::max(1.0, fit.misfit);
   fit.covariance *= left;

@@ -5,23 +5,9 @@
 #include <limits>
 
 #include "libinverse/structure/bin_evidence.hpp"
+#include "libinverse/structure/structure_table.hpp"
 
 namespace modcal {
-
-/// How far the structure may be from its table: standard deviations of the priors.
-struct StructureChange {
-  double frequency = 0.01;  ///< of ln f_n [1]
-  double damping = 0.3;     ///< of ln ζ_n [1]
-  /// Of each modal constant, real and imaginary part, over its size or, where that is smaller, over
-  /// the rms of the mode's constants at the sensors of one kind [1]; 0: known. What changes a shape
-  /// does not spare its nodes.
-  double residue = 0.05;
-};
-
-/// θ = ln f_n, ln ζ_n, then Re d_kn and Im d_kn (BlindFit), away from a model.
-ModalModel moved_by(const ModalModel& table, const Eigen::VectorXd& theta);
-/// Of every θ_i of the model's modes, K sensors each.
-Eigen::VectorXd deviations_of(const StructureChange& change, const ModalModel& table);
 
 /// The unknowns are, for mode n, ln f_n and ln ζ_n, then Re d_kn and Im d_kn, A_kn → A_kn (1 +
 /// d_kn), of every sensor and mode in turn.
@@ -66,10 +52,11 @@ BlindFit fit_ringing(const ModalModel& table, const StructureRecord& record,
                      std::span<const double> noise, double low, double high,
                      const StructureChange& change);
 
-/// The fit of a record that begins at rest: on the contours σ, σ/2, σ/4 and σ/4, the lower ones as
-/// far as the record is long enough for nothing to be left of its end, else the one before again,
-/// each from what the one before has found, with variances_of() the model so far. The covariance is
-/// χ² times as large where it is above 1. The table is not changed.
+/// The fit of a record that begins at rest: on the contours σ, σ/2 and σ/4, the lower ones as far
+/// as the record is long enough for nothing to be left of its end, and on the last one until the
+/// variances of its bins have settled, each from what the one before has found, with variances_of()
+/// the model so far. The covariance is χ² times as large where it is above 1. The table is not
+/// changed.
 BlindFit refined_table(const StructureTable& table, const StructureRecord& record, double sigma,
                        const StructureChange& change, bool at_rest = true);
 

@@ -76,6 +76,8 @@ void BinCorrelation::multiply(std::span<Complex> bins) const {
   std::vector<double> samples(weights_.size());
   const auto band = spectrum.begin() + static_cast<std::ptrdiff_t>(first_);
   std::ranges::copy(bins, band);
+  // Real, with all of its variance in one part; the inverse transform takes the others twice.
+  if (first_ == 0) spectrum[0] *= 2.0;
   fft.inverse(spectrum, samples);
   std::ranges::transform(samples, weights_, samples.begin(), std::multiplies<>());
   fft.forward(samples, spectrum);

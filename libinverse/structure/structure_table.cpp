@@ -87,4 +87,70 @@ double modal_power(const ModalModel& model, std::size_t pair, Complex s) {
   return sum;
 }
 
+ModalModel with_quadrature(ModalModel model) {
+  model.quadrature.resize(model.constants.size());
+  return model;
+}
+
+ModalModel moved_by(const ModalModel& table, const Eigen::VectorXd& theta) {
+  ModalModel model = with_quadrature(table);
+  const std::size_t modes = model.poles.size();
+  Eigen::Index i = 0;
+  for (ModalPole& pole : model.poles) {
+    pole.omega *= std::exp(theta[i]);
+    pole.zeta = std::min(0.9, pole.zeta * std::exp(theta[i + 1]));
+    i += 2;
+  }
+  for (std::size_t j = 0; i < theta.size() && j < modes * model.sensors.size(); ++j, i += 2) {
+    const Complex constant =
+        Complex(model.constants[j], model.quadrature[j]) * Complex(1.0 + theta[i], theta[i + 1]);
+    model.constants[j] = constant.real();
+    model.quadrature[j] = constant.imag();
+  }
+  return model;
+}
+
+Eigen::VectorXd deviations_of(const StructureChange& change, const ModalModel& table) {
+  const std::size_t modes = table.poles.size(), sensors = table.sensors.size();
+  const bool factors = change.residue > 0.0;
+  Eigen::VectorXd sd = Eigen::VectorXd::Constant(
+      static_cast<Eigen::Index>(2 * modes * (factors ? 1 + sensors : 1)), change.residue);
+  for (std::size_t n = 0; n < modes; ++n) {
+    sd.segment<2>(static_cast<Eigen::Index>(2 * n)) << change.frequency, change.damping;
+  }
+  const auto size = [&](std::size_t k, std::size_t n) {
+    const std::size_t j = k * modes + n;
+    return std::hypot(table.constants[j], table.quadrature.empty() ? 0.0 : table.quadrature[j]);
+  };
+  // Of mode n, rms over the sensors of one kind.
+  const auto typical = [&](std::size_t k, std::size_t n) {
+    double squares = 0.0, alike = 0.0;
+    for (std::size_t other = 0; other < sensors; ++other) {
+      if (table.sensors[other] != table.sensors[k]) continue;
+      squares += std::pow(size(other, n), 2);
+      alike += 1.0;
+    }
+    return std::sqrt(squares / alike);
+  };
+  for (std::size_t k = 0; factors && k < sensors; ++k) {
+    for (std::size_t n = 0; n < modes; ++n) {
+      const double usual = typical(k, n), own = size(k, n);
+      if (!(own > 0.0)) continue;
+      double variance = std::pow(change.residue * std::max(1.0, usual / own), 2);
+      for (std::size_t m = 0; m < modes; ++m) {
+        if (m == n) continue;
+        const double a = table.poles[n].omega, b = table.poles[m].omega;
+        const double turned =
+            std::min(1.0, change.coupling * change.frequency * std::sqrt(a * b) / std::abs(a - b));
+        // φ_kn φ_cn + …: of the sensor's φ_km φ_cn, of the contact's φ_kn φ_cm.
+        variance +=
+            turned * turned * (std::pow(usual / own, 2) + std::pow(typical(k, m) / usual, 2));
+      }
+      sd.segment<2>(static_cast<Eigen::Index>(2 * (modes + k * modes + n)))
+          .setConstant(std::sqrt(variance));
+    }
+  }
+  return sd;
+}
+
 }  // namespace modcal

@@ -1,6 +1,7 @@
 // Modes of a structure as a table, with what is known of their errors.
 #pragma once
 
+#include <Eigen/Core>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -43,6 +44,27 @@ struct StructureTable {
   /// Throws InvalidInput for measured functions: `what` needs modes.
   void require_modes(std::string_view what) const;
 };
+
+/// How far the structure may be from its table: standard deviations of the priors.
+struct StructureChange {
+  double frequency = 0.01;  ///< of ln f_n [1]
+  double damping = 0.3;     ///< of ln ζ_n [1]
+  /// Of each modal constant, real and imaginary part, over its size or, where that is smaller, over
+  /// the rms of the mode's constants at the sensors of one kind [1]; 0: known. What changes a shape
+  /// does not spare its nodes.
+  double residue = 0.05;
+  /// What changes frequencies by ε turns the shapes of two modes into each other by coupling · ε
+  /// √(f_n f_m)/|f_n − f_m| (first order of perturbation; 1: a change in one place): constants that
+  /// are not known may be off by that, too [1]; 0: each by itself.
+  double coupling = 1.0;
+};
+
+/// With imaginary parts of the constants, 0 where they are not stated.
+ModalModel with_quadrature(ModalModel model);
+/// θ = ln f_n, ln ζ_n, then Re d_kn and Im d_kn (BlindFit), away from a model.
+ModalModel moved_by(const ModalModel& table, const Eigen::VectorXd& theta);
+/// Of every θ_i of the model's modes, K sensors each.
+Eigen::VectorXd deviations_of(const StructureChange& change, const ModalModel& table);
 
 /// Σ_n |H_n(s)|² of a pair: what its modes make, each by itself.
 double modal_power(const ModalModel& model, std::size_t pair, Complex s);

@@ -17,7 +17,7 @@ LIKELIHOOD = {"calibration.objective": "joint_likelihood", "calibration.optimize
 
 def calibrations():
     return [file for file in sorted((ROOT / "configs").rglob("*.yaml"))
-            if "\nkind: calibrate\n" in "\n" + file.read_text(encoding="utf-8")]
+            if "\nkind: calibrate\n" in (text := "\n" + file.read_text(encoding="utf-8")) and "\nstructure:" not in text]
 
 
 class Configs(unittest.TestCase):
@@ -39,6 +39,10 @@ class Configs(unittest.TestCase):
                     # Half of χ², whose deviation is 1 % of it for 20 000 residuals; noise levels are read off the records.
                     chi2 = 2 * problem.objective(problem.truth) / problem.residuals(problem.truth).size
                     self.assertAlmostEqual(chi2, 1.0, delta=0.05)
+
+    def test_modes_of_a_structure_are_searched_by_its_own_search(self):
+        with self.assertRaisesRegex(modcal.InvalidInput, "takes no other optimizer: run the file"):
+            modcal.Problem(ROOT / "configs/structures/calibrate_plate.yaml")
 
 
 class Several(Folder):

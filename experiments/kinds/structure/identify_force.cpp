@@ -82,6 +82,10 @@ void StructureChangeOptions::visit(OptionVisitor& visitor) {
           "standard deviation of every modal constant, over its size or, near a node, over what is "
           "usual of the mode; 0: known",
           {.range = Range::closed(0.0, 1.0)}, residue);
+  visitor("coupling",
+          "what changes frequencies by e turns the shapes of two modes df apart into each other by "
+          "coupling e f/df: constants that are not known may be off by that, too; 0: none",
+          {.range = Range::closed(0.0, 1.0)}, coupling);
 }
 
 void IdentifyForceOptions::visit_keys(OptionVisitor& visitor) {

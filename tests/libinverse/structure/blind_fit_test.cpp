@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "benchmarks/problems/known_structures.hpp"
 #include "libsim/signal/fft.hpp"
@@ -103,6 +104,36 @@ TEST(BlindFit, APoleThatTheTableDoesNotKnowIsFree) {
   EXPECT_LT(left, 4e-3);
   EXPECT_LT(deviation, 6e-3);
   EXPECT_GT(off(0.0).first, 8e-3);
+}
+
+// Two modes 2 % apart, two accelerometers, the second near a node of the first mode.
+TEST(StructureChange, TurnsShapesOfNeighborsIntoEachOther) {
+  ModalModel model;
+  model.sensors = {SensorKind::kAcceleration, SensorKind::kAcceleration};
+  for (const double hertz : {100.0, 102.0}) {
+    model.poles.push_back({.omega = 2.0 * std::numbers::pi * hertz, .zeta = 0.01});
+  }
+  model.constants = {1.0, 1.0, 0.01, -1.0};
+  StructureChange change{.frequency = 5e-3, .damping = 0.2, .residue = 0.05, .coupling = 0.0};
+  const Eigen::VectorXd alone = deviations_of(change, model);
+  ASSERT_EQ(alone.size(), 12);
+  EXPECT_EQ(alone.head(4), Eigen::Vector4d(5e-3, 0.2, 5e-3, 0.2));
+  // The rms of the first mode's constants is √.50005; its second one is a hundredth.
+  const double usual = std::sqrt(0.50005);
+  EXPECT_DOUBLE_EQ(alone[4], 0.05);
+  EXPECT_DOUBLE_EQ(alone[8], 0.05 * usual / 0.01);
+  EXPECT_DOUBLE_EQ(alone[10], 0.05);
+  change.coupling = 1.0;
+  const Eigen::VectorXd coupled = deviations_of(change, model);
+  const double turned = 5e-3 * std::sqrt(100.0 * 102.0) / 2.0;
+  EXPECT_NEAR(coupled[4], std::hypot(0.05, turned * std::hypot(usual, 1.0 / usual)), 1e-12);
+  EXPECT_NEAR(coupled[6], std::hypot(0.05, turned * std::hypot(1.0, usual)), 1e-12);
+  EXPECT_GT(coupled[8], alone[8]);
+  // Modes of one frequency are any two shapes of their plane.
+  model.poles[1] = model.poles[0];
+  EXPECT_NEAR(deviations_of(change, model)[6], std::hypot(0.05, std::hypot(1.0, usual)), 1e-12);
+  change.residue = 0.0;
+  EXPECT_EQ(deviations_of(change, model).size(), 4);
 }
 
 // A second that begins at rest; a pulse of 1 ms strikes at 10 ms.

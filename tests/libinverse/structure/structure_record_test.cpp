@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Core>
+#include <cmath>
+#include <complex>
 #include <vector>
 
 #include "libinverse/structure/force/force_band.hpp"
@@ -29,6 +32,42 @@ TEST(ContourSpectra, NothingLiesBelowTheMean) {
   // A flat power of 1: bins 41 to 49 lie above the band, half of bin 2 and what is below it under.
   EXPECT_DOUBLE_EQ(power_outside(whole, std::vector<double>(whole.count(), 1.0)), 9.0);
   EXPECT_DOUBLE_EQ(power_outside(rest, std::vector<double>(rest.count(), 1.0)), 9.0 + 2.5);
+}
+
+// Of 100 samples and bins from `low` to 24 Hz: twice the covariance of real and imaginary parts
+// that white noise has, over its power, sample by sample.
+double farthest_from_noise(double low) {
+  StructureRecord record{.sample_rate = 100.0, .responses = {std::vector<double>(100, 1.0)}};
+  const ContourSpectra spectra = ContourSpectra::of(record, 2.0, low, 24.0);
+  const auto bins = static_cast<Eigen::Index>(spectra.count());
+  Eigen::MatrixXd parts(2 * bins, 100), correlation(2 * bins, 2 * bins);
+  double power = 0.0;
+  for (Eigen::Index j = 0; j < 100; ++j) {
+    const double t = static_cast<double>(j) / 100.0;
+    for (Eigen::Index m = 0; m < bins; ++m) {
+      const Complex one = std::exp(-spectra.s(static_cast<std::size_t>(m)) * t);
+      parts(2 * m, j) = one.real();
+      parts(2 * m + 1, j) = one.imag();
+    }
+    power += std::exp(-2.0 * 2.0 * t);
+  }
+  const BinCorrelation multiplier(spectra);
+  for (Eigen::Index i = 0; i < 2 * bins; ++i) {
+    std::vector<Complex> column(spectra.count(), 0.0);
+    column[static_cast<std::size_t>(i / 2)] = i % 2 == 0 ? Complex(1.0, 0.0) : Complex(0.0, 1.0);
+    multiplier.multiply(column);
+    for (Eigen::Index m = 0; m < bins; ++m) {
+      const Complex value = column[static_cast<std::size_t>(m)];
+      correlation.col(i).segment<2>(2 * m) << value.real(), value.imag();
+    }
+  }
+  return (correlation - 2.0 / power * (parts * parts.transpose())).cwiseAbs().maxCoeff();
+}
+
+// As many instants as the 100 samples where the band begins at 0, when its lowest bin is real.
+TEST(BinCorrelation, IsThatOfWhiteNoiseWithTheMeanAndWithoutIt) {
+  EXPECT_LT(farthest_from_noise(0.4), 1e-12);
+  EXPECT_LT(farthest_from_noise(3.0), 1e-12);
 }
 
 TEST(RiseTowardsZero, ComparesTheLowestOctaveWithTheNext) {
