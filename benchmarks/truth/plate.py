@@ -291,7 +291,7 @@ def main():
                     write(a.out / f"{name}.csv", *record(rng, change, 1.0, kind))
                 window = "80 ms" if kind == "strike" else "0.5 s"
                 (a.out / f"{name}.yaml").write_text(
-                    yaml("identify_force", name, table=table, window=window, **keys))
+                    yaml("identify_force", name, table=table, **{"window": window, **keys}))
                 if not run(a.build, a.out / f"{name}.yaml", a.out / name):
                     rejected += 1
                     continue

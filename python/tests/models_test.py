@@ -107,8 +107,7 @@ class OfAStructure(Folder):
         self.assertLess(error(found), 0.35 * left)
 
     def test_force_is_that_of_the_files(self):
-        found = modcal.identify(strike("plate_other_strike.csv"), modcal.Model.table(PLATE / "plate_modes.json"),
-                                window="80 ms")
+        found = modcal.identify(strike("plate_other_strike.csv"), modcal.Model.table(PLATE / "plate_modes.json"))
         stored = modcal.run(PLATE / "force_on_plate.yaml")
         self.assertEqual(found.summary.splitlines()[0], stored.summary.splitlines()[0])
         for name, signal in stored.signals.items():

@@ -12,14 +12,18 @@
 namespace modcal {
 namespace {
 
-std::string sentence_of(const StructureForce& found, double rate, std::size_t sensors) {
+std::string sentence_of(const StructureForce& found, const LoadedStructureRecord& loaded,
+                        bool is_stated) {
   const auto peak =
       std::ranges::max_element(found.force, {}, [](double force) { return std::abs(force); });
   const auto at = static_cast<std::size_t>(peak - found.force.begin());
+  const StructureRecord& record = loaded.record;
+  const bool is_over = !is_stated && found.window < record.duration();
   return fmt::format(
-      "{} from {} sensors: at most {:.4g} +- {:.2g} N (95 %), at {:.4g} s{}\n",
-      found.shape == ForceShape::kImpacts ? "impacts" : "a smooth force", sensors, *peak,
-      1.959964 * found.deviation[at], static_cast<double>(at) / rate,
+      "{} from {} sensors: at most {:.4g} +- {:.2g} N (95 %), at {:.4g} s{}{}\n",
+      found.shape == ForceShape::kImpacts ? "impacts" : "a smooth force", loaded.kinds.size(),
+      *peak, 1.959964 * found.deviation[at], static_cast<double>(at) / record.sample_rate,
+      is_over ? fmt::format("; below a tenth of that after {:.3g} s", found.window) : "",
       found.rang ? "; what rang before the record or goes on behind it is taken out" : "");
 }
 
@@ -104,8 +108,11 @@ void IdentifyForceOptions::visit_keys(OptionVisitor& visitor) {
           "auto: the one of larger evidence; smooth where the window has more than 4000 instants",
           {.choices = {"auto", "impacts", "smooth"}}, shape);
   visitor("non_negative", "pulses that only press", non_negative);
-  visitor("window", "the force acts from the start on, so long; automatic: as long as the record",
-          {.unit = "s", .range = Range::positive(), .word = "automatic"}, window);
+  visitor(
+      "window",
+      "the force acts from the start on, so long; automatic: until it stays below a tenth of its "
+      "peak, and a quarter longer",
+      {.unit = "s", .range = Range::positive(), .word = "automatic"}, window);
   visitor("contour", "the record is weighted by exp(-contour t); automatic: 2 over the window",
           {.unit = "1/s", .range = Range::positive(), .word = "automatic"}, contour);
   visitor("change",
@@ -205,20 +212,25 @@ std::vector<PlanLine> IdentifyForceOptions::plan() const {
 }
 
 std::optional<ContactPlaces> IdentifyForceOptions::weighed(
-    const std::vector<StructureTable>& places, const StructureRecord& responses) const {
+    const std::vector<StructureTable>& places, const LoadedStructureRecord& loaded) const {
   if (places.size() < 2) return std::nullopt;
-  const double acts = std::isnan(window) ? responses.duration() : window;
-  double sigma = std::isnan(contour) ? 2.0 / acts : contour;
-  for (const StructureTable& place : places) sigma = std::max(sigma, place.measured.grid.sigma);
-  return weigh_places(places, responses, sigma);
+  // By the table of the true place the force is over soonest.
+  double sigma = 0.0;
+  ActingPart part;
+  for (const StructureTable& place : places) {
+    part = acting_part(place, loaded.record, force_options(loaded.rest));
+    const double weight = std::isnan(contour) ? 2.0 / part.duration : contour;
+    sigma = std::max({sigma, weight, place.measured.grid.sigma});
+  }
+  return weigh_places(places, part.of(loaded.record), sigma);
 }
 
-StructureForceOptions IdentifyForceOptions::force_options(bool rests) const {
+StructureForceOptions IdentifyForceOptions::force_options(double rest) const {
   return {.shape = force_shape_of(shape),
           .non_negative = non_negative,
           .window = window,
           .sigma = contour,
-          .rests = rests,
+          .rest = rest,
           .draws = static_cast<std::size_t>(draws),
           .seed = static_cast<std::uint64_t>(seed),
           .change = refines ? std::optional<StructureChange>(change) : std::nullopt};
@@ -228,11 +240,10 @@ StudyResult IdentifyForceOptions::found(const StudyContext& context, bool modes_
   LoadedStructureRecord loaded = load_structure_record(record, context.folder, context.stop);
   std::vector<StructureTable> places;
   for (const std::string& file : tables()) places.push_back(read_table(context.folder / file));
-  const std::optional<ContactPlaces> where = weighed(places, loaded.record);
+  const std::optional<ContactPlaces> where = weighed(places, loaded);
   StructureTable& modes = places[where ? where->best : 0];
   context.throw_if_interrupted();
-  const StructureForce force =
-      structure_force(modes, loaded.record, force_options(loaded.rest > 0.0));
+  const StructureForce force = structure_force(modes, loaded.record, force_options(loaded.rest));
   std::string odd;
   if (force.left_out) {
     odd = leave_out(*force.left_out, loaded);
@@ -246,7 +257,7 @@ StudyResult IdentifyForceOptions::found(const StudyContext& context, bool modes_
   if (force.refined) refined.emplace(RefinedModes{modes, *force.refined});
   const ForceOutcome outcome{loaded, force, score, odd, refined};
   if (refined && modes_first) result.summary = refined->sentence();
-  result.summary += sentence_of(force, rate, loaded.kinds.size());
+  result.summary += sentence_of(force, loaded, !std::isnan(window));
   if (score) result.summary += sentence_of(*score, modes);
   if (refined) {
     if (!modes_first) result.summary += refined->sentence();

@@ -91,8 +91,8 @@ struct IdentifyForceOptions {
   std::vector<std::string> tables() const;
   /// Which of several places it is; nothing of one.
   std::optional<ContactPlaces> weighed(const std::vector<StructureTable>& places,
-                                       const StructureRecord& responses) const;
-  StructureForceOptions force_options(bool rests) const;
+                                       const LoadedStructureRecord& loaded) const;
+  StructureForceOptions force_options(double rest) const;
 };
 
 /// What the channels of a structure's sensors state wrongly; path: of the list.

@@ -18,13 +18,14 @@ enum class ForceShape {
 struct StructureForceOptions {
   ForceShape shape = ForceShape::kAuto;
   bool non_negative = false;  ///< pulses of one sign
-  /// The force acts from t = 0 until then [s]; NaN: as long as the record.
+  /// The force acts from t = 0 until then [s]; NaN: as acting_part() finds.
   double window = std::numeric_limits<double>::quiet_NaN();
   /// Contour [1/s]; NaN: 2 over the window, what the force does later weighs little then, or that
   /// of measured functions, if that is more.
   double sigma = std::numeric_limits<double>::quiet_NaN();
-  /// A quiet beginning was seen. One sensor then needs no state before it; several tell it.
-  bool rests = false;
+  /// So long a quiet beginning was seen [s]. One sensor then needs no state before it; several tell
+  /// it.
+  double rest = 0.0;
   std::size_t draws = 12;  ///< models drawn from the table's deviations for the band
   std::uint64_t seed = 1;
   /// The structure may have changed since its table was made: the modes are refined first.
@@ -34,7 +35,7 @@ struct StructureForceOptions {
 struct StructureForce {
   ForceShape shape = ForceShape::kSmooth;
   double sigma = 0.0;             ///< of the contour [1/s]
-  double window = 0.0;            ///< [s]
+  double window = 0.0;            ///< until when it acts [s]
   std::vector<double> force;      ///< f_j [N], from t = 0 to the window's end
   std::vector<double> deviation;  ///< of each [N]
   std::vector<double> by_model;   ///< share of the table's errors in it [N]
@@ -55,6 +56,22 @@ struct StructureForce {
   /// The sensor without which the others agree, as they did not by far: nothing above has it.
   std::optional<std::size_t> left_out;
 };
+
+/// The part of a record in which its force acts.
+struct ActingPart {
+  std::size_t first = 0;  ///< sample with which it begins
+  double duration = 0.0;  ///< [s]
+
+  StructureRecord of(const StructureRecord& record) const;
+};
+
+/// The window that is stated. Else what is quiet at the beginning is left out, and the part ends a
+/// quarter of its length, and half a period of the table's mean spacing of modes, after the last
+/// instant at which a smooth force is above kLoud of its peak, or with two deviations above twice
+/// that: a model that is off is off by more the longer it rings. Found from all of the record, and
+/// again from the part so long as that makes it shorter.
+ActingPart acting_part(const StructureTable& table, const StructureRecord& record,
+                       const StructureForceOptions& options);
 
 /// F = Σ_k conj(H_k) Y_k/V_k ÷ (Σ_k |H_k|²/V_k + 1/P) in every bin of a contour, or, for impacts,
 /// F = G Σ_j p_j exp(−s t_j), p_j ~ N(0, a_j) with the a_j of largest evidence (automatic relevance

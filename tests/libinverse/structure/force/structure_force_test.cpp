@@ -1,10 +1,14 @@
 // The force at a structure's contact from sensors that contradict each other.
 #include "libinverse/structure/force/structure_force.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
+
+#include "libsim/base/error.hpp"
+#include "tests/refusal.hpp"
 
 namespace modcal::structure_force_test {
 namespace {
@@ -33,16 +37,27 @@ StructureTable table_of(const std::vector<std::size_t>& sensors) {
   return table;
 }
 
-// Three sensors of which the first reads a tenth too much and the last a twentieth too little,
-// under bursts from 0.1 s to 0.6 s.
-StructureRecord record_of(const std::vector<std::size_t>& sensors) {
+struct Burst {
+  double at, size;
+};
+
+std::vector<double> force_of(const std::vector<Burst>& bursts) {
   std::vector<double> force(kSamples);
   for (std::size_t j = 0; j < kSamples; ++j) {
     const double t = static_cast<double>(j) / kRate;
-    for (const double at : {0.1, 0.17, 0.33, 0.6}) {
-      force[j] += std::exp(-0.5 * std::pow((t - at) / 2e-3, 2)) * std::cos(700.0 * (t - at));
+    for (const auto& [at, size] : bursts) {
+      force[j] += size * std::exp(-0.5 * std::pow((t - at) / 2e-3, 2)) * std::cos(700.0 * (t - at));
     }
   }
+  return force;
+}
+
+// Three sensors of which the first reads a tenth too much and the last a twentieth too little,
+// by default under bursts from 0.1 s to 0.6 s.
+StructureRecord record_of(const std::vector<std::size_t>& sensors,
+                          const std::vector<Burst>& bursts = {
+                              {0.1, 1.0}, {0.17, 1.0}, {0.33, 1.0}, {0.6, 1.0}}) {
+  const std::vector<double> force = force_of(bursts);
   StructureRecord record{.sample_rate = kRate};
   for (const std::size_t k : sensors) {
     const double gain = k == 0 ? 1.1 : k == 2 ? 0.95 : 1.0;
@@ -66,7 +81,7 @@ StructureRecord record_of(const std::vector<std::size_t>& sensors) {
 
 StructureForce force_by(const std::vector<std::size_t>& sensors) {
   return structure_force(table_of(sensors), record_of(sensors),
-                         {.shape = ForceShape::kSmooth, .draws = 2});
+                         {.shape = ForceShape::kSmooth, .window = 1.0, .draws = 2});
 }
 
 // (K − 1)/K Σ (f_k − mean)² of the forces without one sensor each, as wide as Student's t of two
@@ -86,6 +101,56 @@ TEST(StructureForce, HasTheJackknifeOfSensorsThatContradictEachOther) {
   }
   EXPECT_GT(expected, 0.0);
   EXPECT_NEAR(std::sqrt(told / expected), 1.0, 0.1);
+}
+
+ActingPart part_of(const std::vector<Burst>& bursts, const StructureForceOptions& options) {
+  return acting_part(table_of({0, 1, 2}), record_of({0, 1, 2}, bursts), options);
+}
+
+// Bursts last 8 ms to either side. Three modes in 380 Hz have 4 ms, half a period of their mean
+// spacing; from the end of what is quiet the window is a quarter and 4 ms longer than the force,
+// and another 10 ms where its deviation, as the sensors contradict each other, is that of a tenth.
+TEST(ActingPart, EndsSoonAfterTheForceAndHoldsItsLastBlow) {
+  const ActingPart once = part_of({{0.15, 1.0}}, {.rest = 0.125});
+  EXPECT_EQ(once.first, 400u);
+  EXPECT_GT(once.duration, 0.025);
+  EXPECT_LT(once.duration, 1.25 * 0.033 + 0.015);
+  const ActingPart again = part_of({{0.15, 1.0}, {0.4, 0.3}}, {.rest = 0.125});
+  EXPECT_GT(again.duration, 0.275);
+  EXPECT_LT(again.duration, 1.25 * 0.283 + 0.005);
+  const ActingPart never_quiet = part_of({{0.15, 1.0}}, {});
+  EXPECT_EQ(never_quiet.first, 0u);
+  EXPECT_GT(never_quiet.duration, 0.15);
+  EXPECT_LT(never_quiet.duration, 1.25 * 0.158 + 0.005);
+}
+
+TEST(ActingPart, IsTheWindowThatIsStated) {
+  const ActingPart stated = part_of({{0.15, 1.0}}, {.window = 0.8, .rest = 0.125});
+  EXPECT_EQ(stated.first, 0u);
+  EXPECT_EQ(stated.duration, 0.8);
+  EXPECT_THAT(refusal_of([] {
+                structure_force(table_of({0, 1}), record_of({0, 1}),
+                                {.window = 0.8, .sigma = 20.0, .draws = 2});
+              }),
+              testing::HasSubstr("leaves exp(-16) at the end of a window of 0.8 s"));
+}
+
+TEST(ActingPart, IsFoundByItsOwnContourAndTheForceBeginsWithTheRecord) {
+  const std::vector<Burst> bursts = {{0.15, 1.0}};
+  const StructureForce found = structure_force(table_of({1, 2}), record_of({1, 2}, bursts),
+                                               {.sigma = 15.0, .rest = 0.125, .draws = 2});
+  EXPECT_EQ(found.sigma, 15.0);
+  EXPECT_LT(found.window, 0.2);
+  const std::vector<double> force = force_of(bursts);
+  double off = 0.0, power = 0.0;
+  for (std::size_t j = 0; j < found.force.size(); ++j) {
+    EXPECT_TRUE(j >= 400 || found.force[j] == 0.0) << j;
+    off += std::pow(found.force[j] - force[j], 2);
+    power += force[j] * force[j];
+  }
+  // The last sensor reads a twentieth too little.
+  EXPECT_LT(std::sqrt(off / power), 0.05);
+  EXPECT_EQ(found.deviation.size(), found.force.size());
 }
 
 }  // namespace

@@ -1,0 +1,271 @@
+#include "libinverse/structure/force/force_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "libinverse/structure/force/force_band.hpp"
+#include "libinverse/structure/force/initial_state.hpp"
+#include "libinverse/structure/force/relevance.hpp"
+#include "libinverse/structure/strike_weights.hpp"
+#include "libinverse/structure/tuning.hpp"
+#include "libsim/base/error.hpp"
+#include "libsim/base/random.hpp"
+#include "libsim/base/task_loop.hpp"
+
+namespace modcal {
+
+using Index = Eigen::Index;
+
+ForceSearch::ForceSearch(const StructureTable& table, const StructureRecord& record,
+                         const StructureForceOptions& options, double window)
+    : table_(table), options_(options) {
+  result_.window = window;
+  MODCAL_REQUIRE(result_.window > 0.0 && result_.window <= record.duration(),
+                 "a window of {:g} s does not lie in the record's {:g} s", result_.window,
+                 record.duration());
+  // Functions of an exponential window are known on its contour and to the right of it.
+  const double least = table.measured.grid.sigma;
+  result_.sigma = std::isnan(options.sigma) ? std::max(2.0 / result_.window, least) : options.sigma;
+  MODCAL_REQUIRE(std::isnan(options.sigma) || result_.sigma * result_.window <= kLongestWeighted,
+                 "contour = {:g} 1/s leaves exp(-{:.3g}) at the end of a window of {:g} s: state "
+                 "a contour of {:.3g} 1/s or less, or a shorter window",
+                 result_.sigma, result_.sigma * result_.window, result_.window,
+                 kLongestWeighted / result_.window);
+  spectra_ = ContourSpectra::of(record, result_.sigma, table.low, table.high);
+  transfers_ = transfers_of(table_, spectra_);
+  variances_ = variances_of(table_, spectra_, transfers_);
+  take_state_out();
+  samples_ = static_cast<Index>(std::floor(result_.window * record.sample_rate));
+}
+
+std::optional<std::size_t> ForceSearch::odd_sensor() const {
+  return odd_of_many(spectra_, transfers_, variances_);
+}
+
+double ForceSearch::loud_until() {
+  const BinEvidence evidence = evidence_of(spectra_, transfers_, variances_, kNoSensor);
+  find_power(evidence);
+  const Eigen::VectorXd force = force_of(evidence), variance = variance_of(evidence);
+  Index j = std::min(force.size(), static_cast<Index>(0.9 * static_cast<double>(spectra_.samples)));
+  const double loud = kLoud * force.head(j).cwiseAbs().maxCoeff();
+  const auto is_over = [&](Index i) {
+    const double size = std::abs(force[i]);
+    return size < loud && size + 2.0 * std::sqrt(variance[i]) < 2.0 * loud;
+  };
+  while (j > 0 && is_over(j - 1)) --j;
+  return static_cast<double>(j) / rate();
+}
+
+StructureForce ForceSearch::run(const StructureRecord& record) {
+  if (options_.change) refine(record);
+  result_.misfit = variances_.misfit;
+  result_.sensor_misfit = variances_.by_sensor;
+  result_.sensor_left = variances_.left;
+  for (std::size_t k = 0; k < result_.sensor_left.size() && result_.rang; ++k) {
+    // Of the whole response.
+    result_.sensor_left[k] *=
+        std::sqrt(mean_power(spectra_.responses[k]) / mean_power(recorded_[k]));
+  }
+  result_.predicted = predictions_of(spectra_, transfers_, variances_);
+  const BinEvidence evidence = evidence_of(spectra_, transfers_, variances_, kNoSensor);
+  find_power(evidence);
+  if (wants_pulses()) find_pulses(evidence);
+  const Eigen::VectorXd best = force_of(evidence);
+  const Eigen::VectorXd own = variance_of(evidence);
+  const Eigen::VectorXd drawn = by_models(best), left_out = by_sensors();
+  result_.force.assign(best.begin(), best.end());
+  for (Index j = 0; j < best.size(); ++j) {
+    const double model = std::max(drawn[j], left_out.size() > 0 ? left_out[j] : 0.0);
+    result_.by_model.push_back(std::sqrt(model));
+    result_.deviation.push_back(std::sqrt(own[j] + model));
+  }
+  return std::move(result_);
+}
+
+double ForceSearch::rate() const { return spectra_.sample_rate; }
+
+void ForceSearch::refine(const StructureRecord& record) {
+  result_.refined = refined_table(table_, record, result_.sigma, *options_.change, !result_.rang);
+  table_.model = result_.refined->model;
+  if (result_.rang) spectra_.responses = recorded_;
+  transfers_ = transfers_of(table_, spectra_);
+  variances_ = variances_of(table_, spectra_, transfers_);
+  take_state_out();
+}
+
+void ForceSearch::take_state_out() {
+  if (!table_.measured.empty() || (options_.rest > 0.0 && transfers_.size() == 1)) return;
+  recorded_ = spectra_.responses;
+  const InitialState state(table_.model, spectra_);
+  for (int round = 0; round < kStateRounds; ++round) {
+    find_power(evidence_of(spectra_, transfers_, variances_, kNoSensor));
+    spectra_.responses = recorded_;
+    const InitialState::Fit fit = state.fit(transfers_, variances_, power_);
+    if (round == 0) result_.rang = state.is_told(fit);
+    if (!result_.rang) return;
+    spectra_.responses = state.without(fit.state);
+    variances_ = variances_of(table_, spectra_, transfers_);
+  }
+}
+
+Eigen::VectorXd ForceSearch::force_by(const DrawnModels& models, std::size_t draw) const {
+  const Transfers transfers = models.at(draw, spectra_);
+  if (!result_.rang) return force_of(evidence_of(spectra_, transfers, variances_, kNoSensor));
+  ContourSpectra own = spectra_;
+  own.responses = recorded_;
+  const InitialState state(models.modes(draw), own);
+  const InitialState::Fit fit = state.fit(transfers, variances_, power_);
+  std::vector<double> normal(static_cast<std::size_t>(fit.state.size()));
+  fill_standard_normal(StreamKey(options_.seed).with("state").with(draw), normal);
+  own.responses = state.without(
+      fit.state + fit.root * Eigen::Map<const Eigen::VectorXd>(normal.data(), fit.state.size()));
+  return force_of(evidence_of(own, transfers, variances_, kNoSensor));
+}
+
+bool ForceSearch::wants_pulses() {
+  if (options_.shape != ForceShape::kAuto) return options_.shape == ForceShape::kImpacts;
+  const double instants = PulseTrain::instants_in(table_, rate(), result_.window);
+  if (instants > kMostInstants) result_.untried = instants;
+  return result_.untried == 0.0;
+}
+
+void ForceSearch::find_pulses(const BinEvidence& evidence) {
+  train_.emplace(table_, spectra_, result_.window);
+  result_.evidence_impacts = -std::numeric_limits<double>::infinity();
+  double most = 0.0;
+  for (std::size_t m = 0; m < spectra_.count(); ++m) {
+    most += std::norm(evidence.score[m]) / evidence.told[m] / spectra_.correlated();
+  }
+  for (const double share : {1e-6, 1e-4, 1e-2}) {
+    std::vector<double> background = power_;
+    for (double& power : background) power *= share;
+    const auto [matrix, score] = train_->normal_of(beside(evidence, background));
+    const Relevance found = determine_relevance(matrix, score);
+    const double told = found.evidence + evidence_of_power(evidence, background);
+    const bool wanted = options_.shape == ForceShape::kImpacts || told > result_.evidence_smooth;
+    // No force explains more than the one that is free in every bin.
+    if (!(told > result_.evidence_impacts && told <= most)) continue;
+    result_.evidence_impacts = told;
+    if (!wanted) continue;
+    result_.shape = ForceShape::kImpacts;
+    result_.background = share;
+    widths_ = found.widths;
+    background_ = background;
+  }
+  MODCAL_REQUIRE(options_.shape == ForceShape::kAuto || result_.shape == ForceShape::kImpacts,
+                 "the responses tell the {} pulses of the window so unequally that rounding is all "
+                 "there is: state a shorter window, or shape: smooth",
+                 train_->count());
+  if (result_.shape == ForceShape::kImpacts) pulses_ = train_->columns(samples_);
+}
+
+BinEvidence ForceSearch::beside(const BinEvidence& evidence,
+                                const std::vector<double>& power) const {
+  BinEvidence result = evidence;
+  for (std::size_t m = 0; m < spectra_.count(); ++m) {
+    const double share = 1.0 / (1.0 + power[m] * evidence.told[m]);
+    result.told[m] *= share;
+    result.score[m] *= share;
+  }
+  return result;
+}
+
+double ForceSearch::evidence_of_power(const BinEvidence& evidence,
+                                      const std::vector<double>& power) const {
+  double sum = 0.0;
+  for (std::size_t m = 0; m < spectra_.count(); ++m) {
+    const double gain = power[m] * evidence.told[m];
+    sum += power[m] * std::norm(evidence.score[m]) / (1.0 + gain) - std::log1p(gain);
+  }
+  return sum / spectra_.correlated();
+}
+
+void ForceSearch::find_power(const BinEvidence& evidence) {
+  const double spacing = spectra_.grid.spacing / (2.0 * std::numbers::pi);
+  std::vector<double> found;
+  for (std::size_t m = 0; m < spectra_.count(); ++m) {
+    const double told = evidence.told[m];
+    found.push_back(std::norm(evidence.score[m] / told) - 1.0 / told);
+  }
+  result_.rise = rise_towards_zero(found, spectra_.bins.first);
+  for (double& power : found) power = std::max(power, 0.0);
+  power_ = smoothed(found, spacing, kReach);
+  const std::vector<double> hidden = hidden_power(evidence, spectra_);
+  for (std::size_t m = 0; m < power_.size(); ++m) power_[m] = std::max(power_[m], hidden[m]);
+  background_ = power_;
+  result_.evidence_smooth = evidence_of_power(evidence, power_);
+}
+
+Eigen::VectorXd ForceSearch::force_of(const BinEvidence& evidence) const {
+  Eigen::VectorXd force = Eigen::VectorXd::Zero(samples_);
+  std::vector<Complex> sum(spectra_.count());
+  if (result_.shape == ForceShape::kImpacts) {
+    const auto [matrix, score] = train_->normal_of(beside(evidence, background_));
+    const Eigen::VectorXd amplitudes = options_.non_negative
+                                           ? non_negative_mean(matrix, score, widths_)
+                                           : posterior_of(matrix, score, widths_).mean;
+    sum = train_->spectrum(amplitudes);
+    force = pulses_ * amplitudes;
+  }
+  const RealFft fft(spectra_.samples);
+  std::vector<Complex> spectrum(fft.bins());
+  for (std::size_t m = 0; m < spectra_.count(); ++m) {
+    spectrum[spectra_.bins.first + m] =
+        (evidence.score[m] - evidence.told[m] * sum[m]) / (evidence.told[m] + 1.0 / background_[m]);
+  }
+  std::vector<double> samples(spectra_.samples);
+  fft.inverse(spectrum, samples);
+  for (Index j = 0; j < samples_; ++j) {
+    force[j] += samples[static_cast<std::size_t>(j)] *
+                std::exp(result_.sigma * static_cast<double>(j) / rate());
+  }
+  return force;
+}
+
+Eigen::VectorXd ForceSearch::variance_of(const BinEvidence& evidence) const {
+  double bins = power_outside(spectra_, background_);
+  for (std::size_t m = 0; m < spectra_.count(); ++m) {
+    bins += 1.0 / (evidence.told[m] + 1.0 / background_[m]);
+  }
+  // White noise of variance v has v Σ_j exp(−2σt_j) in every bin.
+  const double share = 2.0 / (static_cast<double>(spectra_.samples) * spectra_.noise_power());
+  Eigen::VectorXd variance = Eigen::VectorXd::Constant(samples_, share * bins);
+  if (result_.shape == ForceShape::kSmooth) return variance;
+  const auto [matrix, score] = train_->normal_of(beside(evidence, background_));
+  const Relevance found = posterior_of(matrix, score, widths_);
+  variance += (pulses_ * found.covariance).cwiseProduct(pulses_).rowwise().sum();
+  const Eigen::VectorXd force = pulses_ * found.mean;
+  if (!table_.pulse.empty()) return variance + variance_of_shape(force, rate(), table_.high);
+  return variance + variance_about(force, spectra_, share * power_outside(spectra_, power_));
+}
+
+Eigen::VectorXd ForceSearch::by_models(const Eigen::VectorXd& best) const {
+  std::vector<Eigen::VectorXd> forces(options_.draws);
+  for_each_task(options_.draws, [&](std::size_t draw) {
+    const DrawnModels models{table_, result_.refined, contradiction(), options_.seed};
+    forces[draw] = force_by(models, draw);
+  });
+  Eigen::VectorXd variance = Eigen::VectorXd::Zero(best.size());
+  for (const Eigen::VectorXd& force : forces) {
+    variance += (force - best).cwiseAbs2() / static_cast<double>(options_.draws);
+  }
+  return variance;
+}
+
+double ForceSearch::contradiction() const {
+  return std::isnan(variances_.misfit) ? 1.0 : std::max(1.0, variances_.misfit);
+}
+
+Eigen::VectorXd ForceSearch::by_sensors() const {
+  const std::size_t sensors = transfers_.size();
+  if (sensors < 3) return {};
+  std::vector<Eigen::VectorXd> forces(sensors);
+  for_each_task(sensors, [&](std::size_t k) {
+    forces[k] = force_of(evidence_of(spectra_, transfers_, variances_, k));
+  });
+  return jackknife(forces);
+}
+
+}  // namespace modcal

@@ -1,0 +1,66 @@
+// One search for the force of a part of a record.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "libinverse/structure/bin_evidence.hpp"
+#include "libinverse/structure/force/drawn_models.hpp"
+#include "libinverse/structure/force/pulse_train.hpp"
+#include "libinverse/structure/force/structure_force.hpp"
+
+namespace modcal {
+
+/// Force signals in the window, linear in unknown amplitudes of pulses or bins.
+class ForceSearch {
+ public:
+  ForceSearch(const StructureTable& table, const StructureRecord& record,
+              const StructureForceOptions& options, double window);
+
+  /// odd_of_many().
+  std::optional<std::size_t> odd_sensor() const;
+  /// After which a smooth force stays below kLoud of its peak, below twice that with two deviations
+  /// [s]; of what acts in the last tenth
+  /// of the record too little is seen, and there the record's end looks like a force.
+  double loud_until();
+  /// structure_force() of this part; the search is over then.
+  StructureForce run(const StructureRecord& record);
+
+ private:
+  double rate() const;
+  void refine(const StructureRecord& record);
+  /// Force, variances and state depend on each other: a few rounds.
+  void take_state_out();
+  /// The force by another model, what rang fitted anew and off by what is not known of it.
+  Eigen::VectorXd force_by(const DrawnModels& models, std::size_t draw) const;
+  bool wants_pulses();
+  /// Pulses on a background of a share of the force's power: the share of largest evidence. All of
+  /// it and no pulse is a smooth force.
+  void find_pulses(const BinEvidence& evidence);
+  /// What the bins tell of another force when a background of such power may add to it.
+  BinEvidence beside(const BinEvidence& evidence, const std::vector<double>& power) const;
+  double evidence_of_power(const BinEvidence& evidence, const std::vector<double>& power) const;
+  void find_power(const BinEvidence& evidence);
+  Eigen::VectorXd force_of(const BinEvidence& evidence) const;
+  Eigen::VectorXd variance_of(const BinEvidence& evidence) const;
+  /// Variance of the force by models drawn from the table's deviations.
+  Eigen::VectorXd by_models(const Eigen::VectorXd& best) const;
+  /// Where the sensors contradict each other by more than the table says, so is it off by more.
+  double contradiction() const;
+  /// Jackknife over the sensors; nothing below three.
+  Eigen::VectorXd by_sensors() const;
+
+  StructureTable table_;
+  const StructureForceOptions& options_;
+  ContourSpectra spectra_;
+  Transfers transfers_, recorded_;  // recorded_: responses with what rang before
+  BinVariances variances_;
+  Eigen::Index samples_ = 0;
+  std::optional<PulseTrain> train_;
+  Eigen::VectorXd widths_;
+  Eigen::MatrixXd pulses_;
+  std::vector<double> power_, background_;  // of the force, and of what adds to its pulses
+  StructureForce result_;
+};
+
+}  // namespace modcal
