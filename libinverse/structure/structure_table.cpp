@@ -137,7 +137,7 @@ Eigen::VectorXd deviations_of(const StructureChange& change, const ModalModel& t
       const double usual = typical(k, n), own = size(k, n);
       if (!(own > 0.0)) continue;
       double variance = std::pow(change.residue * std::max(1.0, usual / own), 2);
-      for (std::size_t m = 0; m < modes; ++m) {
+      for (std::size_t m = 0; change.coupling > 0.0 && m < modes; ++m) {
         if (m == n) continue;
         const double a = table.poles[n].omega, b = table.poles[m].omega;
         const double turned =

@@ -12,18 +12,18 @@
 namespace modcal {
 namespace {
 
-std::string sentence_of(const StructureForce& found, const LoadedStructureRecord& loaded,
-                        bool is_stated) {
+std::string sentence_of(const StructureForce& found, const LoadedStructureRecord& loaded) {
   const auto peak =
       std::ranges::max_element(found.force, {}, [](double force) { return std::abs(force); });
   const auto at = static_cast<std::size_t>(peak - found.force.begin());
   const StructureRecord& record = loaded.record;
-  const bool is_over = !is_stated && found.window < record.duration();
   return fmt::format(
       "{} from {} sensors: at most {:.4g} +- {:.2g} N (95 %), at {:.4g} s{}{}\n",
       found.shape == ForceShape::kImpacts ? "impacts" : "a smooth force", loaded.kinds.size(),
       *peak, 1.959964 * found.deviation[at], static_cast<double>(at) / record.sample_rate,
-      is_over ? fmt::format("; below a tenth of that after {:.3g} s", found.window) : "",
+      found.weak_until > 0.0 ? fmt::format("; below a tenth of that from {:.3g} to {:.3g} s",
+                                           found.window, found.weak_until)
+                             : "",
       found.rang ? "; what rang before the record or goes on behind it is taken out" : "");
 }
 
@@ -214,23 +214,26 @@ std::vector<PlanLine> IdentifyForceOptions::plan() const {
 std::optional<ContactPlaces> IdentifyForceOptions::weighed(
     const std::vector<StructureTable>& places, const LoadedStructureRecord& loaded) const {
   if (places.size() < 2) return std::nullopt;
-  // By the table of the true place the force is over soonest.
-  double sigma = 0.0;
-  ActingPart part;
+  // The longest part that any of the places asks for.
+  double least = 0.0;
+  ActingPart longest;
   for (const StructureTable& place : places) {
-    part = acting_part(place, loaded.record, force_options(loaded.rest));
-    const double weight = std::isnan(contour) ? 2.0 / part.duration : contour;
-    sigma = std::max({sigma, weight, place.measured.grid.sigma});
+    const ActingPart part = acting_part(place, loaded.record, force_options(loaded));
+    if (part.duration > longest.duration) longest = part;
+    least = std::max(least, place.measured.grid.sigma);
   }
-  return weigh_places(places, part.of(loaded.record), sigma);
+  const double sigma = std::isnan(contour) ? 2.0 / longest.duration : contour;
+  return weigh_places(places, longest.of(loaded.record), std::max(sigma, least));
 }
 
-StructureForceOptions IdentifyForceOptions::force_options(double rest) const {
+StructureForceOptions IdentifyForceOptions::force_options(
+    const LoadedStructureRecord& loaded) const {
   return {.shape = force_shape_of(shape),
           .non_negative = non_negative,
           .window = window,
           .sigma = contour,
-          .rest = rest,
+          .rests = loaded.rest > 0.0,
+          .quiet = loaded.quiet,
           .draws = static_cast<std::size_t>(draws),
           .seed = static_cast<std::uint64_t>(seed),
           .change = refines ? std::optional<StructureChange>(change) : std::nullopt};
@@ -243,7 +246,7 @@ StudyResult IdentifyForceOptions::found(const StudyContext& context, bool modes_
   const std::optional<ContactPlaces> where = weighed(places, loaded);
   StructureTable& modes = places[where ? where->best : 0];
   context.throw_if_interrupted();
-  const StructureForce force = structure_force(modes, loaded.record, force_options(loaded.rest));
+  const StructureForce force = structure_force(modes, loaded.record, force_options(loaded));
   std::string odd;
   if (force.left_out) {
     odd = leave_out(*force.left_out, loaded);
@@ -257,7 +260,7 @@ StudyResult IdentifyForceOptions::found(const StudyContext& context, bool modes_
   if (force.refined) refined.emplace(RefinedModes{modes, *force.refined});
   const ForceOutcome outcome{loaded, force, score, odd, refined};
   if (refined && modes_first) result.summary = refined->sentence();
-  result.summary += sentence_of(force, loaded, !std::isnan(window));
+  result.summary += sentence_of(force, loaded);
   if (score) result.summary += sentence_of(*score, modes);
   if (refined) {
     if (!modes_first) result.summary += refined->sentence();

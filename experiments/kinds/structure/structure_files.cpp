@@ -96,15 +96,18 @@ void take_window_out(double window, std::size_t first, StructureRecord& record) 
 void remove_level(const StructureRecordOptions& options, LoadedStructureRecord& loaded) {
   StructureRecord& record = loaded.record;
   // By the responses alone: a force that is only compared with must not change the answer.
+  const std::size_t quiet =
+      quiet_samples(record.responses, window_decay(options.window) / record.sample_rate);
   const std::size_t count =
       std::isnan(options.rest)
-          ? quiet_samples(record.responses, window_decay(options.window) / record.sample_rate)
+          ? quiet
           : static_cast<std::size_t>(std::llround(options.rest * record.sample_rate));
   MODCAL_REQUIRE(count < record.samples(), "record.rest = {:g} s is all of the record's {:g} s",
                  options.rest, record.duration());
   constexpr std::size_t kFewest = 8;
   if (count < kFewest) return;
   loaded.rest = static_cast<double>(count) / record.sample_rate;
+  loaded.quiet = static_cast<double>(std::min(count, quiet)) / record.sample_rate;
   const auto remove_from = [count](std::vector<double>& signal) {
     double mean = 0.0;
     for (std::size_t j = 0; j < count; ++j) mean += signal[j] / static_cast<double>(count);

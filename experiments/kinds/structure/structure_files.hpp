@@ -78,7 +78,8 @@ struct LoadedStructureRecord {
   StructureRecord record;
   std::vector<SensorKind> kinds;
   std::vector<std::string> names;
-  double rest = 0.0;  ///< of which the mean was taken [s]
+  double rest = 0.0;   ///< of which the mean was taken [s]
+  double quiet = 0.0;  ///< so much of it has no channel that leaves its level [s]
   std::vector<std::string> warnings;
 };
 

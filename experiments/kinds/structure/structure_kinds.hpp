@@ -92,7 +92,7 @@ struct IdentifyForceOptions {
   /// Which of several places it is; nothing of one.
   std::optional<ContactPlaces> weighed(const std::vector<StructureTable>& places,
                                        const LoadedStructureRecord& loaded) const;
-  StructureForceOptions force_options(double rest) const;
+  StructureForceOptions force_options(const LoadedStructureRecord& loaded) const;
 };
 
 /// What the channels of a structure's sensors state wrongly; path: of the list.

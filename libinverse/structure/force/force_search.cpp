@@ -28,11 +28,11 @@ ForceSearch::ForceSearch(const StructureTable& table, const StructureRecord& rec
   // Functions of an exponential window are known on its contour and to the right of it.
   const double least = table.measured.grid.sigma;
   result_.sigma = std::isnan(options.sigma) ? std::max(2.0 / result_.window, least) : options.sigma;
-  MODCAL_REQUIRE(std::isnan(options.sigma) || result_.sigma * result_.window <= kLongestWeighted,
-                 "contour = {:g} 1/s leaves exp(-{:.3g}) at the end of a window of {:g} s: state "
-                 "a contour of {:.3g} 1/s or less, or a shorter window",
+  MODCAL_REQUIRE(result_.sigma * result_.window <= kLongestWeighted,
+                 "contour = {:g} 1/s leaves exp(-{:.3g}) at the end of a window of {:g} s: state a "
+                 "window of {:.3g} s or less, or a smaller contour",
                  result_.sigma, result_.sigma * result_.window, result_.window,
-                 kLongestWeighted / result_.window);
+                 kLongestWeighted / result_.sigma);
   spectra_ = ContourSpectra::of(record, result_.sigma, table.low, table.high);
   transfers_ = transfers_of(table_, spectra_);
   variances_ = variances_of(table_, spectra_, transfers_);
@@ -44,12 +44,16 @@ std::optional<std::size_t> ForceSearch::odd_sensor() const {
   return odd_of_many(spectra_, transfers_, variances_);
 }
 
-double ForceSearch::loud_until() {
+double ForceSearch::loud_until(double seen) {
   const BinEvidence evidence = evidence_of(spectra_, transfers_, variances_, kNoSensor);
   find_power(evidence);
   const Eigen::VectorXd force = force_of(evidence), variance = variance_of(evidence);
-  Index j = std::min(force.size(), static_cast<Index>(0.9 * static_cast<double>(spectra_.samples)));
-  const double loud = kLoud * force.head(j).cwiseAbs().maxCoeff();
+  Index j = std::min(force.size(), static_cast<Index>(seen * rate()));
+  const double peak = force.head(j).cwiseAbs().maxCoeff(), loud = kLoud * peak;
+  const Index behind = force.size() - j;
+  if (behind > 0 && force.tail(behind).cwiseAbs().maxCoeff() > kLate * peak) {
+    return static_cast<double>(force.size()) / rate();
+  }
   const auto is_over = [&](Index i) {
     const double size = std::abs(force[i]);
     return size < loud && size + 2.0 * std::sqrt(variance[i]) < 2.0 * loud;
@@ -96,7 +100,7 @@ void ForceSearch::refine(const StructureRecord& record) {
 }
 
 void ForceSearch::take_state_out() {
-  if (!table_.measured.empty() || (options_.rest > 0.0 && transfers_.size() == 1)) return;
+  if (!table_.measured.empty() || (options_.rests && transfers_.size() == 1)) return;
   recorded_ = spectra_.responses;
   const InitialState state(table_.model, spectra_);
   for (int round = 0; round < kStateRounds; ++round) {

@@ -20,9 +20,9 @@ class ForceSearch {
   /// odd_of_many().
   std::optional<std::size_t> odd_sensor() const;
   /// After which a smooth force stays below kLoud of its peak, below twice that with two deviations
-  /// [s]; of what acts in the last tenth
-  /// of the record too little is seen, and there the record's end looks like a force.
-  double loud_until();
+  /// [s]. It is looked for until `seen` [s]: behind that the record's end looks like a force, and
+  /// only half of the peak and more is one.
+  double loud_until(double seen);
   /// structure_force() of this part; the search is over then.
   StructureForce run(const StructureRecord& record);
 

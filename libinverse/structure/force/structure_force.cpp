@@ -36,6 +36,7 @@ StructureForce found_in(const StructureTable& table, const StructureRecord& reco
   }
   StructureForce found = search.run(own);
   found.window += static_cast<double>(part.first) / record.sample_rate;
+  found.weak_until = part.weak_until;
   found.force.insert(found.force.begin(), part.first, 0.0);
   for (std::vector<double>* of : {&found.deviation, &found.by_model}) {
     of->insert(of->begin(), part.first, of->front());
@@ -58,19 +59,22 @@ StructureRecord ActingPart::of(const StructureRecord& record) const {
 ActingPart acting_part(const StructureTable& table, const StructureRecord& record,
                        const StructureForceOptions& options) {
   if (!std::isnan(options.window)) return {.duration = options.window};
-  ActingPart part{.first = static_cast<std::size_t>(options.rest * record.sample_rate)};
+  ActingPart part{.first = static_cast<std::size_t>(options.quiet * record.sample_rate)};
+  if (record.duration() - options.quiet < 4.0 * half_a_spacing(table)) part.first = 0;
   const StructureRecord own = part.of(record);
   part.duration = own.duration();
-  // Behind this nothing is left of a record that is weighted as measured functions were.
+  // Behind this little is left of a record that is weighted as measured functions were.
   if (!table.measured.empty() && table.measured.grid.sigma > 0.0) {
-    part.duration = std::min(part.duration, kLongestWeighted / table.measured.grid.sigma);
+    part.duration = std::min(part.duration, kSeenWeighted / table.measured.grid.sigma);
   }
+  const double seen = kSeen * part.duration;
   StructureForceOptions smooth = options;
   smooth.sigma = std::numeric_limits<double>::quiet_NaN();
   for (double next = 0.0;; part.duration = next) {
-    const double loud = ForceSearch(table, own, smooth, part.duration).loud_until();
+    const double loud = ForceSearch(table, own, smooth, part.duration).loud_until(seen);
     next = 1.25 * loud + half_a_spacing(table);
     if (next > 0.9 * part.duration) return part;
+    part.weak_until = seen + static_cast<double>(part.first) / record.sample_rate;
   }
 }
 

@@ -23,9 +23,9 @@ struct StructureForceOptions {
   /// Contour [1/s]; NaN: 2 over the window, what the force does later weighs little then, or that
   /// of measured functions, if that is more.
   double sigma = std::numeric_limits<double>::quiet_NaN();
-  /// So long a quiet beginning was seen [s]. One sensor then needs no state before it; several tell
-  /// it.
-  double rest = 0.0;
+  /// The record begins at rest. One sensor then needs no state before it; several tell it.
+  bool rests = false;
+  double quiet = 0.0;      ///< so long no response leaves its level at first [s]
   std::size_t draws = 12;  ///< models drawn from the table's deviations for the band
   std::uint64_t seed = 1;
   /// The structure may have changed since its table was made: the modes are refined first.
@@ -36,6 +36,7 @@ struct StructureForce {
   ForceShape shape = ForceShape::kSmooth;
   double sigma = 0.0;             ///< of the contour [1/s]
   double window = 0.0;            ///< until when it acts [s]
+  double weak_until = 0.0;        ///< ActingPart
   std::vector<double> force;      ///< f_j [N], from t = 0 to the window's end
   std::vector<double> deviation;  ///< of each [N]
   std::vector<double> by_model;   ///< share of the table's errors in it [N]
@@ -61,6 +62,8 @@ struct StructureForce {
 struct ActingPart {
   std::size_t first = 0;  ///< sample with which it begins
   double duration = 0.0;  ///< [s]
+  /// So long in the record the force stays weak behind the part [s]; 0: it was not looked for.
+  double weak_until = 0.0;
 
   StructureRecord of(const StructureRecord& record) const;
 };
@@ -69,7 +72,9 @@ struct ActingPart {
 /// quarter of its length, and half a period of the table's mean spacing of modes, after the last
 /// instant at which a smooth force is above kLoud of its peak, or with two deviations above twice
 /// that: a model that is off is off by more the longer it rings. Found from all of the record, and
-/// again from the part so long as that makes it shorter.
+/// again from the part so long as that makes it shorter. Of what acts in the last tenth of the
+/// record too little is seen: all of the record is taken where that looks like half of the peak and
+/// more.
 ActingPart acting_part(const StructureTable& table, const StructureRecord& record,
                        const StructureForceOptions& options);
 

@@ -132,6 +132,8 @@ TEST(StructureChange, TurnsShapesOfNeighborsIntoEachOther) {
   // Modes of one frequency are any two shapes of their plane.
   model.poles[1] = model.poles[0];
   EXPECT_NEAR(deviations_of(change, model)[6], std::hypot(0.05, std::hypot(1.0, usual)), 1e-12);
+  change.coupling = 0.0;
+  EXPECT_DOUBLE_EQ(deviations_of(change, model)[6], 0.05);
   change.residue = 0.0;
   EXPECT_EQ(deviations_of(change, model).size(), 4);
 }

@@ -98,9 +98,8 @@ TEST(InitialState, OfOneSensorIsNotLookedForBehindAQuietBeginning) {
   StructureRecord first = record(smooth_force(), 1e-4, 0.03);
   first.responses.resize(1);
   const auto rang = [&](bool rests) {
-    return structure_force(
-               one, first,
-               {.shape = ForceShape::kSmooth, .window = 0.5, .rest = rests ? 0.01 : 0.0})
+    return structure_force(one, first,
+                           {.shape = ForceShape::kSmooth, .window = 0.5, .rests = rests})
         .rang;
   };
   EXPECT_FALSE(rang(true));

@@ -111,11 +111,11 @@ ActingPart part_of(const std::vector<Burst>& bursts, const StructureForceOptions
 // spacing; from the end of what is quiet the window is a quarter and 4 ms longer than the force,
 // and another 10 ms where its deviation, as the sensors contradict each other, is that of a tenth.
 TEST(ActingPart, EndsSoonAfterTheForceAndHoldsItsLastBlow) {
-  const ActingPart once = part_of({{0.15, 1.0}}, {.rest = 0.125});
+  const ActingPart once = part_of({{0.15, 1.0}}, {.rests = true, .quiet = 0.125});
   EXPECT_EQ(once.first, 400u);
   EXPECT_GT(once.duration, 0.025);
   EXPECT_LT(once.duration, 1.25 * 0.033 + 0.015);
-  const ActingPart again = part_of({{0.15, 1.0}, {0.4, 0.3}}, {.rest = 0.125});
+  const ActingPart again = part_of({{0.15, 1.0}, {0.4, 0.3}}, {.rests = true, .quiet = 0.125});
   EXPECT_GT(again.duration, 0.275);
   EXPECT_LT(again.duration, 1.25 * 0.283 + 0.005);
   const ActingPart never_quiet = part_of({{0.15, 1.0}}, {});
@@ -124,8 +124,18 @@ TEST(ActingPart, EndsSoonAfterTheForceAndHoldsItsLastBlow) {
   EXPECT_LT(never_quiet.duration, 1.25 * 0.158 + 0.005);
 }
 
+// What the record's end looks like is less than half of the first blow.
+TEST(ActingPart, IsAllOfARecordWhoseLastBlowIsLate) {
+  const ActingPart late = part_of({{0.15, 0.3}, {0.95, 1.0}}, {.rests = true, .quiet = 0.125});
+  EXPECT_DOUBLE_EQ(late.duration, 0.875);
+  EXPECT_EQ(late.weak_until, 0.0);
+  const ActingPart once = part_of({{0.15, 0.3}}, {.rests = true, .quiet = 0.125});
+  EXPECT_LT(once.duration, 0.1);
+  EXPECT_NEAR(once.weak_until, 0.125 + 0.9 * 0.875, 1e-12);
+}
+
 TEST(ActingPart, IsTheWindowThatIsStated) {
-  const ActingPart stated = part_of({{0.15, 1.0}}, {.window = 0.8, .rest = 0.125});
+  const ActingPart stated = part_of({{0.15, 1.0}}, {.window = 0.8, .rests = true, .quiet = 0.125});
   EXPECT_EQ(stated.first, 0u);
   EXPECT_EQ(stated.duration, 0.8);
   EXPECT_THAT(refusal_of([] {
@@ -137,8 +147,9 @@ TEST(ActingPart, IsTheWindowThatIsStated) {
 
 TEST(ActingPart, IsFoundByItsOwnContourAndTheForceBeginsWithTheRecord) {
   const std::vector<Burst> bursts = {{0.15, 1.0}};
-  const StructureForce found = structure_force(table_of({1, 2}), record_of({1, 2}, bursts),
-                                               {.sigma = 15.0, .rest = 0.125, .draws = 2});
+  const StructureForce found =
+      structure_force(table_of({1, 2}), record_of({1, 2}, bursts),
+                      {.sigma = 15.0, .rests = true, .quiet = 0.125, .draws = 2});
   EXPECT_EQ(found.sigma, 15.0);
   EXPECT_LT(found.window, 0.2);
   const std::vector<double> force = force_of(bursts);
