@@ -49,11 +49,7 @@ double ForceSearch::loud_until(double seen) {
   find_power(evidence);
   const Eigen::VectorXd force = force_of(evidence), variance = variance_of(evidence);
   Index j = std::min(force.size(), static_cast<Index>(seen * rate()));
-  const double peak = force.head(j).cwiseAbs().maxCoeff(), loud = kLoud * peak;
-  const Index behind = force.size() - j;
-  if (behind > 0 && force.tail(behind).cwiseAbs().maxCoeff() > kLate * peak) {
-    return static_cast<double>(force.size()) / rate();
-  }
+  const double loud = kLoud * force.head(j).cwiseAbs().maxCoeff();
   const auto is_over = [&](Index i) {
     const double size = std::abs(force[i]);
     return size < loud && size + 2.0 * std::sqrt(variance[i]) < 2.0 * loud;

@@ -20,8 +20,7 @@ class ForceSearch {
   /// odd_of_many().
   std::optional<std::size_t> odd_sensor() const;
   /// After which a smooth force stays below kLoud of its peak, below twice that with two deviations
-  /// [s]. It is looked for until `seen` [s]: behind that the record's end looks like a force, and
-  /// only half of the peak and more is one.
+  /// [s]. It is looked for until `seen` [s]: behind that the record's end looks like a force.
   double loud_until(double seen);
   /// structure_force() of this part; the search is over then.
   StructureForce run(const StructureRecord& record);

@@ -19,6 +19,23 @@ double half_a_spacing(const StructureTable& table) {
   return 0.5 * static_cast<double>(table.model.poles.size()) / (table.high - table.low);
 }
 
+// Whether something strikes behind kSeen of a record: a response that only rings on, or is noise,
+// is no larger there than in the tenth before.
+bool is_struck_late(const StructureRecord& record) {
+  const auto end = static_cast<double>(record.samples());
+  const auto seen = static_cast<std::ptrdiff_t>(kSeen * end);
+  const auto before = static_cast<std::ptrdiff_t>((2.0 * kSeen - 1.0) * end);
+  return std::ranges::any_of(record.responses, [&](const std::vector<double>& response) {
+    const auto largest = [](auto first, auto last) {
+      double most = 0.0;
+      for (; first != last; ++first) most = std::max(most, std::abs(*first));
+      return most;
+    };
+    const auto begin = response.begin();
+    return largest(begin + seen, response.end()) > kLate * largest(begin + before, begin + seen);
+  });
+}
+
 // Without one sensor, if the others agree by far better without it.
 StructureForce found_in(const StructureTable& table, const StructureRecord& record,
                         const StructureForceOptions& options, bool may_leave_out) {
@@ -67,6 +84,7 @@ ActingPart acting_part(const StructureTable& table, const StructureRecord& recor
   if (!table.measured.empty() && table.measured.grid.sigma > 0.0) {
     part.duration = std::min(part.duration, kSeenWeighted / table.measured.grid.sigma);
   }
+  if (is_struck_late(own)) return part;
   const double seen = kSeen * part.duration;
   StructureForceOptions smooth = options;
   smooth.sigma = std::numeric_limits<double>::quiet_NaN();

@@ -73,8 +73,8 @@ struct ActingPart {
 /// instant at which a smooth force is above kLoud of its peak, or with two deviations above twice
 /// that: a model that is off is off by more the longer it rings. Found from all of the record, and
 /// again from the part so long as that makes it shorter. Of what acts in the last tenth of the
-/// record too little is seen: all of the record is taken where that looks like half of the peak and
-/// more.
+/// record too little is seen: all of the record is taken where a response is kLate times as large
+/// there as in the tenth before.
 ActingPart acting_part(const StructureTable& table, const StructureRecord& record,
                        const StructureForceOptions& options);
 

@@ -124,7 +124,7 @@ TEST(ActingPart, EndsSoonAfterTheForceAndHoldsItsLastBlow) {
   EXPECT_LT(never_quiet.duration, 1.25 * 0.158 + 0.005);
 }
 
-// What the record's end looks like is less than half of the first blow.
+// The responses are larger in the last tenth than before.
 TEST(ActingPart, IsAllOfARecordWhoseLastBlowIsLate) {
   const ActingPart late = part_of({{0.15, 0.3}, {0.95, 1.0}}, {.rests = true, .quiet = 0.125});
   EXPECT_DOUBLE_EQ(late.duration, 0.875);
