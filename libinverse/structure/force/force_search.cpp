@@ -134,6 +134,7 @@ bool ForceSearch::wants_pulses() {
 void ForceSearch::find_pulses(const BinEvidence& evidence) {
   train_.emplace(table_, spectra_, result_.window);
   result_.evidence_impacts = -std::numeric_limits<double>::infinity();
+  std::vector<Index> chosen;
   double most = 0.0;
   for (std::size_t m = 0; m < spectra_.count(); ++m) {
     most += std::norm(evidence.score[m]) / evidence.told[m] / spectra_.correlated();
@@ -151,14 +152,17 @@ void ForceSearch::find_pulses(const BinEvidence& evidence) {
     if (!wanted) continue;
     result_.shape = ForceShape::kImpacts;
     result_.background = share;
-    widths_ = found.widths;
+    chosen = found.chosen;
+    widths_ = found.widths(chosen);
     background_ = background;
   }
   MODCAL_REQUIRE(options_.shape == ForceShape::kAuto || result_.shape == ForceShape::kImpacts,
                  "the responses tell the {} pulses of the window so unequally that rounding is all "
                  "there is: state a shorter window, or shape: smooth",
                  train_->count());
-  if (result_.shape == ForceShape::kImpacts) pulses_ = train_->columns(samples_);
+  if (result_.shape != ForceShape::kImpacts) return;
+  train_->keep(chosen);
+  pulses_ = train_->columns(samples_);
 }
 
 BinEvidence ForceSearch::beside(const BinEvidence& evidence,
@@ -235,7 +239,7 @@ Eigen::VectorXd ForceSearch::variance_of(const BinEvidence& evidence) const {
   if (result_.shape == ForceShape::kSmooth) return variance;
   const auto [matrix, score] = train_->normal_of(beside(evidence, background_));
   const Relevance found = posterior_of(matrix, score, widths_);
-  variance += (pulses_ * found.covariance).cwiseProduct(pulses_).rowwise().sum();
+  variance += (pulses_ * found.root.transpose()).rowwise().squaredNorm();
   const Eigen::VectorXd force = pulses_ * found.mean;
   if (!table_.pulse.empty()) return variance + variance_of_shape(force, rate(), table_.high);
   return variance + variance_about(force, spectra_, share * power_outside(spectra_, power_));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "libinverse/structure/bin_evidence.hpp"
 
@@ -18,7 +19,9 @@ class PulseTrain {
   /// Both must outlive this. Throws InvalidInput for a window of no or more than kMostInstants.
   PulseTrain(const StructureTable& table, const ContourSpectra& spectra, double window);
 
-  std::size_t count() const { return instants_.size(); }
+  std::size_t count() const { return at_.size(); }
+  /// Only these of the instants from now on.
+  void keep(const std::vector<Eigen::Index>& chosen);
   /// A and b of the likelihood exp(bᵀp − pᵀAp/2) that the bins have.
   std::pair<Eigen::MatrixXd, Eigen::VectorXd> normal_of(const BinEvidence& evidence) const;
   /// F of the amplitudes at every bin.
@@ -30,8 +33,7 @@ class PulseTrain {
   const StructureTable& table_;
   const ContourSpectra& spectra_;
   double step_ = 0.0;
-  std::vector<double> instants_;
-  Eigen::VectorXd decay_;  // exp(−σ t_j)
+  std::vector<Eigen::Index> at_;  // t_j in steps
 };
 
 }  // namespace modcal

@@ -22,26 +22,35 @@ std::vector<Index> relevant(const Eigen::VectorXd& widths) {
   return chosen;
 }
 
+// Of a lower triangle, by blocks of columns: what stands above them is zero.
+Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& lower) {
+  const Index size = lower.rows(), block = 64;
+  Eigen::MatrixXd inverse = Eigen::MatrixXd::Identity(size, size);
+  for (Index j = 0; j < size; j += block) {
+    const Index left = size - j;
+    auto columns = inverse.block(j, j, left, std::min(block, left));
+    lower.bottomRightCorner(left, left).triangularView<Eigen::Lower>().solveInPlace(columns);
+  }
+  return inverse;
+}
+
 }  // namespace
 
 Relevance posterior_of(const Eigen::MatrixXd& a, const Eigen::VectorXd& b,
                        const Eigen::VectorXd& widths) {
-  const std::vector<Index> chosen = relevant(widths);
-  const auto count = std::ssize(chosen);
+  Relevance result{.widths = widths,
+                   .chosen = relevant(widths),
+                   .mean = Eigen::VectorXd::Zero(b.size()),
+                   .evidence = -std::numeric_limits<double>::infinity()};
+  const std::vector<Index>& chosen = result.chosen;
   // In units of the widths the matrix is I + D A D: never singular.
   const Eigen::VectorXd root = widths(chosen).cwiseSqrt();
   Eigen::MatrixXd matrix = root.asDiagonal() * a(chosen, chosen) * root.asDiagonal();
   matrix.diagonal().array() += 1.0;
   const Eigen::LLT<Eigen::MatrixXd> solver(matrix);
-  const Eigen::MatrixXd inverse = solver.solve(Eigen::MatrixXd::Identity(count, count));
-  const Eigen::VectorXd score = root.cwiseProduct(b(chosen));
-  Relevance result{.widths = widths,
-                   .mean = Eigen::VectorXd::Zero(b.size()),
-                   .covariance = Eigen::MatrixXd::Zero(b.size(), b.size()),
-                   .evidence = -std::numeric_limits<double>::infinity()};
-  const Eigen::VectorXd scaled = inverse * score;
+  const Eigen::VectorXd score = root.cwiseProduct(b(chosen)), scaled = solver.solve(score);
   result.mean(chosen) = root.cwiseProduct(scaled);
-  result.covariance(chosen, chosen) = root.asDiagonal() * inverse * root.asDiagonal();
+  result.root = inverse_of(solver.matrixLLT()) * root.asDiagonal();
   // The data may tell some combinations 1e16 times as well as others; then rounding is all there
   // is.
   const bool is_right =
@@ -59,8 +68,9 @@ Relevance determine_relevance(const Eigen::MatrixXd& a, const Eigen::VectorXd& b
   Relevance result = posterior_of(a, b, Eigen::VectorXd::Constant(b.size(), start));
   for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
     Eigen::VectorXd widths = result.widths;
-    for (const Index j : relevant(result.widths)) {
-      const double told = 1.0 - result.covariance(j, j) / widths[j];
+    for (Index i = 0; i < std::ssize(result.chosen); ++i) {
+      const Index j = result.chosen[static_cast<std::size_t>(i)];
+      const double told = 1.0 - result.root.col(i).squaredNorm() / widths[j];
       widths[j] = result.mean[j] * result.mean[j] / std::max(told, 1e-12);
     }
     widths = widths.cwiseMax(1e-7 * widths.maxCoeff());

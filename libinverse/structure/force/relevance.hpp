@@ -2,14 +2,16 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 namespace modcal {
 
 /// Posterior of amplitudes p_j ~ N(0, a_j) under the likelihood exp(bᵀp − pᵀAp/2).
 struct Relevance {
-  Eigen::VectorXd widths;  ///< a_j
+  Eigen::VectorXd widths;            ///< a_j
+  std::vector<Eigen::Index> chosen;  ///< those above 1e-6 of the largest: the other p_j are 0
   Eigen::VectorXd mean;
-  Eigen::MatrixXd covariance;
+  Eigen::MatrixXd root;   ///< R of the covariance RᵀR of the chosen
   double evidence = 0.0;  ///< ln of it, over that of p = 0; −∞: lost in rounding
 };
 

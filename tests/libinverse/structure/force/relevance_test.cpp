@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -38,8 +39,22 @@ TEST(Relevance, FindsTheFewThatAreThere) {
   for (Index j = 0; j < truth.size(); ++j) EXPECT_NEAR(found.mean[j], truth[j], 0.29) << j;
   EXPECT_LT((found.mean.array().abs() > 1e-3).count(), 30);
   for (const Index j : {7, 31, 50}) {
-    EXPECT_NEAR(std::sqrt(found.covariance(j, j)), 0.07, 0.02);
+    const auto at = std::ranges::find(found.chosen, j) - found.chosen.begin();
+    ASSERT_LT(at, std::ssize(found.chosen)) << j;
+    EXPECT_NEAR(found.root.col(at).norm(), 0.07, 0.02);
   }
+}
+
+TEST(Relevance, HasTheCovarianceOfItsEquations) {
+  const auto [matrix, score] = equations_of(Eigen::VectorXd::Ones(150));
+  const Eigen::VectorXd widths = Eigen::VectorXd::Constant(150, 2.0);
+  const Relevance found = posterior_of(matrix, score, widths);
+  Eigen::MatrixXd precision = matrix;
+  precision.diagonal().array() += 0.5;
+  // Of a condition of 1e3: 1e3 roundings of 150 terms.
+  const Eigen::MatrixXd one = found.root.transpose() * found.root * precision;
+  EXPECT_TRUE(one.isIdentity(1e-10)) << (one - Eigen::MatrixXd::Identity(150, 150)).norm();
+  EXPECT_TRUE((precision * found.mean).isApprox(score, 1e-10));
 }
 
 TEST(Relevance, OfNoiseAloneHasNoEvidence) {
