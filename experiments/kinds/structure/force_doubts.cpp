@@ -113,11 +113,29 @@ void tell_unknowns(const StructureForce& found, const LoadedStructureRecord& loa
   }
 }
 
+// A force that goes on behind the window is no part of the answer, nor of its score.
+void doubt_window(const StructureForce& found, const LoadedStructureRecord& loaded,
+                  StudyResult& result) {
+  const std::vector<double>& measured = loaded.record.force;
+  if (measured.size() <= found.force.size()) return;
+  const auto by_size = [](double force) { return std::abs(force); };
+  const auto end = measured.begin() + static_cast<std::ptrdiff_t>(found.force.size());
+  const auto behind = std::ranges::max_element(end, measured.end(), {}, by_size);
+  const double peak = by_size(*std::ranges::max_element(measured, {}, by_size));
+  if (by_size(*behind) <= kLoud * peak) return;
+  result.warn(fmt::format(
+      "the measured force is {:.4g} N at {:.4g} s, {:.0f} % of its peak and behind the window of "
+      "{:.3g} s: neither the answer nor its error holds that; state a window that does",
+      *behind, static_cast<double>(behind - measured.begin()) / loaded.record.sample_rate,
+      100.0 * by_size(*behind) / peak, found.window));
+}
+
 }  // namespace
 
 void doubt_force(const StructureForce& found, const LoadedStructureRecord& loaded,
                  const StructureTable& modes, StudyResult& result) {
   doubt_slow_part(found, loaded, modes.low, result);
+  doubt_window(found, loaded, result);
   tell_unknowns(found, loaded, modes, result);
   if (loaded.kinds.size() > 1) doubt_sensors(found, loaded, result);
   // Names the cause where sensors contradict each other by it: its answer stands.

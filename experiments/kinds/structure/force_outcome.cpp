@@ -121,6 +121,8 @@ void ForceOutcome::visit(ResultVisitor& visitor) const {
   visit_sensors(loaded, found, visitor);
   visitor({.key = "contour_per_s"}, found.sigma);
   visitor({.key = "window_s"}, found.window);
+  visitor({.key = "weak_until_s"},
+          found.weak_until > 0.0 ? std::optional(found.weak_until) : std::nullopt);
   visitor({.key = "rang_before"}, found.rang);
   visitor({.key = "left_out"}, left_out.empty() ? std::nullopt : std::optional(left_out));
   visitor({.key = "background"}, found.background);

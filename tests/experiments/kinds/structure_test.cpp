@@ -18,7 +18,7 @@ namespace modcal::structure_test {
 namespace {
 
 using structure_config::file_of, structure_config::kFolder, structure_config::run;
-using testing::HasSubstr;
+using testing::Contains, testing::HasSubstr, testing::Not;
 
 TEST(FitModes, FindsThePolesOfThePlateWithinTheirErrorBars) {
   const StudyResult result = run("fit_plate.yaml");
@@ -156,6 +156,13 @@ TEST(IdentifyForce, FindsTheForceOfAnotherStrikeAndHoldsItInItsBand) {
   EXPECT_LT(force["relative_error_in_band"].get<double>(), 0.02);
   EXPECT_LT(force["relative_error"].get<double>(), 0.1);
   EXPECT_GT(force["coverage"].get<double>(), 0.9);
+}
+
+TEST(IdentifyForce, WarnsOfAMeasuredForceBehindItsWindow) {
+  // The blow is at its peak at 16 ms.
+  EXPECT_THAT(run("force_on_plate.yaml", {"window=15 ms"}).warnings,
+              Contains(HasSubstr("100 % of its peak and behind the window of 0.015 s")));
+  EXPECT_THAT(run("force_on_plate.yaml").warnings, Not(Contains(HasSubstr("behind the window"))));
 }
 
 TEST(IdentifyForce, DoesNotNeedTheForceItIsComparedWith) {
