@@ -81,7 +81,7 @@ test-cluster: packages-cluster
 
 bench: packages
 	@cmake --preset $(PRESET) >/dev/null
-	@cmake --build --preset $(PRESET)
+	@cmake --build --preset $(PRESET) --target modcal benchmarks/all
 	@benchmarks/run.sh build/$(PRESET)
 
 accuracy: packages
