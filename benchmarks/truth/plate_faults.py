@@ -11,6 +11,8 @@ exit code 1 where anything is wrong without a warning that the sensors contradic
 With --refine "frequency: 0.5 %, damping: 30 %, residue: 5 %" the modes are refined by the same records first (`change:`). Prints
 the share of the plate's frequencies, by its eigenvalues, within two deviations and the largest error in them, too. Wrong is then
 also what is accepted without a warning about sensors or change and holds less than 80 % of them, or one by more than 6 deviations.
+
+With --automatic the window is not stated: modcal finds when the force is over.
 """
 import argparse
 import json
@@ -105,11 +107,12 @@ MOVED = ("three dropped", "reversed in time")  # whose force is that of the spoi
 ALIKE = ("all reversed in sign", "gain of all 1.1", "1e-30", "all late by a sample", "rate 1 % off", "rate 0.1 % off")
 
 
-def outcome(build, out, name, kind, fault, clean, change, refine):
+def outcome(a, name, kind, fault, clean):
+    build, out, change, refine = a.build, a.out, a.change, a.refine
     spoilt = FAULTS[fault](clean)
     header = "t [s],force [N]," + ",".join(f"a{k + 1} [m/s2]" for k in range(4))
     np.savetxt(out / f"{name}.csv", spoilt, "%.9g", ",", header=header, comments="")
-    window = "80 ms" if kind == "strike" else "0.5 s"
+    window = "automatic" if a.automatic else "80 ms" if kind == "strike" else "0.5 s"
     text = plate.yaml("identify_force", name, table="strike/table.yaml", window=window, **({"change": "{" + refine + "}"} if refine else {}))
     (out / f"{name}.yaml").write_text(text.replace("  force: {channel: force}\n", ""))
     found = out / name
@@ -143,6 +146,7 @@ def main():
     p.add_argument("--change", type=float, default=1e-3, help="of the plate since it was measured (plate.py)")
     p.add_argument("--kinds", nargs="+", default=["strike", "smooth"])
     p.add_argument("--refine", default="", help="how far the modes may have changed, the keys of change:")
+    p.add_argument("--automatic", action="store_true", help="state no window")
     p.add_argument("--faults", nargs="+", choices=FAULTS, default=list(FAULTS), metavar="NAME", help=", ".join(FAULTS).replace("%", "%%"))
     a = p.parse_args()
     a.build, a.out = a.build.resolve(), a.out.resolve()
@@ -153,7 +157,7 @@ def main():
         plate.write(a.out / f"{kind}.whole.csv", *plate.record(rng, a.change, 1.0, kind))
         clean = np.genfromtxt(a.out / f"{kind}.whole.csv", delimiter=",", skip_header=1)
         for number, fault in enumerate(a.faults):
-            what, error, inside, left_out, says, z = outcome(a.build, a.out, f"{kind}_{number}", kind, fault, clean, a.change, a.refine)
+            what, error, inside, left_out, says, z = outcome(a, f"{kind}_{number}", kind, fault, clean)
             counts[what] += 1
             verdict = ""
             off = z is not None and ((z < 2).mean() < 0.8 or z.max() > 6)

@@ -27,6 +27,7 @@ def main():
     p.add_argument("out", type=Path)
     p.add_argument("--draws", type=int, default=4)
     p.add_argument("--change", nargs="+", type=float, default=[0, 1e-3, 3e-3])
+    p.add_argument("--window", default="80 ms", help="how long the force acts, or automatic")
     a = p.parse_args()
     a.out.mkdir(parents=True, exist_ok=True)
     for i, node in enumerate(NODES):
@@ -41,7 +42,7 @@ def main():
                 name = f"strike{i}_{change:g}_{draw}"
                 strike(a.out / f"{name}.csv", node, [9, i, draw, int(1e6 * change)], change, 1.0)
                 (a.out / f"{name}.yaml").write_text(plate.yaml(
-                    "identify_force", name, table=tables[0], other_places="[" + ", ".join(tables[1:]) + "]", window="80 ms"))
+                    "identify_force", name, table=tables[0], other_places="[" + ", ".join(tables[1:]) + "]", window=a.window))
                 plate.run(a.build, a.out / f"{name}.yaml", a.out / name)
                 rows = json.loads((a.out / name / "places.json").read_text())
                 best = max(range(len(rows)), key=lambda k: rows[k]["probability"])
