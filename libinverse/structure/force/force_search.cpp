@@ -132,13 +132,16 @@ bool ForceSearch::wants_pulses() {
 }
 
 void ForceSearch::find_pulses(const BinEvidence& evidence) {
-  train_.emplace(table_, spectra_, result_.window);
-  result_.evidence_impacts = -std::numeric_limits<double>::infinity();
-  std::vector<Index> chosen;
   double most = 0.0;
   for (std::size_t m = 0; m < spectra_.count(); ++m) {
     most += std::norm(evidence.score[m]) / evidence.told[m] / spectra_.correlated();
   }
+  // Noise alone makes that much.
+  const double noise = static_cast<double>(spectra_.count()) / spectra_.correlated();
+  if (options_.shape == ForceShape::kAuto && most < noise) return;
+  train_.emplace(table_, spectra_, result_.window);
+  result_.evidence_impacts = -std::numeric_limits<double>::infinity();
+  std::vector<Index> chosen;
   for (const double share : {1e-6, 1e-4, 1e-2}) {
     std::vector<double> background = power_;
     for (double& power : background) power *= share;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "libinverse/structure/tuning.hpp"
+#include "libsim/base/stop_scope.hpp"
 
 namespace modcal {
 namespace {
@@ -67,6 +68,7 @@ Relevance determine_relevance(const Eigen::MatrixXd& a, const Eigen::VectorXd& b
       std::numeric_limits<double>::min());
   Relevance result = posterior_of(a, b, Eigen::VectorXd::Constant(b.size(), start));
   for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+    throw_if_stopped();
     Eigen::VectorXd widths = result.widths;
     for (Index i = 0; i < std::ssize(result.chosen); ++i) {
       const Index j = result.chosen[static_cast<std::size_t>(i)];

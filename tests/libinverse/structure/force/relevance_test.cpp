@@ -4,10 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
+#include "libsim/base/error.hpp"
 #include "libsim/base/random.hpp"
+#include "libsim/base/stop_scope.hpp"
+#include "libsim/base/task_loop.hpp"
 
 namespace modcal::relevance_test {
 namespace {
@@ -55,6 +59,14 @@ TEST(Relevance, HasTheCovarianceOfItsEquations) {
   const Eigen::MatrixXd one = found.root.transpose() * found.root * precision;
   EXPECT_TRUE(one.isIdentity(1e-10)) << (one - Eigen::MatrixXd::Identity(150, 150)).norm();
   EXPECT_TRUE((precision * found.mean).isApprox(score, 1e-10));
+}
+
+TEST(Relevance, EndsWhereItIsStopped) {
+  const auto [matrix, score] = equations_of(Eigen::VectorXd::Ones(10));
+  const std::atomic<bool> wish = true;
+  const StopToken stop(wish);
+  const StopScope listening(stop);
+  EXPECT_THROW(determine_relevance(matrix, score), Interrupted);
 }
 
 TEST(Relevance, OfNoiseAloneHasNoEvidence) {

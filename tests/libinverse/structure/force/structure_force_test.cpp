@@ -103,6 +103,18 @@ TEST(StructureForce, HasTheJackknifeOfSensorsThatContradictEachOther) {
   EXPECT_NEAR(std::sqrt(told / expected), 1.0, 0.1);
 }
 
+TEST(StructureForce, TriesNoPulsesWhereNoiseIsAllThereIs) {
+  StructureRecord record = record_of({0, 1, 2});
+  const StructureForceOptions options{.window = 0.2, .draws = 2};
+  EXPECT_FALSE(std::isnan(structure_force(table_of({0, 1, 2}), record, options).evidence_impacts));
+  for (std::vector<double>& response : record.responses) {
+    for (double& sample : response) sample *= 1e-9;
+  }
+  const StructureForce found = structure_force(table_of({0, 1, 2}), record, options);
+  EXPECT_TRUE(std::isnan(found.evidence_impacts));
+  EXPECT_EQ(found.shape, ForceShape::kSmooth);
+}
+
 ActingPart part_of(const std::vector<Burst>& bursts, const StructureForceOptions& options) {
   return acting_part(table_of({0, 1, 2}), record_of({0, 1, 2}, bursts), options);
 }
