@@ -142,7 +142,7 @@ void ForceSearch::find_pulses(const BinEvidence& evidence) {
   train_.emplace(table_, spectra_, result_.window);
   result_.evidence_impacts = -std::numeric_limits<double>::infinity();
   std::vector<Index> chosen;
-  for (const double share : {1e-6, 1e-4, 1e-2}) {
+  for (const double share : {1e-6, 1e-5, 1e-4, 1e-3, 1e-2}) {
     std::vector<double> background = power_;
     for (double& power : background) power *= share;
     const auto [matrix, score] = train_->normal_of(beside(evidence, background));

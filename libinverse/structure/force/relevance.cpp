@@ -23,6 +23,11 @@ std::vector<Index> relevant(const Eigen::VectorXd& widths) {
   return chosen;
 }
 
+// ln of how many sets of `some` there are among `all`.
+double log_choices(double all, double some) {
+  return std::lgamma(all + 1.0) - std::lgamma(some + 1.0) - std::lgamma(all - some + 1.0);
+}
+
 // Of a lower triangle, by blocks of columns: what stands above them is zero.
 Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& lower) {
   const Index size = lower.rows(), block = 64;
@@ -80,6 +85,8 @@ Relevance determine_relevance(const Eigen::MatrixXd& a, const Eigen::VectorXd& b
     result = posterior_of(a, b, widths);
     if (sweep > 20 && std::abs(result.evidence - before) < 1e-4) break;
   }
+  result.evidence -=
+      log_choices(static_cast<double>(b.size()), static_cast<double>(result.chosen.size()));
   return result;
 }
 

@@ -16,7 +16,8 @@ struct Relevance {
 };
 
 /// The a_j of largest evidence: a_j ← μ_j²/γ_j, γ_j = 1 − C_jj/a_j (MacKay, 1992; Tipping, 2001).
-/// Those below 1e-6 of the largest stay there.
+/// Those below 1e-6 of the largest stay there. Which k of all N are chosen was found from the data,
+/// too, and any k as likely before: ln N!/(k! (N − k)!) is taken off the evidence.
 Relevance determine_relevance(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
 
 /// The same with the widths given.

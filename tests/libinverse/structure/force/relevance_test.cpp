@@ -73,9 +73,24 @@ TEST(Relevance, OfNoiseAloneHasNoEvidence) {
   const auto [matrix, score] = equations_of(Eigen::VectorXd::Zero(60));
   const Relevance found = determine_relevance(matrix, score);
   EXPECT_LT(found.mean.cwiseAbs().maxCoeff(), 0.29);
-  // Its largest evidence is gained by the few amplitudes that noise favors, about 1 each.
-  EXPECT_GE(found.evidence, 0.0);
-  EXPECT_LT(found.evidence, 30.0);
+  // What the few amplitudes that noise favors gain, about 1 each, is less than they cost.
+  EXPECT_GE(posterior_of(matrix, score, found.widths).evidence, 0.0);
+  EXPECT_LT(found.evidence, 0.0);
+}
+
+// Those of k are 60 · 59 ⋯ (61 − k)/k!.
+TEST(Relevance, CountsTheWaysToChoose) {
+  Eigen::VectorXd truth = Eigen::VectorXd::Zero(60);
+  truth[7] = 500.0, truth[31] = -300.0, truth[50] = 150.0;
+  const auto [matrix, score] = equations_of(truth);
+  const Relevance found = determine_relevance(matrix, score);
+  double ways = 1.0;
+  for (std::size_t j = 0; j < found.chosen.size(); ++j) {
+    ways *= static_cast<double>(60 - j) / static_cast<double>(j + 1);
+  }
+  EXPECT_LT(found.chosen.size(), 20u);
+  EXPECT_NEAR(posterior_of(matrix, score, found.widths).evidence - found.evidence, std::log(ways),
+              1e-6);
 }
 
 TEST(Relevance, OfOneSignIsTheLeastOfTheQuadratic) {
