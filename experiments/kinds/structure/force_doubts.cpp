@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "libinverse/structure/tuning.hpp"
@@ -113,9 +114,26 @@ void tell_unknowns(const StructureForce& found, const LoadedStructureRecord& loa
   }
 }
 
-// A force that goes on behind the window is no part of the answer, nor of its score.
+// A force that goes on behind the window is no part of the answer, nor of its score. It shows in
+// responses that are larger there, and in a force that was measured.
 void doubt_window(const StructureForce& found, const LoadedStructureRecord& loaded,
                   StudyResult& result) {
+  const auto largest = [](std::span<const double> samples) {
+    double most = 0.0;
+    for (const double sample : samples) most = std::max(most, std::abs(sample));
+    return most;
+  };
+  for (std::size_t k = 0; k < loaded.kinds.size(); ++k) {
+    const std::span<const double> response = loaded.record.responses[k];
+    const std::size_t end = std::min(found.force.size(), response.size());
+    const double within = largest(response.first(end)), after = largest(response.subspan(end));
+    if (after <= kLate * within) continue;
+    result.warn(fmt::format(
+        "{} is {:.2g} times as large behind the window of {:.3g} s as in it: a force acts there, "
+        "and what it leaves in the window is taken for an earlier one; state a longer window",
+        loaded.names[k], after / within, found.window));
+    break;
+  }
   const std::vector<double>& measured = loaded.record.force;
   if (measured.size() <= found.force.size()) return;
   const auto by_size = [](double force) { return std::abs(force); };
