@@ -95,6 +95,11 @@ void doubt_sensors(const StructureForce& found, const LoadedStructureRecord& loa
 // What was not tried, and what table and record do not tell.
 void tell_unknowns(const StructureForce& found, const LoadedStructureRecord& loaded,
                    const StructureTable& modes, StudyResult& result) {
+  if (found.told < 1.0) {
+    result.warn(
+        "the responses tell no force: they are no larger than the noise of the table's record; "
+        "where one acted, check the units and gains of the channels");
+  }
   if (found.untried > 0.0) {
     result.warn(fmt::format(
         "impacts were not tried: the window of {:g} s holds {:g} instants of a pulse, {:g} are "

@@ -132,13 +132,7 @@ bool ForceSearch::wants_pulses() {
 }
 
 void ForceSearch::find_pulses(const BinEvidence& evidence) {
-  double most = 0.0;
-  for (std::size_t m = 0; m < spectra_.count(); ++m) {
-    most += std::norm(evidence.score[m]) / evidence.told[m] / spectra_.correlated();
-  }
-  // Noise alone makes that much.
-  const double noise = static_cast<double>(spectra_.count()) / spectra_.correlated();
-  if (options_.shape == ForceShape::kAuto && most < noise) return;
+  if (options_.shape == ForceShape::kAuto && result_.told < 1.0) return;
   train_.emplace(table_, spectra_, result_.window);
   result_.evidence_impacts = -std::numeric_limits<double>::infinity();
   std::vector<Index> chosen;
@@ -150,6 +144,8 @@ void ForceSearch::find_pulses(const BinEvidence& evidence) {
     const double told = found.evidence + evidence_of_power(evidence, background);
     const bool wanted = options_.shape == ForceShape::kImpacts || told > result_.evidence_smooth;
     // No force explains more than the one that is free in every bin.
+    const double most =
+        result_.told * static_cast<double>(spectra_.count()) / spectra_.correlated();
     if (!(told > result_.evidence_impacts && told <= most)) continue;
     result_.evidence_impacts = told;
     if (!wanted) continue;
@@ -192,9 +188,11 @@ double ForceSearch::evidence_of_power(const BinEvidence& evidence,
 void ForceSearch::find_power(const BinEvidence& evidence) {
   const double spacing = spectra_.grid.spacing / (2.0 * std::numbers::pi);
   std::vector<double> found;
+  result_.told = 0.0;
   for (std::size_t m = 0; m < spectra_.count(); ++m) {
     const double told = evidence.told[m];
     found.push_back(std::norm(evidence.score[m] / told) - 1.0 / told);
+    result_.told += std::norm(evidence.score[m]) / told / static_cast<double>(spectra_.count());
   }
   result_.rise = rise_towards_zero(found, spectra_.bins.first);
   for (double& power : found) power = std::max(power, 0.0);

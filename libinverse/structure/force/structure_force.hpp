@@ -46,6 +46,7 @@ struct StructureForce {
   double evidence_smooth = 0.0;
   /// Instants of a pulse in the window where they are too many for `auto` to try; 0: tried.
   double untried = 0.0;
+  double told = 0.0;  ///< power in the responses that a force explains, over that of noise alone
   double rise = 0.0;  ///< rise_towards_zero() of the force's power
   bool rang = false;  ///< when the record began, by what the responses tell
   double misfit =

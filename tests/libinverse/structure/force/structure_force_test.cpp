@@ -112,6 +112,7 @@ TEST(StructureForce, TriesNoPulsesWhereNoiseIsAllThereIs) {
   }
   const StructureForce found = structure_force(table_of({0, 1, 2}), record, options);
   EXPECT_TRUE(std::isnan(found.evidence_impacts));
+  EXPECT_LT(found.told, 1.0);
   EXPECT_EQ(found.shape, ForceShape::kSmooth);
 }
 
