@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 #include "libinverse/structure/tuning.hpp"
 #include "libsim/signal/statistics.hpp"
@@ -51,10 +52,9 @@ Eigen::VectorXd envelope_above(const Eigen::VectorXd& force, double rate, double
     const double at = rate * static_cast<double>(k) / static_cast<double>(fft.length());
     if (at <= low) spectrum[k] = 0.0;
   }
-  std::vector<double> turned(fft.length());
-  fft.inverse(spectrum, signal);
+  signal = fft.inverse(spectrum);
   for (Complex& x : spectrum) x *= Complex(0.0, -1.0);
-  fft.inverse(spectrum, turned);
+  const std::vector<double> turned = fft.inverse(std::move(spectrum));
   Eigen::VectorXd result(samples);
   for (Eigen::Index j = 0; j < samples; ++j) {
     const auto i = static_cast<std::size_t>(j);

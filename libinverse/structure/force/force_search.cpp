@@ -214,19 +214,38 @@ Eigen::VectorXd ForceSearch::force_of(const BinEvidence& evidence) const {
     sum = train_->spectrum(amplitudes);
     force = pulses_ * amplitudes;
   }
-  const RealFft fft(spectra_.samples);
-  std::vector<Complex> spectrum(fft.bins());
   for (std::size_t m = 0; m < spectra_.count(); ++m) {
-    spectrum[spectra_.bins.first + m] =
+    sum[m] =
         (evidence.score[m] - evidence.told[m] * sum[m]) / (evidence.told[m] + 1.0 / background_[m]);
   }
+  return force + signal_of(sum);
+}
+
+Eigen::VectorXd ForceSearch::signal_of(const std::vector<Complex>& bins) const {
+  const RealFft fft(spectra_.samples);
+  std::vector<Complex> spectrum(fft.bins());
+  std::ranges::copy(bins, spectrum.begin() + static_cast<std::ptrdiff_t>(spectra_.bins.first));
   std::vector<double> samples(spectra_.samples);
   fft.inverse(spectrum, samples);
+  Eigen::VectorXd signal(samples_);
   for (Index j = 0; j < samples_; ++j) {
-    force[j] += samples[static_cast<std::size_t>(j)] *
+    signal[j] = samples[static_cast<std::size_t>(j)] *
                 std::exp(result_.sigma * static_cast<double>(j) / rate());
   }
-  return force;
+  return signal;
+}
+
+Eigen::MatrixXd ForceSearch::pulses_beside_background(const BinEvidence& evidence) const {
+  Eigen::MatrixXd beside = pulses_;
+  for_each_task(train_->count(), [&](std::size_t i) {
+    const auto column = static_cast<Index>(i);
+    std::vector<Complex> bins = train_->spectrum(Eigen::VectorXd::Unit(pulses_.cols(), column));
+    for (std::size_t m = 0; m < spectra_.count(); ++m) {
+      bins[m] *= evidence.told[m] / (evidence.told[m] + 1.0 / background_[m]);
+    }
+    beside.col(column) -= signal_of(bins);
+  });
+  return beside;
 }
 
 Eigen::VectorXd ForceSearch::variance_of(const BinEvidence& evidence) const {
@@ -240,7 +259,7 @@ Eigen::VectorXd ForceSearch::variance_of(const BinEvidence& evidence) const {
   if (result_.shape == ForceShape::kSmooth) return variance;
   const auto [matrix, score] = train_->normal_of(beside(evidence, background_));
   const Relevance found = posterior_of(matrix, score, widths_);
-  variance += (pulses_ * found.root.transpose()).rowwise().squaredNorm();
+  variance += (pulses_beside_background(evidence) * found.root.transpose()).rowwise().squaredNorm();
   const Eigen::VectorXd force = pulses_ * found.mean;
   if (!table_.pulse.empty()) return variance + variance_of_shape(force, rate(), table_.high);
   return variance + variance_about(force, spectra_, share * power_outside(spectra_, power_));

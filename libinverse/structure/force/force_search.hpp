@@ -42,6 +42,11 @@ class ForceSearch {
   void find_power(const BinEvidence& evidence);
   Eigen::VectorXd force_of(const BinEvidence& evidence) const;
   Eigen::VectorXd variance_of(const BinEvidence& evidence) const;
+  /// Samples in the window of what has these bins on the contour.
+  Eigen::VectorXd signal_of(const std::vector<Complex>& bins) const;
+  /// The force by each pulse as it is, and by the background as the bins then tell it: where they
+  /// tell it well, the background makes up for what a pulse is off by.
+  Eigen::MatrixXd pulses_beside_background(const BinEvidence& evidence) const;
   /// Variance of the force by models drawn from the table's deviations.
   Eigen::VectorXd by_models(const Eigen::VectorXd& best) const;
   /// Where the sensors contradict each other by more than the table says, so is it off by more.
