@@ -101,6 +101,23 @@ void take_modes(const TableOptions& options, const std::string& file, StructureT
   }
 }
 
+// A sensor that no mode moves tells nothing, and leaves nothing to divide by.
+void require_motion(const StructureTable& table, const std::string& file) {
+  const ModalModel& model = table.model;
+  const std::size_t modes = model.poles.size();
+  for (std::size_t k = 0; k < model.sensors.size(); ++k) {
+    bool moves = model.residuals[k] != ResidualTerms{};
+    for (std::size_t i = k * modes; i < (k + 1) * modes; ++i) {
+      moves = moves || model.constants[i] != 0.0 ||
+              (!model.quadrature.empty() && model.quadrature[i] != 0.0);
+    }
+    MODCAL_REQUIRE(moves,
+                   "{}: the modal constants of {} are 0 in every mode: no force at the contact "
+                   "moves it; check the columns, or nodes and directions of contact and sensors",
+                   file, table.names[k]);
+  }
+}
+
 StructureTable table_of(TableOptions options, const std::filesystem::path& path) {
   const std::string file = path.string();
   MODCAL_REQUIRE(options.low < options.high, "{}: low = {:g} Hz is not below high = {:g} Hz", file,
@@ -142,9 +159,10 @@ StructureTable table_of(TableOptions options, const std::filesystem::path& path)
                  file);
   if (options.has_shapes) {
     take_shapes(options.shapes, path, table);
-    return table;
+  } else {
+    take_modes(options, file, table);
   }
-  take_modes(options, file, table);
+  require_motion(table, file);
   return table;
 }
 

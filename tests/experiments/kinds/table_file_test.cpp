@@ -56,6 +56,8 @@ TEST_F(TableFile, ColumnsOfACsvFileAreItsModes) {
               HasSubstr("the column \"a2\" has no meaning"));
   EXPECT_THAT(said("frequency,damping_ratio,a1,d\n50,0.01,1,1\n60,1.5,1,1\n"),
               HasSubstr("modes.csv:3: damping_ratio = 1.5; it must be in (0, 1)"));
+  EXPECT_THAT(said("frequency,damping_ratio,a1,d\n50,0.01,1,0\n60,0.01,1,0\n"),
+              HasSubstr("the modal constants of d are 0 in every mode"));
   EXPECT_THAT(said("frequency,damping_ratio [%],a1,d\n50,0.5,1,1\n"),
               HasSubstr("\"damping_ratio\" is in \"%\""));
   EXPECT_THAT(said("frequency,damping_ratio,a1 [g/N],d\n50,0.01,1,1\n"), HasSubstr("in \"g/N\""));
