@@ -85,7 +85,7 @@ EndRelationFit fit_end_relations(const EndRecord& record, const StatedString& st
   fit.contact = found.contact;
   const double shift = std::abs(found.fundamental / string.fundamental - 1.0);
   fit.at_edge = shift > (kFundamentalSteps - 0.5) * kFundamentalStep;
-  judge_residual(record, found, fit);
+  judge_residual(record, found, string.contact, fit);
   return fit;
 }
 

@@ -93,18 +93,24 @@ std::vector<Period> periods_of(const EndResidual& residual, double sample_rate,
   return periods;
 }
 
-}  // namespace
+/// What the relation of a string leaves of a record.
+struct ResidualLevel {
+  double unexplained = 0.0;  ///< share of the power, without noise
+  double usual = 0.0;        ///< power of a period [N²], exceeded by few of them
+  EndDisturbance worst;
+  std::size_t periods = 0;
+};
 
-EndFactors end_factors(double frequency, const StatedString& string) {
-  const double k = std::numbers::pi / string.length *
-                   mode_number(frequency / string.fundamental, string.inharmonicity);
-  return {std::sin(k * string.contact), std::sin(k * (string.length - string.contact))};
+bool is_disturbed(const ResidualLevel& level) {
+  return level.worst.ratio > kDisturbance && level.periods >= kLeastPeriods;
 }
 
-void judge_residual(const EndRecord& record, const StatedString& string, EndRelationFit& fit) {
+ResidualLevel level_of(const EndRecord& record, const StatedString& string) {
   const EndResidual residual = residual_of(record, string);
   const std::vector<Period> periods = periods_of(residual, record.sample_rate, string.fundamental);
-  if (periods.empty()) return;
+  ResidualLevel level;
+  level.periods = periods.size();
+  if (periods.empty()) return level;
   const double noise = residual.noise * std::floor(record.sample_rate / string.fundamental);
   std::vector<double> errors, shares;
   double error = 0.0, power = 0.0;
@@ -115,17 +121,43 @@ void judge_residual(const EndRecord& record, const StatedString& string, EndRela
     power += period.power;
   }
   const double noise_sum = noise * static_cast<double>(periods.size());
-  fit.unexplained =
-      power > 2.0 * noise_sum ? std::max(error - noise_sum, 0.0) / (power - noise_sum) : 0.0;
-  const double usual = quantile(errors, kUsual), usual_share = quantile(shares, kUsual);
-  EndDisturbance worst;
+  if (power > 2.0 * noise_sum) {
+    level.unexplained = std::max(error - noise_sum, 0.0) / (power - noise_sum);
+  }
+  level.usual = quantile(errors, kUsual);
+  const double usual_share = quantile(shares, kUsual);
   for (const Period& period : periods) {
-    const double expected = std::max(usual, usual_share * period.power);
-    if (expected > 0.0 && period.error > worst.ratio * expected) {
-      worst = {period.time, period.error / expected};
+    const double expected = std::max(level.usual, usual_share * period.power);
+    if (expected > 0.0 && period.error > level.worst.ratio * expected) {
+      level.worst = {period.time, period.error / expected};
     }
   }
-  if (worst.ratio > kDisturbance && periods.size() >= kLeastPeriods) fit.disturbance = worst;
+  return level;
+}
+
+}  // namespace
+
+EndFactors end_factors(double frequency, const StatedString& string) {
+  const double k = std::numbers::pi / string.length *
+                   mode_number(frequency / string.fundamental, string.inharmonicity);
+  return {std::sin(k * string.contact), std::sin(k * (string.length - string.contact))};
+}
+
+void judge_residual(const EndRecord& record, const StatedString& found, double stated_contact,
+                    EndRelationFit& fit) {
+  const ResidualLevel level = level_of(record, found);
+  fit.unexplained = level.unexplained;
+  ResidualLevel least = level;
+  // Noise leaves x_c to a few millimeters, and the start of a stroke shows what is wrong in it: a
+  // gap is what the x_c leaves that leaves least elsewhere.
+  for (int step = -kContactSteps; step <= kContactSteps && is_disturbed(level); ++step) {
+    StatedString other = found;
+    other.contact = stated_contact + step * kContactStep * found.length;
+    if (!(other.contact > 0.0 && other.contact < found.length)) continue;
+    const ResidualLevel there = level_of(record, other);
+    if (there.usual < least.usual) least = there;
+  }
+  if (is_disturbed(least)) fit.disturbance = least.worst;
 }
 
 }  // namespace modcal

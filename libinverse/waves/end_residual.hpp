@@ -12,7 +12,9 @@ struct EndFactors {
 EndFactors end_factors(double frequency, const StatedString& string);
 
 /// Fills what `fit` says of the power that R₁ sin kx_c − R₂ sin k(L − x_c) has below 10 f₀, as a
-/// whole and period by period.
-void judge_residual(const EndRecord& record, const StatedString& string, EndRelationFit& fit);
+/// whole and period by period, for the string found. A disturbance is one of every x_c about the
+/// one stated.
+void judge_residual(const EndRecord& record, const StatedString& found, double stated_contact,
+                    EndRelationFit& fit);
 
 }  // namespace modcal
