@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "libcalib/likelihood/tuning.hpp"
+#include "libsim/base/kernels/column_products.hpp"
 
 namespace modcal {
 namespace {
@@ -102,12 +103,11 @@ EndState::Sums added(std::span<const EndState::Sums> parts) {
     sum.totals.odd += part.totals.odd;
     sum.totals.even += part.totals.even;
     sum.totals.mixed += part.totals.mixed;
-    sum.plain += part.plain;
+    add_to(sum.plain, part.plain);
+    sum.left += part.left;
   }
   return sum;
 }
-
-using Columns = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic>>;
 
 }  // namespace
 
@@ -138,7 +138,13 @@ EndState::EndState(const WhitenedRecord& record, std::span<const LikelihoodMode>
 }
 
 void EndState::add_gram(const WhitenedRecord& record, std::size_t block_index,
-                        const ModeSplit& split, const LikelihoodBlock& block, Sums& sums) const {
+                        const ModeSplit& split, const LikelihoodBlock& block, const double* plain,
+                        Sums& sums) const {
+  if (plain_ > 0) {
+    const std::size_t width = tiled(plain_);
+    sums.plain.resize(width * width);
+    modcal::add_products(plain, width, plain, width, true, sums.plain.data(), width);
+  }
   if (decays_ == 0) return;
   sums.powers.resize(decays_ * kPowerSums * kSumLanes);
   add_decay_powers(record, block_index, split, block, sums.powers.data(), sums.totals);
@@ -148,10 +154,7 @@ void EndState::add_products(const WhitenedRecord& record, std::size_t block_inde
                             const ModeSplit& split, const LikelihoodBlock& block,
                             const double* columns, Sums& sums) const {
   const std::size_t count = 1 + plain_;
-  if (sums.plain.size() == 0) {
-    sums.products.resize(decays_ * 2 * count * kSumLanes);
-    sums.plain.setZero(static_cast<Index>(count), static_cast<Index>(count));
-  }
+  sums.products.resize(decays_ * 2 * count * kSumLanes);
   // As many at a time as the kernel takes.
   for (std::size_t begin = 0; decays_ > 0 && begin < count; begin += kDecayColumns) {
     add_decay_products(record, block_index, split, block, columns + begin * kColumnLength,
@@ -159,11 +162,16 @@ void EndState::add_products(const WhitenedRecord& record, std::size_t block_inde
                        sums.products.data() + decays_ * 2 * begin * kSumLanes);
   }
   if (plain_ == 0) return;
-  const Columns all(columns, static_cast<Index>(kColumnLength), static_cast<Index>(count));
-  sums.plain += all.transpose() * all;
+  const auto length = static_cast<Index>(kColumnLength);
+  const Eigen::Map<const Eigen::VectorXd> residual(columns, length);
+  const Eigen::Map<const Eigen::MatrixXd> transients(columns + length, length,
+                                                     static_cast<Index>(plain_));
+  if (sums.left.size() == 0) sums.left.setZero(static_cast<Index>(plain_));
+  sums.left += transients.transpose() * residual;
 }
 
-// With the residual, then with the plain transients.
+// With the residual, then with the plain transients; of these with each other the Gram matrix has
+// the products.
 EndState::RowMatrix EndState::collect_products(const Sums& sums) const {
   const auto plain = static_cast<Index>(plain_);
   RowMatrix products(static_cast<Index>(size()), 1 + plain);
@@ -174,7 +182,10 @@ EndState::RowMatrix EndState::collect_products(const Sums& sums) const {
                            part.data());
     products.block(0, static_cast<Index>(begin), part.rows(), part.cols()) = part;
   }
-  products.bottomRows(plain) = sums.plain.bottomRows(plain);
+  if (plain_ > 0) {
+    products.bottomRows(plain).setZero();
+    products.col(0).tail(plain) = sums.left;
+  }
   return products;
 }
 
@@ -189,8 +200,14 @@ void EndState::solve(std::span<const Sums> parts) {
     collect_decay_powers(sums.powers.data(), powers);
     gram.topLeftCorner(first, first) = decay_gram(modes_.first(decays_), powers, sums.totals);
   }
-  gram.rightCols(plain) = products.rightCols(plain);
-  gram.bottomLeftCorner(plain, first) = products.topRightCorner(first, plain).transpose();
+  if (plain_ > 0) {
+    const auto width = static_cast<Index>(tiled(plain_));
+    const Eigen::Map<const RowMatrix> lower(sums.plain.data(), width, width);
+    gram.bottomRightCorner(plain, plain) =
+        Eigen::MatrixXd(lower.topLeftCorner(plain, plain)).selfadjointView<Eigen::Lower>();
+    gram.topRightCorner(first, plain) = products.topRightCorner(first, plain);
+    gram.bottomLeftCorner(plain, first) = products.topRightCorner(first, plain).transpose();
+  }
 
   inverse_norms_ = gram.diagonal();
   for (double& norm : inverse_norms_) norm = norm > 0.0 ? 1.0 / std::sqrt(norm) : 1.0;

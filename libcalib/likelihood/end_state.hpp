@@ -36,14 +36,16 @@ class EndState {
   struct Sums {
     AlignedVector powers, products;  // lanes
     DecayTotals totals;
-    Eigen::MatrixXd plain;  // products of residual and plain transients
+    AlignedVector plain;   // products of the plain transients, the lower half, in rows
+    Eigen::VectorXd left;  // of theirs with the residual
   };
 
   std::size_t decays() const { return decays_; }  ///< modes that decay, the first; 0 for σ > 0
   std::size_t size() const { return 2 * decays_ + plain_; }
-  /// Adds what the model alone decides, of one block.
+  /// Adds what the model alone decides, of one block. plain: columns of the plain transients, room
+  /// for tiled() of them.
   void add_gram(const WhitenedRecord& record, std::size_t block_index, const ModeSplit& split,
-                const LikelihoodBlock& block, Sums& sums) const;
+                const LikelihoodBlock& block, const double* plain, Sums& sums) const;
   /// Adds products of `columns`: the residual, then those of the plain transients.
   void add_products(const WhitenedRecord& record, std::size_t block_index, const ModeSplit& split,
                     const LikelihoodBlock& block, const double* columns, Sums& sums) const;

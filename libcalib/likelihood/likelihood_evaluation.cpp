@@ -115,7 +115,7 @@ void LikelihoodEvaluation::fill_model(std::size_t b, EndState::Sums& sums) {
     fill_plain_column(*record_, b, blocks_[b], false, plain_[p].left, left);
     for (std::size_t i = 0; i < kColumnLength; ++i) column[i] += left[i];
   }
-  end_state_.add_gram(*record_, b, split, blocks_[b], sums);
+  end_state_.add_gram(*record_, b, split, blocks_[b], plain_of(b), sums);
 }
 
 void LikelihoodEvaluation::fill_data(std::size_t b, EndState::Sums& sums) {

@@ -1,8 +1,6 @@
 #include "libcalib/likelihood/plain_transients.hpp"
 
-#include <array>
 #include <cmath>
-#include <numbers>
 
 #include "libcalib/likelihood/kernels/decay_kernel.hpp"
 
@@ -46,39 +44,9 @@ void add_sensor_transients(const WhitenedRecord& record, const Sensor& sensors,
   transients.push_back(std::move(decay));
 }
 
-// Σ_j q^j and Σ_j (2j/n − 1) q^j over n samples, q = e^{±iω_h/f_s} z^−1 at σ, of which q^n is the
-// same in every bin: geometric series. A line that stands in a bin is all there.
-struct LineSums {
-  Complex steady, changing;
-};
-LineSums line_sums(Complex ratio, Complex power, double samples) {
-  const Complex off = 1.0 - ratio;
-  // Beyond, the difference of two sums of about n takes as many digits as the limit's error leaves.
-  if (std::abs(off) * samples < 1e-5) return {samples, -1.0};
-  const Complex sum = (1.0 - power) / off;
-  const Complex by_place = (ratio * sum - samples * power) / off;
-  return {sum, 2.0 / samples * by_place - sum};
-}
-
-// Cosine and sine of the lines of the mains, steady and growing over the record: its frequency is
-// known and steady but to a fraction of 1/T.
 void add_lines(const WhitenedRecord& record, std::vector<PlainTransient>& transients) {
-  const double samples = 2.0 * std::numbers::pi * record.sample_rate / record.spacing;
-  const double norm = 1.0 / std::sqrt(samples);
-  for (const double line : record.lines) {
-    const Complex turn = std::polar(1.0, line / record.sample_rate);
-    const Complex end = std::exp(Complex(-record.sigma, line) * samples / record.sample_rate);
-    std::array<PlanarVector, 4> waves;
-    waves.fill(PlanarVector(record.root_weight.size()));
-    for (std::size_t k = 0; k < record.bins; ++k) {
-      const Complex delay = record.delay.at(k);
-      const LineSums forward = line_sums(turn * delay, end, samples);
-      const LineSums backward = line_sums(std::conj(turn) * delay, std::conj(end), samples);
-      waves[0].set(k, 0.5 * norm * (forward.steady + backward.steady));
-      waves[1].set(k, Complex(0.0, -0.5) * norm * (forward.steady - backward.steady));
-      waves[2].set(k, 0.5 * norm * (forward.changing + backward.changing));
-      waves[3].set(k, Complex(0.0, -0.5) * norm * (forward.changing - backward.changing));
-    }
+  if (!record.waves) return;
+  for (const LineWaves& waves : *record.waves) {
     for (const bool right : {false, true}) {
       for (const PlanarVector& wave : waves) transients.push_back({right, wave});
     }

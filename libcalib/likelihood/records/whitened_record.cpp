@@ -152,6 +152,7 @@ WhitenedRecord WhitenedRecord::of(const NoisyRecords& records, double sigma, dou
     if (sigma > 0.0) record.offset.set(k, norm * (1.0 - rest) / (1.0 - delays[k]));
   }
   record.place_bins();
+  record.place_lines();
   if (!records.noise.white()) record.take_noise(records.noise);
   return record;
 }
@@ -193,6 +194,19 @@ void WhitenedRecord::place_bins() {
   }
 }
 
+void WhitenedRecord::place_lines() {
+  if (lines.empty()) return;
+  std::vector<LineWaves> placed;
+  for (const double line : lines) {
+    placed.push_back(line_waves(line, {.sigma = sigma,
+                                       .sample_rate = sample_rate,
+                                       .samples = 2.0 * pi * sample_rate / spacing,
+                                       .count = bins,
+                                       .delay = delay}));
+  }
+  waves = std::make_shared<const std::vector<LineWaves>>(std::move(placed));
+}
+
 WhitenedRecord WhitenedRecord::slice(std::size_t begin, std::size_t count) const {
   MODCAL_REQUIRE(begin < bins && count >= 1, "bins {} ... of a record of {} bins", begin, bins);
   WhitenedRecord part{.bins = std::min(count, bins - begin),
@@ -232,6 +246,7 @@ WhitenedRecord WhitenedRecord::slice(std::size_t begin, std::size_t count) const
     }
   }
   part.place_bins();
+  part.place_lines();
   return part;
 }
 

@@ -4,9 +4,11 @@
 #include <array>
 #include <cstddef>
 #include <limits>
+#include <memory>
 #include <span>
 #include <vector>
 
+#include "libcalib/likelihood/records/line_waves.hpp"
 #include "libcalib/parameters/free_parameters.hpp"
 #include "libcalib/problem/calibration_data.hpp"
 #include "libinverse/noise/noise_spectrum.hpp"
@@ -46,7 +48,7 @@ struct NoisyRecords {
 /// padded to whole blocks of kBlock bins; the padding has weight 0.
 struct WhitenedRecord {
   static constexpr std::size_t kBlock = kColumnLength / 2;  ///< a column holds both parts
-  static constexpr std::size_t kNodes = 16;  ///< Chebyshev nodes of a block
+  static constexpr std::size_t kNodes = 16;                 ///< Chebyshev nodes of a block
 
   std::size_t bins = 0;      ///< K_b
   double sigma = 0.0;        ///< σ [1/s]
@@ -54,8 +56,9 @@ struct WhitenedRecord {
   std::size_t first = 1;     ///< 1, save in a slice
   double sample_rate = 0.0;  ///< [Hz]
   std::array<double, 2> deviation{};
-  double energy = 0.0;        ///< Σ |y_1|² + |y_2|² of the record
-  std::vector<double> lines;  ///< [rad/s]
+  double energy = 0.0;                                  ///< Σ |y_1|² + |y_2|² of the record
+  std::vector<double> lines;                            ///< [rad/s]
+  std::shared_ptr<const std::vector<LineWaves>> waves;  ///< of the lines; null: there are none
   std::vector<SignalColumn> signals;
   PlanarVector left, right;  ///< y_1, y_2
   PlanarVector on_bridge;    ///< that of the records, at σ = 0, whole; else empty
@@ -88,6 +91,7 @@ struct WhitenedRecord {
 
  private:
   void place_bins();
+  void place_lines();
   void take_noise(const NoiseSpectrum& spectrum);
 };
 
