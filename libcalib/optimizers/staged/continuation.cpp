@@ -66,13 +66,10 @@ void follow(ContinuationResult& found, const char* prefix, ContinuationResult ne
   found = std::move(next);
 }
 
-// Where the noise is not what was read, the fit is made again with what it leaves; once more for
-// what the first round changed.
+// Begins with the noise that the records have. Where it is another, the fit is made again with what
+// it leaves; once more for what the first round changed.
 ContinuationResult attempt_with_its_noise(const AttemptInput& input, double shift,
                                           std::size_t evaluations) {
-  input.records.noise = {};
-  input.records.deviation = input.read;
-  input.records.power_error = input.read_error;
   ContinuationResult found = attempt_continuation(input, shift, evaluations);
   for (int round = 0; round < 2 && !found.repeats; ++round) {
     // Where the law holds, the noise is what it leaves already.
@@ -142,6 +139,9 @@ ContinuationResult with_cause_free(const AttemptInput& input, double shift, Scor
 
 ContinuationResult attempt(const AttemptInput& input, double shift, std::size_t evaluations) {
   input.records.signals.clear();
+  input.records.noise = {};
+  input.records.deviation = input.read;
+  input.records.power_error = input.read_error;
   ContinuationResult found = attempt_with_its_noise(input, shift, evaluations);
   const ScoreTest* first = first_cause(found.tests);
   if (!first || !first->frees()) return found;
