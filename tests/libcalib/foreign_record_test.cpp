@@ -9,6 +9,7 @@
 #include "libcalib/calibration.hpp"
 #include "libcalib/identifiability/tuning.hpp"
 #include "libcalib/objectives/joint_likelihood.hpp"
+#include "libcalib/optimizers/staged/staged.hpp"
 #include "libsim/model/damping.hpp"
 
 namespace modcal::foreign_record_test {
@@ -38,6 +39,7 @@ struct Settings {
   double highest_frequency = std::numeric_limits<double>::quiet_NaN();  ///< [Hz]
   bool known_noise = false;                                             ///< stated, not read
   bool known_damping = false;  ///< else 1e-3 for every mode
+  std::int64_t restarts = 4;   ///< 0 where no start could serve
 };
 
 Choice<DampingLaw> damping_of(const truth::TruthRecord& record) {
@@ -70,6 +72,8 @@ CalibrationResult calibrated(truth::TruthRecord record, const Settings& settings
     options.parameters.unknowns.priors = {
         {"gain", 1.0, 0.02}, {"delay", 0.0, 2e-5}, {"corner", 0.0, 1.0}};
   }
+  options.optimizer =
+      Choice<Optimizer>::of<Staged>("staged", {.schedule = {.restarts = settings.restarts}});
   options.support = settings.support;
   std::vector<CalibrationRecord> records = {
       {.data = CalibrationData::of_records(record.r1, record.r2, record.rate), .recorded = true}};
@@ -140,8 +144,8 @@ TEST(ForeignRecord, IsCalibratedWithinItsDeviations) {
 }
 
 TEST(ForeignRecord, WithoutTheModesAboveItIsWrong) {
-  const CalibrationResult result =
-      calibrated(equal_sensors(), {.support = {.remainder = "none"}, .exact_sensors = true});
+  const CalibrationResult result = calibrated(
+      equal_sensors(), {.support = {.remainder = "none"}, .exact_sensors = true, .restarts = 0});
   EXPECT_GT(frequency_errors(result).by_data, 2.0 * kFour);
   EXPECT_FALSE(result.continuation->right);
 }
@@ -193,7 +197,7 @@ TEST(ForeignRecord, SensorsMayDiffer) {
   EXPECT_LT(std::abs(error(result, "delay", 1e-6)), kFour);
   // Taken to be equal, no cause is the right one: the frequencies are wrong, and the misfit is
   // plain.
-  const CalibrationResult exact = calibrated(record, {.exact_sensors = true});
+  const CalibrationResult exact = calibrated(record, {.exact_sensors = true, .restarts = 0});
   EXPECT_GT(frequency_errors(exact).by_data, 2.0 * kFour);
   EXPECT_FALSE(exact.continuation->right);
 }
@@ -204,7 +208,8 @@ TEST(ForeignRecord, ABodyMayRingInOneReaction) {
       stroke({.body_peak = 0.0125, .body_frequency = 280.0, .body_damping = 0.02},
              truth::Reactions::kTension);
   expect_right(calibrated(record, {.noise = 2e-3}));
-  const CalibrationResult without = calibrated(record, {.noise = 2e-3, .response = false});
+  const CalibrationResult without =
+      calibrated(record, {.noise = 2e-3, .response = false, .restarts = 0});
   EXPECT_GT(frequency_errors(without).by_data, 2.0 * kFour);
 }
 

@@ -43,7 +43,7 @@ class Attempt {
     if (!priors_.fixed({ParameterKind::kFundamental})) start_.fundamental *= std::exp(shift);
     ContinuationResult result;
     follow_law();
-    fit_whole("law");
+    fit_whole_of_ladder();
     Eigen::MatrixXd covariance = finish_law("law", result);
     // Where a fit with weights ends: one without fits the noise of bins that tell nothing, too.
     if (input_.take_noise(stroke_.whole(), law_.model(law_theta_), 0.02)) {
@@ -131,22 +131,42 @@ class Attempt {
                                best.theta, with_priors(unknowns, best.theta, 20, 1e-2));
     }
     law_ = law(priors_);
-    law_theta_ = Eigen::VectorXd::Zero(law_.size());
-    law_theta_.head(3) = best.theta;
     const ProjectedLikelihood last = stroke_.damped(20.0);
-    law_theta_ = stroke_
-                     .fit_stage(stroke_.damped_name("law", 20.0), last, law_, law_theta_,
-                                with_priors(law_, law_theta_, 20, 1e-3))
-                     .theta;
-    ladder_theta_ = law_theta_;
+    const auto fitted = [&](const Eigen::VectorXd& theta) {
+      Eigen::VectorXd start = Eigen::VectorXd::Zero(law_.size());
+      start.head(3) = theta;
+      return stroke_.fit(last, law_, start, with_priors(law_, start, 20, 1e-3));
+    };
+    NewtonFit found = fitted(best.theta);
+    // A start that was near before the widest rung, of a few samples and much noise, led elsewhere.
+    NewtonFit direct = fitted(law_.start().head(3));
+    if (direct.objective < found.objective) std::swap(direct, found);
+    // Fits of one minimum differ by less than their tolerance, 1e-3.
+    if (direct.objective > found.objective + 1e-2) second_theta_ = direct.theta;
+    law_theta_ = ladder_theta_ = found.theta;
+    stroke_.end_stage(stroke_.damped_name("law", 20.0), last, law_, found);
   }
 
   // σ = 0, end state projected out.
-  void fit_whole(const std::string& name) {
-    law_theta_ = stroke_
-                     .fit_stage(name + ", whole record", stroke_.whole(), law_, law_theta_,
-                                with_priors(law_, law_theta_, 12, 1e-2))
-                     .theta;
+  NewtonFit whole_from(const Eigen::VectorXd& theta) {
+    return stroke_.fit(stroke_.whole(), law_, theta, with_priors(law_, theta, 25, 1e-2));
+  }
+
+  // Of the minima that the ladder and the start itself lead to all of the record tells the lower.
+  void fit_whole_of_ladder() {
+    NewtonFit found = whole_from(law_theta_);
+    if (second_theta_.size() > 0) {
+      NewtonFit second = whole_from(second_theta_);
+      if (second.objective < found.objective) found = std::move(second);
+    }
+    end_whole("law", found);
+  }
+
+  void fit_whole(const std::string& name) { end_whole(name, whole_from(law_theta_)); }
+
+  void end_whole(const std::string& name, const NewtonFit& found) {
+    law_theta_ = found.theta;
+    stroke_.end_stage(name + ", whole record", stroke_.whole(), law_, found);
   }
 
   // Once more with weights and without the noise in JᵀJ. Returns the covariance.
@@ -206,6 +226,7 @@ class Attempt {
   StiffStringFit start_;
   StringUnknowns law_;
   Eigen::VectorXd law_theta_, ladder_theta_;
+  Eigen::VectorXd second_theta_;  // of another minimum at the last rung; empty: there is none
 };
 
 }  // namespace
