@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# check_config_pdfs.sh WRITE_CONFIG_REPORTS CONFIGS: prints the reports of the experiment files, run
-# at a small size, to PDF by headless Chromium and fails on blank pages, on words that overlap or
+# check_config_pdfs.sh REPORTS: prints the reports that write_config_reports has written into the
+# folder to PDF by headless Chromium and fails on blank pages, on words that overlap or
 # leave the page, on charts and tables that are cut, split over two pages or not beside each other, on headings
 # that end a page;
 # and on words of the figures that gnuplot draws that overlap or leave their sheet.
@@ -48,8 +48,6 @@ window.addEventListener('beforeprint', function () {
 });
 </script>
 JS
-"$1" "$2" "$folder/out" figures >"$folder/pages" 2>"$folder/unsaid"
-[ ! -s "$folder/unsaid" ] || { cat "$folder/unsaid"; exit 1; }
 pages=0
 while read -r page; do
   pages=$((pages + 1))
@@ -60,16 +58,16 @@ while read -r page; do
     --virtual-time-budget=100000 --no-pdf-header-footer --print-to-pdf="$pdf" \
     "file://${page%.html}_marked.html" 2>"$folder/log" || { cat "$folder/log"; exit 1; }
   # Charts are drawn as vectors: a bitmap is one that the paper has blurred.
-  pdfimages -list "$pdf" | sed -n "3,\$s|^|${page#"$folder/out/"}: a picture: |p" >>"$folder/found"
+  pdfimages -list "$pdf" | sed -n "3,\$s|^|${page#"$1/"}: a picture: |p" >>"$folder/found"
   pdftotext -bbox "$pdf" "$pdf.words"
   python3 "$here/pdf_findings.py" "$pdf.words" "$page" |
-    sed "s|^|${page#"$folder/out/"}: |" >>"$folder/found"
-done <"$folder/pages"
+    sed "s|^|${page#"$1/"}: |" >>"$folder/found"
+done <"$1/pages"
 figures=0
-for pdf in $(find "$folder/out" -path '*/figures/*.pdf' | sort); do
+for pdf in $(find "$1" -path '*/figures/*.pdf' | sort); do
   figures=$((figures + 1))
   pdftotext -bbox "$pdf" "$pdf.words"
-  python3 "$here/pdf_findings.py" "$pdf.words" | sed "s|^|${pdf#"$folder/out/"}: |" >>"$folder/found"
+  python3 "$here/pdf_findings.py" "$pdf.words" | sed "s|^|${pdf#"$1/"}: |" >>"$folder/found"
 done
 [ "$figures" -gt 30 ] || { echo "only $figures figures"; exit 1; }
 [ "$pages" -gt 10 ] || { echo "only $pages reports"; exit 1; }

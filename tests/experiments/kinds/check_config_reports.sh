@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# check_config_reports.sh WRITE_CONFIG_REPORTS CONFIGS: opens the reports of the experiment files,
-# run at a small size, in headless Chromium and fails on errors, on charts without a curve, on texts
+# check_config_reports.sh REPORTS: opens the reports that write_config_reports has written into the
+# folder, in headless Chromium and fails on errors, on charts without a curve, on texts
 # of a figure that overlap or are cut, and on a page that is wider than its window. Exit code 77:
 # there is no browser.
 set -euo pipefail
@@ -8,7 +8,6 @@ set -euo pipefail
 find_browser
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-"$1" "$2" "$folder/out" >"$folder/pages"
 
 # Before the page's own scripts: what is written into canvases, with its box in the chart.
 cat >"$folder/head" <<'JS'
@@ -117,7 +116,7 @@ while read -r page; do
   pages=$((pages + 1))
   { sed "/<head>/r $folder/head" "$page"; cat "$folder/tail"; } >"${page%.html}_probe.html"
   list+="'${page%.html}_probe.html',"
-done <"$folder/pages"
+done <"$1/pages"
 cat >"$folder/index.html" <<HTML
 <html><body><script>
 var pages = [$list], widths = [1400, 800], looked = 0, found = [], frame = null;
@@ -133,7 +132,7 @@ function next() {
   document.body.appendChild(frame);
 }
 window.addEventListener('message', function (event) {
-  var page = frame.src.replace(/.*\/out\//, '').replace('/report_probe.html', '');
+  var page = frame.src.replace('file://$1/', '').replace('/report_probe.html', '');
   event.data.forEach(function (text) {
     found.push(page + ' at ' + frame.width + ': ' + text.replace(/["|]/g, "'"));
   });

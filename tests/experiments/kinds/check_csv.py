@@ -1,5 +1,5 @@
-"""check_csv.py WRITE_CONFIG_REPORTS CONFIGS MODCAL: reads every CSV file of the reports of the experiment files, run at
-a small size, of a calibration, of the example record and of a list, by pandas.read_csv(comment="#") and
+"""check_csv.py REPORTS EXAMPLES MODCAL: reads every CSV file of the reports that write_config_reports has written into the
+folder, of a calibration, of the example record and of a list, by pandas.read_csv(comment="#") and
 numpy.genfromtxt(names=True) as they are. Exit code 77: there is no pandas or no NumPy.
 """
 import csv
@@ -60,10 +60,9 @@ def findings_of(file):
                 yield f"{headings[place]} is no column of numbers"
 
 
-def write_files(reports, configs, modcal, folder):
-    """All kinds of CSV files below the folder."""
-    subprocess.run([reports, configs, folder / "reports"], check=True, stdout=subprocess.DEVNULL)
-    record = pathlib.Path(configs).parent / "examples" / "bowed_violin_d.csv"
+def write_files(examples, modcal, folder):
+    """All kinds of CSV files that no report of an experiment file has, below the folder."""
+    record = pathlib.Path(examples) / "bowed_violin_d.csv"
     (folder / "record.csv").write_bytes(record.read_bytes())
 
     def run(*words):
@@ -79,9 +78,9 @@ def write_files(reports, configs, modcal, folder):
 def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        write_files(*sys.argv[1:4], folder)
-        files = sorted(folder.rglob("*.csv"))
-        found = [f"{file.relative_to(folder)}: {finding}" for file in files for finding in findings_of(file)]
+        write_files(*sys.argv[2:4], folder)
+        files = sorted(pathlib.Path(sys.argv[1]).rglob("*.csv")) + sorted(folder.rglob("*.csv"))
+        found = [f"{file}: {finding}" for file in files for finding in findings_of(file)]
     print("\n".join(found) if found else f"{len(files)} files read")
     if found or len(files) < 50:
         sys.exit(1)
