@@ -9,6 +9,7 @@
 #include "libinverse/waves/end_residual.hpp"
 #include "libinverse/waves/tuning.hpp"
 #include "libsim/signal/fft.hpp"
+#include "libsim/signal/statistics.hpp"
 
 namespace modcal {
 namespace {
@@ -21,8 +22,7 @@ double missing_share(double drive) { return drive > 0.0 ? 1.0 - std::tanh(drive)
 // What a sensor of this drive read, before it saturated.
 std::vector<double> raised(std::span<const double> samples, double drive) {
   std::vector<double> result(samples.begin(), samples.end());
-  double peak = 0.0;
-  for (const double x : result) peak = std::max(peak, std::abs(x));
+  const double peak = largest_magnitude(samples);
   if (drive == 0.0 || peak == 0.0) return result;
   const double most = std::tanh(drive);
   for (double& x : result) x = peak / drive * std::atanh(most * x / peak);

@@ -8,6 +8,7 @@
 #include "libsim/records/csv_grammar.hpp"
 #include "libsim/records/record_file.hpp"
 #include "libsim/records/tuning.hpp"
+#include "libsim/signal/statistics.hpp"
 
 namespace modcal {
 namespace {
@@ -244,9 +245,7 @@ void CsvReader::use_time_axis(double stated) {
   Column& column = columns_[*time_];
   std::vector<double>& t = column.channel.samples;
   if (!std::ranges::all_of(t, [](double x) { return std::isfinite(x); })) return;  // reported
-  double largest = 0.0;
-  for (const double value : t) largest = std::max(largest, std::abs(value));
-  double resolution = time_digits_.resolution(largest);
+  double resolution = time_digits_.resolution(largest_magnitude(t));
   if (!column.channel.unit.empty()) {
     const double second = to_si(1.0, column.channel.unit, "s");
     for (double& value : t) value *= second;

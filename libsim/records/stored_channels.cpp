@@ -8,6 +8,7 @@
 #include "libsim/base/units.hpp"
 #include "libsim/records/csv_grammar.hpp"
 #include "libsim/records/tuning.hpp"
+#include "libsim/signal/statistics.hpp"
 
 namespace modcal {
 namespace {
@@ -77,9 +78,8 @@ void use_times(const StoredChannel& channel, const ReadOptions& options, const s
   const auto finite = [](double value) { return std::isfinite(value); };
   MODCAL_REQUIRE(std::all_of(times.begin(), times.end(), finite),
                  "{}: an instant of \"{}\" is no number", file, channel.head.name);
-  double largest = 0.0;
-  for (const double time : times) largest = std::max(largest, std::abs(time));
-  const TimeAxis axis = examine_time_axis(times, channel.time_resolution * largest);
+  const TimeAxis axis =
+      examine_time_axis(times, channel.time_resolution * largest_magnitude(times));
   recording.sample_rate = axis.sample_rate;
   recording.time_jitter = axis.jitter;
   for (const TimeFinding& finding : axis.findings) {

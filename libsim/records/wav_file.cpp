@@ -6,6 +6,7 @@
 #include "libsim/base/files.hpp"
 #include "libsim/records/record_file.hpp"
 #include "libsim/records/signal_file.hpp"
+#include "libsim/signal/statistics.hpp"
 
 namespace modcal {
 namespace {
@@ -36,8 +37,7 @@ void require_fitting(std::span<const Signal> signals, const WavWriteOptions& opt
   // The largest code of 24 bits is one step below full scale.
   const double limit = options.samples == WavSamples::kPcm24 ? 1.0 - 0.5 / kCodes24 : largest;
   for (const Signal& signal : signals) {
-    double peak = 0.0;
-    for (const double value : signal.samples) peak = std::max(peak, std::abs(value));
+    const double peak = largest_magnitude(signal.samples);
     MODCAL_REQUIRE(peak / options.full_scale <= limit,
                    "{}: {} reaches {:g} {}, beyond what full_scale = {:g} can hold; choose a "
                    "full_scale above its peak",

@@ -30,6 +30,12 @@ double standard_deviation(std::span<const double> x) {
   return std::sqrt(sum / static_cast<double>(x.size()));
 }
 
+double largest_magnitude(std::span<const double> x) {
+  double largest = 0.0;
+  for (const double value : x) largest = std::max(largest, std::abs(value));
+  return largest;
+}
+
 double correlation(std::span<const double> x, std::span<const double> y) {
   require_same_length(x, y);
   const double mean_x = mean(x);

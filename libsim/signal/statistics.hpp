@@ -15,6 +15,8 @@ double correlation(std::span<const double> x, std::span<const double> y);
 /// ‖x − y − mean(x − y)‖ / ‖y − mean(y)‖: rms error relative to the reference y, static parts
 /// removed. NaN where y is constant.
 double relative_rms_error(std::span<const double> x, std::span<const double> y);
+/// max |x|, 0 without samples; NaN is passed over.
+double largest_magnitude(std::span<const double> x);
 void remove_mean(std::span<double> x);
 /// Quantile q in [0, 1] with linear interpolation between order statistics (Hyndman and Fan, 1996,
 /// type 7). NaN for an empty sample.

@@ -8,6 +8,7 @@
 
 #include "libinverse/structure/tuning.hpp"
 #include "libsim/records/levels.hpp"
+#include "libsim/signal/statistics.hpp"
 
 namespace modcal {
 namespace {
@@ -98,7 +99,7 @@ void tell_unknowns(const StructureForce& found, const LoadedStructureRecord& loa
   if (found.told < 1.0) {
     result.warn(
         "the responses tell no force: they are no larger than the noise of the table's record; "
-        "where one acted, check the units and gains of the channels");
+        "either none acted, or units and gains of the channels are not those of the table");
   }
   if (found.untried > 0.0) {
     result.warn(fmt::format(
@@ -123,15 +124,11 @@ void tell_unknowns(const StructureForce& found, const LoadedStructureRecord& loa
 // responses that are larger there, and in a force that was measured.
 void doubt_window(const StructureForce& found, const LoadedStructureRecord& loaded,
                   StudyResult& result) {
-  const auto largest = [](std::span<const double> samples) {
-    double most = 0.0;
-    for (const double sample : samples) most = std::max(most, std::abs(sample));
-    return most;
-  };
   for (std::size_t k = 0; k < loaded.kinds.size(); ++k) {
     const std::span<const double> response = loaded.record.responses[k];
     const std::size_t end = std::min(found.force.size(), response.size());
-    const double within = largest(response.first(end)), after = largest(response.subspan(end));
+    const double within = largest_magnitude(response.first(end));
+    const double after = largest_magnitude(response.subspan(end));
     if (after <= kLate * within) continue;
     result.warn(fmt::format(
         "{} is {:.2g} times as large behind the window of {:.3g} s as in it: a force acts there, "

@@ -103,7 +103,7 @@ void ForceOutcome::visit(ResultVisitor& visitor) const {
           squares += found.deviation[j] * found.deviation[j];
         }
         row({.key = "shape"}, name_of(found.shape));
-        row({.key = "untried_instants", .name = "instants, too many for impacts"},
+        row({.key = "untried_instants", .name = "instants not tried"},
             found.untried > 0.0 ? std::optional(found.untried) : std::nullopt);
         row({.key = "peak_n", .name = "peak", .unit = "N"}, peak);
         row({.key = "impulse_ns", .name = "impulse", .unit = "N s"}, impulse);

@@ -9,6 +9,7 @@
 #include "libinverse/structure/force/force_search.hpp"
 #include "libinverse/structure/tuning.hpp"
 #include "libsim/base/error.hpp"
+#include "libsim/signal/statistics.hpp"
 
 namespace modcal {
 namespace {
@@ -23,16 +24,11 @@ double half_a_spacing(const StructureTable& table) {
 // is no larger there than in the tenth before.
 bool is_struck_late(const StructureRecord& record) {
   const auto end = static_cast<double>(record.samples());
-  const auto seen = static_cast<std::ptrdiff_t>(kSeen * end);
-  const auto before = static_cast<std::ptrdiff_t>((2.0 * kSeen - 1.0) * end);
-  return std::ranges::any_of(record.responses, [&](const std::vector<double>& response) {
-    const auto largest = [](auto first, auto last) {
-      double most = 0.0;
-      for (; first != last; ++first) most = std::max(most, std::abs(*first));
-      return most;
-    };
-    const auto begin = response.begin();
-    return largest(begin + seen, response.end()) > kLate * largest(begin + before, begin + seen);
+  const auto seen = static_cast<std::size_t>(kSeen * end);
+  const auto before = static_cast<std::size_t>((2.0 * kSeen - 1.0) * end);
+  return std::ranges::any_of(record.responses, [&](std::span<const double> response) {
+    return largest_magnitude(response.subspan(seen)) >
+           kLate * largest_magnitude(response.subspan(before, seen - before));
   });
 }
 
