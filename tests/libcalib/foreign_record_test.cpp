@@ -197,7 +197,7 @@ TEST(ForeignRecord, SensorsMayDiffer) {
   EXPECT_LT(std::abs(error(result, "delay", 1e-6)), kFour);
   // Taken to be equal, no cause is the right one: the frequencies are wrong, and the misfit is
   // plain.
-  const CalibrationResult exact = calibrated(record, {.exact_sensors = true, .restarts = 0});
+  const CalibrationResult exact = calibrated(record, {.exact_sensors = true});
   EXPECT_GT(frequency_errors(exact).by_data, 2.0 * kFour);
   EXPECT_FALSE(exact.continuation->right);
 }

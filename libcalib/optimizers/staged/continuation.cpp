@@ -24,8 +24,17 @@ ContinuationResult with_misfit_for_noise(const AttemptInput& input,
                                          ContinuationResult contradicted) {
   const double misfit = contradicted.law.chi2;
   if (!(misfit > 1.0)) return contradicted;
+  // Noise and causes are those of the fit, and not of another start that was tried last.
   NoisyRecords records = input.records;
+  records.deviation = contradicted.noise;
+  records.noise = contradicted.noise_spectrum;
+  records.power_error = contradicted.noise_error;
   records.lines = contradicted.lines;
+  records.signals.clear();
+  for (const ScoreTest& cause : contradicted.freed) {
+    if (cause.cause == kBridge) continue;  // taken out of the reactions, which are as recorded here
+    records.signals.insert(records.signals.end(), cause.columns.begin(), cause.columns.end());
+  }
   for (double& deviation : records.deviation) deviation *= std::sqrt(misfit);
   ContinuationResult found = attempt_continuation({.initial = input.initial,
                                                    .records = records,
@@ -81,8 +90,14 @@ ContinuationResult attempt_with_its_noise(const AttemptInput& input, double shif
   return found;
 }
 
-// Of a fit, to compare it with one of another noise.
-double power_left(const ContinuationResult& fit) { return fit.chi2 * fit.noise[0] * fit.noise[1]; }
+// Of a fit, to compare it with one of another noise: over a spectrum by its mean level.
+double power_left(const ContinuationResult& fit) {
+  double level = 0.0;
+  const std::vector<NoiseSpectrum::Knot>& knots = fit.noise_spectrum.knots;
+  for (const NoiseSpectrum::Knot& knot : knots) level += std::log(knot.noise.determinant());
+  if (!knots.empty()) level /= 2.0 * static_cast<double>(knots.size());
+  return fit.chi2 * fit.noise[0] * fit.noise[1] * std::exp(level);
+}
 
 // A bridge that moves is taken out of the record, by as many modes of its body as the fits of what
 // is left ask for: they are those of a pinned string, whose modes are then put on the bridge. The
@@ -102,6 +117,7 @@ ContinuationResult on_moving_bridge(const AttemptInput& input, double shift,
     if (more) add_to_body(*cause, body);
     records.reactions = recorded;
     take_out(body, found.model, input.highest, records);
+    records.power_error = input.read_error;
     ContinuationResult next = attempt_with_its_noise(input, shift, found.evaluations);
     found.evaluations = next.evaluations;
     ModalBasis basis = next.model.basis;
@@ -112,6 +128,9 @@ ContinuationResult on_moving_bridge(const AttemptInput& input, double shift,
     on_bridge = std::move(basis);
   }
   records.reactions = recorded;
+  records.deviation = found.noise;
+  records.noise = found.noise_spectrum;
+  records.power_error = found.noise_error;
   records.on_bridge.clear();
   records.body.clear();
   found.model.basis = std::move(on_bridge);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "libcalib/identifiability/joint_report.hpp"
 #include "libcalib/identifiability/mode_verdict.hpp"
@@ -137,14 +138,18 @@ class Attempt {
       start.head(3) = theta;
       return stroke_.fit(last, law_, start, with_priors(law_, start, 20, 1e-3));
     };
+    const std::string name = stroke_.damped_name("law", 20.0);
     NewtonFit found = fitted(best.theta);
+    stroke_.end_stage(name, last, law_, found);
     // A start that was near before the widest rung, of a few samples and much noise, led elsewhere.
     NewtonFit direct = fitted(law_.start().head(3));
-    if (direct.objective < found.objective) std::swap(direct, found);
+    if (direct.objective < found.objective) {
+      std::swap(direct, found);
+      stroke_.end_stage(name + ", from the start itself", last, law_, found);
+    }
     // Fits of one minimum differ by less than their tolerance, 1e-3.
     if (direct.objective > found.objective + 1e-2) second_theta_ = direct.theta;
     law_theta_ = ladder_theta_ = found.theta;
-    stroke_.end_stage(stroke_.damped_name("law", 20.0), last, law_, found);
   }
 
   // σ = 0, end state projected out.
@@ -152,20 +157,22 @@ class Attempt {
     return stroke_.fit(stroke_.whole(), law_, theta, with_priors(law_, theta, 25, 1e-2));
   }
 
-  // Of the minima that the ladder and the start itself lead to all of the record tells the lower.
+  // Of the minima that the ladder and the start itself lead to all of the record tells the lower:
+  // by odds of more than e^10, as unknowns that hardly matter leave two fits of one minimum apart.
   void fit_whole_of_ladder() {
-    NewtonFit found = whole_from(law_theta_);
-    if (second_theta_.size() > 0) {
-      NewtonFit second = whole_from(second_theta_);
-      if (second.objective < found.objective) found = std::move(second);
-    }
-    end_whole("law", found);
+    end_whole("law", whole_from(law_theta_));
+    if (second_theta_.size() == 0) return;
+    const NewtonFit second = whole_from(second_theta_);
+    if (!(second.objective < whole_objective_ - 10.0)) return;
+    ladder_theta_ = second_theta_;
+    end_whole("law from its second minimum", second);
   }
 
   void fit_whole(const std::string& name) { end_whole(name, whole_from(law_theta_)); }
 
   void end_whole(const std::string& name, const NewtonFit& found) {
     law_theta_ = found.theta;
+    whole_objective_ = found.objective;
     stroke_.end_stage(name + ", whole record", stroke_.whole(), law_, found);
   }
 
@@ -226,6 +233,7 @@ class Attempt {
   StiffStringFit start_;
   StringUnknowns law_;
   Eigen::VectorXd law_theta_, ladder_theta_;
+  double whole_objective_ = 0.0;
   Eigen::VectorXd second_theta_;  // of another minimum at the last rung; empty: there is none
 };
 

@@ -104,5 +104,21 @@ TEST_F(SignalColumns, AreCutWithTheirRecord) {
   }
 }
 
+TEST_F(SignalColumns, LinesAreCutWithTheirRecord) {
+  NoisyRecords records = noisy(bowed, 0.01, 1);
+  records.lines = {50.0, 100.0};
+  const WhitenedRecord whole = WhitenedRecord::of(records, 0.0, kBand);
+  const WhitenedRecord part = whole.slice(40, 100);
+  ASSERT_TRUE(part.waves && part.waves->size() == 2u);
+  for (std::size_t line = 0; line < 2; ++line) {
+    for (std::size_t wave = 0; wave < 4; ++wave) {
+      for (const std::size_t k : {0u, 10u, 99u}) {
+        const Complex there = (*whole.waves)[line][wave].at(40 + k);
+        EXPECT_LT(std::abs((*part.waves)[line][wave].at(k) - there), 1e-12 * std::abs(there));
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace modcal::signal_column_test
