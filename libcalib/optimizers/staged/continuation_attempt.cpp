@@ -142,13 +142,16 @@ class Attempt {
     NewtonFit found = fitted(best.theta);
     stroke_.end_stage(name, last, law_, found);
     // A start that was near before the widest rung, of a few samples and much noise, led elsewhere.
-    NewtonFit direct = fitted(law_.start().head(3));
-    if (direct.objective < found.objective) {
-      std::swap(direct, found);
-      stroke_.end_stage(name + ", from the start itself", last, law_, found);
+    // One that leaves twice as much was not.
+    if (stroke_.cost(last, law_.model(law_.start())) < 2.0 * found.objective) {
+      NewtonFit direct = fitted(law_.start().head(3));
+      if (direct.objective < found.objective) {
+        std::swap(direct, found);
+        stroke_.end_stage(name + ", from the start itself", last, law_, found);
+      }
+      // Fits of one minimum differ by less than their tolerance, 1e-3.
+      if (direct.objective > found.objective + 1e-2) second_theta_ = direct.theta;
     }
-    // Fits of one minimum differ by less than their tolerance, 1e-3.
-    if (direct.objective > found.objective + 1e-2) second_theta_ = direct.theta;
     law_theta_ = ladder_theta_ = found.theta;
   }
 
