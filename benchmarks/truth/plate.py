@@ -261,6 +261,7 @@ def main():
     p.add_argument("--sessions", type=int, default=0, help="of response functions in the place of modes")
     p.add_argument("--strikes", type=int, default=0, help="to which modes are fitted")
     p.add_argument("--sets", type=int, default=1, help="of strikes, whose poles are scored; the force by the first")
+    p.add_argument("--noise", type=float, default=0.002, help="of the record whose force is identified, over each response's rms; the table's has 0.002")
     p.add_argument("--keys", default="", help="further keys of identify_force: \"key: value; key: value\"; with change: the refined modes are scored, too")
     a = p.parse_args()
     a.out.mkdir(parents=True, exist_ok=True)
@@ -286,9 +287,9 @@ def main():
                 for modes in [fitted, *others] if fitted else []:
                     fit = json.loads((a.out / modes / "modes_fit.json").read_text())
                     scores.extend(pole_scores(fit, np.random.default_rng(seed), change))
-                name = f"{kind}_{change:g}_{draw}"
+                name = f"{kind}_{change:g}_{draw}" + (f"_{a.noise:g}" if a.noise != 0.002 else "")
                 if not (a.out / f"{name}.csv").exists():
-                    write(a.out / f"{name}.csv", *record(rng, change, 1.0, kind))
+                    write(a.out / f"{name}.csv", *record(rng, change, 1.0, kind, a.noise))
                 window = "80 ms" if kind == "strike" else "0.5 s"
                 (a.out / f"{name}.yaml").write_text(
                     yaml("identify_force", name, table=table, **{"window": window, **keys}))

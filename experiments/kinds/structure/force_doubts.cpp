@@ -87,8 +87,8 @@ void doubt_sensors(const StructureForce& found, const LoadedStructureRecord& loa
                     100.0 * *worst, name));
   }
   reject(fmt::format("rejected: no force explains the responses together, {:.0f} % of {} is left: "
-                     "compare order, sign and unit of the channels and the place of the contact "
-                     "with those of the table",
+                     "where that is not their noise, compare order, sign and unit of the channels "
+                     "and the place of the contact with those of the table",
                      100.0 * *worst, name),
          result);
 }
