@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "libsim/base/error.hpp"
@@ -11,6 +12,13 @@ namespace modcal::statistics_test {
 namespace {
 
 const std::vector<double> kSample = {2.0, 4.0, 4.0, 4.0, 5.0, 5.0, 7.0, 9.0};
+
+TEST(LargestMagnitude, PassesOverWhatIsNoNumber) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(largest_magnitude({}), 0.0);
+  EXPECT_EQ(largest_magnitude(std::vector{1.0, -3.0, 2.0}), 3.0);
+  EXPECT_EQ(largest_magnitude(std::vector{nan, 1.0, nan}), 1.0);
+}
 
 TEST(Moments, OfASampleWorkedByHand) {
   EXPECT_EQ(mean(kSample), 5.0);
