@@ -210,4 +210,12 @@ std::optional<std::size_t> odd_of_many(const ContourSpectra& spectra, const Tran
   return odd_one_out(predictions_of(spectra, transfers, variances));
 }
 
+double power_told(const BinEvidence& evidence) {
+  double sum = 0.0;
+  for (std::size_t m = 0; m < evidence.told.size(); ++m) {
+    sum += std::norm(evidence.score[m]) / evidence.told[m];
+  }
+  return sum / static_cast<double>(evidence.told.size());
+}
+
 }  // namespace modcal

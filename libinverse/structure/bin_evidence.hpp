@@ -51,6 +51,9 @@ struct SensorPrediction {
   double others = std::numeric_limits<double>::quiet_NaN();
 };
 
+/// Power in the responses that a force explains, mean over the bins, over that of noise alone.
+double power_told(const BinEvidence& evidence);
+
 /// H_k F of the force that the other sensors tell, with the variance |H_k|²/told + V_k, for every
 /// sensor in turn; empty: K = 1.
 std::vector<SensorPrediction> predictions_of(const ContourSpectra& spectra,

@@ -68,6 +68,7 @@ void doubt_begin(const StructureForce& found, const LoadedStructureRecord& loade
 // Sensors that contradict each other refuse the answer.
 void doubt_sensors(const StructureForce& found, const LoadedStructureRecord& loaded,
                    StudyResult& result) {
+  if (found.told < 1.0) return;  // sensors that hear nothing contradict nobody
   const auto worst = std::ranges::max_element(found.sensor_left);
   const double power = contradiction_of(found.sensor_left);
   if (power < kContradiction * kContradiction) return;

@@ -41,6 +41,8 @@ ForceSearch::ForceSearch(const StructureTable& table, const StructureRecord& rec
 }
 
 std::optional<std::size_t> ForceSearch::odd_sensor() const {
+  // Sensors that hear nothing contradict nobody.
+  if (power_told(evidence_of(spectra_, transfers_, variances_, kNoSensor)) < 1.0) return {};
   return odd_of_many(spectra_, transfers_, variances_);
 }
 
@@ -188,11 +190,10 @@ double ForceSearch::evidence_of_power(const BinEvidence& evidence,
 void ForceSearch::find_power(const BinEvidence& evidence) {
   const double spacing = spectra_.grid.spacing / (2.0 * std::numbers::pi);
   std::vector<double> found;
-  result_.told = 0.0;
+  result_.told = power_told(evidence);
   for (std::size_t m = 0; m < spectra_.count(); ++m) {
     const double told = evidence.told[m];
     found.push_back(std::norm(evidence.score[m] / told) - 1.0 / told);
-    result_.told += std::norm(evidence.score[m]) / told / static_cast<double>(spectra_.count());
   }
   result_.rise = rise_towards_zero(found, spectra_.bins.first);
   for (double& power : found) power = std::max(power, 0.0);

@@ -62,6 +62,23 @@ void turn_sign(Samples& a) {
   for (double& x : a) x = -x;
 }
 
+// In responses that are no larger than the noise of the table nothing contradicts.
+TEST_F(OddSensor, IsNoneWhereNoForceIsTold) {
+  Recording strike = read_csv(kFolder + "plate_other_strike.csv");
+  std::string text = "# sample_rate: 4000 Hz\nforce [N],a1 [m/s2],a2 [m/s2],a3 [m/s2],a4 [m/s2]\n";
+  for (std::size_t j = 0; j < strike.channels[0].samples.size(); ++j) {
+    for (std::size_t k = 0; k < 5; ++k) {
+      const double gain = k == 0 ? 1.0 : k == 2 ? 3e-20 : 1e-20;
+      text += fmt::format("{:.9g}{}", gain * strike.channels[k].samples[j], k < 4 ? "," : "\n");
+    }
+  }
+  const StudyResult quiet =
+      run("force_on_plate.yaml", {"record.file=" + write("record.csv", text).string()});
+  EXPECT_TRUE(document_of(quiet)["left_out"].is_null());
+  EXPECT_THAT(quiet.summary, Not(HasSubstr("contradicts")));
+  EXPECT_THAT(quiet.summary, HasSubstr("the responses tell no force"));
+}
+
 // Three sensors find the force as well as four do.
 TEST_F(OddSensor, OfFourIsLeftOutAndNamed) {
   const StudyResult whole = run("force_on_plate.yaml", {spoilt([](Samples&) {})});
