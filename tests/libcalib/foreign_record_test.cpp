@@ -9,7 +9,6 @@
 #include "libcalib/calibration.hpp"
 #include "libcalib/identifiability/tuning.hpp"
 #include "libcalib/objectives/joint_likelihood.hpp"
-#include "libcalib/optimizers/staged/staged.hpp"
 #include "libsim/model/damping.hpp"
 
 namespace modcal::foreign_record_test {
@@ -39,7 +38,6 @@ struct Settings {
   double highest_frequency = std::numeric_limits<double>::quiet_NaN();  ///< [Hz]
   bool known_noise = false;                                             ///< stated, not read
   bool known_damping = false;  ///< else 1e-3 for every mode
-  std::int64_t restarts = 4;   ///< 0 where no start could serve
 };
 
 Choice<DampingLaw> damping_of(const truth::TruthRecord& record) {
@@ -72,8 +70,6 @@ CalibrationResult calibrated(truth::TruthRecord record, const Settings& settings
     options.parameters.unknowns.priors = {
         {"gain", 1.0, 0.02}, {"delay", 0.0, 2e-5}, {"corner", 0.0, 1.0}};
   }
-  options.optimizer =
-      Choice<Optimizer>::of<Staged>("staged", {.schedule = {.restarts = settings.restarts}});
   options.support = settings.support;
   std::vector<CalibrationRecord> records = {
       {.data = CalibrationData::of_records(record.r1, record.r2, record.rate), .recorded = true}};
@@ -144,8 +140,8 @@ TEST(ForeignRecord, IsCalibratedWithinItsDeviations) {
 }
 
 TEST(ForeignRecord, WithoutTheModesAboveItIsWrong) {
-  const CalibrationResult result = calibrated(
-      equal_sensors(), {.support = {.remainder = "none"}, .exact_sensors = true, .restarts = 0});
+  const CalibrationResult result =
+      calibrated(equal_sensors(), {.support = {.remainder = "none"}, .exact_sensors = true});
   EXPECT_GT(frequency_errors(result).by_data, 2.0 * kFour);
   EXPECT_FALSE(result.continuation->right);
 }
@@ -208,8 +204,7 @@ TEST(ForeignRecord, ABodyMayRingInOneReaction) {
       stroke({.body_peak = 0.0125, .body_frequency = 280.0, .body_damping = 0.02},
              truth::Reactions::kTension);
   expect_right(calibrated(record, {.noise = 2e-3}));
-  const CalibrationResult without =
-      calibrated(record, {.noise = 2e-3, .response = false, .restarts = 0});
+  const CalibrationResult without = calibrated(record, {.noise = 2e-3, .response = false});
   EXPECT_GT(frequency_errors(without).by_data, 2.0 * kFour);
 }
 
