@@ -98,9 +98,10 @@ void doubt_sensors(const StructureForce& found, const LoadedStructureRecord& loa
 void tell_unknowns(const StructureForce& found, const LoadedStructureRecord& loaded,
                    const StructureTable& modes, StudyResult& result) {
   if (found.told < 1.0) {
-    result.warn(
-        "the responses tell no force: they are no larger than the noise of the table's record; "
-        "either none acted, or units and gains of the channels are not those of the table");
+    reject(
+        "rejected: the responses tell no force: they are no larger than the noise of the table's "
+        "record; either none acted, or units and gains of the channels are not those of the table",
+        result);
   }
   if (found.untried > 0.0) {
     result.warn(fmt::format(
