@@ -1,11 +1,13 @@
 # Every target can be the first one run on a fresh Debian 12 (root or sudo).
 PRESET ?= release
+# Further options of CMake's, such as -DMODCAL_WERROR=ON.
+OPTIONS ?=
 
 .PHONY: reproduce test sanitize fuzz mutation test-cluster python bench accuracy stress format tidy tidy-changed docs clean build
 .PHONY: packages packages-test packages-python packages-cluster packages-develop packages-fuzz
 
 build: packages
-	@cmake --preset $(PRESET) >/dev/null
+	@cmake --preset $(PRESET) $(OPTIONS) >/dev/null
 	@cmake --build --preset $(PRESET) --target modcal
 
 packages:
