@@ -20,8 +20,9 @@ ForceShape force_shape_of(std::string_view name);
 struct ForceScore {
   double correlation = 0.0;
   double relative_error = 0.0;
-  double in_band = 0.0;   // the same between the table's limits
-  double coverage = 0.0;  // of the 95 % band
+  double in_band = 0.0;         // the same between the table's limits
+  double coverage = 0.0;        // of the 95 % band
+  double coverage_above = 0.0;  // the same of what lies above the table's lowest frequency
 };
 
 /// In the window of the force, between the limits of the table's band for `in_band`.

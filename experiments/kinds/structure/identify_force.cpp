@@ -30,9 +30,9 @@ std::string sentence_of(const StructureForce& found, const LoadedStructureRecord
 std::string sentence_of(const ForceScore& score, const StructureTable& modes) {
   return fmt::format(
       "against the measured force: relative rms error {:.3f}, {:.3f} between {:g} and {:g} Hz, R "
-      "{:.4f}; {:.1f} % in the 95 % band\n",
+      "{:.4f}; {:.1f} % in the 95 % band, {:.1f} % of what lies above {:g} Hz\n",
       score.relative_error, score.in_band, modes.low, modes.high, score.correlation,
-      100.0 * score.coverage);
+      100.0 * score.coverage, 100.0 * score.coverage_above, modes.low);
 }
 
 void add_signals(const StructureForce& force, double rate, bool as_sound, StudyResult& result) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "experiments/kinds/structure/force_outcome.hpp"
 #include "experiments/kinds/structure/structure_files.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/base/files.hpp"
@@ -156,6 +157,24 @@ TEST(IdentifyForce, FindsTheForceOfAnotherStrikeAndHoldsItInItsBand) {
   EXPECT_LT(force["relative_error_in_band"].get<double>(), 0.02);
   EXPECT_LT(force["relative_error"].get<double>(), 0.1);
   EXPECT_GT(force["coverage"].get<double>(), 0.9);
+}
+
+TEST(IdentifyForce, ItsBandIsComparedAboveTheDriftOfTheForceSensor) {
+  constexpr std::size_t kCount = 1000;
+  StructureForce found;
+  found.force.assign(kCount, 0.0);
+  found.deviation.assign(kCount, 1.0);
+  std::vector<double> measured(kCount);
+  for (std::size_t j = 0; j < kCount; ++j) {
+    // 20 Hz, twice as high as the band: a third of a sine lies below half of its height.
+    measured[j] = 30.0 + 2.0 * 1.959964 * std::sin(2.0 * M_PI * 0.02 * static_cast<double>(j));
+  }
+  StructureTable table;
+  table.low = 5.0;
+  table.high = 400.0;
+  const ForceScore score = score_of(found, measured, 1000.0, table);
+  EXPECT_EQ(score.coverage, 0.0);
+  EXPECT_NEAR(score.coverage_above, 1.0 / 3.0, 0.03);  // of 50 samples a turn 18
 }
 
 TEST(IdentifyForce, WarnsOfAForceBehindItsWindow) {
