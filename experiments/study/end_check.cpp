@@ -1,5 +1,8 @@
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <functional>
+#include <mutex>
 #include <set>
 
 #include "experiments/study/observation.hpp"
@@ -153,9 +156,7 @@ void require_linear_sensors(const EndRecord& ends, const ObservationOptions& opt
       pair, lacking, 100.0 * saturation->unexplained, 100.0 * saturation->mended);
 }
 
-}  // namespace
-
-void require_one_string(const ObservationOptions& options, const RecordedSignals& signals) {
+void check_one_string(const ObservationOptions& options, const RecordedSignals& signals) {
   const RecordOptions& record = options.record;
   MODCAL_REQUIRE(signals.sample_rate > 2.0 * options.string.fundamental,
                  "{}: a sample rate of {:g} Hz does not show a string of f0 = {:g} Hz: check the "
@@ -198,6 +199,41 @@ void require_one_string(const ObservationOptions& options, const RecordedSignals
                  "are missing or something else was recorded there; crop to the part before or "
                  "behind (record.start, record.stop)",
                  pair, record.start + fit.disturbance->time, fit.disturbance->ratio);
+}
+
+/// Hash of all that the check of two reactions depends on.
+std::size_t key_of_check(const ObservationOptions& options, const RecordedSignals& signals) {
+  std::string key = fingerprint([&](OptionVisitor& visitor) {
+    ObservationOptions read = options;
+    read.record.visit(visitor);
+    read.string.visit(visitor);
+    read.contact.visit(visitor);
+  });
+  for (const Signal* reaction : {&*signals.left, &*signals.right}) {
+    const std::vector<double>& samples = reaction->samples;
+    const std::string_view bytes(reinterpret_cast<const char*>(samples.data()),
+                                 samples.size() * sizeof(double));
+    key += fmt::format(" {:x}", std::hash<std::string_view>{}(bytes));
+  }
+  key += fmt::format(" {:x}", std::bit_cast<std::uint64_t>(signals.sample_rate));
+  return std::hash<std::string>{}(key);
+}
+
+}  // namespace
+
+void require_one_string(const ObservationOptions& options, const RecordedSignals& signals) {
+  // A record is checked before a run, by the run, and by every task of a list: what passed once
+  // does not need the third of a second again.
+  static std::mutex mutex;
+  static std::set<std::size_t> passed;
+  const std::size_t key = key_of_check(options, signals);
+  {
+    const std::lock_guard lock(mutex);
+    if (passed.contains(key)) return;
+  }
+  check_one_string(options, signals);
+  const std::lock_guard lock(mutex);
+  passed.insert(key);
 }
 
 void require_told_fundamental(const ObservationOptions& options, const Observation& observation) {

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "libinverse/waves/end_residual.hpp"
@@ -93,13 +95,23 @@ class RaisedRecord {
     return bins;
   }
 
+  // Drives are tried from the same string, in the same steps: most strings come again.
+  const std::vector<EndFactors>& factors_of(const StatedString& string) const {
+    std::vector<EndFactors>& factors = factors_[{string.fundamental, string.contact}];
+    if (factors.empty()) {
+      factors.reserve(frequency_.size());
+      for (const double frequency : frequency_) factors.push_back(end_factors(frequency, string));
+    }
+    return factors;
+  }
+
   // 1 − Re Σ x y*/√(Σ|x|² Σ|y|²) of x = R₁ sin kx_c and y = R₂ sin k(L − x_c).
   double left_by(const Drives& drives, const StatedString& string) const {
     const auto &left = reactions_[0][drives[0]], &right = reactions_[1][drives[1]];
+    const std::vector<EndFactors>& factors = factors_of(string);
     double powers[2] = {0.0, 0.0}, product = 0.0;
     for (std::size_t i = 0; i < frequency_.size(); ++i) {
-      const EndFactors factors = end_factors(frequency_[i], string);
-      const Complex x = factors.left * left[i], y = factors.right * right[i];
+      const Complex x = factors[i].left * left[i], y = factors[i].right * right[i];
       powers[0] += std::norm(x);
       powers[1] += std::norm(y);
       product += x.real() * y.real() + x.imag() * y.imag();
@@ -132,6 +144,7 @@ class RaisedRecord {
 
   std::vector<double> frequency_;
   std::array<std::array<std::vector<Complex>, kDrives>, 2> reactions_;
+  mutable std::map<std::pair<double, double>, std::vector<EndFactors>> factors_;  // of f0, x_c
 };
 
 }  // namespace
