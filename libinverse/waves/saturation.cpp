@@ -156,6 +156,7 @@ std::optional<Saturation> saturation_of(const EndRecord& record, StatedString st
   Drives best = {0, 0};
   StatedString nearest = string;
   const auto try_drives = [&](const Drives& drives) {
+    if (drives == best) return;
     StatedString other = nearest;
     const double left = reactions.unexplained(drives, other);
     if (!(left < found.mended)) return;
@@ -164,7 +165,10 @@ std::optional<Saturation> saturation_of(const EndRecord& record, StatedString st
     nearest = other;
   };
   for (std::size_t d = 1; d < kDrives; ++d) try_drives({d, d});
-  for (int round = 0; round < 2; ++round) {
+  // A round that finds no better drives would find none again, from the same string.
+  double before = std::numeric_limits<double>::infinity();
+  for (int round = 0; round < 2 && found.mended < before; ++round) {
+    before = found.mended;
     for (std::size_t d = 0; d < kDrives; ++d) try_drives({d, best[1]});
     for (std::size_t d = 0; d < kDrives; ++d) try_drives({best[0], d});
   }
