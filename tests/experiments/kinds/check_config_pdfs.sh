@@ -48,15 +48,15 @@ window.addEventListener('beforeprint', function () {
 });
 </script>
 JS
+while read -r page; do
+  { cat "$page"; cat "$folder/marks"; } >"${page%.html}_marked.html"
+  echo "${page%.html}_marked.html ${page%.html}.pdf"
+done <"$1/pages" >"$folder/pairs"
+"$here/print_pages.py" "$browser" "$folder/profile" <"$folder/pairs"
 pages=0
 while read -r page; do
   pages=$((pages + 1))
   pdf=${page%.html}.pdf
-  { cat "$page"; cat "$folder/marks"; } >"${page%.html}_marked.html"
-  "$browser" --headless --no-sandbox --disable-gpu --no-first-run --disable-background-networking \
-    --disable-component-update --disable-sync --user-data-dir="$folder/profile" \
-    --virtual-time-budget=100000 --no-pdf-header-footer --print-to-pdf="$pdf" \
-    "file://${page%.html}_marked.html" 2>"$folder/log" || { cat "$folder/log"; exit 1; }
   # Charts are drawn as vectors: a bitmap is one that the paper has blurred.
   pdfimages -list "$pdf" | sed -n "3,\$s|^|${page#"$1/"}: a picture: |p" >>"$folder/found"
   pdftotext -bbox "$pdf" "$pdf.words"
