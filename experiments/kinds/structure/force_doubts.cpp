@@ -18,24 +18,39 @@ void reject(std::string why, StudyResult& result) {
   result.warn(result.answer = std::move(why));
 }
 
-// Velocities and accelerations vanish with the frequency: of a force that pushes one way they tell
-// all but the largest part. Where the band begins low enough, it shows.
+// Of a force that pushes one way all but the largest part is told where the band does not begin at
+// 0 Hz, or where all sensors are velocities and accelerations, which vanish with the frequency.
+// Where it rises towards what is not told, it shows. Blows alone are even down to 0 Hz.
 void doubt_slow_part(const StructureForce& found, const LoadedStructureRecord& loaded, double low,
-                     StudyResult& result) {
-  const bool told =
+                     ForceShape stated, StudyResult& result) {
+  const bool is_static =
       std::ranges::any_of(loaded.kinds, [](SensorKind kind) { return power_of_s(kind) == 0; });
-  if (told || found.shape != ForceShape::kSmooth) return;
-  constexpr std::string_view kRemedy =
-      "record a displacement, force or strain as well, or state shape: impacts for blows";
+  const bool are_blows = found.shape == ForceShape::kImpacts;
+  if ((is_static && found.from_zero) || (are_blows && found.rise < kRise)) return;
+  const std::string untold =
+      is_static ? fmt::format("nothing is told of it below {:g} Hz, where the table begins", low)
+                : fmt::format("velocities and accelerations tell nothing of it below {:g} Hz", low);
+  const std::string remedy = fmt::format(
+      "{}{}",
+      is_static ? fmt::format("fit the modes from a lower frequency on (low: {:.2g} Hz or less)",
+                              0.5 / loaded.record.duration())
+                : "record a displacement, force or strain as well",
+      stated == ForceShape::kAuto ? ", or state shape: impacts for blows" : "");
   if (found.rise < kRise) {
-    return result.warn(fmt::format(
-        "velocities and accelerations tell nothing of a smooth force below {:g} Hz: where it "
-        "pushes one way, this answer is wrong by that and its band does not hold it; {}",
-        low, kRemedy));
+    return result.warn(
+        fmt::format("where the force pushes one way, this answer is wrong by that and its band "
+                    "does not hold it: {}; {}",
+                    untold, remedy));
   }
-  reject(fmt::format("rejected: the force rises towards {:g} Hz, below which velocities and "
-                     "accelerations tell nothing of it, and its band does not hold that: {}",
-                     low, kRemedy),
+  if (are_blows && stated == ForceShape::kImpacts) {
+    return result.warn(fmt::format(
+        "the force rises towards {:g} Hz by {:.2g} times, as blows do not: where it pushes one way "
+        "for long, this answer is wrong by that and its band does not hold it: {}; {}",
+        low, found.rise, untold, remedy));
+  }
+  reject(fmt::format("rejected: the force rises towards {:g} Hz by {:.2g} times: it pushes one way "
+                     "for long, {}, and its band does not hold that: {}",
+                     low, found.rise, untold, remedy),
          result);
 }
 
@@ -155,8 +170,8 @@ void doubt_window(const StructureForce& found, const LoadedStructureRecord& load
 }  // namespace
 
 void doubt_force(const StructureForce& found, const LoadedStructureRecord& loaded,
-                 const StructureTable& modes, StudyResult& result) {
-  doubt_slow_part(found, loaded, modes.low, result);
+                 const StructureTable& modes, ForceShape stated, StudyResult& result) {
+  doubt_slow_part(found, loaded, modes.low, stated, result);
   doubt_window(found, loaded, result);
   tell_unknowns(found, loaded, modes, result);
   if (loaded.kinds.size() > 1) doubt_sensors(found, loaded, result);

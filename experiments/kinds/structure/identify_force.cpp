@@ -272,7 +272,7 @@ StudyResult IdentifyForceOptions::found(const StudyContext& context, bool modes_
   for (const std::string& text : modes.warnings) result.warn(text);
   tell_left_out(odd, where.has_value(), result);
   if (where) tell_places({tables(), *where}, force.rang, result);
-  doubt_force(force, loaded, modes, result);
+  doubt_force(force, loaded, modes, force_shape_of(shape), result);
   if (refined) {
     for (const std::string& text : refined->doubts()) result.warn(text);
   }

@@ -38,6 +38,7 @@ ForceSearch::ForceSearch(const StructureTable& table, const StructureRecord& rec
   variances_ = variances_of(table_, spectra_, transfers_);
   take_state_out();
   samples_ = static_cast<Index>(std::floor(result_.window * record.sample_rate));
+  result_.from_zero = spectra_.bins.first == 0;
 }
 
 std::optional<std::size_t> ForceSearch::odd_sensor() const {
@@ -134,17 +135,20 @@ bool ForceSearch::wants_pulses() {
 }
 
 void ForceSearch::find_pulses(const BinEvidence& evidence) {
-  if (options_.shape == ForceShape::kAuto && result_.told < 1.0) return;
+  const bool is_auto = options_.shape == ForceShape::kAuto;
+  if (is_auto && result_.told < 1.0) return;
   train_.emplace(table_, spectra_, result_.window);
   result_.evidence_impacts = -std::numeric_limits<double>::infinity();
   std::vector<Index> chosen;
-  for (const double share : {1e-6, 1e-5, 1e-4, 1e-3, 1e-2}) {
+  for (const double share : {1e-2, 1e-3, 1e-4, 1e-5, 1e-6}) {
     std::vector<double> background = power_;
     for (double& power : background) power *= share;
     const auto [matrix, score] = train_->normal_of(beside(evidence, background));
     const Relevance found = determine_relevance(matrix, score);
     const double told = found.evidence + evidence_of_power(evidence, background);
-    const bool wanted = options_.shape == ForceShape::kImpacts || told > result_.evidence_smooth;
+    // The less the background explains, the more pulses it takes.
+    if (is_auto && !found.are_few()) break;
+    const bool wanted = !is_auto || told > result_.evidence_smooth;
     // No force explains more than the one that is free in every bin.
     const double most =
         result_.told * static_cast<double>(spectra_.count()) / spectra_.correlated();
@@ -157,13 +161,18 @@ void ForceSearch::find_pulses(const BinEvidence& evidence) {
     widths_ = found.widths(chosen);
     background_ = background;
   }
-  MODCAL_REQUIRE(options_.shape == ForceShape::kAuto || result_.shape == ForceShape::kImpacts,
+  MODCAL_REQUIRE(is_auto || result_.shape == ForceShape::kImpacts,
                  "the responses tell the {} pulses of the window so unequally that rounding is all "
                  "there is: state a shorter window, or shape: smooth",
                  train_->count());
   if (result_.shape != ForceShape::kImpacts) return;
   train_->keep(chosen);
   pulses_ = train_->columns(samples_);
+  // Of what the pulse leaves of an even spectrum.
+  const std::vector<Complex> pulse = train_->spectrum(Eigen::VectorXd::Unit(pulses_.cols(), 0));
+  std::vector<double> found = power_found(evidence);
+  for (std::size_t m = 0; m < found.size(); ++m) found[m] /= std::norm(pulse[m]);
+  result_.rise = rise_towards_zero(found, spectra_.bins.first);
 }
 
 BinEvidence ForceSearch::beside(const BinEvidence& evidence,
@@ -187,14 +196,19 @@ double ForceSearch::evidence_of_power(const BinEvidence& evidence,
   return sum / spectra_.correlated();
 }
 
-void ForceSearch::find_power(const BinEvidence& evidence) {
-  const double spacing = spectra_.grid.spacing / (2.0 * std::numbers::pi);
+std::vector<double> ForceSearch::power_found(const BinEvidence& evidence) const {
   std::vector<double> found;
-  result_.told = power_told(evidence);
   for (std::size_t m = 0; m < spectra_.count(); ++m) {
     const double told = evidence.told[m];
     found.push_back(std::norm(evidence.score[m] / told) - 1.0 / told);
   }
+  return found;
+}
+
+void ForceSearch::find_power(const BinEvidence& evidence) {
+  const double spacing = spectra_.grid.spacing / (2.0 * std::numbers::pi);
+  std::vector<double> found = power_found(evidence);
+  result_.told = power_told(evidence);
   result_.rise = rise_towards_zero(found, spectra_.bins.first);
   for (double& power : found) power = std::max(power, 0.0);
   power_ = smoothed(found, spacing, kReach);

@@ -83,7 +83,11 @@ Relevance determine_relevance(const Eigen::MatrixXd& a, const Eigen::VectorXd& b
     widths = widths.cwiseMax(1e-7 * widths.maxCoeff());
     const double before = result.evidence;
     result = posterior_of(a, b, widths);
-    if (sweep > 20 && std::abs(result.evidence - before) < 1e-4) break;
+    // Where they are not few, further sweeps leave out one after another.
+    if ((sweep > 10 && !result.are_few()) ||
+        (sweep > 20 && std::abs(result.evidence - before) < 1e-4)) {
+      break;
+    }
   }
   result.evidence -=
       log_choices(static_cast<double>(b.size()), static_cast<double>(result.chosen.size()));

@@ -75,10 +75,18 @@ TEST_F(BowOnAStructure, ItsForceIsFoundFromItsSensors) {
   EXPECT_LT(told["relative_error_in_band"].get<double>(), 0.004);
   EXPECT_GT(told["coverage"].get<double>(), 0.93);
   EXPECT_EQ(found.status, report::Status::kOk) << found.summary;
-  // Two accelerations do not tell it.
+  // A table that begins above 0 Hz does not tell it, and two accelerations do not.
   std::ifstream modes(std::string(MODCAL_CONFIGS) + "/structures/bar_modes.json");
   auto table = nlohmann::json::parse(modes);
   table["low"] = 5.0;
+  write("above.json", table.dump());
+  write("above.yaml",
+        "kind: identify_force\ntable: above.json\nshape: smooth\nwindow: 1.2 s\n"
+        "record:\n  file: signals.csv\n"
+        "  responses: [{channel: a1}, {channel: a2}, {channel: d_mid, kind: displacement}]\n");
+  const StudyResult above = run(path("above.yaml"));
+  EXPECT_EQ(above.status, report::Status::kFailed);
+  EXPECT_THAT(above.answer, HasSubstr("fit the modes from a lower frequency on"));
   table["sensors"].erase(2);
   for (auto& mode : table["modes"]) mode["constants"].erase(2);
   write("two.json", table.dump());

@@ -49,6 +49,14 @@ TEST(Relevance, FindsTheFewThatAreThere) {
   }
 }
 
+TEST(Relevance, TellsFewFromMany) {
+  Eigen::VectorXd one = Eigen::VectorXd::Zero(60);
+  one[7] = 5.0;
+  const Equations few = equations_of(one), many = equations_of(Eigen::VectorXd::Ones(60));
+  EXPECT_TRUE(determine_relevance(few.matrix, few.score).are_few());
+  EXPECT_FALSE(determine_relevance(many.matrix, many.score).are_few());
+}
+
 TEST(Relevance, HasTheCovarianceOfItsEquations) {
   const auto [matrix, score] = equations_of(Eigen::VectorXd::Ones(150));
   const Eigen::VectorXd widths = Eigen::VectorXd::Constant(150, 2.0);
