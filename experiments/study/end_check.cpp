@@ -9,6 +9,7 @@
 #include "libinverse/waves/end_relation.hpp"
 #include "libinverse/waves/saturation.hpp"
 #include "libsim/base/error.hpp"
+#include "libsim/records/band_edge.hpp"
 #include "libsim/records/levels.hpp"
 
 namespace modcal {
@@ -124,6 +125,23 @@ void require_whole_beginning(const ObservationOptions& options, const RecordedSi
       record.file, *names[0], *names[1], reactions[0][0], reactions[1][0], end);
 }
 
+// Noise that a low-pass took out weighs no answer.
+void require_whole_band(const RecordOptions& record, const RecordedSignals& signals) {
+  for (const End end : kEnds) {
+    const Signal& reaction = end == End::kLeft ? *signals.left : *signals.right;
+    const std::optional<BandEdge> edge = find_band_edge(reaction.samples);
+    if (!edge) continue;
+    const double highest = edge->from * signals.sample_rate;
+    throw_invalid_input(
+        "{}: channel {} is empty above {:.4g} Hz, with {:.1g} of the power just below: a low-pass, "
+        "a "
+        "lossy format or a resampling took out what was there, and the noise with it, by which the "
+        "answers are weighed; use the record as it was before, or resample it to {:.4g} Hz or less",
+        record.file, end == End::kLeft ? record.left.channel : record.right.channel, highest,
+        edge->share, 2.0 * highest);
+  }
+}
+
 std::string remedy_of(double gain) {
   return fmt::format(
       "would be those of the string stated if the one at {} read {:.4g} times as much: check the "
@@ -169,6 +187,7 @@ void check_one_string(const ObservationOptions& options, const RecordedSignals& 
       "{:g} Hz: its modes cannot be told apart; record for longer, or check the rate's unit",
       record.file, signals.size(), signals.sample_rate, duration, options.string.fundamental);
   require_whole_beginning(options, signals);
+  require_whole_band(record, signals);
   const EndRecord ends = ends_of(*signals.left, *signals.right);
   const EndRelationFit fit = fit_end_relations(ends, string_of(options));
   for (const End end : kEnds) {

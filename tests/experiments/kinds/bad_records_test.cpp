@@ -15,6 +15,7 @@
 #include "benchmarks/truth/truth.hpp"
 #include "experiments/kinds/invert/invert.hpp"
 #include "experiments/loader.hpp"
+#include "libsim/signal/fft.hpp"
 #include "tests/folder_test.hpp"
 #include "tests/refusal.hpp"
 
@@ -197,6 +198,19 @@ Spoil exchanged() {
   return [](Written& w) { std::swap(w.r1, w.r2); };
 }
 
+// As a lossy format does.
+Spoil low_passed(double frequency) {
+  return [=](Written& w) {
+    const double rate = 1.0 / (w.t[1] - w.t[0]);
+    for (std::vector<double>* channel : w.channels()) {
+      const RealFft fft(channel->size());
+      std::vector<Complex> bins = fft.forward(*channel);
+      const auto first = static_cast<std::ptrdiff_t>(frequency / rate * channel->size());
+      std::fill(bins.begin() + first, bins.end(), 0.0);
+      *channel = fft.inverse(std::move(bins));
+    }
+  };
+}
 Spoil reversed() {
   return [](Written& w) {
     std::reverse(w.r1.begin(), w.r1.end());
@@ -284,6 +298,7 @@ std::vector<Row> rows() {
       {"late by 1 ms", kOther, late(51)},
       {"8 bit", "", rounded(8)},
       {"backwards", kContradicted, reversed()},
+      {"low-passed at 16 kHz", "is empty above 1.6", low_passed(16000.0)},
       {"gain of 2", "read 1.99", scaled(1.0, 2.0)},
   };
 }
