@@ -165,7 +165,8 @@ class Fit {
       table.frequency_deviations.push_back(std::sqrt(covariance(i, i)));
       table.damping_deviations.push_back(std::sqrt(covariance(i + 1, i + 1)));
       const double f = table.frequency(n);
-      if (f < table.low || f > table.high || table.frequency_deviations[n] > poles[n].zeta) {
+      const bool is_told = table.frequency_deviations[n] <= kToldWidth * poles[n].zeta;
+      if (f < table.low || f > table.high || !is_told) {
         result_.stand_ins.push_back(n);
       }
     }

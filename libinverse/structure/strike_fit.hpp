@@ -40,8 +40,8 @@ struct StrikeFit {
   std::vector<double> residuals;  ///< those of the strikes, together; K
   double misfit = 0.0;            ///< χ² over its degrees of freedom
   std::vector<FittedStrike> strikes;
-  /// Modes that are none of the structure's, by their place: outside of the band, or told no better
-  /// than by their own width. They stand for many, or for what leaks from line to line.
+  /// Modes that may be none of the structure's, by their place: outside of the band, or told to no
+  /// better than kToldWidth. They stand for many, or for what leaks from line to line.
   std::vector<std::size_t> stand_ins;
   /// By how much ln f and ln ζ of a mode differ from strike to strike, rms; the median of the
   /// modes. NaN: one strike.

@@ -118,8 +118,8 @@ std::string cause_contradiction(const ContinuationResult& found) {
   if (found.tests.empty()) return "";
   if (!cause) {
     return "none of the causes that are looked for explains it: the report shows at which "
-           "frequencies it is; end the band below them (highest_frequency), or take a part of the "
-           "record that is played steadily";
+           "frequencies it is; end the band below them (objective: {type: joint_likelihood, "
+           "highest_frequency: ...}), or take a part of the record that is played steadily";
   }
   return fmt::format("what the fit leaves looks like a {} (by chance {}){}: {}", whole_name(*cause),
                      chance(*cause), refuses ? ", which the error bars do not hold" : "",

@@ -29,6 +29,15 @@ double power_outside(const ContourSpectra& spectra, const std::vector<double>& p
   return sum;
 }
 
+std::vector<double> power_found(const BinEvidence& evidence) {
+  std::vector<double> found;
+  for (std::size_t m = 0; m < evidence.told.size(); ++m) {
+    const double told = evidence.told[m];
+    found.push_back(std::norm(evidence.score[m] / told) - 1.0 / told);
+  }
+  return found;
+}
+
 double rise_towards_zero(const std::vector<double>& power, std::size_t first) {
   const std::size_t count = std::max(first, kFewestRiseBins);
   if (power.size() < 3 * count) return 0.0;

@@ -3,13 +3,16 @@
 
 #include <Eigen/Core>
 
-#include "libinverse/structure/structure_record.hpp"
+#include "libinverse/structure/bin_evidence.hpp"
 
 namespace modcal {
 
 /// Sum over the bins outside of the band of a force of `power` in those of the band: below as at
 /// its lower end, above as its upper octave goes on by a power of frequency, which does not rise.
 double power_outside(const ContourSpectra& spectra, const std::vector<double>& power);
+
+/// Power of the force in every bin, less what noise makes of it: below 0 at times.
+std::vector<double> power_found(const BinEvidence& evidence);
 
 /// How many times the density of a force's power in the lowest bins of its band, up to twice its
 /// least frequency, is that in the next so wide octave: 1 of white noise, 4 and more of a force

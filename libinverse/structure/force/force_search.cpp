@@ -168,11 +168,10 @@ void ForceSearch::find_pulses(const BinEvidence& evidence) {
   if (result_.shape != ForceShape::kImpacts) return;
   train_->keep(chosen);
   pulses_ = train_->columns(samples_);
-  // Of what the pulse leaves of an even spectrum.
   const std::vector<Complex> pulse = train_->spectrum(Eigen::VectorXd::Unit(pulses_.cols(), 0));
-  std::vector<double> found = power_found(evidence);
-  for (std::size_t m = 0; m < found.size(); ++m) found[m] /= std::norm(pulse[m]);
-  result_.rise = rise_towards_zero(found, spectra_.bins.first);
+  std::vector<double> even = power_found(evidence);
+  for (std::size_t m = 0; m < even.size(); ++m) even[m] /= std::norm(pulse[m]);
+  result_.rise = rise_towards_zero(even, spectra_.bins.first);
 }
 
 BinEvidence ForceSearch::beside(const BinEvidence& evidence,
@@ -194,15 +193,6 @@ double ForceSearch::evidence_of_power(const BinEvidence& evidence,
     sum += power[m] * std::norm(evidence.score[m]) / (1.0 + gain) - std::log1p(gain);
   }
   return sum / spectra_.correlated();
-}
-
-std::vector<double> ForceSearch::power_found(const BinEvidence& evidence) const {
-  std::vector<double> found;
-  for (std::size_t m = 0; m < spectra_.count(); ++m) {
-    const double told = evidence.told[m];
-    found.push_back(std::norm(evidence.score[m] / told) - 1.0 / told);
-  }
-  return found;
 }
 
 void ForceSearch::find_power(const BinEvidence& evidence) {

@@ -40,8 +40,6 @@ class ForceSearch {
   BinEvidence beside(const BinEvidence& evidence, const std::vector<double>& power) const;
   double evidence_of_power(const BinEvidence& evidence, const std::vector<double>& power) const;
   void find_power(const BinEvidence& evidence);
-  /// Of the force in every bin, as far as the noise lets it be seen: less than none at times.
-  std::vector<double> power_found(const BinEvidence& evidence) const;
   Eigen::VectorXd force_of(const BinEvidence& evidence) const;
   Eigen::VectorXd variance_of(const BinEvidence& evidence) const;
   /// Samples in the window of what has these bins on the contour.
