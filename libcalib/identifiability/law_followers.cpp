@@ -12,7 +12,6 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr double kDoubt = 3.0;
 constexpr double kFewest = 4.0, kFewestTested = 8.0;
 
 // The law through some modes, and what is left of all of them.
@@ -152,9 +151,9 @@ std::vector<LawTie> ties_of(const LawLine& line, double variance) {
   std::vector<LawTie> ties;
   for (Index i = 0; i < line.size(); ++i) {
     const double score = std::abs(line.score(i, variance));
-    ties.push_back(score > leave    ? LawTie::kLeaves
-                   : score > kDoubt ? LawTie::kDoubtful
-                                    : LawTie::kFollows);
+    ties.push_back(score > leave       ? LawTie::kLeaves
+                   : score > kLawDoubt ? LawTie::kDoubtful
+                                       : LawTie::kFollows);
   }
   return ties;
 }

@@ -6,17 +6,9 @@
 #include <string_view>
 #include <vector>
 
+#include "libcalib/identifiability/tuning.hpp"
+
 namespace modcal {
-
-/// Width of the prior about the law that only keeps a mode from wandering [1].
-inline constexpr double kWidePrior = 2e-3;
-/// Width that ties a mode to the law where the string follows it [1].
-inline constexpr double kTied = 1e-5;
-/// Width of the prior of a mode that leaves the law: nothing beside the data tells where it is [1].
-inline constexpr double kDeparted = 1e-2;
-
-/// Modes seen better than this tell of the law [1].
-inline constexpr double kWellSeen = 5e-4;
 
 /// What the data tell of the frequencies under the wide prior alone.
 struct ModeSight {

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "libcalib/identifiability/tuning.hpp"
+
 namespace modcal {
 namespace {
-
-constexpr double kIdentified = 1e-3;
 
 Eigen::MatrixXd law_slopes(Eigen::Index count, double inharmonicity) {
   Eigen::MatrixXd slopes(count, 2);
@@ -173,7 +173,7 @@ std::vector<ModeVerdict> free_verdicts(const ModelPoint& model, const Eigen::Vec
       verdict.reason = WeakReason::kDoubt;
       verdict.deviation = std::hypot(deviation[i], followers.rest[i]);
     }
-    if (seen[i] < kIdentified) continue;
+    if (seen[i] < kIdentifiedSight) continue;
     if (verdict.tie != LawTie::kDoubtful) {
       verdict.reason = weak_reason(model, n);
       // Where neither law nor data have it, it is anywhere that its prior admits.
@@ -182,7 +182,7 @@ std::vector<ModeVerdict> free_verdicts(const ModelPoint& model, const Eigen::Vec
       verdict.deviation = std::max(deviation[i], width);
     }
     // The law speaks for a mode where the other modes follow it closer than the mode is needed.
-    if (verdict.tie == LawTie::kFollows && law_width < 0.5 * kIdentified) {
+    if (verdict.tie == LawTie::kFollows && law_width < 0.5 * kIdentifiedSight) {
       verdict.source = ModeSource::kLaw;
     } else {
       verdict.source = std::abs(shape[n]) < 0.02 ? ModeSource::kBlind : ModeSource::kPrior;

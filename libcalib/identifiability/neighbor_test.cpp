@@ -6,15 +6,11 @@
 #include <utility>
 
 #include "libcalib/identifiability/neighbor_kernel.hpp"
+#include "libcalib/identifiability/tuning.hpp"
 #include "libsim/base/task_loop.hpp"
 
 namespace modcal {
 namespace {
-
-constexpr double kNeighborReach = 6e-3;
-constexpr double kNeighborMargin = 9.0;
-constexpr std::size_t kNeighborHalfBand = 128;
-constexpr std::size_t kBeside = 2;
 
 // The likelihood at θ, from which single modes are moved.
 class Field {
@@ -165,7 +161,7 @@ std::size_t leave_false_minima(const std::vector<Neighbor>& neighbors, Eigen::Ve
     if (gain(n) <= kNeighborMargin) continue;
     // Beside a mode that is wrong the next ones seem to be.
     bool most = true;
-    for (std::size_t away = 1; away <= kBeside; ++away) {
+    for (std::size_t away = 1; away <= kNeighborBeside; ++away) {
       most = most && gain(n) >= gain(n + away) && (n < away || gain(n) >= gain(n - away));
     }
     if (!most) continue;

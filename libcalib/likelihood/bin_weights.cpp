@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "libcalib/likelihood/tuning.hpp"
 #include "libsim/base/dense_solvers.hpp"
 #include "libsim/base/error.hpp"
 
@@ -31,10 +32,6 @@ class Windows {
   std::vector<double> cumulative_;
 };
 
-constexpr std::size_t kLine = 2;    // bins either side of a line of the force
-constexpr std::size_t kFloor = 60;  // and of a stretch between lines
-constexpr double kProof = 15.0;     // excess of five bins that noise has once in 60 000
-constexpr std::size_t kNoiseHalf = 3;
 constexpr std::size_t kWeightRepeats = 2;
 
 // J_k A⁻¹ J_kᴴ of every bin, A = LLᵀ scaled to a unit diagonal.
@@ -69,7 +66,7 @@ std::vector<double> power_of_excess(const std::vector<double>& excess,
   const Windows near_excess(excess), near_gain(gain);
   std::vector<double> between(excess.size()), between_gain(excess.size());
   for (std::size_t k = 0; k < excess.size(); ++k) {
-    if (near_excess.sum(k, kLine) > kProof) continue;
+    if (near_excess.sum(k, kLineBins) > kExcessProof) continue;
     between[k] = excess[k];
     between_gain[k] = gain[k];
   }
@@ -77,9 +74,9 @@ std::vector<double> power_of_excess(const std::vector<double>& excess,
   const Windows wide_excess(between), wide_gain(between_gain);
   std::vector<double> power(excess.size());
   for (std::size_t k = 0; k < excess.size(); ++k) {
-    const bool line = near_excess.sum(k, kLine) > kProof;
-    const double total = line ? near_gain.sum(k, kLine) : wide_gain.sum(k, kFloor);
-    const double found = line ? near_excess.sum(k, kLine) : wide_excess.sum(k, kFloor);
+    const bool line = near_excess.sum(k, kLineBins) > kExcessProof;
+    const double total = line ? near_gain.sum(k, kLineBins) : wide_gain.sum(k, kFloorBins);
+    const double found = line ? near_excess.sum(k, kLineBins) : wide_excess.sum(k, kFloorBins);
     power[k] = total > 0.0 ? std::max(found / total, 0.0) : 0.0;
   }
   return power;
@@ -117,7 +114,7 @@ SharesOverNoise shares_over_noise(const ProjectedLikelihood& likelihood, const M
   }
   const Windows expected(noise);
   for (std::size_t k = 0; k < noise.size(); ++k) {
-    const double alone = expected.mean(k, kNoiseHalf);
+    const double alone = expected.mean(k, kNoiseBins);
     result.ratio[k] = alone > 0.0 ? result.ratio[k] / alone : 1.0;
   }
   return result;

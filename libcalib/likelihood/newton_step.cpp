@@ -1,14 +1,10 @@
 #include "libcalib/likelihood/newton_step.hpp"
 
+#include "libcalib/likelihood/tuning.hpp"
 #include "libsim/base/dense_solvers.hpp"
 
 namespace modcal {
 namespace {
-
-// The information itself is positive: what is left in any direction is no less than the prior
-// there, save for the scatter of what noise adds. A direction with less than this of it would be
-// said to be worse known than before the record.
-constexpr double kPriorShare = 0.1;
 
 bool positive_definite(const Eigen::MatrixXd& matrix) {
   // Scaled to a unit diagonal, so that units do not decide.

@@ -4,20 +4,13 @@
 #include <cmath>
 
 #include "libcalib/likelihood/newton_step.hpp"
+#include "libcalib/optimizers/tuning.hpp"
 #include "libsim/base/dense_solvers.hpp"
 
 namespace modcal {
 namespace {
 
 using Index = Eigen::Index;
-
-// A long step is likely to be taken and the information needed where it ends.
-constexpr double kLong = 1.0;
-
-// Of its standard deviation: a variable that moved less keeps its row of the information. Even
-// where a column is another one after a standard deviation, a step is then off by a twenty-fifth of
-// one, and the slope, which is exact, has the next step make up for it.
-constexpr double kMoved = 0.2;
 
 // Roots of the diagonal of H⁻¹ = L⁻ᵀL⁻¹: the norms of the columns of L⁻¹.
 Eigen::VectorXd root_diagonal_of_inverse(const Eigen::MatrixXd& h) {
@@ -125,7 +118,7 @@ class Search {
       if (share > 1.0) move *= 1.0 / share;
     }
     const Eigen::VectorXd trial = (fit_.z + move).cwiseMax(lower_).cwiseMin(upper_);
-    const bool far = damping == 0.0 && step.decrease > kLong;
+    const bool far = damping == 0.0 && step.decrease > kLongStep;
     Trial tried = far || !shortcuts_.slopes ? with_information(trial) : slope(trial);
     // The debiased step may pass the minimum of this draw by a little of its noise.
     if (!tried.finite || !(tried.value < fit_.value + 0.5 * options_.tolerance)) return false;
@@ -151,7 +144,7 @@ class Search {
     const Eigen::MatrixXd h = hessian();
     const Eigen::VectorXd scale = h.diagonal().cwiseSqrt().cwiseInverse();
     const Eigen::VectorXd least =
-        kMoved *
+        kMovedDeviations *
         scale.cwiseProduct(root_diagonal_of_inverse(scale.asDiagonal() * h * scale.asDiagonal()));
     std::vector<std::size_t> result;
     for (Index i = 0; i < moves.size(); ++i) {

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <vector>
 
+#include "libcalib/likelihood/records/tuning.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/signal/fft.hpp"
 #include "libsim/signal/statistics.hpp"
@@ -14,10 +15,6 @@ namespace modcal {
 namespace {
 
 using std::numbers::pi;
-
-constexpr double kClear = 1.4;       // the response there is 8e-4 of the signal or less
-constexpr double kLineMargin = 1.1;  // lines begin to stand apart; holds errors of the model, too
-constexpr std::size_t kFewestNoiseBins = 200;
 
 struct Bins {
   std::size_t first, last;
@@ -44,7 +41,7 @@ NoiseBand NoiseBand::above(double top, double sample_rate, std::size_t samples) 
   MODCAL_REQUIRE(top > 0.0 && sample_rate > 0.0,
                  "no noise band above {:g} Hz at {:g} samples per second", top, sample_rate);
   NoiseBand band;
-  if (kClear * top <= band.low * sample_rate) return band;
+  if (kClearNoise * top <= band.low * sample_rate) return band;
   band.clear = false;
   band.low = std::max(band.low, kLineMargin * top / sample_rate);
   MODCAL_REQUIRE(bins_of(band, samples).count() >= kFewestNoiseBins,

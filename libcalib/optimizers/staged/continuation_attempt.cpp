@@ -10,6 +10,7 @@
 #include "libcalib/likelihood/parameter_forms.hpp"
 #include "libcalib/noise/noise_fit.hpp"
 #include "libcalib/optimizers/staged/free_stage.hpp"
+#include "libcalib/optimizers/staged/tuning.hpp"
 #include "libcalib/parameters/stiff_string_fit.hpp"
 #include "libsim/base/error.hpp"
 
@@ -143,7 +144,7 @@ class Attempt {
     stroke_.end_stage(name, last, law_, found);
     // A start that was near before the widest rung, of a few samples and much noise, led elsewhere.
     // One that leaves twice as much was not.
-    if (stroke_.cost(last, law_.model(law_.start())) < 2.0 * found.objective) {
+    if (stroke_.cost(last, law_.model(law_.start())) < kSecondStart * found.objective) {
       NewtonFit direct = fitted(law_.start().head(3));
       if (direct.objective < found.objective) {
         std::swap(direct, found);
@@ -157,7 +158,7 @@ class Attempt {
 
   // σ = 0, end state projected out.
   NewtonFit whole_from(const Eigen::VectorXd& theta) {
-    return stroke_.fit(stroke_.whole(), law_, theta, with_priors(law_, theta, 25, 1e-2));
+    return stroke_.fit(stroke_.whole(), law_, theta, with_priors(law_, theta, kLawSteps, 1e-2));
   }
 
   // Of the minima that the ladder and the start itself lead to all of the record tells the lower:
@@ -166,7 +167,7 @@ class Attempt {
     end_whole("law", whole_from(law_theta_));
     if (second_theta_.size() == 0) return;
     const NewtonFit second = whole_from(second_theta_);
-    if (!(second.objective < whole_objective_ - 10.0)) return;
+    if (!(second.objective < whole_objective_ - kMinimaOdds)) return;
     ladder_theta_ = second_theta_;
     end_whole("law from its second minimum", second);
   }

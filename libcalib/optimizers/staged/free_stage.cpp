@@ -11,12 +11,10 @@
 #include "libcalib/identifiability/neighbor_test.hpp"
 #include "libcalib/likelihood/parameter_forms.hpp"
 #include "libcalib/optimizers/staged/score_tests.hpp"
+#include "libcalib/optimizers/staged/tuning.hpp"
 
 namespace modcal {
 namespace {
-
-constexpr double kStepCap = 1e-3;
-constexpr std::size_t kNeighborRounds = 4;
 
 class FreeStage {
  public:
