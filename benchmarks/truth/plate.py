@@ -73,6 +73,10 @@ def hammer(rng, count, start, kind):
             inside = (t > at) & (t < at + width)
             force[inside] += height * np.sin(np.pi * (t[inside] - at) / width) ** 1.5
         return force
+    if kind in ("push", "step"):  # 20 N that rise in 50 ms and are let go in 1 ms, or set in and stay
+        at = start + 0.25 + 0.1 * rng.random()
+        return 20.0 * np.interp(t, *((start, start + 0.05, at, at + 1e-3), (0, 1, 1, 0)) if kind == "push" else
+                                ((at, at + 1e-3), (0, 1)))
     noise = rng.standard_normal(count)  # smooth: never stops
     force = signal.sosfilt(signal.butter(2, [15, 300], "bandpass", fs=RATE * STEPS, output="sos"), noise)
     force *= 5.0 / force.std()
@@ -257,7 +261,7 @@ def main():
     p.add_argument("--draws", type=int, default=6)
     p.add_argument("--change", nargs="+", type=float, default=[0, 1e-3, 3e-3],
                    help="of the stiffness; sensors ten times, dampers a hundred times as much")
-    p.add_argument("--kinds", nargs="+", default=["strike", "smooth"])
+    p.add_argument("--kinds", nargs="+", choices=("strike", "smooth", "push", "step"), default=["strike", "smooth"])
     p.add_argument("--sessions", type=int, default=0, help="of response functions in the place of modes")
     p.add_argument("--strikes", type=int, default=0, help="to which modes are fitted")
     p.add_argument("--sets", type=int, default=1, help="of strikes, whose poles are scored; the force by the first")

@@ -108,8 +108,14 @@ void visit_sensors(const LoadedStructureRecord& loaded, const StructureForce& fo
 void ForceOutcome::visit(ResultVisitor& visitor) const {
   const double rate = loaded.record.sample_rate;
   visitor.list(
-      {.key = "force", .table = "identified_force", .name = "Identified force"}, 1, {},
-      [&](ResultVisitor& row, std::size_t) {
+      {.key = "force",
+       .table = "identified_force",
+       .name = "Identified force",
+       .meaning = score
+                      ? "The last number leaves out what the error has below the table's band: no "
+                        "response tells that of the force, and a hammer's amplifier drifts."
+                      : ""},
+      1, {}, [&](ResultVisitor& row, std::size_t) {
         double impulse = 0.0, peak = 0.0, squares = 0.0;
         for (std::size_t j = 0; j < found.force.size(); ++j) {
           impulse += found.force[j] / rate;
@@ -131,10 +137,7 @@ void ForceOutcome::visit(ResultVisitor& visitor) const {
             score ? std::optional(score->in_band) : std::nullopt);
         row({.key = "coverage", .name = "in the 95 % band", .format = "{:.3f}"},
             score ? std::optional(score->coverage) : std::nullopt);
-        row({.key = "coverage_above",
-             .name = "above the lowest frequency",
-             .format = "{:.3f}",
-             .meaning = "A hammer's amplifier drifts, and nothing below the table's band tells it"},
+        row({.key = "coverage_above", .name = "above the lowest frequency", .format = "{:.3f}"},
             score ? std::optional(score->coverage_above) : std::nullopt);
       });
   visit_sensors(loaded, found, visitor);
@@ -149,6 +152,8 @@ void ForceOutcome::visit(ResultVisitor& visitor) const {
   visitor({.key = "evidence_smooth"}, known(found.evidence_smooth));
   visitor({.key = "rise", .name = "rise of the power towards 0 Hz", .format = "{:.2g}"},
           found.rise);
+  visitor({.key = "push_odds", .name = "ln of the odds of a push over blows", .format = "{:.2g}"},
+          known(found.push_odds));
   visitor({.key = "misfit"}, known(found.misfit));
   if (refined) refined->visit(visitor);
 }

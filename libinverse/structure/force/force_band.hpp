@@ -19,6 +19,13 @@ std::vector<double> power_found(const BinEvidence& evidence);
 /// whose mean or slow part stands below. 0: a band too narrow to tell. first: of the band's bins.
 double rise_towards_zero(const std::vector<double>& power, std::size_t first);
 
+/// ln of the odds that the force is a push that sets in or is let go and no blow of a pulse's
+/// spectrum G: Σ ln p of what the bins show of its power, exponential about A/|s|² and about A|G|²
+/// and the noise, with the A of largest likelihood each (Itakura and Saito's divergence). Of
+/// correlated bins one counts.
+double log_odds_of_push(const BinEvidence& evidence, const ContourSpectra& spectra,
+                        const std::vector<Complex>& pulse);
+
 /// Variance of the samples of pulses whose spectrum above `high` [Hz] is supposed, not measured:
 /// all of it may be otherwise, at the instants where it stands (its envelope, by Hilbert's
 /// transform).

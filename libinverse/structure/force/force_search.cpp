@@ -169,9 +169,7 @@ void ForceSearch::find_pulses(const BinEvidence& evidence) {
   train_->keep(chosen);
   pulses_ = train_->columns(samples_);
   const std::vector<Complex> pulse = train_->spectrum(Eigen::VectorXd::Unit(pulses_.cols(), 0));
-  std::vector<double> even = power_found(evidence);
-  for (std::size_t m = 0; m < even.size(); ++m) even[m] /= std::norm(pulse[m]);
-  result_.rise = rise_towards_zero(even, spectra_.bins.first);
+  result_.push_odds = log_odds_of_push(evidence, spectra_, pulse);
 }
 
 BinEvidence ForceSearch::beside(const BinEvidence& evidence,

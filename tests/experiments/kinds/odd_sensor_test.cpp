@@ -7,24 +7,16 @@
 #include <nlohmann/json.hpp>
 
 #include "libsim/records/record_file.hpp"
-#include "tests/experiments/kinds/run_document.hpp"
+#include "tests/experiments/kinds/structure_config.hpp"
 #include "tests/folder_test.hpp"
 
 namespace modcal::odd_sensor_test {
 namespace {
 
+using structure_config::file_of, structure_config::kFolder, structure_config::run;
 using testing::HasSubstr;
 using testing::Not;
 using Samples = std::vector<double>;
-
-const std::string kFolder = std::string(MODCAL_CONFIGS) + "/structures/";
-
-StudyResult run(const std::string& file, const std::vector<std::string>& changes) {
-  YamlDocument document = read_yaml_file(kFolder + file);
-  std::size_t number = 0;
-  for (const std::string& change : changes) apply_assignment(document, change, ++number);
-  return run_document(std::move(document));
-}
 
 class OddSensor : public FolderTest {
  protected:
@@ -43,15 +35,8 @@ class OddSensor : public FolderTest {
   }
 };
 
-nlohmann::json document_of(const StudyResult& result) {
-  for (const auto& [file, text] : result.files) {
-    if (file == "force.json") return nlohmann::json::parse(text);
-  }
-  throw std::runtime_error("no force.json");
-}
-
 double error_of(const StudyResult& result) {
-  return document_of(result)["force"][0]["relative_error"].get<double>();
+  return file_of(result, "force.json")["force"][0]["relative_error"].get<double>();
 }
 
 void drop_samples(Samples& a) { std::rotate(a.begin() + 90, a.begin() + 93, a.end()); }
@@ -74,7 +59,7 @@ TEST_F(OddSensor, IsNoneWhereNoForceIsTold) {
   }
   const StudyResult quiet =
       run("force_on_plate.yaml", {"record.file=" + write("record.csv", text).string()});
-  EXPECT_TRUE(document_of(quiet)["left_out"].is_null());
+  EXPECT_TRUE(file_of(quiet, "force.json")["left_out"].is_null());
   EXPECT_THAT(quiet.summary, Not(HasSubstr("contradicts")));
   // A wrong unit would leave a force of 0 with a narrow band.
   EXPECT_EQ(quiet.status, report::Status::kFailed);
@@ -85,14 +70,14 @@ TEST_F(OddSensor, IsNoneWhereNoForceIsTold) {
 TEST_F(OddSensor, OfFourIsLeftOutAndNamed) {
   const StudyResult whole = run("force_on_plate.yaml", {spoilt([](Samples&) {})});
   EXPECT_THAT(whole.summary, Not(HasSubstr("a2")));
-  EXPECT_TRUE(document_of(whole)["left_out"].is_null());
+  EXPECT_TRUE(file_of(whole, "force.json")["left_out"].is_null());
   for (const auto& change : {drop_samples, double_gain, turn_sign}) {
     const StudyResult result = run("force_on_plate.yaml", {spoilt(change)});
     EXPECT_EQ(result.status, report::Status::kOk);
     EXPECT_THAT(result.summary, HasSubstr("impacts from 3 sensors"));
     EXPECT_THAT(result.summary, HasSubstr("a2 contradicts the other sensors, which agree without "
                                           "it: it is left out"));
-    EXPECT_EQ(document_of(result)["left_out"], "a2");
+    EXPECT_EQ(file_of(result, "force.json")["left_out"], "a2");
     EXPECT_NEAR(error_of(result), error_of(whole), 0.2 * error_of(whole));
   }
 }

@@ -9,6 +9,7 @@
 
 #include "libinverse/structure/tuning.hpp"
 #include "libsim/base/error.hpp"
+#include "libsim/base/random.hpp"
 #include "tests/refusal.hpp"
 
 namespace modcal::structure_force_test {
@@ -77,6 +78,20 @@ StructureRecord record_under(const std::vector<double>& force,
   return record;
 }
 
+// White noise of a share of each response.
+StructureRecord in_noise(StructureRecord record, double share) {
+  std::vector<double> draws(kSamples);
+  for (std::size_t k = 0; k < record.responses.size(); ++k) {
+    std::vector<double>& response = record.responses[k];
+    fill_standard_normal(StreamKey(1).with(k), draws);
+    double squares = 0.0;
+    for (const double sample : response) squares += sample * sample;
+    const double deviation = share * std::sqrt(squares / kSamples);
+    for (std::size_t j = 0; j < kSamples; ++j) response[j] += deviation * draws[j];
+  }
+  return record;
+}
+
 // By default under bursts from 0.1 s to 0.6 s.
 StructureRecord record_of(const std::vector<std::size_t>& sensors,
                           const std::vector<Burst>& bursts = {
@@ -123,7 +138,7 @@ TEST(StructureForce, TriesNoPulsesWhereNoiseIsAllThereIs) {
 
 // Of a push that sets in and stays, the power is that of 1/f: between 20 and 36 Hz 3.4 times that
 // of the 32 Hz above. A blow's is even.
-TEST(StructureForce, RisesTowardsZeroWhereItPushesAndNotWhereItStrikes) {
+TEST(StructureForce, IsAPushWhereItPushesAndNoneWhereItStrikesInNoiseToo) {
   std::vector<double> push(kSamples, 0.0), blow(kSamples, 0.0);
   for (std::size_t j = 0; j < kSamples; ++j) {
     const double t = static_cast<double>(j) / kRate - 0.3;
@@ -132,14 +147,25 @@ TEST(StructureForce, RisesTowardsZeroWhereItPushesAndNotWhereItStrikes) {
   }
   const std::vector<std::size_t> sensors = {1, 3};
   const StructureForceOptions options{.window = 0.5, .draws = 2};
-  const StructureForce pushed =
-      structure_force(table_of(sensors), record_under(push, sensors), options);
-  EXPECT_GT(pushed.rise, kRise);
-  EXPECT_FALSE(pushed.from_zero);
-  const StructureForce struck =
-      structure_force(table_of(sensors), record_under(blow, sensors), options);
-  EXPECT_EQ(struck.shape, ForceShape::kImpacts);
-  EXPECT_NEAR(struck.rise, 1.0, 0.3);
+  for (const double noise : {0.0, 0.1, 0.5}) {
+    SCOPED_TRACE(noise);
+    const StructureForce pushed =
+        structure_force(table_of(sensors), in_noise(record_under(push, sensors), noise), options);
+    EXPECT_FALSE(pushed.from_zero);
+    EXPECT_GT(pushed.rise, kRise);
+    const StructureForce struck =
+        structure_force(table_of(sensors), in_noise(record_under(blow, sensors), noise), options);
+    EXPECT_NEAR(struck.rise, 1.0, 0.3);
+    // Loud noise hides the pulses.
+    EXPECT_EQ(pushed.shape, noise == 0.0 ? ForceShape::kImpacts : ForceShape::kSmooth);
+    EXPECT_EQ(struck.shape, noise < 0.5 ? ForceShape::kImpacts : ForceShape::kSmooth);
+    if (noise == 0.0) {
+      EXPECT_GT(pushed.push_odds, kPushOdds);
+    }
+    if (noise < 0.5) {
+      EXPECT_LT(struck.push_odds, 0.0);
+    }
+  }
 }
 
 ActingPart part_of(const std::vector<Burst>& bursts, const StructureForceOptions& options) {

@@ -1,5 +1,5 @@
-// Kinds "fit_modes" and "identify_force" on strikes of a plate that another program has stepped
-// (benchmarks/truth/plate.py), and what they refuse.
+// Kind "fit_modes" on strikes of a plate that another program has stepped
+// (benchmarks/truth/plate.py), and what it refuses.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,19 +7,16 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "experiments/kinds/structure/force_outcome.hpp"
 #include "experiments/kinds/structure/structure_files.hpp"
-#include "libsim/base/error.hpp"
-#include "libsim/base/files.hpp"
 #include "tests/experiments/kinds/structure_config.hpp"
 #include "tests/folder_test.hpp"
 #include "tests/refusal.hpp"
 
-namespace modcal::structure_test {
+namespace modcal::fit_modes_test {
 namespace {
 
 using structure_config::file_of, structure_config::kFolder, structure_config::run;
-using testing::Contains, testing::HasSubstr, testing::Not;
+using testing::HasSubstr;
 
 TEST(FitModes, FindsThePolesOfThePlateWithinTheirErrorBars) {
   const StudyResult result = run("fit_plate.yaml");
@@ -135,127 +132,6 @@ TEST_F(ExponentialWindow, IsTakenOutBehindTheRest) {
   EXPECT_NEAR(loaded.record.responses[0][40], 1.0, 0.01);
 }
 
-// Behind the strike and its rebound nothing acts: what rings is no force. The force sensor's own
-// noise is what is left of the truth.
-TEST(IdentifyForce, TakesWhatRangBeforeTheRecordOut) {
-  const StudyResult result = run("force_on_plate.yaml", {"record.start=0.06 s"});
-  EXPECT_EQ(result.status, report::Status::kOk) << result.answer;
-  const auto document = file_of(result, "force.json");
-  EXPECT_EQ(document["rang_before"], true);
-  // The force that would make the ring has 45 N.
-  EXPECT_LT(std::abs(document["force"][0]["peak_n"].get<double>()), 0.5);
-  EXPECT_EQ(file_of(run("force_on_plate.yaml"), "force.json")["rang_before"], false);
-}
-
-TEST(IdentifyForce, FindsTheForceOfAnotherStrikeAndHoldsItInItsBand) {
-  const StudyResult result = run("force_on_plate.yaml");
-  EXPECT_EQ(result.status, report::Status::kOk);
-  const auto force = file_of(result, "force.json")["force"][0];
-  EXPECT_EQ(force["shape"], "impacts");
-  // The plate has changed by 1e-3 in stiffness, its sensors by 1 %; measured .010, beyond the
-  // band .065, as its pulse is wider there by a tenth than the table's.
-  EXPECT_LT(force["relative_error_in_band"].get<double>(), 0.02);
-  EXPECT_LT(force["relative_error"].get<double>(), 0.1);
-  EXPECT_GT(force["coverage"].get<double>(), 0.9);
-}
-
-TEST(IdentifyForce, ItsBandIsComparedAboveTheDriftOfTheForceSensor) {
-  constexpr std::size_t kCount = 1000;
-  StructureForce found;
-  found.force.assign(kCount, 0.0);
-  found.deviation.assign(kCount, 1.0);
-  std::vector<double> measured(kCount);
-  for (std::size_t j = 0; j < kCount; ++j) {
-    // 20 Hz, twice as high as the band: a third of a sine lies below half of its height.
-    measured[j] = 30.0 + 2.0 * 1.959964 * std::sin(2.0 * M_PI * 0.02 * static_cast<double>(j));
-  }
-  StructureTable table;
-  table.low = 5.0;
-  table.high = 400.0;
-  const ForceScore score = score_of(found, measured, 1000.0, table);
-  EXPECT_EQ(score.coverage, 0.0);
-  EXPECT_NEAR(score.coverage_above, 1.0 / 3.0, 0.03);  // of 50 samples a turn 18
-}
-
-TEST(IdentifyForce, WarnsOfAForceBehindItsWindow) {
-  // The blow is at its peak at 16 ms.
-  const auto warnings = run("force_on_plate.yaml", {"window=10 ms"}).warnings;
-  EXPECT_THAT(warnings, Contains(HasSubstr("times as large behind the window of 0.01 s as in it")));
-  EXPECT_THAT(warnings, Contains(HasSubstr("100 % of its peak and behind the window of 0.01 s")));
-  EXPECT_THAT(run("force_on_plate.yaml").warnings, Not(Contains(HasSubstr("behind the window"))));
-}
-
-TEST(IdentifyForce, DoesNotNeedTheForceItIsComparedWith) {
-  // One that is an answer's own comparison must not be in the answer.
-  const auto with = file_of(run("force_on_plate.yaml"), "force.json")["force"][0];
-  YamlDocument document = read_yaml_file(kFolder + "force_on_plate.yaml");
-  std::erase_if(document.root.find("record")->members,
-                [](const auto& member) { return member.key == "force"; });
-  const auto without = file_of(run_document(std::move(document)), "force.json")["force"][0];
-  EXPECT_TRUE(without["relative_error"].is_null());
-  EXPECT_EQ(with["peak_n"], without["peak_n"]);
-  EXPECT_EQ(with["deviation_n"], without["deviation_n"]);
-}
-
-TEST(IdentifyForce, RefinesTheModesWithoutTheForce) {
-  const StudyResult result = run("force_on_plate.yaml", {"change.frequency=3e-3"});
-  EXPECT_EQ(result.status, report::Status::kOk);
-  EXPECT_THAT(result.summary, HasSubstr("modes refined without the force"));
-  const auto force = file_of(result, "force.json")["force"][0];
-  EXPECT_LT(force["relative_error_in_band"].get<double>(), 0.02);
-  EXPECT_GT(force["coverage"].get<double>(), 0.9);
-  EXPECT_TRUE(std::ranges::any_of(result.files,
-                                  [](const auto& file) { return file.first == "table.yaml"; }));
-}
-
-class PlacesOf : public FolderTest {};
-
-// A table whose contact is elsewhere: every mode is driven by another share, as by its shape there.
-TEST_F(PlacesOf, TheForceIsThatOfTheLikeliestPlace) {
-  StructureTable other = read_table(kFolder + "plate_modes.json");
-  const std::size_t modes = other.model.poles.size();
-  for (std::size_t i = 0; i < other.model.constants.size(); ++i) {
-    const double shape = std::cos(2.0 * static_cast<double>(i % modes));
-    other.model.constants[i] *= shape;
-    other.model.quadrature[i] *= shape;
-  }
-  const auto file = write("elsewhere.yaml", table_text(other));
-  const std::string right = kFolder + "plate_modes.json";
-  const StudyResult alone = run("force_on_plate.yaml");
-  const StudyResult found =
-      run("force_on_plate.yaml", {"table=" + file.string(), "other_places=[" + right + "]"});
-  EXPECT_EQ(found.status, report::Status::kOk);
-  EXPECT_THAT(found.summary, HasSubstr("95 % set: " + right + "\n"));
-  EXPECT_EQ(file_of(found, "force.json")["force"], file_of(alone, "force.json")["force"]);
-  try {
-    run("force_on_plate.yaml",
-        {"other_places=[" + right + "]", "record.responses=[{channel: a1}]"});
-    FAIL();
-  } catch (const InvalidInput& error) {
-    EXPECT_THAT(error.what(), HasSubstr("one response is explained by a force at any place"));
-  }
-}
-
-TEST(IdentifyForce, PredictsEverySensorFromTheOthers) {
-  const auto document = file_of(run("force_on_plate.yaml"), "force.json");
-  ASSERT_EQ(document["sensors"].size(), 4u);
-  for (const auto& sensor : document["sensors"]) {
-    // Each is off by 1 %, the plate by 1e-3 of its stiffness: up to .022. A sensor that is off by
-    // 1 % is so in all bins, so that 79 to 100 % of them lie in their 95 %.
-    EXPECT_GT(sensor["predicted_error"].get<double>(), 0.002);
-    EXPECT_LT(sensor["predicted_error"].get<double>(), 0.04);
-    EXPECT_GT(sensor["predicted_coverage"].get<double>(), 0.7);
-  }
-}
-
-TEST(IdentifyForce, RefusesSensorsThatContradictEachOther) {
-  const StudyResult result =
-      run("force_on_plate.yaml",
-          {"record.responses=[{channel: a2}, {channel: a1}, {channel: a3}, {channel: a4}]"});
-  EXPECT_EQ(result.status, report::Status::kFailed);
-  EXPECT_THAT(result.summary, HasSubstr("rejected: no force explains"));
-}
-
 TEST(FitModes, RefusesAForceThatIsNotThatOfTheStrike) {
   const StudyResult result =
       run("fit_plate.yaml", {"record.force.channel=a1", "record.force.calibration=1",
@@ -298,4 +174,4 @@ TEST_F(ModesOfAUniversalFile, AreThoseOfATable) {
 }
 
 }  // namespace
-}  // namespace modcal::structure_test
+}  // namespace modcal::fit_modes_test
