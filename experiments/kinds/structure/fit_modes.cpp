@@ -251,10 +251,9 @@ void warn_of_stand_ins(const StrikeFit& fit, StudyResult& result) {
     some.push_back(fmt::format("{:.5g}", fit.table.frequency(n)));
   }
   result.warn(fmt::format(
-      "modes at {} Hz may be none of the structure's: they lie outside of the band, or their "
-      "frequency is told to no better than a third of their half-width, and they may stand for "
-      "what "
-      "no other mode explains",
+      "modes at {} Hz may be none of the structure's, but stand for what no other mode explains: "
+      "they lie outside of the band, or their frequency is told to no better than a third of their "
+      "half-width",
       fmt::join(some, ", ")));
 }
 
