@@ -34,10 +34,8 @@ constexpr double kPlainShare = 1e-3;
 
 // Twelve records of benchmarks/truth (T): libcalib/identifiability/tuning.hpp.
 
-/// Bins either side of a line of the force over which its power is a mean, and of a stretch between
-/// lines.
-/// Source: a line of a stroke that wavers is a few bins wide, the lines of a note lie 40 and more
-/// apart.
+/// Bins either side over which the power of the force is a mean: in a line, and between lines.
+/// Source: not derived; T, on which either changes little.
 /// Range tried: 1 to 4, 30 to 120, on T.
 /// Doubled: f_n move by up to 0.16 and 0.09 sd.
 /// Halved: by up to 0.43 and 0.20 sd.
@@ -52,7 +50,7 @@ constexpr std::size_t kFloorBins = 60;
 constexpr double kExcessProof = 15.0;
 
 /// Bins either side over which the share of the noise in a bin is a mean.
-/// Source: seven bins scatter by a third.
+/// Source: seven bins of two draws scatter by a quarter.
 /// Range tried: 1 to 6, on T.
 /// Doubled: f_n move by up to 0.20 sd.
 /// Halved: by up to 0.09 sd.

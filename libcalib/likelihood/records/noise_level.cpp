@@ -46,7 +46,7 @@ NoiseBand NoiseBand::above(double top, double sample_rate, std::size_t samples) 
   band.low = std::max(band.low, kLineMargin * top / sample_rate);
   MODCAL_REQUIRE(bins_of(band, samples).count() >= kFewestNoiseBins,
                  "the noise cannot be read from {} samples at {:g} Hz with modes up to {:g} Hz: it "
-                 "takes {} bins between {:g} Hz (1.1 times the highest mode) and {:g} Hz. State "
+                 "takes {} bins between {:g} Hz and {:g} Hz. State "
                  "noise_rms_1 and noise_rms_2, use fewer modes, or sample faster",
                  samples, sample_rate, top, kFewestNoiseBins, band.low * sample_rate,
                  band.high * sample_rate);

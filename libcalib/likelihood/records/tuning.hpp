@@ -6,18 +6,19 @@
 
 namespace modcal {
 
-/// Power over that of the noise read so far up to which a bin is clear of the response.
+/// Frequency over that of the highest mode from which a band holds noise alone. One that begins
+/// below is read by its median.
 /// Source: the response there is 8e-4 of the signal or less.
 /// Range tried: 0.7 to 2.8, on T.
 /// Doubled: as it is.
 /// Halved: f_n move by up to 1.0 sd, all as right.
 constexpr double kClearNoise = 1.4;
 
-/// Power over that of the noise up to which a bin is noise at most; it holds errors of the model,
-/// too.
-/// Source: lines begin to stand apart.
+/// Frequency over that of the highest mode at which a band that is read by its median begins at
+/// least.
+/// Source: lines begin to stand apart; the band holds errors of the model, too.
 /// Range tried: 0.55 to 2.2, on T.
-/// Doubled: eleven of twelve are refused: lines are taken for noise.
+/// Doubled: eleven of twelve are refused, as less than 200 bins are left up to 0.488 of the rate.
 /// Halved: f_n move by up to 0.8 sd, all as right.
 constexpr double kLineMargin = 1.1;
 

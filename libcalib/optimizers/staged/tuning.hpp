@@ -29,8 +29,10 @@ constexpr std::size_t kNeighborRounds = 4;
 /// Halved: as it is.
 constexpr double kSecondStart = 2.0;
 
-/// By how much the second of two minima has to leave less on the whole record, in ln p. Unknowns
-/// that hardly matter leave two fits of one minimum apart. Source: N. Range tried: 5 to 20, on T.
+/// By how much the second of two minima has to leave less on the whole record, in ln p: unknowns
+/// that hardly matter leave two fits of one minimum apart.
+/// Source: N.
+/// Range tried: 5 to 20, on T.
 /// Doubled: as it is.
 /// Halved: as it is.
 constexpr double kMinimaOdds = 10.0;
