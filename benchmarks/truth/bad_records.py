@@ -21,6 +21,7 @@ import sys
 import time
 from pathlib import Path
 
+import numpy as np
 import score
 
 CASES = (("violin_d", "exponential"), ("violin_g", "thermal"))
@@ -184,6 +185,13 @@ def bits(count):
     return each(change)
 
 
+def low_passed(x):
+    """Nothing is left above 16 kHz, as behind a codec or a resampling."""
+    bins = np.fft.rfft(x)
+    bins[int(len(x) * 16000 / 51200):] = 0
+    return list(np.fft.irfft(bins, len(x)))
+
+
 def keep(begin, end):
     def apply(r):
         first, last = int(begin * len(r.t)), int(end * len(r.t))
@@ -243,6 +251,7 @@ BAD = {
     "cut_late_R2": silent(0.97, 1.0, ["R2"], 0.3),
     **{f"late_start_{name}": silent(0.0, 0.2, ks) for name, ks in (("R1", ["R1"]), ("both", REACTIONS))},
     "late_start_30ms_R1": silent(0.0, 0.03, ["R1"]),
+    "low_passed_16kHz": each(low_passed),
 }
 
 
