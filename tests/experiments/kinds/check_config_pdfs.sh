@@ -4,12 +4,17 @@
 # leave the page, on charts and tables that are cut, split over two pages or not beside each other, on headings
 # that end a page;
 # and on words of the figures that gnuplot draws that overlap or leave their sheet.
-# Exit code 77: there is no browser or no pdftotext.
+# Exit code 77: there is no browser, no chromedriver with Selenium, or no pdftotext.
 set -euo pipefail
 here=$(dirname "$0")
 . "$here/../report/browser.sh"
 find_browser
 command -v pdftotext >/dev/null || { echo "no pdftotext: install poppler-utils"; exit 77; }
+python="/usr/bin/python3" # the distribution's, which has its Selenium
+if ! "$python" -c "import selenium" 2>/dev/null || ! command -v chromedriver >/dev/null; then
+  echo "no chromedriver with Selenium: install chromium-driver and python3-selenium"
+  exit 77
+fi
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 
@@ -52,7 +57,7 @@ while read -r page; do
   { cat "$page"; cat "$folder/marks"; } >"${page%.html}_marked.html"
   echo "${page%.html}_marked.html ${page%.html}.pdf"
 done <"$1/pages" >"$folder/pairs"
-"$here/print_pages.py" "$browser" "$folder/profile" <"$folder/pairs"
+"$python" "$here/print_pages.py" "$browser" "$folder/profile" <"$folder/pairs"
 pages=0
 while read -r page; do
   pages=$((pages + 1))
