@@ -35,24 +35,26 @@ void doubt_slow_part(const StructureForce& found, const LoadedStructureRecord& l
       is_static ? fmt::format("fit the modes from a lower frequency on (low: {:.2g} Hz or less)",
                               kFromZero / loaded.record.duration())
                 : "record a displacement, force or strain as well";
-  const bool is_likely = are_blows ? found.push_odds > kPushOdds : found.rise >= kRise;
-  if (is_likely && stated != ForceShape::kImpacts) {
-    return reject(
-        fmt::format("rejected: the force rises towards {:g} Hz, as one that pushes one way for "
-                    "long: {}, and its band does not hold that; {}, or state shape: impacts for "
-                    "blows",
-                    low, untold, remedy),
-        result);
+  const bool is_untold = std::isnan(are_blows ? found.push_odds : found.rise);
+  const bool is_push = are_blows ? found.push_odds > kPushOdds : found.rise >= kRise;
+  const std::string_view or_stated =
+      stated == ForceShape::kAuto ? ", or state shape: impacts for blows" : "";
+  if ((is_untold || is_push) && stated != ForceShape::kImpacts) {
+    const std::string why =
+        is_push ? fmt::format(
+                      "the force rises towards {:g} Hz, as one that pushes one way for long", low)
+                : "the band and the record are too short to tell whether the force pushes one way";
+    return reject(fmt::format("rejected: {}: {}, and its band does not hold that; {}{}", why,
+                              untold, remedy, or_stated),
+                  result);
   }
-  const std::string_view doubt = is_likely ? "its spectrum is that of a push, not of blows: "
-                                 : are_blows
-                                     ? "its spectrum is that of a push as well as of blows: "
-                                     : "";
+  const std::string_view doubt = is_push     ? "its spectrum is that of a push, not of blows: "
+                                 : are_blows ? "it may be a push as well as blows: "
+                                             : "";
   result.warn(fmt::format(
       "{}where the force pushes one way, this answer is wrong by that and its band does "
       "not hold it, as {}; {}{}",
-      doubt, untold, remedy,
-      stated == ForceShape::kAuto ? ", or state shape: impacts for blows" : ""));
+      doubt, untold, remedy, or_stated));
 }
 
 // What rang before the record is told by modes, and from the force by two sensors.

@@ -151,7 +151,7 @@ void ForceOutcome::visit(ResultVisitor& visitor) const {
   visitor({.key = "evidence_impacts"}, known(found.evidence_impacts));
   visitor({.key = "evidence_smooth"}, known(found.evidence_smooth));
   visitor({.key = "rise", .name = "rise of the power towards 0 Hz", .format = "{:.2g}"},
-          found.rise);
+          known(found.rise));
   visitor({.key = "push_odds", .name = "ln of the odds of a push over blows", .format = "{:.2g}"},
           known(found.push_odds));
   visitor({.key = "misfit"}, known(found.misfit));

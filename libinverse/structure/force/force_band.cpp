@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
+#include <span>
 #include <utility>
 
 #include "libinverse/structure/tuning.hpp"
@@ -40,7 +42,7 @@ std::vector<double> power_found(const BinEvidence& evidence) {
 
 double rise_towards_zero(const std::vector<double>& power, std::size_t first) {
   const std::size_t count = std::max(first, kFewestRiseBins);
-  if (power.size() < 3 * count) return 0.0;
+  if (power.size() < 3 * count) return std::numeric_limits<double>::quiet_NaN();
   const auto begin = power.begin(), middle = begin + static_cast<std::ptrdiff_t>(count);
   const double low = std::accumulate(begin, middle, 0.0);
   const double next =
@@ -50,41 +52,86 @@ double rise_towards_zero(const std::vector<double>& power, std::size_t first) {
 
 namespace {
 
-// Largest ln p of the bins' power under A g + noise.
-double log_likelihood_of(const std::vector<double>& g, const BinEvidence& evidence) {
-  double made = 0.0, shown = 0.0;
-  for (std::size_t m = 0; m < g.size(); ++m) {
-    made += g[m];
-    shown += std::norm(evidence.score[m] / evidence.told[m]);
+// Power A |s|^-2p exp(−(ω/ω_c)^k) + noise of the largest likelihood for what the bins show.
+struct PowerFit {
+  double log_likelihood = -std::numeric_limits<double>::infinity();
+  std::vector<double> power;
+};
+
+class PowerShapes {
+ public:
+  PowerShapes(const BinEvidence& evidence, const ContourSpectra& spectra) : spectra_(spectra) {
+    for (const double told : evidence.told) noise_.push_back(1.0 / told);
   }
-  double scale = shown / made, result = 0.0;
-  // Steps of a square root: 60 leave 1e-9 of what was off.
-  for (int step = 0; step < 60; ++step) {
-    double up = 0.0, down = 0.0;
-    result = 0.0;
-    for (std::size_t m = 0; m < g.size(); ++m) {
-      const double noise = 1.0 / evidence.told[m], power = scale * g[m] + noise;
-      const double seen = std::norm(evidence.score[m] * noise) / power;
-      result -= std::log(power) + seen;
-      up += g[m] * seen / power;
-      down += g[m] / power;
+
+  // p: 0 of a blow, 1 of a push. Neither a blow's duration is known nor how fast a push changes, so
+  // ω_c is free, and k one of those given.
+  PowerFit fit(int p, const std::vector<double>& shown, std::span<const double> steepness) const {
+    PowerFit best;
+    const double lowest = spectra_.s(0).imag(), highest = spectra_.s(noise_.size() - 1).imag();
+    for (const double k : steepness) {
+      for (double cutoff = 4.0 * highest; cutoff > 2.0 * lowest; cutoff /= kCutoffRatio) {
+        PowerFit found = fit_amplitude(shape(p, k, cutoff), shown);
+        if (found.log_likelihood > best.log_likelihood) best = std::move(found);
+      }
     }
-    scale *= std::sqrt(up / down);
+    return best;
   }
-  return result;
-}
+
+ private:
+  std::vector<double> shape(int p, double k, double cutoff) const {
+    std::vector<double> g(noise_.size());
+    for (std::size_t m = 0; m < g.size(); ++m) {
+      const Complex s = spectra_.s(m);
+      g[m] = std::exp(-std::pow(s.imag() / cutoff, k)) / (p == 0 ? 1.0 : std::norm(s));
+    }
+    return g;
+  }
+
+  // ln A by Fisher's scoring.
+  PowerFit fit_amplitude(const std::vector<double>& g, const std::vector<double>& shown) const {
+    double amplitude =
+        std::accumulate(shown.begin(), shown.end(), 0.0) / std::accumulate(g.begin(), g.end(), 0.0);
+    for (int step = 0; step < 20; ++step) {
+      double slope = 0.0, information = 0.0;
+      for (std::size_t m = 0; m < g.size(); ++m) {
+        const double power = amplitude * g[m] + noise_[m], share = amplitude * g[m] / power;
+        slope += share * (shown[m] / power - 1.0);
+        information += share * share;
+      }
+      const double change = std::clamp(slope / information, -2.0, 2.0);
+      amplitude *= std::exp(change);
+      if (std::abs(change) < 1e-3) break;  // its square is left
+    }
+    PowerFit fit{.log_likelihood = 0.0, .power = std::vector<double>(g.size())};
+    for (std::size_t m = 0; m < g.size(); ++m) {
+      fit.power[m] = amplitude * g[m] + noise_[m];
+      fit.log_likelihood -= std::log(fit.power[m]) + shown[m] / fit.power[m];
+    }
+    return fit;
+  }
+
+  const ContourSpectra& spectra_;
+  std::vector<double> noise_;
+};
+
+constexpr double kGaussian[] = {2.0}, kAnySteepness[] = {1.0, 2.0, 4.0};
 
 }  // namespace
 
-double log_odds_of_push(const BinEvidence& evidence, const ContourSpectra& spectra,
-                        const std::vector<Complex>& pulse) {
-  std::vector<double> push, blow;
-  for (std::size_t m = 0; m < pulse.size(); ++m) {
-    push.push_back(1.0 / std::norm(spectra.s(m)));
-    blow.push_back(std::norm(pulse[m]));
+double log_odds_of_push(const BinEvidence& evidence, const ContourSpectra& spectra) {
+  const PowerShapes shapes(evidence, spectra);
+  std::vector<double> shown;
+  for (std::size_t m = 0; m < evidence.told.size(); ++m) {
+    shown.push_back(std::norm(evidence.score[m] / evidence.told[m]));
   }
-  const double odds = log_likelihood_of(push, evidence) - log_likelihood_of(blow, evidence);
-  return odds / spectra.correlated();
+  const auto odds = [&](const std::vector<double>& power, std::span<const double> steepness) {
+    const double push = shapes.fit(1, power, steepness).log_likelihood;
+    return (push - shapes.fit(0, power, steepness).log_likelihood) / spectra.correlated();
+  };
+  const double of_a_push = odds(shapes.fit(1, shown, kGaussian).power, kGaussian);
+  return of_a_push < kPushOdds ? std::numeric_limits<double>::quiet_NaN()
+                               : odds(shown, kAnySteepness);
 }
 
 namespace {
@@ -114,7 +161,15 @@ Eigen::VectorXd envelope_above(const Eigen::VectorXd& force, double rate, double
 }  // namespace
 
 Eigen::VectorXd variance_of_shape(const Eigen::VectorXd& force, double rate, double high) {
-  return envelope_above(force, rate, high);
+  const Eigen::VectorXd envelope = envelope_above(force, rate, high);
+  const auto reach = static_cast<Eigen::Index>(0.5 * rate / high);
+  Eigen::VectorXd result(envelope.size());
+  for (Eigen::Index j = 0; j < envelope.size(); ++j) {
+    const Eigen::Index first = std::max<Eigen::Index>(0, j - reach);
+    const Eigen::Index last = std::min(envelope.size() - 1, j + reach);
+    result[j] = envelope.segment(first, last - first + 1).maxCoeff();
+  }
+  return result;
 }
 
 Eigen::VectorXd variance_about(const Eigen::VectorXd& force, const ContourSpectra& spectra,

@@ -16,19 +16,19 @@ std::vector<double> power_found(const BinEvidence& evidence);
 
 /// How many times the density of a force's power in the lowest bins of its band, up to twice its
 /// least frequency, is that in the next so wide octave: 1 of white noise, 4 and more of a force
-/// whose mean or slow part stands below. 0: a band too narrow to tell. first: of the band's bins.
+/// whose mean or slow part stands below. NaN: a band too narrow to tell. first: of the band's bins.
 double rise_towards_zero(const std::vector<double>& power, std::size_t first);
 
-/// ln of the odds that the force is a push that sets in or is let go and no blow of a pulse's
-/// spectrum G: Σ ln p of what the bins show of its power, exponential about A/|s|² and about A|G|²
-/// and the noise, with the A of largest likelihood each (Itakura and Saito's divergence). Of
-/// correlated bins one counts.
-double log_odds_of_push(const BinEvidence& evidence, const ContourSpectra& spectra,
-                        const std::vector<Complex>& pulse);
+/// ln of the odds that the force is a push that sets in or is let go and no blow: Σ ln p of what
+/// the bins show of its power, exponential about A exp(−(ω/ω_c)^k)/|s|² and A exp(−(ω/ω_c)^k) and
+/// the noise, with the A, ω_c and k of largest likelihood each (Itakura and Saito's divergence). Of
+/// correlated bins one counts. NaN: a push would not be told, its own odds being less than
+/// kPushOdds.
+double log_odds_of_push(const BinEvidence& evidence, const ContourSpectra& spectra);
 
 /// Variance of the samples of pulses whose spectrum above `high` [Hz] is supposed, not measured:
-/// all of it may be otherwise, at the instants where it stands (its envelope, by Hilbert's
-/// transform).
+/// all of it may be otherwise, within half a period of `high` of where it stands: the largest of
+/// its squared envelope there, by Hilbert's transform. high > 0.
 Eigen::VectorXd variance_of_shape(const Eigen::VectorXd& force, double rate, double high);
 
 /// Variance of the samples of pulses whose shape is not known. What stands outside of the band has

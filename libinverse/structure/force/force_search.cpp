@@ -168,8 +168,7 @@ void ForceSearch::find_pulses(const BinEvidence& evidence) {
   if (result_.shape != ForceShape::kImpacts) return;
   train_->keep(chosen);
   pulses_ = train_->columns(samples_);
-  const std::vector<Complex> pulse = train_->spectrum(Eigen::VectorXd::Unit(pulses_.cols(), 0));
-  result_.push_odds = log_odds_of_push(evidence, spectra_, pulse);
+  result_.push_odds = log_odds_of_push(evidence, spectra_);
 }
 
 BinEvidence ForceSearch::beside(const BinEvidence& evidence,

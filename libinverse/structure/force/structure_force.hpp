@@ -47,8 +47,8 @@ struct StructureForce {
   /// Instants of a pulse in the window where they are too many for `auto` to try; 0: tried.
   double untried = 0.0;
   double told = 0.0;  ///< power in the responses that a force explains, over that of noise alone
-  double rise = 0.0;  ///< rise_towards_zero() of the force's power
-  /// log_odds_of_push() of impacts; NaN: a smooth force.
+  double rise = 0.0;  ///< rise_towards_zero() of the force's power; NaN: not told
+  /// log_odds_of_push() of impacts; NaN: a smooth force, or not told.
   double push_odds = std::numeric_limits<double>::quiet_NaN();
   bool from_zero = false;  ///< the band begins at 0 Hz
   bool rang = false;       ///< when the record began, by what the responses tell
