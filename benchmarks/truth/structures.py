@@ -181,7 +181,7 @@ def main():
             error, inside, loud = compare(folder / kind / "identified.csv", t, force)
             answers[kind] += (1, code == 0, code == 0 and inside < 0.8)
             print(f"  {kind:6s} exit {code} {found['force'][0]['shape']:7s} push_odds {found['push_odds'] or float('nan'):8.1f} rise "
-                  f"{found['rise']:8.3g}  error {error:.3f}, in the band {inside:.3f}, loud {loud:.3f}", flush=True)
+                  f"{found['rise'] or float('nan'):8.3g}  error {error:.3f}, in the band {inside:.3f}, loud {loud:.3f}", flush=True)
     print(f"modes in the band: {modes[0, 0]} true, {modes[0, 1]} of them without a warning; {modes[1, 0]} are none, {modes[1, 1]} without a warning")
     for kind, (count, accepted, wrong) in answers.items():
         print(f"{kind}: {accepted} of {count} accepted, {wrong} of these hold less than 80 %")

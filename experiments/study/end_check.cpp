@@ -6,10 +6,10 @@
 #include <set>
 
 #include "experiments/study/observation.hpp"
+#include "experiments/study/whole_record.hpp"
 #include "libinverse/waves/end_relation.hpp"
 #include "libinverse/waves/saturation.hpp"
 #include "libsim/base/error.hpp"
-#include "libsim/records/band_edge.hpp"
 #include "libsim/records/levels.hpp"
 
 namespace modcal {
@@ -66,80 +66,17 @@ std::string remedy_of(EndRelation relation, const ObservationOptions& options,
   return "";
 }
 
-// Samples before the first that differs from the very first.
-std::size_t silent_start(std::span<const double> samples) {
-  const auto moved = std::ranges::find_if(samples, [&](double x) { return x != samples[0]; });
-  return static_cast<std::size_t>(moved - samples.begin());
+// As far as a stated contact may be off.
+bool is_stated_in_the_middle(const ObservationOptions& options) {
+  return std::abs(options.contact.position / options.string.length - 0.5) < 0.02;
 }
 
-// Whether a part of a reaction swings by so much of what the whole does that its resolution shows
-// it and noise is less.
-bool is_playing(std::span<const double> part, std::span<const double> whole) {
-  constexpr double kPlaying = 0.25;
-  if (part.empty()) return false;
-  const auto [low, high] = std::ranges::minmax(part);
-  const auto [lowest, highest] = std::ranges::minmax(whole);
-  return high - low > kPlaying * (highest - lowest);
-}
-
-// Whether so few values occur that a moving string may read as one of them for long.
-bool is_coarse(std::span<const double> samples) {
-  constexpr std::size_t kFewest = 32;
-  std::set<double> values;
-  for (const double x : samples) {
-    if (values.insert(x).second && values.size() > kFewest) return false;
-  }
-  return true;
-}
-
-// Where an equal value stands before what was recorded. A string that was at rest reaches both ends
-// within a period, and not at once.
-void require_whole_beginning(const ObservationOptions& options, const RecordedSignals& signals) {
-  const std::span<const double> reactions[] = {signals.left->samples, signals.right->samples};
-  const std::size_t silent[] = {silent_start(reactions[0]), silent_start(reactions[1])};
-  const std::size_t late = silent[0] > silent[1] ? 0 : 1;
-  const std::span<const double> first = reactions[1 - late], last = reactions[late];
-  if (is_coarse(last)) return;
-  const double period = signals.sample_rate / options.string.fundamental;
-  const RecordOptions& record = options.record;
-  const std::string* names[] = {&record.left.channel, &record.right.channel};
-  const double end = record.start + static_cast<double>(silent[late]) / signals.sample_rate;
-  if (static_cast<double>(silent[late] - silent[1 - late]) > period) {
-    MODCAL_REQUIRE(!is_playing(first.first(silent[late]), first),
-                   "{}: channel {} is {:.6g} up to {:.6g} s, while channel {} reads a string that "
-                   "moves: the channel was not connected yet, or was filled; crop to the part "
-                   "behind (record.start)",
-                   record.file, *names[late], last[0], end, *names[1 - late]);
-    return;
-  }
-  if (silent[1 - late] < Clipping::kShortestRun || silent[late] - silent[1 - late] > 1) return;
-  const double apart = std::abs(1.0 - 2.0 * options.contact.position / options.string.length);
-  const std::size_t count =
-      std::min(static_cast<std::size_t>(0.4 * apart * period), last.size() - silent[late]);
-  MODCAL_REQUIRE(
-      !is_playing(first.subspan(silent[late], count), first) ||
-          !is_playing(last.subspan(silent[late], count), last),
-      "{}: channels {} and {} are {:.6g} and {:.6g} up to {:.6g} s and read a string that "
-      "moves from there on: the beginning was filled; crop to the part behind "
-      "(record.start)",
-      record.file, *names[0], *names[1], reactions[0][0], reactions[1][0], end);
-}
-
-// Noise that a low-pass took out weighs no answer.
-void require_whole_band(const RecordOptions& record, const RecordedSignals& signals) {
-  for (const End end : kEnds) {
-    const Signal& reaction = end == End::kLeft ? *signals.left : *signals.right;
-    const std::optional<BandEdge> edge = find_band_edge(reaction.samples);
-    if (!edge) continue;
-    const double highest = edge->from * signals.sample_rate;
-    throw_invalid_input(
-        "{}: channel {} is empty above {:.4g} Hz, with {:.1g} of the power just below: a low-pass, "
-        "a "
-        "lossy format or a resampling took out what was there, and the noise with it, by which the "
-        "answers are weighed; use the record as it was before, or resample it to {:.4g} Hz or less",
-        record.file, end == End::kLeft ? record.left.channel : record.right.channel, highest,
-        edge->share, 2.0 * highest);
-  }
+// Of a contact in the middle both reactions are one signal, whatever f0, B and damping are.
+bool is_in_the_middle(const EndRelationFit& fit, const ObservationOptions& options) {
+  const double as_copies = fit.misfit_of(EndRelation::kCopies);
+  const double as_string = fit.misfit_of(EndRelation::kString);
+  return is_stated_in_the_middle(options) && std::abs(fit.copy_gain - 1.0) < 0.05 &&
+         as_copies < 0.5 && as_copies < std::max(0.05, 1.02 * as_string);
 }
 
 std::string remedy_of(double gain) {
@@ -198,6 +135,7 @@ void check_one_string(const ObservationOptions& options, const RecordedSignals& 
                    record.file, end == End::kLeft ? record.left.channel : record.right.channel,
                    label_of(end), options.string.fundamental, end == End::kLeft ? "left" : "right");
   }
+  if (is_in_the_middle(fit, options)) return;
   const std::string pair = fmt::format("{}: channels {} and {}, the reactions at x = 0 and x = L,",
                                        record.file, record.left.channel, record.right.channel);
   const EndRelation best = fit.best();
@@ -260,10 +198,11 @@ void require_told_fundamental(const ObservationOptions& options, const Observati
       !observation.reaction(End::kRight)) {
     return;
   }
-  const double told = fit_end_relations(ends_of(*observation.reaction(End::kLeft),
-                                                *observation.reaction(End::kRight)),
-                                        string_of(options))
-                          .fundamental;
+  const EndRelationFit fit = fit_end_relations(
+      ends_of(*observation.reaction(End::kLeft), *observation.reaction(End::kRight)),
+      string_of(options));
+  if (is_in_the_middle(fit, options)) return;
+  const double told = fit.fundamental;
   const double difference = told / options.string.fundamental - 1.0;
   if (std::abs(difference) < 3e-3) return;
   const std::optional<ToldString> alone = told_string(observation);
@@ -283,6 +222,21 @@ void require_told_fundamental(const ObservationOptions& options, const Observati
                  "the {:g} Hz stated, which an inversion takes for granted: calibrate the string "
                  "first (kind: calibrate), or check the sample rate",
                  options.record.file, told, 100.0 * difference, options.string.fundamental);
+}
+
+void require_told_string(const ObservationOptions& options, const Observation& observation) {
+  const auto& left = observation.reaction(End::kLeft);
+  const auto& right = observation.reaction(End::kRight);
+  if (observation.truth || !left || !right || !is_stated_in_the_middle(options)) return;
+  const EndRelationFit fit = fit_end_relations(ends_of(*left, *right), string_of(options));
+  if (!is_in_the_middle(fit, options)) return;
+  throw WrongKey(
+      "bow.position",
+      fmt::format("{}: both reactions are one signal, as those of a string with the contact in its "
+                  "middle are whatever f0, B and damping: nothing can be calibrated from them. "
+                  "Record a stroke 2 % of the length or more off the middle, or, where the contact "
+                  "was elsewhere, give each end a sensor and a channel of its own",
+                  options.record.file));
 }
 
 std::optional<ToldString> told_string(const Observation& observation) {

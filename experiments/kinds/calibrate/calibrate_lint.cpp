@@ -209,6 +209,9 @@ std::vector<Finding> CalibrateOptions::lint_records(const std::filesystem::path&
       calibration.objective.make()->require_record(observed->basis, observed->sample_rate,
                                                    observed->samples());
     });
+    lint_making(findings, "bow.position", [&] {
+      if (further.files.empty() && plucks.empty()) require_told_string(first, *observed);
+    });
     lint_making(findings, "calibration", [&] {
       if (calibration.by_schedule()) {
         require_both_reactions(*observed, "the joint likelihood", "calibration.objective");

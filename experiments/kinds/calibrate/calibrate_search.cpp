@@ -125,6 +125,8 @@ ObservedRecords observe_records(const CalibrateOptions& options, const OutputReq
   observed.strokes.insert(observed.strokes.begin(), first);
   require_plucks(options.plucks, inversion.observation, options.calibration);
   observed.plucks = observe_plucks(options.plucks, inversion.observation, inversion.key(), context);
+  const bool is_alone = observed.strokes.size() == 1 && observed.plucks.empty();
+  if (is_alone) require_told_string(inversion.observation, first);
   return observed;
 }
 

@@ -306,31 +306,31 @@ std::vector<Row> rows() {
 class BadRecords : public FolderTest {
  protected:
   static const Written& good() {
-    static const Written written = [] {
-      truth::TruthRecord record =
-          truth::simulate({.fundamental = kFundamental, .inharmonicity = kInharmonicity},
-                          {.position = kContact}, {.duration = 0.3, .start = 0.0});
-      add_noise(record, 0.01, 7);
-      Written result;
-      for (std::size_t j = 0; j < record.r1.size(); ++j) {
-        result.t.push_back(static_cast<double>(j) / record.rate);
-      }
-      for (std::size_t i = 0; i < 50; ++i) {
-        result.frequencies.push_back(
-            fmt::format("{:.9g} Hz", record.modes[i].omega / (2.0 * M_PI)));
-        result.ratios.push_back(
-            fmt::format("{:.9g}", record.modes[i].decay / record.modes[i].omega));
-      }
-      result.r1 = record.r1;
-      result.r2 = record.r2;
-      return result;
-    }();
+    static const Written written = written_at(kContact);
     return written;
+  }
+
+  static Written written_at(double contact) {
+    truth::TruthRecord record =
+        truth::simulate({.fundamental = kFundamental, .inharmonicity = kInharmonicity},
+                        {.position = contact}, {.duration = 0.3, .start = 0.0});
+    add_noise(record, 0.01, 7);
+    Written result;
+    for (std::size_t j = 0; j < record.r1.size(); ++j) {
+      result.t.push_back(static_cast<double>(j) / record.rate);
+    }
+    for (std::size_t i = 0; i < 50; ++i) {
+      result.frequencies.push_back(fmt::format("{:.9g} Hz", record.modes[i].omega / (2.0 * M_PI)));
+      result.ratios.push_back(fmt::format("{:.9g}", record.modes[i].decay / record.modes[i].omega));
+    }
+    result.r1 = record.r1;
+    result.r2 = record.r2;
+    return result;
   }
 
   // The refusal, or the result.
   std::string run(const Written& record, const std::string& kind, StudyResult& result,
-                  const std::string& estimator = "joint") {
+                  const std::string& estimator = "joint", double contact = 0.042) {
     write("record.csv", record.text());
     const bool calibrates = kind == "calibrate";
     const LoadedExperiment loaded = load_experiment(parse_yaml(
@@ -338,9 +338,9 @@ class BadRecords : public FolderTest {
             "kind: {}\nrecord: {{file: record.csv, left: {{channel: R1}}, right: {{channel: "
             "R2}}{}}}\nstring: {{length: 0.33 m, linear_density: 1e-3 kg/m, fundamental: {} Hz, "
             "inharmonicity: {}, modes: 40, damping: {{type: table, frequencies: [{}], ratios: "
-            "[{}]}}}}\nbow: {{position: 42 mm}}\n{}",
+            "[{}]}}}}\nbow: {{position: {} m}}\n{}",
             kind, record.keys, calibrates ? 1.01 * kFundamental : kFundamental, kInharmonicity,
-            fmt::join(record.frequencies, ", "), fmt::join(record.ratios, ", "),
+            fmt::join(record.frequencies, ", "), fmt::join(record.ratios, ", "), contact,
             calibrates ? "calibration: {parameters: {frequencies: none}}\n"
                        : fmt::format("inversion: {{estimator: {}}}\n", estimator)),
         path("experiment.yaml").string()));
@@ -397,6 +397,20 @@ TEST_F(BadRecords, GiveARightAnswerOrOneClearRefusal) {
       EXPECT_NE(run(record, "invert", result, estimator), "accepted") << estimator;
     }
   }
+}
+
+// Both reactions are one signal there, of any string.
+TEST_F(BadRecords, OfAStringBowedInItsMiddleAreInvertedAndNotCalibrated) {
+  const Written middle = written_at(0.165);
+  StudyResult result;
+  EXPECT_THAT(run(middle, "calibrate", result, "", 0.1655),
+              testing::HasSubstr("with the contact in its middle are whatever f0"));
+  EXPECT_EQ(run(middle, "invert", result, "joint", 0.165), "accepted");
+  EXPECT_EQ(result.status, report::Status::kOk);
+  // Copies of a stroke elsewhere are still refused as such.
+  Written copies = good();
+  copied(1.0)(copies);
+  EXPECT_THAT(run(copies, "invert", result), testing::HasSubstr("are one signal"));
 }
 
 TEST_F(BadRecords, AreNotInvertedWithAnotherTuning) {
