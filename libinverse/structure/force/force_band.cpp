@@ -67,8 +67,9 @@ class PowerShapes {
   // p: 0 of a blow, 1 of a push. Neither a blow's duration is known nor how fast a push changes, so
   // ω_c is free, and k one of those given.
   PowerFit fit(int p, const std::vector<double>& shown, std::span<const double> steepness) const {
-    PowerFit best;
-    const double lowest = spectra_.s(0).imag(), highest = spectra_.s(noise_.size() - 1).imag();
+    PowerFit best{.power = noise_};
+    const double lowest = std::max(spectra_.s(0).imag(), spectra_.grid.spacing);
+    const double highest = spectra_.s(noise_.size() - 1).imag();
     for (const double k : steepness) {
       for (double cutoff = 4.0 * highest; cutoff > 2.0 * lowest; cutoff /= kCutoffRatio) {
         PowerFit found = fit_amplitude(shape(p, k, cutoff), shown);

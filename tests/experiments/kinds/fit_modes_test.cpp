@@ -15,7 +15,7 @@
 namespace modcal::fit_modes_test {
 namespace {
 
-using structure_config::file_of, structure_config::kFolder, structure_config::run;
+using structure_config::file_of, structure_config::run;
 using testing::HasSubstr;
 
 TEST(FitModes, FindsThePolesOfThePlateWithinTheirErrorBars) {

@@ -168,6 +168,20 @@ TEST(StructureForce, IsAPushWhereItPushesAndNoneWhereItStrikesInNoiseToo) {
   }
 }
 
+TEST(StructureForce, OfABandFromZeroIsToldFromAPushToo) {
+  std::vector<double> blow(kSamples, 0.0);
+  for (std::size_t j = 0; j < kSamples; ++j) {
+    blow[j] = std::exp(-0.5 * std::pow((static_cast<double>(j) / kRate - 0.3) / 5e-4, 2));
+  }
+  StructureTable table = table_of({1, 3});
+  table.low = 0.0;
+  const StructureForce struck =
+      structure_force(table, record_under(blow, {1, 3}), {.window = 0.5, .draws = 2});
+  EXPECT_TRUE(struck.from_zero);
+  EXPECT_EQ(struck.shape, ForceShape::kImpacts);
+  EXPECT_LT(struck.push_odds, 0.0);
+}
+
 ActingPart part_of(const std::vector<Burst>& bursts, const StructureForceOptions& options) {
   return acting_part(table_of({0, 1, 2}), record_of({0, 1, 2}, bursts), options);
 }
