@@ -70,8 +70,10 @@ class PowerShapes {
     PowerFit best{.power = noise_};
     const double lowest = std::max(spectra_.s(0).imag(), spectra_.grid.spacing);
     const double highest = spectra_.s(noise_.size() - 1).imag();
+    const double ratios = std::log(4.0 * highest / (2.0 * lowest)) / std::log(kCutoffRatio);
     for (const double k : steepness) {
-      for (double cutoff = 4.0 * highest; cutoff > 2.0 * lowest; cutoff /= kCutoffRatio) {
+      for (int i = 0; i < ratios; ++i) {
+        const double cutoff = 4.0 * highest * std::pow(kCutoffRatio, -i);
         PowerFit found = fit_amplitude(shape(p, k, cutoff), shown);
         if (found.log_likelihood > best.log_likelihood) best = std::move(found);
       }
