@@ -2,8 +2,8 @@
 #include <bit>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <mutex>
-#include <set>
 
 #include "experiments/study/observation.hpp"
 #include "experiments/study/whole_record.hpp"
@@ -66,16 +66,13 @@ std::string remedy_of(EndRelation relation, const ObservationOptions& options,
   return "";
 }
 
-// As far as a stated contact may be off.
-bool is_stated_in_the_middle(const ObservationOptions& options) {
-  return std::abs(options.contact.position / options.string.length - 0.5) < 0.02;
-}
-
 // Of a contact in the middle both reactions are one signal, whatever f0, B and damping are.
 bool is_in_the_middle(const EndRelationFit& fit, const ObservationOptions& options) {
+  constexpr double kContactError = 0.02;  // as far as a stated contact may be off
+  const double place = options.contact.position / options.string.length;
   const double as_copies = fit.misfit_of(EndRelation::kCopies);
   const double as_string = fit.misfit_of(EndRelation::kString);
-  return is_stated_in_the_middle(options) && std::abs(fit.copy_gain - 1.0) < 0.05 &&
+  return std::abs(place - 0.5) < kContactError && std::abs(fit.copy_gain - 1.0) < 0.05 &&
          as_copies < 0.5 && as_copies < std::max(0.05, 1.02 * as_string);
 }
 
@@ -111,7 +108,8 @@ void require_linear_sensors(const EndRecord& ends, const ObservationOptions& opt
       pair, lacking, 100.0 * saturation->unexplained, 100.0 * saturation->mended);
 }
 
-void check_one_string(const ObservationOptions& options, const RecordedSignals& signals) {
+// Whether the reactions tell the string.
+bool check_one_string(const ObservationOptions& options, const RecordedSignals& signals) {
   const RecordOptions& record = options.record;
   MODCAL_REQUIRE(signals.sample_rate > 2.0 * options.string.fundamental,
                  "{}: a sample rate of {:g} Hz does not show a string of f0 = {:g} Hz: check the "
@@ -135,7 +133,7 @@ void check_one_string(const ObservationOptions& options, const RecordedSignals& 
                    record.file, end == End::kLeft ? record.left.channel : record.right.channel,
                    label_of(end), options.string.fundamental, end == End::kLeft ? "left" : "right");
   }
-  if (is_in_the_middle(fit, options)) return;
+  if (is_in_the_middle(fit, options)) return false;
   const std::string pair = fmt::format("{}: channels {} and {}, the reactions at x = 0 and x = L,",
                                        record.file, record.left.channel, record.right.channel);
   const EndRelation best = fit.best();
@@ -156,6 +154,7 @@ void check_one_string(const ObservationOptions& options, const RecordedSignals& 
                  "are missing or something else was recorded there; crop to the part before or "
                  "behind (record.start, record.stop)",
                  pair, record.start + fit.disturbance->time, fit.disturbance->ratio);
+  return true;
 }
 
 /// Hash of all that the check of two reactions depends on.
@@ -178,31 +177,30 @@ std::size_t key_of_check(const ObservationOptions& options, const RecordedSignal
 
 }  // namespace
 
-void require_one_string(const ObservationOptions& options, const RecordedSignals& signals) {
+bool require_one_string(const ObservationOptions& options, const RecordedSignals& signals) {
   // A record is checked before a run, by the run, and by every task of a list: what passed once
   // does not need the third of a second again.
   static std::mutex mutex;
-  static std::set<std::size_t> passed;
+  static std::map<std::size_t, bool> passed;
   const std::size_t key = key_of_check(options, signals);
   {
     const std::lock_guard lock(mutex);
-    if (passed.contains(key)) return;
+    if (const auto known = passed.find(key); known != passed.end()) return known->second;
   }
-  check_one_string(options, signals);
+  const bool is_told = check_one_string(options, signals);
   const std::lock_guard lock(mutex);
-  passed.insert(key);
+  return passed[key] = is_told;
 }
 
 void require_told_fundamental(const ObservationOptions& options, const Observation& observation) {
   if (observation.truth || !observation.reaction(End::kLeft) ||
-      !observation.reaction(End::kRight)) {
+      !observation.reaction(End::kRight) || observation.is_one_signal) {
     return;
   }
-  const EndRelationFit fit = fit_end_relations(
-      ends_of(*observation.reaction(End::kLeft), *observation.reaction(End::kRight)),
-      string_of(options));
-  if (is_in_the_middle(fit, options)) return;
-  const double told = fit.fundamental;
+  const double told = fit_end_relations(ends_of(*observation.reaction(End::kLeft),
+                                                *observation.reaction(End::kRight)),
+                                        string_of(options))
+                          .fundamental;
   const double difference = told / options.string.fundamental - 1.0;
   if (std::abs(difference) < 3e-3) return;
   const std::optional<ToldString> alone = told_string(observation);
@@ -222,21 +220,6 @@ void require_told_fundamental(const ObservationOptions& options, const Observati
                  "the {:g} Hz stated, which an inversion takes for granted: calibrate the string "
                  "first (kind: calibrate), or check the sample rate",
                  options.record.file, told, 100.0 * difference, options.string.fundamental);
-}
-
-void require_told_string(const ObservationOptions& options, const Observation& observation) {
-  const auto& left = observation.reaction(End::kLeft);
-  const auto& right = observation.reaction(End::kRight);
-  if (observation.truth || !left || !right || !is_stated_in_the_middle(options)) return;
-  const EndRelationFit fit = fit_end_relations(ends_of(*left, *right), string_of(options));
-  if (!is_in_the_middle(fit, options)) return;
-  throw WrongKey(
-      "bow.position",
-      fmt::format("{}: both reactions are one signal, as those of a string with the contact in its "
-                  "middle are whatever f0, B and damping: nothing can be calibrated from them. "
-                  "Record a stroke 2 % of the length or more off the middle, or, where the contact "
-                  "was elsewhere, give each end a sensor and a channel of its own",
-                  options.record.file));
 }
 
 std::optional<ToldString> told_string(const Observation& observation) {

@@ -59,8 +59,8 @@ std::string modes_missing(const StringModel& string, const RecordedSignals& reco
 Observation observe_record(const ObservationOptions& options, const std::filesystem::path& folder,
                            const StopToken& stop) {
   RecordedSignals record = load_record(options.record, folder, stop);
-  if (record.left && record.right) require_one_string(options, record);
   Observation observation;
+  observation.is_one_signal = record.left && record.right && !require_one_string(options, record);
   observation.sample_rate = record.sample_rate;
   StringModel string = options.string;
   if (string.modes_of_record()) {
@@ -78,6 +78,12 @@ Observation observe_record(const ObservationOptions& options, const std::filesys
   observation.reference_velocity = std::move(record.reference_velocity);
   observation.reference_displacement = std::move(record.reference_displacement);
   observation.warnings = std::move(record.warnings);
+  if (observation.is_one_signal) {
+    observation.warnings.push_back(fmt::format(
+        "{}: both reactions are one signal, as a contact in the middle of the string makes them: "
+        "they tell nothing of f0, B and x_c, which are taken as stated",
+        options.record.file));
+  }
   for (auto& reaction : observation.reactions) {
     if (reaction && options.measurement.remove_mean) remove_mean(reaction->samples);
   }

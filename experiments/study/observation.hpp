@@ -111,6 +111,7 @@ struct Observation {
   /// The true force low-passed before it was sampled, where a score asks for it.
   std::optional<Signal> anti_aliased;
   double anti_alias_cut = 0.0;  ///< [Hz]
+  bool is_one_signal = false;   ///< both reactions, as those of a record bowed in the middle
   std::vector<std::string> warnings;
   std::string modes_taken;    ///< how many modes and why, where the record told; else empty
   std::string modes_missing;  ///< of a number of modes stated: that the record tells more
@@ -137,16 +138,13 @@ inline constexpr End kEnds[] = {End::kLeft, End::kRight};
 
 /// Throws InvalidInput where both recorded reactions hold another relation than that of a string's
 /// ends (fit_end_relations()): nothing but noise, copies, a turned sign, exchanged ends, no common
-/// string within 3 % of f₀ and 2 % of L, or one that is broken off somewhere in the record.
-void require_one_string(const ObservationOptions& options, const RecordedSignals& signals);
+/// string within 3 % of f₀ and 2 % of L, or one that is broken off somewhere in the record. False:
+/// they are one signal, as a contact in the middle makes them, and tell nothing of the string.
+bool require_one_string(const ObservationOptions& options, const RecordedSignals& signals);
 
 /// Throws InvalidInput where both reactions of a record tell an f₀ more than 0.2 % from the one
 /// stated, which they tell to 0.05 %: an inversion takes it for granted, and modes are 2ζ wide.
 void require_told_fundamental(const ObservationOptions& options, const Observation& observation);
-
-/// Throws WrongKey where both reactions of a record are one signal, as a contact in the middle
-/// makes them whatever the string is.
-void require_told_string(const ObservationOptions& options, const Observation& observation);
 
 /// The string that explains both recorded reactions (find_string()); none where there is none, or
 /// one reaction, or a simulation.

@@ -116,6 +116,8 @@ struct ObservedRecords {
   std::vector<Observation> strokes;
   std::vector<CalibrationRecord> plucks;
 };
+/// Throws WrongKey where no stroke tells the string: each was made in its middle.
+void require_told_string(const ObservationOptions& first, std::span<const Observation> strokes);
 /// Simulates or reads them. `outputs`: what the first stroke is simulated with.
 ObservedRecords observe_records(const CalibrateOptions& options, const OutputRequest& outputs,
                                 const StudyContext& context);

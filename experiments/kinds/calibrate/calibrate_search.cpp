@@ -113,6 +113,17 @@ std::vector<Observation> further_observations(const CalibrateOptions& options,
 
 }  // namespace
 
+void require_told_string(const ObservationOptions& first, std::span<const Observation> strokes) {
+  if (!std::ranges::all_of(strokes, &Observation::is_one_signal)) return;
+  throw WrongKey(
+      "bow.position",
+      fmt::format("{}: both reactions are one signal, as those of a string with the contact in its "
+                  "middle are whatever f0, B and damping: nothing can be calibrated from them. "
+                  "Record a stroke 2 % of the length or more off the middle, or, where the contact "
+                  "was elsewhere, give each end a sensor and a channel of its own",
+                  first.record.file));
+}
+
 ObservedRecords observe_records(const CalibrateOptions& options, const OutputRequest& outputs,
                                 const StudyContext& context) {
   const InvertOptions& inversion = options.inversion;
@@ -125,8 +136,7 @@ ObservedRecords observe_records(const CalibrateOptions& options, const OutputReq
   observed.strokes.insert(observed.strokes.begin(), first);
   require_plucks(options.plucks, inversion.observation, options.calibration);
   observed.plucks = observe_plucks(options.plucks, inversion.observation, inversion.key(), context);
-  const bool is_alone = observed.strokes.size() == 1 && observed.plucks.empty();
-  if (is_alone) require_told_string(inversion.observation, first);
+  if (observed.plucks.empty()) require_told_string(inversion.observation, observed.strokes);
   return observed;
 }
 

@@ -407,6 +407,7 @@ TEST_F(BadRecords, OfAStringBowedInItsMiddleAreInvertedAndNotCalibrated) {
               testing::HasSubstr("with the contact in its middle are whatever f0"));
   EXPECT_EQ(run(middle, "invert", result, "joint", 0.165), "accepted");
   EXPECT_EQ(result.status, report::Status::kOk);
+  EXPECT_THAT(result.warnings, testing::Contains(testing::HasSubstr("taken as stated")));
   // Copies of a stroke elsewhere are still refused as such.
   Written copies = good();
   copied(1.0)(copies);
