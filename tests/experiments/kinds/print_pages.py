@@ -5,6 +5,7 @@ PAIRS: lines "page.html page.pdf". A browser for each page would spend most of i
 """
 import base64
 import pathlib
+import shutil
 import sys
 
 from selenium import webdriver
@@ -20,7 +21,7 @@ def start(browser, profile):
     for switch in ("headless", "no-sandbox", "disable-gpu", "no-first-run", "disable-background-networking",
                    "disable-component-update", "disable-sync", f"user-data-dir={profile}"):
         options.add_argument(f"--{switch}")
-    driver = webdriver.Chrome(service=Service("/usr/bin/chromedriver", log_path=f"{profile}.log"), options=options)
+    driver = webdriver.Chrome(service=Service(shutil.which("chromedriver"), log_path=f"{profile}.log"), options=options)
     driver.set_page_load_timeout(SECONDS)
     driver.set_script_timeout(SECONDS)
     return driver
