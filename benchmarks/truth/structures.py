@@ -101,11 +101,12 @@ def pulse(t, at, width, height):
     return np.where((x > 0) & (x < 1), height * np.sin(np.pi * np.clip(x, 0, 1)), 0.0)
 
 
-def force_of(kind, s, seed):
-    """The force of a record as a function of time."""
+def force_of(kind, s, seed, longer):
+    """The force of a record as a function of time; blows are longer than that of the table by a factor, 0: by .8 to 1.25."""
     own = np.random.default_rng(seed + 7)
     if kind == "strike":  # and a rebound with every second one
-        width, again = s.width * s.rng.uniform(0.8, 1.25), own.random() < 0.5
+        drawn = s.rng.uniform(0.8, 1.25)
+        width, again = s.width * (longer or drawn), own.random() < 0.5
         return lambda t: pulse(t, 1.3 * s.quiet, width, 60) + again * pulse(t, 1.3 * s.quiet + 0.03 * s.duration, width, 25)
     if kind == "push":  # rises in a twentieth of the record, is let go after a fourth
         at = s.quiet + 0.25 * s.duration
@@ -159,6 +160,7 @@ def main():
     p.add_argument("out", type=Path)
     p.add_argument("--seeds", nargs=2, type=int, default=(0, 16), metavar=("FIRST", "END"))
     p.add_argument("--kinds", nargs="+", choices=("strike", "smooth", "push", "step"), default=["strike", "push", "step"])
+    p.add_argument("--longer", type=float, default=0, help="than that of the table every blow is, by a factor")
     a = p.parse_args()
     modes, answers = np.zeros((2, 2), int), {kind: np.zeros(3, int) for kind in a.kinds}
     for seed in range(*a.seeds):
@@ -172,7 +174,7 @@ def main():
             continue
         modes += count_modes(s, json.loads((folder / "fit/modes_fit.json").read_text()))
         for kind in a.kinds:
-            t, force = measure(s, force_of(kind, s, seed), folder / f"{kind}.csv")
+            t, force = measure(s, force_of(kind, s, seed, a.longer), folder / f"{kind}.csv")
             code = run(a.build, folder / f"{kind}.yaml", folder / kind,
                        ["kind: identify_force", "table: fit/table.yaml", "record:", f"  file: {kind}.csv", sensors])
             if code not in (0, REJECTED):

@@ -152,18 +152,18 @@ constexpr double kToldWidth = 1.0 / 3.0;
 /// ln of the odds over blows from which what pulses explain is a push, and that a push itself must
 /// have to be told.
 /// Source: 40 strikes on simulated structures (benchmarks/truth/structures.py) have -152 to -2.2,
-/// 80 pushes that are let go or set in 4.2 and more, or are not told by a single accelerometer. 18
+/// 80 pushes that are let go or set in 6.2 and more, or are not told by a single accelerometer. 18
 /// strikes on a plate by response functions, which tell nothing of a pulse, have -11 to -6.
 /// Range tried: 1.5 to 6, by these.
-/// Doubled: one push has less and is warned of.
+/// Doubled: two of the strikes are not told from a push, and rejected; all pushes are.
 /// Halved: as it is.
 constexpr double kPushOdds = 3.0;
 
 /// From one cutoff of a push's or a blow's spectrum that is tried to the next.
 /// Source: those strikes and pushes.
-/// Range tried: 1.4 and 1.7.
-/// Doubled: not tried.
-/// Halved: odds of 4.2 in the place of 6.2 at least, and the same answers.
+/// Range tried: 1.4 to 3.4.
+/// Doubled: one push of 80 is accepted, another one warned of.
+/// Halved: no ratio; 1.4 has odds of 4.2 in the place of 6.2 at least, and the same answers.
 constexpr double kCutoffRatio = 1.7;
 
 }  // namespace modcal

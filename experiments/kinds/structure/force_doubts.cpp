@@ -44,8 +44,8 @@ void doubt_slow_part(const StructureForce& found, const LoadedStructureRecord& l
         is_push ? fmt::format(
                       "the force rises towards {:g} Hz, as one that pushes one way for long", low)
                 : "the band and the record are too short to tell whether the force pushes one way";
-    return reject(fmt::format("rejected: {}: {}, and its band does not hold that; {}{}", why,
-                              untold, remedy, or_stated),
+    return reject(fmt::format("rejected: {}: {}, and its band does not hold that; {}{}{}", why,
+                              untold, remedy, is_push ? "" : ", or record for longer", or_stated),
                   result);
   }
   const std::string_view doubt = is_push     ? "its spectrum is that of a push, not of blows: "
@@ -64,8 +64,7 @@ void doubt_begin(const StructureForce& found, const LoadedStructureRecord& loade
   if (found.rang && loaded.kinds.size() == 1 && found.shape == ForceShape::kSmooth) {
     why =
         "rejected: the structure may ring when the record begins, and one sensor does not tell "
-        "that "
-        "from a smooth force: begin the record at rest, with a quiet part, or record a second "
+        "that from a smooth force: begin the record at rest, with a quiet part, or record a second "
         "sensor";
   }
   // Of what rings about a half stands above this share of its rms at any instant.

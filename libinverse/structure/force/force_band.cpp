@@ -132,6 +132,8 @@ double log_odds_of_push(const BinEvidence& evidence, const ContourSpectra& spect
     const double push = shapes.fit(1, power, steepness).log_likelihood;
     return (push - shapes.fit(0, power, steepness).log_likelihood) / spectra.correlated();
   };
+  // What a push itself would have. Of a Gaussian cutoff alone: with any steepness six of twelve
+  // good strikes are not told, as a steep blow is much like the tail of a push.
   const double of_a_push = odds(shapes.fit(1, shown, kGaussian).power, kGaussian);
   return of_a_push < kPushOdds ? std::numeric_limits<double>::quiet_NaN()
                                : odds(shown, kAnySteepness);
