@@ -59,6 +59,9 @@ struct InversionOutputs {
   bool velocity = false;
   bool force_spectrum = false;
   bool side_misfit = false;  ///< Estimate::side_misfit
+  /// Standard deviations, where the estimator has any; those of decays at unknown ends cost several
+  /// times what the signals do.
+  bool deviations = true;
 };
 
 /// Identified motion at the contact; what was not asked for is empty.

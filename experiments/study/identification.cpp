@@ -215,9 +215,8 @@ ForceScores scores_of(const Observation& observation, const ScoredForce& force,
 }
 
 std::vector<MotionScore> motion_scores(const Observation& observation, const Estimate& estimate,
-                                       const ScoreOptions* score) {
+                                       const ScoreOptions& score) {
   std::vector<MotionScore> found;
-  if (score == nullptr) return found;
   for (const Quantity& quantity : kQuantities) {
     const bool is_motion =
         quantity.reference != nullptr && quantity.reference != &Observation::reference;
@@ -231,10 +230,16 @@ std::vector<MotionScore> motion_scores(const Observation& observation, const Est
                                            {.truth = *(observation.*quantity.reference),
                                             .anti_aliased = std::nullopt,
                                             .fundamental = observation.fundamental},
-                                           *score);
+                                           score);
     for (const WindowScore& window : scores.scores) found.push_back({quantity.name, window});
   }
   return found;
+}
+
+void score_side(const Observation& observation, const ScoreOptions& score,
+                SideIdentification& side) {
+  static_cast<ForceScores&>(side) = scores_of(observation, ScoredForce(side.estimate), &score);
+  side.motion = motion_scores(observation, side.estimate, score);
 }
 
 InversionCache::Prepared InversionCache::get(const AssumedModel& model,
@@ -260,9 +265,8 @@ std::vector<SideIdentification> identify(const Observation& observation, const A
                                           : prepare_estimator(model, observation, recipe);
   std::vector<SideIdentification> sides;
   for (Estimate& estimate : estimator->estimate(record_of(observation), recipe.method(outputs))) {
-    const ForceScores scores = scores_of(observation, ScoredForce(estimate), score);
-    auto motion = motion_scores(observation, estimate, score);
-    sides.push_back({scores, std::move(estimate), std::move(motion)});
+    sides.push_back({{}, std::move(estimate)});
+    if (score) score_side(observation, *score, sides.back());
   }
   return sides;
 }

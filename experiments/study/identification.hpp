@@ -149,7 +149,10 @@ ForceScores scores_of(const Observation& observation, const ScoredForce& force,
                       const ScoreOptions* score);
 /// The same of the motion at the contact, where it was measured.
 std::vector<MotionScore> motion_scores(const Observation& observation, const Estimate& estimate,
-                                       const ScoreOptions* score);
+                                       const ScoreOptions& score);
+/// Fills both of one estimate.
+void score_side(const Observation& observation, const ScoreOptions& score,
+                SideIdentification& side);
 
 /// Inverts the reactions of the observation with the model. `score` null: no scores; `cache` null:
 /// the estimator is prepared for this call alone.

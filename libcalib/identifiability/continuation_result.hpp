@@ -12,6 +12,7 @@
 #include "libcalib/identifiability/law_followers.hpp"
 #include "libcalib/identifiability/local_misfit.hpp"
 #include "libcalib/identifiability/misfit_causes.hpp"
+#include "libcalib/identifiability/model_posterior.hpp"
 #include "libcalib/likelihood/records/likelihood_band.hpp"
 #include "libcalib/parameters/named_covariance.hpp"
 #include "libcalib/parameters/string_unknowns.hpp"
@@ -113,8 +114,9 @@ struct ContinuationResult {
   /// diagonal are the deviations reported; what a verdict adds to that of a frequency, in its place
   /// alone.
   NamedCovariance covariance;
-  double law_width = 0.0;  ///< τ
-  double chi2 = 0.0;       ///< reduced, of `model`
+  ModelPosterior posterior;  ///< of the first record's model
+  double law_width = 0.0;    ///< τ
+  double chi2 = 0.0;         ///< reduced, of `model`
   double chi2_deviation = 0.0;
   bool fits = false;     ///< χ² does not contradict the result: χ² < 1 + 3 sd
   PriorMisfit priors;    ///< of `model` to what was stated beforehand

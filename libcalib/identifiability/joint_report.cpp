@@ -33,14 +33,15 @@ class JointReport {
     }
     for (std::size_t r = 0; r < at_.all.records(); ++r) {
       const ModelPoint model = at_.all.model(at_.theta, r);
-      report_record(unknowns(), model, damping_line(model).first, own(covariance, r), r,
-                    r < fit_.single.size(), fit_);
+      const Eigen::VectorXd theta = at_.all.own(at_.theta, r);
+      const Eigen::MatrixXd of_theta = own(covariance, r);
+      const RecordFit record{unknowns(), theta, model, damping_line(model).first, of_theta};
+      report_record(record, r, r < fit_.single.size(), fit_);
+      if (r == 0 && unknowns().is_law()) fit_.law = law_estimate(record);
     }
     fit_.damping_power = damping_line(fit_.model).second;
     report_covariance(covariance);
-    if (!unknowns().is_law()) return;
-    fit_.law = law_estimate(unknowns(), at_.theta, fit_.model, fit_.damping, own(covariance, 0));
-    fit_.law.covariance = fit_.covariance;
+    if (unknowns().is_law()) fit_.law.covariance = fit_.covariance;
   }
 
  private:
@@ -94,9 +95,8 @@ void report_joint_fit(const JointEstimate& estimate, const Eigen::MatrixXd& cova
   JointReport(estimate, fit).report(covariance);
 }
 
-void report_record(const StringUnknowns& unknowns, const ModelPoint& model, double damping,
-                   const Eigen::MatrixXd& covariance, std::size_t r, bool stroke,
-                   ContinuationResult& fit) {
+void report_record(const RecordFit& record, std::size_t r, bool stroke, ContinuationResult& fit) {
+  const auto& [unknowns, theta, model, damping, covariance] = record;
   if (stroke) {
     const Index contact = unknowns.contact();
     fit.contacts.resize(r + 1);
@@ -110,6 +110,7 @@ void report_record(const StringUnknowns& unknowns, const ModelPoint& model, doub
                    .damping = damping,
                    .damping_deviation = unknowns.damping_deviation(covariance) * damping};
   if (r > 0) return;
+  fit.posterior = {unknowns, theta, covariance};
   fit.contact_deviation = fit.contact_deviations.front();
   fit.sensor_deviation = fit.values.front().sensor_deviation;
   fit.damping = damping;
@@ -119,9 +120,8 @@ void report_record(const StringUnknowns& unknowns, const ModelPoint& model, doub
   fit.response_deviations = unknowns.response_deviations(covariance);
 }
 
-LawEstimate law_estimate(const StringUnknowns& unknowns, const Eigen::VectorXd& theta,
-                         const ModelPoint& model, double damping,
-                         const Eigen::MatrixXd& covariance) {
+LawEstimate law_estimate(const RecordFit& record) {
+  const auto& [unknowns, theta, model, damping, covariance] = record;
   LawEstimate law{.fundamental = unknowns.fundamental(theta),
                   .inharmonicity = theta[1],
                   .contact = model.contact,

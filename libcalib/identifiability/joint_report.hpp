@@ -25,18 +25,21 @@ struct JointEstimate {
 void report_joint_fit(const JointEstimate& estimate, const Eigen::MatrixXd& covariance,
                       ContinuationResult& fit);
 
-/// Fills what record r, the strokes first, has of its own: contact, sensors and damping; of the
-/// first also what all share of these. damping: factor of the ratios at `model`; covariance: of the
-/// record's own unknowns.
-void report_record(const StringUnknowns& unknowns, const ModelPoint& model, double damping,
-                   const Eigen::MatrixXd& covariance, std::size_t r, bool stroke,
-                   ContinuationResult& fit);
+/// Where the fit of one record ended; all must outlive this.
+struct RecordFit {
+  const StringUnknowns& unknowns;
+  const Eigen::VectorXd& theta;
+  const ModelPoint& model;            ///< at θ
+  double damping;                     ///< factor of the ratios at `model`
+  const Eigen::MatrixXd& covariance;  ///< of θ
+};
 
-/// The law at θ of the first record, to which `model`, `damping` and `covariance` belong; without
-/// χ² and what is stated.
-LawEstimate law_estimate(const StringUnknowns& unknowns, const Eigen::VectorXd& theta,
-                         const ModelPoint& model, double damping,
-                         const Eigen::MatrixXd& covariance);
+/// Fills what record r, the strokes first, has of its own: contact, sensors and damping; of the
+/// first also what all share of these, and the posterior.
+void report_record(const RecordFit& record, std::size_t r, bool stroke, ContinuationResult& fit);
+
+/// The law at θ of the first record; without χ² and what is stated.
+LawEstimate law_estimate(const RecordFit& record);
 
 /// What unknown amplitudes of causes may change, Σ suspicion · (change)(change)ᵀ: a cause that
 /// moves an unknown by several deviations before it is named is not told apart from them, and the

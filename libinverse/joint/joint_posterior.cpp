@@ -155,7 +155,7 @@ void JointInversion::count_bins(double kept_pairs, JointWorkspace& workspace,
 void JointInversion::find_errors_of_decays(const Weights& weights, const JointMethod& method,
                                            JointWorkspace& workspace) const {
   for (auto& variance : workspace.by_decays) variance.clear();
-  if (model_.truncation != Truncation::kTransient) return;
+  if (model_.truncation != Truncation::kTransient || !method.outputs.deviations) return;
   const InversionOutputs& outputs = method.outputs;
   TransientFit::Effect effect{.motion = {receptance_, mobility_},
                               .motion_scale = 1.0 / std::sqrt(weight_power_)};
@@ -212,6 +212,7 @@ void JointInversion::apply_posterior(const Weights& weights, const JointMethod& 
       write_signal(ContactSignal::kVelocity, outputs.velocity, workspace, identified.velocity);
   result.deviation.force =
       write_signal(ContactSignal::kForce, outputs.force, workspace, identified.force);
+  if (!outputs.deviations) result.deviation = {};
 }
 
 }  // namespace modcal

@@ -1,4 +1,5 @@
 #include "experiments/kinds/benchmark/benchmark.hpp"
+#include "experiments/kinds/calibrate/calibrate_force.hpp"
 
 namespace modcal {
 namespace {

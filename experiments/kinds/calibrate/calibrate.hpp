@@ -203,28 +203,6 @@ double median_relative_error(const CalibrationOutcome& outcome);
 report::Audio calibration_audio(const CalibrateOptions& options, const Observation& observation,
                                 const AssumedModel& refined);
 
-/// The observation with S = gain exp(−s delay) s/(s + corner) taken out of the reaction at x = L,
-/// which had a sensor that a calibration found to differ: R₂ = R₂' / S. The delay is shifted back
-/// (see advanced()). A high-pass is undone as y + corner ∫ y dt; without the level that the sensor
-/// lost, a line is left over the record, and it is taken out. Equal sensors: unchanged.
-Observation with_sensors_alike(Observation observation, const Sensor& sensors);
-
-/// Throws InvalidInput where calibration and estimator take the ends to feel different reactions,
-/// or where the estimator is told of sensors that differ and the calibration finds or is told how
-/// they do, too: with_sensors_alike() has then taken out what the estimator takes out.
-void require_agreement(const CalibrationOptions& calibration, const Estimator& estimator,
-                       bool recorded);
-
-/// The sensors that were found; a corner that the data do not tell from none (3 sd) is none: to
-/// undo it would cost the level of the reaction.
-Sensor told_sensors(const CalibrationResult& result);
-
-/// What a record's calibration frees unasked, with the sizes of the priors; empty: nothing.
-std::string default_text(const CalibrationOptions& calibration, const Observation& observation);
-
-/// What was taken out, for a report; empty for equal sensors or where x = L was not recorded.
-std::string correction_text(const Observation& observation, const Sensor& sensors);
-
 /// The frequencies found against their law, and the ratio of the reactions, which no force changes,
 /// against the models'. Of a search with an estimate.
 std::vector<report::Figure> calibration_overview(const CalibrationOutcome& outcome,

@@ -1,4 +1,4 @@
-#include "experiments/kinds/calibrate/calibrate.hpp"
+#include "experiments/kinds/calibrate/calibrate_force.hpp"
 
 namespace modcal {
 namespace {
@@ -10,9 +10,8 @@ constexpr double kPassBand = 0.45;  // of the rate that is played
 std::vector<SideIdentification> identified_by(const char* name, const InvertOptions& inversion,
                                               const Observation& observation,
                                               const AssumedModel& refined) {
-  InversionOptions options = inversion.inversion;
-  if (options.estimator.selected() != name) options.estimator = Choice<Estimator>(name);
-  return identify(observation, refined, options, {.force = true, .velocity = true}, nullptr);
+  return identify(observation, refined, with_estimator(name, inversion.inversion),
+                  {.force = true, .velocity = true}, nullptr);
 }
 
 }  // namespace

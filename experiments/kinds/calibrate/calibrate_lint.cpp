@@ -1,5 +1,5 @@
 // What is wrong with the settings of a calibration, and what its records say against them.
-#include "experiments/kinds/calibrate/calibrate.hpp"
+#include "experiments/kinds/calibrate/calibrate_force.hpp"
 #include "experiments/kinds/lint.hpp"
 #include "libcalib/likelihood/records/noise_level.hpp"
 #include "libcalib/likelihood/records/record_options.hpp"

@@ -1,7 +1,7 @@
 // The search of a calibration: its records, its initial model, what it finds.
 #include <algorithm>
 
-#include "experiments/kinds/calibrate/calibrate.hpp"
+#include "experiments/kinds/calibrate/calibrate_force.hpp"
 #include "libcalib/objectives/joint_likelihood.hpp"
 #include "libcalib/objectives/posterior.hpp"
 #include "libcalib/problem/covariance.hpp"

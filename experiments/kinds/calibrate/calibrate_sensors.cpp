@@ -1,6 +1,6 @@
 #include <fmt/ranges.h>
 
-#include "experiments/kinds/calibrate/calibrate.hpp"
+#include "experiments/kinds/calibrate/calibrate_force.hpp"
 #include "libcalib/identifiability/tuning.hpp"
 #include "libsim/signal/statistics.hpp"
 
@@ -53,15 +53,6 @@ void require_agreement(const CalibrationOptions& calibration, const Estimator& e
       "the estimator sees it: gain2 {:g} and delay2 {:g} s would take it out once more; "
       "leave them out, or state those of x = 0 (gain1 {:g}, delay1 {:g} s)",
       right.gain, right.delay, left.gain, left.delay);
-}
-
-Sensor told_sensors(const CalibrationResult& result) {
-  Sensor sensors = result.model.sensors;
-  if (!result.continuation) return sensors;
-  const double deviation = result.continuation->sensor_deviation[Sensor::kCorner];
-  const double corner = sensor_value(Sensor::kCorner, sensors);
-  if (deviation > 0.0 && corner < 3.0 * deviation) sensors.corner = 0.0;
-  return sensors;
 }
 
 std::string default_text(const CalibrationOptions& calibration, const Observation& observation) {

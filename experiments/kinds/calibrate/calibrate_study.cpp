@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "experiments/kinds/calibrate/calibrate.hpp"
+#include "experiments/kinds/calibrate/calibrate_force.hpp"
 #include "experiments/report/result.hpp"
 
 namespace modcal {
@@ -139,14 +139,11 @@ StudyResult CalibrateOptions::run(const StudyContext& context) const {
   const CalibrationOutcome outcome =
       calibrate_strokes(*this, observed.strokes, polling_clock(context), observed.plucks);
   context.throw_if_interrupted();
-  const Sensor sensors = told_sensors(outcome.result);
-  const Observation observation = with_sensors_alike(measured, sensors);
-  const auto sides =
-      identify(observation, outcome.refined, inversion.inversion,
-               inversion_outputs(shown.figures, shown.wants_all()), &inversion.score);
+  const CalibratedForce force = identify_calibrated(
+      *this, measured, outcome, inversion_outputs(shown.figures, shown.wants_all()), context.stop);
 
   StudyResult result;
-  const Found found{outcome, measured, observation, sensors, sides};
+  const Found found{outcome, measured, force.observation, force.sensors, force.sides};
   add_answer(*this, shown, found, result);
   add_account(*this, shown, found, result);
   return result;

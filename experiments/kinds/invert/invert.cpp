@@ -38,7 +38,7 @@ void lint_windows(const InvertOptions& options, const Observation& observation,
   lint_making(findings, "score", [&] {
     scores_of(observation, ScoredForce(silence), &options.score);
     const Estimate still{.result = {.displacement = silence, .velocity = silence}};
-    motion_scores(observation, still, &options.score);
+    motion_scores(observation, still, options.score);
   });
   const double duration = static_cast<double>(observation.samples()) / observation.sample_rate;
   append(findings, lint_figure_windows(options.figures, duration));

@@ -195,7 +195,7 @@ class Attempt {
     law_.clear_held(covariance);
     const ModelPoint model = law_.model(law_theta_);
     LawEstimate& law = result.law;
-    law = law_estimate(law_, law_theta_, model, law_.damping_factor(law_theta_), covariance);
+    law = law_estimate({law_, law_theta_, model, law_.damping_factor(law_theta_), covariance});
     law.covariance = named_covariance(law_, law_theta_, law.damping, covariance);
     law.chi2 = stroke_.reduced_chi2(law_, law_theta_, at, options);
     stroke_.end_stage(name + ", weighted bins", last.objective, law.chi2);
@@ -211,7 +211,7 @@ class Attempt {
     result.covariance = law.covariance;
     result.chi2 = law.chi2;
     result.priors = law.priors;
-    report_record(law_, result.model, law.damping, covariance, 0, true, result);
+    report_record({law_, law_theta_, result.model, law.damping, covariance}, 0, true, result);
     result.damping_power = law_.damping_power(law_theta_);
     result.modes = law_verdicts(result.model, law.inharmonicity, covariance.topLeftCorner(2, 2));
     trust_stated_frequencies(priors_, {}, result.modes);

@@ -183,7 +183,7 @@ class FreeStage {
     // The law's damping made the reference of the free frequencies.
     const StringUnknowns& law = start_.law;
     const double damping = unknowns_.damping_factor(theta_) * law.damping_factor(start_.theta);
-    report_record(unknowns_, result_.model, damping, covariance, 0, true, result_);
+    report_record({unknowns_, theta_, result_.model, damping, covariance}, 0, true, result_);
     result_.damping_power = unknowns_.damping_power(theta_) + law.damping_power(start_.theta);
     result_.modes = free_verdicts(result_.model, deviation.head(modes()), sight_.seen, followers_);
     trust_stated_frequencies(priors_, deviation, result_.modes);

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "experiments/kinds/calibrate/calibrate.hpp"
+#include "experiments/kinds/calibrate/calibrate_force.hpp"
 #include "experiments/loader.hpp"
 #include "libsim/dynamics/scene/scene.hpp"
 #include "libsim/records/record_file.hpp"
