@@ -16,7 +16,8 @@ namespace {
 bool same_grid(const StoredChannel& a, const StoredChannel& b) {
   const bool same_rate =
       a.sample_rate == b.sample_rate || (std::isnan(a.sample_rate) && std::isnan(b.sample_rate));
-  return same_rate && a.size == b.size;
+  const bool is_later = std::abs(a.start - b.start) * a.sample_rate > kSameInstant;
+  return same_rate && a.size == b.size && !is_later;
 }
 
 std::string grid_text(const StoredChannel& channel) {
@@ -24,7 +25,9 @@ std::string grid_text(const StoredChannel& channel) {
   const std::string rate = std::isnan(channel.sample_rate)
                                ? std::string("a rate that is not stated")
                                : fmt::format("{:.9g} Hz", channel.sample_rate);
-  return fmt::format("{} samples at {}", channel.size, rate);
+  const bool begins_later = std::abs(channel.start) > 0.0;
+  return fmt::format("{} samples at {}{}", channel.size, rate,
+                     begins_later ? fmt::format(" from {:.9g} s on", channel.start) : "");
 }
 
 std::vector<std::string> different_names(const std::vector<StoredChannel>& stored) {
@@ -51,8 +54,8 @@ std::vector<std::size_t> choose(const std::vector<StoredChannel>& stored,
     if (channel.other_than_time.empty() && same_grid(channel, stored[chosen[0]])) continue;
     throw WrongChannel(
         i, channel.other_than_time.empty()
-               ? fmt::format("{}: channel \"{}\" has {}, \"{}\" has {}; one record needs one rate "
-                             "and one length",
+               ? fmt::format("{}: channel \"{}\" has {}, \"{}\" has {}; one record needs one rate, "
+                             "one length and one beginning: crop them to the same instants",
                              file, names[chosen[i]], grid_text(channel), names[chosen[0]],
                              grid_text(stored[chosen[0]]))
                : fmt::format("{}: channel \"{}\" is no record in time but a {}", file,
@@ -80,8 +83,17 @@ void use_times(const StoredChannel& channel, const ReadOptions& options, const s
                  "{}: an instant of \"{}\" is no number", file, channel.head.name);
   const TimeAxis axis =
       examine_time_axis(times, channel.time_resolution * largest_magnitude(times));
-  recording.sample_rate = axis.sample_rate;
   recording.time_jitter = axis.jitter;
+  if (!channel.is_rate_stated) {
+    recording.sample_rate = axis.sample_rate;
+  } else if (axis.findings.empty() && std::isnan(options.sample_rate) &&
+             std::abs(axis.sample_rate / channel.sample_rate - 1.0) >
+                 std::min(axis.rate_error, kCalibratedClock) + kSameRate) {
+    recording.add_problem(fmt::format(
+        "{}: {} says {:.9g} Hz, the instants of \"{}\" say {:.9g} Hz; correct one of them or state "
+        "sample_rate",
+        file, channel.rate_source, channel.sample_rate, channel.head.name, axis.sample_rate));
+  }
   for (const TimeFinding& finding : axis.findings) {
     std::string text = fmt::format("{}: sample {}: {}", file, finding.sample, finding.text);
     if (std::isnan(options.sample_rate)) {
@@ -102,6 +114,10 @@ void settle_rate(const StoredChannel& channel, const ReadOptions& options, const
   recording.sample_rate = channel.sample_rate;
   recording.rate_source = channel.rate_source;
   if (channel.read_times && !options.headers_only) use_times(channel, options, file, recording);
+  if (!channel.contradiction.empty() && !given) {
+    recording.add_problem(fmt::format("{}: {}; correct one of them or state sample_rate", file,
+                                      channel.contradiction));
+  }
   if (given) {
     recording.compare_rate(options.sample_rate, 0.0, file);
   } else if (!std::isfinite(recording.sample_rate) && !options.headers_only &&
@@ -126,7 +142,8 @@ std::pair<std::string, std::string> units_of_quotient(const std::string& unit) {
 double rate_of_period(double period, double resolution) {
   const double rate = 1.0 / period;
   const double whole = std::round(rate);
-  const bool is_whole = whole > 0.0 && std::abs(rate - whole) <= resolution * rate;
+  // Of a period that ends in a 5 behind the last digit printed rounding is all of the resolution.
+  const bool is_whole = whole > 0.0 && std::abs(rate - whole) <= 1.0001 * resolution * whole;
   return is_whole ? whole : rate;
 }
 

@@ -14,6 +14,9 @@ struct StoredChannel {
   std::size_t size = 0;
   double sample_rate = std::numeric_limits<double>::quiet_NaN();  ///< [Hz]; NaN: not known
   std::string rate_source;
+  bool is_rate_stated = false;     ///< beside the instants, which must agree with it
+  std::string contradiction = {};  ///< what else in the file tells another rate; empty: nothing
+  double start = std::numeric_limits<double>::quiet_NaN();  ///< of the first sample [s]; NaN: none
   /// What it is where it is no function of time ("frequency response, 801 lines"); else empty.
   std::string other_than_time = {};
   std::string place = {};  ///< "data.uff: dataset 58 at line 12"
@@ -31,10 +34,11 @@ struct StoredChannel {
   std::function<std::vector<Complex>()> read_response = {};
 };
 
-/// The wanted channels as one record. Unasked those in time that have the first one's rate and
-/// length are taken; the others are warnings. Throws WrongChannel for a wanted one that is not
-/// there, is no function of time or differs from the first in rate or length, and InvalidInput for
-/// samples that are not finite and a rate that is not known (listed by a survey).
+/// The wanted channels as one record. Unasked those in time that have the first one's rate, length
+/// and beginning are taken; the others are warnings. Throws WrongChannel for a wanted one that is
+/// not there, is no function of time or differs from the first in rate, length or beginning, and
+/// InvalidInput for samples that are not finite and a rate that is not known or contradicted
+/// (listed by a survey).
 Recording assemble(std::string format, std::vector<StoredChannel> stored,
                    const ReadOptions& options, const std::string& file);
 

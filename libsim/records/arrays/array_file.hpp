@@ -61,9 +61,10 @@ class ArrayFile {
 
 /// The vectors and the columns of tables as channels. The sample rate [Hz] is a number called
 /// sample_rate, fs or the like, or one over a number called dt or increment [s], in the same
-/// structure or around it; else a vector called t or time [s] tells it. A text `unit` below the
-/// name of an array is its unit. `kind` of file: "MAT file". Throws InvalidInput for a file without
-/// vectors, and as assemble() does.
+/// structure or around it, unless a vector called t or time [s] stands nearer; both must agree. A
+/// text `unit` below the name of an array is its unit, of rate and time, too; numbers scale_factor
+/// and add_offset there are applied. `kind` of file: "MAT file". Throws InvalidInput for a file
+/// without vectors, and as assemble() does.
 Recording recording_of(const std::shared_ptr<ArrayFile>& content, std::string_view kind,
                        const std::filesystem::path& path, const ReadOptions& options);
 

@@ -4,10 +4,12 @@
 #include <optional>
 
 #include "libsim/base/error.hpp"
+#include "libsim/base/units.hpp"
 #include "libsim/base/utf8.hpp"
 #include "libsim/base/words.hpp"
 #include "libsim/records/arrays/array_file.hpp"
 #include "libsim/records/stored_channels.hpp"
+#include "libsim/records/tuning.hpp"
 
 namespace modcal {
 namespace {
@@ -77,45 +79,101 @@ std::vector<double> lines_of(const Content& content, const NamedArray& array) {
   return {0.0, content->number(*step)};
 }
 
-void set_rate(const Content& content, const NamedArray& array, StoredChannel& channel) {
-  const std::vector<NamedArray>& arrays = content->arrays();
-  const auto tells = [](const NamedArray& other) { return is_rate(other) || is_period(other); };
-  if (const NamedArray* const told = nearest(arrays, array, tells)) {
-    const double value = content->number(*told);
-    channel.sample_rate =
-        is_rate(*told) ? value : rate_of_period(value, std::numeric_limits<double>::epsilon());
-    channel.rate_source = fmt::format("{} = {:.9g}", told->text(), value);
-    return;
-  }
-  const NamedArray* const time = nearest(arrays, array, [&array](const NamedArray& other) {
-    return is_time(other) && other.is_real() && other.is_table() && other.columns() == 1 &&
-           other.rows() == array.rows();
-  });
-  if (time == nullptr) return;
-  channel.read_times = [content, time = *time] { return content->column(time, 0); };
-  channel.time_resolution = time->is_single
-                                ? static_cast<double>(std::numeric_limits<float>::epsilon())
-                                : std::numeric_limits<double>::epsilon();
+// Right below the array, as an attribute is.
+bool is_below(const NamedArray& other, const NamedArray& array) {
+  return other.path.size() == array.path.size() + 1 &&
+         std::equal(array.path.begin(), array.path.end(), other.path.begin());
 }
 
-// A text `unit` right below the array.
+// A text `unit` right below the array, or one called "dt_unit" beside dt.
 std::string unit_of(const Content& content, const NamedArray& array) {
   if (!array.unit.empty()) return array.unit;
-  const std::size_t depth = array.path.size();
+  const std::string name = last_of(array);
   for (const NamedArray& other : content->arrays()) {
-    if (other.holds == NamedArray::Holds::kText && other.path.size() == depth + 1 &&
-        std::equal(array.path.begin(), array.path.end(), other.path.begin()) &&
-        is_one_of(last_of(other), {"unit", "units", "unit_string", "ni_unitdescription"})) {
+    if (other.holds != NamedArray::Holds::kText) continue;
+    const std::string its = last_of(other);
+    const bool is_attribute =
+        is_below(other, array) &&
+        is_one_of(its, {"unit", "units", "unit_string", "ni_unitdescription"});
+    const bool is_beside = other.path.size() == array.path.size() &&
+                           std::equal(array.path.begin(), array.path.end() - 1, other.path.begin());
+    if (is_attribute || (is_beside && (its == name + "_unit" || its == name + "_units"))) {
       return content->text(other);
     }
   }
   return {};
 }
 
+// What one unit of the array is in SI; NaN where it is of another dimension.
+double unit_in(const Content& content, const NamedArray& array, std::string_view si) {
+  const std::string unit = unit_of(content, array);
+  if (unit.empty()) return 1.0;
+  return is_unit_of(unit, si) ? to_si(1.0, unit, si) : std::numeric_limits<double>::quiet_NaN();
+}
+
+double rate_told_by(const Content& content, const NamedArray& told) {
+  const double value = content->number(told);
+  if (is_rate(told)) return value * unit_in(content, told, "Hz");
+  return rate_of_period(value * unit_in(content, told, "s"),
+                        std::numeric_limits<double>::epsilon());
+}
+
+void set_times(const Content& content, const NamedArray& time, StoredChannel& channel) {
+  const double second = unit_in(content, time, "s");
+  if (std::isnan(second)) return;
+  channel.rate_source = time.text();
+  channel.read_times = [content, time, second] {
+    std::vector<double> times = content->column(time, 0);
+    for (double& instant : times) instant *= second;
+    return times;
+  };
+  channel.time_resolution = time.is_single
+                                ? static_cast<double>(std::numeric_limits<float>::epsilon())
+                                : std::numeric_limits<double>::epsilon();
+}
+
+// A number tells the rate unless instants stand nearer; whatever else tells it must agree.
+void set_rate(const Content& content, const NamedArray& array, StoredChannel& channel) {
+  const std::vector<NamedArray>& arrays = content->arrays();
+  const auto tells = [](const NamedArray& other) { return is_rate(other) || is_period(other); };
+  const NamedArray* const told = nearest(arrays, array, tells);
+  const NamedArray* const time = nearest(arrays, array, [&array](const NamedArray& other) {
+    return is_time(other) && other.is_real() && other.is_table() && other.columns() == 1 &&
+           other.rows() == array.rows();
+  });
+  if (time != nullptr) set_times(content, *time, channel);
+  if (told == nullptr || (time != nullptr && *scope(array, *time) > *scope(array, *told))) return;
+  channel.sample_rate = rate_told_by(content, *told);
+  channel.rate_source = fmt::format("{} = {:.9g}", told->text(), content->number(*told));
+  channel.is_rate_stated = true;
+  for (const NamedArray& other : arrays) {
+    if (!tells(other) || scope(array, other) != scope(array, *told)) continue;
+    const double rate = rate_told_by(content, other);
+    if (!(std::abs(rate / channel.sample_rate - 1.0) > kSameRate)) continue;
+    channel.contradiction =
+        fmt::format("{} says {:.9g} Hz, {} = {:.9g} says {:.9g} Hz", channel.rate_source,
+                    channel.sample_rate, other.text(), content->number(other), rate);
+  }
+}
+
+// What stored numbers are to be multiplied by and added to (scale_factor and add_offset below it,
+// as netCDF has them).
+constexpr std::pair<double, double> kPlain{1.0, 0.0};
+std::pair<double, double> packing_of(const Content& content, const NamedArray& array) {
+  std::pair<double, double> packing = kPlain;
+  for (const NamedArray& other : content->arrays()) {
+    if (!is_below(other, array) || other.size() != 1 || !other.is_real()) continue;
+    if (last_of(other) == "scale_factor") packing.first = content->number(other);
+    if (last_of(other) == "add_offset") packing.second = content->number(other);
+  }
+  return packing;
+}
+
 void add_channels(const Content& content, const std::filesystem::path& path,
                   const NamedArray& array, std::vector<StoredChannel>& channels) {
   const bool is_plain = array.is_real() && array.is_table();
   const std::size_t count = is_plain ? array.columns() : 1;
+  const std::pair<double, double> packing = packing_of(content, array);
   // Every channel has its entry before a sample is read.
   constexpr std::size_t kMostChannels = 1 << 12;
   const bool is_many = count > kMostChannels;
@@ -131,7 +189,12 @@ void add_channels(const Content& content, const std::filesystem::path& path,
           "{}array of {} values", array.is_real() ? "" : "complex ", fmt::join(array.dims, " × "));
     } else {
       set_rate(content, array, channel);
-      channel.read = [content, array, j] { return content->column(array, j); };
+      channel.read = [content, array, j, packing] {
+        std::vector<double> samples = content->column(array, j);
+        if (packing == kPlain) return samples;  // to the sign of 0
+        for (double& x : samples) x = packing.first * x + packing.second;
+        return samples;
+      };
     }
     channels.push_back(std::move(channel));
   }

@@ -78,6 +78,7 @@ StoredChannel stored(const std::shared_ptr<LvmChannel>& channel, const LvmSegmen
   if (channel->step > 0.0) {
     result.sample_rate = rate_of_period(channel->step, channel->step_resolution);
     result.rate_source = fmt::format("Delta_X {:g} s", channel->step);
+    result.start = channel->origin + (std::isnan(channel->start) ? 0.0 : channel->start);
   }
   result.read = [channel] { return channel->samples; };
   // Instants that are printed more coarsely than the step tell less than it.
@@ -102,10 +103,12 @@ Recording read_lvm(const std::filesystem::path& path, const ReadOptions& options
   std::vector<StoredChannel> channels;
   bool is_estimated = false;
   const double stated = segments.front().stated_rate;
+  const double date = segments.front().channels.front().start;
   for (const LvmSegment& segment : joined(std::move(segments))) {
     is_estimated = is_estimated || segment.is_estimated;
     for (const LvmChannel& channel : segment.channels) {
       channels.push_back(stored(std::make_shared<LvmChannel>(channel), segment, path.string()));
+      if (std::isfinite(date)) channels.back().start -= date;
       if (std::isfinite(stated)) set_exact_rate(stated, channels.back());
     }
   }

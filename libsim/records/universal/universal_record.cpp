@@ -50,6 +50,7 @@ void set_unit(const UniversalAxis& axis, const std::optional<UniversalUnits>& un
 void set_rate(const UniversalFunction& function, StoredChannel& channel) {
   const double second =
       is_unit_of(function.abscissa.unit, "s") ? to_si(1.0, function.abscissa.unit, "s") : 1.0;
+  if (function.is_even) channel.start = function.first * second;
   const std::string& id = function.id_lines[4];
   if (id.starts_with(kRateLine)) {
     const ParsedNumber stated = parse_number(std::string_view(id).substr(kRateLine.size()));

@@ -160,6 +160,25 @@ TEST_F(Universal, FunctionsOfTimeAreChannels) {
   EXPECT_EQ(headers.frames(), 23u);
 }
 
+TEST_F(Universal, ChannelsThatBeginApartAreNoRecord) {
+  const std::string one = file_of({2, true, false, false}, numbers(23, true), "A");
+  const std::size_t at = one.find("  0.00000E+00  1.00000E-03");
+  const auto with = [&](std::string_view t) { return std::string(one).replace(at, t.size(), t); };
+  const auto late = write("late.unv", one + with("  2.00000E-02  1.00000E-03"));
+  EXPECT_THAT(
+      refusal_of([&] {
+        read_record(late, "auto", {.channels = {"A", "A (2)"}});
+      }),
+      HasSubstr("has 23 samples at 1000 Hz from 0.02 s on, \"A\" has 23 samples at 1000 Hz; "
+                "one record needs one rate, one length and one beginning"));
+  EXPECT_EQ(read_record(late, "auto").channels.size(), 1u);
+  const auto near = write("near.unv", one + with("  1.00000E-05  1.00000E-03"));
+  EXPECT_EQ(read_record(near, "auto").channels.size(), 2u);
+  // 1/51200 = 1.953125e-5 is halfway between two texts of six digits.
+  const auto tie = write("tie.unv", with("  0.00000E+00  1.95313E-05"));
+  EXPECT_EQ(read_record(tie, "auto").sample_rate, 51200.0);
+}
+
 TEST_F(Universal, ReadsResponseFunctionsWithTheirUnits) {
   std::string text = file_of({6, true, false, false}, numbers(9, true), "C");
   // Over frequency from 2 Hz in steps of 1 Hz, g per lbf.
