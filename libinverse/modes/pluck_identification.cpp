@@ -3,10 +3,10 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "libinverse/modes/decay_hum.hpp"
 #include "libinverse/modes/decay_record.hpp"
+#include "libinverse/modes/mode_numbers.hpp"
 #include "libinverse/modes/significant_fit.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/base/words.hpp"
@@ -33,10 +33,9 @@ Method method_of(const PluckOptions& options) {
   return enum_of<Method>(kMethods, "method", options.method);
 }
 
-double size_of(const DecayMode& mode) {
-  double size = 0.0;
-  for (const auto& amplitude : mode.amplitude) size += std::norm(amplitude);
-  return size;
+// A second pole of a mode stands within some bins of it, and nearer than the next mode [Hz].
+double reach_of(double fundamental, double duration) {
+  return std::min(0.25 * fundamental, 10.0 / duration);
 }
 
 // Amplitudes come from the fit for both methods; for era the poles are left where they are.
@@ -49,9 +48,8 @@ std::vector<DecayMode> modes_of(const DecimatedDecay& decay, const std::vector<S
   const DampedSinusoidOptions how = {.iterations = likelihood ? std::size_t{50} : std::size_t{0},
                                      .in_band_variance = decay.in_band_variance(),
                                      .lines = result.lines};
-  // A second pole of a mode stands within some bins of it, and nearer than the next mode.
   const double duration = static_cast<double>(decay.record.samples()) / decay.record.sample_rate;
-  const double reach = std::min(0.25 * fundamental, 10.0 / duration);
+  const double reach = reach_of(fundamental, duration);
   const DampedSinusoidFit fit = likelihood ? fit_significant(decay.record, start, reach, how)
                                            : fit_damped_sinusoids(decay.record, start, how);
   result.converged = fit.converged || !likelihood;
@@ -70,72 +68,6 @@ std::vector<DecayMode> modes_of(const DecimatedDecay& decay, const std::vector<S
     for (auto& amplitude : modes[k].amplitude) amplitude /= gain;
   }
   return modes;
-}
-
-/// The law f² = n² (a + b n²) through the modes numbered so far, with equal errors of all f: its
-/// first modes number the next.
-class LawNumbers {
- public:
-  explicit LawNumbers(double fundamental) : square_(fundamental * fundamental) {}
-
-  /// n of the law at f, n²(a + b n²) = f².
-  double place(double frequency) const {
-    const double ratio = frequency * frequency / square_;
-    return std::sqrt(2.0 * ratio / (1.0 + std::sqrt(1.0 + 4.0 * bend_ / square_ * ratio)));
-  }
-  double frequency(std::size_t number) const {
-    const double n = static_cast<double>(number);
-    return n * std::sqrt(square_ + bend_ * n * n);
-  }
-  /// What lies farther from the law than the fundamental stated may, or half way to the middle
-  /// between two modes, numbers no others. Stiffness is never negative.
-  void add(std::size_t number, double frequency) {
-    const double n = static_cast<double>(number), weight = std::pow(n * n / frequency, 2);
-    if (std::abs(place(frequency) - n) > std::min(0.25, 0.03 * n)) return;
-    const double y = frequency * frequency / (n * n), x = n * n;
-    sums_ += Eigen::Matrix2d{{weight, weight * x}, {weight * x, weight * x * x}};
-    right_ += Eigen::Vector2d{weight * y, weight * x * y};
-    if (++count_ < 3) return;  // two tell a law, but not how wrong it is
-    const Eigen::Vector2d law = sums_.ldlt().solve(right_);
-    const bool stiff = law[1] > 0.0;
-    square_ = stiff ? law[0] : right_[0] / sums_(0, 0);
-    bend_ = stiff ? law[1] : 0.0;
-  }
-
- private:
-  double square_, bend_ = 0.0;  // f₀², f₀² B
-  Eigen::Matrix2d sums_ = Eigen::Matrix2d::Zero();
-  Eigen::Vector2d right_ = Eigen::Vector2d::Zero();
-  int count_ = 0;
-};
-
-using NumberedModes = std::map<std::size_t, DecayMode>;
-
-// One mode a number, of two the larger one.
-NumberedModes numbered_modes(std::vector<DecayMode> modes, double highest, LawNumbers& law) {
-  std::ranges::sort(modes, {}, [](const DecayMode& mode) { return mode.pole.frequency; });
-  NumberedModes numbered;
-  for (DecayMode& mode : modes) {
-    const double frequency = mode.pole.frequency;
-    if (frequency > highest || !(mode.pole.damping_ratio > 0.0)) continue;
-    const auto number = static_cast<std::size_t>(std::lround(law.place(frequency)));
-    if (number == 0) continue;
-    const auto [place, fresh] = numbered.try_emplace(number, mode);
-    if (fresh) law.add(number, frequency);
-    if (!fresh && size_of(mode) > size_of(place->second)) place->second = std::move(mode);
-  }
-  return numbered;
-}
-
-// Numbers below the highest that no mode has.
-std::vector<std::size_t> missing_in(const NumberedModes& numbered) {
-  std::vector<std::size_t> missing;
-  std::size_t next = 1;
-  for (const auto& [number, mode] : numbered) {
-    for (; next < number; ++next) missing.push_back(next);
-    next = number + 1;
-  }
-  return missing;
 }
 
 // A weak mode that was not stable leaves a signal that no other explains. It stands where the law
@@ -202,11 +134,13 @@ PluckIdentification identified(const DecimatedDecay& decay, Realized realized, d
                              .lines = std::move(lines)};
   const std::vector<StablePole>& stable = realized.stable;
   if (stable.empty()) return result;
+  const double duration = static_cast<double>(decay.record.samples()) / decay.record.sample_rate;
+  std::vector<DecayMode> others;
   const auto number = [&](std::vector<DecayMode> modes, LawNumbers& law) {
-    const double duration = static_cast<double>(decay.record.samples()) / decay.record.sample_rate;
     std::erase_if(
         modes, [&](const DecayMode& mode) { return is_line(mode.pole, result.lines, duration); });
-    return numbered_modes(std::move(modes), options.highest_frequency, law);
+    others.clear();
+    return numbered_modes(std::move(modes), options.highest_frequency, law, others);
   };
   LawNumbers law(fundamental);
   NumberedModes numbered = number(modes_of(decay, stable, fundamental, options, result), law);
@@ -222,6 +156,7 @@ PluckIdentification identified(const DecimatedDecay& decay, Realized realized, d
     }
   }
   result.missing = missing_in(numbered);
+  result.others = heard_of(std::move(others), numbered, reach_of(fundamental, duration));
   for (auto& [n, mode] : numbered) result.modes.push_back({n, std::move(mode)});
   return result;
 }

@@ -33,11 +33,14 @@ struct PluckIdentification {
   std::vector<StabilizationPoint> diagram;
   std::vector<double> singular_values;  ///< of the Hankel matrix
   std::vector<std::size_t> missing;     ///< numbers below the highest with no mode
-  std::vector<DecayPole> poles;         ///< of the fit, those that are no modes, too
-  std::vector<double> lines;            ///< of the mains [Hz]
-  std::vector<double> noise;            ///< residual of each channel within the band; empty for era
-  bool converged = false;               ///< the fit; true for era
-  bool full_rank = false;               ///< error bars are known
+  /// Without a number, but at least a tenth of the largest mode: of a body, or of a plane in which
+  /// the string is tuned apart; ascending.
+  std::vector<DecayMode> others;
+  std::vector<DecayPole> poles;  ///< of the fit, those that are no modes, too
+  std::vector<double> lines;     ///< of the mains [Hz]
+  std::vector<double> noise;     ///< residual of each channel within the band; empty for era
+  bool converged = false;        ///< the fit; true for era
+  bool full_rank = false;        ///< error bars are known
 };
 
 /// Modes of a free decay: low-pass to the band, poles by the eigensystem realization algorithm (the
@@ -46,11 +49,12 @@ struct PluckIdentification {
 /// be (fit_significant). Deviations are the Cramér–Rao bound for maximum_likelihood; the spread
 /// over the orders, no error bar, for era. Modes are numbered upwards along the law f = n f₀ √(1 +
 /// B n²) of those numbered before: far up a stiff string f/f₀ is off by more than one. Of two with
-/// one number the one with the larger amplitude is kept. A fit that does not converge is made again
-/// with the modes that are missing, where the law has them. Hum of the mains, where there is some,
-/// is fitted beside the modes; a pole that the record does not tell from one of its lines is no
-/// mode. fundamental: f₀ to about 1 % [Hz]. Throws InvalidInput for an invalid or too short record,
-/// a fundamental that is not positive, an unknown method.
+/// one number the one is kept that is nearer to the law, within 1 % of it the one with the larger
+/// amplitude; what is farther from a law of three modes than f₀ may be stated has none. A fit that
+/// does not converge is made again with the modes that are missing, where the law has them. Hum of
+/// the mains, where there is some, is fitted beside the modes; a pole that the record does not tell
+/// from one of its lines is no mode. fundamental: f₀ to about 1 % [Hz]. Throws InvalidInput for an
+/// invalid or too short record, a fundamental that is not positive, an unknown method.
 PluckIdentification identify_pluck(const DecayRecord& record, double fundamental,
                                    const PluckOptions& options = {});
 /// Of a part of a decay with the hum of the mains that the whole has.

@@ -231,6 +231,9 @@ void IdentifyOutcome::visit(ResultVisitor& visitor) const {
             of_truth([&](std::size_t n) { return truth->basis.zeta[n]; }));
       });
   visitor({.key = "missing"}, found.missing);
+  std::vector<double> others;
+  for (const DecayMode& mode : found.others) others.push_back(mode.pole.frequency);
+  visitor({.key = "without_number_hz"}, others);
   if (record) visitor({.key = "begin_s"}, record->begin);
   if (record) visitor({.key = "end_s"}, record->end);
   visitor({.key = "deviations_are_error_bars"}, found.full_rank);

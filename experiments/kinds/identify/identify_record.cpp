@@ -221,9 +221,29 @@ std::vector<FileRead> IdentifyOptions::files_read() const {
   return {file_read(record, "record.file", 12.0)};
 }
 
+namespace {
+
+// Modes that are heard and have no number.
+std::string others_text(const std::vector<DecayMode>& others) {
+  std::vector<std::string> texts;
+  for (const DecayMode& mode : others) {
+    texts.push_back(
+        fmt::format("{:.6g} Hz (zeta {:.2g})", mode.pole.frequency, mode.pole.damping_ratio));
+  }
+  return fmt::format(
+      "the record has modes that are none of the string's numbers: {}. They are of a body, of "
+      "another "
+      "string, or of a plane in which this one is tuned apart; they are fitted with the others and "
+      "not listed",
+      fmt::join(texts, ", "));
+}
+
+}  // namespace
+
 std::string doubt_decay(const PluckIdentification& found, const DecayRecord& decay,
                         double fundamental, const std::optional<StiffStringFit>& law,
                         const PluckOptions& options, std::vector<std::string>& warnings) {
+  if (!found.others.empty()) warnings.push_back(others_text(found.others));
   std::string why = rejection_of(found, decay, fundamental, law);
   if (!why.empty()) return why;
   const auto changes = change_along(found, decay, fundamental, options);

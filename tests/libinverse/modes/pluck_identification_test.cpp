@@ -253,29 +253,6 @@ TEST(PluckIdentification, ReportsModesWithANodeAtThePluckAsMissing) {
   EXPECT_EQ(found.modes[3].number, 5u);
 }
 
-// Far up a stiff string modes lie nearer to the next multiples of f0: f_60 is 86.5 f0.
-TEST(PluckIdentification, NumbersModesAlongTheLaw) {
-  const double fundamental = 30.0;
-  const auto truth = plucked_modes(60, fundamental, 3e-4, 0.13);
-  ASSERT_GT(truth.back().pole.frequency, 86.0 * fundamental);
-  DecayRecord record = decay_of(truth, 2, 8000.0, 8000);
-  add_noise(record, 1e-4, 2);
-  PluckOptions options;
-  options.highest_frequency = 2650.0;
-  options.block_rows = 200;
-  options.columns = 600;
-  options.stabilization.lowest_order = 122;
-  options.stabilization.highest_order = 134;
-  const auto found = identify_pluck(record, 1.01 * fundamental, options);
-  EXPECT_GT(found.modes.size(), 50u);
-  EXPECT_EQ(found.modes.back().number, 60u);
-  for (const auto& [number, mode] : found.modes) {
-    ASSERT_LE(number, 60u);
-    const double expected = truth[number - 1].pole.frequency;
-    EXPECT_NEAR(mode.pole.frequency, expected, 1e-3 * expected) << number;
-  }
-}
-
 TEST(PluckIdentification, SilenceHasNoModesAndWrongInputIsRefused) {
   DecayRecord noise{.sample_rate = 12800.0, .channels = {std::vector<double>(6400, 0.0)}};
   EXPECT_THAT(identify_pluck(noise, 196.0).modes, testing::IsEmpty());

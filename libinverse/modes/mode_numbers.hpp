@@ -1,0 +1,72 @@
+// Which mode of a free decay has which number of a string.
+#pragma once
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <map>
+#include <vector>
+
+#include "libinverse/modes/decay_record.hpp"
+
+namespace modcal {
+
+/// The law f² = n² (a + b n²) through the modes numbered so far, with equal errors of all f: its
+/// first modes number the next.
+class LawNumbers {
+ public:
+  explicit LawNumbers(double fundamental) : square_(fundamental * fundamental) {}
+
+  /// n of the law at f, n²(a + b n²) = f².
+  double place(double frequency) const {
+    const double ratio = frequency * frequency / square_;
+    return std::sqrt(2.0 * ratio / (1.0 + std::sqrt(1.0 + 4.0 * bend_ / square_ * ratio)));
+  }
+  double frequency(std::size_t number) const {
+    const double n = static_cast<double>(number);
+    return n * std::sqrt(square_ + bend_ * n * n);
+  }
+  bool is_near(std::size_t number, double frequency) const {
+    const double n = static_cast<double>(number);
+    return std::abs(place(frequency) - n) <= std::min(0.25, 0.03 * n);
+  }
+  bool tells() const { return count_ >= 3; }  ///< two tell a law, but not how wrong it is
+  /// What lies farther from the law than the fundamental stated may, or half way to the middle
+  /// between two modes, numbers no others. Stiffness is never negative.
+  void add(std::size_t number, double frequency) {
+    const double n = static_cast<double>(number), weight = std::pow(n * n / frequency, 2);
+    if (!is_near(number, frequency)) return;
+    const double y = frequency * frequency / (n * n), x = n * n;
+    sums_ += Eigen::Matrix2d{{weight, weight * x}, {weight * x, weight * x * x}};
+    right_ += Eigen::Vector2d{weight * y, weight * x * y};
+    ++count_;
+    if (!tells()) return;
+    const Eigen::Vector2d law = sums_.ldlt().solve(right_);
+    const bool stiff = law[1] > 0.0;
+    square_ = stiff ? law[0] : right_[0] / sums_(0, 0);
+    bend_ = stiff ? law[1] : 0.0;
+  }
+
+ private:
+  double square_, bend_ = 0.0;  // f₀², f₀² B
+  Eigen::Matrix2d sums_ = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d right_ = Eigen::Vector2d::Zero();
+  int count_ = 0;
+};
+
+using NumberedModes = std::map<std::size_t, DecayMode>;
+
+/// One mode a number, those above `highest` [Hz] aside, along the law, which they move. Of several
+/// the one near the law, within 1 % as the nearest is; of several there, as of two planes, the
+/// largest. What a law of three modes is far from has no number: it is left in `others`.
+NumberedModes numbered_modes(std::vector<DecayMode> modes, double highest, LawNumbers& law,
+                             std::vector<DecayMode>& others);
+
+/// Of modes without a number those that are heard: of a tenth of the largest amplitude at least,
+/// and not within `reach` [Hz] of one that has a number, as the second plane's are.
+std::vector<DecayMode> heard_of(std::vector<DecayMode> others, const NumberedModes& numbered,
+                                double reach);
+
+/// Numbers below the highest that no mode has.
+std::vector<std::size_t> missing_in(const NumberedModes& numbered);
+
+}  // namespace modcal
