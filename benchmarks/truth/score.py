@@ -91,6 +91,7 @@ def arguments():
     p.add_argument("--string-keys", default="", help="further keys of string:")
     p.add_argument("--record-keys", default="", help="further keys of record:")
     p.add_argument("--calibration", type=Path, help="file with the lines below calibration:")
+    p.add_argument("--force", action="store_true", help="identify it, too, and compare it with the true one")
     p.add_argument("--timeout", type=float, default=600.0, help="of one calibration [s]")
     a = p.parse_args()
     a.build, a.out = a.build.resolve(), a.out.resolve()
@@ -300,7 +301,7 @@ def configuration(truth, name, mismatch, noise, draw, a):
             f"fundamental: {string['f0'] * (1 + off(-0.02, 0.02)):.9g} Hz, "
             f"inharmonicity: {string['B'] * (1 + off(-0.2, 0.2)):.6g}, damping: {damping}{keys}}}\n"
             f"bow: {{position: {1e3 * truth['x_c'] + off(-1.5, 1.5):.6g} mm}}\n"
-            f"calibration:\n{a.lines}")
+            + ("write_signals: true\n" if a.force else "") + f"calibration:\n{a.lines}")
 
 
 def z_of(found, truth, sd):
@@ -348,6 +349,9 @@ def calibrated(task, a):
         found = sorted(folder.glob("out/**/calibration.json"))
         if found:
             line |= scored(json.loads(found[0].read_text()), truth)
+            if a.force:
+                from force_held import force_held
+                line["force"] = force_held(found[0].parent / "identified.csv", f"{path}.csv")
         else:
             line["failure"] = done.stdout.strip()[-400:]
     except subprocess.TimeoutExpired:
@@ -423,6 +427,11 @@ def summary(lines, title):
             print(row(name, [line[name]["z"] for line in chosen], [line[name]["sd"] for line in chosen if line[name]["sd"]]))
         modes = [mode for line in chosen for mode in line["f_n"]]
         print(row("f_n", [z for _, z, _ in modes], [sd for _, _, sd in modes]))
+        forces = [line["force"] for line in chosen if "force" in line]
+        if forces:
+            print("  force " + ", ".join(f"{what} {min(of):.3g} .. {sorted(of)[len(of) // 2]:.3g} .. {max(of):.3g}" for what, of in (
+                ("in the 95 % band", [f["held"] for f in forces]), ("error", [f["error"] for f in forces]),
+                ("deviation over error", [f["deviation"] for f in forces]))) + " (least, median, largest)")
 
 
 def main():
