@@ -1,6 +1,7 @@
 #include "libcalib/identifiability/model_posterior.hpp"
 
 #include <Eigen/Cholesky>
+#include <cmath>
 
 namespace modcal {
 namespace {
@@ -16,8 +17,8 @@ Eigen::MatrixXd root_of(const Eigen::MatrixXd& covariance) {
   // Where two unknowns are told only together, rounding may leave no root: 1e-12 of the variances
   // and more, until it does.
   Eigen::LLT<Eigen::MatrixXd> root;
-  for (double added = 1e-12; added < 1.0; added *= 10.0) {
-    correlation.diagonal().setConstant(1.0 + added);
+  for (int digits = 12; digits > 0; --digits) {
+    correlation.diagonal().setConstant(1.0 + std::pow(10.0, -digits));
     if (root.compute(correlation).info() == Eigen::Success) break;
   }
   return deviation.asDiagonal() * Eigen::MatrixXd(root.matrixL());

@@ -131,7 +131,7 @@ std::string rejection_of(const PluckIdentification& found, const DecayRecord& de
       return fmt::format(
           "rejected: the modes leave {:.0f} % of reaction {}: the record holds more than one "
           "string's free decay in the band; lower identification.highest_frequency or state "
-          "another part",
+          "another part, and high-pass the record below the first mode where its sensor drifts",
           100.0 * found.noise[k] / rms, k + 1);
     }
   }
