@@ -59,8 +59,8 @@ struct InversionOutputs {
   bool velocity = false;
   bool force_spectrum = false;
   bool side_misfit = false;  ///< Estimate::side_misfit
-  /// Standard deviations, where the estimator has any; those of decays at unknown ends cost several
-  /// times what the signals do.
+  /// Standard deviations. The joint estimator leaves them out where they are not wanted: those of
+  /// decays at unknown ends cost several times what the signals do.
   bool deviations = true;
 };
 

@@ -6,7 +6,7 @@ import numpy as np
 
 
 def force_held(identified, record):
-    """Error of f_c over its own standard deviation, share of the samples in the 95 % band, and the mean deviation over the
+    """Error of f_c over the standard deviation of the true one, share of the samples in the 95 % band, and the mean deviation over the
     error's; of what lies below the band's limit, without means, a tenth of the record at its begin and a twentieth at its
     end left out."""
     text = identified.read_text().splitlines()

@@ -140,12 +140,11 @@ constexpr std::size_t kNeighborHalfBand = 128;
 constexpr std::size_t kNeighborBeside = 2;
 
 /// Models drawn from the posterior of a fit, by which the deviations of the force are widened.
-/// Source: each costs an inversion. 27 records of five strings and a bass of 41 Hz, .1 to 5 % of
-/// noise (benchmarks/measured/foreign_records.md).
+/// Source: each costs an inversion; records of four strings and of a bass of 41 Hz, .1 and 1 %.
 /// Range tried: 4 and 8.
 /// Doubled: the same shares in the band to .6 %; of the bass, where the damping of three modes is
 /// told by its prior alone, deviations of ten times the error in the place of five.
-/// Halved: Student's quantile of two draws is 4.3.
+/// Halved: not tried; Student's quantile of two draws is 4.3.
 constexpr std::size_t kModelsDrawn = 4;
 
 }  // namespace modcal

@@ -51,8 +51,8 @@ constexpr double kCalibratedClock = 5e-4;
 /// How far two rates in one file may be apart, relative, to be the same.
 /// Source: six digits of a period hold 5e-6 of it.
 /// Range tried: this.
-/// Doubled: no other file is refused.
-/// Halved: that of six digits would be.
+/// Doubled: two clocks 2e-5 apart are one.
+/// Halved: six digits of a period just hold it.
 constexpr double kSameRate = 1e-5;
 
 /// By how much of a sample channels of one record may begin apart.

@@ -6,8 +6,7 @@ namespace modcal {
 
 // Of each stroke and pluck, about: its spectra, their models and the derivatives of these, which
 // are as many as modes in every bin of the band. Violin D, 52 modes up to 0.35 sampling rates, 1 to
-// 6 s: 710 to 740; cello C, whose band ends at 0.1: 290; one rate and fundamental are in no file's
-// size.
+// 6 s: 710 to 740; cello C, whose band ends at 0.1: 290. A file's size tells no band: a wide one.
 constexpr double kNumbersPerSample = 750.0;
 
 std::vector<PlanLine> CalibrateOptions::plan() const {

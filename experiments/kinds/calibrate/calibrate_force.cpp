@@ -21,7 +21,13 @@ Sensor told_sensors(const CalibrationResult& result) {
 // Of the signals of the refined model and of drawn ones: adds the mean square of what they differ
 // by to the variances.
 void widen(const std::vector<InversionResult>& signals, Estimate& estimate) {
-  if (signals.size() < 2) return;  // hardly any string is possible, or nothing was estimated
+  if (signals.size() < 2) {
+    estimate.warnings.emplace_back(
+        "no model that was drawn about the calibrated one can be a string's: the force's band is "
+        "that "
+        "of the string found alone; state priors that hold it to what is known");
+    return;
+  }
   const std::size_t drawn = signals.size() - 1;
   // As many degrees of freedom as models: a band of so many deviations holds as much as that of a
   // normal distribution.
@@ -42,6 +48,9 @@ void widen(const std::vector<InversionResult>& signals, Estimate& estimate) {
     estimate.*quantity.deviation = std::hypot(mean(deviations), standard_deviation(deviations));
     if (quantity.deviations) estimate.*quantity.deviations = std::move(deviations);
   }
+  estimate.notes.push_back(fmt::format(
+      "its deviation holds what the calibrated string may be, by {} models of the fit's posterior",
+      drawn));
 }
 
 bool has_band(const SideIdentification& side) {

@@ -1,4 +1,5 @@
-// The band of a force that a calibrated model tells holds what the string may be.
+// What a calibrated model tells of the force: its band holds what the string may be, and the
+// sensors are made alike.
 #include "experiments/kinds/calibrate/calibrate_force.hpp"
 
 #include <gtest/gtest.h>
@@ -95,6 +96,43 @@ TEST_F(CalibrateForce, HasAWiderBandByWhatTheStringMayBe) {
   EXPECT_GT(ratio, 0.5 * expected);
   EXPECT_LT(ratio, 1.7 * expected);
   EXPECT_GT(correlation(added, change), 0.999);
+}
+
+TEST(SensorCorrection, TakesOutGainDelayAndHighPass) {
+  // A swing that dies out, read through 1.05 exp(-s 20 us) s/(s + 2 pi 4 Hz).
+  constexpr double kRate = 50000.0, kCorner = 8.0 * M_PI;
+  Observation observation{.sample_rate = kRate};
+  Signal truth{.quantity = "R2", .unit = "N", .sample_rate = kRate, .samples = {}};
+  for (std::size_t j = 0; j < 25000; ++j) {
+    const double t = static_cast<double>(j) / kRate;
+    truth.samples.push_back(t * std::exp(-20.0 * t) * std::sin(2.0 * M_PI * 150.0 * t));
+  }
+  Signal sensed = truth;
+  double held = 0.0;  // of the corner's low-pass, which the high-pass takes away
+  for (std::size_t j = 0; j < truth.size(); ++j) {
+    const double now = j > 0 ? truth.samples[j - 1] : 0.0;
+    const double before = j > 1 ? truth.samples[j - 2] : 0.0;
+    const double c = 0.5 * kCorner / kRate;
+    held = ((1.0 - c) * held + c * (now + before)) / (1.0 + c);
+    sensed.samples[j] = 1.05 * (now - held);
+  }
+  remove_mean(sensed.samples);
+  remove_mean(truth.samples);
+  observation.reactions[1] = sensed;
+  const Sensor sensors{.gain = 1.05, .delay = 1.0 / kRate, .corner = kCorner};
+  const Observation corrected = with_sensors_alike(observation, sensors);
+  double largest = 0.0, difference = 0.0, uncorrected = 0.0;
+  for (std::size_t j = 0; j + 1 < truth.size(); ++j) {
+    largest = std::max(largest, std::abs(truth.samples[j]));
+    difference =
+        std::max(difference, std::abs(corrected.reactions[1]->samples[j] - truth.samples[j]));
+    uncorrected = std::max(uncorrected, std::abs(sensed.samples[j] - truth.samples[j]));
+  }
+  // The line that is taken out also takes the signal's own, which is 1e-3 of it.
+  EXPECT_LT(difference, 5e-3 * largest);
+  EXPECT_GT(uncorrected, 5e-2 * largest);
+  EXPECT_EQ(with_sensors_alike(observation, {}).reactions[1]->samples, sensed.samples);
+  EXPECT_EQ(correction_text(observation, {}), "");
 }
 
 }  // namespace
