@@ -7,7 +7,7 @@
 #include <numbers>
 #include <optional>
 
-#include "libinverse/modes/decay_hum.hpp"
+#include "libinverse/modes/damped_sinusoid_problem.hpp"
 #include "libsim/base/dense_solvers.hpp"
 #include "libsim/base/error.hpp"
 
@@ -17,106 +17,7 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-/// The poles as unknowns: (d_1, ν_1, d_2, ν_2, …) with λ = −d + iν.
-class Problem {
- public:
-  Problem(const DecayRecord& record, std::size_t poles, std::span<const double> lines)
-      : rate_(record.sample_rate),
-        poles_(static_cast<Index>(poles)),
-        hum_(hum_columns(record.samples(), record.sample_rate, lines)),
-        data_(static_cast<Index>(record.samples()), static_cast<Index>(record.channels.size())) {
-    if (hum_.cols() > 0) hum_ = ThinQr(hum_).q();
-    for (Index c = 0; c < data_.cols(); ++c) {
-      for (Index m = 0; m < data_.rows(); ++m) {
-        data_(m, c) = record.channels[static_cast<std::size_t>(c)][static_cast<std::size_t>(m)];
-      }
-    }
-    data_ = beside_hum(std::move(data_));
-  }
-
-  Index samples() const { return data_.rows(); }
-  Index channels() const { return data_.cols(); }
-  Index poles() const { return poles_; }
-  Index columns() const { return 2 * poles_ + 1 + hum_.cols(); }
-  double degrees_of_freedom() const {
-    const double shared = 2.0 * static_cast<double>(poles_) / static_cast<double>(channels());
-    return static_cast<double>(samples() - columns()) - shared;
-  }
-
-  /// What is known at one set of poles.
-  struct State {
-    VectorXd poles;
-    MatrixXd basis;         // exp(−dt) cos νt, exp(−dt) sin νt in turn, and 1
-    MatrixXd thin_q;        // orthonormal basis of its columns, the hum projected out
-    MatrixXd coefficients;  // per channel: a cos + b sin, so that A = a − ib
-    MatrixXd residual;
-  };
-
-  State at(const VectorXd& poles) const {
-    State state{.poles = poles, .basis = MatrixXd(samples(), 2 * poles_ + 1)};
-    for (Index k = 0; k < poles_; ++k) fill_exponential(state, k);
-    state.basis.col(2 * poles_).setOnes();
-    const MatrixXd beside = beside_hum(state.basis);
-    const ThinQr qr(beside);
-    state.thin_q = qr.q();
-    state.coefficients = qr.solve(data_);
-    state.residual = data_ - beside * state.coefficients;
-    return state;
-  }
-
-  /// Where no pole grows by more than e over the record: one that starts too broad would grow
-  /// beyond all numbers, and the columns of the others would be rounding beside it.
-  VectorXd bounded(VectorXd poles) const {
-    const double least = -rate_ / static_cast<double>(samples());
-    for (Index k = 0; k < poles_; ++k) poles[2 * k] = std::max(poles[2 * k], least);
-    return poles;
-  }
-
-  /// Slopes of the residuals of one channel, over the projector that the linear unknowns leave.
-  MatrixXd jacobian(const State& state, Index channel) const {
-    MatrixXd slopes(samples(), 2 * poles_);
-    for (Index k = 0; k < poles_; ++k) {
-      const double a = state.coefficients(2 * k, channel);
-      const double b = state.coefficients(2 * k + 1, channel);
-      for (Index m = 0; m < samples(); ++m) {
-        const double t = static_cast<double>(m) / rate_;
-        const double cosine = state.basis(m, 2 * k);
-        const double sine = state.basis(m, 2 * k + 1);
-        slopes(m, 2 * k) = t * (a * cosine + b * sine);
-        slopes(m, 2 * k + 1) = -t * (b * cosine - a * sine);
-      }
-    }
-    slopes = beside_hum(std::move(slopes));
-    slopes -= state.thin_q * (state.thin_q.transpose() * slopes);
-    return slopes;
-  }
-
- private:
-  MatrixXd beside_hum(MatrixXd columns) const {
-    if (hum_.cols() > 0) columns -= hum_ * (hum_.transpose() * columns);
-    return columns;
-  }
-
-  // By recurrence in blocks, restarted so that rounding does not gather.
-  void fill_exponential(State& state, Index k) const {
-    const std::complex<double> exponent(-state.poles[2 * k], state.poles[2 * k + 1]);
-    const std::complex<double> step = std::exp(exponent / rate_);
-    std::complex<double> value = 1.0;
-    constexpr Index kBlock = 32;
-    for (Index m = 0; m < samples(); ++m) {
-      value =
-          m % kBlock == 0 ? std::exp(exponent * (static_cast<double>(m) / rate_)) : value * step;
-      state.basis(m, 2 * k) = value.real();
-      state.basis(m, 2 * k + 1) = value.imag();
-    }
-  }
-
-  double rate_;
-  Index poles_;
-  MatrixXd hum_;  // orthonormal, of which nothing is left in data, columns and slopes
-  MatrixXd data_;
-};
+using Problem = DampedSinusoidProblem;
 
 VectorXd variances_of(const Problem& problem, const Problem::State& state) {
   VectorXd variances = state.residual.colwise().squaredNorm().transpose();
@@ -131,19 +32,53 @@ double cost_of(const Problem::State& state, const VectorXd& variances) {
   return (state.residual.colwise().squaredNorm().transpose().array() / variances.array()).sum();
 }
 
-/// Gauss–Newton step with its covariance for noise of the given variances.
-std::optional<LeastSquares> step_at(const Problem& problem, const Problem::State& state,
-                                    const VectorXd& variances) {
-  const Index unknowns = 2 * problem.poles();
-  MatrixXd slopes(problem.samples() * problem.channels(), unknowns);
-  VectorXd residual(slopes.rows());
-  for (Index c = 0; c < problem.channels(); ++c) {
-    const double weight = 1.0 / std::sqrt(variances[c]);
-    const Index first = c * problem.samples();
-    slopes.middleRows(first, problem.samples()) = weight * problem.jacobian(state, c);
-    residual.segment(first, problem.samples()) = weight * state.residual.col(c);
+/// Gauss–Newton step with its covariance for noise of the given variances, and the damped one.
+class Step {
+ public:
+  Step(const Problem& problem, const Problem::State& state, const VectorXd& variances)
+      : unknowns_(2 * problem.poles()) {
+    // With the residuals as the last column: what least squares needs of them is in R.
+    MatrixXd slopes(problem.samples() * problem.channels(), unknowns_ + 1);
+    for (Index c = 0; c < problem.channels(); ++c) {
+      const double weight = 1.0 / std::sqrt(variances[c]);
+      const Index first = c * problem.samples();
+      slopes.block(first, 0, problem.samples(), unknowns_) = weight * problem.jacobian(state, c);
+      slopes.block(first, unknowns_, problem.samples(), 1) = -weight * state.residual.col(c);
+    }
+    r_ = tall_r(slopes);
+    whole_ = least_squares(r_.leftCols(unknowns_), r_.col(unknowns_));
   }
-  return least_squares(slopes, -residual);
+
+  const std::optional<LeastSquares>& whole() const { return whole_; }
+  /// Least ‖J x + e‖² + μ Σ ‖J_k‖² x_k² (Marquardt, 1963).
+  VectorXd damped(double damping) const {
+    if (damping == 0.0) return whole_->solution;
+    MatrixXd rows = MatrixXd::Zero(r_.rows() + unknowns_, unknowns_ + 1);
+    rows.topRows(r_.rows()) = r_;
+    for (Index k = 0; k < unknowns_; ++k) {
+      rows(r_.rows() + k, k) = std::sqrt(damping) * r_.col(k).norm();
+    }
+    return ThinQr(rows.leftCols(unknowns_)).solve(VectorXd(rows.col(unknowns_)));
+  }
+
+ private:
+  Index unknowns_;
+  MatrixXd r_;
+  std::optional<LeastSquares> whole_;
+};
+
+/// The state after a step by which the cost falls, or the same one; damping is what it took.
+bool descend(const Problem& problem, Problem::State& state, const Step& step,
+             const VectorXd& variances, double& damping) {
+  const double cost = cost_of(state, variances);
+  for (double trial = damping; trial < 1e8; trial = std::max(1e-3, 10.0 * trial)) {
+    Problem::State next = problem.at(problem.bounded(state.poles + step.damped(trial)));
+    if (!next.poles.allFinite() || !(cost_of(next, variances) <= cost)) continue;
+    state = std::move(next);
+    damping = trial > 1e-3 ? 0.1 * trial : 0.0;
+    return true;
+  }
+  return false;
 }
 
 // f = |λ|/2π and ζ = d/|λ| from (d, ν).
@@ -155,28 +90,26 @@ DecayPole deviation_of(double d, double nu, const Eigen::Matrix2d& covariance) {
           std::sqrt(ratio.dot(covariance * ratio))};
 }
 
-// aᵀ(RᵀR)_kk a over the channels, R⁻¹R⁻ᵀ the covariance of the linear unknowns.
-std::vector<double> evidence_of(const Problem& problem, const Problem::State& state,
-                                const VectorXd& variances) {
-  const MatrixXd r = state.thin_q.transpose() * state.basis;
-  const MatrixXd inverse =
-      r.triangularView<Eigen::Upper>().solve(MatrixXd::Identity(r.rows(), r.cols()));
-  std::vector<double> evidence;
-  for (Index k = 0; k < problem.poles(); ++k) {
-    const auto rows = inverse.middleRows(2 * k, 2);
-    const Eigen::Matrix2d precision = Eigen::Matrix2d(rows * rows.transpose()).inverse();
-    double sum = 0.0;
-    for (Index c = 0; c < problem.channels(); ++c) {
-      const Eigen::Vector2d a = state.coefficients.col(c).segment<2>(2 * k);
-      sum += a.dot(precision * a) / variances[c];
-    }
-    evidence.push_back(std::isfinite(sum) ? sum : std::numeric_limits<double>::quiet_NaN());
+// aᵀ(RᵀR)_kk a over the channels, R⁻¹R⁻ᵀ the covariance of the linear unknowns; R⁻¹ of `inverse`.
+double evidence_of(const Problem::State& state, Index k, const MatrixXd& inverse,
+                   const VectorXd& variances) {
+  const auto rows = inverse.middleRows(2 * k, 2);
+  const Eigen::Matrix2d precision = Eigen::Matrix2d(rows * rows.transpose()).inverse();
+  double sum = 0.0;
+  for (Index c = 0; c < variances.size(); ++c) {
+    const Eigen::Vector2d a = state.coefficients.col(c).segment<2>(2 * k);
+    sum += a.dot(precision * a) / variances[c];
   }
-  return evidence;
+  return std::isfinite(sum) ? sum : std::numeric_limits<double>::quiet_NaN();
 }
 
 std::vector<DecayMode> modes_of(const Problem& problem, const Problem::State& state,
-                                const std::optional<LeastSquares>& step, double in_band_variance) {
+                                const std::optional<LeastSquares>& step, const VectorXd& variances,
+                                double in_band_variance) {
+  const VectorXd noise = in_band_variance * variances;
+  const MatrixXd r = state.thin_q.transpose() * state.basis;
+  const MatrixXd inverse =
+      r.triangularView<Eigen::Upper>().solve(MatrixXd::Identity(r.rows(), r.cols()));
   std::vector<DecayMode> modes;
   for (Index k = 0; k < problem.poles(); ++k) {
     const double d = state.poles[2 * k];
@@ -189,6 +122,9 @@ std::vector<DecayMode> modes_of(const Problem& problem, const Problem::State& st
     for (Index c = 0; c < problem.channels(); ++c) {
       mode.amplitude.emplace_back(state.coefficients(2 * k, c), -state.coefficients(2 * k + 1, c));
     }
+    mode.evidence = evidence_of(state, k, inverse, noise);
+    const MatrixXd parts = problem.higher_terms(state, k).transpose() * state.residual;
+    mode.departure = (parts.colwise().squaredNorm().transpose().array() / noise.array()).sum();
     modes.push_back(std::move(mode));
   }
   return modes;
@@ -222,35 +158,32 @@ DampedSinusoidFit fit_damped_sinusoids(const DecayRecord& record, std::span<cons
   DampedSinusoidFit fit;
   Problem::State state = problem.at(start_values(start, record.sample_rate));
   VectorXd variances = variances_of(problem, state);
-  std::optional<LeastSquares> step = step_at(problem, state, variances);
-  while (step && !fit.converged && fit.iterations < options.iterations) {
+  Step step(problem, state, variances);
+  double damping = 0.0;
+  while (step.whole() && !fit.converged && fit.iterations < options.iterations) {
     ++fit.iterations;
-    const VectorXd deviations = step->covariance.diagonal().cwiseSqrt();
-    const double size = step->solution.cwiseQuotient(deviations).lpNorm<Eigen::Infinity>();
-    const double cost = cost_of(state, variances);
-    double share = 1.0;
-    constexpr double kSmallest = 1e-6;
-    while (share > kSmallest) {
-      Problem::State next = problem.at(problem.bounded(state.poles + share * step->solution));
-      if (next.poles.allFinite() && cost_of(next, variances) <= cost) {
-        state = std::move(next);
-        break;
-      }
-      share *= 0.5;
-    }
+    const VectorXd& solution = step.whole()->solution;
+    const VectorXd deviations = step.whole()->covariance.diagonal().cwiseSqrt();
+    const double size = solution.cwiseQuotient(deviations).lpNorm<Eigen::Infinity>();
     // Without noise deviations are rounding, and so are the last steps.
     constexpr double kRounding = 1e-12;
-    const bool rounding = step->solution.lpNorm<Eigen::Infinity>() <=
-                          kRounding * state.poles.lpNorm<Eigen::Infinity>();
-    fit.converged = size <= options.tolerance || rounding || share <= kSmallest;
+    const bool rounding =
+        solution.lpNorm<Eigen::Infinity>() <= kRounding * state.poles.lpNorm<Eigen::Infinity>();
+    const VectorXd before = state.poles;
+    const bool fell = descend(problem, state, step, variances, damping);
+    // A pole at its bound does not follow its step.
+    const double moved = (state.poles - before).cwiseQuotient(deviations).lpNorm<Eigen::Infinity>();
+    fit.converged = std::min(size, moved) <= options.tolerance || rounding || !fell;
     variances = variances_of(problem, state);
-    step = step_at(problem, state, variances);
+    step = Step(problem, state, variances);
   }
-  fit.full_rank = step.has_value();
-  fit.modes = modes_of(problem, state, step, options.in_band_variance);
-  fit.evidence = evidence_of(problem, state, options.in_band_variance * variances);
+  fit.full_rank = step.whole().has_value();
+  fit.modes = modes_of(problem, state, step.whole(), variances, options.in_band_variance);
   for (const double variance : variances) fit.noise.push_back(std::sqrt(variance));
-  for (const auto channel : state.residual.colwise()) fit.squares.push_back(channel.squaredNorm());
+  for (const auto channel : state.residual.colwise()) {
+    fit.residual.emplace_back(channel.begin(), channel.end());
+    fit.squares.push_back(channel.squaredNorm());
+  }
   return fit;
 }
 

@@ -10,11 +10,9 @@ namespace modcal {
 
 struct DampedSinusoidFit {
   std::vector<DecayMode> modes;
-  /// Of each mode how much χ², the noise that of the band, rises without it, the poles of the
-  /// others as they are; NaN where its columns cannot be told apart.
-  std::vector<double> evidence;
-  std::vector<double> noise;    ///< standard deviation of the residual of each channel
-  std::vector<double> squares;  ///< of the residual of each channel, their sum
+  std::vector<double> noise;  ///< standard deviation of the residual of each channel
+  std::vector<std::vector<double>> residual;  ///< of each channel
+  std::vector<double> squares;                ///< of the residual of each channel, their sum
   std::size_t iterations = 0;
   bool converged = false;
   bool full_rank = false;  ///< false: two poles cannot be told apart, there are no error bars
@@ -32,11 +30,11 @@ struct DampedSinusoidOptions {
 /// Minimum of Σ_c ‖y_c − c_c − Σ_k Re(A_ck exp(λ_k t))‖²/v_c over the poles, common to all
 /// channels, and, for given poles, over amplitudes and constants, those of the lines too, which are
 /// linear (variable projection, Golub and Pereyra, 1973; the Jacobian of Kaufman, 1975, analytic):
-/// Gauss–Newton steps by QR, halved until the sum falls. v_c are the residual variances, estimated
-/// along the way: for white noise the maximum of the likelihood. Deviations are the Cramér–Rao
-/// bound at the optimum. start: poles near the optimum, within about 1/T of it each. Throws
-/// InvalidInput for an invalid record, no pole, a pole that does not decay or lies above half the
-/// rate, and fewer samples than unknowns.
+/// Gauss–Newton steps by QR, damped until the sum falls (Marquardt, 1963). v_c are the residual
+/// variances, estimated along the way: for white noise the maximum of the likelihood. Deviations
+/// are the Cramér–Rao bound at the optimum. start: poles near the optimum, within about 1/T of it
+/// each. Throws InvalidInput for an invalid record, no pole, a pole that does not decay or lies
+/// above half the rate, and fewer samples than unknowns.
 DampedSinusoidFit fit_damped_sinusoids(const DecayRecord& record, std::span<const DecayPole> start,
                                        const DampedSinusoidOptions& options = {});
 

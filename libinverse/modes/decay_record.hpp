@@ -33,6 +33,12 @@ struct DecayMode {
   DecayPole pole;
   DecayPole deviation;  ///< standard deviations of f and ζ; NaN where they are not known
   std::vector<std::complex<double>> amplitude;  ///< A_c at the first sample, per channel
+  /// How much χ², the noise that of the band, rises without it, the poles of the others as they
+  /// are; NaN where its columns cannot be told apart.
+  double evidence = std::numeric_limits<double>::quiet_NaN();
+  /// How much χ² would fall if its amplitude in every channel were a polynomial of second degree in
+  /// time: what two poles behind one leave, and a frequency that changes.
+  double departure = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// The decay through a low-pass filter, every stride-th sample kept. Only outputs for which all

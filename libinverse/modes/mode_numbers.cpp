@@ -57,17 +57,89 @@ NumberedModes numbered_modes(std::vector<DecayMode> modes, double highest, LawNu
   return numbered;
 }
 
-std::vector<DecayMode> heard_of(std::vector<DecayMode> others, const NumberedModes& numbered,
-                                double reach) {
+std::vector<DecayMode> heard_of(std::vector<DecayMode> others, const NumberedModes& numbered) {
   double largest = 0.0;
   for (const auto& [number, mode] : numbered) largest = std::max(largest, size_of(mode));
-  std::erase_if(others, [&](const DecayMode& other) {
-    if (size_of(other) < 0.01 * largest) return true;
-    return std::ranges::any_of(numbered, [&](const auto& one) {
-      return std::abs(one.second.pole.frequency - other.pole.frequency) < reach;
-    });
-  });
+  std::erase_if(others, [&](const DecayMode& other) { return size_of(other) < 0.01 * largest; });
   return others;
+}
+
+std::multimap<std::size_t, DecayMode> seconds_of(std::vector<DecayMode>& others,
+                                                 const NumberedModes& numbered, double reach) {
+  std::multimap<std::size_t, DecayMode> seconds;
+  std::erase_if(others, [&](DecayMode& other) {
+    for (const auto& [number, mode] : numbered) {
+      if (std::abs(mode.pole.frequency - other.pole.frequency) >= reach) continue;
+      seconds.emplace(number, std::move(other));
+      return true;
+    }
+    return false;
+  });
+  return seconds;
+}
+
+namespace {
+
+// How a second pole of a mode stands beside it.
+struct Apart {
+  double share = 0.0;      // s
+  double distance = 0.0;   // |Δ|/ω
+  double certainty = 0.0;  // in deviations
+};
+
+Apart apart_of(const DecayMode& mode, const DecayMode& second) {
+  const double frequency = second.pole.frequency / mode.pole.frequency - 1.0;
+  const double ratio = second.pole.damping_ratio - mode.pole.damping_ratio;
+  const auto deviation = [&](double DecayPole::*of) {
+    return std::hypot(mode.deviation.*of, second.deviation.*of);
+  };
+  const double in_deviations =
+      std::max(std::abs(frequency) * mode.pole.frequency / deviation(&DecayPole::frequency),
+               std::abs(ratio) / deviation(&DecayPole::damping_ratio));
+  return {.share = std::min(1.0, std::sqrt(size_of(second) / size_of(mode))),
+          .distance = std::hypot(frequency, ratio),
+          .certainty = in_deviations};
+}
+
+// The largest of those that are told for certain, or the one that is told best.
+Apart largest_of(const std::vector<Apart>& all) {
+  Apart largest;
+  const double best = std::ranges::max(all, {}, &Apart::certainty).certainty;
+  for (const Apart& apart : all) {
+    if (apart.certainty < std::min(3.0, best)) continue;
+    largest.share = std::max(largest.share, apart.share);
+    largest.distance = std::max(largest.distance, apart.distance);
+  }
+  return largest;
+}
+
+}  // namespace
+
+void widen_by_seconds(NumberedModes& numbered, const std::multimap<std::size_t, DecayMode>& seconds,
+                      double least) {
+  std::vector<Apart> all;
+  for (const auto& [number, second] : seconds) {
+    const Apart apart = apart_of(numbered.at(number), second);
+    if (apart.distance < 0.01) all.push_back(apart);
+  }
+  if (all.empty()) return;
+  const Apart largest = largest_of(all);
+  for (auto& [number, mode] : numbered) {
+    if (seconds.contains(number)) continue;
+    const double shift =
+        largest.share * std::min(largest.distance, unseen_distance(mode, largest.share, least));
+    mode.deviation.frequency = std::hypot(mode.deviation.frequency, shift * mode.pole.frequency);
+    mode.deviation.damping_ratio = std::hypot(mode.deviation.damping_ratio, shift);
+  }
+}
+
+bool is_one_changing(const DecayMode& mode, const DecayMode& second) {
+  const std::complex<double> apart = second.pole.exponent() - mode.pole.exponent();
+  return std::abs(apart.imag()) < std::abs(apart.real()) && 9.0 * size_of(second) > size_of(mode);
+}
+
+double unseen_distance(const DecayMode& mode, double share, double least) {
+  return 2.0 * mode.pole.damping_ratio * std::pow(least / (share * share * mode.evidence), 0.25);
 }
 
 std::vector<std::size_t> missing_in(const NumberedModes& numbered) {

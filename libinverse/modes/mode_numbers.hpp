@@ -61,12 +61,31 @@ using NumberedModes = std::map<std::size_t, DecayMode>;
 NumberedModes numbered_modes(std::vector<DecayMode> modes, double highest, LawNumbers& law,
                              std::vector<DecayMode>& others);
 
-/// Of modes without a number those that are heard: of a tenth of the largest amplitude at least,
-/// and not within `reach` [Hz] of one that has a number, as the second plane's are.
-std::vector<DecayMode> heard_of(std::vector<DecayMode> others, const NumberedModes& numbered,
-                                double reach);
+/// Of modes without a number those that are heard: of a tenth of the largest amplitude at least.
+std::vector<DecayMode> heard_of(std::vector<DecayMode> others, const NumberedModes& numbered);
 
 /// Numbers below the highest that no mode has.
 std::vector<std::size_t> missing_in(const NumberedModes& numbered);
+
+/// Takes from `others` those within `reach` [Hz] of a mode with a number: its second pole, as of a
+/// string that moves in two planes.
+std::multimap<std::size_t, DecayMode> seconds_of(std::vector<DecayMode>& others,
+                                                 const NumberedModes& numbered, double reach);
+
+/// Whether a mode and its second pole are rather one whose frequency or damping changes along the
+/// decay: that is a sum of poles of one frequency with ever faster decays, of which the second may
+/// be the larger. They differ by decay more than by frequency, and the second is above a third.
+bool is_one_changing(const DecayMode& mode, const DecayMode& second);
+
+/// |Δ|/ω up to which a second pole of the share s of a mode's amplitude is not seen: its departure
+/// E s² (|Δ|/2d)⁴ is below `least` (leading order; of t² exp(−dt) what exp(−dt) and t exp(−dt)
+/// leave has the square 4/(2d)⁵), E being the evidence. The pole of both is off by up to sΔ.
+double unseen_distance(const DecayMode& mode, double share, double least);
+
+/// Deviations of modes that are one pole hold that they may be two as others are: s and |Δ|/ω are
+/// the largest that are told, |Δ| no more than what is not seen. Second poles farther away than 1 %
+/// are of something else.
+void widen_by_seconds(NumberedModes& numbered, const std::multimap<std::size_t, DecayMode>& seconds,
+                      double least);
 
 }  // namespace modcal

@@ -3,10 +3,12 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "libinverse/modes/decay_hum.hpp"
 #include "libinverse/modes/decay_record.hpp"
 #include "libinverse/modes/mode_numbers.hpp"
+#include "libinverse/modes/residual_search.hpp"
 #include "libinverse/modes/significant_fit.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/base/words.hpp"
@@ -38,6 +40,20 @@ double reach_of(double fundamental, double duration) {
   return std::min(0.25 * fundamental, 10.0 / duration);
 }
 
+// Frequencies from `lowest` to `highest` at which the residual is more than noise [Hz].
+std::vector<double> left_by(const DampedSinusoidFit& fit, const DecimatedDecay& decay,
+                            double lowest, double highest) {
+  const double rate = decay.record.sample_rate, variance = decay.in_band_variance();
+  const double least =
+      2.0 * largest_by_chance(decay.record.samples(), 2 * decay.record.channels.size() + 2);
+  std::vector<double> left;
+  for (const DecayPole& pole :
+       poles_in_residual(fit, ResidualLevels(fit, rate, variance), rate, variance, least)) {
+    if (pole.frequency > lowest && pole.frequency < highest) left.push_back(pole.frequency);
+  }
+  return left;
+}
+
 // Amplitudes come from the fit for both methods; for era the poles are left where they are.
 std::vector<DecayMode> modes_of(const DecimatedDecay& decay, const std::vector<StablePole>& stable,
                                 double fundamental, const PluckOptions& options,
@@ -52,6 +68,9 @@ std::vector<DecayMode> modes_of(const DecimatedDecay& decay, const std::vector<S
   const double reach = reach_of(fundamental, duration);
   const DampedSinusoidFit fit = likelihood ? fit_significant(decay.record, start, reach, how)
                                            : fit_damped_sinusoids(decay.record, start, how);
+  if (likelihood && !fit.modes.empty()) {
+    result.left = left_by(fit, decay, 0.5 * fundamental, options.highest_frequency);
+  }
   result.converged = fit.converged || !likelihood;
   result.full_rank = fit.full_rank && likelihood;
   if (likelihood) {
@@ -137,8 +156,10 @@ PluckIdentification identified(const DecimatedDecay& decay, Realized realized, d
   const double duration = static_cast<double>(decay.record.samples()) / decay.record.sample_rate;
   std::vector<DecayMode> others;
   const auto number = [&](std::vector<DecayMode> modes, LawNumbers& law) {
-    std::erase_if(
-        modes, [&](const DecayMode& mode) { return is_line(mode.pole, result.lines, duration); });
+    std::erase_if(modes, [&](const DecayMode& mode) {
+      return is_line(mode.pole, result.lines, duration) ||
+             mode.pole.damping_ratio > options.stabilization.highest_damping;
+    });
     others.clear();
     return numbered_modes(std::move(modes), options.highest_frequency, law, others);
   };
@@ -156,8 +177,21 @@ PluckIdentification identified(const DecimatedDecay& decay, Realized realized, d
     }
   }
   result.missing = missing_in(numbered);
-  result.others = heard_of(std::move(others), numbered, reach_of(fundamental, duration));
-  for (auto& [n, mode] : numbered) result.modes.push_back({n, std::move(mode)});
+  const auto seconds = seconds_of(others, numbered, reach_of(fundamental, duration));
+  result.others = heard_of(std::move(others), numbered);
+  const double least = least_departure(result.poles.size(), decay.record.channels.size());
+  if (result.full_rank) widen_by_seconds(numbered, seconds, least);
+  for (auto& [n, mode] : numbered) {
+    const auto [first, last] = seconds.equal_range(n);
+    const bool changes = std::any_of(first, last, [&mode = mode](const auto& second) {
+      return is_one_changing(mode, second.second);
+    });
+    if (result.full_rank && (changes || mode.departure > 2.0 * least)) {
+      result.departing.push_back(n);
+    }
+    result.modes.push_back({n, std::move(mode)});
+  }
+  for (const auto& [n, mode] : seconds) result.seconds.push_back({n, mode});
   return result;
 }
 
@@ -188,11 +222,15 @@ PluckIdentification identify_pluck(const DecayRecord& record, double fundamental
                     options, found.lines);
 }
 
-PluckIdentification identify_part(const DecayRecord& part, const PluckIdentification& whole,
-                                  double fundamental, const PluckOptions& options) {
-  const DecimatedDecay decay = band_of(part, fundamental, options);
-  return identified(decay, beside_hum(decay.record, whole, fundamental, options), fundamental,
-                    options, whole.lines);
+double unseen_shift(const PluckIdentification& found, const PluckedMode& plucked) {
+  const DecayMode& mode = plucked.mode;
+  if (!found.full_rank || std::ranges::find(found.seconds, plucked.number, &PluckedMode::number) !=
+                              found.seconds.end()) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  constexpr double kThird = 1.0 / 3.0;
+  const double least = least_departure(found.poles.size(), mode.amplitude.size());
+  return kThird * mode.pole.frequency * unseen_distance(mode, kThird, least);
 }
 
 void require_decay_length(std::size_t samples, double sample_rate, const PluckOptions& options) {

@@ -33,8 +33,16 @@ struct PluckIdentification {
   std::vector<StabilizationPoint> diagram;
   std::vector<double> singular_values;  ///< of the Hankel matrix
   std::vector<std::size_t> missing;     ///< numbers below the highest with no mode
-  /// Without a number, but at least a tenth of the largest mode: of a body, or of a plane in which
-  /// the string is tuned apart; ascending.
+  /// Second poles of modes, with their numbers, as of a string that moves in two planes; ascending.
+  std::vector<PluckedMode> seconds;
+  /// Numbers of modes that are neither one damped sinusoid nor two, by a departure twice as large
+  /// as chance lets be; empty for era.
+  std::vector<std::size_t> departing;
+  /// Frequencies in the band, the loudest first, of what the fit leaves, χ² falling by twice as
+  /// much there as chance lets it; empty for era [Hz].
+  std::vector<double> left;
+  /// Without a number and not beside a mode that has one, but at least a tenth of the largest: of a
+  /// body, or of another string; ascending.
   std::vector<DecayMode> others;
   std::vector<DecayPole> poles;  ///< of the fit, those that are no modes, too
   std::vector<double> lines;     ///< of the mains [Hz]
@@ -46,20 +54,23 @@ struct PluckIdentification {
 /// Modes of a free decay: low-pass to the band, poles by the eigensystem realization algorithm (the
 /// paper's route, section 7.1), those kept that are stable over the orders, and for
 /// maximum_likelihood all of them fitted together as damped sinusoids, without those that noise may
-/// be (fit_significant). Deviations are the Cramér–Rao bound for maximum_likelihood; the spread
-/// over the orders, no error bar, for era. Modes are numbered upwards along the law f = n f₀ √(1 +
-/// B n²) of those numbered before: far up a stiff string f/f₀ is off by more than one. Of two with
-/// one number the one is kept that is nearer to the law, within 1 % of it the one with the larger
-/// amplitude; what is farther from a law of three modes than f₀ may be stated has none. A fit that
-/// does not converge is made again with the modes that are missing, where the law has them. Hum of
-/// the mains, where there is some, is fitted beside the modes; a pole that the record does not tell
-/// from one of its lines is no mode. fundamental: f₀ to about 1 % [Hz]. Throws InvalidInput for an
-/// invalid or too short record, a fundamental that is not positive, an unknown method.
+/// be and with those that the residual has (fit_significant). Deviations are the Cramér–Rao bound
+/// for maximum_likelihood; the spread over the orders, no error bar, for era. Modes are numbered
+/// upwards along the law f = n f₀ √(1 + B n²) of those numbered before: far up a stiff string f/f₀
+/// is off by more than one. Of two with one number the one is kept that is nearer to the law,
+/// within 1 % of it the one with the larger amplitude; what is farther from a law of three modes
+/// than f₀ may be stated has none. Where modes have second poles, deviations of the others hold
+/// that they may, too (widen_by_seconds). A fit that does not converge is made again with the modes
+/// that are missing, where the law has them. Hum of the mains, where there is some, is fitted
+/// beside the modes; a pole that the record does not tell from one of its lines is no mode.
+/// fundamental: f₀ to about 1 % [Hz]. Throws InvalidInput for an invalid or too short record, a
+/// fundamental that is not positive, an unknown method.
 PluckIdentification identify_pluck(const DecayRecord& record, double fundamental,
                                    const PluckOptions& options = {});
-/// Of a part of a decay with the hum of the mains that the whole has.
-PluckIdentification identify_part(const DecayRecord& part, const PluckIdentification& whole,
-                                  double fundamental, const PluckOptions& options);
+
+/// What a second pole of a third of the amplitude, too near to be seen, may move the frequency of a
+/// mode by [Hz]; NaN for one whose second pole is known, and without error bars.
+double unseen_shift(const PluckIdentification& found, const PluckedMode& plucked);
 
 /// Throws InvalidInput, as identify_pluck() would, where `samples` at `sample_rate` [Hz] leave
 /// nothing behind the time skipped, are too few for the filter of the band, or for the block rows

@@ -1,7 +1,12 @@
 #include "libinverse/modes/significant_fit.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
+
+#include "libinverse/modes/residual_search.hpp"
+#include "libinverse/modes/tuning.hpp"
 
 namespace modcal {
 namespace {
@@ -21,8 +26,8 @@ std::vector<DecayPole> poles_without(const DampedSinusoidFit& fit, const std::ve
 }
 
 // Of χ² from one fit to another, the noise that of the first.
-double rise(const DampedSinusoidFit& from, const DampedSinusoidFit& to, std::size_t samples,
-            double in_band_variance) {
+double rise_of(const DampedSinusoidFit& from, const DampedSinusoidFit& to, std::size_t samples,
+               double in_band_variance) {
   double sum = 0.0;
   for (std::size_t c = 0; c < from.squares.size(); ++c) {
     sum += static_cast<double>(samples) * (to.squares[c] / from.squares[c] - 1.0);
@@ -30,19 +35,185 @@ double rise(const DampedSinusoidFit& from, const DampedSinusoidFit& to, std::siz
   return sum / in_band_variance;
 }
 
-// Those next to one of more evidence, the least first.
-std::vector<std::size_t> neighbors(const DampedSinusoidFit& fit, double reach) {
-  std::vector<std::size_t> found;
-  for (std::size_t k = 0; k < fit.modes.size(); ++k) {
-    for (std::size_t i = 0; i < fit.modes.size(); ++i) {
-      const double apart = fit.modes[i].pole.frequency - fit.modes[k].pole.frequency;
-      if (!(std::abs(apart) < reach) || !(fit.evidence[i] > fit.evidence[k])) continue;
-      found.push_back(k);
-      break;
-    }
+class Search {
+ public:
+  Search(const DecayRecord& record, double reach, const DampedSinusoidOptions& options)
+      : record_(record),
+        reach_(reach),
+        options_(options),
+        least_(largest_by_chance(record.samples(), 2 * record.channels.size())),
+        least_with_pole_(largest_by_chance(record.samples(), 2 * record.channels.size() + 2)) {}
+
+  DampedSinusoidFit fit(const std::vector<DecayPole>& poles) const {
+    if (poles.empty()) return {};
+    DampedSinusoidFit fit = fit_damped_sinusoids(record_, poles, options_);
+    spent_ += static_cast<double>(fit.iterations) * cost_of(poles.size());
+    return fit;
   }
-  std::ranges::sort(found, {}, [&](std::size_t k) { return fit.evidence[k]; });
-  return found;
+  ResidualLevels levels(const DampedSinusoidFit& fit) const {
+    return {fit, record_.sample_rate, options_.in_band_variance};
+  }
+  /// What χ² falls by at most for one more pole of noise, anywhere and behind one of the modes.
+  double least_with_pole() const { return least_with_pole_; }
+  double least_of_second(const DampedSinusoidFit& fit) const {
+    return largest_by_chance(std::max<std::size_t>(1, fit.modes.size()),
+                             2 * record_.channels.size() + 2);
+  }
+  /// The fit without poles that may be noise, those beside others where χ² rises by less than
+  /// least.
+  DampedSinusoidFit pruned(DampedSinusoidFit fit, double least) const {
+    while (!fit.modes.empty() && (leave_out_weak(fit) || leave_out_neighbor(fit, least))) {
+    }
+    return fit;
+  }
+  /// The fit with poles that the residual has, and with two where one leaves what two would.
+  DampedSinusoidFit extended(DampedSinusoidFit fit) const {
+    const std::size_t most = 2 * fit.modes.size() + kPolesAdded;
+    while (fit.full_rank && fit.modes.size() < most && spent_ < kSearchCost) {
+      if (!add_from_residual(fit) && !split(fit)) break;
+    }
+    return fit;
+  }
+
+  std::vector<DecayPole> poles_of(const DampedSinusoidFit& fit) const {
+    return poles_without(fit, std::vector<bool>(fit.modes.size()), record_.sample_rate);
+  }
+
+ private:
+  // Of an iteration, in products.
+  double cost_of(std::size_t poles) const {
+    return static_cast<double>(poles * poles * record_.samples() * record_.channels.size());
+  }
+  double rise(const DampedSinusoidFit& from, const DampedSinusoidFit& to) const {
+    return rise_of(from, to, record_.samples(), options_.in_band_variance);
+  }
+  DampedSinusoidFit without(const DampedSinusoidFit& fit, const std::vector<bool>& out) const {
+    return this->fit(poles_without(fit, out, record_.sample_rate));
+  }
+  bool leave_out_weak(DampedSinusoidFit& fit) const {
+    if (fit.modes.empty()) return false;
+    const ResidualLevels noise = levels(fit);
+    std::vector<bool> out(fit.modes.size());
+    for (std::size_t k = 0; k < out.size(); ++k) {
+      const double level = noise.largest(fit.modes[k].pole.frequency);
+      out[k] = fit.modes[k].evidence < level * least_;
+    }
+    if (std::ranges::find(out, true) == out.end()) return false;
+    fit = without(fit, out);
+    return true;
+  }
+  bool leave_out_neighbor(DampedSinusoidFit& fit, double least) const {
+    const ResidualLevels noise = levels(fit);
+    const auto level = [&](std::size_t k) { return noise.largest(fit.modes[k].pole.frequency); };
+    for (const std::size_t k : neighbors(fit)) {
+      std::vector<bool> one(fit.modes.size());
+      one[k] = true;
+      DampedSinusoidFit next = without(fit, one);
+      if (!next.converged || !(rise(fit, next) < level(k) * least)) continue;
+      fit = std::move(next);
+      return true;
+    }
+    return false;
+  }
+  // Those next to one of more evidence, the least first.
+  std::vector<std::size_t> neighbors(const DampedSinusoidFit& fit) const {
+    std::vector<std::size_t> found;
+    for (std::size_t k = 0; k < fit.modes.size(); ++k) {
+      for (std::size_t i = 0; i < fit.modes.size(); ++i) {
+        const double apart = fit.modes[i].pole.frequency - fit.modes[k].pole.frequency;
+        if (!(std::abs(apart) < reach_) || !(fit.modes[i].evidence > fit.modes[k].evidence))
+          continue;
+        found.push_back(k);
+        break;
+      }
+    }
+    std::ranges::sort(found, {}, [&](std::size_t k) { return fit.modes[k].evidence; });
+    return found;
+  }
+
+  // The next of two fits where it is better by more than a pole of noise would make it.
+  bool take(DampedSinusoidFit& fit, DampedSinusoidFit next, double least) const {
+    const bool better = next.converged && next.full_rank && next.modes.size() > fit.modes.size() &&
+                        rise(next, fit) > least;
+    if (better) fit = std::move(next);
+    return better;
+  }
+  bool add(DampedSinusoidFit& fit, std::span<const DecayPole> more, double least) const {
+    std::vector<DecayPole> poles = poles_of(fit);
+    // Of eight samples for every pole there are two for every unknown of a single channel.
+    if (more.empty() || 8 * (poles.size() + more.size()) > record_.samples()) return false;
+    poles.insert(poles.end(), more.begin(), more.end());
+    if (spent_ + static_cast<double>(options_.iterations) * cost_of(poles.size()) > kSearchCost) {
+      return false;
+    }
+    DampedSinusoidFit next = this->fit(poles);
+    while (leave_out_weak(next)) {
+    }
+    return take(fit, std::move(next), least);
+  }
+  bool add_from_residual(DampedSinusoidFit& fit) const {
+    const std::vector<DecayPole> more = poles_in_residual(
+        fit, levels(fit), record_.sample_rate, options_.in_band_variance, least_with_pole_);
+    const std::span<const DecayPole> loudest =
+        std::span(more).first(std::min(more.size(), kPolesAdded));
+    return add(fit, loudest, least_with_pole_) ||
+           (loudest.size() > 1 && add(fit, loudest.first(1), least_with_pole_));
+  }
+  // The mode that departs most from one damped sinusoid, as two: the second is as far from it as
+  // it is wide, or decays faster or slower.
+  bool split(DampedSinusoidFit& fit) const {
+    const ResidualLevels noise = levels(fit);
+    std::size_t most = 0;
+    std::vector<double> departure;
+    for (std::size_t k = 0; k < fit.modes.size(); ++k) {
+      departure.push_back(fit.modes[k].departure / noise.largest(fit.modes[k].pole.frequency));
+      if (departure[k] > departure[most]) most = k;
+    }
+    if (!(departure[most] > least_departure(fit.modes.size(), record_.channels.size()))) {
+      return false;
+    }
+    const std::complex<double> whole = poles_of(fit)[most].exponent();
+    const double width = -whole.real() + 1.0 / duration();
+    // There are as many places for it as modes.
+    const double least = least_of_second(fit);
+    DampedSinusoidFit best = fit;
+    for (const std::complex<double> apart : {std::complex<double>(0.0, width),
+                                             {0.0, -width},
+                                             {-width, 0.0},
+                                             {-0.5 * whole.real(), 0.0}}) {
+      DampedSinusoidFit two = fit;
+      if (!add(two, std::array{DecayPole::of_exponent(whole + apart)}, least)) continue;
+      if (best.modes.size() == fit.modes.size() || rise(two, best) > 0.0) best = std::move(two);
+    }
+    const bool found = best.modes.size() > fit.modes.size();
+    fit = std::move(best);
+    return found;
+  }
+  double duration() const { return static_cast<double>(record_.samples()) / record_.sample_rate; }
+
+  const DecayRecord& record_;
+  double reach_;
+  const DampedSinusoidOptions& options_;
+  double least_, least_with_pole_;
+  mutable double spent_ = 0.0;
+};
+
+// Error bars and departures of the noise that is about a mode.
+void scale(DampedSinusoidFit& fit, const ResidualLevels& levels) {
+  for (std::size_t k = 0; k < fit.modes.size(); ++k) {
+    DecayMode& mode = fit.modes[k];
+    double sum = 0.0, weights = 0.0;
+    for (std::size_t c = 0; c < mode.amplitude.size(); ++c) {
+      const double weight = std::norm(mode.amplitude[c]) / (fit.noise[c] * fit.noise[c]);
+      sum += weight * levels.at(c, mode.pole.frequency);
+      weights += weight;
+    }
+    const double factor = weights > 0.0 ? std::sqrt(sum / weights) : 1.0;
+    mode.deviation.frequency *= factor;
+    mode.deviation.damping_ratio *= factor;
+    mode.departure /= levels.largest(mode.pole.frequency);
+    mode.evidence /= levels.largest(mode.pole.frequency);
+  }
 }
 
 }  // namespace
@@ -60,36 +231,24 @@ double largest_by_chance(std::size_t places, std::size_t degrees) {
   }
 }
 
-DampedSinusoidFit fit_significant(const DecayRecord& record, std::vector<DecayPole> start,
+double least_departure(std::size_t modes, std::size_t channels) {
+  return largest_by_chance(modes, 4 * channels - 2);
+}
+
+DampedSinusoidFit fit_significant(const DecayRecord& record, const std::vector<DecayPole>& start,
                                   double reach, const DampedSinusoidOptions& options) {
-  const std::size_t amplitudes = 2 * record.channels.size();
-  const double least = largest_by_chance(record.samples(), amplitudes);
-  const double least_with_pole = largest_by_chance(record.samples(), amplitudes + 2);
-  DampedSinusoidFit fit = fit_damped_sinusoids(record, start, options);
-  const auto without = [&](const std::vector<bool>& out) {
-    start = poles_without(fit, out, record.sample_rate);
-    return start.empty() ? DampedSinusoidFit() : fit_damped_sinusoids(record, start, options);
-  };
-  for (bool changed = true; changed;) {
-    changed = false;
-    std::vector<bool> out(fit.modes.size());
-    for (std::size_t k = 0; k < out.size(); ++k) out[k] = fit.evidence[k] < least;
-    if (std::ranges::find(out, true) != out.end()) {
-      fit = without(out);
-      changed = true;
-      continue;
-    }
-    for (const std::size_t k : neighbors(fit, reach)) {
-      std::vector<bool> one(fit.modes.size());
-      one[k] = true;
-      DampedSinusoidFit next = without(one);
-      const double by = rise(fit, next, record.samples(), options.in_band_variance);
-      if (!next.converged || !(by < least_with_pole)) continue;
-      fit = std::move(next);
-      changed = true;
-      break;
-    }
-  }
+  // Which poles there are is told by fits that end within a hundredth of a deviation.
+  DampedSinusoidOptions rough = options;
+  rough.tolerance = std::max(rough.tolerance, 1e-2);
+  rough.iterations = std::min(rough.iterations, std::size_t{20});
+  const Search search(record, reach, rough);
+  DampedSinusoidFit fit =
+      search.extended(search.pruned(search.fit(start), search.least_with_pole()));
+  const double least = search.least_of_second(fit);
+  fit = search.pruned(std::move(fit), least);
+  if (fit.modes.empty()) return fit;
+  fit = fit_damped_sinusoids(record, search.poles_of(fit), options);
+  scale(fit, search.levels(fit));
   return fit;
 }
 

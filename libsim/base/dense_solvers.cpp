@@ -1,6 +1,7 @@
 #include "libsim/base/dense_solvers.hpp"
 
 #include <Eigen/SVD>
+#include <algorithm>
 
 template class Eigen::HouseholderQR<Eigen::MatrixXd>;
 template class Eigen::ColPivHouseholderQR<Eigen::MatrixXd>;
@@ -93,6 +94,21 @@ Eigen::MatrixXd ThinQr::r() const {
 
 Eigen::VectorXd ThinQr::solve(const Eigen::VectorXd& right) const { return factor.solve(right); }
 Eigen::MatrixXd ThinQr::solve(const Eigen::MatrixXd& right) const { return factor.solve(right); }
+
+Eigen::MatrixXd tall_r(const Eigen::MatrixXd& a) {
+  const Eigen::Index columns = a.cols(), step = std::max<Eigen::Index>(256, 2 * columns);
+  Eigen::MatrixXd r(0, columns), rows;
+  for (Eigen::Index first = 0; first < a.rows(); first += step) {
+    const Eigen::Index count = std::min(step, a.rows() - first);
+    rows.resize(r.rows() + count, columns);
+    rows << r, a.middleRows(first, count);
+    const Eigen::HouseholderQR<Eigen::MatrixXd> factor(rows);
+    r = factor.matrixQR()
+            .topRows(std::min(columns, rows.rows()))
+            .template triangularView<Eigen::Upper>();
+  }
+  return r;
+}
 
 std::optional<LeastSquares> least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(a);

@@ -93,6 +93,10 @@ struct ThinQr {
   Eigen::HouseholderQR<Eigen::MatrixXd> factor;
 };
 
+/// R of A = QR for many more rows than columns, by Householder's reflections of some rows after the
+/// other, which stay in the cache (Golub and Van Loan, 2013, 6.5.3).
+Eigen::MatrixXd tall_r(const Eigen::MatrixXd& a);
+
 /// x of least ‖Ax − b‖ with (AᵀA)⁻¹, by pivoted QR; none where A has not full rank.
 struct LeastSquares {
   Eigen::VectorXd solution;

@@ -81,16 +81,6 @@ std::string sentence_of(const IdentifyOutcome& outcome) {
   return text;
 }
 
-std::string why_nothing(const IdentifyOutcome& outcome) {
-  if (outcome.record && !outcome.found.diagram.empty()) {
-    return "rejected: no pole that is stable over the orders decays as a mode of this string does: "
-           "state record.start and record.stop of a free decay, behind the pluck, or record a "
-           "longer one with less noise";
-  }
-  return "no pole is stable over the orders: nothing was identified; record a longer decay with "
-         "less noise, or raise identification's orders";
-}
-
 }  // namespace
 
 void IdentifyOptions::visit(OptionVisitor& visitor) {
@@ -210,7 +200,9 @@ void IdentifyOutcome::visit(ResultVisitor& visitor) const {
        .name = "Identified modes",
        .meaning =
            found.full_rank
-               ? "Deviations are the Cramér–Rao bound of the fit."
+               ? "Deviations are the Cramér–Rao bound of the fit. A second pole of a third of the "
+                 "amplitude that the record does not show may move the frequency by the next "
+                 "column."
                : "Deviations are the spread over the orders of the realization: no error bars."},
       found.modes, [&](ResultVisitor& row, const PluckedMode& plucked) {
         const auto& [number, mode] = plucked;
@@ -222,6 +214,11 @@ void IdentifyOutcome::visit(ResultVisitor& visitor) const {
             mode.pole.frequency);
         row({.key = "f_sd_hz", .name = "its deviation", .unit = "Hz", .format = "{:.2g}"},
             mode.deviation.frequency);
+        row({.key = "f_unseen_hz",
+             .name = "moved by an unseen pole",
+             .unit = "Hz",
+             .format = "{:.2g}"},
+            unseen_shift(found, plucked));
         row({.key = "f_true_hz", .name = "true frequency", .unit = "Hz", .format = "{:.7g}"},
             of_truth([&](std::size_t n) { return truth->basis.frequency(n); }));
         row({.key = "zeta", .name = "damping ratio"}, mode.pole.damping_ratio);
@@ -234,6 +231,9 @@ void IdentifyOutcome::visit(ResultVisitor& visitor) const {
   std::vector<double> others;
   for (const DecayMode& mode : found.others) others.push_back(mode.pole.frequency);
   visitor({.key = "without_number_hz"}, others);
+  std::vector<std::size_t> doubled;
+  for (const PluckedMode& second : found.seconds) doubled.push_back(second.number);
+  visitor({.key = "with_second_pole"}, doubled);
   if (record) visitor({.key = "begin_s"}, record->begin);
   if (record) visitor({.key = "end_s"}, record->end);
   visitor({.key = "deviations_are_error_bars"}, found.full_rank);
@@ -283,8 +283,8 @@ StudyResult IdentifyOptions::run(const StudyContext& context) const {
   for (const std::string& warning : outcome.record->warnings) result.warn(warning);
   if (result.status != report::Status::kOk) return result;
   std::vector<std::string> warnings;
-  const std::string why = doubt_decay(outcome.found, outcome.record->decay, fundamental,
-                                      outcome.law, identification, warnings);
+  const std::string why =
+      doubt_decay(outcome.found, outcome.record->decay, fundamental, outcome.law, warnings);
   for (const std::string& warning : warnings) result.warn(warning);
   if (why.empty()) return result;
   result.status = report::Status::kFailed;

@@ -1,7 +1,6 @@
 #include "experiments/kinds/identify/identify_record.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -111,6 +110,14 @@ PluckedRecord load_pluck(const RecordOptions& options, const std::filesystem::pa
   return result;
 }
 
+namespace {
+
+std::string numbers_text(const std::vector<std::size_t>& numbers) {
+  return fmt::format("{} {}", numbers.size() > 1 ? "modes" : "mode", fmt::join(numbers, ", "));
+}
+
+}  // namespace
+
 std::string rejection_of(const PluckIdentification& found, const DecayRecord& decay,
                          double fundamental, const std::optional<StiffStringFit>& law) {
   std::size_t damped = 0;
@@ -135,6 +142,22 @@ std::string rejection_of(const PluckIdentification& found, const DecayRecord& de
           100.0 * found.noise[k] / rms, k + 1);
     }
   }
+  if (!found.left.empty()) {
+    return fmt::format(
+        "rejected: damped sinusoids leave more than noise of the record, most at {:.4g} Hz: it "
+        "holds "
+        "more than one free decay, as where something moves the string or the sensor still; state "
+        "record.start behind that and record.stop before it, or lower "
+        "identification.highest_frequency",
+        found.left.front());
+  }
+  if (!found.departing.empty()) {
+    return fmt::format(
+        "rejected: {} {} neither one damped sinusoid nor two: the frequency or the damping changes "
+        "along the decay, as where it is strong, or something else moves the string; state another "
+        "part of the record, or pluck less",
+        numbers_text(found.departing), found.departing.size() > 1 ? "are" : "is");
+  }
   std::size_t divisor = 0;
   for (const auto& [number, mode] : found.modes) divisor = std::gcd(divisor, number);
   if (found.modes.size() > 2 && divisor > 1) {
@@ -153,43 +176,14 @@ std::string rejection_of(const PluckIdentification& found, const DecayRecord& de
   return {};
 }
 
-std::optional<std::string> change_along(const PluckIdentification& whole, const DecayRecord& decay,
-                                        double fundamental, const PluckOptions& options) {
-  const auto half = static_cast<std::ptrdiff_t>(decay.samples() / 2);
-  std::array<DecayRecord, 2> parts;
-  std::array<PluckIdentification, 2> found;
-  for (std::size_t i = 0; i < 2; ++i) {
-    parts[i].sample_rate = decay.sample_rate;
-    for (const std::vector<double>& channel : decay.channels) {
-      const auto first = channel.begin() + (i == 0 ? 0 : half);
-      parts[i].channels.emplace_back(first, first + half);
-    }
-    try {
-      found[i] = identify_part(parts[i], whole, fundamental, options);
-    } catch (const InvalidInput&) {
-      return std::nullopt;  // half of it is too short
-    }
-    if (!found[i].converged || !found[i].full_rank) return std::nullopt;
+std::string why_nothing(const IdentifyOutcome& outcome) {
+  if (outcome.record && !outcome.found.diagram.empty()) {
+    return "rejected: no pole that is stable over the orders decays as a mode of this string does: "
+           "state record.start and record.stop of a free decay, behind the pluck, or record a "
+           "longer one with less noise";
   }
-  for (const auto& [number, early] : found[0].modes) {
-    const auto late = std::ranges::find(found[1].modes, number, &PluckedMode::number);
-    if (late == found[1].modes.end()) continue;
-    // A pole of noise takes the number of a mode too weak to be seen; it is not that mode.
-    const double apart = std::abs(early.pole.frequency - late->mode.pole.frequency);
-    if (apart > 0.1 * fundamental) continue;
-    const auto differs = [&, &one = early, &other = late->mode](double DecayPole::*of) {
-      return std::abs(one.pole.*of - other.pole.*of) >
-             5.0 * std::hypot(one.deviation.*of, other.deviation.*of);
-    };
-    if (!differs(&DecayPole::frequency) && !differs(&DecayPole::damping_ratio)) continue;
-    return fmt::format(
-        "rejected: mode {} has {:.7g} Hz and a damping ratio of {:.3g} in the first half of the "
-        "decay, {:.7g} Hz and {:.3g} in the second: it is not one damped sinusoid alone, as where "
-        "the string moves in two planes; pluck towards the sensor, or state another part",
-        number, early.pole.frequency, early.pole.damping_ratio, late->mode.pole.frequency,
-        late->mode.pole.damping_ratio);
-  }
-  return std::string();
+  return "no pole is stable over the orders: nothing was identified; record a longer decay with "
+         "less noise, or raise identification's orders";
 }
 
 std::vector<Finding> IdentifyOptions::lint_records(const std::filesystem::path& folder) const {
@@ -238,21 +232,29 @@ std::string others_text(const std::vector<DecayMode>& others) {
       fmt::join(texts, ", "));
 }
 
+std::string seconds_text(const std::vector<PluckedMode>& seconds) {
+  std::vector<std::string> texts;
+  for (const auto& [number, mode] : seconds) {
+    texts.push_back(fmt::format("{} ({:.6g} Hz, zeta {:.2g})", number, mode.pole.frequency,
+                                mode.pole.damping_ratio));
+  }
+  return fmt::format(
+      "modes have a second pole, as where the string moves in two planes: {}. The larger of the "
+      "two "
+      "is listed; the deviations of the other modes hold that they may have one, too. Pluck "
+      "towards "
+      "the sensor",
+      fmt::join(texts, ", "));
+}
+
 }  // namespace
 
 std::string doubt_decay(const PluckIdentification& found, const DecayRecord& decay,
                         double fundamental, const std::optional<StiffStringFit>& law,
-                        const PluckOptions& options, std::vector<std::string>& warnings) {
+                        std::vector<std::string>& warnings) {
   if (!found.others.empty()) warnings.push_back(others_text(found.others));
-  std::string why = rejection_of(found, decay, fundamental, law);
-  if (!why.empty()) return why;
-  const auto changes = change_along(found, decay, fundamental, options);
-  if (!changes) {
-    warnings.emplace_back(
-        "the halves of the decay were not compared, as one of them tells no error bars: a string "
-        "that moves in two planes is not seen; record a longer decay, or one with less noise");
-  }
-  return changes.value_or("");
+  if (!found.seconds.empty()) warnings.push_back(seconds_text(found.seconds));
+  return rejection_of(found, decay, fundamental, law);
 }
 
 }  // namespace modcal

@@ -9,6 +9,8 @@
 
 namespace modcal {
 
+struct IdentifyOutcome;
+
 struct PluckedRecord {
   DecayRecord decay;   ///< from the pluck on, means taken out
   double begin = 0.0;  ///< of it in the record's part [s]
@@ -25,21 +27,17 @@ PluckedRecord load_pluck(const RecordOptions& options, const std::filesystem::pa
 
 /// Why these are no modes of a string of this f₀ [Hz] that decays freely: fewer than half of the
 /// damping ratios lie above zero by three deviations, the modes leave more than half of a reaction,
-/// all numbers have a common divisor, or the law through the frequencies has another f₀ by 3 %.
-/// Empty: nothing tells against it.
+/// one is neither one damped sinusoid nor two, all numbers have a common divisor, or the law
+/// through the frequencies has another f₀ by 3 %. Empty: nothing tells against it.
 std::string rejection_of(const PluckIdentification& found, const DecayRecord& decay,
                          double fundamental, const std::optional<StiffStringFit>& law);
 
-/// Names the mode whose frequency or damping differs by more than five deviations between the
-/// halves of the decay: it is not one damped sinusoid, as of a string with two polarizations, and
-/// error bars do not hold. whole: what the decay in the whole tells. Empty: none does. Nothing: a
-/// half tells no error bars, and they were not compared.
-std::optional<std::string> change_along(const PluckIdentification& whole, const DecayRecord& decay,
-                                        double fundamental, const PluckOptions& options);
+/// Of an outcome without modes.
+std::string why_nothing(const IdentifyOutcome& outcome);
 
-/// rejection_of(), or change_along(); warnings: that this was not compared.
+/// rejection_of(); warnings: modes without a number, and modes with a second pole.
 std::string doubt_decay(const PluckIdentification& found, const DecayRecord& decay,
                         double fundamental, const std::optional<StiffStringFit>& law,
-                        const PluckOptions& options, std::vector<std::string>& warnings);
+                        std::vector<std::string>& warnings);
 
 }  // namespace modcal

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "libinverse/modes/mode_numbers.hpp"
 #include "libinverse/modes/pluck_identification.hpp"
 #include "tests/libinverse/modes/pluck_case.hpp"
 
@@ -63,6 +64,45 @@ TEST(PluckNumbers, AreMissingWhereOnlyTheBodyIs) {
   const auto found = identify_pluck(record, 196.0, options);
   EXPECT_THAT(found.missing, testing::ElementsAre(1u));
   ASSERT_EQ(found.others.size(), 1u);
+}
+
+// A second pole of the first mode a third as large and 4e-4 higher; nothing is seen at the second.
+TEST(PluckNumbers, DeviationsHoldThatModesMayBeTwoAsOthersAre) {
+  const auto mode = [](double frequency, double size) {
+    return DecayMode{.pole = {frequency, 1e-3},
+                     .deviation = {1e-3, 1e-5},
+                     .amplitude = {size, size},
+                     .evidence = 1e4 * size * size};
+  };
+  NumberedModes numbered = {{1, mode(200.0, 3.0)}, {2, mode(400.0, 3.0)}, {3, mode(600.0, 300.0)}};
+  std::vector<DecayMode> others = {mode(200.08, 1.0), mode(290.0, 1.0)};
+  others[0].pole.damping_ratio = 1.1e-3;
+  const auto seconds = seconds_of(others, numbered, 10.0);
+  ASSERT_EQ(seconds.size(), 1u);
+  EXPECT_EQ(seconds.begin()->first, 1u);
+  ASSERT_EQ(others.size(), 1u);
+  widen_by_seconds(numbered, seconds, 30.0);
+  EXPECT_DOUBLE_EQ(numbered.at(1).deviation.frequency, 1e-3);
+  const double shift = std::hypot(4e-4, 1e-4) / 3.0;
+  EXPECT_NEAR(numbered.at(2).deviation.frequency, std::hypot(1e-3, 400.0 * shift), 1e-9);
+  EXPECT_NEAR(numbered.at(2).deviation.damping_ratio, std::hypot(1e-5, shift), 1e-9);
+  // x = (30/(s²E))^¼ = (30 · 9/9e8)^¼ of a mode as large as that; 2ζx is below 4e-4.
+  const double seen = 2e-3 * std::pow(30.0 * 9.0 / 9e8, 0.25);
+  ASSERT_LT(seen, 4e-4);
+  EXPECT_NEAR(numbered.at(3).deviation.frequency, std::hypot(1e-3, 600.0 * seen / 3.0), 1e-9);
+}
+
+TEST(PluckNumbers, BodiesBesideAModeWidenNothing) {
+  NumberedModes numbered;
+  for (const std::size_t n : {1u, 2u}) {
+    numbered[n] = {.pole = {200.0 * static_cast<double>(n), 1e-3},
+                   .deviation = {1e-3, 1e-5},
+                   .amplitude = {1.0},
+                   .evidence = 1e4};
+  }
+  const DecayMode body{.pole = {205.0, 0.05}, .deviation = {0.1, 1e-3}, .amplitude = {1.0}};
+  widen_by_seconds(numbered, {{1, body}}, 30.0);
+  EXPECT_DOUBLE_EQ(numbered[2].deviation.frequency, 1e-3);
 }
 
 }  // namespace

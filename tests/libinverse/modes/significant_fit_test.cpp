@@ -63,6 +63,77 @@ TEST_F(SignificantFit, LeavesOutASecondPoleOfAMode) {
   }
 }
 
+// Poles of all of the truth within four deviations, of which 30 standard normal numbers have none
+// beyond with 99.8 %, whether the start has them or not.
+void expect_all(const DampedSinusoidFit& fit, const std::vector<DecayMode>& truth) {
+  ASSERT_TRUE(fit.converged);
+  ASSERT_EQ(fit.modes.size(), truth.size());
+  for (const DecayMode& expected : truth) {
+    const DecayMode* nearest = &fit.modes.front();
+    const auto distance = [&](const DecayMode& mode) {
+      return std::abs(mode.pole.exponent() - expected.pole.exponent());
+    };
+    for (const DecayMode& mode : fit.modes) {
+      if (distance(mode) < distance(*nearest)) nearest = &mode;
+    }
+    EXPECT_NEAR(nearest->pole.frequency, expected.pole.frequency,
+                4.0 * nearest->deviation.frequency);
+    EXPECT_NEAR(nearest->pole.damping_ratio, expected.pole.damping_ratio,
+                4.0 * nearest->deviation.damping_ratio);
+  }
+}
+
+TEST_F(SignificantFit, FindsAModeThatTheStartLacks) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    expect_all(fit_significant(noisy(seed), {{20.0, 0.01}}, 2.0, {}), truth_);
+  }
+}
+
+// Both behind one pole: half as wide apart as they are wide, 20 · .01 Hz, of one shape and not.
+TEST_F(SignificantFit, FindsTheSecondPoleOfAMode) {
+  for (const double sign : {1.0, -1.0}) {
+    std::vector<DecayMode> truth = truth_;
+    truth.push_back({.pole = {20.1, 0.012}, .amplitude = {{0.5, 0.0}, {sign * 0.2, 0.1}}});
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+      DecayRecord record = decay_of(truth, 2, 200.0, 400);
+      add_noise(record, 0.002, seed);
+      const DampedSinusoidFit one =
+          fit_damped_sinusoids(record, std::vector<DecayPole>{{20.0, 0.01}, {40.0, 0.01}});
+      EXPECT_GT(one.modes[0].departure, least_departure(2, 2));
+      const DampedSinusoidFit fit = fit_significant(record, {{20.0, 0.01}, {40.0, 0.01}}, 2.0, {});
+      expect_all(fit, truth);
+      for (const DecayMode& mode : fit.modes) EXPECT_LT(mode.departure, least_departure(3, 2));
+    }
+  }
+}
+
+// Noise that is a hundred times as strong below 25 Hz: deviations of the mode there are, too.
+TEST_F(SignificantFit, HasDeviationsOfTheNoiseAboutTheMode) {
+  const std::vector<DecayMode> truth = {
+      {.pole = {10.0, 0.02}, .amplitude = {{1.0, 0.5}, {-0.3, 0.2}}},
+      {.pole = {60.0, 0.02}, .amplitude = {{1.0, 0.0}, {0.0, 1.0}}}};
+  double squares = 0.0;
+  constexpr int kSeeds = 40;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    DecayRecord record = decay_of(truth, 2, 200.0, 1600);
+    DecayRecord noise{.sample_rate = 200.0, .channels = {2, std::vector<double>(1600, 0.0)}};
+    add_noise(noise, 0.02, seed);
+    for (std::size_t c = 0; c < 2; ++c) {
+      double slow = 0.0, slower = 0.0;
+      for (std::size_t m = 0; m < 1600; ++m) {
+        slow += 0.5 * (noise.channels[c][m] - slow);
+        slower += 0.5 * (slow - slower);
+        record.channels[c][m] += slower + 0.002 * noise.channels[c][m];
+      }
+    }
+    const DampedSinusoidFit fit = fit_significant(record, {{10.0, 0.02}, {60.0, 0.02}}, 2.0, {});
+    ASSERT_EQ(fit.modes.size(), 2u) << seed;
+    squares += std::pow((fit.modes[0].pole.frequency - 10.0) / fit.modes[0].deviation.frequency, 2);
+  }
+  // The mean of 40 squared standard normal numbers is 1 ± .22.
+  EXPECT_NEAR(squares / kSeeds, 1.0, 0.7);
+}
+
 TEST_F(SignificantFit, HasNoModesOfNoise) {
   DecayRecord record{.sample_rate = 200.0, .channels = {std::vector<double>(400, 0.0)}};
   add_noise(record, 1.0, 1);
