@@ -71,12 +71,15 @@ class Step {
 bool descend(const Problem& problem, Problem::State& state, const Step& step,
              const VectorXd& variances, double& damping) {
   const double cost = cost_of(state, variances);
-  for (double trial = damping; trial < 1e8; trial = std::max(1e-3, 10.0 * trial)) {
+  double trial = damping;
+  while (trial < 1e8) {
     Problem::State next = problem.at(problem.bounded(state.poles + step.damped(trial)));
-    if (!next.poles.allFinite() || !(cost_of(next, variances) <= cost)) continue;
-    state = std::move(next);
-    damping = trial > 1e-3 ? 0.1 * trial : 0.0;
-    return true;
+    if (next.poles.allFinite() && cost_of(next, variances) <= cost) {
+      state = std::move(next);
+      damping = trial > 1e-3 ? 0.1 * trial : 0.0;
+      return true;
+    }
+    trial = std::max(1e-3, 10.0 * trial);
   }
   return false;
 }

@@ -247,7 +247,9 @@ DampedSinusoidFit fit_significant(const DecayRecord& record, const std::vector<D
   const double least = search.least_of_second(fit);
   fit = search.pruned(std::move(fit), least);
   if (fit.modes.empty()) return fit;
-  fit = fit_damped_sinusoids(record, search.poles_of(fit), options);
+  // Of roundings of the record the last steps may go on for ever; a hundredth is enough.
+  DampedSinusoidFit fine = fit_damped_sinusoids(record, search.poles_of(fit), options);
+  if (fine.converged || !fit.converged) fit = std::move(fine);
   scale(fit, search.levels(fit));
   return fit;
 }
