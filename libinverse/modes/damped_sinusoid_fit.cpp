@@ -10,6 +10,7 @@
 #include "libinverse/modes/damped_sinusoid_problem.hpp"
 #include "libsim/base/dense_solvers.hpp"
 #include "libsim/base/error.hpp"
+#include "libsim/base/stop_scope.hpp"
 
 namespace modcal {
 namespace {
@@ -165,6 +166,7 @@ DampedSinusoidFit fit_damped_sinusoids(const DecayRecord& record, std::span<cons
   double damping = 0.0;
   while (step.whole() && !fit.converged && fit.iterations < options.iterations) {
     ++fit.iterations;
+    throw_if_stopped();
     const VectorXd& solution = step.whole()->solution;
     const VectorXd deviations = step.whole()->covariance.diagonal().cwiseSqrt();
     const double size = solution.cwiseQuotient(deviations).lpNorm<Eigen::Infinity>();

@@ -57,7 +57,7 @@ std::vector<double> left_by(const DampedSinusoidFit& fit, const DecimatedDecay& 
 // Amplitudes come from the fit for both methods; for era the poles are left where they are.
 std::vector<DecayMode> modes_of(const DecimatedDecay& decay, const std::vector<StablePole>& stable,
                                 double fundamental, const PluckOptions& options,
-                                PluckIdentification& result) {
+                                bool search_residual, PluckIdentification& result) {
   std::vector<DecayPole> start;
   for (const StablePole& pole : stable) start.push_back(pole.pole);
   const bool likelihood = method_of(options) == Method::kMaximumLikelihood;
@@ -66,9 +66,10 @@ std::vector<DecayMode> modes_of(const DecimatedDecay& decay, const std::vector<S
                                      .lines = result.lines};
   const double duration = static_cast<double>(decay.record.samples()) / decay.record.sample_rate;
   const double reach = reach_of(fundamental, duration);
-  const DampedSinusoidFit fit = likelihood ? fit_significant(decay.record, start, reach, how)
-                                           : fit_damped_sinusoids(decay.record, start, how);
-  if (likelihood && !fit.modes.empty()) {
+  const DampedSinusoidFit fit =
+      likelihood ? fit_significant(decay.record, start, reach, search_residual, how)
+                 : fit_damped_sinusoids(decay.record, start, how);
+  if (search_residual && likelihood && !fit.modes.empty()) {
     result.left = left_by(fit, decay, 0.5 * fundamental, options.highest_frequency);
   }
   result.converged = fit.converged || !likelihood;
@@ -147,7 +148,8 @@ Realized beside_hum(const DecayRecord& decay, const PluckIdentification& known, 
 }
 
 PluckIdentification identified(const DecimatedDecay& decay, Realized realized, double fundamental,
-                               const PluckOptions& options, std::vector<double> lines) {
+                               const PluckOptions& options, bool search_residual,
+                               std::vector<double> lines) {
   PluckIdentification result{.diagram = std::move(realized.diagram),
                              .singular_values = std::move(realized.singular_values),
                              .lines = std::move(lines)};
@@ -164,12 +166,13 @@ PluckIdentification identified(const DecimatedDecay& decay, Realized realized, d
     return numbered_modes(std::move(modes), options.highest_frequency, law, others);
   };
   LawNumbers law(fundamental);
-  NumberedModes numbered = number(modes_of(decay, stable, fundamental, options, result), law);
+  NumberedModes numbered =
+      number(modes_of(decay, stable, fundamental, options, search_residual, result), law);
   if (!result.converged && !missing_in(numbered).empty()) {
     PluckIdentification again = result;
     again.noise.clear();
-    std::vector<DecayMode> modes =
-        modes_of(decay, with_missing(stable, numbered, law), fundamental, options, again);
+    std::vector<DecayMode> modes = modes_of(decay, with_missing(stable, numbered, law), fundamental,
+                                            options, search_residual, again);
     if (again.converged && again.full_rank) {
       result = std::move(again);
       law = LawNumbers(fundamental);
@@ -214,12 +217,14 @@ void PluckOptions::visit(OptionVisitor& visitor) {
 PluckIdentification identify_pluck(const DecayRecord& record, double fundamental,
                                    const PluckOptions& options) {
   const DecimatedDecay decay = band_of(record, fundamental, options);
-  PluckIdentification found =
-      identified(decay, Realized(decay.record, options), fundamental, options, {});
-  found.lines = hum_in(decay.record, found.poles, fundamental);
-  if (found.lines.empty()) return found;
+  const Realized realized(decay.record, options);
+  // Hum is looked for beside the modes first: in the residual it would be so many poles.
+  PluckIdentification found = identified(decay, realized, fundamental, options, false, {});
+  const std::vector<double> lines = hum_in(decay.record, found.poles, fundamental);
+  if (lines.empty()) return identified(decay, realized, fundamental, options, true, {});
+  found.lines = lines;
   return identified(decay, beside_hum(decay.record, found, fundamental, options), fundamental,
-                    options, found.lines);
+                    options, true, lines);
 }
 
 double unseen_shift(const PluckIdentification& found, const PluckedMode& plucked) {

@@ -11,28 +11,11 @@
 namespace modcal {
 namespace {
 
-// Poles of a fit but those of `out`. What does not decay cannot start a fit: it begins beside.
-std::vector<DecayPole> poles_without(const DampedSinusoidFit& fit, const std::vector<bool>& out,
-                                     double rate) {
-  std::vector<DecayPole> poles;
-  for (std::size_t k = 0; k < fit.modes.size(); ++k) {
-    if (out[k]) continue;
-    DecayPole pole = fit.modes[k].pole;
-    pole.damping_ratio = std::clamp(pole.damping_ratio, 1e-6, 0.5);
-    pole.frequency = std::clamp(pole.frequency, 1e-6 * rate, (0.5 - 1e-6) * rate);
-    poles.push_back(pole);
-  }
-  return poles;
-}
-
-// Of χ² from one fit to another, the noise that of the first.
-double rise_of(const DampedSinusoidFit& from, const DampedSinusoidFit& to, std::size_t samples,
-               double in_band_variance) {
-  double sum = 0.0;
-  for (std::size_t c = 0; c < from.squares.size(); ++c) {
-    sum += static_cast<double>(samples) * (to.squares[c] / from.squares[c] - 1.0);
-  }
-  return sum / in_band_variance;
+// What does not decay, or lies beyond half the rate, cannot start a fit: it begins beside.
+DecayPole startable(DecayPole pole, double rate) {
+  pole.damping_ratio = std::clamp(pole.damping_ratio, 1e-6, 0.5);
+  pole.frequency = std::clamp(pole.frequency, 1e-6 * rate, (0.5 - 1e-6) * rate);
+  return pole;
 }
 
 class Search {
@@ -44,7 +27,7 @@ class Search {
         least_(largest_by_chance(record.samples(), 2 * record.channels.size())),
         least_with_pole_(largest_by_chance(record.samples(), 2 * record.channels.size() + 2)) {}
 
-  DampedSinusoidFit fit(const std::vector<DecayPole>& poles) const {
+  DampedSinusoidFit fit(const std::vector<DecayPole>& poles) {
     if (poles.empty()) return {};
     DampedSinusoidFit fit = fit_damped_sinusoids(record_, poles, options_);
     spent_ += static_cast<double>(fit.iterations) * cost_of(poles.size());
@@ -61,13 +44,13 @@ class Search {
   }
   /// The fit without poles that may be noise, those beside others where χ² rises by less than
   /// least.
-  DampedSinusoidFit pruned(DampedSinusoidFit fit, double least) const {
+  DampedSinusoidFit pruned(DampedSinusoidFit fit, double least) {
     while (!fit.modes.empty() && (leave_out_weak(fit) || leave_out_neighbor(fit, least))) {
     }
     return fit;
   }
   /// The fit with poles that the residual has, and with two where one leaves what two would.
-  DampedSinusoidFit extended(DampedSinusoidFit fit) const {
+  DampedSinusoidFit extended(DampedSinusoidFit fit) {
     const std::size_t most = 2 * fit.modes.size() + kPolesAdded;
     while (fit.full_rank && fit.modes.size() < most && spent_ < kSearchCost) {
       if (!add_from_residual(fit) && !split(fit)) break;
@@ -76,7 +59,7 @@ class Search {
   }
 
   std::vector<DecayPole> poles_of(const DampedSinusoidFit& fit) const {
-    return poles_without(fit, std::vector<bool>(fit.modes.size()), record_.sample_rate);
+    return poles_without(fit, std::vector<bool>(fit.modes.size()));
   }
 
  private:
@@ -84,13 +67,27 @@ class Search {
   double cost_of(std::size_t poles) const {
     return static_cast<double>(poles * poles * record_.samples() * record_.channels.size());
   }
+  // Of χ² from one fit to another, the noise that of the first.
   double rise(const DampedSinusoidFit& from, const DampedSinusoidFit& to) const {
-    return rise_of(from, to, record_.samples(), options_.in_band_variance);
+    double sum = 0.0;
+    for (std::size_t c = 0; c < from.squares.size(); ++c) {
+      sum += static_cast<double>(record_.samples()) * (to.squares[c] / from.squares[c] - 1.0);
+    }
+    return sum / options_.in_band_variance;
   }
-  DampedSinusoidFit without(const DampedSinusoidFit& fit, const std::vector<bool>& out) const {
-    return this->fit(poles_without(fit, out, record_.sample_rate));
+  DampedSinusoidFit without(const DampedSinusoidFit& fit, const std::vector<bool>& out) {
+    return this->fit(poles_without(fit, out));
   }
-  bool leave_out_weak(DampedSinusoidFit& fit) const {
+  // Poles of a fit but those of `out`.
+  std::vector<DecayPole> poles_without(const DampedSinusoidFit& fit,
+                                       const std::vector<bool>& out) const {
+    std::vector<DecayPole> poles;
+    for (std::size_t k = 0; k < fit.modes.size(); ++k) {
+      if (!out[k]) poles.push_back(startable(fit.modes[k].pole, record_.sample_rate));
+    }
+    return poles;
+  }
+  bool leave_out_weak(DampedSinusoidFit& fit) {
     if (fit.modes.empty()) return false;
     const ResidualLevels noise = levels(fit);
     std::vector<bool> out(fit.modes.size());
@@ -102,7 +99,7 @@ class Search {
     fit = without(fit, out);
     return true;
   }
-  bool leave_out_neighbor(DampedSinusoidFit& fit, double least) const {
+  bool leave_out_neighbor(DampedSinusoidFit& fit, double least) {
     const ResidualLevels noise = levels(fit);
     const auto level = [&](std::size_t k) { return noise.largest(fit.modes[k].pole.frequency); };
     for (const std::size_t k : neighbors(fit)) {
@@ -138,11 +135,11 @@ class Search {
     if (better) fit = std::move(next);
     return better;
   }
-  bool add(DampedSinusoidFit& fit, std::span<const DecayPole> more, double least) const {
+  bool add(DampedSinusoidFit& fit, std::span<const DecayPole> more, double least) {
     std::vector<DecayPole> poles = poles_of(fit);
     // Of eight samples for every pole there are two for every unknown of a single channel.
     if (more.empty() || 8 * (poles.size() + more.size()) > record_.samples()) return false;
-    poles.insert(poles.end(), more.begin(), more.end());
+    for (const DecayPole& pole : more) poles.push_back(startable(pole, record_.sample_rate));
     if (spent_ + static_cast<double>(options_.iterations) * cost_of(poles.size()) > kSearchCost) {
       return false;
     }
@@ -151,7 +148,7 @@ class Search {
     }
     return take(fit, std::move(next), least);
   }
-  bool add_from_residual(DampedSinusoidFit& fit) const {
+  bool add_from_residual(DampedSinusoidFit& fit) {
     const std::vector<DecayPole> more = poles_in_residual(
         fit, levels(fit), record_.sample_rate, options_.in_band_variance, least_with_pole_);
     const std::span<const DecayPole> loudest =
@@ -161,7 +158,7 @@ class Search {
   }
   // The mode that departs most from one damped sinusoid, as two: the second is as far from it as
   // it is wide, or decays faster or slower.
-  bool split(DampedSinusoidFit& fit) const {
+  bool split(DampedSinusoidFit& fit) {
     const ResidualLevels noise = levels(fit);
     std::size_t most = 0;
     std::vector<double> departure;
@@ -195,7 +192,7 @@ class Search {
   double reach_;
   const DampedSinusoidOptions& options_;
   double least_, least_with_pole_;
-  mutable double spent_ = 0.0;
+  double spent_ = 0.0;
 };
 
 // Error bars and departures of the noise that is about a mode.
@@ -236,16 +233,19 @@ double least_departure(std::size_t modes, std::size_t channels) {
 }
 
 DampedSinusoidFit fit_significant(const DecayRecord& record, const std::vector<DecayPole>& start,
-                                  double reach, const DampedSinusoidOptions& options) {
+                                  double reach, bool search_residual,
+                                  const DampedSinusoidOptions& options) {
   // Which poles there are is told by fits that end within a hundredth of a deviation.
   DampedSinusoidOptions rough = options;
   rough.tolerance = std::max(rough.tolerance, 1e-2);
   rough.iterations = std::min(rough.iterations, std::size_t{20});
-  const Search search(record, reach, rough);
-  DampedSinusoidFit fit =
-      search.extended(search.pruned(search.fit(start), search.least_with_pole()));
-  const double least = search.least_of_second(fit);
-  fit = search.pruned(std::move(fit), least);
+  Search search(record, reach, rough);
+  DampedSinusoidFit fit = search.pruned(search.fit(start), search.least_with_pole());
+  if (search_residual) {
+    fit = search.extended(std::move(fit));
+    const double least = search.least_of_second(fit);
+    fit = search.pruned(std::move(fit), least);
+  }
   if (fit.modes.empty()) return fit;
   // Of roundings of the record the last steps may go on for ever; a hundredth is enough.
   DampedSinusoidFit fine = fit_damped_sinusoids(record, search.poles_of(fit), options);

@@ -20,12 +20,12 @@ double least_departure(std::size_t modes, std::size_t channels);
 /// being as many places as samples; and one by one those next to a larger one, by less than `reach`
 /// [Hz], without which χ² rises by no more. A pole of noise follows the noise to where the fit is
 /// best, so that its deviations are too small; it may keep the fit from converging, and shares a
-/// mode with its neighbor. Added are poles_in_residual(), and second poles of modes whose departure
-/// is beyond chance, where χ² falls by more than a pole of noise would let it, up to twice
-/// the poles that there are at first and kPolesAdded. Noise is that about
-/// the pole (ResidualLevels); deviations and departures are of it, too. No modes where none is
-/// left.
+/// mode with its neighbor. With search_residual are added poles_in_residual(), and second poles of
+/// modes whose departure is beyond chance, where χ² falls by more than a pole of noise would let
+/// it, up to twice the poles that there are at first and kPolesAdded. Noise is that about the pole
+/// (ResidualLevels); deviations and departures are of it, too. No modes where none is left.
 DampedSinusoidFit fit_significant(const DecayRecord& record, const std::vector<DecayPole>& start,
-                                  double reach, const DampedSinusoidOptions& options);
+                                  double reach, bool search_residual,
+                                  const DampedSinusoidOptions& options);
 
 }  // namespace modcal

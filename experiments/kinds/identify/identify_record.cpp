@@ -145,9 +145,8 @@ std::string rejection_of(const PluckIdentification& found, const DecayRecord& de
   if (!found.left.empty()) {
     return fmt::format(
         "rejected: damped sinusoids leave more than noise of the record, most at {:.4g} Hz: it "
-        "holds "
-        "more than one free decay, as where something moves the string or the sensor still; state "
-        "record.start behind that and record.stop before it, or lower "
+        "holds more than one free decay, as where something still moves the string or the sensor; "
+        "state record.start behind that and record.stop before it, or lower "
         "identification.highest_frequency",
         found.left.front());
   }
@@ -240,10 +239,8 @@ std::string seconds_text(const std::vector<PluckedMode>& seconds) {
   }
   return fmt::format(
       "modes have a second pole, as where the string moves in two planes: {}. The larger of the "
-      "two "
-      "is listed; the deviations of the other modes hold that they may have one, too. Pluck "
-      "towards "
-      "the sensor",
+      "two is listed; the deviations of the other modes hold that they may have one, too. Pluck "
+      "towards the sensor",
       fmt::join(texts, ", "));
 }
 

@@ -43,7 +43,7 @@ TEST_F(SignificantFit, LeavesOutPolesOfNoiseAndNoOther) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const DampedSinusoidFit fit = fit_significant(
         noisy(seed), {{20.0, 0.01}, {40.0, 0.01}, {62.0, 0.005}, {75.0, 0.005}, {90.0, 0.005}}, 2.0,
-        {});
+        true, {});
     ASSERT_TRUE(fit.converged) << seed;
     // σ_f = σ_d/2π = √(8 d³/f_s) σ/|A|/2π, .04 Hz of the second; .02 Hz and more for a pole beside.
     EXPECT_THAT(frequencies(fit), testing::ElementsAre(testing::DoubleNear(20.0, 0.1),
@@ -56,7 +56,7 @@ TEST_F(SignificantFit, LeavesOutPolesOfNoiseAndNoOther) {
 TEST_F(SignificantFit, LeavesOutASecondPoleOfAMode) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const DampedSinusoidFit fit =
-        fit_significant(noisy(seed), {{19.9, 0.01}, {20.3, 0.02}, {40.0, 0.01}}, 2.0, {});
+        fit_significant(noisy(seed), {{19.9, 0.01}, {20.3, 0.02}, {40.0, 0.01}}, 2.0, true, {});
     EXPECT_THAT(frequencies(fit), testing::ElementsAre(testing::DoubleNear(20.0, 0.1),
                                                        testing::DoubleNear(40.0, 0.4)))
         << seed;
@@ -85,7 +85,7 @@ void expect_all(const DampedSinusoidFit& fit, const std::vector<DecayMode>& trut
 
 TEST_F(SignificantFit, FindsAModeThatTheStartLacks) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    expect_all(fit_significant(noisy(seed), {{20.0, 0.01}}, 2.0, {}), truth_);
+    expect_all(fit_significant(noisy(seed), {{20.0, 0.01}}, 2.0, true, {}), truth_);
   }
 }
 
@@ -100,7 +100,8 @@ TEST_F(SignificantFit, FindsTheSecondPoleOfAMode) {
       const DampedSinusoidFit one =
           fit_damped_sinusoids(record, std::vector<DecayPole>{{20.0, 0.01}, {40.0, 0.01}});
       EXPECT_GT(one.modes[0].departure, least_departure(2, 2));
-      const DampedSinusoidFit fit = fit_significant(record, {{20.0, 0.01}, {40.0, 0.01}}, 2.0, {});
+      const DampedSinusoidFit fit =
+          fit_significant(record, {{20.0, 0.01}, {40.0, 0.01}}, 2.0, true, {});
       expect_all(fit, truth);
       for (const DecayMode& mode : fit.modes) EXPECT_LT(mode.departure, least_departure(3, 2));
     }
@@ -126,7 +127,8 @@ TEST_F(SignificantFit, HasDeviationsOfTheNoiseAboutTheMode) {
         record.channels[c][m] += slower + 0.002 * noise.channels[c][m];
       }
     }
-    const DampedSinusoidFit fit = fit_significant(record, {{10.0, 0.02}, {60.0, 0.02}}, 2.0, {});
+    const DampedSinusoidFit fit =
+        fit_significant(record, {{10.0, 0.02}, {60.0, 0.02}}, 2.0, true, {});
     ASSERT_EQ(fit.modes.size(), 2u) << seed;
     squares += std::pow((fit.modes[0].pole.frequency - 10.0) / fit.modes[0].deviation.frequency, 2);
   }
@@ -134,10 +136,17 @@ TEST_F(SignificantFit, HasDeviationsOfTheNoiseAboutTheMode) {
   EXPECT_NEAR(squares / kSeeds, 1.0, 0.7);
 }
 
+// A click: its poles would start at half the rate, where no fit can.
+TEST_F(SignificantFit, StartsNoPoleBeyondHalfTheRate) {
+  DecayRecord record = noisy(1);
+  for (std::size_t m = 0; m < 4; ++m) record.channels[0][m] += m % 2 == 0 ? 20.0 : -20.0;
+  EXPECT_NO_THROW(fit_significant(record, {{20.0, 0.01}, {40.0, 0.01}}, 2.0, true, {}));
+}
+
 TEST_F(SignificantFit, HasNoModesOfNoise) {
   DecayRecord record{.sample_rate = 200.0, .channels = {std::vector<double>(400, 0.0)}};
   add_noise(record, 1.0, 1);
-  EXPECT_THAT(fit_significant(record, {{30.0, 0.01}, {60.0, 0.01}}, 2.0, {}).modes,
+  EXPECT_THAT(fit_significant(record, {{30.0, 0.01}, {60.0, 0.01}}, 2.0, true, {}).modes,
               testing::IsEmpty());
 }
 
