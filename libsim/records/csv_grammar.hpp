@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -101,6 +102,33 @@ struct ColumnHeading {
 ColumnHeading parse_heading(std::string_view text);
 /// "name [unit]", or the name alone for an empty unit.
 std::string heading_text(std::string_view name, std::string_view unit);
+
+// What the file tells of its sampling: columns of instants, or a comment.
+
+/// As parse_heading(), and of a time or a force the unit may stand behind another mark: "time/ms",
+/// "t_s", "F_l/mN".
+ColumnHeading parse_column_heading(std::string_view text);
+
+/// Those named t or time without a unit, and those whose unit is one of time.
+class TimeColumns {
+ public:
+  TimeColumns() = default;
+  explicit TimeColumns(std::span<const ColumnHeading> headings);
+
+  bool empty() const { return columns_.empty(); }
+  bool contains(std::size_t column) const;
+  /// The instants of a column: the nearest to its left, or to its right in a file that ends with
+  /// instants and does not begin with them. Nothing where there are none.
+  std::optional<std::size_t> instants_of(std::size_t column) const;
+
+ private:
+  std::vector<std::size_t> columns_;
+  bool stand_behind_ = false;
+};
+
+/// The rate [Hz] of a comment "sample_rate: 51.2 kHz" on the file's present line; nothing for any
+/// other comment. Throws InvalidInput, with the line, for what is no rate.
+std::optional<double> rate_in_comment(std::string_view text, const CsvFile& file);
 
 // Is a column of sampling instants uniform?
 

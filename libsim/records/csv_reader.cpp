@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "libsim/base/error.hpp"
 #include "libsim/base/units.hpp"
@@ -15,28 +16,6 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::uint64_t kHeadBytes = 1 << 20, kWholeFile = ~std::uint64_t{0};
-
-// The time may have its unit behind any mark, "time/ms", "t_s", a force behind a stroke: "F_l/mN".
-ColumnHeading heading_of(std::string_view text) {
-  ColumnHeading heading = parse_heading(text);
-  constexpr const char* kMarks = "/_. ";
-  const std::size_t mark = heading.name.find_first_of(kMarks);
-  const std::size_t start = heading.name.find_first_not_of(kMarks, mark);
-  if (!heading.unit.empty() || mark >= start || start == std::string::npos) return heading;
-  const std::string name = lower_case(heading.name.substr(0, mark));
-  const std::string unit = heading.name.substr(start);
-  const bool is_time = (name == "t" || name == "time") && is_unit_of(unit, "s");
-  if (is_time) return {heading.name.substr(0, mark), unit};
-  const std::size_t stroke = heading.name.rfind('/');
-  if (stroke == std::string::npos || stroke == 0) return heading;
-  const std::string force = heading.name.substr(stroke + 1);
-  return is_unit_of(force, "N") ? ColumnHeading{heading.name.substr(0, stroke), force} : heading;
-}
-
-bool is_time(const ColumnHeading& heading) {
-  const std::string name = lower_case(heading.name);
-  return (heading.unit.empty() && (name == "t" || name == "time")) || is_unit_of(heading.unit, "s");
-}
 
 class CsvReader final : public CsvHandler {
  public:
@@ -68,13 +47,16 @@ class CsvReader final : public CsvHandler {
   struct Column {
     RecordedChannel channel;
     bool read = false;
+    PrintedDigits digits = {};  ///< of instants
   };
 
   void forget_samples();
   void settle_columns();
   void choose_columns();
   void settle_sample_rate();
+  double to_seconds(Column& column) const;
   void use_time_axis(double stated);
+  void compare_instants(double step);
   void refuse_hidden_row(std::string_view text);
   void report_ragged_row(std::size_t fields);
   void report_sample(std::size_t index, NumberKind kind, std::string_view text);
@@ -85,8 +67,8 @@ class CsvReader final : public CsvHandler {
   std::vector<std::string> headings_;
   std::vector<Column> columns_;
   std::vector<std::size_t> kept_;
+  TimeColumns instants_;
   std::optional<std::size_t> time_;
-  PrintedDigits time_digits_;
   std::size_t rows_ = 0, commented_rate_line_ = 0;
   double commented_rate_ = kNaN;
 };
@@ -117,26 +99,12 @@ void CsvReader::refuse_hidden_row(std::string_view text) {
 
 void CsvReader::comment(std::string_view text) {
   if (rows_ > 0) refuse_hidden_row(text);
-  const std::size_t colon = text.find(':');
-  if (colon == std::string_view::npos) return;
-  std::string key = lower_case(parse_heading(text.substr(0, colon)).name);
-  std::replace(key.begin(), key.end(), ' ', '_');
-  if (key != "sample_rate") return;
-  const std::string value = parse_heading(text.substr(colon + 1)).name;
-  const std::size_t number_end = std::min(value.find(' '), value.size());
-  const ParsedNumber number = parse_number(std::string_view(value).substr(0, number_end));
-  const std::string unit = parse_heading(std::string_view(value).substr(number_end)).name;
-  const bool usable = number.kind == NumberKind::kNumber && number.value > 0.0 &&
-                      (unit.empty() || is_unit_of(unit, "Hz"));
-  MODCAL_REQUIRE(usable,
-                 "{}:{}: \"{}\" is no sample rate; write a positive number of hertz, such as "
-                 "# sample_rate: 51200 Hz",
-                 file_.name(), file_.line(), value);
-  const double rate = unit.empty() ? number.value : to_si(number.value, unit, "Hz");
-  MODCAL_REQUIRE(!(std::abs(rate - commented_rate_) > 0.0),
+  const std::optional<double> rate = rate_in_comment(text, file_);
+  if (!rate) return;
+  MODCAL_REQUIRE(!(std::abs(*rate - commented_rate_) > 0.0),
                  "{}:{}: the comment says {:.9g} Hz, that on line {} {:.9g} Hz; delete one of them",
-                 file_.name(), file_.line(), rate, commented_rate_line_, commented_rate_);
-  commented_rate_ = rate;
+                 file_.name(), file_.line(), *rate, commented_rate_line_, commented_rate_);
+  commented_rate_ = *rate;
   commented_rate_line_ = file_.line();
 }
 
@@ -148,7 +116,7 @@ void CsvReader::field(std::size_t index, std::string_view text) {
   if (index >= columns_.size() || !columns_[index].read) return;
   const ParsedNumber number = parse_number(text);
   if (number.kind != NumberKind::kNumber) report_sample(index, number.kind, text);
-  if (index == time_) time_digits_.add(text);
+  if (instants_.contains(index)) columns_[index].digits.add(text);
   columns_[index].channel.samples.push_back(number.value);
 }
 
@@ -191,8 +159,9 @@ void CsvReader::settle_columns() {
                  "t [s],R1 [N] (with numpy.savetxt: comments=\"\")",
                  file_.place(0));
   columns_.resize(headings_.size());
+  std::vector<ColumnHeading> headings;
   for (std::size_t i = 0; i < headings_.size(); ++i) {
-    const ColumnHeading heading = heading_of(headings_[i]);
+    const ColumnHeading& heading = headings.emplace_back(parse_column_heading(headings_[i]));
     MODCAL_REQUIRE(!heading.name.empty(), "{}: column {} has no name; name every column",
                    file_.place(i), i + 1);
     for (std::size_t j = 0; j < i; ++j) {
@@ -202,8 +171,8 @@ void CsvReader::settle_columns() {
     }
     columns_[i].channel.name = heading.name;
     columns_[i].channel.unit = heading.unit;
-    if (options_.has_time && !time_ && is_time(heading)) time_ = i;
   }
+  if (options_.has_time) instants_ = TimeColumns(headings);
   choose_columns();
 }
 
@@ -213,15 +182,17 @@ void CsvReader::choose_columns() {
   require_apart(headings_, options_.channels, file_.place(0));
   kept_ = find_channels(names, options_.channels, fmt::format("{}:{}", file_.name(), file_.line()));
   for (std::size_t i = 0; options_.channels.empty() && i < columns_.size(); ++i) {
-    if (i != time_) kept_.push_back(i);
+    if (!instants_.contains(i)) kept_.push_back(i);
   }
   MODCAL_REQUIRE(!kept_.empty(), "{}: there is a time column but no channel", file_.place(0));
+  time_ = instants_.instants_of(kept_.front());
   for (const std::size_t index : kept_) {
-    MODCAL_REQUIRE(index != time_, "{}: column \"{}\" is the time column, not a channel",
-                   file_.place(index), names[index]);
+    MODCAL_REQUIRE(!instants_.contains(index),
+                   "{}: column \"{}\" is the time column, not a channel", file_.place(index),
+                   names[index]);
     columns_[index].read = true;
+    if (time_) columns_[*instants_.instants_of(index)].read = true;
   }
-  if (time_) columns_[*time_].read = true;
 }
 
 void CsvReader::settle_sample_rate() {
@@ -241,18 +212,47 @@ void CsvReader::settle_sample_rate() {
   }
 }
 
+// Turns instants into seconds; the resolution they were printed to.
+double CsvReader::to_seconds(Column& column) const {
+  std::vector<double>& t = column.channel.samples;
+  const std::string& unit = column.channel.unit;
+  const double second = unit.empty() ? 1.0 : to_si(1.0, unit, "s");
+  const double resolution = column.digits.resolution(largest_magnitude(t)) * second;
+  for (double& value : t) value *= second;
+  return resolution;
+}
+
+// Channels that have other instants than the first were not sampled with it.
+void CsvReader::compare_instants(double step) {
+  const Column& first = columns_[*time_];
+  const std::vector<double>& t = first.channel.samples;
+  for (std::size_t i = 0; i < columns_.size(); ++i) {
+    Column& column = columns_[i];
+    if (i == time_ || !instants_.contains(i) || !column.read) continue;
+    const std::size_t channel = *std::ranges::find(
+        kept_, i, [&](std::size_t kept) { return *instants_.instants_of(kept); });
+    const double same = to_seconds(column) + kSameInstant * step;
+    const std::vector<double>& others = column.channel.samples;
+    const auto apart = [same](double a, double b) { return !(std::abs(a - b) <= same); };
+    const auto [mine, other] = std::ranges::mismatch(t, others, std::not_fn(apart));
+    if (mine == t.end()) continue;
+    const auto sample = static_cast<std::size_t>(mine - t.begin());
+    record_.add_problem(fmt::format(
+        "{}:{}: sample {}: {} is sampled at {:.9g} s ({}), {} at {:.9g} s ({}); resample both to "
+        "the same instants, or delete the time column that is wrong",
+        file_.name(), record_.lines.line(sample), sample, columns_[kept_.front()].channel.name,
+        *mine, first.channel.name, columns_[channel].channel.name, *other, column.channel.name));
+  }
+}
+
 void CsvReader::use_time_axis(double stated) {
   Column& column = columns_[*time_];
   std::vector<double>& t = column.channel.samples;
   if (!std::ranges::all_of(t, [](double x) { return std::isfinite(x); })) return;  // reported
-  double resolution = time_digits_.resolution(largest_magnitude(t));
-  if (!column.channel.unit.empty()) {
-    const double second = to_si(1.0, column.channel.unit, "s");
-    for (double& value : t) value *= second;
-    resolution *= second;
-  }
+  const double resolution = to_seconds(column);
   const TimeAxis axis = examine_time_axis(t, resolution);
   record_.time_jitter = axis.jitter;
+  if (std::isfinite(axis.sample_rate)) compare_instants(1.0 / axis.sample_rate);
   const double rounding = std::min(axis.rate_error, kCalibratedClock);
   const bool given = std::isfinite(options_.sample_rate);
   if (axis.coarse && !std::isfinite(stated)) {

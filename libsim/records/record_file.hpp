@@ -29,9 +29,9 @@ struct ReadOptions {
 
 /// Reads a CSV record: an optional preamble of comments (# …), one row of headings `name [unit]`,
 /// rows of decimal numbers. The sample rate comes from the options, from a comment
-/// `# sample_rate: 51200 Hz`, or from the time column: the first one named t or time or whose unit
-/// is a time; that column must be uniform (examine_time_axis). Throws InvalidInput with
-/// file:line:column, value and remedy.
+/// `# sample_rate: 51200 Hz`, or from the time column of the first channel (TimeColumns); that
+/// column must be uniform (examine_time_axis), and those of other channels must tell the same
+/// instants. Throws InvalidInput with file:line:column, value and remedy.
 Recording read_csv(const std::filesystem::path& path, const ReadOptions& options = {});
 
 struct CsvWriteOptions {

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "libsim/base/error.hpp"
+#include "libsim/base/units.hpp"
+#include "libsim/base/words.hpp"
 #include "libsim/records/csv_grammar.hpp"
 
 namespace modcal {
@@ -72,6 +75,11 @@ double snapped_rate(double step, double duration, double resolution) {
   return whole >= 1.0 && std::abs(rate - whole) <= uncertainty * rate ? whole : rate;
 }
 
+bool holds_instants(const ColumnHeading& heading) {
+  const std::string name = lower_case(heading.name);
+  return (heading.unit.empty() && (name == "t" || name == "time")) || is_unit_of(heading.unit, "s");
+}
+
 }  // namespace
 
 TimeAxis examine_time_axis(std::span<const double> t, double resolution) {
@@ -103,6 +111,60 @@ TimeAxis examine_time_axis(std::span<const double> t, double resolution) {
                      t[axis.jitter_sample], axis.jitter, axis.jitter / step)});
   }
   return axis;
+}
+
+ColumnHeading parse_column_heading(std::string_view text) {
+  ColumnHeading heading = parse_heading(text);
+  constexpr const char* kMarks = "/_. ";
+  const std::size_t mark = heading.name.find_first_of(kMarks);
+  const std::size_t start = heading.name.find_first_not_of(kMarks, mark);
+  if (!heading.unit.empty() || mark >= start || start == std::string::npos) return heading;
+  const std::string name = lower_case(heading.name.substr(0, mark));
+  const std::string unit = heading.name.substr(start);
+  const bool has_time = (name == "t" || name == "time") && is_unit_of(unit, "s");
+  if (has_time) return {heading.name.substr(0, mark), unit};
+  const std::size_t stroke = heading.name.rfind('/');
+  if (stroke == std::string::npos || stroke == 0) return heading;
+  const std::string force = heading.name.substr(stroke + 1);
+  return is_unit_of(force, "N") ? ColumnHeading{heading.name.substr(0, stroke), force} : heading;
+}
+
+TimeColumns::TimeColumns(std::span<const ColumnHeading> headings) {
+  for (std::size_t i = 0; i < headings.size(); ++i) {
+    if (holds_instants(headings[i])) columns_.push_back(i);
+  }
+  stand_behind_ =
+      !columns_.empty() && columns_.front() > 0 && columns_.back() + 1 == headings.size();
+}
+
+bool TimeColumns::contains(std::size_t column) const {
+  return std::ranges::binary_search(columns_, column);
+}
+
+std::optional<std::size_t> TimeColumns::instants_of(std::size_t column) const {
+  if (columns_.empty()) return std::nullopt;
+  if (stand_behind_) return *std::ranges::lower_bound(columns_, column);
+  const auto behind = std::ranges::upper_bound(columns_, column);
+  return behind == columns_.begin() ? columns_.front() : *(behind - 1);
+}
+
+std::optional<double> rate_in_comment(std::string_view text, const CsvFile& file) {
+  const std::size_t colon = text.find(':');
+  if (colon == std::string_view::npos) return std::nullopt;
+  std::string key = lower_case(parse_heading(text.substr(0, colon)).name);
+  std::replace(key.begin(), key.end(), ' ', '_');
+  if (key != "sample_rate") return std::nullopt;
+  const std::string value = parse_heading(text.substr(colon + 1)).name;
+  const std::size_t number_end = std::min(value.find(' '), value.size());
+  const ParsedNumber number = parse_number(std::string_view(value).substr(0, number_end));
+  const std::string unit = parse_heading(std::string_view(value).substr(number_end)).name;
+  const bool usable = number.kind == NumberKind::kNumber && number.value > 0.0 &&
+                      (unit.empty() || is_unit_of(unit, "Hz"));
+  MODCAL_REQUIRE(usable,
+                 "{}:{}: \"{}\" is no sample rate; write a positive number of hertz, such as "
+                 "# sample_rate: 51200 Hz",
+                 file.name(), file.line(), value);
+  return unit.empty() ? number.value : to_si(number.value, unit, "Hz");
 }
 
 }  // namespace modcal

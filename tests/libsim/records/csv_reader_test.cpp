@@ -172,6 +172,26 @@ TEST_F(CsvReader, ReportsGapsJitterAndReturnsInTime) {
   EXPECT_THAT(read(jitter, {.sample_rate = 10.0}).contradictions, testing::IsEmpty());
 }
 
+TEST_F(CsvReader, ComparesTheInstantsOfItsChannels) {
+  const std::string_view same = "t1 [s],R1,t2 [ms],R2\n0,1,0,2\n0.1,3,100,4\n0.2,5,200,6\n";
+  ASSERT_EQ(read(same).channels.size(), 2u);
+  EXPECT_EQ(read(same).channels[1].samples[2], 6.0);
+  EXPECT_EQ(read(same).sample_rate, 10.0);
+  const std::string_view apart = "t1 [s],R1,t2 [s],R2\n0,1,0,2\n0.1,3,0.14,4\n0.2,5,0.24,6\n";
+  EXPECT_EQ(error(apart),
+            "r.csv:3: sample 1: R1 is sampled at 0.1 s (t1), R2 at 0.14 s (t2); resample both to "
+            "the same instants, or delete the time column that is wrong");
+  EXPECT_EQ(read(apart, {.channels = {"R1"}}).sample_rate, 10.0);
+  // Nothing was recorded at the other column's instants: a clock beside the time elapsed.
+  const std::string_view clock = "time [s],clock [s],R1\n0,50,1\n0.1,50.2,2\n0.2,50.4,3\n";
+  EXPECT_EQ(read(clock).sample_rate, 5.0);
+  // Instants behind their channels.
+  const std::string_view behind = "R1,t1 [s],R2,t2 [s]\n1,0,2,0\n3,0.1,4,0.2\n5,0.2,6,0.4\n";
+  EXPECT_EQ(read(behind, {.channels = {"R2"}}).sample_rate, 5.0);
+  EXPECT_EQ(error(behind, {.channels = {"t2"}}),
+            "r.csv:1:14: column \"t2\" is the time column, not a channel");
+}
+
 TEST_F(CsvReader, ReportsAFileThatContradictsItself) {
   EXPECT_EQ(error("# sample_rate: 20 Hz\nt,R1\n0,1\n0.1,1\n0.2,1\n"),
             "r.csv:1: the comment says 20 Hz, column t says 10 Hz; correct one of them or state "
