@@ -36,7 +36,8 @@ struct FileRead {
   double channels = 0.0;    ///< that are taken of it
   /// Most numbers a sample that the work on it holds at a time, about, beside what was read.
   double numbers_per_sample = 0.0;
-  double numbers = 0.0;  ///< those that do not depend on the file's length
+  double numbers_per_second = 0.0;  ///< the same of what is left of a band
+  double numbers = 0.0;             ///< those that do not depend on the file's length
   /// Files that this one names, whose content is a part of it; null: it names none.
   std::vector<std::filesystem::path> (*named)(const std::filesystem::path&) = nullptr;
 

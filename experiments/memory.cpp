@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <thread>
 
@@ -51,8 +52,11 @@ double memory_of_files(const Experiment& experiment, const std::filesystem::path
     if (file.format.empty()) continue;
     const auto size = size_of_record(folder / file.name, file.format);
     if (!size) continue;
+    // Not a number where the file does not tell its rate.
+    const double in_band = size->frames / size->sample_rate * file.numbers_per_second;
     bytes += size->bytes_to_read(std::min(size->channels, file.channels)) +
-             sizeof(double) * size->frames * file.numbers_per_sample;
+             sizeof(double) * (size->frames * file.numbers_per_sample +
+                               (std::isfinite(in_band) ? in_band : 0.0));
   }
   return bytes;
 }

@@ -40,13 +40,15 @@ class Step {
       : unknowns_(2 * problem.poles()) {
     // With the residuals as the last column: what least squares needs of them is in R.
     MatrixXd slopes(problem.samples() * problem.channels(), unknowns_ + 1);
+    const MatrixXd terms = problem.first_terms(state);
     for (Index c = 0; c < problem.channels(); ++c) {
       const double weight = 1.0 / std::sqrt(variances[c]);
       const Index first = c * problem.samples();
-      slopes.block(first, 0, problem.samples(), unknowns_) = weight * problem.jacobian(state, c);
+      slopes.block(first, 0, problem.samples(), unknowns_) =
+          weight * problem.jacobian(state, terms, c);
       slopes.block(first, unknowns_, problem.samples(), 1) = -weight * state.residual.col(c);
     }
-    r_ = tall_r(slopes);
+    r_ = r_by_gram(slopes);
     whole_ = least_squares(r_.leftCols(unknowns_), r_.col(unknowns_));
   }
 
@@ -190,6 +192,26 @@ DampedSinusoidFit fit_damped_sinusoids(const DecayRecord& record, std::span<cons
     fit.squares.push_back(channel.squaredNorm());
   }
   return fit;
+}
+
+DecayPole startable(DecayPole pole, double sample_rate) {
+  pole.damping_ratio = std::clamp(pole.damping_ratio, 1e-6, 0.5);
+  pole.frequency = std::clamp(pole.frequency, 1e-6 * sample_rate, (0.5 - 1e-6) * sample_rate);
+  return pole;
+}
+
+double chi_square_rise(const DampedSinusoidFit& from, const DampedSinusoidFit& to,
+                       double in_band_variance) {
+  double sum = 0.0;
+  for (std::size_t c = 0; c < from.squares.size(); ++c) {
+    sum += static_cast<double>(from.residual[c].size()) * (to.squares[c] / from.squares[c] - 1.0);
+  }
+  return sum / in_band_variance;
+}
+
+double work_of(const DampedSinusoidFit& fit) {
+  const std::size_t samples = fit.residual.front().size() * fit.residual.size();
+  return static_cast<double>(fit.iterations * fit.modes.size() * fit.modes.size() * samples);
 }
 
 }  // namespace modcal

@@ -38,4 +38,14 @@ struct DampedSinusoidOptions {
 DampedSinusoidFit fit_damped_sinusoids(const DecayRecord& record, std::span<const DecayPole> start,
                                        const DampedSinusoidOptions& options = {});
 
+/// Beside a pole that cannot start a fit, as one that does not decay or lies above half the rate.
+DecayPole startable(DecayPole pole, double sample_rate);
+
+/// By how much χ² rises from one fit of a record to another, the noise that of the first.
+double chi_square_rise(const DampedSinusoidFit& from, const DampedSinusoidFit& to,
+                       double in_band_variance);
+
+/// Iterations times poles squared times samples times channels.
+double work_of(const DampedSinusoidFit& fit);
+
 }  // namespace modcal

@@ -4,6 +4,7 @@
 #include <complex>
 #include <cstddef>
 #include <limits>
+#include <span>
 #include <vector>
 
 namespace modcal {
@@ -12,12 +13,21 @@ namespace modcal {
 struct DecayRecord {
   double sample_rate = 0.0;                   ///< f_s [Hz]
   std::vector<std::vector<double>> channels;  ///< of one length, in any units
+  /// rounding_level() of each channel; empty: 1.
+  std::vector<double> rounding = {};
 
   std::size_t samples() const { return channels.empty() ? 0 : channels.front().size(); }
   /// Throws InvalidInput for no channel, lengths that differ, a sample that is not finite, a rate
   /// that is not positive.
   void require_valid() const;
 };
+
+/// Variance at a mode's frequency of what has been rounded off samples that are multiples of a
+/// step, over that of white noise of its power: 1 + kRoundingExcess exp(−2π²σ²/q²), σ the noise
+/// that was rounded, told by the upper half of the spectrum. What the noise does not cover follows
+/// the signal (Widrow and Kollár, 2008: the exponential is the characteristic function of the noise
+/// at 1/q).
+double rounding_level(std::span<const double> samples, double step);
 
 /// Pole λ = −ζω + iω√(1 − ζ²) of a free decay.
 struct DecayPole {

@@ -22,7 +22,7 @@ DecayRecord after(const DecayRecord& record, double skip) {
                  "{:g} s are left out of a record of {:g} s", skip,
                  static_cast<double>(record.samples()) / record.sample_rate);
   const auto first = static_cast<std::size_t>(skipped);
-  DecayRecord rest{.sample_rate = record.sample_rate};
+  DecayRecord rest{.sample_rate = record.sample_rate, .rounding = record.rounding};
   for (const auto& channel : record.channels) {
     rest.channels.emplace_back(channel.begin() + static_cast<std::ptrdiff_t>(first), channel.end());
   }
@@ -48,7 +48,7 @@ std::vector<double> left_by(const DampedSinusoidFit& fit, const DecimatedDecay& 
       2.0 * largest_by_chance(decay.record.samples(), 2 * decay.record.channels.size() + 2);
   std::vector<double> left;
   for (const DecayPole& pole :
-       poles_in_residual(fit, ResidualLevels(fit, rate, variance), rate, variance, least)) {
+       poles_in_residual(fit, ResidualLevels(decay.record, fit, variance), rate, variance, least)) {
     if (pole.frequency > lowest && pole.frequency < highest) left.push_back(pole.frequency);
   }
   return left;

@@ -65,16 +65,17 @@ class Scan {
 
 }  // namespace
 
-ResidualLevels::ResidualLevels(const DampedSinusoidFit& fit, double sample_rate,
+ResidualLevels::ResidualLevels(const DecayRecord& record, const DampedSinusoidFit& fit,
                                double in_band_variance) {
   const std::size_t samples = fit.residual.front().size();
   // The median of 129 bins tells a level to 11 %, and deviations to 5 %.
   constexpr std::size_t kBins = 64, step = kBins / 4;
-  spacing_ = static_cast<double>(step) * sample_rate / static_cast<double>(samples);
+  spacing_ = static_cast<double>(step) * record.sample_rate / static_cast<double>(samples);
   for (std::size_t c = 0; c < fit.residual.size(); ++c) {
     const std::vector<Complex> spectrum = hann_spectrum(fit.residual[c], samples / 2, samples);
     // The median of an exponential distribution is ln 2 of its mean.
     const double white = std::numbers::ln2 * in_band_variance * fit.noise[c] * fit.noise[c];
+    const double rounded = record.rounding.empty() ? 1.0 : record.rounding[c];
     std::vector<double>& levels = levels_.emplace_back();
     for (std::size_t k = 0; k < spectrum.size(); k += step) {
       std::vector<double> power;
@@ -84,7 +85,7 @@ ResidualLevels::ResidualLevels(const DampedSinusoidFit& fit, double sample_rate,
       }
       const auto middle = power.begin() + static_cast<std::ptrdiff_t>(power.size() / 2);
       std::ranges::nth_element(power, middle);
-      levels.push_back(white > 0.0 ? std::max(1.0, *middle / white) : 1.0);
+      levels.push_back(rounded * (white > 0.0 ? std::max(1.0, *middle / white) : 1.0));
     }
   }
 }

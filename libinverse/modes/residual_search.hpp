@@ -10,10 +10,11 @@ namespace modcal {
 
 /// Density of the noise over frequency, relative to white noise of the residual's variance within
 /// the band: the median over 64 bins to either side of the power of the residual's second
-/// half, where decays have gone, and at least 1.
+/// half, where decays have gone, and at least 1, times
+/// the record's rounding.
 class ResidualLevels {
  public:
-  ResidualLevels(const DampedSinusoidFit& fit, double sample_rate, double in_band_variance);
+  ResidualLevels(const DecayRecord& record, const DampedSinusoidFit& fit, double in_band_variance);
 
   double at(std::size_t channel, double frequency) const;
   /// That of the channel in which it is largest.

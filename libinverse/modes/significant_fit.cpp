@@ -1,22 +1,16 @@
 #include "libinverse/modes/significant_fit.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <functional>
 #include <span>
 
 #include "libinverse/modes/residual_search.hpp"
+#include "libinverse/modes/second_pole.hpp"
 #include "libinverse/modes/tuning.hpp"
 
 namespace modcal {
 namespace {
-
-// What does not decay, or lies beyond half the rate, cannot start a fit: it begins beside.
-DecayPole startable(DecayPole pole, double rate) {
-  pole.damping_ratio = std::clamp(pole.damping_ratio, 1e-6, 0.5);
-  pole.frequency = std::clamp(pole.frequency, 1e-6 * rate, (0.5 - 1e-6) * rate);
-  return pole;
-}
 
 class Search {
  public:
@@ -30,11 +24,11 @@ class Search {
   DampedSinusoidFit fit(const std::vector<DecayPole>& poles) {
     if (poles.empty()) return {};
     DampedSinusoidFit fit = fit_damped_sinusoids(record_, poles, options_);
-    spent_ += static_cast<double>(fit.iterations) * cost_of(poles.size());
+    spent_ += work_of(fit);
     return fit;
   }
   ResidualLevels levels(const DampedSinusoidFit& fit) const {
-    return {fit, record_.sample_rate, options_.in_band_variance};
+    return {record_, fit, options_.in_band_variance};
   }
   /// What χ² falls by at most for one more pole of noise, anywhere and behind one of the modes.
   double least_with_pole() const { return least_with_pole_; }
@@ -63,17 +57,8 @@ class Search {
   }
 
  private:
-  // Of an iteration, in products.
-  double cost_of(std::size_t poles) const {
-    return static_cast<double>(poles * poles * record_.samples() * record_.channels.size());
-  }
-  // Of χ² from one fit to another, the noise that of the first.
   double rise(const DampedSinusoidFit& from, const DampedSinusoidFit& to) const {
-    double sum = 0.0;
-    for (std::size_t c = 0; c < from.squares.size(); ++c) {
-      sum += static_cast<double>(record_.samples()) * (to.squares[c] / from.squares[c] - 1.0);
-    }
-    return sum / options_.in_band_variance;
+    return chi_square_rise(from, to, options_.in_band_variance);
   }
   DampedSinusoidFit without(const DampedSinusoidFit& fit, const std::vector<bool>& out) {
     return this->fit(poles_without(fit, out));
@@ -135,18 +120,20 @@ class Search {
     if (better) fit = std::move(next);
     return better;
   }
-  bool add(DampedSinusoidFit& fit, std::span<const DecayPole> more, double least) {
-    std::vector<DecayPole> poles = poles_of(fit);
+  bool attempt(DampedSinusoidFit& fit, const std::vector<DecayPole>& poles, double least) {
     // Of eight samples for every pole there are two for every unknown of a single channel.
-    if (more.empty() || 8 * (poles.size() + more.size()) > record_.samples()) return false;
-    for (const DecayPole& pole : more) poles.push_back(startable(pole, record_.sample_rate));
-    if (spent_ + static_cast<double>(options_.iterations) * cost_of(poles.size()) > kSearchCost) {
-      return false;
-    }
+    const double cost = static_cast<double>(options_.iterations * poles.size() * poles.size() *
+                                            record_.samples() * record_.channels.size());
+    if (8 * poles.size() > record_.samples() || spent_ + cost > kSearchCost) return false;
     DampedSinusoidFit next = this->fit(poles);
     while (leave_out_weak(next)) {
     }
     return take(fit, std::move(next), least);
+  }
+  bool add(DampedSinusoidFit& fit, std::span<const DecayPole> more, double least) {
+    std::vector<DecayPole> poles = poles_of(fit);
+    for (const DecayPole& pole : more) poles.push_back(startable(pole, record_.sample_rate));
+    return !more.empty() && attempt(fit, poles, least);
   }
   bool add_from_residual(DampedSinusoidFit& fit) {
     const std::vector<DecayPole> more = poles_in_residual(
@@ -156,37 +143,43 @@ class Search {
     return add(fit, loudest, least_with_pole_) ||
            (loudest.size() > 1 && add(fit, loudest.first(1), least_with_pole_));
   }
-  // The mode that departs most from one damped sinusoid, as two: the second is as far from it as
-  // it is wide, or decays faster or slower.
-  bool split(DampedSinusoidFit& fit) {
+
+  // Modes that depart from one damped sinusoid, those that do most first.
+  std::vector<std::size_t> departing(const DampedSinusoidFit& fit) const {
     const ResidualLevels noise = levels(fit);
-    std::size_t most = 0;
-    std::vector<double> departure;
+    const double least = least_departure(fit.modes.size(), record_.channels.size());
+    std::vector<std::size_t> found;
     for (std::size_t k = 0; k < fit.modes.size(); ++k) {
-      departure.push_back(fit.modes[k].departure / noise.largest(fit.modes[k].pole.frequency));
-      if (departure[k] > departure[most]) most = k;
+      const double level = noise.largest(fit.modes[k].pole.frequency);
+      if (fit.modes[k].departure > level * least) found.push_back(k);
     }
-    if (!(departure[most] > least_departure(fit.modes.size(), record_.channels.size()))) {
-      return false;
-    }
-    const std::complex<double> whole = poles_of(fit)[most].exponent();
-    const double width = -whole.real() + 1.0 / duration();
-    // There are as many places for it as modes.
-    const double least = least_of_second(fit);
-    DampedSinusoidFit best = fit;
-    for (const std::complex<double> apart : {std::complex<double>(0.0, width),
-                                             {0.0, -width},
-                                             {-width, 0.0},
-                                             {-0.5 * whole.real(), 0.0}}) {
-      DampedSinusoidFit two = fit;
-      if (!add(two, std::array{DecayPole::of_exponent(whole + apart)}, least)) continue;
-      if (best.modes.size() == fit.modes.size() || rise(two, best) > 0.0) best = std::move(two);
-    }
-    const bool found = best.modes.size() > fit.modes.size();
-    fit = std::move(best);
+    std::ranges::sort(found, std::greater(), [&](std::size_t k) { return fit.modes[k].departure; });
     return found;
   }
-  double duration() const { return static_cast<double>(record_.samples()) / record_.sample_rate; }
+  // Modes that depart, each as two: all of them at once, or the first alone.
+  bool split(DampedSinusoidFit& fit) {
+    // There are as many places for a second pole as modes.
+    const double least = least_of_second(fit);
+    const std::vector<DecayPole> whole = poles_of(fit);
+    std::vector<bool> changed(whole.size());
+    std::vector<DecayPole> first, all;
+    const auto with_others = [&](std::vector<DecayPole> poles) {
+      for (std::size_t k = 0; k < whole.size(); ++k) {
+        if (!changed[k]) poles.push_back(whole[k]);
+      }
+      return poles;
+    };
+    for (const std::size_t k : departing(fit)) {
+      if (changed[k]) continue;
+      const SecondPole two = fit_as_two(fit, k, record_.sample_rate, reach_, least, options_);
+      spent_ += two.work;
+      if (two.poles.empty()) continue;
+      all.insert(all.end(), two.poles.begin(), two.poles.end());
+      for (const std::size_t i : two.replaced) changed[i] = true;
+      if (first.empty()) first = with_others(two.poles);
+    }
+    return !all.empty() && (attempt(fit, with_others(all), least) || attempt(fit, first, least));
+  }
 
   const DecayRecord& record_;
   double reach_;

@@ -52,7 +52,7 @@ std::optional<RecordSize> size_of_record(const std::filesystem::path& path,
     const Recording heads =
         record_format(path, format).read(path, {.survey = true, .headers_only = true});
     return RecordSize{static_cast<double>(heads.frames()),
-                      static_cast<double>(heads.channels.size())};
+                      static_cast<double>(heads.channels.size()), heads.sample_rate};
   } catch (const InvalidInput&) {
     return std::nullopt;  // whoever reads it says so
   }

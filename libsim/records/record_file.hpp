@@ -79,6 +79,7 @@ Recording read_record(const std::filesystem::path& path, const std::string& form
 struct RecordSize {
   double frames = 0.0;
   double channels = 0.0;
+  double sample_rate = std::numeric_limits<double>::quiet_NaN();  ///< [Hz], where the file tells it
   /// To read so many of the channels [B]: a vector that grows holds up to twice its samples, and a
   /// signal is a copy of its channel.
   double bytes_to_read(double wanted) const { return 2.0 * sizeof(double) * frames * wanted; }

@@ -7,6 +7,7 @@
 #include "experiments/kinds/identify/identify.hpp"
 #include "experiments/kinds/invert/invert.hpp"
 #include "experiments/kinds/lint.hpp"
+#include "libinverse/modes/tuning.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {
@@ -43,7 +44,7 @@ double step_of(std::vector<double> samples) {
   return all ? step : 0.0;
 }
 
-// Where the last period ends in which the signal's rms is two steps: what is rounded off below is
+// Where the last period ends in which the signal's rms is four steps: what is rounded off below is
 // no noise, it follows the signal. The number of samples where there is no step.
 std::size_t resolved_until(const std::vector<double>& samples, std::size_t period) {
   const double step = step_of(samples);
@@ -57,7 +58,7 @@ std::size_t resolved_until(const std::vector<double>& samples, std::size_t perio
       squares += (*x - *first) * (*x - *first);
     }
     const double n = static_cast<double>(period);
-    if (squares / n - sum * sum / (n * n) < 4.0 * step * step) continue;
+    if (squares / n - sum * sum / (n * n) < 16.0 * step * step) continue;
     return i == periods ? samples.size() : i * period;
   }
   return 0;
@@ -90,12 +91,12 @@ PluckedRecord load_pluck(const RecordOptions& options, const std::filesystem::pa
   }
   result.end = static_cast<double>(end) / signals.sample_rate;
   MODCAL_REQUIRE(end >= first + 3 * period,
-                 "the decay has an rms of less than two of the record's steps from {:.3g} s on: "
+                 "the decay has an rms of less than four of the record's steps from {:.3g} s on: "
                  "record it with more gain or more bits",
                  result.end);
   if (end < channels.front()->size()) {
     result.warnings.push_back(fmt::format(
-        "the decay is used up to {:.3g} s: from there on its rms is less than two of the record's "
+        "the decay is used up to {:.3g} s: from there on its rms is less than four of the record's "
         "steps, and what they round off is no noise; more gain or more bits make use of the rest",
         result.end));
   }
@@ -106,6 +107,7 @@ PluckedRecord load_pluck(const RecordOptions& options, const std::filesystem::pa
     const double mean = std::accumulate(samples.begin(), samples.end(), 0.0) /
                         std::max(1.0, static_cast<double>(samples.size()));
     for (double& x : samples) x -= mean;
+    result.decay.rounding.push_back(rounding_level(samples, step_of(samples)));
   }
   return result;
 }
@@ -211,7 +213,13 @@ std::vector<Finding> IdentifyOptions::lint_records(const std::filesystem::path& 
 std::vector<FileRead> IdentifyOptions::files_read() const {
   if (!has_record) return {};
   // The record, its decay and what is left of the band, each filtered and whitened.
-  return {file_read(record, "record.file", 12.0)};
+  FileRead file = file_read(record, "record.file", 12.0);
+  // A fit has eleven matrices of what is left of the band, two columns for every pole: two for each
+  // mode of the string, and those that are added.
+  const double poles = 2.0 * identification.highest_frequency / fundamental + kPolesAdded;
+  const bool is_whole = file.numbers_per_sample > 0.0;
+  file.numbers_per_second = is_whole ? 22.0 * poles * 2.6 * identification.highest_frequency : 0.0;
+  return {file};
 }
 
 namespace {

@@ -153,13 +153,14 @@ TEST_F(RecordedPluck, HasHumOfTheMainsBesideItsModes) {
   EXPECT_LT(mean_square(document, 1.0), 2.2);  // 22 squares, as above
 }
 
-// Behind .45 s the string moves by less than two steps, and what they round off follows it.
+// Well before 1 s the string moves by less than four steps, and what they round off follows it.
 TEST_F(RecordedPluck, IsUsedAsFarAsItsStepsResolveIt) {
   const double faster = 5.0;
   write_pluck({.step = 0.1, .faster = faster});
   const StudyResult result = run("pluck.csv", "fundamental: 197 Hz\n");
   ASSERT_EQ(result.status, report::Status::kOk) << result.answer;
-  EXPECT_THAT(result.warnings, testing::Contains(HasSubstr("less than two of the record's steps")));
+  EXPECT_THAT(result.warnings,
+              testing::Contains(HasSubstr("less than four of the record's steps")));
   const auto document = nlohmann::json::parse(result.files.at(0).second);
   EXPECT_LT(document["end_s"].get<double>(), 1.0);
   ASSERT_GE(document["modes"].size(), 4u);
@@ -167,7 +168,7 @@ TEST_F(RecordedPluck, IsUsedAsFarAsItsStepsResolveIt) {
   EXPECT_LT(mean_square(document, faster), 2.5);
 }
 
-// Less than two steps throughout.
+// Less than four steps throughout.
 TEST_F(RecordedPluck, OfTooFewStepsIsRefused) {
   write_pluck({.step = 1.5});
   EXPECT_THROW(run("pluck.csv", "fundamental: 197 Hz\n"), InvalidInput);

@@ -4,6 +4,10 @@
 
 #include <cmath>
 #include <numbers>
+#include <random>
+#include <vector>
+
+#include "libinverse/modes/tuning.hpp"
 
 namespace modcal::decay_record_test {
 namespace {
@@ -34,6 +38,26 @@ TEST(Decimation, PassesItsBandAndStopsWhatIsAboveHalfTheNewRate) {
     EXPECT_LT(gain(f), 1.1e-4) << f;
     f += 10.0;
   }
+}
+
+// What half a step of noise covers is white to exp(−π²/2) of it, a sine without noise is not. The
+// median of 2^14 powers tells the level to 1/(√2^14 ln 2) = 1.1 %, σ²/q² to .004, the exponent to
+// .08 and .022 to .002.
+TEST(RoundingLevel, IsOneWhereNoiseCoversTheSteps) {
+  constexpr double kStep = 0.1;
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> normal;
+  std::vector<double> covered, bare;
+  for (int i = 0; i < (1 << 16); ++i) {
+    const double sine = std::sin(0.02 * i);
+    const double noise = 0.5 * kStep * normal(random);
+    covered.push_back(kStep * std::round((sine + noise) / kStep));
+    bare.push_back(kStep * std::round(sine / kStep));
+  }
+  const double excess = std::exp(-0.5 * std::numbers::pi * std::numbers::pi);
+  EXPECT_NEAR(rounding_level(covered, kStep), 1.0 + kRoundingExcess * excess, 0.018);
+  EXPECT_EQ(rounding_level(bare, kStep), 1.0 + kRoundingExcess);
+  EXPECT_EQ(rounding_level(bare, 0.0), 1.0);
 }
 
 }  // namespace
