@@ -1,5 +1,6 @@
 #include "libinverse/modes/damped_sinusoid_fit.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -24,7 +25,10 @@ VectorXd variances_of(const Problem& problem, const Problem::State& state) {
   VectorXd variances = state.residual.colwise().squaredNorm().transpose();
   variances /= std::max(1.0, problem.degrees_of_freedom());
   // Noise-free channels would weigh infinitely: rounding is their noise.
-  const VectorXd data = (state.residual + state.basis * state.coefficients).colwise().squaredNorm();
+  const VectorXd data =
+      (state.residual + state.basis * state.coefficients.topRows(2 * problem.poles()))
+          .colwise()
+          .squaredNorm();
   constexpr double kRounding = 1e-30;
   return variances.cwiseMax(kRounding * data / static_cast<double>(problem.samples()));
 }
@@ -33,41 +37,48 @@ double cost_of(const Problem::State& state, const VectorXd& variances) {
   return (state.residual.colwise().squaredNorm().transpose().array() / variances.array()).sum();
 }
 
+/// An undamped step.
+struct Whole {
+  VectorXd solution;
+  MatrixXd covariance;
+};
+
 /// Gauss–Newton step with its covariance for noise of the given variances, and the damped one.
 class Step {
  public:
   Step(const Problem& problem, const Problem::State& state, const VectorXd& variances)
-      : unknowns_(2 * problem.poles()) {
-    // With the residuals as the last column: what least squares needs of them is in R.
-    MatrixXd slopes(problem.samples() * problem.channels(), unknowns_ + 1);
-    const MatrixXd terms = problem.first_terms(state);
-    for (Index c = 0; c < problem.channels(); ++c) {
-      const double weight = 1.0 / std::sqrt(variances[c]);
-      const Index first = c * problem.samples();
-      slopes.block(first, 0, problem.samples(), unknowns_) =
-          weight * problem.jacobian(state, terms, c);
-      slopes.block(first, unknowns_, problem.samples(), 1) = -weight * state.residual.col(c);
-    }
-    r_ = r_by_gram(slopes);
-    whole_ = least_squares(r_.leftCols(unknowns_), r_.col(unknowns_));
+      : normal_(problem.normal_equations(state, variances)),
+        scale_(normal_.matrix.diagonal().cwiseSqrt().cwiseInverse()) {
+    // The slopes of two poles that cannot be told apart are dependent to rounding of the sums.
+    const double least = 1e-7;
+    const Eigen::LLT<MatrixXd> factor = damped_factor(0.0);
+    const bool is_whole = scale_.allFinite() && factor.info() == Eigen::Success &&
+                          factor.matrixLLT().diagonal().minCoeff() > least;
+    if (!is_whole) return;
+    const MatrixXd identity = MatrixXd::Identity(scale_.size(), scale_.size());
+    whole_ = {.solution = solved(factor),
+              .covariance = scale_.asDiagonal() * factor.solve(identity) * scale_.asDiagonal()};
   }
 
-  const std::optional<LeastSquares>& whole() const { return whole_; }
+  const std::optional<Whole>& whole() const { return whole_; }
   /// Least ‖J x + e‖² + μ Σ ‖J_k‖² x_k² (Marquardt, 1963).
   VectorXd damped(double damping) const {
-    if (damping == 0.0) return whole_->solution;
-    MatrixXd rows = MatrixXd::Zero(r_.rows() + unknowns_, unknowns_ + 1);
-    rows.topRows(r_.rows()) = r_;
-    for (Index k = 0; k < unknowns_; ++k) {
-      rows(r_.rows() + k, k) = std::sqrt(damping) * r_.col(k).norm();
-    }
-    return ThinQr(rows.leftCols(unknowns_)).solve(VectorXd(rows.col(unknowns_)));
+    return damping == 0.0 ? whole_->solution : solved(damped_factor(damping));
   }
 
  private:
-  Index unknowns_;
-  MatrixXd r_;
-  std::optional<LeastSquares> whole_;
+  Eigen::LLT<MatrixXd> damped_factor(double damping) const {
+    MatrixXd scaled = scale_.asDiagonal() * normal_.matrix * scale_.asDiagonal();
+    scaled.diagonal().array() += damping;
+    return Eigen::LLT<MatrixXd>(scaled);
+  }
+  VectorXd solved(const Eigen::LLT<MatrixXd>& factor) const {
+    return -(scale_.asDiagonal() * factor.solve(scale_.asDiagonal() * normal_.slope));
+  }
+
+  Problem::Normal normal_;
+  VectorXd scale_;
+  std::optional<Whole> whole_;
 };
 
 /// The state after a step by which the cost falls, or the same one; damping is what it took.
@@ -96,11 +107,10 @@ DecayPole deviation_of(double d, double nu, const Eigen::Matrix2d& covariance) {
           std::sqrt(ratio.dot(covariance * ratio))};
 }
 
-// aᵀ(RᵀR)_kk a over the channels, R⁻¹R⁻ᵀ the covariance of the linear unknowns; R⁻¹ of `inverse`.
-double evidence_of(const Problem::State& state, Index k, const MatrixXd& inverse,
-                   const VectorXd& variances) {
-  const auto rows = inverse.middleRows(2 * k, 2);
-  const Eigen::Matrix2d precision = Eigen::Matrix2d(rows * rows.transpose()).inverse();
+// aᵀ[(BᵀB)⁻¹_kk]⁻¹a over the channels.
+double evidence_of(const Problem::State& state, Index k, const VectorXd& variances) {
+  const Eigen::Matrix2d precision =
+      Eigen::Matrix2d(state.inverse.block<2, 2>(2 * k, 2 * k)).inverse();
   double sum = 0.0;
   for (Index c = 0; c < variances.size(); ++c) {
     const Eigen::Vector2d a = state.coefficients.col(c).segment<2>(2 * k);
@@ -110,12 +120,9 @@ double evidence_of(const Problem::State& state, Index k, const MatrixXd& inverse
 }
 
 std::vector<DecayMode> modes_of(const Problem& problem, const Problem::State& state,
-                                const std::optional<LeastSquares>& step, const VectorXd& variances,
+                                const std::optional<Whole>& step, const VectorXd& variances,
                                 double in_band_variance) {
   const VectorXd noise = in_band_variance * variances;
-  const MatrixXd r = state.thin_q.transpose() * state.basis;
-  const MatrixXd inverse =
-      r.triangularView<Eigen::Upper>().solve(MatrixXd::Identity(r.rows(), r.cols()));
   std::vector<DecayMode> modes;
   for (Index k = 0; k < problem.poles(); ++k) {
     const double d = state.poles[2 * k];
@@ -128,9 +135,8 @@ std::vector<DecayMode> modes_of(const Problem& problem, const Problem::State& st
     for (Index c = 0; c < problem.channels(); ++c) {
       mode.amplitude.emplace_back(state.coefficients(2 * k, c), -state.coefficients(2 * k + 1, c));
     }
-    mode.evidence = evidence_of(state, k, inverse, noise);
-    const MatrixXd parts = problem.higher_terms(state, k).transpose() * state.residual;
-    mode.departure = (parts.colwise().squaredNorm().transpose().array() / noise.array()).sum();
+    mode.evidence = evidence_of(state, k, noise);
+    mode.departure = problem.departure(state, k, noise);
     modes.push_back(std::move(mode));
   }
   return modes;
@@ -211,7 +217,7 @@ double chi_square_rise(const DampedSinusoidFit& from, const DampedSinusoidFit& t
 
 double work_of(const DampedSinusoidFit& fit) {
   const std::size_t samples = fit.residual.front().size() * fit.residual.size();
-  return static_cast<double>(fit.iterations * fit.modes.size() * fit.modes.size() * samples);
+  return static_cast<double>(fit.iterations * fit.modes.size() * samples);
 }
 
 }  // namespace modcal

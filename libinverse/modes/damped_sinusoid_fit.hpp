@@ -30,7 +30,7 @@ struct DampedSinusoidOptions {
 /// Minimum of Σ_c ‖y_c − c_c − Σ_k Re(A_ck exp(λ_k t))‖²/v_c over the poles, common to all
 /// channels, and, for given poles, over amplitudes and constants, those of the lines too, which are
 /// linear (variable projection, Golub and Pereyra, 1973; the Jacobian of Kaufman, 1975, analytic):
-/// Gauss–Newton steps by QR, damped until the sum falls (Marquardt, 1963). v_c are the residual
+/// Gauss–Newton steps, damped until the sum falls (Marquardt, 1963). v_c are the residual
 /// variances, estimated along the way: for white noise the maximum of the likelihood. Deviations
 /// are the Cramér–Rao bound at the optimum. start: poles near the optimum, within about 1/T of it
 /// each. Throws InvalidInput for an invalid record, no pole, a pole that does not decay or lies
@@ -45,7 +45,7 @@ DecayPole startable(DecayPole pole, double sample_rate);
 double chi_square_rise(const DampedSinusoidFit& from, const DampedSinusoidFit& to,
                        double in_band_variance);
 
-/// Iterations times poles squared times samples times channels.
+/// Iterations times poles times samples times channels.
 double work_of(const DampedSinusoidFit& fit);
 
 }  // namespace modcal

@@ -122,8 +122,8 @@ class Search {
   }
   bool attempt(DampedSinusoidFit& fit, const std::vector<DecayPole>& poles, double least) {
     // Of eight samples for every pole there are two for every unknown of a single channel.
-    const double cost = static_cast<double>(options_.iterations * poles.size() * poles.size() *
-                                            record_.samples() * record_.channels.size());
+    const double cost = static_cast<double>(options_.iterations * poles.size() * record_.samples() *
+                                            record_.channels.size());
     if (8 * poles.size() > record_.samples() || spent_ + cost > kSearchCost) return false;
     DampedSinusoidFit next = this->fit(poles);
     while (leave_out_weak(next)) {

@@ -14,12 +14,12 @@ namespace modcal {
 /// Halved: violin D accepted as it is.
 inline constexpr std::size_t kPolesAdded = 6;
 
-/// Iterations times poles squared times samples times channels that the search for poles may take.
-/// Source: 20 s of one processor, for records that no few poles tell.
-/// Range tried: 4e8 to 3.2e9.
-/// Doubled: as now, in up to twice the time where a record is refused.
-/// Halved: cello D is refused, of fifteen modes in two planes.
-inline constexpr double kSearchCost = 3.2e9;
+/// Iterations times poles times samples times channels that the search for poles may take.
+/// Source: half a minute of one processor, for records that no few poles tell.
+/// Range tried: 1e9 to 4e9, also on 10 s of 11 modes in two planes.
+/// Doubled: as now.
+/// Halved: as now.
+inline constexpr double kSearchCost = 2e9;
 
 /// Variance of what is rounded off at a mode's frequency, over that of white noise, less 1, where
 /// noise does not cover the steps.

@@ -95,30 +95,4 @@ Eigen::MatrixXd ThinQr::r() const {
 Eigen::VectorXd ThinQr::solve(const Eigen::VectorXd& right) const { return factor.solve(right); }
 Eigen::MatrixXd ThinQr::solve(const Eigen::MatrixXd& right) const { return factor.solve(right); }
 
-Eigen::MatrixXd tall_r(const Eigen::MatrixXd& a) {
-  const Eigen::Index columns = a.cols(), step = std::max<Eigen::Index>(256, 2 * columns);
-  Eigen::MatrixXd r(0, columns), rows;
-  for (Eigen::Index first = 0; first < a.rows(); first += step) {
-    const Eigen::Index count = std::min(step, a.rows() - first);
-    rows.resize(r.rows() + count, columns);
-    rows << r, a.middleRows(first, count);
-    const Eigen::HouseholderQR<Eigen::MatrixXd> factor(rows);
-    r = factor.matrixQR()
-            .topRows(std::min(columns, rows.rows()))
-            .template triangularView<Eigen::Upper>();
-  }
-  return r;
-}
-
-std::optional<LeastSquares> least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(a);
-  const Eigen::Index n = a.cols();
-  if (qr.rank() < n) return std::nullopt;
-  const Eigen::MatrixXd r = qr.matrixR().topRows(n).triangularView<Eigen::Upper>();
-  const Eigen::MatrixXd inverse =
-      r.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(n, n));
-  const Eigen::MatrixXd root = qr.colsPermutation() * inverse;
-  return LeastSquares{qr.solve(b), root * root.transpose()};
-}
-
 }  // namespace modcal

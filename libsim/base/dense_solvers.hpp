@@ -7,7 +7,6 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <Eigen/QR>
-#include <optional>
 
 // The members of these are compiled in dense_solvers.cpp alone.
 extern template class Eigen::HouseholderQR<Eigen::MatrixXd>;
@@ -92,16 +91,5 @@ struct ThinQr {
   Eigen::MatrixXd solve(const Eigen::MatrixXd& right) const;
   Eigen::HouseholderQR<Eigen::MatrixXd> factor;
 };
-
-/// R of A = QR for many more rows than columns, by Householder's reflections of some rows after the
-/// other, which stay in the cache (Golub and Van Loan, 2013, 6.5.3).
-Eigen::MatrixXd tall_r(const Eigen::MatrixXd& a);
-
-/// x of least ‖Ax − b‖ with (AᵀA)⁻¹, by pivoted QR; none where A has not full rank.
-struct LeastSquares {
-  Eigen::VectorXd solution;
-  Eigen::MatrixXd covariance;
-};
-std::optional<LeastSquares> least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
 
 }  // namespace modcal

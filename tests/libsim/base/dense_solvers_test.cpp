@@ -75,16 +75,6 @@ TEST(DenseSolvers, QrSpansTheColumns) {
   EXPECT_LT((qr.q() * qr.r() - a).norm(), kRounding);
   const Eigen::VectorXd x = Eigen::Vector2d(2.0, -1.0), b = a * x;
   EXPECT_LT((qr.solve(b) - x).norm(), kRounding);
-  const auto fit = least_squares(a, b);
-  ASSERT_TRUE(fit);
-  EXPECT_LT((fit->solution - x).norm(), kRounding);
-  EXPECT_LT((fit->covariance - (a.transpose() * a).inverse()).norm(), kRounding);
-}
-
-TEST(DenseSolvers, LeastSquaresRefuseWhatHasNotFullRank) {
-  Eigen::MatrixXd a(3, 2);
-  a << 1.0, 2.0, 2.0, 4.0, 3.0, 6.0;
-  EXPECT_FALSE(least_squares(a, Eigen::Vector3d(1.0, 1.0, 1.0)));
 }
 
 }  // namespace
