@@ -104,17 +104,6 @@ Fault find_clipped(Samples samples) {
   return std::nullopt;
 }
 
-// Smallest step between values that occur.
-double resolution_of(Samples samples) {
-  std::vector<double> sorted(samples.begin(), samples.end());
-  std::sort(sorted.begin(), sorted.end());
-  double step = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 1; i < sorted.size(); ++i) {
-    if (sorted[i] > sorted[i - 1]) step = std::min(step, sorted[i] - sorted[i - 1]);
-  }
-  return step;
-}
-
 // Whether within two steps of the resolution the signal comes and goes, as where it turns, or as
 // many samples as the run has stay before or behind it, as in silence.
 bool is_signal(Samples samples, const Run& run) {
@@ -244,6 +233,16 @@ double white_noise_rms(std::span<const double> samples) {
   std::vector<double> power;
   for (std::size_t k = low; k <= high; ++k) power.push_back(std::norm(spectrum[k]));
   return std::sqrt(quantile(std::move(power), 0.5) / std::numbers::ln2);
+}
+
+double resolution_of(std::span<const double> samples) {
+  std::vector<double> sorted(samples.begin(), samples.end());
+  std::sort(sorted.begin(), sorted.end());
+  double step = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 1; i < sorted.size(); ++i) {
+    if (sorted[i] > sorted[i - 1]) step = std::min(step, sorted[i] - sorted[i - 1]);
+  }
+  return step;
 }
 
 std::optional<SampleFault> find_fault(std::span<const double> samples) {

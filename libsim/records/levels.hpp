@@ -66,6 +66,9 @@ void for_each_run(std::span<const double> samples, Visit visit) {
   }
 }
 
+/// Smallest step between values that occur; infinite where all are equal.
+double resolution_of(std::span<const double> samples);
+
 // What the samples of one channel tell against it, whatever was recorded.
 
 /// Samples that no sensor of a vibration has read.

@@ -233,6 +233,7 @@ Fitted fit_of(const FitModesOptions& options, const StudyContext& context) {
   for (const StructureRecordOptions& strike : options.strikes()) {
     loaded.push_back(load_structure_record(strike, context.folder, context.stop));
     context.throw_if_interrupted();
+    require_whole_blow(loaded.back().record, strike.file);
     for (const std::string& text : loaded.back().warnings) {
       if (std::ranges::count(fitted.warnings, text) == 0) fitted.warnings.push_back(text);
     }

@@ -8,7 +8,9 @@
 
 #include "libsim/base/units.hpp"
 #include "libsim/records/formats.hpp"
+#include "libsim/records/levels.hpp"
 #include "libsim/records/record_keys.hpp"
+#include "libsim/signal/statistics.hpp"
 
 namespace modcal {
 namespace {
@@ -229,6 +231,35 @@ LoadedStructureRecord load_structure_record(const StructureRecordOptions& option
   take_window_out(options.window, first, loaded.record);
   remove_level(options, loaded);
   return loaded;
+}
+
+void require_whole_blow(const StructureRecord& record, const std::string& file) {
+  if (record.force.empty()) return;
+  const std::span<const double> force = record.force;
+  const auto smaller = [](double a, double b) { return std::abs(a) < std::abs(b); };
+  const auto largest = std::ranges::max_element(force, smaller);
+  const double peak = std::abs(*largest);
+  // A tenth of the largest, and no noise.
+  std::vector<double> sizes(force.begin(), force.end());
+  for (double& size : sizes) size = std::abs(size);
+  const double begun = std::max(0.1 * peak, 10.0 * quantile(sizes, 0.5));
+  MODCAL_REQUIRE(!(std::abs(force.front()) > begun),
+                 "{}: the force begins with {:.3g} N, its largest is {:.3g} N: the record begins "
+                 "within the blow, and what moved before is missing; record again with a longer "
+                 "time before the trigger",
+                 file, force.front(), peak);
+  // A round top of which n samples are equal has fallen by at most four steps of the resolution one
+  // sample farther, n = 3, and rounding adds one.
+  auto first = largest, end = largest;
+  while (first != force.begin() && *(first - 1) == *largest) --first;
+  while (end != force.end() && *end == *largest) ++end;
+  if (end - first < 3 || first == force.begin() || end == force.end()) return;
+  const double fall = peak - std::max(std::abs(*(first - 1)), std::abs(*end));
+  MODCAL_REQUIRE(
+      !(fall > 6.0 * resolution_of(force)),
+      "{}: {} samples of the force from {} on are {:.6g} N, its largest: it is clipped, "
+      "and all constants would be too large; record again with less gain, or strike less",
+      file, end - first, first - force.begin(), *largest);
 }
 
 }  // namespace modcal

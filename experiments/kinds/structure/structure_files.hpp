@@ -89,6 +89,11 @@ LoadedStructureRecord load_structure_record(const StructureRecordOptions& option
                                             const std::filesystem::path& folder,
                                             const StopToken& stop = {});
 
+/// Throws InvalidInput where the force of a strike begins with a tenth of its largest or more, or
+/// is clipped: modes would have constants that are too large by the part of the blow that is
+/// missing.
+void require_whole_blow(const StructureRecord& record, const std::string& file);
+
 /// Modes and sensors as YAML that reads back to the same values.
 std::string table_text(const StructureTable& table);
 /// Throws InvalidInput with all mistakes of the file, each at its place.

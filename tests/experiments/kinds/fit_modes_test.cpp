@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
+#include <random>
 
 #include "experiments/kinds/structure/structure_files.hpp"
 #include "tests/experiments/kinds/structure_config.hpp"
@@ -137,6 +139,41 @@ TEST(FitModes, RefusesAForceThatIsNotThatOfTheStrike) {
       run("fit_plate.yaml", {"record.force.channel=a1", "record.force.calibration=1",
                              "record.responses=[{channel: a2}]"});
   EXPECT_EQ(result.status, report::Status::kFailed);
+}
+
+// A half-sine of 2 ms with noise of .02 N, in steps of 1/32768 of 100 N.
+class ForceOfABlow : public testing::Test {
+ protected:
+  static StructureRecord blow(double highest, std::size_t first) {
+    StructureRecord record;
+    std::mt19937_64 random(1);
+    std::normal_distribution<double> noise(0.0, 0.02);
+    for (std::size_t i = 0; i < 400; ++i) {
+      const double phase = std::numbers::pi * (static_cast<double>(i) - 100.0) / 102.4;
+      const bool acts = phase > 0.0 && phase < std::numbers::pi;
+      const double force = (acts ? 100.0 * std::sin(phase) : 0.0) + noise(random);
+      const double step = 100.0 / 32768.0;
+      if (i >= first) record.force.push_back(std::min(highest, step * std::round(force / step)));
+    }
+    return record;
+  }
+  static std::string said(const StructureRecord& record) {
+    return refusal_of([&] { require_whole_blow(record, "blow.csv"); });
+  }
+};
+
+TEST_F(ForceOfABlow, MayBeRoundAndBeginAtRest) {
+  require_whole_blow(blow(1e3, 0), "blow.csv");
+  require_whole_blow(blow(1e3, 102), "blow.csv");  // sin(π 2/102.4) = .06 of its largest
+}
+
+TEST_F(ForceOfABlow, IsRefusedClipped) {
+  EXPECT_THAT(said(blow(99.0, 0)), HasSubstr("samples of the force from 147 on are 99 N"));
+  EXPECT_THAT(said(blow(50.0, 0)), HasSubstr("it is clipped"));
+}
+
+TEST_F(ForceOfABlow, IsRefusedWhereItHasBegun) {
+  EXPECT_THAT(said(blow(1e3, 120)), HasSubstr("the record begins within the blow"));
 }
 
 class ModesOfAUniversalFile : public FolderTest {};
