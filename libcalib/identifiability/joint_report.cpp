@@ -1,5 +1,6 @@
 #include "libcalib/identifiability/joint_report.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <string>
@@ -160,6 +161,39 @@ Eigen::MatrixXd covariance_of_causes(std::span<const ContinuationResult> single,
   }
   for (const auto& [cause, change] : changes) covariance += change * change.transpose();
   return covariance;
+}
+
+namespace {
+
+TuningDifference difference(const ContinuationResult& first, const ContinuationResult& other) {
+  double sum = 0.0, weights = 0.0;
+  for (std::size_t n = 0; n < std::min(first.modes.size(), other.modes.size()); ++n) {
+    const ModeVerdict &mine = first.modes[n], &its = other.modes[n];
+    if (mine.source != ModeSource::kIdentified || its.source != ModeSource::kIdentified) continue;
+    const double deviation = std::hypot(mine.data_deviation, its.data_deviation);
+    if (!(deviation > 0.0)) continue;
+    const double weight = 1.0 / (deviation * deviation);
+    sum += weight * std::log(its.frequency / mine.frequency);
+    weights += weight;
+  }
+  return {.relative = weights > 0.0 ? sum / weights : 0.0,
+          .deviation = weights > 0.0 ? 1.0 / std::sqrt(weights) : 1.0};
+}
+
+}  // namespace
+
+std::optional<TuningDifference> tuned_apart(const std::vector<ContinuationResult>& single) {
+  std::optional<TuningDifference> farthest;
+  double most = 3.0;
+  for (std::size_t r = 1; r < single.size(); ++r) {
+    TuningDifference found = difference(single.front(), single[r]);
+    found.stroke = r;
+    const double deviations = std::abs(found.relative) / found.deviation;
+    if (!(deviations > most)) continue;
+    most = deviations;
+    farthest = found;
+  }
+  return farthest;
 }
 
 }  // namespace modcal

@@ -1,7 +1,9 @@
 // What a fit of one record or several says of the string, of each record and of every mode.
 #pragma once
 
+#include <optional>
 #include <span>
+#include <vector>
 
 #include "libcalib/identifiability/continuation_result.hpp"
 #include "libcalib/identifiability/law_followers.hpp"
@@ -47,5 +49,16 @@ LawEstimate law_estimate(const RecordFit& record);
 /// change in the fit of all: of what records share the mean of their changes.
 Eigen::MatrixXd covariance_of_causes(std::span<const ContinuationResult> single,
                                      const AllRecords& all);
+
+/// How much higher a stroke is tuned than the first.
+struct TuningDifference {
+  std::size_t stroke = 0;  ///< from 0
+  double relative = 0.0;   ///< mean of ln f_n/f_n(first) over the modes that both identify
+  double deviation = 0.0;  ///< of it
+};
+
+/// The farthest apart in deviations of strokes that were fitted by themselves, where it is by more
+/// than chance, 3 of its deviations; each mode counts by what the data tell of it in both.
+std::optional<TuningDifference> tuned_apart(const std::vector<ContinuationResult>& single);
 
 }  // namespace modcal

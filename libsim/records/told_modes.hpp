@@ -19,7 +19,7 @@ struct ToldModes {
 /// 1.5 times the power of the noise in either reaction, but the first ten in any case, and
 /// sixty at most. The noise
 /// is taken to be white (white_noise_rms()); a record too short to show it tells all modes of the
-/// band. A mode too many costs time, one too few is held by the modes above (`remainder: law`).
+/// band. One too few is held by the modes above (`remainder: law`).
 /// Throws InvalidInput where fewer than two modes lie in the band.
 ToldModes told_modes(const StringModel& string, const RecordedSignals& record);
 

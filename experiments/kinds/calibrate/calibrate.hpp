@@ -116,6 +116,8 @@ struct ObservedRecords {
   std::vector<Observation> strokes;
   std::vector<CalibrationRecord> plucks;
 };
+/// Throws InvalidInput where one is a copy of another, which would count twice.
+void require_different_strokes(const std::vector<Observation>& strokes);
 /// Throws WrongKey where no stroke tells the string: each was made in its middle.
 void require_told_string(const ObservationOptions& first, std::span<const Observation> strokes);
 /// Simulates or reads them. `outputs`: what the first stroke is simulated with.
@@ -232,6 +234,9 @@ std::string calibration_answer(const CalibrationOutcome& outcome);
 
 /// Adds the search, its parameters with standard deviations, and the verdicts of the fit.
 void add_calibration_summary(const CalibrationOutcome& outcome, StudyResult& result);
+
+/// The task fails, by this reason.
+void reject_calibration(const std::string& reason, StudyResult& result);
 
 /// Warns of bounds that were reached, of blind modes and of a search that failed, which fails the
 /// task.

@@ -3,7 +3,10 @@
 
 #include <fmt/ranges.h>
 
+#include <cmath>
+
 #include "experiments/kinds/calibrate/calibrate.hpp"
+#include "libcalib/identifiability/joint_report.hpp"
 
 namespace modcal {
 namespace {
@@ -231,6 +234,13 @@ std::string contradiction(const CalibrationResult& result) {
     reasons.push_back(fmt::format(
         "the data contradict the priors stated, that of {} most ({:.3g} deviations){}",
         found.priors.farthest, found.priors.deviations, remedy_of_prior(found.priors.farthest)));
+  }
+  if (const auto apart = tuned_apart(found.single)) {
+    reasons.push_back(fmt::format(
+        "stroke {} is tuned {:+.2g} % from the first, {:.3g} deviations of the two fits: the "
+        "string "
+        "changed between them; calibrate each by itself",
+        apart->stroke + 1, 100.0 * apart->relative, std::abs(apart->relative) / apart->deviation));
   }
   const std::string cause = cause_contradiction(found);
   if (!cause.empty()) reasons.push_back(cause);

@@ -88,4 +88,16 @@ std::vector<CalibrationRecord> observe_plucks(const std::vector<PluckRecordOptio
   return records;
 }
 
+void require_different_strokes(const std::vector<Observation>& strokes) {
+  for (std::size_t r = 1; r < strokes.size(); ++r) {
+    for (std::size_t s = 0; s < r; ++s) {
+      const auto &one = strokes[s].reactions[0], &other = strokes[r].reactions[0];
+      MODCAL_REQUIRE(!one || !other || one->samples != other->samples,
+                     "strokes {} and {} have the same samples at x = 0: one is a copy, which tells "
+                     "nothing more; leave it out",
+                     s + 1, r + 1);
+    }
+  }
+}
+
 }  // namespace modcal

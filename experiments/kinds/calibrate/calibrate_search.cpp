@@ -134,6 +134,7 @@ ObservedRecords observe_records(const CalibrateOptions& options, const OutputReq
                     inversion.observation.has_record);
   ObservedRecords observed{further_observations(options, context), {}};
   observed.strokes.insert(observed.strokes.begin(), first);
+  require_different_strokes(observed.strokes);
   require_plucks(options.plucks, inversion.observation, options.calibration);
   observed.plucks = observe_plucks(options.plucks, inversion.observation, inversion.key(), context);
   if (observed.plucks.empty()) require_told_string(inversion.observation, observed.strokes);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <optional>
 
 #include "experiments/kinds/calibrate/calibrate_force.hpp"
 #include "experiments/report/result.hpp"
@@ -38,11 +39,72 @@ void note(StudyResult& result, const std::string& text,
   if (!text.empty()) result.blocks.emplace_back(report::Text{text, kind});
 }
 
+// The highest mode that the data tell, 0 where they tell none; nothing where frequencies were not
+// free.
+std::optional<std::size_t> highest_identified(const CalibrationOutcome& outcome) {
+  const auto& found = outcome.result.continuation;
+  if (!found || !found->frequencies_free) return std::nullopt;
+  std::size_t highest = 0;
+  for (std::size_t i = 0; i < found->modes.size(); ++i) {
+    if (found->modes[i].source == ModeSource::kIdentified) highest = i + 1;
+  }
+  return highest;
+}
+
+ModalBasis first_modes(ModalBasis basis, std::size_t count) {
+  basis.omega.resize(count);
+  basis.zeta.resize(count);
+  basis.mass.resize(count);
+  return basis;
+}
+
+// Twice the highest mode identified, and fifteen in any case. Where the lines of a force fade into
+// noise, modes far above the last that is identified have many places in it: B then ends in one of
+// many minima, whose deviation knows nothing of the others.
+std::size_t modes_told(std::size_t highest) {
+  constexpr std::size_t kAnyCase = 15;
+  return std::max(kAnyCase, 2 * highest);
+}
+
+// With as many modes as the record tells: where it took more at first, once more.
+CalibrationOutcome calibrate_as_told(const CalibrateOptions& options, ObservedRecords& observed,
+                                     const StudyContext& context) {
+  const auto calibrated = [&] {
+    return calibrate_strokes(options, observed.strokes, polling_clock(context), observed.plucks);
+  };
+  CalibrationOutcome outcome = calibrated();
+  const std::size_t taken = observed.strokes.front().basis.size();
+  const auto identified = highest_identified(outcome);
+  const bool is_of_record = !observed.strokes.front().modes_taken.empty();
+  if (!is_of_record || !identified || taken <= modes_told(*identified)) return outcome;
+  const std::size_t told = modes_told(*identified);
+  for (Observation& stroke : observed.strokes) stroke.basis = first_modes(stroke.basis, told);
+  outcome = calibrated();
+  outcome.start += fmt::format(
+      "{}Of {} modes in the record's band none above mode {} is identified: {} are taken.",
+      outcome.start.empty() ? "" : " ", taken, *identified, told);
+  return outcome;
+}
+
+// Of a record of which more modes are stated than it tells by half.
+std::string too_many_modes(const Found& found) {
+  const std::size_t stated = found.measured.basis.size();
+  const bool is_stated = found.measured.truth == nullptr && found.measured.modes_taken.empty();
+  const auto identified = highest_identified(found.outcome);
+  if (!is_stated || !identified || 2 * stated <= 3 * modes_told(*identified)) return {};
+  return fmt::format(
+      "{} modes are stated, and none above mode {} is identified: they have many places in the "
+      "noise, and f0, B and x_c may be those of another minimum; state modes: auto, or {}",
+      stated, *identified, modes_told(*identified));
+}
+
 // What was asked: the verdict, the parameters, the frequencies against their law, the force.
 void add_answer(const CalibrateOptions& options, const InvertOptions& shown, const Found& found,
                 StudyResult& result) {
   add_calibration_summary(found.outcome, result);
   add_calibration_warnings(found.outcome, result);
+  const std::string too_many = too_many_modes(found);
+  if (!too_many.empty()) reject_calibration(too_many, result);
   if (const ContinuationResult* estimate = found.estimate()) {
     note(result, chi2_text(*estimate),
          estimate->fits ? report::Text::Kind::kNote : report::Text::Kind::kFailure);
@@ -134,10 +196,9 @@ StudyResult CalibrateOptions::run(const StudyContext& context) const {
   const InvertOptions shown = inversion.as_read_by(context);
   OutputRequest outputs = truth_outputs(shown.figures, shown.overview);
   if (audio) outputs.velocity = true;
-  const ObservedRecords observed = observe_records(*this, outputs, context);
+  ObservedRecords observed = observe_records(*this, outputs, context);
+  const CalibrationOutcome outcome = calibrate_as_told(*this, observed, context);
   const Observation& measured = observed.strokes.front();
-  const CalibrationOutcome outcome =
-      calibrate_strokes(*this, observed.strokes, polling_clock(context), observed.plucks);
   context.throw_if_interrupted();
   const CalibratedForce force = identify_calibrated(
       *this, measured, outcome, inversion_outputs(shown.figures, shown.wants_all()), context.stop);

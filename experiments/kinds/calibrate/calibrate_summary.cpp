@@ -207,6 +207,13 @@ std::string unknown_values(const ContinuationResult& found) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
+void reject_calibration(const std::string& reason, StudyResult& result) {
+  if (result.answer.empty()) result.answer = reason;
+  result.warn(reason);
+  result.failed_tasks = 1;
+  result.status = report::Status::kFailed;
+}
+
 void add_calibration_warnings(const CalibrationOutcome& outcome, StudyResult& result) {
   std::vector<std::string> bound;
   for (const CalibratedParameter& parameter : outcome.result.parameters) {
@@ -221,12 +228,7 @@ void add_calibration_warnings(const CalibrationOutcome& outcome, StudyResult& re
         "{} cannot be seen from this contact point and {}", fmt::join(outcome.result.blind, ", "),
         outcome.law ? "come from the stiff-string law" : "keep their initial values"));
   }
-  const auto fail = [&result](const std::string& text) {
-    if (result.answer.empty()) result.answer = text;
-    result.warn(text);
-    result.failed_tasks = 1;
-    result.status = report::Status::kFailed;
-  };
+  const auto fail = [&result](const std::string& text) { reject_calibration(text, result); };
   if (const auto& found = outcome.result.continuation) {
     if (!found->right) fail(contradiction(outcome.result));
     if (const auto unknown = unknown_values(*found); !unknown.empty()) {

@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <complex>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <numbers>
+#include <random>
 
 #include "experiments/kinds/calibrate/calibrate.hpp"
 #include "experiments/loader.hpp"
@@ -13,6 +16,7 @@
 #include "libsim/signal/statistics.hpp"
 #include "tests/folder_test.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
+#include "tests/refusal.hpp"
 
 namespace modcal::calibrate_records_test {
 namespace {
@@ -128,6 +132,96 @@ TEST_F(CalibrateRecords, FailByThePriorsWhereTheFitIsNotWrong) {
   EXPECT_THAT(result.summary, testing::HasSubstr("warning: the data contradict the priors stated"));
   EXPECT_THAT(result.summary, testing::Not(testing::HasSubstr("search failed")));
   EXPECT_THAT(result.summary, testing::Not(testing::HasSubstr("FIT IS WRONG")));
+}
+
+// Reactions of the paper's string, 60 modes each stepped exactly for a force that is linear between
+// the samples of a grid eight times as fine; lines of the force, k^(-3/2), whose phases wander.
+std::vector<Signal> lines_of_force(double duration, double sample_rate) {
+  StringModel string = paper_scene().string;
+  string.modes = 60;
+  const ModalBasis basis = make_modal_basis(string);
+  const std::vector<double> shape = basis.shape_at(0.03);
+  constexpr std::size_t kFine = 8, kLines = 30;
+  const auto count = static_cast<std::size_t>(duration * sample_rate);
+  const double step = 1.0 / (static_cast<double>(kFine) * sample_rate);
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  std::vector<double> phases(kLines);
+  std::vector<std::complex<double>> motion(basis.size());
+  Signal left{.quantity = "R1", .unit = "N", .sample_rate = sample_rate}, right = left;
+  right.quantity = "R2";
+  double before = 0.0;
+  for (std::size_t i = 0; i < count * kFine; ++i) {
+    double force = 0.0;
+    for (std::size_t k = 1; k <= kLines; ++k) {
+      phases[k - 1] += 2.0 * std::numbers::pi * 196.4 * static_cast<double>(k) * step +
+                       0.02 * static_cast<double>(k) * std::sqrt(step / 5e-3) * normal(random);
+      force += std::sin(phases[k - 1]) * std::pow(static_cast<double>(k), -1.5);
+    }
+    if (i == 0) phases.assign(kLines, 0.0), force = 0.0;
+    double at_left = 0.0, at_right = 0.0;
+    for (std::size_t n = 0; n < basis.size(); ++n) {
+      // q = Im z/ω_d of z' = λz + f φ/m, λ = −ζω + iω_d.
+      const double damped = basis.omega[n] * std::sqrt(1.0 - basis.zeta[n] * basis.zeta[n]);
+      const std::complex<double> pole(-basis.zeta[n] * basis.omega[n], damped);
+      const std::complex<double> turn = std::exp(pole * step), first = (turn - 1.0) / pole;
+      const std::complex<double> slope = (first - step) / (pole * step);
+      motion[n] =
+          turn * motion[n] + shape[n] / basis.mass[n] * (before * (first - slope) + force * slope);
+      const double pull = basis.tension * std::numbers::pi / basis.length *
+                          static_cast<double>(n + 1) * motion[n].imag() / damped;
+      at_left -= pull;
+      at_right += n % 2 == 0 ? -pull : pull;
+    }
+    before = force;
+    if (i % kFine != 0) continue;
+    left.samples.push_back(at_left);
+    right.samples.push_back(at_right);
+  }
+  for (Signal* signal : {&left, &right}) {
+    const double noise = 0.1 * standard_deviation(signal->samples);
+    for (double& x : signal->samples) x += noise * normal(random);
+  }
+  return {left, right};
+}
+
+// Half a second of lines that fade into noise tells about ten modes of the forty in whose band
+// there is power.
+TEST_F(CalibrateRecords, TakeNoMoreModesThanAreTold) {
+  write("stroke.csv", lines_of_force(0.5, 44100.0));
+  const auto calibrated = [&](const std::string& modes) {
+    const LoadedExperiment loaded = load_experiment(parse_yaml(
+        "kind: calibrate\nrecord: {file: stroke.csv, left: {channel: R1}, right: {channel: R2}}\n"
+        "string: {length: 0.33 m, linear_density: 3.1e-3 kg/m, fundamental: 196.5 Hz, modes: " +
+            modes + "}\nbow: {position: 30 mm}\n",
+        (folder() / "experiment.yaml").string()));
+    EXPECT_EQ(format_mistakes(loaded.document, loaded.mistakes), "");
+    return loaded.experiment->run(context());
+  };
+  const StudyResult taken = calibrated("auto");
+  EXPECT_EQ(taken.status, report::Status::kOk) << taken.answer;
+  EXPECT_THAT(taken.summary, testing::HasSubstr("modes in the record's band none above mode"));
+  const json found = calibration_of(taken);
+  EXPECT_LT(found["modes"].size(), 40u);
+  for (const json& parameter : found["parameters"]) {
+    if (parameter["name"] == "f0") {
+      EXPECT_NEAR(parameter["final"].get<double>(), 196.0, 4.0 * parameter["sd"].get<double>());
+    }
+  }
+  const StudyResult stated = calibrated("60");
+  EXPECT_EQ(stated.status, report::Status::kFailed);
+  EXPECT_THAT(stated.summary, testing::HasSubstr("60 modes are stated, and none above mode"));
+}
+
+// One would count twice.
+TEST_F(CalibrateRecords, RefuseACopyOfAStroke) {
+  const Observation observed = stroke(simulated(0.1, 51200.0));
+  const std::vector<Signal> signals = {*observed.reaction(End::kLeft),
+                                       *observed.reaction(End::kRight), *observed.reference};
+  write("stroke.csv", signals);
+  write("again.csv", signals);
+  EXPECT_THAT(refusal_of([&] { run("", "further_strokes: {records: [again.csv]}\n"); }),
+              testing::HasSubstr("strokes 1 and 2 have the same samples"));
 }
 
 TEST_F(CalibrateRecords, SayWhereTheNoiseStatedIsTooMuch) {

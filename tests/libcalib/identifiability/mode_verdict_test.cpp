@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "libcalib/identifiability/joint_report.hpp"
 #include "tests/libsim/dynamics/paper_case.hpp"
 
 namespace modcal::mode_verdict_test {
@@ -143,6 +144,35 @@ TEST(ModesOutOfBand, AreNotSeenWhereOthersStandAboveThem) {
     EXPECT_EQ(sight.seen[n], left) << n;
     EXPECT_EQ(sight.error[n], left) << n;
   }
+}
+
+// Two strokes of which mode n is told to n 1e-4: the mean has a deviation of √2 1e-4/√Σ 1/n².
+ContinuationResult stroke_of(double shift) {
+  ContinuationResult fit;
+  for (int n = 1; n <= 3; ++n) {
+    fit.modes.push_back({.frequency = n * 196.0 * std::exp(shift),
+                         .data_deviation = 1e-4 * n,
+                         .source = ModeSource::kIdentified});
+  }
+  return fit;
+}
+
+TEST(TunedApart, TellsStrokesOfAnotherTuning) {
+  const double deviation = std::sqrt(2.0) * 1e-4 / std::sqrt(1.0 + 1.0 / 4.0 + 1.0 / 9.0);
+  const double far = 3.5 * deviation;
+  const auto apart = tuned_apart({stroke_of(0.0), stroke_of(-2.9 * deviation), stroke_of(far)});
+  ASSERT_TRUE(apart);
+  EXPECT_EQ(apart->stroke, 2u);
+  EXPECT_NEAR(apart->relative, far, 1e-12);
+  EXPECT_NEAR(apart->deviation, deviation, 1e-12);
+}
+
+TEST(TunedApart, LeavesWhatChanceMakesAndModesThatOneDoesNotTell) {
+  EXPECT_FALSE(tuned_apart({stroke_of(0.0), stroke_of(2e-4)}));
+  EXPECT_FALSE(tuned_apart({stroke_of(0.0)}));
+  ContinuationResult other = stroke_of(1e-2);
+  for (ModeVerdict& mode : other.modes) mode.source = ModeSource::kLaw;
+  EXPECT_FALSE(tuned_apart({stroke_of(0.0), other}));
 }
 
 }  // namespace
