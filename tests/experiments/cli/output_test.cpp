@@ -109,10 +109,11 @@ TEST_F(Output, NoticesThatAnotherShardsJournalIsGone) {
 }
 
 TEST_F(Output, WritesWhatItFoundWhereTheFolderOfASingleRunIsGone) {
-  const Outcome outcome = shell("'" MODCAL_PROGRAM
-                                "' run small.yaml --out a --set scene.duration='300 s' & "
-                                "while [ ! -e a/provenance.json ]; do sleep 0.01; done; "
-                                "mv a b; wait $!");
+  const Outcome outcome =
+      shell("'" MODCAL_PROGRAM
+            "' run small.yaml --out a --set scene.duration='300 s' & "
+            "until [ -e a/provenance.json -a -e a/resolved.yaml ]; do sleep 0.01; done; "
+            "mv a b; wait $!");
   EXPECT_EQ(outcome.code, kOutputLost);
   EXPECT_THAT(outcome.err, HasSubstr("the folder of the results was deleted, moved or replaced"));
   EXPECT_TRUE(std::filesystem::exists(folder() / "a/report.html"));
