@@ -10,8 +10,7 @@ namespace modcal {
 
 /// Density of the noise over frequency, relative to white noise of the residual's variance within
 /// the band: the median over 64 bins to either side of the power of the residual's second
-/// half, where decays have gone, and at least 1, times
-/// the record's rounding.
+/// half, where decays have gone, and at least 1, times the record's rounding.
 class ResidualLevels {
  public:
   ResidualLevels(const DecayRecord& record, const DampedSinusoidFit& fit, double in_band_variance);

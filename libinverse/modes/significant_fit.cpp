@@ -173,7 +173,11 @@ class Search {
       if (changed[k]) continue;
       const SecondPole two = fit_as_two(fit, k, record_.sample_rate, reach_, least, options_);
       spent_ += two.work;
-      if (two.poles.empty()) continue;
+      // A neighbor that is in two poles already waits for the next round, or it would be there
+      // twice.
+      const bool is_free =
+          std::ranges::none_of(two.replaced, [&](std::size_t i) { return changed[i]; });
+      if (two.poles.empty() || !is_free) continue;
       all.insert(all.end(), two.poles.begin(), two.poles.end());
       for (const std::size_t i : two.replaced) changed[i] = true;
       if (first.empty()) first = with_others(two.poles);

@@ -66,23 +66,34 @@ std::size_t modes_told(std::size_t highest) {
   return std::max(kAnyCase, 2 * highest);
 }
 
-// With as many modes as the record tells: where it took more at first, once more.
-CalibrationOutcome calibrate_as_told(const CalibrateOptions& options, ObservedRecords& observed,
+// With as many modes as the record tells: where it took more at first, once more, by what is left
+// of the budget.
+CalibrationOutcome calibrate_as_told(CalibrateOptions options, ObservedRecords& observed,
                                      const StudyContext& context) {
   const auto calibrated = [&] {
     return calibrate_strokes(options, observed.strokes, polling_clock(context), observed.plucks);
   };
-  CalibrationOutcome outcome = calibrated();
+  CalibrationOutcome first = calibrated();
   const std::size_t taken = observed.strokes.front().basis.size();
-  const auto identified = highest_identified(outcome);
+  const auto identified = highest_identified(first);
   const bool is_of_record = !observed.strokes.front().modes_taken.empty();
-  if (!is_of_record || !identified || taken <= modes_told(*identified)) return outcome;
+  if (!is_of_record || !identified || taken <= modes_told(*identified)) return first;
+  const OptimizationResult& spent = first.result.search;
+  Budget& budget = options.calibration.budget;
+  budget.evaluations -= static_cast<std::int64_t>(spent.evaluations);
+  budget.seconds -= spent.seconds;
+  if (budget.evaluations < 1 || budget.seconds <= 0.0) return first;
   const std::size_t told = modes_told(*identified);
-  for (Observation& stroke : observed.strokes) stroke.basis = first_modes(stroke.basis, told);
-  outcome = calibrated();
-  outcome.start += fmt::format(
-      "{}Of {} modes in the record's band none above mode {} is identified: {} are taken.",
-      outcome.start.empty() ? "" : " ", taken, *identified, told);
+  for (Observation& stroke : observed.strokes) {
+    stroke.basis = first_modes(stroke.basis, told);
+    stroke.modes_taken = fmt::format(
+        "{} modes taken (modes: auto): none above mode {} is identified of the {} in the band in "
+        "which the record stands out of the noise",
+        told, *identified, taken);
+  }
+  CalibrationOutcome outcome = calibrated();
+  outcome.result.search.evaluations += spent.evaluations;
+  outcome.result.search.seconds += spent.seconds;
   return outcome;
 }
 

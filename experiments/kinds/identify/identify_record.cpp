@@ -214,11 +214,11 @@ std::vector<FileRead> IdentifyOptions::files_read() const {
   if (!has_record) return {};
   // The record, its decay and what is left of the band, each filtered and whitened.
   FileRead file = file_read(record, "record.file", 12.0);
-  // A fit has eleven matrices of what is left of the band, two columns for every pole: two for each
-  // mode of the string, and those that are added.
+  // A fit has the columns of a state, of a trial and of their sums for what is left of the band,
+  // two for every pole: two poles for each mode of the string, and those that are added.
   const double poles = 2.0 * identification.highest_frequency / fundamental + kPolesAdded;
   const bool is_whole = file.numbers_per_sample > 0.0;
-  file.numbers_per_second = is_whole ? 22.0 * poles * 2.6 * identification.highest_frequency : 0.0;
+  file.numbers_per_second = is_whole ? 6.0 * poles * 2.6 * identification.highest_frequency : 0.0;
   return {file};
 }
 

@@ -200,7 +200,7 @@ TEST_F(CalibrateRecords, TakeNoMoreModesThanAreTold) {
   };
   const StudyResult taken = calibrated("auto");
   EXPECT_EQ(taken.status, report::Status::kOk) << taken.answer;
-  EXPECT_THAT(taken.summary, testing::HasSubstr("modes in the record's band none above mode"));
+  EXPECT_THAT(taken.summary, testing::HasSubstr("modes taken (modes: auto): none above mode"));
   const json found = calibration_of(taken);
   EXPECT_LT(found["modes"].size(), 40u);
   for (const json& parameter : found["parameters"]) {
