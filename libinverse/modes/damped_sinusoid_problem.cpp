@@ -102,7 +102,7 @@ DampedSinusoidProblem::State DampedSinusoidProblem::at(const VectorXd& poles) co
     fill_exponential(exponents.back(), state.basis.middleCols(2 * k, 2));
   }
   exponents.insert(exponents.end(), fixed_exponents_.begin(), fixed_exponents_.end());
-  state.products = moments(exponents, exponents, static_cast<std::size_t>(samples()));
+  state.products = moments(exponents, static_cast<std::size_t>(samples()));
   MatrixXd gram(products_size() + 2 * lines_, products_size() + 2 * lines_);
   gram.leftCols(products_size()) = with_times(state, 0, 0, products_size());
   gram.rightCols(2 * lines_) = with_times(state, 1, products_size() - 2 * lines_, 2 * lines_);

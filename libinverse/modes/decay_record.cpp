@@ -6,7 +6,6 @@
 
 #include "libinverse/modes/tuning.hpp"
 #include "libsim/base/error.hpp"
-#include "libsim/signal/fft.hpp"
 
 namespace modcal {
 namespace {
@@ -62,19 +61,12 @@ void DecayRecord::require_valid() const {
   }
 }
 
-double rounding_level(std::span<const double> samples, double step) {
+double rounding_level(double noise_rms, double step) {
   if (!(step > 0.0)) return 1.0;
-  const std::vector<Complex> spectrum = hann_spectrum(samples, 0, samples.size());
-  std::vector<double> power;
-  for (std::size_t k = spectrum.size() / 2; k < spectrum.size(); ++k) {
-    power.push_back(std::norm(spectrum[k]));
-  }
-  const auto middle = power.begin() + static_cast<std::ptrdiff_t>(power.size() / 2);
-  std::ranges::nth_element(power, middle);
-  // The median of an exponential distribution is ln 2 of its mean, the variance of the noise.
-  const double steps = *middle / std::numbers::ln2 / (step * step);
-  const double noise = std::max(0.0, steps - 1.0 / 12.0);
-  return 1.0 + kRoundingExcess * std::exp(-2.0 * std::numbers::pi * std::numbers::pi * noise);
+  const double steps = noise_rms / step;
+  // A record too short to tell its noise (NaN) is taken to have none.
+  const double covered = steps * steps > 1.0 / 12.0 ? steps * steps - 1.0 / 12.0 : 0.0;
+  return 1.0 + kRoundingExcess * std::exp(-2.0 * std::numbers::pi * std::numbers::pi * covered);
 }
 
 DecayPole DecayPole::of_exponent(std::complex<double> exponent) {

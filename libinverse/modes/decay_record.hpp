@@ -4,7 +4,6 @@
 #include <complex>
 #include <cstddef>
 #include <limits>
-#include <span>
 #include <vector>
 
 namespace modcal {
@@ -22,12 +21,11 @@ struct DecayRecord {
   void require_valid() const;
 };
 
-/// Variance at a mode's frequency of what has been rounded off samples that are multiples of a
-/// step, over that of white noise of its power: 1 + kRoundingExcess exp(−2π²σ²/q²), σ the noise
-/// that was rounded, told by the upper half of the spectrum. What the noise does not cover follows
-/// the signal (Widrow and Kollár, 2008: the exponential is the characteristic function of the noise
-/// at 1/q).
-double rounding_level(std::span<const double> samples, double step);
+/// Variance at a mode's frequency of what has been rounded off samples that are multiples of a step
+/// q, over that of white noise of its power: 1 + kRoundingExcess exp(−2π²σ²/q²), where noise of rms
+/// √(σ² + q²/12) was read. What the noise does not cover follows the signal (Widrow and Kollár,
+/// 2008: the exponential is the characteristic function of the noise at 1/q). step: 0 for none.
+double rounding_level(double noise_rms, double step);
 
 /// Pole λ = −ζω + iω√(1 − ζ²) of a free decay.
 struct DecayPole {

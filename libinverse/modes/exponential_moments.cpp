@@ -50,22 +50,24 @@ std::array<std::complex<double>, 5> exponential_sums(std::complex<double> x, std
   return sums;
 }
 
-std::array<Eigen::MatrixXd, 5> moments(std::span<const std::complex<double>> a,
-                                       std::span<const std::complex<double>> b, std::size_t count) {
+std::array<Eigen::MatrixXd, 5> moments(std::span<const std::complex<double>> exponents,
+                                       std::size_t count) {
+  const auto size = static_cast<Eigen::Index>(exponents.size());
   std::array<Eigen::MatrixXd, 5> result;
-  for (Eigen::MatrixXd& moment : result) {
-    moment.resize(2 * static_cast<Eigen::Index>(a.size()), 2 * static_cast<Eigen::Index>(b.size()));
-  }
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    for (std::size_t j = 0; j < b.size(); ++j) {
+  result.fill(Eigen::MatrixXd(2 * size, 2 * size));
+  for (Eigen::Index i = 0; i < size; ++i) {
+    for (Eigen::Index j = 0; j <= i; ++j) {
+      const Complex a = exponents[static_cast<std::size_t>(i)];
+      const Complex b = exponents[static_cast<std::size_t>(j)];
       // exp(a) exp(b) = cc − ss + i(sc + cs) and exp(a) exp(b̄) = cc + ss + i(sc − cs).
-      const Sums plus = exponential_sums(a[i] + b[j], count);
-      const Sums minus = exponential_sums(a[i] + std::conj(b[j]), count);
+      const Sums plus = exponential_sums(a + b, count);
+      const Sums minus = exponential_sums(a + std::conj(b), count);
       for (std::size_t p = 0; p < result.size(); ++p) {
         const Complex sum = 0.5 * (minus[p] + plus[p]), difference = 0.5 * (minus[p] - plus[p]);
-        result[p].block<2, 2>(2 * static_cast<Eigen::Index>(i), 2 * static_cast<Eigen::Index>(j))
-            << sum.real(),
-            -difference.imag(), sum.imag(), difference.real();
+        Eigen::Matrix2d block;
+        block << sum.real(), -difference.imag(), sum.imag(), difference.real();
+        result[p].block<2, 2>(2 * i, 2 * j) = block;
+        result[p].block<2, 2>(2 * j, 2 * i) = block.transpose();
       }
     }
   }

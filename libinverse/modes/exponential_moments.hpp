@@ -13,9 +13,9 @@ namespace modcal {
 /// by doubling of n, of which every step adds two sums of one length.
 std::array<std::complex<double>, 5> exponential_sums(std::complex<double> x, std::size_t count);
 
-/// Inner products over m < n of (m/n)^p times the columns of two lists of exponents x per sample,
-/// Re exp(xm) and Im exp(xm) in turn: 2a × 2b matrices for p = 0 … 4.
-std::array<Eigen::MatrixXd, 5> moments(std::span<const std::complex<double>> a,
-                                       std::span<const std::complex<double>> b, std::size_t count);
+/// Inner products over m < n of (m/n)^p times the columns of exponents x per sample, Re exp(xm) and
+/// Im exp(xm) in turn: symmetric matrices for p = 0 … 4.
+std::array<Eigen::MatrixXd, 5> moments(std::span<const std::complex<double>> exponents,
+                                       std::size_t count);
 
 }  // namespace modcal

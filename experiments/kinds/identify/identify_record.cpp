@@ -9,6 +9,7 @@
 #include "experiments/kinds/lint.hpp"
 #include "libinverse/modes/tuning.hpp"
 #include "libsim/base/error.hpp"
+#include "libsim/records/levels.hpp"
 
 namespace modcal {
 namespace {
@@ -29,18 +30,12 @@ std::size_t liveliest(const std::vector<const std::vector<double>*>& channels, s
 }
 
 // The step of a signal all of whose values are multiples of it; 0: there is none.
-double step_of(std::vector<double> samples) {
-  std::ranges::sort(samples);
-  samples.erase(std::unique(samples.begin(), samples.end()), samples.end());
-  if (samples.size() < 2) return 0.0;
-  double step = samples.back() - samples.front();
-  for (std::size_t j = 1; j < samples.size(); ++j) {
-    step = std::min(step, samples[j] - samples[j - 1]);
-  }
-  const bool all = std::ranges::all_of(samples, [&](double x) {
-    const double place = (x - samples.front()) / step;
-    return std::abs(place - std::round(place)) < 0.1;
-  });
+double step_of(const std::vector<double>& samples) {
+  const double step = resolution_of(samples);
+  const bool all = std::isfinite(step) && std::ranges::all_of(samples, [&](double x) {
+                     const double place = (x - samples.front()) / step;
+                     return std::abs(place - std::round(place)) < 0.1;
+                   });
   return all ? step : 0.0;
 }
 
@@ -107,7 +102,7 @@ PluckedRecord load_pluck(const RecordOptions& options, const std::filesystem::pa
     const double mean = std::accumulate(samples.begin(), samples.end(), 0.0) /
                         std::max(1.0, static_cast<double>(samples.size()));
     for (double& x : samples) x -= mean;
-    result.decay.rounding.push_back(rounding_level(samples, step_of(samples)));
+    result.decay.rounding.push_back(rounding_level(white_noise_rms(samples), step_of(samples)));
   }
   return result;
 }

@@ -3,9 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
-#include <random>
-#include <vector>
 
 #include "libinverse/modes/tuning.hpp"
 
@@ -40,24 +39,15 @@ TEST(Decimation, PassesItsBandAndStopsWhatIsAboveHalfTheNewRate) {
   }
 }
 
-// What half a step of noise covers is white to exp(−π²/2) of it, a sine without noise is not. The
-// median of 2^14 powers tells the level to 1/(√2^14 ln 2) = 1.1 %, σ²/q² to .004, the exponent to
-// .08 and .022 to .002.
+// Of noise of σ what is rounded adds q²/12; half a step leaves exp(−π²/2) of the excess.
 TEST(RoundingLevel, IsOneWhereNoiseCoversTheSteps) {
   constexpr double kStep = 0.1;
-  std::mt19937_64 random(1);
-  std::normal_distribution<double> normal;
-  std::vector<double> covered, bare;
-  for (int i = 0; i < (1 << 16); ++i) {
-    const double sine = std::sin(0.02 * i);
-    const double noise = 0.5 * kStep * normal(random);
-    covered.push_back(kStep * std::round((sine + noise) / kStep));
-    bare.push_back(kStep * std::round(sine / kStep));
-  }
+  const double read = kStep * std::sqrt(0.25 + 1.0 / 12.0);
   const double excess = std::exp(-0.5 * std::numbers::pi * std::numbers::pi);
-  EXPECT_NEAR(rounding_level(covered, kStep), 1.0 + kRoundingExcess * excess, 0.018);
-  EXPECT_EQ(rounding_level(bare, kStep), 1.0 + kRoundingExcess);
-  EXPECT_EQ(rounding_level(bare, 0.0), 1.0);
+  EXPECT_NEAR(rounding_level(read, kStep), 1.0 + kRoundingExcess * excess, 1e-12);
+  EXPECT_EQ(rounding_level(0.2 * kStep, kStep), 1.0 + kRoundingExcess);
+  EXPECT_EQ(rounding_level(std::numeric_limits<double>::quiet_NaN(), kStep), 1.0 + kRoundingExcess);
+  EXPECT_EQ(rounding_level(0.01, 0.0), 1.0);
 }
 
 }  // namespace

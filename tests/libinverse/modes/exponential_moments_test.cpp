@@ -33,7 +33,7 @@ TEST(ExponentialSums, AreThoseOfTheirTerms) {
 
 TEST(Moments, AreInnerProductsOfTheColumns) {
   static constexpr Eigen::Index kCount = 300;
-  const std::vector<Complex> a = {{-0.01, 0.4}, {0.0, 0.0}}, b = {{-0.02, 1.1}, {-1e-4, 0.41}};
+  const std::vector<Complex> all = {{-0.01, 0.4}, {0.0, 0.0}, {-0.02, 1.1}, {-1e-4, 0.41}};
   const auto columns = [](const std::vector<Complex>& exponents) {
     Eigen::MatrixXd result(kCount, 2 * static_cast<Eigen::Index>(exponents.size()));
     for (Eigen::Index m = 0; m < kCount; ++m) {
@@ -45,13 +45,13 @@ TEST(Moments, AreInnerProductsOfTheColumns) {
     }
     return result;
   };
-  const auto found = moments(a, b, kCount);
+  const auto found = moments(all, kCount);
   for (std::size_t p = 0; p < found.size(); ++p) {
     Eigen::VectorXd weights(kCount);
     for (Eigen::Index m = 0; m < kCount; ++m) {
       weights[m] = std::pow(static_cast<double>(m) / kCount, static_cast<double>(p));
     }
-    const Eigen::MatrixXd expected = columns(a).transpose() * weights.asDiagonal() * columns(b);
+    const Eigen::MatrixXd expected = columns(all).transpose() * weights.asDiagonal() * columns(all);
     EXPECT_LT((found[p] - expected).cwiseAbs().maxCoeff(), 1e-11) << p;
   }
 }
