@@ -88,6 +88,7 @@ MatrixXd DampedSinusoidProblem::along(const State& state, const MatrixXd& signal
 MatrixXd DampedSinusoidProblem::with_times(const State& state, std::size_t power, Index first,
                                            Index count) const {
   MatrixXd result(products_size() + 2 * lines_, count);
+  if (count == 0) return result;  // has no address that a block of it could begin at
   result.topRows(products_size()) = state.products[power].middleCols(first, count);
   result.bottomRows(2 * lines_) =
       state.products[power + 1].bottomRows(2 * lines_).middleCols(first, count);
