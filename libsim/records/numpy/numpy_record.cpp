@@ -62,11 +62,12 @@ class Archive {
 
 using Member = std::unique_ptr<zip_file_t, decltype(&zip_fclose)>;
 
-NpyBytes bytes_of_member(const Path& path, std::uint64_t index, const std::string& place) {
+NpyBytes bytes_of_member(const Path& path, std::uint64_t index, std::uint64_t all,
+                         const std::string& place) {
   const auto archive = std::make_shared<Archive>(path);
   zip_file_t* const opened = zip_fopen_index(archive->zip(), index, 0);
   MODCAL_REQUIRE(opened != nullptr, "{}: cannot be read: {}", place, zip_strerror(archive->zip()));
-  return [archive, member = std::make_shared<Member>(opened, &zip_fclose), place,
+  return [archive, member = std::make_shared<Member>(opened, &zip_fclose), place, all,
           at = std::uint64_t{0}](char* bytes, std::size_t size) mutable {
     zip_file_t* const file = member->get();
     const zip_int64_t read = zip_fread(file, bytes, size);
@@ -75,9 +76,9 @@ NpyBytes bytes_of_member(const Path& path, std::uint64_t index, const std::strin
                    zip_file_strerror(file));
     MODCAL_REQUIRE(static_cast<std::uint64_t>(read) == size,
                    "{}: byte {}: it ends within the array", place, at);
-    // Behind the last byte the checksum is compared.
+    // The checksum is compared where a byte behind the last one is asked for.
     char none = 0;
-    if (size > 0 && zip_fread(file, &none, 0) < 0) {
+    if (at == all && zip_fread(file, &none, 1) < 0) {
       throw_invalid_input("{}: {}: the file is damaged", place, zip_file_strerror(file));
     }
   };
@@ -113,7 +114,7 @@ std::shared_ptr<NpyArrays> arrays_of(const Path& path) {
     if (!known || !std::string_view(stat.name).ends_with(".npy")) continue;
     const std::string place = fmt::format("{}: {}", path.string(), utf8_or_latin1(stat.name));
     arrays->add(names_of(stat.name), place, stat.size,
-                [path, i, place] { return bytes_of_member(path, i, place); });
+                [path, i, all = stat.size, place] { return bytes_of_member(path, i, all, place); });
   }
   MODCAL_REQUIRE(!arrays->arrays().empty(), "{}: no array of NumPy stands in this archive",
                  path.string());
