@@ -53,6 +53,12 @@ Fault find_spike(Samples samples) {
   }
   const double width = highest - lowest;
   if (*spike <= highest + width && *spike >= lowest - width) return std::nullopt;
+  // What a sensor reads of a short blow is as high beside its peak; a filter makes one neighbor of
+  // a spike larger than half of it, and the other one smaller.
+  const auto is_high = [&](std::size_t i) {
+    return i < samples.size() && (samples[i] - *middle) / (*spike - *middle) > 0.5;
+  };
+  if (is_high(index - 1) && is_high(index + 1)) return std::nullopt;
   return SampleFault{index, fmt::format("{:.6g} stands alone, all others lie between {:.6g} and "
                                         "{:.6g}: a spike; repair the sample or crop it away",
                                         *spike, lowest, highest)};

@@ -99,6 +99,15 @@ TEST(SampleFaults, ASpikeStandsAlone) {
   EXPECT_EQ(fault_of(samples), "none");
 }
 
+// Three samples of a hammer's blow in an accelerometer.
+TEST(SampleFaults, AShortBlowIsNoSpike) {
+  std::vector<double> samples = sawtooth();
+  samples[6999] = 3.3, samples[7000] = 6.1, samples[7001] = 3.9;
+  EXPECT_EQ(fault_of(samples), "none");
+  samples[7001] = 2.5;
+  EXPECT_THAT(fault_of(samples), HasSubstr("6.1 stands alone"));
+}
+
 TEST(SampleFaults, PeaksThatAreClippedPileUp) {
   for (const int bits : {8, 16, 52}) {
     SCOPED_TRACE(bits);
