@@ -119,6 +119,29 @@ RecordOptions propose(const std::filesystem::path& path, const InspectionOptions
   return record;
 }
 
+// A hammer's force and what it accelerates; or what moves alone.
+std::optional<StructureChannels> structure_of(const std::vector<ChannelInspection>& channels,
+                                              const RecordOptions& record) {
+  constexpr std::pair<const char*, std::string_view> kMotions[] = {
+      {"m/s2", "acceleration"}, {"m/s", "velocity"}, {"m", "displacement"}};
+  StructureChannels found;
+  std::size_t forces = 0, accelerations = 0;
+  for (const ChannelInspection& channel : channels) {
+    accelerations += is_unit_of(channel.unit, "m/s2") ? 1 : 0;
+    if (is_unit_of(channel.unit, "N")) {
+      found.force = channel.name;
+      ++forces;
+    }
+    for (const auto& [unit, kind] : kMotions) {
+      if (is_unit_of(channel.unit, unit)) found.responses.push_back({channel.name, kind});
+    }
+  }
+  // One force beside a displacement may be a string's end.
+  const bool is_string = (record.has_left && record.has_right) || forces > accelerations;
+  if (is_string || forces > 1 || found.responses.empty()) return std::nullopt;
+  return found;
+}
+
 void ask_for_calibrations(InspectionReport& report) {
   const auto ask = [&](bool present, std::string_view role, const RecordedChannelOptions& force) {
     if (!present || std::isnan(force.calibration)) return;
@@ -154,7 +177,11 @@ void list_faults(InspectionReport& report) {
     const RecordOptions& record = report.record;
     const bool is_reaction = (record.has_left && record.left.channel == channel.name) ||
                              (record.has_right && record.right.channel == channel.name);
-    if (!is_reaction || !channel.fault) continue;
+    const bool is_response =
+        report.structure && std::ranges::any_of(report.structure->responses, [&](const auto& own) {
+          return own.channel == channel.name;
+        });
+    if (!(report.structure ? is_response : is_reaction) || !channel.fault) continue;
     report.problems.push_back(fmt::format("{}: channel {}, sample {}: {}", report.file,
                                           channel.name, channel.fault->first, channel.fault->text));
     ++report.problem_count;
@@ -189,9 +216,10 @@ InspectionReport inspect(const std::filesystem::path& path, const InspectionOpti
     report.channels.push_back(inspect_channel(channel));
   }
   report.record = propose(path, options, report.channels);
-  ask_for_calibrations(report);
+  report.structure = structure_of(report.channels, report.record);
+  if (!report.structure) ask_for_calibrations(report);
   list_faults(report);
-  if (report.problem_count == 0) list_copies(recording, report);
+  if (report.problem_count == 0 && !report.structure) list_copies(recording, report);
   return report;
 }
 

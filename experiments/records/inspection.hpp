@@ -29,6 +29,16 @@ struct ChannelInspection {
   std::optional<SampleFault> fault;
 };
 
+/// Who is who in a record of a structure: what the sensors read, and the force of a strike.
+struct StructureChannels {
+  struct Response {
+    std::string channel;
+    std::string_view kind;  ///< "acceleration"
+  };
+  std::vector<Response> responses;
+  std::string force;  ///< empty: no channel is one
+};
+
 struct InspectionReport {
   std::string file;
   std::string format;
@@ -42,6 +52,8 @@ struct InspectionReport {
   std::size_t problem_count;
   std::vector<std::string> warnings;
   RecordOptions record;  ///< a proposal: the channels by their names or their order
+  /// The proposal in its place where channels move and no two are forces.
+  std::optional<StructureChannels> structure = std::nullopt;
 };
 
 /// Reads the file and measures every channel, of a large one the headers alone; errors in its rows
@@ -52,9 +64,9 @@ InspectionReport inspect(const std::filesystem::path& path, const InspectionOpti
 std::string text(const InspectionReport& report);
 /// Numbers that are not known are null.
 nlohmann::ordered_json json(const InspectionReport& report);
-/// The beginning of an experiment's YAML file of kind invert: the `record:` section as proposed,
-/// and the string and the bow with the numbers left empty that only the user knows (the reader asks
-/// for them).
+/// The beginning of an experiment's YAML file: the `record:` section as proposed, and with the
+/// numbers left empty that only the user knows (the reader asks for them) the string and the bow of
+/// kind invert, or the band of kind fit_modes. Where no force was measured, identify_force's.
 std::string stanza(const InspectionReport& report);
 
 }  // namespace modcal

@@ -79,6 +79,26 @@ ordered_json channel_json(const ChannelInspection& channel, bool measured) {
   return result;
 }
 
+std::string structure_stanza(const InspectionReport& report) {
+  const StructureChannels& found = *report.structure;
+  std::string record = fmt::format("record:\n  file: {}\n", yaml_string(report.file));
+  if (!std::isfinite(report.sample_rate)) record += "  sample_rate:  # [Hz]\n";
+  if (!found.force.empty()) {
+    record += fmt::format("  force: {{channel: {}}}\n", yaml_string(found.force));
+  }
+  record += "  responses:\n";
+  for (const auto& [channel, kind] : found.responses) {
+    record += fmt::format("    - {{channel: {}, kind: {}}}\n", yaml_string(channel), kind);
+  }
+  if (found.force.empty()) {
+    return "kind: identify_force\ntable:  # modes of this structure, which fit_modes writes\n" +
+           record;
+  }
+  return "kind: fit_modes\n" + record +
+         "low:  # from where on the sensors hear the modes, as 10 Hz\n"
+         "high:  # to where the blow drives them, as 600 Hz\n";
+}
+
 }  // namespace
 
 std::string text(const InspectionReport& report) {
@@ -130,6 +150,7 @@ ordered_json json(const InspectionReport& report) {
 }
 
 std::string stanza(const InspectionReport& report) {
+  if (report.structure) return structure_stanza(report);
   RecordOptions record = report.record;
   StringModel string{.modes = 0};
   ContactOptions bow;

@@ -197,6 +197,29 @@ TEST_F(Inspect, ProposesByUnitsWhereNamesSayNothing) {
   EXPECT_FALSE(other["right"].IsDefined());
 }
 
+TEST_F(Inspect, ProposesModesOfAStrikeAndAForceByThem) {
+  // A hammer stands alone in its channel, which is no fault; a response does not.
+  std::vector<double> blow(64, 0.0), spike(64), sine(64);
+  blow[9] = 40.0;
+  for (std::size_t i = 0; i < 64; ++i) sine[i] = spike[i] = std::sin(0.7 * static_cast<double>(i));
+  const std::vector<Signal> signals{
+      {"hammer", "N", 1e3, blow}, {"a 1", "m/s2", 1e3, sine}, {"y", "m", 1e3, sine}};
+  write_csv(path("strike.csv"), signals);
+  const InspectionReport strike = inspect(path("strike.csv"));
+  EXPECT_THAT(strike.problems, IsEmpty());
+  const YAML::Node modes = YAML::Load(stanza(strike));
+  EXPECT_EQ(modes["kind"].as<std::string>(), "fit_modes");
+  EXPECT_EQ(modes["record"]["force"]["channel"].as<std::string>(), "hammer");
+  EXPECT_EQ(modes["record"]["responses"][0]["channel"].as<std::string>(), "a 1");
+  EXPECT_EQ(modes["record"]["responses"][1]["kind"].as<std::string>(), "displacement");
+  EXPECT_TRUE(modes["low"].IsNull());
+  spike[30] = 40.0;
+  write_csv(path("moves.csv"), std::vector<Signal>{{"a 1", "m/s2", 1e3, spike}});
+  const InspectionReport moves = inspect(path("moves.csv"));
+  EXPECT_THAT(moves.problems, ElementsAre(HasSubstr("channel a 1, sample 30")));
+  EXPECT_EQ(YAML::Load(stanza(moves))["kind"].as<std::string>(), "identify_force");
+}
+
 TEST_F(Inspect, ProposalLoadsAsItStands) {
   const std::vector<Signal> signals{{"x", "mN", kRate, {1.0, 2.0, 4.0}},
                                     {"y", "N", kRate, {3.0, 4.0, 5.0}}};
