@@ -25,13 +25,13 @@ ModalModel DrawnModels::modes(std::size_t draw) const {
   std::vector<double> normal(2 * modes + 2 * modes * pairs);
   fill_standard_normal(StreamKey(seed).with("model").with(draw), normal);
   for (std::size_t n = 0; n < modes; ++n) {
-    if (!table.frequency_deviations.empty()) {
-      model.poles[n].omega *= std::exp(table.frequency_deviations[n] * normal[n]);
-    }
-    if (!table.damping_deviations.empty()) {
-      model.poles[n].zeta *=
-          std::exp(std::clamp(table.damping_deviations[n], 0.0, 1.0) * normal[modes + n]);
-    }
+    // A mode that nothing tells has deviations of any size: by a factor of e it is elsewhere.
+    const auto factor = [n, &normal](const std::vector<double>& deviations, std::size_t first) {
+      if (deviations.empty()) return 1.0;
+      return std::exp(std::clamp(deviations[n], 0.0, 1.0) * normal[first + n]);
+    };
+    model.poles[n].omega *= factor(table.frequency_deviations, 0);
+    model.poles[n].zeta *= factor(table.damping_deviations, modes);
   }
   model.quadrature.resize(model.constants.size());
   for (std::size_t pair = 0; pair < pairs; ++pair) {

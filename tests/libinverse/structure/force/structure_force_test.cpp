@@ -123,6 +123,16 @@ TEST(StructureForce, HasTheJackknifeOfSensorsThatContradictEachOther) {
   EXPECT_NEAR(std::sqrt(told / expected), 1.0, 0.1);
 }
 
+// A mode that the strike did not tell has deviations of any size.
+TEST(StructureForce, IsFiniteByATableThatDoesNotTellAMode) {
+  StructureTable table = table_of({0, 1});
+  table.frequency_deviations.assign(table.model.poles.size(), 1e-3);
+  table.frequency_deviations[0] = 300.0;
+  const StructureForce found =
+      structure_force(table, record_of({0, 1}), {.shape = ForceShape::kSmooth, .window = 1.0});
+  for (const double deviation : found.deviation) ASSERT_TRUE(std::isfinite(deviation));
+}
+
 TEST(StructureForce, TriesNoPulsesWhereNoiseIsAllThereIs) {
   StructureRecord record = record_of({0, 1, 2});
   const StructureForceOptions options{.window = 0.2, .draws = 2};
