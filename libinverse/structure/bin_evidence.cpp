@@ -70,6 +70,12 @@ std::vector<std::vector<double>> spread_of(const StructureTable& table,
   return spread;
 }
 
+// (|H|² − E|δH|²)/|H|², the square of the true H over that of the one there is.
+double share_known(Complex transfer, double variance) {
+  const double power = std::norm(transfer);
+  return power > variance ? std::max(kLeastKnown, 1.0 - variance / power) : kLeastKnown;
+}
+
 // What the sensors other than `k` leave of the force that they tell.
 double left_by_others(const ContourSpectra& spectra, const Transfers& transfers,
                       const BinVariances& variances, const BinEvidence& others, std::size_t k) {
@@ -105,7 +111,10 @@ BinEvidence evidence_of(const ContourSpectra& spectra, const Transfers& transfer
   for (std::size_t k = 0; k < transfers.size(); ++k) {
     if (k == left_out) continue;
     for (std::size_t m = 0; m < spectra.count(); ++m) {
-      const double weight = 1.0 / variances.of[k][m];
+      double weight = 1.0 / variances.of[k][m];
+      if (!variances.of_transfer.empty()) {
+        weight *= share_known(transfers[k][m], variances.of_transfer[k][m]);
+      }
       result.told[m] += weight * std::norm(transfers[k][m]);
       result.score[m] += weight * std::conj(transfers[k][m]) * spectra.responses[k][m];
     }
@@ -119,6 +128,11 @@ BinVariances variances_of(const StructureTable& table, const ContourSpectra& spe
   const std::vector<std::vector<double>> spread = spread_of(table, spectra);
   BinVariances result{.of = spread};
   const double noise_power = spectra.noise_power();
+  for (std::size_t k = 0; k < sensors; ++k) {
+    std::vector<double>& of_transfer = result.of_transfer.emplace_back(spread[k]);
+    const double scatter = table.measured.empty() ? table.scatters[k].modal : 1.0;
+    for (double& x : of_transfer) x *= scatter * scatter;
+  }
   std::vector<double> more(bins, 1.0);
   for (int round = 0; round < 4; ++round) {
     const BinEvidence evidence = evidence_of(spectra, transfers, result, kNoSensor);
@@ -134,12 +148,10 @@ BinVariances variances_of(const StructureTable& table, const ContourSpectra& spe
       power = power_of_force(spectra, evidence);
     }
     for (std::size_t k = 0; k < sensors; ++k) {
-      const SensorScatter& scatter = table.scatters[k];
-      const double share = table.measured.empty() ? scatter.modal * scatter.modal : 1.0;
+      const double noise = table.scatters[k].noise;
       for (std::size_t m = 0; m < bins; ++m) {
-        result.of[k][m] = more[m] * (share * power[m] * spread[k][m] +
-                                     scatter.noise * scatter.noise * noise_power) +
-                          1e-300;
+        result.of[k][m] =
+            more[m] * (power[m] * result.of_transfer[k][m] + noise * noise * noise_power) + 1e-300;
       }
     }
     if (sensors < 2) continue;

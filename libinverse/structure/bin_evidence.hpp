@@ -19,6 +19,9 @@ struct BinEvidence {
 /// Variances of the sensors' bins about a force.
 struct BinVariances {
   std::vector<std::vector<double>> of;  ///< V_k, K
+  /// E|δH_k|², K; empty: H is known. Of |H_k|² that is no larger nothing is H: such a bin tells of
+  /// no force, as what is read there is none of its response.
+  std::vector<std::vector<double>> of_transfer;
   double misfit = std::numeric_limits<double>::quiet_NaN();
   std::vector<double> by_sensor;  ///< rms of what each leaves over what is expected
   std::vector<double> left;       ///< rms of what each leaves over that of its response

@@ -67,6 +67,31 @@ TEST(BinEvidence, NamesTheOneSensorThatContradictsTheOthers) {
   }
 }
 
+// |H|² = E|H_true|² + E|δH|²: of a model that is off by as much as it has nothing is told, and half
+// of what a bin of twice the variance says.
+TEST(BinEvidence, OfATransferThatIsNoLargerThanItsErrorIsNone) {
+  const Struck it = struck({1.0});
+  const ContourSpectra spectra = ContourSpectra::of(it.record, 4.0, it.table.low, it.table.high);
+  const Transfers transfers = transfers_of(it.table, spectra);
+  BinVariances variances{.of = {std::vector<double>(spectra.count(), 1.0)}};
+  const BinEvidence known = evidence_of(spectra, transfers, variances, kNoSensor);
+  std::vector<double>& error = variances.of_transfer.emplace_back();
+  for (const Complex h : transfers[0])
+    error.push_back(std::norm(h) * (error.size() % 2 == 0 ? 0.5 : 2.0));
+  const BinEvidence found = evidence_of(spectra, transfers, variances, kNoSensor);
+  for (std::size_t m = 0; m < spectra.count(); ++m) {
+    const double share = found.told[m] / known.told[m];
+    if (m % 2 == 0) {
+      EXPECT_NEAR(share, 0.5, 1e-12) << m;
+    } else {
+      EXPECT_LT(share, 0.02) << m;
+    }
+    // The force of the bin is the same.
+    EXPECT_LT(std::abs(found.score[m] / found.told[m] - known.score[m] / known.told[m]),
+              1e-9 * std::abs(known.score[m] / known.told[m]));
+  }
+}
+
 // Of two, either may be the one.
 TEST(BinEvidence, NamesNoneOfTwoSensors) {
   for (const SensorPrediction& sensor : predictions({1.0, 1.5})) {
