@@ -6,13 +6,13 @@
 #include <numbers>
 
 #include "libinverse/structure/force/force_band.hpp"
-#include "libinverse/structure/force/initial_state.hpp"
 #include "libinverse/structure/force/relevance.hpp"
 #include "libinverse/structure/strike_weights.hpp"
 #include "libinverse/structure/tuning.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/base/random.hpp"
 #include "libsim/base/task_loop.hpp"
+#include "libsim/signal/statistics.hpp"
 
 namespace modcal {
 
@@ -36,6 +36,8 @@ ForceSearch::ForceSearch(const StructureTable& table, const StructureRecord& rec
   spectra_ = ContourSpectra::of(record, result_.sigma, table.low, table.high);
   transfers_ = transfers_of(table_, spectra_);
   variances_ = variances_of(table_, spectra_, transfers_);
+  const std::span<const double> response = record.responses.front();
+  last_rms_ = standard_deviation(response.last(std::max<std::size_t>(1, response.size() / 10)));
   take_state_out();
   samples_ = static_cast<Index>(std::floor(result_.window * record.sample_rate));
   result_.from_zero = spectra_.bins.first == 0;
@@ -66,7 +68,7 @@ StructureForce ForceSearch::run(const StructureRecord& record) {
   result_.misfit = variances_.misfit;
   result_.sensor_misfit = variances_.by_sensor;
   result_.sensor_left = variances_.left;
-  for (std::size_t k = 0; k < result_.sensor_left.size() && result_.rang; ++k) {
+  for (std::size_t k = 0; k < result_.sensor_left.size() && !recorded_.empty(); ++k) {
     // Of the whole response.
     result_.sensor_left[k] *=
         std::sqrt(mean_power(spectra_.responses[k]) / mean_power(recorded_[k]));
@@ -92,39 +94,10 @@ double ForceSearch::rate() const { return spectra_.sample_rate; }
 void ForceSearch::refine(const StructureRecord& record) {
   result_.refined = refined_table(table_, record, result_.sigma, *options_.change, !result_.rang);
   table_.model = result_.refined->model;
-  if (result_.rang) spectra_.responses = recorded_;
+  if (!recorded_.empty()) spectra_.responses = recorded_;
   transfers_ = transfers_of(table_, spectra_);
   variances_ = variances_of(table_, spectra_, transfers_);
   take_state_out();
-}
-
-void ForceSearch::take_state_out() {
-  if (!table_.measured.empty() || (options_.rests && transfers_.size() == 1)) return;
-  recorded_ = spectra_.responses;
-  const InitialState state(table_.model, spectra_);
-  for (int round = 0; round < kStateRounds; ++round) {
-    find_power(evidence_of(spectra_, transfers_, variances_, kNoSensor));
-    spectra_.responses = recorded_;
-    const InitialState::Fit fit = state.fit(transfers_, variances_, power_);
-    if (round == 0) result_.rang = state.is_told(fit);
-    if (!result_.rang) return;
-    spectra_.responses = state.without(fit.state);
-    variances_ = variances_of(table_, spectra_, transfers_);
-  }
-}
-
-Eigen::VectorXd ForceSearch::force_by(const DrawnModels& models, std::size_t draw) const {
-  const Transfers transfers = models.at(draw, spectra_);
-  if (!result_.rang) return force_of(evidence_of(spectra_, transfers, variances_, kNoSensor));
-  ContourSpectra own = spectra_;
-  own.responses = recorded_;
-  const InitialState state(models.modes(draw), own);
-  const InitialState::Fit fit = state.fit(transfers, variances_, power_);
-  std::vector<double> normal(static_cast<std::size_t>(fit.state.size()));
-  fill_standard_normal(StreamKey(options_.seed).with("state").with(draw), normal);
-  own.responses = state.without(
-      fit.state + fit.root * Eigen::Map<const Eigen::VectorXd>(normal.data(), fit.state.size()));
-  return force_of(evidence_of(own, transfers, variances_, kNoSensor));
 }
 
 bool ForceSearch::wants_pulses() {

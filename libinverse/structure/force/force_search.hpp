@@ -6,6 +6,7 @@
 
 #include "libinverse/structure/bin_evidence.hpp"
 #include "libinverse/structure/force/drawn_models.hpp"
+#include "libinverse/structure/force/initial_state.hpp"
 #include "libinverse/structure/force/pulse_train.hpp"
 #include "libinverse/structure/force/structure_force.hpp"
 
@@ -30,6 +31,9 @@ class ForceSearch {
   void refine(const StructureRecord& record);
   /// Force, variances and state depend on each other: a few rounds.
   void take_state_out();
+  /// Deviations of the state of one sensor, which tells it from a force by its size alone: that of
+  /// the response where the record ends. Empty: more sensors, or nothing that shows is cut off.
+  Eigen::VectorXd state_widths(const InitialState& state) const;
   /// The force by another model, what rang fitted anew and off by what is not known of it.
   Eigen::VectorXd force_by(const DrawnModels& models, std::size_t draw) const;
   bool wants_pulses();
@@ -57,7 +61,9 @@ class ForceSearch {
   StructureTable table_;
   const StructureForceOptions& options_;
   ContourSpectra spectra_;
-  Transfers transfers_, recorded_;  // recorded_: responses with what rang before
+  // recorded_: responses with what rang before and what the end cuts off; empty: as they are
+  Transfers transfers_, recorded_;
+  double last_rms_ = 0.0;  // of the first response's last tenth
   BinVariances variances_;
   Eigen::Index samples_ = 0;
   std::optional<PulseTrain> train_;

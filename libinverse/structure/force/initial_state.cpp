@@ -1,6 +1,7 @@
 #include "libinverse/structure/force/initial_state.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 
 #include "libsim/base/error.hpp"
@@ -24,6 +25,7 @@ InitialState::InitialState(const ModalModel& model, const ContourSpectra& spectr
                              model.quadrature.empty() ? 0.0 : model.quadrature[k * modes + n]);
       const Complex residue =
           numerator_of(model.sensors[k], pole, constant, root) / (root - std::conj(root));
+      if (k == 0) omegas_.push_back(pole.omega), residues_.push_back(std::abs(residue));
       const auto i = static_cast<Index>(2 * n);
       for (std::size_t m = 0; m < spectra.count(); ++m) {
         const Complex s = spectra.s(m);
@@ -38,7 +40,8 @@ InitialState::InitialState(const ModalModel& model, const ContourSpectra& spectr
 }
 
 InitialState::Fit InitialState::fit(const Transfers& transfers, const BinVariances& variances,
-                                    const std::vector<double>& power) const {
+                                    const std::vector<double>& power,
+                                    const Eigen::VectorXd& widths) const {
   const Index unknowns = columns_.front().cols(), bins = columns_.front().rows();
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(unknowns, unknowns);
   Eigen::VectorXd score = Eigen::VectorXd::Zero(unknowns);
@@ -66,6 +69,7 @@ InitialState::Fit InitialState::fit(const Transfers& transfers, const BinVarianc
   score -= (along.adjoint() * (share.asDiagonal() * seen)).real();
   const double scale = 2.0 / spectra_.correlated();
   matrix *= scale, score *= scale;
+  if (widths.size() > 0) matrix.diagonal() += widths.cwiseAbs2().cwiseInverse();
   // Columns of modes outside of the band tell next to nothing, and what the force may do as well
   // cancels: such directions are left where they are.
   const Eigen::VectorXd size = matrix.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
@@ -80,6 +84,25 @@ InitialState::Fit InitialState::fit(const Transfers& transfers, const BinVarianc
   result.gain = 0.5 * score.dot(result.state);
   result.squares = scale * (power_of_all - share.dot(seen.cwiseAbs2()));
   return result;
+}
+
+Eigen::VectorXd InitialState::widths_of(double rms) const {
+  std::vector<double> powers(omegas_.size(), 0.0);
+  double all = 0.0;
+  for (std::size_t m = 0; m < spectra_.count(); ++m) {
+    const double omega = spectra_.s(m).imag(), power = std::norm(spectra_.responses.front()[m]);
+    const auto nearest = std::ranges::min_element(
+        omegas_, {}, [omega](double own) { return std::abs(own - omega); });
+    powers[static_cast<std::size_t>(nearest - omegas_.begin())] += power;
+    all += power;
+  }
+  Eigen::VectorXd widths(static_cast<Index>(2 * powers.size()));
+  for (std::size_t n = 0; n < powers.size(); ++n) {
+    // 2 Re(r c exp(λt)) has a mean square of 2 |r c|², E|c|² = 2 d².
+    const double own = rms * std::sqrt(powers[n] / all) / (2.0 * residues_[n]);
+    widths.segment<2>(static_cast<Index>(2 * n)).setConstant(std::max(own, 1e-150));
+  }
+  return widths;
 }
 
 Transfers InitialState::without(const Eigen::VectorXd& state) const {

@@ -21,9 +21,14 @@ class InitialState {
     double squares = 0.0;   ///< yᴴ S⁻¹ y of rest, twice the gain more than what c leaves
   };
 
-  /// c of largest likelihood, the force being of `power` E|F|² in every bin: S = P h hᴴ + V.
+  /// c of largest likelihood, the force being of `power` E|F|² in every bin: S = P h hᴴ + V. Of
+  /// largest posterior probability where c has such `widths`; empty: nothing is known of it.
   Fit fit(const Transfers& transfers, const BinVariances& variances,
-          const std::vector<double>& power) const;
+          const std::vector<double>& power, const Eigen::VectorXd& widths = {}) const;
+
+  /// Deviations of c where the modes of the only sensor ring with this rms in all [unit of the
+  /// sensor]: each has the share of the response's power that its bins have.
+  Eigen::VectorXd widths_of(double rms) const;
 
   /// Responses without what c rings.
   Transfers without(const Eigen::VectorXd& state) const;
@@ -34,7 +39,8 @@ class InitialState {
  private:
   using Columns = Eigen::MatrixXcd;  // bins x 2N
   const ContourSpectra& spectra_;
-  std::vector<Columns> columns_;  // K
+  std::vector<Columns> columns_;           // K
+  std::vector<double> omegas_, residues_;  // of the modes: ω [rad/s], |r| of the first sensor
 };
 
 }  // namespace modcal

@@ -1,0 +1,52 @@
+// What rang before the record, and what its end cuts off, beside the force.
+#include <cmath>
+
+#include "libinverse/structure/force/force_search.hpp"
+#include "libinverse/structure/tuning.hpp"
+#include "libsim/base/random.hpp"
+
+namespace modcal {
+
+Eigen::VectorXd ForceSearch::state_widths(const InitialState& state) const {
+  if (transfers_.size() > 1) return {};
+  const double rms = std::exp(-result_.sigma * spectra_.duration()) * last_rms_;
+  const double noise = table_.scatters.front().noise;
+  // A decay of a tenth of what noise has in all samples of it is not seen.
+  const bool shows = rms * std::sqrt(static_cast<double>(spectra_.samples)) > 0.1 * noise;
+  return shows ? state.widths_of(rms) : Eigen::VectorXd();
+}
+
+void ForceSearch::take_state_out() {
+  recorded_.clear();
+  if (!table_.measured.empty()) return;
+  const Transfers recorded = spectra_.responses;
+  const InitialState state(table_.model, spectra_);
+  const Eigen::VectorXd widths = state_widths(state);
+  for (int round = 0; round < kStateRounds; ++round) {
+    find_power(evidence_of(spectra_, transfers_, variances_, kNoSensor));
+    spectra_.responses = recorded;
+    if (round == 0 && !(options_.rests && transfers_.size() == 1)) {
+      result_.rang = state.is_told(state.fit(transfers_, variances_, power_));
+    }
+    if (!result_.rang && widths.size() == 0) return;
+    spectra_.responses = state.without(state.fit(transfers_, variances_, power_, widths).state);
+    variances_ = variances_of(table_, spectra_, transfers_);
+  }
+  recorded_ = recorded;
+}
+
+Eigen::VectorXd ForceSearch::force_by(const DrawnModels& models, std::size_t draw) const {
+  const Transfers transfers = models.at(draw, spectra_);
+  if (recorded_.empty()) return force_of(evidence_of(spectra_, transfers, variances_, kNoSensor));
+  ContourSpectra own = spectra_;
+  own.responses = recorded_;
+  const InitialState state(models.modes(draw), own);
+  const InitialState::Fit fit = state.fit(transfers, variances_, power_, state_widths(state));
+  std::vector<double> normal(static_cast<std::size_t>(fit.state.size()));
+  fill_standard_normal(StreamKey(options_.seed).with("state").with(draw), normal);
+  own.responses = state.without(
+      fit.state + fit.root * Eigen::Map<const Eigen::VectorXd>(normal.data(), fit.state.size()));
+  return force_of(evidence_of(own, transfers, variances_, kNoSensor));
+}
+
+}  // namespace modcal
