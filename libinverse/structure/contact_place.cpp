@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "libinverse/structure/bin_evidence.hpp"
-#include "libinverse/structure/strike_weights.hpp"
+#include "libinverse/structure/strikes/strike_weights.hpp"
 #include "libsim/base/error.hpp"
 
 namespace modcal {

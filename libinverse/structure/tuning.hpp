@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 namespace modcal {
 
@@ -21,6 +22,13 @@ constexpr double kReach = 40.0;
 /// Doubled: ± 1.4 to 1.9, all in it.
 /// Halved: ± 2 to 2.3, all in it.
 constexpr double kLeastKnown = 0.01;
+
+/// Draws of force noise by which its share that a fit's columns take up is counted.
+/// Source: a draw has some hundred bins, eight of them tell the share to a tenth.
+/// Range tried: this.
+/// Doubled: not tried.
+/// Halved: not tried.
+constexpr std::uint64_t kForceNoiseDraws = 8;
 
 /// Over which a measured |H|² is averaged, so that an antiresonance is as uncertain as its flanks
 /// [Hz].

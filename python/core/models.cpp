@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "experiments/kinds/structure/structure_files.hpp"
-#include "libinverse/structure/strike_fit.hpp"
+#include "libinverse/structure/strikes/strike_fit.hpp"
 #include "libsim/model/transfer.hpp"
 #include "libsim/records/recording.hpp"
 #include "python/core/errors.hpp"

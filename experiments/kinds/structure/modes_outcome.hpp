@@ -2,7 +2,7 @@
 #pragma once
 
 #include "experiments/report/result.hpp"
-#include "libinverse/structure/strike_fit.hpp"
+#include "libinverse/structure/strikes/strike_fit.hpp"
 
 namespace modcal {
 

@@ -5,7 +5,7 @@
 #include "experiments/kinds/structure/structure_files.hpp"
 #include "libinverse/structure/contact_place.hpp"
 #include "libinverse/structure/force/structure_force.hpp"
-#include "libinverse/structure/strike_fit.hpp"
+#include "libinverse/structure/strikes/strike_fit.hpp"
 
 namespace modcal {
 

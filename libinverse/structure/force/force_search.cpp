@@ -7,7 +7,7 @@
 
 #include "libinverse/structure/force/force_band.hpp"
 #include "libinverse/structure/force/relevance.hpp"
-#include "libinverse/structure/strike_weights.hpp"
+#include "libinverse/structure/strikes/strike_weights.hpp"
 #include "libinverse/structure/tuning.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/base/random.hpp"

@@ -1,4 +1,4 @@
-#include "libinverse/structure/strike_weights.hpp"
+#include "libinverse/structure/strikes/strike_weights.hpp"
 
 #include <gtest/gtest.h>
 

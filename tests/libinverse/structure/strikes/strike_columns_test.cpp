@@ -1,5 +1,5 @@
 // The columns of a strike against the response that a modal sum has in time.
-#include "libinverse/structure/strike_columns.hpp"
+#include "libinverse/structure/strikes/strike_columns.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "libinverse/structure/strike_weights.hpp"
+#include "libinverse/structure/strikes/strike_weights.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "libinverse/structure/strike_fit.hpp"
+#include "libinverse/structure/strikes/strike_fit.hpp"
 #include "libinverse/structure/tuning.hpp"
 
 namespace modcal {

@@ -1,4 +1,4 @@
-#include "libinverse/structure/pole_search.hpp"
+#include "libinverse/structure/strikes/pole_search.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -120,7 +120,6 @@ double PoleSearch::cost(const std::vector<ModalPole>& poles) const {
   return sum;
 }
 
-// Slopes of every sensor's residual by ln f and ln ζ of the modes.
 std::vector<Eigen::MatrixXd> PoleSearch::jacobians(const std::vector<ModalPole>& poles,
                                                    const std::vector<SensorFit>& fits) const {
   // Where the errors of central differences by rounding and by curvature are alike; damping changes
@@ -168,24 +167,19 @@ PoleSearch::Equations PoleSearch::equations(const std::vector<ModalPole>& poles)
   return sum;
 }
 
-// Jᵀ r for noise of a deviation of 1 in every sample of a sensor, as columns over the samples. On a
-// contour the noise dies away with exp(−σt), and J, the slope of what rings, is large later: to
-// take a share κ of the bins for independent would double the variance.
-Eigen::MatrixXd PoleSearch::noise_seen_by(const Strike& strike, std::size_t k,
-                                          const Eigen::MatrixXd& slopes) const {
-  const ContourSpectra& spectra = strike.spectra;
+namespace {
+
+// Jᵀ r for noise of a deviation of 1 in every sample, J as complex numbers at the bins, as columns
+// over the samples. On a contour the noise dies away with exp(−σt), and J, the slope of what rings,
+// is large later: to take a share κ of the bins for independent would double the variance.
+Eigen::MatrixXd noise_seen_by(const ContourSpectra& spectra, const Eigen::MatrixXcd& slopes) {
   const RealFft fft(spectra.samples);
-  const auto count = static_cast<Index>(spectra.count());
   Eigen::MatrixXd result(static_cast<Index>(spectra.samples), slopes.cols());
   for_each_task(static_cast<std::size_t>(slopes.cols()), [&](std::size_t i) {
     const auto at = static_cast<Index>(i);
     std::vector<Complex> spectrum(fft.bins());
-    for (Index m = 0; m < count; ++m) {
-      const auto bin = static_cast<std::size_t>(m);
-      const Index row = strike.first + m;
-      spectrum[spectra.bins.first + bin] =
-          strike.weights[k][bin] * Complex(slopes(row, at), slopes(row + count, at));
-    }
+    std::ranges::copy(slopes.col(at),
+                      spectrum.begin() + static_cast<std::ptrdiff_t>(spectra.bins.first));
     // Re Σ_m c_m exp(iω_m t): half of what a real signal of these bins has.
     fft.inverse(spectrum, {result.col(at).data(), spectra.samples});
     result.col(at) *= 0.5 * static_cast<double>(spectra.samples);
@@ -196,23 +190,44 @@ Eigen::MatrixXd PoleSearch::noise_seen_by(const Strike& strike, std::size_t k,
   return result;
 }
 
-Eigen::MatrixXd PoleSearch::covariance(const std::vector<ModalPole>& poles,
+}  // namespace
+
+Eigen::MatrixXcd PoleSearch::weighted_slopes(const Strike& strike, std::size_t k,
+                                             const Eigen::MatrixXd& slopes) const {
+  const auto count = static_cast<Index>(strike.spectra.count());
+  Eigen::MatrixXcd result(count, slopes.cols());
+  result.real() = slopes.middleRows(strike.first, count);
+  result.imag() = slopes.middleRows(strike.first + count, count);
+  const Eigen::Map<const Eigen::VectorXd> weights(strike.weights[k].data(), count);
+  return weights.asDiagonal() * result;
+}
+
+Eigen::MatrixXd PoleSearch::covariance(const std::vector<Eigen::MatrixXd>& slopes,
                                        const std::vector<Eigen::VectorXd>& variances,
-                                       std::span<const double> noise) const {
-  const std::vector<Eigen::MatrixXd> slopes = jacobians(poles, at(poles));
-  const Index unknowns = 2 * std::ssize(poles);
+                                       std::span<const double> noise,
+                                       const ForceNoise& force) const {
+  const Index unknowns = slopes.front().cols();
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(unknowns, unknowns), spread = information;
-  for (std::size_t k = 0; k < sensors(); ++k) {
-    information += products_of(slopes[k]);
-    for (const Strike& strike : strikes_) {
-      const auto count = static_cast<Index>(strike.spectra.count());
+  const auto add = [&spread](double deviation, const Eigen::MatrixXd& seen) {
+    spread += deviation * deviation * (seen.transpose() * seen);
+  };
+  for (const Eigen::MatrixXd& own : slopes) information += products_of(own);
+  for (std::size_t i = 0; i < strikes_.size(); ++i) {
+    const Strike& strike = strikes_[i];
+    const auto count = static_cast<Index>(strike.spectra.count());
+    Eigen::MatrixXcd of_force = Eigen::MatrixXcd::Zero(count, unknowns);
+    for (std::size_t k = 0; k < sensors(); ++k) {
       const auto own = slopes[k].middleRows(strike.first, 2 * count);
       const auto variance = variances[k].segment(strike.first / 2, count);
       spread += own.transpose() * variance.replicate(2, 1).asDiagonal() * own;
-      if (noise[k] == 0.0) continue;
-      const Eigen::MatrixXd seen = noise_seen_by(strike, k, slopes[k]);
-      spread += noise[k] * noise[k] * (seen.transpose() * seen);
+      if (noise[k] == 0.0 && force.deviation == 0.0) continue;
+      const Eigen::MatrixXcd weighted = weighted_slopes(strike, k, slopes[k]);
+      if (noise[k] > 0.0) add(noise[k], noise_seen_by(strike.spectra, weighted));
+      if (force.deviation == 0.0) continue;
+      const Eigen::Map<const Eigen::VectorXcd> transfer(force.transfers[i][k].data(), count);
+      of_force += transfer.conjugate().asDiagonal() * weighted;
     }
+    if (force.deviation > 0.0) add(force.deviation, noise_seen_by(strike.spectra, of_force));
   }
   const Eigen::LDLT<Eigen::MatrixXd> solver(information);
   const Eigen::MatrixXd half = solver.solve(spread);

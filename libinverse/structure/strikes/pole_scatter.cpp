@@ -1,4 +1,4 @@
-#include "libinverse/structure/pole_scatter.hpp"
+#include "libinverse/structure/strikes/pole_scatter.hpp"
 
 #include <algorithm>
 #include <cmath>

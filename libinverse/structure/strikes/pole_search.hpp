@@ -4,7 +4,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
-#include "libinverse/structure/strike_columns.hpp"
+#include "libinverse/structure/strikes/strike_columns.hpp"
 #include "libinverse/structure/tuning.hpp"
 
 namespace modcal {
@@ -31,6 +31,13 @@ struct SearchedStrike {
   const std::vector<std::vector<double>>& weights;  ///< 1/σ of every bin, by sensor
 };
 
+/// White noise in the samples of a measured force, which all sensors seem to answer: each is off by
+/// −H_k N in every bin.
+struct ForceNoise {
+  double deviation = 0.0;                                    ///< [N]; 0: none is seen
+  std::vector<std::vector<std::vector<Complex>>> transfers;  ///< H_k at the bins, by strike
+};
+
 class PoleSearch {
  public:
   /// Strikes at one place, on one contour: they have all poles and modal constants in common.
@@ -44,14 +51,18 @@ class PoleSearch {
   double fit(std::vector<ModalPole>& poles, int steps) const;
   /// Of the pairs of poles on a grid over the band the one that takes most from the cost.
   ModalPole best_addition(const std::vector<ModalPole>& poles);
-  /// Covariance A⁻¹ (Σ_k Jᵀ V J + S_k) A⁻¹ of ln f and ln ζ of every mode in turn, the linear
-  /// unknowns eliminated, A = Σ JᵀJ (White, 1980), where the weighted residuals of sensor k have
-  /// these variances, one a bin of every strike in turn, of independent bins, and a sample has
-  /// white noise of this deviation: what J takes from exp(−σt) noise. Weights that are off cost
-  /// sharpness, not honesty.
-  Eigen::MatrixXd covariance(const std::vector<ModalPole>& poles,
+  /// Slopes of every sensor's residual by ln f and ln ζ of each mode in turn, the linear unknowns
+  /// eliminated, K; fits: those at the poles.
+  std::vector<Eigen::MatrixXd> jacobians(const std::vector<ModalPole>& poles,
+                                         const std::vector<SensorFit>& fits) const;
+  /// Covariance A⁻¹ (Σ_k Jᵀ V J + S_k) A⁻¹ of ln f and ln ζ by the slopes J of jacobians(), A = Σ
+  /// JᵀJ (White, 1980), where the weighted residuals of sensor k have these variances, one a bin of
+  /// every strike in turn, of independent bins, and a sample has white noise of this deviation:
+  /// what J takes from exp(−σt) noise. That of the force is taken by all sensors together. Weights
+  /// that are off cost sharpness, not honesty.
+  Eigen::MatrixXd covariance(const std::vector<Eigen::MatrixXd>& slopes,
                              const std::vector<Eigen::VectorXd>& variances,
-                             std::span<const double> noise) const;
+                             std::span<const double> noise, const ForceNoise& force) const;
   /// Static terms of a sensor: powers of s besides its own, −2 and 0 (an acceleration, a velocity)
   /// or −2 and 0 (a displacement).
   static constexpr Eigen::Index kStatics = 2;
@@ -77,11 +88,10 @@ class PoleSearch {
     Eigen::MatrixXd matrix;  // JᵀJ
     Eigen::VectorXd slope;   // Jᵀr
   };
-  std::vector<Eigen::MatrixXd> jacobians(const std::vector<ModalPole>& poles,
-                                         const std::vector<SensorFit>& fits) const;
   Columns columns_of(const ModalPole& pole) const;
-  Eigen::MatrixXd noise_seen_by(const Strike& strike, std::size_t k,
-                                const Eigen::MatrixXd& slopes) const;
+  /// Slopes of a sensor at the bins of a strike, complex, times their weights.
+  Eigen::MatrixXcd weighted_slopes(const Strike& strike, std::size_t k,
+                                   const Eigen::MatrixXd& slopes) const;
   Equations equations(const std::vector<ModalPole>& poles) const;
   SensorFit sensor_at(std::size_t k, const std::vector<Columns>& columns,
                       const std::vector<ModalPole>& poles) const;

@@ -1,5 +1,5 @@
 // Two modes of a structure from a strike and from its response functions.
-#include "libinverse/structure/strike_fit.hpp"
+#include "libinverse/structure/strikes/strike_fit.hpp"
 
 #include <gtest/gtest.h>
 

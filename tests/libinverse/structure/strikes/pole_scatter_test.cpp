@@ -1,5 +1,5 @@
 // How far a further strike is off, on draws of strikes whose scatter is known.
-#include "libinverse/structure/pole_scatter.hpp"
+#include "libinverse/structure/strikes/pole_scatter.hpp"
 
 #include <gtest/gtest.h>
 

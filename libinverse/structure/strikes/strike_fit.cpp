@@ -1,11 +1,12 @@
-#include "libinverse/structure/strike_fit.hpp"
+#include "libinverse/structure/strikes/strike_fit.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "libinverse/structure/pole_scatter.hpp"
-#include "libinverse/structure/pole_search.hpp"
-#include "libinverse/structure/strike_weights.hpp"
+#include "libinverse/structure/strikes/force_noise.hpp"
+#include "libinverse/structure/strikes/pole_scatter.hpp"
+#include "libinverse/structure/strikes/pole_search.hpp"
+#include "libinverse/structure/strikes/strike_weights.hpp"
 #include "libinverse/structure/tuning.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/signal/statistics.hpp"
@@ -141,6 +142,13 @@ class Fit {
     StructureTable& table = result_.table;
     // Unknowns took their share of the residuals.
     const double share = numbers() / (numbers() - parameters(poles.size()));
+    const std::vector<SensorFit> fits = search.at(poles);
+    const std::vector<Eigen::MatrixXd> slopes = search.jacobians(poles, fits);
+    // Response functions have no force.
+    ForceNoise force;
+    if (!records_.front().force.empty()) {
+      force = force_noise_of(result_.strikes, weights_, table.model, fits, slopes);
+    }
     std::vector<Eigen::VectorXd> variances;
     std::vector<double> noise;
     for (std::size_t k = 0; k < kinds_.size(); ++k) {
@@ -148,14 +156,18 @@ class Fit {
       Eigen::VectorXd& own = variances.emplace_back(static_cast<Index>(bins()));
       Index row = 0;
       for (std::size_t i = 0; i < weights_.size(); ++i) {
-        const std::vector<double> made = made_by_modes(result_.strikes[i].spectra, table.model, k);
+        const ContourSpectra& spectra = result_.strikes[i].spectra;
+        const double of_force = force.deviation * force.deviation * spectra.noise_power();
+        const std::vector<double> made = made_by_modes(spectra, table.model, k);
         for (std::size_t m = 0; m < made.size(); ++m, ++row) {
-          const double off = scatters_[k].modal * weights_[i][k][m];
-          own[row] = 0.5 * share * counted_twice() * off * off * made[m];
+          const double weight = weights_[i][k][m];
+          double off = share * scatters_[k].modal * scatters_[k].modal * made[m];
+          if (of_force > 0.0) off -= of_force * std::norm(force.transfers[i][k][m]);
+          own[row] = 0.5 * counted_twice() * weight * weight * std::max(0.0, off);
         }
       }
     }
-    const Eigen::MatrixXd covariance = search.covariance(poles, variances, noise);
+    const Eigen::MatrixXd covariance = search.covariance(slopes, variances, noise, force);
     for (std::size_t n = 0; n < poles.size(); ++n) {
       const auto i = static_cast<Index>(2 * n);
       MODCAL_REQUIRE(covariance(i, i) >= 0.0 && covariance(i + 1, i + 1) >= 0.0,

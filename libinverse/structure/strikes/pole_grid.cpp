@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "libinverse/structure/pole_search.hpp"
+#include "libinverse/structure/strikes/pole_search.hpp"
 #include "libinverse/structure/tuning.hpp"
 #include "libsim/base/task_loop.hpp"
 

@@ -1,4 +1,4 @@
-#include "libinverse/structure/strike_columns.hpp"
+#include "libinverse/structure/strikes/strike_columns.hpp"
 
 #include <algorithm>
 #include <cmath>

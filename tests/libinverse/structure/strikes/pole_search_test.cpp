@@ -1,5 +1,5 @@
 // A search of poles whose grid looks at fewer measurements than there are.
-#include "libinverse/structure/pole_search.hpp"
+#include "libinverse/structure/strikes/pole_search.hpp"
 
 #include <gtest/gtest.h>
 
