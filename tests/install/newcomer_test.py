@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What a newcomer does once the program is built, from Table 1 to the string with its error bars.
+"""What a newcomer does once the program is built: Table 1, a string with its error bars, the force on a plate.
 
 newcomer_test.py PROJECT MODCAL. `make reproduce` on the machine as it is comes before: .ci/run begins with it.
 """
@@ -57,6 +57,29 @@ def check_force(folder, project):
     assert error.std() < 0.02 * np.abs(truth).max()
 
 
+def check_structure(folder, project, modcal):
+    """From the file of a strike to the force of another one, by what `inspect` proposes."""
+    structures = f"{project}/configs/structures"
+    told = subprocess.run([modcal, "inspect", f"{structures}/plate_strike.csv", "--json"], capture_output=True, check=True)
+    stanza = json.loads(told.stdout)["stanza"]
+    lines = [line for line in stanza.splitlines() if not line.startswith(("low:", "high:"))]
+    assert len(lines) == len(stanza.splitlines()) - 2, stanza
+    with open(f"{folder}/plate.yaml", "w") as file:
+        file.write("\n".join([*lines, "low: 10 Hz", "high: 600 Hz"]) + "\n")
+    run(folder, modcal, "run", "plate.yaml")
+    with open(f"{folder}/force.yaml", "w") as file:
+        responses = [line for line in lines if "kind: acceleration" in line]
+        assert len(responses) == 4, stanza
+        file.write("\n".join(["kind: identify_force", "table: out/plate/table.yaml", "record:",
+                              f"  file: {structures}/plate_other_strike.csv", "  force: {channel: force}", "  responses:",
+                              *responses]) + "\n")
+    run(folder, modcal, "run", "force.yaml")
+    with open(f"{folder}/out/force/force.json") as file:
+        (force,) = json.load(file)["force"]
+    print(f"force of the plate: off by {force['relative_error']:.3f}, {force['coverage']:.3f} in the band")
+    assert force["relative_error"] < 0.1 and force["coverage"] > 0.9, force
+
+
 def main():
     project, modcal = sys.argv[1:]
     with tempfile.TemporaryDirectory() as folder:
@@ -67,6 +90,7 @@ def main():
         assert os.path.getsize(table) > 0, table
         check_parameters(folder)
         check_force(folder, project)
+        check_structure(folder, project, modcal)
 
 
 if __name__ == "__main__":
