@@ -35,7 +35,7 @@ ForceSearch::ForceSearch(const StructureTable& table, const StructureRecord& rec
                  kLongestWeighted / result_.sigma);
   spectra_ = ContourSpectra::of(record, result_.sigma, table.low, table.high);
   transfers_ = transfers_of(table_, spectra_);
-  variances_ = variances_of(table_, spectra_, transfers_);
+  variances_ = variances();
   const std::span<const double> response = record.responses.front();
   last_rms_ = standard_deviation(response.last(std::max<std::size_t>(1, response.size() / 10)));
   take_state_out();
@@ -96,7 +96,8 @@ void ForceSearch::refine(const StructureRecord& record) {
   table_.model = result_.refined->model;
   if (!recorded_.empty()) spectra_.responses = recorded_;
   transfers_ = transfers_of(table_, spectra_);
-  variances_ = variances_of(table_, spectra_, transfers_);
+  of_change_ = spread_of_change();
+  variances_ = variances();
   take_state_out();
 }
 

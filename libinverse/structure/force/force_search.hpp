@@ -29,6 +29,10 @@ class ForceSearch {
  private:
   double rate() const;
   void refine(const StructureRecord& record);
+  /// Those of the table; of modes that were refined H may be off by what is left unknown of them.
+  BinVariances variances() const;
+  /// E|δH_k|² of models drawn from what a refinement has left unknown, K.
+  std::vector<std::vector<double>> spread_of_change() const;
   /// Force, variances and state depend on each other: a few rounds.
   void take_state_out();
   /// Deviations of the state of one sensor, which tells it from a force by its size alone: that of
@@ -65,6 +69,7 @@ class ForceSearch {
   Transfers transfers_, recorded_;
   double last_rms_ = 0.0;  // of the first response's last tenth
   BinVariances variances_;
+  std::vector<std::vector<double>> of_change_;  // empty: nothing was refined
   Eigen::Index samples_ = 0;
   std::optional<PulseTrain> train_;
   Eigen::VectorXd widths_;

@@ -1,4 +1,5 @@
 // What rang before the record, and what its end cuts off, beside the force.
+#include <algorithm>
 #include <cmath>
 
 #include "libinverse/structure/force/force_search.hpp"
@@ -6,6 +7,32 @@
 #include "libsim/base/random.hpp"
 
 namespace modcal {
+
+BinVariances ForceSearch::variances() const {
+  BinVariances result = variances_of(table_, spectra_, transfers_);
+  for (std::size_t k = 0; k < of_change_.size(); ++k) {
+    for (std::size_t m = 0; m < spectra_.count(); ++m) {
+      double& own = result.of_transfer[k][m];
+      own = std::max(own, of_change_[k][m]);
+    }
+  }
+  return result;
+}
+
+std::vector<std::vector<double>> ForceSearch::spread_of_change() const {
+  std::vector<std::vector<double>> result(transfers_.size(), std::vector<double>(spectra_.count()));
+  const DrawnModels models{table_, result_.refined, 1.0, options_.seed};
+  for (std::size_t draw = 0; draw < options_.draws; ++draw) {
+    const Transfers drawn = models.at(draw, spectra_);
+    for (std::size_t k = 0; k < drawn.size(); ++k) {
+      for (std::size_t m = 0; m < spectra_.count(); ++m) {
+        result[k][m] +=
+            std::norm(drawn[k][m] - transfers_[k][m]) / static_cast<double>(options_.draws);
+      }
+    }
+  }
+  return result;
+}
 
 Eigen::VectorXd ForceSearch::state_widths(const InitialState& state) const {
   if (transfers_.size() > 1) return {};
@@ -30,7 +57,7 @@ void ForceSearch::take_state_out() {
     }
     if (!result_.rang && widths.size() == 0) return;
     spectra_.responses = state.without(state.fit(transfers_, variances_, power_, widths).state);
-    variances_ = variances_of(table_, spectra_, transfers_);
+    variances_ = variances();
   }
   recorded_ = recorded;
 }
