@@ -14,18 +14,21 @@
 namespace modcal {
 namespace {
 
-// Half a period of the mean spacing of modes, or of measured lines [s].
+// Half a period of the mean spacing of modes, or of measured lines [s]; these may be far finer.
 double half_a_spacing(const StructureTable& table) {
-  if (!table.measured.empty()) return std::numbers::pi / table.measured.grid.spacing;
+  if (!table.measured.empty()) {
+    return std::min(std::numbers::pi / table.measured.grid.spacing,
+                    kLongestSpacing / (table.high - table.low));
+  }
   return 0.5 * static_cast<double>(table.model.poles.size()) / (table.high - table.low);
 }
 
-// Whether something strikes behind kSeen of a record: a response that only rings on, or is noise,
-// is no larger there than in the tenth before.
-bool is_struck_late(const StructureRecord& record) {
+// Whether something strikes behind a share of a record: a response that only rings on, or is noise,
+// is no larger there than in as much before.
+bool is_struck_late(const StructureRecord& record, double share) {
   const auto end = static_cast<double>(record.samples());
-  const auto seen = static_cast<std::size_t>(kSeen * end);
-  const auto before = static_cast<std::size_t>((2.0 * kSeen - 1.0) * end);
+  const auto seen = static_cast<std::size_t>(share * end);
+  const auto before = static_cast<std::size_t>((2.0 * share - 1.0) * end);
   return std::ranges::any_of(record.responses, [&](std::span<const double> response) {
     return largest_magnitude(response.subspan(seen)) >
            kLate * largest_magnitude(response.subspan(before, seen - before));
@@ -80,8 +83,10 @@ ActingPart acting_part(const StructureTable& table, const StructureRecord& recor
   if (!table.measured.empty() && table.measured.grid.sigma > 0.0) {
     part.duration = std::min(part.duration, kSeenWeighted / table.measured.grid.sigma);
   }
-  if (is_struck_late(own)) return part;
-  const double seen = kSeen * part.duration;
+  // Functions do not tell what the end cuts off.
+  const double share = table.measured.empty() ? kSeen : kSeenByFunctions;
+  if (is_struck_late(own, share)) return part;
+  const double seen = share * part.duration;
   StructureForceOptions smooth = options;
   smooth.sigma = std::numeric_limits<double>::quiet_NaN();
   for (double next = 0.0;; part.duration = next) {

@@ -234,6 +234,27 @@ TEST(ActingPart, IsTheWindowThatIsStated) {
               testing::HasSubstr("leaves exp(-16) at the end of a window of 0.8 s"));
 }
 
+// Lines half a hertz apart are no modes: half a period of theirs is all of a second. Twenty periods
+// of the band of 380 Hz are 53 ms.
+TEST(ActingPart, ByFineLinesEndsSoonAfterTheForce) {
+  StructureTable table = table_of({1, 2});
+  FrequencyGrid grid{.spacing = std::numbers::pi, .bins = 1201};
+  std::vector<std::vector<Complex>> functions(2, std::vector<Complex>(grid.bins));
+  for (std::size_t k = 0; k < 2; ++k) {
+    for (std::size_t m = 0; m < grid.bins; ++m) {
+      for (std::size_t n = 0; n < kPoles.size(); ++n) {
+        functions[k][m] += constant(k + 1, n) / kPoles[n].denominator(grid.s(m));
+      }
+    }
+  }
+  table.measured = {.grid = grid, .sensors = table.model.sensors, .sessions = {functions}};
+  const ActingPart part = acting_part(table, record_of({1, 2}, {{0.15, 1.0}}), {});
+  EXPECT_EQ(part.first, 0u);
+  EXPECT_GT(part.duration, 0.15);
+  EXPECT_LT(part.duration, 1.25 * 0.158 + 0.053 + 0.01);
+  EXPECT_NEAR(part.weak_until, 0.8, 1e-12);
+}
+
 TEST(ActingPart, IsFoundByItsOwnContourAndTheForceBeginsWithTheRecord) {
   const std::vector<Burst> bursts = {{0.15, 1.0}};
   const StructureForce found =
