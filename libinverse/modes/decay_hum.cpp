@@ -27,11 +27,12 @@ double duration_of(const DecayRecord& decay) {
 // Its decay rate over 2π, half the width of its peak.
 double half_width(const DecayPole& pole) { return pole.damping_ratio * pole.frequency; }
 
-// Modes of a string stand near multiples of its fundamental, the low ones at least.
+// Modes of a string stand near multiples of its fundamental, the low ones at least; those of a
+// structure without one (NaN) anywhere.
 bool may_be_line(const DecayPole& pole, double fundamental, double duration) {
   const double place = pole.frequency / fundamental;
-  return std::abs(place - std::max(1.0, std::round(place))) > 0.1 &&
-         kFullTurn * half_width(pole) * duration < 2.0;
+  const bool is_harmonic = std::abs(place - std::max(1.0, std::round(place))) <= 0.1;
+  return !is_harmonic && kFullTurn * half_width(pole) * duration < 2.0;
 }
 
 // Under the window a peak falls as that of the decay does where it is wider than the window's lobe.

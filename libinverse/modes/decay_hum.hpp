@@ -12,7 +12,7 @@ namespace modcal {
 
 /// Lines of the mains below half the rate [Hz], as find_mains() finds them in the power of the
 /// channels. poles: of the decay, near which lines are not looked for, but for those that hardly
-/// decay apart from the multiples of the fundamental [Hz].
+/// decay apart from the multiples of the fundamental [Hz]; NaN: there is none.
 std::vector<double> hum_in(const DecayRecord& decay, std::span<const DecayPole> poles,
                            double fundamental);
 

@@ -57,6 +57,17 @@ NumberedModes numbered_modes(std::vector<DecayMode> modes, double highest, LawNu
   return numbered;
 }
 
+NumberedModes modes_in_order(std::vector<DecayMode> modes, double lowest, double highest) {
+  std::erase_if(modes, [&](const DecayMode& mode) {
+    const double frequency = mode.pole.frequency;
+    return frequency < lowest || frequency > highest || !(mode.pole.damping_ratio > 0.0);
+  });
+  std::ranges::sort(modes, {}, [](const DecayMode& mode) { return mode.pole.frequency; });
+  NumberedModes numbered;
+  for (DecayMode& mode : modes) numbered.emplace(numbered.size() + 1, std::move(mode));
+  return numbered;
+}
+
 std::vector<DecayMode> heard_of(std::vector<DecayMode> others, const NumberedModes& numbered) {
   double largest = 0.0;
   for (const auto& [number, mode] : numbered) largest = std::max(largest, size_of(mode));

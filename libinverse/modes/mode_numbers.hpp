@@ -61,6 +61,9 @@ using NumberedModes = std::map<std::size_t, DecayMode>;
 NumberedModes numbered_modes(std::vector<DecayMode> modes, double highest, LawNumbers& law,
                              std::vector<DecayMode>& others);
 
+/// Every mode that decays, from `lowest` to `highest` [Hz], upwards: of a structure without a law.
+NumberedModes modes_in_order(std::vector<DecayMode> modes, double lowest, double highest);
+
 /// Of modes without a number those that are heard: of a tenth of the largest amplitude at least.
 std::vector<DecayMode> heard_of(std::vector<DecayMode> others, const NumberedModes& numbered);
 

@@ -37,7 +37,8 @@ Method method_of(const PluckOptions& options) {
 
 // A second pole of a mode stands within some bins of it, and nearer than the next mode [Hz].
 double reach_of(double fundamental, double duration) {
-  return std::min(0.25 * fundamental, 10.0 / duration);
+  const double bins = 10.0 / duration;
+  return std::isnan(fundamental) ? bins : std::min(0.25 * fundamental, bins);
 }
 
 // Frequencies from `lowest` to `highest` at which the residual is more than noise [Hz].
@@ -70,7 +71,8 @@ std::vector<DecayMode> modes_of(const DecimatedDecay& decay, const std::vector<S
       likelihood ? fit_significant(decay.record, start, reach, search_residual, how)
                  : fit_damped_sinusoids(decay.record, start, how);
   if (search_residual && likelihood && !fit.modes.empty()) {
-    result.left = left_by(fit, decay, 0.5 * fundamental, options.highest_frequency);
+    const double lowest = std::isnan(fundamental) ? options.lowest_frequency : 0.5 * fundamental;
+    result.left = left_by(fit, decay, lowest, options.highest_frequency);
   }
   result.converged = fit.converged || !likelihood;
   result.full_rank = fit.full_rank && likelihood;
@@ -106,7 +108,7 @@ std::vector<StablePole> with_missing(std::vector<StablePole> stable, const Numbe
 
 DecimatedDecay band_of(const DecayRecord& record, double fundamental, const PluckOptions& options) {
   record.require_valid();
-  MODCAL_REQUIRE(fundamental > 0.0 && std::isfinite(fundamental),
+  MODCAL_REQUIRE(std::isnan(fundamental) || (fundamental > 0.0 && std::isfinite(fundamental)),
                  "fundamental {:g} Hz must be > 0: it numbers the modes", fundamental);
   method_of(options);
   return decimate(after(record, options.skip), options.highest_frequency);
@@ -163,6 +165,9 @@ PluckIdentification identified(const DecimatedDecay& decay, Realized realized, d
              mode.pole.damping_ratio > options.stabilization.highest_damping;
     });
     others.clear();
+    if (std::isnan(fundamental)) {
+      return modes_in_order(std::move(modes), options.lowest_frequency, options.highest_frequency);
+    }
     return numbered_modes(std::move(modes), options.highest_frequency, law, others);
   };
   LawNumbers law(fundamental);
@@ -201,6 +206,8 @@ PluckIdentification identified(const DecimatedDecay& decay, Realized realized, d
 }  // namespace
 
 void PluckOptions::visit(OptionVisitor& visitor) {
+  visitor("lowest_frequency", "lower end of the band in which modes are looked for",
+          {.unit = "Hz", .range = Range::non_negative()}, lowest_frequency);
   visitor("highest_frequency", "upper end of the band in which modes are looked for",
           {.unit = "Hz", .range = Range::positive()}, highest_frequency);
   visitor("method", "realization alone, or followed by a fit of all damped sinusoids",

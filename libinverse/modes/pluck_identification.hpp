@@ -13,6 +13,7 @@
 namespace modcal {
 
 struct PluckOptions {
+  double lowest_frequency = 0.0;              ///< modes below are left alone [Hz]
   double highest_frequency = 2300.0;          ///< modes above are left alone [Hz]
   std::string method = "maximum_likelihood";  ///< or era
   double skip = 2e-3;                         ///< time left out after the pluck [s]
@@ -63,8 +64,9 @@ struct PluckIdentification {
 /// that they may, too (widen_by_seconds). A fit that does not converge is made again with the modes
 /// that are missing, where the law has them. Hum of the mains, where there is some, is fitted
 /// beside the modes; a pole that the record does not tell from one of its lines is no mode.
-/// fundamental: f₀ to about 1 % [Hz]. Throws InvalidInput for an invalid or too short record, a
-/// fundamental that is not positive, an unknown method.
+/// fundamental: f₀ to about 1 % [Hz]; NaN: of a structure without a law, whose modes are numbered
+/// in order, each by itself. Throws InvalidInput for an invalid or too short record, a fundamental
+/// that is not positive, an unknown method.
 PluckIdentification identify_pluck(const DecayRecord& record, double fundamental,
                                    const PluckOptions& options = {});
 

@@ -1,6 +1,7 @@
 #include "experiments/kinds/identify/identify.hpp"
 
 #include "experiments/kinds/lint.hpp"
+#include "experiments/kinds/structure/structure_kinds.hpp"
 #include "experiments/report/result.hpp"
 
 namespace modcal {
@@ -17,70 +18,6 @@ DecayRecord measured_decay(const Simulation& simulation, const IdentifyOptions& 
   return record;
 }
 
-std::optional<StiffStringFit> law_of(const PluckIdentification& found) {
-  if (found.modes.size() < 2) return std::nullopt;
-  std::vector<double> frequencies(found.modes.back().number, 0.0);
-  std::vector<double> weights(frequencies.size(), 0.0);
-  for (const auto& [number, mode] : found.modes) {
-    const double deviation = mode.deviation.frequency;
-    frequencies[number - 1] = mode.pole.frequency;
-    weights[number - 1] = found.full_rank ? 1.0 / (deviation * deviation) : 1.0;
-  }
-  return fit_stiff_string(frequencies, weights);
-}
-
-// What an identification found, and its figures.
-
-using report::Series;
-using report::SeriesStyle;
-
-// Against the truth, or of a record against the law through all of its frequencies.
-report::Figure errors_figure(const IdentifyOutcome& outcome) {
-  const bool is_recorded = outcome.truth == nullptr;
-  const auto expected = [&](std::size_t number) {
-    if (is_recorded) return outcome.law->frequency(number);
-    const ModalBasis& basis = outcome.truth->basis;
-    return number > basis.size() ? 0.0 : basis.frequency(number - 1);
-  };
-  Series errors{.label = is_recorded ? "identified minus law" : "identified minus true",
-                .style = SeriesStyle::kPoints};
-  for (const auto& [number, mode] : outcome.found.modes) {
-    const double truth = expected(number);
-    if (truth == 0.0) continue;
-    const double error = mode.pole.frequency / truth - 1.0;
-    const double deviation = mode.deviation.frequency / truth;
-    errors.add(static_cast<double>(number), error, error - deviation, error + deviation);
-  }
-  return {.id = "frequency_errors",
-          .title = is_recorded ? "Frequencies beside the law of a stiff string"
-                               : "Errors of the identified frequencies",
-          .caption = "Bars: one standard deviation to either side.",
-          .panels = {{.x = {.label = "mode"},
-                      .y = {.label = is_recorded ? "relative distance of the frequency"
-                                                 : "relative error of the frequency"},
-                      .series = {std::move(errors)},
-                      .markers = {{.direction = report::Marker::Direction::kHorizontal}}}}};
-}
-
-std::string sentence_of(const IdentifyOutcome& outcome) {
-  std::string text = fmt::format("{} modes identified", outcome.found.modes.size());
-  if (!outcome.found.missing.empty()) {
-    text += fmt::format(", {} missing below the highest", outcome.found.missing.size());
-  }
-  if (outcome.law) {
-    text += fmt::format(
-        "; f0 = {:.6g} Hz, B = {}", outcome.law->fundamental,
-        inharmonicity_text(outcome.law->inharmonicity, outcome.law->inharmonicity_deviation));
-  }
-  text += "\n";
-  const std::vector<double>& lines = outcome.found.lines;
-  if (!lines.empty()) {
-    text += fmt::format("hum of the mains at {:.3f} Hz: {} lines are fitted beside the modes\n",
-                        lines.front(), lines.size());
-  }
-  return text;
-}
-
 }  // namespace
 
 void IdentifyOptions::visit(OptionVisitor& visitor) {
@@ -91,18 +28,53 @@ void IdentifyOptions::visit(OptionVisitor& visitor) {
           record);
   visitor("fundamental", "f0 of the recorded string, to about 1 %",
           {.unit = "Hz", .range = Range::positive(), .word = "none"}, fundamental);
+  visitor("structure", "any structure that rings freely, in place of a string", has_structure,
+          structure);
   visitor("identification", "how the modes are found", identification);
   visitor("seed", "key of the noise", {.range = Range::non_negative()}, seed);
 }
 
+void DecayingStructure::visit(OptionVisitor& visitor) {
+  visitor("record", "responses of the structure's sensors", {.required = true}, record);
+}
+
 std::vector<Finding> IdentifyOptions::lint() const {
-  if (has_scene && !has_record) return lint_simulated();
   std::vector<Finding> findings;
-  if (has_scene) {
-    add_finding(findings, "record", "both a scene and a record are stated: keep one");
-  } else if (!has_record) {
+  if (has_scene + has_record + has_structure > 1) {
+    add_finding(findings, has_record ? "record" : "structure",
+                "only one of scene, record and structure can be identified: keep one");
+  } else if (has_scene) {
+    return lint_simulated();
+  } else if (has_record || has_structure) {
+    return lint_recorded();
+  } else {
     add_finding(findings, "",
-                "nothing to identify: state a scene (simulated) or a record (a file)");
+                "nothing to identify: state a scene (simulated), the record of a string or a "
+                "structure with its record (files)");
+  }
+  return findings;
+}
+
+std::vector<Finding> IdentifyOptions::lint_recorded() const {
+  std::vector<Finding> findings;
+  const double lowest = identification.lowest_frequency;
+  if (!(identification.highest_frequency > lowest)) {
+    add_finding(findings, "identification.highest_frequency",
+                "{:g} Hz is not above identification.lowest_frequency, {:g} Hz",
+                identification.highest_frequency, lowest);
+  } else if (has_structure && !std::isnan(fundamental)) {
+    add_finding(
+        findings, "fundamental",
+        "modes of a structure are numbered in order: leave it out, or state the record of a "
+        "string (record)");
+  } else if (has_structure && structure.record.has_force) {
+    add_finding(
+        findings, "structure.record.force",
+        "a free decay has no force: leave it out, or state kind: fit_modes, which finds the "
+        "modes of a strike");
+  } else if (has_structure) {
+    append(findings,
+           lint_responses("structure.record.responses", structure.record.responses.size()));
   } else if (std::isnan(fundamental)) {
     add_finding(findings, "record",
                 "modes are numbered by the string's f0: state fundamental: ... Hz, to about 1 %");
@@ -172,13 +144,12 @@ std::optional<PlannedSimulations> IdentifyOptions::planned_simulations() const {
 }
 
 IdentifyOutcome identify_outcome(const IdentifyOptions& options, const StudyContext& context) {
-  if (options.has_record) {
-    IdentifyOutcome outcome{
-        .record = load_pluck(options.record, context.folder, options.fundamental, context.stop)};
+  if (options.has_record || options.has_structure) {
+    IdentifyOutcome outcome{.record = load_decay(options, context.folder, context.stop)};
     context.throw_if_interrupted();
     outcome.found =
         identify_pluck(outcome.record->decay, options.fundamental, options.identification);
-    outcome.law = law_of(outcome.found);
+    if (options.has_record) outcome.law = law_of(outcome.found);
     return outcome;
   }
   const auto truth = context.work.truths.get(options.truth, options.measurement.sample_rate,
@@ -190,74 +161,6 @@ IdentifyOutcome identify_outcome(const IdentifyOptions& options, const StudyCont
       .truth = truth};
   outcome.law = law_of(outcome.found);
   return outcome;
-}
-
-void IdentifyOutcome::visit(ResultVisitor& visitor) const {
-  const std::size_t known_modes = truth ? truth->basis.size() : 0;
-  visitor.rows(
-      {.key = "modes",
-       .table = "modes",
-       .name = "Identified modes",
-       .meaning =
-           found.full_rank
-               ? "Deviations are the Cramér–Rao bound of the fit. A second pole of a third of the "
-                 "amplitude that the record does not show may move the frequency by the next "
-                 "column."
-               : "Deviations are the spread over the orders of the realization: no error bars."},
-      found.modes, [&](ResultVisitor& row, const PluckedMode& plucked) {
-        const auto& [number, mode] = plucked;
-        const auto of_truth = [&, n = number](auto value) {
-          return n <= known_modes ? std::optional<double>(value(n - 1)) : std::nullopt;
-        };
-        row({.key = "n", .name = "mode"}, number);
-        row({.key = "f_hz", .name = "frequency", .unit = "Hz", .format = "{:.7g}"},
-            mode.pole.frequency);
-        row({.key = "f_sd_hz", .name = "its deviation", .unit = "Hz", .format = "{:.2g}"},
-            mode.deviation.frequency);
-        row({.key = "f_unseen_hz",
-             .name = "moved by an unseen pole",
-             .unit = "Hz",
-             .format = "{:.2g}"},
-            unseen_shift(found, plucked));
-        row({.key = "f_true_hz", .name = "true frequency", .unit = "Hz", .format = "{:.7g}"},
-            of_truth([&](std::size_t n) { return truth->basis.frequency(n); }));
-        row({.key = "zeta", .name = "damping ratio"}, mode.pole.damping_ratio);
-        row({.key = "zeta_sd", .name = "its deviation", .format = "{:.2g}"},
-            mode.deviation.damping_ratio);
-        row({.key = "zeta_true", .name = "true damping ratio"},
-            of_truth([&](std::size_t n) { return truth->basis.zeta[n]; }));
-      });
-  visitor({.key = "missing"}, found.missing);
-  std::vector<double> others;
-  for (const DecayMode& mode : found.others) others.push_back(mode.pole.frequency);
-  visitor({.key = "without_number_hz"}, others);
-  std::vector<std::size_t> doubled;
-  for (const PluckedMode& second : found.seconds) doubled.push_back(second.number);
-  visitor({.key = "with_second_pole"}, doubled);
-  if (record) visitor({.key = "begin_s"}, record->begin);
-  if (record) visitor({.key = "end_s"}, record->end);
-  visitor({.key = "deviations_are_error_bars"}, found.full_rank);
-  visitor({.key = "mains_lines_hz"}, found.lines);
-  visitor({.key = "noise_in_band_n"}, found.noise);
-  visitor({.key = "converged"}, found.converged);
-  visitor({.key = "stiff_string_law", .optional = true}, law);
-}
-
-report::Figure stabilization_figure(const IdentifyOutcome& outcome) {
-  Series moving{.label = "moves with the order",
-                .style = SeriesStyle::kPoints,
-                .color = report::ColorRole::kMuted};
-  Series stable{.label = "stable", .style = SeriesStyle::kPoints};
-  for (const StabilizationPoint& point : outcome.found.diagram) {
-    (point.stable_orders > 1 ? stable : moving)
-        .add(point.pole.frequency, static_cast<double>(point.order));
-  }
-  return {.id = "stabilization",
-          .title = "Stabilization diagram",
-          .caption = "Poles of the realizations; a mode stays where it is when the order grows.",
-          .panels = {{.x = {.label = "frequency", .unit = "Hz"},
-                      .y = {.label = "order"},
-                      .series = {std::move(moving), std::move(stable)}}}};
 }
 
 StudyResult IdentifyOptions::run(const StudyContext& context) const {
@@ -284,7 +187,7 @@ StudyResult IdentifyOptions::run(const StudyContext& context) const {
   if (result.status != report::Status::kOk) return result;
   std::vector<std::string> warnings;
   const std::string why =
-      doubt_decay(outcome.found, outcome.record->decay, fundamental, outcome.law, warnings);
+      doubt_decay(outcome.found, *outcome.record, fundamental, outcome.law, warnings);
   for (const std::string& warning : warnings) result.warn(warning);
   if (why.empty()) return result;
   result.status = report::Status::kFailed;

@@ -1,22 +1,33 @@
-// Kind "identify": a plucked string, simulated or recorded, its modes with error bars.
+// Kind "identify": free decays of a plucked string, simulated or recorded, or of any structure: the
+// modes with error bars.
 #pragma once
 
 #include "experiments/experiment.hpp"
 #include "experiments/kinds/identify/identify_record.hpp"
+#include "experiments/kinds/structure/structure_files.hpp"
 #include "libcalib/parameters/stiff_string_fit.hpp"
 
 namespace modcal {
 
+/// A structure that rings freely.
+struct DecayingStructure {
+  StructureRecordOptions record;
+  void visit(OptionVisitor& visitor);
+};
+
 struct IdentifyOptions {
   static constexpr std::string_view kForStructures =
-      "identify finds the modes of a plucked string from the reactions at its ends; for those of "
-      "any other structure state kind: fit_modes with a record of responses and force";
+      "identify finds modes from free decays: state structure: {record: {file: ..., responses: "
+      "[{channel: ...}, ...]}}; for a table with the force's constants state kind: fit_modes with "
+      "a record of responses and force";
   bool has_scene = false;
   TruthOptions truth;
   Measurement measurement;
   bool has_record = false;
   RecordOptions record;
   double fundamental = std::numeric_limits<double>::quiet_NaN();  ///< of a record [Hz]
+  bool has_structure = false;
+  DecayingStructure structure;
   PluckOptions identification;
   std::int64_t seed = 1;
   void visit(OptionVisitor& visitor);
@@ -30,6 +41,7 @@ struct IdentifyOptions {
 
  private:
   std::vector<Finding> lint_simulated() const;
+  std::vector<Finding> lint_recorded() const;
 };
 
 struct IdentifyOutcome {
@@ -41,7 +53,19 @@ struct IdentifyOutcome {
   std::optional<StiffStringFit> law;
   /// Modes, law and noise.
   void visit(ResultVisitor& visitor) const;
+
+ private:
+  void visit_shapes(ResultVisitor& visitor) const;
 };
+
+/// f₀ and B through the frequencies; empty with fewer than two modes.
+std::optional<StiffStringFit> law_of(const PluckIdentification& found);
+
+/// How many modes, the law, the mains.
+std::string sentence_of(const IdentifyOutcome& outcome);
+
+/// Frequencies against the truth, or of a record against the law through all of them.
+report::Figure errors_figure(const IdentifyOutcome& outcome);
 
 /// Simulates and measures, or reads, and identifies.
 IdentifyOutcome identify_outcome(const IdentifyOptions& options, const StudyContext& context);

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "experiments/kinds/identify/identify.hpp"
 #include "experiments/kinds/invert/invert.hpp"
 #include "experiments/kinds/lint.hpp"
+#include "experiments/kinds/structure/structure_kinds.hpp"
 #include "libinverse/modes/tuning.hpp"
 #include "libsim/base/error.hpp"
 #include "libsim/records/levels.hpp"
@@ -15,13 +17,13 @@ namespace modcal {
 namespace {
 
 // First sample of the period in which the channels change most; each counts alike.
-std::size_t liveliest(const std::vector<const std::vector<double>*>& channels, std::size_t period) {
-  const std::size_t periods = channels.front()->size() / period;
+std::size_t liveliest(const std::vector<std::vector<double>>& channels, std::size_t period) {
+  const std::size_t periods = channels.front().size() / period;
   std::vector<double> changes(periods, 0.0);
-  for (const std::vector<double>* channel : channels) {
+  for (const std::vector<double>& channel : channels) {
     std::vector<double> own(periods, 0.0);
     for (std::size_t j = 1; j < periods * period; ++j) {
-      own[j / period] += std::pow((*channel)[j] - (*channel)[j - 1], 2);
+      own[j / period] += std::pow(channel[j] - channel[j - 1], 2);
     }
     const double whole = std::accumulate(own.begin(), own.end(), 0.0);
     for (std::size_t i = 0; i < periods && whole > 0.0; ++i) changes[i] += own[i] / whole;
@@ -59,46 +61,75 @@ std::size_t resolved_until(const std::vector<double>& samples, std::size_t perio
   return 0;
 }
 
-}  // namespace
+// All of what was recorded.
+PluckedRecord recorded(const IdentifyOptions& options, const std::filesystem::path& folder,
+                       const StopToken& stop) {
+  if (options.has_structure) {
+    LoadedStructureRecord loaded = load_structure_record(options.structure.record, folder, stop);
+    return {.decay = {.sample_rate = loaded.record.sample_rate,
+                      .channels = std::move(loaded.record.responses)},
+            .names = std::move(loaded.names),
+            .warnings = std::move(loaded.warnings)};
+  }
+  RecordedSignals signals = load_record(options.record, folder, stop);
+  PluckedRecord result{.decay = {.sample_rate = signals.sample_rate},
+                       .warnings = std::move(signals.warnings)};
+  for (std::optional<Signal>* reaction : {&signals.left, &signals.right}) {
+    if (*reaction) result.decay.channels.push_back(std::move((*reaction)->samples));
+  }
+  return result;
+}
 
-PluckedRecord load_pluck(const RecordOptions& options, const std::filesystem::path& folder,
-                         double fundamental, const StopToken& stop) {
-  const RecordedSignals signals = load_record(options, folder, stop);
-  const auto period = static_cast<std::size_t>(std::ceil(signals.sample_rate / fundamental));
-  MODCAL_REQUIRE(signals.size() >= 3 * period,
+// Of the lowest mode, in samples.
+std::size_t longest_period(const IdentifyOptions& options, std::size_t samples, double rate) {
+  const double lowest =
+      options.has_structure ? options.identification.lowest_frequency : options.fundamental;
+  constexpr std::size_t kParts = 50;
+  if (!(lowest > 0.0)) return std::max<std::size_t>(1, samples / kParts);
+  const double period = std::ceil(rate / lowest);
+  MODCAL_REQUIRE(static_cast<double>(samples) >= 3.0 * period,
                  "{} samples are less than three periods of {:g} Hz: state a longer part of the "
                  "record",
-                 signals.size(), fundamental);
-  std::vector<const std::vector<double>*> channels;
-  for (const std::optional<Signal>* reaction : {&signals.left, &signals.right}) {
-    if (*reaction) channels.push_back(&(*reaction)->samples);
-  }
+                 samples, lowest);
+  return static_cast<std::size_t>(period);
+}
+
+}  // namespace
+
+PluckedRecord load_decay(const IdentifyOptions& options, const std::filesystem::path& folder,
+                         const StopToken& stop) {
+  PluckedRecord result = recorded(options, folder, stop);
+  const double rate = result.decay.sample_rate;
+  const std::vector<std::vector<double>> channels = std::exchange(result.decay.channels, {});
+  const std::size_t period = longest_period(options, channels.front().size(), rate);
   const std::size_t first = liveliest(channels, period) + period;
-  PluckedRecord result{.decay = {.sample_rate = signals.sample_rate},
-                       .begin = static_cast<double>(first) / signals.sample_rate,
-                       .warnings = signals.warnings};
-  std::size_t end = channels.front()->size();
-  for (const std::vector<double>* channel : channels) {
+  result.begin = static_cast<double>(first) / rate;
+  std::size_t end = channels.front().size();
+  for (const std::vector<double>& channel : channels) {
     end = std::min(
-        end, first + resolved_until(
-                         {channel->begin() + static_cast<std::ptrdiff_t>(first), channel->end()},
-                         period));
+        end,
+        first + resolved_until(
+                    {channel.begin() + static_cast<std::ptrdiff_t>(first), channel.end()}, period));
   }
-  result.end = static_cast<double>(end) / signals.sample_rate;
+  result.end = static_cast<double>(end) / rate;
+  MODCAL_REQUIRE(channels.front().size() >= first + 3 * period,
+                 "the record changes most before {:.3g} s, and less than three periods of the "
+                 "lowest mode are left behind: record it for longer, or state record.stop before",
+                 result.begin);
   MODCAL_REQUIRE(end >= first + 3 * period,
                  "the decay has an rms of less than four of the record's steps from {:.3g} s on: "
                  "record it with more gain or more bits",
                  result.end);
-  if (end < channels.front()->size()) {
+  if (end < channels.front().size()) {
     result.warnings.push_back(fmt::format(
         "the decay is used up to {:.3g} s: from there on its rms is less than four of the record's "
         "steps, and what they round off is no noise; more gain or more bits make use of the rest",
         result.end));
   }
-  for (const std::vector<double>* channel : channels) {
+  for (const std::vector<double>& channel : channels) {
     std::vector<double>& samples =
-        result.decay.channels.emplace_back(channel->begin() + static_cast<std::ptrdiff_t>(first),
-                                           channel->begin() + static_cast<std::ptrdiff_t>(end));
+        result.decay.channels.emplace_back(channel.begin() + static_cast<std::ptrdiff_t>(first),
+                                           channel.begin() + static_cast<std::ptrdiff_t>(end));
     const double mean = std::accumulate(samples.begin(), samples.end(), 0.0) /
                         std::max(1.0, static_cast<double>(samples.size()));
     for (double& x : samples) x -= mean;
@@ -115,7 +146,7 @@ std::string numbers_text(const std::vector<std::size_t>& numbers) {
 
 }  // namespace
 
-std::string rejection_of(const PluckIdentification& found, const DecayRecord& decay,
+std::string rejection_of(const PluckIdentification& found, const PluckedRecord& record,
                          double fundamental, const std::optional<StiffStringFit>& law) {
   std::size_t damped = 0;
   for (const auto& [number, mode] : found.modes) {
@@ -129,31 +160,35 @@ std::string rejection_of(const PluckIdentification& found, const DecayRecord& de
   }
   for (std::size_t k = 0; k < found.noise.size(); ++k) {
     double power = 0.0;
-    for (const double x : decay.channels[k]) power += x * x;
-    const double rms = std::sqrt(power / static_cast<double>(decay.channels[k].size()));
+    for (const double x : record.decay.channels[k]) power += x * x;
+    const double rms = std::sqrt(power / static_cast<double>(record.decay.channels[k].size()));
     if (found.noise[k] > 0.5 * rms) {
       return fmt::format(
-          "rejected: the modes leave {:.0f} % of reaction {}: the record holds more than one "
-          "string's free decay in the band; lower identification.highest_frequency or state "
+          "rejected: the modes leave {:.0f} % of {}: the record holds more than one free decay in "
+          "the band; lower identification.highest_frequency or state "
           "another part, and high-pass the record below the first mode where its sensor drifts",
-          100.0 * found.noise[k] / rms, k + 1);
+          100.0 * found.noise[k] / rms,
+          record.names.empty() ? fmt::format("reaction {}", k + 1) : record.names[k]);
     }
   }
   if (!found.left.empty()) {
     return fmt::format(
         "rejected: damped sinusoids leave more than noise of the record, most at {:.4g} Hz: it "
-        "holds more than one free decay, as where something still moves the string or the sensor; "
+        "holds more than one free decay, as where something still moves the {} or the sensor; "
         "state record.start behind that and record.stop before it, or lower "
         "identification.highest_frequency",
-        found.left.front());
+        found.left.front(), record.names.empty() ? "string" : "structure");
   }
   if (!found.departing.empty()) {
     return fmt::format(
         "rejected: {} {} neither one damped sinusoid nor two: the frequency or the damping changes "
-        "along the decay, as where it is strong, or something else moves the string; state another "
-        "part of the record, or pluck less",
-        numbers_text(found.departing), found.departing.size() > 1 ? "are" : "is");
+        "along the decay, as where it is strong, or something else moves the {}; state another "
+        "part "
+        "of the record, or excite it less",
+        numbers_text(found.departing), found.departing.size() > 1 ? "are" : "is",
+        record.names.empty() ? "string" : "structure");
   }
+  if (std::isnan(fundamental)) return {};
   std::size_t divisor = 0;
   for (const auto& [number, mode] : found.modes) divisor = std::gcd(divisor, number);
   if (found.modes.size() > 2 && divisor > 1) {
@@ -174,9 +209,9 @@ std::string rejection_of(const PluckIdentification& found, const DecayRecord& de
 
 std::string why_nothing(const IdentifyOutcome& outcome) {
   if (outcome.record && !outcome.found.diagram.empty()) {
-    return "rejected: no pole that is stable over the orders decays as a mode of this string does: "
-           "state record.start and record.stop of a free decay, behind the pluck, or record a "
-           "longer one with less noise";
+    return "rejected: no pole that is stable over the orders decays as a mode of this string, or "
+           "structure, does: state record.start and record.stop of a free decay, behind the pluck, "
+           "or record a longer one with less noise";
   }
   return "no pole is stable over the orders: nothing was identified; record a longer decay with "
          "less noise, or raise identification's orders";
@@ -184,11 +219,12 @@ std::string why_nothing(const IdentifyOutcome& outcome) {
 
 std::vector<Finding> IdentifyOptions::lint_records(const std::filesystem::path& folder) const {
   std::vector<Finding> findings;
-  if (!has_record || std::isnan(fundamental)) return findings;
-  lint_making(findings, "record.file", [&] {
+  const std::string file = has_structure ? "structure.record.file" : "record.file";
+  if (!has_structure && (!has_record || std::isnan(fundamental))) return findings;
+  lint_making(findings, file, [&] {
     PluckedRecord pluck;
     try {
-      pluck = load_pluck(record, folder, fundamental);
+      pluck = load_decay(*this, folder);
     } catch (const WrongRecordKey& error) {
       throw WrongKey("record." + error.key(), error.what());
     }
@@ -199,62 +235,28 @@ std::vector<Finding> IdentifyOptions::lint_records(const std::filesystem::path& 
                    0.5 * decay.sample_rate, identification.highest_frequency);
     require_decay_length(decay.channels.front().size(), decay.sample_rate, identification);
     for (const std::string& warning : pluck.warnings) {
-      findings.push_back({"record.file", warning, false});
+      findings.push_back({file, warning, false});
     }
   });
   return findings;
 }
 
 std::vector<FileRead> IdentifyOptions::files_read() const {
-  if (!has_record) return {};
+  if (has_scene || !(has_record || has_structure)) return {};
   // The record, its decay and what is left of the band, each filtered and whitened.
-  FileRead file = file_read(record, "record.file", 12.0);
+  FileRead file =
+      has_structure ? file_read(structure.record) : file_read(record, "record.file", 12.0);
+  if (has_structure) file.key = "structure.record.file", file.numbers_per_sample = 12.0;
   // A fit has the columns of a state, of a trial and of their sums for what is left of the band,
-  // two for every pole: two poles for each mode of the string, and those that are added.
-  const double poles = 2.0 * identification.highest_frequency / fundamental + kPolesAdded;
+  // two for every pole: two poles for each mode of the string, half as many as the realization has
+  // orders, and those that are added.
+  const double orders = static_cast<double>(identification.stabilization.highest_order);
+  const double poles =
+      (has_structure ? 0.5 * orders : 2.0 * identification.highest_frequency / fundamental) +
+      kPolesAdded;
   const bool is_whole = file.numbers_per_sample > 0.0;
   file.numbers_per_second = is_whole ? 6.0 * poles * 2.6 * identification.highest_frequency : 0.0;
   return {file};
-}
-
-namespace {
-
-// Modes that are heard and have no number.
-std::string others_text(const std::vector<DecayMode>& others) {
-  std::vector<std::string> texts;
-  for (const DecayMode& mode : others) {
-    texts.push_back(
-        fmt::format("{:.6g} Hz (zeta {:.2g})", mode.pole.frequency, mode.pole.damping_ratio));
-  }
-  return fmt::format(
-      "the record has modes that are none of the string's numbers: {}. They are of a body, of "
-      "another "
-      "string, or of a plane in which this one is tuned apart; they are fitted with the others and "
-      "not listed",
-      fmt::join(texts, ", "));
-}
-
-std::string seconds_text(const std::vector<PluckedMode>& seconds) {
-  std::vector<std::string> texts;
-  for (const auto& [number, mode] : seconds) {
-    texts.push_back(fmt::format("{} ({:.6g} Hz, zeta {:.2g})", number, mode.pole.frequency,
-                                mode.pole.damping_ratio));
-  }
-  return fmt::format(
-      "modes have a second pole, as where the string moves in two planes: {}. The larger of the "
-      "two is listed; the deviations of the other modes hold that they may have one, too. Pluck "
-      "towards the sensor",
-      fmt::join(texts, ", "));
-}
-
-}  // namespace
-
-std::string doubt_decay(const PluckIdentification& found, const DecayRecord& decay,
-                        double fundamental, const std::optional<StiffStringFit>& law,
-                        std::vector<std::string>& warnings) {
-  if (!found.others.empty()) warnings.push_back(others_text(found.others));
-  if (!found.seconds.empty()) warnings.push_back(seconds_text(found.seconds));
-  return rejection_of(found, decay, fundamental, law);
 }
 
 }  // namespace modcal

@@ -181,7 +181,7 @@ TEST_F(RecordedPluck, NeedsItsFundamentalAndARecordOrAScene) {
     const LoadedExperiment loaded = load_experiment(path("wrong.yaml"));
     return format_mistakes(loaded.document, loaded.mistakes);
   };
-  EXPECT_THAT(said("seed: 1\n"), HasSubstr("state a scene (simulated) or a record (a file)"));
+  EXPECT_THAT(said("seed: 1\n"), HasSubstr("state a scene (simulated), the record of a string"));
   EXPECT_THAT(said("record: {file: pluck.csv, left: {channel: R1}}\n"),
               HasSubstr("state fundamental: ... Hz"));
   EXPECT_THAT(said("record: {file: pluck.csv, left: {channel: R1}}\nfundamental: 3000 Hz\n"),

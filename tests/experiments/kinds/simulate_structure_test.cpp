@@ -174,6 +174,9 @@ TEST_F(BowOnAStructure, SweepsOverItsSettings) {
 }
 
 TEST_F(BowOnAStructure, RefusesWhatTheTableDoesNotTell) {
+  EXPECT_THAT(said("kind: identify\nstructure: {table: modes.yaml}\n"),
+              AllOf(HasSubstr("unknown key \"table\": identify finds modes from free decays"),
+                    HasSubstr("kind: fit_modes")));
   const std::string plate = std::string(MODCAL_CONFIGS) + "/structures/plate_modes.json";
   const auto with = [&](const std::string& keys, const std::string& table,
                         const std::string& rate) {
@@ -204,7 +207,6 @@ TEST_F(BowOnAStructure, EveryKindSaysWhatTakesATable) {
   for (const auto& [kind, instead] :
        std::vector<std::pair<std::string, std::string>>{{"invert", "kind: identify_force"},
                                                         {"sweep", "sweep: {product: ...}"},
-                                                        {"identify", "kind: fit_modes"},
                                                         {"pluck_then_bow", "kind: fit_modes"},
                                                         {"schelleng", "kind: simulate"}}) {
     for (const std::string key : {"table", "model", "structure"}) {

@@ -1,0 +1,200 @@
+// What an identification found, in words, tables and figures.
+#include "experiments/kinds/identify/identify.hpp"
+#include "experiments/report/result.hpp"
+
+namespace modcal {
+
+using report::Series;
+using report::SeriesStyle;
+
+std::optional<StiffStringFit> law_of(const PluckIdentification& found) {
+  if (found.modes.size() < 2) return std::nullopt;
+  std::vector<double> frequencies(found.modes.back().number, 0.0);
+  std::vector<double> weights(frequencies.size(), 0.0);
+  for (const auto& [number, mode] : found.modes) {
+    const double deviation = mode.deviation.frequency;
+    frequencies[number - 1] = mode.pole.frequency;
+    weights[number - 1] = found.full_rank ? 1.0 / (deviation * deviation) : 1.0;
+  }
+  return fit_stiff_string(frequencies, weights);
+}
+
+report::Figure errors_figure(const IdentifyOutcome& outcome) {
+  const bool is_recorded = outcome.truth == nullptr;
+  const auto expected = [&](std::size_t number) {
+    if (is_recorded) return outcome.law->frequency(number);
+    const ModalBasis& basis = outcome.truth->basis;
+    return number > basis.size() ? 0.0 : basis.frequency(number - 1);
+  };
+  Series errors{.label = is_recorded ? "identified minus law" : "identified minus true",
+                .style = SeriesStyle::kPoints};
+  for (const auto& [number, mode] : outcome.found.modes) {
+    const double truth = expected(number);
+    if (truth == 0.0) continue;
+    const double error = mode.pole.frequency / truth - 1.0;
+    const double deviation = mode.deviation.frequency / truth;
+    errors.add(static_cast<double>(number), error, error - deviation, error + deviation);
+  }
+  return {.id = "frequency_errors",
+          .title = is_recorded ? "Frequencies beside the law of a stiff string"
+                               : "Errors of the identified frequencies",
+          .caption = "Bars: one standard deviation to either side.",
+          .panels = {{.x = {.label = "mode"},
+                      .y = {.label = is_recorded ? "relative distance of the frequency"
+                                                 : "relative error of the frequency"},
+                      .series = {std::move(errors)},
+                      .markers = {{.direction = report::Marker::Direction::kHorizontal}}}}};
+}
+
+std::string sentence_of(const IdentifyOutcome& outcome) {
+  std::string text = fmt::format("{} modes identified", outcome.found.modes.size());
+  if (!outcome.found.missing.empty()) {
+    text += fmt::format(", {} missing below the highest", outcome.found.missing.size());
+  }
+  if (outcome.law) {
+    text += fmt::format(
+        "; f0 = {:.6g} Hz, B = {}", outcome.law->fundamental,
+        inharmonicity_text(outcome.law->inharmonicity, outcome.law->inharmonicity_deviation));
+  }
+  text += "\n";
+  const std::vector<double>& lines = outcome.found.lines;
+  if (!lines.empty()) {
+    text += fmt::format("hum of the mains at {:.3f} Hz: {} lines are fitted beside the modes\n",
+                        lines.front(), lines.size());
+  }
+  return text;
+}
+
+void IdentifyOutcome::visit(ResultVisitor& visitor) const {
+  const std::size_t known_modes = truth ? truth->basis.size() : 0;
+  visitor.rows(
+      {.key = "modes",
+       .table = "modes",
+       .name = "Identified modes",
+       .meaning =
+           found.full_rank
+               ? "Deviations are the Cramér–Rao bound of the fit. A second pole of a third of the "
+                 "amplitude that the record does not show may move the frequency by the next "
+                 "column."
+               : "Deviations are the spread over the orders of the realization: no error bars."},
+      found.modes, [&](ResultVisitor& row, const PluckedMode& plucked) {
+        const auto& [number, mode] = plucked;
+        const auto of_truth = [&, n = number](auto value) {
+          return n <= known_modes ? std::optional<double>(value(n - 1)) : std::nullopt;
+        };
+        row({.key = "n", .name = "mode"}, number);
+        row({.key = "f_hz", .name = "frequency", .unit = "Hz", .format = "{:.7g}"},
+            mode.pole.frequency);
+        row({.key = "f_sd_hz", .name = "its deviation", .unit = "Hz", .format = "{:.2g}"},
+            mode.deviation.frequency);
+        row({.key = "f_unseen_hz",
+             .name = "moved by an unseen pole",
+             .unit = "Hz",
+             .format = "{:.2g}"},
+            unseen_shift(found, plucked));
+        row({.key = "f_true_hz", .name = "true frequency", .unit = "Hz", .format = "{:.7g}"},
+            of_truth([&](std::size_t n) { return truth->basis.frequency(n); }));
+        row({.key = "zeta", .name = "damping ratio"}, mode.pole.damping_ratio);
+        row({.key = "zeta_sd", .name = "its deviation", .format = "{:.2g}"},
+            mode.deviation.damping_ratio);
+        row({.key = "zeta_true", .name = "true damping ratio"},
+            of_truth([&](std::size_t n) { return truth->basis.zeta[n]; }));
+      });
+  visit_shapes(visitor);
+  visitor({.key = "missing"}, found.missing);
+  std::vector<double> others;
+  for (const DecayMode& mode : found.others) others.push_back(mode.pole.frequency);
+  visitor({.key = "without_number_hz"}, others);
+  std::vector<std::size_t> doubled;
+  for (const PluckedMode& second : found.seconds) doubled.push_back(second.number);
+  visitor({.key = "with_second_pole"}, doubled);
+  if (record) visitor({.key = "begin_s"}, record->begin);
+  if (record) visitor({.key = "end_s"}, record->end);
+  visitor({.key = "deviations_are_error_bars"}, found.full_rank);
+  visitor({.key = "mains_lines_hz"}, found.lines);
+  visitor({.key = "noise_in_band_n"}, found.noise);
+  visitor({.key = "converged"}, found.converged);
+  visitor({.key = "stiff_string_law", .optional = true}, law);
+}
+
+// How every sensor of a structure takes part in a mode.
+void IdentifyOutcome::visit_shapes(ResultVisitor& visitor) const {
+  if (!record || record->names.empty()) return;
+  std::vector<std::pair<std::size_t, std::size_t>> places;  // of a mode and a sensor
+  for (std::size_t n = 0; n < found.modes.size(); ++n) {
+    for (std::size_t k = 0; k < record->names.size(); ++k) places.emplace_back(n, k);
+  }
+  visitor.rows(
+      {.key = "shapes",
+       .table = "shapes",
+       .name = "Amplitudes",
+       .meaning = "Of every mode in every sensor where the decay begins, in the sensor's SI unit: "
+                  "the ratios between the sensors are the mode's shape there."},
+      places, [&](ResultVisitor& row, const std::pair<std::size_t, std::size_t>& place) {
+        const auto& [number, mode] = found.modes[place.first];
+        const std::complex<double> amplitude = mode.amplitude[place.second];
+        row({.key = "n", .name = "mode"}, number);
+        row({.key = "channel"}, record->names[place.second]);
+        row({.key = "amplitude"}, std::abs(amplitude));
+        row({.key = "phase_rad", .name = "phase", .unit = "rad"}, std::arg(amplitude));
+      });
+}
+
+report::Figure stabilization_figure(const IdentifyOutcome& outcome) {
+  Series moving{.label = "moves with the order",
+                .style = SeriesStyle::kPoints,
+                .color = report::ColorRole::kMuted};
+  Series stable{.label = "stable", .style = SeriesStyle::kPoints};
+  for (const StabilizationPoint& point : outcome.found.diagram) {
+    (point.stable_orders > 1 ? stable : moving)
+        .add(point.pole.frequency, static_cast<double>(point.order));
+  }
+  return {.id = "stabilization",
+          .title = "Stabilization diagram",
+          .caption = "Poles of the realizations; a mode stays where it is when the order grows.",
+          .panels = {{.x = {.label = "frequency", .unit = "Hz"},
+                      .y = {.label = "order"},
+                      .series = {std::move(moving), std::move(stable)}}}};
+}
+
+namespace {
+
+// Modes that are heard and have no number.
+std::string others_text(const std::vector<DecayMode>& others) {
+  std::vector<std::string> texts;
+  for (const DecayMode& mode : others) {
+    texts.push_back(
+        fmt::format("{:.6g} Hz (zeta {:.2g})", mode.pole.frequency, mode.pole.damping_ratio));
+  }
+  return fmt::format(
+      "the record has modes that are none of the string's numbers: {}. They are of a body, of "
+      "another "
+      "string, or of a plane in which this one is tuned apart; they are fitted with the others and "
+      "not listed",
+      fmt::join(texts, ", "));
+}
+
+std::string seconds_text(const std::vector<PluckedMode>& seconds) {
+  std::vector<std::string> texts;
+  for (const auto& [number, mode] : seconds) {
+    texts.push_back(fmt::format("{} ({:.6g} Hz, zeta {:.2g})", number, mode.pole.frequency,
+                                mode.pole.damping_ratio));
+  }
+  return fmt::format(
+      "modes have a second pole, as where the string moves in two planes: {}. The larger of the "
+      "two is listed; the deviations of the other modes hold that they may have one, too. Pluck "
+      "towards the sensor",
+      fmt::join(texts, ", "));
+}
+
+}  // namespace
+
+std::string doubt_decay(const PluckIdentification& found, const PluckedRecord& record,
+                        double fundamental, const std::optional<StiffStringFit>& law,
+                        std::vector<std::string>& warnings) {
+  if (!found.others.empty()) warnings.push_back(others_text(found.others));
+  if (!found.seconds.empty()) warnings.push_back(seconds_text(found.seconds));
+  return rejection_of(found, record, fundamental, law);
+}
+
+}  // namespace modcal

@@ -1,0 +1,116 @@
+// Kind "identify" on free decays of a structure, as sums of damped sinusoids.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "experiments/loader.hpp"
+#include "experiments/study/study.hpp"
+#include "libsim/base/random.hpp"
+#include "tests/experiments/kinds/run_document.hpp"
+#include "tests/folder_test.hpp"
+
+namespace modcal::identify_structure_test {
+namespace {
+
+using testing::HasSubstr;
+
+struct Mode {
+  double frequency, ratio;
+  double amplitudes[3];
+};
+// No multiples of one frequency, two of them 2 % apart.
+constexpr Mode kModes[] = {{31.4, 0.012, {1.0, 0.6, -0.3}},
+                           {77.0, 0.008, {0.7, -0.8, 0.5}},
+                           {118.6, 0.006, {-0.4, 0.5, 0.9}},
+                           {121.0, 0.007, {0.6, 0.3, -0.5}},
+                           {203.3, 0.004, {0.3, 0.4, 0.4}}};
+constexpr double kRate = 2000.0, kReleased = 0.25;
+
+class DecayingStructureTest : public FolderTest {
+ protected:
+  // Bent to one side, then let go; two accelerations in g and a displacement in mm.
+  void write_decay(double noise) const {
+    std::string text = "t [s],a1 [g],a2 [g],d [mm]\n";
+    const auto count = static_cast<std::size_t>(4.0 * kRate);
+    std::vector<double> normal(3 * count);
+    fill_standard_normal(StreamKey(4).with("noise"), normal);
+    for (std::size_t j = 0; j < count; ++j) {
+      const double t = static_cast<double>(j) / kRate - kReleased;
+      text += fmt::format("{:.6f}", t + kReleased);
+      for (std::size_t k = 0; k < 3; ++k) {
+        double sum = noise * normal[3 * j + k];
+        for (const auto& [frequency, ratio, amplitudes] : kModes) {
+          if (t < 0.0) continue;
+          const double omega = 2.0 * std::numbers::pi * frequency;
+          sum += amplitudes[k] * std::exp(-ratio * omega * t) *
+                 std::cos(omega * std::sqrt(1.0 - ratio * ratio) * t);
+        }
+        text += fmt::format(",{:.9g}", sum);
+      }
+      text += "\n";
+    }
+    write("decay.csv", text);
+  }
+  YamlDocument document(const std::string& keys) const {
+    write("identify.yaml",
+          "kind: identify\nstructure:\n  record:\n    file: decay.csv\n    responses: [{channel: "
+          "a1}, "
+          "{channel: a2}, {channel: d, kind: displacement}]\n" +
+              keys);
+    return read_yaml_file(path("identify.yaml"));
+  }
+  static constexpr const char* kBand =
+      "identification: {lowest_frequency: 20 Hz, highest_frequency: 300 Hz}\n";
+};
+
+// The mean square of ten numbers over their deviations is 1 ± .45; two poles 2 % apart are two
+// modes.
+TEST_F(DecayingStructureTest, HasModesInOrderWithErrorBarsAndShapes) {
+  write_decay(0.02);
+  const StudyResult result = run_document(document(kBand));
+  EXPECT_EQ(result.status, report::Status::kOk) << result.answer;
+  const auto found = nlohmann::json::parse(result.files.at(0).second);
+  ASSERT_EQ(found["modes"].size(), 5u) << found.dump(1);
+  double squares = 0.0;
+  for (std::size_t n = 0; n < 5; ++n) {
+    const auto& mode = found["modes"][n];
+    EXPECT_EQ(mode["n"], n + 1);
+    squares += std::pow(
+        (mode["f_hz"].get<double>() - kModes[n].frequency) / mode["f_sd_hz"].get<double>(), 2);
+    squares +=
+        std::pow((mode["zeta"].get<double>() - kModes[n].ratio) / mode["zeta_sd"].get<double>(), 2);
+  }
+  EXPECT_LT(squares / 10.0, 2.4);
+  EXPECT_GT(squares / 10.0, 0.2);
+  EXPECT_FALSE(found.contains("stiff_string_law"));
+  // Of a mode by itself: .02 of noise over some hundred samples.
+  ASSERT_EQ(found["shapes"].size(), 15u);
+  const auto size_of = [&](std::size_t i) { return found["shapes"][i]["amplitude"].get<double>(); };
+  EXPECT_EQ(found["shapes"][1]["channel"], "a2");
+  EXPECT_NEAR(size_of(1) / size_of(0), 0.6, 0.03);
+  // An acceleration of 1 g beside a displacement of 1 mm.
+  EXPECT_NEAR(size_of(2) / size_of(0), 0.3 * 1e-3 / 9.80665, 0.05 * 0.3 * 1e-3 / 9.80665);
+}
+
+TEST_F(DecayingStructureTest, IsNoStringAndHasNoForce) {
+  write_decay(0.02);
+  const auto mistakes = [&](const std::string& keys) {
+    const LoadedExperiment experiment = load_experiment(document(keys));
+    return format_mistakes(experiment.document, experiment.mistakes);
+  };
+  EXPECT_THAT(mistakes("fundamental: 31 Hz\n"), HasSubstr("numbered in order"));
+  EXPECT_THAT(mistakes("record: {file: decay.csv, left: {channel: a1}}\n"), HasSubstr("keep one"));
+  EXPECT_THAT(mistakes("identification: {lowest_frequency: 300 Hz, highest_frequency: 20 Hz}\n"),
+              HasSubstr("is not above"));
+  write("identify.yaml",
+        "kind: identify\nstructure: {record: {file: decay.csv, force: {channel: a2}, responses: "
+        "[{channel: a1}]}}\n");
+  const LoadedExperiment forced = load_experiment(read_yaml_file(path("identify.yaml")));
+  EXPECT_THAT(format_mistakes(forced.document, forced.mistakes), HasSubstr("kind: fit_modes"));
+}
+
+}  // namespace
+}  // namespace modcal::identify_structure_test
