@@ -73,10 +73,35 @@ bool has_few_dimensions(std::ifstream& file, std::streamoff at, std::streamoff s
   return words[3] == kFlagBytes && (words[6] != kDimensions || words[7] <= kMostBytes);
 }
 
+// Whether all that is packed can be unpacked and has the checksum that stands behind it, which
+// libmatio does not compare.
+bool is_intact(std::ifstream& file, std::streamoff at, std::streamoff size) {
+  std::vector<unsigned char> packed(1 << 16), numbers(1 << 16);
+  z_stream stream{};
+  if (inflateInit(&stream) != Z_OK) return false;
+  int state = Z_OK;
+  file.seekg(at);
+  while (state == Z_OK) {
+    if (stream.avail_in == 0) {
+      const auto taken = std::min(std::ssize(packed), size);
+      file.read(reinterpret_cast<char*>(packed.data()), taken);
+      size -= taken;
+      stream.next_in = packed.data();
+      stream.avail_in = static_cast<uInt>(taken);
+    }
+    stream.next_out = numbers.data();
+    stream.avail_out = static_cast<uInt>(numbers.size());
+    state = inflate(&stream, Z_NO_FLUSH);
+  }
+  inflateEnd(&stream);
+  return state == Z_STREAM_END;
+}
+
 // libmatio takes the end of a file that was cut off for the end of its variables, and asks for
 // what a header states. Version 5: a header of 128 bytes, then variables, each with its size before
-// it; version 4: variables alone; the others are those of HDF5.
-void require_whole(const Path& path) {
+// it; version 4: variables alone; the others are those of HDF5. read: numbers are read, not headers
+// alone.
+void require_whole(const Path& path, bool read) {
   constexpr std::streamoff kHeader = 128, kVersion = 124, kOrder = 126, kTag = 8;
   std::ifstream file(path, std::ios::binary);
   std::array<char, kHeader> header{};
@@ -102,7 +127,8 @@ void require_whole(const Path& path) {
                    path.string(), at);
     constexpr std::uint32_t kCompressed = 15;
     MODCAL_REQUIRE(!is_five || tag[0] != kCompressed ||
-                       has_few_dimensions(file, at + kTag, tag[1], is_swapped),
+                       (has_few_dimensions(file, at + kTag, tag[1], is_swapped) &&
+                        (!read || is_intact(file, at + kTag, tag[1]))),
                    "{}: the compressed variable at byte {} is damaged; copy or save it again",
                    path.string(), at);
     file.clear();
@@ -110,12 +136,12 @@ void require_whole(const Path& path) {
   }
 }
 
-File opened(const Path& path) {
+File opened(const Path& path, bool read) {
   require_regular_file(path);
   MODCAL_REQUIRE(std::filesystem::exists(path), "{}: there is no such file; check the path",
                  path.string());
   MODCAL_REQUIRE(std::filesystem::file_size(path) > 0, "{}: the file is empty", path.string());
-  require_whole(path);
+  require_whole(path, read);
   // What HDF5 says on the terminal is said by the refusal.
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   File file(Mat_Open(path.c_str(), MAT_ACC_RDONLY), &Mat_Close);
@@ -184,7 +210,7 @@ void MatlabContent::add_arrays(matvar_t* variable, std::vector<std::string> path
 MatlabContent::MatlabContent(Path path) : path_(std::move(path)) {
   {
     const std::lock_guard lock(hdf5_lock());
-    const File file = opened(path_);
+    const File file = opened(path_, false);
     for (;;) {
       const Variable variable = owned(Mat_VarReadNextInfo(file.get()));
       if (variable == nullptr) break;
@@ -244,7 +270,7 @@ const matvar_t& MatlabContent::field(const NamedArray& array) {
   const Leaf& leaf = leaves_[array.place];
   Variable& variable = read_.try_emplace(array.path[0], owned(nullptr)).first->second;
   if (variable == nullptr) {
-    const File file = opened(path_);
+    const File file = opened(path_, read_.size() == 1);
     variable = owned(Mat_VarRead(file.get(), array.path[0].c_str()));
   }
   matvar_t* found = variable.get();

@@ -257,6 +257,29 @@ TEST_F(Matlab, ACompressedVariableOfManyDimensionsIsRefused) {
   }
 }
 
+// libmatio reads numbers whose checksum is another.
+TEST_F(Matlab, ADamagedCompressedVariableIsRefused) {
+  std::vector<double> numbers(60);
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    numbers[i] = std::sin(0.3 * static_cast<double>(i));
+  {
+    MatWriter writer(file(), MAT_FT_MAT5);
+    writer.write(MatWriter::doubles("a", 60, numbers), MAT_COMPRESSION_ZLIB);
+    writer.write(MatWriter::doubles("fs", 1, {1000.0}));
+  }
+  EXPECT_EQ(read().channels.at(0).samples, numbers);
+  const std::string whole = content_of(file());
+  std::size_t refused = 0;
+  for (std::size_t i = 300; i < 500; ++i) {
+    std::string damaged = whole;
+    damaged[i] = static_cast<char>(damaged[i] ^ 0x10);
+    write("a.mat", damaged);
+    const std::string said = refusal();
+    refused += said.find("is damaged") != std::string::npos ? 1 : 0;
+  }
+  EXPECT_EQ(refused, 200u);
+}
+
 TEST_F(Matlab, OtherFilesAreRefused) {
   std::ofstream(file()) << "t,f\n1,2\n";
   EXPECT_THAT(refusal(), HasSubstr("cannot be read as a MAT file"));
