@@ -50,6 +50,9 @@ void likelihood_with_jacobian(benchmark::State& state) {
     const BlindPoint point = likelihood.at(p.model);
     benchmark::DoNotOptimize(likelihood.jacobian(p.model, p.model, point, false).data());
   }
+  const BlindPoint point = likelihood.at(p.model);
+  state.counters["cost"] = point.cost;
+  state.counters["slopes"] = likelihood.jacobian(p.model, p.model, point, false).norm();
 }
 BENCHMARK(likelihood_with_jacobian)
     ->ArgName("at_rest")
@@ -85,6 +88,9 @@ void joint_inversion(benchmark::State& state) {
     fft.inverse(whole, force);
     benchmark::DoNotOptimize(force.data());
   }
+  double squares = 0.0;
+  for (const double x : force) squares += x * x;
+  state.counters["rms"] = std::sqrt(squares / static_cast<double>(kSamples));
 }
 BENCHMARK(joint_inversion)->MeasureProcessCPUTime()->UseRealTime()->Unit(benchmark::kMillisecond);
 

@@ -10,8 +10,10 @@
 namespace modcal {
 namespace {
 
+// weights: exp(−σt_j) at every sample.
 std::vector<Complex> spectrum_of(std::span<const double> samples, const ContourSpectra& at,
-                                 const RealFft& fft, const std::string& name) {
+                                 std::span<const double> weights, const RealFft& fft,
+                                 const std::string& name) {
   MODCAL_REQUIRE(samples.size() == at.samples,
                  "{} has {} samples, the first response {}: state signals of one record", name,
                  samples.size(), at.samples);
@@ -19,7 +21,7 @@ std::vector<Complex> spectrum_of(std::span<const double> samples, const ContourS
   for (std::size_t j = 0; j < weighted.size(); ++j) {
     MODCAL_REQUIRE(std::isfinite(weighted[j]), "sample {} of {} is {}: take it out of the record",
                    j, name, weighted[j]);
-    weighted[j] *= std::exp(-at.grid.sigma * static_cast<double>(j) / at.sample_rate);
+    weighted[j] *= weights[j];
   }
   const std::vector<Complex> all = fft.forward(weighted);
   return {all.begin() + static_cast<std::ptrdiff_t>(at.bins.first),
@@ -44,10 +46,16 @@ ContourSpectra ContourSpectra::of(const StructureRecord& record, double sigma, d
                  "no bin of the record lies from {:g} Hz to {:g} Hz, below half its rate {:g} Hz",
                  low, high, record.sample_rate);
   const RealFft fft(result.samples);
-  if (!record.force.empty()) result.force = spectrum_of(record.force, result, fft, "the force");
+  std::vector<double> weights(result.samples);
+  for (std::size_t j = 0; j < weights.size(); ++j) {
+    weights[j] = std::exp(-sigma * static_cast<double>(j) / record.sample_rate);
+  }
+  if (!record.force.empty()) {
+    result.force = spectrum_of(record.force, result, weights, fft, "the force");
+  }
   for (std::size_t k = 0; k < record.responses.size(); ++k) {
     result.responses.push_back(
-        spectrum_of(record.responses[k], result, fft, fmt::format("response {}", k + 1)));
+        spectrum_of(record.responses[k], result, weights, fft, fmt::format("response {}", k + 1)));
   }
   return result;
 }
