@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What `modcal` makes of random structures: their modes, and the force of blows, of noise and of pushes.
+"""What `modcal` makes of random structures: their modes, and the force of blows, of noise, of jumps and of pushes.
 
 structures.py BUILD OUT draws structures of 2 to 25 modes with damping that couples them, 1 to 6 sensors of any kind and 1 to 51.2 kHz
 (exact at eight times that rate with the force linear between, then decimated), fits modes to one strike and identifies the force of
@@ -111,6 +111,8 @@ def force_of(kind, s, seed, longer):
     if kind == "push":  # rises in a twentieth of the record, is let go after a fourth
         at = s.quiet + 0.25 * s.duration
         return lambda t: 20 * np.interp(t, (s.quiet, s.quiet + 0.05 * s.duration, at, at + s.width), (0, 1, 1, 0))
+    if kind == "jumps":  # a sawtooth of three harmonics in the band, as of what sticks and slips
+        return lambda t: 10 * (t * s.high / 3.5 % 1 - 0.5) * np.clip((t - s.quiet) / (0.05 * s.duration), 0, 1)
     if kind == "step":  # sets in and stays
         return lambda t: 20 * np.interp(t, (s.quiet, s.quiet + s.width), (0, 1))
 
@@ -159,12 +161,14 @@ def main():
     p.add_argument("build", type=Path)
     p.add_argument("out", type=Path)
     p.add_argument("--seeds", nargs=2, type=int, default=(0, 16), metavar=("FIRST", "END"))
-    p.add_argument("--kinds", nargs="+", choices=("strike", "smooth", "push", "step"), default=["strike", "push", "step"])
+    p.add_argument("--kinds", nargs="+", choices=("strike", "smooth", "jumps", "push", "step"), default=["strike", "push", "step"])
+    p.add_argument("--sensors", type=int, default=6, help="no more than these")
     p.add_argument("--longer", type=float, default=0, help="than that of the table every blow is, by a factor")
     a = p.parse_args()
     modes, answers = np.zeros((2, 2), int), {kind: np.zeros(3, int) for kind in a.kinds}
     for seed in range(*a.seeds):
         s, folder = draw(seed), a.out / str(seed)
+        s.kinds, s.shapes = s.kinds[:a.sensors], s.shapes[:a.sensors]
         folder.mkdir(parents=True, exist_ok=True)
         measure(s, lambda t: pulse(t, s.quiet, s.width, 100), folder / "fit.csv")
         sensors = "  responses: [" + ", ".join(f"{{channel: s{k + 1}, kind: {kind}}}" for k, kind in enumerate(s.kinds)) + "]"

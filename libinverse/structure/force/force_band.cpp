@@ -31,6 +31,19 @@ double power_outside(const ContourSpectra& spectra, const std::vector<double>& p
   return sum;
 }
 
+double power_of_lines_outside(const ContourSpectra& spectra, const std::vector<double>& power) {
+  const double highest = spectra.s(power.size() - 1).imag();
+  double sum = 0.0, squares = 0.0;
+  for (std::size_t m = 0; m < power.size(); ++m) {
+    const double share = std::max(0.0, power[m]) * std::pow(spectra.s(m).imag() / highest, 2);
+    sum += share;
+    squares += share * share;
+  }
+  const bool are_lines = sum * sum < kFewLines * static_cast<double>(power.size()) * squares;
+  const double nyquist = std::numbers::pi * spectra.sample_rate;
+  return are_lines ? sum * (1.0 - highest / nyquist) : 0.0;
+}
+
 std::vector<double> power_found(const BinEvidence& evidence) {
   std::vector<double> found;
   for (std::size_t m = 0; m < evidence.told.size(); ++m) {

@@ -171,6 +171,7 @@ void ForceSearch::find_power(const BinEvidence& evidence) {
   std::vector<double> found = power_found(evidence);
   result_.told = power_told(evidence);
   result_.rise = rise_towards_zero(found, spectra_.bins.first);
+  lines_outside_ = power_of_lines_outside(spectra_, found);
   for (double& power : found) power = std::max(power, 0.0);
   power_ = smoothed(found, spacing, kReach);
   const std::vector<double> hidden = hidden_power(evidence, spectra_);
@@ -226,6 +227,7 @@ Eigen::MatrixXd ForceSearch::pulses_beside_background(const BinEvidence& evidenc
 
 Eigen::VectorXd ForceSearch::variance_of(const BinEvidence& evidence) const {
   double bins = power_outside(spectra_, background_);
+  if (result_.shape == ForceShape::kSmooth) bins = std::max(bins, lines_outside_);
   for (std::size_t m = 0; m < spectra_.count(); ++m) {
     bins += 1.0 / (evidence.told[m] + 1.0 / background_[m]);
   }

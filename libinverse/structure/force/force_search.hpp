@@ -67,7 +67,8 @@ class ForceSearch {
   ContourSpectra spectra_;
   // recorded_: responses with what rang before and what the end cuts off; empty: as they are
   Transfers transfers_, recorded_;
-  double last_rms_ = 0.0;  // of the first response's last tenth
+  double lines_outside_ = 0.0;  // power_of_lines_outside()
+  double last_rms_ = 0.0;       // of the first response's last tenth
   BinVariances variances_;
   std::vector<std::vector<double>> of_change_;  // empty: nothing was refined
   Eigen::Index samples_ = 0;

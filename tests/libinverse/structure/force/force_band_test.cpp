@@ -31,5 +31,21 @@ TEST(VarianceOfShape, IsTheLargestSquaredEnvelopeAboutASampleOfWhatStandsAboveTh
   EXPECT_LT((found - expected).cwiseAbs().maxCoeff(), 1e-10);
 }
 
+// A band of 600 bins up to 600 Hz of 8 kHz. Harmonics of 150 Hz with 1/n² have 1 + 1/4 + 1/9 + 1/16
+// there; above are Σ 1/n² from 5 on, .2213, of which half the sample rate, the 26th, leaves .1836.
+// The sum is one over n from 4 to 26.7, 1/4 - .0375 = .2125.
+TEST(PowerOfLinesOutside, IsThatOfTheHarmonicsAbove) {
+  ContourSpectra spectra{.sample_rate = 8000.0, .samples = 8000};
+  spectra.grid = FrequencyGrid::of_record(8000, 8000.0);
+  spectra.bins = {1, 601};
+  std::vector<double> lines(600, 0.0), noise(600, 1.0);
+  for (std::size_t n = 1; n <= 4; ++n) lines[150 * n - 1] = 1.0 / static_cast<double>(n * n);
+  EXPECT_NEAR(power_of_lines_outside(spectra, lines), 0.25 * (1.0 - 600.0 / 4000.0), 1e-12);
+  EXPECT_EQ(power_of_lines_outside(spectra, noise), 0.0);
+  // Less than nothing is found where noise is all there is.
+  lines[300] = -5.0;
+  EXPECT_NEAR(power_of_lines_outside(spectra, lines), 0.2125, 1e-12);
+}
+
 }  // namespace
 }  // namespace modcal::force_band_test
