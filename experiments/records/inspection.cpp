@@ -119,15 +119,16 @@ RecordOptions propose(const std::filesystem::path& path, const InspectionOptions
   return record;
 }
 
-// A hammer's force and what it accelerates; or what moves alone.
+// A hammer's force and what it sets in motion; or what moves alone.
 std::optional<StructureChannels> structure_of(const std::vector<ChannelInspection>& channels,
                                               const RecordOptions& record) {
   constexpr std::pair<const char*, std::string_view> kMotions[] = {
       {"m/s2", "acceleration"}, {"m/s", "velocity"}, {"m", "displacement"}};
   StructureChannels found;
-  std::size_t forces = 0, accelerations = 0;
+  std::size_t forces = 0, motions = 0;
   for (const ChannelInspection& channel : channels) {
-    accelerations += is_unit_of(channel.unit, "m/s2") ? 1 : 0;
+    const bool moves = is_unit_of(channel.unit, "m/s2") || is_unit_of(channel.unit, "m/s");
+    motions += moves ? 1 : 0;
     if (is_unit_of(channel.unit, "N")) {
       found.force = channel.name;
       ++forces;
@@ -136,8 +137,9 @@ std::optional<StructureChannels> structure_of(const std::vector<ChannelInspectio
       if (is_unit_of(channel.unit, unit)) found.responses.push_back({channel.name, kind});
     }
   }
-  // One force beside a displacement may be a string's end.
-  const bool is_string = (record.has_left && record.has_right) || forces > accelerations;
+  // One force beside a displacement, or the velocity of a contact, may be a string's end.
+  const bool is_end = forces > motions || record.has_reference_velocity;
+  const bool is_string = (record.has_left && record.has_right) || (forces == 1 && is_end);
   if (is_string || forces > 1 || found.responses.empty()) return std::nullopt;
   return found;
 }

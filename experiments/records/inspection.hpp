@@ -52,7 +52,7 @@ struct InspectionReport {
   std::size_t problem_count;
   std::vector<std::string> warnings;
   RecordOptions record;  ///< a proposal: the channels by their names or their order
-  /// The proposal in its place where channels move and no two are forces.
+  /// The proposal in its place of a force beside accelerations or velocities, and of motion alone.
   std::optional<StructureChannels> structure = std::nullopt;
 };
 

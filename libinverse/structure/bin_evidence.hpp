@@ -19,8 +19,8 @@ struct BinEvidence {
 /// Variances of the sensors' bins about a force.
 struct BinVariances {
   std::vector<std::vector<double>> of;  ///< V_k, K
-  /// E|δH_k|², K; empty: H is known. Of |H_k|² that is no larger nothing is H: such a bin tells of
-  /// no force, as what is read there is none of its response.
+  /// E|δH_k|², K; empty: H is known. A bin tells (|H_k|² − E|δH_k|²)/|H_k|² of what it would, and
+  /// kLeastKnown at the least: of what is no larger than its error nothing is H.
   std::vector<std::vector<double>> of_transfer;
   double misfit = std::numeric_limits<double>::quiet_NaN();
   std::vector<double> by_sensor;  ///< rms of what each leaves over what is expected

@@ -15,6 +15,13 @@ namespace modcal {
 /// Halved: by .077; a smooth force on a changed plate has 97.3 % in its band (98.3).
 constexpr double kReach = 40.0;
 
+/// Bins below a tenth of the highest that part two lines of a force.
+/// Source: on a contour of 2/T a line falls to a tenth within three bins: (σT/2πm)² = .1 at m = 1.
+/// Range tried: this.
+/// Doubled: not tried.
+/// Halved: not tried.
+constexpr std::size_t kBinsBetween = 3;
+
 /// Share of |H|² that is told of an H no larger than its error: a bin without any has no F.
 /// Source: six blows on a chain of ten masses, told up to 200 Hz of 450 by two accelerometers: the
 /// errors are .16 to .32, all loud samples in a band of ± 1.6 to 2 times the force's rms.
@@ -152,12 +159,12 @@ constexpr double kSeen = 0.9, kLate = 2.5;
 /// Halved: not tried.
 constexpr double kSeenByFunctions = 0.8;
 
-/// By lines that are finer a window goes on for no longer than half a period of the mean spacing of
-/// modes, of twice so many in the band: lines half a hertz apart asked for a second.
-/// Source: that plate has 28 modes in its band.
+/// By lines that are finer a window goes on for no longer than so many periods of the band's width,
+/// half a period of the mean spacing of 40 modes: lines half a hertz apart asked for a second.
+/// Source: that plate has 28 modes in its band; of more than 40 state a window.
 /// Range tried: 10 to 40.
-/// Doubled: the plate's force is off by .040 in the place of .031, that on a chain of ten masses as now.
-/// Halved: .069.
+/// Doubled: the plate's force is off by .040 in the place of .031, that on a chain of ten masses as
+/// now. Halved: .069.
 constexpr double kLongestSpacing = 20.0;
 
 /// So many 1/σ are looked at where functions of an exponential window weigh the record.

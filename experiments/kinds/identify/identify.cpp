@@ -40,7 +40,10 @@ void DecayingStructure::visit(OptionVisitor& visitor) {
 
 std::vector<Finding> IdentifyOptions::lint() const {
   std::vector<Finding> findings;
-  if (has_scene + has_record + has_structure > 1) {
+  if (!has_structure && identification.lowest_frequency > 0.0) {
+    add_finding(findings, "identification.lowest_frequency",
+                "a string's modes are numbered from the fundamental on: leave it out");
+  } else if (has_scene + has_record + has_structure > 1) {
     add_finding(findings, has_record ? "record" : "structure",
                 "only one of scene, record and structure can be identified: keep one");
   } else if (has_scene) {
@@ -72,6 +75,10 @@ std::vector<Finding> IdentifyOptions::lint_recorded() const {
         findings, "structure.record.force",
         "a free decay has no force: leave it out, or state kind: fit_modes, which finds the "
         "modes of a strike");
+  } else if (has_structure && !std::isnan(structure.record.window)) {
+    add_finding(findings, "structure.record.exponential_window",
+                "a window that is taken out makes noise grow along the decay, which the deviations "
+                "do not hold: leave it out, and take 1/(2 pi f tau) from the damping ratios");
   } else if (has_structure) {
     append(findings,
            lint_responses("structure.record.responses", structure.record.responses.size()));

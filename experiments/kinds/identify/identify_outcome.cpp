@@ -194,6 +194,12 @@ std::string doubt_decay(const PluckIdentification& found, const PluckedRecord& r
                         std::vector<std::string>& warnings) {
   if (!found.others.empty()) warnings.push_back(others_text(found.others));
   if (!found.seconds.empty()) warnings.push_back(seconds_text(found.seconds));
+  const std::vector<double> shares = shares_left(found, record.decay);
+  for (std::size_t k = 0; k < shares.size() && !record.names.empty(); ++k) {
+    if (shares[k] < 0.5) continue;
+    warnings.push_back(fmt::format("the modes leave {:.0f} % of {}, which tells little of them",
+                                   100.0 * shares[k], record.names[k]));
+  }
   return rejection_of(found, record, fundamental, law);
 }
 

@@ -146,6 +146,17 @@ std::string numbers_text(const std::vector<std::size_t>& numbers) {
 
 }  // namespace
 
+std::vector<double> shares_left(const PluckIdentification& found, const DecayRecord& decay) {
+  std::vector<double> shares;
+  for (std::size_t k = 0; k < found.noise.size(); ++k) {
+    double power = 0.0;
+    for (const double x : decay.channels[k]) power += x * x;
+    const double rms = std::sqrt(power / static_cast<double>(decay.channels[k].size()));
+    shares.push_back(found.noise[k] / rms);
+  }
+  return shares;
+}
+
 std::string rejection_of(const PluckIdentification& found, const PluckedRecord& record,
                          double fundamental, const std::optional<StiffStringFit>& law) {
   std::size_t damped = 0;
@@ -158,18 +169,18 @@ std::string rejection_of(const PluckIdentification& found, const PluckedRecord& 
         "decay; state record.start and record.stop of one, behind the pluck",
         damped, found.modes.size());
   }
-  for (std::size_t k = 0; k < found.noise.size(); ++k) {
-    double power = 0.0;
-    for (const double x : record.decay.channels[k]) power += x * x;
-    const double rms = std::sqrt(power / static_cast<double>(record.decay.channels[k].size()));
-    if (found.noise[k] > 0.5 * rms) {
-      return fmt::format(
-          "rejected: the modes leave {:.0f} % of {}: the record holds more than one free decay in "
-          "the band; lower identification.highest_frequency or state "
-          "another part, and high-pass the record below the first mode where its sensor drifts",
-          100.0 * found.noise[k] / rms,
-          record.names.empty() ? fmt::format("reaction {}", k + 1) : record.names[k]);
-    }
+  const std::vector<double> unexplained = shares_left(found, record.decay);
+  const auto worst = std::ranges::max_element(unexplained);
+  // A sensor at a node of all modes reads noise; that of a string reads all of them.
+  const bool is_string = record.names.empty();
+  const auto least = std::ranges::min_element(unexplained);
+  if (worst != unexplained.end() && (is_string ? *worst : *least) > 0.5) {
+    const auto k = static_cast<std::size_t>(worst - unexplained.begin());
+    return fmt::format(
+        "rejected: the modes leave {:.0f} % of {}: the record holds more than one free decay in "
+        "the band; lower identification.highest_frequency or state another part, and high-pass the "
+        "record below the first mode where its sensor drifts",
+        100.0 * *worst, is_string ? fmt::format("reaction {}", k + 1) : record.names[k]);
   }
   if (!found.left.empty()) {
     return fmt::format(
@@ -246,7 +257,11 @@ std::vector<FileRead> IdentifyOptions::files_read() const {
   // The record, its decay and what is left of the band, each filtered and whitened.
   FileRead file =
       has_structure ? file_read(structure.record) : file_read(record, "record.file", 12.0);
-  if (has_structure) file.key = "structure.record.file", file.numbers_per_sample = 12.0;
+  const bool is_cropped = structure.record.start > 0.0 || !std::isnan(structure.record.stop);
+  if (has_structure) {
+    file.key = "structure.record.file";
+    file.numbers_per_sample = is_cropped ? 0.0 : 12.0;
+  }
   // A fit has the columns of a state, of a trial and of their sums for what is left of the band,
   // two for every pole: two poles for each mode of the string, half as many as the realization has
   // orders, and those that are added.

@@ -29,6 +29,9 @@ struct PluckedRecord {
 PluckedRecord load_decay(const IdentifyOptions& options, const std::filesystem::path& folder,
                          const StopToken& stop = {});
 
+/// Residual of each channel within the band over the rms of the channel; empty for era.
+std::vector<double> shares_left(const PluckIdentification& found, const DecayRecord& decay);
+
 /// Why these are no modes of a string of this f₀ [Hz], or of a structure (NaN), that decays freely:
 /// fewer than half of the
 /// damping ratios lie above zero by three deviations, the modes leave more than half of a reaction,

@@ -33,13 +33,21 @@ double power_outside(const ContourSpectra& spectra, const std::vector<double>& p
 
 double power_of_lines_outside(const ContourSpectra& spectra, const std::vector<double>& power) {
   const double highest = spectra.s(power.size() - 1).imag();
-  double sum = 0.0, squares = 0.0;
+  std::vector<double> weights;
   for (std::size_t m = 0; m < power.size(); ++m) {
-    const double share = std::max(0.0, power[m]) * std::pow(spectra.s(m).imag() / highest, 2);
-    sum += share;
-    squares += share * share;
+    weights.push_back(std::max(0.0, power[m]) * std::pow(spectra.s(m).imag() / highest, 2));
   }
-  const bool are_lines = sum * sum < kFewLines * static_cast<double>(power.size()) * squares;
+  double sum = 0.0, squares = 0.0;
+  for (const double w : weights) sum += w, squares += w * w;
+  // One line may be all there is, as of a shaker: two have bins between them that are low.
+  const double high = 0.1 * std::ranges::max(weights);
+  std::size_t lines = 0, low = kBinsBetween;
+  for (const double w : weights) {
+    if (w > high && low >= kBinsBetween) ++lines;
+    low = w > high ? 0 : low + 1;
+  }
+  const bool are_lines =
+      lines > 1 && sum * sum < kFewLines * static_cast<double>(power.size()) * squares;
   const double nyquist = std::numbers::pi * spectra.sample_rate;
   return are_lines ? sum * (1.0 - highest / nyquist) : 0.0;
 }

@@ -12,9 +12,10 @@ namespace modcal {
 double power_outside(const ContourSpectra& spectra, const std::vector<double>& power);
 
 /// The same above the band of a force whose `power` (found, a bin) is that of few lines, as of one
-/// that comes again and again: where it jumps, harmonic n of N in the band has P_1/n², and those
-/// above have P_1/N = Σ P_n (f_n/f_N)², to half the sample rate. 0: there are more than few lines,
-/// by (Σ w)²/Σ w² of w = P (f/f_N)² (participation ratio) and kFewLines of the bins.
+/// that comes again and again: where it jumps, harmonic n has P_1/n², and those above the band's
+/// top f_t have about Σ P_n (f_n/f_t)², of which 1 − f_t/f_Nyq lies below half the sample rate. 0:
+/// there is one line alone, or more than few by (Σ w)²/Σ w² of w = P (f/f_t)² (participation
+/// ratio) and kFewLines of the bins.
 double power_of_lines_outside(const ContourSpectra& spectra, const std::vector<double>& power);
 
 /// Power of the force in every bin, less what noise makes of it: below 0 at times.

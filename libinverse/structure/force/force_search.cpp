@@ -52,6 +52,8 @@ std::optional<std::size_t> ForceSearch::odd_sensor() const {
 double ForceSearch::loud_until(double seen) {
   const BinEvidence evidence = evidence_of(spectra_, transfers_, variances_, kNoSensor);
   find_power(evidence);
+  // What lies above the band is as large everywhere and tells nothing of where the force ends.
+  lines_outside_ = 0.0;
   const Eigen::VectorXd force = force_of(evidence), variance = variance_of(evidence);
   Index j = std::min(force.size(), static_cast<Index>(seen * rate()));
   const double loud = kLoud * force.head(j).cwiseAbs().maxCoeff();

@@ -99,8 +99,10 @@ Eigen::VectorXd InitialState::widths_of(double rms) const {
   Eigen::VectorXd widths(static_cast<Index>(2 * powers.size()));
   for (std::size_t n = 0; n < powers.size(); ++n) {
     // 2 Re(r c exp(λt)) has a mean square of 2 |r c|², E|c|² = 2 d².
-    const double own = rms * std::sqrt(powers[n] / all) / (2.0 * residues_[n]);
-    widths.segment<2>(static_cast<Index>(2 * n)).setConstant(std::max(own, 1e-150));
+    // A mode that the sensor does not hear, or no bin tells, is left at rest.
+    const bool is_heard = residues_[n] > 0.0 && powers[n] > 0.0;
+    const double own = is_heard ? rms * std::sqrt(powers[n] / all) / (2.0 * residues_[n]) : 0.0;
+    widths.segment<2>(static_cast<Index>(2 * n)).setConstant(std::max(1e-150, own));
   }
   return widths;
 }

@@ -30,6 +30,7 @@ class CommonNoise {
     if (!(alike > 3.0 * std::sqrt(chance()))) return result;
     double expected = 0.0;
     for (std::uint64_t draw = 0; draw < kForceNoiseDraws; ++draw) expected += alike_in(drawn(draw));
+    if (!(expected > 0.0)) return result;
     result.deviation = std::sqrt(alike * static_cast<double>(kForceNoiseDraws) / expected);
     return result;
   }

@@ -270,7 +270,8 @@ const matvar_t& MatlabContent::field(const NamedArray& array) {
   const Leaf& leaf = leaves_[array.place];
   Variable& variable = read_.try_emplace(array.path[0], owned(nullptr)).first->second;
   if (variable == nullptr) {
-    const File file = opened(path_, read_.size() == 1);
+    const File file = opened(path_, !is_intact_);
+    is_intact_ = true;
     variable = owned(Mat_VarRead(file.get(), array.path[0].c_str()));
   }
   matvar_t* found = variable.get();

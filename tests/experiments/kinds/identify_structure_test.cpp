@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <sstream>
 
 #include "experiments/loader.hpp"
 #include "experiments/study/study.hpp"
@@ -95,6 +96,28 @@ TEST_F(DecayingStructureTest, HasModesInOrderWithErrorBarsAndShapes) {
   EXPECT_NEAR(size_of(2) / size_of(0), 0.3 * 1e-3 / 9.80665, 0.05 * 0.3 * 1e-3 / 9.80665);
 }
 
+// At a node of all modes.
+TEST_F(DecayingStructureTest, ASensorThatHearsNothingIsNamed) {
+  write_decay(0.02);
+  std::string text = content_of(path("decay.csv")), quiet;
+  std::istringstream lines(text);
+  std::vector<double> normal(20000);
+  fill_standard_normal(StreamKey(9).with("node"), normal);
+  std::size_t row = 0;
+  for (std::string line; std::getline(lines, line); ++row) {
+    quiet += line + (row == 0 ? ",n [g]" : fmt::format(",{:.6g}", 0.02 * normal[row])) + "\n";
+  }
+  write("decay.csv", quiet);
+  write(
+      "identify.yaml",
+      "kind: identify\nstructure: {record: {file: decay.csv, responses: [{channel: a1}, {channel: "
+      "n}]}}\n" +
+          std::string(kBand));
+  const StudyResult result = run_document(read_yaml_file(path("identify.yaml")));
+  EXPECT_EQ(result.status, report::Status::kOk) << result.answer;
+  EXPECT_THAT(result.summary, HasSubstr("% of n, which tells little"));
+}
+
 TEST_F(DecayingStructureTest, IsNoStringAndHasNoForce) {
   write_decay(0.02);
   const auto mistakes = [&](const std::string& keys) {
@@ -103,6 +126,7 @@ TEST_F(DecayingStructureTest, IsNoStringAndHasNoForce) {
   };
   EXPECT_THAT(mistakes("fundamental: 31 Hz\n"), HasSubstr("numbered in order"));
   EXPECT_THAT(mistakes("record: {file: decay.csv, left: {channel: a1}}\n"), HasSubstr("keep one"));
+  EXPECT_THAT(mistakes("    exponential_window: 1 s\n"), HasSubstr("makes noise grow"));
   EXPECT_THAT(mistakes("identification: {lowest_frequency: 300 Hz, highest_frequency: 20 Hz}\n"),
               HasSubstr("is not above"));
   write("identify.yaml",

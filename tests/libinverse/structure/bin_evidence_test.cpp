@@ -67,8 +67,8 @@ TEST(BinEvidence, NamesTheOneSensorThatContradictsTheOthers) {
   }
 }
 
-// |H|² = E|H_true|² + E|δH|²: of a model that is off by as much as it has nothing is told, and half
-// of what a bin of twice the variance says.
+// |H|² = E|H_true|² + E|δH|²: where the error is twice |H|² as good as nothing is told, where it is
+// half of it half of what a bin tells whose H is known.
 TEST(BinEvidence, OfATransferThatIsNoLargerThanItsErrorIsNone) {
   const Struck it = struck({1.0});
   const ContourSpectra spectra = ContourSpectra::of(it.record, 4.0, it.table.low, it.table.high);

@@ -42,6 +42,9 @@ TEST(PowerOfLinesOutside, IsThatOfTheHarmonicsAbove) {
   for (std::size_t n = 1; n <= 4; ++n) lines[150 * n - 1] = 1.0 / static_cast<double>(n * n);
   EXPECT_NEAR(power_of_lines_outside(spectra, lines), 0.25 * (1.0 - 600.0 / 4000.0), 1e-12);
   EXPECT_EQ(power_of_lines_outside(spectra, noise), 0.0);
+  std::vector<double> sine(600, 0.0);
+  sine[498] = sine[499] = sine[500] = 1.0;
+  EXPECT_EQ(power_of_lines_outside(spectra, sine), 0.0);
   // Less than nothing is found where noise is all there is.
   lines[300] = -5.0;
   EXPECT_NEAR(power_of_lines_outside(spectra, lines), 0.2125, 1e-12);

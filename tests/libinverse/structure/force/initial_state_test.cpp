@@ -123,6 +123,23 @@ TEST(InitialState, OfOneSensorHoldsWhatTheEndCutsOff) {
   EXPECT_GT(static_cast<double>(held), 0.9 * static_cast<double>(count));
 }
 
+// A third mode that the sensor does not hear, above the band.
+TEST(InitialState, OfOneSensorHasNoModesThatItDoesNotHear) {
+  StructureTable one = table_of_one();
+  one.model.poles.push_back({kTurn * 900.0, 0.01});
+  one.model.constants = {1.0, -0.6, 0.0};
+  one.model.quadrature.assign(3, 0.0);
+  one.frequency_deviations.assign(3, 0.0);
+  one.damping_deviations.assign(3, 0.0);
+  StructureRecord first = record(smooth_force(), 0.0, 0.0);
+  first.responses.resize(1);
+  const StructureForce found = structure_force(
+      one, first, {.shape = ForceShape::kSmooth, .window = first.duration(), .rests = true});
+  for (std::size_t j = 0; j < kSamples; ++j) {
+    ASSERT_TRUE(std::isfinite(found.force[j]) && std::isfinite(found.deviation[j])) << j;
+  }
+}
+
 TEST(InitialState, OfOneSensorIsNotLookedForBehindAQuietBeginning) {
   const StructureTable one = table_of_one();
   StructureRecord first = record(smooth_force(), 1e-4, 0.03);
