@@ -53,8 +53,9 @@ Fault find_spike(Samples samples) {
   }
   const double width = highest - lowest;
   if (*spike <= highest + width && *spike >= lowest - width) return std::nullopt;
-  // What a sensor reads of a short blow is as high beside its peak; a filter makes one neighbor of
-  // a spike larger than half of it, and the other one smaller.
+  // What a sensor reads of a short blow is as high beside its peak. An anti-alias filter makes one
+  // neighbor of a spike larger than half of it, and the other one smaller; one at a quarter of the
+  // rate or below makes a blow of it, which is not told apart here.
   const auto is_high = [&](std::size_t i) {
     return i < samples.size() && (samples[i] - *middle) / (*spike - *middle) > 0.5;
   };

@@ -112,7 +112,9 @@ void IdentifyOutcome::visit(ResultVisitor& visitor) const {
   if (record) visitor({.key = "end_s"}, record->end);
   visitor({.key = "deviations_are_error_bars"}, found.full_rank);
   visitor({.key = "mains_lines_hz"}, found.lines);
-  visitor({.key = "noise_in_band_n"}, found.noise);
+  // In newtons of a string's reactions, in the SI unit of each sensor of a structure.
+  const bool is_structure = record && !record->names.empty();
+  visitor({.key = is_structure ? "noise_in_band" : "noise_in_band_n"}, found.noise);
   visitor({.key = "converged"}, found.converged);
   visitor({.key = "stiff_string_law", .optional = true}, law);
 }

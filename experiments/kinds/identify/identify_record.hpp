@@ -13,7 +13,7 @@ struct IdentifyOptions;
 struct IdentifyOutcome;
 
 struct PluckedRecord {
-  DecayRecord decay;                    ///< from the pluck on, means taken out
+  DecayRecord decay;                    ///< a period behind the pluck, means taken out
   double begin = 0.0;                   ///< of it in the record's part [s]
   double end = 0.0;                     ///< of it in the record's part [s]
   std::vector<std::string> names = {};  ///< of a structure's sensors; empty: a string's reactions
@@ -33,10 +33,10 @@ PluckedRecord load_decay(const IdentifyOptions& options, const std::filesystem::
 std::vector<double> shares_left(const PluckIdentification& found, const DecayRecord& decay);
 
 /// Why these are no modes of a string of this f₀ [Hz], or of a structure (NaN), that decays freely:
-/// fewer than half of the
-/// damping ratios lie above zero by three deviations, the modes leave more than half of a reaction,
-/// one is neither one damped sinusoid nor two, all numbers have a common divisor, or the law
-/// through the frequencies has another f₀ by 3 %. Empty: nothing tells against it.
+/// fewer than half of the damping ratios lie above zero by three deviations, the modes leave more
+/// than half of a reaction or of every response, one is neither one damped sinusoid nor two; of a
+/// string, all numbers have a common divisor or the law through the frequencies has another f₀ by
+/// 3 %. Empty: nothing tells against it.
 std::string rejection_of(const PluckIdentification& found, const PluckedRecord& record,
                          double fundamental, const std::optional<StiffStringFit>& law);
 

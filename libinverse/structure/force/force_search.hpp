@@ -36,7 +36,8 @@ class ForceSearch {
   /// Force, variances and state depend on each other: a few rounds.
   void take_state_out();
   /// Deviations of the state of one sensor, which tells it from a force by its size alone: that of
-  /// the response where the record ends. Empty: more sensors, or nothing that shows is cut off.
+  /// the response where the record ends. Empty: more sensors, a structure that rang before, or
+  /// nothing that shows is cut off.
   Eigen::VectorXd state_widths(const InitialState& state) const;
   /// The force by another model, what rang fitted anew and off by what is not known of it.
   Eigen::VectorXd force_by(const DrawnModels& models, std::size_t draw) const;

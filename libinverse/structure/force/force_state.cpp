@@ -35,7 +35,8 @@ std::vector<std::vector<double>> ForceSearch::spread_of_change() const {
 }
 
 Eigen::VectorXd ForceSearch::state_widths(const InitialState& state) const {
-  if (transfers_.size() > 1) return {};
+  // What rang before the record may be larger than what is left at its end.
+  if (transfers_.size() > 1 || result_.rang) return {};
   const double rms = std::exp(-result_.sigma * spectra_.duration()) * last_rms_;
   const double noise = table_.scatters.front().noise;
   // A decay of a tenth of what noise has in all samples of it is not seen.
@@ -48,13 +49,14 @@ void ForceSearch::take_state_out() {
   if (!table_.measured.empty()) return;
   const Transfers recorded = spectra_.responses;
   const InitialState state(table_.model, spectra_);
-  const Eigen::VectorXd widths = state_widths(state);
+  const bool may_ring = !(options_.rests && transfers_.size() == 1);
   for (int round = 0; round < kStateRounds; ++round) {
     find_power(evidence_of(spectra_, transfers_, variances_, kNoSensor));
     spectra_.responses = recorded;
-    if (round == 0 && !(options_.rests && transfers_.size() == 1)) {
-      result_.rang = state.is_told(state.fit(transfers_, variances_, power_));
+    if (round == 0) {
+      result_.rang = may_ring && state.is_told(state.fit(transfers_, variances_, power_));
     }
+    const Eigen::VectorXd widths = state_widths(state);
     if (!result_.rang && widths.size() == 0) return;
     spectra_.responses = state.without(state.fit(transfers_, variances_, power_, widths).state);
     variances_ = variances();

@@ -123,6 +123,18 @@ TEST(InitialState, OfOneSensorHoldsWhatTheEndCutsOff) {
   EXPECT_GT(static_cast<double>(held), 0.9 * static_cast<double>(count));
 }
 
+// What rang before is a hundred times what the end cuts off: no width of that holds it. Of a free
+// decay alone nothing is left for a force but where the state is not told from one.
+TEST(InitialState, OfOneSensorThatRangHasNoWidth) {
+  const std::vector<double> none(kSamples, 0.0);
+  StructureRecord first = record(none, 1e-4, 0.03);
+  first.responses.resize(1);
+  const StructureForce found = structure_force(
+      table_of_one(), first, {.shape = ForceShape::kSmooth, .window = first.duration()});
+  EXPECT_TRUE(found.rang);
+  for (const double force : found.force) EXPECT_LT(std::abs(force), 0.05);
+}
+
 // A third mode that the sensor does not hear, above the band.
 TEST(InitialState, OfOneSensorHasNoModesThatItDoesNotHear) {
   StructureTable one = table_of_one();
