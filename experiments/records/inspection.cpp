@@ -156,22 +156,35 @@ void ask_for_calibrations(InspectionReport& report) {
   ask(report.record.has_reference, "reference", report.record.reference);
 }
 
-// Two ends that read the same, sample for sample, are one sensor twice.
+// Two sensors that read the same, sample for sample, are one twice.
 void list_copies(const Recording& recording, InspectionReport& report) {
+  if (!report.measured) return;
+  std::vector<std::string> sensors;
   const RecordOptions& record = report.record;
-  if (!report.measured || !record.has_left || !record.has_right) return;
+  if (report.structure) {
+    for (const auto& [channel, kind] : report.structure->responses) sensors.push_back(channel);
+  } else if (record.has_left && record.has_right) {
+    sensors = {record.left.channel, record.right.channel};
+  }
   const auto samples_of = [&recording](const std::string& name) -> const std::vector<double>* {
     const auto found = std::ranges::find(recording.channels, name, &RecordedChannel::name);
-    return found == recording.channels.end() ? nullptr : &found->samples;
+    return found == recording.channels.end() || found->samples.empty() ? nullptr : &found->samples;
   };
-  const std::vector<double>* left = samples_of(record.left.channel);
-  const std::vector<double>* right = samples_of(record.right.channel);
-  if (left == nullptr || right == nullptr || left->empty() || *left != *right) return;
-  report.problems.push_back(
-      fmt::format("{}: channels {} and {} are one signal, sample for sample: give each end a "
-                  "sensor and a channel of its own, or leave one of them out",
-                  report.file, record.left.channel, record.right.channel));
-  ++report.problem_count;
+  for (std::size_t k = 1; k < sensors.size(); ++k) {
+    const std::vector<double>* const own = samples_of(sensors[k]);
+    const auto twin =
+        std::find_if(sensors.begin(), sensors.begin() + static_cast<std::ptrdiff_t>(k),
+                     [&](const std::string& name) {
+                       const std::vector<double>* const other = samples_of(name);
+                       return own != nullptr && other != nullptr && *own == *other;
+                     });
+    if (twin == sensors.begin() + static_cast<std::ptrdiff_t>(k)) continue;
+    report.problems.push_back(
+        fmt::format("{}: channels {} and {} are one signal, sample for sample: give each {} a "
+                    "sensor and a channel of its own, or leave one of them out",
+                    report.file, *twin, sensors[k], report.structure ? "place" : "end"));
+    ++report.problem_count;
+  }
 }
 
 void list_faults(InspectionReport& report) {
@@ -221,7 +234,7 @@ InspectionReport inspect(const std::filesystem::path& path, const InspectionOpti
   report.structure = structure_of(report.channels, report.record);
   if (!report.structure) ask_for_calibrations(report);
   list_faults(report);
-  if (report.problem_count == 0 && !report.structure) list_copies(recording, report);
+  if (report.problem_count == 0) list_copies(recording, report);
   return report;
 }
 

@@ -199,11 +199,14 @@ TEST_F(Inspect, ProposesByUnitsWhereNamesSayNothing) {
 
 TEST_F(Inspect, ProposesModesOfAStrikeAndAForceByThem) {
   // A hammer stands alone in its channel, which is no fault; a response does not.
-  std::vector<double> blow(64, 0.0), spike(64), sine(64);
+  std::vector<double> blow(64, 0.0), spike(64), sine(64), moved(64);
   blow[9] = 40.0;
-  for (std::size_t i = 0; i < 64; ++i) sine[i] = spike[i] = std::sin(0.7 * static_cast<double>(i));
+  for (std::size_t i = 0; i < 64; ++i) {
+    sine[i] = spike[i] = std::sin(0.7 * static_cast<double>(i));
+    moved[i] = -2.0 * sine[i];
+  }
   const std::vector<Signal> signals{
-      {"hammer", "N", 1e3, blow}, {"a 1", "m/s2", 1e3, sine}, {"y", "m", 1e3, sine}};
+      {"hammer", "N", 1e3, blow}, {"a 1", "m/s2", 1e3, sine}, {"y", "m", 1e3, moved}};
   write_csv(path("strike.csv"), signals);
   const InspectionReport strike = inspect(path("strike.csv"));
   EXPECT_THAT(strike.problems, IsEmpty());
@@ -218,6 +221,11 @@ TEST_F(Inspect, ProposesModesOfAStrikeAndAForceByThem) {
   const InspectionReport moves = inspect(path("moves.csv"));
   EXPECT_THAT(moves.problems, ElementsAre(HasSubstr("channel a 1, sample 30")));
   EXPECT_EQ(YAML::Load(stanza(moves))["kind"].as<std::string>(), "identify_force");
+  write_csv(path("copy.csv"),
+            std::vector<Signal>{
+                {"a 1", "m/s2", 1e3, sine}, {"f", "N", 1e3, blow}, {"a 2", "m/s2", 1e3, sine}});
+  EXPECT_THAT(inspect(path("copy.csv")).problems,
+              ElementsAre(HasSubstr("channels a 1 and a 2 are one signal")));
 }
 
 TEST_F(Inspect, ProposalLoadsAsItStands) {
