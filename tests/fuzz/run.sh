@@ -14,8 +14,6 @@ mkdir -p "$build/findings"
 
 fuzz() { # TARGET
   local log=$build/findings/$1.log limits=(-timeout=5 -rss_limit_mb=1024)
-  # libmatio asks for what a file states and touches what it holds; the sanitizer marks an eighth of all.
-  [ "$1" = mat ] && limits+=(-malloc_limit_mb=65536 -rss_limit_mb=9216 -timeout=20)
   local length=$([ "$1" = wav ] && echo 4096 || echo 16384)
   local folders=("$build/corpus/$1")
   mkdir -p "${folders[0]}"

@@ -1,21 +1,15 @@
 #include "libsim/records/matlab/matlab_content.hpp"
 
 #include <hdf5.h>
-#include <zlib.h>
 
 #include <algorithm>
-#include <array>
-#include <bit>
-#include <cmath>
-#include <cstring>
-#include <fstream>
-#include <limits>
 
 #include "libsim/base/error.hpp"
 #include "libsim/base/files.hpp"
 #include "libsim/base/utf8.hpp"
 #include "libsim/records/hdf5/hdf5_file.hpp"
 #include "libsim/records/matlab/matlab_file.hpp"
+#include "libsim/records/matlab/matlab_layout.hpp"
 
 namespace modcal {
 namespace {
@@ -26,122 +20,7 @@ using File = std::unique_ptr<mat_t, decltype(&Mat_Close)>;
 
 Variable owned(matvar_t* variable) { return {variable, &Mat_VarFree}; }
 
-// Numbers of 32 bits at a place of a file, in its order of bytes; zeros past its end.
-template <std::size_t kCount>
-std::array<std::uint32_t, kCount> words_at(std::ifstream& file, std::streamoff at,
-                                           bool is_swapped) {
-  std::array<std::uint32_t, kCount> words{};
-  file.seekg(at);
-  file.read(reinterpret_cast<char*>(words.data()), sizeof words);
-  for (std::uint32_t& word : words) word = is_swapped ? __builtin_bswap32(word) : word;
-  return words;
-}
-
-// Bytes of a variable of version 4 with its header: a type of the digits MOPT, rows, columns,
-// whether there are imaginary parts, letters of the name. Infinite where there is no such type.
-double bytes_of_version_4(const std::array<std::uint32_t, 5>& header) {
-  constexpr std::array kBytes = {8.0, 4.0, 4.0, 2.0, 2.0, 1.0};
-  const std::size_t precision = header[0] / 10 % 10;
-  if (header[0] >= 5000 || precision >= kBytes.size()) {
-    return std::numeric_limits<double>::infinity();
-  }
-  const double parts = header[3] != 0 && header[0] % 10 != 2 ? 2.0 : 1.0;  // 2: sparse
-  return 20.0 + header[4] + parts * kBytes[precision] * header[1] * header[2];
-}
-
-// What a compressed variable of version 5 begins with: tags of itself, of its flags and of its
-// dimensions. libmatio takes memory for as many dimensions as are stated, up to 2^30.
-bool has_few_dimensions(std::ifstream& file, std::streamoff at, std::streamoff size,
-                        bool is_swapped) {
-  constexpr std::uint32_t kFlagBytes = 8, kDimensions = 5, kMostBytes = 4 * 64;
-  std::array<unsigned char, 1024> packed{};
-  const auto taken = std::min(std::ssize(packed), size);
-  file.seekg(at);
-  file.read(reinterpret_cast<char*>(packed.data()), taken);
-  std::array<std::uint32_t, 8> words{};
-  z_stream stream{};
-  if (inflateInit(&stream) != Z_OK) return false;
-  stream.next_in = packed.data();
-  stream.avail_in = static_cast<uInt>(taken);
-  stream.next_out = reinterpret_cast<unsigned char*>(words.data());
-  stream.avail_out = sizeof words;
-  inflate(&stream, Z_SYNC_FLUSH);
-  inflateEnd(&stream);
-  if (stream.avail_out > 0) return false;
-  for (std::uint32_t& word : words) word = is_swapped ? __builtin_bswap32(word) : word;
-  // Tables, texts and dates of MATLAB's own have none.
-  return words[3] == kFlagBytes && (words[6] != kDimensions || words[7] <= kMostBytes);
-}
-
-// Whether all that is packed can be unpacked and has the checksum that stands behind it, which
-// libmatio does not compare.
-bool is_intact(std::ifstream& file, std::streamoff at, std::streamoff size) {
-  std::vector<unsigned char> packed(1 << 16), numbers(1 << 16);
-  z_stream stream{};
-  if (inflateInit(&stream) != Z_OK) return false;
-  int state = Z_OK;
-  file.seekg(at);
-  while (state == Z_OK) {
-    if (stream.avail_in == 0) {
-      const auto taken = std::min(std::ssize(packed), size);
-      file.read(reinterpret_cast<char*>(packed.data()), taken);
-      size -= taken;
-      stream.next_in = packed.data();
-      stream.avail_in = static_cast<uInt>(taken);
-    }
-    stream.next_out = numbers.data();
-    stream.avail_out = static_cast<uInt>(numbers.size());
-    state = inflate(&stream, Z_NO_FLUSH);
-  }
-  inflateEnd(&stream);
-  return state == Z_STREAM_END;
-}
-
-// libmatio takes the end of a file that was cut off for the end of its variables, and asks for
-// what a header states. Version 5: a header of 128 bytes, then variables, each with its size before
-// it; version 4: variables alone; the others are those of HDF5. read: numbers are read, not headers
-// alone.
-void require_whole(const Path& path, bool read) {
-  constexpr std::streamoff kHeader = 128, kVersion = 124, kOrder = 126, kTag = 8;
-  std::ifstream file(path, std::ios::binary);
-  std::array<char, kHeader> header{};
-  const auto size = static_cast<std::streamoff>(std::filesystem::file_size(path));
-  file.read(header.data(), kHeader);
-  file.clear();
-  const std::string_view begin(header.data(), 10), order(header.data() + kVersion, 4);
-  // As libmatio knows it: 0x0100 and "MI", in the order of bytes of the file.
-  const bool is_five = size >= kHeader && (order == std::string_view("\0\1IM", 4) ||
-                                           order == std::string_view("\1\0MI", 4));
-  if (!is_five && (begin.starts_with("MATLAB") || begin.starts_with("\x89HDF"))) return;
-  const bool is_swapped =
-      is_five ? (header[kOrder] == 'I') != (std::endian::native == std::endian::little)
-              : words_at<1>(file, 0, false)[0] >= 5000;
-  for (std::streamoff at = is_five ? kHeader : 0; at < size;) {
-    const std::array<std::uint32_t, 2> tag = words_at<2>(file, at, is_swapped);
-    const double bytes = is_five ? static_cast<double>(kTag) + tag[1]
-                                 : bytes_of_version_4(words_at<5>(file, at, is_swapped));
-    if (at == 0 && std::isinf(bytes)) return;  // another file
-    MODCAL_REQUIRE(file && bytes <= static_cast<double>(size - at),
-                   "{}: the file is cut off: the variable at byte {} is not whole; copy or save "
-                   "it again",
-                   path.string(), at);
-    constexpr std::uint32_t kCompressed = 15;
-    MODCAL_REQUIRE(!is_five || tag[0] != kCompressed ||
-                       (has_few_dimensions(file, at + kTag, tag[1], is_swapped) &&
-                        (!read || is_intact(file, at + kTag, tag[1]))),
-                   "{}: the compressed variable at byte {} is damaged; copy or save it again",
-                   path.string(), at);
-    file.clear();
-    at += static_cast<std::streamoff>(bytes);
-  }
-}
-
-File opened(const Path& path, bool read) {
-  require_regular_file(path);
-  MODCAL_REQUIRE(std::filesystem::exists(path), "{}: there is no such file; check the path",
-                 path.string());
-  MODCAL_REQUIRE(std::filesystem::file_size(path) > 0, "{}: the file is empty", path.string());
-  require_whole(path, read);
+File opened(const Path& path) {
   // What HDF5 says on the terminal is said by the refusal.
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   File file(Mat_Open(path.c_str(), MAT_ACC_RDONLY), &Mat_Close);
@@ -183,8 +62,10 @@ void MatlabContent::add_arrays(matvar_t* variable, std::vector<std::string> path
   if (variable->class_type != MAT_C_STRUCT) {
     at.type = variable->class_type;
     const bool has_numbers = number_of_class(at.type) != nullptr;
+    std::vector<std::size_t> dims(variable->dims, variable->dims + variable->rank);
+    if (dims.size() == 1) dims.push_back(1);  // of HDF5, which has vectors
     arrays_.push_back({.path = std::move(path),
-                       .dims = {variable->dims, variable->dims + variable->rank},
+                       .dims = std::move(dims),
                        .holds = has_numbers
                                     ? variable->isComplex != 0 ? Holds::kComplex : Holds::kReal
                                 : at.type == MAT_C_CHAR ? Holds::kText
@@ -208,9 +89,14 @@ void MatlabContent::add_arrays(matvar_t* variable, std::vector<std::string> path
 }
 
 MatlabContent::MatlabContent(Path path) : path_(std::move(path)) {
+  require_regular_file(path_);
+  MODCAL_REQUIRE(std::filesystem::exists(path_), "{}: there is no such file; check the path",
+                 path_.string());
+  MODCAL_REQUIRE(std::filesystem::file_size(path_) > 0, "{}: the file is empty", path_.string());
+  require_whole_matlab_file(path_);
   {
     const std::lock_guard lock(hdf5_lock());
-    const File file = opened(path_, false);
+    const File file = opened(path_);
     for (;;) {
       const Variable variable = owned(Mat_VarReadNextInfo(file.get()));
       if (variable == nullptr) break;
@@ -270,8 +156,7 @@ const matvar_t& MatlabContent::field(const NamedArray& array) {
   const Leaf& leaf = leaves_[array.place];
   Variable& variable = read_.try_emplace(array.path[0], owned(nullptr)).first->second;
   if (variable == nullptr) {
-    const File file = opened(path_, !is_intact_);
-    is_intact_ = true;
+    const File file = opened(path_);
     variable = owned(Mat_VarRead(file.get(), array.path[0].c_str()));
   }
   matvar_t* found = variable.get();

@@ -32,7 +32,6 @@ class MatlabContent final : public ArrayFile {
   std::filesystem::path path_;
   std::vector<Leaf> leaves_;
   std::map<std::string, Variable> read_;
-  bool is_intact_ = false;  ///< checksums of all that is compressed were compared
 };
 
 }  // namespace modcal
