@@ -53,6 +53,19 @@ def draw(seed):
                            duration=duration, width=rng.uniform(0.5, 1.2) / high, quiet=max(0.02 * duration, 60 / rate))
 
 
+def changed(s, share):
+    """The structure later: each stiffness off by 2 SHARE, dampers by 100 SHARE, the shapes at the sensors by 10 SHARE (deviations)."""
+    if not share:
+        return s
+    own, n, later = np.random.default_rng(s.contact.size), s.contact.size, SimpleNamespace(**vars(s))
+    later.system = s.system.copy()
+    later.system[n:, :n] *= 1 + 2 * share * own.standard_normal(n)[:, None]
+    root = np.exp(50 * share * own.standard_normal(n))
+    later.system[n:, n:] *= np.outer(root, root)
+    later.shapes = s.shapes * (1 + 10 * share * own.standard_normal(s.shapes.shape))
+    return later
+
+
 def poles_of(s):
     poles = np.linalg.eigvals(s.system)
     poles = poles[poles.imag > 0]
@@ -164,11 +177,16 @@ def main():
     p.add_argument("--kinds", nargs="+", choices=("strike", "smooth", "jumps", "push", "step"), default=["strike", "push", "step"])
     p.add_argument("--sensors", type=int, default=6, help="no more than these")
     p.add_argument("--longer", type=float, default=0, help="than that of the table every blow is, by a factor")
+    p.add_argument("--change", type=float, default=0, help="of the frequencies between the table and the record; dampers and sensors by more")
+    p.add_argument("--keys", default="", help='further keys of identify_force, "key: value; key: value"; change: of two sensors and more alone')
     a = p.parse_args()
+    keys = [key.strip() for key in a.keys.split(";") if key.strip()]
     modes, answers = np.zeros((2, 2), int), {kind: np.zeros(3, int) for kind in a.kinds}
     for seed in range(*a.seeds):
         s, folder = draw(seed), a.out / str(seed)
         s.kinds, s.shapes = s.kinds[:a.sensors], s.shapes[:a.sensors]
+        if "change:" in a.keys and len(s.kinds) < 2:
+            continue
         folder.mkdir(parents=True, exist_ok=True)
         measure(s, lambda t: pulse(t, s.quiet, s.width, 100), folder / "fit.csv")
         sensors = "  responses: [" + ", ".join(f"{{channel: s{k + 1}, kind: {kind}}}" for k, kind in enumerate(s.kinds)) + "]"
@@ -178,9 +196,9 @@ def main():
             continue
         modes += count_modes(s, json.loads((folder / "fit/modes_fit.json").read_text()))
         for kind in a.kinds:
-            t, force = measure(s, force_of(kind, s, seed, a.longer), folder / f"{kind}.csv")
+            t, force = measure(changed(s, a.change), force_of(kind, s, seed, a.longer), folder / f"{kind}.csv")
             code = run(a.build, folder / f"{kind}.yaml", folder / kind,
-                       ["kind: identify_force", "table: fit/table.yaml", "record:", f"  file: {kind}.csv", sensors])
+                       ["kind: identify_force", "table: fit/table.yaml", "record:", f"  file: {kind}.csv", sensors, *keys])
             if code not in (0, REJECTED):
                 continue
             found = json.loads((folder / kind / "force.json").read_text())
