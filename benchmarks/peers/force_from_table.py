@@ -5,15 +5,17 @@ force_from_table.py BUILD FOLDER [--draws N] makes the strikes and smooth forces
 no code with modcal, fits the table of modes with BUILD/modcal and identifies each force by
 
     modcal       kind: identify_force of BUILD/modcal
+    invert       --string only: kind: invert of BUILD/modcal, both ends at once, which knows the string in the place of a table
     pinv         equal-weight pseudo-inverse of H per frequency (the core of ForceFinder)
     tsvd         truncated singular values of the convolution matrix, corner of the L-curve (Hansen 1992)
     tikhonov     Tikhonov on the same matrix, corner of the L-curve, band of its Gaussian posterior
     akf          augmented Kalman filter and smoother: random-walk force (Lourens et al. 2012), variance of largest likelihood
     gp           latent force, Matérn 3/2 (Alvarez 2009; Nayek et al. 2019), variance and length of largest likelihood
 
-All have the same table, record and window. With --record CSV --table YAML --force COLUMN --responses COLUMN … another record, with
-a measured force, is taken. Prints relative rms error over the window, its share between the table's frequencies, the share of the
-samples in the 95 % band, and seconds of wall clock (modcal: of the whole process).
+All have the same table, record and window. With --string the records are blows and bowed strokes of a string (string_records.py), and
+forces are compared without their means, which sensors of force mostly do not give. With --record CSV --table YAML --force COLUMN
+--responses COLUMN … another record, with a measured force of one blow, is taken. Prints relative rms error over the window, its share
+between the table's frequencies, the share of the samples in the 95 % band, and seconds of wall clock (modcal: of the whole process).
 """
 import argparse
 import subprocess
@@ -23,10 +25,11 @@ from pathlib import Path
 
 import numpy as np
 import yaml
-from scipy import linalg, signal
+from scipy import linalg, optimize, signal
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "truth"))
 import plate  # noqa: E402
+import string_records  # noqa: E402
 
 POWER = {"displacement": 0, "force": 0, "strain": 0, "velocity": 1, "acceleration": 2}
 
@@ -58,53 +61,71 @@ class Table:
         return s**self.power * (sums + self.below[:, None] / s**2 + self.constant[:, None])
 
     def state_space(self):
-        """Continuous A, B, C, D of accelerations; c_0 s² has none and is left out."""
+        """Continuous A, B, C, D. Static terms that differentiate or integrate the force have none and are left out."""
         n = self.omega.size
         a = np.zeros((2 * n, 2 * n))
         a[:n, n:] = np.eye(n)
         a[n:, :n] = -np.diag(self.omega**2)
         a[n:, n:] = -np.diag(2 * self.zeta * self.omega)
         b = np.concatenate([np.zeros(n), np.ones(n)])
-        c = np.hstack([-self.real * self.omega**2, -2 * self.real * self.zeta * self.omega - self.imaginary * self.omega])
-        return a, b, c, self.real.sum(axis=1) + self.below
+        by_place, by_speed = {
+            0: (self.real, self.imaginary / self.omega),
+            1: (-self.imaginary * self.omega, self.real),
+            2: (-self.real * self.omega**2, -2 * self.real * self.zeta * self.omega - self.imaginary * self.omega),
+        }[self.power]
+        direct = {0: self.constant, 1: 0 * self.below, 2: self.real.sum(axis=1) + self.below}[self.power]
+        return a, b, np.hstack([by_place, by_speed]), direct
+
+    def keep_band(self, x, rate):
+        """x without what lies outside of the band; `low` counts where the record is long enough to tell it."""
+        parts = [signal.butter(8, self.high, "lowpass", fs=rate, output="sos")]
+        if self.low * x.shape[0] > rate:
+            parts.append(signal.butter(2, self.low, "highpass", fs=rate, output="sos"))
+        return signal.sosfiltfilt(np.vstack(parts), x, axis=0)
 
 
-def pinv(table, y, rate, count):
+def pinv(table, y, rate, count, ends):
     padded = 2 * y.shape[0]
     f = np.fft.rfftfreq(padded, 1 / rate)
-    band = (f >= table.low) & (f <= table.high)
-    h, spectrum = table.transfer(2j * np.pi * f[band]), np.fft.rfft(y, padded, axis=0).T[:, band]
+    band = (f >= table.low if table.low > f[1] else f >= 0) & (f <= table.high)
+    h, spectrum = table.transfer(2j * np.pi * np.maximum(f[band], 1e-9)), np.fft.rfft(y, padded, axis=0).T[:, band]
     force = np.zeros(f.size, complex)
     force[band] = (h.conj() * spectrum).sum(axis=0) / (np.abs(h) ** 2).sum(axis=0)
     return np.fft.irfft(force, padded)[:count], None
 
 
 def convolution(table, rate, rows, count):
-    """Matrix from the force's samples in the window to those of all sensors, band-limited to the table."""
+    """Matrix from so many samples of the force to the rows of all sensors."""
     padded = 4 * rows
     sigma = np.log(1e6) / (padded / rate)  # exp(−σt): what wraps around is below 1e-6
     f = np.fft.rfftfreq(padded, 1 / rate)
     h = table.transfer(sigma + 2j * np.pi * np.maximum(f, 1e-9))
-    h[:, f > table.high] = 0
-    impulse = np.fft.irfft(h, padded, axis=1)[:, :rows] * np.exp(sigma * np.arange(rows) / rate)
-    return np.vstack([linalg.toeplitz(g, np.zeros(count)) for g in impulse])
+    lag = np.arange(padded)
+    lag = np.where(lag < padded // 2, lag, lag - padded)  # H ends at half the rate: it rings before 0, too
+    impulse = np.fft.irfft(h, padded, axis=1) * np.exp(sigma * lag / rate)
+    return np.vstack([linalg.toeplitz(g[:rows], g[-np.arange(count)]) for g in impulse])
 
 
 def corner(x, y):
-    """Place of the largest curvature of the L-curve (log x, log y), x growing."""
-    x, y = np.log(x), np.log(y)
-    dx, dy = np.gradient(x), np.gradient(y)
-    bend = (dx * np.gradient(dy) - dy * np.gradient(dx)) / (dx**2 + dy**2 + 1e-300) ** 1.5
-    return int(np.argmax(bend[2:-2])) + 2
+    """Corner of the L-curve, x growing: the sharpest angle between an earlier point, this and the last (Castellanos et al. 2002)."""
+    points = np.column_stack([np.log(x), np.log(y)])
+    sharpest, at = np.cos(7 * np.pi / 8), len(points) // 2
+    for k in range(1, len(points) - 1):
+        back, ahead = points[:k] - points[k], points[-1] - points[k]
+        cosine = back @ ahead / (np.linalg.norm(back, axis=1) * np.linalg.norm(ahead) + 1e-300)
+        cosine[back[:, 1] * ahead[0] <= back[:, 0] * ahead[1]] = -1  # bent the other way
+        if cosine.max() > sharpest:
+            sharpest, at = cosine.max(), k
+    return at
 
 
-def least_squares(table, y, rate, count, truncated):
-    rows = y.shape[0]
-    # The modes below the band are a mere static term: both sides lose what lies there.
-    high_pass = signal.butter(2, table.low, "highpass", fs=rate, output="sos")
-    keep = lambda x: signal.sosfiltfilt(high_pass, x, axis=0)
-    a = np.vstack([keep(part) for part in np.split(convolution(table, rate, rows, count), y.shape[1])])
-    b = keep(y).T.ravel()
+def least_squares(table, y, rate, count, ends, truncated):
+    # A force that goes on behind the window acts on what is read there: a tenth of the window more, and nothing after that.
+    columns = count if ends else min(y.shape[0], count + count // 10)
+    rows = y.shape[0] if ends else columns
+    # The modes below the band are a mere static term, those above are not known: both sides lose what lies there.
+    a = np.vstack([table.keep_band(part, rate) for part in np.split(convolution(table, rate, rows, columns), y.shape[1])])
+    b = table.keep_band(y[:rows], rate).T.ravel()
     u, s, vt = linalg.svd(a, full_matrices=False)
     beta = u.T @ b
     rest = b @ b - beta @ beta
@@ -124,15 +145,14 @@ def least_squares(table, y, rate, count, truncated):
     return force, np.sqrt(np.einsum("ij,i->j", vt**2, noise / (s**2 + lambdas[at] ** 2)))
 
 
-def smoother(table, y, rate, count, matern):
+def smoother(table, y, rate, count, ends, matern):
     """Kalman filter and Rauch–Tung–Striebel smoother on modes and force; hyperparameters of largest likelihood."""
     a, b, c, d = table.state_space()
     n, step, k = b.size, 1 / rate, y.shape[1]
     scale = np.abs(table.transfer(2j * np.pi * np.linspace(table.low, table.high, 200))).mean()
     guess = y[:count].std() / scale  # of the force [N]
     # What lies outside of the table's band is noise to the model.
-    inside = signal.butter(4, [table.low, table.high], "bandpass", fs=rate, output="sos")
-    outside = (y - signal.sosfiltfilt(inside, y, axis=0)).std(axis=0)
+    outside = (y - table.keep_band(y, rate)).std(axis=0)
     noise = np.diag(table.noise**2 + (table.scatter * y.std(axis=0)) ** 2 + outside**2)
 
     def system(deviation, length):
@@ -166,9 +186,13 @@ def smoother(table, y, rate, count, matern):
             p = (p + p.T) / 2
         return (likelihood, advance, process, kept) if keep else likelihood
 
-    lengths = (0.0005, 0.001, 0.002, 0.004) if matern else (0.001,)
-    tried = [(run(guess * v, length, False), guess * v, length) for v in (0.3, 3, 30, 300) for length in lengths]
-    _, deviation, length = max(tried)
+    # Largest likelihood: the best of a grid; of the one number of a random walk, then what is best beside that.
+    lengths = np.array([0.3, 0.6, 1.2, 2.4]) / table.high if matern else (0.001,)
+    _, deviation, length = max((run(guess * v, length, False), guess * v, length) for v in (0.3, 3, 30, 300) for length in lengths)
+    if not matern:
+        near = np.log(deviation) + np.log(10) * np.array([-0.5, 0.5])
+        cost = lambda x: -run(np.exp(x), length, False)
+        deviation = np.exp(optimize.minimize_scalar(cost, bounds=near, method="bounded", options={"xatol": 0.1}).x)
     _, advance, process, kept = run(deviation, length, True)
     force, variance = np.empty(len(kept)), np.empty(len(kept))
     x, p = kept[-1]
@@ -194,23 +218,23 @@ METHODS = {
 
 
 def by_modcal(build, out, record, table, force, sign, responses, window):
-    channels = ", ".join(f"{{channel: {r}}}" for r in responses)
+    kind = ", kind: force" if Table(table).power == 0 else ""
+    channels = ", ".join(f"{{channel: {r}{kind}}}" for r in responses)
     turned = ", turned: true, calibration: 1" if sign < 0 else ""
     out.mkdir(parents=True, exist_ok=True)
     file = out / "identify.yaml"
     file.write_text(f"kind: identify_force\ntable: {table.resolve()}\nrecord:\n  file: {record.resolve()}\n"
                     f"  force: {{channel: {force}{turned}}}\n  responses: [{channels}]\nwindow: {window} s\n")
     subprocess.run([build / "modcal", "run", file, "--out", out / "run"], check=True, capture_output=True)
-    found = np.genfromtxt(out / "run/identified.csv", delimiter=",", names=True)
+    found = string_records.columns(out / "run/identified.csv")
     return [found[name] for name in found.dtype.names[1:3]]
 
 
 def read(path, force, responses, offset):
-    lines = [line for line in path.read_text().splitlines() if not line.startswith("#")]
-    data = np.genfromtxt(lines, delimiter=",", names=True)
+    data = string_records.columns(path)
 
     def column(name):
-        values = data[next(c for c in data.dtype.names if c == name or c.split("_")[0] == name)]
+        values = data[next(c for c in data.dtype.names if name in (c, c.split("_")[0], c.rsplit("_", 1)[0]))]
         return values - np.median(values) if offset else values
 
     t = data[data.dtype.names[0]]
@@ -232,6 +256,7 @@ def main():
     p.add_argument("build", type=Path)
     p.add_argument("folder", type=Path)
     p.add_argument("--draws", type=int, default=3)
+    p.add_argument("--string", action="store_true", help="records of a string with a force sensor at both ends")
     p.add_argument("--record", type=Path)
     p.add_argument("--table", type=Path)
     p.add_argument("--force", default="force")
@@ -239,38 +264,52 @@ def main():
     p.add_argument("--offset", action="store_true", help="the channels of --record stand off zero by their medians")
     p.add_argument("--responses", nargs="+", default=["a1", "a2", "a3", "a4"])
     p.add_argument("--window", type=float, default=0.08)
-    p.add_argument("--methods", nargs="+", default=["modcal", *METHODS])
+    p.add_argument("--methods", nargs="+", default=["modcal", "invert", *METHODS])
     a = p.parse_args()
     a.folder.mkdir(parents=True, exist_ok=True)
     if a.record:
-        cases = {a.record.stem: ([a.record], a.window)}
+        cases = {a.record.stem: ([a.record], a.table, a.window, True)}
+    elif a.string:
+        a.force, a.responses, cases = "f_c", ["R1", "R2"], {}
+        for kind in ("blow", "stroke"):
+            cases[kind] = (*string_records.records(a.build, a.folder, kind, a.draws), 0.06, kind == "blow")
     else:
         strike = a.folder / "strike.csv"
         plate.write(strike, *plate.record(np.random.default_rng(1), 0, 1.5))
         (a.folder / "strike.yaml").write_text(plate.yaml("fit_modes", "strike", low="10 Hz", high="600 Hz"))
         plate.run(a.build, a.folder / "strike.yaml", a.folder / "strike")
-        a.table, cases = a.folder / "strike/table.yaml", {}
+        cases = {}
         for kind, window in (("strike", 0.08), ("smooth", 0.5)):
             files = [a.folder / f"{kind}_{draw}.csv" for draw in range(a.draws)]
             for draw, file in enumerate(files):
                 plate.write(file, *plate.record(np.random.default_rng([7, draw, 1000]), 1e-3, 1.0, kind))
-            cases[kind] = (files, window)
-    table, sign = Table(a.table), -1 if a.turned else 1
+            cases[kind] = (files, a.folder / "strike/table.yaml", window, kind == "strike")
+    sign = -1 if a.turned else 1
     print("case      method      error  in band  in the 95 % band  seconds")
-    for case, (files, window) in cases.items():
+    for case, (files, path, window, ends) in cases.items():
+        table = Table(path)
         for method in a.methods:
             rows = []
+            if method == "invert" and not a.string:
+                continue
             for file in files:
                 truth, y, rate = read(file, a.force, a.responses, a.offset)
                 truth, count = sign * truth, int(window * rate)
                 begin = time.perf_counter()
                 if method == "modcal":
-                    force, sd = by_modcal(a.build, a.folder / file.stem, file, a.table, a.force, sign, a.responses, window)
+                    force, sd = by_modcal(a.build, a.folder / file.stem, file, path, a.force, sign, a.responses, window)
+                elif method == "invert":
+                    force, sd = string_records.by_invert(a.build, a.folder / f"{file.stem}_invert", file)
                 else:
-                    force, sd = METHODS[method](table, y, rate, count)
+                    force, sd = METHODS[method](table, y, rate, count, ends)
                 seconds = time.perf_counter() - begin
                 sd = sd if sd is None else sd[:count]
-                rows.append((*judge(force[:count], sd, truth[:count], table, rate), seconds))
+                force, truth = force[:count], truth[:count]
+                if a.string:
+                    first = int((string_records.START - 0.001) * rate)
+                    force, truth = (x[first:] - x[first:].mean() for x in (force, truth))
+                    sd = sd if sd is None else sd[first:]
+                rows.append((*judge(force, sd, truth, table, rate), seconds))
             error, band, held, seconds = np.median(rows, axis=0)
             share = "-" if np.isnan(held) else f"{100 * held:.1f} %"
             print(f"{case:9s} {method:10s} {error:6.3f} {band:8.3f} {share:>17s} {seconds:8.2f}", flush=True)

@@ -163,6 +163,10 @@ void CsvFile::parse(CsvHandler& handler, std::uint64_t most) {
                  open_quote_line);
 }
 
+std::string CsvFile::separator_name() const {
+  return separator_ == '\t' ? "tabs" : fmt::format("'{}'", separator_);
+}
+
 std::string CsvFile::place(std::size_t index) const {
   std::size_t column = 0;
   visit_unquoted(text_, [&](std::size_t i) {
@@ -188,6 +192,39 @@ ParsedNumber parse_number(std::string_view text) {
   return {std::isfinite(value) ? NumberKind::kNumber : NumberKind::kNotFinite, value};
 }
 
+ParsedNumber DecimalMark::parse(std::string_view text, char separator) {
+  has_points_ |= text.find('.') != std::string_view::npos;
+  const ParsedNumber number = parse_number(text);
+  const std::size_t comma = text.find(',');
+  if (number.kind != NumberKind::kText || separator == ',' || comma == std::string_view::npos) {
+    return number;
+  }
+  std::string with_point(text);
+  with_point[comma] = '.';
+  const ParsedNumber found = parse_number(with_point);
+  if (found.kind != NumberKind::kNumber) return number;
+  has_commas_ = true;
+  // 1,234 may be a number of four digits; 0,123 and 1,23 are not.
+  const std::size_t end = std::min(text.find_first_of("eE", comma), text.size());
+  const std::size_t first = text.find_first_not_of("+-");
+  is_told_ |= end - comma != 4 || first == comma || text[first] == '0';
+  return found;
+}
+
+std::string DecimalMark::doubt() const {
+  if (!has_commas_) return {};
+  if (has_points_) {
+    return "numbers with decimal points and with decimal commas stand side by side; write points";
+  }
+  return is_told_ ? "" : "commas may mark decimals or thousands, as in 1,234; write decimal points";
+}
+
+bool are_numbers(std::span<const std::string> fields, char separator) {
+  return std::ranges::all_of(fields, [separator](const std::string& text) {
+    return DecimalMark().parse(text, separator).kind != NumberKind::kText;
+  });
+}
+
 void require_apart(std::span<const std::string> headings, std::span<const std::string> wanted,
                    std::string_view place) {
   const bool together = headings.size() == 1 && wanted.size() > 1 &&
@@ -208,11 +245,6 @@ std::string describe_bad_number(NumberKind kind, std::string_view text) {
                        text);
   }
   if (text.empty()) return "the field is empty; every row needs a number in every column";
-  std::string with_point(text);
-  std::replace(with_point.begin(), with_point.end(), ',', '.');
-  if (with_point != text && parse_number(with_point).kind == NumberKind::kNumber) {
-    return fmt::format("\"{}\" has a decimal comma; write a decimal point: {}", text, with_point);
-  }
   const bool several = text.find_first_of(" \t") != std::string_view::npos;
   return fmt::format("\"{}\" is not a number{}", text,
                      several ? "; separate columns by commas, semicolons or tabs"
@@ -224,7 +256,7 @@ void PrintedDigits::add(std::string_view number) {
   bool after_point = false;
   std::size_t i = 0;
   for (; i < number.size() && number[i] != 'e' && number[i] != 'E'; ++i) {
-    if (number[i] == '.') {
+    if (number[i] == '.' || number[i] == ',') {
       after_point = true;
     } else if (number[i] >= '0' && number[i] <= '9') {
       if (significant > 0 || number[i] != '0') ++significant;

@@ -42,6 +42,7 @@ class CsvFile {
   const std::string& name() const { return name_; }
   /// The separator found; 0 before the header is read.
   char separator() const { return separator_; }
+  std::string separator_name() const;
   /// Number of the line being read, from 1.
   std::size_t line() const { return line_; }
   /// "file:line:column" of field `index` of the line being read.
@@ -72,6 +73,23 @@ struct ParsedNumber {
   double value = 0.0;
 };
 ParsedNumber parse_number(std::string_view text);
+
+/// Whether numbers have decimal points or commas. A comma marks decimals, "0,25", where it does not
+/// separate columns; all numbers of a file are written alike.
+class DecimalMark {
+ public:
+  /// As parse_number() of a field between such separators.
+  ParsedNumber parse(std::string_view text, char separator);
+  /// Why the numbers so far may not be what they seem; empty: they are.
+  std::string doubt() const;
+
+ private:
+  bool has_points_ = false, has_commas_ = false;
+  bool is_told_ = false;  ///< some comma cannot mark thousands
+};
+
+/// Whether no field is a text.
+bool are_numbers(std::span<const std::string> fields, char separator);
 
 /// Throws InvalidInput where several names that are wanted stand in the only heading: the columns
 /// have other separators. place: of the heading.

@@ -28,9 +28,11 @@ class CsvReader final : public CsvHandler {
                    "{}: no header; the first row must name the columns, such as t [s],R1 [N]",
                    file_.name());
     MODCAL_REQUIRE(rows_ > 0, "{}: there is a header but no row of samples", file_.name());
+    if (std::string text = mark_.doubt(); !text.empty()) {
+      record_.add_problem(fmt::format("{}: {}", file_.name(), text));
+    }
     settle_sample_rate();
-    const char mark = file_.separator();
-    record_.format = "CSV, separated by " + (mark == '\t' ? "tabs" : fmt::format("'{}'", mark));
+    record_.format = "CSV, separated by " + file_.separator_name();
     for (const std::size_t index : kept_) {
       record_.channels.push_back(std::move(columns_[index].channel));
     }
@@ -68,6 +70,7 @@ class CsvReader final : public CsvHandler {
   std::vector<Column> columns_;
   std::vector<std::size_t> kept_;
   TimeColumns instants_;
+  DecimalMark mark_;
   std::optional<std::size_t> time_;
   std::size_t rows_ = 0, commented_rate_line_ = 0;
   double commented_rate_ = kNaN;
@@ -114,7 +117,7 @@ void CsvReader::field(std::size_t index, std::string_view text) {
     return;
   }
   if (index >= columns_.size() || !columns_[index].read) return;
-  const ParsedNumber number = parse_number(text);
+  const ParsedNumber number = mark_.parse(text, file_.separator());
   if (number.kind != NumberKind::kNumber) report_sample(index, number.kind, text);
   if (instants_.contains(index)) columns_[index].digits.add(text);
   columns_[index].channel.samples.push_back(number.value);
@@ -151,10 +154,7 @@ void CsvReader::report_ragged_row(std::size_t fields) {
 }
 
 void CsvReader::settle_columns() {
-  const bool only_numbers = std::all_of(headings_.begin(), headings_.end(), [](const auto& text) {
-    return parse_number(text).kind != NumberKind::kText;
-  });
-  MODCAL_REQUIRE(!only_numbers,
+  MODCAL_REQUIRE(!are_numbers(headings_, file_.separator()),
                  "{}: the first row holds numbers; put a row of names before it, such as "
                  "t [s],R1 [N] (with numpy.savetxt: comments=\"\")",
                  file_.place(0));

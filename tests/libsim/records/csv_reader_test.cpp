@@ -242,12 +242,29 @@ TEST_F(CsvReader, ReportsFieldsThatAreNoNumbers) {
               HasSubstr("\"1 2\" is not a number; separate columns by commas, semicolons or tabs"));
 }
 
-TEST_F(CsvReader, RecognizesDecimalCommas) {
-  EXPECT_EQ(error("t;R1\n0;1\n1;0,25\n"),
-            "r.csv:3:3: sample 1 of R1: \"0,25\" has a decimal comma; write a decimal point: 0.25");
+// As German and French programs export.
+TEST_F(CsvReader, ReadsDecimalCommasWhereTheyDoNotSeparate) {
+  for (const char separator : {';', '\t'}) {
+    std::string text = "t [s];R1 [N]\n0;1\n0,001;-0,25\n0,002;+1,5e-3\n0,003;,125\n";
+    std::ranges::replace(text, ';', separator);
+    const Recording found = read(text);
+    EXPECT_EQ(found.sample_rate, 1000.0);
+    ASSERT_EQ(found.channels.size(), 1u);
+    EXPECT_THAT(found.channels[0].samples, testing::ElementsAre(1.0, -0.25, 1.5e-3, 0.125));
+  }
   EXPECT_EQ(error("t,R1\n0,0,1,5\n"),
             "r.csv:2:1: the row has 4 fields, the header names 2 columns; if these are decimal "
             "commas, write decimal points");
+}
+
+TEST_F(CsvReader, RefusesCommasThatMayMarkThousands) {
+  EXPECT_EQ(error("# sample_rate: 1 Hz\nR1;R2\n1,234;5\n2,345;6\n"),
+            "r.csv: commas may mark decimals or thousands, as in 1,234; write decimal points");
+  EXPECT_THAT(error("# sample_rate: 1 Hz\nR1;R2\n1,234;5.5\n2,345;6\n"),
+              HasSubstr("numbers with decimal points and with decimal commas stand side by side"));
+  EXPECT_THAT(error("# sample_rate: 1 Hz\nR1;R2\n1,234.5;5\n2,345;6\n"),
+              HasSubstr("\"1,234.5\" is not a number"));
+  EXPECT_THAT(error("0,5;1,5\n1,5;2,5\n"), HasSubstr("the first row holds numbers"));
 }
 
 TEST_F(CsvReader, ReportsRaggedRows) {
