@@ -75,7 +75,7 @@ void tell_deviations(const ContourSpectra& spectra, const Eigen::MatrixXd& jacob
     return is_white ? columns : times_correlation(spectra, columns);
   };
   const auto one = Eigen::MatrixXd::Identity(slopes.cols(), slopes.cols());
-  const Eigen::MatrixXd made = 2.0 / correlated * (slopes.transpose() * slopes);  // M
+  const Eigen::MatrixXd made = 2.0 / correlated * square_of(slopes);  // M
   const Eigen::MatrixXd scatter =
       2.0 / (correlated * correlated) * (slopes.transpose() * correlate(slopes));  // B
   const Eigen::LLT<Eigen::MatrixXd> curvature(made + one);
@@ -140,7 +140,7 @@ BlindFit fit_with(const Eigen::VectorXd& prior, const ModalModel& table,
   // As many steps as Levenberg and Marquardt take from a start within the priors, and some more.
   for (int step = 0; step < 30; ++step) {
     jacobian = likelihood.jacobian(start, fit.model, here, factors);
-    Eigen::MatrixXd information = share * (jacobian.transpose() * jacobian);
+    Eigen::MatrixXd information = share * square_of(jacobian);
     information.diagonal() += weight;
     const Eigen::VectorXd slope =
         share * (jacobian.transpose() * here.residual) + weight.cwiseProduct(fit.change);
@@ -166,7 +166,7 @@ BlindFit fit_with(const Eigen::VectorXd& prior, const ModalModel& table,
   }
   fit.prior = prior;
   fit.numbers = likelihood.numbers();
-  tell_deviations(spectra, jacobian, here.basis, fit);
+  tell_deviations(spectra, jacobian, here.span.basis(), fit);
   if (fit.degrees >= 1.0) fit.misfit = here.cost / fit.degrees;
   fit.between = likelihood.without_ends(fit.model, here);
   fit.force = here.force;

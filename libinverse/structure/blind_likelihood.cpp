@@ -1,6 +1,5 @@
 #include "libinverse/structure/blind_likelihood.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -148,7 +147,7 @@ Eigen::MatrixXd BlindLikelihood::jacobian(const ModalModel& start, const ModalMo
   Eigen::MatrixXd result(point.residual.size(), count);
   for_each_task(modes,
                 [&](std::size_t n) { mode_columns(start, model, point, n, factors, result); });
-  if (free_ends_) result -= point.basis * (point.basis.transpose() * result);
+  if (free_ends_) point.span.take_from(result);
   return result;
 }
 
@@ -260,15 +259,10 @@ void BlindLikelihood::fit_ends(const ModalModel& model, BlindPoint& point, Signa
     norms[i] = std::max(matrix.col(i).norm(), std::numeric_limits<double>::min());
     matrix.col(i) /= norms[i];
   }
-  const Eigen::HouseholderQR<Eigen::MatrixXd> solver(matrix);
-  point.basis = solver.householderQ() * Eigen::MatrixXd::Identity(matrix.rows(), count);
-  point.ends = solver.solve(point.residual).cwiseQuotient(norms);
-  const Eigen::MatrixXd inverse =
-      solver.matrixQR().topRows(count).triangularView<Eigen::Upper>().solve(
-          Eigen::MatrixXd::Identity(count, count));
-  point.ends_root =
-      std::sqrt(0.5 * spectra_.correlated()) * norms.cwiseInverse().asDiagonal() * inverse;
-  point.residual -= point.basis * (point.basis.transpose() * point.residual);
+  point.span = ColumnSpan(matrix);
+  point.ends = point.span.take_from(point.residual).cwiseQuotient(norms);
+  point.ends_root = std::sqrt(0.5 * spectra_.correlated()) * norms.cwiseInverse().asDiagonal() *
+                    point.span.root();
   take_ends(model, point, point.ends, data);
 }
 

@@ -5,6 +5,7 @@
 
 #include "libinverse/structure/bin_evidence.hpp"
 #include "libinverse/structure/blind_kernel.hpp"
+#include "libinverse/structure/column_span.hpp"
 
 namespace modcal {
 
@@ -13,7 +14,7 @@ struct BlindPoint {
   BlindBins bins;
   std::vector<double> told;            ///< |h|²
   std::vector<EndShapes> ends_shapes;  ///< of every mode; none: at rest
-  Eigen::MatrixXd basis;               ///< orthonormal columns of PX; none: at rest
+  ColumnSpan span;                     ///< of PX; empty: at rest
   Eigen::VectorXd ends;                ///< c: real and imaginary part of every mode
   Eigen::MatrixXd ends_root;   ///< c has the covariance of this times standard normal numbers
   Eigen::VectorXd residual;    ///< e = P (y − X c), a column of BlindBins

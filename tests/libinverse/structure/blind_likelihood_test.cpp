@@ -56,7 +56,7 @@ TEST_P(BlindLikelihoodAtRest, JacobianIsTheSlopeOfTheCost) {
   // The cost does not see what a column has along PX or h; the information does.
   const double rounding = 1e-10 * jacobian.norm();
   if (!GetParam()) {
-    EXPECT_LT((point.basis.transpose() * jacobian).norm(), rounding);
+    EXPECT_LT((point.span.basis().transpose() * jacobian).norm(), rounding);
   }
   const auto length = static_cast<Eigen::Index>(point.bins.padded());
   for (Eigen::Index i = 0; i < jacobian.cols(); ++i) {
